@@ -1,0 +1,286 @@
+//! The object catalogue: every class of object, what it affords, what people call it and what it looks like.
+
+use std::collections::HashMap;
+
+use serde::{Deserialize, Serialize};
+
+use crate::{builtin, model::Model};
+
+/// The index of a class in the [`Catalog`].
+#[derive(Clone, Copy, Debug, Default, Deserialize, Eq, Hash, Ord, PartialEq, PartialOrd, Serialize)]
+#[serde(transparent)]
+pub struct ClassId(pub u16);
+
+/// What a class of object affords.
+#[derive(Clone, Copy, Debug, Deserialize, Eq, Hash, PartialEq, Serialize)]
+#[serde(rename_all = "UPPERCASE")]
+pub enum Property {
+    /// Fits a hand.
+    Pickupable,
+    /// Takes other objects.
+    Receptacle,
+    /// Opens and closes.
+    Openable,
+    /// Breaks under a hammer.
+    Breakable,
+    /// Switches on and off.
+    Toggleable,
+    /// Needs its circuit.
+    Powerable,
+    /// Gets dirty.
+    Dirtyable,
+    /// Gets hot.
+    Heatable,
+    /// Can be eaten.
+    Eatable,
+    /// Gets cold.
+    Chillable,
+    /// Takes a fluid.
+    Fillable,
+    /// Can be cooked.
+    Cookable,
+    /// Can be cut.
+    Cuttable,
+    /// A virus can infect it.
+    Infectable,
+    /// Is a tool or a machine.
+    Usable,
+    /// To look at.
+    Decor,
+}
+
+/// One class of object.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct ObjectClass {
+    /// The id missions use, such as `Bowl_01`.
+    pub id: String,
+    /// The name people read, such as `Bowl`.
+    pub name: String,
+    /// What people say, lower case, the most usual first; the name need not be repeated.
+    #[serde(default)]
+    pub words: Vec<String>,
+    /// What it affords.
+    #[serde(default)]
+    pub properties: Vec<Property>,
+    /// Extent along its own x (front), y (left) and z (up), m.
+    pub size_m: [f32; 3],
+    /// Mass, kg.
+    pub mass_kg: f32,
+    /// The colour people name it by: a plain word such as `red` or `light blue`.
+    pub color: String,
+    /// The model's id; the object's own id, if absent.
+    #[serde(default)]
+    pub model: Option<String>,
+    /// What replaces `tint` in its model, `#rrggbb`.
+    #[serde(default)]
+    pub tint: Option<String>,
+    /// How it takes other objects, if it does.
+    #[serde(default)]
+    pub receptacle: Option<Receptacle>,
+    /// Where the robot must aim and reach, m in the object's frame; the middle of the object, if absent.
+    #[serde(default)]
+    pub handle_m: Option<[f32; 3]>,
+    /// Whether it hangs on a wall (back at `-x`), stands on the floor, or lies on surfaces.
+    #[serde(default)]
+    pub stands: Stands,
+}
+
+impl ObjectClass {
+    /// Whether it affords `property`.
+    #[must_use]
+    pub fn has(&self, property: Property) -> bool {
+        self.properties.contains(&property)
+    }
+}
+
+/// Where a class of object is normally found.
+#[derive(Clone, Copy, Debug, Default, Deserialize, Eq, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Stands {
+    /// On a table, a shelf, in a drawer.
+    #[default]
+    OnSurface,
+    /// On the floor.
+    OnFloor,
+    /// On a wall, at a height.
+    OnWall,
+}
+
+/// How a class takes other objects.
+#[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct Receptacle {
+    /// Where things stand.
+    #[serde(rename = "surface")]
+    pub surfaces: Vec<Surface>,
+    /// Whether its contents are behind a door, lid or drawer front (it must be open to reach them).
+    #[serde(default)]
+    pub enclosed: bool,
+    /// The only classes it takes, in the order of its anchors; any that fits, if empty.
+    #[serde(default)]
+    pub keys: Vec<String>,
+    /// Classes it never takes.
+    #[serde(default)]
+    pub refuses: Vec<String>,
+}
+
+/// A level rectangle with a grid of anchors: places that hold one object each.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct Surface {
+    /// Its middle, m in the object's frame.
+    pub center_m: [f32; 3],
+    /// Extent along x and y, m.
+    pub size_m: [f32; 2],
+    /// Anchors along x and along y.
+    pub anchors: [u32; 2],
+    /// Height free above it, m.
+    pub clearance_m: f32,
+}
+
+/// All classes of objects, by index and by id, with their models.
+#[derive(Clone, Debug)]
+pub struct Catalog {
+    classes: Vec<ObjectClass>,
+    models: Vec<Model>,
+    class_by_id: HashMap<String, ClassId>,
+    model_by_class: Vec<usize>,
+}
+
+#[derive(Deserialize)]
+struct ObjectFile {
+    #[serde(default, rename = "object")]
+    objects: Vec<ObjectClass>,
+}
+
+#[derive(Deserialize)]
+struct ModelFile {
+    #[serde(default, rename = "model")]
+    models: Vec<Model>,
+}
+
+/// Why a catalogue could not be built.
+#[derive(Debug, thiserror::Error)]
+pub enum CatalogError {
+    /// The text is not the TOML expected.
+    #[error("{file}: {source}")]
+    Syntax {
+        /// Which file.
+        file: String,
+        /// Where and what.
+        source: Box<toml::de::Error>,
+    },
+    /// Two classes or models share an id.
+    #[error("{file}: `{id}` is defined twice")]
+    Duplicate {
+        /// Which file has the second.
+        file: String,
+        /// The id.
+        id: String,
+    },
+    /// A class names a model that no file has.
+    #[error("object `{object}` has no model: no file defines `{model}`")]
+    NoModel {
+        /// The class.
+        object: String,
+        /// The model it names.
+        model: String,
+    },
+}
+
+impl Catalog {
+    /// The project's own catalogue.
+    ///
+    /// # Panics
+    /// Never: the tests parse the same text.
+    #[must_use]
+    pub fn builtin() -> Self {
+        Self::parse(builtin::OBJECTS, builtin::MODELS).expect("invariant: the built-in catalogue parses")
+    }
+
+    /// Builds a catalogue from `(file name, text)` of object files and of model files.
+    ///
+    /// # Errors
+    /// [`CatalogError`] names the file and the id.
+    pub fn parse(objects: &[(&str, &str)], models: &[(&str, &str)]) -> Result<Self, CatalogError> {
+        let mut catalog =
+            Self { classes: Vec::new(), models: Vec::new(), class_by_id: HashMap::new(), model_by_class: Vec::new() };
+        let mut model_by_id = HashMap::new();
+        for (file, text) in models {
+            for model in read::<ModelFile>(file, text)?.models {
+                if model_by_id.insert(model.id.clone(), catalog.models.len()).is_some() {
+                    return Err(CatalogError::Duplicate { file: (*file).to_owned(), id: model.id });
+                }
+                catalog.models.push(model);
+            }
+        }
+        for (file, text) in objects {
+            for class in read::<ObjectFile>(file, text)?.objects {
+                let id = ClassId(u16::try_from(catalog.classes.len()).expect("invariant: fewer than 65536 classes"));
+                if catalog.class_by_id.insert(class.id.clone(), id).is_some() {
+                    return Err(CatalogError::Duplicate { file: (*file).to_owned(), id: class.id });
+                }
+                let model = class.model.clone().unwrap_or_else(|| class.id.clone());
+                let Some(index) = model_by_id.get(&model) else {
+                    return Err(CatalogError::NoModel { object: class.id, model });
+                };
+                catalog.model_by_class.push(*index);
+                catalog.classes.push(class);
+            }
+        }
+        Ok(catalog)
+    }
+
+    /// All classes, in the order of their [`ClassId`]s.
+    #[must_use]
+    pub fn classes(&self) -> &[ObjectClass] {
+        &self.classes
+    }
+
+    /// The class at `id`.
+    ///
+    /// # Panics
+    /// When `id` comes from another catalogue.
+    #[must_use]
+    pub fn class(&self, id: ClassId) -> &ObjectClass {
+        &self.classes[usize::from(id.0)]
+    }
+
+    /// The class with this id, such as `Bowl_01`.
+    #[must_use]
+    pub fn find(&self, id: &str) -> Option<ClassId> {
+        self.class_by_id.get(id).copied()
+    }
+
+    /// The class of an instance id such as `Bowl_01_1`: the longest class id that it begins with, before a `_`.
+    #[must_use]
+    pub fn class_of_instance(&self, instance: &str) -> Option<ClassId> {
+        if let Some(id) = self.find(instance) {
+            return Some(id);
+        }
+        instance.rmatch_indices('_').find_map(|(at, _)| self.find(&instance[..at]))
+    }
+
+    /// The looks of a class.
+    #[must_use]
+    pub fn model(&self, id: ClassId) -> &Model {
+        &self.models[self.model_by_class[usize::from(id.0)]]
+    }
+
+    /// All models.
+    #[must_use]
+    pub fn models(&self) -> &[Model] {
+        &self.models
+    }
+
+    /// The index of a class's model in [`Self::models`].
+    #[must_use]
+    pub fn model_index(&self, id: ClassId) -> usize {
+        self.model_by_class[usize::from(id.0)]
+    }
+}
+
+fn read<T: serde::de::DeserializeOwned>(file: &str, text: &str) -> Result<T, CatalogError> {
+    toml::from_str(text).map_err(|source| CatalogError::Syntax { file: file.to_owned(), source: Box::new(source) })
+}

@@ -1,0 +1,29 @@
+//! Mission files, the object catalogue, floor plans and the vocabulary that every other crate speaks.
+//!
+//! Text in, checked values out. This crate never knows the state of a world, time, or any I/O beyond text:
+//! whoever reads a file hands its text over.
+//!
+//! Frames: the world is right-handed, `x` east, `y` north, `z` up, in metres. Yaw is counter-clockwise seen from
+//! above, zero along `x`. An object's own frame has its origin at the centre of its footprint, on the surface it
+//! stands on, and its front faces `+x`.
+
+pub mod action;
+pub mod catalog;
+pub mod goal;
+pub mod layout;
+pub mod mission;
+pub mod model;
+pub mod state;
+
+/// The project's own data files, as `(file name, text)`.
+mod builtin {
+    include!(concat!(env!("OUT_DIR"), "/data.rs"));
+}
+
+pub use action::{Action, BodyId, GoToTarget, ObjectId, Status, Verb};
+pub use catalog::{Catalog, CatalogError, ClassId, ObjectClass, Property};
+pub use goal::{Expression, Goal, GoalState, InstancePattern, Predicate, Relation, StateCondition};
+pub use layout::{Layout, LayoutError, RoomId};
+pub use mission::{Mission, ObjectRequest};
+pub use model::Model;
+pub use state::{Color, Fluid, StateFlag, StateFlags};

@@ -1,0 +1,126 @@
+//! The keys by which mission files name states.
+
+use crate::{catalog::Property, state::StateFlag};
+
+/// Every flag, its key, and the property that an object needs to have it.
+const FLAGS: [(StateFlag, &str, Option<Property>); 20] = [
+    (StateFlag::PickedUp, "isPickedUp", Some(Property::Pickupable)),
+    (StateFlag::Opened, "isOpen", Some(Property::Openable)),
+    (StateFlag::Broken, "isBroken", None),
+    (StateFlag::Toggled, "isToggledOn", Some(Property::Toggleable)),
+    (StateFlag::Powered, "isPowered", Some(Property::Powerable)),
+    (StateFlag::Overloaded, "isOverloaded", Some(Property::Powerable)),
+    (StateFlag::Sparking, "isSparking", None),
+    (StateFlag::Dirty, "isDirty", Some(Property::Dirtyable)),
+    (StateFlag::Eaten, "isEaten", Some(Property::Eatable)),
+    (StateFlag::Hot, "isHot", Some(Property::Heatable)),
+    (StateFlag::Cold, "isCold", Some(Property::Chillable)),
+    (StateFlag::Cooked, "isCooked", Some(Property::Cookable)),
+    (StateFlag::Cut, "isCut", Some(Property::Cuttable)),
+    (StateFlag::Infected, "isInfected", Some(Property::Infectable)),
+    (StateFlag::Scanned, "isScanned", None),
+    (StateFlag::Examined, "isExamined", None),
+    (StateFlag::Used, "isUsed", None),
+    (StateFlag::Embiggenated, "isEmbiggenated", None),
+    (StateFlag::Locked, "isLocked", None),
+    (StateFlag::Cereal, "ContainsCereal", None),
+];
+
+/// The key that goals use for `flag`, such as `isToggledOn`.
+#[must_use]
+pub fn flag_key(flag: StateFlag) -> &'static str {
+    FLAGS.iter().find(|(known, ..)| *known == flag).map_or("", |(_, key, _)| *key)
+}
+
+/// The flag that `key` names, in any case; initial states write `Infected` for `isInfected`.
+#[must_use]
+pub fn flag_of_key(key: &str) -> Option<StateFlag> {
+    let key = if key.eq_ignore_ascii_case("Infected") { "isInfected" } else { key };
+    FLAGS.iter().find(|(_, known, _)| known.eq_ignore_ascii_case(key)).map(|(flag, ..)| *flag)
+}
+
+/// The property without which no object gets `flag`.
+pub(super) fn property_of(flag: StateFlag) -> Option<Property> {
+    FLAGS.iter().find(|(known, ..)| *known == flag).and_then(|(.., property)| *property)
+}
+
+/// The keys of all flags.
+pub(super) fn flag_keys() -> impl Iterator<Item = &'static str> {
+    FLAGS.iter().map(|(_, key, _)| *key)
+}
+
+/// What a key of `required_objects[].state` says.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub(super) enum InitialKey {
+    /// A flag.
+    Flag(StateFlag),
+    /// What fills it.
+    Filled,
+    /// Nothing is in it.
+    Empty,
+    /// What the layout put in it is taken out.
+    RemoveContents,
+    /// Its class does not spawn by itself.
+    Blacklist,
+    /// No other of its class exists.
+    Unique,
+    /// It is taken out of the world.
+    Removed,
+    /// The circuit it belongs to.
+    Circuit,
+    /// The circuit it feeds.
+    GeneratesCircuit,
+    /// Whether it feeds that circuit.
+    GeneratesPower,
+    /// What a note says.
+    Text,
+    /// The face that a robot shows: no part of the simulation.
+    Mood,
+}
+
+/// The keys of initial states that are no flags.
+const INITIAL: [(&str, InitialKey); 15] = [
+    ("isFilled", InitialKey::Filled),
+    ("isEmpty", InitialKey::Empty),
+    ("removeInitialContainedItems", InitialKey::RemoveContents),
+    ("Blacklist", InitialKey::Blacklist),
+    ("Unique", InitialKey::Unique),
+    ("Removed", InitialKey::Removed),
+    ("circuitId", InitialKey::Circuit),
+    ("generateCircuitId", InitialKey::GeneratesCircuit),
+    ("generatePower", InitialKey::GeneratesPower),
+    ("text", InitialKey::Text),
+    ("isNeutral", InitialKey::Mood),
+    ("isHappy", InitialKey::Mood),
+    ("isSad", InitialKey::Mood),
+    ("isAngry", InitialKey::Mood),
+    ("isScared", InitialKey::Mood),
+];
+
+impl InitialKey {
+    /// What `key` says, in any case.
+    pub(super) fn of(key: &str) -> Option<Self> {
+        let named = INITIAL.iter().find(|(known, _)| known.eq_ignore_ascii_case(key)).map(|(_, initial)| *initial);
+        named.or_else(|| flag_of_key(key).map(Self::Flag))
+    }
+
+    /// All keys.
+    pub(super) fn names() -> impl Iterator<Item = &'static str> {
+        INITIAL.iter().map(|(key, _)| *key).chain(flag_keys())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_flag_has_one_key() {
+        for flag in StateFlag::ALL {
+            assert_eq!(flag_of_key(flag_key(flag)), Some(flag));
+        }
+        assert_eq!(flag_of_key("Infected"), Some(StateFlag::Infected));
+        assert_eq!(flag_of_key("isopen"), Some(StateFlag::Opened));
+        assert_eq!(flag_of_key(""), None);
+    }
+}

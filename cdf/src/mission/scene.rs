@@ -1,0 +1,157 @@
+//! Reads where a mission takes place: layout, seed, start room and notes.
+
+use super::{
+    NoteRequest,
+    problem::Pointer,
+    raw::{Loose, Scalar, Scene, StickyNote},
+    reader::Reader,
+};
+use crate::layout::{Layout, RoomId};
+
+/// The layout of a mission that names none.
+const DEFAULT_LAYOUT: &str = "OfficeLayout1";
+
+/// The start room of a mission that names none.
+const DEFAULT_ROOM: RoomId = RoomId::BreakRoom;
+
+/// The layouts of the format; each has a `_mirror` too. There may be no floor plan for some of them.
+const LAYOUTS: [&str; 5] = ["OfficeLayout1", "OfficeLayout1B", "OfficeLayout1C", "OfficeLayout2", "OfficeLayout3"];
+
+/// The class of notes.
+const NOTE: &str = "StickyNote";
+
+/// The parts of a scene that are no objects.
+pub(super) struct SceneParts {
+    pub name: String,
+    pub layout: String,
+    pub seed: Option<u64>,
+    pub start_room: RoomId,
+}
+
+impl Reader<'_> {
+    /// Reads all of a scene but its objects and notes, and loads its layout.
+    pub fn scene(&mut self, at: &Pointer, scene: &Scene) -> SceneParts {
+        self.extras(at, scene);
+        let layout = self.layout_id(&at.key("layoutOverride"), &scene.layout_override);
+        self.blacklist(&at.key("blacklisted_layouts"), &scene.blacklisted_layouts, &layout);
+        self.truth(&at.key("completelyRandomVisual"), &scene.completely_random_visual, false);
+        SceneParts {
+            name: self.text(&at.key("scene_id"), &scene.scene_id).unwrap_or_else(|| self.file.to_owned()),
+            seed: self.seed(&at.key("floor_plan"), &scene.floor_plan),
+            start_room: self.start_room(&at.key("roomLocation"), &scene.room_location),
+            layout,
+        }
+    }
+
+    fn layout_id(&mut self, at: &Pointer, field: &Loose<Scalar>) -> String {
+        let Some(id) = self.text(at, field) else {
+            self.layout = Layout::builtin(DEFAULT_LAYOUT).ok();
+            return DEFAULT_LAYOUT.to_owned();
+        };
+        let plans = Layout::builtin_ids();
+        if plans.contains(&id) {
+            self.layout = Layout::builtin(&id).ok();
+        } else if LAYOUTS.contains(&id.strip_suffix("_mirror").unwrap_or(&id)) {
+            let remedy = Some(format!("take `{DEFAULT_LAYOUT}`"));
+            self.warn(at, format!("there is no floor plan for layout `{id}` yet"), remedy);
+        } else {
+            self.unknown(at, "layout", &id, plans.iter().map(String::as_str).chain(LAYOUTS));
+        }
+        id
+    }
+
+    fn blacklist(&mut self, at: &Pointer, field: &Loose<Vec<Scalar>>, layout: &str) {
+        for (index, entry) in self.field(at, field, "a list of layouts").into_iter().flatten().enumerate() {
+            if entry.text() == layout {
+                self.error(&at.item(index), format!("layout `{layout}` is both asked for and blacklisted"), None);
+            }
+        }
+    }
+
+    fn seed(&mut self, at: &Pointer, field: &Loose<Scalar>) -> Option<u64> {
+        let number = self.integer(at, field)?;
+        if number < -1 {
+            self.warn(at, format!("`{number}` is no seed, taken as random"), Some("`-1` is random".to_owned()));
+        }
+        u64::try_from(number).ok()
+    }
+
+    fn start_room(&mut self, at: &Pointer, field: &Loose<Vec<Scalar>>) -> RoomId {
+        let misfit = field.misfit().is_some();
+        match self.first_text(at, field) {
+            Some((at, id)) => self.room(&at, &id).unwrap_or(DEFAULT_ROOM),
+            None => {
+                if !misfit {
+                    let remedy = format!("taken as `{}`", DEFAULT_ROOM.id());
+                    self.warn(at, "the mission does not say where the robot starts", Some(remedy));
+                }
+                DEFAULT_ROOM
+            }
+        }
+    }
+
+    /// The room of that id; none and a problem if there is none.
+    pub fn room(&mut self, at: &Pointer, id: &str) -> Option<RoomId> {
+        let room = RoomId::from_id(id);
+        if room.is_none() {
+            let by_name = RoomId::ALL.iter().find(|room| room.name().eq_ignore_ascii_case(id));
+            match by_name {
+                Some(room) => {
+                    self.error(at, format!("unknown room `{id}`"), Some(format!("did you mean `{}`?", room.id())));
+                }
+                None => self.unknown(at, "room", id, RoomId::ALL.iter().map(|room| room.id())),
+            }
+        }
+        room
+    }
+
+    /// The room of a list's first item, if any is said.
+    pub fn first_room(&mut self, at: &Pointer, list: &Loose<Vec<Scalar>>) -> Option<RoomId> {
+        let (at, id) = self.first_text(at, list)?;
+        self.room(&at, &id)
+    }
+
+    /// Reads the notes stuck to places of rooms.
+    pub fn notes(&mut self, at: &Pointer, list: &Loose<Vec<Loose<StickyNote>>>) -> Vec<NoteRequest> {
+        let notes = self.items(at, list, "a sticky note");
+        notes.into_iter().filter_map(|(at, note)| self.note(&at, note)).collect()
+    }
+
+    fn note(&mut self, at: &Pointer, note: &StickyNote) -> Option<NoteRequest> {
+        self.extras(at, note);
+        let text = self.text(&at.key("text"), &note.text).unwrap_or_default();
+        let instance = self.new_instance(&at.key("name"), &note.name);
+        if let Some(instance) = instance.as_deref()
+            && !instance.starts_with(NOTE)
+        {
+            self.error(&at.key("name"), format!("`{instance}` is no `{NOTE}`"), None);
+        }
+        let room_at = at.key("room");
+        let room = match self.text(&room_at, &note.room) {
+            Some(id) => self.room(&room_at, &id),
+            None => {
+                self.error(&room_at, "the note has no room", None);
+                None
+            }
+        };
+        let place = self.place(&at.key("location"), &note.location, room);
+        Some(NoteRequest { instance: instance?, text, room: room?, place })
+    }
+
+    fn place(&mut self, at: &Pointer, field: &Loose<Scalar>, room: Option<RoomId>) -> usize {
+        let number = self.integer(at, field).unwrap_or(0);
+        let Ok(place) = usize::try_from(number) else {
+            self.error(at, format!("`{number}` is no place; places are counted from 0"), None);
+            return 0;
+        };
+        let places = |layout: &Layout| layout.note_places.iter().filter(|place| Some(place.room) == room).count();
+        if let (Some(layout), Some(room)) = (&self.layout, room) {
+            let places = places(layout);
+            if place >= places {
+                let message = format!("the {} has {places} places for notes; the last one is taken", room.name());
+                self.warn(at, message, None);
+            }
+        }
+        place
+    }
+}

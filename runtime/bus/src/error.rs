@@ -1,0 +1,58 @@
+//! What can go wrong on a bus.
+
+use crate::topic::Topic;
+
+/// Why an operation on the bus failed.
+#[derive(Debug, thiserror::Error)]
+pub enum BusError {
+    /// The process could not join the session's shared memory.
+    #[error("join session `{session}`: {reason}")]
+    Join {
+        /// The session's name.
+        session: String,
+        /// What the transport said.
+        reason: String,
+    },
+    /// A topic could not be opened.
+    #[error("open topic `{topic}`: {reason}")]
+    Open {
+        /// Which.
+        topic: Topic,
+        /// What the transport said.
+        reason: String,
+    },
+    /// A sample could not be sent: shared memory is full, say.
+    #[error("send on topic `{topic}`: {reason} (is /dev/shm full?)")]
+    Send {
+        /// Which.
+        topic: Topic,
+        /// What the transport said.
+        reason: String,
+    },
+    /// A sample could not be received.
+    #[error("receive on topic `{topic}`: {reason}")]
+    Receive {
+        /// Which.
+        topic: Topic,
+        /// What the transport said.
+        reason: String,
+    },
+    /// A sample is not of this version of the messages.
+    #[error("a peer on topic `{topic}` speaks version {found} of the messages, this program version {expected}: use one build for all")]
+    Version {
+        /// Which.
+        topic: Topic,
+        /// The peer's version.
+        found: u32,
+        /// This build's version.
+        expected: u32,
+    },
+    /// A message's bytes are not what its header says.
+    #[error("malformed message on topic `{topic}`: {reason}")]
+    Malformed {
+        /// Which.
+        topic: Topic,
+        /// What is wrong.
+        reason: &'static str,
+    },
+}

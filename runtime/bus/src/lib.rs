@@ -1,0 +1,38 @@
+//! How the processes of one session talk: `repr(C)` messages over a transport.
+//!
+//! Two transports stand behind one trait: [`Local`] inside a process and [`Shm`] through shared memory (iceoryx2).
+//! A publisher writes straight into the sample that every subscriber then reads; nothing is copied on the way.
+//!
+//! This crate never knows the world's rules, JSON, or who its peers are. A slow subscriber loses the oldest samples
+//! and is told how many ([`Subscriber::lost`]); it never slows a publisher. Only the user who started a session can
+//! attach to it.
+//!
+//! ```
+//! use cohabit_bus::{Local, Topic, Transport};
+//! let bus = Local::new(1);
+//! let mut reader = bus.subscriber(Topic::Events)?;
+//! let mut writer = bus.publisher(Topic::Events)?;
+//! writer.send(7, 3, &mut |bytes| bytes.copy_from_slice(b"hey"))?;
+//! let sample = reader.receive()?.expect("one sample");
+//! assert_eq!((sample.envelope().tick, sample.payload()), (7, &b"hey"[..]));
+//! # Ok::<(), cohabit_bus::BusError>(())
+//! ```
+
+mod envelope;
+mod error;
+mod local;
+pub mod message;
+mod session;
+mod shm;
+mod text;
+mod topic;
+mod transport;
+
+pub use envelope::{Block, Envelope, monotonic_nanos};
+pub use error::BusError;
+pub use local::Local;
+pub use session::{Session, SessionError};
+pub use shm::Shm;
+pub use text::Text;
+pub use topic::{CameraId, Topic, Wake};
+pub use transport::{Listener, Publisher, Sample, Subscriber, Transport};

@@ -1,0 +1,32 @@
+//! The messages of a session, as they lie in shared memory: fixed records, and lists of them behind a header.
+
+mod action;
+mod command;
+mod dialog;
+mod event;
+mod frame;
+mod layout;
+mod state;
+
+pub use action::ActionRecord;
+pub use command::CommandMessage;
+pub use dialog::{DialogHeader, DialogKind, DialogMessage, DialogView, PlanStep};
+pub use event::{EventKind, EventMessage};
+pub use frame::{FrameHeader, FrameLayout, FrameView, Plane};
+pub use state::{BodyRecord, GoalRecord, NoteRecord, ObjectRecord, StateHeader, StateParts, StateView};
+
+/// Stands for "no object", "no body" and "no command" in records.
+pub const NONE: u32 = u32::MAX;
+
+/// Why bytes are not the message they should be.
+#[derive(Clone, Copy, Debug, Eq, PartialEq, thiserror::Error)]
+#[error("malformed message: {0}")]
+pub struct Malformed(pub &'static str);
+
+/// Reads one fixed record.
+///
+/// # Errors
+/// [`Malformed`], when the length is not the record's.
+pub fn read<T: bytemuck::Pod>(payload: &[u8]) -> Result<T, Malformed> {
+    bytemuck::try_pod_read_unaligned(payload).map_err(|_| Malformed("not the length of its record"))
+}

@@ -1,0 +1,189 @@
+//! A session's name, where its shared memory lies, and how it is cleaned away.
+
+use std::{
+    fs::{self, File},
+    io,
+    os::unix::fs::DirBuilderExt,
+    path::{Path, PathBuf},
+};
+
+use rustix::fs::{FlockOperation, flock};
+
+/// A session's name and the places that belong to it alone.
+#[derive(Clone, Debug, Eq, PartialEq)]
+pub struct Session {
+    name: String,
+}
+
+/// Why a session could not be had.
+#[derive(Debug, thiserror::Error)]
+pub enum SessionError {
+    /// The name cannot be part of a file name.
+    #[error("session name `{0}`: use 1 to 24 letters, digits or `-`")]
+    Name(String),
+    /// A live supervisor holds the session.
+    #[error("session `{0}` runs already: choose another `--session` name, or end that one")]
+    Busy(String),
+    /// The folder for the session's files is not usable.
+    #[error("{path}: {source}")]
+    Folder {
+        /// Which.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+    /// There is no shared memory.
+    #[error("/dev/shm: {0}; mount a tmpfs there (`mount -t tmpfs tmpfs /dev/shm`)")]
+    NoSharedMemory(io::Error),
+}
+
+/// Held by the process that supervises a session, for as long as it lives; the kernel lets go of it when that
+/// process dies in any way.
+#[derive(Debug)]
+pub struct SessionLock {
+    _file: File,
+}
+
+const SHARED_MEMORY: &str = "/dev/shm";
+
+impl Session {
+    /// A session of that name.
+    ///
+    /// # Errors
+    /// [`SessionError::Name`].
+    pub fn new(name: &str) -> Result<Self, SessionError> {
+        let fits = (1..=24).contains(&name.len()) && name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'-');
+        if fits { Ok(Self { name: name.to_owned() }) } else { Err(SessionError::Name(name.to_owned())) }
+    }
+
+    /// Its name.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Its name as a number (FNV-1a), equal in all processes.
+    #[must_use]
+    pub fn number(&self) -> u64 {
+        self.name
+            .bytes()
+            .fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
+    }
+
+    /// What the names of its shared memory begin with.
+    #[must_use]
+    pub fn prefix(&self) -> String {
+        format!("cohabit_{}_{}_", rustix::process::getuid().as_raw(), self.name)
+    }
+
+    /// The folder of its small files.
+    #[must_use]
+    pub fn folder(&self) -> PathBuf {
+        sessions_folder().join(&self.name)
+    }
+
+    /// Takes the session for this process to supervise, and wipes what an earlier one of that name left behind.
+    ///
+    /// # Errors
+    /// [`SessionError::Busy`], [`SessionError::Folder`], [`SessionError::NoSharedMemory`].
+    pub fn supervise(&self) -> Result<SessionLock, SessionError> {
+        fs::metadata(SHARED_MEMORY).map_err(SessionError::NoSharedMemory)?;
+        let folder = sessions_folder();
+        create_private(&folder)?;
+        let lock = self.lock()?.ok_or_else(|| SessionError::Busy(self.name.clone()))?;
+        self.wipe();
+        create_private(&self.folder())?;
+        Ok(lock)
+    }
+
+    fn lock_path(&self) -> PathBuf {
+        sessions_folder().join(format!("{}.lock", self.name))
+    }
+
+    fn lock(&self) -> Result<Option<SessionLock>, SessionError> {
+        let path = self.lock_path();
+        let file = File::options()
+            .create(true)
+            .truncate(false)
+            .write(true)
+            .open(&path)
+            .map_err(|source| SessionError::Folder { path, source })?;
+        match flock(&file, FlockOperation::NonBlockingLockExclusive) {
+            Ok(()) => Ok(Some(SessionLock { _file: file })),
+            Err(_) => Ok(None),
+        }
+    }
+
+    /// Removes its shared memory and files; what is already gone is no error.
+    pub fn wipe(&self) {
+        let prefix = self.prefix();
+        for entry in fs::read_dir(SHARED_MEMORY).into_iter().flatten().flatten() {
+            if entry.file_name().to_string_lossy().starts_with(&prefix) {
+                let _ = fs::remove_file(entry.path());
+            }
+        }
+        let _ = fs::remove_dir_all(self.folder());
+    }
+
+    /// Ends the session: wipes it, and its lock.
+    pub fn end(&self, lock: SessionLock) {
+        self.wipe();
+        let _ = fs::remove_file(self.lock_path());
+        drop(lock);
+    }
+
+    /// Wipes every session of this user whose supervisor is dead; gives their names.
+    pub fn wipe_dead() -> Vec<String> {
+        let mut wiped = Vec::new();
+        for entry in fs::read_dir(sessions_folder()).into_iter().flatten().flatten() {
+            let path = entry.path();
+            let name = path.file_stem().and_then(|stem| stem.to_str()).unwrap_or_default();
+            let is_lock = path.extension().is_some_and(|ending| ending == "lock");
+            if let (true, Ok(session)) = (is_lock, Self::new(name))
+                && let Ok(Some(lock)) = session.lock()
+            {
+                session.end(lock);
+                wiped.push(session.name);
+            }
+        }
+        wiped
+    }
+}
+
+fn sessions_folder() -> PathBuf {
+    let base = std::env::var_os("XDG_RUNTIME_DIR").map(PathBuf::from).filter(|path| path.is_dir());
+    let base = base.unwrap_or_else(std::env::temp_dir);
+    base.join(format!("cohabit-{}", rustix::process::getuid().as_raw()))
+}
+
+fn create_private(path: &Path) -> Result<(), SessionError> {
+    fs::DirBuilder::new()
+        .recursive(true)
+        .mode(0o700)
+        .create(path)
+        .map_err(|source| SessionError::Folder { path: path.to_owned(), source })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_file_names() {
+        for (name, good) in [("a", true), ("study-1", true), ("", false), ("../x", false), ("a b", false)] {
+            assert_eq!(Session::new(name).is_ok(), good, "{name}");
+        }
+    }
+
+    #[test]
+    fn a_session_has_one_supervisor_and_leaves_nothing() {
+        let session = Session::new(&format!("test-{}", std::process::id())).unwrap();
+        let lock = session.supervise().unwrap();
+        assert!(matches!(session.supervise(), Err(SessionError::Busy(_))));
+        assert!(session.folder().is_dir());
+        session.end(lock);
+        assert!(!session.folder().exists());
+        let lock = session.supervise().unwrap();
+        session.end(lock);
+    }
+}

@@ -1,0 +1,114 @@
+//! The topics of a session: what is said where, and how much of it is kept.
+
+use std::fmt;
+
+/// A camera of the simulator.
+#[derive(Clone, Copy, Debug, Eq, Hash, Ord, PartialEq, PartialOrd)]
+pub enum CameraId {
+    /// A body's own eyes: 300x300, all modalities.
+    Egocentric(u8),
+    /// For people who watch a body: colour alone, larger.
+    Spectator(u8),
+}
+
+/// A topic: one kind of message, from anybody to everybody who subscribes.
+#[derive(Clone, Copy, Debug, Eq, Hash, Ord, PartialEq, PartialOrd)]
+pub enum Topic {
+    /// The present state of the world, once a tick; the latest is kept for late joiners.
+    State,
+    /// Outcomes of commands and what else happened.
+    Events,
+    /// What bodies are told to do.
+    Commands,
+    /// What people and robots say, and plans.
+    Dialog,
+    /// One camera's frames; the latest is kept for late joiners.
+    Frames(CameraId),
+}
+
+/// What a process can sleep on: groups of topics.
+#[derive(Clone, Copy, Debug, Eq, Hash, Ord, PartialEq, PartialOrd)]
+pub enum Wake {
+    /// [`Topic::Commands`].
+    Commands,
+    /// [`Topic::Dialog`] and [`Topic::Events`].
+    Talk,
+    /// [`Topic::State`].
+    State,
+    /// [`Topic::Frames`] of one camera.
+    Frames(CameraId),
+}
+
+impl Topic {
+    /// Samples kept for a subscriber that does not keep up; older ones are lost to it.
+    pub(crate) const fn depth(self) -> usize {
+        match self {
+            Self::State => 4,
+            Self::Frames(_) => 2,
+            Self::Events | Self::Commands | Self::Dialog => 512,
+        }
+    }
+
+    /// Samples kept for a subscriber that joins late.
+    pub(crate) const fn history(self) -> usize {
+        match self {
+            Self::State | Self::Frames(_) => 1,
+            Self::Dialog => 64,
+            Self::Events | Self::Commands => 0,
+        }
+    }
+
+    /// A first guess at a sample's size, in bytes; larger ones grow the segment.
+    pub(crate) const fn usual_bytes(self) -> usize {
+        match self {
+            Self::State => 96 << 10,
+            Self::Frames(CameraId::Egocentric(_)) => 300 * 300 * 16 + 4096,
+            Self::Frames(CameraId::Spectator(_)) => 640 * 360 * 4 + 4096,
+            Self::Events | Self::Commands => 512,
+            Self::Dialog => 4096,
+        }
+    }
+
+    /// What its publishers wake.
+    #[must_use]
+    pub const fn wake(self) -> Wake {
+        match self {
+            Self::State => Wake::State,
+            Self::Events | Self::Dialog => Wake::Talk,
+            Self::Commands => Wake::Commands,
+            Self::Frames(camera) => Wake::Frames(camera),
+        }
+    }
+}
+
+impl fmt::Display for CameraId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Egocentric(body) => write!(f, "egocentric/{body}"),
+            Self::Spectator(body) => write!(f, "spectator/{body}"),
+        }
+    }
+}
+
+impl fmt::Display for Topic {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::State => f.write_str("state"),
+            Self::Events => f.write_str("events"),
+            Self::Commands => f.write_str("commands"),
+            Self::Dialog => f.write_str("dialog"),
+            Self::Frames(camera) => write!(f, "frames/{camera}"),
+        }
+    }
+}
+
+impl fmt::Display for Wake {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Commands => f.write_str("wake/commands"),
+            Self::Talk => f.write_str("wake/talk"),
+            Self::State => f.write_str("wake/state"),
+            Self::Frames(camera) => write!(f, "wake/frames/{camera}"),
+        }
+    }
+}

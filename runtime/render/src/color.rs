@@ -1,0 +1,87 @@
+//! Colours: hexadecimal text to linear light, linear light to display bytes.
+
+use std::sync::OnceLock;
+
+use cohabit_cdf::{Color, Fluid};
+use glam::Vec3;
+
+/// Steps of the table from linear light to display bytes.
+const STEPS: usize = 4096;
+
+/// The linear light of `#rrggbb`, or nothing if it is not of that form.
+pub(crate) fn parse_hex(text: &str) -> Option<Vec3> {
+    let digits = text.strip_prefix('#').filter(|rest| rest.len() == 6 && rest.is_ascii())?;
+    let value = u32::from_str_radix(digits, 16).ok()?;
+    Some(from_srgb([(value >> 16) as u8, (value >> 8) as u8, value as u8]))
+}
+
+/// The linear light of display bytes.
+pub(crate) fn from_srgb(bytes: [u8; 3]) -> Vec3 {
+    let channel = |byte: u8| {
+        let c = f32::from(byte) / 255.0;
+        if c <= 0.04045 { c / 12.92 } else { libm::powf((c + 0.055) / 1.055, 2.4) }
+    };
+    Vec3::new(channel(bytes[0]), channel(bytes[1]), channel(bytes[2]))
+}
+
+/// The table behind [`to_srgb`], made once.
+pub(crate) fn srgb_table() -> &'static [u8; STEPS] {
+    static TABLE: OnceLock<Box<[u8; STEPS]>> = OnceLock::new();
+    TABLE.get_or_init(|| {
+        let mut table = Box::new([0; STEPS]);
+        for (step, entry) in table.iter_mut().enumerate() {
+            let c = step as f32 / (STEPS - 1) as f32;
+            let s = if c <= 0.003_130_8 { c * 12.92 } else { 1.055 * libm::powf(c, 1.0 / 2.4) - 0.055 };
+            *entry = (s * 255.0 + 0.5) as u8;
+        }
+        table
+    })
+}
+
+/// Display bytes of linear light, clipped at white.
+pub(crate) fn to_srgb(table: &[u8; STEPS], light: Vec3) -> [u8; 3] {
+    // The conversion of a float saturates, so negative light is black and the mask never changes a value.
+    let channel = |c: f32| table[(c.min(1.0) * (STEPS - 1) as f32 + 0.5) as usize & (STEPS - 1)];
+    [channel(light.x), channel(light.y), channel(light.z)]
+}
+
+/// What replaces the tint of an object that was coloured.
+pub(crate) fn of_color(color: Color) -> Option<Vec3> {
+    match color {
+        Color::Original => None,
+        Color::Red => Some(from_srgb([190, 48, 42])),
+        Color::Green => Some(from_srgb([62, 142, 70])),
+        Color::Blue => Some(from_srgb([48, 92, 178])),
+    }
+}
+
+/// What a fluid looks like.
+pub(crate) fn of_fluid(fluid: Fluid) -> Vec3 {
+    match fluid {
+        Fluid::None | Fluid::Water => from_srgb([120, 178, 214]),
+        Fluid::Milk => from_srgb([240, 236, 226]),
+        Fluid::Coffee => from_srgb([72, 42, 24]),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn display_bytes_come_back() {
+        for byte in 0..=255 {
+            // The table's steps are coarser than the bytes near black.
+            let back = to_srgb(srgb_table(), from_srgb([byte; 3]))[0];
+            assert!(back.abs_diff(byte) <= if byte < 16 { 2 } else { 0 }, "{byte} came back as {back}");
+        }
+    }
+
+    #[test]
+    fn only_six_digits_are_a_color() {
+        assert_eq!(parse_hex("#000000"), Some(Vec3::ZERO));
+        for bad in ["", "#12345", "123456", "#12345g", "#éabcd"] {
+            assert_eq!(parse_hex(bad), None, "{bad}");
+        }
+    }
+}

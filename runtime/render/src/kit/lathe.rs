@@ -1,0 +1,131 @@
+//! Surfaces of revolution about z: lathed profiles, cylinders, ellipsoids.
+
+use core::f32::consts::{PI, TAU};
+
+use glam::{Vec2, Vec3};
+
+use super::{Detail, Solid};
+
+/// Where two pieces of a profile meet at a larger angle than this, there is an edge: cos 40°.
+const EDGE_COS: f32 = 0.766;
+
+/// A point of a profile: radius and height, and the normal there in the same plane.
+#[derive(Clone, Copy)]
+struct Ring {
+    at: Vec2,
+    normal: Vec2,
+}
+
+/// Turns a profile of `[radius, z]`; ends away from the axis are closed with flat discs.
+pub(super) fn turn(profile: &[[f32; 2]], detail: Detail) -> Solid {
+    let mut points: Vec<Vec2> = Vec::with_capacity(profile.len() + 2);
+    for point in profile {
+        let point = Vec2::new(point[0].max(0.0), point[1]);
+        if points.last().is_none_or(|last| last.distance_squared(point) > 1e-12) {
+            points.push(point);
+        }
+    }
+    let ring_shaped = points.len() > 2 && points[0].distance_squared(points[points.len() - 1]) < 1e-12;
+    if !ring_shaped && !points.is_empty() {
+        let (first, last) = (points[0], points[points.len() - 1]);
+        if first.x > 0.0 {
+            points.insert(0, Vec2::new(0.0, first.y));
+        }
+        if last.x > 0.0 {
+            points.push(Vec2::new(0.0, last.y));
+        }
+    }
+    revolve(&rings(&points, ring_shaped), detail)
+}
+
+/// A cylinder or cone frustum from z = 0, with rounded rims.
+pub(super) fn cylinder(radii: [f32; 2], height: f32, bevel: Option<f32>, detail: Detail) -> Solid {
+    let [base, top] = radii;
+    let smallest = base.max(top).min(height);
+    let wanted = bevel.unwrap_or((smallest * 0.12).min(0.006));
+    let round = |radius: f32| if detail == Detail::Coarse { 0.0 } else { wanted.clamp(0.0, radius.min(height) * 0.5) };
+    let side = Vec2::new(height, base - top).normalize();
+    let (low, high) = (round(base), round(top));
+    let along = Vec2::new(top - base, height).normalize();
+    let mut rings = vec![Ring { at: Vec2::ZERO, normal: Vec2::NEG_Y }];
+    rings.push(Ring { at: Vec2::new(base - low, 0.0), normal: Vec2::NEG_Y });
+    rings.push(Ring { at: Vec2::new(base, 0.0) + along * low, normal: side });
+    rings.push(Ring { at: Vec2::new(top, height) - along * high, normal: side });
+    if top > 0.0 {
+        rings.push(Ring { at: Vec2::new(top - high, height), normal: Vec2::Y });
+        rings.push(Ring { at: Vec2::new(0.0, height), normal: Vec2::Y });
+    }
+    revolve(&rings, detail)
+}
+
+/// An ellipsoid about the origin.
+pub(super) fn ellipsoid(radii: Vec3, detail: Detail) -> Solid {
+    let rows = (detail.sides(radii.max_element()) / 2).max(4);
+    let rings: Vec<Ring> = (0..=rows)
+        .map(|row| {
+            let (sin, cos) = libm::sincosf(PI * (row as f32 / rows as f32 - 0.5));
+            let normal = if row == 0 || row == rows { Vec2::new(0.0, sin) } else { Vec2::new(cos, sin) };
+            Ring { at: normal, normal }
+        })
+        .collect();
+    let mut solid = revolve_sides(&rings, rows * 2);
+    for position in &mut solid.positions {
+        *position *= radii;
+    }
+    for normal in &mut solid.normals {
+        *normal = (*normal / radii).normalize_or(Vec3::Z);
+    }
+    solid
+}
+
+/// Gives every point its normals: one where the profile is smooth, two where it has an edge.
+fn rings(points: &[Vec2], ring_shaped: bool) -> Vec<Ring> {
+    let normal = |a: Vec2, b: Vec2| Vec2::new(b.y - a.y, a.x - b.x).normalize_or(Vec2::X);
+    let count = points.len();
+    let mut rings = Vec::with_capacity(count * 2);
+    for (index, at) in points.iter().copied().enumerate() {
+        let before = match index {
+            0 if ring_shaped => Some(normal(points[count - 2], at)),
+            0 => None,
+            _ => Some(normal(points[index - 1], at)),
+        };
+        let after = match index + 1 {
+            next if next < count => Some(normal(at, points[next])),
+            _ if ring_shaped => Some(normal(at, points[1])),
+            _ => None,
+        };
+        match (before, after) {
+            (Some(a), Some(b)) if a.dot(b) > EDGE_COS => {
+                rings.push(Ring { at, normal: (a + b).normalize_or(a) });
+            }
+            (Some(a), Some(b)) => rings.extend([Ring { at, normal: a }, Ring { at, normal: b }]),
+            (Some(only), None) | (None, Some(only)) => rings.push(Ring { at, normal: only }),
+            (None, None) => {}
+        }
+    }
+    rings
+}
+
+fn revolve(rings: &[Ring], detail: Detail) -> Solid {
+    let widest = rings.iter().map(|ring| ring.at.x).fold(0.0, f32::max);
+    revolve_sides(rings, detail.sides(widest))
+}
+
+fn revolve_sides(rings: &[Ring], sides: u32) -> Solid {
+    let mut solid = Solid::default();
+    for ring in rings {
+        for side in 0..sides {
+            let (sin, cos) = libm::sincosf(TAU * side as f32 / sides as f32);
+            let position = Vec3::new(ring.at.x * cos, ring.at.x * sin, ring.at.y);
+            solid.corner(position, Vec3::new(ring.normal.x * cos, ring.normal.x * sin, ring.normal.y));
+        }
+    }
+    for row in 1..rings.len() as u32 {
+        let (low, high) = ((row - 1) * sides, row * sides);
+        for side in 0..sides {
+            let next = (side + 1) % sides;
+            solid.quad([low + side, low + next, high + next, high + side]);
+        }
+    }
+    solid
+}
