@@ -1,8 +1,28 @@
-//! A mission, checked: what a world is built from.
+//! A mission, checked: what a world is built from, and how it is read from a CDF file.
 
-use serde::Serialize;
+mod expression;
+mod goals;
+mod key;
+mod messages;
+mod names;
+mod nearest;
+mod objects;
+pub mod problem;
+pub mod raw;
+mod reader;
+mod scene;
 
+use serde::{Deserialize, Serialize};
+
+pub use self::{
+    key::{flag_key, flag_of_key},
+    problem::{Pointer, Problem, Problems, Severity},
+    raw::Cdf,
+};
+use self::{goals::Named, raw::Loose, reader::Reader};
 use crate::{
+    builtin,
+    catalog::Catalog,
     goal::{Goal, StateCondition},
     layout::RoomId,
     state::{Color, Fluid, StateFlag},
@@ -33,6 +53,15 @@ pub struct Mission {
     pub conditions: Vec<StateCondition>,
     /// What people are told, and when.
     pub messages: Vec<Message>,
+}
+
+impl Mission {
+    /// The condition that a goal means which names it for `instance`: the one of that context, else the first of that name.
+    #[must_use]
+    pub fn condition(&self, name: &str, instance: &str) -> Option<&StateCondition> {
+        let named = || self.conditions.iter().filter(|condition| condition.name == name);
+        named().find(|condition| condition.context == instance).or_else(|| named().next())
+    }
 }
 
 /// One of `required_objects`.
@@ -103,4 +132,104 @@ pub enum MessageTime {
     GoalMet(i64),
     /// As the mission ends.
     Ending,
+}
+
+/// A mission that can be played, the file it was read from, and what is doubtful in it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Checked {
+    /// The mission.
+    pub mission: Mission,
+    /// The file as it was written, unknown fields included.
+    pub raw: Cdf,
+    /// What has no effect, or perhaps not the one meant.
+    pub warnings: Vec<Problem>,
+}
+
+/// The project's own missions, as `(file name, text)`, in the order of their names.
+#[must_use]
+pub fn builtin() -> &'static [(&'static str, &'static str)] {
+    builtin::MISSIONS
+}
+
+/// Reads the text of a mission file, and checks all of it against the catalogue and the layout it names.
+///
+/// `file` is only what the problems call it. Files are taken as generously as the original game takes them: what has no
+/// meaning is a warning.
+///
+/// ```
+/// let catalog = cohabit_cdf::Catalog::builtin();
+/// let problems = cohabit_cdf::mission::read_mission("soup.json", r#"{"scene": 1}"#, &catalog).unwrap_err();
+/// assert_eq!(problems.0[0].to_string(), "soup.json: /scene: expected an object, found a number");
+/// ```
+///
+/// # Errors
+/// All [`Problems`], warnings among them, if one of them is an error; a single one with line and column for what is no JSON.
+pub fn read_mission(file: &str, text: &str, catalog: &Catalog) -> Result<Checked, Problems> {
+    // Editors of another system put a byte order mark before the text.
+    let value = serde_json::from_str(text.trim_start_matches('\u{feff}')).map_err(|error| syntax(file, &error))?;
+    let mut reader = Reader::new(file, catalog);
+    let raw = match Loose::<Cdf>::deserialize(&value) {
+        Ok(Loose::As(raw)) => raw,
+        _ => {
+            reader.error(&Pointer::default(), format!("a mission is an object, not {}", reader::shape(&value)), None);
+            return Err(Problems(reader.problems));
+        }
+    };
+    let mission = reader.mission(&raw);
+    if reader.problems.iter().any(|problem| problem.severity == Severity::Error) {
+        return Err(Problems(reader.problems));
+    }
+    Ok(Checked { mission, raw, warnings: reader.problems })
+}
+
+fn syntax(file: &str, error: &serde_json::Error) -> Problems {
+    let text = error.to_string();
+    let message = text.split(" at line ").next().unwrap_or_default();
+    Problems(vec![Problem {
+        severity: Severity::Error,
+        file: file.to_owned(),
+        position: Some((error.line(), error.column())),
+        pointer: Pointer::default(),
+        message: format!("no JSON: {message}"),
+        remedy: None,
+    }])
+}
+
+impl Reader<'_> {
+    fn mission(&mut self, raw: &Cdf) -> Mission {
+        let root = Pointer::default();
+        self.extras(&root, raw);
+        let at = root.key("scene");
+        let nothing = raw::Scene::default();
+        let scene = match self.field(&at, &raw.scene, "an object") {
+            Some(scene) => scene,
+            None => {
+                if raw.scene.misfit().is_none() {
+                    self.error(&at, "the mission has no scene", None);
+                }
+                &nothing
+            }
+        };
+        let parts = self.scene(&at, scene);
+        let objects = self.objects(&at.key("required_objects"), &scene.required_objects);
+        let notes = self.notes(&at.key("sticky_notes"), &scene.sticky_notes);
+        let conditions = self.conditions(&root.key("stateconditions"), &raw.stateconditions);
+        let named = Named { conditions: &conditions, notes: &notes };
+        let goals = self.goals(&root.key("task_goals"), &raw.task_goals, &named);
+        let messages = self.messages(&root.key("game_interactions"), &raw.game_interactions, &goals);
+        let line = |field: &Loose<String>| field.known().map(|text| text.trim().to_owned()).unwrap_or_default();
+        Mission {
+            name: parts.name,
+            goal_text: line(&raw.goal_text),
+            description: line(&raw.task_description),
+            layout: parts.layout,
+            seed: parts.seed,
+            start_room: parts.start_room,
+            objects,
+            notes,
+            goals,
+            conditions,
+            messages,
+        }
+    }
 }

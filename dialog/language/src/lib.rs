@@ -1,1 +1,98 @@
-//! cohabit-language
+//! What people say, and what the robot knows, in; actions, a question, a highlight or a reply out.
+//!
+//! Pure: no I/O, no clock, no thread, no randomness. The same utterance in the same scene and conversation always has
+//! the same meaning. It never knows the world itself, only what the robot knows of it ([`Known`]).
+//!
+//! On the way: words ([`Language::understand`] repairs their spelling) → clauses, each one verb with its objects and
+//! places → referring expressions → objects → steps, every clause grounded on what the steps before it will have
+//! done. What remains open is asked for, and the request waits in the [`Context`] for the answer.
+//!
+//! ```
+//! use std::sync::Arc;
+//! use cohabit_cdf::{Catalog, RoomId};
+//! use cohabit_language::{Context, Known, KnownRobot, Language, Understanding};
+//!
+//! let language = Language::new(Arc::new(Catalog::parse(&[], &[])?));
+//! let robot = KnownRobot { position_m: [0.0; 3], yaw_rad: 0.0, room: RoomId::Lab1, held: None };
+//! let scene = Known { robot, objects: vec![], goals: vec![] };
+//! let meant = language.understand("Could you go to the kitchen, please?", &scene, &mut Context::default());
+//! assert!(matches!(meant, Understanding::Plan { steps, .. } if steps.len() == 1));
+//! # Ok::<(), cohabit_cdf::CatalogError>(())
+//! ```
+
+mod answer;
+mod carry;
+mod clause;
+mod context;
+mod conversation;
+mod describe;
+mod device;
+mod ground;
+mod imagine;
+mod intent;
+mod known;
+mod lexicon;
+mod phrase;
+mod plan;
+mod process;
+mod question;
+mod remedy;
+mod reply;
+mod report;
+mod settle;
+mod spelling;
+mod table;
+mod token;
+mod understanding;
+
+use std::sync::Arc;
+
+use cohabit_cdf::{Catalog, Status};
+
+pub use context::Context;
+pub use known::{Known, KnownGoal, KnownObject, KnownRobot};
+pub use understanding::{Step, Understanding};
+
+use crate::{context::Focus, conversation::Conversation, lexicon::Lexicon, process::Devices};
+
+/// The robot's language: its words, and what it knows of devices.
+#[derive(Debug)]
+pub struct Language {
+    catalog: Arc<Catalog>,
+    lexicon: Lexicon,
+    devices: Devices,
+}
+
+impl Language {
+    /// The language of a world with these classes of objects.
+    #[must_use]
+    pub fn new(catalog: Arc<Catalog>) -> Self {
+        let lexicon = Lexicon::new(&catalog);
+        let devices = Devices::new(&catalog);
+        Self { catalog, lexicon, devices }
+    }
+
+    /// What `utterance` means in `scene`, given the conversation so far. Any text is taken; none panics.
+    #[must_use]
+    pub fn understand(&self, utterance: &str, scene: &Known, context: &mut Context) -> Understanding {
+        let conversation =
+            Conversation { catalog: &self.catalog, lexicon: &self.lexicon, devices: &self.devices, scene };
+        conversation.understand(utterance, context)
+    }
+
+    /// What the robot says after a whole plan has finished (`step` is its last) or after `step` failed; `detail` is
+    /// the world's own sentence. Where something may help it offers that, and `yes` means it, once
+    /// [`Context::note_outcome`] was told.
+    #[must_use]
+    pub fn report(&self, step: &Step, status: Status, detail: &str, scene: &Known) -> String {
+        if status.is_success() {
+            return report::success(&self.catalog, scene, step, status);
+        }
+        let planner = remedy::planner(&self.catalog, &self.devices, scene, Focus::default());
+        let text = report::failure(&self.catalog, scene, step, status, detail);
+        match remedy::remedy(planner, step, status) {
+            Some(remedy) => format!("{text} {}", remedy.question),
+            None => text,
+        }
+    }
+}

@@ -38,7 +38,9 @@ pub enum BusError {
         reason: String,
     },
     /// A sample is not of this version of the messages.
-    #[error("a peer on topic `{topic}` speaks version {found} of the messages, this program version {expected}: use one build for all")]
+    #[error(
+        "a peer on topic `{topic}` speaks version {found} of the messages, this program version {expected}: use one build for all"
+    )]
     Version {
         /// Which.
         topic: Topic,

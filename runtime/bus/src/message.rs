@@ -6,14 +6,18 @@ mod dialog;
 mod event;
 mod frame;
 mod layout;
+mod mission;
 mod state;
+mod tick;
 
 pub use action::ActionRecord;
 pub use command::CommandMessage;
 pub use dialog::{DialogHeader, DialogKind, DialogMessage, DialogView, PlanStep};
 pub use event::{EventKind, EventMessage};
 pub use frame::{FrameHeader, FrameLayout, FrameView, Plane};
+pub use mission::{MissionHeader, MissionMessage};
 pub use state::{BodyRecord, GoalRecord, NoteRecord, ObjectRecord, StateHeader, StateParts, StateView};
+pub use tick::{TickHeader, TickMessage, TickView};
 
 /// Stands for "no object", "no body" and "no command" in records.
 pub const NONE: u32 = u32::MAX;

@@ -45,7 +45,9 @@ impl Shm {
         let failed = |reason: String| BusError::Join { session: session.name().to_owned(), reason };
         let folder = session.folder();
         if !folder.is_dir() {
-            return Err(failed("there is no such session here; start it with `cohabit play --session NAME`".to_owned()));
+            return Err(failed(
+                "there is no such session here; start it with `cohabit play --session NAME`".to_owned(),
+            ));
         }
         let mut config = Config::default();
         config.global.prefix = session.prefix().as_str().try_into().map_err(|e| failed(format!("{e:?}")))?;
@@ -80,10 +82,7 @@ impl Shm {
             .map_err(|e| failed(format!("{e:?}")))
     }
 
-    fn wake_service(
-        &self,
-        wake: Wake,
-    ) -> Result<iceoryx2::service::port_factory::event::PortFactory<Ipc>, String> {
+    fn wake_service(&self, wake: Wake) -> Result<iceoryx2::service::port_factory::event::PortFactory<Ipc>, String> {
         self.node
             .service_builder(&service_name(&wake.to_string())?)
             .event()
@@ -183,9 +182,7 @@ impl Publisher for ShmPublisher {
     }
 
     fn update(&mut self) -> Result<(), BusError> {
-        self.port
-            .update_connections()
-            .map_err(|e| BusError::Send { topic: self.topic, reason: format!("{e:?}") })
+        self.port.update_connections().map_err(|e| BusError::Send { topic: self.topic, reason: format!("{e:?}") })
     }
 }
 

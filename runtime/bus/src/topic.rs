@@ -14,8 +14,12 @@ pub enum CameraId {
 /// A topic: one kind of message, from anybody to everybody who subscribes.
 #[derive(Clone, Copy, Debug, Eq, Hash, Ord, PartialEq, PartialOrd)]
 pub enum Topic {
+    /// The mission that the simulator plays; kept for late joiners.
+    Mission,
     /// The present state of the world, once a tick; the latest is kept for late joiners.
     State,
+    /// What the simulator took in at each tick and the digest of what came of it: what a log needs to replay.
+    Ticks,
     /// Outcomes of commands and what else happened.
     Events,
     /// What bodies are told to do.
@@ -33,7 +37,7 @@ pub enum Wake {
     Commands,
     /// [`Topic::Dialog`] and [`Topic::Events`].
     Talk,
-    /// [`Topic::State`].
+    /// [`Topic::State`], [`Topic::Mission`] and [`Topic::Ticks`].
     State,
     /// [`Topic::Frames`] of one camera.
     Frames(CameraId),
@@ -43,7 +47,9 @@ impl Topic {
     /// Samples kept for a subscriber that does not keep up; older ones are lost to it.
     pub(crate) const fn depth(self) -> usize {
         match self {
+            Self::Mission => 1,
             Self::State => 4,
+            Self::Ticks => 2048,
             Self::Frames(_) => 2,
             Self::Events | Self::Commands | Self::Dialog => 512,
         }
@@ -52,19 +58,21 @@ impl Topic {
     /// Samples kept for a subscriber that joins late.
     pub(crate) const fn history(self) -> usize {
         match self {
-            Self::State | Self::Frames(_) => 1,
-            Self::Dialog => 64,
-            Self::Events | Self::Commands => 0,
+            Self::Mission | Self::State | Self::Frames(_) => 1,
+            Self::Dialog | Self::Events => 512,
+            Self::Ticks => 2048,
+            Self::Commands => 0,
         }
     }
 
     /// A first guess at a sample's size, in bytes; larger ones grow the segment.
     pub(crate) const fn usual_bytes(self) -> usize {
         match self {
+            Self::Mission => 64 << 10,
             Self::State => 96 << 10,
             Self::Frames(CameraId::Egocentric(_)) => 300 * 300 * 16 + 4096,
             Self::Frames(CameraId::Spectator(_)) => 640 * 360 * 4 + 4096,
-            Self::Events | Self::Commands => 512,
+            Self::Events | Self::Commands | Self::Ticks => 512,
             Self::Dialog => 4096,
         }
     }
@@ -73,7 +81,7 @@ impl Topic {
     #[must_use]
     pub const fn wake(self) -> Wake {
         match self {
-            Self::State => Wake::State,
+            Self::Mission | Self::State | Self::Ticks => Wake::State,
             Self::Events | Self::Dialog => Wake::Talk,
             Self::Commands => Wake::Commands,
             Self::Frames(camera) => Wake::Frames(camera),
@@ -93,7 +101,9 @@ impl fmt::Display for CameraId {
 impl fmt::Display for Topic {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Self::Mission => f.write_str("mission"),
             Self::State => f.write_str("state"),
+            Self::Ticks => f.write_str("ticks"),
             Self::Events => f.write_str("events"),
             Self::Commands => f.write_str("commands"),
             Self::Dialog => f.write_str("dialog"),

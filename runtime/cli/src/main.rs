@@ -1,1 +1,63 @@
-fn main() {}
+//! `cohabit`: people and robots together in a simulated office.
+
+mod check;
+mod failure;
+mod mission_file;
+mod peers;
+mod play;
+mod replay;
+mod stop;
+mod supervisor;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+use tracing_subscriber::EnvFilter;
+
+/// People and robots together in a simulated office: start a session, watch it, talk to the robot.
+#[derive(Parser)]
+#[command(version, arg_required_else_help = true)]
+struct Cohabit {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Play a mission: starts all that a session needs, and prints the address of its page
+    Play(play::Play),
+    /// Say what is wrong in mission files, and where
+    Check(check::Check),
+    /// Re-simulate a recorded session and compare it tick by tick
+    Replay(replay::Replay),
+    /// The world of a session, its cameras and its clock
+    Sim(peers::Sim),
+    /// One robot's mind
+    Agent(peers::Agent),
+    /// The page, and the understanding of what people say
+    Dialog(peers::Dialog),
+    /// The session log
+    Record(peers::Record),
+}
+
+fn main() -> ExitCode {
+    tracing_subscriber::fmt()
+        .with_env_filter(EnvFilter::try_from_env("COHABIT_LOG").unwrap_or_else(|_| EnvFilter::new("info")))
+        .with_writer(std::io::stderr)
+        .with_target(false)
+        .compact()
+        .init();
+    let done = match Cohabit::parse().command {
+        Command::Play(play) => play.run(),
+        Command::Check(check) => check.run(),
+        Command::Replay(replay) => replay.run(),
+        Command::Sim(sim) => sim.run(),
+        Command::Agent(agent) => agent.run(),
+        Command::Dialog(dialog) => dialog.run(),
+        Command::Record(record) => record.run(),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => failure::report(&error),
+    }
+}

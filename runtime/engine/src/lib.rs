@@ -1,1 +1,20 @@
-//! cohabit-engine
+//! The tick: takes commands from the bus, steps the world, publishes what came of it, and has cameras rendered.
+//!
+//! In real time the world never waits for anybody: [`Simulator::run`] steps it 60 times a second, and a thread of its
+//! own renders the newest scene. Fed from a log instead of a bus, the same world replays a session
+//! ([`replay`](replay::replay)).
+//!
+//! This crate never knows dialog.
+
+mod build;
+mod camera_rig;
+mod engine;
+pub mod replay;
+mod report;
+mod scene;
+mod simulator;
+mod studio;
+
+pub use build::{BuildError, SessionPlan};
+pub use engine::{Engine, EngineError};
+pub use simulator::Simulator;

@@ -7,6 +7,10 @@ use glam::Vec3;
 
 /// Steps of the table from linear light to display bytes.
 const STEPS: usize = 4096;
+/// Linear light that is shown as white.
+const WHITE: f32 = 2.0;
+/// Linear light up to which nothing is changed.
+const KNEE: f32 = 0.6;
 
 /// The linear light of `#rrggbb`, or nothing if it is not of that form.
 pub(crate) fn parse_hex(text: &str) -> Option<Vec3> {
@@ -30,7 +34,7 @@ pub(crate) fn srgb_table() -> &'static [u8; STEPS] {
     TABLE.get_or_init(|| {
         let mut table = Box::new([0; STEPS]);
         for (step, entry) in table.iter_mut().enumerate() {
-            let c = step as f32 / (STEPS - 1) as f32;
+            let c = roll_off(step as f32 / (STEPS - 1) as f32 * WHITE);
             let s = if c <= 0.003_130_8 { c * 12.92 } else { 1.055 * libm::powf(c, 1.0 / 2.4) - 0.055 };
             *entry = (s * 255.0 + 0.5) as u8;
         }
@@ -38,10 +42,23 @@ pub(crate) fn srgb_table() -> &'static [u8; STEPS] {
     })
 }
 
-/// Display bytes of linear light, clipped at white.
+/// Bright light approaches white slowly, so that lit surfaces keep their pattern.
+fn roll_off(c: f32) -> f32 {
+    if c <= KNEE {
+        return c;
+    }
+    let (room, over) = (1.0 - KNEE, c - KNEE);
+    // Meets the line at the knee with the same slope, and reaches 1 at white.
+    let t = over / (WHITE - KNEE);
+    let bend = (WHITE - KNEE) / room;
+    KNEE + room * (1.0 - libm::powf(1.0 - t, bend))
+}
+
+/// Display bytes of linear light.
+#[inline]
 pub(crate) fn to_srgb(table: &[u8; STEPS], light: Vec3) -> [u8; 3] {
     // The conversion of a float saturates, so negative light is black and the mask never changes a value.
-    let channel = |c: f32| table[(c.min(1.0) * (STEPS - 1) as f32 + 0.5) as usize & (STEPS - 1)];
+    let channel = |c: f32| table[(c.min(WHITE) * ((STEPS - 1) as f32 / WHITE) + 0.5) as usize & (STEPS - 1)];
     [channel(light.x), channel(light.y), channel(light.z)]
 }
 
@@ -70,11 +87,13 @@ mod tests {
 
     #[test]
     fn display_bytes_come_back() {
-        for byte in 0..=255 {
-            // The table's steps are coarser than the bytes near black.
+        // Up to the knee, and but for the table's steps, which are coarser than the bytes near black.
+        for byte in 0..=200 {
             let back = to_srgb(srgb_table(), from_srgb([byte; 3]))[0];
-            assert!(back.abs_diff(byte) <= if byte < 16 { 2 } else { 0 }, "{byte} came back as {back}");
+            assert!(back.abs_diff(byte) <= if byte < 24 { 3 } else { 1 }, "{byte} came back as {back}");
         }
+        assert_eq!(to_srgb(srgb_table(), Vec3::splat(9.0)), [255; 3]);
+        assert_eq!(to_srgb(srgb_table(), Vec3::splat(-1.0)), [0; 3]);
     }
 
     #[test]

@@ -1,1 +1,57 @@
-//! cohabit-render
+//! World snapshot in; colour, depth, normals and instance ids out.
+//!
+//! A [`Scene`] holds a floor plan and the instances in it; a [`Renderer`] draws what a [`Camera`] sees of it. Nothing
+//! here knows rules, ticks or transports, and nothing depends on a clock, on a random source, or on how many threads
+//! draw: the same scene and camera give the same bits.
+//!
+//! ```
+//! use std::sync::Arc;
+//! use cohabit_cdf::Catalog;
+//! use cohabit_render::{CpuRenderer, MeshLibrary, Planes, Renderer, Scene};
+//! # let layout = cohabit_cdf::Layout { id: String::new(), wall_height_m: 2.8, rooms: vec![], openings: vec![],
+//! #     placements: vec![], viewpoints: vec![], note_places: vec![] };
+//! # let camera = cohabit_render::Camera { position_m: [0.0; 3], yaw_rad: 0.0, pitch_rad: 0.0, fov_y_rad: 1.0,
+//! #     width: 4, height: 3, hide: None, for_people: false, ceiling: true };
+//! let catalog = Catalog::parse(&[], &[])?;
+//! let scene = Scene::new(Arc::new(MeshLibrary::build(&catalog)?), &layout);
+//! let mut ids = vec![0; camera.pixels()];
+//! let mut planes = Planes { ids: Some(&mut ids), ..Planes::default() };
+//! CpuRenderer::new(1).render(&scene, &camera, &mut planes);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod camera;
+mod color;
+mod cpu;
+mod instance;
+mod kit;
+mod library;
+mod mesh;
+mod model_mesh;
+mod noise;
+mod occlusion;
+mod pattern;
+mod plan;
+mod planes;
+mod portals;
+mod scene;
+mod shadow;
+
+pub use camera::{Camera, FAR_M};
+pub use cpu::CpuRenderer;
+pub use instance::{Highlight, Instance, Look};
+pub use kit::ShapeError;
+pub use library::{MeshLibrary, ModelError};
+pub use mesh::Aabb;
+pub use plan::{RoomSurface, room_surface_id};
+pub use planes::Planes;
+pub use scene::Scene;
+
+/// Draws what a camera sees of a scene.
+pub trait Renderer {
+    /// Fills the planes that are wanted.
+    ///
+    /// # Panics
+    /// When a plane's length is not that of the camera's picture.
+    fn render(&mut self, scene: &Scene, camera: &Camera, planes: &mut Planes<'_>);
+}

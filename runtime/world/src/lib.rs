@@ -1,1 +1,46 @@
-//! cohabit-world
+//! The simulated office: what is in it, what can be done to it, and what follows, one fixed tick at a time.
+//!
+//! A [`World`] is built once from a catalogue, a floor plan and a mission, and then changes only through
+//! [`World::step`]: commands in, outcomes and events out. The same inputs at the same ticks give the same
+//! [`World::digest`], bit for bit, on every machine; a [`World::snapshot`] goes on as the original would have.
+//!
+//! This crate never knows wall time, threads, sockets, files or pixels. Trigonometry in simulated state comes from
+//! `libm` alone, and nothing here iterates a hash map.
+//!
+//! Frames: see the docs of `cohabit-cdf`; angles are in radians, positive yaw is to the left.
+
+mod anchors;
+mod apply;
+mod body;
+mod build;
+mod digest;
+mod effect;
+mod entity;
+mod facts;
+mod floor;
+mod geometry;
+mod goals;
+mod motion;
+mod navigation;
+mod physics;
+mod power;
+mod report;
+mod rules;
+mod score;
+mod snapshot;
+mod state;
+mod tasks;
+#[cfg(test)]
+mod testing;
+mod works;
+mod world;
+
+pub use body::BodyView;
+pub use build::BuildError;
+pub use cohabit_cdf::{Action, BodyId, GoToTarget, ObjectId, Status, Verb};
+pub use entity::ObjectView;
+pub use glam::{Quat, Vec2, Vec3};
+pub use goals::GoalStatus;
+pub use report::{Ending, Event, Input, Outcome, Report, SoundKind};
+pub use snapshot::SnapshotError;
+pub use world::{DT_NANOS, World};

@@ -34,10 +34,12 @@ pub enum EventKind {
     Spawned = 11,
     /// Something can be heard: `object`, and what.
     Sound = 12,
+    /// A hidden goal can be seen now: `number`.
+    GoalShown = 13,
 }
 
 impl EventKind {
-    const ALL: [Self; 12] = [
+    const ALL: [Self; 13] = [
         Self::Outcome,
         Self::Started,
         Self::GoalMet,
@@ -50,6 +52,7 @@ impl EventKind {
         Self::ObjectChanged,
         Self::Spawned,
         Self::Sound,
+        Self::GoalShown,
     ];
 }
 

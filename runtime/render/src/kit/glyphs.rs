@@ -9,7 +9,7 @@ pub(super) const STROKE: f32 = 0.85;
 
 /// Polylines, parted by spaces, as pairs of digits: column, then row from the baseline. Only what is here is drawn;
 /// small letters are drawn as small capitals.
-const GLYPHS: [(char, &str); 59] = [
+const GLYPHS: [(char, &str); 61] = [
     ('A', "00 26 40|12 32"),
     ('B', "00 06 36 45 44 33 03|33 42 41 30 00"),
     ('C', "45 36 16 05 01 10 30 41"),
@@ -68,6 +68,8 @@ const GLYPHS: [(char, &str); 59] = [
     ('#', "10 16|30 36|02 42|04 44"),
     ('%', "00 46|05 16|41 30"),
     ('&', "40 04 15 26 35 24 01 10 20 42"),
+    ('~', "02 14 22 34 42"),
+    ('_', "00 40"),
     ('*', "12 34|14 32|03 43"),
 ];
 

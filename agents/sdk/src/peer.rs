@@ -1,0 +1,111 @@
+//! Connects an agent to a session's bus.
+
+use std::{
+    sync::atomic::{AtomicBool, Ordering},
+    time::Duration,
+};
+
+use cohabit_bus::{
+    BusError, Publisher, Topic, Transport, Wake,
+    message::{self, CommandMessage, DialogKind, DialogView, EventKind, EventMessage, Malformed},
+    monotonic_nanos,
+};
+
+use crate::agent::{Agent, Deed, Heard};
+
+/// Why an agent left its session.
+#[derive(Debug, thiserror::Error)]
+pub enum PeerError {
+    /// The bus failed.
+    #[error(transparent)]
+    Bus(#[from] BusError),
+    /// A peer sent nonsense.
+    #[error(transparent)]
+    Malformed(#[from] Malformed),
+}
+
+/// Runs `agent` for that body on `bus` until `stop`.
+///
+/// # Errors
+/// [`PeerError`].
+pub fn run(agent: &mut dyn Agent, body: u32, bus: &dyn Transport, stop: &AtomicBool) -> Result<(), PeerError> {
+    let mut listener = bus.listener(Wake::Talk)?;
+    let mut dialog = bus.subscriber(Topic::Dialog)?;
+    let mut events = bus.subscriber(Topic::Events)?;
+    let mut mouth = Mouth {
+        body,
+        commands: bus.publisher(Topic::Commands)?,
+        dialog: bus.publisher(Topic::Dialog)?,
+        count: 0,
+        base: first_command(),
+    };
+    // What a late joiner is handed of plans and outcomes from before is not this agent's business.
+    let joined_nanos = monotonic_nanos();
+    let mut deeds = Vec::new();
+    while !stop.load(Ordering::Relaxed) {
+        listener.wait(Duration::from_millis(100))?;
+        while let Some(sample) = events.receive()? {
+            if sample.envelope().sent_nanos < joined_nanos {
+                continue;
+            }
+            let event: EventMessage = message::read(sample.payload())?;
+            if event.kind() == Some(EventKind::Outcome)
+                && event.command == mouth.latest()
+                && let Some(status) = event.status()
+            {
+                agent.hear(&Heard::Outcome { status, detail: event.text.as_str() }, &mut deeds);
+                mouth.carry_out(&mut deeds)?;
+            }
+        }
+        while let Some(sample) = dialog.receive()? {
+            if sample.envelope().sent_nanos < joined_nanos {
+                continue;
+            }
+            let view = DialogView::new(sample.payload())?;
+            if view.header.kind() == Some(DialogKind::Plan) && view.header.body == body {
+                agent.hear(&Heard::Plan { turn: view.header.turn, steps: view.steps }, &mut deeds);
+                mouth.carry_out(&mut deeds)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// A number unlike that of other agents, in the upper bits of what JSON can hold exactly.
+fn first_command() -> u64 {
+    let mixed = monotonic_nanos() ^ (u64::from(std::process::id()) << 7);
+    (mixed & 0xf_ffff) << 32
+}
+
+struct Mouth {
+    body: u32,
+    commands: Box<dyn Publisher>,
+    dialog: Box<dyn Publisher>,
+    count: u64,
+    base: u64,
+}
+
+impl Mouth {
+    const fn latest(&self) -> u64 {
+        self.base + self.count
+    }
+
+    fn carry_out(&mut self, deeds: &mut Vec<Deed>) -> Result<(), BusError> {
+        for deed in deeds.drain(..) {
+            match deed {
+                Deed::Act { turn, action } => {
+                    self.count += 1;
+                    let command = self.base + self.count;
+                    let message = CommandMessage { command, turn, body: self.body, reserved: 0, action: action.into() };
+                    self.commands.send(0, size_of::<CommandMessage>(), &mut |bytes| {
+                        bytes.copy_from_slice(bytemuck::bytes_of(&message));
+                    })?;
+                }
+                Deed::Tell(message) => {
+                    self.dialog.send(0, message.bytes(), &mut |bytes| message.write(bytes))?;
+                }
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,226 @@
+//! The dialog-driven agent: does the steps of a plan one after the other, and walks to what each one needs.
+
+use std::collections::VecDeque;
+
+use cohabit_bus::message::{DialogKind, DialogMessage};
+use cohabit_cdf::{Action, GoToTarget, ObjectId, Status};
+
+use crate::agent::{Agent, Deed, Heard};
+
+/// Follows plans. A step on an object that the body does not stand at is preceded by walking there.
+#[derive(Debug, Default)]
+pub struct PlanFollower {
+    body: u32,
+    plan: Option<Plan>,
+    stands_at: Option<ObjectId>,
+    holds: Option<ObjectId>,
+}
+
+#[derive(Debug)]
+struct Plan {
+    turn: u64,
+    rest: VecDeque<Option<Action>>,
+    step: u32,
+    doing: Option<Doing>,
+}
+
+/// What the body is at.
+#[derive(Clone, Copy, Debug)]
+enum Doing {
+    /// Walking to the object that the step acts on.
+    Approach { target: ObjectId, then: Action },
+    /// The step itself.
+    Step(Action),
+}
+
+impl PlanFollower {
+    /// A follower that commands that body.
+    #[must_use]
+    pub fn new(body: u32) -> Self {
+        Self { body, ..Self::default() }
+    }
+
+    fn begin_step(&mut self, deeds: &mut Vec<Deed>) {
+        let Some(plan) = &mut self.plan else { return };
+        let turn = plan.turn;
+        let Some(next) = plan.rest.pop_front() else {
+            self.end_plan(Status::ActionSuccessful, "", deeds);
+            return;
+        };
+        deeds.push(Deed::Tell(
+            DialogMessage::new(DialogKind::StepStarted, self.body, turn, "")
+                .at_step(plan.step, Status::ActionSuccessful),
+        ));
+        let Some(action) = next else {
+            self.end_step(Status::IncorrectActionFormat, "that step is not well formed", deeds);
+            return;
+        };
+        let target = acts_on(action).filter(|target| self.stands_at != Some(*target) && self.holds != Some(*target));
+        let (doing, act) = match target {
+            Some(target) => {
+                (Doing::Approach { target, then: action }, Action::GoTo { target: GoToTarget::Object(target) })
+            }
+            None => (Doing::Step(action), action),
+        };
+        plan.doing = Some(doing);
+        deeds.push(Deed::Act { turn, action: act });
+    }
+
+    fn end_step(&mut self, status: Status, detail: &str, deeds: &mut Vec<Deed>) {
+        let Some(plan) = &mut self.plan else { return };
+        plan.doing = None;
+        deeds.push(Deed::Tell(
+            DialogMessage::new(DialogKind::StepEnded, self.body, plan.turn, detail).at_step(plan.step, status),
+        ));
+        if status.is_success() {
+            plan.step += 1;
+            self.begin_step(deeds);
+        } else {
+            self.end_plan(status, detail, deeds);
+        }
+    }
+
+    fn end_plan(&mut self, status: Status, detail: &str, deeds: &mut Vec<Deed>) {
+        if let Some(plan) = self.plan.take() {
+            deeds.push(Deed::Tell(
+                DialogMessage::new(DialogKind::PlanEnded, self.body, plan.turn, detail).at_step(plan.step, status),
+            ));
+        }
+    }
+
+    fn learn(&mut self, action: Action, success: bool) {
+        match action {
+            Action::GoTo { target: GoToTarget::Object(object) } if success => self.stands_at = Some(object),
+            Action::GoTo { .. } | Action::Move { .. } | Action::Rotate { .. } => self.stands_at = None,
+            Action::PickUp { object } if success => self.holds = Some(object),
+            Action::Place { .. } if success => self.holds = None,
+            Action::Interact { verb: cohabit_cdf::Verb::Throw, .. } if success => self.holds = None,
+            _ => {}
+        }
+    }
+}
+
+impl Agent for PlanFollower {
+    fn hear(&mut self, heard: &Heard<'_>, deeds: &mut Vec<Deed>) {
+        match *heard {
+            Heard::Plan { turn, steps } => {
+                if self.plan.as_ref().is_some_and(|plan| plan.doing.is_some()) {
+                    self.stands_at = None;
+                }
+                self.end_plan(Status::Interrupted, "", deeds);
+                let rest = steps.iter().map(|step| Action::try_from(step.action).ok()).collect();
+                self.plan = Some(Plan { turn, rest, step: 0, doing: None });
+                self.begin_step(deeds);
+            }
+            Heard::Outcome { status, detail } => {
+                let Some(plan) = &mut self.plan else { return };
+                match plan.doing.take() {
+                    Some(Doing::Approach { target, then }) if status.is_success() => {
+                        plan.doing = Some(Doing::Step(then));
+                        let turn = plan.turn;
+                        self.stands_at = Some(target);
+                        deeds.push(Deed::Act { turn, action: then });
+                    }
+                    Some(Doing::Approach { .. }) => {
+                        self.stands_at = None;
+                        self.end_step(status, detail, deeds);
+                    }
+                    Some(Doing::Step(action)) => {
+                        self.learn(action, status.is_success());
+                        self.end_step(status, detail, deeds);
+                    }
+                    None => {}
+                }
+            }
+        }
+    }
+}
+
+/// The object that the body must stand at to do this.
+const fn acts_on(action: Action) -> Option<ObjectId> {
+    match action {
+        Action::PickUp { object } | Action::Interact { object, .. } => Some(object),
+        Action::Place { receptacle } => Some(receptacle),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use cohabit_bus::message::PlanStep;
+    use cohabit_cdf::Verb;
+
+    use super::*;
+
+    const MUG: ObjectId = ObjectId(1);
+    const DESK: ObjectId = ObjectId(2);
+
+    fn steps(actions: &[Action]) -> Vec<PlanStep> {
+        actions.iter().map(|action| PlanStep { action: (*action).into(), ..PlanStep::default() }).collect()
+    }
+
+    /// Feeds a plan and then outcomes; gives the actions taken and how the plan ended.
+    fn follow(plan: &[Action], outcomes: &[Status]) -> (Vec<Action>, Option<Status>) {
+        let mut follower = PlanFollower::new(0);
+        let mut deeds = Vec::new();
+        follower.hear(&Heard::Plan { turn: 1, steps: &steps(plan) }, &mut deeds);
+        for status in outcomes {
+            follower.hear(&Heard::Outcome { status: *status, detail: "" }, &mut deeds);
+        }
+        let ended = deeds.iter().find_map(|deed| match deed {
+            Deed::Tell(message) if message.header.kind() == Some(DialogKind::PlanEnded) => message.header.status(),
+            _ => None,
+        });
+        let acts = deeds.iter().filter_map(|deed| match deed {
+            Deed::Act { action, .. } => Some(*action),
+            Deed::Tell(_) => None,
+        });
+        (acts.collect(), ended)
+    }
+
+    const fn go(object: ObjectId) -> Action {
+        Action::GoTo { target: GoToTarget::Object(object) }
+    }
+
+    #[test]
+    fn it_walks_to_what_it_acts_on_once() {
+        let ok = Status::ActionSuccessful;
+        let pick = Action::PickUp { object: MUG };
+        let place = Action::Place { receptacle: DESK };
+        let scan = Action::Interact { verb: Verb::Scan, object: MUG };
+        let (acts, ended) = follow(&[pick, scan, place], &[ok; 6]);
+        assert_eq!(acts, [go(MUG), pick, scan, go(DESK), place]);
+        assert_eq!(ended, Some(ok));
+    }
+
+    #[test]
+    fn a_failed_step_ends_the_plan() {
+        let pick = Action::PickUp { object: MUG };
+        let (acts, ended) = follow(&[pick, Action::LookAround], &[Status::UnsupportedNavigation]);
+        assert_eq!((acts, ended), (vec![go(MUG)], Some(Status::UnsupportedNavigation)));
+    }
+
+    #[test]
+    fn a_new_plan_ends_the_one_before() {
+        let mut follower = PlanFollower::new(0);
+        let mut deeds = Vec::new();
+        follower.hear(&Heard::Plan { turn: 1, steps: &steps(&[Action::LookAround]) }, &mut deeds);
+        follower.hear(&Heard::Plan { turn: 2, steps: &steps(&[Action::Stop]) }, &mut deeds);
+        let ended: Vec<_> = deeds
+            .iter()
+            .filter_map(|deed| match deed {
+                Deed::Tell(message) if message.header.kind() == Some(DialogKind::PlanEnded) => {
+                    Some((message.header.turn, message.header.status()))
+                }
+                _ => None,
+            })
+            .collect();
+        assert_eq!(ended, [(1, Some(Status::Interrupted))]);
+        assert!(matches!(deeds.last(), Some(Deed::Act { turn: 2, action: Action::Stop })));
+    }
+
+    #[test]
+    fn an_empty_plan_ends_at_once() {
+        assert_eq!(follow(&[], &[]), (vec![], Some(Status::ActionSuccessful)));
+    }
+}

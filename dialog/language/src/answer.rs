@@ -1,0 +1,265 @@
+//! Answers to questions about the world, the mission and the robot itself.
+
+use std::collections::BTreeMap;
+
+use cohabit_cdf::{Catalog, Fluid, ObjectId, state::StateFlag};
+
+use crate::{
+    context::Focus,
+    describe,
+    ground::{Ground, Miss, Want, has_state},
+    intent::Intent,
+    known::{Known, KnownObject},
+    lexicon::{Lexicon, StateWord},
+    phrase::{Phrase, RelationKind},
+    question::{Question, QuestionKind},
+    understanding::Understanding,
+};
+
+/// How many things an answer names before it says `and more`.
+const LIST: usize = 8;
+
+/// What people can say, as examples.
+pub(crate) const EXAMPLES: &str = "I can go to rooms and objects, pick things up and put them down, open, close, switch, fill, pour, clean, break, scan, heat, cool, \
+     repair and color things. For example: \"go to the break room\", \"pick up the red mug\", \"heat the mug in the microwave\", \
+     \"where is the milk?\". Say \"stop\" to stop me.";
+
+/// Answers questions in a scene.
+pub(crate) struct Answerer<'a> {
+    pub(crate) catalog: &'a Catalog,
+    pub(crate) lexicon: &'a Lexicon,
+    pub(crate) scene: &'a Known,
+    pub(crate) focus: &'a Focus,
+}
+
+impl Answerer<'_> {
+    /// The answer, and the objects it speaks of.
+    pub(crate) fn answer(&self, question: &Question) -> Understanding {
+        let about = question.about.as_ref().filter(|phrase| phrase.says_something());
+        match (question.kind, about) {
+            (QuestionKind::Holding, Some(phrase)) if !phrase.is_empty() => self.whether_holding(phrase),
+            (QuestionKind::Holding, _) => self.holding(),
+            (QuestionKind::Robot, _) => self.robot(),
+            (QuestionKind::Abilities, _) => Understanding::answer(EXAMPLES),
+            (QuestionKind::Goals, _) => self.goals(),
+            (QuestionKind::Seeing, _) => self.seeing(),
+            (QuestionKind::Contents, Some(phrase)) => self.with_object(phrase, |id| self.contents(id)),
+            (QuestionKind::Text, phrase) => self.text(phrase),
+            (QuestionKind::Color, Some(phrase)) => self.with_object(phrase, |id| self.color(id)),
+            (QuestionKind::Count, Some(phrase)) => self.count(phrase),
+            (QuestionKind::State, Some(phrase)) => self.state(phrase, question),
+            (QuestionKind::Where | QuestionKind::Look | QuestionKind::Unknown, Some(phrase)) if !phrase.is_empty() => {
+                self.place_of(phrase)
+            }
+            (QuestionKind::Where, _) if !question.rest.is_empty() => {
+                Understanding::refusal(format!("I do not know what \"{}\" is.", question.rest.join(" ")))
+            }
+            _ => Understanding::refusal(format!("I do not know how to answer that. {EXAMPLES}")),
+        }
+    }
+
+    fn ground(&self) -> Ground<'_> {
+        Ground { catalog: self.catalog, scene: self.scene, focus: self.focus }
+    }
+
+    fn full(&self, id: ObjectId) -> String {
+        describe::full(self.catalog, self.scene, id)
+    }
+
+    fn short(&self, id: ObjectId) -> String {
+        describe::short(self.catalog, self.scene, id)
+    }
+
+    fn holding(&self) -> Understanding {
+        let Some(held) = self.scene.robot.held else { return Understanding::answer("My hand is empty.") };
+        let text = format!("I am holding {}{}.", self.short(held), self.filling(held));
+        Understanding::Answer { text, highlight: Vec::new() }
+    }
+
+    fn whether_holding(&self, phrase: &Phrase) -> Understanding {
+        let Some(held) = self.scene.robot.held else { return Understanding::answer("No, my hand is empty.") };
+        let is_it = self.ground().narrow(phrase, &[held]) == [held];
+        let start = if is_it { "Yes" } else { "No" };
+        Understanding::answer(format!("{start}, I am holding {}.", self.short(held)))
+    }
+
+    fn filling(&self, id: ObjectId) -> String {
+        match self.scene.object(id).map(|object| object.fluid) {
+            Some(Fluid::None) | None => String::new(),
+            Some(fluid) => format!(" with {} in it", fluid.name().to_lowercase()),
+        }
+    }
+
+    fn robot(&self) -> Understanding {
+        Understanding::answer(format!("I am in the {}.", self.scene.robot.room.name()))
+    }
+
+    fn goals(&self) -> Understanding {
+        let goals = self.scene.goals.iter().filter(|goal| !goal.text.is_empty());
+        let (met, left): (Vec<_>, Vec<_>) = goals.partition(|goal| goal.met);
+        if left.is_empty() {
+            let text = if met.is_empty() { "There is no goal that I know of." } else { "Nothing: everything is done!" };
+            return Understanding::answer(text);
+        }
+        let texts: Vec<String> = left.iter().map(|goal| goal.text.trim_end_matches('.').to_owned()).collect();
+        let done = if met.is_empty() { String::new() } else { format!(" Done so far: {}.", met.len()) };
+        Understanding::answer(format!("Still to do: {}.{done}", texts.join("; ")))
+    }
+
+    fn seeing(&self) -> Understanding {
+        let visible: Vec<&KnownObject> = self.scene.objects.iter().filter(|object| object.visible).collect();
+        let here: Vec<&KnownObject> =
+            self.scene.objects.iter().filter(|object| object.room == self.scene.robot.room).collect();
+        let (list, start) = if visible.is_empty() { (here, "Around me there is") } else { (visible, "I see") };
+        if list.is_empty() {
+            return Understanding::answer("I see nothing of note here.");
+        }
+        Understanding::answer(format!("{start} {}.", self.listed(&list)))
+    }
+
+    fn listed(&self, objects: &[&KnownObject]) -> String {
+        let mut counts: BTreeMap<String, usize> = BTreeMap::new();
+        for object in objects {
+            *counts.entry(describe::bare(self.catalog, self.scene, object.id)).or_default() += 1;
+        }
+        let more = counts.len().saturating_sub(LIST);
+        let mut names: Vec<String> = counts
+            .into_iter()
+            .take(LIST)
+            .map(|(name, count)| if count == 1 { describe::indefinite(&name) } else { format!("{count} × {name}") })
+            .collect();
+        if more > 0 {
+            names.push(format!("{more} more"));
+        }
+        describe::list(&names, "and")
+    }
+
+    fn with_object(&self, phrase: &Phrase, then: impl Fn(ObjectId) -> Understanding) -> Understanding {
+        let want = Want::place(Intent::Find, &[], None);
+        match self.ground().one(phrase, &want) {
+            Ok(id) => then(id),
+            Err(Miss::Several(ids) | Miss::Mismatch(ids)) if !ids.is_empty() => then(ids[0]),
+            Err(_) => self.unseen(phrase),
+        }
+    }
+
+    fn unseen(&self, phrase: &Phrase) -> Understanding {
+        let said = crate::plan::said(phrase);
+        Understanding::answer(format!("I have not seen {said}. I can look around if you want."))
+    }
+
+    fn place_of(&self, phrase: &Phrase) -> Understanding {
+        let want = Want::place(Intent::Find, &[], None);
+        let found = match self.ground().one(phrase, &want) {
+            Ok(id) => vec![id],
+            Err(Miss::Several(ids)) => ids,
+            Err(Miss::Mismatch(_) | Miss::Unseen | Miss::Unknown | Miss::NoReferent) => return self.unseen(phrase),
+        };
+        let places: Vec<String> = found.iter().take(LIST).map(|id| self.place_sentence(*id)).collect();
+        Understanding::Answer { text: describe::sentence(&describe::list(&places, "and")), highlight: found }
+    }
+
+    fn place_sentence(&self, id: ObjectId) -> String {
+        let place = describe::location(self.catalog, self.scene, id);
+        if !place.is_empty() {
+            return format!("{} is {place}", self.short(id));
+        }
+        let side = self.scene.object(id).map_or("", |object| {
+            let bearing = self.scene.bearing_rad(object);
+            match bearing {
+                _ if bearing.abs() < 0.6 => "in front of me",
+                _ if bearing.abs() > 2.4 => "behind me",
+                _ if bearing > 0.0 => "to my left",
+                _ => "to my right",
+            }
+        });
+        format!("{} is here in the {}, {side}", self.short(id), self.scene.robot.room.name())
+    }
+
+    fn contents(&self, id: ObjectId) -> Understanding {
+        let inside: Vec<&KnownObject> = self.scene.contents(id).collect();
+        let preposition = self.scene.object(id).map_or("in", |object| describe::inside(self.catalog, object.class));
+        let (start, place) = (describe::sentence(preposition), self.short(id));
+        let start = start.trim_end_matches('.');
+        if inside.is_empty() {
+            let filling = self.filling(id);
+            let text = if filling.is_empty() {
+                format!("I know of nothing {preposition} {place}.")
+            } else {
+                format!("It is {place}{filling}.")
+            };
+            return Understanding::answer(text);
+        }
+        let highlight = inside.iter().map(|object| object.id).collect();
+        Understanding::Answer { text: format!("{start} {place} there is {}.", self.listed(&inside)), highlight }
+    }
+
+    fn text(&self, phrase: Option<&Phrase>) -> Understanding {
+        let notes = || self.scene.objects.iter().filter(|object| !object.text.is_empty());
+        let of_phrase = phrase.filter(|phrase| !phrase.is_empty()).and_then(|phrase| {
+            let want = Want::place(Intent::Find, &[], None);
+            self.ground().one(phrase, &want).ok().and_then(|id| self.scene.object(id))
+        });
+        let nearest = || {
+            notes().min_by(|a, b| {
+                self.scene.distance_m(a).total_cmp(&self.scene.distance_m(b)).then(a.id.cmp(&b.id))
+            })
+        };
+        match of_phrase.filter(|object| !object.text.is_empty()).or_else(nearest) {
+            Some(note) => Understanding::Answer {
+                text: format!("{} says: \"{}\"", describe::sentence(&self.full(note.id)).trim_end_matches('.'), note.text),
+                highlight: vec![note.id],
+            },
+            None => Understanding::answer("I know of nothing written here. I can look at a note if you point me to one."),
+        }
+    }
+
+    fn color(&self, id: ObjectId) -> Understanding {
+        let color = self.scene.object(id).map(|object| describe::color(self.catalog, object)).unwrap_or_default();
+        Understanding::Answer { text: describe::sentence(&format!("{} is {color}", self.short(id))), highlight: vec![id] }
+    }
+
+    fn count(&self, phrase: &Phrase) -> Understanding {
+        let all: Vec<ObjectId> = self.scene.objects.iter().map(|object| object.id).collect();
+        let found = self.ground().narrow(phrase, &all);
+        let noun = phrase.text.trim();
+        let text = match found.len() {
+            0 => format!("I know of no {noun}."),
+            1 => format!("I know of one {noun}: {}.", self.full(found[0])),
+            count => format!("I know of {count}, counting every {noun}."),
+        };
+        Understanding::Answer { text, highlight: found }
+    }
+
+    /// `is the fridge open`, `is the milk in the fridge`, `is the mug broken`.
+    fn state(&self, phrase: &Phrase, question: &Question) -> Understanding {
+        let asked = (0..question.rest.len()).rev().find_map(|at| {
+            let (length, state) = self.lexicon.states.longest(&question.rest[at..])?;
+            (at + length == question.rest.len()).then_some(*state)
+        });
+        let is_on = question.rest.last().is_some_and(|word| word == "on");
+        let is_off = question.rest.last().is_some_and(|word| word == "off");
+        let asked = asked
+            .or_else(|| is_on.then_some(StateWord::Flag(StateFlag::Toggled, true)))
+            .or_else(|| is_off.then_some(StateWord::Flag(StateFlag::Toggled, false)));
+        let inside = phrase.relations.iter().any(|relation| relation.kind != RelationKind::Has) || phrase.room.is_some();
+        let bare = Phrase { relations: Vec::new(), room: None, ..phrase.clone() };
+        if bare.is_empty() {
+            return Understanding::refusal("I do not know what you mean.");
+        }
+        match asked {
+            Some(state) => self.with_object(&bare, |id| {
+                let holds = self.scene.object(id).is_some_and(|object| has_state(object, state));
+                let words = question.rest.last().cloned().unwrap_or_default();
+                let text = if holds { format!("Yes, {} is {words}.", self.short(id)) } else { format!("No, {} is not {words}.", self.short(id)) };
+                Understanding::Answer { text, highlight: vec![id] }
+            }),
+            None if inside => self.with_object(&bare, |id| {
+                let holds = self.ground().narrow(phrase, &[id]) == [id];
+                let start = if holds { "Yes" } else { "No" };
+                Understanding::Answer { text: format!("{start}, {}.", self.place_sentence(id)), highlight: vec![id] }
+            }),
+            None => self.place_of(&bare),
+        }
+    }
+}

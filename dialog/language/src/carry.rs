@@ -1,0 +1,279 @@
+//! Plans with the hand: picking up, putting somewhere, pouring, throwing, breaking.
+
+use cohabit_cdf::{Action, ObjectId, Property, RoomId, Verb};
+
+use crate::{
+    context::Role,
+    ground::Want,
+    intent::Intent,
+    known::KnownObject,
+    lexicon::{Preposition, Pronoun},
+    phrase::{Phrase, Place},
+    plan::{Fault, Planner},
+    settle::{Goal, Settled},
+};
+
+/// The least area that is a place to put things down, m².
+const TABLE_M2: f32 = 0.15;
+
+/// What can take an object: a receptacle, or something to pour into.
+const TAKES: &[Property] = &[Property::Receptacle, Property::Fillable];
+
+impl Planner<'_> {
+    pub(crate) fn add_pick_up(&mut self, settled: &Settled) -> Result<(), Fault> {
+        if settled.objects.len() > 1 || settled.objects.iter().any(|phrase| phrase.is_all) {
+            return Err(Fault::Cannot("I can only carry one thing at a time. Which one shall I take first?".to_owned()));
+        }
+        for object in self.find_objects(settled, &Want::object(settled.intent))? {
+            self.pick_up(object, self.may_put_down)?;
+        }
+        Ok(())
+    }
+
+    /// Has the object in the hand; what is held is put down first if it may be.
+    pub(crate) fn pick_up(&mut self, object: ObjectId, may_put_down: bool) -> Result<(), Fault> {
+        match self.scene.robot.held {
+            Some(held) if held == object => {
+                self.notes.push(format!("I already have {}", self.the(object)));
+                return Ok(());
+            }
+            _ if !self.has(object, Property::Pickupable) => {
+                return Err(Fault::Cannot(format!("I cannot pick up {}.", self.the(object))));
+            }
+            Some(held) if !may_put_down => return Err(Fault::HandFull { held, wanted: object }),
+            Some(held) => {
+                self.notes.push(format!("I put {} down first", self.the(held)));
+                self.put_down(Some(object))?;
+            }
+            None => {}
+        }
+        self.open_around(object, false);
+        let says = format!("picking up {}", self.the(object));
+        self.push(Action::PickUp { object }, says);
+        Ok(())
+    }
+
+    /// Holds the object for what comes next, without a word if it is in the hand already.
+    pub(crate) fn hold(&mut self, object: ObjectId) -> Result<(), Fault> {
+        if self.scene.robot.held == Some(object) { Ok(()) } else { self.pick_up(object, true) }
+    }
+
+    /// Puts what is held on the best surface near by.
+    pub(crate) fn put_down(&mut self, beside: Option<ObjectId>) -> Result<(), Fault> {
+        let Some(surface) = self.surface(beside) else {
+            return Err(Fault::Cannot("I see no place where I could put this down.".to_owned()));
+        };
+        self.place_on(surface);
+        Ok(())
+    }
+
+    pub(crate) fn place_on(&mut self, receptacle: ObjectId) {
+        self.open_around(receptacle, true);
+        let held = self.scene.robot.held.map_or_else(|| "it".to_owned(), |held| self.the(held));
+        let says = format!("putting {held} {} {}", self.preposition(receptacle), self.the(receptacle));
+        self.push(Action::Place { receptacle }, says);
+    }
+
+    fn preposition(&self, receptacle: ObjectId) -> &'static str {
+        self.scene.object(receptacle).map_or("on", |object| crate::describe::inside(self.catalog, object.class))
+    }
+
+    /// A table, desk or counter with room left: where `beside` stands, or else the nearest.
+    fn surface(&self, beside: Option<ObjectId>) -> Option<ObjectId> {
+        let stands_on = beside.and_then(|id| self.scene.object(id)).and_then(|object| object.parent);
+        let fits: Vec<&KnownObject> = self.scene.objects.iter().filter(|object| self.is_table(object)).collect();
+        let cost = |object: &KnownObject| {
+            let elsewhere = if object.room == self.scene.robot.room { 0.0 } else { 100.0 };
+            let known_place = if Some(object.id) == stands_on { -2.0 } else { 0.0 };
+            self.scene.distance_m(object) + elsewhere + known_place
+        };
+        fits.into_iter().min_by(|a, b| cost(a).total_cmp(&cost(b)).then(a.id.cmp(&b.id))).map(|object| object.id)
+    }
+
+    fn is_table(&self, object: &KnownObject) -> bool {
+        let class = self.catalog.class(object.class);
+        let is_machine = [Property::Pickupable, Property::Toggleable, Property::Powerable, Property::Openable]
+            .into_iter()
+            .any(|property| class.has(property));
+        let Some(receptacle) = class.receptacle.as_ref().filter(|_| !is_machine && class.has(Property::Receptacle)) else {
+            return false;
+        };
+        let area: f32 = receptacle.surfaces.iter().map(|surface| surface.size_m[0] * surface.size_m[1]).sum();
+        let anchors: u32 = receptacle.surfaces.iter().map(|surface| surface.anchors[0] * surface.anchors[1]).sum();
+        let taken = self.scene.contents(object.id).count();
+        let is_free = u32::try_from(taken).is_ok_and(|taken| taken < anchors);
+        !receptacle.enclosed && receptacle.keys.is_empty() && is_free && area > TABLE_M2
+    }
+
+    pub(crate) fn add_place(&mut self, settled: &Settled) -> Result<(), Fault> {
+        if settled.objects.len() > 1 || settled.objects.iter().any(|phrase| phrase.is_all) {
+            return self.add_places(settled);
+        }
+        let object = self.what_to_place(settled)?;
+        // Taken before the goal is grounded: `put it on the table` means a table near where it is.
+        match &settled.goal {
+            None if settled.intent == Intent::Bring => {
+                self.pick_up(object, self.may_put_down)?;
+                Ok(())
+            }
+            None if self.scene.robot.held != Some(object) && settled.intent == Intent::Drop => {
+                Err(Fault::Cannot(format!("I am not holding {}.", self.the(object))))
+            }
+            None => {
+                self.hold(object)?;
+                self.put_down(None)
+            }
+            Some(goal) => self.place_at(object, goal, settled),
+        }
+    }
+
+    /// Several things one after the other, each carried to the same place.
+    fn add_places(&mut self, settled: &Settled) -> Result<(), Fault> {
+        let want = Want { held_first: false, ..Want::object(settled.intent) };
+        let objects = self.find_objects(settled, &want)?;
+        let Some(goal) = &settled.goal else {
+            return Err(Fault::Cannot("I can only carry one thing at a time. Tell me where to put them.".to_owned()));
+        };
+        for object in objects {
+            self.place_at(object, goal, settled)?;
+        }
+        Ok(())
+    }
+
+    fn what_to_place(&self, settled: &Settled) -> Result<ObjectId, Fault> {
+        if let Some(phrase) = settled.objects.first() {
+            return self.find_one(phrase, &Want::object(settled.intent), Some(Role::Object(0)));
+        }
+        self.scene.robot.held.ok_or_else(|| Fault::Cannot("I am not holding anything.".to_owned()))
+    }
+
+    fn place_at(&mut self, object: ObjectId, goal: &Goal, settled: &Settled) -> Result<(), Fault> {
+        match &goal.place {
+            Place::Object(phrase) => {
+                let target = self.find_target(phrase, goal, object, settled.intent)?;
+                if target == object {
+                    return Err(Fault::Cannot(format!("I cannot put {} on itself.", self.the(object))));
+                }
+                if !self.has(target, Property::Receptacle) && self.has(target, Property::Fillable) {
+                    return self.pour(object, target);
+                }
+                self.hold(object)?;
+                self.place_on(target);
+                Ok(())
+            }
+            Place::Room(room) | Place::Viewpoint(room, _) => self.bring_to_room(object, *room, settled.intent),
+            Place::Here | Place::Side(_) | Place::Viewpoints(_) => {
+                self.hold(object)?;
+                self.put_down(None)
+            }
+        }
+    }
+
+    fn bring_to_room(&mut self, object: ObjectId, room: RoomId, intent: Intent) -> Result<(), Fault> {
+        self.hold(object)?;
+        self.go_to_room(room);
+        if intent == Intent::Bring { Ok(()) } else { self.put_down(None) }
+    }
+
+    /// Where to put it; `next to the lamp` is where the lamp stands.
+    fn find_target(&self, phrase: &Phrase, goal: &Goal, object: ObjectId, intent: Intent) -> Result<ObjectId, Fault> {
+        let is_beside = goal.preposition == Preposition::Near;
+        let affordances: &[Property] = if is_beside { &[] } else { TAKES };
+        let target = self.find_one(phrase, &Want::place(intent, affordances, Some(object)), Some(goal.role))?;
+        let parent = self.scene.object(target).and_then(|target| target.parent);
+        Ok(parent.filter(|_| is_beside).unwrap_or(target))
+    }
+
+    pub(crate) fn add_pour(&mut self, settled: &Settled) -> Result<(), Fault> {
+        let held = self.scene.robot.held;
+        let source = match settled.objects.first() {
+            // `pour it`, `pour the milk`, `pour`: what is held, if it is that.
+            Some(phrase) => self.find_one(phrase, &Want::object(Intent::Pour), Some(Role::Object(0)))?,
+            None => held.ok_or_else(|| Fault::Cannot("I am not holding anything to pour.".to_owned()))?,
+        };
+        let target = match &settled.goal {
+            Some(Goal { place: Place::Object(phrase), role, .. }) => {
+                self.find_one(phrase, &Want::place(Intent::Use, TAKES, Some(source)), Some(*role))?
+            }
+            _ => self.nearest_sink()?,
+        };
+        self.pour(source, target)
+    }
+
+    pub(crate) fn pour(&mut self, source: ObjectId, target: ObjectId) -> Result<(), Fault> {
+        self.hold(source)?;
+        self.open_around(target, false);
+        let says = format!("pouring {} into {}", self.the(source), self.the(target));
+        self.push(Action::Interact { verb: Verb::Pour, object: target }, says);
+        Ok(())
+    }
+
+    fn nearest_sink(&self) -> Result<ObjectId, Fault> {
+        let sinks = self.devices.processes.iter().filter(|process| process.intent == Intent::Clean).flat_map(|p| &p.at);
+        let classes: Vec<_> = sinks.copied().collect();
+        self.nearest(&classes).ok_or_else(|| Fault::Cannot("Tell me what to pour it into.".to_owned()))
+    }
+
+    /// The nearest object of these classes: of the first class that is known at all in this room, then anywhere.
+    pub(crate) fn nearest(&self, classes: &[cohabit_cdf::ClassId]) -> Option<ObjectId> {
+        let cost = |object: &KnownObject| {
+            let elsewhere = if object.room == self.scene.robot.room { 0.0 } else { 100.0 };
+            self.scene.distance_m(object) + elsewhere
+        };
+        classes.iter().find_map(|class| {
+            let same = self.scene.objects.iter().filter(|object| object.class == *class);
+            same.min_by(|a, b| cost(a).total_cmp(&cost(b)).then(a.id.cmp(&b.id))).map(|object| object.id)
+        })
+    }
+
+    pub(crate) fn add_throw(&mut self, settled: &Settled) -> Result<(), Fault> {
+        let object = self.what_to_place(settled)?;
+        let Some(goal) = &settled.goal else {
+            return self.throw_away(object);
+        };
+        let Place::Object(phrase) = &goal.place else { return self.place_at(object, goal, settled) };
+        if matches!(goal.preposition, Preposition::In | Preposition::On) {
+            return self.place_at(object, goal, settled);
+        }
+        let target = self.find_one(phrase, &Want::place(settled.intent, &[], Some(object)), Some(goal.role))?;
+        self.hold(object)?;
+        let says = format!("throwing {} at {}", self.the(object), self.the(target));
+        self.push(Action::Interact { verb: Verb::Throw, object: target }, says);
+        Ok(())
+    }
+
+    fn throw_away(&mut self, object: ObjectId) -> Result<(), Fault> {
+        let bins: Vec<_> = ["TrashCan_01"].iter().filter_map(|id| self.catalog.find(id)).collect();
+        let Some(bin) = self.nearest(&bins) else {
+            return Err(Fault::Cannot(format!("Tell me what to throw {} at.", self.the(object))));
+        };
+        self.hold(object)?;
+        self.place_on(bin);
+        Ok(())
+    }
+
+    pub(crate) fn add_break(&mut self, settled: &Settled) -> Result<(), Fault> {
+        let objects = self.find_objects(settled, &Want::object(Intent::Break))?;
+        let tool = match &settled.tool {
+            Some((phrase, role)) if phrase.pronoun != Some(Pronoun::Place) => {
+                Some(self.find_one(phrase, &Want::place(Intent::Use, &[], None), Some(*role))?)
+            }
+            _ => self.hammer(),
+        };
+        for object in objects {
+            if let Some(tool) = tool.filter(|tool| *tool != object) {
+                self.hold(tool)?;
+            }
+            self.open_around(object, false);
+            self.interact(Verb::Break, object, "breaking");
+        }
+        Ok(())
+    }
+
+    /// A hammer: the one in the hand, or the nearest.
+    fn hammer(&self) -> Option<ObjectId> {
+        let held = self.scene.robot.held.and_then(|held| self.scene.object(held));
+        let held = held.filter(|held| self.devices.hammers.contains(&held.class)).map(|held| held.id);
+        held.or_else(|| self.nearest(&self.devices.hammers))
+    }
+}

@@ -1,0 +1,442 @@
+//! Clauses: one verb with its objects, places, direction and amount.
+
+use cohabit_cdf::{Catalog, Fluid};
+
+use crate::{
+    intent::Intent,
+    lexicon::{Direction, Lexicon, Preposition},
+    phrase::{Phrase, Place, Reader},
+    token,
+};
+
+/// One request.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Clause {
+    pub(crate) intent: Intent,
+    pub(crate) objects: Vec<Phrase>,
+    pub(crate) places: Vec<(Preposition, Place)>,
+    pub(crate) direction: Option<Direction>,
+    pub(crate) amount: Option<Amount>,
+    pub(crate) color: Option<String>,
+    pub(crate) fluid: Option<Fluid>,
+    /// Words that mean nothing to the robot.
+    pub(crate) unknown: Vec<String>,
+    /// The verb as it was said.
+    pub(crate) verb: String,
+}
+
+/// How far, or how much.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Amount {
+    Meters(f32),
+    Degrees(f32),
+    Bare(f32),
+}
+
+/// What a part of an utterance turned out to be.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Part {
+    Clause(Clause),
+    /// Something that is not to be done.
+    Forbidden,
+    /// An object without a verb.
+    Fragment(Phrase),
+    /// Nothing it understands; the words it does not know.
+    Unclear(Vec<String>),
+}
+
+/// The parts of an utterance, in order.
+pub(crate) fn parts(lexicon: &Lexicon, catalog: &Catalog, words: &[String]) -> Vec<Part> {
+    let mut parts = Vec::new();
+    for segment in segments(lexicon, words) {
+        read_segment(lexicon, catalog, segment, &mut parts);
+    }
+    parts
+}
+
+/// Cuts at sentence ends, and at `and` or a comma before a verb.
+pub(crate) fn segments<'a>(lexicon: &Lexicon, words: &'a [String]) -> Vec<&'a [String]> {
+    let mut segments = Vec::new();
+    let mut start = 0;
+    for at in 0..words.len() {
+        let is_end = token::ends_sentence(&words[at]) || words[at] == "then";
+        let is_joint = matches!(words[at].as_str(), "," | "and") && {
+            let mut reader = Reader::new(lexicon, words);
+            reader.at = at + 1;
+            reader.skip(|lexicon| &lexicon.lead);
+            reader.at_verb() || lexicon.negation.longest(reader.rest()).is_some()
+        };
+        if is_end || is_joint {
+            segments.push(&words[start..at]);
+            start = at + 1;
+        }
+    }
+    segments.push(&words[start..]);
+    segments.retain(|segment| segment.iter().any(|word| !token::is_punctuation(word)));
+    segments
+}
+
+fn read_segment(lexicon: &Lexicon, catalog: &Catalog, segment: &[String], parts: &mut Vec<Part>) {
+    let mut rest = segment;
+    while !rest.is_empty() {
+        let skipped = leading(lexicon, rest);
+        rest = &rest[skipped..];
+        if rest.is_empty() {
+            break;
+        }
+        let (part, used) = read_part(lexicon, catalog, rest, parts);
+        parts.push(part);
+        rest = &rest[used.clamp(1, rest.len())..];
+    }
+}
+
+/// How many words at the start mean nothing: politeness, `and`, commas.
+pub(crate) fn leading(lexicon: &Lexicon, words: &[String]) -> usize {
+    let mut at = 0;
+    loop {
+        let rest = &words[at..];
+        let is_joint = rest.first().is_some_and(|word| token::is_punctuation(word));
+        let verb = lexicon.verbs.longest(rest).map_or(0, |(length, _)| length);
+        match lexicon.lead.longest(rest) {
+            Some((length, ())) if length >= verb && lexicon.negation.longest(rest).is_none() => at += length,
+            _ if is_joint => at += 1,
+            _ => return at,
+        }
+    }
+}
+
+fn read_part(lexicon: &Lexicon, catalog: &Catalog, words: &[String], before: &[Part]) -> (Part, usize) {
+    if lexicon.negation.longest(words).is_some() && lexicon.verbs.longest(words).is_none() {
+        return (Part::Forbidden, words.len());
+    }
+    if let Some((clause, used)) = with_tool_first(lexicon, catalog, words).or_else(|| read(lexicon, catalog, words)) {
+        return (Part::Clause(clause), used);
+    }
+    if let Some((clause, used)) = implied_motion(lexicon, words) {
+        return (Part::Clause(clause), used);
+    }
+    let mut reader = Reader::new(lexicon, words);
+    if let Some(Part::Clause(previous)) = before.last()
+        && takes_objects(previous.intent)
+        && let Some((clause, used)) =
+            read_as(lexicon, previous.intent, &previous.verb, words, 0).filter(|(clause, _)| is_complete(clause, catalog))
+    {
+        return (Part::Clause(clause), used);
+    }
+    match reader.phrase_with_place() {
+        Some(phrase) if !phrase.is_empty() => (Part::Fragment(phrase), reader.at),
+        _ => (Part::Unclear(unknown_words(lexicon, words)), words.len()),
+    }
+}
+
+/// The words that are not in the vocabulary.
+pub(crate) fn unknown_words(lexicon: &Lexicon, words: &[String]) -> Vec<String> {
+    words.iter().filter(|word| !lexicon.vocabulary.has(word) && !token::is_punctuation(word)).cloned().collect()
+}
+
+/// `use the hammer to break the mug`, `with the hammer, break the mug`.
+fn with_tool_first(lexicon: &Lexicon, catalog: &Catalog, words: &[String]) -> Option<(Clause, usize)> {
+    if !matches!(words.first()?.as_str(), "use" | "using" | "with" | "take") {
+        return None;
+    }
+    let mut reader = Reader::new(lexicon, words);
+    reader.at = 1;
+    let tool = reader.phrase_with_place()?;
+    if !matches!(reader.rest().first()?.as_str(), "to" | "and" | ",") || words[0] == "take" && !reader.next_is("to") {
+        return None;
+    }
+    reader.at += 1;
+    reader.skip(|lexicon| &lexicon.lead);
+    if !reader.at_verb() {
+        return None;
+    }
+    let start = reader.at;
+    let (mut clause, used) = read(lexicon, catalog, reader.rest())?;
+    clause.places.push((Preposition::With, Place::Object(tool)));
+    Some((clause, start + used))
+}
+
+/// The best reading of a clause that begins with a verb, and how many words it took.
+fn read(lexicon: &Lexicon, catalog: &Catalog, words: &[String]) -> Option<(Clause, usize)> {
+    let (longest, _) = lexicon.verbs.longest(words).unwrap_or((0, &Vec::new()));
+    let fixed = (1..=longest).rev().flat_map(|length| {
+        let intents = lexicon.verbs.exact(&words[..length]).map_or(&[][..], Vec::as_slice);
+        intents.iter().map(move |intent| (length, *intent))
+    });
+    let mut readings: Vec<(Clause, usize)> = Vec::new();
+    if longest < 2 {
+        readings.extend(split_readings(lexicon, words));
+    }
+    for (length, intent) in fixed {
+        readings.extend(read_as(lexicon, intent, &words[..length].join(" "), words, length));
+    }
+    readings.retain(|(clause, _)| is_complete(clause, catalog));
+    let best = readings.iter().position(|(clause, _)| is_sensible(clause, catalog)).unwrap_or(0);
+    readings.into_iter().nth(best)
+}
+
+/// Readings with the verb's last word after the object: `turn the sink on`.
+fn split_readings(lexicon: &Lexicon, words: &[String]) -> Vec<(Clause, usize)> {
+    let mut readings = Vec::new();
+    for (head, particle, intent) in &lexicon.separable {
+        if !words.starts_with(head) {
+            continue;
+        }
+        let found = (head.len() + 1..words.len()).find(|at| {
+            let after = &words[at + 1..];
+            words[*at] == *particle
+                && (after.is_empty()
+                    || lexicon.prepositions.longest(after).is_some()
+                    || lexicon.trail.longest(after).is_some()
+                    || after.first().is_some_and(|word| token::is_punctuation(word)))
+        });
+        if let Some(at) = found {
+            let mut joined = words.to_vec();
+            joined.remove(at);
+            let verb = format!("{} {particle}", head.join(" "));
+            // The particle was taken out; it counts as used once the clause reaches beyond it.
+            readings.extend(
+                read_as(lexicon, *intent, &verb, &joined, head.len())
+                    .map(|(clause, used)| (clause, if used >= at { used + 1 } else { used })),
+            );
+        }
+    }
+    readings
+}
+
+fn read_as(
+    lexicon: &Lexicon,
+    intent: Intent,
+    verb: &str,
+    words: &[String],
+    verb_length: usize,
+) -> Option<(Clause, usize)> {
+    let mut clause = Clause {
+        intent,
+        objects: Vec::new(),
+        places: Vec::new(),
+        direction: None,
+        amount: None,
+        color: None,
+        fluid: None,
+        unknown: Vec::new(),
+        verb: verb.to_owned(),
+    };
+    let mut reader = Reader::new(lexicon, words);
+    reader.at = verb_length;
+    match intent {
+        Intent::GoTo => clause.places.push((Preposition::To, reader.destination()?)),
+        Intent::Travel | Intent::Turn | Intent::Look => read_motion(&mut reader, &mut clause),
+        _ => read_objects(&mut reader, &mut clause),
+    }
+    read_tail(&mut reader, &mut clause);
+    Some((clause, reader.at))
+}
+
+fn read_motion(reader: &mut Reader<'_>, clause: &mut Clause) {
+    loop {
+        let mut degrees = *reader;
+        if let Some(amount) = read_amount(&mut degrees) {
+            *reader = degrees;
+            clause.amount = Some(amount);
+        } else if let Some((length, direction)) = reader.lexicon.directions.longest(reader.rest()) {
+            reader.at += length;
+            // `turn right around`: the last word wins only over nothing.
+            clause.direction = Some(clause.direction.unwrap_or(*direction));
+        } else if matches!(reader.rest().first().map(String::as_str), Some("your" | "head" | "a" | "for" | "by")) {
+            reader.at += 1;
+        } else {
+            break;
+        }
+    }
+    // `go kitchen`: people leave out the preposition.
+    if clause.direction.is_none() && matches!(clause.verb.as_str(), "go" | "walk" | "head" | "come" | "proceed" | "run") {
+        let mut place = *reader;
+        if let Some(destination) = place.destination() {
+            *reader = place;
+            clause.places.push((Preposition::To, destination));
+        }
+    }
+}
+
+fn read_amount(reader: &mut Reader<'_>) -> Option<Amount> {
+    let mut after = *reader;
+    let value = after.number()?;
+    let (lexicon, rest) = (after.lexicon, after.rest());
+    let amount = if let Some((length, ())) = lexicon.degrees.longest(rest) {
+        after.at += length;
+        Amount::Degrees(value)
+    } else if let Some((length, unit)) = lexicon.units.longest(rest) {
+        after.at += length;
+        Amount::Meters(value * unit)
+    } else if token::digits(&reader.words[reader.at]).is_some() {
+        Amount::Bare(value)
+    } else {
+        return None;
+    };
+    *reader = after;
+    Some(amount)
+}
+
+fn read_objects(reader: &mut Reader<'_>, clause: &mut Clause) {
+    if reader.next_is("me") || reader.next_is("us") {
+        reader.at += 1;
+    }
+    loop {
+        let mut next = *reader;
+        if !clause.objects.is_empty() {
+            if !next.next_is("and") && !next.next_is(",") {
+                break;
+            }
+            while next.next_is("and") || next.next_is(",") {
+                next.at += 1;
+            }
+            if next.at_verb() {
+                break;
+            }
+        } else if next.at_long_verb() {
+            break;
+        }
+        let Some(phrase) = next.phrase() else { break };
+        clause.objects.push(phrase);
+        *reader = next;
+    }
+}
+
+fn read_tail(reader: &mut Reader<'_>, clause: &mut Clause) {
+    while !reader.is_done() {
+        if token::is_punctuation(&reader.words[reader.at]) || reader.next_is("and") {
+            break;
+        }
+        if read_color(reader, clause) || read_fluid(reader, clause) {
+            continue;
+        }
+        if let Some(place) = reader.place() {
+            let is_with = place.0 == Preposition::With;
+            clause.places.push(place);
+            if is_with && let Some((length, crate::lexicon::Pronoun::Place)) = reader.lexicon.pronouns.longest(reader.rest()) {
+                reader.at += length;
+            }
+            continue;
+        }
+        if let Some((length, crate::lexicon::Pronoun::Place)) = reader.lexicon.pronouns.longest(reader.rest()) {
+            let phrase = Phrase { pronoun: Some(crate::lexicon::Pronoun::Place), text: "there".to_owned(), ..Phrase::default() };
+            clause.places.push((Preposition::On, Place::Object(phrase)));
+            reader.at += length;
+            continue;
+        }
+        if let Some((length, ())) = reader.lexicon.trail.longest(reader.rest()) {
+            reader.at += length;
+            continue;
+        }
+        if reader.at_verb() {
+            break;
+        }
+        let word = &reader.words[reader.at];
+        if !reader.lexicon.vocabulary.has(word) {
+            clause.unknown.push(word.clone());
+        }
+        reader.at += 1;
+    }
+}
+
+/// `paint the bowl red`, `make it blue`, `change the bowl's color to green`.
+fn read_color(reader: &mut Reader<'_>, clause: &mut Clause) -> bool {
+    if clause.intent != Intent::Color {
+        return false;
+    }
+    let mut after = *reader;
+    while matches!(after.rest().first().map(String::as_str), Some("to" | "into" | "in" | "color" | "the" | "be")) {
+        after.at += 1;
+    }
+    let Some((length, color)) = after.lexicon.colors.longest(after.rest()) else { return false };
+    let noun = after.lexicon.classes.longest(after.rest()).map_or(0, |(length, _)| length);
+    if noun > length {
+        return false;
+    }
+    after.at += length;
+    clause.color = Some(color.clone());
+    *reader = after;
+    true
+}
+
+/// `with water`, after `fill`.
+fn read_fluid(reader: &mut Reader<'_>, clause: &mut Clause) -> bool {
+    if clause.intent != Intent::Fill {
+        return false;
+    }
+    let mut after = *reader;
+    let Some((length, Preposition::With)) = after.lexicon.prepositions.longest(after.rest()) else { return false };
+    after.at += length;
+    after.skip(|lexicon| &lexicon.articles);
+    let Some((length, fluid)) = after.lexicon.fluids.longest(after.rest()) else { return false };
+    after.at += length;
+    clause.fluid = Some(*fluid);
+    *reader = after;
+    true
+}
+
+/// `left`, `forward 2 meters`: motion without a verb.
+fn implied_motion(lexicon: &Lexicon, words: &[String]) -> Option<(Clause, usize)> {
+    let mut reader = Reader::new(lexicon, words);
+    let _ = read_amount(&mut reader);
+    let (_, direction) = lexicon.directions.longest(reader.rest())?;
+    let intent = match direction {
+        Direction::Forward | Direction::Backward => Intent::Travel,
+        Direction::Left | Direction::Right | Direction::Around => Intent::Turn,
+        Direction::Up | Direction::Down => Intent::Look,
+    };
+    let (clause, used) = read_as(lexicon, intent, intent.verb(), words, 0)?;
+    (clause.direction.is_some() && used == words.len() && clause.places.is_empty()).then_some((clause, used))
+}
+
+const fn takes_objects(intent: Intent) -> bool {
+    !matches!(intent, Intent::Stop | Intent::Travel | Intent::Turn | Intent::Look | Intent::LookAround)
+}
+
+/// Whether a reading has what its verb needs.
+fn is_complete(clause: &Clause, catalog: &Catalog) -> bool {
+    let has_object = clause.objects.iter().any(|phrase| phrase.says_something() || !phrase.unknown.is_empty());
+    let is_named = |id: &str| {
+        let class = catalog.find(id);
+        clause.places.iter().any(|(preposition, place)| {
+            *preposition == Preposition::In
+                && matches!(place, Place::Object(phrase) if class.is_some_and(|class| phrase.naming(class).is_some()))
+        })
+    };
+    match clause.intent {
+        Intent::Stop => !has_object,
+        Intent::GoTo => !clause.places.is_empty(),
+        Intent::Travel => {
+            !has_object && (clause.direction.is_some() || clause.amount.is_some() || !clause.places.is_empty())
+        }
+        Intent::Turn => clause.direction.is_some() || matches!(clause.amount, Some(Amount::Degrees(_) | Amount::Bare(_))),
+        Intent::Look => clause.direction.is_some(),
+        Intent::LookAround | Intent::Brew | Intent::Impossible => true,
+        Intent::PickUp => has_object && !clause.places.iter().any(|(preposition, _)| *preposition == Preposition::To),
+        Intent::Place => has_object || !clause.places.is_empty(),
+        Intent::Drop => true,
+        Intent::Color => has_object && clause.color.is_some(),
+        Intent::Carrot => has_object && (is_named("Carrot_01") || clause.verb.starts_with("carrot")),
+        _ => has_object,
+    }
+}
+
+/// Whether something it names affords what the verb asks.
+fn is_sensible(clause: &Clause, catalog: &Catalog) -> bool {
+    let affordances = clause.intent.affordances();
+    let Some(phrase) = clause.objects.first().filter(|phrase| !phrase.namings.is_empty()) else { return true };
+    affordances.is_empty()
+        || phrase.fluid.is_some()
+        || phrase
+            .namings
+            .iter()
+            .any(|naming| affordances.iter().any(|affordance| catalog.class(naming.class).has(*affordance)))
+}
+
+impl Reader<'_> {
+    /// Whether a verb of several words begins here: surely no noun.
+    fn at_long_verb(&self) -> bool {
+        self.at_verb() && self.lexicon.verbs.longest(self.rest()).is_some_and(|(length, _)| length > 1)
+    }
+}

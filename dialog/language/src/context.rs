@@ -1,0 +1,114 @@
+//! What was said, meant and done before.
+
+use cohabit_cdf::{Action, GoToTarget, ObjectId, Status};
+
+use crate::{clause::Clause, understanding::Step};
+
+/// How many objects a pronoun may reach back.
+const MEMORY: usize = 8;
+
+/// The conversation so far; [`Default`] is its beginning.
+#[derive(Clone, Debug, Default)]
+pub struct Context {
+    pub(crate) focus: Focus,
+    pub(crate) pending: Option<Pending>,
+    /// The plan under way, what is left of it.
+    pub(crate) running: Vec<Step>,
+    /// The last plan, whole.
+    pub(crate) last_plan: Vec<Step>,
+    /// What failed last, with what was to follow it.
+    pub(crate) failed: Option<Failure>,
+}
+
+/// A step that failed.
+#[derive(Clone, Debug)]
+pub(crate) struct Failure {
+    pub(crate) step: Step,
+    pub(crate) status: Status,
+    pub(crate) rest: Vec<Step>,
+}
+
+/// What the conversation is about.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Focus {
+    /// The objects spoken of, the latest first.
+    pub(crate) recent: Vec<ObjectId>,
+    /// The last thing gone to, opened or put things into.
+    pub(crate) place: Option<ObjectId>,
+}
+
+/// A question of the robot's that waits for its answer.
+#[derive(Clone, Debug)]
+pub(crate) enum Pending {
+    /// Which object is meant; the request waits.
+    Which { clauses: Vec<Clause>, slot: Slot, candidates: Vec<ObjectId>, may_put_down: bool },
+    /// Whether to put down what is held, to do what was asked.
+    PutDown { clauses: Vec<Clause> },
+    /// Whether to do this.
+    Offer { steps: Vec<Step> },
+}
+
+/// A phrase in a request.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub(crate) struct Slot {
+    pub(crate) clause: usize,
+    pub(crate) role: Role,
+}
+
+/// What part a phrase plays in its clause.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub(crate) enum Role {
+    Object(usize),
+    Place(usize),
+}
+
+impl Focus {
+    pub(crate) fn mention(&mut self, object: ObjectId) {
+        self.recent.retain(|known| *known != object);
+        self.recent.insert(0, object);
+        self.recent.truncate(MEMORY);
+    }
+
+    /// Follows what a step is about.
+    pub(crate) fn follow(&mut self, action: &Action) {
+        match *action {
+            Action::GoTo { target: GoToTarget::Object(object) } => {
+                self.mention(object);
+                self.place = Some(object);
+            }
+            Action::GoTo { .. } => self.place = None,
+            Action::Place { receptacle } => self.place = Some(receptacle),
+            Action::PickUp { object } | Action::Highlight { object } => self.mention(object),
+            Action::Interact { verb, object } => {
+                self.mention(object);
+                if matches!(verb, cohabit_cdf::Verb::Open) {
+                    self.place = Some(object);
+                }
+            }
+            Action::Move { .. } | Action::Rotate { .. } | Action::Look { .. } | Action::LookAround | Action::Stop => {}
+        }
+    }
+}
+
+impl Context {
+    /// Takes note of what came of a step: `yes` after a failure then means the remedy that
+    /// [`crate::Language::report`] offered.
+    pub fn note_outcome(&mut self, step: &Step, status: Status) {
+        let done = self.running.iter().position(|planned| planned.action == step.action);
+        let rest = done.map_or_else(Vec::new, |at| self.running.split_off(at + 1));
+        if status.is_success() {
+            self.running = rest;
+            return;
+        }
+        self.running.clear();
+        self.failed = (status != Status::Interrupted).then(|| Failure { step: step.clone(), status, rest });
+    }
+
+    /// Takes note of a plan that is about to be carried out.
+    pub(crate) fn begin(&mut self, steps: &[Step]) {
+        self.running = steps.to_vec();
+        self.last_plan = steps.to_vec();
+        self.pending = None;
+        self.failed = None;
+    }
+}

@@ -1,0 +1,175 @@
+//! How the robot speaks of objects and places.
+
+use cohabit_cdf::{
+    Catalog, ClassId, Color, Fluid, ObjectId,
+    state::{StateFlag, StateFlags},
+};
+
+use crate::known::{Known, KnownObject};
+
+/// States worth saying when they tell two objects apart.
+const TELLING: [(StateFlag, &str, &str); 6] = [
+    (StateFlag::Broken, "broken", "whole"),
+    (StateFlag::Dirty, "dirty", "clean"),
+    (StateFlag::Embiggenated, "large", "small"),
+    (StateFlag::Hot, "hot", "cool"),
+    (StateFlag::Cold, "cold", "warm"),
+    (StateFlag::Opened, "open", "closed"),
+];
+
+/// States by which people see a difference before anybody says anything.
+const VISIBLE: [StateFlag; 4] = [StateFlag::Broken, StateFlag::Dirty, StateFlag::Embiggenated, StateFlag::Cereal];
+
+/// The plain name of a class: its readable name in lower case, `TAM` and such kept.
+pub(crate) fn name(catalog: &Catalog, class: ClassId) -> String {
+    let class = catalog.class(class);
+    let name = if class.name.is_empty() { &class.id } else { &class.name };
+    let lower = |word: &str| {
+        let is_acronym = word.chars().filter(|character| character.is_uppercase()).count() > 1;
+        if is_acronym { word.to_owned() } else { word.to_lowercase() }
+    };
+    name.split_whitespace().map(lower).collect::<Vec<_>>().join(" ")
+}
+
+/// The colour an object is called by.
+pub(crate) fn color(catalog: &Catalog, object: &KnownObject) -> String {
+    match object.color {
+        Color::Original => catalog.class(object.class).color.to_lowercase(),
+        color => color.name().to_lowercase(),
+    }
+}
+
+/// Whether two objects look the same to people.
+pub(crate) fn look_alike(catalog: &Catalog, one: &KnownObject, other: &KnownObject) -> bool {
+    let visible = |flags: StateFlags| VISIBLE.map(|flag| flags.has(flag));
+    name(catalog, one.class) == name(catalog, other.class)
+        && color(catalog, one) == color(catalog, other)
+        && visible(one.flags) == visible(other.flags)
+        && one.fluid == other.fluid
+        && !told_by_words(catalog, one.class, other.class)
+}
+
+/// Whether a word of either class says which it is, as `red computer` and `blue computer` do.
+fn told_by_words(catalog: &Catalog, one: ClassId, other: ClassId) -> bool {
+    one != other && special_name(catalog, one) != special_name(catalog, other)
+}
+
+/// A name of several words that ends in the class's own name: `red computer`.
+fn special_name(catalog: &Catalog, class: ClassId) -> Option<String> {
+    let plain = name(catalog, class);
+    let ending = format!(" {plain}");
+    let words = &catalog.class(class).words;
+    let color = catalog.class(class).color.to_lowercase();
+    let colored = format!("{color} {plain}");
+    let is_special = |word: &&String| word.ends_with(&ending) && **word != colored;
+    let is_shared = catalog.classes().iter().filter(|other| other.name.to_lowercase() == plain).count() > 1;
+    if is_shared { words.iter().find(is_special).cloned() } else { None }
+}
+
+/// `the mug`, or `the red mug` where there is another colour of it.
+pub(crate) fn short(catalog: &Catalog, scene: &Known, id: ObjectId) -> String {
+    format!("the {}", bare(catalog, scene, id))
+}
+
+/// The same without an article.
+pub(crate) fn bare(catalog: &Catalog, scene: &Known, id: ObjectId) -> String {
+    let Some(object) = scene.object(id) else { return "thing".to_owned() };
+    let plain = name(catalog, object.class);
+    let rivals = || scene.objects.iter().filter(|other| other.id != id && name(catalog, other.class) == plain);
+    let is_told_by_words = rivals().any(|other| told_by_words(catalog, object.class, other.class));
+    if let Some(special) = special_name(catalog, object.class).filter(|_| is_told_by_words) {
+        return special;
+    }
+    let color_of = color(catalog, object);
+    let has_color = !color_of.is_empty() && !plain.contains(&color_of);
+    if has_color && rivals().any(|other| color(catalog, other) != color_of) {
+        return format!("{color_of} {plain}");
+    }
+    plain
+}
+
+/// `in the fridge`, `on the green desk in the main office`, or nothing for what stands on the floor here.
+pub(crate) fn location(catalog: &Catalog, scene: &Known, id: ObjectId) -> String {
+    let Some(object) = scene.object(id) else { return String::new() };
+    if scene.robot.held == Some(id) {
+        return "in my hand".to_owned();
+    }
+    let mut parts = Vec::new();
+    if let Some(parent) = object.parent.and_then(|parent| scene.object(parent)) {
+        parts.push(format!("{} {}", inside(catalog, parent.class), short(catalog, scene, parent.id)));
+    }
+    if object.room != scene.robot.room {
+        parts.push(format!("in the {}", object.room.name()));
+    }
+    parts.join(" ")
+}
+
+/// Whether things are in it or on it.
+pub(crate) fn inside(catalog: &Catalog, class: ClassId) -> &'static str {
+    let class = catalog.class(class);
+    let is_enclosed = class.receptacle.as_ref().is_some_and(|receptacle| receptacle.enclosed || !receptacle.keys.is_empty());
+    let is_hollow = ["Box", "Sink", "Toaster", "Machine", "Maker", "Trash", "Jar", "Printer"]
+        .iter()
+        .any(|word| class.name.contains(word));
+    if is_enclosed || is_hollow { "in" } else { "on" }
+}
+
+/// `the milk in the fridge`.
+pub(crate) fn full(catalog: &Catalog, scene: &Known, id: ObjectId) -> String {
+    let location = location(catalog, scene, id);
+    let short = short(catalog, scene, id);
+    if location.is_empty() { short } else { format!("{short} {location}") }
+}
+
+/// A description of each candidate that tells it from the others.
+pub(crate) fn apart(catalog: &Catalog, scene: &Known, candidates: &[ObjectId]) -> Vec<String> {
+    let objects: Vec<&KnownObject> = candidates.iter().filter_map(|id| scene.object(*id)).collect();
+    objects
+        .iter()
+        .map(|object| {
+            let mut adjectives = Vec::new();
+            for (flag, yes, no) in TELLING {
+                if objects.iter().any(|other| other.has(flag) != object.has(flag)) {
+                    adjectives.push(if object.has(flag) { yes } else { no });
+                }
+            }
+            let place = location(catalog, scene, object.id);
+            let fluid = if objects.iter().any(|other| other.fluid != object.fluid) { contents(object.fluid) } else { "" };
+            let text = format!("the {} {} {fluid} {place}", adjectives.join(" "), bare(catalog, scene, object.id));
+            text.split_whitespace().collect::<Vec<_>>().join(" ")
+        })
+        .collect()
+}
+
+const fn contents(fluid: Fluid) -> &'static str {
+    match fluid {
+        Fluid::None => "that is empty",
+        Fluid::Water => "with water",
+        Fluid::Milk => "with milk",
+        Fluid::Coffee => "with coffee",
+    }
+}
+
+/// `a, b and c`; `last` is the word before the last one.
+pub(crate) fn list(items: &[String], last: &str) -> String {
+    match items {
+        [] => String::new(),
+        [one] => one.clone(),
+        [head @ .., tail] => format!("{} {last} {tail}", head.join(", ")),
+    }
+}
+
+/// A noun with its indefinite article.
+pub(crate) fn indefinite(noun: &str) -> String {
+    let article = if noun.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
+    format!("{article} {noun}")
+}
+
+/// The text with a capital letter at its start and a full stop at its end.
+pub(crate) fn sentence(text: &str) -> String {
+    let text = text.trim();
+    let mut characters = text.chars();
+    let Some(first) = characters.next() else { return String::new() };
+    let ending = if text.ends_with(['.', '!', '?']) { "" } else { "." };
+    format!("{}{}{ending}", first.to_uppercase(), characters.as_str())
+}

@@ -1,0 +1,131 @@
+//! What a clause asks for.
+
+use cohabit_cdf::catalog::Property;
+use serde::Deserialize;
+
+/// The kinds of requests, by the verbs that carry them.
+#[derive(Clone, Copy, Debug, Deserialize, Eq, Ord, PartialEq, PartialOrd)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Intent {
+    Stop,
+    GoTo,
+    Find,
+    Travel,
+    Turn,
+    Look,
+    LookAround,
+    PickUp,
+    Bring,
+    Place,
+    Drop,
+    Open,
+    Close,
+    Break,
+    Scan,
+    Pour,
+    Toggle,
+    TurnOn,
+    TurnOff,
+    Fill,
+    Clean,
+    Examine,
+    Throw,
+    Highlight,
+    Heat,
+    Cool,
+    Repair,
+    Color,
+    Print,
+    Toast,
+    Carrot,
+    Resize,
+    Brew,
+    Use,
+    Impossible,
+}
+
+impl Intent {
+    /// What the object of this request should afford, any of them.
+    pub(crate) const fn affordances(self) -> &'static [Property] {
+        match self {
+            Self::PickUp | Self::Bring | Self::Place | Self::Drop | Self::Heat | Self::Cool | Self::Repair => {
+                &[Property::Pickupable]
+            }
+            Self::Print | Self::Toast | Self::Carrot | Self::Resize | Self::Color | Self::Clean => {
+                &[Property::Pickupable]
+            }
+            Self::Open | Self::Close => &[Property::Openable],
+            Self::Break => &[Property::Breakable],
+            Self::Toggle | Self::TurnOn | Self::TurnOff => &[Property::Toggleable],
+            Self::Fill | Self::Pour | Self::Brew => &[Property::Fillable],
+            _ => &[],
+        }
+    }
+
+    /// Whether it is carried out with the object in the hand, so that what is held is meant first.
+    pub(crate) const fn is_about_held(self) -> bool {
+        matches!(
+            self,
+            Self::Place
+                | Self::Drop
+                | Self::Bring
+                | Self::Pour
+                | Self::Fill
+                | Self::Clean
+                | Self::Throw
+                | Self::Heat
+                | Self::Cool
+                | Self::Repair
+                | Self::Color
+                | Self::Toast
+                | Self::Carrot
+                | Self::Resize
+                | Self::Brew
+        )
+    }
+
+    /// Whether little is lost when the robot takes the wrong one of two: it then guesses rather than asks.
+    pub(crate) const fn is_harmless(self) -> bool {
+        matches!(self, Self::GoTo | Self::Find | Self::Travel | Self::Turn | Self::Highlight | Self::Examine)
+    }
+
+    /// The plain form of the verb, for questions and refusals.
+    pub(crate) const fn verb(self) -> &'static str {
+        match self {
+            Self::Stop => "stop",
+            Self::GoTo | Self::Travel => "go to",
+            Self::Find => "find",
+            Self::Turn => "turn",
+            Self::Look => "look",
+            Self::LookAround => "look around",
+            Self::PickUp => "pick up",
+            Self::Bring => "bring",
+            Self::Place => "put",
+            Self::Drop => "put down",
+            Self::Open => "open",
+            Self::Close => "close",
+            Self::Break => "break",
+            Self::Scan => "scan",
+            Self::Pour => "pour",
+            Self::Toggle => "switch",
+            Self::TurnOn => "turn on",
+            Self::TurnOff => "turn off",
+            Self::Fill => "fill",
+            Self::Clean => "clean",
+            Self::Examine => "look at",
+            Self::Throw => "throw",
+            Self::Highlight => "show",
+            Self::Heat => "heat",
+            Self::Cool => "cool",
+            Self::Repair => "repair",
+            Self::Color => "color",
+            Self::Print => "print",
+            Self::Toast => "toast",
+            Self::Carrot => "turn into a carrot",
+            Self::Resize => "resize",
+            Self::Brew => "make coffee in",
+            Self::Use => "use",
+            Self::Impossible => "do that to",
+        }
+    }
+}

@@ -1,0 +1,125 @@
+//! What the robot knows of its world: the only facts language is grounded on.
+
+use cohabit_cdf::{
+    ClassId, Color, Fluid, ObjectId, RoomId,
+    state::{StateFlag, StateFlags},
+};
+
+/// The robot, the objects it knows of, and the goals.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Known {
+    /// The robot itself.
+    pub robot: KnownRobot,
+    /// Every object it knows of.
+    pub objects: Vec<KnownObject>,
+    /// The goals that people may read, in their order.
+    pub goals: Vec<KnownGoal>,
+}
+
+/// Where the robot is and what it holds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct KnownRobot {
+    /// Where it stands, m, in the world.
+    pub position_m: [f32; 3],
+    /// Where it looks, in the world.
+    pub yaw_rad: f32,
+    /// Its room.
+    pub room: RoomId,
+    /// What is in its hand.
+    pub held: Option<ObjectId>,
+}
+
+/// One object.
+#[derive(Clone, Debug, PartialEq)]
+pub struct KnownObject {
+    /// Which.
+    pub id: ObjectId,
+    /// Its instance id, such as `Bowl_01_1`.
+    pub instance: String,
+    /// Its class.
+    pub class: ClassId,
+    /// The room it is in.
+    pub room: RoomId,
+    /// Its origin, m, in the world.
+    pub position_m: [f32; 3],
+    /// Its states.
+    pub flags: StateFlags,
+    /// What it is filled with.
+    pub fluid: Fluid,
+    /// The colour a mission or a machine gave it.
+    pub color: Color,
+    /// What it stands on or lies in.
+    pub parent: Option<ObjectId>,
+    /// What is written on it.
+    pub text: String,
+    /// Whether the robot sees it now.
+    pub visible: bool,
+    /// The device that this monitor, button or lever works.
+    pub works: Option<ObjectId>,
+}
+
+/// One goal of the mission.
+#[derive(Clone, Debug, PartialEq)]
+pub struct KnownGoal {
+    /// What people read.
+    pub text: String,
+    /// Whether it is met.
+    pub met: bool,
+}
+
+impl Known {
+    /// The object with this id.
+    #[must_use]
+    pub fn object(&self, id: ObjectId) -> Option<&KnownObject> {
+        self.objects.iter().find(|object| object.id == id)
+    }
+
+    pub(crate) fn object_mut(&mut self, id: ObjectId) -> Option<&mut KnownObject> {
+        self.objects.iter_mut().find(|object| object.id == id)
+    }
+
+    /// What stands on or lies in `id`, itself not included.
+    pub(crate) fn contents(&self, id: ObjectId) -> impl Iterator<Item = &KnownObject> {
+        self.objects.iter().filter(move |object| object.parent == Some(id))
+    }
+
+    /// What an object stands on or lies in, then what that stands on, and so on outwards.
+    pub(crate) fn ancestors(&self, id: ObjectId) -> impl Iterator<Item = &KnownObject> {
+        let mut next = self.object(id).and_then(|object| object.parent);
+        // A loop of parents would be the world's mistake; it must not hang the conversation.
+        let mut left = 8;
+        std::iter::from_fn(move || {
+            let object = self.object(next?)?;
+            next = object.parent;
+            left -= 1;
+            (left >= 0).then_some(object)
+        })
+    }
+
+    /// The horizontal distance from the robot, m.
+    pub(crate) fn distance_m(&self, object: &KnownObject) -> f32 {
+        distance_m(self.robot.position_m, object.position_m)
+    }
+
+    /// The direction of an object as the robot sees it: positive to its left, within a half turn.
+    pub(crate) fn bearing_rad(&self, object: &KnownObject) -> f32 {
+        let dx = object.position_m[0] - self.robot.position_m[0];
+        let dy = object.position_m[1] - self.robot.position_m[1];
+        let bearing = dy.atan2(dx) - self.robot.yaw_rad;
+        let turn = std::f32::consts::TAU;
+        let wrapped = bearing.rem_euclid(turn);
+        if wrapped > turn / 2.0 { wrapped - turn } else { wrapped }
+    }
+}
+
+impl KnownObject {
+    pub(crate) fn has(&self, flag: StateFlag) -> bool {
+        self.flags.has(flag)
+    }
+}
+
+/// The horizontal distance of two points, m.
+pub(crate) fn distance_m(one: [f32; 3], other: [f32; 3]) -> f32 {
+    let (dx, dy) = (one[0] - other[0], one[1] - other[1]);
+    (dx * dx + dy * dy).sqrt()
+}

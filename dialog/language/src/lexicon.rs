@@ -1,0 +1,397 @@
+//! All words the robot understands: its own tables, and the names of the catalogue's classes.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use cohabit_cdf::{Catalog, ClassId, Fluid, RoomId, state::StateFlag};
+use serde::Deserialize;
+
+use crate::{intent::Intent, question::QuestionKind, spelling::Vocabulary, table::PhraseTable, token};
+
+/// A class that a word may mean, and how much it means it: 1 for its name, less for words further down its list.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Naming {
+    pub(crate) class: ClassId,
+    pub(crate) weight: f32,
+}
+
+/// What an adjective demands of an object's state.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub(crate) enum StateWord {
+    Flag(StateFlag, bool),
+    Filled(bool),
+}
+
+/// What a preposition says about the phrase after it.
+#[derive(Clone, Copy, Debug, Deserialize, Eq, Ord, PartialEq, PartialOrd)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Preposition {
+    In,
+    On,
+    To,
+    At,
+    From,
+    Near,
+    With,
+    For,
+}
+
+/// Which of several, by where they are.
+#[derive(Clone, Copy, Debug, Deserialize, Eq, Ord, PartialEq, PartialOrd)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Side {
+    Left,
+    Right,
+    Front,
+    Behind,
+    Nearest,
+    Farthest,
+    Middle,
+    Other,
+}
+
+/// Which way.
+#[derive(Clone, Copy, Debug, Deserialize, Eq, Ord, PartialEq, PartialOrd)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Direction {
+    Forward,
+    Backward,
+    Left,
+    Right,
+    Around,
+    Up,
+    Down,
+}
+
+/// What a pronoun stands for.
+#[derive(Clone, Copy, Debug, Deserialize, Eq, Ord, PartialEq, PartialOrd)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Pronoun {
+    Thing,
+    Things,
+    Place,
+    One,
+}
+
+/// Words that are a whole utterance, or its beginning.
+#[derive(Clone, Copy, Debug, Eq, Ord, PartialEq, PartialOrd)]
+pub(crate) enum Small {
+    Yes,
+    No,
+    Any,
+    Hello,
+    Thanks,
+    Again,
+}
+
+/// The tables.
+#[derive(Debug, Default)]
+pub(crate) struct Lexicon {
+    pub(crate) replace: PhraseTable<Vec<String>>,
+    pub(crate) lead: PhraseTable<()>,
+    pub(crate) trail: PhraseTable<()>,
+    pub(crate) articles: PhraseTable<()>,
+    pub(crate) adjectives: PhraseTable<()>,
+    pub(crate) all: PhraseTable<()>,
+    pub(crate) link: PhraseTable<()>,
+    pub(crate) here: PhraseTable<()>,
+    pub(crate) degrees: PhraseTable<()>,
+    pub(crate) viewpoints: PhraseTable<()>,
+    pub(crate) negation: PhraseTable<()>,
+    pub(crate) pronouns: PhraseTable<Pronoun>,
+    pub(crate) prepositions: PhraseTable<Preposition>,
+    pub(crate) sides: PhraseTable<Side>,
+    pub(crate) ordinals: PhraseTable<i32>,
+    pub(crate) directions: PhraseTable<Direction>,
+    pub(crate) units: PhraseTable<f32>,
+    pub(crate) numbers: PhraseTable<f32>,
+    pub(crate) colors: PhraseTable<String>,
+    pub(crate) states: PhraseTable<StateWord>,
+    pub(crate) fluids: PhraseTable<Fluid>,
+    pub(crate) rooms: PhraseTable<RoomId>,
+    pub(crate) small: PhraseTable<BTreeSet<Small>>,
+    pub(crate) verbs: PhraseTable<Vec<Intent>>,
+    /// First words of a verb whose last word may stand after the object; that word; the intent.
+    pub(crate) separable: Vec<(Vec<String>, String, Intent)>,
+    pub(crate) questions: PhraseTable<QuestionKind>,
+    pub(crate) classes: PhraseTable<Vec<Naming>>,
+    pub(crate) vocabulary: Vocabulary,
+}
+
+#[derive(Deserialize)]
+struct Words {
+    words: Vec<String>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct WordFile {
+    replace: BTreeMap<String, String>,
+    lead: Words,
+    trail: Words,
+    articles: Words,
+    adjectives: Words,
+    all: Words,
+    link: Words,
+    here: Words,
+    degrees: Words,
+    viewpoints: Words,
+    negation: Words,
+    pronouns: BTreeMap<Pronoun, Vec<String>>,
+    prepositions: BTreeMap<Preposition, Vec<String>>,
+    sides: BTreeMap<Side, Vec<String>>,
+    ordinals: BTreeMap<String, i32>,
+    directions: BTreeMap<Direction, Vec<String>>,
+    units: BTreeMap<String, f32>,
+    numbers: BTreeMap<String, f32>,
+    colors: BTreeMap<String, Vec<String>>,
+    states: BTreeMap<String, Vec<String>>,
+    fill_words: FillWords,
+    fluids: BTreeMap<String, Vec<String>>,
+    rooms: BTreeMap<String, Vec<String>>,
+    aliases: BTreeMap<String, Vec<String>>,
+    yes: Words,
+    no: Words,
+    any: Words,
+    hello: Words,
+    thanks: Words,
+    again: Words,
+}
+
+#[derive(Deserialize)]
+struct FillWords {
+    full: Vec<String>,
+    empty: Vec<String>,
+}
+
+#[derive(Deserialize)]
+struct VerbFile {
+    #[serde(rename = "verb")]
+    verbs: Vec<VerbEntry>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct VerbEntry {
+    intent: Intent,
+    #[serde(default)]
+    words: Vec<String>,
+    #[serde(default)]
+    split: Vec<String>,
+}
+
+#[derive(Deserialize)]
+struct QuestionFile {
+    #[serde(rename = "question")]
+    questions: Vec<QuestionEntry>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct QuestionEntry {
+    kind: QuestionKind,
+    starts: Vec<String>,
+}
+
+impl Lexicon {
+    /// The built-in tables, and the names of the catalogue's classes.
+    pub(crate) fn new(catalog: &Catalog) -> Self {
+        let file: WordFile = parse(include_str!("../data/words.toml"));
+        let mut lexicon = Self::default();
+        lexicon.add_words(&file);
+        lexicon.add_smalls(&file);
+        lexicon.add_verbs();
+        lexicon.add_classes(catalog, &file.aliases);
+        lexicon.build_vocabulary();
+        lexicon
+    }
+
+    /// The words of an utterance: tokens, with spelling repaired and set phrases replaced.
+    pub(crate) fn normalise(&self, text: &str) -> Vec<String> {
+        let replaced = self.replaced(&token::words(text));
+        let corrected: Vec<String> = replaced.iter().flat_map(|word| self.vocabulary.correct(word)).collect();
+        self.replaced(&corrected)
+    }
+
+    fn replaced(&self, words: &[String]) -> Vec<String> {
+        let mut result = Vec::with_capacity(words.len());
+        let mut at = 0;
+        while at < words.len() {
+            if let Some((length, meaning)) = self.replace.longest(&words[at..]) {
+                result.extend(meaning.iter().cloned());
+                at += length;
+            } else {
+                result.push(words[at].clone());
+                at += 1;
+            }
+        }
+        result
+    }
+
+    fn add_words(&mut self, file: &WordFile) {
+        for (from, to) in &file.replace {
+            self.replace.insert(from, token::words(to));
+        }
+        let plain = [
+            (&mut self.lead, &file.lead),
+            (&mut self.trail, &file.trail),
+            (&mut self.articles, &file.articles),
+            (&mut self.adjectives, &file.adjectives),
+            (&mut self.all, &file.all),
+            (&mut self.link, &file.link),
+            (&mut self.here, &file.here),
+            (&mut self.degrees, &file.degrees),
+            (&mut self.viewpoints, &file.viewpoints),
+            (&mut self.negation, &file.negation),
+        ];
+        for (table, entry) in plain {
+            entry.words.iter().for_each(|word| table.insert(word, ()));
+        }
+        add_all(&mut self.pronouns, &file.pronouns);
+        add_all(&mut self.prepositions, &file.prepositions);
+        add_all(&mut self.sides, &file.sides);
+        add_all(&mut self.directions, &file.directions);
+        file.ordinals.iter().for_each(|(word, value)| self.ordinals.insert(word, *value));
+        file.units.iter().for_each(|(word, value)| self.units.insert(word, *value));
+        file.numbers.iter().for_each(|(word, value)| self.numbers.insert(word, *value));
+        for (color, words) in &file.colors {
+            words.iter().for_each(|word| self.colors.insert(word, color.clone()));
+        }
+        for words in file.states.values() {
+            let state = words.first().and_then(|flag| state_word(flag));
+            let state = state.expect("invariant: each list of state words begins with a flag");
+            words.iter().skip(1).for_each(|word| self.states.insert(word, state));
+        }
+        file.fill_words.full.iter().for_each(|word| self.states.insert(word, StateWord::Filled(true)));
+        file.fill_words.empty.iter().for_each(|word| self.states.insert(word, StateWord::Filled(false)));
+        for (fluid, words) in &file.fluids {
+            let fluid = Fluid::from_name(fluid).expect("invariant: the file names fluids");
+            words.iter().for_each(|word| self.fluids.insert(word, fluid));
+        }
+        for (room, words) in &file.rooms {
+            let room = RoomId::from_id(room).expect("invariant: the file names rooms");
+            words.iter().for_each(|word| self.rooms.insert(word, room));
+            self.rooms.insert(room.id(), room);
+        }
+    }
+
+    fn add_smalls(&mut self, file: &WordFile) {
+        let lists = [
+            (Small::Yes, &file.yes),
+            (Small::No, &file.no),
+            (Small::Any, &file.any),
+            (Small::Hello, &file.hello),
+            (Small::Thanks, &file.thanks),
+            (Small::Again, &file.again),
+        ];
+        for (small, list) in lists {
+            for word in &list.words {
+                self.small.entry(word).insert(small);
+            }
+        }
+    }
+
+    fn add_verbs(&mut self) {
+        let file: VerbFile = parse(include_str!("../data/verbs.toml"));
+        for entry in file.verbs {
+            for word in entry.words.iter().chain(&entry.split) {
+                let intents = self.verbs.entry(word);
+                if !intents.contains(&entry.intent) {
+                    intents.push(entry.intent);
+                }
+            }
+            for phrase in &entry.split {
+                let mut head = token::words(phrase);
+                if let Some(particle) = head.pop() {
+                    self.separable.push((head, particle, entry.intent));
+                }
+            }
+        }
+        let file: QuestionFile = parse(include_str!("../data/questions.toml"));
+        for entry in file.questions {
+            entry.starts.iter().for_each(|start| self.questions.insert(start, entry.kind));
+        }
+    }
+
+    fn add_classes(&mut self, catalog: &Catalog, aliases: &BTreeMap<String, Vec<String>>) {
+        for (index, class) in (0_u16..).zip(catalog.classes()) {
+            let id = ClassId(index);
+            self.name_class(&class.name, id, 1.0);
+            self.name_class(&class.id, id, 1.0);
+            for (rank, word) in (0_u8..).zip(&class.words) {
+                self.name_class(word, id, 0.9 - 0.05 * f32::from(rank.min(8)));
+            }
+        }
+        for (alias, classes) in aliases {
+            for class in classes.iter().filter_map(|id| catalog.find(id)) {
+                self.name_class(alias, class, 0.9);
+            }
+        }
+    }
+
+    fn name_class(&mut self, phrase: &str, class: ClassId, weight: f32) {
+        // The same replacements as in utterances, so that `breakroom sign` is found again.
+        let phrase = self.replaced(&token::words(phrase)).join(" ");
+        if phrase.is_empty() {
+            return;
+        }
+        let namings = self.classes.entry(&phrase);
+        match namings.iter_mut().find(|naming| naming.class == class) {
+            Some(naming) => naming.weight = naming.weight.max(weight),
+            None => namings.push(Naming { class, weight }),
+        }
+    }
+
+    fn build_vocabulary(&mut self) {
+        let mut vocabulary = Vocabulary::default();
+        let mut learn = |word: &String| vocabulary.learn(word);
+        for table in [
+            &self.lead,
+            &self.trail,
+            &self.articles,
+            &self.adjectives,
+            &self.all,
+            &self.link,
+            &self.here,
+            &self.degrees,
+            &self.viewpoints,
+            &self.negation,
+        ] {
+            table.words().for_each(&mut learn);
+        }
+        self.replace.words().for_each(&mut learn);
+        self.pronouns.words().for_each(&mut learn);
+        self.prepositions.words().for_each(&mut learn);
+        self.sides.words().for_each(&mut learn);
+        self.ordinals.words().for_each(&mut learn);
+        self.directions.words().for_each(&mut learn);
+        self.units.words().for_each(&mut learn);
+        self.numbers.words().for_each(&mut learn);
+        self.colors.words().for_each(&mut learn);
+        self.states.words().for_each(&mut learn);
+        self.fluids.words().for_each(&mut learn);
+        self.rooms.words().for_each(&mut learn);
+        self.small.words().for_each(&mut learn);
+        self.verbs.words().for_each(&mut learn);
+        self.questions.words().for_each(&mut learn);
+        self.classes.words().for_each(&mut learn);
+        include_str!("../data/common.txt").split_whitespace().for_each(|word| vocabulary.learn_plain(word));
+        self.vocabulary = vocabulary;
+    }
+}
+
+fn add_all<T: Copy>(table: &mut PhraseTable<T>, entries: &BTreeMap<T, Vec<String>>) {
+    for (meaning, words) in entries {
+        words.iter().for_each(|word| table.insert(word, *meaning));
+    }
+}
+
+fn state_word(flag: &str) -> Option<StateWord> {
+    let value = flag.starts_with('+');
+    let name = flag.get(1..)?;
+    let flag = StateFlag::ALL.into_iter().find(|flag| format!("{flag:?}") == name)?;
+    Some(StateWord::Flag(flag, value))
+}
+
+fn parse<T: serde::de::DeserializeOwned>(text: &str) -> T {
+    toml::from_str(text).expect("invariant: the built-in tables parse, the tests load them")
+}

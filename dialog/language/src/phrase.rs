@@ -1,0 +1,474 @@
+//! Referring expressions: `the red mug on the desk`, `it`, `the second one`.
+
+use cohabit_cdf::{ClassId, Fluid, ObjectId, RoomId};
+
+use crate::{
+    lexicon::{Lexicon, Naming, Preposition, Pronoun, Side, StateWord},
+    token,
+};
+
+/// What somebody said about an object.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Phrase {
+    /// Its words, as they were said.
+    pub(crate) text: String,
+    pub(crate) pronoun: Option<Pronoun>,
+    pub(crate) namings: Vec<Naming>,
+    /// An instance id, lower case.
+    pub(crate) instance: Option<String>,
+    pub(crate) fluid: Option<Fluid>,
+    pub(crate) color: Option<String>,
+    pub(crate) states: Vec<StateWord>,
+    pub(crate) side: Option<Side>,
+    pub(crate) ordinal: Option<i32>,
+    pub(crate) room: Option<RoomId>,
+    pub(crate) is_here: bool,
+    pub(crate) is_all: bool,
+    /// Where it is, in terms of other objects.
+    pub(crate) relations: Vec<Relation>,
+    /// Words in it that mean nothing to the robot.
+    pub(crate) unknown: Vec<String>,
+    /// What it was found to mean when the robot asked.
+    pub(crate) chosen: Option<ObjectId>,
+}
+
+/// How an object relates to another.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Relation {
+    pub(crate) kind: RelationKind,
+    pub(crate) to: Phrase,
+}
+
+/// Kinds of relations.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub(crate) enum RelationKind {
+    /// On or in it.
+    Inside,
+    /// Beside it.
+    Near,
+    /// Has it on or in itself.
+    Has,
+}
+
+/// What stands after a preposition.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Place {
+    Room(RoomId),
+    Viewpoint(RoomId, u8),
+    Viewpoints(u8),
+    Object(Phrase),
+    Side(Side),
+    Here,
+}
+
+impl Phrase {
+    /// Whether it says anything by which an object could be found.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.pronoun.is_none()
+            && self.namings.is_empty()
+            && self.instance.is_none()
+            && self.fluid.is_none()
+            && self.chosen.is_none()
+    }
+
+    /// Whether it says something about an object, if only its colour or side.
+    pub(crate) fn says_something(&self) -> bool {
+        !self.is_empty()
+            || self.color.is_some()
+            || !self.states.is_empty()
+            || self.side.is_some()
+            || self.ordinal.is_some()
+            || self.room.is_some()
+            || self.is_here
+            || !self.relations.is_empty()
+    }
+
+    /// How much it means this class; nothing, if it does not.
+    pub(crate) fn naming(&self, class: ClassId) -> Option<f32> {
+        self.namings.iter().find(|naming| naming.class == class).map(|naming| naming.weight)
+    }
+}
+
+/// Reads phrases from words.
+#[derive(Clone, Copy)]
+pub(crate) struct Reader<'a> {
+    pub(crate) lexicon: &'a Lexicon,
+    pub(crate) words: &'a [String],
+    pub(crate) at: usize,
+}
+
+impl<'a> Reader<'a> {
+    pub(crate) fn new(lexicon: &'a Lexicon, words: &'a [String]) -> Self {
+        Self { lexicon, words, at: 0 }
+    }
+
+    pub(crate) fn rest(&self) -> &'a [String] {
+        &self.words[self.at.min(self.words.len())..]
+    }
+
+    pub(crate) fn next_is(&self, word: &str) -> bool {
+        self.rest().first().is_some_and(|next| next == word)
+    }
+
+    pub(crate) fn is_done(&self) -> bool {
+        self.at >= self.words.len()
+    }
+
+    /// Whether a verb begins here, rather than a noun that looks like one.
+    pub(crate) fn at_verb(&self) -> bool {
+        let rest = self.rest();
+        let Some((length, _)) = self.lexicon.verbs.longest(rest) else { return false };
+        let noun = self.lexicon.classes.longest(rest).map_or(0, |(length, _)| length);
+        noun < length || (noun == length && rest.len() > length)
+    }
+
+    /// A phrase with all that follows and describes it; `None`, and no step forward, if there is none.
+    pub(crate) fn phrase_with_place(&mut self) -> Option<Phrase> {
+        let mut phrase = self.phrase()?;
+        let start = self.at;
+        while let Some((preposition, place)) = self.place() {
+            let is_with = preposition == Preposition::With;
+            phrase.attach(preposition, place);
+            // `the desk with the computer on it`
+            if is_with && let Some((length, Pronoun::Place)) = self.lexicon.pronouns.longest(self.rest()) {
+                self.at += length;
+            }
+        }
+        if self.at > start {
+            phrase.text = format!("{} {}", phrase.text, self.words[start..self.at].join(" "));
+        }
+        Some(phrase)
+    }
+
+    /// A noun phrase without what follows it.
+    pub(crate) fn phrase(&mut self) -> Option<Phrase> {
+        let mut reader = *self;
+        let start = reader.at;
+        if let Some(pronoun) = reader.pronoun() {
+            let text = reader.words[start..reader.at].join(" ");
+            *self = reader;
+            return Some(Phrase { text, pronoun: Some(pronoun), ..Phrase::default() });
+        }
+        let mut phrase = Phrase::default();
+        while !reader.is_done() && reader.modifier(&mut phrase) {}
+        reader.head(&mut phrase);
+        if !phrase.says_something() && phrase.unknown.is_empty() {
+            return None;
+        }
+        phrase.text = reader.words[start..reader.at].join(" ");
+        *self = reader;
+        Some(phrase)
+    }
+
+    fn pronoun(&mut self) -> Option<Pronoun> {
+        let rest = self.rest();
+        let (length, pronoun) = self.lexicon.pronouns.longest(rest)?;
+        // `that mug`, `this one red mug`: an article, unless nothing follows that could be a noun phrase.
+        let mut after = *self;
+        after.at += length;
+        let is_article = self.lexicon.articles.longest(rest).is_some_and(|(article, _)| article == length);
+        if *pronoun == Pronoun::One || (is_article && after.starts_noun()) {
+            return None;
+        }
+        if *pronoun == Pronoun::Place && after.starts_noun() {
+            return None;
+        }
+        self.at += length;
+        Some(*pronoun)
+    }
+
+    fn starts_noun(&self) -> bool {
+        let rest = self.rest();
+        let lexicon = self.lexicon;
+        lexicon.classes.longest(rest).is_some()
+            || lexicon.colors.longest(rest).is_some()
+            || lexicon.states.longest(rest).is_some()
+            || lexicon.sides.longest(rest).is_some_and(|(_, side)| !matches!(side, Side::Front | Side::Behind))
+            || lexicon.ordinals.longest(rest).is_some()
+            || lexicon.articles.longest(rest).is_some_and(|(length, _)| rest.len() > length && !self.at_verb())
+    }
+
+    /// One word or phrase before the noun.
+    fn modifier(&mut self, phrase: &mut Phrase) -> bool {
+        let (rest, lexicon) = (self.rest(), self.lexicon);
+        let noun = lexicon.classes.longest(rest).map_or(0, |(length, _)| length);
+        let step = |reader: &mut Self, length: usize| {
+            reader.at += length;
+            true
+        };
+        if let Some((length, ())) = lexicon.all.longest(rest) {
+            phrase.is_all = true;
+            return step(self, length);
+        }
+        if let Some((length, room)) = self.room_before_noun() {
+            phrase.room = Some(room);
+            return step(self, length);
+        }
+        if let Some((length, color)) = lexicon.colors.longest(rest)
+            && length > noun
+        {
+            phrase.color = Some(color.clone());
+            return step(self, length);
+        }
+        if let Some((length, state)) = lexicon.states.longest(rest)
+            && length > noun
+        {
+            phrase.states.push(*state);
+            return step(self, length);
+        }
+        if let Some((length, side)) = lexicon.sides.longest(rest)
+            && length > noun
+        {
+            phrase.side = Some(*side);
+            return step(self, length);
+        }
+        if let Some((length, ordinal)) = lexicon.ordinals.longest(rest)
+            && length > noun
+        {
+            phrase.ordinal = Some(*ordinal);
+            return step(self, length);
+        }
+        let filler = lexicon.articles.longest(rest).or_else(|| lexicon.adjectives.longest(rest));
+        if let Some((length, ())) = filler
+            && length > noun
+            && rest.len() > length
+            && !self.is_one_head()
+        {
+            return step(self, length);
+        }
+        false
+    }
+
+    /// `one` as the noun itself, as in `the red one`.
+    fn is_one_head(&self) -> bool {
+        let rest = self.rest();
+        let is_one = self.lexicon.pronouns.longest(rest).is_some_and(|(_, pronoun)| *pronoun == Pronoun::One);
+        let mut after = *self;
+        after.at += 1;
+        is_one && !after.starts_noun()
+    }
+
+    /// `break room` in `the break room table`.
+    fn room_before_noun(&self) -> Option<(usize, RoomId)> {
+        let (length, room) = self.lexicon.rooms.longest(self.rest())?;
+        let noun = self.lexicon.classes.longest(self.rest()).map_or(0, |(length, _)| length);
+        let after = &self.rest()[length..];
+        (noun <= length && self.lexicon.classes.longest(after).is_some()).then_some((length, *room))
+    }
+
+    fn head(&mut self, phrase: &mut Phrase) {
+        let (rest, lexicon) = (self.rest(), self.lexicon);
+        if let Some((length, namings)) = lexicon.classes.longest(rest) {
+            phrase.namings = namings.clone();
+            phrase.fluid = lexicon.fluids.exact(&rest[..length]).copied();
+            self.at += length;
+            return;
+        }
+        let Some(word) = rest.first() else { return };
+        if self.is_one_head() {
+            phrase.pronoun = Some(Pronoun::One);
+            self.at += 1;
+        } else if word.contains('_') {
+            phrase.instance = Some(word.clone());
+            self.at += 1;
+        } else if let Some((length, fluid)) = lexicon.fluids.longest(rest) {
+            phrase.fluid = Some(*fluid);
+            self.at += length;
+        } else if !lexicon.vocabulary.has(word) && !token::is_punctuation(word) {
+            self.unknown_head(phrase);
+        }
+    }
+
+    /// Words nobody taught it: they may be adjectives before a noun it knows, or the noun.
+    fn unknown_head(&mut self, phrase: &mut Phrase) {
+        let mut reader = *self;
+        while let Some(word) = reader.rest().first()
+            && !reader.lexicon.vocabulary.has(word)
+            && !token::is_punctuation(word)
+        {
+            phrase.unknown.push(word.clone());
+            reader.at += 1;
+        }
+        while !reader.is_done() && reader.modifier(phrase) {}
+        if let Some((length, namings)) = reader.lexicon.classes.longest(reader.rest()) {
+            phrase.namings = namings.clone();
+            reader.at += length;
+        }
+        *self = reader;
+    }
+
+    /// A preposition and what stands after it.
+    pub(crate) fn place(&mut self) -> Option<(Preposition, Place)> {
+        let mut reader = *self;
+        reader.skip(|lexicon| &lexicon.link);
+        if let Some(side) = reader.side_place() {
+            *self = reader;
+            return Some((Preposition::At, Place::Side(side)));
+        }
+        if let Some((length, ())) = reader.lexicon.here.longest(reader.rest()) {
+            reader.at += length;
+            *self = reader;
+            return Some((Preposition::In, Place::Here));
+        }
+        let (length, preposition) = reader.lexicon.prepositions.longest(reader.rest())?;
+        reader.at += length;
+        if preposition == &Preposition::On && reader.is_done() {
+            return None;
+        }
+        let place = reader.destination()?;
+        *self = reader;
+        Some((*preposition, place))
+    }
+
+    /// A room, a viewpoint, or an object.
+    pub(crate) fn destination(&mut self) -> Option<Place> {
+        let mut reader = *self;
+        if let Some((length, ())) = reader.lexicon.here.longest(reader.rest()) {
+            self.at += length;
+            return Some(Place::Here);
+        }
+        if let Some(place) = reader.viewpoint() {
+            *self = reader;
+            return Some(place);
+        }
+        reader.skip(|lexicon| &lexicon.articles);
+        if reader.room_before_noun().is_none()
+            && let Some((length, room)) = reader.lexicon.rooms.longest(reader.rest())
+            && reader.lexicon.classes.longest(reader.rest()).is_none_or(|(noun, _)| noun <= length)
+        {
+            reader.at += length;
+            *self = reader;
+            return Some(Place::Room(*room));
+        }
+        let mut reader = *self;
+        let phrase = reader.phrase()?;
+        *self = reader;
+        Some(Place::Object(phrase))
+    }
+
+    /// `viewpoint 3 in the lab`, `lab1_3`.
+    fn viewpoint(&mut self) -> Option<Place> {
+        if let Some(word) = self.rest().first()
+            && let Some((room, number)) = word.rsplit_once('_')
+            && let (Some(room), Ok(number)) = (RoomId::from_id(room), number.parse())
+        {
+            self.at += 1;
+            return Some(Place::Viewpoint(room, number));
+        }
+        let mut reader = *self;
+        reader.skip(|lexicon| &lexicon.articles);
+        let (length, ()) = reader.lexicon.viewpoints.longest(reader.rest())?;
+        reader.at += length;
+        let number = reader.number()?;
+        // Saturates: a viewpoint beyond 255 does not exist, and the world says so.
+        let number = number as u8;
+        let mut tail = reader;
+        if let Some((_, Place::Room(room))) = tail.place() {
+            *self = tail;
+            return Some(Place::Viewpoint(room, number));
+        }
+        *self = reader;
+        Some(Place::Viewpoints(number))
+    }
+
+    /// `on the left`, `in front of you`.
+    fn side_place(&mut self) -> Option<Side> {
+        let mut reader = *self;
+        if let Some((length, side @ (Side::Front | Side::Behind))) = reader.lexicon.sides.longest(reader.rest())
+            && length > 1
+        {
+            reader.at += length;
+            *self = reader;
+            return Some(*side);
+        }
+        let (length, _) = reader.lexicon.prepositions.longest(reader.rest())?;
+        reader.at += length;
+        reader.skip(|lexicon| &lexicon.articles);
+        let (length, side) = reader.lexicon.sides.longest(reader.rest())?;
+        reader.at += length;
+        let is_end = reader.is_done() || !reader.starts_noun() && !reader.next_is("one") && !reader.next_is("of");
+        if !is_end || reader.lexicon.classes.longest(reader.rest()).is_some() {
+            return None;
+        }
+        if reader.next_is("side") {
+            reader.at += 1;
+        }
+        *self = reader;
+        Some(*side)
+    }
+
+    /// A number in digits or words: `2.5`, `two`, `one and a half`, `half a`, `a couple of`.
+    pub(crate) fn number(&mut self) -> Option<f32> {
+        let mut reader = *self;
+        if reader.next_is("a") {
+            reader.at += 1;
+        }
+        let word = reader.rest().first()?;
+        let mut value = match token::digits(word) {
+            Some(value) => {
+                reader.at += 1;
+                value
+            }
+            None => {
+                let (length, value) = reader.lexicon.numbers.longest(reader.rest())?;
+                reader.at += length;
+                *value
+            }
+        };
+        if let Some((length, unit)) = reader.lexicon.numbers.longest(reader.rest())
+            && value >= 20.0
+            && *unit >= 1.0
+            && *unit < 10.0
+        {
+            value += unit;
+            reader.at += length;
+        }
+        if reader.next_is("hundred") {
+            value *= 100.0;
+            reader.at += 1;
+            if let Some((length, more)) = reader.lexicon.numbers.longest(reader.rest()) {
+                value += more;
+                reader.at += length;
+            }
+        }
+        let half = ["and", "a", "half"];
+        if reader.rest().iter().map(String::as_str).take(3).eq(half) {
+            value += 0.5;
+            reader.at += 3;
+        }
+        for word in ["a", "of"] {
+            if reader.next_is(word) {
+                reader.at += 1;
+            }
+        }
+        *self = reader;
+        Some(value)
+    }
+
+    /// Steps over all phrases of a table that stand here.
+    pub(crate) fn skip(&mut self, table: impl Fn(&Lexicon) -> &crate::table::PhraseTable<()>) {
+        while let Some((length, ())) = table(self.lexicon).longest(self.rest()) {
+            self.at += length;
+        }
+    }
+}
+
+impl Phrase {
+    /// Takes what a preposition says as a description of where it is.
+    pub(crate) fn attach(&mut self, preposition: Preposition, place: Place) {
+        match place {
+            Place::Room(room) | Place::Viewpoint(room, _) => self.room = Some(room),
+            Place::Here => self.is_here = true,
+            Place::Side(side) => self.side = Some(side),
+            Place::Viewpoints(_) => {}
+            Place::Object(to) => {
+                let kind = match preposition {
+                    Preposition::Near | Preposition::At => RelationKind::Near,
+                    Preposition::With => RelationKind::Has,
+                    _ => RelationKind::Inside,
+                };
+                self.relations.push(Relation { kind, to });
+            }
+        }
+    }
+}

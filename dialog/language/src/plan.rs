@@ -1,0 +1,377 @@
+//! From clauses to steps: each clause is grounded on the scene as the steps before it are expected to leave it.
+
+use cohabit_cdf::{Action, Catalog, GoToTarget, ObjectId, Property, Verb, state::StateFlag};
+
+use crate::{
+    clause::{Amount, Clause},
+    context::{Focus, Role, Slot},
+    describe,
+    ground::{Ground, Miss, Want},
+    imagine,
+    intent::Intent,
+    known::Known,
+    lexicon::{Direction, Preposition, Side},
+    phrase::{Phrase, Place},
+    process::Devices,
+    settle::{self, Settled},
+    understanding::Step,
+};
+
+/// Where nothing is said: how far to walk, turn and tilt the head.
+const DEFAULT_MOVE_M: f32 = 1.0;
+const DEFAULT_TURN_DEG: f32 = 90.0;
+const DEFAULT_LOOK_DEG: f32 = 30.0;
+/// Limits of one motion, beyond which somebody mistyped.
+const LONGEST_MOVE_M: f32 = 30.0;
+const LARGEST_TURN_DEG: f32 = 720.0;
+const LARGEST_LOOK_DEG: f32 = 60.0;
+
+/// Why there is no plan.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Fault {
+    /// A phrase could not be grounded.
+    Miss { slot: Option<Slot>, phrase: Phrase, miss: Miss, intent: Intent },
+    /// Something else is in the hand.
+    HandFull { held: ObjectId, wanted: ObjectId },
+    /// It cannot be done, for this reason.
+    Cannot(String),
+}
+
+/// Builds a plan.
+pub(crate) struct Planner<'a> {
+    pub(crate) catalog: &'a Catalog,
+    pub(crate) devices: &'a Devices,
+    pub(crate) scene: Known,
+    pub(crate) focus: Focus,
+    pub(crate) steps: Vec<Step>,
+    /// What the robot should say beyond the steps: what it does unasked, what is done already.
+    pub(crate) notes: Vec<String>,
+    /// Whether it may put down what it holds to take something else.
+    pub(crate) may_put_down: bool,
+    pub(crate) clause: usize,
+}
+
+impl Planner<'_> {
+    /// Adds the steps of all clauses.
+    pub(crate) fn run(&mut self, clauses: &[Clause]) -> Result<(), Fault> {
+        for (index, clause) in clauses.iter().enumerate() {
+            self.clause = index;
+            self.add(clause)?;
+        }
+        Ok(())
+    }
+
+    fn add(&mut self, clause: &Clause) -> Result<(), Fault> {
+        match clause.intent {
+            Intent::Stop => self.push(Action::Stop, "stopping".to_owned()),
+            Intent::LookAround => self.push(Action::LookAround, "looking around".to_owned()),
+            Intent::GoTo => return self.go_to(clause),
+            Intent::Find => return self.find(clause),
+            Intent::Travel => return self.travel(clause),
+            Intent::Turn => return self.turn(clause),
+            Intent::Look => self.look(clause),
+            Intent::Impossible => {
+                return Err(Fault::Cannot(format!("I cannot {} things, I am afraid.", clause.verb)));
+            }
+            _ => return self.add_object_clause(clause),
+        }
+        Ok(())
+    }
+
+    fn add_object_clause(&mut self, clause: &Clause) -> Result<(), Fault> {
+        let settled = settle::settle(self, clause);
+        match clause.intent {
+            Intent::PickUp => self.add_pick_up(&settled),
+            Intent::Place | Intent::Bring | Intent::Drop => self.add_place(&settled),
+            Intent::Pour => self.add_pour(&settled),
+            Intent::Throw => self.add_throw(&settled),
+            Intent::Break => self.add_break(&settled),
+            Intent::Open | Intent::Close => self.add_door(&settled),
+            Intent::Toggle | Intent::TurnOn | Intent::TurnOff => self.add_toggle(&settled),
+            Intent::Use => self.add_use(&settled),
+            Intent::Scan => self.add_simple(&settled, Verb::Scan, "scanning"),
+            Intent::Examine => self.add_simple(&settled, Verb::Examine, "looking at"),
+            Intent::Highlight => self.add_highlight(&settled),
+            _ => self.add_process(&settled),
+        }
+    }
+
+    /// Adds a step and imagines its effect.
+    pub(crate) fn push(&mut self, action: Action, says: String) {
+        imagine::apply(&mut self.scene, &action, self.devices);
+        self.focus.follow(&action);
+        self.steps.push(Step { action, says });
+    }
+
+    pub(crate) fn interact(&mut self, verb: Verb, object: ObjectId, participle: &str) {
+        let says = format!("{participle} {}", self.the(object));
+        self.push(Action::Interact { verb, object }, says);
+    }
+
+    pub(crate) fn the(&self, object: ObjectId) -> String {
+        describe::short(self.catalog, &self.scene, object)
+    }
+
+    pub(crate) fn ground(&self) -> Ground<'_> {
+        Ground { catalog: self.catalog, scene: &self.scene, focus: &self.focus }
+    }
+
+    /// Grounds a phrase, and says where it stands if that fails.
+    pub(crate) fn find_one(&self, phrase: &Phrase, want: &Want<'_>, role: Option<Role>) -> Result<ObjectId, Fault> {
+        self.ground().one(phrase, want).map_err(|miss| self.miss(phrase, miss, want.intent, role))
+    }
+
+    pub(crate) fn miss(&self, phrase: &Phrase, miss: Miss, intent: Intent, role: Option<Role>) -> Fault {
+        let slot = role.map(|role| Slot { clause: self.clause, role });
+        Fault::Miss { slot, phrase: phrase.clone(), miss, intent }
+    }
+
+    /// The objects of a clause: one each, or all of a kind.
+    pub(crate) fn find_objects(&self, settled: &Settled, want: &Want<'_>) -> Result<Vec<ObjectId>, Fault> {
+        let mut found = Vec::new();
+        for (index, phrase) in settled.objects.iter().enumerate() {
+            let role = Some(Role::Object(index));
+            if phrase.is_all {
+                found.extend(self.ground().all(phrase, want).map_err(|miss| self.miss(phrase, miss, want.intent, role))?);
+            } else {
+                found.push(self.find_one(phrase, want, role)?);
+            }
+        }
+        Ok(found)
+    }
+
+    pub(crate) fn has(&self, object: ObjectId, property: Property) -> bool {
+        self.scene.object(object).is_some_and(|object| self.catalog.class(object.class).has(property))
+    }
+
+    /// Opens what encloses an object, from the outside in, and says so.
+    pub(crate) fn open_around(&mut self, object: ObjectId, with_itself: bool) {
+        let mut closed: Vec<ObjectId> = self.scene.ancestors(object).map(|parent| parent.id).collect();
+        closed.reverse();
+        closed.extend(with_itself.then_some(object));
+        for id in closed {
+            if self.is_shut(id) {
+                self.notes.push(format!("{} is closed, so I open it first", self.the(id)));
+                self.interact(Verb::Open, id, "opening");
+            }
+        }
+    }
+
+    /// Whether its door keeps things in and could be opened.
+    pub(crate) fn is_shut(&self, id: ObjectId) -> bool {
+        self.scene.object(id).is_some_and(|object| {
+            let class = self.catalog.class(object.class);
+            let encloses = class.receptacle.as_ref().is_some_and(|receptacle| receptacle.enclosed);
+            encloses
+                && class.has(Property::Openable)
+                && !object.has(StateFlag::Opened)
+                && !object.has(StateFlag::Locked)
+        })
+    }
+
+    fn add_simple(&mut self, settled: &Settled, verb: Verb, participle: &str) -> Result<(), Fault> {
+        for object in self.find_objects(settled, &Want::object(settled.intent))? {
+            self.interact(verb, object, participle);
+        }
+        Ok(())
+    }
+
+    fn add_highlight(&mut self, settled: &Settled) -> Result<(), Fault> {
+        for object in self.find_objects(settled, &Want::object(settled.intent))? {
+            let says = format!("pointing at {}", self.the(object));
+            self.push(Action::Highlight { object }, says);
+        }
+        Ok(())
+    }
+
+    fn add_door(&mut self, settled: &Settled) -> Result<(), Fault> {
+        let opens = settled.intent == Intent::Open;
+        for object in self.find_objects(settled, &Want::object(settled.intent))? {
+            let is_open = self.scene.object(object).is_some_and(|object| object.has(StateFlag::Opened));
+            if is_open == opens && self.has(object, Property::Openable) {
+                let state = if opens { "open" } else { "closed" };
+                self.focus.mention(object);
+                self.notes.push(format!("{} is already {state}", self.the(object)));
+            } else if opens {
+                self.interact(Verb::Open, object, "opening");
+            } else {
+                self.interact(Verb::Close, object, "closing");
+            }
+        }
+        Ok(())
+    }
+
+    fn go_to(&mut self, clause: &Clause) -> Result<(), Fault> {
+        let (mut target, mut rest) = match clause.places.split_first() {
+            Some(((_, place), rest)) => (place.clone(), rest),
+            None => return Err(Fault::Cannot("Tell me where to go.".to_owned())),
+        };
+        // `go to the kitchen by the fridge`: the fridge, in the kitchen.
+        if let (Place::Room(room), [(_, Place::Object(phrase)), more @ ..]) = (&target, rest) {
+            let mut phrase = phrase.clone();
+            phrase.room = Some(*room);
+            target = Place::Object(phrase);
+            rest = more;
+        }
+        if let Place::Object(phrase) = &mut target {
+            rest.iter().for_each(|(preposition, place)| phrase.attach(*preposition, place.clone()));
+        }
+        match target {
+            Place::Room(room) => self.go_to_room(room),
+            Place::Viewpoint(room, number) => self.go_to_viewpoint(room, number),
+            Place::Viewpoints(number) => self.go_to_viewpoint(self.scene.robot.room, number),
+            Place::Here => self.notes.push("I am here already".to_owned()),
+            Place::Side(side) => self.turn_to_side(side),
+            Place::Object(phrase) if phrase.is_empty() && phrase.room.is_none() && phrase.side.is_some() => {
+                phrase.side.into_iter().for_each(|side| self.turn_to_side(side));
+            }
+            Place::Object(phrase) => {
+                let object = self.find_one(&phrase, &Want::object(clause.intent), Some(Role::Place(0)))?;
+                self.go_to_object(object);
+            }
+        }
+        Ok(())
+    }
+
+    pub(crate) fn go_to_object(&mut self, object: ObjectId) {
+        let says = format!("going to {}", self.the(object));
+        self.push(Action::GoTo { target: GoToTarget::Object(object) }, says);
+    }
+
+    pub(crate) fn go_to_room(&mut self, room: cohabit_cdf::RoomId) {
+        let says = format!("going to the {}", room.name());
+        self.push(Action::GoTo { target: GoToTarget::Room(room) }, says);
+    }
+
+    fn go_to_viewpoint(&mut self, room: cohabit_cdf::RoomId, number: u8) {
+        let says = format!("going to viewpoint {number} in the {}", room.name());
+        self.push(Action::GoTo { target: GoToTarget::Viewpoint(room, number) }, says);
+    }
+
+    /// Goes to what it knows; looks around for what it does not.
+    fn find(&mut self, clause: &Clause) -> Result<(), Fault> {
+        let settled = settle::settle(self, clause);
+        let want = Want::object(clause.intent);
+        for (index, phrase) in settled.objects.iter().enumerate() {
+            let is_nameable = !phrase.namings.is_empty() || phrase.instance.is_some();
+            match self.find_one(phrase, &want, Some(Role::Object(index))) {
+                Ok(object) => self.go_to_object(object),
+                Err(Fault::Miss { miss: Miss::Unseen, .. }) if is_nameable => {
+                    self.notes.push(format!("I have not seen {} yet, so I look around for it", said(phrase)));
+                    phrase.room.into_iter().for_each(|room| self.go_to_room(room));
+                    self.push(Action::LookAround, "looking around".to_owned());
+                }
+                Err(fault) => return Err(fault),
+            }
+        }
+        Ok(())
+    }
+
+    fn travel(&mut self, clause: &Clause) -> Result<(), Fault> {
+        let distance = match clause.amount {
+            Some(Amount::Meters(distance) | Amount::Bare(distance)) => distance,
+            Some(Amount::Degrees(_)) => return self.turn(clause),
+            None => DEFAULT_MOVE_M,
+        };
+        let has_target = clause.places.iter().any(|(_, place)| !matches!(place, Place::Side(_)));
+        let is_measured = clause.amount.is_some();
+        match clause.direction {
+            _ if has_target && !is_measured => self.go_to(clause),
+            Some(Direction::Left | Direction::Right | Direction::Around) if !is_measured => self.turn(clause),
+            Some(Direction::Left | Direction::Right | Direction::Around) => {
+                self.turn(&Clause { amount: None, ..clause.clone() })?;
+                self.walk(distance)
+            }
+            Some(Direction::Backward) => self.walk(-distance),
+            Some(Direction::Up | Direction::Down) => Err(Fault::Cannot("I can only move over the floor.".to_owned())),
+            Some(Direction::Forward) | None if clause.places.is_empty() || is_measured => self.walk(distance),
+            Some(Direction::Forward) | None => self.go_to(clause),
+        }
+    }
+
+    fn walk(&mut self, distance_m: f32) -> Result<(), Fault> {
+        if distance_m.abs() > LONGEST_MOVE_M {
+            return Err(Fault::Cannot(format!("That is too far: I can go {LONGEST_MOVE_M} meters at a time.")));
+        }
+        let way = if distance_m < 0.0 { "back" } else { "forward" };
+        let meters = distance_m.abs();
+        let unit = if (meters - 1.0).abs() < 1e-3 { "meter" } else { "meters" };
+        self.push(Action::Move { distance_m }, format!("moving {way} {} {unit}", plain_number(meters)));
+        Ok(())
+    }
+
+    fn turn(&mut self, clause: &Clause) -> Result<(), Fault> {
+        let is_aim = |(preposition, place): &&(Preposition, Place)| {
+            *preposition == Preposition::To && matches!(place, Place::Object(_) | Place::Room(_))
+        };
+        if let Some(aim) = clause.places.iter().find(is_aim) {
+            return self.go_to(&Clause { places: vec![aim.clone()], ..clause.clone() });
+        }
+        let around = clause.direction == Some(Direction::Around);
+        let degrees = match clause.amount {
+            Some(Amount::Degrees(degrees) | Amount::Bare(degrees)) => degrees,
+            _ if around => 180.0,
+            _ => DEFAULT_TURN_DEG,
+        };
+        if degrees > LARGEST_TURN_DEG {
+            return Err(Fault::Cannot("That is too many turns for me.".to_owned()));
+        }
+        let is_left = clause.direction == Some(Direction::Left);
+        self.rotate(if is_left { degrees } else { -degrees }, around);
+        Ok(())
+    }
+
+    fn rotate(&mut self, degrees: f32, around: bool) {
+        let way = match (around, degrees > 0.0) {
+            (true, _) => "around",
+            (false, true) => "left",
+            (false, false) => "right",
+        };
+        self.push(Action::Rotate { yaw_rad: degrees.to_radians() }, format!("turning {way}"));
+    }
+
+    fn turn_to_side(&mut self, side: Side) {
+        match side {
+            Side::Left => self.rotate(DEFAULT_TURN_DEG, false),
+            Side::Right => self.rotate(-DEFAULT_TURN_DEG, false),
+            Side::Behind => self.rotate(-180.0, true),
+            _ => self.push(Action::Move { distance_m: DEFAULT_MOVE_M }, "moving forward 1 meter".to_owned()),
+        }
+    }
+
+    fn look(&mut self, clause: &Clause) {
+        let degrees = match clause.amount {
+            Some(Amount::Degrees(degrees) | Amount::Bare(degrees)) => degrees.min(LARGEST_LOOK_DEG),
+            _ => DEFAULT_LOOK_DEG,
+        };
+        match clause.direction {
+            Some(Direction::Up) => {
+                self.push(Action::Look { pitch_rad: degrees.to_radians() }, "looking up".to_owned());
+            }
+            Some(Direction::Down) => {
+                self.push(Action::Look { pitch_rad: -degrees.to_radians() }, "looking down".to_owned());
+            }
+            Some(Direction::Left) => self.rotate(DEFAULT_TURN_DEG, false),
+            Some(Direction::Right) => self.rotate(-DEFAULT_TURN_DEG, false),
+            Some(Direction::Backward) => self.rotate(-180.0, true),
+            Some(Direction::Around) => self.push(Action::LookAround, "looking around".to_owned()),
+            Some(Direction::Forward) | None => {
+                self.push(Action::Look { pitch_rad: 0.0 }, "looking ahead".to_owned());
+            }
+        }
+    }
+}
+
+/// What was said of an object, with an indefinite article.
+pub(crate) fn said(phrase: &Phrase) -> String {
+    let mut noun = phrase.text.as_str();
+    for article in ["the ", "a ", "an ", "my ", "your ", "this ", "that ", "some ", "any "] {
+        noun = noun.strip_prefix(article).unwrap_or(noun);
+    }
+    describe::indefinite(noun)
+}
+
+fn plain_number(value: f32) -> String {
+    let rounded = (value * 100.0).round() / 100.0;
+    format!("{rounded}")
+}

@@ -1,0 +1,99 @@
+//! What may help after a step failed: one table for what the robot offers and for what `yes` then does.
+
+use cohabit_cdf::{Action, ObjectId, Status, Verb};
+
+use crate::{
+    context::Focus,
+    describe,
+    known::Known,
+    plan::Planner,
+    understanding::Step,
+};
+
+/// An offer: the question, and the steps to take before trying again.
+pub(crate) struct Remedy {
+    pub(crate) question: String,
+    pub(crate) steps: Vec<Step>,
+}
+
+/// The remedy for a failed step, if there is one.
+pub(crate) fn remedy(planner: Planner<'_>, step: &Step, status: Status) -> Option<Remedy> {
+    let mut planner = planner;
+    let question = match status {
+        Status::ReceptacleIsClosed => {
+            let closed = closed_place(&planner, &step.action)?;
+            planner.interact(Verb::Open, closed, "opening");
+            "Shall I open it?".to_owned()
+        }
+        Status::AlreadyHoldingObject => {
+            let held = planner.scene.robot.held?;
+            let wanted = object_of(&step.action);
+            planner.put_down(wanted).ok()?;
+            format!("Shall I put {} down first?", planner.the(held))
+        }
+        Status::ObjectUnpowered | Status::ObjectOverloaded => {
+            let lever = power_lever(&planner, object_of(&step.action)?)?;
+            planner.interact(Verb::Toggle, lever, "switching");
+            format!("Shall I try {}?", describe::full(planner.catalog, &planner.scene, lever))
+        }
+        Status::TargetOutOfRange => {
+            planner.go_to_object(object_of(&step.action)?);
+            "Shall I go closer and try again?".to_owned()
+        }
+        _ => return None,
+    };
+    Some(Remedy { question, steps: planner.steps })
+}
+
+/// A planner at the present state of the scene.
+pub(crate) fn planner<'a>(
+    catalog: &'a cohabit_cdf::Catalog,
+    devices: &'a crate::process::Devices,
+    scene: &Known,
+    focus: Focus,
+) -> Planner<'a> {
+    Planner {
+        catalog,
+        devices,
+        scene: scene.clone(),
+        focus,
+        steps: Vec::new(),
+        notes: Vec::new(),
+        may_put_down: false,
+        clause: 0,
+    }
+}
+
+/// The object that an action is about.
+pub(crate) const fn object_of(action: &Action) -> Option<ObjectId> {
+    match *action {
+        Action::PickUp { object } | Action::Interact { object, .. } | Action::Highlight { object } => Some(object),
+        Action::Place { receptacle } => Some(receptacle),
+        Action::GoTo { target: cohabit_cdf::GoToTarget::Object(object) } => Some(object),
+        _ => None,
+    }
+}
+
+fn closed_place(planner: &Planner<'_>, action: &Action) -> Option<ObjectId> {
+    let object = object_of(action)?;
+    let is_place = matches!(action, Action::Place { .. });
+    let around: Vec<ObjectId> = planner.scene.ancestors(object).map(|parent| parent.id).collect();
+    around
+        .into_iter()
+        .rev()
+        .find(|id| planner.is_shut(*id))
+        .or_else(|| (is_place && planner.is_shut(object)).then_some(object))
+}
+
+/// The nearest lever or switch of a fuse box in the machine's room.
+fn power_lever(planner: &Planner<'_>, machine: ObjectId) -> Option<ObjectId> {
+    let room = planner.scene.object(machine)?.room;
+    let boxes = ["FuseBox_01", "FuseBox_02"].into_iter().filter_map(|id| planner.catalog.find(id));
+    let mut levers: Vec<_> = boxes.flat_map(|class| planner.devices.workers(class).unwrap_or_default()).copied().collect();
+    levers.dedup();
+    let is_fixed = |object: &&crate::known::KnownObject| {
+        levers.contains(&object.class) && object.parent.is_some() && planner.scene.robot.held != Some(object.id)
+    };
+    let known = planner.scene.objects.iter().filter(is_fixed);
+    known.min_by_key(|object| (object.room != room, object.id)).map(|object| object.id)
+}

@@ -1,0 +1,102 @@
+//! What the robot says when a plan has finished or a step has failed.
+
+use cohabit_cdf::{Action, Catalog, GoToTarget, ObjectId, Status, Verb};
+
+use crate::{describe, known::Known, understanding::Step};
+
+/// What is said after success: what is so now.
+pub(crate) fn success(catalog: &Catalog, scene: &Known, step: &Step, status: Status) -> String {
+    let the = |id: ObjectId| describe::short(catalog, scene, id);
+    if status == Status::AlternateNavigationUsed {
+        return "I got as close as I could.".to_owned();
+    }
+    let text = match step.action {
+        Action::PickUp { object } => format!("I have {}", the(object)),
+        Action::Place { receptacle } => match scene.contents(receptacle).last() {
+            Some(_) => format!("done, it is {} {} now", preposition(catalog, scene, receptacle), the(receptacle)),
+            None => "done".to_owned(),
+        },
+        Action::GoTo { target: GoToTarget::Room(room) } => format!("I am in the {}", room.name()),
+        Action::GoTo { target: GoToTarget::Object(object) } => format!("I am at {}", the(object)),
+        Action::GoTo { .. } => "I am there".to_owned(),
+        Action::Interact { verb, object } => interaction(verb, &the(object), scene, object),
+        Action::Highlight { object } => format!("this is {}", describe::full(catalog, scene, object)),
+        Action::LookAround => "I have looked around".to_owned(),
+        Action::Stop => "I have stopped".to_owned(),
+        Action::Move { .. } | Action::Rotate { .. } | Action::Look { .. } => "done".to_owned(),
+    };
+    describe::sentence(&text)
+}
+
+fn preposition(catalog: &Catalog, scene: &Known, id: ObjectId) -> &'static str {
+    scene.object(id).map_or("on", |object| describe::inside(catalog, object.class))
+}
+
+fn interaction(verb: Verb, the: &str, scene: &Known, object: ObjectId) -> String {
+    match verb {
+        Verb::Open => format!("{the} is open"),
+        Verb::Close => format!("{the} is closed"),
+        Verb::Break => format!("{the} is broken"),
+        Verb::Scan => format!("I have scanned {the}"),
+        Verb::Pour => format!("I have poured it into {the}"),
+        Verb::Toggle => "done".to_owned(),
+        Verb::Throw => "thrown".to_owned(),
+        Verb::Fill => "it is full now".to_owned(),
+        Verb::Clean => "it is clean now".to_owned(),
+        Verb::Examine => match scene.object(object).filter(|object| !object.text.is_empty()) {
+            Some(object) => format!("it says: \"{}\"", object.text),
+            None => format!("I have had a close look at {the}"),
+        },
+    }
+}
+
+/// What is said after a failure: the world's own sentence, or else what the status means, and what would help.
+pub(crate) fn failure(catalog: &Catalog, scene: &Known, step: &Step, status: Status, detail: &str) -> String {
+    let cause = if detail.trim().is_empty() { cause(status) } else { detail };
+    let help = help(catalog, scene, step, status);
+    let start = match status {
+        Status::Interrupted => return "I stopped.".to_owned(),
+        _ => describe::sentence(cause),
+    };
+    format!("{start} {help}").trim().to_owned()
+}
+
+const fn cause(status: Status) -> &'static str {
+    match status {
+        Status::ActionSuccessful | Status::AlternateNavigationUsed => "that worked",
+        Status::UnsupportedAction => "that does not work with it",
+        Status::UnsupportedNavigation => "I find no way there",
+        Status::AlreadyHoldingObject => "my hand is full",
+        Status::ReceptacleIsFull => "there is no room left",
+        Status::ReceptacleIsClosed => "it is closed",
+        Status::TargetInaccessible => "something is in the way",
+        Status::KilledByHazard => "ouch, that was dangerous and it ended the mission",
+        Status::TargetOutOfRange => "it is too far away",
+        Status::ObjectUnpowered => "it has no power",
+        Status::ObjectOverloaded => "it is overloaded",
+        Status::InvalidCommand => "that makes no sense here",
+        Status::ObjectNotPickedUp => "my hand is empty",
+        Status::ArenaUnavailable => "the world is not running",
+        Status::IncorrectActionFormat | Status::InvalidObjectClass => "I do not know how to do that",
+        Status::ActionExecutionError | Status::PostProcessError => "that did not work",
+        Status::Interrupted => "I was interrupted",
+    }
+}
+
+fn help(catalog: &Catalog, scene: &Known, step: &Step, status: Status) -> String {
+    match (status, &step.action) {
+        (Status::ReceptacleIsFull, _) => "Tell me another place, or what to take away.".to_owned(),
+        (Status::ObjectNotPickedUp, Action::Interact { verb: Verb::Break, .. }) => {
+            "I need the hammer for that.".to_owned()
+        }
+        (Status::ObjectNotPickedUp, _) => "Tell me what to pick up first.".to_owned(),
+        (Status::TargetInaccessible, Action::Move { .. }) => "Tell me another way.".to_owned(),
+        (Status::ObjectUnpowered, _) => "The room's power must be switched on at the fuse box.".to_owned(),
+        (Status::ObjectOverloaded, _) => "Switching the room's power off and on at the fuse box clears that.".to_owned(),
+        (Status::UnsupportedAction, Action::Interact { object, .. }) => {
+            let place = describe::location(catalog, scene, *object);
+            if place.is_empty() { String::new() } else { format!("I tried it with {}.", describe::full(catalog, scene, *object)) }
+        }
+        _ => String::new(),
+    }
+}

@@ -1,0 +1,119 @@
+//! Decides what each prepositional phrase of a clause belongs to: the object (`the mug on the desk`), the place to go to
+//! (`put it on the desk`), or the tool (`with the hammer`).
+
+use crate::{
+    clause::Clause,
+    context::Role,
+    ground::{Miss, Want},
+    intent::Intent,
+    lexicon::Preposition,
+    phrase::{Phrase, Place},
+    plan::Planner,
+};
+
+/// A clause whose phrases have found their places.
+#[derive(Clone, Debug)]
+pub(crate) struct Settled {
+    pub(crate) intent: Intent,
+    pub(crate) objects: Vec<Phrase>,
+    pub(crate) goal: Option<Goal>,
+    pub(crate) tool: Option<(Phrase, Role)>,
+    pub(crate) color: Option<String>,
+    pub(crate) fluid: Option<cohabit_cdf::Fluid>,
+}
+
+/// Where the object is to go, or where it is to be done.
+#[derive(Clone, Debug)]
+pub(crate) struct Goal {
+    pub(crate) preposition: Preposition,
+    pub(crate) place: Place,
+    pub(crate) role: Role,
+}
+
+/// Verbs whose objects go somewhere, or are worked on somewhere.
+const fn has_goal(intent: Intent) -> bool {
+    intent.is_about_held() || matches!(intent, Intent::Use | Intent::Print)
+}
+
+/// Verbs done `with` something.
+const fn has_tool(intent: Intent) -> bool {
+    !matches!(intent, Intent::Place | Intent::Bring | Intent::PickUp | Intent::Find | Intent::Highlight | Intent::Examine)
+}
+
+/// Settles a clause.
+pub(crate) fn settle(planner: &Planner<'_>, clause: &Clause) -> Settled {
+    let mut settled = Settled {
+        intent: clause.intent,
+        objects: clause.objects.clone(),
+        goal: None,
+        tool: None,
+        color: clause.color.clone(),
+        fluid: clause.fluid,
+    };
+    for (index, (preposition, place)) in clause.places.iter().enumerate() {
+        let role = Role::Place(index);
+        match (preposition, place) {
+            (Preposition::With, Place::Object(phrase)) if has_tool(clause.intent) => {
+                settled.tool = Some((phrase.clone(), role));
+            }
+            (Preposition::From, _) => settled.describe_object(Preposition::On, place),
+            _ if has_goal(clause.intent) => settled.take_place(planner, *preposition, place, role),
+            _ => settled.describe_object(*preposition, place),
+        }
+    }
+    settled
+}
+
+impl Settled {
+    fn describe_object(&mut self, preposition: Preposition, place: &Place) {
+        if let Some(object) = self.objects.last_mut() {
+            object.attach(preposition, place.clone());
+        }
+    }
+
+    fn take_place(&mut self, planner: &Planner<'_>, preposition: Preposition, place: &Place, role: Role) {
+        let goal = || Some(Goal { preposition, place: place.clone(), role });
+        match (&mut self.goal, place) {
+            // `put it in the kitchen on the table`
+            (Some(Goal { place: Place::Room(room), .. }), Place::Object(phrase)) => {
+                let phrase = Phrase { room: Some(*room), ..phrase.clone() };
+                self.goal = Some(Goal { preposition, place: Place::Object(phrase), role });
+            }
+            (Some(Goal { place: Place::Object(phrase), .. }), _) if preposition == Preposition::Near => {
+                phrase.attach(preposition, place.clone());
+            }
+            (Some(Goal { place: Place::Object(phrase), .. }), Place::Object(_)) => {
+                let before = phrase.clone();
+                if self.stands_there(planner, &before) {
+                    let inner = self.goal.take();
+                    inner.into_iter().for_each(|goal| self.describe_object(goal.preposition, &goal.place));
+                    self.goal = goal();
+                } else {
+                    phrase_of(&mut self.goal).into_iter().for_each(|phrase| phrase.attach(preposition, place.clone()));
+                }
+            }
+            (Some(Goal { place: Place::Object(phrase), .. }), _) => phrase.attach(preposition, place.clone()),
+            (Some(_), _) | (None, Place::Side(_) | Place::Here) => self.describe_object(preposition, place),
+            // `fill the bowl in the kitchen` says where the bowl is, `put it in the kitchen` where it goes.
+            (None, Place::Room(_)) if !matches!(self.intent, Intent::Place | Intent::Bring | Intent::Drop) => {
+                self.describe_object(preposition, place);
+            }
+            (None, _) => self.goal = goal(),
+        }
+    }
+
+    /// Whether the object is known to be on or in what `place` means.
+    fn stands_there(&self, planner: &Planner<'_>, place: &Phrase) -> bool {
+        let Some(object) = self.objects.last().filter(|object| object.pronoun.is_none()) else { return false };
+        let mut there = object.clone();
+        there.attach(Preposition::On, Place::Object(place.clone()));
+        matches!(planner.ground().one(&there, &Want::object(self.intent)), Ok(_) | Err(Miss::Several(_)))
+    }
+}
+
+fn phrase_of(goal: &mut Option<Goal>) -> Option<&mut Phrase> {
+    match goal {
+        Some(Goal { place: Place::Object(phrase), .. }) => Some(phrase),
+        _ => None,
+    }
+}

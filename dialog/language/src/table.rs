@@ -1,0 +1,56 @@
+//! A table from phrases of one or more words to meanings, asked for the longest phrase at the start of some words.
+
+use std::collections::BTreeMap;
+
+use crate::token;
+
+/// Phrases and what each means.
+#[derive(Clone, Debug)]
+pub(crate) struct PhraseTable<T> {
+    meanings: BTreeMap<Vec<String>, T>,
+    longest: usize,
+}
+
+impl<T> Default for PhraseTable<T> {
+    fn default() -> Self {
+        Self { meanings: BTreeMap::new(), longest: 0 }
+    }
+}
+
+impl<T> PhraseTable<T> {
+    /// Gives `phrase` a meaning, in place of an earlier one.
+    pub(crate) fn insert(&mut self, phrase: &str, meaning: T) {
+        let words = token::words(phrase);
+        self.longest = self.longest.max(words.len());
+        if !words.is_empty() {
+            self.meanings.insert(words, meaning);
+        }
+    }
+
+    /// The meaning of `phrase`, to be changed; `T::default()` if it had none.
+    pub(crate) fn entry(&mut self, phrase: &str) -> &mut T
+    where
+        T: Default,
+    {
+        let words = token::words(phrase);
+        self.longest = self.longest.max(words.len());
+        self.meanings.entry(words).or_default()
+    }
+
+    /// The longest phrase that `words` begin with: its length and meaning.
+    pub(crate) fn longest(&self, words: &[String]) -> Option<(usize, &T)> {
+        (1..=self.longest.min(words.len()))
+            .rev()
+            .find_map(|length| self.meanings.get(&words[..length]).map(|meaning| (length, meaning)))
+    }
+
+    /// The meaning of exactly these words.
+    pub(crate) fn exact(&self, words: &[String]) -> Option<&T> {
+        self.meanings.get(words)
+    }
+
+    /// All words of all phrases.
+    pub(crate) fn words(&self) -> impl Iterator<Item = &String> {
+        self.meanings.keys().flatten()
+    }
+}

@@ -1,0 +1,315 @@
+//! A small office: a catalogue of two dozen classes, and a robot in the break room that knows it all.
+#![allow(dead_code, missing_docs, clippy::unwrap_used)]
+
+use std::{fmt::Write as _, sync::Arc};
+
+use cohabit_cdf::{
+    Action, Catalog, Color, Fluid, GoToTarget, ObjectId, RoomId,
+    state::{StateFlag, StateFlags},
+};
+use cohabit_language::{Context, Known, KnownGoal, KnownObject, KnownRobot, Language, Step, Understanding};
+
+/// `id | name | words | properties | colour | receptacle`: `-` none, `on`, `in` (enclosed), `key:CLASS`.
+const CLASSES: &str = "
+TableRound_02 | Table | round table, kitchen table | RECEPTACLE | brown | on
+KitchenCounterTop_02 | Counter Top | counter | RECEPTACLE | gray | on
+FridgeLower_02 | Fridge | refrigerator, icebox | OPENABLE RECEPTACLE POWERABLE | white | in
+FridgeUpper_02 | Freezer | | OPENABLE RECEPTACLE POWERABLE | white | in
+Microwave_01 | Microwave | oven, microwave oven | OPENABLE RECEPTACLE POWERABLE TOGGLEABLE | black | in
+KitchenCounterSink_01 | Sink | kitchen sink, basin | TOGGLEABLE RECEPTACLE FILLABLE OPENABLE | gray | on
+KitchenCabinet_02 | Cabinet | cupboard | OPENABLE RECEPTACLE | white | in
+YesterdayMachine_01 | Time Machine | yesterday machine | OPENABLE TOGGLEABLE RECEPTACLE POWERABLE | blue | in
+CoffeeMaker_01 | Coffee Maker | coffee machine | TOGGLEABLE RECEPTACLE POWERABLE FILLABLE | black | on
+CoffeeUnMaker_01 | Coffee Unmaker | | TOGGLEABLE RECEPTACLE POWERABLE FILLABLE | red | on
+Toaster_02 | Toaster | | TOGGLEABLE RECEPTACLE POWERABLE | gray | on
+Bowl_01 | Bowl | dish | PICKUPABLE BREAKABLE HEATABLE CHILLABLE FILLABLE | white | -
+CoffeeMug_Boss | Mug | cup, coffee mug | PICKUPABLE BREAKABLE FILLABLE HEATABLE | red | -
+CoffeeMug_Yellow | Mug | cup, coffee mug | PICKUPABLE BREAKABLE FILLABLE HEATABLE | yellow | -
+MilkCarton_01 | Milk | milk carton, carton of milk | PICKUPABLE OPENABLE FILLABLE | white | -
+Cereal_Box_01 | Cereal Box | cereal, box of cereal | PICKUPABLE | orange | -
+FoodPlate_01 | Plate | dish, dinner plate | PICKUPABLE BREAKABLE RECEPTACLE DIRTYABLE | white | on
+Apple | Apple | fruit | PICKUPABLE EATABLE | green | -
+Banana_01 | Banana | fruit | PICKUPABLE EATABLE | yellow | -
+BreadSlice_01 | Bread Slice | bread, slice of bread | PICKUPABLE EATABLE COOKABLE | brown | -
+Knife_01 | Knife | | PICKUPABLE | gray | -
+Hammer | Hammer | mallet | PICKUPABLE | red | -
+Trophy01 | Trophy | award | PICKUPABLE BREAKABLE | gold | -
+Record_01 | Record | vinyl | PICKUPABLE BREAKABLE | black | -
+Floppy_Virus | Floppy Disk | floppy, disk | PICKUPABLE HEATABLE BREAKABLE | black | -
+Desk_01 | Table | desk, wooden table | RECEPTACLE | brown | on
+AP_Prop_Desk_Green | Desk | green desk | RECEPTACLE | green | on
+AP_Prop_Desk_Red | Desk | red desk | RECEPTACLE | red | on
+AP_Prop_Desk_Blue | Desk | blue desk | RECEPTACLE | blue | on
+Printer_3D | Printer | 3d printer, 3-d printer | RECEPTACLE POWERABLE TOGGLEABLE | gray | key:Printer_Cartridge_Hammer
+Printer_Cartridge_Hammer | Hammer Print Cartridge | printer cartridge, cartridge | PICKUPABLE | black | -
+Laser | Laser | laser cannon | RECEPTACLE POWERABLE USABLE TOGGLEABLE | red | key:Laser_Tip
+Laser_Tip | Laser Tip | | PICKUPABLE | gray | -
+AP_Prop_Shelf_Wall_Laser | Red wall shelf | red shelf, laser shelf | RECEPTACLE | red | on
+AP_Prop_Shelf_Wall_04 | Shelf | blue shelf | RECEPTACLE | blue | on
+FreezeRay | Freeze Ray | ice ray | TOGGLEABLE POWERABLE USABLE | blue | -
+V_Monitor_Laser | Computer | red computer, laser computer | POWERABLE TOGGLEABLE RECEPTACLE INFECTABLE | red | key:Floppy_Virus
+V_Monitor_FreezeRay | Computer | blue computer, freeze ray computer | TOGGLEABLE POWERABLE RECEPTACLE INFECTABLE | blue | key:Floppy_Virus
+RoboticArm_01 | Robot Arm | robotic arm | TOGGLEABLE POWERABLE | orange | -
+EAC_Machine | Everything's A Carrot Machine | carrot machine, carrot maker | TOGGLEABLE RECEPTACLE POWERABLE | orange | on
+ColorChangerStation | Color Changer | color changing station | RECEPTACLE USABLE POWERABLE | white | on
+ColorChanger_Button_Red | Red Button | | TOGGLEABLE | red | -
+ColorChanger_Button_Green | Green Button | | TOGGLEABLE | green | -
+ColorChanger_Button_Blue | Blue Button | | TOGGLEABLE | blue | -
+GravityPad | Gravity Pad | gravity plate | TOGGLEABLE RECEPTACLE POWERABLE | gray | on
+LightSwitch_01 | Light Switch | switch | TOGGLEABLE POWERABLE USABLE | white | -
+StickyNote | Sticky Note | note | | yellow | -
+FuseBox_01 | Fuse Box | | OPENABLE TOGGLEABLE RECEPTACLE POWERABLE | gray | key:FuseBox_01_Lever
+FuseBox_01_Lever | Lever | fuse box lever | TOGGLEABLE PICKUPABLE | red | -
+TrashCan_01 | Trash Can | bin, garbage can | RECEPTACLE | gray | on
+Carrot_01 | Carrot | | PICKUPABLE EATABLE | orange | -
+SM_Prop_Papers_01 | Papers | | DECOR | white | -
+Door_01 | Door | | OPENABLE | brown | -
+";
+
+/// `instance | room | x y z | parent | marks`; the robot stands at 0 0 and looks along x.
+const OBJECTS: &str = "
+TableRound_02_1 | BreakRoom | 3 0 0 | - |
+KitchenCounterTop_02_1 | BreakRoom | 2 3 0 | - |
+FridgeLower_02_1 | BreakRoom | 4 3 0 | - |
+FridgeUpper_02_1 | BreakRoom | 4 3 1 | - |
+Microwave_01_1 | BreakRoom | 1 3 1 | KitchenCounterTop_02_1 |
+KitchenCounterSink_01_1 | BreakRoom | 0 3 1 | - |
+KitchenCabinet_02_1 | BreakRoom | -2 3 1 | - |
+YesterdayMachine_01_1 | BreakRoom | -3 0 0 | - |
+CoffeeMaker_01_1 | BreakRoom | 1 -3 1 | - |
+CoffeeUnMaker_01_1 | BreakRoom | 2 -3 1 | - |
+Toaster_02_1 | BreakRoom | 3 -3 1 | - |
+LightSwitch_01_1 | BreakRoom | -4 1 1 | - |
+StickyNote_1 | BreakRoom | -4 2 1 | - | text
+TrashCan_01_1 | BreakRoom | -4 -2 0 | - |
+Door_01_1 | BreakRoom | 6 -2 0 | - |
+CoffeeMug_Boss_1 | BreakRoom | 3 0.4 0.8 | TableRound_02_1 |
+CoffeeMug_Yellow_1 | BreakRoom | 3 -0.4 0.8 | TableRound_02_1 |
+Bowl_01_1 | BreakRoom | 3 0 0.8 | TableRound_02_1 | broken
+MilkCarton_01_1 | BreakRoom | 4 3 0.5 | FridgeLower_02_1 | milk
+Banana_01_1 | BreakRoom | 2.8 0 0.8 | TableRound_02_1 |
+Cereal_Box_01_1 | BreakRoom | 2 3 1 | KitchenCounterTop_02_1 |
+BreadSlice_01_1 | BreakRoom | -2 3 1 | KitchenCabinet_02_1 |
+FoodPlate_01_1 | BreakRoom | 3 0.2 0.8 | TableRound_02_1 | dirty
+Apple_1 | BreakRoom | 2.7 0.2 0.8 | TableRound_02_1 | red
+Apple_2 | BreakRoom | 2.7 -0.2 0.8 | TableRound_02_1 |
+AP_Prop_Desk_Green_1 | MainOffice | 10 0 0 | - |
+AP_Prop_Desk_Red_1 | MainOffice | 12 0 0 | - |
+AP_Prop_Desk_Blue_1 | MainOffice | 14 0 0 | - |
+Trophy01_1 | MainOffice | 10 0 0.8 | AP_Prop_Desk_Green_1 |
+Record_01_1 | MainOffice | 12 0 0.8 | AP_Prop_Desk_Red_1 |
+Hammer_1 | MainOffice | 14 0 0.8 | AP_Prop_Desk_Blue_1 |
+Desk_01_1 | Lab1 | 10 10 0 | - |
+Printer_3D_1 | Lab1 | 12 12 0 | - |
+Printer_Cartridge_Hammer_1 | Lab1 | 10 10 0.8 | Desk_01_1 |
+Laser_1 | Lab1 | 8 12 0 | - |
+Laser_Tip_1 | Lab1 | 10.3 10 0.8 | Desk_01_1 |
+AP_Prop_Shelf_Wall_Laser_1 | Lab1 | 8 14 1 | - |
+AP_Prop_Shelf_Wall_04_1 | Lab1 | 6 14 1 | - |
+FreezeRay_1 | Lab1 | 6 12 0 | - |
+V_Monitor_Laser_1 | Lab1 | 9.6 10 0.8 | Desk_01_1 | works=Laser_1
+V_Monitor_FreezeRay_1 | Lab1 | 6 11 0.8 | - | works=FreezeRay_1
+RoboticArm_01_1 | Lab1 | 5 10 0 | - |
+FuseBox_01_1 | Lab1 | 4 14 1 | - |
+FuseBox_01_Lever_1 | Lab1 | 4 14 1 | FuseBox_01_1 |
+EAC_Machine_1 | Lab2 | 20 10 0 | - |
+ColorChangerStation_1 | Lab2 | 22 10 0 | - |
+ColorChanger_Button_Red_1 | Lab2 | 22 10.2 0.8 | - | works=ColorChangerStation_1
+ColorChanger_Button_Green_1 | Lab2 | 22 10 0.8 | - | works=ColorChangerStation_1
+ColorChanger_Button_Blue_1 | Lab2 | 22 9.8 0.8 | - | works=ColorChangerStation_1
+GravityPad_1 | Lab2 | 24 10 0 | - |
+Floppy_Virus_1 | Lab2 | 24 12 0 | - |
+LightSwitch_01_2 | Lab2 | 20 14 1 | - |
+Knife_01_1 | BreakRoom | 2.2 3 1 | KitchenCounterTop_02_1 |
+";
+
+fn fields(line: &str) -> Vec<&str> {
+    line.split('|').map(str::trim).collect()
+}
+
+pub fn catalog() -> Arc<Catalog> {
+    let mut text = String::new();
+    for line in CLASSES.lines().filter(|line| !line.is_empty()) {
+        let field = fields(line);
+        let quoted = |list: &str, by: char| {
+            let items = list.split(by).map(str::trim).filter(|item| !item.is_empty());
+            items.map(|item| format!("{item:?}")).collect::<Vec<_>>().join(", ")
+        };
+        let (words, properties) = (quoted(field[2], ','), quoted(field[3], ' '));
+        write!(
+            text,
+            "[[object]]\nid = {:?}\nname = {:?}\nwords = [{words}]\nproperties = [{properties}]\nsize_m = [0.5, 0.5, 0.5]\n\
+             mass_kg = 1.0\ncolor = {:?}\nmodel = \"box\"\n",
+            field[0], field[1], field[4]
+        )
+        .unwrap();
+        if field[5] != "-" {
+            let keys = field[5].strip_prefix("key:").map(|key| format!("keys = [{key:?}]\n")).unwrap_or_default();
+            write!(
+                text,
+                "[object.receptacle]\nenclosed = {}\n{keys}[[object.receptacle.surface]]\ncenter_m = [0.0, 0.0, 0.5]\n\
+                 size_m = [0.5, 0.5]\nanchors = [4, 4]\nclearance_m = 0.5\n",
+                field[5] == "in"
+            )
+            .unwrap();
+        }
+    }
+    let model = "[[model]]\nid = \"box\"\n[[model.part]]\nshape = \"box\"\nsize = [0.5, 0.5, 0.5]\n";
+    Arc::new(Catalog::parse(&[("objects.toml", &text)], &[("models.toml", model)]).unwrap())
+}
+
+/// The office, changed by `marks` such as `FridgeLower_02_1 open`, `held Bowl_01_1`, `at Lab1 10 8`.
+pub fn scene(catalog: &Catalog, marks: &[&str]) -> Known {
+    let lines: Vec<Vec<&str>> = OBJECTS.lines().filter(|line| !line.is_empty()).map(fields).collect();
+    let id = |instance: &str| {
+        let at = lines.iter().position(|line| line[0] == instance).unwrap_or_else(|| panic!("no {instance}"));
+        ObjectId(at as u32)
+    };
+    let robot = KnownRobot { position_m: [0.0; 3], yaw_rad: 0.0, room: RoomId::BreakRoom, held: None };
+    let mut known = Known {
+        robot,
+        objects: Vec::new(),
+        goals: vec![
+            KnownGoal { text: "Repair the bowl".to_owned(), met: true },
+            KnownGoal { text: "Pour milk into the bowl".to_owned(), met: false },
+        ],
+    };
+    for line in &lines {
+        let mut position = line[2].split(' ').map(|number| number.parse().unwrap());
+        let mut object = KnownObject {
+            id: id(line[0]),
+            instance: line[0].to_owned(),
+            class: catalog.class_of_instance(line[0]).unwrap(),
+            room: RoomId::from_id(line[1]).unwrap(),
+            position_m: [(); 3].map(|()| position.next().unwrap()),
+            flags: StateFlags::default(),
+            fluid: Fluid::None,
+            color: Color::Original,
+            parent: (line[3] != "-").then(|| id(line[3])),
+            text: String::new(),
+            visible: line[1] == "BreakRoom",
+            works: None,
+        };
+        for mark in line[4].split(' ') {
+            match mark.strip_prefix("works=") {
+                Some(device) => object.works = Some(id(device)),
+                None => set(&mut object, mark),
+            }
+        }
+        known.objects.push(object);
+    }
+    for mark in marks {
+        change(&mut known, &id, mark);
+    }
+    known
+}
+
+fn change(known: &mut Known, id: &dyn Fn(&str) -> ObjectId, mark: &str) {
+    let words: Vec<&str> = mark.split(' ').collect();
+    match words.as_slice() {
+        ["held", instance] => {
+            let held = id(instance);
+            known.robot.held = Some(held);
+            let robot = known.robot.clone();
+            let object = &mut known.objects[held.0 as usize];
+            (object.parent, object.room, object.position_m) = (None, robot.room, robot.position_m);
+        }
+        ["at", room, x, y] => {
+            known.robot.room = RoomId::from_id(room).unwrap();
+            known.robot.position_m = [x.parse().unwrap(), y.parse().unwrap(), 0.0];
+            let room = known.robot.room;
+            known.objects.iter_mut().for_each(|object| object.visible = object.room == room);
+        }
+        ["without", instance] => {
+            let gone = id(instance);
+            known.objects.retain(|object| object.id != gone);
+        }
+        [instance, "in", parent] => {
+            let (child, parent) = (id(instance), id(parent));
+            let (position, room) = {
+                let parent = &known.objects[parent.0 as usize];
+                (parent.position_m, parent.room)
+            };
+            let object = &mut known.objects[child.0 as usize];
+            (object.parent, object.position_m, object.room) = (Some(parent), position, room);
+        }
+        [instance, marks @ ..] => {
+            let object = &mut known.objects[id(instance).0 as usize];
+            marks.iter().for_each(|mark| set(object, mark));
+        }
+        [] => {}
+    }
+}
+
+fn set(object: &mut KnownObject, mark: &str) {
+    let flag = match mark {
+        "" => return,
+        "red" => return object.color = Color::Red,
+        "green" => return object.color = Color::Green,
+        "blue" => return object.color = Color::Blue,
+        "milk" => return object.fluid = Fluid::Milk,
+        "coffee" => return object.fluid = Fluid::Coffee,
+        "water" => return object.fluid = Fluid::Water,
+        "text" => return object.text = "The bowl must be mended first.".to_owned(),
+        "open" => StateFlag::Opened,
+        "broken" => StateFlag::Broken,
+        "dirty" => StateFlag::Dirty,
+        "on" => StateFlag::Toggled,
+        "locked" => StateFlag::Locked,
+        _ => panic!("unknown mark {mark}"),
+    };
+    object.flags.set(flag, true);
+}
+
+/// A step as one short text: `open FridgeLower_02_1`.
+pub fn step_text(step: &Step, scene: &Known) -> String {
+    let name = |id: ObjectId| scene.object(id).map_or_else(|| format!("{id:?}"), |object| object.instance.clone());
+    match step.action {
+        Action::Move { distance_m } => format!("move {distance_m:.2}"),
+        Action::Rotate { yaw_rad } => format!("turn {:.0}", yaw_rad.to_degrees()),
+        Action::Look { pitch_rad } => format!("look {:.0}", pitch_rad.to_degrees()),
+        Action::LookAround => "look around".to_owned(),
+        Action::GoTo { target: GoToTarget::Object(object) } => format!("go {}", name(object)),
+        Action::GoTo { target: GoToTarget::Room(room) } => format!("go {}", room.id()),
+        Action::GoTo { target: GoToTarget::Viewpoint(room, number) } => format!("go {}_{number}", room.id()),
+        Action::GoTo { target: GoToTarget::Point(point) } => format!("go {point:?}"),
+        Action::PickUp { object } => format!("take {}", name(object)),
+        Action::Place { receptacle } => format!("put {}", name(receptacle)),
+        Action::Interact { verb, object } => format!("{} {}", format!("{verb:?}").to_lowercase(), name(object)),
+        Action::Highlight { object } => format!("show {}", name(object)),
+        Action::Stop => "stop".to_owned(),
+    }
+}
+
+/// What was understood, as one text: steps by `, `, or the kind and the words.
+pub fn text(understanding: &Understanding, scene: &Known) -> String {
+    match understanding {
+        Understanding::Plan { steps, .. } => {
+            steps.iter().map(|step| step_text(step, scene)).collect::<Vec<_>>().join(", ")
+        }
+        Understanding::Question { text, .. } => format!("? {text}"),
+        Understanding::Answer { text, .. } => format!("= {text}"),
+        Understanding::Refusal { text } => format!("! {text}"),
+        Understanding::Stop { .. } => "stop!".to_owned(),
+    }
+}
+
+/// A conversation in the office.
+pub struct Talk {
+    pub language: Language,
+    pub scene: Known,
+    pub context: Context,
+}
+
+impl Talk {
+    pub fn new(marks: &[&str]) -> Self {
+        let catalog = catalog();
+        let scene = scene(&catalog, marks);
+        Self { language: Language::new(catalog), scene, context: Context::default() }
+    }
+
+    pub fn say(&mut self, utterance: &str) -> String {
+        let understanding = self.language.understand(utterance, &self.scene, &mut self.context);
+        text(&understanding, &self.scene)
+    }
+}

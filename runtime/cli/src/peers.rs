@@ -1,0 +1,182 @@
+//! The processes of a session, each of which can also be started by hand.
+
+use std::{
+    io::Write as _,
+    net::{IpAddr, SocketAddr},
+    path::PathBuf,
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
+    thread,
+    time::Duration,
+};
+
+use anyhow::Context as _;
+use clap::ValueEnum;
+use cohabit_agent::PlanFollower;
+use cohabit_bus::{Session, Shm, Topic, Transport, Wake, message::MissionMessage};
+use cohabit_dialog::DialogConfig;
+use cohabit_engine::{SessionPlan, Simulator};
+use cohabit_record::Recorder;
+use cohabit_render::MeshLibrary;
+
+use crate::{failure::bad_input, mission_file::MissionFile, stop};
+
+/// What all peers of a session are told.
+#[derive(clap::Args)]
+pub struct Joining {
+    /// The session's name
+    #[arg(long)]
+    session: String,
+    /// The process that supervises this one
+    #[arg(long, hide = true)]
+    supervisor: Option<i32>,
+}
+
+impl Joining {
+    fn join(&self) -> anyhow::Result<(Shm, Arc<AtomicBool>)> {
+        let stop = stop::on_request()?;
+        stop::with_supervisor(self.supervisor)?;
+        let session = Session::new(&self.session).map_err(bad_input)?;
+        Ok((Shm::join(&session).map_err(bad_input)?, stop))
+    }
+}
+
+/// Builds the world and steps it in real time.
+#[derive(clap::Args)]
+pub struct Sim {
+    /// A mission file (CDF), or the name of a built-in mission
+    mission: Option<String>,
+    #[command(flatten)]
+    joining: Joining,
+    /// The seed of all that is random, where the mission does not fix it
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    /// Threads that render
+    #[arg(long, default_value_t = 2)]
+    threads: usize,
+}
+
+impl Sim {
+    /// Runs the simulator.
+    pub fn run(&self) -> anyhow::Result<()> {
+        let plan = MissionFile::find(self.mission.as_deref())?.plan(self.seed)?;
+        let (bus, stop) = self.joining.join()?;
+        let (world, meshes) = thread::scope(|scope| {
+            let meshes = scope.spawn(|| MeshLibrary::build(&plan.catalog));
+            let world = plan.build();
+            (world, meshes.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
+        });
+        let meshes = Arc::new(meshes.context("build the models")?);
+        let simulator = Simulator::new(&plan, world.map_err(bad_input)?, meshes, self.threads, &bus)?;
+        simulator.run(&stop)?;
+        Ok(())
+    }
+}
+
+/// Kinds of minds.
+#[derive(Clone, Copy, ValueEnum)]
+enum AgentKind {
+    /// Does what the dialog service plans
+    Dialog,
+}
+
+/// Runs a mind for one body.
+#[derive(clap::Args)]
+pub struct Agent {
+    /// What kind of mind
+    #[arg(value_enum, default_value = "dialog")]
+    kind: AgentKind,
+    #[command(flatten)]
+    joining: Joining,
+    /// The body it commands
+    #[arg(long, default_value_t = 0)]
+    body: u32,
+}
+
+impl Agent {
+    /// Runs the agent.
+    pub fn run(&self) -> anyhow::Result<()> {
+        let (bus, stop) = self.joining.join()?;
+        let mut agent = match self.kind {
+            AgentKind::Dialog => PlanFollower::new(self.body),
+        };
+        cohabit_agent::run(&mut agent, self.body, &bus, &stop)?;
+        Ok(())
+    }
+}
+
+/// Serves the page, and turns what people say into plans.
+#[derive(clap::Args)]
+pub struct Dialog {
+    #[command(flatten)]
+    joining: Joining,
+    #[command(flatten)]
+    listening: Listening,
+}
+
+/// Where the page is served.
+#[derive(clap::Args, Clone)]
+pub struct Listening {
+    /// The port of the page; 0 takes any that is free
+    #[arg(long, default_value_t = 8765)]
+    pub port: u16,
+    /// The address the page listens on; beyond this machine it asks for the session's token
+    #[arg(long, default_value = "127.0.0.1")]
+    pub listen: IpAddr,
+}
+
+impl Dialog {
+    /// Runs the dialog service. Prints its address, and later the time of the first frame shown, for its supervisor.
+    pub fn run(&self) -> anyhow::Result<()> {
+        let (bus, stop) = self.joining.join()?;
+        let Some(mission) = wait_for_mission(&bus, &stop)? else { return Ok(()) };
+        let file = MissionFile { name: mission.header.file.as_str().to_owned(), text: mission.text };
+        let SessionPlan { catalog, layout, mission, .. } = file.plan(mission.header.seed)?;
+        let config = DialogConfig {
+            session: self.joining.session.clone(),
+            listen: SocketAddr::new(self.listening.listen, self.listening.port),
+            on_first_frame: Box::new(|| tell_supervisor("shown")),
+        };
+        let ready = |address: &str| tell_supervisor(&format!("page {address}"));
+        cohabit_dialog::serve(Arc::new(bus), mission, layout, catalog, config, &stop, ready).map_err(bad_input)
+    }
+}
+
+fn tell_supervisor(line: &str) {
+    let mut out = std::io::stdout().lock();
+    // Nobody listening is no reason to stop serving.
+    let _ = writeln!(out, "{line}").and_then(|()| out.flush());
+}
+
+fn wait_for_mission(bus: &Shm, stop: &AtomicBool) -> anyhow::Result<Option<MissionMessage>> {
+    let mut missions = bus.subscriber(Topic::Mission)?;
+    let mut listener = bus.listener(Wake::State)?;
+    while !stop.load(Ordering::Relaxed) {
+        if let Some(sample) = missions.latest()? {
+            return Ok(Some(MissionMessage::read(sample.payload())?));
+        }
+        listener.wait(Duration::from_millis(50))?;
+    }
+    Ok(None)
+}
+
+/// Writes the session log.
+#[derive(clap::Args)]
+pub struct Record {
+    #[command(flatten)]
+    joining: Joining,
+    /// The log file to write; it must not exist
+    #[arg(long)]
+    log: PathBuf,
+}
+
+impl Record {
+    /// Runs the recorder.
+    pub fn run(&self) -> anyhow::Result<()> {
+        let (bus, stop) = self.joining.join()?;
+        Recorder::new(&bus)?.run(&self.joining.session, &self.log, &stop)?;
+        Ok(())
+    }
+}

@@ -1,0 +1,98 @@
+//! `cohabit play`: one session from start to end.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    time::{Instant, SystemTime, UNIX_EPOCH},
+};
+
+use anyhow::Context as _;
+use cohabit_bus::{Session, SessionError};
+
+use crate::{
+    failure::bad_input,
+    mission_file::MissionFile,
+    peers::Listening,
+    stop,
+    supervisor::{Role, Supervisor},
+};
+
+/// Starts a simulator, an agent, the dialog service and a recorder, and supervises them.
+#[derive(clap::Args)]
+pub struct Play {
+    /// A mission file (CDF), or the name of a built-in mission; making a bowl of cereal, if absent
+    mission: Option<String>,
+    /// The session's name; one of its own is made up if absent
+    #[arg(long)]
+    session: Option<String>,
+    #[command(flatten)]
+    listening: Listening,
+    /// The seed of all that is random, where the mission does not fix it; the clock's if absent
+    #[arg(long)]
+    seed: Option<u64>,
+    /// The session log to write; one in the user's data folder if absent
+    #[arg(long)]
+    log: Option<PathBuf>,
+    /// Threads that render
+    #[arg(long, default_value_t = 2)]
+    threads: usize,
+}
+
+impl Play {
+    /// Plays until the user ends it.
+    pub fn run(&self) -> anyhow::Result<()> {
+        let began = Instant::now();
+        let stop = stop::on_request()?;
+        let seed = self.seed.unwrap_or_else(clock_seed);
+        let mission = MissionFile::find(self.mission.as_deref())?;
+        let plan = mission.plan(seed)?;
+        for name in Session::wipe_dead() {
+            println!("cleaned up after session {name}, which was not ended");
+        }
+        let name = self.session.clone().unwrap_or_else(|| format!("play-{}", std::process::id()));
+        let session = Session::new(&name).map_err(bad_input)?;
+        let log = self.log_path(&name)?;
+        let lock = session.supervise().map_err(|error| match error {
+            SessionError::Folder { .. } => anyhow::Error::new(error),
+            other => bad_input(other),
+        })?;
+        println!("Playing \"{}\" ({})", plan.mission.goal_text, mission.name);
+        let roles = [
+            Role::sim(self.mission.as_deref(), seed, self.threads),
+            Role::record(&log),
+            Role::agent(),
+            Role::dialog(&self.listening),
+        ];
+        let played = Supervisor::start(&name, roles, began).and_then(|supervisor| supervisor.run(&stop));
+        session.end(lock);
+        if log.is_file() {
+            println!("Recorded in {0}\nReplay it with: cohabit replay {0}", log.display());
+        }
+        played
+    }
+
+    fn log_path(&self, session: &str) -> anyhow::Result<PathBuf> {
+        if let Some(path) = &self.log {
+            if path.exists() {
+                return Err(bad_input(format!("{}: exists already; choose another `--log`", path.display())));
+            }
+            return Ok(path.clone());
+        }
+        let folder = data_folder().join("sessions");
+        fs::create_dir_all(&folder).with_context(|| folder.display().to_string())?;
+        let time = jiff::Zoned::now().strftime("%Y-%m-%d_%H-%M-%S").to_string();
+        Ok(folder.join(format!("{time}_{session}.mcap")))
+    }
+}
+
+fn data_folder() -> PathBuf {
+    let home = || std::env::var_os("HOME").map(|home| Path::new(&home).join(".local/share"));
+    let base = std::env::var_os("XDG_DATA_HOME").map(PathBuf::from).filter(|path| path.is_absolute());
+    base.or_else(home).unwrap_or_else(std::env::temp_dir).join("cohabit")
+}
+
+fn clock_seed() -> u64 {
+    let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+    // What JSON numbers hold exactly.
+    u64::from(since.subsec_nanos()) ^ (since.as_secs() << 20) & ((1 << 53) - 1)
+}

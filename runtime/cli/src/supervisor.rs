@@ -1,0 +1,190 @@
+//! Starts the processes of a session, watches them, and ends all of them.
+
+use std::{
+    ffi::OsString,
+    io::{BufRead as _, BufReader},
+    os::unix::process::CommandExt as _,
+    path::Path,
+    process::{Child, ChildStdout, Command, ExitStatus, Stdio},
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
+    thread,
+    time::{Duration, Instant},
+};
+
+use anyhow::Context as _;
+use rustix::process::{Pid, Signal, kill_process};
+
+use crate::{failure::BadInput, peers::Listening};
+
+/// How long a process may take to end when asked.
+const GRACE: Duration = Duration::from_secs(3);
+/// How often the processes are looked after.
+const LOOK_EVERY: Duration = Duration::from_millis(20);
+/// A process that ends by itself more often than this within a session is not started again.
+const MOST_RESTARTS: u32 = 5;
+
+/// One process of a session.
+pub struct Role {
+    name: &'static str,
+    arguments: Vec<OsString>,
+}
+
+impl Role {
+    /// The simulator: without it there is no session.
+    pub fn sim(mission: Option<&str>, seed: u64, threads: usize) -> Self {
+        let mut arguments = vec!["--seed".into(), seed.to_string().into()];
+        arguments.extend(["--threads".into(), threads.to_string().into()]);
+        arguments.extend(mission.map(OsString::from));
+        Self { name: "sim", arguments }
+    }
+
+    /// The recorder.
+    pub fn record(log: &Path) -> Self {
+        Self { name: "record", arguments: vec!["--log".into(), log.into()] }
+    }
+
+    /// The robot's mind.
+    pub fn agent() -> Self {
+        Self { name: "agent", arguments: vec!["dialog".into()] }
+    }
+
+    /// The dialog service.
+    pub fn dialog(listening: &Listening) -> Self {
+        let (listen, port) = (listening.listen.to_string(), listening.port.to_string());
+        Self { name: "dialog", arguments: ["--listen", &listen, "--port", &port].map(OsString::from).to_vec() }
+    }
+
+    /// The order in which roles are ended: who speaks first, who writes down last.
+    fn ends(&self) -> u8 {
+        match self.name {
+            "dialog" => 0,
+            "agent" => 1,
+            "sim" => 2,
+            _ => 3,
+        }
+    }
+}
+
+struct Running {
+    role: Role,
+    child: Child,
+    restarts: u32,
+}
+
+/// The processes of one session.
+pub struct Supervisor {
+    session: String,
+    running: Vec<Running>,
+    began: Instant,
+}
+
+impl Supervisor {
+    /// Starts all roles.
+    pub fn start(session: &str, roles: impl IntoIterator<Item = Role>, began: Instant) -> anyhow::Result<Self> {
+        let mut supervisor = Self { session: session.to_owned(), running: Vec::new(), began };
+        for role in roles {
+            let child = supervisor.spawn(&role)?;
+            supervisor.running.push(Running { role, child, restarts: 0 });
+        }
+        Ok(supervisor)
+    }
+
+    fn spawn(&self, role: &Role) -> anyhow::Result<Child> {
+        let program = std::env::current_exe().context("find this program's own file")?;
+        let mut child = Command::new(program)
+            .arg(role.name)
+            .args(["--session", &self.session, "--supervisor", &std::process::id().to_string()])
+            .args(&role.arguments)
+            .stdin(Stdio::null())
+            .stdout(Stdio::piped())
+            // Ctrl-C reaches this process alone, which then ends the others in order.
+            .process_group(0)
+            .spawn()
+            .with_context(|| format!("start {}", role.name))?;
+        if let Some(out) = child.stdout.take() {
+            let began = self.began;
+            thread::spawn(move || relay(out, began));
+        }
+        Ok(child)
+    }
+
+    /// Watches over the processes until `stop`, or until the session cannot go on.
+    pub fn run(mut self, stop: &Arc<AtomicBool>) -> anyhow::Result<()> {
+        while !stop.load(Ordering::Relaxed) {
+            self.look_after()?;
+            thread::sleep(LOOK_EVERY);
+        }
+        println!("Ending the session");
+        Ok(())
+    }
+
+    fn look_after(&mut self) -> anyhow::Result<()> {
+        for index in 0..self.running.len() {
+            let running = &mut self.running[index];
+            let Some(status) = running.child.try_wait().context("look after a process")? else { continue };
+            let name = running.role.name;
+            if status.code() == Some(2) {
+                // It has said itself what is wrong with what it was given.
+                return Err(BadInput(String::new()).into());
+            }
+            if name == "sim" || running.restarts >= MOST_RESTARTS {
+                anyhow::bail!("the {name} process ended ({}); the session cannot go on without it", describe(status));
+            }
+            eprintln!("cohabit: the {name} process ended ({}); starting it again", describe(status));
+            let child = self.spawn(&self.running[index].role)?;
+            let running = &mut self.running[index];
+            running.child = child;
+            running.restarts += 1;
+        }
+        Ok(())
+    }
+}
+
+impl Drop for Supervisor {
+    fn drop(&mut self) {
+        self.running.sort_by_key(|running| running.role.ends());
+        for running in &mut self.running {
+            end(&mut running.child);
+        }
+    }
+}
+
+fn end(child: &mut Child) {
+    let pid = i32::try_from(child.id()).ok().and_then(Pid::from_raw);
+    if let (Ok(None), Some(pid)) = (child.try_wait(), pid) {
+        let _ = kill_process(pid, Signal::TERM);
+    }
+    let deadline = Instant::now() + GRACE;
+    while matches!(child.try_wait(), Ok(None)) {
+        if Instant::now() > deadline {
+            let _ = child.kill();
+            let _ = child.wait();
+            return;
+        }
+        thread::sleep(Duration::from_millis(5));
+    }
+}
+
+fn describe(status: ExitStatus) -> String {
+    use std::os::unix::process::ExitStatusExt as _;
+    match (status.code(), status.signal()) {
+        (Some(code), _) => format!("exit code {code}"),
+        (None, Some(signal)) => format!("signal {signal}"),
+        (None, None) => "for an unknown reason".to_owned(),
+    }
+}
+
+/// Tells the user what a process tells its supervisor.
+fn relay(out: ChildStdout, began: Instant) {
+    for line in BufReader::new(out).lines().map_while(Result::ok) {
+        let seconds = began.elapsed().as_secs_f64();
+        match line.split_once(' ') {
+            Some(("page", address)) => println!("Open {address}  (ready after {seconds:.2} s; Ctrl-C ends the session)"),
+            _ if line == "shown" => println!("First frame on the page {seconds:.2} s after the start"),
+            _ => println!("{line}"),
+        }
+    }
+}

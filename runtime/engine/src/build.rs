@@ -1,0 +1,68 @@
+//! From a mission file's text to a world ready to step.
+
+use std::sync::Arc;
+
+use cohabit_cdf::{Catalog, Layout, LayoutError, Mission, mission};
+use cohabit_world::World;
+
+/// All that does not change while a session runs, and the seed of what is random in it.
+#[derive(Clone, Debug)]
+pub struct SessionPlan {
+    /// The name of the mission's file.
+    pub file: String,
+    /// Its text.
+    pub text: String,
+    /// The objects there can be.
+    pub catalog: Arc<Catalog>,
+    /// The floor plan.
+    pub layout: Arc<Layout>,
+    /// The mission, checked.
+    pub mission: Arc<Mission>,
+    /// The seed.
+    pub seed: u64,
+}
+
+/// Why a session cannot be built.
+#[derive(Debug, thiserror::Error)]
+pub enum BuildError {
+    /// The mission has problems.
+    #[error("{0}")]
+    Mission(mission::Problems),
+    /// There is no such floor plan.
+    #[error(transparent)]
+    Layout(#[from] LayoutError),
+    /// The world cannot be laid out as the mission asks.
+    #[error("{file}: {source}")]
+    World {
+        /// The mission's file.
+        file: String,
+        /// What is wrong.
+        source: cohabit_world::BuildError,
+    },
+}
+
+impl SessionPlan {
+    /// Checks a mission; `seed` is taken where the mission leaves it to chance.
+    ///
+    /// # Errors
+    /// [`BuildError::Mission`], [`BuildError::Layout`].
+    pub fn new(file: &str, text: &str, catalog: Arc<Catalog>, seed: u64) -> Result<Self, BuildError> {
+        let checked = mission::read_mission(file, text, &catalog).map_err(BuildError::Mission)?;
+        for warning in &checked.warnings {
+            tracing::warn!("{warning}");
+        }
+        let mission = Arc::new(checked.mission);
+        let layout = Arc::new(Layout::builtin(&mission.layout)?);
+        let seed = mission.seed.unwrap_or(seed);
+        Ok(Self { file: file.to_owned(), text: text.to_owned(), catalog, layout, mission, seed })
+    }
+
+    /// The world at its first tick.
+    ///
+    /// # Errors
+    /// [`BuildError::World`].
+    pub fn build(&self) -> Result<World, BuildError> {
+        World::new(Arc::clone(&self.catalog), Arc::clone(&self.layout), Arc::clone(&self.mission), self.seed)
+            .map_err(|source| BuildError::World { file: self.file.clone(), source })
+    }
+}

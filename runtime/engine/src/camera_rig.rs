@@ -1,0 +1,124 @@
+//! The camera that follows a body for people to watch: behind and above it, smooth, and never outside its room.
+
+use cohabit_cdf::Layout;
+use cohabit_render::Camera;
+use libm::{cosf, expf, sinf};
+
+use crate::scene::Standing;
+
+const BEHIND_M: f32 = 1.9;
+const NEAREST_M: f32 = 0.45;
+const ABOVE_FLOOR_M: f32 = 1.95;
+const PITCH_RAD: f32 = -0.32;
+const FOV_Y_RAD: f32 = 0.96;
+const CLEAR_OF_WALLS_M: f32 = 0.22;
+/// How fast the camera closes in on where it should be, 1/s.
+const FOLLOW_PER_S: f32 = 7.0;
+const TURN_PER_S: f32 = 6.0;
+
+/// A camera on a boom behind a body.
+#[derive(Clone, Debug, Default)]
+pub struct CameraRig {
+    pose: Option<Pose>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Pose {
+    x: f32,
+    y: f32,
+    yaw_rad: f32,
+    boom_m: f32,
+    pitch_rad: f32,
+}
+
+impl CameraRig {
+    /// Moves the camera on by `dt_s` seconds and gives where it is now.
+    pub fn follow(&mut self, standing: &Standing, layout: &Layout, dt_s: f32, size: [u32; 2]) -> Camera {
+        let [x, y, _] = standing.position_m;
+        let mut pose = self.pose.unwrap_or(Pose {
+            x,
+            y,
+            yaw_rad: standing.yaw_rad,
+            boom_m: BEHIND_M,
+            pitch_rad: PITCH_RAD,
+        });
+        let near = 1.0 - expf(-FOLLOW_PER_S * dt_s);
+        let turned = 1.0 - expf(-TURN_PER_S * dt_s);
+        pose.x += (x - pose.x) * near.max(0.5);
+        pose.y += (y - pose.y) * near.max(0.5);
+        pose.yaw_rad += wrap(standing.yaw_rad - pose.yaw_rad) * turned;
+        pose.pitch_rad += (PITCH_RAD + standing.head_pitch_rad * 0.5 - pose.pitch_rad) * turned;
+        let back = [-cosf(pose.yaw_rad), -sinf(pose.yaw_rad)];
+        let free = free_length_m(layout, [pose.x, pose.y], back, BEHIND_M);
+        // Walls pull the camera in at once; it eases out again.
+        pose.boom_m = free.min(pose.boom_m + (free - pose.boom_m).max(0.0) * near * 0.4);
+        self.pose = Some(pose);
+        let boom = pose.boom_m.max(NEAREST_M);
+        // Close behind the head, look over it.
+        let raised = (1.0 - boom / BEHIND_M) * 0.15;
+        Camera {
+            position_m: [pose.x + back[0] * boom, pose.y + back[1] * boom, ABOVE_FLOOR_M + raised],
+            yaw_rad: pose.yaw_rad,
+            pitch_rad: pose.pitch_rad,
+            fov_y_rad: FOV_Y_RAD,
+            width: size[0],
+            height: size[1],
+            hide: None,
+            for_people: true,
+            ceiling: true,
+        }
+    }
+}
+
+fn wrap(angle_rad: f32) -> f32 {
+    use std::f32::consts::{PI, TAU};
+    let turned = (angle_rad + PI) % TAU;
+    if turned < 0.0 { turned + PI } else { turned - PI }
+}
+
+/// How far one can go from a point before leaving the rooms' floors, at most `most_m`.
+fn free_length_m(layout: &Layout, from: [f32; 2], direction: [f32; 2], most_m: f32) -> f32 {
+    const STEP_M: f32 = 0.05;
+    let mut length = 0.0;
+    while length < most_m {
+        let next = length + STEP_M;
+        let point = [from[0] + direction[0] * next, from[1] + direction[1] * next];
+        if !on_clear_floor(layout, point) {
+            break;
+        }
+        length = next;
+    }
+    length
+}
+
+fn on_clear_floor(layout: &Layout, [x, y]: [f32; 2]) -> bool {
+    let m = CLEAR_OF_WALLS_M;
+    layout.rooms.iter().any(|room| {
+        room.rects_m.iter().any(|[west, south, east, north]| {
+            x > west + m && x < east - m && y > south + m && y < north - m
+        })
+    }) || layout.openings.iter().any(|opening| in_opening(opening, [x, y]))
+}
+
+fn in_opening(opening: &cohabit_cdf::layout::Opening, [x, y]: [f32; 2]) -> bool {
+    use cohabit_cdf::{layout::OpeningKind, model::Axis};
+    let (along, across) = match opening.wall_runs {
+        Axis::X => (x - opening.at_m[0], y - opening.at_m[1]),
+        _ => (y - opening.at_m[1], x - opening.at_m[0]),
+    };
+    opening.kind != OpeningKind::Window
+        && along.abs() < opening.width_m / 2.0 - CLEAR_OF_WALLS_M
+        && across.abs() <= CLEAR_OF_WALLS_M + 0.01
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn angles_wrap_to_the_short_way() {
+        for (angle, wrapped) in [(0.1, 0.1), (6.2, 6.2 - std::f32::consts::TAU), (-6.2, std::f32::consts::TAU - 6.2)] {
+            assert!((wrap(angle) - wrapped).abs() < 1e-5, "{angle}");
+        }
+    }
+}

@@ -1,0 +1,111 @@
+//! The world's own words as messages.
+
+use cohabit_bus::{
+    Text,
+    message::{
+        BodyRecord, EventKind, EventMessage, GoalRecord, NONE, NoteRecord, ObjectRecord, StateHeader, StateParts,
+    },
+};
+use cohabit_cdf::{RoomId, StateFlag};
+use cohabit_world::{Ending, Event, Input, World};
+
+/// A command was taken up.
+pub fn started(input: &Input, turn: u64) -> EventMessage {
+    EventMessage { command: input.command, turn, body: input.body.0, ..EventMessage::new(EventKind::Started) }
+}
+
+/// An event, if it concerns others.
+pub fn event(world: &World, event: &Event) -> Option<EventMessage> {
+    let of = EventMessage::new;
+    let about = |kind, object: cohabit_cdf::ObjectId| EventMessage { object: object.0, ..of(kind) };
+    Some(match event {
+        Event::ObjectChanged { object } => about(EventKind::ObjectChanged, *object),
+        Event::Spawned { object, .. } => about(EventKind::Spawned, *object),
+        Event::Highlighted { object, .. } => about(EventKind::Highlighted, *object),
+        Event::NoteRead { object, text } => EventMessage { text: Text::new(text), ..about(EventKind::NoteRead, *object) },
+        Event::Sound { kind, object } => {
+            EventMessage { text: Text::new(&format!("{kind:?}")), ..about(EventKind::Sound, *object) }
+        }
+        Event::GoalMet { id } => goal(world, EventKind::GoalMet, *id),
+        Event::GoalReset { id } => goal(world, EventKind::GoalReset, *id),
+        Event::Message { text } => EventMessage { text: Text::new(text), ..of(EventKind::Message) },
+        Event::MissionEnded { ending: Ending::AllGoalsMet } => of(EventKind::MissionComplete),
+        Event::MissionEnded { ending: Ending::KilledByHazard } => {
+            EventMessage { text: Text::new("A hazard destroyed the robot."), ..of(EventKind::MissionFailed) }
+        }
+        Event::Removed { object } | Event::Scanned { object } => about(EventKind::ObjectChanged, *object),
+        Event::GoalShown { id } => goal(world, EventKind::GoalShown, *id),
+    })
+}
+
+fn goal(world: &World, kind: EventKind, number: i64) -> EventMessage {
+    let text = world.goals().iter().find(|goal| goal.id == number).map_or("", |goal| &goal.description);
+    EventMessage { number, text: Text::new(text), ..EventMessage::new(kind) }
+}
+
+/// The present state.
+pub fn state(world: &World) -> StateParts {
+    let ending = match world.finished() {
+        None => 0,
+        Some(Ending::AllGoalsMet) => 1,
+        Some(Ending::KilledByHazard) => 2,
+    };
+    let lit_rooms = RoomId::ALL.iter().fold(0, |bits, room| bits | u32::from(world.room_lit(*room)) << (*room as u32));
+    StateParts {
+        header: StateHeader { score: world.score(), ending, lit_rooms, ..StateHeader::default() },
+        bodies: world.bodies().map(|body| body_record(&body)).collect(),
+        objects: world.objects().map(|object| object_record(&object)).collect(),
+        goals: world
+            .goals()
+            .iter()
+            .map(|goal| GoalRecord {
+                number: goal.id,
+                met: u32::from(goal.met),
+                hidden: u32::from(goal.hidden),
+                description: Text::new(&goal.description),
+            })
+            .collect(),
+        notes: world
+            .objects()
+            .filter(|object| !object.text.is_empty())
+            .map(|object| NoteRecord {
+                object: object.id.0,
+                read: u32::from(object.flags.has(StateFlag::Examined)),
+                text: Text::new(object.text),
+            })
+            .collect(),
+    }
+}
+
+fn body_record(body: &cohabit_world::BodyView) -> BodyRecord {
+    BodyRecord {
+        body: body.id.0,
+        room: body.room as u32,
+        held: body.held.map_or(NONE, |object| object.0),
+        busy: u32::from(body.busy),
+        command: body.command.unwrap_or(0),
+        position_m: body.position_m.to_array(),
+        yaw_rad: body.yaw_rad,
+        head_pitch_rad: body.head_pitch_rad,
+        eye_m: body.eye.to_array(),
+    }
+}
+
+fn object_record(object: &cohabit_world::ObjectView<'_>) -> ObjectRecord {
+    ObjectRecord {
+        object: object.id.0,
+        flags: object.flags.0,
+        class: object.class.0,
+        room: object.room as u8,
+        color: object.color as u8,
+        fluid: object.fluid as u8,
+        hidden: u8::from(object.hidden),
+        reserved: 0,
+        parent: object.parent.map_or(NONE, |parent| parent.0),
+        held_by: object.held_by.map_or(NONE, |body| body.0),
+        works: object.works.map_or(NONE, |works| works.0),
+        position_m: object.position_m.to_array(),
+        rotation: object.rotation.to_array(),
+        instance: Text::new(object.instance),
+    }
+}

@@ -1,0 +1,128 @@
+//! The world as the renderer sees it.
+
+use cohabit_cdf::{BodyId, Color, Fluid, RoomId, StateFlags};
+use cohabit_render::{Camera, Highlight, Instance, Look};
+use cohabit_world::World;
+
+/// The id of body `body` in the id plane; objects have their index + 1.
+const FIRST_BODY_ID: u32 = 1 << 20;
+
+/// How far a robot's own eye sees up and down: the original's camera.
+const EGOCENTRIC_FOV_RAD: f32 = 60.0 / 180.0 * std::f32::consts::PI;
+
+/// One moment of a world, complete enough to be rendered elsewhere.
+#[derive(Clone, Debug, Default)]
+pub struct Moment {
+    /// The tick.
+    pub tick: u64,
+    /// The latest command that had begun to move its body.
+    pub command: u64,
+    /// When this was, ns of the monotonic clock.
+    pub seen_nanos: u64,
+    /// All that can be drawn, in a fixed order.
+    pub instances: Vec<Instance>,
+    /// What is pointed out.
+    pub highlights: Vec<Highlight>,
+    /// Whether the lights are on, a room each.
+    pub lit: [bool; RoomId::ALL.len()],
+    /// Where each body is, and where its eye.
+    pub bodies: Vec<Standing>,
+}
+
+/// Where a body stands and looks.
+#[derive(Clone, Copy, Debug)]
+pub struct Standing {
+    /// On the floor, m.
+    pub position_m: [f32; 3],
+    /// Its eye, m.
+    pub eye_m: [f32; 3],
+    /// Heading, rad.
+    pub yaw_rad: f32,
+    /// Pitch of the head, rad.
+    pub head_pitch_rad: f32,
+    /// Its room.
+    pub room: RoomId,
+}
+
+/// The id of an object in the id plane.
+pub const fn object_instance_id(object: cohabit_cdf::ObjectId) -> u32 {
+    object.0 + 1
+}
+
+/// The id of a body in the id plane.
+pub const fn body_instance_id(body: BodyId) -> u32 {
+    FIRST_BODY_ID + body.0
+}
+
+const HIGHLIGHT_COLOR: [u8; 3] = [255, 196, 61];
+
+impl Moment {
+    /// Captures a world.
+    pub fn capture(world: &World, command: u64, seen_nanos: u64) -> Self {
+        let bodies = world.bodies().map(|body| Instance {
+            id: body_instance_id(body.id),
+            look: Look::Robot { head_pitch_rad: body.head_pitch_rad, arm: body.arm },
+            position_m: body.position_m.to_array(),
+            rotation: glam::Quat::from_rotation_z(body.yaw_rad).to_array(),
+            scale: [1.0; 3],
+            flags: StateFlags::default(),
+            fluid: Fluid::None,
+            color: Color::Original,
+            opened: 0.0,
+            running: 0.0,
+            room: body.room,
+            visible: true,
+        });
+        let objects = world.objects().map(|object| Instance {
+            id: object_instance_id(object.id),
+            look: Look::Object(object.class),
+            position_m: object.position_m.to_array(),
+            rotation: object.rotation.to_array(),
+            scale: object.scale,
+            flags: object.flags,
+            fluid: object.fluid,
+            color: object.color,
+            opened: object.opened,
+            running: object.running,
+            room: object.room,
+            visible: !object.hidden,
+        });
+        Self {
+            tick: world.tick(),
+            command,
+            seen_nanos,
+            instances: bodies.chain(objects).collect(),
+            highlights: world
+                .highlights()
+                .map(|object| Highlight { id: object_instance_id(object), color: HIGHLIGHT_COLOR })
+                .collect(),
+            lit: RoomId::ALL.map(|room| world.room_lit(room)),
+            bodies: world
+                .bodies()
+                .map(|body| Standing {
+                    position_m: body.position_m.to_array(),
+                    eye_m: body.eye.to_array(),
+                    yaw_rad: body.yaw_rad,
+                    head_pitch_rad: body.head_pitch_rad,
+                    room: body.room,
+                })
+                .collect(),
+        }
+    }
+
+    /// What a body sees with its own eyes.
+    pub fn egocentric(&self, body: usize, width: u32, height: u32) -> Option<Camera> {
+        let standing = self.bodies.get(body)?;
+        Some(Camera {
+            position_m: standing.eye_m,
+            yaw_rad: standing.yaw_rad,
+            pitch_rad: standing.head_pitch_rad,
+            fov_y_rad: EGOCENTRIC_FOV_RAD,
+            width,
+            height,
+            hide: Some(FIRST_BODY_ID + u32::try_from(body).unwrap_or(0)),
+            for_people: false,
+            ceiling: true,
+        })
+    }
+}

@@ -1,0 +1,195 @@
+//! Renders the newest moment of the world for those who watch, on a thread of its own, so that the world never waits.
+
+use std::{
+    sync::{Arc, Condvar, Mutex, PoisonError},
+    time::{Duration, Instant},
+};
+
+use cohabit_bus::{
+    BusError, CameraId, Publisher, Topic, Transport,
+    message::{FrameHeader, FrameLayout, Plane},
+    monotonic_nanos,
+};
+use cohabit_cdf::Layout;
+use cohabit_render::{Camera, CpuRenderer, MeshLibrary, Planes, Renderer, Scene};
+
+use crate::{camera_rig::CameraRig, scene::Moment};
+
+/// Pixels of an egocentric frame, both ways.
+const EGOCENTRIC_SIZE: u32 = 300;
+/// The size of a frame for people.
+const SPECTATOR_SIZE: [u32; 2] = [854, 480];
+/// At most so often for people.
+const SPECTATOR_EVERY: Duration = Duration::from_millis(33);
+/// At most so often for a body.
+const EGOCENTRIC_EVERY: Duration = Duration::from_millis(100);
+
+/// Where the tick leaves moments and the studio takes them: holds one, the newest.
+#[derive(Default)]
+pub struct Desk {
+    slot: Mutex<Slot>,
+    changed: Condvar,
+}
+
+#[derive(Default)]
+struct Slot {
+    moment: Option<Moment>,
+    closed: bool,
+}
+
+impl Desk {
+    /// Leaves a moment; one that was not taken yet is dropped.
+    pub fn leave(&self, moment: Moment) {
+        self.slot.lock().unwrap_or_else(PoisonError::into_inner).moment = Some(moment);
+        self.changed.notify_one();
+    }
+
+    /// Tells the studio to go home.
+    pub fn close(&self) {
+        self.slot.lock().unwrap_or_else(PoisonError::into_inner).closed = true;
+        self.changed.notify_all();
+    }
+
+    fn take(&self) -> Option<Moment> {
+        let slot = self.slot.lock().unwrap_or_else(PoisonError::into_inner);
+        let wait = self.changed.wait_while(slot, |slot| slot.moment.is_none() && !slot.closed);
+        let mut slot = wait.unwrap_or_else(PoisonError::into_inner);
+        if slot.closed { None } else { slot.moment.take() }
+    }
+}
+
+/// The cameras of one session.
+pub struct Studio {
+    scene: Scene,
+    renderer: CpuRenderer,
+    layout: Arc<Layout>,
+    rig: CameraRig,
+    spectator: Post,
+    egocentric: Post,
+}
+
+/// A camera's publisher and when it last sent.
+struct Post {
+    publisher: Box<dyn Publisher>,
+    every: Duration,
+    sent: Option<Instant>,
+}
+
+impl Post {
+    fn new(bus: &dyn Transport, camera: CameraId, every: Duration) -> Result<Self, BusError> {
+        Ok(Self { publisher: bus.publisher(Topic::Frames(camera))?, every, sent: None })
+    }
+
+    /// Whether a frame is due, and how long after the one before.
+    fn due(&mut self) -> Option<Duration> {
+        let now = Instant::now();
+        let since = self.sent.map_or(self.every, |sent| now - sent);
+        if since + Duration::from_millis(4) < self.every || self.publisher.subscribers() == 0 {
+            return None;
+        }
+        self.sent = Some(now);
+        Some(since)
+    }
+}
+
+impl Studio {
+    /// The studio of a floor plan.
+    ///
+    /// # Errors
+    /// [`BusError`].
+    pub fn new(
+        meshes: Arc<MeshLibrary>,
+        layout: Arc<Layout>,
+        threads: usize,
+        bus: &dyn Transport,
+    ) -> Result<Self, BusError> {
+        Ok(Self {
+            scene: Scene::new(meshes, &layout),
+            renderer: CpuRenderer::new(threads),
+            layout,
+            rig: CameraRig::default(),
+            spectator: Post::new(bus, CameraId::Spectator(0), SPECTATOR_EVERY)?,
+            egocentric: Post::new(bus, CameraId::Egocentric(0), EGOCENTRIC_EVERY)?,
+        })
+    }
+
+    /// Renders what `desk` is given, until it is closed.
+    ///
+    /// # Errors
+    /// [`BusError`].
+    pub fn run(mut self, desk: &Desk) -> Result<(), BusError> {
+        while let Some(moment) = desk.take() {
+            self.shoot(&moment)?;
+        }
+        Ok(())
+    }
+
+    fn shoot(&mut self, moment: &Moment) -> Result<(), BusError> {
+        let spectator = self.spectator.due();
+        let egocentric = self.egocentric.due();
+        if spectator.is_none() && egocentric.is_none() {
+            return Ok(());
+        }
+        self.set_up(moment);
+        if let (Some(since), Some(standing)) = (spectator, moment.bodies.first()) {
+            let camera = self.rig.follow(standing, &self.layout, since.as_secs_f32().min(0.5), SPECTATOR_SIZE);
+            let planes = [Plane::Color];
+            publish(&mut self.renderer, &self.scene, &camera, moment, &planes, &mut *self.spectator.publisher)?;
+        }
+        if egocentric.is_some()
+            && let Some(camera) = moment.egocentric(0, EGOCENTRIC_SIZE, EGOCENTRIC_SIZE)
+        {
+            publish(&mut self.renderer, &self.scene, &camera, moment, &Plane::ALL, &mut *self.egocentric.publisher)?;
+        }
+        Ok(())
+    }
+
+    fn set_up(&mut self, moment: &Moment) {
+        self.scene.set_instances(&moment.instances);
+        self.scene.set_highlights(&moment.highlights);
+        for (room, lit) in cohabit_cdf::RoomId::ALL.into_iter().zip(moment.lit) {
+            self.scene.set_lights(room, lit);
+        }
+    }
+}
+
+/// Renders a frame straight into the sample that is sent.
+fn publish(
+    renderer: &mut CpuRenderer,
+    scene: &Scene,
+    camera: &Camera,
+    moment: &Moment,
+    planes: &[Plane],
+    publisher: &mut dyn Publisher,
+) -> Result<(), BusError> {
+    let layout = FrameLayout::new(camera.width, camera.height, planes);
+    publisher.send(moment.tick, layout.bytes(), &mut |payload| {
+        let began = monotonic_nanos();
+        let (header, [color, depth, normals, ids]) = layout.split_mut(payload);
+        renderer.render(
+            scene,
+            camera,
+            &mut Planes {
+                color,
+                depth_m: depth.map(bytemuck::cast_slice_mut),
+                normals: normals.map(bytemuck::cast_slice_mut),
+                ids: ids.map(bytemuck::cast_slice_mut),
+            },
+        );
+        *header = FrameHeader {
+            width: camera.width,
+            height: camera.height,
+            planes: layout.plane_bits(),
+            body: 0,
+            position_m: camera.position_m,
+            yaw_rad: camera.yaw_rad,
+            pitch_rad: camera.pitch_rad,
+            fov_y_rad: camera.fov_y_rad,
+            render_nanos: monotonic_nanos() - began,
+            command: moment.command,
+            seen_nanos: moment.seen_nanos,
+            reserved: [0; 8],
+        };
+    })?;
+    Ok(())
+}

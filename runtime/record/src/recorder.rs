@@ -1,0 +1,135 @@
+//! The recorder: a peer that writes down what passes on the bus.
+
+use std::{
+    path::Path,
+    sync::atomic::{AtomicBool, Ordering},
+    time::{Duration, Instant, SystemTime, UNIX_EPOCH},
+};
+
+use cohabit_bus::{
+    BusError, Listener, Sample, Subscriber, Topic, Transport, Wake,
+    message::{self, DialogView, EventMessage, Malformed, MissionMessage, TickView},
+};
+
+use crate::{
+    entry::{DialogEntry, EventEntry, SessionEntry, TickEntry},
+    log::LogError,
+    writer::LogWriter,
+};
+
+/// The longest that an entry stays in this process alone.
+const FLUSH_EVERY: Duration = Duration::from_millis(100);
+
+/// Why recording ended early.
+#[derive(Debug, thiserror::Error)]
+pub enum RecordError {
+    /// The bus failed.
+    #[error(transparent)]
+    Bus(#[from] BusError),
+    /// The log failed.
+    #[error(transparent)]
+    Log(#[from] LogError),
+    /// A peer sent nonsense.
+    #[error(transparent)]
+    Malformed(#[from] Malformed),
+}
+
+/// Records one session.
+pub struct Recorder {
+    mission: Box<dyn Subscriber>,
+    ticks: Box<dyn Subscriber>,
+    events: Box<dyn Subscriber>,
+    dialog: Box<dyn Subscriber>,
+    listener: Box<dyn Listener>,
+    lost: u64,
+}
+
+impl Recorder {
+    /// Subscribes to all that is recorded.
+    ///
+    /// # Errors
+    /// [`BusError`].
+    pub fn new(bus: &dyn Transport) -> Result<Self, BusError> {
+        Ok(Self {
+            mission: bus.subscriber(Topic::Mission)?,
+            ticks: bus.subscriber(Topic::Ticks)?,
+            events: bus.subscriber(Topic::Events)?,
+            dialog: bus.subscriber(Topic::Dialog)?,
+            listener: bus.listener(Wake::State)?,
+            lost: 0,
+        })
+    }
+
+    /// Records until `stop`, then ends the log. Writes nothing if no simulator ever came.
+    ///
+    /// # Errors
+    /// [`RecordError`].
+    pub fn run(mut self, session: &str, path: &Path, stop: &AtomicBool) -> Result<(), RecordError> {
+        let Some(mission) = self.wait_for_mission(stop)? else { return Ok(()) };
+        let mut log = LogWriter::create(path, &SessionEntry::new(session, &mission), wall_nanos())?;
+        let mut flushed = Instant::now();
+        while !stop.load(Ordering::Relaxed) {
+            self.listener.wait(FLUSH_EVERY / 2)?;
+            self.drain(&mut log)?;
+            if flushed.elapsed() >= FLUSH_EVERY {
+                log.flush()?;
+                flushed = Instant::now();
+            }
+        }
+        self.drain(&mut log)?;
+        log.finish()?;
+        Ok(())
+    }
+
+    fn wait_for_mission(&mut self, stop: &AtomicBool) -> Result<Option<MissionMessage>, RecordError> {
+        while !stop.load(Ordering::Relaxed) {
+            if let Some(sample) = self.mission.latest()? {
+                return Ok(Some(MissionMessage::read(sample.payload())?));
+            }
+            self.listener.wait(FLUSH_EVERY)?;
+        }
+        Ok(None)
+    }
+
+    fn drain(&mut self, log: &mut LogWriter) -> Result<(), RecordError> {
+        let now = wall_nanos();
+        for_each(&mut *self.ticks, |sample| {
+            log.tick(&TickEntry::new(sample.envelope().tick, TickView::new(sample.payload())?))?;
+            Ok(())
+        })?;
+        for_each(&mut *self.events, |sample| {
+            let event: EventMessage = message::read(sample.payload())?;
+            if let Some(entry) = EventEntry::new(sample.envelope().tick, &event) {
+                log.event(&entry, now)?;
+            }
+            Ok(())
+        })?;
+        for_each(&mut *self.dialog, |sample| {
+            if let Some(entry) = DialogEntry::new(sample.envelope(), DialogView::new(sample.payload())?) {
+                log.dialog(&entry, now)?;
+            }
+            Ok(())
+        })?;
+        let lost = self.ticks.lost() + self.events.lost() + self.dialog.lost();
+        if lost > self.lost {
+            tracing::error!("the log misses {} messages: the disk is too slow", lost - self.lost);
+            self.lost = lost;
+        }
+        Ok(())
+    }
+}
+
+fn for_each(
+    subscriber: &mut dyn Subscriber,
+    mut take: impl FnMut(&Sample) -> Result<(), RecordError>,
+) -> Result<(), RecordError> {
+    while let Some(sample) = subscriber.receive()? {
+        take(&sample)?;
+    }
+    Ok(())
+}
+
+fn wall_nanos() -> u64 {
+    let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+    u64::try_from(since.as_nanos()).unwrap_or(u64::MAX)
+}

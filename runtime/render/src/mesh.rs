@@ -1,0 +1,156 @@
+//! Meshes as the rasteriser wants them: corners, triangles, surfaces, and pieces that come and go.
+
+use core::ops::Range;
+
+use cohabit_cdf::model::When;
+use glam::Vec3;
+
+use crate::kit::Solid;
+use crate::pattern::Pattern;
+
+/// A box along the axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Aabb {
+    /// Its least coordinates, m.
+    pub min: Vec3,
+    /// Its greatest coordinates, m.
+    pub max: Vec3,
+}
+
+impl Aabb {
+    /// What holds nothing: every union with it is the other.
+    pub const EMPTY: Self = Self { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
+
+    /// The least box around both.
+    #[must_use]
+    pub fn union(self, other: Self) -> Self {
+        Self { min: self.min.min(other.min), max: self.max.max(other.max) }
+    }
+
+    /// The least box around this and a point.
+    #[must_use]
+    pub fn with(self, point: Vec3) -> Self {
+        Self { min: self.min.min(point), max: self.max.max(point) }
+    }
+
+    /// Its extent along each axis, m; zero where it is empty.
+    #[must_use]
+    pub fn size(self) -> Vec3 {
+        (self.max - self.min).max(Vec3::ZERO)
+    }
+
+    /// Its middle.
+    #[must_use]
+    pub fn center(self) -> Vec3 {
+        (self.min + self.max) * 0.5
+    }
+
+    /// Its eight corners.
+    #[must_use]
+    pub fn corners(self) -> [Vec3; 8] {
+        core::array::from_fn(|corner| {
+            let pick = |axis: usize| if corner >> axis & 1 == 0 { self.min[axis] } else { self.max[axis] };
+            Vec3::new(pick(0), pick(1), pick(2))
+        })
+    }
+}
+
+/// Where a surface's colour comes from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Paint {
+    /// Always this linear light.
+    Fixed(Vec3),
+    /// The instance's tint.
+    Tint,
+    /// The colour of what fills the instance.
+    Fluid,
+}
+
+/// The look of some triangles: paint, pattern, and how the pattern lies on them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Surface {
+    /// Its colour.
+    pub paint: Paint,
+    /// Its pattern.
+    pub pattern: Pattern,
+    /// The direction in which the pattern's first coordinate grows, and its value at the origin, m.
+    pub u: (Vec3, f32),
+    /// The same for the second coordinate.
+    pub v: (Vec3, f32),
+}
+
+/// Triangles that are drawn, and move, together.
+#[derive(Clone, Debug)]
+pub(crate) struct Piece {
+    /// The state in which alone they are drawn.
+    pub when: Option<When>,
+    /// The joint that moves them.
+    pub joint: Option<u8>,
+    /// Their corners.
+    pub corners: Range<u32>,
+    /// Which triangles.
+    pub triangles: Range<u32>,
+}
+
+/// Everything there is to draw of one model at one level of detail.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Mesh {
+    /// Corners, m.
+    pub positions: Vec<Vec3>,
+    /// Unit normals at the corners.
+    pub normals: Vec<Vec3>,
+    /// How much of the surrounding light reaches each corner, 0 to 1.
+    pub ambient: Vec<f32>,
+    /// Three corners each, counter-clockwise seen from outside.
+    pub triangles: Vec<[u32; 3]>,
+    /// The surface of each triangle.
+    pub surface_of: Vec<u16>,
+    /// All surfaces.
+    pub surfaces: Vec<Surface>,
+    /// All pieces.
+    pub pieces: Vec<Piece>,
+}
+
+impl Mesh {
+    /// Starts a piece; what is pushed until [`Self::end_piece`] belongs to it.
+    pub(crate) fn begin_piece(&mut self, when: Option<When>, joint: Option<u8>) {
+        let (corner, triangle) = (self.positions.len() as u32, self.triangles.len() as u32);
+        self.pieces.push(Piece { when, joint, corners: corner..corner, triangles: triangle..triangle });
+    }
+
+    /// Ends the piece that was begun last.
+    pub(crate) fn end_piece(&mut self) {
+        if let Some(piece) = self.pieces.last_mut() {
+            piece.corners.end = self.positions.len() as u32;
+            piece.triangles.end = self.triangles.len() as u32;
+        }
+    }
+
+    /// Adds a solid; `surface` says for each triangle's outward direction which surface it has.
+    pub(crate) fn push(&mut self, solid: &Solid, mut surface: impl FnMut(Vec3) -> Surface) {
+        let base = self.positions.len() as u32;
+        self.positions.extend_from_slice(&solid.positions);
+        self.normals.extend_from_slice(&solid.normals);
+        self.ambient.resize(self.positions.len(), 1.0);
+        for triangle in &solid.triangles {
+            let [a, b, c] = triangle.map(|corner| solid.positions[corner as usize]);
+            let index = self.surface_index(surface((b - a).cross(c - a)));
+            self.triangles.push(triangle.map(|corner| corner + base));
+            self.surface_of.push(index);
+        }
+    }
+
+    fn surface_index(&mut self, surface: Surface) -> u16 {
+        let found = self.surfaces.iter().rposition(|known| *known == surface);
+        found.unwrap_or_else(|| {
+            self.surfaces.push(surface);
+            self.surfaces.len() - 1
+        }) as u16
+    }
+
+    /// The box around a piece's corners.
+    pub(crate) fn piece_bounds(&self, piece: &Piece) -> Aabb {
+        let corners = &self.positions[piece.corners.start as usize..piece.corners.end as usize];
+        corners.iter().fold(Aabb::EMPTY, |bounds, corner| bounds.with(*corner))
+    }
+}

@@ -1,0 +1,365 @@
+//! Procedural patterns: wood grain, bricks, tiles, weave. Each is painted once into a small repeating picture with
+//! coarser copies, so that far surfaces neither shimmer nor cost more.
+//!
+//! A pattern modulates a surface's colour; it never knows which colour that is.
+
+use std::sync::OnceLock;
+
+use crate::noise::{cells, fractal, value};
+
+/// How a surface looks beyond its colour.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+#[repr(u8)]
+pub(crate) enum Pattern {
+    /// Matt.
+    Plain,
+    /// Letters: matt and without shadow tricks.
+    Ink,
+    /// A soft highlight.
+    Plastic,
+    /// Brushed, mirrors the room a little.
+    Metal,
+    /// Grain along `u`.
+    Wood,
+    /// A sharp highlight.
+    Glass,
+    /// A bright highlight.
+    Ceramic,
+    /// A weave.
+    Fabric,
+    /// Fibres, faintly.
+    Paper,
+    /// Shines by itself.
+    Glow,
+    /// Courses of bricks.
+    Brick,
+    /// Square tiles with joints.
+    Tile,
+    /// Short pile.
+    Carpet,
+    /// Veins.
+    Leaf,
+    /// Speckled.
+    Food,
+    /// A painted wall.
+    Wall,
+    /// Vertical boards, for the lower part of walls.
+    Panels,
+    /// Floor boards along `u`.
+    Planks,
+    /// A poured floor.
+    Concrete,
+    /// Square ceiling tiles in a grid.
+    Ceiling,
+    /// A lamp: shines while its room is lit.
+    Lamp,
+    /// What is seen through a window to the outside.
+    Sky,
+}
+
+/// How light plays on a pattern.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Gloss {
+    /// Strength of the highlight.
+    pub shine: f32,
+    /// Its sharpness: how often the cosine is squared.
+    pub squarings: u8,
+    /// How much of the surroundings it mirrors.
+    pub mirror: f32,
+    /// Whether the highlight takes the surface's own colour, as on metal.
+    pub colored: bool,
+}
+
+impl Pattern {
+    const COUNT: usize = 22;
+
+    /// Whether it has a picture.
+    pub(crate) const fn is_textured(self) -> bool {
+        !matches!(
+            self,
+            Self::Plain | Self::Ink | Self::Plastic | Self::Glass | Self::Ceramic | Self::Glow | Self::Lamp | Self::Sky
+        )
+    }
+
+    /// The length of its picture's side, m.
+    const fn period_m(self) -> f32 {
+        match self {
+            Self::Wood => 0.8,
+            Self::Fabric => 0.08,
+            Self::Paper | Self::Food | Self::Leaf => 0.16,
+            Self::Metal => 0.3,
+            Self::Brick => 0.9,
+            Self::Tile => 1.2,
+            Self::Carpet => 0.5,
+            Self::Panels => 0.4,
+            Self::Planks => 2.4,
+            Self::Concrete => 3.0,
+            Self::Ceiling => 1.2,
+            _ => 2.0,
+        }
+    }
+
+    /// How light plays on it.
+    pub(crate) const fn gloss(self) -> Gloss {
+        let (shine, squarings, mirror, colored) = match self {
+            Self::Plastic => (0.22, 5, 0.03, false),
+            Self::Metal => (0.55, 5, 0.42, true),
+            Self::Wood => (0.10, 4, 0.0, false),
+            Self::Glass => (0.9, 7, 0.22, false),
+            Self::Ceramic => (0.55, 6, 0.08, false),
+            Self::Food => (0.12, 4, 0.0, false),
+            Self::Leaf => (0.08, 3, 0.0, false),
+            Self::Tile => (0.12, 5, 0.05, false),
+            Self::Planks => (0.12, 4, 0.03, false),
+            Self::Concrete => (0.05, 3, 0.0, false),
+            Self::Panels => (0.06, 4, 0.0, false),
+            _ => (0.0, 0, 0.0, false),
+        };
+        Gloss { shine, squarings, mirror, colored }
+    }
+
+    /// Its picture at a place of the unit square, which repeats: a factor on each channel, 1 on average or so.
+    fn paint(self, u: f32, v: f32) -> [f32; 3] {
+        let grey = |g: f32| [g, g, g];
+        match self {
+            Self::Wood => grain(u, v, 0),
+            Self::Fabric => {
+                let weave = wave(u * 24.0) * wave(v * 24.0 + if (u * 24.0) as i32 % 2 == 0 { 0.5 } else { 0.0 });
+                grey(0.86 + 0.2 * weave + 0.12 * fractal(u, v, 16, 3, 11))
+            }
+            Self::Paper => grey(0.97 + 0.06 * fractal(u, v, 12, 3, 5)),
+            Self::Food => {
+                let spots = fractal(u, v, 9, 3, 21);
+                [0.86 + 0.28 * spots, 0.84 + 0.3 * spots, 0.82 + 0.32 * spots]
+            }
+            Self::Leaf => {
+                let vein = (wave(u * 10.0 + v * 10.0) * 0.5 + 0.5).max(wave(u * 10.0 - v * 10.0) * 0.5 + 0.5);
+                let tone = 0.8 + 0.22 * vein + 0.25 * (fractal(u, v, 6, 3, 31) - 0.5);
+                [tone * 0.97, tone, tone * 0.93]
+            }
+            Self::Metal => grey(0.93 + 0.14 * value(u * 4.0, v * 128.0, 4, 128, 41)),
+            Self::Brick => brick(u, v),
+            Self::Tile => tile(u, v),
+            Self::Carpet => {
+                let pile = value(u * 128.0, v * 128.0, 128, 128, 51);
+                let tone = 0.74 + 0.34 * pile + 0.3 * (fractal(u, v, 6, 4, 52) - 0.5);
+                grey(tone + 0.09)
+            }
+            Self::Wall => grey(0.965 + 0.07 * fractal(u, v, 6, 5, 61)),
+            Self::Panels => {
+                let board = (u * 4.0).fract();
+                let groove = smooth(0.0, 0.035, board) * smooth(0.0, 0.02, 1.0 - board);
+                let lip = 1.0 + 0.05 * (1.0 - smooth(0.02, 0.09, board));
+                grey((0.68 + 0.32 * groove) * lip * (0.985 + 0.03 * fractal(u, v, 8, 3, 71)))
+            }
+            Self::Planks => planks(u, v),
+            Self::Concrete => {
+                let blotch = fractal(u, v, 4, 5, 81) - 0.5;
+                let speck = value(u * 256.0, v * 256.0, 256, 256, 82) - 0.5;
+                grey(1.0 + 0.2 * blotch + 0.07 * speck)
+            }
+            Self::Ceiling => ceiling(u, v),
+            _ => grey(1.0),
+        }
+    }
+}
+
+fn smooth(from: f32, to: f32, x: f32) -> f32 {
+    let t = ((x - from) / (to - from)).clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
+}
+
+/// A cheap even wave of period 1 between -1 and 1.
+fn wave(x: f32) -> f32 {
+    let t = (x - x.floor()) * 2.0 - 1.0;
+    1.0 - 4.0 * t.abs() * (2.0 - t.abs()) * 0.5
+}
+
+fn grain(u: f32, v: f32, seed: u32) -> [f32; 3] {
+    let bend = fractal(u, v, 3, 3, seed + 1);
+    let rings = value(u * 2.0, v * 26.0 + bend * 5.0, 2, 64, seed + 2);
+    let fine = value(u * 10.0, v * 120.0, 10, 120, seed + 3);
+    let tone = 0.82 + 0.3 * rings * (0.5 + 0.5 * bend) + 0.1 * fine;
+    let warm = 0.06 * (rings - 0.5);
+    [tone + warm * 0.4, tone, tone - warm]
+}
+
+fn planks(u: f32, v: f32) -> [f32; 3] {
+    let rows = 16.0;
+    let row = (v * rows).floor();
+    let shift = cells(row as i32, 7, 91);
+    let along = (u * 2.0 + shift).rem_euclid(2.0);
+    let plank = along.floor() as i32;
+    let (x, y) = (along.fract(), (v * rows).fract());
+    let gap = smooth(0.0, 0.0035, x.min(1.0 - x)) * smooth(0.0, 0.035, y.min(1.0 - y));
+    let own = cells(row as i32, plank, 92);
+    let wood = grain((u + own).fract(), (v * 0.75 + own * 3.0).fract(), 93);
+    let tone = (0.86 + 0.26 * own) * (0.5 + 0.5 * gap);
+    wood.map(|channel| channel * tone)
+}
+
+fn brick(u: f32, v: f32) -> [f32; 3] {
+    let (columns, rows) = (4.0, 12.0);
+    let row = (v * rows).floor();
+    let x = u * columns + if row as i32 % 2 == 0 { 0.5 } else { 0.0 };
+    let (column, fx, fy) = (x.rem_euclid(columns).floor() as i32, x.fract(), (v * rows).fract());
+    let rough = (fractal(u, v, 24, 3, 101) - 0.5) * 0.02;
+    let inside = smooth(0.012, 0.035, fx.min(1.0 - fx) + rough) * smooth(0.04, 0.11, fy.min(1.0 - fy) + rough * 3.0);
+    let own = cells(column, row as i32, 102);
+    let warm = cells(column, row as i32, 103) - 0.5;
+    let tone = 0.78 + 0.34 * own + 0.3 * (fractal(u, v, 24, 4, 104) - 0.5);
+    let lit = 1.0 + 0.12 * smooth(0.75, 0.92, fy) - 0.1 * smooth(0.25, 0.08, fy);
+    let fired = [tone * (1.0 + 0.12 * warm) * lit, tone * (1.0 - 0.06 * warm) * lit, tone * (1.0 - 0.1 * warm) * lit];
+    let mortar = 0.95 + 0.2 * (fractal(u, v, 32, 2, 105) - 0.5);
+    let joint = [mortar * 0.92, mortar * 1.12, mortar * 1.25];
+    core::array::from_fn(|channel| joint[channel] + (fired[channel] - joint[channel]) * inside)
+}
+
+fn tile(u: f32, v: f32) -> [f32; 3] {
+    let count = 3.0;
+    let (x, y) = (u * count, v * count);
+    let (fx, fy) = (x.fract(), y.fract());
+    let edge = fx.min(1.0 - fx).min(fy.min(1.0 - fy));
+    let face = smooth(0.008, 0.02, edge);
+    let own = cells(x as i32, y as i32, 111) - 0.5;
+    let tone = 1.0 + 0.06 * own + 0.07 * (fractal(u, v, 9, 4, 112) - 0.5);
+    let rim = 1.0 - 0.06 * (1.0 - smooth(0.02, 0.05, edge));
+    let g = 0.66 + (tone * rim - 0.66) * face;
+    [g, g, g]
+}
+
+fn ceiling(u: f32, v: f32) -> [f32; 3] {
+    let (fx, fy) = ((u * 2.0).fract(), (v * 2.0).fract());
+    let edge = fx.min(1.0 - fx).min(fy.min(1.0 - fy));
+    let speck = value(u * 200.0, v * 200.0, 200, 200, 121);
+    let pores = 1.0 - 0.1 * smooth(0.78, 0.95, speck);
+    let bar = smooth(0.014, 0.02, edge);
+    let shade = 1.0 - 0.22 * (1.0 - smooth(0.02, 0.045, edge));
+    let g = 1.0 + (0.98 * pores * shade - 1.0) * bar;
+    [g, g, g]
+}
+
+/// Texels along a side of the finest picture.
+const SIDE: usize = 256;
+/// Copies, each half as fine: down to 2 by 2.
+const LEVELS: usize = 8;
+
+/// One picture and its coarser copies, one after another; texels hold factors times 128.
+pub(crate) struct Picture {
+    texels: Vec<[u8; 4]>,
+    starts: [usize; LEVELS],
+    per_m: f32,
+}
+
+/// All pictures, by pattern.
+pub(crate) struct Pictures {
+    all: Vec<Option<Picture>>,
+}
+
+impl Pictures {
+    /// The pictures, painted on first use.
+    pub(crate) fn get() -> &'static Self {
+        static ALL: OnceLock<Pictures> = OnceLock::new();
+        ALL.get_or_init(|| {
+            let patterns = [
+                Pattern::Metal,
+                Pattern::Wood,
+                Pattern::Fabric,
+                Pattern::Paper,
+                Pattern::Brick,
+                Pattern::Tile,
+                Pattern::Carpet,
+                Pattern::Leaf,
+                Pattern::Food,
+                Pattern::Wall,
+                Pattern::Panels,
+                Pattern::Planks,
+                Pattern::Concrete,
+                Pattern::Ceiling,
+            ];
+            let mut all: Vec<Option<Picture>> = (0..Pattern::COUNT).map(|_| None).collect();
+            for pattern in patterns {
+                all[pattern as usize] = Some(Picture::paint(pattern));
+            }
+            Self { all }
+        })
+    }
+
+    pub(crate) fn of(&self, pattern: Pattern) -> Option<&Picture> {
+        self.all[pattern as usize].as_ref()
+    }
+}
+
+impl Picture {
+    fn paint(pattern: Pattern) -> Self {
+        let mut finest = Vec::with_capacity(SIDE * SIDE);
+        for y in 0..SIDE {
+            for x in 0..SIDE {
+                let place = |i: usize| (i as f32 + 0.5) / SIDE as f32;
+                let factors = pattern.paint(place(x), place(y)).map(|f| (f * 128.0 + 0.5).clamp(0.0, 255.0) as u8);
+                finest.push([factors[0], factors[1], factors[2], 0]);
+            }
+        }
+        let mut picture = Self { texels: finest, starts: [0; LEVELS], per_m: SIDE as f32 / pattern.period_m() };
+        for level in 1..LEVELS {
+            let (start, side) = (picture.starts[level - 1], SIDE >> (level - 1));
+            picture.starts[level] = picture.texels.len();
+            for y in (0..side).step_by(2) {
+                for x in (0..side).step_by(2) {
+                    let texel = |dx: usize, dy: usize| picture.texels[start + (y + dy) * side + x + dx];
+                    let four = [texel(0, 0), texel(1, 0), texel(0, 1), texel(1, 1)];
+                    let mean = |c: usize| ((four.iter().map(|t| u32::from(t[c])).sum::<u32>() + 2) / 4) as u8;
+                    let texel = [mean(0), mean(1), mean(2), 0];
+                    picture.texels.push(texel);
+                }
+            }
+        }
+        picture
+    }
+
+    /// Which copy suits a pixel that covers `footprint_m` of the surface, and that copy's texels a metre.
+    #[inline]
+    pub(crate) fn level(&self, footprint_m: f32) -> Level<'_> {
+        let texels = footprint_m * self.per_m;
+        // The exponent of a float is the floor of its logarithm.
+        let level = (((texels * 1.3).max(1.0).to_bits() >> 23) as usize - 127).min(LEVELS - 1);
+        let side = SIDE >> level;
+        let start = self.starts[level];
+        Level {
+            texels: &self.texels[start..start + side * side],
+            shift: 8 - level as u32,
+            per_m: self.per_m / (1 << level) as f32,
+        }
+    }
+}
+
+/// One copy of a picture.
+#[derive(Clone, Copy)]
+pub(crate) struct Level<'a> {
+    texels: &'a [[u8; 4]],
+    shift: u32,
+    per_m: f32,
+}
+
+impl Level<'_> {
+    /// The factors at a place, smoothly between texels.
+    #[inline]
+    pub(crate) fn at(&self, u_m: f32, v_m: f32) -> [f32; 3] {
+        // A large even offset keeps the coordinates positive, so that truncation is the floor.
+        let x = u_m * self.per_m + 65_535.5;
+        let y = v_m * self.per_m + 65_535.5;
+        let (ix, iy) = (x as u32, y as u32);
+        let (fx, fy) = (x - ix as f32, y - iy as f32);
+        let mask = (1 << self.shift) - 1;
+        let (x0, x1) = ((ix & mask) as usize, ((ix + 1) & mask) as usize);
+        let (y0, y1) = (((iy & mask) << self.shift) as usize, (((iy + 1) & mask) << self.shift) as usize);
+        let (a, b, c, d) = (self.texels[y0 + x0], self.texels[y0 + x1], self.texels[y1 + x0], self.texels[y1 + x1]);
+        let weights = [(1.0 - fx) * (1.0 - fy), fx * (1.0 - fy), (1.0 - fx) * fy, fx * fy].map(|w| w * (1.0 / 128.0));
+        core::array::from_fn(|i| {
+            f32::from(a[i]) * weights[0]
+                + f32::from(b[i]) * weights[1]
+                + f32::from(c[i]) * weights[2]
+                + f32::from(d[i]) * weights[3]
+        })
+    }
+}

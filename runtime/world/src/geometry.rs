@@ -1,0 +1,197 @@
+//! Flat geometry: oriented rectangles, segments, angles. Never knows what they stand for.
+
+use glam::{Quat, Vec2, Vec3};
+use serde::{Deserialize, Serialize};
+
+/// `tan(22.5°)`: half a side of the octagon around a unit circle.
+const OCTAGON_HALF_SIDE: f32 = 0.414_213_57;
+
+/// Where something is, and which way it is turned.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
+pub(crate) struct Pose {
+    /// Its origin in the world, m.
+    pub position: Vec3,
+    /// World from object.
+    pub rotation: Quat,
+}
+
+impl Pose {
+    /// A pose turned about `z` alone.
+    pub fn level(position: Vec3, yaw_rad: f32) -> Self {
+        Self { position, rotation: turn(yaw_rad) }
+    }
+
+    /// A point given in this frame, in the world.
+    pub fn point(&self, local: Vec3) -> Vec3 {
+        self.position + self.rotation * local
+    }
+
+    /// The heading of its `x` axis, rad.
+    pub fn yaw_rad(&self) -> f32 {
+        heading((self.rotation * Vec3::X).truncate())
+    }
+}
+
+/// The rotation about `z` by this yaw.
+pub(crate) fn turn(yaw_rad: f32) -> Quat {
+    Quat::from_xyzw(0.0, 0.0, libm::sinf(yaw_rad * 0.5), libm::cosf(yaw_rad * 0.5))
+}
+
+/// The unit vector of a heading.
+pub(crate) fn direction(yaw_rad: f32) -> Vec2 {
+    Vec2::new(libm::cosf(yaw_rad), libm::sinf(yaw_rad))
+}
+
+/// The heading of a vector, rad.
+pub(crate) fn heading(vector: Vec2) -> f32 {
+    libm::atan2f(vector.y, vector.x)
+}
+
+/// The same angle in `(-π, π]`.
+pub(crate) fn wrap(angle_rad: f32) -> f32 {
+    use std::f32::consts::{PI, TAU};
+    let angle = libm::fmodf(angle_rad, TAU);
+    if angle > PI {
+        angle - TAU
+    } else if angle <= -PI {
+        angle + TAU
+    } else {
+        angle
+    }
+}
+
+/// A rectangle on the floor, turned.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Footprint {
+    /// Its middle, m.
+    pub center: Vec2,
+    /// Half its extent along its own axes, m.
+    pub half: Vec2,
+    /// The direction of its own `x`.
+    pub axis: Vec2,
+}
+
+impl Footprint {
+    /// A rectangle at `center`, turned by `yaw_rad`.
+    pub fn new(center: Vec2, half: Vec2, yaw_rad: f32) -> Self {
+        Self { center, half, axis: direction(yaw_rad) }
+    }
+
+    /// A point of the floor in its own frame.
+    pub fn local(&self, point: Vec2) -> Vec2 {
+        let from = point - self.center;
+        Vec2::new(from.dot(self.axis), from.dot(self.axis.perp()))
+    }
+
+    /// A point of its own frame on the floor.
+    pub fn world(&self, local: Vec2) -> Vec2 {
+        self.center + self.axis * local.x + self.axis.perp() * local.y
+    }
+
+    /// The point of the rectangle nearest to `point`.
+    pub fn closest(&self, point: Vec2) -> Vec2 {
+        self.world(self.local(point).clamp(-self.half, self.half))
+    }
+
+    /// How far outside it `point` is; 0 inside.
+    pub fn distance(&self, point: Vec2) -> f32 {
+        (self.local(point).abs() - self.half).max(Vec2::ZERO).length()
+    }
+
+    /// The corners, counter-clockwise.
+    pub fn corners(&self) -> [Vec2; 4] {
+        let Vec2 { x, y } = self.half;
+        [Vec2::new(-x, -y), Vec2::new(x, -y), Vec2::new(x, y), Vec2::new(-x, y)].map(|corner| self.world(corner))
+    }
+
+    /// The outline of all points within the octagon around a circle of `radius`, counter-clockwise.
+    pub fn inflated(&self, radius: f32) -> [Vec2; 8] {
+        let outer = self.half + radius;
+        let inner = self.half + radius * OCTAGON_HALF_SIDE;
+        [
+            (outer.x, -inner.y),
+            (outer.x, inner.y),
+            (inner.x, outer.y),
+            (-inner.x, outer.y),
+            (-outer.x, inner.y),
+            (-outer.x, -inner.y),
+            (-inner.x, -outer.y),
+            (inner.x, -outer.y),
+        ]
+        .map(|(x, y)| self.world(Vec2::new(x, y)))
+    }
+
+    /// Whether it overlaps another, by their separating axes.
+    pub fn overlaps(&self, other: &Self) -> bool {
+        let (mine, theirs) = (self.corners(), other.corners());
+        [self.axis, self.axis.perp(), other.axis, other.axis.perp()].into_iter().all(|axis| {
+            let (low, high) = extent(&mine, axis);
+            let (other_low, other_high) = extent(&theirs, axis);
+            low < other_high && other_low < high
+        })
+    }
+
+    /// The same rectangle, larger by `margin` on every side.
+    pub fn grown(&self, margin: f32) -> Self {
+        Self { half: self.half + margin, ..*self }
+    }
+
+    /// Whether the segment from `a` to `b` touches it.
+    pub fn cut_by(&self, a: Vec2, b: Vec2) -> bool {
+        let (a, b) = (self.local(a), self.local(b));
+        let along = b - a;
+        let (mut enter, mut leave) = (0.0_f32, 1.0_f32);
+        for axis in 0..2 {
+            if along[axis].abs() < 1e-9 {
+                if a[axis].abs() > self.half[axis] {
+                    return false;
+                }
+                continue;
+            }
+            let one = (-self.half[axis] - a[axis]) / along[axis];
+            let two = (self.half[axis] - a[axis]) / along[axis];
+            enter = enter.max(one.min(two));
+            leave = leave.min(one.max(two));
+        }
+        enter <= leave
+    }
+}
+
+fn extent(points: &[Vec2], axis: Vec2) -> (f32, f32) {
+    points.iter().map(|point| point.dot(axis)).fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), at| {
+        (low.min(at), high.max(at))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn angles_wrap_into_one_turn() {
+        for (angle, expected) in [(0.0, 0.0), (4.0, 4.0 - std::f32::consts::TAU), (-4.0, std::f32::consts::TAU - 4.0)] {
+            assert!((wrap(angle) - expected).abs() < 1e-5, "{angle}");
+        }
+    }
+
+    #[test]
+    fn a_turned_rectangle_measures_in_its_own_frame() {
+        let print = Footprint::new(Vec2::new(1.0, 1.0), Vec2::new(1.0, 0.5), std::f32::consts::FRAC_PI_2);
+        assert!(print.distance(Vec2::new(1.0, 1.9)) < 1e-6);
+        assert!((print.distance(Vec2::new(2.0, 1.0)) - 0.5).abs() < 1e-6);
+        assert!(print.cut_by(Vec2::new(-5.0, 1.0), Vec2::new(5.0, 1.0)));
+        assert!(!print.cut_by(Vec2::new(-5.0, 2.5), Vec2::new(5.0, 2.5)));
+    }
+
+    #[test]
+    fn the_octagon_keeps_the_radius_everywhere() {
+        let print = Footprint::new(Vec2::ZERO, Vec2::new(0.4, 0.3), 0.3);
+        let outline = print.inflated(0.25);
+        for at in 0..8 {
+            let (a, b) = (outline[at], outline[(at + 1) % 8]);
+            for step in 0..=10 {
+                assert!(print.distance(a.lerp(b, step as f32 / 10.0)) > 0.2499);
+            }
+        }
+    }
+}

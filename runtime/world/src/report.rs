@@ -1,0 +1,142 @@
+//! What goes into a tick and what comes out of it.
+
+use cohabit_cdf::{Action, BodyId, ObjectId, Status};
+use serde::{Deserialize, Serialize};
+
+/// One command for one body.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
+pub struct Input {
+    /// The command's id, unique in a session.
+    pub command: u64,
+    /// Who is told.
+    pub body: BodyId,
+    /// What to do.
+    pub action: Action,
+}
+
+/// What came of one command.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub struct Outcome {
+    /// The command's id.
+    pub command: u64,
+    /// Who was told.
+    pub body: BodyId,
+    /// What came of it.
+    pub status: Status,
+    /// One short sentence for people, such as `the fridge is closed`.
+    pub detail: String,
+}
+
+/// All that one tick had to tell.
+#[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]
+pub struct Report {
+    /// Commands that ended in this tick.
+    pub outcomes: Vec<Outcome>,
+    /// What else happened, in order.
+    pub events: Vec<Event>,
+}
+
+/// How a mission ended.
+#[derive(Clone, Copy, Debug, Deserialize, Eq, PartialEq, Serialize)]
+pub enum Ending {
+    /// Every goal was met.
+    AllGoalsMet,
+    /// A hazard took the robot.
+    KilledByHazard,
+}
+
+/// What a sound is made by.
+#[derive(Clone, Copy, Debug, Deserialize, Eq, PartialEq, Serialize)]
+pub enum SoundKind {
+    /// A door, lid or drawer opens.
+    Open,
+    /// It closes.
+    Close,
+    /// A switch or button.
+    Click,
+    /// A machine starts.
+    Machine,
+    /// Something breaks.
+    Break,
+    /// A fluid runs.
+    Pour,
+    /// An alarm.
+    Alarm,
+    /// A laser or freeze ray fires.
+    Ray,
+    /// A discharge.
+    Spark,
+}
+
+/// Something that happened.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub enum Event {
+    /// A state or the place of an object changed.
+    ObjectChanged {
+        /// Which.
+        object: ObjectId,
+    },
+    /// An object came into being.
+    Spawned {
+        /// Which.
+        object: ObjectId,
+        /// The machine it came from, if one made it.
+        by: Option<ObjectId>,
+    },
+    /// An object left the world.
+    Removed {
+        /// Which.
+        object: ObjectId,
+    },
+    /// A goal was met.
+    GoalMet {
+        /// Its number in the mission.
+        id: i64,
+    },
+    /// A goal that can reset no longer holds.
+    GoalReset {
+        /// Its number in the mission.
+        id: i64,
+    },
+    /// A hidden goal was unlocked.
+    GoalShown {
+        /// Its number in the mission.
+        id: i64,
+    },
+    /// The mission ended.
+    MissionEnded {
+        /// How.
+        ending: Ending,
+    },
+    /// The mission says something.
+    Message {
+        /// What.
+        text: String,
+    },
+    /// A body points an object out.
+    Highlighted {
+        /// Who.
+        body: BodyId,
+        /// What.
+        object: ObjectId,
+    },
+    /// A body read something.
+    NoteRead {
+        /// What.
+        object: ObjectId,
+        /// What it says.
+        text: String,
+    },
+    /// A body scanned something.
+    Scanned {
+        /// What.
+        object: ObjectId,
+    },
+    /// Something can be heard.
+    Sound {
+        /// What kind.
+        kind: SoundKind,
+        /// Where from.
+        object: ObjectId,
+    },
+}
