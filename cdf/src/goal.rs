@@ -2,9 +2,14 @@
 //!
 //! Instances stay text here (`Bowl_01_1`, `Printer_3D_1_Spawned_ActionFigure_*`): what they mean is known only in a world.
 
+use std::fmt;
+
 use serde::{Deserialize, Serialize};
 
-use crate::state::{Color, Fluid, StateFlag};
+use crate::{
+    mission::flag_key,
+    state::{Color, Fluid, StateFlag},
+};
 
 /// An instance id, or a prefix with `*` that means any instance of that type.
 #[derive(Clone, Debug, Deserialize, Eq, Hash, PartialEq, Serialize)]
@@ -83,7 +88,7 @@ pub enum Predicate {
     ContainsCereal(bool),
     /// Nothing is in it, or something is.
     Empty(bool),
-    /// The mission's own condition of this name has this value in its context.
+    /// The mission's own condition of this name has this value; see [`crate::Mission::condition`] for which one it is.
     Condition(String, bool),
 }
 
@@ -172,4 +177,110 @@ pub enum Expression {
         /// The value wanted.
         value: bool,
     },
+}
+
+impl fmt::Display for InstancePattern {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+/// As missions write it: `isHot=true`, `isFilled=Milk`.
+impl fmt::Display for Predicate {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Flag(flag, value) => write!(f, "{}={value}", flag_key(*flag)),
+            Self::Filled(fluid) => write!(f, "isFilled={}", fluid.name()),
+            Self::Color(color) => write!(f, "ColorMetaDataChange={}", color.name()),
+            Self::Contains(contained) => write!(f, "Contains={contained}"),
+            Self::ContainsCereal(value) => write!(f, "ContainsCereal={value}"),
+            Self::Empty(value) => write!(f, "isEmpty={value}"),
+            Self::Condition(name, value) => write!(f, "{name}={value}"),
+        }
+    }
+}
+
+/// `Bowl_01_1: isHot=true`.
+impl fmt::Display for GoalState {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.instance, self.predicate)
+    }
+}
+
+/// In the words of missions: `Bowl_01_1: isHot=true AND NOT Bowl_01_1: isFilledWith=Milk`; inner `AND` and `OR` in
+/// brackets.
+impl fmt::Display for Expression {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::And(all) => joined(f, all, "AND"),
+            Self::Or(any) => joined(f, any, "OR"),
+            Self::Not(inner) => {
+                f.write_str("NOT ")?;
+                bracketed(f, inner)
+            }
+            Self::Flag { target, flag, value } => write!(f, "{target}: {}={value}", flag_key(*flag)),
+            Self::Contains { target, contains } => write!(f, "{target}: Contains={contains}"),
+            Self::FilledWith { target, fluid } => write!(f, "{target}: isFilledWith={}", fluid.name()),
+            Self::CanBeSeen { target, distance_m } => write!(f, "{target}: CanBeSeen={distance_m}"),
+            Self::InRange { target, distance_m } => write!(f, "{target}: IsInRange={distance_m}"),
+            Self::HasColor { target, color } => write!(f, "{target}: ColorMetaDataChange={}", color.name()),
+            Self::DinoFed { target, value } => write!(f, "{target}: DinoFed={value}"),
+            Self::IsReceptacle { target, value } => write!(f, "{target}: IsReceptacle={value}"),
+            Self::IsFull { target, value } => write!(f, "{target}: isFullOfItems={value}"),
+        }
+    }
+}
+
+fn joined(f: &mut fmt::Formatter<'_>, expressions: &[Expression], word: &str) -> fmt::Result {
+    for (index, expression) in expressions.iter().enumerate() {
+        if index > 0 {
+            write!(f, " {word} ")?;
+        }
+        bracketed(f, expression)?;
+    }
+    Ok(())
+}
+
+fn bracketed(f: &mut fmt::Formatter<'_>, expression: &Expression) -> fmt::Result {
+    match expression {
+        Expression::And(parts) | Expression::Or(parts) if parts.len() > 1 => write!(f, "({expression})"),
+        _ => write!(f, "{expression}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn bowl() -> InstancePattern {
+        InstancePattern("Bowl_01_1".to_owned())
+    }
+
+    #[test]
+    fn predicates_print_as_missions_write_them() {
+        for (predicate, expected) in [
+            (Predicate::Flag(StateFlag::Opened, false), "isOpen=false"),
+            (Predicate::Filled(Fluid::Milk), "isFilled=Milk"),
+            (Predicate::Contains(bowl()), "Contains=Bowl_01_1"),
+            (Predicate::ContainsCereal(true), "ContainsCereal=true"),
+            (Predicate::Condition("InSink".to_owned(), true), "InSink=true"),
+        ] {
+            assert_eq!(predicate.to_string(), expected);
+            let state = GoalState { instance: bowl(), predicate };
+            assert_eq!(state.to_string(), format!("Bowl_01_1: {expected}"));
+        }
+    }
+
+    #[test]
+    fn expressions_print_with_brackets_inside_alone() {
+        let hot = || Expression::Flag { target: bowl(), flag: StateFlag::Hot, value: true };
+        let near = Expression::InRange { target: bowl(), distance_m: 1.5 };
+        let either = Expression::Or(vec![near, Expression::FilledWith { target: bowl(), fluid: Fluid::Water }]);
+        let all = Expression::And(vec![hot(), Expression::Not(Box::new(hot())), either]);
+        assert_eq!(
+            all.to_string(),
+            "Bowl_01_1: isHot=true AND NOT Bowl_01_1: isHot=true AND \
+             (Bowl_01_1: IsInRange=1.5 OR Bowl_01_1: isFilledWith=Water)"
+        );
+    }
 }

@@ -14,12 +14,12 @@ mod scene;
 
 use serde::{Deserialize, Serialize};
 
+use self::{goals::Named, raw::Loose, reader::Reader};
 pub use self::{
     key::{flag_key, flag_of_key},
     problem::{Pointer, Problem, Problems, Severity},
     raw::Cdf,
 };
-use self::{goals::Named, raw::Loose, reader::Reader};
 use crate::{
     builtin,
     catalog::Catalog,
@@ -175,11 +175,12 @@ pub fn read_mission(file: &str, text: &str, catalog: &Catalog) -> Result<Checked
             return Err(Problems(reader.problems));
         }
     };
-    let mission = reader.mission(&raw);
-    if reader.problems.iter().any(|problem| problem.severity == Severity::Error) {
-        return Err(Problems(reader.problems));
+    match reader.mission(&raw) {
+        Some(mission) if reader.problems.iter().all(|problem| problem.severity == Severity::Warning) => {
+            Ok(Checked { mission, raw, warnings: reader.problems })
+        }
+        _ => Err(Problems(reader.problems)),
     }
-    Ok(Checked { mission, raw, warnings: reader.problems })
 }
 
 fn syntax(file: &str, error: &serde_json::Error) -> Problems {
@@ -196,20 +197,16 @@ fn syntax(file: &str, error: &serde_json::Error) -> Problems {
 }
 
 impl Reader<'_> {
-    fn mission(&mut self, raw: &Cdf) -> Mission {
+    /// The mission; none and a problem if there is no scene.
+    fn mission(&mut self, raw: &Cdf) -> Option<Mission> {
         let root = Pointer::default();
         self.extras(&root, raw);
         let at = root.key("scene");
-        let nothing = raw::Scene::default();
-        let scene = match self.field(&at, &raw.scene, "an object") {
-            Some(scene) => scene,
-            None => {
-                if raw.scene.misfit().is_none() {
-                    self.error(&at, "the mission has no scene", None);
-                }
-                &nothing
-            }
-        };
+        let scene = self.field(&at, &raw.scene, "an object");
+        if scene.is_none() && raw.scene.misfit().is_none() {
+            self.error(&at, "the mission has no scene", None);
+        }
+        let scene = scene?;
         let parts = self.scene(&at, scene);
         let objects = self.objects(&at.key("required_objects"), &scene.required_objects);
         let notes = self.notes(&at.key("sticky_notes"), &scene.sticky_notes);
@@ -218,7 +215,7 @@ impl Reader<'_> {
         let goals = self.goals(&root.key("task_goals"), &raw.task_goals, &named);
         let messages = self.messages(&root.key("game_interactions"), &raw.game_interactions, &goals);
         let line = |field: &Loose<String>| field.known().map(|text| text.trim().to_owned()).unwrap_or_default();
-        Mission {
+        Some(Mission {
             name: parts.name,
             goal_text: line(&raw.goal_text),
             description: line(&raw.task_description),
@@ -230,6 +227,6 @@ impl Reader<'_> {
             goals,
             conditions,
             messages,
-        }
+        })
     }
 }

@@ -5,7 +5,7 @@
 use std::{fs, path::Path};
 
 use cohabit_cdf::{
-    Catalog,
+    Catalog, Layout,
     mission::{Cdf, builtin, read_mission},
 };
 use serde_json::Value;
@@ -48,10 +48,13 @@ fn own_missions_have_no_problems() {
 #[test]
 fn real_missions_are_read_without_a_word() {
     let catalog = Catalog::builtin();
+    let plans = Layout::builtin_ids();
     for (name, text) in real_missions() {
         let checked = read_mission(&name, &text, &catalog).unwrap_or_else(|problems| panic!("{problems}"));
+        // Some layouts of the format may have no floor plan; nothing else is to be said.
+        let expected = usize::from(!plans.contains(&checked.mission.layout));
         let warnings: Vec<_> = checked.warnings.iter().map(ToString::to_string).collect();
-        assert!(warnings.is_empty(), "{}", warnings.join("\n"));
+        assert_eq!(warnings.len(), expected, "{}", warnings.join("\n"));
         let raw: Value = serde_json::from_str(&text).unwrap();
         let count = |pointer: &str| raw.pointer(pointer).and_then(Value::as_array).map_or(0, Vec::len);
         let mission = &checked.mission;

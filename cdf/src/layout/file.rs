@@ -3,7 +3,8 @@
 use serde::Deserialize;
 
 use super::{
-    Finish, Layout, LayoutError, NotePlace, Opening, OpeningKind, Placement, Room, RoomId, Viewpoint, mirror, unit_scale,
+    Finish, Layout, LayoutError, NotePlace, Opening, OpeningKind, Placement, Room, RoomId, Viewpoint, mirror,
+    unit_scale,
 };
 use crate::model::Axis;
 
@@ -80,6 +81,7 @@ impl Layout {
         for (name, file) in chain(id, files)? {
             plan.apply(name, file)?;
         }
+        plan.order_parents_first(id)?;
         plan.place_doors();
         Ok(plan)
     }
@@ -146,6 +148,21 @@ impl Layout {
                 return Err(LayoutError::NoInstance { file: file.to_owned(), instance: on.to_owned() });
             }
             replace_or_add(&mut self.placements, vec![placement], |a, b| a.instance == b.instance);
+        }
+        Ok(())
+    }
+
+    /// A variant may put an object of its base on one that only it has.
+    fn order_parents_first(&mut self, file: &str) -> Result<(), LayoutError> {
+        let mut waiting = std::mem::take(&mut self.placements);
+        while !waiting.is_empty() {
+            let placed = &self.placements;
+            let stands = |on: &String| placed.iter().any(|earlier| earlier.instance == *on);
+            let ready: Vec<_> = waiting.extract_if(.., |placement| placement.on.as_ref().is_none_or(stands)).collect();
+            if ready.is_empty() {
+                return Err(LayoutError::OnItself { file: file.to_owned(), instance: waiting.swap_remove(0).instance });
+            }
+            self.placements.extend(ready);
         }
         Ok(())
     }
@@ -262,6 +279,10 @@ viewpoint = [{ room = "Hallway", number = 1, at_m = [3.0, 1.0], yaw_deg = -90.0 
             (
                 "placement = [{ instance = \"A\", room = \"Hallway\" }, { instance = \"A\", room = \"Hallway\" }]",
                 "`A` is placed twice",
+            ),
+            (
+                "placement = [{ instance = \"Desk_01_1\", room = \"Hallway\", on = \"Apple_1\" }]",
+                "`Desk_01_1` stands on itself",
             ),
             ("base = \"Other\"", "lead back"),
             ("bass = 1", "Other.toml"),

@@ -67,7 +67,12 @@ impl Reader<'_> {
                 None
             }
         };
-        Some(StateCondition { name: name?, context, expression: expression? })
+        let name = name?;
+        let Some(expression) = expression else {
+            self.unreadable.push(name);
+            return None;
+        };
+        Some(StateCondition { name, context, expression })
     }
 
     /// Reads an object of one kind; several at once count as all of them.
@@ -75,14 +80,15 @@ impl Reader<'_> {
         let kinds: Vec<_> = entry.iter().filter(|(kind, _)| *kind != "message").collect();
         match kinds.as_slice() {
             [] => {
-                self.error(at, "the expression is empty", did_you_mean("AND", KINDS));
+                self.error(at, "the expression is empty", None);
                 None
             }
             [(kind, value)] => self.expression_of_kind(&at.key(kind), kind, value),
             several => {
                 let remedy = Some("put them into one `AND`".to_owned());
                 self.warn(at, format!("{} expressions in one are taken as all of them", several.len()), remedy);
-                let all = several.iter().filter_map(|(kind, value)| self.expression_of_kind(&at.key(kind), kind, value));
+                let all =
+                    several.iter().filter_map(|(kind, value)| self.expression_of_kind(&at.key(kind), kind, value));
                 Some(Expression::And(all.collect()))
             }
         }

@@ -5,6 +5,7 @@ use serde_json::Value;
 use super::{
     NoteRequest,
     key::{flag_keys, flag_of_key},
+    names::made,
     problem::Pointer,
     raw::{Loose, Scalar, TaskGoal, Visibility},
     reader::{Reader, did_you_mean, shape},
@@ -94,7 +95,8 @@ impl Reader<'_> {
         };
         let predicate = self.predicate(at, key.trim(), &Scalar::Text(value.trim().to_owned()), named)?;
         if let Predicate::Flag(flag, true) = predicate {
-            let class = self.catalog.class_of_instance(instance.trim_end_matches(['*', '_']));
+            // A wildcard may mean several classes.
+            let class = if instance.ends_with('*') { None } else { self.catalog.class_of_instance(made(instance)) };
             self.can_have(at, instance, class, flag);
         }
         Some(GoalState { instance: InstancePattern(instance.to_owned()), predicate })
@@ -103,6 +105,9 @@ impl Reader<'_> {
     fn predicate(&mut self, at: &Pointer, key: &str, value: &Scalar, named: &Named<'_>) -> Option<Predicate> {
         if named.conditions.iter().any(|condition| condition.name == key) {
             return Some(Predicate::Condition(key.to_owned(), self.truth_of(at, value)?));
+        }
+        if self.unreadable.iter().any(|name| name == key) {
+            return None;
         }
         match (key, flag_of_key(key)) {
             ("isFilled" | "ContainsFluid", _) => Some(Predicate::Filled(self.fluid(at, &value.text())?)),

@@ -1,6 +1,7 @@
 //! Looks up what a mission names: classes of objects, and the instances that will exist.
 
 use super::{
+    nearest::nearest,
     problem::Pointer,
     raw::{Loose, Scalar},
     reader::{Reader, did_you_mean},
@@ -9,6 +10,11 @@ use crate::catalog::ClassId;
 
 /// What stands between a machine's instance id and the class it makes.
 const SPAWNED: &str = "_Spawned_";
+
+/// What a machine made, without the machine: `Hammer_1` of `Printer_3D_1_Spawned_Hammer_1`.
+pub(super) fn made(instance: &str) -> &str {
+    instance.rsplit_once(SPAWNED).map_or(instance, |(_, made)| made)
+}
 
 impl Reader<'_> {
     /// The instance id that an entry of the mission introduces; none and a problem if it has none, an unknown class,
@@ -20,7 +26,10 @@ impl Reader<'_> {
             }
             return None;
         };
-        self.class_of(at, &name)?;
+        if self.class_of(at, &name).is_none() {
+            self.error(at, format!("unknown object `{name}`"), self.near_class(&name));
+            return None;
+        }
         if self.listed.contains(&name) {
             self.error(at, format!("there is already an object `{name}`"), None);
         } else {
@@ -29,24 +38,28 @@ impl Reader<'_> {
         Some(name)
     }
 
-    /// The class of an instance id; none and a problem if the catalogue lacks it.
-    pub fn class_of(&mut self, at: &Pointer, instance: &str) -> Option<ClassId> {
-        let made = instance.rsplit_once(SPAWNED).map_or(instance, |(_, made)| made);
-        let Some(class) = self.catalog.class_of_instance(made) else {
-            self.unknown_object(at, instance);
-            return None;
-        };
+    /// The class of an instance id, if the catalogue has it; what is no number at its end is warned of.
+    fn class_of(&mut self, at: &Pointer, instance: &str) -> Option<ClassId> {
+        let made = made(instance);
+        let class = self.catalog.class_of_instance(made)?;
         let number = made[self.catalog.class(class).id.len()..].trim_start_matches('_');
         if !number.chars().all(|c| c.is_ascii_digit()) {
             let id = self.catalog.class(class).id.clone();
-            self.warn(at, format!("`{instance}` is taken as a `{id}`: `{number}` is no number"), self.near(instance));
+            self.warn(
+                at,
+                format!("`{instance}` is taken as a `{id}`: `{number}` is no number"),
+                self.near_class(instance),
+            );
         }
         Some(class)
     }
 
     /// The class with this id, or of this instance; none and a problem if the catalogue lacks it.
     pub fn class_named(&mut self, at: &Pointer, id: &str) -> Option<String> {
-        let class = self.class_of(at, id)?;
+        let Some(class) = self.class_of(at, id) else {
+            self.error(at, format!("unknown object `{id}`"), self.near_class(id));
+            return None;
+        };
         Some(self.catalog.class(class).id.clone())
     }
 
@@ -64,8 +77,11 @@ impl Reader<'_> {
             if !self.is_class_pattern(name) {
                 self.unknown_object(at, name);
             }
-        } else if let Some(class) = self.class_of(at, name) {
-            self.unlisted(at, name, class);
+        } else {
+            match self.class_of(at, name) {
+                Some(class) => self.unlisted(at, name, class),
+                None => self.unknown_object(at, name),
+            }
         }
     }
 
@@ -77,30 +93,45 @@ impl Reader<'_> {
             || (!prefix.is_empty() && self.catalog.classes().iter().any(|class| class.id.starts_with(prefix)))
     }
 
-    /// An instance that the mission does not list must be the layout's: under its id, or as one of its class.
+    /// An instance that the mission does not list must be the layout's: under its id, or as the only one of its class.
     fn unlisted(&mut self, at: &Pointer, name: &str, class: ClassId) {
         let Some(layout) = &self.layout else { return };
-        let class_of = |instance| self.catalog.class_of_instance(instance);
-        if layout.placements.iter().any(|placement| class_of(&placement.instance) == Some(class)) {
+        if layout.placements.iter().any(|placement| placement.instance == name) {
             return;
         }
-        let message = format!("no object `{name}`: neither the mission lists one, nor has layout `{}`", layout.id);
-        let remedy = did_you_mean(name, self.listed.iter().map(String::as_str))
-            .unwrap_or_else(|| "add it to `required_objects`".to_owned());
-        self.error(at, message, Some(remedy));
+        let of_class = |instance: &&str| self.catalog.class_of_instance(instance) == Some(class);
+        let placed: Vec<_> =
+            layout.placements.iter().map(|placement| placement.instance.as_str()).filter(of_class).collect();
+        let listed = || self.listed.iter().map(String::as_str).filter(of_class);
+        let near = did_you_mean(name, listed());
+        match placed.as_slice() {
+            [] => {
+                let message =
+                    format!("no object `{name}`: neither the mission lists one, nor has layout `{}`", layout.id);
+                let remedy = near.unwrap_or_else(|| "add it to `required_objects`".to_owned());
+                self.error(at, message, Some(remedy));
+            }
+            [_] if listed().count() == 0 => {}
+            [first, ..] => {
+                let message = format!("`{name}` is not among `required_objects`; taken as the layout's `{first}`");
+                self.warn(at, message, near);
+            }
+        }
     }
 
     fn unknown_object(&mut self, at: &Pointer, name: &str) {
-        self.error(at, format!("unknown object `{name}`"), self.near(name));
+        let listed = self.listed.iter().map(String::as_str);
+        let remedy = did_you_mean(name, listed).or_else(|| self.near_class(name));
+        self.error(at, format!("unknown object `{name}`"), remedy);
     }
 
-    /// A remedy for a misspelt instance: the nearest one listed, else the nearest class with the same number.
-    fn near(&self, instance: &str) -> Option<String> {
-        let listed = self.listed.iter().map(String::as_str);
+    /// A remedy for a misspelt instance: the nearest class, with the same number if there is one.
+    fn near_class(&self, instance: &str) -> Option<String> {
         let classes = || self.catalog.classes().iter().map(|class| class.id.as_str());
-        did_you_mean(instance, listed).or_else(|| did_you_mean(instance, classes())).or_else(|| {
-            let (class, _) = instance.rsplit_once('_')?;
-            did_you_mean(class, classes())
+        did_you_mean(instance, classes()).or_else(|| {
+            let (class, number) = instance.rsplit_once('_')?;
+            let class = nearest(class, classes())?;
+            Some(format!("did you mean `{class}_{number}`?"))
         })
     }
 }

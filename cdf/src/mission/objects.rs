@@ -1,5 +1,7 @@
 //! Reads the objects that a mission asks for.
 
+use std::collections::BTreeMap;
+
 use serde_json::Value;
 
 use super::{
@@ -84,10 +86,10 @@ impl Reader<'_> {
 
     /// Objects that are in themselves, or in each other.
     fn circles(&mut self, requests: &[(Pointer, ObjectRequest)]) {
-        let inside = |name: &str| {
-            let request = requests.iter().find(|(_, request)| request.instance == name)?;
-            request.1.inside.as_deref()
-        };
+        let inside: BTreeMap<&str, &str> = requests
+            .iter()
+            .filter_map(|(_, request)| Some((request.instance.as_str(), request.inside.as_deref()?)))
+            .collect();
         for (at, request) in requests {
             let mut place = request.inside.as_deref();
             for _ in 0..requests.len() {
@@ -96,7 +98,7 @@ impl Reader<'_> {
                     self.error(&at.key("location"), format!("`{name}` is inside itself"), None);
                     break;
                 }
-                place = inside(name);
+                place = inside.get(name).copied();
             }
         }
     }

@@ -19,13 +19,15 @@ pub(super) struct Reader<'a> {
     pub layout: Option<Layout>,
     /// The instances that the mission lists, in the order of the file.
     pub listed: Vec<String>,
+    /// Names of conditions that could not be read: what is wrong with them is said once.
+    pub unreadable: Vec<String>,
     /// What is wrong so far.
     pub problems: Vec<Problem>,
 }
 
 impl<'a> Reader<'a> {
     pub fn new(file: &'a str, catalog: &'a Catalog) -> Self {
-        Self { file, catalog, layout: None, listed: Vec::new(), problems: Vec::new() }
+        Self { file, catalog, layout: None, listed: Vec::new(), unreadable: Vec::new(), problems: Vec::new() }
     }
 
     /// Notes a problem that keeps the mission from being played.
@@ -73,7 +75,8 @@ impl<'a> Reader<'a> {
     /// The field's value; an unexpected shape is a problem.
     pub fn field<'r, T>(&mut self, at: &Pointer, field: &'r Loose<T>, expected: &str) -> Option<&'r T> {
         if let Some(found) = field.misfit() {
-            self.error(at, format!("expected {expected}, found {}", shape(found)), None);
+            let other = if found.is_array() && expected.starts_with("a list") { " with other items" } else { "" };
+            self.error(at, format!("expected {expected}, found {}{other}", shape(found)), None);
         }
         field.known()
     }
@@ -166,7 +169,7 @@ pub(super) fn shape(value: &Value) -> &'static str {
         Value::Bool(_) => "true or false",
         Value::Number(_) => "a number",
         Value::String(_) => "a text",
-        Value::Array(_) => "a list with unexpected items",
+        Value::Array(_) => "a list",
         Value::Object(_) => "an object",
     }
 }

@@ -55,7 +55,7 @@ impl Reader<'_> {
             let remedy = Some(format!("take `{DEFAULT_LAYOUT}`"));
             self.warn(at, format!("there is no floor plan for layout `{id}` yet"), remedy);
         } else {
-            self.unknown(at, "layout", &id, plans.iter().map(String::as_str).chain(LAYOUTS));
+            self.unknown(at, "layout", &id, plans.iter().map(String::as_str));
         }
         id
     }

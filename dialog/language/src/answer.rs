@@ -13,7 +13,7 @@ use crate::{
     lexicon::{Lexicon, StateWord},
     phrase::{Phrase, RelationKind},
     question::{Question, QuestionKind},
-    understanding::Understanding,
+    understanding::{Step, Understanding},
 };
 
 /// How many things an answer names before it says `and more`.
@@ -30,6 +30,8 @@ pub(crate) struct Answerer<'a> {
     pub(crate) lexicon: &'a Lexicon,
     pub(crate) scene: &'a Known,
     pub(crate) focus: &'a Focus,
+    /// The steps under way.
+    pub(crate) running: &'a [Step],
 }
 
 impl Answerer<'_> {
@@ -41,6 +43,7 @@ impl Answerer<'_> {
             (QuestionKind::Holding, _) => self.holding(),
             (QuestionKind::Robot, _) => self.robot(),
             (QuestionKind::Abilities, _) => Understanding::answer(EXAMPLES),
+            (QuestionKind::Doing, _) => self.doing(),
             (QuestionKind::Goals, _) => self.goals(),
             (QuestionKind::Seeing, _) => self.seeing(),
             (QuestionKind::Contents, Some(phrase)) => self.with_object(phrase, |id| self.contents(id)),
@@ -92,6 +95,13 @@ impl Answerer<'_> {
 
     fn robot(&self) -> Understanding {
         Understanding::answer(format!("I am in the {}.", self.scene.robot.room.name()))
+    }
+
+    fn doing(&self) -> Understanding {
+        Understanding::answer(match self.running.first() {
+            Some(step) => format!("I am {}.", step.says),
+            None => "I am waiting for you to tell me what to do.".to_owned(),
+        })
     }
 
     fn goals(&self) -> Understanding {
@@ -201,22 +211,29 @@ impl Answerer<'_> {
             self.ground().one(phrase, &want).ok().and_then(|id| self.scene.object(id))
         });
         let nearest = || {
-            notes().min_by(|a, b| {
-                self.scene.distance_m(a).total_cmp(&self.scene.distance_m(b)).then(a.id.cmp(&b.id))
-            })
+            notes().min_by(|a, b| self.scene.distance_m(a).total_cmp(&self.scene.distance_m(b)).then(a.id.cmp(&b.id)))
         };
         match of_phrase.filter(|object| !object.text.is_empty()).or_else(nearest) {
             Some(note) => Understanding::Answer {
-                text: format!("{} says: \"{}\"", describe::sentence(&self.full(note.id)).trim_end_matches('.'), note.text),
+                text: format!(
+                    "{} says: \"{}\"",
+                    describe::sentence(&self.full(note.id)).trim_end_matches('.'),
+                    note.text
+                ),
                 highlight: vec![note.id],
             },
-            None => Understanding::answer("I know of nothing written here. I can look at a note if you point me to one."),
+            None => {
+                Understanding::answer("I know of nothing written here. I can look at a note if you point me to one.")
+            }
         }
     }
 
     fn color(&self, id: ObjectId) -> Understanding {
         let color = self.scene.object(id).map(|object| describe::color(self.catalog, object)).unwrap_or_default();
-        Understanding::Answer { text: describe::sentence(&format!("{} is {color}", self.short(id))), highlight: vec![id] }
+        Understanding::Answer {
+            text: describe::sentence(&format!("{} is {color}", self.short(id))),
+            highlight: vec![id],
+        }
     }
 
     fn count(&self, phrase: &Phrase) -> Understanding {
@@ -242,7 +259,8 @@ impl Answerer<'_> {
         let asked = asked
             .or_else(|| is_on.then_some(StateWord::Flag(StateFlag::Toggled, true)))
             .or_else(|| is_off.then_some(StateWord::Flag(StateFlag::Toggled, false)));
-        let inside = phrase.relations.iter().any(|relation| relation.kind != RelationKind::Has) || phrase.room.is_some();
+        let inside =
+            phrase.relations.iter().any(|relation| relation.kind != RelationKind::Has) || phrase.room.is_some();
         let bare = Phrase { relations: Vec::new(), room: None, ..phrase.clone() };
         if bare.is_empty() {
             return Understanding::refusal("I do not know what you mean.");
@@ -251,7 +269,11 @@ impl Answerer<'_> {
             Some(state) => self.with_object(&bare, |id| {
                 let holds = self.scene.object(id).is_some_and(|object| has_state(object, state));
                 let words = question.rest.last().cloned().unwrap_or_default();
-                let text = if holds { format!("Yes, {} is {words}.", self.short(id)) } else { format!("No, {} is not {words}.", self.short(id)) };
+                let text = if holds {
+                    format!("Yes, {} is {words}.", self.short(id))
+                } else {
+                    format!("No, {} is not {words}.", self.short(id))
+                };
                 Understanding::Answer { text, highlight: vec![id] }
             }),
             None if inside => self.with_object(&bare, |id| {

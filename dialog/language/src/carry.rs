@@ -22,7 +22,9 @@ const TAKES: &[Property] = &[Property::Receptacle, Property::Fillable];
 impl Planner<'_> {
     pub(crate) fn add_pick_up(&mut self, settled: &Settled) -> Result<(), Fault> {
         if settled.objects.len() > 1 || settled.objects.iter().any(|phrase| phrase.is_all) {
-            return Err(Fault::Cannot("I can only carry one thing at a time. Which one shall I take first?".to_owned()));
+            return Err(Fault::Cannot(
+                "I can only carry one thing at a time. Which one shall I take first?".to_owned(),
+            ));
         }
         for object in self.find_objects(settled, &Want::object(settled.intent))? {
             self.pick_up(object, self.may_put_down)?;
@@ -95,7 +97,8 @@ impl Planner<'_> {
         let is_machine = [Property::Pickupable, Property::Toggleable, Property::Powerable, Property::Openable]
             .into_iter()
             .any(|property| class.has(property));
-        let Some(receptacle) = class.receptacle.as_ref().filter(|_| !is_machine && class.has(Property::Receptacle)) else {
+        let Some(receptacle) = class.receptacle.as_ref().filter(|_| !is_machine && class.has(Property::Receptacle))
+        else {
             return false;
         };
         let area: f32 = receptacle.surfaces.iter().map(|surface| surface.size_m[0] * surface.size_m[1]).sum();
@@ -191,6 +194,9 @@ impl Planner<'_> {
             Some(phrase) => self.find_one(phrase, &Want::object(Intent::Pour), Some(Role::Object(0)))?,
             None => held.ok_or_else(|| Fault::Cannot("I am not holding anything to pour.".to_owned()))?,
         };
+        if !self.has(source, Property::Pickupable) {
+            return Err(Fault::Cannot("I have nothing of that to pour. Tell me what to fill first.".to_owned()));
+        }
         let target = match &settled.goal {
             Some(Goal { place: Place::Object(phrase), role, .. }) => {
                 self.find_one(phrase, &Want::place(Intent::Use, TAKES, Some(source)), Some(*role))?

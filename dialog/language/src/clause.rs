@@ -4,7 +4,7 @@ use cohabit_cdf::{Catalog, Fluid};
 
 use crate::{
     intent::Intent,
-    lexicon::{Direction, Lexicon, Preposition},
+    lexicon::{Direction, Lexicon, Preposition, Pronoun},
     phrase::{Phrase, Place, Reader},
     token,
 };
@@ -21,6 +21,8 @@ pub(crate) struct Clause {
     pub(crate) fluid: Option<Fluid>,
     /// Words that mean nothing to the robot.
     pub(crate) unknown: Vec<String>,
+    /// Whether it has a noun that found no place in it.
+    pub(crate) has_stray_noun: bool,
     /// The verb as it was said.
     pub(crate) verb: String,
 }
@@ -52,6 +54,21 @@ pub(crate) fn parts(lexicon: &Lexicon, catalog: &Catalog, words: &[String]) -> V
         read_segment(lexicon, catalog, segment, &mut parts);
     }
     parts
+}
+
+/// `pick up the mug and the bowl and put them on the desk` is one errand: each is carried there in its turn.
+pub(crate) fn joined(clauses: Vec<Clause>) -> Vec<Clause> {
+    let mut joined: Vec<Clause> = Vec::with_capacity(clauses.len());
+    for mut clause in clauses {
+        let says_them = |phrase: &Phrase| phrase.pronoun == Some(Pronoun::Things);
+        let is_errand = matches!(clause.intent, Intent::Place | Intent::Bring) && clause.objects.iter().all(says_them);
+        let gathers = |before: &mut Clause| before.intent == Intent::PickUp && before.objects.len() > 1;
+        if is_errand && let Some(before) = joined.pop_if(gathers) {
+            clause.objects = before.objects;
+        }
+        joined.push(clause);
+    }
+    joined
 }
 
 /// Cuts at sentence ends, and at `and` or a comma before a verb.
@@ -118,13 +135,13 @@ fn read_part(lexicon: &Lexicon, catalog: &Catalog, words: &[String], before: &[P
     let mut reader = Reader::new(lexicon, words);
     if let Some(Part::Clause(previous)) = before.last()
         && takes_objects(previous.intent)
-        && let Some((clause, used)) =
-            read_as(lexicon, previous.intent, &previous.verb, words, 0).filter(|(clause, _)| is_complete(clause, catalog))
+        && let Some((clause, used)) = read_as(lexicon, previous.intent, &previous.verb, words, 0)
+            .filter(|(clause, _)| is_complete(clause, catalog))
     {
         return (Part::Clause(clause), used);
     }
     match reader.phrase_with_place() {
-        Some(phrase) if !phrase.is_empty() => (Part::Fragment(phrase), reader.at),
+        Some(phrase) if !phrase.is_empty() && phrase.unknown.is_empty() => (Part::Fragment(phrase), reader.at),
         _ => (Part::Unclear(unknown_words(lexicon, words)), words.len()),
     }
 }
@@ -220,6 +237,7 @@ fn read_as(
         color: None,
         fluid: None,
         unknown: Vec::new(),
+        has_stray_noun: false,
         verb: verb.to_owned(),
     };
     let mut reader = Reader::new(lexicon, words);
@@ -241,6 +259,10 @@ fn read_motion(reader: &mut Reader<'_>, clause: &mut Clause) {
             clause.amount = Some(amount);
         } else if let Some((length, direction)) = reader.lexicon.directions.longest(reader.rest()) {
             reader.at += length;
+            // `walk down the hallway` is no way down.
+            if clause.intent == Intent::Travel && matches!(direction, Direction::Up | Direction::Down) {
+                continue;
+            }
             // `turn right around`: the last word wins only over nothing.
             clause.direction = Some(clause.direction.unwrap_or(*direction));
         } else if matches!(reader.rest().first().map(String::as_str), Some("your" | "head" | "a" | "for" | "by")) {
@@ -249,8 +271,12 @@ fn read_motion(reader: &mut Reader<'_>, clause: &mut Clause) {
             break;
         }
     }
+    if clause.verb.starts_with("back") {
+        clause.direction = clause.direction.or(Some(Direction::Backward));
+    }
     // `go kitchen`: people leave out the preposition.
-    if clause.direction.is_none() && matches!(clause.verb.as_str(), "go" | "walk" | "head" | "come" | "proceed" | "run") {
+    if clause.direction.is_none() && matches!(clause.verb.as_str(), "go" | "walk" | "head" | "come" | "proceed" | "run")
+    {
         let mut place = *reader;
         if let Some(destination) = place.destination() {
             *reader = place;
@@ -261,6 +287,13 @@ fn read_motion(reader: &mut Reader<'_>, clause: &mut Clause) {
 
 fn read_amount(reader: &mut Reader<'_>) -> Option<Amount> {
     let mut after = *reader;
+    // `a step`: one.
+    if matches!(after.rest().first().map(String::as_str), Some("a" | "an"))
+        && let Some((length, unit)) = after.rest().get(1..).and_then(|rest| after.lexicon.units.longest(rest))
+    {
+        reader.at += 1 + length;
+        return Some(Amount::Meters(*unit));
+    }
     let value = after.number()?;
     let (lexicon, rest) = (after.lexicon, after.rest());
     let amount = if let Some((length, ())) = lexicon.degrees.longest(rest) {
@@ -314,13 +347,13 @@ fn read_tail(reader: &mut Reader<'_>, clause: &mut Clause) {
         if let Some(place) = reader.place() {
             let is_with = place.0 == Preposition::With;
             clause.places.push(place);
-            if is_with && let Some((length, crate::lexicon::Pronoun::Place)) = reader.lexicon.pronouns.longest(reader.rest()) {
+            if is_with && let Some((length, Pronoun::Place)) = reader.lexicon.pronouns.longest(reader.rest()) {
                 reader.at += length;
             }
             continue;
         }
-        if let Some((length, crate::lexicon::Pronoun::Place)) = reader.lexicon.pronouns.longest(reader.rest()) {
-            let phrase = Phrase { pronoun: Some(crate::lexicon::Pronoun::Place), text: "there".to_owned(), ..Phrase::default() };
+        if let Some((length, Pronoun::Place)) = reader.lexicon.pronouns.longest(reader.rest()) {
+            let phrase = Phrase { pronoun: Some(Pronoun::Place), text: "there".to_owned(), ..Phrase::default() };
             clause.places.push((Preposition::On, Place::Object(phrase)));
             reader.at += length;
             continue;
@@ -336,6 +369,7 @@ fn read_tail(reader: &mut Reader<'_>, clause: &mut Clause) {
         if !reader.lexicon.vocabulary.has(word) {
             clause.unknown.push(word.clone());
         }
+        clause.has_stray_noun |= reader.lexicon.classes.longest(reader.rest()).is_some();
         reader.at += 1;
     }
 }
@@ -408,10 +442,14 @@ fn is_complete(clause: &Clause, catalog: &Catalog) -> bool {
         Intent::Stop => !has_object,
         Intent::GoTo => !clause.places.is_empty(),
         Intent::Travel => {
-            !has_object && (clause.direction.is_some() || clause.amount.is_some() || !clause.places.is_empty())
+            !clause.has_stray_noun
+                && (clause.direction.is_some() || clause.amount.is_some() || !clause.places.is_empty())
         }
-        Intent::Turn => clause.direction.is_some() || matches!(clause.amount, Some(Amount::Degrees(_) | Amount::Bare(_))),
-        Intent::Look => clause.direction.is_some(),
+        Intent::Turn if clause.has_stray_noun => false,
+        Intent::Turn => {
+            clause.direction.is_some() || matches!(clause.amount, Some(Amount::Degrees(_) | Amount::Bare(_)))
+        }
+        Intent::Look => clause.direction.is_some() && !clause.has_stray_noun,
         Intent::LookAround | Intent::Brew | Intent::Impossible => true,
         Intent::PickUp => has_object && !clause.places.iter().any(|(preposition, _)| *preposition == Preposition::To),
         Intent::Place => has_object || !clause.places.is_empty(),

@@ -42,6 +42,8 @@ pub(crate) struct Focus {
 pub(crate) enum Pending {
     /// Which object is meant; the request waits.
     Which { clauses: Vec<Clause>, slot: Slot, candidates: Vec<ObjectId>, may_put_down: bool },
+    /// Which lab is meant; these words wait, the lab stands at `at`.
+    Lab { words: Vec<String>, at: usize },
     /// Whether to put down what is held, to do what was asked.
     PutDown { clauses: Vec<Clause> },
     /// Whether to do this.

@@ -10,7 +10,8 @@ use crate::{
     ground::{Ground, Miss},
     intent::Intent,
     known::Known,
-    lexicon::{Lexicon, Small},
+    lab,
+    lexicon::{Lexicon, Preposition, Small},
     phrase::{Phrase, Place, Reader},
     plan::{Fault, Planner},
     process::Devices,
@@ -18,6 +19,9 @@ use crate::{
     token::{self, MAX_CHARS},
     understanding::{Step, Understanding},
 };
+
+/// An answer to `which lab` has fewer words than this; more is another request.
+const LONGEST_LAB_ANSWER: usize = 6;
 
 /// All that stays the same during a turn.
 pub(crate) struct Conversation<'a> {
@@ -36,6 +40,18 @@ impl Conversation<'_> {
         if words.iter().all(|word| token::is_punctuation(word)) {
             return Understanding::refusal(format!("I did not hear anything. {EXAMPLES}"));
         }
+        if let Some(Pending::Lab { words: before, at }) = &context.pending
+            && let Some(room) = lab::answered(self.lexicon, &words)
+            && words.len() < LONGEST_LAB_ANSWER
+        {
+            let words = lab::named(before, *at, room);
+            context.pending = None;
+            return self.understand_words(words, context);
+        }
+        self.understand_words(words, context)
+    }
+
+    fn understand_words(&self, words: Vec<String>, context: &mut Context) -> Understanding {
         let parts = clause::parts(self.lexicon, self.catalog, &words);
         if parts.iter().any(|part| matches!(part, Part::Clause(clause) if clause.intent == Intent::Stop)) {
             context.pending = None;
@@ -46,6 +62,13 @@ impl Conversation<'_> {
         if let Some(understanding) = self.answer_to_pending(&words, &parts, context) {
             return understanding;
         }
+        if let Some(at) = lab::bare(self.lexicon, &words) {
+            if let Some(room) = lab::here(self.scene.robot.room) {
+                return self.understand_words(lab::named(&words, at, room), context);
+            }
+            context.pending = Some(Pending::Lab { words, at });
+            return Understanding::Question { text: lab::QUESTION.to_owned(), candidates: Vec::new() };
+        }
         self.fresh(&words, parts, context)
     }
 
@@ -55,8 +78,13 @@ impl Conversation<'_> {
             return understanding;
         }
         if let Some(question) = question::read(self.lexicon, words) {
-            let answerer =
-                Answerer { catalog: self.catalog, lexicon: self.lexicon, scene: self.scene, focus: &context.focus };
+            let answerer = Answerer {
+                catalog: self.catalog,
+                lexicon: self.lexicon,
+                scene: self.scene,
+                focus: &context.focus,
+                running: &context.running,
+            };
             let answer = answerer.answer(&question);
             if let Understanding::Answer { highlight, .. } = &answer
                 && let [one] = highlight.as_slice()
@@ -101,7 +129,7 @@ impl Conversation<'_> {
         if let Some(words) = unclear.filter(|words| !words.is_empty()) {
             return reply::unclear(&words);
         }
-        self.plan(clauses, false, context)
+        self.plan(clause::joined(clauses), false, context)
     }
 
     /// An object without a verb.
@@ -184,11 +212,9 @@ impl Conversation<'_> {
     ) -> Understanding {
         let mut candidates: Vec<ObjectId> = Vec::new();
         for other in others {
-            let looks_new = candidates.iter().all(|seen| {
-                match (self.scene.object(*seen), self.scene.object(other)) {
-                    (Some(seen), Some(other)) => !describe::look_alike(self.catalog, seen, other),
-                    _ => false,
-                }
+            let looks_new = candidates.iter().all(|seen| match (self.scene.object(*seen), self.scene.object(other)) {
+                (Some(seen), Some(other)) => !describe::look_alike(self.catalog, seen, other),
+                _ => false,
             });
             if looks_new && candidates.len() < reply::ASKED {
                 candidates.push(other);
@@ -202,7 +228,9 @@ impl Conversation<'_> {
     }
 
     fn small(&self, words: &[String]) -> Vec<Small> {
-        let plain: Vec<String> = words.iter().filter(|word| !token::is_punctuation(word)).cloned().collect();
+        let is_address = |word: &str| matches!(word, "robot" | "tam");
+        let says = |word: &&String| !token::is_punctuation(word) && !is_address(word);
+        let plain: Vec<String> = words.iter().filter(says).cloned().collect();
         let exact = self.lexicon.small.exact(&plain);
         exact.map(|smalls| smalls.iter().copied().collect()).unwrap_or_default()
     }
@@ -271,14 +299,15 @@ impl Conversation<'_> {
         match pending {
             Pending::PutDown { clauses } if is_yes && !is_command => Some(self.plan(clauses, true, context)),
             Pending::Offer { steps } if is_yes && !is_command => Some(self.go(steps, context)),
-            Pending::PutDown { .. } | Pending::Offer { .. } => None,
+            Pending::PutDown { .. } | Pending::Offer { .. } | Pending::Lab { .. } => None,
             Pending::Which { clauses, slot, candidates, may_put_down } => {
                 let left = self.answered(words, &candidates, is_yes, context);
                 match left.as_slice() {
                     [one] => Some(self.plan(chosen(clauses, slot, *one), may_put_down, context)),
                     [] if is_command || question::read(self.lexicon, words).is_some() => None,
                     [] => {
-                        context.pending = Some(Pending::Which { clauses, slot, candidates: candidates.clone(), may_put_down });
+                        context.pending =
+                            Some(Pending::Which { clauses, slot, candidates: candidates.clone(), may_put_down });
                         Some(reply::which(self.catalog, self.scene, &candidates))
                     }
                     several => {
@@ -304,20 +333,30 @@ impl Conversation<'_> {
         let Some(phrase) = self.answer_phrase(&plain) else { return Vec::new() };
         let ground = Ground { catalog: self.catalog, scene: self.scene, focus: &context.focus };
         let left = ground.narrow(&phrase, candidates);
-        if left.len() < candidates.len() || phrase.pronoun.is_none() && candidates.len() == 1 { left } else { Vec::new() }
+        if left.len() < candidates.len() || phrase.pronoun.is_none() && candidates.len() == 1 {
+            left
+        } else {
+            Vec::new()
+        }
     }
 
     /// The phrase that an answer consists of, after `i mean` or `take`; `None` if there is more to it.
     fn answer_phrase(&self, words: &[String]) -> Option<Phrase> {
         let starts = 0..words.len().min(6);
         starts.into_iter().find_map(|start| {
-            let is_lead = words[..start].iter().all(|word| ANSWER_LEAD.contains(&word.as_str()));
+            let is_lead = words[..start]
+                .iter()
+                .all(|word| self.lexicon.answer_lead.longest(std::slice::from_ref(word)).is_some());
             if !is_lead {
                 return None;
             }
             let mut reader = Reader::new(self.lexicon, &words[start..]);
             let mut phrase = reader.phrase_with_place().unwrap_or_default();
             while let Some((preposition, place)) = reader.place() {
+                // `to the red one` belongs to `i am referring`.
+                if preposition == Preposition::To {
+                    return None;
+                }
                 phrase.attach(preposition, place);
             }
             reader.skip(|lexicon| &lexicon.trail);
@@ -325,12 +364,6 @@ impl Conversation<'_> {
         })
     }
 }
-
-/// Words before the phrase in an answer: `i am referring to the red one`.
-const ANSWER_LEAD: [&str; 24] = [
-    "i", "am", "mean", "meant", "referring", "to", "it", "is", "that", "yes", "no", "the", "take", "pick", "choose", "use", "with", "go", "get", "want",
-    "would", "like", "please", "talking",
-];
 
 /// The clauses with one phrase settled.
 fn chosen(mut clauses: Vec<Clause>, slot: Slot, object: ObjectId) -> Vec<Clause> {

@@ -61,9 +61,11 @@ fn special_name(catalog: &Catalog, class: ClassId) -> Option<String> {
     let words = &catalog.class(class).words;
     let color = catalog.class(class).color.to_lowercase();
     let colored = format!("{color} {plain}");
-    let is_special = |word: &&String| word.ends_with(&ending) && **word != colored;
+    let is_special = |word: &&String| word.ends_with(&ending);
+    let is_colored = |word: &&String| **word == colored;
     let is_shared = catalog.classes().iter().filter(|other| other.name.to_lowercase() == plain).count() > 1;
-    if is_shared { words.iter().find(is_special).cloned() } else { None }
+    let special = || words.iter().find(is_colored).or_else(|| words.iter().find(is_special)).cloned();
+    if is_shared { special() } else { None }
 }
 
 /// `the mug`, or `the red mug` where there is another colour of it.
@@ -107,7 +109,8 @@ pub(crate) fn location(catalog: &Catalog, scene: &Known, id: ObjectId) -> String
 /// Whether things are in it or on it.
 pub(crate) fn inside(catalog: &Catalog, class: ClassId) -> &'static str {
     let class = catalog.class(class);
-    let is_enclosed = class.receptacle.as_ref().is_some_and(|receptacle| receptacle.enclosed || !receptacle.keys.is_empty());
+    let is_enclosed =
+        class.receptacle.as_ref().is_some_and(|receptacle| receptacle.enclosed || !receptacle.keys.is_empty());
     let is_hollow = ["Box", "Sink", "Toaster", "Machine", "Maker", "Trash", "Jar", "Printer"]
         .iter()
         .any(|word| class.name.contains(word));
@@ -134,7 +137,8 @@ pub(crate) fn apart(catalog: &Catalog, scene: &Known, candidates: &[ObjectId]) -
                 }
             }
             let place = location(catalog, scene, object.id);
-            let fluid = if objects.iter().any(|other| other.fluid != object.fluid) { contents(object.fluid) } else { "" };
+            let fluid =
+                if objects.iter().any(|other| other.fluid != object.fluid) { contents(object.fluid) } else { "" };
             let text = format!("the {} {} {fluid} {place}", adjectives.join(" "), bare(catalog, scene, object.id));
             text.split_whitespace().collect::<Vec<_>>().join(" ")
         })
@@ -159,8 +163,15 @@ pub(crate) fn list(items: &[String], last: &str) -> String {
     }
 }
 
-/// A noun with its indefinite article.
+/// Nouns that take no article.
+const MASS: [&str; 8] = ["milk", "bread", "coffee", "water", "cereal", "toast", "jelly", "peanut butter"];
+
+/// A noun with its indefinite article, or `some` where it takes none.
 pub(crate) fn indefinite(noun: &str) -> String {
+    let is_plural = noun.ends_with('s') && !noun.ends_with("ss");
+    if is_plural || MASS.contains(&noun) {
+        return format!("some {noun}");
+    }
     let article = if noun.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
     format!("{article} {noun}")
 }
@@ -170,6 +181,6 @@ pub(crate) fn sentence(text: &str) -> String {
     let text = text.trim();
     let mut characters = text.chars();
     let Some(first) = characters.next() else { return String::new() };
-    let ending = if text.ends_with(['.', '!', '?']) { "" } else { "." };
+    let ending = if text.trim_end_matches('"').ends_with(['.', '!', '?']) { "" } else { "." };
     format!("{}{}{ending}", first.to_uppercase(), characters.as_str())
 }

@@ -15,10 +15,35 @@ use crate::{
 impl Planner<'_> {
     pub(crate) fn add_toggle(&mut self, settled: &Settled) -> Result<(), Fault> {
         let want = Want { affordances: &[Property::Toggleable, Property::Powerable], ..Want::object(settled.intent) };
+        if let Some(machine) = self.machine_of_button(settled) {
+            return self.switch(machine, settled.intent);
+        }
         for object in self.find_objects(settled, &want)? {
             self.switch(object, settled.intent)?;
         }
         Ok(())
+    }
+
+    /// `approach the printer, press the red button`: where no button is in the room, it is the machine's own.
+    fn machine_of_button(&self, settled: &Settled) -> Option<ObjectId> {
+        let phrase = settled.objects.first()?;
+        let is_button = !phrase.namings.is_empty() && phrase.namings.iter().all(|naming| self.is_button(naming.class));
+        let has_buttons = || {
+            let mut here = self.scene.objects.iter().filter(|object| object.room == self.scene.robot.room);
+            here.any(|object| phrase.naming(object.class).is_some())
+        };
+        if is_button && let [relation] = phrase.relations.as_slice() {
+            let want = Want::place(Intent::Toggle, &[Property::Toggleable], None);
+            let machine = self.ground().one(&relation.to, &want).ok()?;
+            let has_own = self.scene.objects.iter().any(|object| {
+                let is_near =
+                    object.works == Some(machine) || self.ground().narrow(phrase, &[object.id]) == [object.id];
+                self.is_button(object.class) && is_near
+            });
+            return (!has_own && self.has(machine, Property::Toggleable)).then_some(machine);
+        }
+        let machine = self.focus.place.filter(|place| self.has(*place, Property::Toggleable))?;
+        (is_button && phrase.room.is_none() && !has_buttons()).then_some(machine)
     }
 
     /// Switches a machine by whatever works it.
@@ -149,6 +174,11 @@ impl Planner<'_> {
     /// `heat the mug on the table`: the table is no device, so it says where the mug is.
     fn describe_by_goal(&self, settled: &mut Settled) {
         let Some(Goal { preposition, place: Place::Object(phrase), .. }) = &settled.goal else { return };
+        let carrot = self.catalog.find("Carrot_01");
+        if settled.intent == Intent::Carrot && carrot.is_some_and(|carrot| phrase.naming(carrot).is_some()) {
+            settled.goal = None;
+            return;
+        }
         let names_device = self.processes(settled.intent, settled.fluid).any(|process| {
             process.at.iter().chain(&process.also).chain(&process.start).any(|class| phrase.naming(*class).is_some())
         });
@@ -161,8 +191,11 @@ impl Planner<'_> {
 
     /// `fill the sink`, `wash the sink`: the water is turned on, and that is all.
     fn is_plain_switch(&mut self, settled: &Settled, index: usize) -> Result<bool, Fault> {
-        let sinks: Vec<ClassId> =
-            self.processes(Intent::Fill, None).filter(|process| process.steps.contains(&Act::Run)).flat_map(|process| process.at.clone()).collect();
+        let sinks: Vec<ClassId> = self
+            .processes(Intent::Fill, None)
+            .filter(|process| process.steps.contains(&Act::Run))
+            .flat_map(|process| process.at.clone())
+            .collect();
         let phrase = &settled.objects[index];
         let is_sink = matches!(settled.intent, Intent::Fill | Intent::Clean)
             && sinks.iter().any(|class| phrase.naming(*class).is_some());
@@ -207,7 +240,8 @@ impl Planner<'_> {
             return self.find_one(phrase, &Want::object(Intent::Print), role);
         }
         self.nearest(&classes).ok_or_else(|| {
-            Fault::Cannot(format!("I know of no cartridge that prints {}.", crate::plan::said(phrase)))
+            let said = crate::plan::said(phrase);
+            Fault::Cannot(format!("I do not know how to make {said}: I have seen no cartridge for it."))
         })
     }
 
@@ -246,7 +280,9 @@ impl Planner<'_> {
     }
 
     fn first_process(&self, settled: &Settled) -> Result<(Process, ObjectId), Fault> {
-        let mut known = self.processes(settled.intent, settled.fluid).filter_map(|process| Some((process, self.nearest(&process.at)?)));
+        let mut known = self
+            .processes(settled.intent, settled.fluid)
+            .filter_map(|process| Some((process, self.nearest(&process.at)?)));
         known.next().map(|(process, place)| (process.clone(), place)).ok_or_else(|| {
             Fault::Cannot(format!("I do not know of anything here to {} it with.", settled.intent.verb()))
         })

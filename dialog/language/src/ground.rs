@@ -19,16 +19,23 @@ const VISIBLE: f32 = 1.0;
 const HELD: f32 = 6.0;
 const FITTING_STATE: f32 = 1.5;
 const AT_PLACE: f32 = 1.5;
+const HIDDEN: f32 = 1.5;
 const RECENT: [f32; 3] = [1.2, 0.8, 0.4];
 const PER_METER: f32 = 0.25;
-const FARTHEST_M: f32 = 8.0;
+const FARTHEST_M: f32 = 30.0;
 
 /// Two candidates whose scores differ by less are a tie; the robot then asks, or guesses where little is at stake.
 const MARGIN: f32 = 0.5;
 const MARGIN_HARMLESS: f32 = 0.3;
 
+/// What is named by less than this below the best is not offered instead.
+const WORSE_NAME: f32 = 0.2;
+
 /// How near `next to` is, m.
 const NEAR_M: f32 = 1.5;
+
+/// How near a fixed thing such as a button is to the machine it is `on`, m.
+const PART_M: f32 = 0.8;
 
 /// How far to the side `in front of you` reaches, rad.
 const FRONT_RAD: f32 = 0.9;
@@ -90,6 +97,10 @@ impl<'a> Ground<'a> {
         if let Some(chosen) = phrase.chosen {
             return Ok(chosen);
         }
+        // `the thing on the table` is described, `it` is not.
+        if phrase.pronoun == Some(Pronoun::Thing) && !phrase.relations.is_empty() {
+            return self.one(&Phrase { pronoun: None, ..phrase.clone() }, want);
+        }
         if let Some(pronoun) = phrase.pronoun.filter(|pronoun| *pronoun != Pronoun::One) {
             return self.referent(pronoun, want).ok_or(Miss::NoReferent);
         }
@@ -130,7 +141,8 @@ impl<'a> Ground<'a> {
     }
 
     fn described(&self, phrase: &Phrase, want: &Want<'_>) -> Result<Vec<&'a KnownObject>, Miss> {
-        let mut base: Vec<&KnownObject> = self.scene.objects.iter().filter(|object| self.is_candidate(phrase, object)).collect();
+        let mut base: Vec<&KnownObject> =
+            self.scene.objects.iter().filter(|object| self.is_candidate(phrase, object)).collect();
         if base.is_empty() {
             return Err(if phrase.is_empty() && !phrase.says_something() { Miss::Unknown } else { Miss::Unseen });
         }
@@ -138,11 +150,16 @@ impl<'a> Ground<'a> {
         self.keep_affording(&mut base, want);
         let mut left = base.clone();
         left.retain(|object| self.is_as_said(phrase, object));
+        if let Some(color) = &phrase.color {
+            // What was given that colour, then what has it by nature, then what is only called so.
+            keep_if_any(&mut left, |object| describe::color(self.catalog, object) == *color);
+            keep_if_any(&mut left, |object| object.color.name().eq_ignore_ascii_case(color));
+        }
         if left.is_empty() {
             left = self.plain_ones(phrase, &base);
         }
         if left.is_empty() {
-            base.sort_by(|one, other| self.scene.distance_m(one).total_cmp(&self.scene.distance_m(other)));
+            self.keep_best_named(phrase, &mut base);
             return Err(Miss::Mismatch(base.iter().map(|object| object.id).collect()));
         }
         for state in &phrase.states {
@@ -162,6 +179,14 @@ impl<'a> Ground<'a> {
             _ => {}
         }
         Ok(left)
+    }
+
+    /// Keeps what the words mean most, the nearest first: a trophy is a cup only where there is no other.
+    fn keep_best_named(&self, phrase: &Phrase, base: &mut Vec<&KnownObject>) {
+        let weight = |object: &KnownObject| phrase.naming(object.class).unwrap_or(1.0);
+        let best = base.iter().map(|object| weight(object)).fold(0.0, f32::max);
+        base.retain(|object| weight(object) > best - WORSE_NAME);
+        base.sort_by(|one, other| self.scene.distance_m(one).total_cmp(&self.scene.distance_m(other)));
     }
 
     /// Drops what does not afford what is wanted, unless nothing does.
@@ -241,7 +266,13 @@ impl<'a> Ground<'a> {
         match relation.kind {
             RelationKind::Inside => {
                 let is_held = self.scene.robot.held == Some(object.id);
+                let is_part = |other: &KnownObject| {
+                    fits(other) && known::distance_m(other.position_m, object.position_m) < PART_M
+                };
+                let is_fixed = !self.catalog.class(object.class).has(Property::Pickupable);
                 !is_held && self.scene.ancestors(object.id).any(fits)
+                    || is_fixed && self.scene.objects.iter().any(|other| object.works == Some(other.id) && fits(other))
+                    || is_fixed && self.scene.objects.iter().any(is_part)
             }
             RelationKind::Has => self.scene.contents(object.id).any(fits),
             RelationKind::Near => self.scene.objects.iter().any(|other| {
@@ -262,7 +293,8 @@ impl<'a> Ground<'a> {
             Some(Pronoun::Place) => return self.focus.place == Some(object.id),
             Some(_) => return self.focus.recent.first() == Some(&object.id) || self.focus.place == Some(object.id),
         }
-        let is_meant = !phrase.is_empty() && self.is_named(phrase, object) || phrase.is_empty() && phrase.says_something();
+        let is_meant =
+            !phrase.is_empty() && self.is_named(phrase, object) || phrase.is_empty() && phrase.says_something();
         is_meant && self.is_as_said(phrase, object) && phrase.states.iter().all(|state| has_state(object, *state))
     }
 
@@ -337,6 +369,17 @@ impl<'a> Ground<'a> {
         Ok(best.id)
     }
 
+    /// Whether it is behind a closed door: people speak of what they see.
+    fn is_hidden(&self, object: &KnownObject) -> bool {
+        let is_carried = self.catalog.class(object.class).has(Property::Pickupable);
+        is_carried
+            && self.scene.ancestors(object.id).next().is_some_and(|parent| {
+                let class = self.catalog.class(parent.class);
+                let encloses = class.receptacle.as_ref().is_some_and(|receptacle| receptacle.enclosed);
+                encloses && class.has(Property::Openable) && !parent.has(StateFlag::Opened)
+            })
+    }
+
     fn score(&self, phrase: &Phrase, want: &Want<'_>, object: &KnownObject) -> f32 {
         let mut score = NAME * phrase.naming(object.class).unwrap_or(1.0);
         let is_held = self.scene.robot.held == Some(object.id);
@@ -354,6 +397,9 @@ impl<'a> Ground<'a> {
         }
         if self.focus.place.is_some_and(|place| self.scene.ancestors(object.id).any(|parent| parent.id == place)) {
             score += AT_PLACE;
+        }
+        if self.is_hidden(object) {
+            score -= HIDDEN;
         }
         let recent = self.focus.recent.iter().position(|id| *id == object.id);
         score += recent.and_then(|at| RECENT.get(at)).copied().unwrap_or_default();

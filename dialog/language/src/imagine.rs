@@ -48,9 +48,9 @@ fn walk(scene: &mut Known, object: ObjectId) {
     if distance > REACH_M {
         let keep = REACH_M / distance;
         scene.robot.yaw_rad += scene.object(object).map_or(0.0, |target| scene.bearing_rad(target));
-        for axis in 0..2 {
-            scene.robot.position_m[axis] = position[axis] + (scene.robot.position_m[axis] - position[axis]) * keep;
-        }
+        let [x, y, _] = &mut scene.robot.position_m;
+        *x = position[0] + (*x - position[0]) * keep;
+        *y = position[1] + (*y - position[1]) * keep;
     }
     scene.robot.room = room;
     carry(scene);

@@ -14,6 +14,9 @@ pub(crate) struct Naming {
     pub(crate) weight: f32,
 }
 
+/// How much one word of a name of several means its class.
+const NAME_PART: f32 = 0.6;
+
 /// What an adjective demands of an object's state.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub(crate) enum StateWord {
@@ -97,6 +100,7 @@ pub(crate) struct Lexicon {
     pub(crate) degrees: PhraseTable<()>,
     pub(crate) viewpoints: PhraseTable<()>,
     pub(crate) negation: PhraseTable<()>,
+    pub(crate) answer_lead: PhraseTable<()>,
     pub(crate) pronouns: PhraseTable<Pronoun>,
     pub(crate) prepositions: PhraseTable<Preposition>,
     pub(crate) sides: PhraseTable<Side>,
@@ -114,6 +118,10 @@ pub(crate) struct Lexicon {
     pub(crate) separable: Vec<(Vec<String>, String, Intent)>,
     pub(crate) questions: PhraseTable<QuestionKind>,
     pub(crate) classes: PhraseTable<Vec<Naming>>,
+    /// Single words of names of several words: `trash` for the trash can.
+    pub(crate) name_parts: PhraseTable<Vec<Naming>>,
+    /// All words that name a class, by its index.
+    pub(crate) class_words: Vec<BTreeSet<String>>,
     pub(crate) vocabulary: Vocabulary,
 }
 
@@ -136,6 +144,7 @@ struct WordFile {
     degrees: Words,
     viewpoints: Words,
     negation: Words,
+    answer_lead: Words,
     pronouns: BTreeMap<Pronoun, Vec<String>>,
     prepositions: BTreeMap<Preposition, Vec<String>>,
     sides: BTreeMap<Side, Vec<String>>,
@@ -242,6 +251,7 @@ impl Lexicon {
             (&mut self.degrees, &file.degrees),
             (&mut self.viewpoints, &file.viewpoints),
             (&mut self.negation, &file.negation),
+            (&mut self.answer_lead, &file.answer_lead),
         ];
         for (table, entry) in plain {
             entry.words.iter().for_each(|word| table.insert(word, ()));
@@ -317,6 +327,7 @@ impl Lexicon {
             let id = ClassId(index);
             self.name_class(&class.name, id, 1.0);
             self.name_class(&class.id, id, 1.0);
+            self.add_name_parts(&class.name, id);
             for (rank, word) in (0_u8..).zip(&class.words) {
                 self.name_class(word, id, 0.9 - 0.05 * f32::from(rank.min(8)));
             }
@@ -328,12 +339,26 @@ impl Lexicon {
         }
     }
 
+    fn add_name_parts(&mut self, name: &str, class: ClassId) {
+        let words = self.replaced(&token::words(name));
+        let is_room = |word: &String| self.rooms.words().any(|known| known == word);
+        let parts: Vec<String> = words.iter().filter(|word| word.len() > 3 && !is_room(word)).cloned().collect();
+        for word in parts.iter().filter(|_| words.len() > 1) {
+            self.name_parts.entry(word).push(Naming { class, weight: NAME_PART });
+        }
+    }
+
     fn name_class(&mut self, phrase: &str, class: ClassId, weight: f32) {
         // The same replacements as in utterances, so that `breakroom sign` is found again.
         let phrase = self.replaced(&token::words(phrase)).join(" ");
         if phrase.is_empty() {
             return;
         }
+        let index = usize::from(class.0);
+        if self.class_words.len() <= index {
+            self.class_words.resize(index + 1, BTreeSet::new());
+        }
+        self.class_words[index].extend(token::words(&phrase));
         let namings = self.classes.entry(&phrase);
         match namings.iter_mut().find(|naming| naming.class == class) {
             Some(naming) => naming.weight = naming.weight.max(weight),
@@ -355,6 +380,7 @@ impl Lexicon {
             &self.degrees,
             &self.viewpoints,
             &self.negation,
+            &self.answer_lead,
         ] {
             table.words().for_each(&mut learn);
         }

@@ -31,6 +31,7 @@ mod ground;
 mod imagine;
 mod intent;
 mod known;
+mod lab;
 mod lexicon;
 mod phrase;
 mod plan;

@@ -89,6 +89,28 @@ impl Phrase {
     }
 }
 
+impl Place {
+    /// The place in words, for questions about it.
+    fn text(&self, preposition: Preposition) -> String {
+        match self {
+            Self::Room(room) | Self::Viewpoint(room, _) => format!("in the {}", room.name()),
+            Self::Here => "here".to_owned(),
+            Self::Side(side) => format!("on the {}", format!("{side:?}").to_lowercase()),
+            Self::Viewpoints(number) => format!("at viewpoint {number}"),
+            Self::Object(phrase) => {
+                let word = match preposition {
+                    Preposition::In => "in",
+                    Preposition::Near | Preposition::At => "near",
+                    Preposition::With => "with",
+                    Preposition::From => "from",
+                    _ => "on",
+                };
+                format!("{word} {}", phrase.text)
+            }
+        }
+    }
+}
+
 /// Reads phrases from words.
 #[derive(Clone, Copy)]
 pub(crate) struct Reader<'a> {
@@ -125,6 +147,7 @@ impl<'a> Reader<'a> {
     /// A phrase with all that follows and describes it; `None`, and no step forward, if there is none.
     pub(crate) fn phrase_with_place(&mut self) -> Option<Phrase> {
         let mut phrase = self.phrase()?;
+        let said = phrase.text.clone();
         let start = self.at;
         while let Some((preposition, place)) = self.place() {
             let is_with = preposition == Preposition::With;
@@ -135,7 +158,7 @@ impl<'a> Reader<'a> {
             }
         }
         if self.at > start {
-            phrase.text = format!("{} {}", phrase.text, self.words[start..self.at].join(" "));
+            phrase.text = format!("{said} {}", self.words[start..self.at].join(" "));
         }
         Some(phrase)
     }
@@ -261,7 +284,12 @@ impl<'a> Reader<'a> {
         if let Some((length, namings)) = lexicon.classes.longest(rest) {
             phrase.namings = namings.clone();
             phrase.fluid = lexicon.fluids.exact(&rest[..length]).copied();
+            // `red apple` may be a name in the catalogue; that it is to be red holds all the same.
+            if let Some((_, color)) = lexicon.colors.longest(rest).filter(|(color, _)| *color < length) {
+                phrase.color = phrase.color.take().or_else(|| Some(color.clone()));
+            }
             self.at += length;
+            self.compound(&rest[..length], phrase);
             return;
         }
         let Some(word) = rest.first() else { return };
@@ -274,8 +302,35 @@ impl<'a> Reader<'a> {
         } else if let Some((length, fluid)) = lexicon.fluids.longest(rest) {
             phrase.fluid = Some(*fluid);
             self.at += length;
+        } else if let Some((length, namings)) = lexicon.name_parts.longest(rest).filter(|_| self.is_free_noun()) {
+            phrase.namings = namings.clone();
+            self.at += length;
         } else if !lexicon.vocabulary.has(word) && !token::is_punctuation(word) {
             self.unknown_head(phrase);
+        }
+    }
+
+    /// Whether the next word is no verb and no form of address.
+    fn is_free_noun(&self) -> bool {
+        !self.at_verb() && self.lexicon.trail.longest(self.rest()).is_none()
+    }
+
+    /// `hammer cartridge`: the second noun is meant, and the first says which; `fridge door` stays the fridge.
+    fn compound(&mut self, first: &[String], phrase: &mut Phrase) {
+        if self.at_verb() {
+            return;
+        }
+        let lexicon = self.lexicon;
+        let Some((length, namings)) = lexicon.classes.longest(self.rest()) else { return };
+        let is_said = |naming: &&Naming| {
+            let words = lexicon.class_words.get(usize::from(naming.class.0));
+            words.is_some_and(|words| first.iter().all(|word| words.contains(word)))
+        };
+        let meant: Vec<Naming> = namings.iter().filter(is_said).copied().collect();
+        self.at += length;
+        if !meant.is_empty() {
+            phrase.namings = meant;
+            phrase.fluid = None;
         }
     }
 
@@ -456,6 +511,7 @@ impl<'a> Reader<'a> {
 impl Phrase {
     /// Takes what a preposition says as a description of where it is.
     pub(crate) fn attach(&mut self, preposition: Preposition, place: Place) {
+        self.text = format!("{} {}", self.text, place.text(preposition)).trim().to_owned();
         match place {
             Place::Room(room) | Place::Viewpoint(room, _) => self.room = Some(room),
             Place::Here => self.is_here = true,

@@ -30,7 +30,7 @@ const LARGEST_LOOK_DEG: f32 = 60.0;
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Fault {
     /// A phrase could not be grounded.
-    Miss { slot: Option<Slot>, phrase: Phrase, miss: Miss, intent: Intent },
+    Miss { slot: Option<Slot>, phrase: Box<Phrase>, miss: Miss, intent: Intent },
     /// Something else is in the hand.
     HandFull { held: ObjectId, wanted: ObjectId },
     /// It cannot be done, for this reason.
@@ -123,7 +123,7 @@ impl Planner<'_> {
 
     pub(crate) fn miss(&self, phrase: &Phrase, miss: Miss, intent: Intent, role: Option<Role>) -> Fault {
         let slot = role.map(|role| Slot { clause: self.clause, role });
-        Fault::Miss { slot, phrase: phrase.clone(), miss, intent }
+        Fault::Miss { slot, phrase: Box::new(phrase.clone()), miss, intent }
     }
 
     /// The objects of a clause: one each, or all of a kind.
@@ -132,7 +132,9 @@ impl Planner<'_> {
         for (index, phrase) in settled.objects.iter().enumerate() {
             let role = Some(Role::Object(index));
             if phrase.is_all {
-                found.extend(self.ground().all(phrase, want).map_err(|miss| self.miss(phrase, miss, want.intent, role))?);
+                found.extend(
+                    self.ground().all(phrase, want).map_err(|miss| self.miss(phrase, miss, want.intent, role))?,
+                );
             } else {
                 found.push(self.find_one(phrase, want, role)?);
             }
@@ -146,15 +148,30 @@ impl Planner<'_> {
 
     /// Opens what encloses an object, from the outside in, and says so.
     pub(crate) fn open_around(&mut self, object: ObjectId, with_itself: bool) {
-        let mut closed: Vec<ObjectId> = self.scene.ancestors(object).map(|parent| parent.id).collect();
-        closed.reverse();
-        closed.extend(with_itself.then_some(object));
-        for id in closed {
+        let mut around = self.around(object);
+        around.extend(with_itself.then_some(object));
+        for id in around {
             if self.is_shut(id) {
                 self.notes.push(format!("{} is closed, so I open it first", self.the(id)));
                 self.interact(Verb::Open, id, "opening");
             }
         }
+    }
+
+    /// What an object is in, from the outside in. A machine that cannot be carried stands on its parent: a microwave on
+    /// a cupboard is not in the cupboard.
+    pub(crate) fn around(&self, object: ObjectId) -> Vec<ObjectId> {
+        let mut around = Vec::new();
+        let mut child = object;
+        for parent in self.scene.ancestors(object) {
+            if !self.has(child, Property::Pickupable) {
+                break;
+            }
+            around.push(parent.id);
+            child = parent.id;
+        }
+        around.reverse();
+        around
     }
 
     /// Whether its door keeps things in and could be opened.
@@ -186,7 +203,11 @@ impl Planner<'_> {
 
     fn add_door(&mut self, settled: &Settled) -> Result<(), Fault> {
         let opens = settled.intent == Intent::Open;
-        for object in self.find_objects(settled, &Want::object(settled.intent))? {
+        let objects = match self.place_with_door(settled) {
+            Some(place) => vec![place],
+            None => self.find_objects(settled, &Want::object(settled.intent))?,
+        };
+        for object in objects {
             let is_open = self.scene.object(object).is_some_and(|object| object.has(StateFlag::Opened));
             if is_open == opens && self.has(object, Property::Openable) {
                 let state = if opens { "open" } else { "closed" };
@@ -199,6 +220,16 @@ impl Planner<'_> {
             }
         }
         Ok(())
+    }
+
+    /// `put it in the microwave and shut the door`: the microwave's.
+    fn place_with_door(&self, settled: &Settled) -> Option<ObjectId> {
+        let [phrase] = settled.objects.as_slice() else { return None };
+        let door = self.catalog.find("Door_01")?;
+        let is_bare = phrase.color.is_none() && phrase.side.is_none() && phrase.room.is_none() && !phrase.is_all;
+        let is_door = phrase.naming(door).is_some() && is_bare && phrase.relations.is_empty();
+        let place = self.focus.place.filter(|place| self.has(*place, Property::Openable))?;
+        is_door.then_some(place)
     }
 
     fn go_to(&mut self, clause: &Clause) -> Result<(), Fault> {
@@ -227,10 +258,24 @@ impl Planner<'_> {
             }
             Place::Object(phrase) => {
                 let object = self.find_one(&phrase, &Want::object(clause.intent), Some(Role::Place(0)))?;
+                self.mention_contents(&phrase, object);
                 self.go_to_object(object);
             }
         }
         Ok(())
+    }
+
+    /// `the desk with the hammer on it`: the hammer was spoken of too.
+    fn mention_contents(&mut self, phrase: &Phrase, object: ObjectId) {
+        let spoken: Vec<ObjectId> = phrase
+            .relations
+            .iter()
+            .flat_map(|relation| {
+                let is_it = |other: &&crate::known::KnownObject| relation.to.naming(other.class).is_some();
+                self.scene.contents(object).filter(is_it).map(|other| other.id)
+            })
+            .collect();
+        spoken.into_iter().for_each(|id| self.focus.mention(id));
     }
 
     pub(crate) fn go_to_object(&mut self, object: ObjectId) {
@@ -362,13 +407,14 @@ impl Planner<'_> {
     }
 }
 
-/// What was said of an object, with an indefinite article.
+/// What was said of an object, as something that is not there: `a mug`, `any milk`.
 pub(crate) fn said(phrase: &Phrase) -> String {
     let mut noun = phrase.text.as_str();
     for article in ["the ", "a ", "an ", "my ", "your ", "this ", "that ", "some ", "any "] {
         noun = noun.strip_prefix(article).unwrap_or(noun);
     }
-    describe::indefinite(noun)
+    let text = describe::indefinite(noun);
+    text.strip_prefix("some ").map_or_else(|| text.clone(), |noun| format!("any {noun}"))
 }
 
 fn plain_number(value: f32) -> String {

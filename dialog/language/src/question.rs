@@ -18,6 +18,7 @@ pub(crate) enum QuestionKind {
     Robot,
     Where,
     Abilities,
+    Doing,
     Goals,
     Seeing,
     Contents,

@@ -2,13 +2,7 @@
 
 use cohabit_cdf::{Action, ObjectId, Status, Verb};
 
-use crate::{
-    context::Focus,
-    describe,
-    known::Known,
-    plan::Planner,
-    understanding::Step,
-};
+use crate::{context::Focus, describe, known::Known, plan::Planner, understanding::Step};
 
 /// An offer: the question, and the steps to take before trying again.
 pub(crate) struct Remedy {
@@ -33,8 +27,9 @@ pub(crate) fn remedy(planner: Planner<'_>, step: &Step, status: Status) -> Optio
         }
         Status::ObjectUnpowered | Status::ObjectOverloaded => {
             let lever = power_lever(&planner, object_of(&step.action)?)?;
+            let question = format!("Shall I try {}?", describe::full(planner.catalog, &planner.scene, lever));
             planner.interact(Verb::Toggle, lever, "switching");
-            format!("Shall I try {}?", describe::full(planner.catalog, &planner.scene, lever))
+            question
         }
         Status::TargetOutOfRange => {
             planner.go_to_object(object_of(&step.action)?);
@@ -77,10 +72,9 @@ pub(crate) const fn object_of(action: &Action) -> Option<ObjectId> {
 fn closed_place(planner: &Planner<'_>, action: &Action) -> Option<ObjectId> {
     let object = object_of(action)?;
     let is_place = matches!(action, Action::Place { .. });
-    let around: Vec<ObjectId> = planner.scene.ancestors(object).map(|parent| parent.id).collect();
-    around
+    planner
+        .around(object)
         .into_iter()
-        .rev()
         .find(|id| planner.is_shut(*id))
         .or_else(|| (is_place && planner.is_shut(object)).then_some(object))
 }
@@ -89,7 +83,8 @@ fn closed_place(planner: &Planner<'_>, action: &Action) -> Option<ObjectId> {
 fn power_lever(planner: &Planner<'_>, machine: ObjectId) -> Option<ObjectId> {
     let room = planner.scene.object(machine)?.room;
     let boxes = ["FuseBox_01", "FuseBox_02"].into_iter().filter_map(|id| planner.catalog.find(id));
-    let mut levers: Vec<_> = boxes.flat_map(|class| planner.devices.workers(class).unwrap_or_default()).copied().collect();
+    let mut levers: Vec<_> =
+        boxes.flat_map(|class| planner.devices.workers(class).unwrap_or_default()).copied().collect();
     levers.dedup();
     let is_fixed = |object: &&crate::known::KnownObject| {
         levers.contains(&object.class) && object.parent.is_some() && planner.scene.robot.held != Some(object.id)

@@ -47,7 +47,9 @@ pub(crate) fn which(catalog: &Catalog, scene: &Known, candidates: &[ObjectId]) -
 pub(crate) fn miss(phrase: &Phrase, miss: &Miss, intent: Intent) -> String {
     if !phrase.unknown.is_empty() && phrase.namings.is_empty() {
         let words = phrase.unknown.join(" ");
-        return format!("I do not know what \"{words}\" is. Name me something in the office, such as the mug or the fridge.");
+        return format!(
+            "I do not know what \"{words}\" is. Name me something in the office, such as the mug or the fridge."
+        );
     }
     match miss {
         Miss::NoReferent => format!("What shall I {}? I do not know what \"{}\" is.", intent.verb(), phrase.text),

@@ -92,10 +92,16 @@ fn help(catalog: &Catalog, scene: &Known, step: &Step, status: Status) -> String
         (Status::ObjectNotPickedUp, _) => "Tell me what to pick up first.".to_owned(),
         (Status::TargetInaccessible, Action::Move { .. }) => "Tell me another way.".to_owned(),
         (Status::ObjectUnpowered, _) => "The room's power must be switched on at the fuse box.".to_owned(),
-        (Status::ObjectOverloaded, _) => "Switching the room's power off and on at the fuse box clears that.".to_owned(),
+        (Status::ObjectOverloaded, _) => {
+            "Switching the room's power off and on at the fuse box clears that.".to_owned()
+        }
         (Status::UnsupportedAction, Action::Interact { object, .. }) => {
             let place = describe::location(catalog, scene, *object);
-            if place.is_empty() { String::new() } else { format!("I tried it with {}.", describe::full(catalog, scene, *object)) }
+            if place.is_empty() {
+                String::new()
+            } else {
+                format!("I tried it with {}.", describe::full(catalog, scene, *object))
+            }
         }
         _ => String::new(),
     }

@@ -37,7 +37,10 @@ const fn has_goal(intent: Intent) -> bool {
 
 /// Verbs done `with` something.
 const fn has_tool(intent: Intent) -> bool {
-    !matches!(intent, Intent::Place | Intent::Bring | Intent::PickUp | Intent::Find | Intent::Highlight | Intent::Examine)
+    !matches!(
+        intent,
+        Intent::Place | Intent::Bring | Intent::PickUp | Intent::Find | Intent::Highlight | Intent::Examine
+    )
 }
 
 /// Settles a clause.
@@ -56,7 +59,7 @@ pub(crate) fn settle(planner: &Planner<'_>, clause: &Clause) -> Settled {
             (Preposition::With, Place::Object(phrase)) if has_tool(clause.intent) => {
                 settled.tool = Some((phrase.clone(), role));
             }
-            (Preposition::From, _) => settled.describe_object(Preposition::On, place),
+            (Preposition::From, _) => settled.describe_object(Preposition::From, place),
             _ if has_goal(clause.intent) => settled.take_place(planner, *preposition, place, role),
             _ => settled.describe_object(*preposition, place),
         }

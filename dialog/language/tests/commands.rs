@@ -1,5 +1,7 @@
 //! What people say, and the steps it means, in a small office.
 
+#![allow(clippy::unwrap_used)]
+
 mod support;
 
 use support::{Talk, catalog, scene, text};
@@ -55,7 +57,14 @@ fn going_places() {
         look for the milk -> go MilkCarton_01_1
         go to the red computer -> go V_Monitor_Laser_1
         find the printer -> go Printer_3D_1
-        walk straight, make right, approach 3-d printer, press the red button on it -> move 1.00, turn -90, go Printer_3D_1, ?…",
+        walk down the hallway -> go Hallway
+        go stand in front of the gravity pad -> go GravityPad_1
+        go to the kitchen by the fridge -> go FridgeLower_02_1
+        face the fridge -> go FridgeLower_02_1
+        go to the table with the red computer on it -> go Desk_01_1
+        return to the lobby -> go Reception
+        run to the storage room -> go Warehouse
+        walk straight, make right, approach 3-d printer, press the red button on it -> move 1.00, turn -90, go Printer_3D_1, toggle Printer_3D_1",
     );
 }
 
@@ -78,6 +87,8 @@ fn moving_by_itself() {
         turn 30° right -> turn -30
         make a left -> turn 90
         take a right -> turn -90
+        take a step to the right -> turn -90, move 0.50
+        take 3 steps forward -> move 1.50
         turn around -> turn -180
         rotate right by 120 degrees -> turn -120
         left -> turn 90
@@ -119,7 +130,7 @@ fn picking_up() {
         I need you to get the laser tip -> take Laser_Tip_1
         lift the banana -> take Banana_01_1
         pick up the hammer cartridge -> take Printer_Cartridge_Hammer_1
-        pick up the mug -> ? Which one do you mean: the red mug on the table or the yellow mug on the table?
+        pick up the mug -> ? Which one do you mean: the red mug on the round table or the yellow mug on the round table?
         pick up the fridge -> ! I cannot pick up the fridge.
         pick up the knife and the bowl -> ! I can only carry one thing at a time…",
     );
@@ -146,7 +157,7 @@ fn placing() {
         bring it to the quantum lab -> go Lab2
         put the bowl in the fridge and close it -> open FridgeLower_02_1, put FridgeLower_02_1, close FridgeLower_02_1
         pick up the banana -> ? I am holding the bowl. Shall I put it down first?
-        put the cereal in the fridge -> put TableRound_02_1, take Cereal_Box_01_1, open FridgeLower_02_1, put FridgeLower_02_1
+        put the cereal in the fridge -> put KitchenCounterTop_02_1, take Cereal_Box_01_1, open FridgeLower_02_1, put FridgeLower_02_1
         throw it away -> put TrashCan_01_1
         throw the bowl at the robot arm -> throw RoboticArm_01_1
         toss the bowl in the bin -> put TrashCan_01_1",
@@ -190,12 +201,15 @@ fn doors_and_switches() {
         activate the blue computer -> toggle V_Monitor_FreezeRay_1
         fire the freeze ray -> toggle V_Monitor_FreezeRay_1
         press the Red button -> toggle ColorChanger_Button_Red_1
+        press the start button on the microwave -> toggle Microwave_01_1
         push the blue button -> toggle ColorChanger_Button_Blue_1
         hit the green button -> toggle ColorChanger_Button_Green_1
         turn the lights on -> toggle LightSwitch_01_1
         turn on the light in the quantum lab -> toggle LightSwitch_01_2
         pull the lever -> toggle FuseBox_01_Lever_1
-        reset the fuse box -> ! …
+        reset the fuse box -> toggle FuseBox_01_Lever_1
+        flip the lever on the fuse box -> toggle FuseBox_01_Lever_1
+        press the blue button on the color changer -> toggle ColorChanger_Button_Blue_1
         toggle the carrot maker -> toggle EAC_Machine_1
         use the robot arm -> toggle RoboticArm_01_1
         stop the laser -> = The laser is already off.
@@ -225,7 +239,7 @@ fn tools_and_eyes() {
         break the record -> take Hammer_1, break Record_01_1
         smash the trophy with the hammer -> take Hammer_1, break Trophy01_1
         use the hammer to break the yellow mug -> take Hammer_1, break CoffeeMug_Yellow_1
-        scan all the apples -> scan Apple_2, scan Apple_1
+        scan all the apples -> scan Apple_1, scan Apple_2
         open the fridge and the freezer -> open FridgeLower_02_1, open FridgeUpper_02_1",
     );
     check(
@@ -263,7 +277,7 @@ fn processes() {
         pour cereal in the bowl -> take Cereal_Box_01_1, pour Bowl_01_1
         use the time machine on the bowl -> take Bowl_01_1, open YesterdayMachine_01_1, put YesterdayMachine_01_1, close YesterdayMachine_01_1, toggle YesterdayMachine_01_1, open YesterdayMachine_01_1, take Bowl_01_1
         use the sink to clean the plate -> take FoodPlate_01_1, toggle KitchenCounterSink_01_1, clean KitchenCounterSink_01_1
-        heat the table -> ! I cannot heat the table…
+        heat the table -> ! I cannot heat the round table…
         cut the banana -> ! I cannot cut things…",
     );
     check(
@@ -291,6 +305,9 @@ fn several_in_a_sentence() {
         pick up the banana and place it on the counter -> take Banana_01_1, put KitchenCounterTop_02_1
         go to the fridge open it take the milk -> go FridgeLower_02_1, open FridgeLower_02_1, take MilkCarton_01_1
         please open the microwave, put the bowl inside and close it -> open Microwave_01_1, take Bowl_01_1, put Microwave_01_1, close Microwave_01_1
+        put the banana in the microwave and shut the door -> take Banana_01_1, open Microwave_01_1, put Microwave_01_1, close Microwave_01_1
+        pick up the banana and the knife and put them on the plate -> take Banana_01_1, put FoodPlate_01_1, take Knife_01_1, put FoodPlate_01_1
+        pick up teh knife frm the counter -> take Knife_01_1
         pick up the hammer and break the record -> take Hammer_1, break Record_01_1
         put the bowl on the counter and the banana in the fridge -> take Bowl_01_1, put KitchenCounterTop_02_1, take Banana_01_1, open FridgeLower_02_1, put FridgeLower_02_1",
     );
@@ -305,18 +322,21 @@ fn questions_are_answered() {
         are you holding the bowl -> = Yes, I am holding the bowl.
         where is the milk? -> = The milk is in the fridge.
         where's the hammer -> = The hammer is on the blue desk in the main office.
-        can you see the red mug -> = The red mug is on the table.
+        can you see the red mug -> = The red mug is on the round table.
         what can you do? -> = I can go to rooms…
         help -> = I can go to rooms…
         what is left? -> = Still to do: Pour milk into the bowl. Done so far: 1.
         where are you? -> = I am in the break room.
-        what is in the fridge? -> = In the fridge there is a milk…
+        what is in the fridge? -> = In the fridge there is some milk.
+        could you tell me where the hammer is -> = The hammer is on the blue desk in the main office.
         is the fridge open? -> = No, the fridge is not open.
         is the milk in the fridge? -> = Yes, the milk is in the fridge.
         what color is the trophy -> = The trophy is gold.
         what does the note say? -> = The sticky note says: \"The bowl must be mended first.\"…
         do you know where the laser is -> = The laser is in the robotics lab.
         how many apples are there -> = I know of 2…
+        what are you doing? -> = I am waiting for you to tell me what to do.
+        good job robot! -> = You are welcome!
         thanks -> = You are welcome!
         hello -> = Hello! …
         where is the unicorn? -> ! I do not know…",
@@ -327,7 +347,7 @@ fn questions_are_answered() {
 fn what_is_not_understood_is_said() {
     check(
         &[],
-        " -> ! I did not hear anything…
+        "... -> ! I did not hear anything…
         frobnicate the mug -> ! I do not know the word \"frobnicate\"…
         pick up the flurbl -> ! I do not know what \"flurbl\" is…
         play some jazz music please -> ! …
@@ -336,9 +356,13 @@ fn what_is_not_understood_is_said() {
         do not open the fridge -> = All right, I will not do that.
         don't touch anything -> = All right, I will not do that.
         the fridge -> ? What shall I do with the fridge?
-        pick up the purple mug -> ? I do not know of a purple mug. Do you mean the red mug on the table or the yellow mug on the table?
+        pick up the purple mug -> ? I do not know of a purple mug. Do you mean the red mug on the round table or the yellow mug on the round table?
         pick up the mug in the quantum lab -> ? I do not know of a mug in the quantum lab…
         asdf -> ! …
+        put everything on the table -> ! …
+        heat up my lunch -> ! …
+        make a bowl of cereal -> ! I do not know how to make a bowl…
+        I think the milk is in the fridge -> ? What shall I do with the milk in the fridge?
         dance -> ! I cannot dance…
         pick it up -> ! What shall I pick up…
         please -> …",
@@ -353,6 +377,7 @@ fn stop_bypasses_everything() {
         STOP! -> stop!
         please stop now -> stop!
         wait -> stop!
+        wait a minute -> stop!
         hold on -> stop!
         ok stop -> stop!
         freeze! -> stop!

@@ -1,1 +1,109 @@
-//! cohabit-dialog
+//! The dialog service: serves the page, understands what people say there, plans, and tells them what happens.
+//!
+//! It is a peer of the session's bus like any other: it reads state and frames, and what it says and plans is heard,
+//! and recorded, by all. It never knows the world's insides.
+
+mod conversation;
+mod frames;
+mod hub;
+mod known;
+mod latency;
+mod limits;
+mod page;
+mod talk;
+mod token;
+mod web;
+
+use std::{
+    net::SocketAddr,
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
+    thread,
+    time::Duration,
+};
+
+use cohabit_bus::{BusError, Transport};
+use cohabit_cdf::{Catalog, Layout, Mission};
+
+use crate::{hub::Hub, talk::Talk};
+
+/// Settings of a dialog service.
+pub struct DialogConfig {
+    /// The session's name.
+    pub session: String,
+    /// Where the page is served; port 0 takes any that is free.
+    pub listen: SocketAddr,
+    /// Called once, when a page says that it has shown a frame.
+    pub on_first_frame: Box<dyn Fn() + Send + Sync>,
+}
+
+/// Why the dialog service could not start or go on.
+#[derive(Debug, thiserror::Error)]
+pub enum DialogError {
+    /// The page's address cannot be had.
+    #[error("serve the page on {address}: {source}; choose another with `--port` (0 takes any that is free)")]
+    Listen {
+        /// Which.
+        address: SocketAddr,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// The page's server failed.
+    #[error("serve the page: {0}")]
+    Serve(std::io::Error),
+    /// The bus failed.
+    #[error(transparent)]
+    Bus(#[from] BusError),
+    /// A peer sent nonsense.
+    #[error(transparent)]
+    Malformed(#[from] cohabit_bus::message::Malformed),
+}
+
+/// How often the page learns of the world's state.
+const STATE_EVERY: Duration = Duration::from_millis(100);
+
+/// Serves a session until `stop`; `ready` is given the page's address as soon as it can be opened.
+///
+/// # Errors
+/// [`DialogError`].
+pub fn serve(
+    bus: Arc<dyn Transport>,
+    mission: Arc<Mission>,
+    layout: Arc<Layout>,
+    catalog: Arc<Catalog>,
+    config: DialogConfig,
+    stop: &AtomicBool,
+    ready: impl FnOnce(&str),
+) -> Result<(), DialogError> {
+    let hub = Arc::new(Hub::new(page::hello(&config.session, &mission, &layout), config.on_first_frame));
+    let talk = Talk::new(&*bus, catalog, Arc::clone(&hub))?;
+    let token = token::for_address(config.listen).map_err(DialogError::Serve)?;
+    let listener = std::net::TcpListener::bind(config.listen)
+        .map_err(|source| DialogError::Listen { address: config.listen, source })?;
+    let address = listener.local_addr().map_err(DialogError::Serve)?;
+    let ended = AtomicBool::new(false);
+    let over = || stop.load(Ordering::Relaxed) || ended.load(Ordering::Relaxed);
+    thread::scope(|scope| {
+        let workers = [
+            scope.spawn(|| until_ended(&ended, || talk::listen(&*bus, &talk, &over))),
+            scope.spawn(|| until_ended(&ended, || talk::show_state(&talk, STATE_EVERY, &over))),
+            scope.spawn(|| until_ended(&ended, || frames::relay(&*bus, &hub, &talk, &over))),
+        ];
+        ready(&token::page_address(address, token.as_deref()));
+        let served = web::serve(listener, token, Arc::clone(&hub), Arc::clone(&talk), &over);
+        ended.store(true, Ordering::Relaxed);
+        workers
+            .into_iter()
+            .map(|worker| worker.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
+            .fold(served.map_err(DialogError::Serve), Result::and)
+    })
+}
+
+/// Runs one of the service's loops; if it fails, all end.
+fn until_ended(ended: &AtomicBool, work: impl FnOnce() -> Result<(), DialogError>) -> Result<(), DialogError> {
+    let done = work();
+    ended.store(true, Ordering::Relaxed);
+    done
+}

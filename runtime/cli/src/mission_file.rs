@@ -24,8 +24,9 @@ impl MissionFile {
         let name = name.unwrap_or(DEFAULT);
         if Path::new(name).is_file() {
             let bytes = fs::read(name).map_err(|error| bad_input(format!("{name}: {error}")))?;
-            let text = String::from_utf8(bytes)
-                .map_err(|error| bad_input(format!("{name}: not UTF-8 text from byte {}", error.utf8_error().valid_up_to())))?;
+            let text = String::from_utf8(bytes).map_err(|error| {
+                bad_input(format!("{name}: not UTF-8 text from byte {}", error.utf8_error().valid_up_to()))
+            })?;
             return Ok(Self { name: name.to_owned(), text });
         }
         let known = mission::builtin();

@@ -19,7 +19,10 @@ impl Replay {
     pub fn run(&self) -> anyhow::Result<()> {
         let log = Log::open(&self.log).map_err(bad_input)?;
         let path = self.log.display();
-        println!("{path}: session {}, mission {}, seed {}", log.session.session, log.session.mission_file, log.session.seed);
+        println!(
+            "{path}: session {}, mission {}, seed {}",
+            log.session.session, log.session.mission_file, log.session.seed
+        );
         if let Some(reason) = &log.cut {
             println!("{path} ends early ({reason}); what it holds is replayed");
         }

@@ -182,7 +182,9 @@ fn relay(out: ChildStdout, began: Instant) {
     for line in BufReader::new(out).lines().map_while(Result::ok) {
         let seconds = began.elapsed().as_secs_f64();
         match line.split_once(' ') {
-            Some(("page", address)) => println!("Open {address}  (ready after {seconds:.2} s; Ctrl-C ends the session)"),
+            Some(("page", address)) => {
+                println!("Open {address}  (ready after {seconds:.2} s; Ctrl-C ends the session)")
+            }
             _ if line == "shown" => println!("First frame on the page {seconds:.2} s after the start"),
             _ => println!("{line}"),
         }

@@ -35,13 +35,8 @@ impl CameraRig {
     /// Moves the camera on by `dt_s` seconds and gives where it is now.
     pub fn follow(&mut self, standing: &Standing, layout: &Layout, dt_s: f32, size: [u32; 2]) -> Camera {
         let [x, y, _] = standing.position_m;
-        let mut pose = self.pose.unwrap_or(Pose {
-            x,
-            y,
-            yaw_rad: standing.yaw_rad,
-            boom_m: BEHIND_M,
-            pitch_rad: PITCH_RAD,
-        });
+        let mut pose =
+            self.pose.unwrap_or(Pose { x, y, yaw_rad: standing.yaw_rad, boom_m: BEHIND_M, pitch_rad: PITCH_RAD });
         let near = 1.0 - expf(-FOLLOW_PER_S * dt_s);
         let turned = 1.0 - expf(-TURN_PER_S * dt_s);
         pose.x += (x - pose.x) * near.max(0.5);
@@ -94,9 +89,9 @@ fn free_length_m(layout: &Layout, from: [f32; 2], direction: [f32; 2], most_m: f
 fn on_clear_floor(layout: &Layout, [x, y]: [f32; 2]) -> bool {
     let m = CLEAR_OF_WALLS_M;
     layout.rooms.iter().any(|room| {
-        room.rects_m.iter().any(|[west, south, east, north]| {
-            x > west + m && x < east - m && y > south + m && y < north - m
-        })
+        room.rects_m
+            .iter()
+            .any(|[west, south, east, north]| x > west + m && x < east - m && y > south + m && y < north - m)
     }) || layout.openings.iter().any(|opening| in_opening(opening, [x, y]))
 }
 

@@ -77,9 +77,10 @@ impl Engine {
         let inputs: Vec<Input> = messages.iter().filter_map(|message| self.input(message)).collect();
         let report = self.world.step(&inputs);
         self.note_started(&inputs);
+        // State before events: who hears of an event finds the state that it speaks of.
+        self.publish_state()?;
         self.publish_events(&inputs, report)?;
         self.publish_tick(messages, wall_nanos)?;
-        self.publish_state()?;
         Ok(())
     }
 

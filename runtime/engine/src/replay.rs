@@ -48,7 +48,9 @@ pub enum Difference {
 impl std::fmt::Display for Difference {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
-            Self::Missing { tick, found } => write!(f, "the log has no tick {tick}: tick {found} follows the one before"),
+            Self::Missing { tick, found } => {
+                write!(f, "the log has no tick {tick}: tick {found} follows the one before")
+            }
             Self::Digest { tick, recorded, replayed } => {
                 write!(f, "tick {tick} differs: recorded {recorded}, replayed {replayed}")
             }
@@ -80,8 +82,7 @@ pub fn replay(log: &Log, catalog: Arc<Catalog>) -> Result<Replay, BuildError> {
         replay.inputs += inputs.len() as u64;
         let replayed = hex(&world.digest());
         if replayed != entry.digest {
-            replay.difference =
-                Some(Difference::Digest { tick: entry.tick, recorded: entry.digest.clone(), replayed });
+            replay.difference = Some(Difference::Digest { tick: entry.tick, recorded: entry.digest.clone(), replayed });
             break;
         }
     }

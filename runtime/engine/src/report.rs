@@ -22,7 +22,9 @@ pub fn event(world: &World, event: &Event) -> Option<EventMessage> {
         Event::ObjectChanged { object } => about(EventKind::ObjectChanged, *object),
         Event::Spawned { object, .. } => about(EventKind::Spawned, *object),
         Event::Highlighted { object, .. } => about(EventKind::Highlighted, *object),
-        Event::NoteRead { object, text } => EventMessage { text: Text::new(text), ..about(EventKind::NoteRead, *object) },
+        Event::NoteRead { object, text } => {
+            EventMessage { text: Text::new(text), ..about(EventKind::NoteRead, *object) }
+        }
         Event::Sound { kind, object } => {
             EventMessage { text: Text::new(&format!("{kind:?}")), ..about(EventKind::Sound, *object) }
         }

@@ -99,7 +99,10 @@ impl Pace {
         if let Some(early) = self.next.checked_duration_since(now) {
             thread::sleep(early);
         } else if now - self.next > MOST_MADE_UP {
-            tracing::warn!("the machine is too slow: {} ms of simulated time were dropped", (now - self.next).as_millis());
+            tracing::warn!(
+                "the machine is too slow: {} ms of simulated time were dropped",
+                (now - self.next).as_millis()
+            );
             self.next = now;
         }
     }

@@ -71,7 +71,7 @@ impl View {
 
     /// A point of the world in the camera's frame.
     #[inline]
-    pub(crate) fn from_world(&self, point: Vec3) -> Vec3 {
+    pub(crate) fn in_camera(&self, point: Vec3) -> Vec3 {
         self.turned(point - self.eye)
     }
 
@@ -84,7 +84,9 @@ impl View {
     /// The world direction through a place of the picture, one metre forward.
     #[inline]
     pub(crate) fn ray(&self, x: f32, y: f32) -> Vec3 {
-        self.forward + self.right * ((x - self.center[0]) / self.focal) + self.down * ((y - self.center[1]) / self.focal)
+        self.forward
+            + self.right * ((x - self.center[0]) / self.focal)
+            + self.down * ((y - self.center[1]) / self.focal)
     }
 
     /// The whole picture.
@@ -94,7 +96,7 @@ impl View {
 
     /// The part of the picture that a sphere may cover; all of it, if it surrounds the eye; nothing, if it is behind.
     pub(crate) fn sphere_rect(&self, center: Vec3, radius: f32) -> Option<Rect> {
-        let at = self.from_world(center);
+        let at = self.in_camera(center);
         if at.z + radius < NEAR_M {
             return None;
         }
@@ -160,7 +162,7 @@ mod tests {
     #[test]
     fn right_is_right_and_up_is_up() {
         let view = View::new(&camera(0.0, 0.0));
-        let at = view.from_world(Vec3::new(3.0, 1.0, 2.0));
+        let at = view.in_camera(Vec3::new(3.0, 1.0, 2.0));
         assert!((at - Vec3::new(1.0, -0.5, 2.0)).length() < 1e-5, "{at}");
         assert!(View::new(&camera(0.0, 0.3)).forward.z > 0.0);
     }

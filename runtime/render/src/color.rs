@@ -57,8 +57,10 @@ fn roll_off(c: f32) -> f32 {
 /// Display bytes of linear light.
 #[inline]
 pub(crate) fn to_srgb(table: &[u8; STEPS], light: Vec3) -> [u8; 3] {
-    // The conversion of a float saturates, so negative light is black and the mask never changes a value.
-    let channel = |c: f32| table[(c.min(WHITE) * ((STEPS - 1) as f32 / WHITE) + 0.5) as usize & (STEPS - 1)];
+    // Beside this large number the last bits of a float are its whole part: much cheaper than a conversion.
+    const LARGE: f32 = 8_388_608.0;
+    let step = |c: f32| (c.clamp(0.0, WHITE) * ((STEPS - 1) as f32 / WHITE) + LARGE).to_bits() as usize;
+    let channel = |c: f32| table[step(c) & (STEPS - 1)];
     [channel(light.x), channel(light.y), channel(light.z)]
 }
 

@@ -188,7 +188,7 @@ fn points(what: &'static str, have: usize, want: usize, coordinates: &[f32]) -> 
     if have < want {
         return Err(ShapeError::FewPoints { what, have, want });
     }
-    match coordinates.iter().find(|value| !(value.abs() < 100.0)) {
+    match coordinates.iter().find(|value| !value.is_finite() || value.abs() >= 100.0) {
         Some(value) => Err(ShapeError::Length { what, value: *value }),
         None => Ok(()),
     }

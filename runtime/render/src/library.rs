@@ -99,7 +99,7 @@ pub(crate) struct ModelMesh {
     pub levels: Vec<Mesh>,
     /// Its joints; pieces refer to them by index.
     pub joints: Vec<Rig>,
-    /// Around what is always drawn, closed and at rest.
+    /// Around what is drawn while nothing has happened to it, closed and at rest.
     pub bounds: Aabb,
     /// Around all that may ever be drawn.
     pub reach: Aabb,
@@ -153,7 +153,8 @@ impl MeshLibrary {
                 return Ok(index);
             }
             let model = own.models().iter().find(|model| model.id == id);
-            models.push(mesh_of(model.expect("invariant: bodies.toml has every body"), id == "robot" || id == "human")?);
+            models
+                .push(mesh_of(model.expect("invariant: bodies.toml has every body"), id == "robot" || id == "human")?);
             Ok(models.len() - 1)
         };
         let bodies = Bodies {
@@ -220,7 +221,7 @@ fn mesh_of(model: &Model, standing: bool) -> Result<ModelMesh, ModelError> {
         if piece.corners.is_empty() {
             continue;
         }
-        if piece.when.is_none() {
+        if piece.is_usual() {
             bounds = bounds.union(own);
         }
         reach = reach.union(own);
@@ -292,4 +293,51 @@ fn rigs(model: &Model) -> Vec<Rig> {
         slide_m: joint.slide_m,
     };
     model.joints.iter().map(rig).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::*;
+
+    /// The model error of one part.
+    fn check(part: &str, expected: &str) {
+        let text = format!("[[model]]\nid = \"m\"\n[[model.part]]\n{part}\n");
+        let catalog = Catalog::parse(&[], &[("m.toml", &text)]).unwrap();
+        let error = MeshLibrary::build(&catalog).unwrap_err().to_string();
+        assert!(error.contains(expected), "{error}");
+    }
+
+    #[test]
+    fn errors_name_model_and_part() {
+        check("shape = \"sphere\"\nradii = [1.0, 0.0, 1.0]", "model `m`, part 1: `radii` is 0");
+        check("shape = \"box\"\nsize = [1.0, 1.0, 1.0]\ncolor = \"red\"", "`red` is no colour");
+        check("shape = \"box\"\nsize = [1.0, 1.0, 1.0]\njoint = \"door\"", "there is no joint `door`");
+        check(
+            "shape = \"box\"\nsize = [1.0, 1.0, 1.0]\nrepeat = { count = 9999, step = [1.0, 0.0, 0.0] }",
+            "9999 copies",
+        );
+    }
+
+    #[test]
+    fn the_built_in_catalogue_has_meshes_that_fill_their_size() {
+        let catalog = Catalog::builtin();
+        let meshes = MeshLibrary::build(&catalog).unwrap();
+        for (index, class) in catalog.classes().iter().enumerate() {
+            let id = ClassId(index as u16);
+            assert!(meshes.triangles(id) > 0, "`{}` has no triangles", class.id);
+            let size = meshes.bounds(id).size();
+            assert!(size.min_element() > 0.0 && size.max_element() < 12.0, "`{}` is {size} m large", class.id);
+        }
+    }
+
+    #[test]
+    fn a_head_looks_up_and_an_arm_reaches_forward() {
+        let rig = |driver, turn_rad| Rig { driver, at: Vec3::ZERO, axis: Vec3::Y, turn_rad, slide_m: 0.0 };
+        let (turn, _) = rig(Driver::Head, 0.0).moved(0.3);
+        assert!((turn * Vec3::X).z > 0.2);
+        let (turn, _) = rig(Driver::Arm, -1.2).moved(1.0);
+        assert!((turn * Vec3::NEG_Z).x > 0.9);
+    }
 }

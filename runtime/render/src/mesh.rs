@@ -111,6 +111,14 @@ pub(crate) struct Mesh {
     pub pieces: Vec<Piece>,
 }
 
+impl Piece {
+    /// Whether it is drawn while nothing has happened to the object.
+    pub(crate) fn is_usual(&self) -> bool {
+        use When::{Off, Powered, Raw, Uneaten, Whole};
+        self.when.is_none_or(|when| matches!(when, Off | Powered | Raw | Uneaten | Whole))
+    }
+}
+
 impl Mesh {
     /// Starts a piece; what is pushed until [`Self::end_piece`] belongs to it.
     pub(crate) fn begin_piece(&mut self, when: Option<When>, joint: Option<u8>) {

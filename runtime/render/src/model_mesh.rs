@@ -124,7 +124,13 @@ fn surface(paint: Paint, pattern: Pattern, frame: Mat3, grain: usize, outward: V
 
 fn pattern_of(material: Material, text: bool) -> Pattern {
     match material {
-        _ if text => if material == Material::Glow { Pattern::Glow } else { Pattern::Ink },
+        _ if text => {
+            if material == Material::Glow {
+                Pattern::Glow
+            } else {
+                Pattern::Ink
+            }
+        }
         Material::Plain => Pattern::Plain,
         Material::Plastic => Pattern::Plastic,
         Material::Metal => Pattern::Metal,

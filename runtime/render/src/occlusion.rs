@@ -1,6 +1,6 @@
 //! Ambient occlusion, baked once for every corner of a model: how much of the sky it sees past the model itself.
 
-use glam::{IVec3, Vec3};
+use glam::Vec3;
 
 use crate::mesh::{Aabb, Mesh};
 
@@ -17,19 +17,19 @@ const LEAST: f32 = 0.28;
 pub(crate) struct Occluder {
     origin: Vec3,
     cell_m: f32,
-    size: IVec3,
+    size: [usize; 3],
     filled: Vec<bool>,
 }
 
 impl Occluder {
-    /// Of the pieces that are always drawn and never move.
+    /// Of the pieces that are drawn while nothing has happened, and never move.
     pub(crate) fn new(mesh: &Mesh, bounds: Aabb) -> Self {
         let cell_m = (bounds.size().max_element() / CELLS).max(1e-3);
-        let size = (bounds.size() / cell_m).ceil().as_ivec3() + IVec3::splat(3);
-        let mut filled = vec![false; (size.x * size.y * size.z) as usize];
+        let size = (bounds.size() / cell_m).to_array().map(|cells| cells.ceil() as usize + 3);
+        let mut filled = vec![false; size.iter().product()];
         let origin = bounds.min - Vec3::splat(cell_m);
         let mut occluder = Self { origin, cell_m, size, filled: Vec::new() };
-        for piece in mesh.pieces.iter().filter(|piece| piece.when.is_none() && piece.joint.is_none()) {
+        for piece in mesh.pieces.iter().filter(|piece| piece.is_usual() && piece.joint.is_none()) {
             for triangle in &mesh.triangles[piece.triangles.start as usize..piece.triangles.end as usize] {
                 let corners = triangle.map(|corner| mesh.positions[corner as usize]);
                 occluder.sample(corners, |index| filled[index] = true);
@@ -54,9 +54,13 @@ impl Occluder {
     }
 
     fn index(&self, point: Vec3) -> Option<usize> {
-        let cell = ((point - self.origin) / self.cell_m).floor().as_ivec3();
-        let inside = cell.cmpge(IVec3::ZERO).all() && cell.cmplt(self.size).all();
-        inside.then(|| ((cell.z * self.size.y + cell.y) * self.size.x + cell.x) as usize)
+        let at = (point - self.origin) / self.cell_m;
+        if at.min_element() < 0.0 {
+            return None;
+        }
+        let [x, y, z] = at.to_array().map(|cell| cell as usize);
+        let inside = x < self.size[0] && y < self.size[1] && z < self.size[2];
+        inside.then(|| (z * self.size[1] + y) * self.size[0] + x)
     }
 
     /// Bakes every corner of `mesh`; `standing` says that a floor lies at z = 0.
@@ -65,7 +69,7 @@ impl Occluder {
         for piece in &mesh.pieces {
             for corner in piece.corners.start as usize..piece.corners.end as usize {
                 let open = self.openness(mesh.positions[corner], mesh.normals[corner], &rays, standing);
-                let least = if piece.joint.is_some() || piece.when.is_some() { MOVING_LEAST } else { LEAST };
+                let least = if piece.joint.is_some() || !piece.is_usual() { MOVING_LEAST } else { LEAST };
                 mesh.ambient[corner] = open.max(least);
             }
         }

@@ -333,6 +333,15 @@ impl Picture {
     }
 }
 
+/// The whole number at or below a coordinate, and what is left. Once a float has this large number added, its last
+/// bits are the whole number: much cheaper than a conversion.
+#[inline]
+fn split(x: f32) -> (u32, f32) {
+    const LARGE: f32 = 12_582_912.0;
+    let sum = (x - 0.5) + LARGE;
+    (sum.to_bits(), x - (sum - LARGE))
+}
+
 /// One copy of a picture.
 #[derive(Clone, Copy)]
 pub(crate) struct Level<'a> {
@@ -345,11 +354,7 @@ impl Level<'_> {
     /// The factors at a place, smoothly between texels.
     #[inline]
     pub(crate) fn at(&self, u_m: f32, v_m: f32) -> [f32; 3] {
-        // A large even offset keeps the coordinates positive, so that truncation is the floor.
-        let x = u_m * self.per_m + 65_535.5;
-        let y = v_m * self.per_m + 65_535.5;
-        let (ix, iy) = (x as u32, y as u32);
-        let (fx, fy) = (x - ix as f32, y - iy as f32);
+        let ((ix, fx), (iy, fy)) = (split(u_m * self.per_m - 0.5), split(v_m * self.per_m - 0.5));
         let mask = (1 << self.shift) - 1;
         let (x0, x1) = ((ix & mask) as usize, ((ix + 1) & mask) as usize);
         let (y0, y1) = (((iy & mask) << self.shift) as usize, (((iy + 1) & mask) << self.shift) as usize);

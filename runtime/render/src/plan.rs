@@ -6,9 +6,9 @@ mod light;
 mod outline;
 mod room;
 
+use cohabit_cdf::RoomId;
 use cohabit_cdf::layout::{Layout, OpeningKind};
 use cohabit_cdf::model::Axis;
-use cohabit_cdf::RoomId;
 use glam::Vec3;
 
 use crate::mesh::{Aabb, Mesh};
@@ -104,7 +104,7 @@ impl Plan {
     }
 
     fn gap(&self, opening: &cohabit_cdf::layout::Opening) -> Gap {
-        let (low, high) = match opening.kind {
+        let (low, high): (f32, f32) = match opening.kind {
             OpeningKind::Door => (0.0, 2.1),
             OpeningKind::Passage => (0.0, 2.3),
             OpeningKind::Window => (1.0, 2.2),

@@ -59,7 +59,7 @@ impl Visible {
 
 /// The part of the picture that a gap may cover.
 fn gap_rect(view: &View, bounds: Aabb) -> Option<Rect> {
-    let corners = bounds.corners().map(|corner| view.from_world(corner));
+    let corners = bounds.corners().map(|corner| view.in_camera(corner));
     if corners.iter().all(|corner| corner.z <= NEAR_M) {
         return None;
     }
@@ -70,7 +70,8 @@ fn gap_rect(view: &View, bounds: Aabb) -> Option<Rect> {
         let scale = view.focal / corner.z;
         [corner.x * scale + view.center[0], corner.y * scale + view.center[1]]
     });
-    let bound = |axis: usize| at.iter().fold((f32::MAX, f32::MIN), |(low, high), p| (low.min(p[axis]), high.max(p[axis])));
+    let bound =
+        |axis: usize| at.iter().fold((f32::MAX, f32::MIN), |(low, high), p| (low.min(p[axis]), high.max(p[axis])));
     let ((left, right), (top, bottom)) = (bound(0), bound(1));
     // One pixel more on each side, so that what a pixel's centre sees is never cut off.
     Some(Rect { min: [left - 1.0, top - 1.0], max: [right + 1.0, bottom + 1.0] })

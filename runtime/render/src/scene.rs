@@ -140,7 +140,7 @@ impl Scene {
     }
 
     /// Everything placed, in the order of the instances.
-    pub(crate) fn placed(&self) -> impl Iterator<Item = &Placed> {
+    pub(crate) fn placed(&self) -> impl Iterator<Item = &Placed> + Clone {
         self.placed.iter().flatten()
     }
 }

@@ -18,6 +18,11 @@ const MOST: usize = 4096;
 /// What surrounds the rooms, m.
 const MARGIN_M: f32 = 0.6;
 
+/// How fast shadows fade with the height of what throws them, for a step of a texel's value: by 1 over 1.8 m.
+const FADE: f32 = 1.0 / (1.8 * 16_000.0);
+/// Soiled places kept apart.
+const MOST_SOILED: usize = 24;
+
 /// Heights in millimetres in the upper twelve bits, the room in the lower four.
 #[derive(Debug)]
 pub(crate) struct ShadowMap {
@@ -51,9 +56,9 @@ impl ShadowMap {
         }
         let touches = |a: &[i32; 4]| a[0] <= rect[2] && a[2] >= rect[0] && a[1] <= rect[3] && a[3] >= rect[1];
         let merged = |a: [i32; 4]| [a[0].min(rect[0]), a[1].min(rect[1]), a[2].max(rect[2]), a[3].max(rect[3])];
-        match self.soiled.iter_mut().find(|known| touches(known)) {
-            Some(known) => *known = merged(*known),
-            None if self.soiled.len() < 24 => self.soiled.push(rect),
+        match self.soiled.iter().position(touches) {
+            Some(known) => self.soiled[known] = merged(self.soiled[known]),
+            None if self.soiled.len() < MOST_SOILED => self.soiled.push(rect),
             None => self.soiled[0] = merged(self.soiled[0]),
         }
     }
@@ -169,8 +174,13 @@ impl ShadowMap {
         }
         let (ix, iy) = (x as usize, y as usize);
         let (fx, fy) = (x - ix as f32, y - iy as f32);
-        let limit = ((point.z * 1000.0).clamp(0.0, 4095.0) as u16) << 4 | 0xF;
-        let blocked = |texel: u16| if texel > limit && texel & 0xF == room { 1.0_f32 } else { 0.0 };
+        let limit = i32::from(((point.z * 1000.0).clamp(0.0, 4095.0) as u16) << 4 | 0xF);
+        // What hangs high above throws a shadow too soft to be seen.
+        let blocked = |texel: u16| {
+            let over = i32::from(texel) - limit;
+            let dark = (1.3 - over as f32 * FADE).min(1.0);
+            if over > 0 && texel & 0xF == room { dark.max(0.0) } else { 0.0 }
+        };
         // A tent four texels wide: each sample weighs by how much of it the tent covers.
         let (wx, wy) = (tent(fx), tent(fy));
         let mut dark = 0.0;

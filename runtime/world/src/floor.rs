@@ -1,7 +1,7 @@
 //! The bare floor plan: rooms, walls with their gaps, and what blocks a straight line. Never knows the furniture.
 
 use cohabit_cdf::layout::{Layout, OpeningKind, RoomId};
-use cohabit_cdf::model::Axis;
+use cohabit_cdf::{ObjectId, model::Axis};
 use glam::Vec2;
 
 use crate::geometry::Footprint;
@@ -16,6 +16,8 @@ pub(crate) struct Gap {
     pub print: Footprint,
     /// The door in it, if one is.
     pub door: Option<String>,
+    /// The object that this door is, once it is built.
+    pub door_object: Option<ObjectId>,
     /// The heading that faces along the passage, rad.
     pub yaw_rad: f32,
     /// The rooms it joins.
@@ -67,6 +69,7 @@ impl Floor {
                 Gap {
                     print: Footprint::new(opening.at_m.into(), half, 0.0),
                     door: opening.door.clone(),
+                    door_object: None,
                     yaw_rad,
                     between: opening.between,
                 }

@@ -61,7 +61,11 @@ fn shapes_are_closed() {
             closed: true,
         },
         Shape::Extrude { outline: vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.5, 0.4]], height: 0.1, bevel: None },
-        Shape::Extrude { outline: vec![[0.0, 0.0], [0.0, 1.0], [1.0, 1.0], [1.0, 0.0]], height: 0.1, bevel: Some(0.02) },
+        Shape::Extrude {
+            outline: vec![[0.0, 0.0], [0.0, 1.0], [1.0, 1.0], [1.0, 0.0]],
+            height: 0.1,
+            bevel: Some(0.02),
+        },
     ];
     for shape in &shapes {
         check_closed(shape);

@@ -90,7 +90,8 @@ impl RoomLight<'_> {
                 && rect[1] - slack <= position.y
                 && position.y <= rect[3] + slack
         };
-        let reach = |rect: &[f32; 4]| if sign > 0.0 { rect[axis + 2] - position[axis] } else { position[axis] - rect[axis] };
+        let reach =
+            |rect: &[f32; 4]| if sign > 0.0 { rect[axis + 2] - position[axis] } else { position[axis] - rect[axis] };
         self.rects.iter().filter(holds).map(reach).fold(0.0, f32::max) - super::HALF_WALL_M
     }
 }

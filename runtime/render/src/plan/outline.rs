@@ -35,7 +35,8 @@ pub(super) fn walls(rects: &[[f32; 4]]) -> Vec<WallRun> {
         let cell = |a: isize, c: isize| if runs_x { inside(a, c) } else { inside(c, a) };
         for (line, line_m) in across.iter().enumerate() {
             for inside_above in [true, false] {
-                let (own, other) = (line as isize - isize::from(!inside_above), line as isize - isize::from(inside_above));
+                let (own, other) =
+                    (line as isize - isize::from(!inside_above), line as isize - isize::from(inside_above));
                 let wall = |a: isize| cell(a, own) && !cell(a, other);
                 let mut a = 0;
                 while a < along.len() as isize {

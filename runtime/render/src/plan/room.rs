@@ -77,7 +77,13 @@ fn wall_surface(finish: &Finish, along: Vec3, low: bool) -> Surface {
     let pattern = match finish.material {
         Material::Brick => Pattern::Brick,
         Material::Tile | Material::Ceramic => Pattern::Tile,
-        Material::Wood => if low { Pattern::Panels } else { Pattern::Wood },
+        Material::Wood => {
+            if low {
+                Pattern::Panels
+            } else {
+                Pattern::Wood
+            }
+        }
         Material::Carpet | Material::Fabric => Pattern::Carpet,
         _ if low => Pattern::Panels,
         _ => Pattern::Wall,
@@ -109,7 +115,8 @@ fn sheet([west, south, east, north]: [f32; 4], z: f32, faces_down: bool) -> Soli
     let (xs, ys) = (divisions(west, east, &[]), divisions(south, north, &[]));
     for x in xs.windows(2) {
         for y in ys.windows(2) {
-            let [a, b, c, d] = [[x[0], y[0]], [x[1], y[0]], [x[1], y[1]], [x[0], y[1]]].map(|[x, y]| Vec3::new(x, y, z));
+            let [a, b, c, d] =
+                [[x[0], y[0]], [x[1], y[0]], [x[1], y[1]], [x[0], y[1]]].map(|[x, y]| Vec3::new(x, y, z));
             solid.face(if faces_down { [d, c, b, a] } else { [a, b, c, d] });
         }
     }
@@ -225,7 +232,8 @@ fn push_box(plan: &mut Plan, size: Vec3, base: Vec3, surface: Surface) {
     if size.min_element() <= 0.0 {
         return;
     }
-    let shape = Shape::Box { size: size.to_array(), bevel: Some(0.004_f32.min(size.min_element() * 0.3)) };
+    // Sharp: a rounded edge here is narrower than a pixel nearly everywhere, and would only flicker.
+    let shape = Shape::Box { size: size.to_array(), bevel: Some(0.0) };
     if let Ok(mut solid) = kit::build(&shape, Detail::Fine) {
         solid.transform(Mat3::IDENTITY, base);
         plan.mesh.push(&solid, |_| surface);

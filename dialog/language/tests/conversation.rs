@@ -1,0 +1,176 @@
+//! Conversations: questions and their answers, pronouns, failures and their remedies.
+
+#![allow(clippy::unwrap_used)]
+
+mod support;
+
+use cohabit_cdf::Status;
+use cohabit_language::Understanding;
+use support::{Talk, step_text};
+
+/// Lines of `> utterance` and what must come of it; `# step status` reports an outcome; `…` ends a prefix.
+fn check(marks: &[&str], script: &str) {
+    let mut talk = Talk::new(marks);
+    let mut lines = script.lines().map(str::trim).filter(|line| !line.is_empty());
+    while let Some(line) = lines.next() {
+        let utterance = line.strip_prefix("> ").unwrap_or_else(|| panic!("no `>` in {line:?}"));
+        let expected = lines.next().unwrap();
+        let found = talk.say(utterance);
+        let is_right = expected.strip_suffix('…').map_or(found == expected, |start| found.starts_with(start));
+        assert!(is_right, "{utterance}\n    wanted {expected}\n    found  {found}\nin {script}");
+    }
+}
+
+#[test]
+fn a_question_is_answered_and_the_request_goes_on() {
+    let question = "? Which one do you mean: the red mug on the round table or the yellow mug on the round table?";
+    for (answer, mug) in [
+        ("the red one", "Boss"),
+        ("red", "Boss"),
+        ("the yellow mug", "Yellow"),
+        ("yellow please", "Yellow"),
+        ("I mean the yellow one", "Yellow"),
+        ("i'm referring to the yellow mug", "Yellow"),
+        ("the left one", "Boss"),
+        ("the one on the right", "Yellow"),
+        ("the second", "Yellow"),
+        ("the first one", "Boss"),
+        ("the second one please", "Yellow"),
+        ("the last one", "Yellow"),
+        ("any", "Boss"),
+        ("whichever", "Boss"),
+        ("pick up the yellow one", "Yellow"),
+        ("no, the yellow one", "Yellow"),
+    ] {
+        let script = format!(
+            "> pick up the mug and put it on the counter\n{question}\n> {answer}\ntake CoffeeMug_{mug}_1, put KitchenCounterTop_02_1"
+        );
+        check(&[], &script);
+    }
+}
+
+#[test]
+fn an_answer_may_be_no_or_another_request_or_nonsense() {
+    check(&[], "> pick up the mug\n? Which…\n> never mind\n= All right, I leave it.\n> yes\n= OK. What…");
+    check(&[], "> pick up the mug\n? Which…\n> pick up the banana\ntake Banana_01_1");
+    check(&[], "> pick up the mug\n? Which…\n> where is the milk?\n= The milk is in the fridge.");
+    check(&[], "> pick up the mug\n? Which…\n> the purple one\n? Which…\n> the red one\ntake CoffeeMug_Boss_1");
+    check(&[], "> pick up the mug\n? Which…\n> stop\nstop!");
+}
+
+#[test]
+fn another_may_do() {
+    check(&[], "> pick up the blue apple\n? I do not know of a blue apple. Do you mean…\n> the red one\ntake Apple_1");
+    check(
+        &["without CoffeeMug_Yellow_1"],
+        "> pick up the blue mug\n? I do not know of a blue mug. Do you mean the mug on the round table?\n> yes\ntake CoffeeMug_Boss_1",
+    );
+    check(
+        &["without Hammer_1"],
+        "> pick up the hammer\n? I have not seen a hammer. Shall I look around?\n> yes please\nlook around",
+    );
+    check(&["without Hammer_1"], "> find the hammer\nlook around");
+}
+
+#[test]
+fn what_is_held_may_be_put_down() {
+    check(
+        &["held Bowl_01_1"],
+        "> pick up the banana\n? I am holding the bowl. Shall I put it down first?\n> yes\nput TableRound_02_1, take Banana_01_1",
+    );
+    check(&["held Bowl_01_1"], "> pick up the banana\n? I am…\n> no\n= All right, I leave it.");
+}
+
+#[test]
+fn there_are_two_labs() {
+    let question = "? Which lab do you mean: the robotics lab or the quantum lab?";
+    check(&[], &format!("> go to the lab\n{question}\n> the quantum one\ngo Lab2"));
+    check(&[], &format!("> take the laser tip to the lab please\n{question}\n> lab 1\ntake Laser_Tip_1, go Lab1"));
+    check(&["at Lab2 20 8"], "> go to the lab\ngo Lab2");
+    check(&[], &format!("> go to the lab\n{question}\n> go to the kitchen\ngo BreakRoom"));
+    check(&[], &format!("> go to the lab\n{question}\n> no\n= All right, I leave it."));
+}
+
+#[test]
+fn pronouns_reach_back() {
+    check(
+        &[],
+        "> go to the fridge\ngo FridgeLower_02_1\n> open it\nopen FridgeLower_02_1\n> what is in it?\n= In the fridge there is some milk.",
+    );
+    check(
+        &[],
+        "> where is the hammer?\n= The hammer is on the blue desk in the main office.\n> pick it up\ntake Hammer_1",
+    );
+    check(
+        &[],
+        "> the microwave\n? What shall I do with the microwave on the counter top?\n> open it\nopen Microwave_01_1",
+    );
+    check(
+        &["held Bowl_01_1"],
+        "> go to the time machine\ngo YesterdayMachine_01_1\n> put it in there\nopen YesterdayMachine_01_1, put YesterdayMachine_01_1",
+    );
+    check(&[], "> pick up the red apple\ntake Apple_1\n> do it again\ntake Apple_1");
+    check(&[], "> find the yellow mug\ngo CoffeeMug_Yellow_1\n> pick up the mug\ntake CoffeeMug_Yellow_1");
+    check(&[], "> show me the red mug\nshow CoffeeMug_Boss_1\n> pick up the other mug\ntake CoffeeMug_Yellow_1");
+}
+
+/// Says something, lets the first step end so, and gives back the report with what `answer` then means.
+fn fail(talk: &mut Talk, utterance: &str, status: Status, detail: &str, answer: &str) -> (String, String) {
+    let Understanding::Plan { steps, .. } = talk.language.understand(utterance, &talk.scene, &mut talk.context) else {
+        panic!("no plan for {utterance}");
+    };
+    talk.context.note_outcome(&steps[0], status);
+    let report = talk.language.report(&steps[0], status, detail, &talk.scene);
+    (report, talk.say(answer))
+}
+
+#[test]
+fn a_failure_is_explained_and_yes_mends_it() {
+    let mut talk = Talk::new(&["FridgeLower_02_1 open"]);
+    let Understanding::Plan { steps, reply } =
+        talk.language.understand("take the milk and put it on the table", &talk.scene, &mut talk.context)
+    else {
+        panic!("no plan");
+    };
+    assert_eq!(reply, "OK, picking up the milk and then putting the milk on the round table.");
+    // Somebody closes the fridge before the robot is there.
+    let fridge = talk.scene.objects.iter_mut().find(|object| object.instance == "FridgeLower_02_1").unwrap();
+    fridge.flags.set(cohabit_cdf::StateFlag::Opened, false);
+    talk.context.note_outcome(&steps[0], Status::ReceptacleIsClosed);
+    let report = talk.language.report(&steps[0], Status::ReceptacleIsClosed, "the fridge is closed", &talk.scene);
+    assert_eq!(report, "The fridge is closed. Shall I open it?");
+    assert_eq!(talk.say("yes"), "open FridgeLower_02_1, take MilkCarton_01_1, put TableRound_02_1");
+
+    let mut talk = Talk::new(&[]);
+    let (report, mended) =
+        fail(&mut talk, "turn on the microwave", Status::ObjectUnpowered, "the microwave has no power", "yes");
+    assert_eq!(
+        report,
+        "The microwave has no power. The room's power must be switched on at the fuse box. Shall I try the lever in the fuse box in the robotics lab?"
+    );
+    assert_eq!(mended, "toggle FuseBox_01_Lever_1, toggle Microwave_01_1");
+
+    let mut talk = Talk::new(&[]);
+    let (report, answer) =
+        fail(&mut talk, "open the fridge", Status::TargetInaccessible, "a chair is in the way", "no");
+    assert_eq!(report, "A chair is in the way.");
+    assert_eq!(answer, "= All right.");
+}
+
+#[test]
+fn success_is_told() {
+    let check = |utterance: &str, expected: &str| {
+        let mut talk = Talk::new(&["held Bowl_01_1"]);
+        let Understanding::Plan { steps, .. } = talk.language.understand(utterance, &talk.scene, &mut talk.context)
+        else {
+            panic!("no plan for {utterance}");
+        };
+        let last = steps.last().unwrap();
+        let report = talk.language.report(last, Status::ActionSuccessful, "", &talk.scene);
+        assert_eq!(report, expected, "{}", step_text(last, &talk.scene));
+    };
+    check("open the fridge", "The fridge is open.");
+    check("go to the lab 1", "I am in the robotics lab.");
+    check("read the note", "It says: \"The bowl must be mended first.\"");
+    check("show me the hammer", "This is the hammer on the blue desk in the main office.");
+}

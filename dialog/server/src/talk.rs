@@ -1,0 +1,211 @@
+//! The conversation on the bus: what pages say goes in, what agents and the world tell comes back.
+
+use std::{
+    sync::{Arc, Mutex, MutexGuard, PoisonError},
+    thread,
+    time::Duration,
+};
+
+use cohabit_bus::{
+    Publisher, Sample, Subscriber, Topic, Transport, Wake,
+    message::{self, DialogKind, DialogMessage, DialogView, EventKind, EventMessage, StateView},
+    monotonic_nanos,
+};
+use cohabit_cdf::{BodyId, Catalog};
+use cohabit_language::Known;
+
+use crate::{
+    DialogError,
+    conversation::{Conversation, Send},
+    hub::Hub,
+    known,
+    latency::{Latency, Moments},
+    page::{self, Line, LineKind, Speaker},
+};
+
+/// The body that people speak to.
+const BODY: BodyId = BodyId(0);
+
+/// The conversation, with its ends on the bus and to the pages. One lock: who speaks first is heard first.
+pub struct Talk {
+    inner: Mutex<Inner>,
+    hub: Arc<Hub>,
+    catalog: Arc<Catalog>,
+}
+
+struct Inner {
+    conversation: Conversation,
+    latency: Latency,
+    dialog: Box<dyn Publisher>,
+    states: Box<dyn Subscriber>,
+    newest: Option<Sample>,
+}
+
+impl Talk {
+    /// A conversation on `bus`, shown to the pages of `hub`.
+    pub fn new(bus: &dyn Transport, catalog: Arc<Catalog>, hub: Arc<Hub>) -> Result<Arc<Self>, DialogError> {
+        let inner = Inner {
+            conversation: Conversation::new(Arc::clone(&catalog), BODY.0),
+            latency: Latency::default(),
+            dialog: bus.publisher(Topic::Dialog)?,
+            states: bus.subscriber(Topic::State)?,
+            newest: None,
+        };
+        Ok(Arc::new(Self { inner: Mutex::new(inner), hub, catalog }))
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Inner> {
+        self.inner.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Somebody at a page said something, received at `received_nanos`.
+    pub fn hear(&self, text: &str, received_nanos: u64) -> Result<(), DialogError> {
+        let mut inner = self.lock();
+        let known = inner.known()?;
+        let (turn, sends) = inner.conversation.hear(text, known.as_ref());
+        inner.latency.begin(turn, received_nanos, monotonic_nanos());
+        self.send_all(&mut inner, sends)
+    }
+
+    /// An agent said something about a plan.
+    fn follow(&self, view: DialogView<'_>) -> Result<(), DialogError> {
+        let mut inner = self.lock();
+        let known = inner.known()?;
+        let sends = inner.conversation.follow(view.header, known.as_ref());
+        self.send_all(&mut inner, sends)
+    }
+
+    /// Something happened in the world.
+    fn note_event(&self, event: &EventMessage, sent_nanos: u64) -> Result<(), DialogError> {
+        let text = event.text.as_str();
+        match event.kind() {
+            Some(EventKind::Started) => {
+                let mut inner = self.lock();
+                if let Some(moments) = inner.latency.moved(event.turn, event.command, sent_nanos) {
+                    self.hub.tell(&page::latency(&moments));
+                }
+            }
+            Some(EventKind::GoalMet) => self.game(LineKind::Goal, text),
+            Some(EventKind::NoteRead) => self.game(LineKind::Note, text),
+            Some(EventKind::Message) => self.game(LineKind::Say, text),
+            Some(EventKind::GoalShown) => self.game(LineKind::Goal, &format!("New goal: {text}")),
+            Some(EventKind::MissionComplete) => self.game(LineKind::Ending, "Mission complete. Well done!"),
+            Some(EventKind::MissionFailed) => self.game(LineKind::Ending, &format!("Mission failed. {text}")),
+            Some(EventKind::Highlighted) => self.show_highlight(event.object)?,
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn game(&self, kind: LineKind, text: &str) {
+        if !text.is_empty() {
+            self.hub.say(&Line::new(Speaker::Game, kind, 0, text));
+        }
+    }
+
+    fn show_highlight(&self, object: u32) -> Result<(), DialogError> {
+        let mut inner = self.lock();
+        inner.refresh()?;
+        let Some(sample) = &inner.newest else { return Ok(()) };
+        let state = StateView::new(sample.payload())?;
+        if let Some(record) = state.objects.iter().find(|record| record.object == object) {
+            self.hub.tell(&page::highlight(record, &self.catalog));
+        }
+        Ok(())
+    }
+
+    /// A frame was shown that was seen after `command` began.
+    pub fn note_frame(&self, command: u64, sent_nanos: u64) -> Result<(), DialogError> {
+        let mut inner = self.lock();
+        let Some(moments) = inner.latency.shown(command, sent_nanos) else { return Ok(()) };
+        self.hub.tell(&page::latency(&moments));
+        log_latency(&moments);
+        let mut message = DialogMessage::new(DialogKind::Latency, BODY.0, moments.turn, "");
+        message.header.stamps = moments.stamps();
+        inner.publish(&message)
+    }
+
+    fn show_state(&self, inner: &mut Inner) -> Result<(), DialogError> {
+        inner.refresh()?;
+        if let Some(sample) = &inner.newest {
+            let state = StateView::new(sample.payload())?;
+            self.hub.show_state(&page::state(sample.envelope().tick, state, &self.catalog));
+        }
+        Ok(())
+    }
+
+    fn send_all(&self, inner: &mut Inner, sends: Vec<Send>) -> Result<(), DialogError> {
+        for send in sends {
+            match send {
+                Send::Bus(message) => inner.publish(&message)?,
+                Send::Chat(line) => self.hub.say(&line),
+                Send::Page(message) => self.hub.tell(&message),
+                Send::TurnEnded { turn, status } => {
+                    self.show_state(inner)?;
+                    self.hub.tell(&page::turn_ended(turn, status));
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Inner {
+    fn refresh(&mut self) -> Result<(), DialogError> {
+        if let Some(sample) = self.states.latest()? {
+            self.newest = Some(sample);
+        }
+        Ok(())
+    }
+
+    fn known(&mut self) -> Result<Option<Known>, DialogError> {
+        self.refresh()?;
+        let Some(sample) = &self.newest else { return Ok(None) };
+        Ok(known::known(StateView::new(sample.payload())?, BODY))
+    }
+
+    fn publish(&mut self, message: &DialogMessage) -> Result<(), DialogError> {
+        self.dialog.send(0, message.bytes(), &mut |bytes| message.write(bytes))?;
+        Ok(())
+    }
+}
+
+fn log_latency(moments: &Moments) {
+    let [understood, moved, shown] = moments.milliseconds().map(Option::unwrap_or_default);
+    tracing::info!(
+        "turn {}: understood after {understood:.1} ms, moving after {moved:.1} ms, seen after {shown:.1} ms",
+        moments.turn
+    );
+}
+
+/// Follows what others say on the bus, until `over`.
+pub fn listen(bus: &dyn Transport, talk: &Talk, over: &dyn Fn() -> bool) -> Result<(), DialogError> {
+    let mut listener = bus.listener(Wake::Talk)?;
+    let mut dialog = bus.subscriber(Topic::Dialog)?;
+    let mut events = bus.subscriber(Topic::Events)?;
+    let joined_nanos = monotonic_nanos();
+    while !over() {
+        listener.wait(Duration::from_millis(100))?;
+        while let Some(sample) = events.receive()? {
+            let event: EventMessage = message::read(sample.payload())?;
+            if sample.envelope().sent_nanos >= joined_nanos {
+                talk.note_event(&event, sample.envelope().sent_nanos)?;
+            }
+        }
+        while let Some(sample) = dialog.receive()? {
+            if sample.envelope().sent_nanos >= joined_nanos {
+                talk.follow(DialogView::new(sample.payload())?)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Shows the state to the pages again and again, until `over`.
+pub fn show_state(talk: &Talk, every: Duration, over: &dyn Fn() -> bool) -> Result<(), DialogError> {
+    while !over() {
+        talk.show_state(&mut talk.lock())?;
+        thread::sleep(every);
+    }
+    Ok(())
+}

@@ -1,0 +1,232 @@
+//! The reference renderer: a rasteriser on the CPU.
+//!
+//! First every pixel learns which triangle it sees (a visibility buffer), then what is wanted of it is worked out once.
+//! Rows are shared out to threads in bands; each band's pixels depend on nothing but the scene and the camera.
+
+mod draw;
+mod outline;
+mod raster;
+mod setup;
+mod shade;
+mod smooth;
+
+use std::sync::{Mutex, PoisonError};
+
+use crate::camera::{Camera, FAR_M, View};
+use crate::planes::Planes;
+use crate::portals::Visible;
+use crate::scene::Scene;
+use crate::{Renderer, color};
+
+use draw::Draw;
+use setup::Triangle;
+use shade::Shader;
+
+/// Rows of a band: small enough to share work evenly.
+const BAND_ROWS: usize = 24;
+/// What the visibility buffer holds where there is nothing.
+const NOTHING: u32 = u32::MAX;
+
+/// Draws on the CPU, with as many threads as it was given. Keeps its buffers from picture to picture.
+#[derive(Debug)]
+pub struct CpuRenderer {
+    threads: usize,
+    /// False in tests alone: every room is drawn, whether it can be seen or not.
+    through_doors: bool,
+    seen: Vec<u32>,
+    nearness: Vec<f32>,
+    batches: Vec<Vec<Triangle>>,
+    smoothing: smooth::Buffers,
+    mask: Vec<u8>,
+    own_ids: Vec<u32>,
+}
+
+impl CpuRenderer {
+    /// A renderer that uses this many threads, at least one.
+    #[must_use]
+    pub fn new(threads: usize) -> Self {
+        let threads = threads.clamp(1, 64);
+        Self {
+            threads,
+            through_doors: true,
+            seen: Vec::new(),
+            nearness: Vec::new(),
+            batches: Vec::new(),
+            smoothing: smooth::Buffers::default(),
+            mask: Vec::new(),
+            own_ids: Vec::new(),
+        }
+    }
+
+    /// One that draws every room, to compare with.
+    #[cfg(test)]
+    pub(crate) fn without_portals() -> Self {
+        Self { through_doors: false, ..Self::new(1) }
+    }
+
+    /// Turns all draws into triangles on the screen.
+    fn set_up(&mut self, draws: &[Draw<'_>], view: &View) {
+        self.batches.resize_with(self.threads, Vec::new);
+        let total: usize = draws.iter().map(Draw::cost).sum();
+        let share = total / self.threads + 1;
+        let mut rest = draws;
+        let mut first = 0;
+        let mut jobs = Vec::with_capacity(self.threads);
+        for batch in &mut self.batches {
+            batch.clear();
+            let mut cost = 0;
+            let count = rest.iter().take_while(|draw| (cost < share, cost += draw.cost()).0).count();
+            let (own, others) = rest.split_at(count);
+            jobs.push((batch, own, first));
+            rest = others;
+            first += count as u32;
+        }
+        // The shares add up to more than everything, so nothing is left over.
+        share_out(self.threads, jobs, |(batch, own, first)| setup::all(batch, own, first, view));
+    }
+}
+
+/// Runs every job once, on as many threads.
+fn share_out<J: Send>(threads: usize, jobs: Vec<J>, work: impl Fn(J) + Sync) {
+    if threads <= 1 || jobs.len() <= 1 {
+        jobs.into_iter().for_each(work);
+        return;
+    }
+    let queue = Mutex::new(jobs.into_iter());
+    let drain = || {
+        loop {
+            let next = queue.lock().unwrap_or_else(PoisonError::into_inner).next();
+            match next {
+                Some(job) => work(job),
+                None => break,
+            }
+        }
+    };
+    std::thread::scope(|scope| {
+        for _ in 1..threads {
+            scope.spawn(drain);
+        }
+        drain();
+    });
+}
+
+/// The rows of all planes that one job fills.
+struct Band<'a> {
+    first_row: usize,
+    seen: &'a mut [u32],
+    nearness: &'a mut [f32],
+    color: Option<&'a mut [u8]>,
+    depth_m: Option<&'a mut [f32]>,
+    normals: Option<&'a mut [i8]>,
+    ids: Option<&'a mut [u32]>,
+}
+
+/// Cuts a plane into bands of so many values; nothing for each band where the plane is not wanted.
+fn bands_of<T>(plane: Option<&mut [T]>, values: usize, count: usize) -> Vec<Option<&mut [T]>> {
+    match plane {
+        Some(plane) => plane.chunks_mut(values).map(Some).collect(),
+        None => (0..count).map(|_| None).collect(),
+    }
+}
+
+impl Renderer for CpuRenderer {
+    fn render(&mut self, scene: &Scene, camera: &Camera, planes: &mut Planes<'_>) {
+        let pixels = camera.pixels();
+        check_lengths(planes, pixels);
+        if pixels == 0 {
+            return;
+        }
+        let wants_color = planes.color.is_some();
+        if wants_color {
+            let mut shadows = scene.shadows.write().unwrap_or_else(PoisonError::into_inner);
+            if shadows.is_soiled() {
+                shadows.clean(&scene.meshes, scene.placed());
+            }
+        }
+        let shadows = scene.shadows.read().unwrap_or_else(PoisonError::into_inner);
+        let view = View::new(camera);
+        let visible =
+            if self.through_doors { Visible::new(&scene.plan, &view, camera) } else { Visible::everything(&view) };
+        let draws = draw::collect(scene, camera, &view, &visible);
+        self.set_up(&draws, &view);
+
+        let outlined = camera.for_people && wants_color && !scene.highlights.is_empty();
+        self.seen.resize(pixels, NOTHING);
+        self.nearness.resize(pixels, 0.0);
+        self.own_ids.resize(if outlined && planes.ids.is_none() { pixels } else { 0 }, 0);
+        let shader = Shader::new(scene, &view, &draws, &self.batches, &shadows, camera.for_people);
+        let width = camera.width as usize;
+        let (rows, count) = (BAND_ROWS * width, (camera.height as usize).div_ceil(BAND_ROWS));
+        let ids = match planes.ids.as_deref_mut() {
+            Some(ids) => Some(ids),
+            None if outlined => Some(&mut self.own_ids[..]),
+            None => None,
+        };
+        let mut colors = bands_of(planes.color.as_deref_mut(), rows * 4, count).into_iter();
+        let mut depths = bands_of(planes.depth_m.as_deref_mut(), rows, count).into_iter();
+        let mut normals = bands_of(planes.normals.as_deref_mut(), rows * 4, count).into_iter();
+        let mut ids = bands_of(ids, rows, count).into_iter();
+        let seen = self.seen.chunks_mut(rows).zip(self.nearness.chunks_mut(rows));
+        let jobs: Vec<Band<'_>> = seen
+            .enumerate()
+            .map(|(index, (seen, nearness))| Band {
+                first_row: index * BAND_ROWS,
+                seen,
+                nearness,
+                color: colors.next().flatten(),
+                depth_m: depths.next().flatten(),
+                normals: normals.next().flatten(),
+                ids: ids.next().flatten(),
+            })
+            .collect();
+        share_out(self.threads, jobs, |band| fill(band, width, &shader));
+
+        if let Some(color) = planes.color.as_deref_mut().filter(|_| camera.for_people) {
+            smooth::run(self.threads, color, &mut self.smoothing, &self.seen, width);
+            if outlined {
+                let ids = planes.ids.as_deref().unwrap_or(&self.own_ids);
+                outline::run(color, &mut self.mask, ids, &scene.highlights, width);
+            }
+        }
+    }
+}
+
+fn check_lengths(planes: &Planes<'_>, pixels: usize) {
+    let lengths = [
+        planes.color.as_ref().map(|plane| plane.len() / 4),
+        planes.depth_m.as_ref().map(|plane| plane.len()),
+        planes.normals.as_ref().map(|plane| plane.len() / 4),
+        planes.ids.as_ref().map(|plane| plane.len()),
+    ];
+    assert!(lengths.into_iter().flatten().all(|length| length == pixels), "a plane is not {pixels} pixels long");
+}
+
+/// Draws one band: first what each pixel sees, then what is wanted of it.
+fn fill(mut band: Band<'_>, width: usize, shader: &Shader<'_>) {
+    band.seen.fill(NOTHING);
+    band.nearness.fill(1.0 / FAR_M);
+    raster::all(shader.batches(), band.first_row, width, band.seen, band.nearness);
+    if let Some(depth) = &mut band.depth_m {
+        for (depth, nearness) in depth.iter_mut().zip(&*band.nearness) {
+            *depth = 1.0 / nearness;
+        }
+    }
+    for (row, seen) in band.seen.chunks(width).enumerate() {
+        let span = row * width..(row + 1) * width;
+        let nearness = &band.nearness[span.clone()];
+        let y = band.first_row + row;
+        if let Some(ids) = &mut band.ids {
+            shader.ids(seen, &mut ids[span.clone()]);
+        }
+        if let Some(normals) = &mut band.normals {
+            shader.normals(y, seen, nearness, normals[span.start * 4..span.end * 4].as_chunks_mut().0);
+        }
+        if let Some(color) = &mut band.color {
+            let table = color::srgb_table();
+            shader.color(table, y, seen, nearness, color[span.start * 4..span.end * 4].as_chunks_mut().0);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

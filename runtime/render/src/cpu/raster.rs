@@ -1,0 +1,134 @@
+//! Which triangle each pixel sees: exact sides in whole numbers, the nearest triangle wins.
+
+use super::setup::{SUB, Triangle};
+
+/// Wider triangles are filled span by span, narrower ones tested pixel by pixel.
+const NARROW_PX: i32 = 12;
+/// Less than the distance of any crossing that is not a whole pixel from the nearest whole pixel.
+const CROSSING_SLACK: f64 = 1.0 / (1u64 << 29) as f64;
+
+/// One side: positive inside; its value at a pixel's centre is `origin + x * per_x + y * per_y`.
+#[derive(Clone, Copy)]
+struct Side {
+    origin: i64,
+    per_x: i32,
+    per_y: i32,
+}
+
+fn side(from: [i32; 2], to: [i32; 2]) -> Side {
+    let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
+    // A pixel's centre on a side belongs to the triangle for which the side is a left or an upper one.
+    let inclusive = dy < 0 || dy == 0 && dx > 0;
+    let center = SUB / 2;
+    let origin = i64::from(dx) * i64::from(center - from[1]) - i64::from(dy) * i64::from(center - from[0]);
+    Side { origin: origin - i64::from(!inclusive), per_x: -dy * SUB, per_y: dx * SUB }
+}
+
+/// Draws all triangles into the rows of one band.
+pub(super) fn all(batches: &[Vec<Triangle>], first_row: usize, width: usize, seen: &mut [u32], nearness: &mut [f32]) {
+    let rows = (first_row as i32, (first_row + seen.len() / width) as i32 - 1);
+    let mut number = 0;
+    for batch in batches {
+        for triangle in batch {
+            let (top, bottom) = (i32::from(triangle.rect[1]).max(rows.0), i32::from(triangle.rect[3]).min(rows.1));
+            if top <= bottom {
+                let sides = [0, 1, 2].map(|i| side(triangle.at[i], triangle.at[(i + 1) % 3]));
+                if i32::from(triangle.rect[2] - triangle.rect[0]) < NARROW_PX {
+                    narrow(triangle, sides, number, (top, bottom), first_row, width, seen, nearness);
+                } else {
+                    wide(triangle, sides, number, (top, bottom), first_row, width, seen, nearness);
+                }
+            }
+            number += 1;
+        }
+    }
+}
+
+#[expect(clippy::too_many_arguments, reason = "the innermost loop takes plain values")]
+#[inline]
+fn narrow(
+    triangle: &Triangle,
+    sides: [Side; 3],
+    number: u32,
+    (top, bottom): (i32, i32),
+    first_row: usize,
+    width: usize,
+    seen: &mut [u32],
+    nearness: &mut [f32],
+) {
+    let (left, right) = (i32::from(triangle.rect[0]), i32::from(triangle.rect[2]));
+    // Within a narrow triangle's box every value fits 32 bits once it is taken relative to a corner of the box.
+    let mut start = sides.map(|side| {
+        (side.origin + i64::from(left) * i64::from(side.per_x) + i64::from(top) * i64::from(side.per_y)) as i32
+    });
+    let [at_origin, per_x, per_y] = triangle.nearness;
+    for y in top..=bottom {
+        let row = (y as usize - first_row) * width;
+        let mut near = at_origin + per_x * left as f32 + per_y * y as f32;
+        let [mut a, mut b, mut c] = start;
+        for x in row + left as usize..=row + right as usize {
+            if a | b | c >= 0 {
+                let value = near.clamp(triangle.bounds[0], triangle.bounds[1]);
+                if value > nearness[x] {
+                    nearness[x] = value;
+                    seen[x] = number;
+                }
+            }
+            a += sides[0].per_x;
+            b += sides[1].per_x;
+            c += sides[2].per_x;
+            near += per_x;
+        }
+        for (value, side) in start.iter_mut().zip(sides) {
+            *value += side.per_y;
+        }
+    }
+}
+
+#[expect(clippy::too_many_arguments, reason = "the innermost loop takes plain values")]
+#[inline]
+fn wide(
+    triangle: &Triangle,
+    sides: [Side; 3],
+    number: u32,
+    (top, bottom): (i32, i32),
+    first_row: usize,
+    width: usize,
+    seen: &mut [u32],
+    nearness: &mut [f32],
+) {
+    let inverse = sides.map(|side| 1.0 / f64::from(side.per_x));
+    let [at_origin, per_x, per_y] = triangle.nearness;
+    let [least, most] = triangle.bounds;
+    for y in top..=bottom {
+        let (mut from, mut to) = (i32::from(triangle.rect[0]), i32::from(triangle.rect[2]));
+        for (side, inverse) in sides.iter().zip(inverse) {
+            let value = side.origin + i64::from(y) * i64::from(side.per_y);
+            if side.per_x == 0 {
+                if value < 0 {
+                    to = -1;
+                }
+                continue;
+            }
+            let crossing = (-value as f64 * inverse).clamp(-65_536.0, 65_536.0);
+            if side.per_x > 0 {
+                // The first whole number not below the crossing.
+                from = from.max(65_537 - (65_537.0 - crossing + CROSSING_SLACK) as i32);
+            } else {
+                to = to.min((crossing + CROSSING_SLACK + 65_537.0) as i32 - 65_537);
+            }
+        }
+        if from > to {
+            continue;
+        }
+        let row = (y as usize - first_row) * width;
+        let span = row + from as usize..row + to as usize + 1;
+        let start = at_origin + per_x * from as f32 + per_y * y as f32;
+        for (step, (seen, nearness)) in seen[span.clone()].iter_mut().zip(&mut nearness[span]).enumerate() {
+            let value = (start + per_x * step as f32).clamp(least, most);
+            let wins = value > *nearness;
+            *nearness = if wins { value } else { *nearness };
+            *seen = if wins { number } else { *seen };
+        }
+    }
+}

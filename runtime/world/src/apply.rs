@@ -1,0 +1,241 @@
+//! The only place where a world changes because somebody did something: effects in, state and events out.
+
+use cohabit_cdf::{BodyId, Catalog, ObjectId, Property, StateFlag};
+use glam::{Quat, Vec3};
+
+use crate::{
+    anchors::anchors,
+    effect::Effect,
+    entity::{Object, Support},
+    facts::Facts,
+    floor::Floor,
+    geometry::Pose,
+    navigation::blocks_the_way,
+    physics,
+    power,
+    report::{Ending, Event, SoundKind},
+    state::State,
+};
+
+/// A world's changing part, with what is constant about it, and where its events go.
+pub(crate) struct Changes<'a> {
+    pub catalog: &'a Catalog,
+    pub floor: &'a Floor,
+    pub state: &'a mut State,
+    pub events: &'a mut Vec<Event>,
+}
+
+impl Changes<'_> {
+    /// What can be read now.
+    pub fn facts(&self) -> Facts<'_> {
+        Facts { catalog: self.catalog, floor: self.floor, state: self.state }
+    }
+
+    /// Applies all effects in order.
+    pub fn apply(&mut self, effects: Vec<Effect>) {
+        for effect in effects {
+            self.apply_one(effect);
+        }
+    }
+
+    fn apply_one(&mut self, effect: Effect) {
+        match effect {
+            Effect::Set(object, flag, value) => self.set(object, flag, value),
+            Effect::Fill(object, fluid) => {
+                self.state.at_mut(object).fluid = fluid;
+                self.changed(object);
+            }
+            Effect::Paint(object, color) => {
+                self.state.at_mut(object).color = color;
+                self.changed(object);
+            }
+            Effect::Hold(object, body) => self.hold(object, body),
+            Effect::PutOn { object, parent, anchor } => self.put_on(object, parent, anchor),
+            Effect::LetGo(object, velocity) => self.let_go(object, velocity),
+            Effect::PutDown(object, at) => self.put_down(object, at),
+            Effect::Spawn { class, instance, parent, anchor, yesterday, by } => {
+                let room = self.state.at(parent).room;
+                let mut object = Object::new(instance, class, room, self.state.at(parent).pose);
+                object.yesterday = yesterday;
+                let id = self.add(object);
+                self.put_on(id, parent, anchor);
+                self.events.push(Event::Spawned { object: id, by });
+            }
+            Effect::Remove(object) => self.remove(object),
+            Effect::Scale(object, factor) => {
+                self.state.at_mut(object).scale = self.state.at(object).scale.map(|side| side * factor);
+                self.changed(object);
+            }
+            Effect::Start(object, run) => {
+                self.state.at_mut(object).run = Some(run);
+                self.set(object, StateFlag::Toggled, true);
+                if let Some(driven) = run.drives {
+                    self.set(driven, StateFlag::Toggled, true);
+                }
+            }
+            Effect::Feed(circuit, fed) => self.feed(circuit, fed),
+            Effect::Kill(body) => self.kill(body),
+            Effect::Tell(event) => self.events.push(event),
+        }
+    }
+
+    /// Adds an object to the world; it gets the next id.
+    pub fn add(&mut self, object: Object) -> ObjectId {
+        let id = ObjectId(u32::try_from(self.state.objects.len()).expect("invariant: fewer than 2^32 objects"));
+        self.state.objects.push(object);
+        let facts = self.facts();
+        let powerable = facts.has(id, Property::Powerable);
+        let powered = powerable && power::is_fed(facts.state, facts.object(id).circuit);
+        self.state.at_mut(id).flags.set(StateFlag::Powered, powered);
+        id
+    }
+
+    fn changed(&mut self, object: ObjectId) {
+        let event = Event::ObjectChanged { object };
+        // Several changes of one object in a row are one to those who listen.
+        if self.events.last() != Some(&event) {
+            self.events.push(event);
+        }
+    }
+
+    fn set(&mut self, object: ObjectId, flag: StateFlag, value: bool) {
+        if self.state.at(object).flags.has(flag) == value {
+            return;
+        }
+        self.state.at_mut(object).flags.set(flag, value);
+        self.changed(object);
+        if matches!(flag, StateFlag::Opened | StateFlag::Locked | StateFlag::Sparking) {
+            self.state.floor_version += 1;
+        }
+    }
+
+    fn hold(&mut self, object: ObjectId, body: BodyId) {
+        self.detach(object);
+        self.state.at_mut(object).support = Support::Held(body);
+        self.state.bodies[body.0 as usize].held = Some(object);
+        self.set(object, StateFlag::PickedUp, true);
+        self.settle(object);
+        self.changed(object);
+    }
+
+    /// Puts an object at an anchor of a receptacle.
+    pub fn put_on(&mut self, object: ObjectId, parent: ObjectId, anchor: u16) {
+        let facts = self.facts();
+        let scale = facts.object(parent).scale;
+        let local = anchors(&facts, parent)
+            .get(usize::from(anchor))
+            .map_or(Pose { position: Vec3::ZERO, rotation: Quat::IDENTITY }, |anchor| anchor.local(scale));
+        self.attach(object, parent, Some(anchor), local);
+        self.changed(object);
+    }
+
+    /// Fixes an object to a receptacle at a pose in its frame.
+    pub fn attach(&mut self, object: ObjectId, parent: ObjectId, anchor: Option<u16>, local: Pose) {
+        self.detach(object);
+        self.state.at_mut(object).support = Support::On { parent, anchor, local };
+        self.settle(object);
+    }
+
+    /// Takes an object out of whatever holds it.
+    fn detach(&mut self, object: ObjectId) {
+        if let Some(body) = self.state.at(object).held_by() {
+            self.state.bodies[body.0 as usize].held = None;
+        }
+        self.set(object, StateFlag::PickedUp, false);
+        physics::drop_body(self.state, object);
+    }
+
+    fn let_go(&mut self, object: ObjectId, velocity: Vec3) {
+        self.detach(object);
+        self.state.at_mut(object).support = Support::Loose;
+        physics::add_body(self.catalog, self.state, object, velocity);
+        self.changed(object);
+    }
+
+    /// Stands an object on the floor, or wherever `at` is.
+    pub fn put_down(&mut self, object: ObjectId, at: Vec3) {
+        self.detach(object);
+        let yaw_rad = self.state.at(object).pose.yaw_rad();
+        self.state.at_mut(object).support = Support::Fixed;
+        self.state.at_mut(object).pose = Pose::level(at, yaw_rad);
+        self.settle(object);
+        self.changed(object);
+    }
+
+    /// Takes an object out of the world; what stood on it stays where it was.
+    pub fn remove(&mut self, object: ObjectId) {
+        let blocked = blocks_the_way(&self.facts(), object);
+        let parent = self.state.at(object).support;
+        for child in self.state.children(object).collect::<Vec<_>>() {
+            match parent {
+                Support::On { parent, anchor, local } => self.attach(child, parent, anchor, local),
+                _ => {
+                    let at = self.state.at(object).pose.position;
+                    self.put_down(child, at);
+                }
+            }
+        }
+        self.detach(object);
+        self.state.at_mut(object).support = Support::Gone;
+        self.state.at_mut(object).run = None;
+        self.events.push(Event::Removed { object });
+        self.state.floor_version += u64::from(blocked);
+    }
+
+    fn feed(&mut self, circuit: i32, fed: bool) {
+        let catalog = self.catalog;
+        let powerable = |state: &State, id: ObjectId| catalog.class(state.at(id).class).has(Property::Powerable);
+        for id in power::feed(powerable, self.state, circuit, fed) {
+            self.changed(id);
+        }
+        self.state.floor_version += 1;
+    }
+
+    fn kill(&mut self, body: BodyId) {
+        self.state.bodies[body.0 as usize].alive = false;
+        if self.state.ended.is_none() {
+            self.state.ended = Some((self.state.tick, Ending::KilledByHazard));
+            self.events.push(Event::MissionEnded { ending: Ending::KilledByHazard });
+        }
+    }
+
+    /// Opens or closes a door on behalf of whoever walks up to it.
+    pub fn open(&mut self, door: ObjectId) {
+        self.set(door, StateFlag::Opened, true);
+        self.events.push(Event::Sound { kind: SoundKind::Open, object: door });
+    }
+
+    /// Works out where an object is, from what holds it, and so for all that stands on it.
+    pub fn settle(&mut self, object: ObjectId) {
+        settle(self.catalog, self.floor, self.state, object);
+    }
+}
+
+/// Works out where an object is, from what holds it, and so for all that stands on it.
+pub(crate) fn settle(catalog: &Catalog, floor: &Floor, state: &mut State, object: ObjectId) {
+    /// How high the gravity pad lifts what is in its field, m.
+    const LIFT_M: f32 = 0.5;
+    let (pose, room) = match state.at(object).support {
+        Support::On { parent, local, .. } => {
+            let parent = state.at(parent);
+            let lifts = catalog.class(parent.class).id == "GravityPad";
+            let lift = if lifts { LIFT_M * parent.running } else { 0.0 };
+            let position = parent.pose.point(local.position) + Vec3::Z * lift;
+            (Pose { position, rotation: parent.pose.rotation * local.rotation }, parent.room)
+        }
+        Support::Held(body) => {
+            let body = &state.bodies[body.0 as usize];
+            (body.hand(), body.room)
+        }
+        Support::Fixed | Support::Loose | Support::Gone => {
+            let here = state.at(object);
+            (here.pose, floor.room_at(here.pose.position.truncate()).unwrap_or(here.room))
+        }
+    };
+    let this = state.at_mut(object);
+    this.pose = pose;
+    this.room = room;
+    for child in state.children(object).collect::<Vec<_>>() {
+        settle(catalog, floor, state, child);
+    }
+}

@@ -1,0 +1,355 @@
+//! What a mission asks for: which of the plan's things it means, what must be made, where it goes, how it starts.
+
+use cohabit_cdf::{ClassId, ObjectId, ObjectRequest, Property, RoomId, StateFlag, catalog::Stands};
+use glam::Vec3;
+
+use super::{BuildError, Builder, plan::UPRIGHT};
+use crate::{
+    anchors::{fitting_anchors, free_anchors},
+    entity::Support,
+    geometry::{Pose, turn, wrap},
+    power,
+    rules::keyed_anchors,
+};
+
+const NOTE: &str = "StickyNote";
+
+impl Builder<'_> {
+    /// Brings about all that the mission asks for, in the order of its file.
+    pub(super) fn fulfil(&mut self) -> Result<(), BuildError> {
+        let mission = self.mission;
+        self.recognise()?;
+        for index in 0..mission.objects.len() {
+            self.clear_contents(index);
+        }
+        for index in 0..mission.objects.len() {
+            self.provide(index, &mut Vec::new())?;
+        }
+        self.stick_notes()?;
+        for (index, request) in mission.objects.iter().enumerate() {
+            if let Some(id) = self.requested.get(&index).copied() {
+                self.set_state(id, request);
+            }
+        }
+        for index in 0..mission.objects.len() {
+            self.thin_out(index);
+        }
+        self.set_circuits();
+        Ok(())
+    }
+
+    /// Finds the plan's things that the mission means: by their own ids first, then by kind and room.
+    fn recognise(&mut self) -> Result<(), BuildError> {
+        for (index, request) in self.mission.objects.iter().enumerate() {
+            if let Some(id) = self.state.find(&request.instance) {
+                self.claim(index, id);
+            }
+        }
+        for (index, request) in self.mission.objects.iter().enumerate() {
+            let class = self.class_of(&request.instance)?;
+            let stays = !self.catalog.class(class).has(Property::Pickupable) && self.catalog.class(class).id != NOTE;
+            if self.requested.contains_key(&index) || !stays || request.blacklisted {
+                continue;
+            }
+            let all: Vec<ObjectId> =
+                self.state.existing().filter(|(_, object)| object.class == class).map(|(id, _)| id).collect();
+            let alone = all.len() == 1;
+            let free = all.into_iter().filter(|id| !self.state.at(*id).requested);
+            let fitting = free.into_iter().find(|id| {
+                alone || request.room.is_none_or(|room| self.state.at(*id).room == room)
+            });
+            if let Some(id) = fitting {
+                let object = self.state.at_mut(id);
+                let before = std::mem::replace(&mut object.instance, request.instance.clone());
+                object.aliases.push(before);
+                self.claim(index, id);
+            }
+        }
+        Ok(())
+    }
+
+    fn claim(&mut self, index: usize, id: ObjectId) {
+        self.state.at_mut(id).requested = true;
+        self.requested.insert(index, id);
+    }
+
+    fn class_of(&self, instance: &str) -> Result<ClassId, BuildError> {
+        let unknown = || BuildError::UnknownClass { object: instance.to_owned() };
+        self.catalog.class_of_instance(instance).ok_or_else(unknown)
+    }
+
+    /// Takes out what the plan put into a receptacle that must start without it.
+    fn clear_contents(&mut self, index: usize) {
+        let request = &self.mission.objects[index];
+        let Some(id) = self.requested.get(&index).copied() else { return };
+        if !(request.remove_initial_contents || request.empty) {
+            return;
+        }
+        for content in self.state.contents(id) {
+            // A machine that stands on a counter is not what it contains.
+            let loose = self.facts().has(content, Property::Pickupable);
+            if loose && !self.state.at(content).requested {
+                self.changes().remove(content);
+            }
+        }
+    }
+
+    /// Makes the object of a request, unless it is there, and brings it to its place; what it goes into comes first.
+    fn provide(&mut self, index: usize, within: &mut Vec<usize>) -> Result<(), BuildError> {
+        let mission = self.mission;
+        let request = &mission.objects[index];
+        let known = self.requested.get(&index).copied();
+        if request.blacklisted || request.removed || (known.is_some() && request.inside.is_none()) {
+            return Ok(());
+        }
+        if known.is_some_and(|id| self.state.at(id).requested && self.is_provided(id, request)) {
+            return Ok(());
+        }
+        if let Some(inside) = &request.inside {
+            if within.contains(&index) {
+                let (object, receptacle) = (request.instance.clone(), inside.clone());
+                return Err(BuildError::Circular { object, receptacle });
+            }
+            if let Some(outer) = mission.objects.iter().position(|other| other.instance == *inside) {
+                within.push(index);
+                self.provide(outer, within)?;
+                within.pop();
+            }
+        }
+        let id = match known {
+            Some(id) => id,
+            None => {
+                let room = request.room.unwrap_or(mission.start_room);
+                let id = self.create(&request.instance, room, Pose::level(Vec3::ZERO, 0.0))?;
+                self.claim(index, id);
+                id
+            }
+        };
+        self.bring(id, request)
+    }
+
+    /// Whether an object already is where its request wants it.
+    fn is_provided(&self, id: ObjectId, request: &ObjectRequest) -> bool {
+        request.inside.as_ref().is_some_and(|inside| {
+            self.state.at(id).parent().is_some_and(|parent| self.state.at(parent).is_called(inside))
+        })
+    }
+
+    /// Brings an object to where its request wants it.
+    fn bring(&mut self, id: ObjectId, request: &ObjectRequest) -> Result<(), BuildError> {
+        if let Some(inside) = &request.inside {
+            let receptacle = self.state.find(inside).ok_or_else(|| BuildError::NoSuchReceptacle {
+                object: request.instance.clone(),
+                receptacle: inside.clone(),
+            })?;
+            if receptacle == id || self.state.ancestors(receptacle).any(|outer| outer == id) {
+                let (object, receptacle) = (request.instance.clone(), inside.clone());
+                return Err(BuildError::Circular { object, receptacle });
+            }
+            return self.put_into(id, receptacle);
+        }
+        let class = self.facts().class(id);
+        if class.id == NOTE {
+            return self.stick(id, request.room.unwrap_or(self.mission.start_room), None);
+        }
+        let room = request.room.map(|room| self.check_room(&request.instance, room)).transpose()?;
+        match class.stands {
+            Stands::OnSurface => self.put_somewhere(id, room),
+            Stands::OnFloor => self.stand_somewhere(id, room.unwrap_or(self.mission.start_room)),
+            Stands::OnWall => self.hang_somewhere(id, room.unwrap_or(self.mission.start_room)),
+        }
+    }
+
+    /// Puts an object to a free anchor of a receptacle, one of the plan's own things making room if need be.
+    fn put_into(&mut self, id: ObjectId, receptacle: ObjectId) -> Result<(), BuildError> {
+        let facts = self.facts();
+        let keyed = keyed_anchors(&facts, receptacle, &facts.class(id).id).filter(|anchors| !anchors.is_empty());
+        let own = keyed.is_some();
+        let fitting = keyed.unwrap_or_else(|| fitting_anchors(&facts, receptacle, facts.size(id)));
+        let any = if fitting.is_empty() { free_anchors(&facts, receptacle) } else { fitting };
+        if any.is_empty() {
+            let spare = facts.state.children(receptacle).find(|child| {
+                facts.has(*child, Property::Pickupable) && !facts.object(*child).requested
+            });
+            let Some(spare) = spare else {
+                return Err(BuildError::NoFreePlace {
+                    object: self.state.at(id).instance.clone(),
+                    receptacle: self.state.at(receptacle).instance.clone(),
+                });
+            };
+            self.changes().remove(spare);
+            return self.put_into(id, receptacle);
+        }
+        // Roomy places come first: half of them is choice enough.
+        let choice = if own { 0 } else { self.pick(any.len().div_ceil(2)) };
+        let anchor = any[choice];
+        let facts = self.facts();
+        let yaw_rad = if facts.has(id, Property::Pickupable) && !own { (self.fraction() - 0.5) * 0.8 } else { 0.0 };
+        let scale = self.state.at(receptacle).scale;
+        let local = Pose { rotation: UPRIGHT * turn(yaw_rad), ..anchor.local(scale) };
+        self.changes().attach(id, receptacle, Some(anchor.index), local);
+        Ok(())
+    }
+
+    /// Puts an object onto some open furniture of a room, or of any; onto the floor, if none has a place for it.
+    fn put_somewhere(&mut self, id: ObjectId, room: Option<RoomId>) -> Result<(), BuildError> {
+        let facts = self.facts();
+        let size = facts.size(id);
+        let open: Vec<ObjectId> = facts
+            .state
+            .existing()
+            .filter(|(_, object)| room.map_or(object.room != RoomId::Hallway, |room| object.room == room))
+            .map(|(other, _)| other)
+            .filter(|other| *other != id && !facts.has(*other, Property::Pickupable))
+            .filter(|other| !facts.has(*other, Property::Toggleable) && !facts.has(*other, Property::Powerable))
+            .filter(|other| {
+                let receptacle = facts.class(*other).receptacle.as_ref();
+                receptacle.is_some_and(|kind| !kind.enclosed && kind.keys.is_empty())
+            })
+            .filter(|other| !fitting_anchors(&facts, *other, size).is_empty())
+            .collect();
+        if open.is_empty() {
+            return self.stand_somewhere(id, room.unwrap_or(self.mission.start_room));
+        }
+        let receptacle = open[self.pick(open.len())];
+        self.put_into(id, receptacle)
+    }
+
+    /// Sticks the mission's notes: each at its place.
+    fn stick_notes(&mut self) -> Result<(), BuildError> {
+        for note in &self.mission.notes {
+            let room = self.check_room(&note.instance, note.room)?;
+            let id = match self.state.find(&note.instance) {
+                Some(id) => id,
+                None => self.create(&note.instance, room, Pose::level(Vec3::ZERO, 0.0))?,
+            };
+            self.state.at_mut(id).text.clone_from(&note.text);
+            self.state.at_mut(id).requested = true;
+            self.stick(id, room, Some(note.place))?;
+        }
+        Ok(())
+    }
+
+    /// Sticks a note at a place of a room: the one asked for, or the first that is free.
+    fn stick(&mut self, id: ObjectId, room: RoomId, place: Option<usize>) -> Result<(), BuildError> {
+        let layout = self.layout;
+        let places: Vec<_> = layout.note_places.iter().filter(|place| place.room == room).collect();
+        let wanted: Vec<usize> = self
+            .mission
+            .notes
+            .iter()
+            .filter(|note| note.room == room && !places.is_empty())
+            .map(|note| note.place % places.len())
+            .collect();
+        let is_free = |index: &usize| {
+            let at = Vec3::from(places[*index].at_m);
+            !wanted.contains(index)
+                && !self.state.existing().any(|(_, object)| object.pose.position.distance(at) < 0.05)
+        };
+        let chosen = match place {
+            Some(place) if !places.is_empty() => Some(place % places.len()),
+            _ => (0..places.len()).find(is_free).or(if places.is_empty() { None } else { Some(0) }),
+        };
+        let Some(chosen) = chosen else { return self.hang_somewhere(id, room) };
+        let pose = Pose::level(places[chosen].at_m.into(), wrap(places[chosen].yaw_deg.to_radians()));
+        let object = self.state.at_mut(id);
+        object.support = Support::Fixed;
+        object.pose = pose;
+        object.room = room;
+        Ok(())
+    }
+
+    /// Sets the states that a request wants.
+    fn set_state(&mut self, id: ObjectId, request: &ObjectRequest) {
+        let yesterday = request.yesterday.as_ref().and_then(|class| self.catalog.find(class));
+        let prints = request.prints.as_ref().and_then(|class| self.catalog.find(class));
+        let object = self.state.at_mut(id);
+        object.yesterday = yesterday.or(object.yesterday);
+        object.prints = prints.or(object.prints);
+        if let Some(circuit) = request.circuit {
+            object.circuit = (circuit >= 0).then_some(circuit);
+        }
+        if let Some(circuit) = request.generates_circuit {
+            object.feeds = Some(circuit);
+        }
+        object.fluid = request.fluid.unwrap_or(object.fluid);
+        object.color = request.color.unwrap_or(object.color);
+        if let Some(text) = &request.text {
+            object.text.clone_from(text);
+        }
+        for (flag, value) in &request.flags {
+            object.flags.set(*flag, *value);
+        }
+    }
+
+    /// Takes out what a request does not want: itself, others of its class, or all of it that the plan has.
+    fn thin_out(&mut self, index: usize) {
+        let request = &self.mission.objects[index];
+        let own = self.requested.get(&index).copied();
+        if request.removed {
+            if let Some(id) = own {
+                self.changes().remove(id);
+            }
+            return;
+        }
+        let Some(class) = self.catalog.class_of_instance(&request.instance) else { return };
+        if !(request.unique || request.blacklisted) {
+            return;
+        }
+        let others: Vec<ObjectId> = self
+            .state
+            .existing()
+            .filter(|(id, object)| object.class == class && Some(*id) != own && !object.requested)
+            .map(|(id, _)| id)
+            .collect();
+        for id in others {
+            self.changes().remove(id);
+        }
+    }
+
+    /// Feeds the circuits as the fuse boxes and generators say, and powers what hangs on them.
+    fn set_circuits(&mut self) {
+        let cut: Vec<i32> = self
+            .mission
+            .objects
+            .iter()
+            .enumerate()
+            .filter_map(|(index, request)| {
+                let id = self.requested.get(&index)?;
+                let off = request.flags.iter().any(|(flag, on)| *flag == StateFlag::Powered && !on);
+                let lever_off = request.flags.iter().any(|(flag, on)| *flag == StateFlag::Toggled && !on);
+                let object = self.state.at(*id);
+                let fuse_box = object.feeds.map(|circuit| (circuit, off || lever_off));
+                let is_lever = self.catalog.class(object.class).id == "FuseBox_01_Lever";
+                let lever = object
+                    .parent()
+                    .filter(|_| is_lever)
+                    .and_then(|parent| Some((self.state.at(parent).feeds?, lever_off)));
+                fuse_box.or(lever).filter(|(_, cut)| *cut).map(|(circuit, _)| circuit)
+            })
+            .collect();
+        for circuit in cut {
+            self.state.circuits.insert(circuit, false);
+        }
+        let said: Vec<ObjectId> = self
+            .mission
+            .objects
+            .iter()
+            .enumerate()
+            .filter(|(_, request)| request.flags.iter().any(|(flag, _)| *flag == StateFlag::Powered))
+            .filter_map(|(index, _)| self.requested.get(&index).copied())
+            .collect();
+        for id in crate::state::ids(self.state.objects.len()) {
+            let powerable = self.facts().has(id, Property::Powerable);
+            let live = self.facts().class(id).id == "Broken_Cord_01" || self.facts().class(id).id == "CableFrayed_01";
+            let fed = power::is_fed(&self.state, self.state.at(id).circuit);
+            let object = self.state.at_mut(id);
+            if powerable && !said.contains(&id) {
+                object.flags.set(StateFlag::Powered, fed);
+            }
+            if live && object.flags.has(StateFlag::Toggled) && fed {
+                object.flags.set(StateFlag::Sparking, true);
+            }
+        }
+    }
+}

@@ -1,0 +1,156 @@
+//! The rules: what each command does to the world as it stands, as pure functions from facts to a ruling.
+//!
+//! Nothing here changes anything; `apply` does. One file a family of commands.
+
+mod device;
+mod fluid;
+mod hand;
+mod opening;
+mod toggle;
+mod tool;
+
+use cohabit_cdf::{Action, BodyId, ObjectId, Status, StateFlag, Verb};
+
+use crate::{effect::Effect, facts::Facts, report::SoundKind};
+
+/// How far a hand reaches, level, m.
+pub(crate) const REACH_M: f32 = 1.6;
+/// How far things can be looked at closely or scanned, m.
+const LOOK_CLOSELY_M: f32 = 3.0;
+
+/// What comes of a command.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Ruling {
+    pub status: Status,
+    /// One short sentence for people.
+    pub detail: String,
+    pub effects: Vec<Effect>,
+}
+
+/// A ruling, or the refusal that ends its making early.
+type Verdict = Result<Ruling, Ruling>;
+
+impl Ruling {
+    fn done(detail: impl Into<String>, effects: Vec<Effect>) -> Self {
+        Self { status: Status::ActionSuccessful, detail: detail.into(), effects }
+    }
+
+    fn refusal(status: Status, detail: impl Into<String>) -> Self {
+        Self { status, detail: detail.into(), effects: Vec::new() }
+    }
+
+    /// Whether it refuses, with nothing to be played out.
+    pub fn is_plain_refusal(&self) -> bool {
+        !self.status.is_success() && self.effects.is_empty()
+    }
+}
+
+/// A refusal, as an error.
+fn refuse<T>(status: Status, detail: impl Into<String>) -> Result<T, Ruling> {
+    Err(Ruling::refusal(status, detail))
+}
+
+/// Rules an action of the hand; other actions are motions, and have no rule.
+pub(crate) fn rule(facts: &Facts<'_>, body: BodyId, action: &Action) -> Ruling {
+    let scene = Scene { facts, body };
+    let verdict = match *action {
+        Action::PickUp { object } => hand::pick_up(&scene, object),
+        Action::Place { receptacle } => hand::place(&scene, receptacle),
+        Action::Interact { verb, object } => match verb {
+            Verb::Open => opening::open(&scene, object),
+            Verb::Close => opening::close(&scene, object),
+            Verb::Break => tool::break_or_cut(&scene, object),
+            Verb::Scan => tool::scan(&scene, object),
+            Verb::Examine => tool::examine(&scene, object),
+            Verb::Pour => fluid::pour(&scene, object),
+            Verb::Fill => fluid::fill(&scene, object),
+            Verb::Clean => fluid::clean(&scene, object),
+            Verb::Toggle => toggle::toggle(&scene, object),
+            Verb::Throw => hand::throw(&scene, object),
+        },
+        Action::Move { .. }
+        | Action::Rotate { .. }
+        | Action::Look { .. }
+        | Action::LookAround
+        | Action::GoTo { .. }
+        | Action::Highlight { .. }
+        | Action::Stop => Ok(Ruling::done("done", Vec::new())),
+    };
+    verdict.unwrap_or_else(|refusal| refusal)
+}
+
+/// What an action is about, if it is about an object.
+pub(crate) fn object_of(action: &Action) -> Option<ObjectId> {
+    match *action {
+        Action::PickUp { object } | Action::Interact { object, .. } | Action::Highlight { object } => Some(object),
+        Action::Place { receptacle } => Some(receptacle),
+        _ => None,
+    }
+}
+
+/// The facts as one body acts on them.
+struct Scene<'a> {
+    facts: &'a Facts<'a>,
+    body: BodyId,
+}
+
+impl Scene<'_> {
+    /// What the body holds.
+    fn held(&self) -> Option<ObjectId> {
+        self.facts.state.bodies[self.body.0 as usize].held
+    }
+
+    /// What the body holds, or the refusal for an empty hand.
+    fn held_or_refuse(&self) -> Result<ObjectId, Ruling> {
+        self.held().map_or_else(|| refuse(Status::ObjectNotPickedUp, "my hand is empty"), Ok)
+    }
+
+    /// Refuses what is out of reach, behind a wall, shut away, or deadly to touch.
+    fn touch(&self, object: ObjectId) -> Result<(), Ruling> {
+        self.near(object, REACH_M)?;
+        let facts = self.facts;
+        if facts.is(object, StateFlag::Sparking) {
+            let detail = format!("{} was live: the shock was deadly", facts.name(object));
+            return Err(Ruling {
+                status: Status::KilledByHazard,
+                detail,
+                effects: vec![Effect::sound(SoundKind::Spark, object), Effect::Kill(self.body)],
+            });
+        }
+        Ok(())
+    }
+
+    /// Refuses what is further away than `within` m, behind a wall, or shut away.
+    fn near(&self, object: ObjectId, within: f32) -> Result<(), Ruling> {
+        let facts = self.facts;
+        let name = facts.name(object);
+        if !facts.object(object).exists() {
+            return refuse(Status::InvalidObjectClass, format!("{name} is no longer there"));
+        }
+        if let Some(holder) = facts.object(object).held_by() {
+            if holder == self.body {
+                return Ok(());
+            }
+            return refuse(Status::TargetInaccessible, format!("somebody else is holding {name}"));
+        }
+        if let Some(shut) = facts.shut_around(object) {
+            return refuse(Status::ReceptacleIsClosed, format!("{} is closed", facts.name(shut)));
+        }
+        let from = facts.state.bodies[self.body.0 as usize].position;
+        if facts.reach_to(object, from) > within {
+            return refuse(Status::TargetOutOfRange, format!("{name} is too far away"));
+        }
+        if facts.walled_off(object, from) {
+            return refuse(Status::TargetInaccessible, format!("there is a wall between me and {name}"));
+        }
+        Ok(())
+    }
+
+    /// Refuses what does not afford something.
+    fn needs(&self, object: ObjectId, property: cohabit_cdf::Property, what: &str) -> Result<(), Ruling> {
+        if self.facts.has(object, property) {
+            return Ok(());
+        }
+        refuse(Status::UnsupportedAction, format!("{} cannot be {what}", self.facts.name(object)))
+    }
+}

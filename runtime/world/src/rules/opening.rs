@@ -1,0 +1,42 @@
+//! Opening and closing doors, lids and drawers.
+
+use cohabit_cdf::{ObjectId, Property, StateFlag, Status};
+
+use super::{Ruling, Scene, Verdict, refuse};
+use crate::{effect::Effect, report::SoundKind, works};
+
+pub(super) fn open(scene: &Scene<'_>, object: ObjectId) -> Verdict {
+    let facts = scene.facts;
+    let name = facts.name(object);
+    scene.needs(object, Property::Openable, "opened")?;
+    scene.touch(object)?;
+    if facts.is(object, StateFlag::Locked) {
+        return refuse(Status::ActionExecutionError, format!("{name} is locked"));
+    }
+    if facts.is(object, StateFlag::Opened) {
+        return refuse(Status::InvalidCommand, format!("{name} is already open"));
+    }
+    let effects = vec![Effect::Set(object, StateFlag::Opened, true), Effect::sound(SoundKind::Open, object)];
+    Ok(Ruling::done(format!("I opened {name}"), effects))
+}
+
+pub(super) fn close(scene: &Scene<'_>, object: ObjectId) -> Verdict {
+    let facts = scene.facts;
+    let name = facts.name(object);
+    scene.needs(object, Property::Openable, "closed")?;
+    scene.touch(object)?;
+    if !facts.is(object, StateFlag::Opened) {
+        return refuse(Status::InvalidCommand, format!("{name} is already closed"));
+    }
+    let in_the_way = facts.floor.gaps.iter().find(|gap| gap.door_object == Some(object)).is_some_and(|gap| {
+        facts.state.bodies.iter().any(|body| gap.print.distance(body.position) < crate::body::RADIUS_M)
+    });
+    if in_the_way {
+        return refuse(Status::TargetInaccessible, "somebody stands in the doorway");
+    }
+    let mut effects = vec![Effect::Set(object, StateFlag::Opened, false), Effect::sound(SoundKind::Close, object)];
+    if facts.class(object).id == "FridgeUpper_02" {
+        effects.extend(facts.state.contents(object).into_iter().flat_map(|id| works::chill(facts, id)));
+    }
+    Ok(Ruling::done(format!("I closed {name}"), effects))
+}

@@ -1,0 +1,82 @@
+//! The crates know each other only as the architecture allows.
+#![allow(clippy::unwrap_used)]
+
+use std::process::Command;
+
+use serde_json::Value;
+
+/// Each package, its level, and the heavy dependencies that it alone may name.
+const LEVELS: &[(&str, u8, &[&str])] = &[
+    ("cohabit-cdf", 0, &["serde_json", "schemars"]),
+    ("cohabit-world", 1, &["rapier3d", "polyanya"]),
+    ("cohabit-bus", 1, &["iceoryx2"]),
+    ("cohabit-render", 2, &["wgpu"]),
+    ("cohabit-record", 2, &["mcap"]),
+    ("cohabit-agent", 2, &[]),
+    ("cohabit-language", 2, &[]),
+    ("cohabit-engine", 3, &[]),
+    ("cohabit-dialog", 4, &["tokio", "axum"]),
+    ("cohabit", 5, &["clap", "anyhow"]),
+];
+
+/// Dependencies that others may name too: the log and the page speak JSON, tests report errors of all kinds.
+const SHARED: &[(&str, &[&str])] =
+    &[("serde_json", &["cohabit-record", "cohabit-dialog", "cohabit-tests"]), ("anyhow", &["cohabit-tests"])];
+
+fn metadata() -> Value {
+    let output = Command::new(env!("CARGO"))
+        .args(["metadata", "--no-deps", "--format-version", "1", "--offline"])
+        .current_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+/// `(package, dependency)` for all that is built into the product.
+fn dependencies() -> Vec<(String, String)> {
+    let text = |value: &Value| value.as_str().unwrap().to_owned();
+    let metadata = metadata();
+    let packages = metadata["packages"].as_array().unwrap();
+    packages
+        .iter()
+        .flat_map(|package| {
+            let built_in = |dependency: &&Value| dependency["kind"].is_null();
+            let dependencies = package["dependencies"].as_array().unwrap().iter().filter(built_in);
+            dependencies.map(move |dependency| (text(&package["name"]), text(&dependency["name"])))
+        })
+        .collect()
+}
+
+fn level(package: &str) -> Option<u8> {
+    LEVELS.iter().find(|(name, ..)| *name == package).map(|(_, level, _)| *level)
+}
+
+#[test]
+fn a_crate_depends_on_lower_levels_alone() {
+    let wrong: Vec<_> = dependencies()
+        .into_iter()
+        .filter(|(package, _)| package != "cohabit-tests")
+        .filter(|(package, dependency)| match (level(package), level(dependency)) {
+            (Some(above), Some(below)) => below >= above,
+            (None, _) => true,
+            _ => false,
+        })
+        .collect();
+    assert!(wrong.is_empty(), "dependencies against the levels (or packages without one): {wrong:?}");
+}
+
+#[test]
+fn a_heavy_dependency_has_one_owner() {
+    let shared = |package: &str, dependency: &str| {
+        SHARED.iter().any(|(name, packages)| *name == dependency && packages.contains(&package))
+    };
+    let wrong: Vec<_> = dependencies()
+        .into_iter()
+        .filter(|(package, dependency)| {
+            let owner = LEVELS.iter().find(|(_, _, owned)| owned.contains(&dependency.as_str()));
+            owner.is_some_and(|(owner, ..)| owner != package) && !shared(package, dependency)
+        })
+        .collect();
+    assert!(wrong.is_empty(), "dependencies that belong to another crate: {wrong:?}");
+}

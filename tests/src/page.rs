@@ -1,0 +1,116 @@
+//! A client of a session's page: speaks its WebSocket, without a browser.
+
+use std::{
+    net::TcpStream,
+    time::{Duration, Instant},
+};
+
+use anyhow::{Context as _, bail};
+use serde_json::{Value, json};
+use tungstenite::{Message, WebSocket, stream::MaybeTlsStream};
+
+/// The longest that a message is waited for.
+const WATCHDOG: Duration = Duration::from_secs(120);
+
+/// An open page.
+pub struct Page {
+    socket: WebSocket<MaybeTlsStream<TcpStream>>,
+    /// All chat so far: who, and what.
+    pub chat: Vec<(String, String)>,
+    /// The newest state.
+    pub state: Value,
+    /// Frames seen.
+    pub frames: u64,
+}
+
+impl Page {
+    /// Opens the page at `authority` (`host:port`).
+    ///
+    /// # Errors
+    /// When it cannot be reached.
+    pub fn open(authority: &str) -> anyhow::Result<Self> {
+        let (socket, _) = tungstenite::connect(format!("ws://{authority}/ws")).context("open the page's socket")?;
+        if let MaybeTlsStream::Plain(stream) = socket.get_ref() {
+            stream.set_read_timeout(Some(WATCHDOG))?;
+        }
+        Ok(Self { socket, chat: Vec::new(), state: Value::Null, frames: 0 })
+    }
+
+    /// Types a sentence.
+    ///
+    /// # Errors
+    /// When the socket is gone.
+    pub fn say(&mut self, text: &str) -> anyhow::Result<()> {
+        self.send(&json!({ "type": "say", "text": text }))
+    }
+
+    /// Sends a message.
+    ///
+    /// # Errors
+    /// When the socket is gone.
+    pub fn send(&mut self, message: &Value) -> anyhow::Result<()> {
+        self.socket.send(Message::text(message.to_string())).context("send to the page")
+    }
+
+    /// The next message that is not a frame.
+    ///
+    /// # Errors
+    /// When the socket is gone or silent for too long.
+    pub fn next(&mut self) -> anyhow::Result<Value> {
+        loop {
+            match self.socket.read().context("read from the page")? {
+                Message::Text(text) => {
+                    let message: Value = serde_json::from_str(&text)?;
+                    self.note(&message);
+                    return Ok(message);
+                }
+                Message::Binary(_) => self.frames += 1,
+                Message::Close(_) => bail!("the page's socket was closed"),
+                _ => {}
+            }
+        }
+    }
+
+    fn note(&mut self, message: &Value) {
+        match message["type"].as_str() {
+            Some("state") => self.state = message.clone(),
+            Some("chat") => {
+                let part = |key: &str| message[key].as_str().unwrap_or_default().to_owned();
+                self.chat.push((part("from"), part("text")));
+            }
+            _ => {}
+        }
+    }
+
+    /// Reads on until `done` holds of the page or a message.
+    ///
+    /// # Errors
+    /// When it does not come to hold in time; tells what was said.
+    pub fn wait(&mut self, what: &str, mut done: impl FnMut(&Self, &Value) -> bool) -> anyhow::Result<Value> {
+        let deadline = Instant::now() + WATCHDOG;
+        while Instant::now() < deadline {
+            let message = self.next()?;
+            if done(self, &message) {
+                return Ok(message);
+            }
+        }
+        bail!("waited in vain for {what}; said so far: {:#?}; state: {}", self.chat, self.state)
+    }
+
+    /// Types a sentence and waits until its turn is over: the robot has done it, asked, refused or failed.
+    ///
+    /// # Errors
+    /// When the turn does not end.
+    pub fn do_and_wait(&mut self, text: &str) -> anyhow::Result<()> {
+        self.say(text)?;
+        self.wait(&format!("the end of `{text}`"), |_, message| message["type"] == "turn" && message["ended"] == true)?;
+        Ok(())
+    }
+
+    /// The goals of the newest state: description, and whether it is met.
+    #[must_use]
+    pub fn goals(&self) -> Vec<(String, bool)> {
+        let goals = self.state["goals"].as_array().cloned().unwrap_or_default();
+        goals.iter().map(|goal| (goal["text"].as_str().unwrap_or_default().to_owned(), goal["met"] == true)).collect()
+    }
+}

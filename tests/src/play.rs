@@ -1,0 +1,178 @@
+//! A session, played by the real binary.
+
+use std::{
+    fs,
+    io::{BufRead as _, BufReader},
+    path::{Path, PathBuf},
+    process::{Child, Command, Output, Stdio},
+    sync::{
+        atomic::{AtomicU32, Ordering},
+        mpsc::{self, Receiver},
+    },
+    thread,
+    time::{Duration, Instant},
+};
+
+use anyhow::{Context as _, ensure};
+use rustix::process::{Pid, Signal, kill_process};
+
+/// The longest that anything in a session is waited for.
+const WATCHDOG: Duration = Duration::from_secs(60);
+
+/// A running `cohabit play`, in a folder of its own. Dropping it kills it.
+pub struct Play {
+    child: Child,
+    lines: Receiver<String>,
+    /// The session's name.
+    pub session: String,
+    /// The page's address.
+    pub address: String,
+    /// Where the session is recorded.
+    pub log: PathBuf,
+    /// The session's temporary folder.
+    pub folder: PathBuf,
+}
+
+impl Play {
+    /// Starts `binary play` with these arguments, and waits for its page.
+    ///
+    /// # Errors
+    /// When it ends, or says nothing for too long.
+    pub fn start(binary: &str, arguments: &[&str]) -> anyhow::Result<Self> {
+        static COUNT: AtomicU32 = AtomicU32::new(0);
+        let session = format!("t{}-{}", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed));
+        let folder = std::env::temp_dir().join(format!("cohabit-test-{session}"));
+        fs::create_dir_all(&folder)?;
+        let log = folder.join("session.mcap");
+        let mut child = Command::new(binary)
+            .arg("play")
+            .args(arguments)
+            .args(["--port", "0", "--session", &session, "--log"])
+            .arg(&log)
+            .stdout(Stdio::piped())
+            .stdin(Stdio::null())
+            .spawn()
+            .context("start cohabit play")?;
+        let out = child.stdout.take().context("its output")?;
+        let (sender, lines) = mpsc::channel();
+        thread::spawn(move || {
+            for line in BufReader::new(out).lines().map_while(Result::ok) {
+                if sender.send(line).is_err() {
+                    break;
+                }
+            }
+        });
+        let mut play = Self { child, lines, session, address: String::new(), log, folder };
+        let line = play.wait_for_line("http://")?;
+        let start = line.find("http://").context("an address")?;
+        play.address = line[start..].split_whitespace().next().context("an address")?.to_owned();
+        Ok(play)
+    }
+
+    /// The `host:port` of the page.
+    #[must_use]
+    pub fn authority(&self) -> &str {
+        self.address.trim_start_matches("http://").split('/').next().unwrap_or_default()
+    }
+
+    /// Waits for a line of its output that contains `part`.
+    ///
+    /// # Errors
+    /// When it ends first, or no such line comes.
+    pub fn wait_for_line(&mut self, part: &str) -> anyhow::Result<String> {
+        let deadline = Instant::now() + WATCHDOG;
+        loop {
+            let left = deadline.saturating_duration_since(Instant::now());
+            let line = self.lines.recv_timeout(left).with_context(|| format!("no line with `{part}`"))?;
+            if line.contains(part) {
+                return Ok(line);
+            }
+        }
+    }
+
+    /// Presses Ctrl-C, and waits for its end; checks that nothing but its folder is left behind, which goes when the
+    /// value given back is dropped.
+    ///
+    /// # Errors
+    /// When it does not end well, or leaves a process, shared memory or files.
+    pub fn end(mut self) -> anyhow::Result<Self> {
+        let pid = Pid::from_raw(i32::try_from(self.child.id())?).context("a process id")?;
+        kill_process(pid, Signal::INT)?;
+        let deadline = Instant::now() + WATCHDOG;
+        let status = loop {
+            if let Some(status) = self.child.try_wait()? {
+                break status;
+            }
+            ensure!(Instant::now() < deadline, "it does not end");
+            thread::park_timeout(Duration::from_millis(5));
+        };
+        ensure!(status.success(), "it ended with {status}");
+        let left = self.left_behind();
+        ensure!(left.is_empty(), "left behind: {left:?}");
+        Ok(self)
+    }
+
+    /// The supervisor's process id.
+    #[must_use]
+    pub fn pid(&self) -> u32 {
+        self.child.id()
+    }
+
+    /// What of the session is on the machine now: processes, shared memory.
+    #[must_use]
+    pub fn left_behind(&self) -> Vec<String> {
+        let memory = fs::read_dir("/dev/shm").into_iter().flatten().flatten();
+        let memory = memory
+            .map(|entry| entry.file_name().to_string_lossy().into_owned())
+            .filter(|name| name.contains(&self.session));
+        processes_with(&self.session).into_iter().map(|(_, line)| line).chain(memory).collect()
+    }
+
+    /// The process ids of the session's processes that run as `role` (`sim`, `agent`, `dialog`, `record`).
+    #[must_use]
+    pub fn processes(&self, role: &str) -> Vec<i32> {
+        let part = format!("\0{role}\0--session\0{}\0", self.session);
+        processes_with(&part).into_iter().map(|(pid, _)| pid).collect()
+    }
+}
+
+impl Drop for Play {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+        let _ = fs::remove_dir_all(&self.folder);
+    }
+}
+
+/// Process ids and command lines (parts separated by zero bytes) that contain `part`; zombies have none.
+fn processes_with(part: &str) -> Vec<(i32, String)> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir("/proc").into_iter().flatten().flatten() {
+        let Some(pid) = entry.file_name().to_str().and_then(|name| name.parse().ok()) else { continue };
+        let line = fs::read(entry.path().join("cmdline")).unwrap_or_default();
+        let line = String::from_utf8_lossy(&line).into_owned();
+        if line.contains(part) {
+            found.push((pid, line));
+        }
+    }
+    found
+}
+
+/// Runs `binary` with these arguments to its end.
+///
+/// # Errors
+/// When it cannot be started.
+pub fn run(binary: &str, arguments: &[&str]) -> anyhow::Result<Output> {
+    Command::new(binary).args(arguments).stdin(Stdio::null()).output().context("run cohabit")
+}
+
+/// The reference data's folder, or `None`, which is said, where it is absent.
+#[must_use]
+pub fn reference_data() -> Option<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/arena");
+    if folder.is_dir() {
+        return Some(folder);
+    }
+    eprintln!("skipped: there is no reference data in {}", folder.display());
+    None
+}

@@ -1,0 +1,65 @@
+//! What is wrong with what a user gave is said in one message, with exit code 2, and nothing is left running.
+
+use std::{fs, net::TcpListener, path::PathBuf};
+
+use cohabit_tests::run;
+
+use crate::COHABIT;
+
+/// A mission file with this text, in a folder of its own.
+fn file(name: &str, text: &str) -> PathBuf {
+    let folder = std::env::temp_dir().join(format!("cohabit-bad-{}", std::process::id()));
+    fs::create_dir_all(&folder).unwrap();
+    let path = folder.join(name);
+    fs::write(&path, text).unwrap();
+    path
+}
+
+/// Plays with these arguments, and finds exit code 2 and a message that names `parts`.
+fn check(arguments: &[&str], parts: &[&str]) {
+    let session = format!("bad-{}", std::process::id());
+    let mut all = vec!["play", "--session", &session];
+    all.extend(arguments);
+    let output = run(COHABIT, &all).unwrap();
+    let text = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {text}");
+    for part in parts {
+        assert!(text.contains(part), "{arguments:?}: no `{part}` in {text}");
+    }
+    assert!(!text.contains("panicked"), "{text}");
+    let left = fs::read_dir("/dev/shm").unwrap().flatten();
+    assert_eq!(left.filter(|entry| entry.file_name().to_string_lossy().contains(&session)).count(), 0);
+}
+
+const MISSION: &str = r#"{"goal_text": "g", "task_description": "d", "scene": {"floor_plan": "0", "scene_id": "s",
+ "simbot_init": [], "roomLocation": ["BreakRoom"], "layoutOverride": "LAYOUT", "required_objects": [{"name": "OBJECT",
+ "state": [], "location": [], "roomLocation": ["BreakRoom"], "colors": []}], "sticky_notes": null}, "task_goals": [],
+ "stateconditions": []}"#;
+
+#[test]
+fn each_mistake_is_named() {
+    let mission = |layout: &str, object: &str| MISSION.replace("LAYOUT", layout).replace("OBJECT", object);
+    let path = |name: &str, text: &str| file(name, text).to_str().unwrap().to_owned();
+    check(&["/nowhere/mission.json"], &["/nowhere/mission.json"]);
+    check(&[&path("broken.json", "{\"scene\": [1, 2")], &["broken.json", "line 1"]);
+    check(&[&path("object.json", &mission("OfficeLayout1", "Bowl_1"))], &["object.json", "Bowl_1", "Bowl_01"]);
+    check(&[&path("layout.json", &mission("OfficeLayout9", "Bowl_01_1"))], &["layout.json", "OfficeLayout9"]);
+    check(&["--session", "no/such name"], &["no/such name"]);
+    check(&["--log", &path("taken.mcap", "x")], &["taken.mcap"]);
+    let _ = fs::remove_dir_all(file("x", "").parent().unwrap());
+}
+
+#[test]
+fn a_port_in_use_is_named() {
+    let taken = TcpListener::bind("127.0.0.1:0").unwrap();
+    let port = taken.local_addr().unwrap().port().to_string();
+    check(&["--port", &port], &[&port, "--port"]);
+}
+
+#[test]
+fn a_file_that_is_no_log_is_not_replayed() {
+    let path = file("no-log.mcap", "hello");
+    let output = run(COHABIT, &["replay", path.to_str().unwrap()]).unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("no-log.mcap"));
+}

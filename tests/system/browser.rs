@@ -1,0 +1,40 @@
+//! The page in a real browser.
+
+use cohabit_tests::{Browser, Play};
+use serde_json::json;
+
+use crate::COHABIT;
+
+#[test]
+fn a_person_opens_the_page_types_and_sees_the_robot_move() {
+    let Some(browser) = Browser::start().unwrap() else { return };
+    let mut play = Play::start(COHABIT, &[]).unwrap();
+    let mut tab = browser.open(&play.address, 1280, 720).unwrap();
+    tab.wait_until("document.querySelector('#chat-input') !== null && window.cohabit?.frames > 0").unwrap();
+    let line = play.wait_for_line("First frame on the page").unwrap();
+    println!("{line}");
+
+    let before = tab.evaluate("window.cohabit.state.robot").unwrap();
+    tab.evaluate("document.querySelector('#chat-input').focus()").unwrap();
+    tab.type_and_enter("go to the main office").unwrap();
+    tab.wait_until("document.querySelectorAll('#chat .from-robot').length > 0").unwrap();
+    tab.wait_until("window.cohabit.state.robot.room === 'MainOffice'").unwrap();
+    let after = tab.evaluate("window.cohabit.state.robot").unwrap();
+    assert_ne!((&before["x"], &before["y"]), (&after["x"], &after["y"]));
+    assert!(tab.evaluate("document.querySelector('#chat').innerText").unwrap().to_string().contains("main office"));
+
+    // The picture is not one flat colour.
+    let spread = "(() => { const v = document.querySelector('#view'); const c = document.createElement('canvas'); \
+        c.width = 64; c.height = 36; const x = c.getContext('2d'); x.drawImage(v, 0, 0, 64, 36); \
+        const d = x.getImageData(0, 0, 64, 36).data; const s = new Set(); \
+        for (let i = 0; i < d.length; i += 4) s.add((d[i] >> 4) * 256 + (d[i + 1] >> 4) * 16 + (d[i + 2] >> 4)); \
+        return s.size; })()";
+    assert!(tab.evaluate(spread).unwrap().as_u64().unwrap() > 12, "the view is flat");
+
+    // On a phone nothing is cut off at the side.
+    let mut phone = browser.open(&play.address, 390, 844).unwrap();
+    phone.wait_until("document.querySelector('#chat-input') !== null && window.cohabit?.frames > 0").unwrap();
+    assert_eq!(phone.evaluate("document.documentElement.scrollWidth <= 390").unwrap(), json!(true));
+    drop((tab, phone, browser));
+    play.end().unwrap();
+}

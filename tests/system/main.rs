@@ -1,0 +1,10 @@
+//! Whole sessions in real processes.
+#![allow(clippy::unwrap_used, missing_docs)]
+
+mod bad_input;
+mod browser;
+mod missions;
+mod sessions;
+
+/// The binary under test.
+const COHABIT: &str = env!("CARGO_BIN_EXE_cohabit");

@@ -1,0 +1,57 @@
+//! Sessions side by side, ended, and bereft of a process.
+
+use cohabit_tests::{Page, Play, run};
+use rustix::process::{Pid, Signal, kill_process};
+
+use crate::COHABIT;
+
+#[test]
+fn two_sessions_run_side_by_side_and_leave_nothing() {
+    let (one, two) = (Play::start(COHABIT, &[]).unwrap(), Play::start(COHABIT, &[]).unwrap());
+    assert_ne!(one.address, two.address);
+    for play in [&one, &two] {
+        let mut page = Page::open(play.authority()).unwrap();
+        page.do_and_wait("turn left 90 degrees").unwrap();
+        assert!(page.frames > 0, "no frame came");
+    }
+    one.end().unwrap();
+    let mut page = Page::open(two.authority()).unwrap();
+    page.do_and_wait("turn right").unwrap();
+    two.end().unwrap();
+}
+
+#[test]
+fn what_dies_but_the_simulator_is_started_again() {
+    let play = Play::start(COHABIT, &[]).unwrap();
+    let dead = play.processes("agent");
+    assert_eq!(dead.len(), 1);
+    kill_process(Pid::from_raw(dead[0]).unwrap(), Signal::KILL).unwrap();
+    while play.processes("agent").first().is_none_or(|pid| dead.contains(pid)) {
+        std::thread::yield_now();
+    }
+    let mut page = Page::open(play.authority()).unwrap();
+    page.say("turn left").unwrap();
+    // The new agent may have come too late for this one; it is there for one that follows.
+    page.wait("a state", |_, message| message["type"] == "state").unwrap();
+    play.end().unwrap();
+}
+
+#[test]
+fn a_supervisor_killed_takes_all_with_it_and_the_next_one_cleans_up() {
+    let play = Play::start(COHABIT, &[]).unwrap();
+    let session = play.session.clone();
+    let copy = std::env::temp_dir().join(format!("{session}-killed.mcap"));
+    std::fs::hard_link(&play.log, &copy).unwrap();
+    kill_process(Pid::from_raw(i32::try_from(play.pid()).unwrap()).unwrap(), Signal::KILL).unwrap();
+    while play.left_behind().iter().any(|line| line.contains("--session")) {
+        std::thread::yield_now();
+    }
+    drop(play);
+    let next = Play::start(COHABIT, &[]).unwrap();
+    let left = std::fs::read_dir("/dev/shm").unwrap().flatten();
+    assert_eq!(left.filter(|entry| entry.file_name().to_string_lossy().contains(&session)).count(), 0);
+    next.end().unwrap();
+    let replayed = run(COHABIT, &["replay", copy.to_str().unwrap()]).unwrap();
+    let _ = std::fs::remove_file(&copy);
+    assert!(replayed.status.success(), "{replayed:?}");
+}
