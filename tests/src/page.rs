@@ -56,7 +56,7 @@ impl Page {
     ///
     /// # Errors
     /// When the socket is gone or silent for too long.
-    pub fn next(&mut self) -> anyhow::Result<Value> {
+    pub fn next_message(&mut self) -> anyhow::Result<Value> {
         loop {
             match self.socket.read().context("read from the page")? {
                 Message::Text(text) => {
@@ -89,7 +89,7 @@ impl Page {
     pub fn wait(&mut self, what: &str, mut done: impl FnMut(&Self, &Value) -> bool) -> anyhow::Result<Value> {
         let deadline = Instant::now() + WATCHDOG;
         while Instant::now() < deadline {
-            let message = self.next()?;
+            let message = self.next_message()?;
             if done(self, &message) {
                 return Ok(message);
             }

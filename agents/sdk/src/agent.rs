@@ -39,5 +39,5 @@ pub enum Deed {
         action: Action,
     },
     /// Tells the others.
-    Tell(DialogMessage),
+    Tell(Box<DialogMessage>),
 }

@@ -47,10 +47,7 @@ impl PlanFollower {
             self.end_plan(Status::ActionSuccessful, "", deeds);
             return;
         };
-        deeds.push(Deed::Tell(
-            DialogMessage::new(DialogKind::StepStarted, self.body, turn, "")
-                .at_step(plan.step, Status::ActionSuccessful),
-        ));
+        deeds.push(tell(DialogKind::StepStarted, self.body, plan, Status::ActionSuccessful, ""));
         let Some(action) = next else {
             self.end_step(Status::IncorrectActionFormat, "that step is not well formed", deeds);
             return;
@@ -69,9 +66,7 @@ impl PlanFollower {
     fn end_step(&mut self, status: Status, detail: &str, deeds: &mut Vec<Deed>) {
         let Some(plan) = &mut self.plan else { return };
         plan.doing = None;
-        deeds.push(Deed::Tell(
-            DialogMessage::new(DialogKind::StepEnded, self.body, plan.turn, detail).at_step(plan.step, status),
-        ));
+        deeds.push(tell(DialogKind::StepEnded, self.body, plan, status, detail));
         if status.is_success() {
             plan.step += 1;
             self.begin_step(deeds);
@@ -82,9 +77,7 @@ impl PlanFollower {
 
     fn end_plan(&mut self, status: Status, detail: &str, deeds: &mut Vec<Deed>) {
         if let Some(plan) = self.plan.take() {
-            deeds.push(Deed::Tell(
-                DialogMessage::new(DialogKind::PlanEnded, self.body, plan.turn, detail).at_step(plan.step, status),
-            ));
+            deeds.push(tell(DialogKind::PlanEnded, self.body, &plan, status, detail));
         }
     }
 
@@ -134,6 +127,11 @@ impl Agent for PlanFollower {
             }
         }
     }
+}
+
+/// What is told about the step that a plan is at.
+fn tell(kind: DialogKind, body: u32, plan: &Plan, status: Status, detail: &str) -> Deed {
+    Deed::Tell(Box::new(DialogMessage::new(kind, body, plan.turn, detail).at_step(plan.step, status)))
 }
 
 /// The object that the body must stand at to do this.

@@ -61,7 +61,11 @@ fn special_name(catalog: &Catalog, class: ClassId) -> Option<String> {
     let words = &catalog.class(class).words;
     let color = catalog.class(class).color.to_lowercase();
     let colored = format!("{color} {plain}");
-    let is_special = |word: &&String| word.ends_with(&ending);
+    let is_shared_word = |word: &String| {
+        let namesakes = catalog.classes().iter().filter(|other| other.name.to_lowercase() == plain);
+        namesakes.filter(|other| other.words.contains(word)).count() > 1
+    };
+    let is_special = |word: &&String| word.ends_with(&ending) && !is_shared_word(word);
     let is_colored = |word: &&String| **word == colored;
     let is_shared = catalog.classes().iter().filter(|other| other.name.to_lowercase() == plain).count() > 1;
     let special = || words.iter().find(is_colored).or_else(|| words.iter().find(is_special)).cloned();

@@ -52,5 +52,5 @@ fn known_object(state: StateView<'_>, robot: &KnownRobot, object: &ObjectRecord)
 fn in_view(robot: &KnownRobot, position_m: [f32; 3]) -> bool {
     let [dx, dy] = [position_m[0] - robot.position_m[0], position_m[1] - robot.position_m[1]];
     let bearing = (dy.atan2(dx) - robot.yaw_rad).rem_euclid(std::f32::consts::TAU);
-    bearing < HALF_VIEW_RAD || bearing > std::f32::consts::TAU - HALF_VIEW_RAD
+    bearing.min(std::f32::consts::TAU - bearing) < HALF_VIEW_RAD
 }

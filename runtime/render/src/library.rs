@@ -145,8 +145,8 @@ impl MeshLibrary {
             stands[catalog.model_index(id)] |= catalog.class(id).stands != Stands::OnWall;
         }
         let mut models = Vec::with_capacity(catalog.models().len() + own.models().len());
-        for (model, standing) in catalog.models().iter().zip(stands) {
-            models.push(mesh_of(model, standing)?);
+        for mesh in all_meshes(catalog.models(), &stands) {
+            models.push(mesh?);
         }
         let mut body = |id: &str| -> Result<usize, ModelError> {
             if let Some(index) = catalog.models().iter().position(|model| model.id == id) {
@@ -192,6 +192,21 @@ impl MeshLibrary {
     pub(crate) fn bodies(&self) -> Bodies {
         self.bodies
     }
+}
+
+/// The mesh of every model, in order; shared out to all cores, because baking takes most of a second.
+fn all_meshes(models: &[Model], stands: &[bool]) -> Vec<Result<ModelMesh, ModelError>> {
+    let threads = std::thread::available_parallelism().map_or(1, usize::from).min(8);
+    let jobs: Vec<(&Model, bool)> = models.iter().zip(stands.iter().copied()).collect();
+    let worker = |first: usize| -> Vec<_> {
+        jobs.iter().skip(first).step_by(threads).map(|(model, standing)| mesh_of(model, *standing)).collect()
+    };
+    let mut shares: Vec<std::vec::IntoIter<_>> = std::thread::scope(|scope| {
+        let workers: Vec<_> = (0..threads).map(|first| scope.spawn(move || worker(first))).collect();
+        let joined = workers.into_iter().map(|worker| worker.join().expect("invariant: building a mesh never panics"));
+        joined.map(Vec::into_iter).collect()
+    });
+    (0..jobs.len()).filter_map(|index| shares[index % threads].next()).collect()
 }
 
 fn class_looks(catalog: &Catalog, models: &[ModelMesh]) -> Result<Vec<ClassLook>, ModelError> {

@@ -193,9 +193,9 @@ impl<'a> Shader<'a> {
         };
         match surface.pattern {
             Pattern::Sky => {
-                for x in run.from..run.to {
+                for (x, out) in out.iter_mut().enumerate().take(run.to).skip(run.from) {
                     let [r, g, b] = to_srgb(table, outside(ground.ray(x).normalize()));
-                    out[x] = [r, g, b, 255];
+                    *out = [r, g, b, 255];
                 }
                 return;
             }
@@ -221,6 +221,10 @@ impl<'a> Shader<'a> {
         let level = self.pictures.of(surface.pattern).map(|picture| picture.level(footprint));
         let look = Look { paint, gloss, level, u: surface.u, v: surface.v };
         let mut shade = Shadow::new(run.draw.room, self, &ground);
+        if ground.flat && !run.draw.weather.any() {
+            self.flat_run(table, run, &ground, &look, &mut shade, nearness, out);
+            return;
+        }
         for x in run.from..run.to {
             let depth = 1.0 / nearness[x];
             let place = ground.place(x, depth);
@@ -228,6 +232,44 @@ impl<'a> Shader<'a> {
             let normal = ground.normal_at(shares);
             let lit = shade.at(x, depth, normal, run.to, nearness);
             let light = self.light(run.draw, &ground, &look, place, normal, ground.ambient(shares), lit, x);
+            let [r, g, b] = to_srgb(table, light);
+            out[x] = [r, g, b, 255];
+        }
+    }
+
+    /// A run on a plane, where all but texture and shadow changes evenly: most of an office.
+    #[expect(clippy::too_many_arguments, reason = "the innermost loop takes plain values")]
+    fn flat_run(
+        &self,
+        table: &[u8; 4096],
+        run: &Run<'_>,
+        ground: &Ground<'_>,
+        look: &Look<'_>,
+        shade: &mut Shadow<'_>,
+        nearness: &[f32],
+        out: &mut [[u8; 4]],
+    ) {
+        let normal = ground.normal[0];
+        let slope = ground.spread.shares[0] * ground.ambient[1] + ground.spread.shares[1] * ground.ambient[2];
+        let ambient = ground.evenly(slope, ground.ambient[0] - ground.spread.origin.dot(slope));
+        let (u, v) = (ground.evenly(look.u.0, look.u.1), ground.evenly(look.v.0, look.v.1));
+        let around = surroundings(normal);
+        let facing = normal.dot(self.towards_light).max(0.0);
+        let paint = look.paint * run.draw.light;
+        let mut glint = Glint::default();
+        for x in run.from..run.to {
+            let depth = 1.0 / nearness[x];
+            let lit = if facing > 0.0 { shade.at(x, depth, normal, run.to, nearness) } else { 0.0 };
+            let ambient = ambient.at(x, depth).clamp(0.0, 1.4);
+            let mut light = paint * illumination(around, facing, ambient, lit);
+            if let Some(level) = &look.level {
+                light *= Vec3::from_array(level.at(u.at(x, depth), v.at(x, depth)));
+            }
+            if look.gloss.shine > 0.0 {
+                let look_up =
+                    |x: usize| shine(&look.gloss, look.paint, ground.ray(x), normal, self.towards_light, lit, ambient);
+                light += glint.at(x, run.to, look_up) * run.draw.light;
+            }
             let [r, g, b] = to_srgb(table, light);
             out[x] = [r, g, b, 255];
         }
@@ -254,13 +296,8 @@ impl<'a> Shader<'a> {
         if draw.weather.any() {
             albedo = self.weathered(draw, albedo, place, normal);
         }
-        let up = normal.z * 0.5 + 0.5;
-        // Walls that face different ways are never quite as bright as each other.
-        let aside = 1.0 + 0.07 * normal.x - 0.05 * normal.y;
-        let around = (BELOW + (ABOVE - BELOW) * up) * (ambient * aside);
         let facing = normal.dot(self.towards_light).max(0.0);
-        let key = KEY * (facing * lit * (0.4 + 0.6 * ambient));
-        let mut light = albedo * (around + key);
+        let mut light = albedo * illumination(surroundings(normal), facing, ambient, lit);
         if look.gloss.shine > 0.0 {
             light += shine(&look.gloss, albedo, ground.ray(x), normal, self.towards_light, lit, ambient);
         }
@@ -381,10 +418,73 @@ impl<'a> Ground<'a> {
         normal * (1.0 / normal.length_squared().max(1e-12).sqrt())
     }
 
+    /// The value that is `slope . place + offset`, for any pixel of the row.
+    fn evenly(&self, slope: Vec3, offset: f32) -> Even {
+        Even {
+            at_eye: self.draw.eye.dot(slope) + offset,
+            first: self.own_ray[0].dot(slope),
+            per_x: self.own_ray[1].dot(slope),
+        }
+    }
+
     #[inline]
     fn ambient(&self, [b, c]: [f32; 2]) -> f32 {
         self.ambient[0] + self.ambient[1] * b + self.ambient[2] * c
     }
+}
+
+/// A value that changes evenly over a plane, ready to be had for any pixel of a row.
+#[derive(Clone, Copy)]
+struct Even {
+    at_eye: f32,
+    first: f32,
+    per_x: f32,
+}
+
+impl Even {
+    #[inline]
+    fn at(&self, x: usize, depth: f32) -> f32 {
+        self.at_eye + depth * (self.first + self.per_x * x as f32)
+    }
+}
+
+/// A highlight along a run on a plane: looked up every few pixels, and even between them.
+#[derive(Default)]
+struct Glint {
+    from: Vec3,
+    step: Vec3,
+    left: usize,
+}
+
+impl Glint {
+    const PIXELS: usize = 6;
+
+    #[inline]
+    fn at(&mut self, x: usize, end: usize, look: impl Fn(usize) -> Vec3) -> Vec3 {
+        if self.left == 0 {
+            self.left = Self::PIXELS.min(end - x);
+            self.from = look(x);
+            self.step = (look(x + self.left) - self.from) / self.left as f32;
+        }
+        let here = self.from;
+        self.from += self.step;
+        self.left -= 1;
+        here
+    }
+}
+
+/// Light from all around on a surface that faces this way.
+#[inline]
+fn surroundings(normal: Vec3) -> Vec3 {
+    // Walls that face different ways are never quite as bright as each other.
+    let aside = 1.0 + 0.07 * normal.x - 0.05 * normal.y;
+    (BELOW + (ABOVE - BELOW) * (normal.z * 0.5 + 0.5)) * aside
+}
+
+/// All light on a surface: what shades a place from the lamps also keeps some of the room's light from it.
+#[inline]
+fn illumination(around: Vec3, facing: f32, ambient: f32, lit: f32) -> Vec3 {
+    around * (ambient * (0.8 + 0.2 * lit)) + KEY * (facing * lit * (0.4 + 0.6 * ambient))
 }
 
 /// Shadow along a run: looked up every few pixels, and between them only where it changes.

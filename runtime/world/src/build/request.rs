@@ -121,6 +121,8 @@ impl Builder<'_> {
             None => {
                 let room = request.room.unwrap_or(mission.start_room);
                 let id = self.create(&request.instance, room, Pose::level(Vec3::ZERO, 0.0))?;
+                // It is nowhere until it is brought somewhere, and in nobody's way.
+                self.state.at_mut(id).support = Support::Gone;
                 self.claim(index, id);
                 id
             }

@@ -9,6 +9,8 @@ mod opening;
 mod toggle;
 mod tool;
 
+pub(crate) use hand::keyed_anchors;
+
 use cohabit_cdf::{Action, BodyId, ObjectId, Status, StateFlag, Verb};
 
 use crate::{effect::Effect, facts::Facts, report::SoundKind};

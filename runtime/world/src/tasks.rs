@@ -1,0 +1,289 @@
+//! Commands in the making: what a body does, tick by tick, from being told to the outcome.
+
+use cohabit_cdf::{Action, BodyId, GoToTarget, ObjectId, StateFlag, Status};
+use glam::Vec2;
+
+use crate::{
+    body::{Body, RADIUS_M, Step, Task},
+    facts::Facts,
+    geometry::wrap,
+    motion::{PITCH_LIMIT_RAD, Progress, advance, retract},
+    navigation::Approach,
+    report::{Event, Input, Outcome},
+    rules::{self, Ruling},
+    world::World,
+};
+
+/// Ticks that a body waits for its way to become free: three seconds.
+const PATIENCE_TICKS: u32 = 180;
+/// No command moves a body further than this, m.
+const FURTHEST_M: f32 = 100.0;
+/// How near a body comes to a closed door before it opens it, m.
+const DOOR_NEAR_M: f32 = 0.9;
+/// How far a door must be open to be walked through.
+const DOOR_WIDE: f32 = 0.7;
+
+/// An outcome before it has a command: status and detail.
+type End = (Status, String);
+
+impl World {
+    /// Takes a command up; its outcome is at hand if it is refused, or done at once.
+    pub(crate) fn begin(&mut self, input: &Input, outcomes: &mut Vec<Outcome>, events: &mut Vec<Event>) {
+        let outcome = |(status, detail): End| Outcome { command: input.command, body: input.body, status, detail };
+        let Some(body) = self.state.body(input.body) else {
+            let detail = format!("there is no body {}", input.body.0);
+            outcomes.push(outcome((Status::InvalidCommand, detail)));
+            return;
+        };
+        if !body.alive {
+            outcomes.push(outcome((Status::KilledByHazard, "this robot is out of order".to_owned())));
+            return;
+        }
+        outcomes.extend(self.interrupt(input.body));
+        match self.plan(input.body, &input.action, events) {
+            Err(end) => outcomes.push(outcome(end)),
+            Ok((steps, alternate)) => {
+                let task = Task { command: input.command, action: input.action, steps, alternate, waited: 0 };
+                self.state.bodies[input.body.0 as usize].task = Some(task);
+            }
+        }
+    }
+
+    /// Ends what a body is doing.
+    fn interrupt(&mut self, id: BodyId) -> Option<Outcome> {
+        let body = &mut self.state.bodies[id.0 as usize];
+        body.turn_rad_s = 0.0;
+        body.speed_m_s = 0.0;
+        let task = body.task.take()?;
+        Some(Outcome {
+            command: task.command,
+            body: id,
+            status: Status::Interrupted,
+            detail: "another command took its place".to_owned(),
+        })
+    }
+
+    /// The steps of a command, the next one last, and whether they lead elsewhere than asked.
+    fn plan(&mut self, id: BodyId, action: &Action, events: &mut Vec<Event>) -> Result<(Vec<Step>, bool), End> {
+        check_numbers(action)?;
+        if let Some(object) = mentioned(action) {
+            let known = self.state.object(object).is_some_and(crate::entity::Object::exists);
+            if !known {
+                return Err((Status::InvalidObjectClass, "there is no such object".to_owned()));
+            }
+        }
+        let facts = self.facts();
+        let body = &self.state.bodies[id.0 as usize];
+        match *action {
+            Action::Move { distance_m } => Ok((vec![Step::Drive { left_m: distance_m }], false)),
+            Action::Rotate { yaw_rad } => Ok((vec![Step::Turn { left_rad: yaw_rad }], false)),
+            Action::Look { pitch_rad } => {
+                let to_rad = (body.head_pitch_rad + pitch_rad).clamp(-PITCH_LIMIT_RAD, PITCH_LIMIT_RAD);
+                Ok((vec![Step::Pitch { to_rad }], false))
+            }
+            Action::LookAround => Ok((vec![Step::Turn { left_rad: std::f32::consts::TAU }], false)),
+            Action::GoTo { target } => self.plan_walk(body, target),
+            Action::PickUp { .. } | Action::Place { .. } | Action::Interact { .. } => {
+                let ruling = rules::rule(&facts, id, action);
+                if ruling.is_plain_refusal() {
+                    return Err((ruling.status, ruling.detail));
+                }
+                Ok((hand_steps(&facts, id, action), false))
+            }
+            Action::Highlight { object } => {
+                let name = facts.name(object);
+                events.push(Event::Highlighted { body: id, object });
+                Err((Status::ActionSuccessful, format!("I pointed out {name}")))
+            }
+            Action::Stop => Err((Status::ActionSuccessful, "I stopped".to_owned())),
+        }
+    }
+
+    fn plan_walk(&self, body: &Body, target: GoToTarget) -> Result<(Vec<Step>, bool), End> {
+        let facts = self.facts();
+        let from = body.position;
+        let viewpoints = |room| self.layout.viewpoints.iter().filter(move |viewpoint| viewpoint.room == room);
+        let no_way = |what: String| (Status::UnsupportedNavigation, format!("I find no way to {what}"));
+        let (approach, last) = match target {
+            GoToTarget::Object(object) => {
+                if facts.object(object).held_by().is_some() {
+                    return Err((Status::InvalidCommand, format!("{} is in a hand", facts.name(object))));
+                }
+                let approach = self.navigation.approach_object(&facts, from, object);
+                let approach = approach.ok_or_else(|| no_way(facts.name(object)))?;
+                (approach, Step::Face { point: facts.aim_point(object) })
+            }
+            GoToTarget::Room(room) => {
+                let points: Vec<Vec2> = viewpoints(room).map(|viewpoint| viewpoint.at_m.into()).collect();
+                let approach = self.navigation.approach_room(&facts, from, room, &points);
+                let approach = approach.ok_or_else(|| no_way(format!("the {}", room.name())))?;
+                let yaw_rad = self.viewpoint_yaw(&approach).unwrap_or(body.yaw_rad);
+                (approach, Step::Head { yaw_rad })
+            }
+            GoToTarget::Viewpoint(room, number) => {
+                let viewpoint = viewpoints(room).find(|viewpoint| viewpoint.number == number);
+                let viewpoint = viewpoint.ok_or_else(|| {
+                    (Status::InvalidCommand, format!("there is no viewpoint {}_{number}", room.id()))
+                })?;
+                let approach = self.navigation.approach_point(from, viewpoint.at_m.into());
+                let approach = approach.ok_or_else(|| no_way(format!("viewpoint {}_{number}", room.id())))?;
+                (approach, Step::Head { yaw_rad: wrap(viewpoint.yaw_deg.to_radians()) })
+            }
+            GoToTarget::Point(point) => {
+                let approach = self.navigation.approach_point(from, point.into());
+                (approach.ok_or_else(|| no_way("that place".to_owned()))?, Step::Pitch { to_rad: 0.0 })
+            }
+        };
+        Ok((vec![last, Step::Walk { path: approach.path, next: 0 }], approach.alternate))
+    }
+
+    /// The heading of the viewpoint that an approach ends at, rad.
+    fn viewpoint_yaw(&self, approach: &Approach) -> Option<f32> {
+        let end = *approach.path.last()?;
+        let viewpoint =
+            self.layout.viewpoints.iter().find(|viewpoint| Vec2::from(viewpoint.at_m).distance(end) < 1.0)?;
+        Some(wrap(viewpoint.yaw_deg.to_radians()))
+    }
+
+    /// Carries the command of one body on by one tick; returns its outcome once it ends.
+    pub(crate) fn advance_task(&mut self, id: BodyId, events: &mut Vec<Event>) -> Option<Outcome> {
+        let index = id.0 as usize;
+        let Some(mut task) = self.state.bodies[index].task.take() else {
+            retract(&mut self.state.bodies[index]);
+            return None;
+        };
+        let mut body = self.state.bodies[index].clone();
+        let Some(mut step) = task.steps.pop() else {
+            return Some(finish(id, &task, (Status::ActionSuccessful, "done".to_owned())));
+        };
+        if let Some(door) = self.door_ahead(&body, &step) {
+            self.changes(events).open(door);
+        }
+        if !matches!(step, Step::Reach) {
+            retract(&mut body);
+        }
+        let walking = matches!(step, Step::Walk { .. });
+        let progress = advance(&mut body, &mut step, &|point| self.is_free(id, point, walking));
+        body.room = self.floor.room_at(body.position).unwrap_or(body.room);
+        self.state.bodies[index] = body;
+        let end = match progress {
+            Progress::Going => {
+                task.waited = 0;
+                task.steps.push(step);
+                None
+            }
+            Progress::Done if matches!(step, Step::Reach) => Some(self.carry_out(id, &task.action, events)),
+            Progress::Done if task.steps.is_empty() => Some(arrived(&task)),
+            Progress::Done => None,
+            Progress::Blocked if walking && task.waited < PATIENCE_TICKS => {
+                task.waited += 1;
+                task.steps.push(step);
+                None
+            }
+            Progress::Blocked => Some((Status::TargetInaccessible, "something is in my way".to_owned())),
+        };
+        match end {
+            Some(end) => Some(finish(id, &task, end)),
+            None => {
+                self.state.bodies[index].task = Some(task);
+                None
+            }
+        }
+    }
+
+    /// Rules the action as things stand now, and applies what follows.
+    fn carry_out(&mut self, id: BodyId, action: &Action, events: &mut Vec<Event>) -> End {
+        let Ruling { status, detail, effects } = rules::rule(&self.facts(), id, action);
+        self.changes(events).apply(effects);
+        (status, detail)
+    }
+
+    /// Whether the middle of a body may be at a point; on a planned way only what moves is in question.
+    fn is_free(&self, id: BodyId, point: Vec2, planned: bool) -> bool {
+        let own = self.state.bodies[id.0 as usize].position;
+        let others = self.state.bodies.iter().enumerate().filter(|(index, _)| *index != id.0 as usize);
+        let crowded = others.into_iter().any(|(_, other)| {
+            let distance = other.position.distance(point);
+            // Two that stand too close already may still part.
+            distance < 2.0 * RADIUS_M && distance < other.position.distance(own)
+        });
+        let shut = self.floor.gaps.iter().any(|gap| {
+            gap.print.distance(point) < RADIUS_M
+                && gap.print.distance(point) < gap.print.distance(own)
+                && gap.door_object.is_some_and(|door| {
+                    self.state.at(door).exists() && self.state.at(door).opened < DOOR_WIDE
+                })
+        });
+        !crowded && !shut && (planned || self.navigation.is_clear(point))
+    }
+
+    /// The closed door on the next stretch of a walk that a body is close enough to, and may open.
+    fn door_ahead(&self, body: &Body, step: &Step) -> Option<ObjectId> {
+        let Step::Walk { path, next } = step else { return None };
+        self.floor.gaps.iter().find_map(|gap| {
+            let door = gap.door_object?;
+            let object = self.state.at(door);
+            let shut = object.exists()
+                && !object.flags.has(StateFlag::Opened)
+                && !object.flags.has(StateFlag::Locked)
+                && gap.print.distance(body.position) < DOOR_NEAR_M;
+            let on_the_way = shut && {
+                let points = std::iter::once(body.position).chain(path.iter().skip(*next).copied());
+                let points: Vec<Vec2> = points.take(4).collect();
+                points.windows(2).any(|stretch| gap.print.cut_by(stretch[0], stretch[1]))
+            };
+            on_the_way.then_some(door)
+        })
+    }
+}
+
+fn finish(body: BodyId, task: &Task, (status, detail): End) -> Outcome {
+    Outcome { command: task.command, body, status, detail }
+}
+
+/// How a motion ends that came to its end.
+fn arrived(task: &Task) -> End {
+    if task.alternate {
+        return (Status::AlternateNavigationUsed, "I went as near as I could".to_owned());
+    }
+    let detail = match task.action {
+        Action::GoTo { .. } => "I am there",
+        Action::Move { .. } => "I moved",
+        Action::Rotate { .. } => "I turned",
+        Action::Look { .. } | Action::LookAround => "I looked",
+        _ => "done",
+    };
+    (Status::ActionSuccessful, detail.to_owned())
+}
+
+/// What a hand does: turn to the thing, reach out. What is in the hand already needs no turning.
+fn hand_steps(facts: &Facts<'_>, id: BodyId, action: &Action) -> Vec<Step> {
+    let mut steps = vec![Step::Reach];
+    if let Some(object) = rules::object_of(action) {
+        if facts.object(object).held_by() != Some(id) {
+            steps.push(Step::Face { point: facts.aim_point(object) });
+        }
+    }
+    steps
+}
+
+/// The object that an action names.
+fn mentioned(action: &Action) -> Option<ObjectId> {
+    match *action {
+        Action::GoTo { target: GoToTarget::Object(object) } => Some(object),
+        _ => rules::object_of(action),
+    }
+}
+
+fn check_numbers(action: &Action) -> Result<(), End> {
+    let fine = match *action {
+        Action::Move { distance_m } => distance_m.is_finite() && distance_m.abs() <= FURTHEST_M,
+        Action::Rotate { yaw_rad } => yaw_rad.is_finite() && yaw_rad.abs() <= 2.0 * std::f32::consts::TAU,
+        Action::Look { pitch_rad } => pitch_rad.is_finite(),
+        Action::GoTo { target: GoToTarget::Point(point) } => {
+            point.iter().all(|coordinate| coordinate.is_finite() && coordinate.abs() < 1e4)
+        }
+        _ => true,
+    };
+    if fine { Ok(()) } else { Err((Status::IncorrectActionFormat, "that is no sensible number".to_owned())) }
+}
