@@ -36,8 +36,8 @@ impl FreeFloor {
         let obstacles = obstacles(layout, catalog);
         for index in 0..floor.cells.len() {
             let point = floor.point_m(index);
-            let is_free = obstacles.iter().all(|obstacle| obstacle.distance_m(point) >= radius_m);
-            floor.cells[index] = standing_room(layout, point, radius_m).filter(|_| is_free);
+            let is_free = || obstacles.iter().all(|obstacle| obstacle.distance_m(point) >= radius_m);
+            floor.cells[index] = standing_room(layout, point, radius_m).filter(|_| is_free());
         }
         floor.keep_reachable();
         floor

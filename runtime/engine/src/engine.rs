@@ -6,13 +6,16 @@ use cohabit_bus::{
     BusError, Publisher, Subscriber, Topic, Transport,
     message::{self, CommandMessage, EventMessage, Malformed, MissionHeader, MissionMessage, TickHeader, TickMessage},
 };
-use cohabit_cdf::{Action, BodyId, Status};
-use cohabit_world::{Input, World};
+use cohabit_cdf::{Action, BodyId, ObjectId, Status};
+use cohabit_world::{Event, Input, Report, World};
 
 use crate::{build::SessionPlan, report};
 
 /// Commands that one tick takes in at most; the rest wait for the next.
 const MAX_INPUTS: usize = 64;
+
+/// How long an object that is pointed out stays outlined.
+const HIGHLIGHT_TICKS: u64 = 240;
 
 /// Why a tick could not be completed.
 #[derive(Debug, thiserror::Error)]
@@ -32,6 +35,7 @@ pub struct Engine {
     events: Box<dyn Publisher>,
     turn_by_command: BTreeMap<u64, u64>,
     latest_started: u64,
+    highlighted: Vec<(ObjectId, u64)>,
 }
 
 impl Engine {
@@ -49,6 +53,7 @@ impl Engine {
             events: bus.publisher(Topic::Events)?,
             turn_by_command: BTreeMap::new(),
             latest_started: 0,
+            highlighted: Vec::new(),
         };
         let header = MissionHeader { seed: plan.seed, file: cohabit_bus::Text::new(&plan.file), ..Default::default() };
         let message = MissionMessage { header, text: plan.text.clone() };
@@ -68,6 +73,11 @@ impl Engine {
         self.latest_started
     }
 
+    /// The objects that are outlined now.
+    pub fn highlighted(&self) -> impl Iterator<Item = ObjectId> + '_ {
+        self.highlighted.iter().map(|(object, _)| *object)
+    }
+
     /// One tick, whose wall time is stamped `wall_nanos` (since 1970).
     ///
     /// # Errors
@@ -77,6 +87,7 @@ impl Engine {
         let inputs: Vec<Input> = messages.iter().filter_map(|message| self.input(message)).collect();
         let report = self.world.step(&inputs);
         self.note_started(&inputs);
+        self.note_highlights(&report);
         // State before events: who hears of an event finds the state that it speaks of.
         self.publish_state()?;
         self.publish_events(&inputs, report)?;
@@ -126,15 +137,24 @@ impl Engine {
         }
     }
 
-    fn publish_events(&mut self, inputs: &[Input], report: cohabit_world::Report) -> Result<(), EngineError> {
+    fn note_highlights(&mut self, report: &Report) {
+        let now = self.world.tick();
+        self.highlighted.retain(|(_, until)| *until > now);
+        for event in &report.events {
+            if let Event::Highlighted { object, .. } = event {
+                self.highlighted.retain(|(other, _)| other != object);
+                self.highlighted.push((*object, now + HIGHLIGHT_TICKS));
+            }
+        }
+    }
+
+    fn publish_events(&mut self, inputs: &[Input], report: Report) -> Result<(), EngineError> {
         for input in inputs {
             let turn = self.turn_by_command.get(&input.command).copied().unwrap_or(0);
             self.send_event(&report::started(input, turn))?;
         }
         for event in &report.events {
-            if let Some(message) = report::event(&self.world, event) {
-                self.send_event(&message)?;
-            }
+            self.send_event(&report::event(&self.world, event))?;
         }
         for outcome in &report.outcomes {
             let turn = self.turn_by_command.remove(&outcome.command).unwrap_or(0);

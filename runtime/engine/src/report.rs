@@ -11,38 +11,38 @@ use cohabit_world::{Ending, Event, Input, World};
 
 /// A command was taken up.
 pub fn started(input: &Input, turn: u64) -> EventMessage {
-    EventMessage { command: input.command, turn, body: input.body.0, ..EventMessage::new(EventKind::Started) }
+    let mut message = EventMessage::new(EventKind::Started);
+    (message.command, message.turn, message.body) = (input.command, turn, input.body.0);
+    message
 }
 
-/// An event, if it concerns others.
-pub fn event(world: &World, event: &Event) -> Option<EventMessage> {
+/// An event as others hear of it.
+pub fn event(world: &World, event: &Event) -> EventMessage {
     let of = EventMessage::new;
-    let about = |kind, object: cohabit_cdf::ObjectId| EventMessage { object: object.0, ..of(kind) };
-    Some(match event {
-        Event::ObjectChanged { object } => about(EventKind::ObjectChanged, *object),
-        Event::Spawned { object, .. } => about(EventKind::Spawned, *object),
-        Event::Highlighted { object, .. } => about(EventKind::Highlighted, *object),
-        Event::NoteRead { object, text } => {
-            EventMessage { text: Text::new(text), ..about(EventKind::NoteRead, *object) }
+    match event {
+        Event::ObjectChanged { object } | Event::Removed { object } | Event::Scanned { object } => {
+            of(EventKind::ObjectChanged).about(object.0)
         }
-        Event::Sound { kind, object } => {
-            EventMessage { text: Text::new(&format!("{kind:?}")), ..about(EventKind::Sound, *object) }
-        }
+        Event::Spawned { object, .. } => of(EventKind::Spawned).about(object.0),
+        Event::Highlighted { object, .. } => of(EventKind::Highlighted).about(object.0),
+        Event::NoteRead { object, text } => of(EventKind::NoteRead).about(object.0).saying(text),
+        Event::Sound { kind, object } => of(EventKind::Sound).about(object.0).saying(&format!("{kind:?}")),
         Event::GoalMet { id } => goal(world, EventKind::GoalMet, *id),
         Event::GoalReset { id } => goal(world, EventKind::GoalReset, *id),
-        Event::Message { text } => EventMessage { text: Text::new(text), ..of(EventKind::Message) },
+        Event::GoalShown { id } => goal(world, EventKind::GoalShown, *id),
+        Event::Message { text } => of(EventKind::Message).saying(text),
         Event::MissionEnded { ending: Ending::AllGoalsMet } => of(EventKind::MissionComplete),
         Event::MissionEnded { ending: Ending::KilledByHazard } => {
-            EventMessage { text: Text::new("A hazard destroyed the robot."), ..of(EventKind::MissionFailed) }
+            of(EventKind::MissionFailed).saying("A hazard destroyed the robot.")
         }
-        Event::Removed { object } | Event::Scanned { object } => about(EventKind::ObjectChanged, *object),
-        Event::GoalShown { id } => goal(world, EventKind::GoalShown, *id),
-    })
+    }
 }
 
 fn goal(world: &World, kind: EventKind, number: i64) -> EventMessage {
-    let text = world.goals().iter().find(|goal| goal.id == number).map_or("", |goal| &goal.description);
-    EventMessage { number, text: Text::new(text), ..EventMessage::new(kind) }
+    let goal = world.goals().into_iter().find(|goal| goal.id == number);
+    let mut message = EventMessage::new(kind).saying(&goal.map_or_else(String::new, |goal| goal.description));
+    message.number = number;
+    message
 }
 
 /// The present state.

@@ -2,7 +2,8 @@
 
 use cohabit_cdf::{BodyId, Color, Fluid, RoomId, StateFlags};
 use cohabit_render::{Camera, Highlight, Instance, Look};
-use cohabit_world::World;
+
+use crate::engine::Engine;
 
 /// The id of body `body` in the id plane; objects have their index + 1.
 const FIRST_BODY_ID: u32 = 1 << 20;
@@ -40,8 +41,6 @@ pub struct Standing {
     pub yaw_rad: f32,
     /// Pitch of the head, rad.
     pub head_pitch_rad: f32,
-    /// Its room.
-    pub room: RoomId,
 }
 
 /// The id of an object in the id plane.
@@ -57,8 +56,9 @@ pub const fn body_instance_id(body: BodyId) -> u32 {
 const HIGHLIGHT_COLOR: [u8; 3] = [255, 196, 61];
 
 impl Moment {
-    /// Captures a world.
-    pub fn capture(world: &World, command: u64, seen_nanos: u64) -> Self {
+    /// Captures an engine's world.
+    pub fn capture(engine: &Engine, seen_nanos: u64) -> Self {
+        let world = engine.world();
         let bodies = world.bodies().map(|body| Instance {
             id: body_instance_id(body.id),
             look: Look::Robot { head_pitch_rad: body.head_pitch_rad, arm: body.arm },
@@ -89,11 +89,11 @@ impl Moment {
         });
         Self {
             tick: world.tick(),
-            command,
+            command: engine.latest_started(),
             seen_nanos,
             instances: bodies.chain(objects).collect(),
-            highlights: world
-                .highlights()
+            highlights: engine
+                .highlighted()
                 .map(|object| Highlight { id: object_instance_id(object), color: HIGHLIGHT_COLOR })
                 .collect(),
             lit: RoomId::ALL.map(|room| world.room_lit(room)),
@@ -104,7 +104,6 @@ impl Moment {
                     eye_m: body.eye.to_array(),
                     yaw_rad: body.yaw_rad,
                     head_pitch_rad: body.head_pitch_rad,
-                    room: body.room,
                 })
                 .collect(),
         }

@@ -74,7 +74,7 @@ fn tick_until(
         if engine.world().tick().is_multiple_of(GREET_EVERY) {
             engine.greet()?;
         }
-        desk.leave(Moment::capture(engine.world(), engine.latest_started(), monotonic_nanos()));
+        desk.leave(Moment::capture(engine, monotonic_nanos()));
         pace.wait();
     }
     Ok(())

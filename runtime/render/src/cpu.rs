@@ -22,8 +22,8 @@ use draw::Draw;
 use setup::Triangle;
 use shade::Shader;
 
-/// Rows of a band: small enough to share work evenly.
-const BAND_ROWS: usize = 24;
+/// Bands a thread: enough to share work evenly, few because every band goes through all triangles.
+const BANDS_PER_THREAD: usize = 4;
 /// What the visibility buffer holds where there is nothing.
 const NOTHING: u32 = u32::MAX;
 
@@ -154,9 +154,10 @@ impl Renderer for CpuRenderer {
         self.seen.resize(pixels, NOTHING);
         self.nearness.resize(pixels, 0.0);
         self.own_ids.resize(if outlined && planes.ids.is_none() { pixels } else { 0 }, 0);
-        let shader = Shader::new(scene, &view, &draws, &self.batches, &shadows, camera.for_people);
+        let shader = Shader::new(&view, &draws, &self.batches, &shadows, camera.for_people);
         let width = camera.width as usize;
-        let (rows, count) = (BAND_ROWS * width, (camera.height as usize).div_ceil(BAND_ROWS));
+        let band_rows = band_rows(self.threads, camera.height as usize);
+        let (rows, count) = (band_rows * width, (camera.height as usize).div_ceil(band_rows));
         let ids = match planes.ids.as_deref_mut() {
             Some(ids) => Some(ids),
             None if outlined => Some(&mut self.own_ids[..]),
@@ -170,7 +171,7 @@ impl Renderer for CpuRenderer {
         let jobs: Vec<Band<'_>> = seen
             .enumerate()
             .map(|(index, (seen, nearness))| Band {
-                first_row: index * BAND_ROWS,
+                first_row: index * band_rows,
                 seen,
                 nearness,
                 color: colors.next().flatten(),
@@ -189,6 +190,11 @@ impl Renderer for CpuRenderer {
             }
         }
     }
+}
+
+/// Rows of a band.
+fn band_rows(threads: usize, height: usize) -> usize {
+    if threads <= 1 { height.max(1) } else { height.div_ceil(threads * BANDS_PER_THREAD).max(1) }
 }
 
 fn check_lengths(planes: &Planes<'_>, pixels: usize) {

@@ -6,8 +6,8 @@ use crate::mesh::{Aabb, Mesh};
 
 /// Cells along the longest side.
 const CELLS: f32 = 40.0;
-/// Steps of a ray, in cells.
-const STEPS: u32 = 14;
+/// Steps of a ray, each a little more than a cell.
+const STEPS: u32 = 11;
 /// A moving part is never darker: it does not stay where it was baked.
 const MOVING_LEAST: f32 = 0.7;
 /// No part is darker.
@@ -92,7 +92,7 @@ impl Occluder {
     /// 1 for a ray that gets away, less the sooner it meets something.
     fn reach(&self, start: Vec3, ray: Vec3, standing: bool) -> f32 {
         for step in 1..=STEPS {
-            let point = start + ray * (step as f32 * self.cell_m);
+            let point = start + ray * (step as f32 * 1.3 * self.cell_m);
             let far = step as f32 / STEPS as f32;
             if standing && point.z < 0.0 {
                 return 0.45 + 0.3 * far;
@@ -110,7 +110,7 @@ impl Occluder {
 
 /// Directions spread evenly over the sphere (a Fibonacci lattice).
 fn directions() -> Vec<Vec3> {
-    const COUNT: usize = 48;
+    const COUNT: usize = 36;
     (0..COUNT)
         .map(|i| {
             let z = 1.0 - (2.0 * i as f32 + 1.0) / COUNT as f32;

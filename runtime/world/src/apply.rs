@@ -52,7 +52,6 @@ impl Changes<'_> {
             Effect::Hold(object, body) => self.hold(object, body),
             Effect::PutOn { object, parent, anchor } => self.put_on(object, parent, anchor),
             Effect::LetGo(object, velocity) => self.let_go(object, velocity),
-            Effect::PutDown(object, at) => self.put_down(object, at),
             Effect::Spawn { class, instance, parent, anchor, yesterday, by } => {
                 let room = self.state.at(parent).room;
                 let mut object = Object::new(instance, class, room, self.state.at(parent).pose);

@@ -30,8 +30,6 @@ pub(crate) enum Effect {
     },
     /// An object is let go in mid-air, with this velocity, m/s.
     LetGo(ObjectId, Vec3),
-    /// An object is put down at a point of the floor.
-    PutDown(ObjectId, Vec3),
     /// A new object comes to an anchor of a receptacle.
     Spawn {
         /// Of which class.

@@ -3,7 +3,7 @@
 use cohabit_cdf::{Catalog, ObjectClass, ObjectId, Property, RoomId, StateFlag};
 use glam::{Vec2, Vec3};
 
-use crate::{entity::Object, floor::Floor, geometry::Footprint, state::State};
+use crate::{entity::{Object, Support}, floor::Floor, geometry::Footprint, state::State};
 
 /// A read-only view of everything.
 #[derive(Clone, Copy)]
@@ -50,7 +50,40 @@ impl<'a> Facts<'a> {
 
     /// The nearest shut receptacle around `id`.
     pub fn shut_around(&self, id: ObjectId) -> Option<ObjectId> {
-        self.state.ancestors(id).find(|ancestor| self.is_shut(*ancestor))
+        std::iter::successors(Some(id), |id| self.object(*id).parent())
+            .filter(|id| self.is_within(*id))
+            .filter_map(|id| self.object(id).parent())
+            .find(|parent| self.is_shut(*parent))
+    }
+
+    /// Whether it is in what holds it, not on the top of that: a microwave on a cupboard is not in the cupboard.
+    pub fn is_within(&self, id: ObjectId) -> bool {
+        const LID_M: f32 = 0.02;
+        match self.object(id).support {
+            Support::On { parent, local, .. } => {
+                let receptacle = self.class(parent).receptacle.as_ref();
+                let enclosed = receptacle.is_some_and(|receptacle| receptacle.enclosed);
+                !enclosed || local.position.z < self.size(parent).z - LID_M
+            }
+            _ => false,
+        }
+    }
+
+    /// What is directly in or on a receptacle, less what stands on the top of a closed kind.
+    pub fn held_in(&self, receptacle: ObjectId) -> Vec<ObjectId> {
+        self.state.children(receptacle).filter(|child| self.is_within(*child)).collect()
+    }
+
+    /// The same at any depth, nearest first.
+    pub fn contents(&self, receptacle: ObjectId) -> Vec<ObjectId> {
+        let mut found = self.held_in(receptacle);
+        let mut next = 0;
+        while next < found.len() {
+            let deeper = self.held_in(found[next]);
+            found.extend(deeper);
+            next += 1;
+        }
+        found
     }
 
     /// Its extent, scaled, m.

@@ -128,7 +128,7 @@ impl Judge<'_> {
             Predicate::Color(color) => self.any(of, |id| facts.object(id).color == *color),
             Predicate::Contains(what) => self.any(of, |id| self.contains(id, what)),
             Predicate::ContainsCereal(value) => self.any(of, |id| facts.is(id, StateFlag::Cereal) == *value),
-            Predicate::Empty(value) => self.any(of, |id| facts.state.children(id).next().is_none() == *value),
+            Predicate::Empty(value) => self.any(of, |id| facts.held_in(id).is_empty() == *value),
             Predicate::Condition(name, value) => self
                 .mission
                 .conditions
@@ -140,7 +140,7 @@ impl Judge<'_> {
     }
 
     fn contains(&self, receptacle: ObjectId, what: &InstancePattern) -> bool {
-        self.facts.state.contents(receptacle).into_iter().any(|id| is_meant(self.facts, what, id))
+        self.facts.contents(receptacle).into_iter().any(|id| is_meant(self.facts, what, id))
     }
 
     fn expression_holds(&self, expression: &Expression) -> bool {

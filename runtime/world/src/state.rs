@@ -48,26 +48,9 @@ impl State {
         ids(self.objects.len()).filter(move |id| self.at(*id).parent() == Some(parent))
     }
 
-    /// Everything in or on `parent`, at any depth, nearest first.
-    pub fn contents(&self, parent: ObjectId) -> Vec<ObjectId> {
-        let mut found: Vec<ObjectId> = self.children(parent).collect();
-        let mut next = 0;
-        while next < found.len() {
-            let deeper: Vec<ObjectId> = self.children(found[next]).collect();
-            found.extend(deeper);
-            next += 1;
-        }
-        found
-    }
-
     /// The receptacles that `id` is in, from the nearest outwards.
     pub fn ancestors(&self, id: ObjectId) -> impl Iterator<Item = ObjectId> + '_ {
         std::iter::successors(self.at(id).parent(), |id| self.at(*id).parent())
-    }
-
-    /// The outermost thing that `id` stands in or on; itself, if it stands alone.
-    pub fn root(&self, id: ObjectId) -> ObjectId {
-        self.ancestors(id).last().unwrap_or(id)
     }
 
     /// The object of this instance id, if it is in the world.

@@ -107,8 +107,8 @@ pub(crate) fn tray_anchor(facts: &Facts<'_>, machine: ObjectId) -> Option<Anchor
 
 /// What `work` changes at `site`, done by `machine`.
 pub(crate) fn effects(facts: &Facts<'_>, machine: ObjectId, work: Work, site: ObjectId) -> Vec<Effect> {
-    let contents = facts.state.contents(site);
-    let direct: Vec<ObjectId> = facts.state.children(site).collect();
+    let contents = facts.contents(site);
+    let direct = facts.held_in(site);
     match work {
         Work::Nothing => Vec::new(),
         Work::Heat => contents.into_iter().flat_map(|id| heat(facts, id)).collect(),
@@ -201,7 +201,7 @@ fn print(facts: &Facts<'_>, printer: ObjectId) -> Vec<Effect> {
 /// Coffee comes hot into everything under the spout that takes it; water and beans are used up.
 fn brew(facts: &Facts<'_>, maker: ObjectId) -> Vec<Effect> {
     let mut effects = Vec::new();
-    for id in facts.state.contents(maker) {
+    for id in facts.contents(maker) {
         if facts.class(id).id == "CoffeeBeans_01" {
             effects.push(Effect::Remove(id));
         } else if facts.has(id, Property::Fillable) {
@@ -216,7 +216,7 @@ fn brew(facts: &Facts<'_>, maker: ObjectId) -> Vec<Effect> {
 /// Coffee in the unmaker, or in what stands in it, comes out as beans.
 fn unbrew(facts: &Facts<'_>, unmaker: ObjectId) -> Vec<Effect> {
     let filled: Vec<ObjectId> = std::iter::once(unmaker)
-        .chain(facts.state.contents(unmaker))
+        .chain(facts.contents(unmaker))
         .filter(|id| facts.object(*id).fluid == Fluid::Coffee)
         .collect();
     let mut effects: Vec<Effect> = filled.iter().map(|id| Effect::Fill(*id, Fluid::None)).collect();

@@ -98,6 +98,20 @@ impl EventMessage {
         Self { command, turn, body, status: status as u32, text: Text::new(detail), ..Self::new(EventKind::Outcome) }
     }
 
+    /// The same about an object.
+    #[must_use]
+    pub const fn about(mut self, object: u32) -> Self {
+        self.object = object;
+        self
+    }
+
+    /// The same with a sentence for people.
+    #[must_use]
+    pub fn saying(mut self, text: &str) -> Self {
+        self.text = Text::new(text);
+        self
+    }
+
     /// What it tells; `None` if a peer wrote a kind that does not exist.
     #[must_use]
     pub fn kind(&self) -> Option<EventKind> {

@@ -12,7 +12,6 @@ use crate::camera::View;
 use crate::color::{from_srgb, to_srgb};
 use crate::mesh::Paint;
 use crate::pattern::{Gloss, Level, Pattern, Pictures};
-use crate::scene::Scene;
 use crate::shadow::{SLANT, ShadowMap};
 
 /// Light from above, and light thrown back from below.
@@ -72,7 +71,6 @@ impl Spread {
 
 impl<'a> Shader<'a> {
     pub(super) fn new(
-        _scene: &'a Scene,
         view: &'a View,
         draws: &'a [Draw<'a>],
         batches: &'a [Vec<Triangle>],

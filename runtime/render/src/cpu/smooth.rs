@@ -2,7 +2,7 @@
 //! followed both ways to its ends; where a pixel lies along it says how much of the other side covers the pixel (after
 //! Lottes, "FXAA", 2009). Patterns within a triangle stay as sharp as they are.
 
-use super::{BAND_ROWS, share_out};
+use super::{band_rows, share_out};
 
 /// Less contrast than this is no edge, in steps of brightness.
 const LEAST_CONTRAST: i32 = 10;
@@ -42,10 +42,11 @@ pub(super) fn run(threads: usize, color: &mut [u8], buffers: &mut Buffers, seen:
     buffers.brightness.extend(pixels.iter().map(luma));
     let (original, height) = (&buffers.original, seen.len() / width);
     let brightness = Brightness { values: &buffers.brightness, width: width as isize, height: height as isize };
-    let bands: Vec<_> = pixels.chunks_mut(BAND_ROWS * width).enumerate().collect();
+    let band_rows = band_rows(threads, height);
+    let bands: Vec<_> = pixels.chunks_mut(band_rows * width).enumerate().collect();
     share_out(threads, bands, |(band, out)| {
         for (row, out) in out.chunks_mut(width).enumerate() {
-            let y = band * BAND_ROWS + row;
+            let y = band * band_rows + row;
             let own = &seen[y * width..(y + 1) * width];
             let above = &seen[y.saturating_sub(1) * width..][..width];
             let below = &seen[(y + 1).min(height - 1) * width..][..width];

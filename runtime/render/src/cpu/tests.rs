@@ -202,11 +202,11 @@ fn cameras() -> Vec<Camera> {
 fn the_same_bits_as_ever() {
     let (scene, _) = scene();
     let seen = digest(&picture(&mut CpuRenderer::new(1), &scene, &camera()));
-    assert_eq!(seen, GOLDEN, "the picture changed: look at it, then write {seen:#018X} here");
+    assert_eq!(seen, GOLDEN, "the picture changed: look at it, then write {seen:#X} here");
 }
 
 /// What the picture of [`scene`] from [`camera`] adds up to.
-const GOLDEN: u64 = 0;
+const GOLDEN: u64 = 0x2CD6_6AE6_2C5E_FFF0;
 
 #[test]
 fn the_same_bits_with_any_number_of_threads() {
@@ -384,4 +384,11 @@ fn planes_of_the_wrong_length_are_refused() {
     let (scene, _) = scene();
     let mut ids = vec![0; 3];
     CpuRenderer::new(1).render(&scene, &camera(), &mut Planes { ids: Some(&mut ids), ..Planes::default() });
+}
+
+#[test]
+fn scenes_and_renderers_go_to_other_threads() {
+    fn check<T: Send>() {}
+    check::<Scene>();
+    check::<CpuRenderer>();
 }

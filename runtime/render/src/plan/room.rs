@@ -217,7 +217,11 @@ fn trim(plan: &mut Plan, room: &Room, run: &WallRun, holes: &[[f32; 4]]) {
                 // Sunk into the wall, so that it stands on nothing coplanar.
                 let size = along_size(run, start - from, depth + 0.02, height);
                 let middle = run.point((start + from) * 0.5, base, HALF_WALL_M + depth * 0.5 - 0.01);
+                let first = plan.mesh.normals.len();
                 push_box(plan, size, middle, white);
+                // Thinner than a pixel from a few metres on, a bar is lit as if it were round: no side of it flickers.
+                let lit = (run.point(0.0, 0.35, 1.0) - run.point(0.0, 0.0, 0.0)).normalize();
+                plan.mesh.normals[first..].fill(lit);
             }
             from = from.max(end);
         }

@@ -82,7 +82,8 @@ impl Builder<'_> {
         let circuit = self.layout.rooms.iter().find(|plan| plan.id == room).map(|plan| i32::from(plan.circuit));
         object.circuit = circuit;
         match self.catalog.class(class).id.as_str() {
-            "Door_01" => object.flags.set(StateFlag::Opened, true),
+            // The warehouse's cabinets stand open: missions put things in them that nobody is told to open.
+            "Door_01" | "KitchenCabinet_02" => object.flags.set(StateFlag::Opened, true),
             "LightSwitch_01" | "FuseBox_01_Lever" => object.flags.set(StateFlag::Toggled, true),
             "FuseBox_01" | "FuseBox_02" => {
                 object.flags.set(StateFlag::Toggled, true);

@@ -85,7 +85,7 @@ impl Builder<'_> {
         if !(request.remove_initial_contents || request.empty) {
             return;
         }
-        for content in self.state.contents(id) {
+        for content in self.facts().contents(id) {
             // A machine that stands on a counter is not what it contains.
             let loose = self.facts().has(content, Property::Pickupable);
             if loose && !self.state.at(content).requested {

@@ -36,7 +36,7 @@ pub(super) fn close(scene: &Scene<'_>, object: ObjectId) -> Verdict {
     }
     let mut effects = vec![Effect::Set(object, StateFlag::Opened, false), Effect::sound(SoundKind::Close, object)];
     if facts.class(object).id == "FridgeUpper_02" {
-        effects.extend(facts.state.contents(object).into_iter().flat_map(|id| works::chill(facts, id)));
+        effects.extend(facts.contents(object).into_iter().flat_map(|id| works::chill(facts, id)));
     }
     Ok(Ruling::done(format!("I closed {name}"), effects))
 }

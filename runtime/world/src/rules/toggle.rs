@@ -104,7 +104,7 @@ impl Press<'_> {
     }
 
     fn check_contents(&self, machine: ObjectId) -> Result<(), Ruling> {
-        if self.facts.state.children(machine).next().is_none() {
+        if self.facts.held_in(machine).is_empty() {
             return refuse(Status::ActionExecutionError, format!("{} is empty", self.facts.name(machine)));
         }
         Ok(())
@@ -121,7 +121,7 @@ impl Press<'_> {
     fn brew(&self) -> Verdict {
         let facts = self.facts;
         self.check_contents(self.object)?;
-        let contents = facts.state.contents(self.object);
+        let contents = facts.contents(self.object);
         let filled = facts.object(self.object).fluid != Fluid::None
             || contents.iter().any(|id| {
                 facts.object(*id).fluid != Fluid::None || facts.class(*id).id == "CoffeeBeans_01"

@@ -1,0 +1,140 @@
+//! Every plan of the project is whole: checked against the catalogue and against what missions name.
+#![allow(clippy::unwrap_used)]
+
+use super::*;
+use crate::Catalog;
+
+#[test]
+fn builtin_plans_have_no_faults() {
+    let catalog = Catalog::builtin();
+    for id in Layout::builtin_ids() {
+        let plan = Layout::builtin(&id).unwrap();
+        let faults: Vec<String> = plan.faults(&catalog).iter().map(ToString::to_string).collect();
+        assert!(faults.is_empty(), "{id}:\n{}", faults.join("\n"));
+    }
+}
+
+#[test]
+fn builtin_plans_have_room_to_walk() {
+    let catalog = Catalog::builtin();
+    for id in Layout::builtin_ids() {
+        let plan = Layout::builtin(&id).unwrap();
+        let area = FreeFloor::new(&plan, &catalog, 0.25).area_m2();
+        assert!(area >= 190.0, "{id}: {area} m²");
+        assert!(plan.placements.len() >= 150, "{id}: {} objects", plan.placements.len());
+    }
+}
+
+/// What missions take for granted in every plan.
+#[test]
+fn builtin_plans_have_what_missions_name() {
+    const NAMED: &[(RoomId, &[&str])] = &[
+        (
+            RoomId::BreakRoom,
+            &[
+                "Microwave_01_10000",
+                "FridgeLower_02_10000",
+                "FridgeUpper_02_10000",
+                "KitchenCounterSink_01_10000",
+                "TableRound_02_1",
+                "KitchenCounterTop_02_1",
+                "YesterdayMachine_01_1",
+                "CoffeeUnMaker_01_1",
+                "CoffeeMaker_01_1",
+                "Toaster_02",
+                "VendingMachine_01",
+            ],
+        ),
+        (
+            RoomId::MainOffice,
+            &[
+                "AP_Prop_Desk_Green_10000",
+                "AP_Prop_Desk_Red_10000",
+                "AP_Prop_Desk_Blue_10000",
+                "AP_Prop_Desk_Yellow_10000",
+                "Computer_Monitor_01_1",
+                "Computer_Monitor_01_2",
+                "Computer_Monitor_01_3",
+                "Computer_Monitor_01_4",
+                "Computer_Monitor_01_5",
+            ],
+        ),
+        (RoomId::SmallOffice, &["ManagerDesk_10000", "ManagerDesk_10001"]),
+        (
+            RoomId::Lab1,
+            &[
+                "Desk_01_10006",
+                "Desk_01_10007",
+                "Printer_3D_10000",
+                "AP_Prop_Shelf_Wall_04_10000",
+                "AP_Prop_Shelf_Wall_Laser_10000",
+                "V_Monitor_FreezeRay_10000",
+                "V_Monitor_Laser_10000",
+                "Laser_1",
+                "FreezeRay_1",
+                "RoboticArm_01_1",
+            ],
+        ),
+        (
+            RoomId::Lab2,
+            &[
+                "Desk_01_10008",
+                "EAC_Machine_1",
+                "ColorChangerStation_1",
+                "ColorChanger_Button_Red_10000",
+                "ColorChanger_Button_Green_10000",
+                "ColorChanger_Button_Blue_10000",
+                "GravityPad_1",
+                "V_Monitor_Gravity_10000",
+                "V_Monitor_Embiggenator_10000",
+                "Embiggenator_10000",
+                "PortalGenerator_10000",
+                "V_Monitor_Portal_10000",
+                "TAMPrototypeHead_01_1",
+            ],
+        ),
+        (RoomId::Warehouse, &["KitchenCabinet_02_10000", "ForkLift_1", "Shelves_Tall_01_10000", "PackingBox_10000"]),
+        (RoomId::Reception, &["ReceptionDesk_1", "Security_Button_10000"]),
+    ];
+    for id in Layout::builtin_ids() {
+        let plan = Layout::builtin(&id).unwrap();
+        for (room, instances) in NAMED {
+            for instance in *instances {
+                assert_eq!(plan.placement(instance).map(|found| found.room), Some(*room), "{id}: {instance}");
+            }
+        }
+        let numbered =
+            [("Door_01", 7), ("LightSwitch_01", 8), ("Broken_Cord_01", 3), ("FuseBox_01", 2), ("FuseBox_02", 1)];
+        for (class, count) in numbered {
+            for number in 1..=count {
+                assert!(plan.placement(&format!("{class}_{number}")).is_some(), "{id}: {class}_{number}");
+            }
+        }
+        let switched: Vec<RoomId> =
+            (1..=8).map(|number| plan.placement(&format!("LightSwitch_01_{number}")).unwrap().room).collect();
+        assert!(RoomId::ALL.iter().all(|room| switched.contains(room)), "{id}: a room without a light switch");
+        for room in &plan.rooms {
+            let feeds = |placement: &&Placement| {
+                let circuit = plan.room(placement.room).map(|room| room.circuit);
+                placement.instance.starts_with("FuseBox_0") && placement.on.is_none() && circuit == Some(room.circuit)
+            };
+            assert_eq!(plan.placements.iter().filter(feeds).count(), 1, "{id}: fuse boxes of {:?}", room.id);
+        }
+        let at_reception = plan.openings.iter().filter(|opening| opening.between.contains(&RoomId::Reception));
+        assert_eq!(at_reception.filter(|opening| opening.door.is_some()).count(), 2, "{id}: doors at reception");
+    }
+}
+
+#[test]
+fn rays_face_their_shelves() {
+    for id in Layout::builtin_ids() {
+        let plan = Layout::builtin(&id).unwrap();
+        for ray in ["Laser_1", "FreezeRay_1"] {
+            let ray = plan.placement(ray).unwrap();
+            let shelf = plan.placement(ray.works.as_ref().unwrap()).unwrap();
+            let bearing = libm::atan2f(shelf.at_m[1] - ray.at_m[1], shelf.at_m[0] - ray.at_m[0]).to_degrees();
+            let turn = (bearing - ray.yaw_deg).rem_euclid(360.0);
+            assert!(turn.min(360.0 - turn) < 1.0, "{id}: {} looks {turn}° past its shelf", ray.instance);
+        }
+    }
+}

@@ -1,0 +1,90 @@
+//! Whole missions, solved by lists of actions.
+
+#![allow(clippy::unwrap_used)]
+
+mod support;
+
+use std::path::PathBuf;
+
+use cohabit_world::{Ending, Event};
+use support::{Player, world};
+
+/// The text of a reference mission, if the reference data are there.
+fn reference(name: &str) -> Option<String> {
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared/arena/cdf").join(name);
+    let text = std::fs::read_to_string(&path).ok();
+    if text.is_none() {
+        eprintln!("skipped: {} is not there", path.display());
+    }
+    text
+}
+
+fn solve(file: &str, text: &str, actions: &[&str]) -> Player {
+    let mut player = Player::new(world(file, text, 7));
+    player.must(actions);
+    player.run("wait 150");
+    assert!(player.all_met(), "{file}: {:#?}", player.world.goals());
+    assert_eq!(player.world.finished(), Some(Ending::AllGoalsMet));
+    assert!(player.events.contains(&Event::MissionEnded { ending: Ending::AllGoalsMet }));
+    player
+}
+
+#[test]
+fn cereal() {
+    let Some(text) = reference("mission_01.json") else { return };
+    solve(
+        "mission_01.json",
+        &text,
+        &[
+            "goto Bowl_01_1", "pickup Bowl_01_1", "goto YesterdayMachine_01_1", "open YesterdayMachine_01_1",
+            "place YesterdayMachine_01_1", "close YesterdayMachine_01_1", "toggle YesterdayMachine_01_1", "wait 130",
+            "open YesterdayMachine_01_1", "pickup Bowl_01_1", "goto TableRound_02_1", "place TableRound_02_1",
+            "goto Cereal_Box_01_1", "pickup Cereal_Box_01_1", "goto Bowl_01_1", "pour Bowl_01_1", "place TableRound_02_1",
+            "goto FridgeLower_02_1", "open FridgeLower_02_1", "goto MilkCarton_01_1", "pickup MilkCarton_01_1",
+            "goto Bowl_01_1", "pour Bowl_01_1",
+        ],
+    );
+}
+
+#[test]
+fn laser() {
+    let Some(text) = reference("mission_07.json") else { return };
+    solve(
+        "mission_07.json",
+        &text,
+        &[
+            "goto Laser_ControlPanel_1", "pickup Laser_ControlPanel_1", "goto Laser_1", "place Laser_1",
+            "goto V_Monitor_Laser_10000", "toggle V_Monitor_Laser_10000",
+        ],
+    );
+}
+
+#[test]
+fn freeze_ray() {
+    let Some(text) = reference("mission_08.json") else { return };
+    solve(
+        "mission_08.json",
+        &text,
+        &[
+            "goto CanSodaNew_01_1", "pickup CanSodaNew_01_1", "goto AP_Prop_Shelf_Wall_04_1", "place AP_Prop_Shelf_Wall_04_1",
+            "goto V_Monitor_FreezeRay_10000", "toggle V_Monitor_FreezeRay_10000",
+        ],
+    );
+}
+
+#[test]
+fn the_built_in_mission() {
+    let (name, text) = cohabit_cdf::mission::builtin().iter().find(|(name, _)| name.contains("make_cereal")).unwrap();
+    solve(
+        name,
+        text,
+        &[
+            "goto Bowl_01_1", "pickup Bowl_01_1", "goto YesterdayMachine_01_1", "open YesterdayMachine_01_1",
+            "place YesterdayMachine_01_1", "close YesterdayMachine_01_1", "toggle YesterdayMachine_01_1", "wait 130",
+            "open YesterdayMachine_01_1", "pickup Bowl_01_1", "goto TableRound_02_1", "place TableRound_02_1",
+            "goto Cereal_Box_01_1", "pickup Cereal_Box_01_1", "goto Bowl_01_1", "pour Bowl_01_1", "place TableRound_02_1",
+            "goto FridgeLower_02_1", "open FridgeLower_02_1", "goto MilkCarton_01_1", "pickup MilkCarton_01_1",
+            "goto Bowl_01_1", "pour Bowl_01_1",
+        ],
+    );
+}
