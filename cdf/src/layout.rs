@@ -223,7 +223,8 @@ pub struct Opening {
     /// The door's instance id, such as `Door_01_1`.
     #[serde(default)]
     pub door: Option<String>,
-    /// The two rooms it joins, the southern or western one first; the same twice for a window to the outside.
+    /// The two rooms it joins, in a file the southern or western one first; a door's front faces the second. The same
+    /// twice for a window to the outside.
     pub between: [RoomId; 2],
     /// Its middle on the wall's middle line, m.
     pub at_m: [f32; 2],

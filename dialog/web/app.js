@@ -120,15 +120,12 @@ function watchSilence() {
 
 const HEADER_BYTES = 16;
 const FRAME_KIND = 1;
-const GLOW_EVERY_MS = 400;
 
 const view = byId("view");
 const picture = view.getContext("2d", { alpha: false });
-const glow = byId("glow").getContext("2d", { alpha: false });
 let waiting = null;
 let drawing = false;
 let told = false;
-let glowedAt = -GLOW_EVERY_MS;
 let drawnAt = [];
 
 function takeFrame(buffer) {
@@ -160,12 +157,7 @@ function draw(bitmap) {
     view.height = bitmap.height;
   }
   picture.drawImage(bitmap, 0, 0);
-  const now = performance.now();
-  if (now - glowedAt > GLOW_EVERY_MS) {
-    glow.drawImage(view, 0, 0, 24, 14);
-    glowedAt = now;
-  }
-  drawnAt.push(now);
+  drawnAt.push(performance.now());
   window.cohabit.frames += 1;
   if (!told) {
     told = send({ type: "shown" });
@@ -493,6 +485,7 @@ function takeLine(line) {
   if (!replayed) bubble.classList.add("fresh");
   lastFrom = line.from;
   log.append(bubble);
+  if (line.from !== "game") input.placeholder = line.kind === "question" ? "Answer the robot" : "Tell the robot what to do";
   if (line.from === "person") {
     remember(line.text);
     byId("chips").hidden = true;
@@ -544,13 +537,20 @@ new ResizeObserver(() => {
   if (!unseenLines) log.scrollTop = log.scrollHeight;
 }).observe(log);
 
+/** More steps than these are not drawn one by one. */
+const MOST_STEPS = 24;
+
 let doingTurn = 0;
 
 function takeProgress({ turn, step, steps, text }) {
   doingTurn = turn;
+  const several = steps > 1;
+  byId("doing").classList.remove("idle");
   byId("doing-text").textContent = capitalised(text);
-  byId("doing-steps").textContent = steps > 1 ? `${step} of ${steps}` : "";
-  byId("doing").hidden = false;
+  byId("doing-count").textContent = several ? `${step} of ${steps}` : "";
+  const marks = Array.from({ length: several && steps <= MOST_STEPS ? steps : 0 }, (_, index) =>
+    element("i", index + 1 < step ? "past" : index + 1 === step ? "now" : ""));
+  byId("doing-steps").replaceChildren(...marks);
 }
 
 function takeTurn({ turn, ended }) {
@@ -558,7 +558,11 @@ function takeTurn({ turn, ended }) {
 }
 
 function endDoing() {
-  byId("doing").hidden = true;
+  doingTurn = 0;
+  byId("doing").classList.add("idle");
+  byId("doing-text").textContent = { complete: "All done", failed: "The mission is over" }[endingShown] ?? "Ready";
+  byId("doing-count").textContent = "";
+  byId("doing-steps").replaceChildren();
 }
 
 function takeLatency(latency) {
@@ -588,7 +592,7 @@ function say(text) {
     remember(text);
     return true;
   }
-  toast("There is no connection at the moment; your words are kept.");
+  toast("There is no connection at the moment; please try again in a while.");
   return false;
 }
 
@@ -618,7 +622,9 @@ input.addEventListener("keydown", (event) => {
 });
 
 byId("chips").addEventListener("click", ({ target }) => {
-  if (target instanceof HTMLButtonElement) say(target.textContent);
+  if (!(target instanceof HTMLButtonElement)) return;
+  say(target.textContent);
+  if (!narrow.matches) input.focus();
 });
 byId("stop").addEventListener("click", () => say("stop"));
 

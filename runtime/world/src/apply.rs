@@ -11,8 +11,7 @@ use crate::{
     floor::Floor,
     geometry::Pose,
     navigation::blocks_the_way,
-    physics,
-    power,
+    physics, power,
     report::{Ending, Event, SoundKind},
     state::State,
 };

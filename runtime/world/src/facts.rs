@@ -3,7 +3,12 @@
 use cohabit_cdf::{Catalog, ObjectClass, ObjectId, Property, RoomId, StateFlag};
 use glam::{Vec2, Vec3};
 
-use crate::{entity::{Object, Support}, floor::Floor, geometry::Footprint, state::State};
+use crate::{
+    entity::{Object, Support},
+    floor::Floor,
+    geometry::Footprint,
+    state::State,
+};
 
 /// A read-only view of everything.
 #[derive(Clone, Copy)]

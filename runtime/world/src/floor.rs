@@ -54,7 +54,10 @@ impl Floor {
         for opening in layout.openings.iter().filter(|opening| opening.kind != OpeningKind::Window) {
             let (at, along) = split(opening.wall_runs, Vec2::from(opening.at_m));
             let half = opening.width_m / 2.0;
-            lines = lines.into_iter().flat_map(|line| cut(line, opening.wall_runs, at, along - half, along + half)).collect();
+            lines = lines
+                .into_iter()
+                .flat_map(|line| cut(line, opening.wall_runs, at, along - half, along + half))
+                .collect();
         }
         let gaps = layout
             .openings

@@ -3,8 +3,8 @@
 use glam::{Quat, Vec2, Vec3};
 use serde::{Deserialize, Serialize};
 
-/// `tan(22.5°)`: half a side of the octagon around a unit circle.
-const OCTAGON_HALF_SIDE: f32 = 0.414_213_57;
+/// The grid of inflated outlines, m: a power of two, so that its points are exact.
+pub(crate) const GRID_M: f32 = 1.0 / 512.0;
 
 /// Where something is, and which way it is turned.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
@@ -104,21 +104,34 @@ impl Footprint {
         [Vec2::new(-x, -y), Vec2::new(x, -y), Vec2::new(x, y), Vec2::new(-x, y)].map(|corner| self.world(corner))
     }
 
-    /// The outline of all points within the octagon around a circle of `radius`, counter-clockwise.
-    pub fn inflated(&self, radius: f32) -> [Vec2; 8] {
-        let outer = self.half + radius;
-        let inner = self.half + radius * OCTAGON_HALF_SIDE;
-        [
-            (outer.x, -inner.y),
-            (outer.x, inner.y),
-            (inner.x, outer.y),
-            (-inner.x, outer.y),
-            (-outer.x, inner.y),
-            (-outer.x, -inner.y),
-            (-inner.x, -outer.y),
-            (inner.x, -outer.y),
-        ]
-        .map(|(x, y)| self.world(Vec2::new(x, y)))
+    /// An outline around all points within `radius`, counter-clockwise, whose edges run level, upright or diagonal
+    /// and whose corners lie on a grid.
+    ///
+    /// Edges of such outlines meet in points that floating point numbers hold exactly, however many outlines
+    /// overlap: a triangulation of them cannot go wrong by rounding.
+    pub fn inflated(&self, radius: f32) -> Vec<Vec2> {
+        let corners = self.corners();
+        let side = |axis: Vec2, reach: f32| {
+            let (low, high) = extent(&corners, axis);
+            (((low - reach) / GRID_M).floor() * GRID_M, ((high + reach) / GRID_M).ceil() * GRID_M)
+        };
+        let (west, east) = side(Vec2::X, radius);
+        let (south, north) = side(Vec2::Y, radius);
+        let (sum_low, sum_high) = side(Vec2::ONE, radius * std::f32::consts::SQRT_2);
+        let (difference_low, difference_high) = side(Vec2::new(1.0, -1.0), radius * std::f32::consts::SQRT_2);
+        let outline = [
+            (east, east - difference_high),
+            (east, sum_high - east),
+            (sum_high - north, north),
+            (north + difference_low, north),
+            (west, west - difference_low),
+            (west, sum_low - west),
+            (sum_low - south, south),
+            (south + difference_high, south),
+        ];
+        let mut points: Vec<Vec2> = outline.map(|(x, y)| Vec2::new(x, y)).to_vec();
+        points.dedup();
+        points
     }
 
     /// Whether it overlaps another, by their separating axes.
@@ -158,9 +171,10 @@ impl Footprint {
 }
 
 fn extent(points: &[Vec2], axis: Vec2) -> (f32, f32) {
-    points.iter().map(|point| point.dot(axis)).fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), at| {
-        (low.min(at), high.max(at))
-    })
+    points
+        .iter()
+        .map(|point| point.dot(axis))
+        .fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), at| (low.min(at), high.max(at)))
 }
 
 #[cfg(test)]
@@ -184,13 +198,19 @@ mod tests {
     }
 
     #[test]
-    fn the_octagon_keeps_the_radius_everywhere() {
-        let print = Footprint::new(Vec2::ZERO, Vec2::new(0.4, 0.3), 0.3);
-        let outline = print.inflated(0.25);
-        for at in 0..8 {
-            let (a, b) = (outline[at], outline[(at + 1) % 8]);
-            for step in 0..=10 {
-                assert!(print.distance(a.lerp(b, step as f32 / 10.0)) > 0.2499);
+    fn the_outline_keeps_the_radius_everywhere() {
+        for (half, yaw) in
+            [((0.4, 0.3), 0.3), ((1.0, 0.01), 0.0), ((0.3, 0.3), std::f32::consts::FRAC_PI_4), ((2.0, 0.1), 2.0)]
+        {
+            let print = Footprint::new(Vec2::new(3.3, -1.7), half.into(), yaw);
+            let outline = print.inflated(0.25);
+            for at in 0..outline.len() {
+                let (a, b) = (outline[at], outline[(at + 1) % outline.len()]);
+                for step in 0..=10 {
+                    let distance = print.distance(a.lerp(b, step as f32 / 10.0));
+                    assert!(distance > 0.2499, "{half:?} {yaw}: {distance}");
+                }
+                assert!((b - a).perp_dot(outline[(at + 2) % outline.len()] - b) >= 0.0, "not convex: {outline:?}");
             }
         }
     }

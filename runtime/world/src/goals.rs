@@ -52,9 +52,10 @@ pub(crate) fn judge(facts: &Facts<'_>, mission: &Mission) -> Vec<GoalChange> {
         if progress[index].met && !goal.can_reset {
             continue;
         }
-        let ready = goal.preconditions.iter().all(|id| {
-            mission.goals.iter().position(|goal| goal.id == *id).is_none_or(|before| progress[before].met)
-        });
+        let ready = goal
+            .preconditions
+            .iter()
+            .all(|id| mission.goals.iter().position(|goal| goal.id == *id).is_none_or(|before| progress[before].met));
         let holds = ready && judge.holds(goal);
         if holds != progress[index].met {
             progress[index].met = holds;
@@ -82,10 +83,7 @@ pub(crate) fn is_meant(facts: &Facts<'_>, pattern: &InstancePattern, id: ObjectI
     let object = facts.object(id);
     let by_name = pattern.matches(&object.instance) || object.aliases.iter().any(|alias| pattern.matches(alias));
     // `Carrot_01_*` is any carrot, also one that a machine made and named after itself.
-    by_name
-        || pattern.0.strip_suffix('*').is_some_and(|prefix| {
-            prefix.trim_end_matches('_') == facts.class(id).id
-        })
+    by_name || pattern.0.strip_suffix('*').is_some_and(|prefix| prefix.trim_end_matches('_') == facts.class(id).id)
 }
 
 /// Facts and the mission whose conditions goals name.
@@ -105,9 +103,10 @@ impl Judge<'_> {
 
     fn is_unlocked(&self, goal: &Goal) -> bool {
         goal.unlocked_by.as_ref().is_none_or(|instance| {
-            self.facts.state.find(instance).is_some_and(|id| {
-                self.facts.is(id, StateFlag::Examined) || self.facts.is(id, StateFlag::Used)
-            })
+            self.facts
+                .state
+                .find(instance)
+                .is_some_and(|id| self.facts.is(id, StateFlag::Examined) || self.facts.is(id, StateFlag::Used))
         })
     }
 
@@ -152,9 +151,9 @@ impl Judge<'_> {
             Expression::Flag { target, flag, value } => self.any(target, |id| facts.is(id, *flag) == *value),
             Expression::Contains { target, contains } => self.any(target, |id| self.contains(id, contains)),
             Expression::FilledWith { target, fluid } => self.any(target, |id| facts.object(id).fluid == *fluid),
-            Expression::CanBeSeen { target, distance_m } => self.any(target, |id| {
-                facts.state.bodies.iter().any(|body| self.sees(body, id, *distance_m))
-            }),
+            Expression::CanBeSeen { target, distance_m } => {
+                self.any(target, |id| facts.state.bodies.iter().any(|body| self.sees(body, id, *distance_m)))
+            }
             Expression::InRange { target, distance_m } => self.any(target, |id| {
                 facts.state.bodies.iter().any(|body| facts.reach_to(id, body.position) <= *distance_m)
             }),

@@ -8,7 +8,7 @@ use crate::{
     body::RADIUS_M,
     entity::Support,
     facts::Facts,
-    geometry::{Footprint, direction},
+    geometry::{Footprint, GRID_M, direction},
 };
 
 /// How far, level, a body stands at most from what it was sent to, m.
@@ -45,7 +45,7 @@ impl Navigation {
     /// Works out the walkable floor.
     pub fn new(facts: &Facts<'_>) -> Self {
         let obstacles = obstacles(facts);
-        let [west, south, east, north] = facts.floor.bounds;
+        let [west, south, east, north] = facts.floor.bounds.map(|edge| (edge / GRID_M).round() * GRID_M);
         let corners = [(west, south), (east, south), (east, north), (west, north)];
         let mut triangulation = Triangulation::from_outer_edges(&corners.map(|(x, y)| Vec2::new(x, y)));
         triangulation.add_obstacles(obstacles.iter().map(|print| print.inflated(RADIUS_M + MARGIN_M)));
@@ -106,9 +106,10 @@ impl Navigation {
 
     /// The way into a room: to its first named viewpoint that can be reached, else to its middle.
     pub fn approach_room(&self, facts: &Facts<'_>, from: Vec2, room: RoomId, viewpoints: &[Vec2]) -> Option<Approach> {
-        let middles = facts.floor.rects(room).map(|[west, south, east, north]| {
-            Vec2::new((west + east) / 2.0, (south + north) / 2.0)
-        });
+        let middles = facts
+            .floor
+            .rects(room)
+            .map(|[west, south, east, north]| Vec2::new((west + east) / 2.0, (south + north) / 2.0));
         viewpoints.iter().copied().chain(middles).find_map(|point| {
             let approach = self.approach_point(from, point)?;
             let end = approach.path.last().copied()?;
@@ -147,9 +148,9 @@ fn standing_places<'a>(facts: &'a Facts<'a>, object: ObjectId) -> impl Iterator<
     });
     // Before a wide front there is more than the spokes from its middle find.
     let along = (-4_i8..=4).flat_map(move |side| {
-        RINGS_M.into_iter().map(move |ring| {
-            print.world(Vec2::new(print.half.x + ring, print.half.y * f32::from(side) / 4.0))
-        })
+        RINGS_M
+            .into_iter()
+            .map(move |ring| print.world(Vec2::new(print.half.x + ring, print.half.y * f32::from(side) / 4.0)))
     });
     around.chain(along).filter(move |place| facts.reach_to(object, *place) <= STAND_WITHIN_M)
 }
@@ -158,7 +159,8 @@ fn standing_places<'a>(facts: &'a Facts<'a>, object: ObjectId) -> impl Iterator<
 fn place_cost(facts: &Facts<'_>, object: ObjectId, place: Vec2) -> f32 {
     const GOOD_DISTANCE_M: f32 = 0.75;
     // What an object stands in decides the side to come from.
-    let front = facts.state.ancestors(object).find(|parent| !facts.has(*parent, Property::Pickupable)).unwrap_or(object);
+    let front =
+        facts.state.ancestors(object).find(|parent| !facts.has(*parent, Property::Pickupable)).unwrap_or(object);
     let faced = facts.footprint(front);
     let out = (place - faced.closest(place)).normalize_or_zero();
     let has_front = !facts.has(front, Property::Pickupable);
@@ -212,10 +214,38 @@ fn walkable_area(mesh: &Mesh, facts: &Facts<'_>) -> f64 {
             let points: Vec<Vec2> =
                 polygon.vertices.iter().map(|index| layer.vertices[*index as usize].coords).collect();
             let middle = points.iter().copied().sum::<Vec2>() / points.len() as f32;
-            let twice: f64 = (0..points.len())
-                .map(|at| f64::from(points[at].perp_dot(points[(at + 1) % points.len()])))
-                .sum();
+            let twice: f64 =
+                (0..points.len()).map(|at| f64::from(points[at].perp_dot(points[(at + 1) % points.len()]))).sum();
             if facts.floor.room_at(middle).is_some() { twice.abs() / 2.0 } else { 0.0 }
         })
         .sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        /// Nothing that stands anywhere, flush, crossing or crooked, breaks the triangulation.
+        #[test]
+        fn any_clutter_gives_a_mesh(
+            things in prop::collection::vec(((0_u32..40, 0_u32..40), (0.01_f32..1.5, 0.01_f32..1.5), 0_u32..16), 1..60),
+            crooked in any::<bool>(),
+        ) {
+            let corners = [(0.0, 0.0), (20.0, 0.0), (20.0, 20.0), (0.0, 20.0)];
+            let mut triangulation = Triangulation::from_outer_edges(&corners.map(|(x, y)| Vec2::new(x, y)));
+            triangulation.add_obstacles(things.into_iter().map(|((x, y), half, turn)| {
+                // Half of all furniture stands in line with the rest, some of it off by a rounding error.
+                let yaw = if crooked { turn as f32 * 0.41 } else { turn as f32 * std::f32::consts::FRAC_PI_2 };
+                let center = Vec2::new(x as f32 * 0.5, y as f32 * 0.5);
+                Footprint::new(center, half.into(), yaw).inflated(RADIUS_M + MARGIN_M)
+            }));
+            let mut mesh = triangulation.as_navmesh();
+            mesh.merge_polygons();
+            mesh.bake();
+            mesh.path(Vec2::new(0.1, 0.1), Vec2::new(19.9, 19.9));
+        }
+    }
 }

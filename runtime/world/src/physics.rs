@@ -7,14 +7,7 @@ use glam::{Vec2, Vec3};
 use rapier3d::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::{
-    body::RADIUS_M,
-    entity::Support,
-    facts::Facts,
-    geometry::Pose as ObjectPose,
-    motion::DT_S,
-    state::State,
-};
+use crate::{body::RADIUS_M, entity::Support, facts::Facts, geometry::Pose as ObjectPose, motion::DT_S, state::State};
 
 /// Ticks of stillness after which a thing is taken to lie.
 const STILL_TICKS: u32 = 20;
@@ -54,7 +47,11 @@ impl Physics {
         let mut physics = Self::empty();
         let [west, south, east, north] = facts.floor.bounds;
         let middle = Vec3::new((west + east) / 2.0, (south + north) / 2.0, -0.5);
-        physics.insert_box(middle, Vec3::new(east - west, north - south, 1.0) / 2.0, ObjectPose::level(Vec3::ZERO, 0.0));
+        physics.insert_box(
+            middle,
+            Vec3::new(east - west, north - south, 1.0) / 2.0,
+            ObjectPose::level(Vec3::ZERO, 0.0),
+        );
         for wall in &facts.floor.walls {
             let center = wall.center.extend(wall_height_m / 2.0);
             let half = wall.half.extend(wall_height_m / 2.0);

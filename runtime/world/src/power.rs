@@ -12,7 +12,12 @@ pub(crate) fn is_fed(state: &State, circuit: Option<i32>) -> bool {
 /// Cuts or feeds a circuit; returns what changed by it.
 ///
 /// What sparks stops as the power goes; what is overloaded works again as it comes back.
-pub(crate) fn feed(facts_of: impl Fn(&State, ObjectId) -> bool, state: &mut State, circuit: i32, fed: bool) -> Vec<ObjectId> {
+pub(crate) fn feed(
+    facts_of: impl Fn(&State, ObjectId) -> bool,
+    state: &mut State,
+    circuit: i32,
+    fed: bool,
+) -> Vec<ObjectId> {
     state.circuits.insert(circuit, fed);
     let on_circuit: Vec<ObjectId> = state
         .existing()

@@ -21,7 +21,8 @@ mod tests {
 
     #[test]
     fn time_takes_points_and_goals_give_them() {
-        for (ticks, met, expected) in [(0, 0, 1000), (59, 0, 1000), (60, 0, 999), (60 * 10_000, 0, 100), (120, 3, 1298)] {
+        for (ticks, met, expected) in [(0, 0, 1000), (59, 0, 1000), (60, 0, 999), (60 * 10_000, 0, 100), (120, 3, 1298)]
+        {
             assert_eq!(score(ticks, met), expected, "{ticks} ticks, {met} goals");
         }
     }

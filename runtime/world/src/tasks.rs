@@ -122,9 +122,8 @@ impl World {
             }
             GoToTarget::Viewpoint(room, number) => {
                 let viewpoint = viewpoints(room).find(|viewpoint| viewpoint.number == number);
-                let viewpoint = viewpoint.ok_or_else(|| {
-                    (Status::InvalidCommand, format!("there is no viewpoint {}_{number}", room.id()))
-                })?;
+                let viewpoint = viewpoint
+                    .ok_or_else(|| (Status::InvalidCommand, format!("there is no viewpoint {}_{number}", room.id())))?;
                 let approach = self.navigation.approach_point(from, viewpoint.at_m.into());
                 let approach = approach.ok_or_else(|| no_way(format!("viewpoint {}_{number}", room.id())))?;
                 (approach, Step::Head { yaw_rad: wrap(viewpoint.yaw_deg.to_radians()) })
@@ -210,9 +209,9 @@ impl World {
         let shut = self.floor.gaps.iter().any(|gap| {
             gap.print.distance(point) < RADIUS_M
                 && gap.print.distance(point) < gap.print.distance(own)
-                && gap.door_object.is_some_and(|door| {
-                    self.state.at(door).exists() && self.state.at(door).opened < DOOR_WIDE
-                })
+                && gap
+                    .door_object
+                    .is_some_and(|door| self.state.at(door).exists() && self.state.at(door).opened < DOOR_WIDE)
         });
         !crowded && !shut && (planned || self.navigation.is_clear(point))
     }

@@ -223,8 +223,14 @@ fn unbrew(facts: &Facts<'_>, unmaker: ObjectId) -> Vec<Effect> {
     let beans = facts.catalog.find("CoffeeBeans_01");
     if let (false, Some(class), Some(anchor)) = (filled.is_empty(), beans, free_anchors(facts, unmaker).first()) {
         let instance = product_instance(facts, unmaker, class);
-        let spawn =
-            Effect::Spawn { class, instance, parent: unmaker, anchor: anchor.index, yesterday: None, by: Some(unmaker) };
+        let spawn = Effect::Spawn {
+            class,
+            instance,
+            parent: unmaker,
+            anchor: anchor.index,
+            yesterday: None,
+            by: Some(unmaker),
+        };
         effects.push(spawn);
     }
     effects
@@ -232,10 +238,7 @@ fn unbrew(facts: &Facts<'_>, unmaker: ObjectId) -> Vec<Effect> {
 
 fn embiggen(facts: &Facts<'_>, id: ObjectId) -> [Effect; 2] {
     let large = facts.is(id, StateFlag::Embiggenated);
-    [
-        Effect::Set(id, StateFlag::Embiggenated, !large),
-        Effect::Scale(id, if large { 1.0 / EMBIGGEN } else { EMBIGGEN }),
-    ]
+    [Effect::Set(id, StateFlag::Embiggenated, !large), Effect::Scale(id, if large { 1.0 / EMBIGGEN } else { EMBIGGEN })]
 }
 
 fn vend(facts: &Facts<'_>, button: ObjectId, machine: ObjectId, slot: u16) -> Vec<Effect> {

@@ -136,7 +136,8 @@ impl World {
             })
             .collect();
         for (body, object) in struck {
-            let effects = vec![crate::effect::Effect::sound(SoundKind::Spark, object), crate::effect::Effect::Kill(body)];
+            let effects =
+                vec![crate::effect::Effect::sound(SoundKind::Spark, object), crate::effect::Effect::Kill(body)];
             self.changes(events).apply(effects);
         }
     }
@@ -310,9 +311,11 @@ impl World {
 
     /// All bodies, in the order of their ids.
     pub fn bodies(&self) -> impl ExactSizeIterator<Item = BodyView> + '_ {
-        self.state.bodies.iter().enumerate().map(|(index, body)| {
-            BodyView::of(BodyId(u32::try_from(index).expect("invariant: few bodies")), body)
-        })
+        self.state
+            .bodies
+            .iter()
+            .enumerate()
+            .map(|(index, body)| BodyView::of(BodyId(u32::try_from(index).expect("invariant: few bodies")), body))
     }
 
     /// One body.

@@ -132,7 +132,13 @@ proptest! {
 #[test]
 fn a_flight_goes_on_from_a_snapshot_as_it_would_have() {
     let mut player = support::Player::new(cereal());
-    player.must(&["goto Cereal_Box_01_1", "pickup Cereal_Box_01_1", "room MainOffice", "throw AP_Prop_Desk_Green_10000", "wait 10"]);
+    player.must(&[
+        "goto Cereal_Box_01_1",
+        "pickup Cereal_Box_01_1",
+        "room MainOffice",
+        "throw AP_Prop_Desk_Green_10000",
+        "wait 10",
+    ]);
     let mut restored = cereal();
     restored.restore(&player.world.snapshot()).unwrap();
     let mut moved = false;

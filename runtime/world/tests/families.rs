@@ -7,7 +7,7 @@ mod support;
 use std::{collections::BTreeMap, path::PathBuf};
 
 use cohabit_cdf::{Catalog, mission::read_mission};
-use cohabit_world::{GoToTarget, Action, ObjectId, World};
+use cohabit_world::{Action, GoToTarget, ObjectId, World};
 use serde_json::Value;
 use support::{Player, build};
 
@@ -88,11 +88,26 @@ fn meant(world: &World, requested: &[String], noun: &str) -> Option<ObjectId> {
 /// Does what one utterance says; false if it makes no sense.
 fn follow(player: &mut Player, requested: &[String], line: &str, trouble: &mut Vec<String>) {
     let lower = line.to_lowercase();
-    let (verb, rest) = ["pick up the ", "go to the ", "find the ", "put the ", "place the ", "open the ", "close the ",
-        "toggle the ", "turn on the ", "turn off the ", "press the ", "fill the ", "clean the ", "pour the ", "break the "]
-        .iter()
-        .find_map(|verb| lower.strip_prefix(verb).map(|rest| (verb.split(' ').next().unwrap(), rest.to_owned())))
-        .unwrap_or_else(|| panic!("what does `{line}` mean?"));
+    let (verb, rest) = [
+        "pick up the ",
+        "go to the ",
+        "find the ",
+        "put the ",
+        "place the ",
+        "open the ",
+        "close the ",
+        "toggle the ",
+        "turn on the ",
+        "turn off the ",
+        "press the ",
+        "fill the ",
+        "clean the ",
+        "pour the ",
+        "break the ",
+    ]
+    .iter()
+    .find_map(|verb| lower.strip_prefix(verb).map(|rest| (verb.split(' ').next().unwrap(), rest.to_owned())))
+    .unwrap_or_else(|| panic!("what does `{line}` mean?"));
     let nouns: Vec<&str> = [" in the ", " on the ", " into the ", " from the ", " with the "]
         .iter()
         .find_map(|between| rest.split_once(between))
@@ -108,8 +123,11 @@ fn follow(player: &mut Player, requested: &[String], line: &str, trouble: &mut V
     // What comes out of a machine is what is in it now.
     let from = (verb == "pick").then(|| nouns.get(1)).flatten();
     let machine = from.and_then(|machine| meant(&player.world, requested, machine));
-    let taken = player.world.objects().find(|view| view.parent.is_some() && view.parent == machine
-        && !view.instance.contains("Cartridge")).map(|view| view.id);
+    let taken = player
+        .world
+        .objects()
+        .find(|view| view.parent.is_some() && view.parent == machine && !view.instance.contains("Cartridge"))
+        .map(|view| view.id);
     let Some(id) = taken.or_else(|| meant(&player.world, requested, target)) else {
         trouble.push(format!("{line}: no {target}"));
         return;

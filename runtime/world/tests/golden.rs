@@ -36,12 +36,29 @@ fn cereal() {
         "mission_01.json",
         &text,
         &[
-            "goto Bowl_01_1", "pickup Bowl_01_1", "goto YesterdayMachine_01_1", "open YesterdayMachine_01_1",
-            "place YesterdayMachine_01_1", "close YesterdayMachine_01_1", "toggle YesterdayMachine_01_1", "wait 130",
-            "open YesterdayMachine_01_1", "pickup Bowl_01_1", "goto TableRound_02_1", "place TableRound_02_1",
-            "goto Cereal_Box_01_1", "pickup Cereal_Box_01_1", "goto Bowl_01_1", "pour Bowl_01_1", "place TableRound_02_1",
-            "goto FridgeLower_02_1", "open FridgeLower_02_1", "goto MilkCarton_01_1", "pickup MilkCarton_01_1",
-            "goto Bowl_01_1", "pour Bowl_01_1",
+            "goto Bowl_01_1",
+            "pickup Bowl_01_1",
+            "goto YesterdayMachine_01_1",
+            "open YesterdayMachine_01_1",
+            "place YesterdayMachine_01_1",
+            "close YesterdayMachine_01_1",
+            "toggle YesterdayMachine_01_1",
+            "wait 130",
+            "open YesterdayMachine_01_1",
+            "pickup Bowl_01_1",
+            "goto TableRound_02_1",
+            "place TableRound_02_1",
+            "goto Cereal_Box_01_1",
+            "pickup Cereal_Box_01_1",
+            "goto Bowl_01_1",
+            "pour Bowl_01_1",
+            "place TableRound_02_1",
+            "goto FridgeLower_02_1",
+            "open FridgeLower_02_1",
+            "goto MilkCarton_01_1",
+            "pickup MilkCarton_01_1",
+            "goto Bowl_01_1",
+            "pour Bowl_01_1",
         ],
     );
 }
@@ -53,8 +70,12 @@ fn laser() {
         "mission_07.json",
         &text,
         &[
-            "goto Laser_ControlPanel_1", "pickup Laser_ControlPanel_1", "goto Laser_1", "place Laser_1",
-            "goto V_Monitor_Laser_10000", "toggle V_Monitor_Laser_10000",
+            "goto Laser_ControlPanel_1",
+            "pickup Laser_ControlPanel_1",
+            "goto Laser_1",
+            "place Laser_1",
+            "goto V_Monitor_Laser_10000",
+            "toggle V_Monitor_Laser_10000",
         ],
     );
 }
@@ -66,25 +87,101 @@ fn freeze_ray() {
         "mission_08.json",
         &text,
         &[
-            "goto CanSodaNew_01_1", "pickup CanSodaNew_01_1", "goto AP_Prop_Shelf_Wall_04_1", "place AP_Prop_Shelf_Wall_04_1",
-            "goto V_Monitor_FreezeRay_10000", "toggle V_Monitor_FreezeRay_10000",
+            "goto CanSodaNew_01_1",
+            "pickup CanSodaNew_01_1",
+            "goto AP_Prop_Shelf_Wall_04_1",
+            "place AP_Prop_Shelf_Wall_04_1",
+            "goto V_Monitor_FreezeRay_10000",
+            "toggle V_Monitor_FreezeRay_10000",
         ],
     );
 }
 
 #[test]
-fn the_built_in_mission() {
+fn the_built_in_cereal() {
     let (name, text) = cohabit_cdf::mission::builtin().iter().find(|(name, _)| name.contains("make_cereal")).unwrap();
     solve(
         name,
         text,
         &[
-            "goto Bowl_01_1", "pickup Bowl_01_1", "goto YesterdayMachine_01_1", "open YesterdayMachine_01_1",
-            "place YesterdayMachine_01_1", "close YesterdayMachine_01_1", "toggle YesterdayMachine_01_1", "wait 130",
-            "open YesterdayMachine_01_1", "pickup Bowl_01_1", "goto TableRound_02_1", "place TableRound_02_1",
-            "goto Cereal_Box_01_1", "pickup Cereal_Box_01_1", "goto Bowl_01_1", "pour Bowl_01_1", "place TableRound_02_1",
-            "goto FridgeLower_02_1", "open FridgeLower_02_1", "goto MilkCarton_01_1", "pickup MilkCarton_01_1",
-            "goto Bowl_01_1", "pour Bowl_01_1",
+            "goto Bowl_01_1",
+            "pickup Bowl_01_1",
+            "goto YesterdayMachine_01_1",
+            "open YesterdayMachine_01_1",
+            "place YesterdayMachine_01_1",
+            "close YesterdayMachine_01_1",
+            "toggle YesterdayMachine_01_1",
+            "wait 130",
+            "open YesterdayMachine_01_1",
+            "pickup Bowl_01_1",
+            "goto TableRound_02_1",
+            "place TableRound_02_1",
+            "goto Cereal_Box_01_1",
+            "pickup Cereal_Box_01_1",
+            "goto Bowl_01_1",
+            "pour Bowl_01_1",
+            "place TableRound_02_1",
+            "goto FridgeLower_02_10000",
+            "open FridgeLower_02_10000",
+            "goto MilkCarton_01_1",
+            "pickup MilkCarton_01_1",
+            "goto Bowl_01_1",
+            "pour Bowl_01_1",
+        ],
+    );
+}
+
+#[test]
+fn the_built_in_others() {
+    let builtin =
+        |wanted: &str| cohabit_cdf::mission::builtin().iter().find(|(name, _)| name.contains(wanted)).unwrap();
+    let (name, text) = builtin("cold_soda");
+    solve(
+        name,
+        text,
+        &[
+            "goto CanSodaNew_01_1",
+            "pickup CanSodaNew_01_1",
+            "goto AP_Prop_Shelf_Wall_04_10000",
+            "place AP_Prop_Shelf_Wall_04_10000",
+            "goto V_Monitor_FreezeRay_10000",
+            "toggle V_Monitor_FreezeRay_10000",
+        ],
+    );
+    let (name, text) = builtin("laser_lab");
+    solve(
+        name,
+        text,
+        &[
+            "goto Laser_ControlPanel_1",
+            "pickup Laser_ControlPanel_1",
+            "goto Laser_1",
+            "place Laser_1",
+            "goto Laser_Tip_1",
+            "pickup Laser_Tip_1",
+            "goto Laser_1",
+            "place Laser_1",
+            "goto V_Monitor_Laser_10000",
+            "toggle V_Monitor_Laser_10000",
+        ],
+    );
+    let (name, text) = builtin("warm_coffee");
+    solve(
+        name,
+        text,
+        &[
+            "goto CoffeeMug_Boss_1",
+            "pickup CoffeeMug_Boss_1",
+            "goto Microwave_01_10000",
+            "open Microwave_01_10000",
+            "place Microwave_01_10000",
+            "close Microwave_01_10000",
+            "toggle Microwave_01_10000",
+            "wait 130",
+            "open Microwave_01_10000",
+            "pickup CoffeeMug_Boss_1",
+            "goto ManagerDesk_10000",
+            "place ManagerDesk_10000",
         ],
     );
 }

@@ -54,7 +54,9 @@ pub enum BuildError {
         receptacle: String,
     },
     /// An object must be in or on something that takes nothing, or that has no free place left.
-    #[error("build the world: `{object}` must be in `{receptacle}`, where no place is free; put something else elsewhere")]
+    #[error(
+        "build the world: `{object}` must be in `{receptacle}`, where no place is free; put something else elsewhere"
+    )]
     NoFreePlace {
         /// The instance id.
         object: String,
@@ -78,7 +80,9 @@ pub enum BuildError {
         room: RoomId,
     },
     /// The floor plan names something that stands on what comes later, or is not there.
-    #[error("build the world: `{object}` stands on `{parent}`, which the floor plan `{layout}` does not have before it")]
+    #[error(
+        "build the world: `{object}` stands on `{parent}`, which the floor plan `{layout}` does not have before it"
+    )]
     NoSuchParent {
         /// The instance id.
         object: String,
@@ -176,9 +180,8 @@ impl Builder<'_> {
     /// The robot stands at the first viewpoint of its room that is free.
     fn add_robot(&mut self) -> Result<(), BuildError> {
         let room = self.check_room("the robot", self.mission.start_room)?;
-        let (position, yaw_rad) = start(&self.facts(), self.layout, room, &self.state.bodies).ok_or_else(|| {
-            BuildError::NoFreeSpot { object: "the robot".to_owned(), room }
-        })?;
+        let (position, yaw_rad) = start(&self.facts(), self.layout, room, &self.state.bodies)
+            .ok_or_else(|| BuildError::NoFreeSpot { object: "the robot".to_owned(), room })?;
         self.state.bodies.push(Body::new(position, yaw_rad, room));
         Ok(())
     }

@@ -55,9 +55,8 @@ impl Builder<'_> {
                 self.state.existing().filter(|(_, object)| object.class == class).map(|(id, _)| id).collect();
             let alone = all.len() == 1;
             let free = all.into_iter().filter(|id| !self.state.at(*id).requested);
-            let fitting = free.into_iter().find(|id| {
-                alone || request.room.is_none_or(|room| self.state.at(*id).room == room)
-            });
+            let fitting =
+                free.into_iter().find(|id| alone || request.room.is_none_or(|room| self.state.at(*id).room == room));
             if let Some(id) = fitting {
                 let object = self.state.at_mut(id);
                 let before = std::mem::replace(&mut object.instance, request.instance.clone());
@@ -170,9 +169,10 @@ impl Builder<'_> {
         let fitting = keyed.unwrap_or_else(|| fitting_anchors(&facts, receptacle, facts.size(id)));
         let any = if fitting.is_empty() { free_anchors(&facts, receptacle) } else { fitting };
         if any.is_empty() {
-            let spare = facts.state.children(receptacle).find(|child| {
-                facts.has(*child, Property::Pickupable) && !facts.object(*child).requested
-            });
+            let spare = facts
+                .state
+                .children(receptacle)
+                .find(|child| facts.has(*child, Property::Pickupable) && !facts.object(*child).requested);
             let Some(spare) = spare else {
                 return Err(BuildError::NoFreePlace {
                     object: self.state.at(id).instance.clone(),

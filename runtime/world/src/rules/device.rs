@@ -100,9 +100,10 @@ pub(super) const DEVICES: &[Device] = &[
 
 /// The device of a class; what is not in the table flips.
 pub(super) fn of_class(class: &str) -> Device {
-    DEVICES
-        .iter()
-        .find(|device| device.class == class)
-        .copied()
-        .unwrap_or(Device { class: "", toggling: Toggling::Flips, work: Work::Nothing, works: &[] })
+    DEVICES.iter().find(|device| device.class == class).copied().unwrap_or(Device {
+        class: "",
+        toggling: Toggling::Flips,
+        work: Work::Nothing,
+        works: &[],
+    })
 }

@@ -87,7 +87,8 @@ fn has_elbow_room(facts: &Facts<'_>, receptacle: ObjectId, anchor: &Anchor, held
     facts.state.children(receptacle).all(|child| match facts.object(child).support {
         Support::On { local, .. } => {
             (local.position.z - at.z).abs() > 0.1
-                || local.position.truncate().distance(at.truncate()) > 0.8 * (reach + crate::anchors::radius(facts, child))
+                || local.position.truncate().distance(at.truncate())
+                    > 0.8 * (reach + crate::anchors::radius(facts, child))
         }
         _ => true,
     })

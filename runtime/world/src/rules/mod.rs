@@ -11,7 +11,7 @@ mod tool;
 
 pub(crate) use hand::keyed_anchors;
 
-use cohabit_cdf::{Action, BodyId, ObjectId, Status, StateFlag, Verb};
+use cohabit_cdf::{Action, BodyId, ObjectId, StateFlag, Status, Verb};
 
 use crate::{effect::Effect, facts::Facts, report::SoundKind};
 

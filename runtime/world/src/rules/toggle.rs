@@ -64,9 +64,7 @@ impl Press<'_> {
             Toggling::Breaker => self.breaker(),
             Toggling::Doors => self.doors(),
             Toggling::Sparks => Ok(self.spark()),
-            Toggling::WorkedBy(what) => {
-                refuse(Status::UnsupportedAction, format!("{} is worked by {what}", self.name))
-            }
+            Toggling::WorkedBy(what) => refuse(Status::UnsupportedAction, format!("{} is worked by {what}", self.name)),
         }
     }
 
@@ -112,10 +110,8 @@ impl Press<'_> {
 
     /// What it works: as the layout says, else the one of its kind in the room.
     fn machine(&self) -> Result<ObjectId, Ruling> {
-        linked(self.facts, self.object, &self.device).map_or_else(
-            || refuse(Status::ActionExecutionError, format!("{} is connected to nothing", self.name)),
-            Ok,
-        )
+        linked(self.facts, self.object, &self.device)
+            .map_or_else(|| refuse(Status::ActionExecutionError, format!("{} is connected to nothing", self.name)), Ok)
     }
 
     fn brew(&self) -> Verdict {
@@ -123,9 +119,9 @@ impl Press<'_> {
         self.check_contents(self.object)?;
         let contents = facts.contents(self.object);
         let filled = facts.object(self.object).fluid != Fluid::None
-            || contents.iter().any(|id| {
-                facts.object(*id).fluid != Fluid::None || facts.class(*id).id == "CoffeeBeans_01"
-            });
+            || contents
+                .iter()
+                .any(|id| facts.object(*id).fluid != Fluid::None || facts.class(*id).id == "CoffeeBeans_01");
         if !filled {
             return refuse(Status::ActionExecutionError, format!("{} has neither water nor beans", self.name));
         }
@@ -163,8 +159,7 @@ impl Press<'_> {
             let off = [self.object, machine].map(|id| Effect::Set(id, StateFlag::Toggled, false));
             return Ok(Ruling::done(format!("I switched {machine_name} off"), off.to_vec()));
         }
-        let inside: Vec<&str> =
-            facts.state.children(machine).map(|child| facts.class(child).id.as_str()).collect();
+        let inside: Vec<&str> = facts.state.children(machine).map(|child| facts.class(child).id.as_str()).collect();
         if let Some(part) = parts.iter().find(|part| !inside.contains(part)) {
             let part = facts.catalog.find(part).map_or(*part, |class| facts.catalog.class(class).name.as_str());
             let detail = format!("{machine_name} lacks its {}", part.to_lowercase());
@@ -226,13 +221,9 @@ fn linked(facts: &Facts<'_>, object: ObjectId, device: &Device) -> Option<Object
     told.or_else(|| {
         let room = facts.object(object).room;
         let here = facts.object(object).pose.position;
-        device
-            .works
-            .iter()
-            .flat_map(|class| facts.of_class_in(class, room))
-            .min_by(|one, two| {
-                let distance = |id: &ObjectId| facts.object(*id).pose.position.distance(here);
-                distance(one).total_cmp(&distance(two))
-            })
+        device.works.iter().flat_map(|class| facts.of_class_in(class, room)).min_by(|one, two| {
+            let distance = |id: &ObjectId| facts.object(*id).pose.position.distance(here);
+            distance(one).total_cmp(&distance(two))
+        })
     })
 }

@@ -27,7 +27,8 @@ pub fn world(file: &str, text: &str, seed: u64) -> World {
 }
 
 pub fn build(catalog: &Arc<Catalog>, mission: Mission, seed: u64) -> World {
-    let layout = Arc::new(Layout::builtin(&mission.layout).unwrap_or_else(|_| Layout::builtin("OfficeLayout1").unwrap()));
+    let layout =
+        Arc::new(Layout::builtin(&mission.layout).unwrap_or_else(|_| Layout::builtin("OfficeLayout1").unwrap()));
     let name = mission.name.clone();
     World::new(Arc::clone(catalog), layout, Arc::new(mission), seed).unwrap_or_else(|error| panic!("{name}: {error}"))
 }
@@ -114,7 +115,13 @@ impl Player {
         for line in lines {
             let outcome = self.run(line);
             let view = self.world.body(BodyId(0)).unwrap();
-            assert!(outcome.status.is_success(), "`{line}`: {:?}: {} (at {})", outcome.status, outcome.detail, view.position_m);
+            assert!(
+                outcome.status.is_success(),
+                "`{line}`: {:?}: {} (at {})",
+                outcome.status,
+                outcome.detail,
+                view.position_m
+            );
         }
     }
 
