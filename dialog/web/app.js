@@ -51,6 +51,7 @@ function connect() {
   };
   socket.onclose = () => {
     showLink("lost");
+    endDoing();
     setTimeout(connect, pauseMs);
     pauseMs = Math.min(pauseMs * 1.8, LONGEST_PAUSE_MS);
   };
@@ -82,7 +83,7 @@ function takeHello({ session, mission, map }) {
   showLink("open");
   byId("session").textContent = session;
   document.title = mission.title ? `${mission.title} · Cohabit` : "Cohabit";
-  byId("goals-title").textContent = byId("goals-mission").textContent = mission.title || "Mission";
+  byId("goals-title").textContent = mission.title || "Mission";
   byId("goals-about").textContent = mission.description === mission.title ? "" : mission.description;
   floor.build(map);
   clearChat();
@@ -560,7 +561,8 @@ function takeTurn({ turn, ended }) {
 function endDoing() {
   doingTurn = 0;
   byId("doing").classList.add("idle");
-  byId("doing-text").textContent = { complete: "All done", failed: "The mission is over" }[endingShown] ?? "Ready";
+  const idle = { running: "Ready", complete: "All done", failed: "The mission is over" };
+  byId("doing-text").textContent = document.body.classList.contains("lost") ? "Waiting for the session" : idle[endingShown];
   byId("doing-count").textContent = "";
   byId("doing-steps").replaceChildren();
 }

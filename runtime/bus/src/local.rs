@@ -7,7 +7,7 @@ use std::{
 };
 
 use crate::{
-    envelope::{Block, Envelope, monotonic_nanos},
+    envelope::{Block, Envelope},
     error::BusError,
     topic::{Topic, Wake},
     transport::{GapCounter, Listener, Publisher, Sample, SampleMemory, Subscriber, Transport, fill, new_run},
@@ -98,8 +98,7 @@ impl Publisher for LocalPublisher {
             run: self.run,
             tick,
             sequence,
-            sent_nanos: monotonic_nanos(),
-            reserved: [0; 2],
+            ..Envelope::default()
         };
         let mut blocks = vec![Block::default(); 1 + Block::count_for(bytes)];
         fill(&mut blocks, envelope, write);

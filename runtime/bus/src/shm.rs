@@ -8,8 +8,11 @@ use std::{sync::Arc, time::Duration};
 use iceoryx2::{
     node::{Node, NodeBuilder},
     port::{
-        listener::Listener as IoxListener, notifier::Notifier, publisher::Publisher as IoxPublisher,
-        subscriber::Subscriber as IoxSubscriber, update_connections::UpdateConnections,
+        listener::{Listener as IoxListener, ListenerWaitError},
+        notifier::Notifier,
+        publisher::Publisher as IoxPublisher,
+        subscriber::Subscriber as IoxSubscriber,
+        update_connections::UpdateConnections,
     },
     prelude::*,
     sample::Sample as IoxSample,
@@ -17,7 +20,7 @@ use iceoryx2::{
 };
 
 use crate::{
-    envelope::{Block, Envelope, monotonic_nanos},
+    envelope::{Block, Envelope},
     error::BusError,
     local::payload_bytes,
     session::Session,
@@ -162,8 +165,7 @@ impl Publisher for ShmPublisher {
             run: self.run,
             tick,
             sequence,
-            sent_nanos: monotonic_nanos(),
-            reserved: [0; 2],
+            ..Envelope::default()
         };
         let blocks = 1 + Block::count_for(bytes);
         let sample = self.port.loan_slice_uninit(blocks).map_err(|e| failed(format!("{e:?}")))?;
@@ -221,9 +223,10 @@ struct ShmListener {
 impl Listener for ShmListener {
     fn wait(&mut self, timeout: Duration) -> Result<bool, BusError> {
         let mut woken = false;
-        self.port
-            .timed_wait(|_| woken = true, timeout)
-            .map_err(|e| BusError::Receive { topic: self.topic, reason: format!("{e:?}") })?;
-        Ok(woken)
+        match self.port.timed_wait(|_| woken = true, timeout) {
+            // A signal is for the caller to look after: it sees that nothing woke it.
+            Ok(_) | Err(ListenerWaitError::InterruptSignal) => Ok(woken),
+            Err(error) => Err(BusError::Receive { topic: self.topic, reason: format!("{error:?}") }),
+        }
     }
 }

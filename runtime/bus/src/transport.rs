@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use crate::{
-    envelope::{Block, Envelope},
+    envelope::{Block, Envelope, monotonic_nanos},
     error::BusError,
     topic::{Topic, Wake},
 };
@@ -147,11 +147,12 @@ impl GapCounter {
     }
 }
 
-/// Fills a sample's blocks: envelope first, then what `write` writes.
-pub(crate) fn fill(blocks: &mut [Block], envelope: Envelope, write: &mut dyn FnMut(&mut [u8])) {
-    blocks[0] = bytemuck::cast(envelope);
+/// Fills a sample's blocks: what `write` writes, then the envelope before it, stamped as late as can be.
+pub(crate) fn fill(blocks: &mut [Block], mut envelope: Envelope, write: &mut dyn FnMut(&mut [u8])) {
     let payload = bytemuck::cast_slice_mut::<Block, u8>(&mut blocks[1..]);
     write(&mut payload[..envelope.payload_bytes as usize]);
+    envelope.sent_nanos = monotonic_nanos();
+    blocks[0] = bytemuck::cast(envelope);
 }
 
 /// A number unlike that of any other publisher.
@@ -159,5 +160,5 @@ pub(crate) fn new_run() -> u64 {
     use std::sync::atomic::{AtomicU64, Ordering};
     static COUNT: AtomicU64 = AtomicU64::new(0);
     let count = COUNT.fetch_add(1, Ordering::Relaxed);
-    (u64::from(std::process::id()) << 40) ^ (count << 32) ^ (crate::envelope::monotonic_nanos() >> 10)
+    (u64::from(std::process::id()) << 40) ^ (count << 32) ^ (monotonic_nanos() >> 10)
 }

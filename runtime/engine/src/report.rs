@@ -7,7 +7,7 @@ use cohabit_bus::{
     },
 };
 use cohabit_cdf::{RoomId, StateFlag};
-use cohabit_world::{Ending, Event, Input, World};
+use cohabit_world::{BodyView, Ending, Event, Input, ObjectView, World};
 
 /// A command was taken up.
 pub fn started(input: &Input, turn: u64) -> EventMessage {
@@ -56,7 +56,7 @@ pub fn state(world: &World) -> StateParts {
     StateParts {
         header: StateHeader { score: world.score(), ending, lit_rooms, ..StateHeader::default() },
         bodies: world.bodies().map(|body| body_record(&body)).collect(),
-        objects: world.objects().map(|object| object_record(&object)).collect(),
+        objects: present(world).map(|object| object_record(&object)).collect(),
         goals: world
             .goals()
             .iter()
@@ -67,8 +67,7 @@ pub fn state(world: &World) -> StateParts {
                 description: Text::new(&goal.description),
             })
             .collect(),
-        notes: world
-            .objects()
+        notes: present(world)
             .filter(|object| !object.text.is_empty())
             .map(|object| NoteRecord {
                 object: object.id.0,
@@ -79,7 +78,12 @@ pub fn state(world: &World) -> StateParts {
     }
 }
 
-fn body_record(body: &cohabit_world::BodyView) -> BodyRecord {
+/// The objects that are in the world now: what was removed is nobody's business.
+fn present(world: &World) -> impl Iterator<Item = ObjectView<'_>> {
+    world.objects().filter(|object| world.exists(object.id))
+}
+
+fn body_record(body: &BodyView) -> BodyRecord {
     BodyRecord {
         body: body.id.0,
         room: body.room as u32,
@@ -93,7 +97,7 @@ fn body_record(body: &cohabit_world::BodyView) -> BodyRecord {
     }
 }
 
-fn object_record(object: &cohabit_world::ObjectView<'_>) -> ObjectRecord {
+fn object_record(object: &ObjectView<'_>) -> ObjectRecord {
     ObjectRecord {
         object: object.id.0,
         flags: object.flags.0,

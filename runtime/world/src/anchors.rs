@@ -71,24 +71,31 @@ pub(crate) fn radius(facts: &Facts<'_>, id: ObjectId) -> f32 {
     size.x.max(size.y) / 2.0
 }
 
-/// The free anchors that `object` fits under, those with elbow room first, otherwise in order.
-pub(crate) fn fitting_anchors(facts: &Facts<'_>, receptacle: ObjectId, size: Vec3) -> Vec<Anchor> {
+/// The free anchors that something of this size fits under: those with elbow room, and the others, each in order.
+pub(crate) fn roomy_and_tight(facts: &Facts<'_>, receptacle: ObjectId, size: Vec3) -> (Vec<Anchor>, Vec<Anchor>) {
     let scale = facts.object(receptacle).scale;
     let reach = size.x.max(size.y) / 2.0;
-    let (roomy, tight): (Vec<Anchor>, Vec<Anchor>) = free_anchors(facts, receptacle)
+    free_anchors(facts, receptacle)
         .into_iter()
         .filter(|anchor| size.z <= anchor.clearance_m * scale[2] + 1e-3)
-        .partition(|anchor| {
-            let at = anchor.local(scale).position;
-            facts.state.children(receptacle).all(|child| match facts.object(child).support {
-                Support::On { local, .. } => {
-                    (local.position.z - at.z).abs() > 0.1
-                        || local.position.truncate().distance(at.truncate()) > 0.8 * (reach + radius(facts, child))
-                }
-                _ => true,
-            })
-        });
+        .partition(|anchor| has_elbow_room(facts, receptacle, anchor.local(scale).position, reach))
+}
+
+/// The same in one list, those with elbow room first.
+pub(crate) fn fitting_anchors(facts: &Facts<'_>, receptacle: ObjectId, size: Vec3) -> Vec<Anchor> {
+    let (roomy, tight) = roomy_and_tight(facts, receptacle, size);
     roomy.into_iter().chain(tight).collect()
+}
+
+/// Whether nothing on the same level comes closer to a point than two things may.
+fn has_elbow_room(facts: &Facts<'_>, receptacle: ObjectId, at: Vec3, reach: f32) -> bool {
+    facts.state.children(receptacle).all(|child| match facts.object(child).support {
+        Support::On { local, .. } => {
+            (local.position.z - at.z).abs() > 0.1
+                || local.position.truncate().distance(at.truncate()) > 0.8 * (reach + radius(facts, child))
+        }
+        _ => true,
+    })
 }
 
 /// Whether every anchor is taken; false for what takes nothing.

@@ -2,7 +2,8 @@
 //!
 //! A [`World`] is built once from a catalogue, a floor plan and a mission, and then changes only through
 //! [`World::step`]: commands in, outcomes and events out. The same inputs at the same ticks give the same
-//! [`World::digest`], bit for bit, on every machine; a [`World::snapshot`] goes on as the original would have.
+//! [`World::digest`], bit for bit, on every machine of one architecture; a [`World::snapshot`] goes on as the original
+//! would have.
 //!
 //! This crate never knows wall time, threads, sockets, files or pixels. Trigonometry in simulated state comes from
 //! `libm` alone, and nothing here iterates a hash map.
@@ -30,8 +31,6 @@ mod score;
 mod snapshot;
 mod state;
 mod tasks;
-#[cfg(test)]
-mod testing;
 mod works;
 mod world;
 

@@ -17,7 +17,7 @@ const TURN_RAD_S: f32 = 2.617_994;
 const TURN_RAD_S2: f32 = 14.0;
 const PITCH_RAD_S: f32 = 2.0;
 /// How far the head pitches up and down: 60 degrees each.
-pub(crate) const PITCH_LIMIT_RAD: f32 = 1.047_197_6;
+pub(crate) const PITCH_LIMIT_RAD: f32 = std::f32::consts::FRAC_PI_3;
 /// The arm takes 0.4 s out and 0.3 s back.
 const ARM_OUT_PER_S: f32 = 1.0 / 0.4;
 const ARM_BACK_PER_S: f32 = 1.0 / 0.3;

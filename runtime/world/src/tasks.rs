@@ -258,10 +258,8 @@ fn arrived(task: &Task) -> End {
 /// What a hand does: turn to the thing, reach out. What is in the hand already needs no turning.
 fn hand_steps(facts: &Facts<'_>, id: BodyId, action: &Action) -> Vec<Step> {
     let mut steps = vec![Step::Reach];
-    if let Some(object) = rules::object_of(action) {
-        if facts.object(object).held_by() != Some(id) {
-            steps.push(Step::Face { point: facts.aim_point(object) });
-        }
+    if let Some(object) = rules::object_of(action).filter(|object| facts.object(*object).held_by() != Some(id)) {
+        steps.push(Step::Face { point: facts.aim_point(object) });
     }
     steps
 }

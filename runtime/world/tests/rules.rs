@@ -87,7 +87,7 @@ fn hands() {
         (
             &[table, "FoodPlate_01_1 in TableRound_02_1", "Apple_1 in FoodPlate_01_1"],
             &["goto FoodPlate_01_1", "pickup FoodPlate_01_1", "place Apple_1"],
-            Status::UnsupportedAction,
+            Status::InvalidCommand,
         ),
         (
             &[table, "FoodPlate_01_1 in TableRound_02_1"],
@@ -301,7 +301,11 @@ fn laboratory_machines() {
     player.must(&["toggle V_Monitor_Gravity_10000", "wait 90"]);
     assert!(player.world.object(player.id("Apple_1")).unwrap().position_m.z > low + 0.3);
     check(&["Laser_1"], &["goto Laser_1", "toggle Laser_1"], Status::UnsupportedAction);
-    check(&["Laser_1"], &["goto V_Monitor_Laser_10000", "toggle V_Monitor_Laser_10000"], Status::ActionExecutionError);
+    check(
+        &["Laser_1 emptied"],
+        &["goto V_Monitor_Laser_10000", "toggle V_Monitor_Laser_10000"],
+        Status::ActionExecutionError,
+    );
 }
 
 #[test]

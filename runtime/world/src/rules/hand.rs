@@ -5,9 +5,8 @@ use glam::Vec3;
 
 use super::{Ruling, Scene, Verdict, refuse};
 use crate::{
-    anchors::{Anchor, anchors, fitting_anchors, free_anchors},
+    anchors::{Anchor, anchors, free_anchors, roomy_and_tight},
     effect::Effect,
-    entity::Support,
     facts::Facts,
     rules::tool,
 };
@@ -68,30 +67,14 @@ fn best_anchor(scene: &Scene<'_>, receptacle: ObjectId, held: ObjectId) -> Optio
     }
     let from = facts.state.bodies[scene.body.0 as usize].position;
     let object = facts.object(receptacle);
-    let fitting = fitting_anchors(facts, receptacle, facts.size(held));
+    let (roomy, tight) = roomy_and_tight(facts, receptacle, facts.size(held));
     let distance = |anchor: &Anchor| {
         let at = object.pose.point(anchor.local(object.scale).position);
         // A hand comes from the front and does not stoop without need.
         at.truncate().distance(from) + (at.z - 0.9).abs() * 0.5
     };
-    let roomy = fitting.iter().filter(|anchor| has_elbow_room(facts, receptacle, anchor, held));
-    roomy
-        .min_by(|one, two| distance(one).total_cmp(&distance(two)))
-        .or_else(|| fitting.iter().min_by(|one, two| distance(one).total_cmp(&distance(two))))
-        .copied()
-}
-
-fn has_elbow_room(facts: &Facts<'_>, receptacle: ObjectId, anchor: &Anchor, held: ObjectId) -> bool {
-    let at = anchor.local(facts.object(receptacle).scale).position;
-    let reach = crate::anchors::radius(facts, held);
-    facts.state.children(receptacle).all(|child| match facts.object(child).support {
-        Support::On { local, .. } => {
-            (local.position.z - at.z).abs() > 0.1
-                || local.position.truncate().distance(at.truncate())
-                    > 0.8 * (reach + crate::anchors::radius(facts, child))
-        }
-        _ => true,
-    })
+    let choice = if roomy.is_empty() { tight } else { roomy };
+    choice.into_iter().min_by(|one, two| distance(one).total_cmp(&distance(two)))
 }
 
 /// The free anchors that a key object may take, if the receptacle is keyed: its own, where each key has one.

@@ -48,11 +48,11 @@ fn cut(scene: &Scene<'_>, knife: ObjectId, object: ObjectId) -> Verdict {
     scene.touch(object)?;
     let mut effects = vec![Effect::Set(object, StateFlag::Cut, true), Effect::Set(knife, StateFlag::Used, true)];
     let slice = SLICES.iter().find(|(whole, _)| *whole == facts.class(object).id);
-    if let Some(class) = slice.and_then(|(_, slice)| facts.catalog.find(slice)) {
-        if let Some((parent, anchor)) = works::slice_place(facts, object, class) {
-            let instance = works::free_instance(facts, &facts.catalog.class(class).id);
-            effects.push(Effect::Spawn { class, instance, parent, anchor, yesterday: None, by: None });
-        }
+    if let Some(class) = slice.and_then(|(_, slice)| facts.catalog.find(slice))
+        && let Some((parent, anchor)) = works::slice_place(facts, object, class)
+    {
+        let instance = works::free_instance(facts, &facts.catalog.class(class).id);
+        effects.push(Effect::Spawn { class, instance, parent, anchor, yesterday: None, by: None });
     }
     Ok(Ruling::done(format!("I cut {}", facts.name(object)), effects))
 }
