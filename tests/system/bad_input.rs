@@ -41,7 +41,7 @@ fn each_mistake_is_named() {
     let mission = |layout: &str, object: &str| MISSION.replace("LAYOUT", layout).replace("OBJECT", object);
     let path = |name: &str, text: &str| file(name, text).to_str().unwrap().to_owned();
     check(&["/nowhere/mission.json"], &["/nowhere/mission.json"]);
-    check(&[&path("broken.json", "{\"scene\": [1, 2")], &["broken.json", "line 1"]);
+    check(&[&path("broken.json", "{\"scene\": [1, 2")], &["broken.json:1:"]);
     check(&[&path("object.json", &mission("OfficeLayout1", "Bowl_1"))], &["object.json", "Bowl_1", "Bowl_01"]);
     check(&[&path("layout.json", &mission("OfficeLayout9", "Bowl_01_1"))], &["layout.json", "OfficeLayout9"]);
     check(&["--session", "no/such name"], &["no/such name"]);

@@ -6,11 +6,11 @@ use anyhow::Context as _;
 use rustix::process::{Pid, Signal, getppid, set_parent_process_death_signal};
 use signal_hook::consts::{SIGINT, SIGTERM};
 
-/// Becomes true at Ctrl-C or a termination request; a second one ends the process at once.
+/// Becomes true at Ctrl-C or a termination request. Ending is bounded in time, so an impatient second one changes
+/// nothing, and all is cleaned up all the same.
 pub fn on_request() -> anyhow::Result<Arc<AtomicBool>> {
     let stop = Arc::new(AtomicBool::new(false));
     for signal in [SIGINT, SIGTERM] {
-        signal_hook::flag::register_conditional_shutdown(signal, 130, Arc::clone(&stop)).context("signals")?;
         signal_hook::flag::register(signal, Arc::clone(&stop)).context("signals")?;
     }
     Ok(stop)

@@ -8,6 +8,26 @@
 //! This crate never knows wall time, threads, sockets, files or pixels. Trigonometry in simulated state comes from
 //! `libm` alone, and nothing here iterates a hash map.
 //!
+//! ```
+//! use std::sync::Arc;
+//! use cohabit_cdf::{Action, BodyId, Catalog, GoToTarget, Layout, mission};
+//! use cohabit_world::{Input, World};
+//!
+//! let catalog = Arc::new(Catalog::builtin());
+//! let (name, text) = mission::builtin().first().expect("there are built-in missions");
+//! let mission = mission::read_mission(name, text, &catalog).expect("they are sound").mission;
+//! let layout = Arc::new(Layout::builtin(&mission.layout).expect("they name a floor plan"));
+//! let mut world = World::new(catalog, layout, Arc::new(mission), 1).expect("and can be built");
+//!
+//! let table = world.find("TableRound_02_1").expect("the break room has a table");
+//! let walk = Action::GoTo { target: GoToTarget::Object(table) };
+//! let mut report = world.step(&[Input { command: 1, body: BodyId(0), action: walk }]);
+//! while report.outcomes.is_empty() {
+//!     report = world.step(&[]);
+//! }
+//! assert!(report.outcomes[0].status.is_success());
+//! ```
+//!
 //! Frames: see the docs of `cohabit-cdf`; angles are in radians, positive yaw is to the left.
 
 mod anchors;

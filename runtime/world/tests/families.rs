@@ -77,10 +77,10 @@ fn meant(world: &World, requested: &[String], noun: &str) -> Option<ObjectId> {
     let spawned = world.objects().filter(|view| view.instance.contains("_Spawned_")).map(|view| view.id);
     let asked: Vec<ObjectId> = requested.iter().filter_map(|instance| world.find(instance)).chain(spawned).collect();
     let everything: Vec<ObjectId> = world.objects().map(|view| view.id).filter(|id| world.exists(*id)).collect();
-    let pools: [(&[ObjectId], &dyn Fn(ObjectId) -> bool); 3] =
-        [(&asked, &exactly), (&asked, &roughly), (&everything, &exactly)];
-    let all: Vec<ObjectId> =
-        pools.into_iter().flat_map(|(pool, fits)| pool.iter().copied().filter(move |id| fits(*id))).collect();
+    let of = |pool: &[ObjectId], fits: &dyn Fn(ObjectId) -> bool| -> Vec<ObjectId> {
+        pool.iter().copied().filter(|id| fits(*id)).collect()
+    };
+    let all = [of(&asked, &exactly), of(&asked, &roughly), of(&everything, &exactly)].concat();
     let wanted = said.filter(|said| ["red", "green", "blue"].contains(*said)).copied().unwrap_or("original");
     all.iter().find(|id| painted(**id) == wanted).or(all.first()).copied()
 }

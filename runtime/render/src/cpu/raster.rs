@@ -33,7 +33,7 @@ pub(super) fn all(batches: &[Vec<Triangle>], first_row: usize, width: usize, see
             let (top, bottom) = (i32::from(triangle.rect[1]).max(rows.0), i32::from(triangle.rect[3]).min(rows.1));
             if top <= bottom {
                 let sides = [0, 1, 2].map(|i| side(triangle.at[i], triangle.at[(i + 1) % 3]));
-                if i32::from(triangle.rect[2] - triangle.rect[0]) < NARROW_PX {
+                if is_narrow(triangle) {
                     narrow(triangle, sides, number, (top, bottom), first_row, width, seen, nearness);
                 } else {
                     wide(triangle, sides, number, (top, bottom), first_row, width, seen, nearness);
@@ -42,6 +42,18 @@ pub(super) fn all(batches: &[Vec<Triangle>], first_row: usize, width: usize, see
             number += 1;
         }
     }
+}
+
+/// Whether few of its pixels lie side by side, and it is small enough as a whole, also beyond the picture's edges, for
+/// [`narrow`]'s 32 bits: with extents of `w` and `h` pixels no side exceeds `2 * w * h * SUB * SUB`.
+fn is_narrow(triangle: &Triangle) -> bool {
+    const MOST_AREA_PX: i64 = 1 << 17;
+    let extent = |axis: usize| {
+        let along = triangle.at.map(|corner| corner[axis]);
+        let length = along.iter().max().unwrap_or(&0) - along.iter().min().unwrap_or(&0);
+        i64::from(length / SUB) + 2
+    };
+    i32::from(triangle.rect[2] - triangle.rect[0]) < NARROW_PX && extent(0) * extent(1) < MOST_AREA_PX
 }
 
 #[expect(clippy::too_many_arguments, reason = "the innermost loop takes plain values")]
