@@ -1,6 +1,11 @@
 //! What is wrong with what a user gave is said in one message, with exit code 2, and nothing is left running.
 
-use std::{fs, net::TcpListener, path::PathBuf};
+use std::{
+    fs,
+    net::TcpListener,
+    path::PathBuf,
+    sync::atomic::{AtomicU32, Ordering},
+};
 
 use cohabit_tests::run;
 
@@ -17,7 +22,8 @@ fn file(name: &str, text: &str) -> PathBuf {
 
 /// Plays with these arguments, and finds exit code 2 and a message that names `parts`.
 fn check(arguments: &[&str], parts: &[&str]) {
-    let session = format!("bad-{}", std::process::id());
+    static COUNT: AtomicU32 = AtomicU32::new(0);
+    let session = format!("bad{}-{}", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed));
     let mut all = vec!["play", "--session", &session];
     all.extend(arguments);
     let output = run(COHABIT, &all).unwrap();
@@ -44,9 +50,15 @@ fn each_mistake_is_named() {
     check(&[&path("broken.json", "{\"scene\": [1, 2")], &["broken.json:1:"]);
     check(&[&path("object.json", &mission("OfficeLayout1", "Bowl_1"))], &["object.json", "Bowl_1", "Bowl_01"]);
     check(&[&path("layout.json", &mission("OfficeLayout9", "Bowl_01_1"))], &["layout.json", "OfficeLayout9"]);
-    check(&["--session", "no/such name"], &["no/such name"]);
     check(&["--log", &path("taken.mcap", "x")], &["taken.mcap"]);
     let _ = fs::remove_dir_all(file("x", "").parent().unwrap());
+}
+
+#[test]
+fn a_session_name_that_cannot_be_one_is_named() {
+    let output = run(COHABIT, &["play", "--session", "no/such name"]).unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("no/such name"));
 }
 
 #[test]

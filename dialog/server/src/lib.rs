@@ -91,13 +91,15 @@ pub fn serve(
             scope.spawn(|| until_ended(&ended, || talk::show_state(&talk, STATE_EVERY, &over))),
             scope.spawn(|| until_ended(&ended, || frames::relay(&*bus, &hub, &talk, &over))),
         ];
-        ready(&token::page_address(address, token.as_deref()));
-        let served = web::serve(listener, token, Arc::clone(&hub), Arc::clone(&talk), &over);
+        let served = talk.wait_for_world(&*bus, &over).and_then(|()| {
+            ready(&token::page_address(address, token.as_deref()));
+            web::serve(listener, token, Arc::clone(&hub), Arc::clone(&talk), &over).map_err(DialogError::Serve)
+        });
         ended.store(true, Ordering::Relaxed);
         workers
             .into_iter()
             .map(|worker| worker.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
-            .fold(served.map_err(DialogError::Serve), Result::and)
+            .fold(served, Result::and)
     })
 }
 

@@ -54,6 +54,21 @@ impl Talk {
         Ok(Arc::new(Self { inner: Mutex::new(inner), hub, catalog }))
     }
 
+    /// Waits until the world can be seen, or until `over`.
+    pub fn wait_for_world(&self, bus: &dyn Transport, over: &dyn Fn() -> bool) -> Result<(), DialogError> {
+        let mut listener = bus.listener(Wake::State)?;
+        while !over() {
+            let mut inner = self.lock();
+            inner.refresh()?;
+            if inner.newest.is_some() {
+                break;
+            }
+            drop(inner);
+            listener.wait(Duration::from_millis(20))?;
+        }
+        Ok(())
+    }
+
     fn lock(&self) -> MutexGuard<'_, Inner> {
         self.inner.lock().unwrap_or_else(PoisonError::into_inner)
     }

@@ -11,6 +11,9 @@ const NEAREST_M: f32 = 0.45;
 const ABOVE_FLOOR_M: f32 = 1.95;
 const PITCH_RAD: f32 = -0.32;
 const FOV_Y_RAD: f32 = 0.96;
+/// How much higher the camera is, and how much farther down it looks, with a wall right behind the body.
+const RISE_M: f32 = 0.6;
+const LOOK_DOWN_RAD: f32 = 0.6;
 const CLEAR_OF_WALLS_M: f32 = 0.22;
 /// How fast the camera closes in on where it should be, 1/s.
 const FOLLOW_PER_S: f32 = 7.0;
@@ -49,12 +52,12 @@ impl CameraRig {
         pose.boom_m = free.min(pose.boom_m + (free - pose.boom_m).max(0.0) * near * 0.4);
         self.pose = Some(pose);
         let boom = pose.boom_m.max(NEAREST_M);
-        // Close behind the head, look over it.
-        let raised = (1.0 - boom / BEHIND_M) * 0.15;
+        // With a wall at its back the camera rises and looks down on the body instead.
+        let near_wall = 1.0 - boom / BEHIND_M;
         Camera {
-            position_m: [pose.x + back[0] * boom, pose.y + back[1] * boom, ABOVE_FLOOR_M + raised],
+            position_m: [pose.x + back[0] * boom, pose.y + back[1] * boom, ABOVE_FLOOR_M + near_wall * RISE_M],
             yaw_rad: pose.yaw_rad,
-            pitch_rad: pose.pitch_rad,
+            pitch_rad: pose.pitch_rad - near_wall * LOOK_DOWN_RAD,
             fov_y_rad: FOV_Y_RAD,
             width: size[0],
             height: size[1],

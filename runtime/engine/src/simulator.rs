@@ -23,10 +23,15 @@ use crate::{
 /// Ticks between two greetings of peers that joined late.
 const GREET_EVERY: u64 = 15;
 
+/// The tick at which the shading of models that were not seen yet begins to be baked, so that none makes a frame late:
+/// the first frames come first.
+const BAKE_AT: u64 = 90;
+
 /// A world in real time, with its cameras.
 pub struct Simulator {
     engine: Engine,
     studio: Studio,
+    meshes: Arc<MeshLibrary>,
 }
 
 impl Simulator {
@@ -41,8 +46,8 @@ impl Simulator {
         threads: usize,
         bus: &dyn Transport,
     ) -> Result<Self, EngineError> {
-        let studio = Studio::new(meshes, Arc::clone(&plan.layout), threads, bus)?;
-        Ok(Self { engine: Engine::new(plan, world, bus)?, studio })
+        let studio = Studio::new(Arc::clone(&meshes), Arc::clone(&plan.layout), threads, bus)?;
+        Ok(Self { engine: Engine::new(plan, world, bus)?, studio, meshes })
     }
 
     /// Ticks 60 times a second until `stop`.
@@ -50,11 +55,19 @@ impl Simulator {
     /// # Errors
     /// [`EngineError`].
     pub fn run(self, stop: &AtomicBool) -> Result<(), EngineError> {
-        let Self { mut engine, studio } = self;
+        let Self { mut engine, studio, meshes } = self;
         let desk = Desk::default();
+        let over = AtomicBool::new(false);
         thread::scope(|scope| {
             let cameras = scope.spawn(|| studio.run(&desk));
-            let ticked = tick_until(&mut engine, &desk, stop, || cameras.is_finished());
+            let each = |tick| {
+                if tick == BAKE_AT {
+                    scope.spawn(|| meshes.bake_all(&over));
+                }
+                !stop.load(Ordering::Relaxed) && !cameras.is_finished()
+            };
+            let ticked = tick_while(&mut engine, &desk, each);
+            over.store(true, Ordering::Relaxed);
             desk.close();
             let shot = cameras.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
             ticked.and(shot.map_err(EngineError::from))
@@ -62,14 +75,10 @@ impl Simulator {
     }
 }
 
-fn tick_until(
-    engine: &mut Engine,
-    desk: &Desk,
-    stop: &AtomicBool,
-    cameras_gone: impl Fn() -> bool,
-) -> Result<(), EngineError> {
+/// Ticks until `each`, which is told the tick's number, says no.
+fn tick_while(engine: &mut Engine, desk: &Desk, each: impl Fn(u64) -> bool) -> Result<(), EngineError> {
     let mut pace = Pace::new();
-    while !stop.load(Ordering::Relaxed) && !cameras_gone() {
+    while each(engine.world().tick()) {
         engine.tick(wall_nanos())?;
         if engine.world().tick().is_multiple_of(GREET_EVERY) {
             engine.greet()?;

@@ -34,6 +34,7 @@ mod pattern;
 mod plan;
 mod planes;
 mod portals;
+mod rig;
 mod scene;
 mod shadow;
 

@@ -1,7 +1,13 @@
 //! The meshes of all models of a catalogue, built once and shared by every scene.
+//!
+//! Shapes are built at once, so that what is wrong with a model is known before anything runs. What only makes them
+//! look good, occlusion and patterns, costs ten times as much: it is worked out for what is seen, when it is first seen.
+
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use cohabit_cdf::catalog::Stands;
-use cohabit_cdf::model::{Drive, Model};
+use cohabit_cdf::model::Model;
 use cohabit_cdf::{Catalog, ClassId, Property};
 use glam::Vec3;
 
@@ -10,6 +16,8 @@ use crate::kit::{Detail, ShapeError};
 use crate::mesh::{Aabb, Mesh};
 use crate::model_mesh;
 use crate::occlusion::Occluder;
+use crate::pattern::Pictures;
+use crate::rig::{self, Rig};
 
 /// Looks that no catalogue needs to have.
 const BODIES: &str = include_str!("bodies.toml");
@@ -69,29 +77,6 @@ pub enum ModelError {
     },
 }
 
-/// What moves a joint.
-#[derive(Clone, Copy, Debug, Eq, PartialEq)]
-pub(crate) enum Driver {
-    /// How far the object is open.
-    Opened,
-    /// How far it runs.
-    Running,
-    /// The pitch of the robot's head.
-    Head,
-    /// How far a body reaches forward.
-    Arm,
-}
-
-/// A joint, ready to move.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Rig {
-    pub driver: Driver,
-    pub at: Vec3,
-    pub axis: Vec3,
-    pub turn_rad: f32,
-    pub slide_m: f32,
-}
-
 /// One model at all levels of detail. The pieces are the same at each.
 #[derive(Debug)]
 pub(crate) struct ModelMesh {
@@ -103,6 +88,32 @@ pub(crate) struct ModelMesh {
     pub bounds: Aabb,
     /// Around all that may ever be drawn.
     pub reach: Aabb,
+    /// Whether a floor lies at z = 0.
+    standing: bool,
+    /// By [`Detail`], how much of the surrounding light reaches each corner; baked on first use.
+    ambient: [OnceLock<Vec<f32>>; Detail::ALL.len()],
+}
+
+impl ModelMesh {
+    /// How much of the surrounding light, 0 to 1, reaches each corner of a level.
+    pub(crate) fn ambient(&self, level: usize) -> &[f32] {
+        self.ambient[level].get_or_init(|| self.occluder().bake(&self.levels[level], self.standing))
+    }
+
+    /// Bakes every level that is not baked yet.
+    fn bake(&self) {
+        if self.ambient.iter().all(|known| known.get().is_some()) {
+            return;
+        }
+        let occluder = self.occluder();
+        for (mesh, ambient) in self.levels.iter().zip(&self.ambient) {
+            ambient.get_or_init(|| occluder.bake(mesh, self.standing));
+        }
+    }
+
+    fn occluder(&self) -> Occluder {
+        Occluder::new(&self.levels[0], reach_or_point(self.bounds))
+    }
 }
 
 /// How one class of object uses a model.
@@ -133,7 +144,7 @@ pub(crate) struct Bodies {
 }
 
 impl MeshLibrary {
-    /// Builds every mesh at every level of detail.
+    /// Builds every mesh at every level of detail. What is seen first is baked then: see [`Self::bake_all`].
     ///
     /// # Errors
     /// [`ModelError`] names the model and the part that cannot be built.
@@ -168,6 +179,18 @@ impl MeshLibrary {
         Ok(Self { models, classes, bodies })
     }
 
+    /// Bakes what has not been seen yet, so that no later picture has to wait for it: for a thread of its own, after the
+    /// first picture. Ends early once `stop` is set. Changes no picture.
+    pub fn bake_all(&self, stop: &AtomicBool) {
+        for model in &self.models {
+            if stop.load(Ordering::Relaxed) {
+                return;
+            }
+            model.bake();
+        }
+        Pictures::get().paint_all(stop);
+    }
+
     /// The box around an object of this class, closed and at rest, in its own frame.
     #[must_use]
     pub fn bounds(&self, class: ClassId) -> Aabb {
@@ -194,7 +217,7 @@ impl MeshLibrary {
     }
 }
 
-/// The mesh of every model, in order; shared out to all cores, because baking takes most of a second.
+/// The mesh of every model, in order; shared out to all cores, because there are hundreds.
 fn all_meshes(models: &[Model], stands: &[bool]) -> Vec<Result<ModelMesh, ModelError>> {
     let threads = std::thread::available_parallelism().map_or(1, usize::from).min(8);
     let jobs: Vec<(&Model, bool)> = models.iter().zip(stands.iter().copied()).collect();
@@ -224,7 +247,7 @@ fn class_looks(catalog: &Catalog, models: &[ModelMesh]) -> Result<Vec<ClassLook>
 }
 
 fn mesh_of(model: &Model, standing: bool) -> Result<ModelMesh, ModelError> {
-    let joints = rigs(model);
+    let joints = rig::rigs(model);
     let mut levels = Vec::with_capacity(Detail::ALL.len());
     for detail in Detail::ALL {
         levels.push(model_mesh::build(model, detail)?);
@@ -241,73 +264,15 @@ fn mesh_of(model: &Model, standing: bool) -> Result<ModelMesh, ModelError> {
         }
         reach = reach.union(own);
         if let Some(joint) = piece.joint {
-            reach = reach.union(swept(own, &joints[usize::from(joint)]));
+            reach = reach.union(rig::swept(own, &joints[usize::from(joint)]));
         }
     }
-    let occluder = Occluder::new(fine, reach_or_point(bounds));
-    for level in &mut levels {
-        occluder.bake(level, standing);
-    }
-    Ok(ModelMesh { levels, joints, bounds, reach: reach_or_point(reach) })
+    let ambient = [const { OnceLock::new() }; Detail::ALL.len()];
+    Ok(ModelMesh { levels, joints, bounds, reach: reach_or_point(reach), standing, ambient })
 }
 
 fn reach_or_point(bounds: Aabb) -> Aabb {
     if bounds.min.x <= bounds.max.x { bounds } else { Aabb { min: Vec3::ZERO, max: Vec3::ZERO } }
-}
-
-/// The box around a moving box on its whole way.
-fn swept(own: Aabb, rig: &Rig) -> Aabb {
-    let values: &[f32] = if rig.driver == Driver::Head { &[-1.2, -0.6, 0.6, 1.2] } else { &[0.25, 0.5, 0.75, 1.0] };
-    let mut all = own;
-    for value in values {
-        let (rotation, offset) = rig.moved(*value);
-        for corner in own.corners() {
-            all = all.with(rotation * corner + offset);
-        }
-    }
-    all
-}
-
-impl Rig {
-    /// The rotation and offset of what it moves, in the object's frame. A head takes its pitch in radians, upwards.
-    pub(crate) fn moved(&self, value: f32) -> (glam::Mat3, Vec3) {
-        let (angle, slide) = match self.driver {
-            // Turning about the left axis by a positive angle would lower the face.
-            Driver::Head => (if self.axis.y < 0.0 { value } else { -value }, 0.0),
-            _ => (self.turn_rad * value, self.slide_m * value),
-        };
-        let rotation = axis_rotation(self.axis, angle);
-        (rotation, self.at - rotation * self.at + self.axis * slide)
-    }
-}
-
-/// Rodrigues' formula, with the same bits on every machine.
-fn axis_rotation(axis: Vec3, angle: f32) -> glam::Mat3 {
-    let (sin, cos) = libm::sincosf(angle);
-    let (s, t) = (axis * sin, 1.0 - cos);
-    glam::Mat3::from_cols(
-        Vec3::new(cos + axis.x * axis.x * t, axis.x * axis.y * t + s.z, axis.x * axis.z * t - s.y),
-        Vec3::new(axis.x * axis.y * t - s.z, cos + axis.y * axis.y * t, axis.y * axis.z * t + s.x),
-        Vec3::new(axis.x * axis.z * t + s.y, axis.y * axis.z * t - s.x, cos + axis.z * axis.z * t),
-    )
-}
-
-fn rigs(model: &Model) -> Vec<Rig> {
-    let body = model.id == "robot" || model.id == "human";
-    let driver = |id: &str, drive: Drive| match drive {
-        _ if body && id.starts_with("head") => Driver::Head,
-        _ if body && id.starts_with("arm") => Driver::Arm,
-        Drive::Open => Driver::Opened,
-        Drive::On => Driver::Running,
-    };
-    let rig = |joint: &cohabit_cdf::model::Joint| Rig {
-        driver: driver(&joint.id, joint.driven_by),
-        at: Vec3::from_array(joint.at),
-        axis: Vec3::from_array(joint.axis).normalize_or(Vec3::Z),
-        turn_rad: joint.turn_deg.to_radians(),
-        slide_m: joint.slide_m,
-    };
-    model.joints.iter().map(rig).collect()
 }
 
 #[cfg(test)]
@@ -345,14 +310,5 @@ mod tests {
             let size = meshes.bounds(id).size();
             assert!(size.min_element() > 0.0 && size.max_element() < 12.0, "`{}` is {size} m large", class.id);
         }
-    }
-
-    #[test]
-    fn a_head_looks_up_and_an_arm_reaches_forward() {
-        let rig = |driver, turn_rad| Rig { driver, at: Vec3::ZERO, axis: Vec3::Y, turn_rad, slide_m: 0.0 };
-        let (turn, _) = rig(Driver::Head, 0.0).moved(0.3);
-        assert!((turn * Vec3::X).z > 0.2);
-        let (turn, _) = rig(Driver::Arm, -1.2).moved(1.0);
-        assert!((turn * Vec3::NEG_Z).x > 0.9);
     }
 }

@@ -99,8 +99,6 @@ pub(crate) struct Mesh {
     pub positions: Vec<Vec3>,
     /// Unit normals at the corners.
     pub normals: Vec<Vec3>,
-    /// How much of the surrounding light reaches each corner, 0 to 1.
-    pub ambient: Vec<f32>,
     /// Three corners each, counter-clockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
     /// The surface of each triangle.
@@ -139,7 +137,6 @@ impl Mesh {
         let base = self.positions.len() as u32;
         self.positions.extend_from_slice(&solid.positions);
         self.normals.extend_from_slice(&solid.normals);
-        self.ambient.resize(self.positions.len(), 1.0);
         for triangle in &solid.triangles {
             let [a, b, c] = triangle.map(|corner| solid.positions[corner as usize]);
             let index = self.surface_index(surface((b - a).cross(c - a)));

@@ -14,13 +14,28 @@ pub(crate) fn cells(x: i32, y: i32, seed: u32) -> f32 {
 
 /// Smooth noise between 0 and 1 over a lattice that repeats after `columns` and `rows`.
 pub(crate) fn value(x: f32, y: f32, columns: i32, rows: i32, seed: u32) -> f32 {
-    let (ix, iy) = (x.floor(), y.floor());
+    let ((ix, fx), (iy, fy)) = (split(x), split(y));
     let ease = |t: f32| t * t * (3.0 - 2.0 * t);
-    let (fx, fy) = (ease(x - ix), ease(y - iy));
-    let at = |dx: i32, dy: i32| cells((ix as i32 + dx).rem_euclid(columns), (iy as i32 + dy).rem_euclid(rows), seed);
-    let low = at(0, 0) + (at(1, 0) - at(0, 0)) * fx;
-    let high = at(0, 1) + (at(1, 1) - at(0, 1)) * fx;
+    let (fx, fy) = (ease(fx), ease(fy));
+    let ((x0, x1), (y0, y1)) = (neighbours(ix, columns), neighbours(iy, rows));
+    let near = cells(x0, y0, seed);
+    let low = near + (cells(x1, y0, seed) - near) * fx;
+    let far = cells(x0, y1, seed);
+    let high = far + (cells(x1, y1, seed) - far) * fx;
     low + (high - low) * fy
+}
+
+/// The whole number at or below a coordinate, and what is left.
+fn split(x: f32) -> (i32, f32) {
+    let towards_zero = x as i32;
+    let whole = if towards_zero as f32 > x { towards_zero - 1 } else { towards_zero };
+    (whole, x - whole as f32)
+}
+
+/// The cells at and after `i` of a lattice that repeats; a division only outside of its first copy.
+fn neighbours(i: i32, count: i32) -> (i32, i32) {
+    let here = if (0..count).contains(&i) { i } else { i.rem_euclid(count) };
+    (here, if here + 1 == count { 0 } else { here + 1 })
 }
 
 /// Octaves of [`value`], each twice as fine and half as strong; between 0 and 1.

@@ -63,16 +63,18 @@ impl Occluder {
         inside.then(|| (z * self.size[1] + y) * self.size[0] + x)
     }
 
-    /// Bakes every corner of `mesh`; `standing` says that a floor lies at z = 0.
-    pub(crate) fn bake(&self, mesh: &mut Mesh, standing: bool) {
+    /// How much of the surrounding light reaches each corner of `mesh`; `standing` says that a floor lies at z = 0.
+    pub(crate) fn bake(&self, mesh: &Mesh, standing: bool) -> Vec<f32> {
         let rays = directions();
+        let mut ambient = vec![1.0; mesh.positions.len()];
         for piece in &mesh.pieces {
             for corner in piece.corners.start as usize..piece.corners.end as usize {
                 let open = self.openness(mesh.positions[corner], mesh.normals[corner], &rays, standing);
                 let least = if piece.joint.is_some() || !piece.is_usual() { MOVING_LEAST } else { LEAST };
-                mesh.ambient[corner] = open.max(least);
+                ambient[corner] = open.max(least);
             }
         }
+        ambient
     }
 
     fn openness(&self, position: Vec3, normal: Vec3, rays: &[Vec3], standing: bool) -> f32 {

@@ -4,6 +4,7 @@
 //! A pattern modulates a surface's colour; it never knows which colour that is.
 
 use std::sync::OnceLock;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::noise::{cells, fractal, value};
 
@@ -71,14 +72,27 @@ pub(crate) struct Gloss {
 }
 
 impl Pattern {
-    const COUNT: usize = 22;
+    /// Those that have a picture.
+    const TEXTURED: [Self; 14] = [
+        Self::Wall,
+        Self::Metal,
+        Self::Wood,
+        Self::Planks,
+        Self::Ceiling,
+        Self::Fabric,
+        Self::Paper,
+        Self::Brick,
+        Self::Tile,
+        Self::Carpet,
+        Self::Leaf,
+        Self::Food,
+        Self::Panels,
+        Self::Concrete,
+    ];
 
     /// Whether it has a picture.
-    pub(crate) const fn is_textured(self) -> bool {
-        !matches!(
-            self,
-            Self::Plain | Self::Ink | Self::Plastic | Self::Glass | Self::Ceramic | Self::Glow | Self::Lamp | Self::Sky
-        )
+    pub(crate) fn is_textured(self) -> bool {
+        Self::TEXTURED.contains(&self)
     }
 
     /// The length of its picture's side, m.
@@ -251,42 +265,32 @@ pub(crate) struct Picture {
     per_m: f32,
 }
 
-/// All pictures, by pattern.
+/// All pictures, by pattern, each painted on first use.
 pub(crate) struct Pictures {
-    all: Vec<Option<Picture>>,
+    all: [OnceLock<Picture>; Pattern::TEXTURED.len()],
 }
 
 impl Pictures {
-    /// The pictures, painted on first use.
+    /// The pictures.
     pub(crate) fn get() -> &'static Self {
-        static ALL: OnceLock<Pictures> = OnceLock::new();
-        ALL.get_or_init(|| {
-            let patterns = [
-                Pattern::Metal,
-                Pattern::Wood,
-                Pattern::Fabric,
-                Pattern::Paper,
-                Pattern::Brick,
-                Pattern::Tile,
-                Pattern::Carpet,
-                Pattern::Leaf,
-                Pattern::Food,
-                Pattern::Wall,
-                Pattern::Panels,
-                Pattern::Planks,
-                Pattern::Concrete,
-                Pattern::Ceiling,
-            ];
-            let mut all: Vec<Option<Picture>> = (0..Pattern::COUNT).map(|_| None).collect();
-            for pattern in patterns {
-                all[pattern as usize] = Some(Picture::paint(pattern));
-            }
-            Self { all }
-        })
+        static ALL: Pictures = Pictures { all: [const { OnceLock::new() }; Pattern::TEXTURED.len()] };
+        &ALL
     }
 
+    /// The picture of a pattern; nothing if it has none.
     pub(crate) fn of(&self, pattern: Pattern) -> Option<&Picture> {
-        self.all[pattern as usize].as_ref()
+        let index = Pattern::TEXTURED.iter().position(|textured| *textured == pattern)?;
+        Some(self.all[index].get_or_init(|| Picture::paint(pattern)))
+    }
+
+    /// Paints what is not painted yet, until `stop` is set.
+    pub(crate) fn paint_all(&self, stop: &AtomicBool) {
+        for pattern in Pattern::TEXTURED {
+            if stop.load(Ordering::Relaxed) {
+                return;
+            }
+            self.of(pattern);
+        }
     }
 }
 

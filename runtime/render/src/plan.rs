@@ -71,6 +71,8 @@ pub(crate) struct Gap {
 #[derive(Debug)]
 pub(crate) struct Plan {
     pub mesh: Mesh,
+    /// How much light reaches each corner of the mesh; around 1.
+    pub ambient: Vec<f32>,
     pub parts: Vec<PlanPart>,
     pub gaps: Vec<Gap>,
     /// `[west, south, east, north]` at the middle of the walls.
@@ -89,6 +91,7 @@ impl Plan {
         }
         let mut plan = Self {
             mesh: Mesh::default(),
+            ambient: Vec::new(),
             parts: Vec::new(),
             gaps: Vec::new(),
             rects,
@@ -100,6 +103,7 @@ impl Plan {
             room::build(&mut plan, room);
         }
         room::frames(&mut plan);
+        plan.ambient.resize(plan.mesh.positions.len(), 1.0);
         plan
     }
 

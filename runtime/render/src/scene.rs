@@ -9,9 +9,10 @@ use glam::{Mat3, Quat, Vec3};
 
 use crate::color;
 use crate::instance::{Highlight, Instance, Look};
-use crate::library::{Driver, MeshLibrary};
+use crate::library::MeshLibrary;
 use crate::mesh::Aabb;
 use crate::plan::{HALF_WALL_M, Plan};
+use crate::rig::Driver;
 use crate::shadow::ShadowMap;
 
 /// From an instance's frame, or a moving part's, to the world, and back.

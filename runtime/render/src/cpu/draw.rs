@@ -3,6 +3,7 @@
 use glam::{Mat3, Vec3};
 
 use crate::camera::{Camera, View};
+use crate::library::ModelMesh;
 use crate::mesh::{Mesh, Piece};
 use crate::plan::RoomSurface;
 use crate::portals::Visible;
@@ -15,10 +16,30 @@ const LEAST_PX: f32 = 0.35;
 /// What is left of the light where the lamps are off.
 const UNLIT: Vec3 = Vec3::new(0.13, 0.15, 0.20);
 
+/// How much of the surrounding light reaches the corners of a mesh.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Ambient<'a> {
+    /// Known from the start.
+    Known(&'a [f32]),
+    /// Of a model's level; worked out when it is first asked for.
+    Of(&'a ModelMesh, usize),
+}
+
+impl<'a> Ambient<'a> {
+    #[inline]
+    pub(super) fn corners(self) -> &'a [f32] {
+        match self {
+            Self::Known(corners) => corners,
+            Self::Of(model, level) => model.ambient(level),
+        }
+    }
+}
+
 /// One piece of a mesh in its place.
 #[derive(Debug)]
 pub(super) struct Draw<'a> {
     pub mesh: &'a Mesh,
+    pub ambient: Ambient<'a>,
     pub piece: &'a Piece,
     pub transform: Transform,
     pub id: u32,
@@ -60,6 +81,7 @@ pub(super) fn collect<'a>(scene: &'a Scene, camera: &Camera, view: &View, visibl
         let room = part.room as usize;
         draws.push(Draw {
             mesh: &scene.plan.mesh,
+            ambient: Ambient::Known(&scene.plan.ambient),
             piece: &scene.plan.mesh.pieces[part.piece as usize],
             transform: Transform::IDENTITY,
             id: part.id,
@@ -85,13 +107,15 @@ pub(super) fn collect<'a>(scene: &'a Scene, camera: &Camera, view: &View, visibl
             continue;
         }
         let level = LEVEL_PX.iter().filter(|limit| pixels < **limit).count();
-        let mesh = &scene.meshes.model(placed.model).levels[level];
+        let model = scene.meshes.model(placed.model);
+        let mesh = &model.levels[level];
         let room = placed.room as usize;
         let near_m = nearest(view, placed.bounds.min, placed.bounds.max);
         for (piece, transform) in &placed.pieces {
             let transform = placed.transforms[usize::from(*transform)];
             draws.push(Draw {
                 mesh,
+                ambient: Ambient::Of(model, level),
                 piece: &mesh.pieces[usize::from(*piece)],
                 transform,
                 id: placed.id,

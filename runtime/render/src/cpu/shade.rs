@@ -6,7 +6,7 @@
 use glam::{Mat3, Vec3};
 
 use super::NOTHING;
-use super::draw::Draw;
+use super::draw::{Ambient, Draw};
 use super::setup::Triangle;
 use crate::camera::View;
 use crate::color::{from_srgb, to_srgb};
@@ -151,7 +151,7 @@ impl<'a> Shader<'a> {
             seen,
             |x| empty.push(x),
             |run| {
-                let ground = Ground::new(self, &run, y);
+                let ground = Ground::new(self, &run, y, None);
                 let mut out = out_cell.borrow_mut();
                 if ground.flat {
                     out[run.from..run.to].fill(bytes(ground.normal_at([0.0; 2])));
@@ -182,7 +182,7 @@ impl<'a> Shader<'a> {
     }
 
     fn color_run(&self, table: &[u8; 4096], y: usize, run: &Run<'_>, nearness: &[f32], out: &mut [[u8; 4]]) {
-        let ground = Ground::new(self, run, y);
+        let ground = Ground::new(self, run, y, Some(run.draw.ambient));
         let surface = &run.draw.mesh.surfaces[usize::from(run.draw.mesh.surface_of[run.index])];
         let paint = match surface.paint {
             Paint::Fixed(color) => color,
@@ -352,7 +352,7 @@ struct Ground<'a> {
 }
 
 impl<'a> Ground<'a> {
-    fn new(shader: &Shader<'a>, run: &Run<'a>, y: usize) -> Self {
+    fn new(shader: &Shader<'a>, run: &Run<'a>, y: usize, ambient: Option<Ambient<'_>>) -> Self {
         let draw = run.draw;
         let mesh = draw.mesh;
         let corners = mesh.triangles[run.index].map(|corner| corner as usize);
@@ -366,7 +366,8 @@ impl<'a> Ground<'a> {
         } else {
             [first, to_world * b - first, to_world * c - first]
         };
-        let [d, e, f] = corners.map(|corner| mesh.ambient[corner]);
+        let ambient = ambient.map(Ambient::corners);
+        let [d, e, f] = corners.map(|corner| ambient.map_or(1.0, |ambient| ambient[corner]));
         let row = shader.first_ray + shader.per_y * y as f32;
         let inverse: Mat3 = draw.transform.inverse;
         Self {

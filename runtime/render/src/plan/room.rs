@@ -124,8 +124,9 @@ fn sheet([west, south, east, north]: [f32; 4], z: f32, faces_down: bool) -> Soli
 }
 
 fn bake(plan: &mut Plan, first: usize, light: &RoomLight<'_>) {
+    plan.ambient.resize(plan.mesh.positions.len(), 1.0);
     for corner in first..plan.mesh.positions.len() {
-        plan.mesh.ambient[corner] = light.at(plan.mesh.positions[corner], plan.mesh.normals[corner]);
+        plan.ambient[corner] = light.at(plan.mesh.positions[corner], plan.mesh.normals[corner]);
     }
 }
 
