@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use cohabit_cdf::{Catalog, Fluid, ObjectId, state::StateFlag};
 
 use crate::{
-    context::Focus,
+    context::{Failure, Focus},
     describe,
     ground::{Ground, Miss, Want, has_state},
     intent::Intent,
@@ -13,6 +13,7 @@ use crate::{
     lexicon::{Lexicon, StateWord},
     phrase::{Phrase, RelationKind},
     question::{Question, QuestionKind},
+    report,
     understanding::{Step, Understanding},
 };
 
@@ -24,6 +25,10 @@ pub(crate) const EXAMPLES: &str = "I can go to rooms and objects, pick things up
      repair and color things. For example: \"go to the break room\", \"pick up the red mug\", \"heat the mug in the microwave\", \
      \"where is the milk?\". Say \"stop\" to stop me.";
 
+/// One or two of them, where a reply has something else to say first.
+pub(crate) const HINT: &str =
+    "You can tell me, for example, \"go to the break room\" or \"pick up the mug\", or ask \"what can you do?\"";
+
 /// Answers questions in a scene.
 pub(crate) struct Answerer<'a> {
     pub(crate) catalog: &'a Catalog,
@@ -32,6 +37,8 @@ pub(crate) struct Answerer<'a> {
     pub(crate) focus: &'a Focus,
     /// The steps under way.
     pub(crate) running: &'a [Step],
+    /// What failed last.
+    pub(crate) failed: Option<&'a Failure>,
 }
 
 impl Answerer<'_> {
@@ -45,6 +52,13 @@ impl Answerer<'_> {
             (QuestionKind::Abilities, _) => Understanding::answer(EXAMPLES),
             (QuestionKind::Doing, _) => self.doing(),
             (QuestionKind::Goals, _) => self.goals(),
+            (QuestionKind::Options, _) => self.options(),
+            (QuestionKind::HowTo, _) if question.rest.is_empty() => Understanding::answer(EXAMPLES),
+            (QuestionKind::HowTo, _) => {
+                let wish = question.rest.join(" ");
+                Understanding::answer(format!("Tell me \"{wish}\", and I will try."))
+            }
+            (QuestionKind::Why, _) => self.why(),
             (QuestionKind::Seeing, _) => self.seeing(),
             (QuestionKind::Contents, Some(phrase)) => self.with_object(phrase, |id| self.contents(id)),
             (QuestionKind::Text, phrase) => self.text(phrase),
@@ -57,7 +71,7 @@ impl Answerer<'_> {
             (QuestionKind::Where, _) if !question.rest.is_empty() => {
                 Understanding::refusal(format!("I do not know what \"{}\" is.", question.rest.join(" ")))
             }
-            _ => Understanding::refusal(format!("I do not know how to answer that. {EXAMPLES}")),
+            _ => Understanding::refusal(format!("I do not know how to answer that. {HINT}")),
         }
     }
 
@@ -116,6 +130,28 @@ impl Answerer<'_> {
         Understanding::answer(format!("Still to do: {}.{done}", texts.join("; ")))
     }
 
+    /// What the mission wants next, and how to ask for it.
+    fn options(&self) -> Understanding {
+        let how = "Tell me where to go, what to pick up, put, open, close or switch, or ask me where something is.";
+        let goals = || self.scene.goals.iter().filter(|goal| !goal.text.is_empty());
+        Understanding::answer(match goals().find(|goal| !goal.met) {
+            Some(goal) => format!("The mission's next goal: {}. {how}", goal.text.trim_end_matches('.')),
+            None if goals().next().is_some() => format!("Everything is done! {how}"),
+            None => how.to_owned(),
+        })
+    }
+
+    /// Why the last step failed, if it did.
+    fn why(&self) -> Understanding {
+        Understanding::answer(match self.failed {
+            Some(failure) if failure.step.says.is_empty() => describe::sentence(report::cause(failure.status)),
+            Some(failure) => {
+                format!("I did not finish {}: {}.", failure.step.says, report::cause(failure.status))
+            }
+            None => "Nothing went wrong that I know of. What shall I do?".to_owned(),
+        })
+    }
+
     fn seeing(&self) -> Understanding {
         let visible: Vec<&KnownObject> = self.scene.objects.iter().filter(|object| object.visible).collect();
         let here: Vec<&KnownObject> =
@@ -133,11 +169,8 @@ impl Answerer<'_> {
             *counts.entry(describe::bare(self.catalog, self.scene, object.id)).or_default() += 1;
         }
         let more = counts.len().saturating_sub(LIST);
-        let mut names: Vec<String> = counts
-            .into_iter()
-            .take(LIST)
-            .map(|(name, count)| if count == 1 { describe::indefinite(&name) } else { format!("{count} × {name}") })
-            .collect();
+        let mut names: Vec<String> =
+            counts.into_iter().take(LIST).map(|(name, count)| describe::counted(&name, count)).collect();
         if more > 0 {
             names.push(format!("{more} more"));
         }
@@ -201,7 +234,14 @@ impl Answerer<'_> {
             return Understanding::answer(text);
         }
         let highlight = inside.iter().map(|object| object.id).collect();
-        Understanding::Answer { text: format!("{start} {place} there is {}.", self.listed(&inside)), highlight }
+        Understanding::Answer {
+            text: format!(
+                "{start} {place} there {} {}.",
+                if inside.len() > 1 { "are" } else { "is" },
+                self.listed(&inside)
+            ),
+            highlight,
+        }
     }
 
     fn text(&self, phrase: Option<&Phrase>) -> Understanding {

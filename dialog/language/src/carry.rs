@@ -115,6 +115,7 @@ impl Planner<'_> {
         let object = self.what_to_place(settled)?;
         // Taken before the goal is grounded: `put it on the table` means a table near where it is.
         match &settled.goal {
+            None if settled.is_back => self.put_back(object),
             None if settled.intent == Intent::Bring => {
                 self.pick_up(object, self.may_put_down)?;
                 Ok(())

@@ -2,7 +2,7 @@
 
 use cohabit_cdf::{Action, GoToTarget, ObjectId, Status};
 
-use crate::{clause::Clause, understanding::Step};
+use crate::{clause::Clause, known::Known, understanding::Step};
 
 /// How many objects a pronoun may reach back.
 const MEMORY: usize = 8;
@@ -35,6 +35,12 @@ pub(crate) struct Focus {
     pub(crate) recent: Vec<ObjectId>,
     /// The last thing gone to, opened or put things into.
     pub(crate) place: Option<ObjectId>,
+    /// What was taken, and from where, the latest first.
+    pub(crate) origins: Vec<(ObjectId, ObjectId)>,
+    /// What was put somewhere last.
+    pub(crate) placed: Option<ObjectId>,
+    /// Where the robot stood when it last set out, m.
+    pub(crate) start_m: Option<[f32; 2]>,
 }
 
 /// A question of the robot's that waits for its answer.
@@ -69,6 +75,21 @@ impl Focus {
         self.recent.retain(|known| *known != object);
         self.recent.insert(0, object);
         self.recent.truncate(MEMORY);
+    }
+
+    /// Remembers what is taken from where, and what is put down, before the step is done.
+    pub(crate) fn remember(&mut self, scene: &Known, action: &Action) {
+        match *action {
+            Action::PickUp { object } => {
+                if let Some(origin) = scene.object(object).and_then(|object| object.parent) {
+                    self.origins.retain(|(taken, _)| *taken != object);
+                    self.origins.insert(0, (object, origin));
+                    self.origins.truncate(MEMORY);
+                }
+            }
+            Action::Place { .. } => self.placed = scene.robot.held,
+            _ => {}
+        }
     }
 
     /// Follows what a step is about.

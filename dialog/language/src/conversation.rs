@@ -3,7 +3,7 @@
 use cohabit_cdf::{Catalog, ObjectId};
 
 use crate::{
-    answer::{Answerer, EXAMPLES},
+    answer::{Answerer, HINT},
     clause::{self, Clause, Part},
     context::{Context, Focus, Pending, Role, Slot},
     describe,
@@ -38,7 +38,7 @@ impl Conversation<'_> {
         }
         let words = self.lexicon.normalise(utterance);
         if words.iter().all(|word| token::is_punctuation(word)) {
-            return Understanding::refusal(format!("I did not hear anything. {EXAMPLES}"));
+            return Understanding::refusal(format!("I did not hear anything. {HINT}"));
         }
         if let Some(Pending::Lab { words: before, at }) = &context.pending
             && let Some(room) = lab::answered(self.lexicon, &words)
@@ -84,12 +84,14 @@ impl Conversation<'_> {
                 scene: self.scene,
                 focus: &context.focus,
                 running: &context.running,
+                failed: context.failed.as_ref(),
             };
             let answer = answerer.answer(&question);
             if let Understanding::Answer { highlight, .. } = &answer
                 && let [one] = highlight.as_slice()
             {
                 context.focus.mention(*one);
+                context.focus.place = self.place_spoken_of(*one);
             }
             return answer;
         }
@@ -97,6 +99,37 @@ impl Conversation<'_> {
             return reply::unclear(&clause::unknown_words(self.lexicon, words));
         }
         self.request(parts, context)
+    }
+
+    /// `go there`, `put it there`, after an answer about `id`: itself, or what carries it.
+    fn place_spoken_of(&self, id: ObjectId) -> Option<ObjectId> {
+        let object = self.scene.object(id)?;
+        let is_carried = self.catalog.class(object.class).has(cohabit_cdf::Property::Pickupable);
+        if is_carried { object.parent } else { Some(id) }
+    }
+
+    /// Takes back the last plan.
+    fn undo(&self, context: &mut Context) -> Understanding {
+        if context.last_plan.is_empty() {
+            return Understanding::answer("There is nothing to undo yet.");
+        }
+        if context.failed.is_some() || !context.running.is_empty() {
+            return Understanding::answer("That was not finished, so I cannot undo it. Tell me what to do instead.");
+        }
+        let mut planner = self.planner(context.focus.clone());
+        match planner.undo(&context.last_plan) {
+            Ok(()) => {
+                context.focus = planner.focus;
+                if planner.steps.is_empty() {
+                    return Understanding::answer("There is nothing to undo: I only looked.");
+                }
+                let reply = reply::plan_reply(&planner.steps, &planner.notes);
+                context.begin(&planner.steps);
+                Understanding::Plan { steps: planner.steps, reply }
+            }
+            Err(Fault::Cannot(text)) => Understanding::refusal(text),
+            Err(_) => Understanding::refusal("I cannot undo that. Tell me what to do instead."),
+        }
     }
 
     /// Whether most of the words are not known: then a verb among them is chance.
@@ -159,6 +192,7 @@ impl Conversation<'_> {
         match planner.run(&clauses) {
             Ok(()) => {
                 context.focus = planner.focus;
+                self.remember_start(&planner.steps, context);
                 let text = reply::plan_reply(&planner.steps, &planner.notes);
                 if planner.steps.is_empty() {
                     context.pending = None;
@@ -168,6 +202,16 @@ impl Conversation<'_> {
                 Understanding::Plan { steps: planner.steps, reply: text }
             }
             Err(fault) => self.fault(fault, clauses, may_put_down, context),
+        }
+    }
+
+    /// Where the robot stands, if it is about to leave.
+    fn remember_start(&self, steps: &[Step], context: &mut Context) {
+        use cohabit_cdf::Action::{GoTo, Interact, PickUp, Place};
+        let leaves = |step: &Step| matches!(step.action, GoTo { .. } | PickUp { .. } | Place { .. } | Interact { .. });
+        if steps.iter().any(leaves) {
+            let [x, y, _] = self.scene.robot.position_m;
+            context.focus.start_m = Some([x, y]);
         }
     }
 
@@ -227,11 +271,13 @@ impl Conversation<'_> {
         Understanding::Question { text, candidates }
     }
 
+    /// The reply to what asks for nothing to be done.
+    fn chat(&self, words: &[String]) -> Option<&str> {
+        self.lexicon.chat.exact(&plain(words)).map(String::as_str)
+    }
+
     fn small(&self, words: &[String]) -> Vec<Small> {
-        let is_address = |word: &str| matches!(word, "robot" | "tam");
-        let says = |word: &&String| !token::is_punctuation(word) && !is_address(word);
-        let plain: Vec<String> = words.iter().filter(says).cloned().collect();
-        let exact = self.lexicon.small.exact(&plain);
+        let exact = self.lexicon.small.exact(&plain(words));
         exact.map(|smalls| smalls.iter().copied().collect()).unwrap_or_default()
     }
 
@@ -266,10 +312,16 @@ impl Conversation<'_> {
                 _ => Understanding::answer("All right."),
             });
         }
+        if is(Small::Undo) {
+            return Some(self.undo(context));
+        }
         if is(Small::Thanks) {
             return Some(Understanding::answer("You are welcome!"));
         }
-        is(Small::Hello).then(|| Understanding::answer("Hello! What can I do for you?"))
+        if is(Small::Hello) {
+            return Some(Understanding::answer("Hello! What can I do for you?"));
+        }
+        self.chat(words).map(Understanding::answer)
     }
 
     /// The remedy that was offered after a failure, then the failed step again, then the rest.
@@ -304,7 +356,7 @@ impl Conversation<'_> {
                 let left = self.answered(words, &candidates, is_yes, context);
                 match left.as_slice() {
                     [one] => Some(self.plan(chosen(clauses, slot, *one), may_put_down, context)),
-                    [] if is_command || question::read(self.lexicon, words).is_some() => None,
+                    [] if is_command || self.is_aside(words) => None,
                     [] => {
                         context.pending =
                             Some(Pending::Which { clauses, slot, candidates: candidates.clone(), may_put_down });
@@ -319,6 +371,14 @@ impl Conversation<'_> {
                 }
             }
         }
+    }
+
+    /// Whether it is a question, a courtesy or such, and so no answer.
+    fn is_aside(&self, words: &[String]) -> bool {
+        let aside = [Small::Hello, Small::Thanks, Small::Undo];
+        question::read(self.lexicon, words).is_some()
+            || self.chat(words).is_some()
+            || self.small(words).iter().any(|small| aside.contains(small))
     }
 
     /// The candidates that an answer leaves.
@@ -363,6 +423,12 @@ impl Conversation<'_> {
             (reader.is_done() && phrase.says_something() && phrase.unknown.is_empty()).then_some(phrase)
         })
     }
+}
+
+/// The words without punctuation and without the robot's name.
+fn plain(words: &[String]) -> Vec<String> {
+    let is_address = |word: &str| matches!(word, "robot" | "tam");
+    words.iter().filter(|word| !token::is_punctuation(word) && !is_address(word)).cloned().collect()
 }
 
 /// The clauses with one phrase settled.

@@ -1,7 +1,7 @@
 //! How the robot speaks of objects and places.
 
 use cohabit_cdf::{
-    Catalog, ClassId, Color, Fluid, ObjectId,
+    Catalog, ClassId, Color, Fluid, ObjectId, Property,
     state::{StateFlag, StateFlags},
 };
 
@@ -102,7 +102,11 @@ pub(crate) fn location(catalog: &Catalog, scene: &Known, id: ObjectId) -> String
     }
     let mut parts = Vec::new();
     if let Some(parent) = object.parent.and_then(|parent| scene.object(parent)) {
-        parts.push(format!("{} {}", inside(catalog, parent.class), short(catalog, scene, parent.id)));
+        // What cannot be carried stands on a cupboard, not in it.
+        let is_fixed = !catalog.class(object.class).has(Property::Pickupable) && parent.id != id;
+        let is_part = catalog.class(parent.class).receptacle.as_ref().is_some_and(|place| !place.keys.is_empty());
+        let preposition = if is_fixed && !is_part { "on" } else { inside(catalog, parent.class) };
+        parts.push(format!("{preposition} {}", short(catalog, scene, parent.id)));
     }
     if object.room != scene.robot.room {
         parts.push(format!("in the {}", object.room.name()));
@@ -178,6 +182,36 @@ pub(crate) fn indefinite(noun: &str) -> String {
     }
     let article = if noun.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
     format!("{article} {noun}")
+}
+
+/// So many of a noun, in words: `an apple`, `two apples`.
+pub(crate) fn counted(noun: &str, count: usize) -> String {
+    const NUMBERS: [&str; 8] = ["two", "three", "four", "five", "six", "seven", "eight", "nine"];
+    if count < 2 {
+        return indefinite(noun);
+    }
+    let number = NUMBERS.get(count - 2).map_or_else(|| count.to_string(), |number| (*number).to_owned());
+    if MASS.contains(&noun) {
+        return format!("{number} times {noun}");
+    }
+    format!("{number} {}", plural(noun))
+}
+
+fn plural(noun: &str) -> String {
+    const VOWEL_Y: [&str; 4] = ["ay", "ey", "oy", "uy"];
+    const HISSING: [&str; 5] = ["ss", "x", "z", "ch", "sh"];
+    let ends = |endings: &[&str]| endings.iter().any(|ending| noun.ends_with(ending));
+    if let Some(stem) = noun.strip_suffix("fe").or_else(|| noun.strip_suffix('f').filter(|_| ends(&["lf"]))) {
+        return format!("{stem}ves");
+    }
+    if let Some(stem) = noun.strip_suffix('y').filter(|_| !ends(&VOWEL_Y)) {
+        return format!("{stem}ies");
+    }
+    match noun {
+        _ if ends(&HISSING) => format!("{noun}es"),
+        _ if noun.ends_with('s') => noun.to_owned(),
+        _ => format!("{noun}s"),
+    }
 }
 
 /// The text with a capital letter at its start and a full stop at its end.

@@ -84,6 +84,7 @@ pub(crate) enum Small {
     Hello,
     Thanks,
     Again,
+    Undo,
 }
 
 /// The tables.
@@ -117,6 +118,8 @@ pub(crate) struct Lexicon {
     /// First words of a verb whose last word may stand after the object; that word; the intent.
     pub(crate) separable: Vec<(Vec<String>, String, Intent)>,
     pub(crate) questions: PhraseTable<QuestionKind>,
+    /// Replies to what asks for nothing to be done.
+    pub(crate) chat: PhraseTable<String>,
     pub(crate) classes: PhraseTable<Vec<Naming>>,
     /// Single words of names of several words: `trash` for the trash can.
     pub(crate) name_parts: PhraseTable<Vec<Naming>>,
@@ -164,6 +167,7 @@ struct WordFile {
     hello: Words,
     thanks: Words,
     again: Words,
+    undo: Words,
 }
 
 #[derive(Deserialize)]
@@ -186,6 +190,18 @@ struct VerbEntry {
     words: Vec<String>,
     #[serde(default)]
     split: Vec<String>,
+}
+
+#[derive(Deserialize)]
+struct ChatFile {
+    chat: Vec<ChatEntry>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ChatEntry {
+    words: Vec<String>,
+    reply: String,
 }
 
 #[derive(Deserialize)]
@@ -292,6 +308,7 @@ impl Lexicon {
             (Small::Hello, &file.hello),
             (Small::Thanks, &file.thanks),
             (Small::Again, &file.again),
+            (Small::Undo, &file.undo),
         ];
         for (small, list) in lists {
             for word in &list.words {
@@ -319,6 +336,10 @@ impl Lexicon {
         let file: QuestionFile = parse(include_str!("../data/questions.toml"));
         for entry in file.questions {
             entry.starts.iter().for_each(|start| self.questions.insert(start, entry.kind));
+        }
+        let file: ChatFile = parse(include_str!("../data/chat.toml"));
+        for entry in file.chat {
+            entry.words.iter().for_each(|words| self.chat.insert(words, entry.reply.clone()));
         }
     }
 
@@ -400,6 +421,7 @@ impl Lexicon {
         self.verbs.words().for_each(&mut learn);
         self.questions.words().for_each(&mut learn);
         self.classes.words().for_each(&mut learn);
+        self.chat.words().for_each(|word| vocabulary.learn_plain(word));
         include_str!("../data/common.txt").split_whitespace().for_each(|word| vocabulary.learn_plain(word));
         self.vocabulary = vocabulary;
     }

@@ -45,6 +45,7 @@ mod spelling;
 mod table;
 mod token;
 mod understanding;
+mod undo;
 
 use std::sync::Arc;
 

@@ -71,7 +71,8 @@ impl Planner<'_> {
             Intent::Turn => return self.turn(clause),
             Intent::Look => self.look(clause),
             Intent::Impossible => {
-                return Err(Fault::Cannot(format!("I cannot {} things, I am afraid.", clause.verb)));
+                let things = if clause.objects.is_empty() { "" } else { " things" };
+                return Err(Fault::Cannot(format!("I cannot {}{things}, I am afraid.", clause.verb)));
             }
             _ => return self.add_object_clause(clause),
         }
@@ -98,6 +99,7 @@ impl Planner<'_> {
 
     /// Adds a step and imagines its effect.
     pub(crate) fn push(&mut self, action: Action, says: String) {
+        self.focus.remember(&self.scene, &action);
         imagine::apply(&mut self.scene, &action, self.devices);
         self.focus.follow(&action);
         self.steps.push(Step { action, says });
@@ -203,7 +205,9 @@ impl Planner<'_> {
 
     fn add_door(&mut self, settled: &Settled) -> Result<(), Fault> {
         let opens = settled.intent == Intent::Open;
-        let objects = match self.place_with_door(settled) {
+        let wants_change =
+            |place: &ObjectId| self.scene.object(*place).is_some_and(|place| place.has(StateFlag::Opened) != opens);
+        let objects = match self.place_with_door(settled).filter(wants_change) {
             Some(place) => vec![place],
             None => self.find_objects(settled, &Want::object(settled.intent))?,
         };
@@ -327,6 +331,7 @@ impl Planner<'_> {
                 self.turn(&Clause { amount: None, ..clause.clone() })?;
                 self.walk(distance)
             }
+            Some(Direction::Backward) if !is_measured && clause.verb == "come" => self.go_back(),
             Some(Direction::Backward) => self.walk(-distance),
             Some(Direction::Up | Direction::Down) => Err(Fault::Cannot("I can only move over the floor.".to_owned())),
             Some(Direction::Forward) | None if clause.places.is_empty() || is_measured => self.walk(distance),
@@ -334,7 +339,7 @@ impl Planner<'_> {
         }
     }
 
-    fn walk(&mut self, distance_m: f32) -> Result<(), Fault> {
+    pub(crate) fn walk(&mut self, distance_m: f32) -> Result<(), Fault> {
         if distance_m.abs() > LONGEST_MOVE_M {
             return Err(Fault::Cannot(format!("That is too far: I can go {LONGEST_MOVE_M} meters at a time.")));
         }
@@ -366,7 +371,7 @@ impl Planner<'_> {
         Ok(())
     }
 
-    fn rotate(&mut self, degrees: f32, around: bool) {
+    pub(crate) fn rotate(&mut self, degrees: f32, around: bool) {
         let way = match (around, degrees > 0.0) {
             (true, _) => "around",
             (false, true) => "left",

@@ -28,6 +28,10 @@ pub(crate) enum QuestionKind {
     Count,
     State,
     Unknown,
+    /// What there is to do, and how to ask for it.
+    Options,
+    HowTo,
+    Why,
 }
 
 /// A question, and what it is about.

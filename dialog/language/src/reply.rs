@@ -3,7 +3,7 @@
 use cohabit_cdf::{Catalog, ObjectId};
 
 use crate::{
-    answer::EXAMPLES,
+    answer::HINT,
     describe,
     ground::Miss,
     intent::Intent,
@@ -62,8 +62,8 @@ pub(crate) fn miss(phrase: &Phrase, miss: &Miss, intent: Intent) -> String {
 pub(crate) fn unclear(unknown: &[String]) -> Understanding {
     let quoted: Vec<String> = unknown.iter().take(3).map(|word| format!("\"{word}\"")).collect();
     if quoted.is_empty() {
-        return Understanding::refusal(format!("I did not understand that. {EXAMPLES}"));
+        return Understanding::refusal(format!("I did not understand that. {HINT}"));
     }
     let noun = if quoted.len() == 1 { "the word" } else { "the words" };
-    Understanding::refusal(format!("I do not know {noun} {}. {EXAMPLES}", describe::list(&quoted, "and")))
+    Understanding::refusal(format!("I do not know {noun} {}. {HINT}", describe::list(&quoted, "and")))
 }

@@ -1,6 +1,6 @@
 //! What the robot says when a plan has finished or a step has failed.
 
-use cohabit_cdf::{Action, Catalog, GoToTarget, ObjectId, Status, Verb};
+use cohabit_cdf::{Action, Catalog, GoToTarget, ObjectId, Status, Verb, state::StateFlag};
 
 use crate::{describe, known::Known, understanding::Step};
 
@@ -17,13 +17,15 @@ pub(crate) fn success(catalog: &Catalog, scene: &Known, step: &Step, status: Sta
             None => "done".to_owned(),
         },
         Action::GoTo { target: GoToTarget::Room(room) } => format!("I am in the {}", room.name()),
+        Action::GoTo { target: GoToTarget::Point(_) } => "I am back".to_owned(),
         Action::GoTo { target: GoToTarget::Object(object) } => format!("I am at {}", the(object)),
         Action::GoTo { .. } => "I am there".to_owned(),
-        Action::Interact { verb, object } => interaction(verb, &the(object), scene, object),
+        Action::Interact { verb, object } => interaction(&the(object), scene, step, verb, object),
         Action::Highlight { object } => format!("this is {}", describe::full(catalog, scene, object)),
         Action::LookAround => "I have looked around".to_owned(),
         Action::Stop => "I have stopped".to_owned(),
-        Action::Move { .. } | Action::Rotate { .. } | Action::Look { .. } => "done".to_owned(),
+        Action::Move { .. } | Action::Rotate { .. } | Action::Look { .. } if step.says.is_empty() => "done".to_owned(),
+        Action::Move { .. } | Action::Rotate { .. } | Action::Look { .. } => format!("I am done {}", step.says),
     };
     describe::sentence(&text)
 }
@@ -32,21 +34,38 @@ fn preposition(catalog: &Catalog, scene: &Known, id: ObjectId) -> &'static str {
     scene.object(id).map_or("on", |object| describe::inside(catalog, object.class))
 }
 
-fn interaction(verb: Verb, the: &str, scene: &Known, object: ObjectId) -> String {
+fn interaction(the: &str, scene: &Known, step: &Step, verb: Verb, object: ObjectId) -> String {
     match verb {
         Verb::Open => format!("{the} is open"),
         Verb::Close => format!("{the} is closed"),
         Verb::Break => format!("{the} is broken"),
         Verb::Scan => format!("I have scanned {the}"),
         Verb::Pour => format!("I have poured it into {the}"),
-        Verb::Toggle => "done".to_owned(),
-        Verb::Throw => "thrown".to_owned(),
+        Verb::Toggle => toggled(the, scene, step, object),
+        Verb::Throw => format!("I have thrown it at {the}"),
         Verb::Fill => "it is full now".to_owned(),
         Verb::Clean => "it is clean now".to_owned(),
         Verb::Examine => match scene.object(object).filter(|object| !object.text.is_empty()) {
             Some(object) => format!("it says: \"{}\"", object.text),
             None => format!("I have had a close look at {the}"),
         },
+    }
+}
+
+/// What was switched, and that it is on where that shows.
+fn toggled(the: &str, scene: &Known, step: &Step, id: ObjectId) -> String {
+    let device = scene.object(id).and_then(|object| object.works);
+    let is_on = [Some(id), device]
+        .into_iter()
+        .flatten()
+        .filter_map(|id| scene.object(id))
+        .any(|object| object.has(StateFlag::Toggled));
+    let did = [("turning on", "turned on"), ("turning off", "turned off"), ("pressing", "pressed")]
+        .into_iter()
+        .find_map(|(doing, done)| step.says.starts_with(doing).then_some(done));
+    match did {
+        Some("turned on") | None if is_on => format!("{the} is on"),
+        done => format!("I have {} {the}", done.unwrap_or("switched")),
     }
 }
 
@@ -61,7 +80,7 @@ pub(crate) fn failure(catalog: &Catalog, scene: &Known, step: &Step, status: Sta
     format!("{start} {help}").trim().to_owned()
 }
 
-const fn cause(status: Status) -> &'static str {
+pub(crate) const fn cause(status: Status) -> &'static str {
     match status {
         Status::ActionSuccessful | Status::AlternateNavigationUsed => "that worked",
         Status::UnsupportedAction => "that does not work with it",

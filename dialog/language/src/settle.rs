@@ -20,6 +20,8 @@ pub(crate) struct Settled {
     pub(crate) tool: Option<(Phrase, Role)>,
     pub(crate) color: Option<String>,
     pub(crate) fluid: Option<cohabit_cdf::Fluid>,
+    /// Whether it is to go back to where it was taken from.
+    pub(crate) is_back: bool,
 }
 
 /// Where the object is to go, or where it is to be done.
@@ -52,6 +54,7 @@ pub(crate) fn settle(planner: &Planner<'_>, clause: &Clause) -> Settled {
         tool: None,
         color: clause.color.clone(),
         fluid: clause.fluid,
+        is_back: clause.verb.ends_with(" back") || clause.verb == "return",
     };
     for (index, (preposition, place)) in clause.places.iter().enumerate() {
         let role = Role::Place(index);

@@ -170,7 +170,59 @@ fn success_is_told() {
         assert_eq!(report, expected, "{}", step_text(last, &talk.scene));
     };
     check("open the fridge", "The fridge is open.");
+    check("turn on the time machine", "I have turned on the time machine.");
+    check("turn around", "I am done turning around.");
     check("go to the lab 1", "I am in the robotics lab.");
     check("read the note", "It says: \"The bowl must be mended first.\"");
     check("show me the hammer", "This is the hammer on the blue desk in the main office.");
+}
+
+#[test]
+fn things_are_put_back_and_steps_taken_back() {
+    let mut talk = Talk::new(&[]);
+    let take = talk.language.understand("take the milk", &talk.scene, &mut talk.context);
+    assert_eq!(support::text(&take, &talk.scene), "open FridgeLower_02_1, take MilkCarton_01_1");
+    let milk = talk.scene.objects.iter().position(|object| object.instance == "MilkCarton_01_1").unwrap();
+    let (id, fridge) = (talk.scene.objects[milk].id, talk.scene.objects[milk].parent.unwrap());
+    talk.scene.robot.held = Some(id);
+    talk.scene.objects[milk].parent = None;
+    for object in talk.scene.objects.iter_mut().filter(|object| object.id == fridge) {
+        object.flags.set(cohabit_cdf::StateFlag::Opened, true);
+    }
+    if let Understanding::Plan { steps, .. } = &take {
+        steps.iter().for_each(|step| talk.context.note_outcome(step, Status::ActionSuccessful));
+    }
+    let mut before = talk.context.clone();
+    assert_eq!(talk.say("put it back"), "put FridgeLower_02_1");
+    std::mem::swap(&mut talk.context, &mut before);
+    assert_eq!(talk.say("undo"), "put FridgeLower_02_1, close FridgeLower_02_1");
+    check(&[], "> undo\n= There is nothing to undo yet.");
+    check(&["held Bowl_01_1"], "> put it back\n! I do not remember where the bowl was…");
+    check(
+        &[],
+        "> come back\n! I have not been anywhere…\n> go to the main office\ngo MainOffice\n> come back\ngo [0.0, 0.0]",
+    );
+}
+
+#[test]
+fn small_talk_and_what_to_do_are_answered() {
+    for (said, reply) in [
+        ("what can I do?", "= The mission's next goal: Pour milk into the bowl. Tell me where to go…"),
+        ("what am i supposed to do here", "= The mission's next goal: Pour milk…"),
+        ("how are you", "= I am fine…"),
+        ("who are you?", "= I am the robot…"),
+        ("can you hear me", "= Yes, I hear you…"),
+        ("bye", "= Goodbye!…"),
+        ("SORRY", "= No problem!…"),
+        ("you are stupid", "= I am sorry…"),
+        ("follow me", "= I cannot see where you are…"),
+        ("wher are you", "= I am in the break room."),
+        ("how do I heat the mug?", "= Tell me \"heat the mug\", and I will try."),
+        ("why?", "= Nothing went wrong that I know of…"),
+        ("what is on the table?", "= On the round table there are a banana…"),
+    ] {
+        check(&[], &format!("> {said}\n{reply}"));
+    }
+    check(&[], "> pick up the mug\n? Which…\n> undo\n= There is nothing to undo yet.");
+    check(&[], "> where is the microwave?\n= The microwave is on the counter top.\n> go there\ngo Microwave_01_1");
 }

@@ -207,8 +207,27 @@ fn check_lengths(planes: &Planes<'_>, pixels: usize) {
     assert!(lengths.into_iter().flatten().all(|length| length == pixels), "a plane is not {pixels} pixels long");
 }
 
-/// Draws one band: first what each pixel sees, then what is wanted of it.
-fn fill(mut band: Band<'_>, width: usize, shader: &Shader<'_>) {
+/// Draws one band, with the widest instructions that this processor has: never with fused ones, so that the bits are
+/// the same everywhere.
+fn fill(band: Band<'_>, width: usize, shader: &Shader<'_>) {
+    #[cfg(target_arch = "x86_64")]
+    if std::arch::is_x86_feature_detected!("avx2") {
+        // SAFETY: the processor has just been asked whether it has them.
+        unsafe { fill_avx2(band, width, shader) };
+        return;
+    }
+    fill_rows(band, width, shader);
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+fn fill_avx2(band: Band<'_>, width: usize, shader: &Shader<'_>) {
+    fill_rows(band, width, shader);
+}
+
+/// First what each pixel sees, then what is wanted of it.
+#[inline(always)]
+fn fill_rows(mut band: Band<'_>, width: usize, shader: &Shader<'_>) {
     band.seen.fill(NOTHING);
     band.nearness.fill(1.0 / FAR_M);
     raster::all(shader.batches(), band.first_row, width, band.seen, band.nearness);

@@ -68,10 +68,11 @@ impl Occluder {
         let rays = directions();
         let mut ambient = vec![1.0; mesh.positions.len()];
         for piece in &mesh.pieces {
-            for corner in piece.corners.start as usize..piece.corners.end as usize {
-                let open = self.openness(mesh.positions[corner], mesh.normals[corner], &rays, standing);
-                let least = if piece.joint.is_some() || !piece.is_usual() { MOVING_LEAST } else { LEAST };
-                ambient[corner] = open.max(least);
+            let corners = piece.corners.start as usize..piece.corners.end as usize;
+            let least = if piece.joint.is_some() || !piece.is_usual() { MOVING_LEAST } else { LEAST };
+            let placed = mesh.positions[corners.clone()].iter().zip(&mesh.normals[corners.clone()]);
+            for (ambient, (position, normal)) in ambient[corners].iter_mut().zip(placed) {
+                *ambient = self.openness(*position, *normal, &rays, standing).max(least);
             }
         }
         ambient

@@ -363,12 +363,12 @@ impl Level<'_> {
         let (x0, x1) = ((ix & mask) as usize, ((ix + 1) & mask) as usize);
         let (y0, y1) = (((iy & mask) << self.shift) as usize, (((iy + 1) & mask) << self.shift) as usize);
         let (a, b, c, d) = (self.texels[y0 + x0], self.texels[y0 + x1], self.texels[y1 + x0], self.texels[y1 + x1]);
-        let weights = [(1.0 - fx) * (1.0 - fy), fx * (1.0 - fy), (1.0 - fx) * fy, fx * fy].map(|w| w * (1.0 / 128.0));
-        core::array::from_fn(|i| {
-            f32::from(a[i]) * weights[0]
-                + f32::from(b[i]) * weights[1]
-                + f32::from(c[i]) * weights[2]
-                + f32::from(d[i]) * weights[3]
-        })
+        const ONE: f32 = 1.0 / 128.0;
+        let near = [(1.0 - fx) * (1.0 - fy) * ONE, fx * (1.0 - fy) * ONE];
+        let far = [(1.0 - fx) * fy * ONE, fx * fy * ONE];
+        let channel = |i: usize| {
+            f32::from(a[i]) * near[0] + f32::from(b[i]) * near[1] + f32::from(c[i]) * far[0] + f32::from(d[i]) * far[1]
+        };
+        [channel(0), channel(1), channel(2)]
     }
 }

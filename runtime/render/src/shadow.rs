@@ -175,6 +175,15 @@ impl ShadowMap {
         let (ix, iy) = (x as usize, y as usize);
         let (fx, fy) = (x - ix as f32, y - iy as f32);
         let limit = i32::from(((point.z * 1000.0).clamp(0.0, 4095.0) as u16) << 4 | 0xF);
+        let row = |j: usize| {
+            let start = (iy + j - 1) * self.width + ix - 1;
+            &self.texels[start..start + 4]
+        };
+        let rows = [row(0), row(1), row(2), row(3)];
+        // Most of a floor lies free.
+        if !rows.iter().any(|row| row.iter().any(|texel| i32::from(*texel) > limit)) {
+            return 1.0;
+        }
         // What hangs high above throws a shadow too soft to be seen.
         let blocked = |texel: u16| {
             let over = i32::from(texel) - limit;
@@ -184,9 +193,7 @@ impl ShadowMap {
         // A tent four texels wide: each sample weighs by how much of it the tent covers.
         let (wx, wy) = (tent(fx), tent(fy));
         let mut dark = 0.0;
-        for (j, weight) in wy.iter().enumerate() {
-            let row = (iy + j - 1) * self.width + ix - 1;
-            let texels = &self.texels[row..row + 4];
+        for (texels, weight) in rows.iter().zip(wy) {
             let sum = blocked(texels[0]) * wx[0]
                 + blocked(texels[1]) * wx[1]
                 + blocked(texels[2]) * wx[2]

@@ -25,6 +25,7 @@ fn side(from: [i32; 2], to: [i32; 2]) -> Side {
 }
 
 /// Draws all triangles into the rows of one band.
+#[inline(always)]
 pub(super) fn all(batches: &[Vec<Triangle>], first_row: usize, width: usize, seen: &mut [u32], nearness: &mut [f32]) {
     let rows = (first_row as i32, (first_row + seen.len() / width) as i32 - 1);
     let mut number = 0;

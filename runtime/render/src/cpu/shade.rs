@@ -113,6 +113,7 @@ impl<'a> Shader<'a> {
     }
 
     /// Calls `work` for each run of a row, `nothing` for the pixels that see nothing.
+    #[inline(always)]
     fn runs(&self, seen: &[u32], mut nothing: impl FnMut(usize), mut work: impl FnMut(Run<'_>)) {
         let mut from = 0;
         while from < seen.len() {
@@ -140,6 +141,7 @@ impl<'a> Shader<'a> {
         }
     }
 
+    #[inline(always)]
     pub(super) fn normals(&self, y: usize, seen: &[u32], nearness: &[f32], out: &mut [[i8; 4]]) {
         let bytes = |normal: Vec3| {
             let scaled = normal * 127.0;
@@ -168,6 +170,7 @@ impl<'a> Shader<'a> {
         }
     }
 
+    #[inline(always)]
     pub(super) fn color(&self, table: &[u8; 4096], y: usize, seen: &[u32], nearness: &[f32], out: &mut [[u8; 4]]) {
         let cell = std::cell::RefCell::new(out);
         self.runs(
@@ -181,6 +184,7 @@ impl<'a> Shader<'a> {
         );
     }
 
+    #[inline(always)]
     fn color_run(&self, table: &[u8; 4096], y: usize, run: &Run<'_>, nearness: &[f32], out: &mut [[u8; 4]]) {
         let ground = Ground::new(self, run, y, Some(run.draw.ambient));
         let surface = &run.draw.mesh.surfaces[usize::from(run.draw.mesh.surface_of[run.index])];
@@ -496,12 +500,14 @@ struct Shadow<'a> {
     last: f32,
     next: usize,
     same: bool,
+    /// What the look ahead saw; it holds there where the normal is the same all over the run.
+    ahead: Option<f32>,
 }
 
 impl<'a> Shadow<'a> {
     fn new(room: u16, shader: &'a Shader<'a>, ground: &'a Ground<'a>) -> Self {
         let step = if shader.fine_shadows { SHADOW_STEP - 1 } else { SHADOW_STEP };
-        Self { room, shader, ground, step, last: 1.0, next: 0, same: false }
+        Self { room, shader, ground, step, last: 1.0, next: 0, same: false, ahead: None }
     }
 
     #[inline]
@@ -518,11 +524,13 @@ impl<'a> Shadow<'a> {
         if x < self.next && self.same {
             return self.last;
         }
-        let here = self.look(x, depth, normal);
+        let known = if x == self.next { self.ahead.take() } else { None };
+        let here = known.unwrap_or_else(|| self.look(x, depth, normal));
         if x >= self.next {
             self.next = (x + self.step).min(end - 1).max(x + 1);
             // On a curved surface the normal at the far end differs a little; the light fades with it anyway.
             let ahead = if self.next < end { self.look(self.next, 1.0 / nearness[self.next], normal) } else { here };
+            self.ahead = self.ground.flat.then_some(ahead);
             self.same = (here - ahead).abs() < 0.004;
             self.last = here;
         }

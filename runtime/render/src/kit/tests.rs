@@ -6,13 +6,19 @@ use proptest::prelude::*;
 
 use super::*;
 
-/// The corners of a solid's edges, welded by position.
-fn edges(solid: &Solid) -> BTreeMap<[[i64; 3]; 2], i32> {
-    let key = |index: u32| solid.positions[index as usize].to_array().map(|c| (f64::from(c) * 1e5).round() as i64);
+/// For each corner the first that lies at the same place, but for rounding.
+fn weld(solid: &Solid) -> Vec<usize> {
+    let near = |a: Vec3, b: Vec3| (a - b).abs().max_element() < 1e-5;
+    solid.positions.iter().map(|own| solid.positions.iter().position(|first| near(*first, *own)).unwrap()).collect()
+}
+
+/// How much oftener each edge between welded corners is walked one way than the other.
+fn edges(solid: &Solid) -> BTreeMap<[usize; 2], i32> {
+    let welded = weld(solid);
     let mut edges = BTreeMap::new();
     for triangle in &solid.triangles {
         for side in 0..3 {
-            let (a, b) = (key(triangle[side]), key(triangle[(side + 1) % 3]));
+            let (a, b) = (welded[triangle[side] as usize], welded[triangle[(side + 1) % 3] as usize]);
             if a == b {
                 continue;
             }
@@ -48,6 +54,7 @@ fn shapes_are_closed() {
         Shape::Box { size: [1.0, 0.5, 0.2], bevel: None },
         Shape::Box { size: [1.0, 0.5, 0.2], bevel: Some(0.0) },
         Shape::Box { size: [0.6, 0.5, 0.2], bevel: Some(0.09) },
+        Shape::Box { size: [2.562_399_9, 1.562_309_3, 2.858_778_7], bevel: Some(0.558_969_6) },
         Shape::Cylinder { radius: 0.1, top_radius: None, height: 0.4, bevel: None },
         Shape::Cylinder { radius: 0.2, top_radius: Some(0.0), height: 0.4, bevel: Some(0.01) },
         Shape::Sphere { radii: [0.1, 0.2, 0.3] },
