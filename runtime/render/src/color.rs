@@ -55,7 +55,7 @@ fn roll_off(c: f32) -> f32 {
 }
 
 /// Display bytes of linear light.
-#[inline]
+#[inline(always)]
 pub(crate) fn to_srgb(table: &[u8; STEPS], light: Vec3) -> [u8; 3] {
     // Beside this large number the last bits of a float are its whole part: much cheaper than a conversion.
     const LARGE: f32 = 8_388_608.0;

@@ -211,17 +211,17 @@ fn check_lengths(planes: &Planes<'_>, pixels: usize) {
 /// the same everywhere.
 fn fill(band: Band<'_>, width: usize, shader: &Shader<'_>) {
     #[cfg(target_arch = "x86_64")]
-    if std::arch::is_x86_feature_detected!("avx2") {
+    if std::arch::is_x86_feature_detected!("sse4.1") {
         // SAFETY: the processor has just been asked whether it has them.
-        unsafe { fill_avx2(band, width, shader) };
+        unsafe { fill_sse41(band, width, shader) };
         return;
     }
     fill_rows(band, width, shader);
 }
 
 #[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2")]
-fn fill_avx2(band: Band<'_>, width: usize, shader: &Shader<'_>) {
+#[target_feature(enable = "sse4.1")]
+fn fill_sse41(band: Band<'_>, width: usize, shader: &Shader<'_>) {
     fill_rows(band, width, shader);
 }
 

@@ -322,7 +322,7 @@ impl Picture {
     }
 
     /// Which copy suits a pixel that covers `footprint_m` of the surface, and that copy's texels a metre.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn level(&self, footprint_m: f32) -> Level<'_> {
         let texels = footprint_m * self.per_m;
         // The exponent of a float is the floor of its logarithm.
@@ -339,7 +339,7 @@ impl Picture {
 
 /// The whole number at or below a coordinate, and what is left. Once a float has this large number added, its last
 /// bits are the whole number: much cheaper than a conversion.
-#[inline]
+#[inline(always)]
 fn split(x: f32) -> (u32, f32) {
     const LARGE: f32 = 12_582_912.0;
     let sum = (x - 0.5) + LARGE;
@@ -356,7 +356,7 @@ pub(crate) struct Level<'a> {
 
 impl Level<'_> {
     /// The factors at a place, smoothly between texels.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn at(&self, u_m: f32, v_m: f32) -> [f32; 3] {
         let ((ix, fx), (iy, fy)) = (split(u_m * self.per_m - 0.5), split(v_m * self.per_m - 0.5));
         let mask = (1 << self.shift) - 1;

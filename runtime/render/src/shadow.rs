@@ -98,6 +98,7 @@ impl ShadowMap {
         [rect[0].max(0), rect[1].max(0), rect[2].min(right), rect[3].min(top)]
     }
 
+    #[inline(always)]
     fn project(&self, point: Vec3) -> [f32; 2] {
         [
             (point.x + SLANT[0] * point.z - self.origin[0]) / TEXEL_M,
@@ -165,7 +166,7 @@ impl ShadowMap {
     }
 
     /// How much lamplight reaches a place in `room`, 0 to 1, softly. The place is already off its own surface.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn light(&self, point: Vec3, room: u16) -> f32 {
         let [x, y] = self.project(point);
         let (x, y) = (x - 0.5, y - 0.5);
@@ -204,6 +205,7 @@ impl ShadowMap {
     }
 }
 
+#[inline(always)]
 fn tent(f: f32) -> [f32; 4] {
     [(1.0 - f) * 0.25, (2.0 - f) * 0.25, (1.0 + f) * 0.25, f * 0.25]
 }

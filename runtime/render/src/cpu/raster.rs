@@ -58,7 +58,7 @@ fn is_narrow(triangle: &Triangle) -> bool {
 }
 
 #[expect(clippy::too_many_arguments, reason = "the innermost loop takes plain values")]
-#[inline]
+#[inline(always)]
 fn narrow(
     triangle: &Triangle,
     sides: [Side; 3],
@@ -99,7 +99,7 @@ fn narrow(
 }
 
 #[expect(clippy::too_many_arguments, reason = "the innermost loop takes plain values")]
-#[inline]
+#[inline(always)]
 fn wide(
     triangle: &Triangle,
     sides: [Side; 3],

@@ -51,6 +51,21 @@ struct Run<'a> {
     to: usize,
 }
 
+/// What some neighbouring pixels of a row have in common.
+enum Stretch<'a> {
+    /// They see nothing, up to this pixel.
+    Nothing(usize),
+    /// They see the same triangle.
+    Run(Run<'a>),
+}
+
+/// A unit vector as signed bytes.
+#[inline(always)]
+fn to_bytes(normal: Vec3) -> [i8; 4] {
+    let scaled = normal * 127.0;
+    [scaled.x.round() as i8, scaled.y.round() as i8, scaled.z.round() as i8, 0]
+}
+
 /// A triangle's corners, ready to say where on it a place lies.
 struct Spread {
     origin: Vec3,
@@ -61,6 +76,7 @@ struct Spread {
 }
 
 impl Spread {
+    #[inline(always)]
     fn new([a, b, c]: [Vec3; 3]) -> Self {
         let (e1, e2) = (b - a, c - a);
         let face = e1.cross(e2);
@@ -112,22 +128,17 @@ impl<'a> Shader<'a> {
         self.draws[self.triangle(number).draw as usize].id
     }
 
-    /// Calls `work` for each run of a row, `nothing` for the pixels that see nothing.
+    /// The next run of a row from pixel `from` on, or how many pixels see nothing.
     #[inline(always)]
-    fn runs(&self, seen: &[u32], mut nothing: impl FnMut(usize), mut work: impl FnMut(Run<'_>)) {
-        let mut from = 0;
-        while from < seen.len() {
-            let number = seen[from];
-            let length = seen[from..].iter().take_while(|other| **other == number).count();
-            if number == NOTHING {
-                (from..from + length).for_each(&mut nothing);
-            } else {
-                let triangle = self.triangle(number);
-                let draw = &self.draws[triangle.draw as usize];
-                work(Run { draw, index: triangle.index as usize, from, to: from + length });
-            }
-            from += length;
+    fn next_run(&self, seen: &[u32], from: usize) -> Stretch<'_> {
+        let number = seen[from];
+        let length = seen[from..].iter().take_while(|other| **other == number).count();
+        if number == NOTHING {
+            return Stretch::Nothing(from + length);
         }
+        let triangle = self.triangle(number);
+        let draw = &self.draws[triangle.draw as usize];
+        Stretch::Run(Run { draw, index: triangle.index as usize, from, to: from + length })
     }
 
     pub(super) fn ids(&self, seen: &[u32], out: &mut [u32]) {
@@ -143,45 +154,53 @@ impl<'a> Shader<'a> {
 
     #[inline(always)]
     pub(super) fn normals(&self, y: usize, seen: &[u32], nearness: &[f32], out: &mut [[i8; 4]]) {
-        let bytes = |normal: Vec3| {
-            let scaled = normal * 127.0;
-            [scaled.x.round() as i8, scaled.y.round() as i8, scaled.z.round() as i8, 0]
-        };
-        let mut empty = Vec::new();
-        let out_cell = std::cell::RefCell::new(out);
-        self.runs(
-            seen,
-            |x| empty.push(x),
-            |run| {
-                let ground = Ground::new(self, &run, y, None);
-                let mut out = out_cell.borrow_mut();
-                if ground.flat {
-                    out[run.from..run.to].fill(bytes(ground.normal_at([0.0; 2])));
-                    return;
+        let mut from = 0;
+        while from < seen.len() {
+            match self.next_run(seen, from) {
+                Stretch::Nothing(to) => {
+                    out[from..to].fill([0; 4]);
+                    from = to;
                 }
-                for (x, out) in out.iter_mut().enumerate().take(run.to).skip(run.from) {
-                    let place = ground.place(x, 1.0 / nearness[x]);
-                    *out = bytes(ground.normal_at(ground.shares(place)));
+                Stretch::Run(run) => {
+                    self.normal_run(y, &run, nearness, out);
+                    from = run.to;
                 }
-            },
-        );
-        for x in empty {
-            out_cell.borrow_mut()[x] = [0; 4];
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn normal_run(&self, y: usize, run: &Run<'_>, nearness: &[f32], out: &mut [[i8; 4]]) {
+        let ground = Ground::new(self, run, y, None);
+        if ground.flat {
+            out[run.from..run.to].fill(to_bytes(ground.normal[0]));
+            return;
+        }
+        for x in run.from..run.to {
+            let place = ground.place(x, 1.0 / nearness[x]);
+            out[x] = to_bytes(ground.normal_at(ground.shares(place)));
         }
     }
 
     #[inline(always)]
     pub(super) fn color(&self, table: &[u8; 4096], y: usize, seen: &[u32], nearness: &[f32], out: &mut [[u8; 4]]) {
-        let cell = std::cell::RefCell::new(out);
-        self.runs(
-            seen,
-            |x| {
-                let ray = (self.first_ray + self.per_y * y as f32 + self.per_x * x as f32).normalize();
-                let [r, g, b] = to_srgb(table, outside(ray));
-                cell.borrow_mut()[x] = [r, g, b, 255];
-            },
-            |run| self.color_run(table, y, &run, nearness, &mut cell.borrow_mut()),
-        );
+        let mut from = 0;
+        while from < seen.len() {
+            match self.next_run(seen, from) {
+                Stretch::Nothing(to) => {
+                    for (x, out) in out.iter_mut().enumerate().take(to).skip(from) {
+                        let ray = (self.first_ray + self.per_y * y as f32 + self.per_x * x as f32).normalize();
+                        let [r, g, b] = to_srgb(table, outside(ray));
+                        *out = [r, g, b, 255];
+                    }
+                    from = to;
+                }
+                Stretch::Run(run) => {
+                    self.color_run(table, y, &run, nearness, out);
+                    from = run.to;
+                }
+            }
+        }
     }
 
     #[inline(always)]
@@ -240,6 +259,7 @@ impl<'a> Shader<'a> {
     }
 
     /// A run on a plane, where all but texture and shadow changes evenly: most of an office.
+    #[inline(always)]
     #[expect(clippy::too_many_arguments, reason = "the innermost loop takes plain values")]
     fn flat_run(
         &self,
@@ -278,7 +298,7 @@ impl<'a> Shader<'a> {
     }
 
     #[expect(clippy::too_many_arguments, reason = "the innermost loop takes plain values")]
-    #[inline]
+    #[inline(always)]
     fn light(
         &self,
         draw: &Draw<'_>,
@@ -356,6 +376,7 @@ struct Ground<'a> {
 }
 
 impl<'a> Ground<'a> {
+    #[inline(always)]
     fn new(shader: &Shader<'a>, run: &Run<'a>, y: usize, ambient: Option<Ambient<'_>>) -> Self {
         let draw = run.draw;
         let mesh = draw.mesh;
@@ -388,31 +409,31 @@ impl<'a> Ground<'a> {
     }
 
     /// The world ray through a pixel of the row.
-    #[inline]
+    #[inline(always)]
     fn ray(&self, x: usize) -> Vec3 {
         self.ray[0] + self.ray[1] * x as f32
     }
 
     /// What a pixel sees, in the mesh's frame.
-    #[inline]
+    #[inline(always)]
     fn place(&self, x: usize, depth: f32) -> Vec3 {
         self.draw.eye + (self.own_ray[0] + self.own_ray[1] * x as f32) * depth
     }
 
     /// The same in the world.
-    #[inline]
+    #[inline(always)]
     fn world(&self, x: usize, depth: f32) -> Vec3 {
         self.eye + self.ray(x) * depth
     }
 
-    #[inline]
+    #[inline(always)]
     fn shares(&self, place: Vec3) -> [f32; 2] {
         let from = place - self.spread.origin;
         // Pixels' centres lie inside, but for rounding.
         [from.dot(self.spread.shares[0]).clamp(0.0, 1.0), from.dot(self.spread.shares[1]).clamp(0.0, 1.0)]
     }
 
-    #[inline]
+    #[inline(always)]
     fn normal_at(&self, [b, c]: [f32; 2]) -> Vec3 {
         if self.flat {
             return self.normal[0];
@@ -422,6 +443,7 @@ impl<'a> Ground<'a> {
     }
 
     /// The value that is `slope . place + offset`, for any pixel of the row.
+    #[inline(always)]
     fn evenly(&self, slope: Vec3, offset: f32) -> Even {
         Even {
             at_eye: self.draw.eye.dot(slope) + offset,
@@ -430,7 +452,7 @@ impl<'a> Ground<'a> {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn ambient(&self, [b, c]: [f32; 2]) -> f32 {
         self.ambient[0] + self.ambient[1] * b + self.ambient[2] * c
     }
@@ -445,7 +467,7 @@ struct Even {
 }
 
 impl Even {
-    #[inline]
+    #[inline(always)]
     fn at(&self, x: usize, depth: f32) -> f32 {
         self.at_eye + depth * (self.first + self.per_x * x as f32)
     }
@@ -462,7 +484,7 @@ struct Glint {
 impl Glint {
     const PIXELS: usize = 6;
 
-    #[inline]
+    #[inline(always)]
     fn at(&mut self, x: usize, end: usize, look: impl Fn(usize) -> Vec3) -> Vec3 {
         if self.left == 0 {
             self.left = Self::PIXELS.min(end - x);
@@ -477,7 +499,7 @@ impl Glint {
 }
 
 /// Light from all around on a surface that faces this way.
-#[inline]
+#[inline(always)]
 fn surroundings(normal: Vec3) -> Vec3 {
     // Walls that face different ways are never quite as bright as each other.
     let aside = 1.0 + 0.07 * normal.x - 0.05 * normal.y;
@@ -485,7 +507,7 @@ fn surroundings(normal: Vec3) -> Vec3 {
 }
 
 /// All light on a surface: what shades a place from the lamps also keeps some of the room's light from it.
-#[inline]
+#[inline(always)]
 fn illumination(around: Vec3, facing: f32, ambient: f32, lit: f32) -> Vec3 {
     around * (ambient * (0.8 + 0.2 * lit)) + KEY * (facing * lit * (0.4 + 0.6 * ambient))
 }
@@ -510,7 +532,7 @@ impl<'a> Shadow<'a> {
         Self { room, shader, ground, step, last: 1.0, next: 0, same: false, ahead: None }
     }
 
-    #[inline]
+    #[inline(always)]
     fn look(&self, x: usize, depth: f32, normal: Vec3) -> f32 {
         if normal.dot(self.shader.towards_light) <= 0.0 {
             return 0.0;
@@ -519,7 +541,7 @@ impl<'a> Shadow<'a> {
         self.shader.shadows.light(place + normal * LIFT_M + Vec3::Z * 0.008, self.room)
     }
 
-    #[inline]
+    #[inline(always)]
     fn at(&mut self, x: usize, depth: f32, normal: Vec3, end: usize, nearness: &[f32]) -> f32 {
         if x < self.next && self.same {
             return self.last;
@@ -539,7 +561,7 @@ impl<'a> Shadow<'a> {
 }
 
 /// A highlight, and what the surface mirrors of the room.
-#[inline]
+#[inline(always)]
 fn shine(gloss: &Gloss, albedo: Vec3, ray: Vec3, normal: Vec3, towards_light: Vec3, lit: f32, ambient: f32) -> Vec3 {
     let ray = ray * (1.0 / ray.length());
     let reflected = ray - normal * (2.0 * ray.dot(normal));
