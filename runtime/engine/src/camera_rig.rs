@@ -10,6 +10,8 @@ const BEHIND_M: f32 = 1.9;
 const NEAREST_M: f32 = 0.45;
 const ABOVE_FLOOR_M: f32 = 1.95;
 const PITCH_RAD: f32 = -0.32;
+/// How much of the head's pitch the camera takes on.
+const HEAD_SHARE: f32 = 0.2;
 const FOV_Y_RAD: f32 = 0.96;
 /// How much higher the camera is, and how much farther down it looks, with a wall right behind the body.
 const RISE_M: f32 = 0.6;
@@ -45,7 +47,7 @@ impl CameraRig {
         pose.x += (x - pose.x) * near.max(0.5);
         pose.y += (y - pose.y) * near.max(0.5);
         pose.yaw_rad += wrap(standing.yaw_rad - pose.yaw_rad) * turned;
-        pose.pitch_rad += (PITCH_RAD + standing.head_pitch_rad * 0.5 - pose.pitch_rad) * turned;
+        pose.pitch_rad += (PITCH_RAD + standing.head_pitch_rad * HEAD_SHARE - pose.pitch_rad) * turned;
         let back = [-cosf(pose.yaw_rad), -sinf(pose.yaw_rad)];
         let free = free_length_m(layout, [pose.x, pose.y], back, BEHIND_M);
         // Walls pull the camera in at once; it eases out again.

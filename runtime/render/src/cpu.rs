@@ -207,8 +207,8 @@ fn check_lengths(planes: &Planes<'_>, pixels: usize) {
     assert!(lengths.into_iter().flatten().all(|length| length == pixels), "a plane is not {pixels} pixels long");
 }
 
-/// Draws one band, with the widest instructions that this processor has: never with fused ones, so that the bits are
-/// the same everywhere.
+/// Draws one band. SSE 4.1 rounds and chooses in one instruction each, with the same bits; AVX2 was slower for colour.
+/// All that it is to reach has to be inlined here.
 fn fill(band: Band<'_>, width: usize, shader: &Shader<'_>) {
     #[cfg(target_arch = "x86_64")]
     if std::arch::is_x86_feature_detected!("sse4.1") {

@@ -102,13 +102,18 @@ impl ModelMesh {
 
     /// Bakes every level that is not baked yet.
     fn bake(&self) {
-        if self.ambient.iter().all(|known| known.get().is_some()) {
+        if self.is_baked() {
             return;
         }
         let occluder = self.occluder();
         for (mesh, ambient) in self.levels.iter().zip(&self.ambient) {
             ambient.get_or_init(|| occluder.bake(mesh, self.standing));
         }
+    }
+
+    /// Whether every level is baked.
+    pub(crate) fn is_baked(&self) -> bool {
+        self.ambient.iter().all(|known| known.get().is_some())
     }
 
     fn occluder(&self) -> Occluder {

@@ -1,6 +1,7 @@
 #![allow(clippy::unwrap_used)]
 
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 use cohabit_cdf::layout::{Finish, Layout, Opening, OpeningKind, Room};
 use cohabit_cdf::model::{Axis, Material};
@@ -218,6 +219,26 @@ fn the_same_bits_with_any_number_of_threads() {
             assert!(one == picture(&mut CpuRenderer::new(threads), &scene, &camera), "{threads} threads");
         }
     }
+}
+
+#[test]
+fn the_same_bits_whether_baked_before_or_when_seen() {
+    let (when_seen, _) = scene();
+    let (before, _) = scene();
+    before.meshes.bake_all(&AtomicBool::new(false));
+    let people = Camera { for_people: true, ..camera() };
+    let mut renderer = CpuRenderer::new(2);
+    assert!(picture(&mut renderer, &when_seen, &people) == picture(&mut renderer, &before, &people));
+}
+
+#[test]
+fn baking_stops_when_told_and_goes_on_later() {
+    let (scene, _) = scene();
+    let robot = scene.meshes.model(scene.meshes.bodies().robot);
+    scene.meshes.bake_all(&AtomicBool::new(true));
+    assert!(!robot.is_baked());
+    scene.meshes.bake_all(&AtomicBool::new(false));
+    assert!(robot.is_baked());
 }
 
 #[test]
