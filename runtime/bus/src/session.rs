@@ -32,8 +32,8 @@ pub enum SessionError {
         /// Why.
         source: io::Error,
     },
-    /// There is no shared memory.
-    #[error("/dev/shm: {0}; mount a tmpfs there (`mount -t tmpfs tmpfs /dev/shm`)")]
+    /// There is no shared memory, or none left.
+    #[error("/dev/shm cannot be used: {0}; free it, or mount a writable tmpfs there (`mount -t tmpfs tmpfs /dev/shm`)")]
     NoSharedMemory(io::Error),
 }
 
@@ -87,13 +87,21 @@ impl Session {
     /// # Errors
     /// [`SessionError::Busy`], [`SessionError::Folder`], [`SessionError::NoSharedMemory`].
     pub fn supervise(&self) -> Result<SessionLock, SessionError> {
-        fs::metadata(SHARED_MEMORY).map_err(SessionError::NoSharedMemory)?;
+        self.try_shared_memory().map_err(SessionError::NoSharedMemory)?;
         let folder = sessions_folder();
         create_private(&folder)?;
         let lock = self.lock()?.ok_or_else(|| SessionError::Busy(self.name.clone()))?;
         self.wipe();
         create_private(&self.folder())?;
         Ok(lock)
+    }
+
+    /// Writes a page of shared memory and takes it away again.
+    fn try_shared_memory(&self) -> io::Result<()> {
+        let path = Path::new(SHARED_MEMORY).join(format!("{}probe", self.prefix()));
+        let written = fs::write(&path, [0; 4096]);
+        let _ = fs::remove_file(&path);
+        written
     }
 
     fn lock_path(&self) -> PathBuf {
