@@ -13,14 +13,15 @@ fn main() {
         ("MISSIONS", "missions", "json"),
     ] {
         println!("cargo::rerun-if-changed={folder}");
-        writeln!(code, "pub const {name}: &[(&str, &str)] = &[{}];", entries(&Path::new(&root).join(folder), ending))
+        writeln!(code, "pub const {name}: &[(&str, &str)] = &[{}];", entries(Path::new(&root), folder, ending))
             .expect("a string takes all");
     }
     fs::write(Path::new(&out).join("data.rs"), code).expect("OUT_DIR is writable");
 }
 
-fn entries(folder: &Path, ending: &str) -> String {
-    let mut files: Vec<_> = fs::read_dir(folder)
+/// Names and texts, by paths that hold wherever the checkout lies.
+fn entries(root: &Path, folder: &str, ending: &str) -> String {
+    let mut files: Vec<_> = fs::read_dir(root.join(folder))
         .into_iter()
         .flatten()
         .filter_map(|entry| Some(entry.ok()?.path()))
@@ -29,7 +30,9 @@ fn entries(folder: &Path, ending: &str) -> String {
     files.sort();
     files.iter().fold(String::new(), |mut list, path| {
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        write!(list, "({name:?}, include_str!({path:?})), ").expect("a string takes all");
+        let path = format!("/{folder}/{name}");
+        write!(list, "({name:?}, include_str!(concat!(env!(\"CARGO_MANIFEST_DIR\"), {path:?}))), ")
+            .expect("a string takes all");
         list
     })
 }
