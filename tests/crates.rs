@@ -16,12 +16,13 @@ const LEVELS: &[(&str, u8, &[&str])] = &[
     ("cohabit-language", 2, &[]),
     ("cohabit-engine", 3, &[]),
     ("cohabit-dialog", 4, &["tokio", "axum"]),
-    ("cohabit", 5, &["clap", "anyhow"]),
+    ("cohabit-eval", 5, &[]),
+    ("cohabit", 6, &["clap", "anyhow", "indicatif"]),
 ];
 
 /// Dependencies that others may name too: the log and the page speak JSON, tests report errors of all kinds.
 const SHARED: &[(&str, &[&str])] =
-    &[("serde_json", &["cohabit-record", "cohabit-dialog", "cohabit-tests"]), ("anyhow", &["cohabit-tests"])];
+    &[("serde_json", &["cohabit-record", "cohabit-dialog", "cohabit-eval", "cohabit", "cohabit-tests"]), ("anyhow", &["cohabit-tests"])];
 
 fn metadata() -> Value {
     let output = Command::new(env!("CARGO"))

@@ -80,6 +80,8 @@ pub enum Predicate {
     Flag(StateFlag, bool),
     /// It is filled with this.
     Filled(Fluid),
+    /// It is filled with anything.
+    FilledWithAny,
     /// It has this colour.
     Color(Color),
     /// It contains that instance, at any depth.
@@ -90,6 +92,15 @@ pub enum Predicate {
     Empty(bool),
     /// The mission's own condition of this name has this value; see [`crate::Mission::condition`] for which one it is.
     Condition(String, bool),
+}
+
+/// What must hold of objects for something else to happen: for a message to be shown, for an object to be there.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub enum Occasion {
+    /// States as goals name them.
+    States(Vec<GoalState>, Relation),
+    /// An expression.
+    Expression(Expression),
 }
 
 /// A condition that the mission defines and its goals name.
@@ -134,6 +145,11 @@ pub enum Expression {
         target: InstancePattern,
         /// With what.
         fluid: Fluid,
+    },
+    /// The target is filled with anything.
+    FilledWithAny {
+        /// Whose.
+        target: InstancePattern,
     },
     /// A robot sees the target within this distance, m.
     CanBeSeen {
@@ -191,6 +207,7 @@ impl fmt::Display for Predicate {
         match self {
             Self::Flag(flag, value) => write!(f, "{}={value}", flag_key(*flag)),
             Self::Filled(fluid) => write!(f, "isFilled={}", fluid.name()),
+            Self::FilledWithAny => f.write_str("isFilled=true"),
             Self::Color(color) => write!(f, "ColorMetaDataChange={}", color.name()),
             Self::Contains(contained) => write!(f, "Contains={contained}"),
             Self::ContainsCereal(value) => write!(f, "ContainsCereal={value}"),
@@ -221,6 +238,7 @@ impl fmt::Display for Expression {
             Self::Flag { target, flag, value } => write!(f, "{target}: {}={value}", flag_key(*flag)),
             Self::Contains { target, contains } => write!(f, "{target}: Contains={contains}"),
             Self::FilledWith { target, fluid } => write!(f, "{target}: isFilledWith={}", fluid.name()),
+            Self::FilledWithAny { target } => write!(f, "{target}: isFilled=true"),
             Self::CanBeSeen { target, distance_m } => write!(f, "{target}: CanBeSeen={distance_m}"),
             Self::InRange { target, distance_m } => write!(f, "{target}: IsInRange={distance_m}"),
             Self::HasColor { target, color } => write!(f, "{target}: ColorMetaDataChange={}", color.name()),
@@ -261,6 +279,7 @@ mod tests {
         for (predicate, expected) in [
             (Predicate::Flag(StateFlag::Opened, false), "isOpen=false"),
             (Predicate::Filled(Fluid::Milk), "isFilled=Milk"),
+            (Predicate::FilledWithAny, "isFilled=true"),
             (Predicate::Contains(bowl()), "Contains=Bowl_01_1"),
             (Predicate::ContainsCereal(true), "ContainsCereal=true"),
             (Predicate::Condition("InSink".to_owned(), true), "InSink=true"),

@@ -8,6 +8,7 @@
 //! stands on, and its front faces `+x`.
 
 pub mod action;
+pub mod body;
 pub mod catalog;
 pub mod goal;
 pub mod layout;
@@ -21,8 +22,9 @@ mod builtin {
 }
 
 pub use action::{Action, BodyId, GoToTarget, ObjectId, Status, Verb};
+pub use body::{BodyKind, BodyRequest};
 pub use catalog::{Catalog, CatalogError, ClassId, ObjectClass, Property};
-pub use goal::{Expression, Goal, GoalState, InstancePattern, Predicate, Relation, StateCondition};
+pub use goal::{Expression, Goal, GoalState, InstancePattern, Occasion, Predicate, Relation, StateCondition};
 pub use layout::{Layout, LayoutError, RoomId};
 pub use mission::{Mission, ObjectRequest};
 pub use model::Model;

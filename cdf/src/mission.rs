@@ -1,5 +1,7 @@
 //! A mission, checked: what a world is built from, and how it is read from a CDF file.
 
+mod audit;
+mod camera;
 mod expression;
 mod goals;
 mod key;
@@ -7,25 +9,38 @@ mod messages;
 mod names;
 mod nearest;
 mod objects;
+mod occasion;
+mod portal;
+mod position;
+mod possible;
 pub mod problem;
 pub mod raw;
 mod reader;
+mod request;
+mod robot;
 mod scene;
+pub mod schema;
+mod source;
 
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize as _, Serialize};
 
-use self::{goals::Named, raw::Loose, reader::Reader};
 pub use self::{
+    camera::{CameraMovement, CameraView},
     key::{flag_key, flag_of_key},
+    messages::{Message, MessageTime},
+    portal::{Era, Portal},
     problem::{Pointer, Problem, Problems, Severity},
     raw::Cdf,
+    request::{DinoFood, NoteRequest, ObjectRequest},
+    robot::RobotRequest,
+    source::{Source, sources},
 };
+use self::{goals::Named, raw::Loose, reader::Reader};
 use crate::{
     builtin,
     catalog::Catalog,
     goal::{Goal, StateCondition},
     layout::RoomId,
-    state::{Color, Fluid, StateFlag},
 };
 
 /// A mission, read from a CDF file and checked.
@@ -53,6 +68,46 @@ pub struct Mission {
     pub conditions: Vec<StateCondition>,
     /// What people are told, and when.
     pub messages: Vec<Message>,
+    /// Where the camera turns, and when.
+    pub camera_movements: Vec<CameraMovement>,
+    /// The portals to the past and to the future, those to the past first.
+    pub portals: Vec<Portal>,
+    /// How the robots start, in the order of the file; usually nothing is said.
+    pub robots: Vec<RobotRequest>,
+    /// Layouts in which it must not be played.
+    pub blacklisted_layouts: Vec<String>,
+    /// Whether the looks of things are left to chance.
+    pub random_looks: bool,
+    /// The number of the game it belongs to, if said.
+    pub game_id: Option<String>,
+    /// Whether it is marked as an experiment.
+    pub experimental: bool,
+}
+
+/// An empty mission in the first layout.
+impl Default for Mission {
+    fn default() -> Self {
+        Self {
+            name: String::new(),
+            goal_text: String::new(),
+            description: String::new(),
+            layout: scene::DEFAULT_LAYOUT.to_owned(),
+            seed: None,
+            start_room: scene::DEFAULT_ROOM,
+            objects: Vec::new(),
+            notes: Vec::new(),
+            goals: Vec::new(),
+            conditions: Vec::new(),
+            messages: Vec::new(),
+            camera_movements: Vec::new(),
+            portals: Vec::new(),
+            robots: Vec::new(),
+            blacklisted_layouts: Vec::new(),
+            random_looks: false,
+            game_id: None,
+            experimental: false,
+        }
+    }
 }
 
 impl Mission {
@@ -62,76 +117,6 @@ impl Mission {
         let named = || self.conditions.iter().filter(|condition| condition.name == name);
         named().find(|condition| condition.context == instance).or_else(|| named().next())
     }
-}
-
-/// One of `required_objects`.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct ObjectRequest {
-    /// Its instance id, such as `Bowl_01_1`.
-    pub instance: String,
-    /// The room it must be in, if said.
-    pub room: Option<RoomId>,
-    /// The instance it must be in or on, if said.
-    pub inside: Option<String>,
-    /// Flags it starts with, in the order of the file.
-    pub flags: Vec<(StateFlag, bool)>,
-    /// What it is filled with, if said.
-    pub fluid: Option<Fluid>,
-    /// Its colour, if said.
-    pub color: Option<Color>,
-    /// A sticky note's text.
-    pub text: Option<String>,
-    /// The circuit it belongs to, if said; `-1` is none.
-    pub circuit: Option<i32>,
-    /// The circuit it feeds, if said.
-    pub generates_circuit: Option<i32>,
-    /// Whether what the layout put in it is taken out first.
-    pub remove_initial_contents: bool,
-    /// Whether it starts with nothing in it.
-    pub empty: bool,
-    /// Whether no other object of its class may exist.
-    pub unique: bool,
-    /// Whether its class must not spawn by itself.
-    pub blacklisted: bool,
-    /// Whether it is taken out of the world.
-    pub removed: bool,
-    /// The class the time machine turns this carrot back into.
-    pub yesterday: Option<String>,
-    /// The class that a printer cartridge prints.
-    pub prints: Option<String>,
-}
-
-/// A sticky note put at a place of a room.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct NoteRequest {
-    /// Its instance id.
-    pub instance: String,
-    /// What it says.
-    pub text: String,
-    /// Its room.
-    pub room: RoomId,
-    /// The index of its place in the room.
-    pub place: usize,
-}
-
-/// Something people are told during the mission.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Message {
-    /// When.
-    pub when: MessageTime,
-    /// What.
-    pub text: String,
-}
-
-/// When a message is shown.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub enum MessageTime {
-    /// As the mission begins.
-    Beginning,
-    /// As this goal is met.
-    GoalMet(i64),
-    /// As the mission ends.
-    Ending,
 }
 
 /// A mission that can be played, the file it was read from, and what is doubtful in it.
@@ -159,37 +144,40 @@ pub fn builtin() -> &'static [(&'static str, &'static str)] {
 /// ```
 /// let catalog = cohabit_cdf::Catalog::builtin();
 /// let problems = cohabit_cdf::mission::read_mission("soup.json", r#"{"scene": 1}"#, &catalog).unwrap_err();
-/// assert_eq!(problems.0[0].to_string(), "soup.json: /scene: expected an object, found a number");
+/// assert_eq!(problems.0[0].to_string(), "soup.json:1:2: /scene: expected an object, found a number");
 /// ```
 ///
 /// # Errors
-/// All [`Problems`], warnings among them, if one of them is an error; a single one with line and column for what is no JSON.
+/// All [`Problems`], warnings among them, if one of them is an error; a single one for what is no JSON.
 pub fn read_mission(file: &str, text: &str, catalog: &Catalog) -> Result<Checked, Problems> {
     // Editors of another system put a byte order mark before the text.
-    let value = serde_json::from_str(text.trim_start_matches('\u{feff}')).map_err(|error| syntax(file, &error))?;
+    let text = text.trim_start_matches('\u{feff}');
+    let value = serde_json::from_str(text).map_err(|error| syntax(file, text, &error))?;
     let mut reader = Reader::new(file, catalog);
-    let raw = match Loose::<Cdf>::deserialize(&value) {
-        Ok(Loose::As(raw)) => raw,
+    let read = match Loose::<Cdf>::deserialize(&value) {
+        Ok(Loose::As(raw)) => reader.mission(&raw).map(|mission| (mission, raw)),
         _ => {
             reader.error(&Pointer::default(), format!("a mission is an object, not {}", reader::shape(&value)), None);
-            return Err(Problems(reader.problems));
+            None
         }
     };
-    match reader.mission(&raw) {
-        Some(mission) if reader.problems.iter().all(|problem| problem.severity == Severity::Warning) => {
-            Ok(Checked { mission, raw, warnings: reader.problems })
+    let mut problems = reader.problems;
+    position::locate(text, &mut problems, file);
+    match read {
+        Some((mission, raw)) if problems.iter().all(|problem| problem.severity == Severity::Warning) => {
+            Ok(Checked { mission, raw, warnings: problems })
         }
-        _ => Err(Problems(reader.problems)),
+        _ => Err(Problems(problems)),
     }
 }
 
-fn syntax(file: &str, error: &serde_json::Error) -> Problems {
-    let text = error.to_string();
-    let message = text.split(" at line ").next().unwrap_or_default();
+fn syntax(file: &str, text: &str, error: &serde_json::Error) -> Problems {
+    let said = error.to_string();
+    let message = said.split(" at line ").next().unwrap_or_default();
     Problems(vec![Problem {
         severity: Severity::Error,
         file: file.to_owned(),
-        position: Some((error.line(), error.column())),
+        position: Some(position::Lines::of(text).position_of_byte(error.line(), error.column())),
         pointer: Pointer::default(),
         message: format!("no JSON: {message}"),
         remedy: None,
@@ -208,14 +196,18 @@ impl Reader<'_> {
         }
         let scene = scene?;
         let parts = self.scene(&at, scene);
-        let objects = self.objects(&at.key("required_objects"), &scene.required_objects);
+        let portals = self.portals(&root, raw);
+        let mut objects = self.objects(&at.key("required_objects"), &scene.required_objects, &portals);
         let notes = self.notes(&at.key("sticky_notes"), &scene.sticky_notes);
+        let robots = self.robots(&at.key("simbot_init"), &scene.simbot_init);
         let conditions = self.conditions(&root.key("stateconditions"), &raw.stateconditions);
         let named = Named { conditions: &conditions, notes: &notes };
+        self.object_conditions(&mut objects, &named);
         let goals = self.goals(&root.key("task_goals"), &raw.task_goals, &named);
-        let messages = self.messages(&root.key("game_interactions"), &raw.game_interactions, &goals);
+        let (messages, camera_movements) =
+            self.interactions(&root.key("game_interactions"), &raw.game_interactions, &goals, &named);
         let line = |field: &Loose<String>| field.known().map(|text| text.trim().to_owned()).unwrap_or_default();
-        Some(Mission {
+        let mission = Mission {
             name: parts.name,
             goal_text: line(&raw.goal_text),
             description: line(&raw.task_description),
@@ -227,6 +219,15 @@ impl Reader<'_> {
             goals,
             conditions,
             messages,
-        })
+            camera_movements,
+            portals,
+            robots,
+            blacklisted_layouts: parts.blacklisted_layouts,
+            random_looks: parts.random_looks,
+            game_id: self.text(&root.key("game_id"), &raw.game_id),
+            experimental: self.truth(&root.key("experimental"), &raw.experimental, false),
+        };
+        self.audit(&mission);
+        Some(mission)
     }
 }

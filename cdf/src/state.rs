@@ -46,11 +46,21 @@ pub enum StateFlag {
     Locked,
     /// Holds cereal.
     Cereal,
+    /// Shows a face without feeling.
+    Neutral,
+    /// Shows a happy face.
+    Happy,
+    /// Shows a sad face.
+    Sad,
+    /// Shows an angry face.
+    Angry,
+    /// Shows a scared face.
+    Scared,
 }
 
 impl StateFlag {
     /// All flags, in the order of their bits.
-    pub const ALL: [Self; 20] = [
+    pub const ALL: [Self; 25] = [
         Self::PickedUp,
         Self::Opened,
         Self::Broken,
@@ -71,7 +81,21 @@ impl StateFlag {
         Self::Embiggenated,
         Self::Locked,
         Self::Cereal,
+        Self::Neutral,
+        Self::Happy,
+        Self::Sad,
+        Self::Angry,
+        Self::Scared,
     ];
+
+    /// The faces that are shown; an object shows one at a time.
+    pub const MOODS: [Self; 5] = [Self::Neutral, Self::Happy, Self::Sad, Self::Angry, Self::Scared];
+
+    /// Whether it is one of [`Self::MOODS`].
+    #[must_use]
+    pub fn is_mood(self) -> bool {
+        Self::MOODS.contains(&self)
+    }
 }
 
 /// A set of [`StateFlag`]s.

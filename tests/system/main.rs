@@ -3,6 +3,8 @@
 
 mod bad_input;
 mod browser;
+mod determinism;
+mod eval;
 mod missions;
 mod sessions;
 

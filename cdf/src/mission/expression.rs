@@ -8,13 +8,10 @@ use super::{
     raw::{Condition, Entry, Loose, Scalar},
     reader::{Reader, did_you_mean, shape},
 };
-use crate::{
-    goal::{Expression, InstancePattern, StateCondition},
-    state::Fluid,
-};
+use crate::goal::{Expression, InstancePattern, StateCondition};
 
 /// The kinds of expressions that are no flags.
-const KINDS: [&str; 12] = [
+pub(super) const KINDS: [&str; 12] = [
     "AND",
     "OR",
     "NOT",
@@ -29,6 +26,11 @@ const KINDS: [&str; 12] = [
     "isFullOfItems",
 ];
 
+/// Whether `key` names a kind of expression.
+pub(super) fn is_kind(key: &str) -> bool {
+    KINDS.into_iter().chain(flag_keys()).any(|known| known.eq_ignore_ascii_case(key))
+}
+
 impl Reader<'_> {
     /// Reads `stateconditions`; those without a name or a readable expression are left out.
     pub fn conditions(&mut self, at: &Pointer, list: &Loose<Vec<Loose<Condition>>>) -> Vec<StateCondition> {
@@ -41,6 +43,7 @@ impl Reader<'_> {
                 self.error(&at.key("stateName"), message, None);
             } else {
                 conditions.push(condition);
+                self.places.conditions.push(at);
             }
         }
         conditions
@@ -76,7 +79,7 @@ impl Reader<'_> {
     }
 
     /// Reads an object of one kind; several at once count as all of them.
-    fn expression(&mut self, at: &Pointer, entry: &Entry) -> Option<Expression> {
+    pub(super) fn expression(&mut self, at: &Pointer, entry: &Entry) -> Option<Expression> {
         let kinds: Vec<_> = entry.iter().filter(|(kind, _)| *kind != "message").collect();
         match kinds.as_slice() {
             [] => {
@@ -192,8 +195,7 @@ impl Reader<'_> {
     /// `isFilled` takes a fluid, or true for any.
     fn filled(&mut self, at: &Pointer, target: InstancePattern, value: &Scalar) -> Option<Expression> {
         if value.truth() == Some(true) {
-            let empty = Expression::FilledWith { target, fluid: Fluid::None };
-            return Some(Expression::Not(Box::new(empty)));
+            return Some(Expression::FilledWithAny { target });
         }
         Some(Expression::FilledWith { target, fluid: self.fluid(at, &value.text())? })
     }

@@ -3,7 +3,7 @@
 use crate::{catalog::Property, state::StateFlag};
 
 /// Every flag, its key, and the property that an object needs to have it.
-const FLAGS: [(StateFlag, &str, Option<Property>); 20] = [
+const FLAGS: [(StateFlag, &str, Option<Property>); 25] = [
     (StateFlag::PickedUp, "isPickedUp", Some(Property::Pickupable)),
     (StateFlag::Opened, "isOpen", Some(Property::Openable)),
     (StateFlag::Broken, "isBroken", None),
@@ -24,6 +24,11 @@ const FLAGS: [(StateFlag, &str, Option<Property>); 20] = [
     (StateFlag::Embiggenated, "isEmbiggenated", None),
     (StateFlag::Locked, "isLocked", None),
     (StateFlag::Cereal, "ContainsCereal", None),
+    (StateFlag::Neutral, "isNeutral", None),
+    (StateFlag::Happy, "isHappy", None),
+    (StateFlag::Sad, "isSad", None),
+    (StateFlag::Angry, "isAngry", None),
+    (StateFlag::Scared, "isScared", None),
 ];
 
 /// The key that goals use for `flag`, such as `isToggledOn`.
@@ -74,12 +79,10 @@ pub(super) enum InitialKey {
     GeneratesPower,
     /// What a note says.
     Text,
-    /// The face that a robot shows: no part of the simulation.
-    Mood,
 }
 
 /// The keys of initial states that are no flags.
-const INITIAL: [(&str, InitialKey); 15] = [
+const INITIAL: [(&str, InitialKey); 10] = [
     ("isFilled", InitialKey::Filled),
     ("isEmpty", InitialKey::Empty),
     ("removeInitialContainedItems", InitialKey::RemoveContents),
@@ -90,11 +93,6 @@ const INITIAL: [(&str, InitialKey); 15] = [
     ("generateCircuitId", InitialKey::GeneratesCircuit),
     ("generatePower", InitialKey::GeneratesPower),
     ("text", InitialKey::Text),
-    ("isNeutral", InitialKey::Mood),
-    ("isHappy", InitialKey::Mood),
-    ("isSad", InitialKey::Mood),
-    ("isAngry", InitialKey::Mood),
-    ("isScared", InitialKey::Mood),
 ];
 
 impl InitialKey {

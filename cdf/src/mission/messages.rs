@@ -1,14 +1,38 @@
-//! Reads what people are told during a mission.
+//! What people are told and shown during a mission, and how it is read.
 
+use serde::Serialize;
 use serde_json::Value;
 
 use super::{
-    Message, MessageTime,
+    camera::CameraMovement,
+    goals::Named,
     problem::Pointer,
     raw::{Entry, Interactions, Loose, Scalar, Stages},
     reader::Reader,
 };
-use crate::goal::Goal;
+use crate::goal::{Goal, Occasion};
+
+/// Something people are told during the mission.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Message {
+    /// When.
+    pub when: MessageTime,
+    /// What.
+    pub text: String,
+}
+
+/// When a message is shown, or the camera moves.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub enum MessageTime {
+    /// As the mission begins.
+    Beginning,
+    /// As this goal is met.
+    GoalMet(i64),
+    /// As the mission ends.
+    Ending,
+    /// As this begins to hold of objects, each time.
+    Occasion(Occasion),
+}
 
 /// Keys under which a message's text is found, the best first.
 const TEXT_KEYS: [&str; 6] = ["message", "text", "messages", "content", "dialog", "description"];
@@ -16,52 +40,68 @@ const TEXT_KEYS: [&str; 6] = ["message", "text", "messages", "content", "dialog"
 /// Keys under which a message's goal is found.
 const GOAL_KEYS: [&str; 4] = ["goal_id", "goalId", "goal", "task_id"];
 
+/// One item of a stage: where it stands, what it says, and when it is due.
+type Due<'r> = (Pointer, &'r Value, MessageTime);
+
 impl Reader<'_> {
     /// Reads `game_interactions`.
-    pub fn messages(&mut self, at: &Pointer, field: &Loose<Interactions>, goals: &[Goal]) -> Vec<Message> {
-        let Some(interactions) = self.field(at, field, "an object") else { return Vec::new() };
+    pub fn interactions(
+        &mut self,
+        at: &Pointer,
+        field: &Loose<Interactions>,
+        goals: &[Goal],
+        named: &Named<'_>,
+    ) -> (Vec<Message>, Vec<CameraMovement>) {
+        let Some(interactions) = self.field(at, field, "an object") else { return (Vec::new(), Vec::new()) };
         self.extras(at, interactions);
-        let movements_at = at.key("camera_movements");
-        if let Some(movements) = self.field(&movements_at, &interactions.camera_movements, "an object")
-            && !is_quiet(movements)
-        {
-            self.warn(&movements_at, "camera movements are not played", None);
+        let mut movements = Vec::new();
+        for (at, item, when) in self.stages(&at.key("camera_movements"), &interactions.camera_movements, goals, named) {
+            movements.extend(self.camera_movement(&at, item, when));
         }
-        let at = at.key("game_messages");
-        let Some(stages) = self.field(&at, &interactions.game_messages, "an object") else { return Vec::new() };
-        self.extras(&at, stages);
-        self.stages(&at, stages, goals)
+        let mut messages = Vec::new();
+        for (at, item, when) in self.stages(&at.key("game_messages"), &interactions.game_messages, goals, named) {
+            messages.extend(self.message(&at, item, when));
+        }
+        (messages, movements)
     }
 
-    fn stages(&mut self, at: &Pointer, stages: &Stages, goals: &[Goal]) -> Vec<Message> {
-        let mut messages = Vec::new();
-        for (at, item) in self.stage(&at.key("task_beginning"), &stages.task_beginning) {
-            messages.extend(self.message(&at, item, MessageTime::Beginning));
-        }
+    /// The items of all stages, with when they are due.
+    fn stages<'r>(
+        &mut self,
+        at: &Pointer,
+        field: &'r Loose<Stages>,
+        goals: &[Goal],
+        named: &Named<'_>,
+    ) -> Vec<Due<'r>> {
+        let Some(stages) = self.field(at, field, "an object") else { return Vec::new() };
+        self.extras(at, stages);
+        let beginning = self.stage(&at.key("task_beginning"), &stages.task_beginning);
+        let mut due: Vec<_> = beginning.into_iter().map(|(at, item)| (at, item, MessageTime::Beginning)).collect();
         for (index, (at, item)) in self.stage(&at.key("task_procedure"), &stages.task_procedure).into_iter().enumerate()
         {
-            // A message that names no goal belongs to the goal of its own number in the list.
+            // What names no goal belongs to the goal of its own number in the list.
             let named = item.as_object().and_then(goal_of);
             match named.or_else(|| goals.get(index).map(|goal| goal.id)) {
-                Some(id) if goals.iter().any(|goal| goal.id == id) => {
-                    messages.extend(self.message(&at, item, MessageTime::GoalMet(id)));
-                }
+                Some(id) if goals.iter().any(|goal| goal.id == id) => due.push((at, item, MessageTime::GoalMet(id))),
                 Some(id) => self.error(&at, format!("there is no goal {id}"), None),
-                None => self.warn(&at, "the message belongs to no goal, and is not shown", None),
+                None => self.warn(&at, "it belongs to no goal, and is not shown", None),
             }
         }
-        for (at, item) in self.stage(&at.key("task_ending"), &stages.task_ending) {
-            messages.extend(self.message(&at, item, MessageTime::Ending));
+        let ending = self.stage(&at.key("task_ending"), &stages.task_ending);
+        due.extend(ending.into_iter().map(|(at, item)| (at, item, MessageTime::Ending)));
+        for (at, item) in self.stage(&at.key("object_conditions"), &stages.object_conditions) {
+            if let Some(entry) = item.as_object() {
+                let occasion = self.occasion(&at, entry, None, named);
+                due.extend(occasion.map(|occasion| (at, item, MessageTime::Occasion(occasion))));
+            } else {
+                self.error(&at, "it is not said of which object's state", None);
+            }
         }
-        let objects_at = at.key("object_conditions");
-        if !self.stage(&objects_at, &stages.object_conditions).is_empty() {
-            self.warn(&objects_at, "messages on object conditions are not shown", None);
-        }
-        messages
+        due
     }
 
     fn stage<'r>(&mut self, at: &Pointer, list: &'r Loose<Vec<Value>>) -> Vec<(Pointer, &'r Value)> {
-        let items = self.field(at, list, "a list of messages").map_or(&[][..], Vec::as_slice);
+        let items = self.field(at, list, "a list").map_or(&[][..], Vec::as_slice);
         items.iter().enumerate().map(|(index, item)| (at.item(index), item)).collect()
     }
 
@@ -74,14 +114,8 @@ impl Reader<'_> {
     }
 }
 
-fn is_quiet(stages: &Stages) -> bool {
-    [&stages.task_beginning, &stages.task_procedure, &stages.task_ending, &stages.object_conditions]
-        .into_iter()
-        .all(|stage| stage.known().is_none_or(Vec::is_empty))
-}
-
 /// The text of a message: a text, or the text under the best key of an object, or the texts of a list in lines.
-fn text_of(item: &Value) -> Option<String> {
+pub(super) fn text_of(item: &Value) -> Option<String> {
     match item {
         Value::String(text) => Some(text.trim().to_owned()).filter(|text| !text.is_empty()),
         Value::Array(items) => {

@@ -95,7 +95,7 @@ impl Reader<'_> {
 
     /// An instance that the mission does not list must be the layout's: under its id, or as the only one of its class.
     fn unlisted(&mut self, at: &Pointer, name: &str, class: ClassId) {
-        let Some(layout) = &self.layout else { return };
+        let Some(layout) = self.layout else { return };
         if layout.placements.iter().any(|placement| placement.instance == name) {
             return;
         }

@@ -5,11 +5,12 @@ use std::collections::BTreeMap;
 use serde_json::Value;
 
 use super::{
-    ObjectRequest,
+    DinoFood, Era, ObjectRequest, Portal,
     key::{InitialKey, property_of},
     problem::Pointer,
     raw::{Entry, Loose, RequiredObject, Scalar},
     reader::{Reader, did_you_mean, shape},
+    robot::is_blank,
 };
 use crate::{
     catalog::{ClassId, Property},
@@ -18,20 +19,33 @@ use crate::{
 
 impl Reader<'_> {
     /// Reads `required_objects`; those without a usable name are left out.
-    pub fn objects(&mut self, at: &Pointer, list: &Loose<Vec<Loose<RequiredObject>>>) -> Vec<ObjectRequest> {
+    pub fn objects(
+        &mut self,
+        at: &Pointer,
+        list: &Loose<Vec<Loose<RequiredObject>>>,
+        portals: &[Portal],
+    ) -> Vec<ObjectRequest> {
         let objects = self.items(at, list, "an object with a name");
         // All names first: a location may name an object that comes later.
         let named: Vec<_> = objects
             .into_iter()
             .filter_map(|(at, object)| Some((self.new_instance(&at.key("name"), &object.name)?, at, object)))
             .collect();
-        let requests: Vec<_> =
-            named.into_iter().map(|(name, at, object)| (at.clone(), self.object(&at, name, object))).collect();
+        let mut requests = Vec::with_capacity(named.len());
+        for (index, (name, at, object)) in named.into_iter().enumerate() {
+            let request = self.object(&at, name, object, portals);
+            if let Some(condition) = object.condition.known().filter(|condition| !is_blank(condition)) {
+                self.object_conditions.push((index, at.key("condition"), condition.clone()));
+            }
+            requests.push((at, request));
+        }
         self.circles(&requests);
-        requests.into_iter().map(|(_, request)| request).collect()
+        let (places, requests) = requests.into_iter().unzip();
+        self.places.objects = places;
+        requests
     }
 
-    fn object(&mut self, at: &Pointer, instance: String, object: &RequiredObject) -> ObjectRequest {
+    fn object(&mut self, at: &Pointer, instance: String, object: &RequiredObject, portals: &[Portal]) -> ObjectRequest {
         self.extras(at, object);
         let class = self.catalog.class_of_instance(&instance);
         let inside = self.location(&at.key("location"), &object.location);
@@ -41,6 +55,20 @@ impl Reader<'_> {
             color: self.color_of(&at.key("colors"), &object.colors),
             yesterday: self.class_field(&at.key("yesterdayState"), &object.yesterday_state),
             prints: self.class_field(&at.key("printingObject"), &object.printing_object),
+            past_portals: self.portal_names(
+                &at.key("associatedPastPortals"),
+                &object.associated_past_portals,
+                portals,
+                Some(Era::Past),
+            ),
+            future_portals: self.portal_names(
+                &at.key("associatedFuturePortals"),
+                &object.associated_future_portals,
+                portals,
+                Some(Era::Future),
+            ),
+            current_portal: self.current_portal(&at.key("currentPortal"), &object.current_portal, portals),
+            dino_food: self.dino_food(&at.key("dinoFood"), &object.dino_food),
             instance,
             ..ObjectRequest::default()
         };
@@ -49,7 +77,6 @@ impl Reader<'_> {
                 self.initial_state(&at.key(key), key, value, class, &mut request);
             }
         }
-        self.portals(at, object);
         request
     }
 
@@ -157,7 +184,7 @@ impl Reader<'_> {
                     self.initial_flag(at, flag, value, class, request);
                 }
             }
-            InitialKey::GeneratesPower | InitialKey::Mood => {}
+            InitialKey::GeneratesPower => request.generates_power = self.truth_of(at, &scalar),
             InitialKey::Empty => request.empty = self.truth_of(at, &scalar).unwrap_or(false),
             InitialKey::RemoveContents => {
                 request.remove_initial_contents = self.truth_of(at, &scalar).unwrap_or(false);
@@ -208,16 +235,24 @@ impl Reader<'_> {
         circuit
     }
 
-    fn portals(&mut self, at: &Pointer, object: &RequiredObject) {
-        let said = [
-            ("currentPortal", self.text(&at.key("currentPortal"), &object.current_portal).is_some()),
-            ("associatedPastPortals", object.associated_past_portals.known().is_some_and(|list| !list.is_empty())),
-            ("associatedFuturePortals", object.associated_future_portals.known().is_some_and(|list| !list.is_empty())),
-            ("dinoFood", self.text(&at.key("dinoFood"), &object.dino_food).is_some()),
-            ("condition", matches!(object.condition.known(), Some(Value::Object(fields)) if !fields.is_empty())),
-        ];
-        for (key, _) in said.into_iter().filter(|(_, said)| *said) {
-            self.warn(&at.key(key), format!("`{key}` is not simulated"), None);
+    fn current_portal(&mut self, at: &Pointer, field: &Loose<Scalar>, portals: &[Portal]) -> Option<String> {
+        let name = self.text(at, field)?;
+        self.portal_reference(at, &name, portals, None);
+        Some(name)
+    }
+
+    /// What a dinosaur eats: an instance that the mission lists, or any object of a class.
+    fn dino_food(&mut self, at: &Pointer, field: &Loose<Scalar>) -> Option<DinoFood> {
+        let name = self.text(at, field)?;
+        if self.listed.contains(&name) {
+            return Some(DinoFood::Instance(name));
+        }
+        match self.catalog.class_of_instance(&name) {
+            Some(class) if self.catalog.class(class).id != name => {
+                self.reference(at, &name);
+                Some(DinoFood::Instance(name))
+            }
+            _ => self.class_named(at, &name).map(DinoFood::Class),
         }
     }
 }

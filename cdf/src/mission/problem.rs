@@ -21,7 +21,7 @@ pub struct Problem {
     pub severity: Severity,
     /// The file, as its reader named it.
     pub file: String,
-    /// Line and column from 1, where the text is no JSON.
+    /// Line and column from 1, the column in characters: of what is wrong, or of what lacks something.
     pub position: Option<(usize, usize)>,
     /// Where in the file.
     pub pointer: Pointer,
@@ -46,13 +46,13 @@ impl fmt::Display for Problem {
     }
 }
 
-/// All that is wrong in a mission file, in the order of reading; one line each when printed.
+/// All that is wrong in a mission file, in the order of its text; one line each when printed.
 #[derive(Clone, Debug, Default, Eq, PartialEq, Serialize)]
 #[serde(transparent)]
 pub struct Problems(pub Vec<Problem>);
 
 impl Problems {
-    /// The problems, in the order of reading.
+    /// The problems, in the order of the text.
     pub fn iter(&self) -> std::slice::Iter<'_, Problem> {
         self.0.iter()
     }
@@ -94,6 +94,24 @@ impl Pointer {
     #[must_use]
     pub fn item(&self, index: usize) -> Self {
         Self(format!("{}/{index}", self.0))
+    }
+
+    /// The pointer with this text, which must be one.
+    #[must_use]
+    pub(super) fn of(text: String) -> Self {
+        Self(text)
+    }
+
+    /// The place `inner` in what this points at.
+    #[must_use]
+    pub fn join(&self, inner: &Self) -> Self {
+        Self(format!("{}{}", self.0, inner.0))
+    }
+
+    /// The last key or number on the way; empty for the whole file.
+    #[must_use]
+    pub fn last(&self) -> String {
+        self.0.rsplit_once('/').map_or("", |(_, last)| last).replace("~1", "/").replace("~0", "~")
     }
 
     /// Whether it points at the whole file.

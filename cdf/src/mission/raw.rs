@@ -3,8 +3,11 @@
 //! Nothing here judges a file. A field that is absent, null or of an unexpected shape is kept as it is, and so is a
 //! field that the format does not know, so that writing what was read gives the same values.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de::DeserializeOwned};
 use serde_json::{Map, Number, Value};
+
+use super::schema;
 
 /// An object with keys that the mission chose: `{"Bowl_01_1": "isHot=true"}`, `{"isOpen": "true"}`.
 pub type Entry = Map<String, Value>;
@@ -145,7 +148,7 @@ pub(super) trait Fields {
 macro_rules! format_struct {
     ($(#[$about:meta])* $name:ident { $($(#[$doc:meta])* $field:ident: $type:ty = $key:literal,)* }) => {
         $(#[$about])*
-        #[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]
+        #[derive(Clone, Debug, Default, Deserialize, JsonSchema, PartialEq, Serialize)]
         pub struct $name {
             $(
                 $(#[$doc])*
@@ -175,8 +178,10 @@ format_struct! {
         /// What people are asked to get done.
         goal_text: String = "goal_text",
         /// A number of the game.
+        #[schemars(schema_with = "schema::text")]
         game_id: Scalar = "game_id",
         /// Whether the game is an experiment.
+        #[schemars(schema_with = "schema::truth")]
         experimental: Scalar = "experimental",
         /// Where it takes place, and with what.
         scene: Scene = "scene",
@@ -187,9 +192,21 @@ format_struct! {
         /// Conditions that goals name.
         stateconditions: Vec<Loose<Condition>> = "stateconditions",
         /// Portals to the past.
-        past_portals: Vec<Value> = "pastPortals",
+        past_portals: Vec<Loose<PortalEntry>> = "pastPortals",
         /// Portals to the future.
-        future_portals: Vec<Value> = "futurePortals",
+        future_portals: Vec<Loose<PortalEntry>> = "futurePortals",
+    }
+}
+
+format_struct! {
+    /// A portal to the past or to the future.
+    PortalEntry {
+        /// Its name, by which objects refer to it.
+        #[schemars(schema_with = "schema::text")]
+        name: Scalar = "PortalName",
+        /// Whether it is open from the start.
+        #[schemars(schema_with = "schema::portal_status")]
+        status: Scalar = "PortalStatus",
     }
 }
 
@@ -197,22 +214,28 @@ format_struct! {
     /// Where a mission takes place, and with what.
     Scene {
         /// The seed of what is placed at random; `-1` is random.
+        #[schemars(schema_with = "schema::integer")]
         floor_plan: Scalar = "floor_plan",
         /// The mission's name.
+        #[schemars(schema_with = "schema::text")]
         scene_id: Scalar = "scene_id",
         /// Settings of the robot.
-        simbot_init: Vec<Value> = "simbot_init",
+        simbot_init: Vec<Loose<Entry>> = "simbot_init",
         /// The rooms where the robot may start; the first counts.
+        #[schemars(schema_with = "schema::rooms")]
         room_location: Vec<Scalar> = "roomLocation",
         /// What must be there.
         required_objects: Vec<Loose<RequiredObject>> = "required_objects",
         /// Notes stuck to places of rooms.
         sticky_notes: Vec<Loose<StickyNote>> = "sticky_notes",
         /// Layouts that must not be used.
+        #[schemars(schema_with = "schema::layouts")]
         blacklisted_layouts: Vec<Scalar> = "blacklisted_layouts",
         /// The layout to use.
+        #[schemars(schema_with = "schema::layout")]
         layout_override: Scalar = "layoutOverride",
         /// Whether looks are random.
+        #[schemars(schema_with = "schema::truth")]
         completely_random_visual: Scalar = "completelyRandomVisual",
     }
 }
@@ -221,28 +244,40 @@ format_struct! {
     /// An object that must be there.
     RequiredObject {
         /// Its instance id.
+        #[schemars(schema_with = "schema::instance")]
         name: Scalar = "name",
         /// What the time machine turns this carrot back into.
+        #[schemars(schema_with = "schema::class")]
         yesterday_state: Scalar = "yesterdayState",
         /// States it starts with, one key an item.
+        #[schemars(schema_with = "schema::initial_states")]
         state: Vec<Loose<Entry>> = "state",
         /// At most one `{receptacle: "in"|"on"}`.
+        #[schemars(schema_with = "schema::location")]
         location: Vec<Loose<Entry>> = "location",
         /// Its room; the first counts.
+        #[schemars(schema_with = "schema::rooms")]
         room_location: Vec<Scalar> = "roomLocation",
         /// Its colour; the first counts.
+        #[schemars(schema_with = "schema::colors")]
         colors: Vec<Scalar> = "colors",
         /// A condition for it to be there.
+        #[schemars(schema_with = "schema::occasion")]
         condition: Value = "condition",
         /// What a printer cartridge prints.
+        #[schemars(schema_with = "schema::class")]
         printing_object: Scalar = "printingObject",
         /// Portals to the past that lead to it.
+        #[schemars(schema_with = "schema::portals")]
         associated_past_portals: Vec<Value> = "associatedPastPortals",
         /// Portals to the future that lead to it.
+        #[schemars(schema_with = "schema::portals")]
         associated_future_portals: Vec<Value> = "associatedFuturePortals",
         /// The portal it stands behind.
+        #[schemars(schema_with = "schema::text")]
         current_portal: Scalar = "currentPortal",
         /// What the dinosaur eats.
+        #[schemars(schema_with = "schema::class")]
         dino_food: Scalar = "dinoFood",
     }
 }
@@ -251,12 +286,16 @@ format_struct! {
     /// A note stuck to a place of a room.
     StickyNote {
         /// Its instance id.
+        #[schemars(schema_with = "schema::instance")]
         name: Scalar = "name",
         /// What it says.
+        #[schemars(schema_with = "schema::text")]
         text: Scalar = "text",
         /// Its room.
+        #[schemars(schema_with = "schema::room")]
         room: Scalar = "room",
         /// The index of its place in the room.
+        #[schemars(schema_with = "schema::integer")]
         location: Scalar = "location",
     }
 }
@@ -265,18 +304,24 @@ format_struct! {
     /// A goal.
     TaskGoal {
         /// Its number.
+        #[schemars(schema_with = "schema::integer")]
         goal_id: Scalar = "goal_id",
         /// `{instance: "key=value"}` items.
+        #[schemars(schema_with = "schema::goal_states")]
         object_states: Vec<Loose<Entry>> = "object_states",
         /// `and` or `or`.
+        #[schemars(schema_with = "schema::relation")]
         object_states_relation: Scalar = "object_states_relation",
         /// Numbers of goals to be met first.
+        #[schemars(schema_with = "schema::integers")]
         preconditions: Vec<Scalar> = "preconditions",
         /// What people read.
+        #[schemars(schema_with = "schema::text")]
         description: Scalar = "description",
         /// Who sees it when.
         visibility: Visibility = "visibility",
         /// Whether it opens again when its states no longer hold.
+        #[schemars(schema_with = "schema::truth")]
         can_reset: Scalar = "canReset",
     }
 }
@@ -285,10 +330,13 @@ format_struct! {
     /// Who sees a goal when.
     Visibility {
         /// Whether it is hidden until it is unlocked.
+        #[schemars(schema_with = "schema::truth")]
         is_hidden: Scalar = "isHidden",
         /// The instance whose examining or use unlocks it, or `ALWAYS UNLOCKED`.
+        #[schemars(schema_with = "schema::activation")]
         activation_interactable: Scalar = "activationInteractable",
         /// The index of the sticky note that unlocks it.
+        #[schemars(schema_with = "schema::integer")]
         sticky_note_index: Scalar = "stickyNoteIndex",
     }
 }
@@ -297,10 +345,13 @@ format_struct! {
     /// A condition that goals name.
     Condition {
         /// Its name.
+        #[schemars(schema_with = "schema::text")]
         state_name: Scalar = "stateName",
         /// The instance it belongs to.
+        #[schemars(schema_with = "schema::instance")]
         context: Scalar = "context",
         /// What must hold.
+        #[schemars(schema_with = "schema::expression")]
         expression: Entry = "expression",
     }
 }
@@ -316,15 +367,19 @@ format_struct! {
 }
 
 format_struct! {
-    /// When something happens.
+    /// When people are told or shown something.
     Stages {
         /// As the mission begins.
+        #[schemars(schema_with = "schema::items")]
         task_beginning: Vec<Value> = "task_beginning",
         /// As goals are met.
+        #[schemars(schema_with = "schema::items")]
         task_procedure: Vec<Value> = "task_procedure",
         /// As the mission ends.
+        #[schemars(schema_with = "schema::items")]
         task_ending: Vec<Value> = "task_ending",
         /// As objects change.
+        #[schemars(schema_with = "schema::items")]
         object_conditions: Vec<Value> = "object_conditions",
     }
 }

@@ -1,5 +1,7 @@
 //! What all parts of the reading share: the places to look names up, the problems found, and loose fields made firm.
 
+use std::collections::BTreeSet;
+
 use serde_json::Value;
 
 use super::{
@@ -16,18 +18,48 @@ pub(super) struct Reader<'a> {
     /// The objects there are.
     pub catalog: &'a Catalog,
     /// The mission's layout, once it is known.
-    pub layout: Option<Layout>,
+    pub layout: Option<&'static Layout>,
     /// The instances that the mission lists, in the order of the file.
     pub listed: Vec<String>,
     /// Names of conditions that could not be read: what is wrong with them is said once.
     pub unreadable: Vec<String>,
+    /// The conditions for objects to be there, by their index among the objects: they may name what comes later.
+    pub object_conditions: Vec<(usize, Pointer, Value)>,
+    /// Names of conditions that something of the mission names.
+    pub named_conditions: BTreeSet<String>,
+    /// Where in the file what was read stands.
+    pub places: Places,
     /// What is wrong so far.
     pub problems: Vec<Problem>,
 }
 
+/// Where in a file the parts of its mission stand, in their order in the mission.
+#[derive(Default)]
+pub(super) struct Places {
+    pub objects: Vec<Pointer>,
+    pub goals: Vec<GoalPlaces>,
+    pub conditions: Vec<Pointer>,
+}
+
+/// Where a goal stands, and each of its states.
+pub(super) struct GoalPlaces {
+    pub goal: Pointer,
+    pub states: Vec<Pointer>,
+}
+
 impl<'a> Reader<'a> {
     pub fn new(file: &'a str, catalog: &'a Catalog) -> Self {
-        Self { file, catalog, layout: None, listed: Vec::new(), unreadable: Vec::new(), problems: Vec::new() }
+        Self {
+            file,
+            catalog,
+            layout: None,
+            listed: Vec::new(),
+            unreadable: Vec::new(),
+            object_conditions: Vec::new(),
+            named_conditions: BTreeSet::new(),
+            places: Places::default(),
+            problems: Vec::new(),
+        }
     }
 
     /// Notes a problem that keeps the mission from being played.

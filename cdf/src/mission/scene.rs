@@ -1,21 +1,36 @@
 //! Reads where a mission takes place: layout, seed, start room and notes.
 
+use std::{collections::BTreeMap, sync::LazyLock};
+
 use super::{
     NoteRequest,
     problem::Pointer,
     raw::{Loose, Scalar, Scene, StickyNote},
-    reader::Reader,
+    reader::{Reader, did_you_mean},
 };
 use crate::layout::{Layout, RoomId};
 
 /// The layout of a mission that names none.
-const DEFAULT_LAYOUT: &str = "OfficeLayout1";
+pub(super) const DEFAULT_LAYOUT: &str = "OfficeLayout1";
 
 /// The start room of a mission that names none.
-const DEFAULT_ROOM: RoomId = RoomId::BreakRoom;
+pub(super) const DEFAULT_ROOM: RoomId = RoomId::BreakRoom;
 
 /// The layouts of the format; each has a `_mirror` too. There may be no floor plan for some of them.
-const LAYOUTS: [&str; 5] = ["OfficeLayout1", "OfficeLayout1B", "OfficeLayout1C", "OfficeLayout2", "OfficeLayout3"];
+pub(super) const LAYOUTS: [&str; 5] =
+    ["OfficeLayout1", "OfficeLayout1B", "OfficeLayout1C", "OfficeLayout2", "OfficeLayout3"];
+
+/// The end of the ids of mirrored layouts.
+pub(super) const MIRRORED: &str = "_mirror";
+
+/// The project's own floor plans by their ids; reading one takes longer than checking a mission against it.
+fn plans() -> &'static BTreeMap<String, Layout> {
+    static PLANS: LazyLock<BTreeMap<String, Layout>> = LazyLock::new(|| {
+        let plans = Layout::builtin_ids().into_iter().map(|id| (Layout::builtin(&id), id));
+        plans.filter_map(|(plan, id)| Some((id, plan.ok()?))).collect()
+    });
+    &PLANS
+}
 
 /// The class of notes.
 const NOTE: &str = "StickyNote";
@@ -26,46 +41,69 @@ pub(super) struct SceneParts {
     pub layout: String,
     pub seed: Option<u64>,
     pub start_room: RoomId,
+    pub blacklisted_layouts: Vec<String>,
+    pub random_looks: bool,
 }
 
 impl Reader<'_> {
     /// Reads all of a scene but its objects and notes, and loads its layout.
     pub fn scene(&mut self, at: &Pointer, scene: &Scene) -> SceneParts {
         self.extras(at, scene);
-        let layout = self.layout_id(&at.key("layoutOverride"), &scene.layout_override);
-        self.blacklist(&at.key("blacklisted_layouts"), &scene.blacklisted_layouts, &layout);
-        self.truth(&at.key("completelyRandomVisual"), &scene.completely_random_visual, false);
+        let blacklisted_layouts = self.blacklist(&at.key("blacklisted_layouts"), &scene.blacklisted_layouts);
+        let layout = self.layout_id(&at.key("layoutOverride"), &scene.layout_override, &blacklisted_layouts);
         SceneParts {
             name: self.text(&at.key("scene_id"), &scene.scene_id).unwrap_or_else(|| self.file.to_owned()),
             seed: self.seed(&at.key("floor_plan"), &scene.floor_plan),
             start_room: self.start_room(&at.key("roomLocation"), &scene.room_location),
             layout,
+            blacklisted_layouts,
+            random_looks: self.truth(&at.key("completelyRandomVisual"), &scene.completely_random_visual, false),
         }
     }
 
-    fn layout_id(&mut self, at: &Pointer, field: &Loose<Scalar>) -> String {
+    /// The layout asked for; without a wish the first one that is not blacklisted.
+    fn layout_id(&mut self, at: &Pointer, field: &Loose<Scalar>, blacklisted: &[String]) -> String {
+        let plans = plans();
         let Some(id) = self.text(at, field) else {
-            self.layout = Layout::builtin(DEFAULT_LAYOUT).ok();
-            return DEFAULT_LAYOUT.to_owned();
+            let mut free = plans.keys().map(String::as_str).filter(|id| !blacklisted.iter().any(|listed| listed == id));
+            let id = match free.clone().find(|id| *id == DEFAULT_LAYOUT).or_else(|| free.next()) {
+                Some(id) => id,
+                None => {
+                    self.error(at, "every layout is blacklisted", None);
+                    DEFAULT_LAYOUT
+                }
+            };
+            self.layout = plans.get(id);
+            return id.to_owned();
         };
-        let plans = Layout::builtin_ids();
-        if plans.contains(&id) {
-            self.layout = Layout::builtin(&id).ok();
-        } else if LAYOUTS.contains(&id.strip_suffix("_mirror").unwrap_or(&id)) {
+        if blacklisted.contains(&id) {
+            self.error(at, format!("layout `{id}` is both asked for and blacklisted"), None);
+        }
+        if let Some(plan) = plans.get(&id) {
+            self.layout = Some(plan);
+        } else if LAYOUTS.contains(&id.strip_suffix(MIRRORED).unwrap_or(&id)) {
             let remedy = Some(format!("take `{DEFAULT_LAYOUT}`"));
             self.warn(at, format!("there is no floor plan for layout `{id}` yet"), remedy);
         } else {
-            self.unknown(at, "layout", &id, plans.iter().map(String::as_str));
+            self.unknown(at, "layout", &id, plans.keys().map(String::as_str));
         }
         id
     }
 
-    fn blacklist(&mut self, at: &Pointer, field: &Loose<Vec<Scalar>>, layout: &str) {
-        for (index, entry) in self.field(at, field, "a list of layouts").into_iter().flatten().enumerate() {
-            if entry.text() == layout {
-                self.error(&at.item(index), format!("layout `{layout}` is both asked for and blacklisted"), None);
+    /// The layouts in which the mission must not be played.
+    fn blacklist(&mut self, at: &Pointer, field: &Loose<Vec<Scalar>>) -> Vec<String> {
+        let entries = self.field(at, field, "a list of layouts").map_or(&[][..], Vec::as_slice);
+        let mut blacklisted = Vec::with_capacity(entries.len());
+        for (index, entry) in entries.iter().enumerate() {
+            let id = entry.text();
+            let known = LAYOUTS.contains(&id.strip_suffix(MIRRORED).unwrap_or(&id)) || plans().contains_key(&id);
+            if !known {
+                let remedy = did_you_mean(&id, plans().keys().map(String::as_str));
+                self.warn(&at.item(index), format!("unknown layout `{id}` is blacklisted"), remedy);
             }
+            blacklisted.push(id);
         }
+        blacklisted
     }
 
     fn seed(&mut self, at: &Pointer, field: &Loose<Scalar>) -> Option<u64> {
@@ -79,7 +117,10 @@ impl Reader<'_> {
     fn start_room(&mut self, at: &Pointer, field: &Loose<Vec<Scalar>>) -> RoomId {
         let misfit = field.misfit().is_some();
         match self.first_text(at, field) {
-            Some((at, id)) => self.room(&at, &id).unwrap_or(DEFAULT_ROOM),
+            Some((at, id)) => {
+                let room = self.room(&at, &id);
+                room.inspect(|room| self.room_in_layout(&at, *room)).unwrap_or(DEFAULT_ROOM)
+            }
             None => {
                 if !misfit {
                     let remedy = format!("taken as `{}`", DEFAULT_ROOM.id());
@@ -128,7 +169,10 @@ impl Reader<'_> {
         }
         let room_at = at.key("room");
         let room = match self.text(&room_at, &note.room) {
-            Some(id) => self.room(&room_at, &id),
+            Some(id) => {
+                let room = self.room(&room_at, &id);
+                room.inspect(|room| self.room_in_layout(&room_at, *room))
+            }
             None => {
                 self.error(&room_at, "the note has no room", None);
                 None
@@ -145,7 +189,7 @@ impl Reader<'_> {
             return 0;
         };
         let places = |layout: &Layout| layout.note_places.iter().filter(|place| Some(place.room) == room).count();
-        if let (Some(layout), Some(room)) = (&self.layout, room) {
+        if let (Some(layout), Some(room)) = (self.layout, room) {
             let places = places(layout);
             if place >= places {
                 let message = format!("the {} has {places} places for notes; the last one is taken", room.name());

@@ -23,6 +23,10 @@ const HIDDEN: f32 = 1.5;
 const RECENT: [f32; 3] = [1.2, 0.8, 0.4];
 const PER_METER: f32 = 0.25;
 const FARTHEST_M: f32 = 30.0;
+/// The share that nearness has in what is to be found.
+const FIND: f32 = 0.5;
+/// What the mission is about outweighs what stands around, also where its name fits a little less.
+const IN_MISSION: f32 = 6.0;
 
 /// Two candidates whose scores differ by less are a tie; the robot then asks, or guesses where little is at stake.
 const MARGIN: f32 = 0.5;
@@ -152,7 +156,9 @@ impl<'a> Ground<'a> {
         left.retain(|object| self.is_as_said(phrase, object));
         if let Some(color) = &phrase.color {
             // What was given that colour, then what has it by nature, then what is only called so.
-            keep_if_any(&mut left, |object| describe::color(self.catalog, object) == *color);
+            let is_plain = |object: &KnownObject| color == "white" && self.is_plain_twin(object);
+            let by_nature = |object: &KnownObject| describe::color(self.catalog, object) == *color;
+            keep_if_any(&mut left, |object| by_nature(object) || is_plain(object));
             keep_if_any(&mut left, |object| object.color.name().eq_ignore_ascii_case(color));
         }
         if left.is_empty() {
@@ -240,6 +246,9 @@ impl<'a> Ground<'a> {
 
     fn has_color(&self, object: &KnownObject, color: &str) -> bool {
         let color_of = describe::color(self.catalog, object);
+        if color == "white" && self.is_plain_twin(object) {
+            return true;
+        }
         if color_of == color || color_of.split_whitespace().any(|word| word == color) {
             return true;
         }
@@ -259,6 +268,14 @@ impl<'a> Ground<'a> {
         let plain = Phrase { color: None, ..phrase.clone() };
         let fits = |object: &&&KnownObject| object.color == Color::Original && self.is_as_said(&plain, object);
         base.iter().filter(fits).copied().collect()
+    }
+
+    /// Whether it is the unpainted one of several of its kind: `white`, where the others are red and blue.
+    fn is_plain_twin(&self, object: &KnownObject) -> bool {
+        let is_painted_twin = |other: &KnownObject| {
+            other.class == object.class && other.color != Color::Original && other.in_mission == object.in_mission
+        };
+        object.color == Color::Original && self.scene.objects.iter().any(is_painted_twin)
     }
 
     fn is_related(&self, object: &KnownObject, relation: &Relation) -> bool {
@@ -383,8 +400,10 @@ impl<'a> Ground<'a> {
     fn score(&self, phrase: &Phrase, want: &Want<'_>, object: &KnownObject) -> f32 {
         let mut score = NAME * phrase.naming(object.class).unwrap_or(1.0);
         let is_held = self.scene.robot.held == Some(object.id);
+        // Who says `find` does not mean what is before them.
+        let nearness = if want.intent == Intent::Find { FIND } else { 1.0 };
         if object.room == self.scene.robot.room {
-            score += SAME_ROOM;
+            score += SAME_ROOM * nearness;
         }
         if object.visible || is_held {
             score += VISIBLE;
@@ -401,9 +420,12 @@ impl<'a> Ground<'a> {
         if self.is_hidden(object) {
             score -= HIDDEN;
         }
+        if object.in_mission {
+            score += IN_MISSION;
+        }
         let recent = self.focus.recent.iter().position(|id| *id == object.id);
         score += recent.and_then(|at| RECENT.get(at)).copied().unwrap_or_default();
-        score - PER_METER * self.scene.distance_m(object).min(FARTHEST_M)
+        score - PER_METER * nearness * self.scene.distance_m(object).min(FARTHEST_M)
     }
 }
 

@@ -56,6 +56,8 @@ pub struct KnownObject {
     pub visible: bool,
     /// The device that this monitor, button or lever works.
     pub works: Option<ObjectId>,
+    /// Whether it is there for the sake of the mission, and not only part of the furnishings: people speak of it rather.
+    pub in_mission: bool,
 }
 
 /// One goal of the mission.

@@ -99,6 +99,7 @@ fn add(known: &mut Known, catalog: &Catalog, instance: &str, room: RoomId, posit
         text: String::new(),
         visible: false,
         works: None,
+        in_mission: false,
     });
     id
 }

@@ -16,7 +16,7 @@ use crate::page::{self, Line, LineKind, Speaker};
 
 /// What the conversation wants done.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Send {
+pub enum Reaction {
     /// To the bus.
     Bus(Box<DialogMessage>),
     /// To the chat of all pages.
@@ -28,8 +28,46 @@ pub enum Send {
         /// Which.
         turn: u64,
         /// How.
-        status: &'static str,
+        end: TurnEnd,
     },
+}
+
+/// How a turn ended.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum TurnEnd {
+    /// The robot did all that was asked.
+    Done,
+    /// The robot answered.
+    Answered,
+    /// The robot asks, and waits for an answer.
+    Asked,
+    /// A step failed.
+    Failed,
+    /// The robot did not understand, or will not.
+    Refused,
+    /// Something else was asked for meanwhile.
+    Interrupted,
+}
+
+impl TurnEnd {
+    /// In one word, for the page and for reports.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Done => "done",
+            Self::Answered => "answered",
+            Self::Asked => "asked",
+            Self::Failed => "failed",
+            Self::Refused => "refused",
+            Self::Interrupted => "interrupted",
+        }
+    }
+
+    /// Whether it is what the person wanted.
+    #[must_use]
+    pub const fn is_success(self) -> bool {
+        matches!(self, Self::Done | Self::Answered)
+    }
 }
 
 /// A conversation with the robot of one body.
@@ -54,59 +92,59 @@ impl Conversation {
     }
 
     /// Somebody said something. Gives the turn's number and what follows.
-    pub fn hear(&mut self, text: &str, known: Option<&Known>) -> (u64, Vec<Send>) {
+    pub fn hear(&mut self, text: &str, known: Option<&Known>) -> (u64, Vec<Reaction>) {
         self.turns += 1;
         let turn = self.turns;
-        let mut sends = vec![
+        let mut reactions = vec![
             self.bus(DialogKind::Utterance, turn, text),
-            Send::Chat(Line::new(Speaker::Person, LineKind::Say, turn, text)),
+            Reaction::Chat(Line::new(Speaker::Person, LineKind::Say, turn, text)),
         ];
         let Some(known) = known else {
-            self.say(turn, DialogKind::Reply, LineKind::Problem, "I am not there yet; one moment.", &mut sends);
-            sends.push(Send::TurnEnded { turn, status: "refused" });
-            return (turn, sends);
+            self.say(turn, DialogKind::Reply, LineKind::Problem, "I am not there yet; one moment.", &mut reactions);
+            reactions.push(Reaction::TurnEnded { turn, end: TurnEnd::Refused });
+            return (turn, reactions);
         };
         match self.language.understand(text, known, &mut self.context) {
             Understanding::Plan { steps, reply } => {
-                self.say(turn, DialogKind::Reply, LineKind::Say, &reply, &mut sends);
-                self.plan(turn, steps, &mut sends);
+                self.say(turn, DialogKind::Reply, LineKind::Say, &reply, &mut reactions);
+                self.plan(turn, steps, &mut reactions);
             }
             Understanding::Question { text, candidates } => {
-                self.say(turn, DialogKind::Question, LineKind::Question, &text, &mut sends);
-                self.point_out(turn, &candidates, "asked", &mut sends);
+                self.say(turn, DialogKind::Question, LineKind::Question, &text, &mut reactions);
+                self.point_out(turn, &candidates, TurnEnd::Asked, &mut reactions);
             }
             Understanding::Answer { text, highlight } => {
-                self.say(turn, DialogKind::Reply, LineKind::Say, &text, &mut sends);
-                self.point_out(turn, &highlight, "answered", &mut sends);
+                self.say(turn, DialogKind::Reply, LineKind::Say, &text, &mut reactions);
+                self.point_out(turn, &highlight, TurnEnd::Answered, &mut reactions);
             }
             Understanding::Refusal { text } => {
-                self.say(turn, DialogKind::Reply, LineKind::Problem, &text, &mut sends);
-                sends.push(Send::TurnEnded { turn, status: "refused" });
+                self.say(turn, DialogKind::Reply, LineKind::Problem, &text, &mut reactions);
+                reactions.push(Reaction::TurnEnded { turn, end: TurnEnd::Refused });
             }
             Understanding::Stop { reply } => {
-                self.say(turn, DialogKind::Reply, LineKind::Say, &reply, &mut sends);
+                self.say(turn, DialogKind::Reply, LineKind::Say, &reply, &mut reactions);
                 let stop = Step { action: Action::Stop, says: String::new() };
-                self.plan(turn, vec![stop], &mut sends);
+                self.plan(turn, vec![stop], &mut reactions);
             }
         }
-        (turn, sends)
+        (turn, reactions)
     }
 
     /// The agent told something about a plan.
-    pub fn follow(&mut self, header: &DialogHeader, known: Option<&Known>) -> Vec<Send> {
-        let mut sends = Vec::new();
+    pub fn follow(&mut self, header: &DialogHeader, known: Option<&Known>) -> Vec<Reaction> {
+        let mut reactions = Vec::new();
         let turn = header.turn;
-        let (Some(kind), Some(plan)) = (header.kind(), self.plans.get_mut(&turn)) else { return sends };
+        let (Some(kind), Some(plan)) = (header.kind(), self.plans.get_mut(&turn)) else { return reactions };
         let count = plan.steps.len();
         let step = plan.steps.get(header.step as usize).cloned();
         match kind {
             DialogKind::StepStarted => {
                 if let Some(step) = step.filter(|step| !step.says.is_empty()) {
-                    sends.push(Send::Page(page::progress(turn, header.step, count, &step.says)));
+                    reactions.push(Reaction::Page(page::progress(turn, header.step, count, &step.says)));
                 }
             }
             DialogKind::StepEnded => {
-                let (Some(step), Some(status)) = (step, header.status()) else { return sends };
+                let (Some(step), Some(status)) = (step, header.status()) else { return reactions };
                 self.context.note_outcome(&step, status);
                 let whole = status.is_success() && header.step as usize + 1 == count;
                 let failed = !status.is_success() && status != Status::Interrupted;
@@ -115,7 +153,7 @@ impl Conversation {
                     if let Some(known) = known {
                         let text = self.language.report(&step, status, header.text.as_str(), known);
                         let line = if failed { LineKind::Problem } else { LineKind::Say };
-                        self.say(turn, DialogKind::Reply, line, &text, &mut sends);
+                        self.say(turn, DialogKind::Reply, line, &text, &mut reactions);
                     }
                 }
             }
@@ -124,47 +162,47 @@ impl Conversation {
                 self.plans.remove(&turn);
                 let status = header.status().unwrap_or(Status::ActionExecutionError);
                 if !told && !status.is_success() && status != Status::Interrupted {
-                    self.say(turn, DialogKind::Reply, LineKind::Problem, "That did not work.", &mut sends);
+                    self.say(turn, DialogKind::Reply, LineKind::Problem, "That did not work.", &mut reactions);
                 }
-                let status = match status {
-                    Status::Interrupted => "interrupted",
-                    status if status.is_success() => "done",
-                    _ => "failed",
+                let end = match status {
+                    Status::Interrupted => TurnEnd::Interrupted,
+                    status if status.is_success() => TurnEnd::Done,
+                    _ => TurnEnd::Failed,
                 };
-                sends.push(Send::TurnEnded { turn, status });
+                reactions.push(Reaction::TurnEnded { turn, end });
             }
             _ => {}
         }
-        sends
+        reactions
     }
 
-    fn plan(&mut self, turn: u64, steps: Vec<Step>, sends: &mut Vec<Send>) {
+    fn plan(&mut self, turn: u64, steps: Vec<Step>, reactions: &mut Vec<Reaction>) {
         let mut message = DialogMessage::new(DialogKind::Plan, self.body, turn, "");
         message.steps =
             steps.iter().map(|step| PlanStep { action: step.action.into(), says: Text::new(&step.says) }).collect();
-        sends.push(Send::Bus(Box::new(message)));
+        reactions.push(Reaction::Bus(Box::new(message)));
         self.plans.insert(turn, Plan { steps, told_end: false });
     }
 
     /// Has objects outlined, one after the other, without anything being said about it.
-    fn point_out(&mut self, turn: u64, objects: &[ObjectId], status: &'static str, sends: &mut Vec<Send>) {
+    fn point_out(&mut self, turn: u64, objects: &[ObjectId], end: TurnEnd, reactions: &mut Vec<Reaction>) {
         if objects.is_empty() {
-            sends.push(Send::TurnEnded { turn, status });
+            reactions.push(Reaction::TurnEnded { turn, end });
             return;
         }
         let point = |object: &ObjectId| Step { action: Action::Highlight { object: *object }, says: String::new() };
-        self.plan(turn, objects.iter().map(point).collect(), sends);
+        self.plan(turn, objects.iter().map(point).collect(), reactions);
     }
 
-    fn say(&self, turn: u64, kind: DialogKind, line: LineKind, text: &str, sends: &mut Vec<Send>) {
+    fn say(&self, turn: u64, kind: DialogKind, line: LineKind, text: &str, reactions: &mut Vec<Reaction>) {
         if !text.is_empty() {
-            sends.push(self.bus(kind, turn, text));
-            sends.push(Send::Chat(Line::new(Speaker::Robot, line, turn, text)));
+            reactions.push(self.bus(kind, turn, text));
+            reactions.push(Reaction::Chat(Line::new(Speaker::Robot, line, turn, text)));
         }
     }
 
-    fn bus(&self, kind: DialogKind, turn: u64, text: &str) -> Send {
-        Send::Bus(Box::new(DialogMessage::new(kind, self.body, turn, text)))
+    fn bus(&self, kind: DialogKind, turn: u64, text: &str) -> Reaction {
+        Reaction::Bus(Box::new(DialogMessage::new(kind, self.body, turn, text)))
     }
 }
 

@@ -46,6 +46,7 @@ fn known_object(state: StateView<'_>, robot: &KnownRobot, object: &ObjectRecord)
         text: note.map_or_else(String::new, |note| note.text.as_str().to_owned()),
         visible: object.hidden == 0 && room == robot.room && in_view(robot, object.position_m),
         works: object_id(object.works),
+        in_mission: object.in_mission != 0,
     })
 }
 

@@ -27,6 +27,9 @@ use std::{
 use cohabit_bus::{BusError, Transport};
 use cohabit_cdf::{Catalog, Layout, Mission};
 
+pub use conversation::{Conversation, Reaction, TurnEnd};
+pub use known::known;
+
 use crate::{hub::Hub, talk::Talk};
 
 /// Settings of a dialog service.

@@ -16,7 +16,7 @@ use cohabit_language::Known;
 
 use crate::{
     DialogError,
-    conversation::{Conversation, Send},
+    conversation::{Conversation, Reaction},
     hub::Hub,
     known,
     latency::{Latency, Moments},
@@ -77,17 +77,17 @@ impl Talk {
     pub fn hear(&self, text: &str, received_nanos: u64) -> Result<(), DialogError> {
         let mut inner = self.lock();
         let known = inner.known()?;
-        let (turn, sends) = inner.conversation.hear(text, known.as_ref());
+        let (turn, reactions) = inner.conversation.hear(text, known.as_ref());
         inner.latency.begin(turn, received_nanos, monotonic_nanos());
-        self.send_all(&mut inner, sends)
+        self.carry_out(&mut inner, reactions)
     }
 
     /// An agent said something about a plan.
     fn follow(&self, view: DialogView<'_>) -> Result<(), DialogError> {
         let mut inner = self.lock();
         let known = inner.known()?;
-        let sends = inner.conversation.follow(view.header, known.as_ref());
-        self.send_all(&mut inner, sends)
+        let reactions = inner.conversation.follow(view.header, known.as_ref());
+        self.carry_out(&mut inner, reactions)
     }
 
     /// Something happened in the world.
@@ -102,7 +102,7 @@ impl Talk {
             }
             Some(EventKind::GoalMet) => self.game(LineKind::Goal, text),
             Some(EventKind::NoteRead) => self.game(LineKind::Note, text),
-            Some(EventKind::Message) => self.game(LineKind::Say, text),
+            Some(EventKind::Message | EventKind::CameraMovement) => self.game(LineKind::Say, text),
             Some(EventKind::GoalShown) => self.game(LineKind::Goal, &format!("New goal: {text}")),
             Some(EventKind::MissionComplete) => self.game(LineKind::Ending, "Mission complete. Well done!"),
             Some(EventKind::MissionFailed) => self.game(LineKind::Ending, &format!("Mission failed. {text}")),
@@ -149,15 +149,15 @@ impl Talk {
         Ok(())
     }
 
-    fn send_all(&self, inner: &mut Inner, sends: Vec<Send>) -> Result<(), DialogError> {
-        for send in sends {
-            match send {
-                Send::Bus(message) => inner.publish(&message)?,
-                Send::Chat(line) => self.hub.say(&line),
-                Send::Page(message) => self.hub.tell(&message),
-                Send::TurnEnded { turn, status } => {
+    fn carry_out(&self, inner: &mut Inner, reactions: Vec<Reaction>) -> Result<(), DialogError> {
+        for reaction in reactions {
+            match reaction {
+                Reaction::Bus(message) => inner.publish(&message)?,
+                Reaction::Chat(line) => self.hub.say(&line),
+                Reaction::Page(message) => self.hub.tell(&message),
+                Reaction::TurnEnded { turn, end } => {
                     self.show_state(inner)?;
-                    self.hub.tell(&page::turn_ended(turn, status));
+                    self.hub.tell(&page::turn_ended(turn, end.name()));
                 }
             }
         }

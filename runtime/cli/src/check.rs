@@ -1,38 +1,198 @@
-//! `cohabit check`: what is wrong in mission files.
+//! `cohabit check`: what is wrong in mission files, and where.
 
-use cohabit_cdf::{Catalog, mission};
+use std::{
+    fs,
+    io::{self, BufWriter, Write},
+    path::{Path, PathBuf},
+};
+
+use cohabit_cdf::{
+    Catalog,
+    mission::{self, Problem, Severity, Source},
+};
+use serde_json::{Value, json};
 
 use crate::{failure::bad_input, mission_file::MissionFile};
 
-/// Prints every problem with its file, its place and what would be right.
+/// Endings of the files that are looked for in folders.
+const ENDINGS: [&str; 2] = ["json", "jsonl"];
+
+/// How deep folders are looked through.
+const DEEPEST: usize = 16;
+
+/// Prints every problem with its file, line and column, its place, what is wrong and what would be right
 #[derive(clap::Args)]
 pub struct Check {
-    /// Mission files (CDF), or names of built-in missions
-    #[arg(required = true)]
+    /// Mission files (CDF), files of many missions (JSON lines, or an object of records), folders of these, or names of
+    /// built-in missions; all of the built-in ones, if none is named
     files: Vec<String>,
+    /// Print one JSON document
+    #[arg(long)]
+    json: bool,
+    /// Print the JSON Schema of mission files, and nothing else
+    #[arg(long, exclusive = true)]
+    schema: bool,
+    /// Print no verdict for what is playable
+    #[arg(long, short)]
+    quiet: bool,
+}
+
+/// What is said of one mission.
+struct Verdict {
+    file: String,
+    id: Option<String>,
+    playable: bool,
+    problems: Vec<Problem>,
 }
 
 impl Check {
     /// Checks all files; fails if any has an error.
     pub fn run(&self) -> anyhow::Result<()> {
+        let mut out = BufWriter::new(io::stdout().lock());
+        if self.schema {
+            serde_json::to_writer_pretty(&mut out, &mission::schema::schema(&Catalog::builtin()))?;
+            writeln!(out)?;
+            return Ok(out.flush()?);
+        }
         let catalog = Catalog::builtin();
-        let mut bad = 0;
-        for name in &self.files {
-            let file = MissionFile::find(Some(name))?;
-            match mission::read_mission(&file.name, &file.text, &catalog) {
-                Ok(checked) => {
-                    for warning in &checked.warnings {
-                        println!("{warning}");
-                    }
-                    println!("{name}: good ({} warnings)", checked.warnings.len());
-                }
-                Err(problems) => {
-                    println!("{problems}");
-                    println!("{name}: not playable");
-                    bad += 1;
-                }
+        let mut report = Vec::new();
+        let (mut all, mut bad) = (0, 0);
+        for verdict in self.names()?.iter().flat_map(|name| verdicts(name, &catalog)) {
+            all += 1;
+            bad += usize::from(!verdict.playable);
+            if self.json {
+                report.push(verdict.value());
+            } else {
+                verdict.print(self.quiet, &mut out)?;
             }
         }
-        if bad > 0 { Err(bad_input(format!("{bad} of {} files are not playable", self.files.len()))) } else { Ok(()) }
+        if self.json {
+            serde_json::to_writer_pretty(&mut out, &report)?;
+            writeln!(out)?;
+        } else if all > 1 {
+            writeln!(out, "{} of {all} missions are playable", all - bad)?;
+        }
+        out.flush()?;
+        if bad > 0 { Err(bad_input(format!("{bad} of {all} missions are not playable"))) } else { Ok(()) }
+    }
+
+    /// The files meant, those of folders in the order of their names.
+    fn names(&self) -> anyhow::Result<Vec<String>> {
+        if self.files.is_empty() {
+            return Ok(mission::builtin().iter().map(|(name, _)| (*name).to_owned()).collect());
+        }
+        let mut names = Vec::new();
+        for file in &self.files {
+            let path = Path::new(file);
+            if !path.is_dir() {
+                names.push(file.clone());
+                continue;
+            }
+            let mut found = Vec::new();
+            gather(path, DEEPEST, &mut found).map_err(|error| bad_input(format!("{file}: {error}")))?;
+            if found.is_empty() {
+                return Err(bad_input(format!("{file}: there is no .json or .jsonl file in this folder")));
+            }
+            found.sort();
+            names.extend(found.into_iter().map(|path| path.to_string_lossy().into_owned()));
+        }
+        Ok(names)
+    }
+}
+
+fn gather(folder: &Path, deeper: usize, found: &mut Vec<PathBuf>) -> io::Result<()> {
+    for entry in fs::read_dir(folder)? {
+        let path = entry?.path();
+        if path.is_dir() {
+            if deeper > 0 && !path.is_symlink() {
+                gather(&path, deeper - 1, found)?;
+            }
+        } else if path.extension().is_some_and(|ending| ENDINGS.iter().any(|known| ending == *known)) {
+            found.push(path);
+        }
+    }
+    Ok(())
+}
+
+/// One for each mission in a file; one for the file if it cannot be read.
+fn verdicts(name: &str, catalog: &Catalog) -> Vec<Verdict> {
+    match MissionFile::find(Some(name)) {
+        Ok(file) => {
+            let sources = mission::sources(&file.name, &file.text);
+            if sources.is_empty() {
+                return vec![Verdict::unread(name, "there is no mission in this file")];
+            }
+            sources.iter().map(|source| Verdict::of(source, catalog)).collect()
+        }
+        Err(error) => {
+            let text = format!("{error:#}");
+            let prefix = format!("{name}: ");
+            vec![Verdict::unread(name, text.strip_prefix(&prefix).unwrap_or(&text))]
+        }
+    }
+}
+
+impl Verdict {
+    fn of(source: &Source<'_>, catalog: &Catalog) -> Self {
+        let (playable, problems) = match source.read(catalog) {
+            Ok(checked) => (true, checked.warnings),
+            Err(problems) => (false, problems.0),
+        };
+        let file = match source.position.0 {
+            1 => source.file.clone(),
+            line => format!("{}:{line}", source.file),
+        };
+        Self { file, id: source.id.clone(), playable, problems }
+    }
+
+    fn unread(file: &str, message: &str) -> Self {
+        let problem = Problem {
+            severity: Severity::Error,
+            file: file.to_owned(),
+            position: None,
+            pointer: mission::Pointer::default(),
+            message: message.to_owned(),
+            remedy: None,
+        };
+        Self { file: file.to_owned(), id: None, playable: false, problems: vec![problem] }
+    }
+
+    fn print(&self, quiet: bool, out: &mut impl Write) -> io::Result<()> {
+        for problem in &self.problems {
+            writeln!(out, "{problem}")?;
+        }
+        if quiet && self.playable {
+            return Ok(());
+        }
+        let id = self.id.as_ref().map_or_else(String::new, |id| format!(" ({id})"));
+        let verdict = if self.playable { "playable" } else { "not playable" };
+        let count = |severity| self.problems.iter().filter(|problem| problem.severity == severity).count();
+        let counts = [(count(Severity::Error), "error"), (count(Severity::Warning), "warning")];
+        let counts = counts.iter().filter(|(count, _)| *count > 0);
+        let counts: Vec<_> =
+            counts.map(|(count, word)| format!("{count} {word}{}", if *count == 1 { "" } else { "s" })).collect();
+        let counts = if counts.is_empty() { String::new() } else { format!(": {}", counts.join(", ")) };
+        writeln!(out, "{}{id}: {verdict}{counts}", self.file)
+    }
+
+    fn value(&self) -> Value {
+        let problem = |problem: &Problem| {
+            let (line, column) = problem.position.unzip();
+            json!({
+                "severity": problem.severity,
+                "file": problem.file,
+                "line": line,
+                "column": column,
+                "pointer": problem.pointer,
+                "message": problem.message,
+                "remedy": problem.remedy,
+            })
+        };
+        json!({
+            "file": self.file,
+            "id": self.id,
+            "playable": self.playable,
+            "problems": self.problems.iter().map(problem).collect::<Vec<_>>(),
+        })
     }
 }

@@ -1,6 +1,7 @@
 //! `cohabit`: people and robots together in a simulated office.
 
 mod check;
+mod eval;
 mod failure;
 mod mission_file;
 mod peers;
@@ -30,6 +31,8 @@ enum Command {
     Check(check::Check),
     /// Re-simulate a recorded session and compare it tick by tick
     Replay(replay::Replay),
+    /// Play many missions headless, by what is said in them, and report what came of them
+    Eval(eval::Eval),
     /// The world of a session, its cameras and its clock
     Sim(peers::Sim),
     /// One robot's mind
@@ -51,6 +54,7 @@ fn main() -> ExitCode {
         Command::Play(play) => play.run(),
         Command::Check(check) => check.run(),
         Command::Replay(replay) => replay.run(),
+        Command::Eval(eval) => eval.run(),
         Command::Sim(sim) => sim.run(),
         Command::Agent(agent) => agent.run(),
         Command::Dialog(dialog) => dialog.run(),

@@ -2,7 +2,7 @@
 
 use std::{fs, path::Path, sync::Arc};
 
-use cohabit_cdf::{Catalog, mission};
+use cohabit_cdf::{BodyRequest, Catalog, mission};
 use cohabit_engine::SessionPlan;
 
 use crate::failure::bad_input;
@@ -43,8 +43,9 @@ impl MissionFile {
         }
     }
 
-    /// Checks it; `seed` is taken where the mission leaves it to chance.
-    pub fn plan(&self, seed: u64) -> anyhow::Result<SessionPlan> {
-        SessionPlan::new(&self.name, &self.text, Arc::new(Catalog::builtin()), seed).map_err(bad_input)
+    /// Checks it; `seed` is taken where the mission leaves it to chance, `bodies` join those of the mission.
+    pub fn plan(&self, seed: u64, bodies: &[BodyRequest]) -> anyhow::Result<SessionPlan> {
+        let plan = SessionPlan::new(&self.name, &self.text, Arc::new(Catalog::builtin()), seed).map_err(bad_input)?;
+        Ok(plan.with_bodies(bodies.to_vec()))
     }
 }

@@ -16,6 +16,7 @@ use anyhow::Context as _;
 use clap::ValueEnum;
 use cohabit_agent::PlanFollower;
 use cohabit_bus::{Session, Shm, Topic, Transport, Wake, message::MissionMessage};
+use cohabit_cdf::BodyRequest;
 use cohabit_dialog::DialogConfig;
 use cohabit_engine::{SessionPlan, Simulator};
 use cohabit_record::Recorder;
@@ -53,6 +54,9 @@ pub struct Sim {
     /// The seed of all that is random, where the mission does not fix it
     #[arg(long, default_value_t = 0)]
     seed: u64,
+    /// A body beside the mission's own robot: `robot` or `person`, with a room if wanted; as often as needed
+    #[arg(long = "body", value_name = "KIND[@ROOM]")]
+    bodies: Vec<BodyRequest>,
     /// Threads that render
     #[arg(long, default_value_t = 2)]
     threads: usize,
@@ -61,7 +65,7 @@ pub struct Sim {
 impl Sim {
     /// Runs the simulator.
     pub fn run(&self) -> anyhow::Result<()> {
-        let plan = MissionFile::find(self.mission.as_deref())?.plan(self.seed)?;
+        let plan = MissionFile::find(self.mission.as_deref())?.plan(self.seed, &self.bodies)?;
         let (bus, stop) = self.joining.join()?;
         let (world, meshes) = thread::scope(|scope| {
             let meshes = scope.spawn(|| MeshLibrary::build(&plan.catalog));
@@ -133,7 +137,7 @@ impl Dialog {
         let (bus, stop) = self.joining.join()?;
         let Some(mission) = wait_for_mission(&bus, &stop)? else { return Ok(()) };
         let file = MissionFile { name: mission.header.file.as_str().to_owned(), text: mission.text };
-        let SessionPlan { catalog, layout, mission, .. } = file.plan(mission.header.seed)?;
+        let SessionPlan { catalog, layout, mission, .. } = file.plan(mission.header.seed, &mission.bodies)?;
         let config = DialogConfig {
             session: self.joining.session.clone(),
             listen: SocketAddr::new(self.listening.listen, self.listening.port),

@@ -8,6 +8,7 @@ use std::{
 
 use anyhow::Context as _;
 use cohabit_bus::{Session, SessionError};
+use cohabit_cdf::BodyRequest;
 
 use crate::{
     failure::bad_input,
@@ -30,6 +31,9 @@ pub struct Play {
     /// The seed of all that is random, where the mission does not fix it; the clock's if absent
     #[arg(long)]
     seed: Option<u64>,
+    /// A body beside the mission's own robot: `robot` or `person`, with a room if wanted; as often as needed
+    #[arg(long = "body", value_name = "KIND[@ROOM]")]
+    bodies: Vec<BodyRequest>,
     /// The session log to write; one in the user's data folder if absent
     #[arg(long)]
     log: Option<PathBuf>,
@@ -45,7 +49,7 @@ impl Play {
         let stop = stop::on_request()?;
         let seed = self.seed.unwrap_or_else(clock_seed);
         let mission = MissionFile::find(self.mission.as_deref())?;
-        let plan = mission.plan(seed)?;
+        let plan = mission.plan(seed, &self.bodies)?;
         for name in Session::wipe_dead() {
             println!("cleaned up after session {name}, which was not ended");
         }
@@ -58,7 +62,7 @@ impl Play {
         })?;
         println!("Playing \"{}\" ({})", plan.mission.goal_text, mission.name);
         let roles = [
-            Role::sim(self.mission.as_deref(), seed, self.threads),
+            Role::sim(self.mission.as_deref(), seed, &self.bodies, self.threads),
             Role::record(&log),
             Role::agent(),
             Role::dialog(&self.listening),

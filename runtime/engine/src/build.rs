@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use cohabit_cdf::{Catalog, Layout, LayoutError, Mission, mission};
+use cohabit_cdf::{BodyRequest, Catalog, Layout, LayoutError, Mission, mission};
 use cohabit_world::World;
 
 /// All that does not change while a session runs, and the seed of what is random in it.
@@ -20,6 +20,8 @@ pub struct SessionPlan {
     pub mission: Arc<Mission>,
     /// The seed.
     pub seed: u64,
+    /// Bodies beside those of the mission.
+    pub bodies: Vec<BodyRequest>,
 }
 
 /// Why a session cannot be built.
@@ -54,7 +56,13 @@ impl SessionPlan {
         let mission = Arc::new(checked.mission);
         let layout = Arc::new(Layout::builtin(&mission.layout)?);
         let seed = mission.seed.unwrap_or(seed);
-        Ok(Self { file: file.to_owned(), text: text.to_owned(), catalog, layout, mission, seed })
+        Ok(Self { file: file.to_owned(), text: text.to_owned(), catalog, layout, mission, seed, bodies: Vec::new() })
+    }
+
+    /// The same with these bodies beside those of the mission.
+    #[must_use]
+    pub fn with_bodies(self, bodies: Vec<BodyRequest>) -> Self {
+        Self { bodies, ..self }
     }
 
     /// The world at its first tick.
@@ -62,7 +70,13 @@ impl SessionPlan {
     /// # Errors
     /// [`BuildError::World`].
     pub fn build(&self) -> Result<World, BuildError> {
-        World::new(Arc::clone(&self.catalog), Arc::clone(&self.layout), Arc::clone(&self.mission), self.seed)
-            .map_err(|source| BuildError::World { file: self.file.clone(), source })
+        let failed = |source| BuildError::World { file: self.file.clone(), source };
+        let (catalog, layout, mission) =
+            (Arc::clone(&self.catalog), Arc::clone(&self.layout), Arc::clone(&self.mission));
+        let mut world = World::new(catalog, layout, mission, self.seed).map_err(failed)?;
+        for request in &self.bodies {
+            world.add_body_of(request.kind, request.room.unwrap_or(self.mission.start_room)).map_err(failed)?;
+        }
+        Ok(world)
     }
 }

@@ -77,7 +77,7 @@ fn wrap(angle_rad: f32) -> f32 {
 }
 
 /// How far one can go from a point before leaving the rooms' floors, at most `most_m`.
-fn free_length_m(layout: &Layout, from: [f32; 2], direction: [f32; 2], most_m: f32) -> f32 {
+pub fn free_length_m(layout: &Layout, from: [f32; 2], direction: [f32; 2], most_m: f32) -> f32 {
     const STEP_M: f32 = 0.05;
     let mut length = 0.0;
     while length < most_m {

@@ -7,7 +7,7 @@ use cohabit_bus::{
     message::{self, CommandMessage, EventMessage, Malformed, MissionHeader, MissionMessage, TickHeader, TickMessage},
 };
 use cohabit_cdf::{Action, BodyId, ObjectId, Status};
-use cohabit_world::{Event, Input, Report, World};
+use cohabit_world::{CameraTarget, DT_NANOS, Event, Input, Report, World};
 
 use crate::{build::SessionPlan, report};
 
@@ -36,6 +36,8 @@ pub struct Engine {
     turn_by_command: BTreeMap<u64, u64>,
     latest_started: u64,
     highlighted: Vec<(ObjectId, u64)>,
+    /// What the mission shows, one after the other, each until a tick.
+    shown: Vec<(CameraTarget, u64)>,
 }
 
 impl Engine {
@@ -54,9 +56,10 @@ impl Engine {
             turn_by_command: BTreeMap::new(),
             latest_started: 0,
             highlighted: Vec::new(),
+            shown: Vec::new(),
         };
         let header = MissionHeader { seed: plan.seed, file: cohabit_bus::Text::new(&plan.file), ..Default::default() };
-        let message = MissionMessage { header, text: plan.text.clone() };
+        let message = MissionMessage { header, bodies: plan.bodies.clone(), text: plan.text.clone() };
         engine.mission.send(0, message.bytes(), &mut |bytes| message.write(bytes))?;
         Ok(engine)
     }
@@ -78,6 +81,12 @@ impl Engine {
         self.highlighted.iter().map(|(object, _)| *object)
     }
 
+    /// What the mission shows now to the people who watch.
+    #[must_use]
+    pub fn shown(&self) -> Option<CameraTarget> {
+        self.shown.iter().find(|(_, until)| *until > self.world.tick()).map(|(target, _)| *target)
+    }
+
     /// One tick, whose wall time is stamped `wall_nanos` (since 1970).
     ///
     /// # Errors
@@ -87,7 +96,7 @@ impl Engine {
         let inputs: Vec<Input> = messages.iter().filter_map(|message| self.input(message)).collect();
         let report = self.world.step(&inputs);
         self.note_started(&inputs);
-        self.note_highlights(&report);
+        self.note_shown(&report);
         // State before events: who hears of an event finds the state that it speaks of.
         self.publish_state()?;
         self.publish_events(&inputs, report)?;
@@ -137,13 +146,22 @@ impl Engine {
         }
     }
 
-    fn note_highlights(&mut self, report: &Report) {
+    fn note_shown(&mut self, report: &Report) {
         let now = self.world.tick();
         self.highlighted.retain(|(_, until)| *until > now);
+        self.shown.retain(|(_, until)| *until > now);
         for event in &report.events {
-            if let Event::Highlighted { object, .. } = event {
-                self.highlighted.retain(|(other, _)| other != object);
-                self.highlighted.push((*object, now + HIGHLIGHT_TICKS));
+            match event {
+                Event::Highlighted { object, .. } => {
+                    self.highlighted.retain(|(other, _)| other != object);
+                    self.highlighted.push((*object, now + HIGHLIGHT_TICKS));
+                }
+                Event::CameraMovement { target, duration_s, .. } => {
+                    let ticks = (f64::from(*duration_s) / (DT_NANOS as f64 * 1e-9)) as u64;
+                    let from = self.shown.last().map_or(now, |(_, until)| *until);
+                    self.shown.push((*target, from + ticks));
+                }
+                _ => {}
             }
         }
     }

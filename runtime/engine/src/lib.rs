@@ -10,8 +10,9 @@ mod build;
 mod camera_rig;
 mod engine;
 pub mod replay;
-mod report;
+pub mod report;
 mod scene;
+mod shot;
 mod simulator;
 mod studio;
 

@@ -65,6 +65,7 @@ impl std::fmt::Display for Difference {
 pub fn replay(log: &Log, catalog: Arc<Catalog>) -> Result<Replay, BuildError> {
     let session = &log.session;
     let plan = SessionPlan::new(&session.mission_file, &session.mission_text, catalog, session.seed)?;
+    let plan = plan.with_bodies(session.bodies.clone());
     let mut world = plan.build()?;
     let mut replay = Replay { ticks: 0, inputs: 0, goals: (0, 0), difference: None };
     for entry in &log.ticks {

@@ -7,9 +7,10 @@ use cohabit_bus::{
     },
 };
 use cohabit_cdf::{RoomId, StateFlag};
-use cohabit_world::{BodyView, Ending, Event, Input, ObjectView, World};
+use cohabit_world::{BodyView, CameraTarget, Ending, Event, Input, ObjectView, World};
 
 /// A command was taken up.
+#[must_use]
 pub fn started(input: &Input, turn: u64) -> EventMessage {
     let mut message = EventMessage::new(EventKind::Started);
     (message.command, message.turn, message.body) = (input.command, turn, input.body.0);
@@ -17,6 +18,7 @@ pub fn started(input: &Input, turn: u64) -> EventMessage {
 }
 
 /// An event as others hear of it.
+#[must_use]
 pub fn event(world: &World, event: &Event) -> EventMessage {
     let of = EventMessage::new;
     match event {
@@ -30,6 +32,14 @@ pub fn event(world: &World, event: &Event) -> EventMessage {
         Event::GoalMet { id } => goal(world, EventKind::GoalMet, *id),
         Event::GoalReset { id } => goal(world, EventKind::GoalReset, *id),
         Event::GoalShown { id } => goal(world, EventKind::GoalShown, *id),
+        Event::CameraMovement { target, duration_s, text } => {
+            let mut message = of(EventKind::CameraMovement).saying(text);
+            message.number = (duration_s * 1e3) as i64;
+            match target {
+                CameraTarget::Object(object) => message.about(object.0),
+                _ => message,
+            }
+        }
         Event::Message { text } => of(EventKind::Message).saying(text),
         Event::MissionEnded { ending: Ending::AllGoalsMet } => of(EventKind::MissionComplete),
         Event::MissionEnded { ending: Ending::KilledByHazard } => {
@@ -46,6 +56,7 @@ fn goal(world: &World, kind: EventKind, number: i64) -> EventMessage {
 }
 
 /// The present state.
+#[must_use]
 pub fn state(world: &World) -> StateParts {
     let ending = match world.finished() {
         None => 0,
@@ -89,6 +100,8 @@ fn body_record(body: &BodyView) -> BodyRecord {
         room: body.room as u32,
         held: body.held.map_or(NONE, |object| object.0),
         busy: u32::from(body.busy),
+        kind: body.kind as u32,
+        reserved: 0,
         command: body.command.unwrap_or(0),
         position_m: body.position_m.to_array(),
         yaw_rad: body.yaw_rad,
@@ -106,6 +119,7 @@ fn object_record(object: &ObjectView<'_>) -> ObjectRecord {
         color: object.color as u8,
         fluid: object.fluid as u8,
         hidden: u8::from(object.hidden),
+        in_mission: u8::from(object.in_mission),
         reserved: 0,
         parent: object.parent.map_or(NONE, |parent| parent.0),
         held_by: object.held_by.map_or(NONE, |body| body.0),

@@ -3,7 +3,7 @@
 use cohabit_cdf::{BodyId, Color, Fluid, RoomId, StateFlags};
 use cohabit_render::{Camera, Highlight, Instance, Look};
 
-use crate::engine::Engine;
+use crate::{engine::Engine, shot, studio::SPECTATOR_SIZE};
 
 /// The id of body `body` in the id plane; objects have their index + 1.
 const FIRST_BODY_ID: u32 = 1 << 20;
@@ -28,6 +28,8 @@ pub struct Moment {
     pub lit: [bool; RoomId::ALL.len()],
     /// Where each body is, and where its eye.
     pub bodies: Vec<Standing>,
+    /// What the mission shows to the people who watch, instead of their body.
+    pub shot: Option<Camera>,
 }
 
 /// Where a body stands and looks.
@@ -106,6 +108,7 @@ impl Moment {
                     head_pitch_rad: body.head_pitch_rad,
                 })
                 .collect(),
+            shot: engine.shown().and_then(|target| shot::camera(target, world, SPECTATOR_SIZE)),
         }
     }
 

@@ -18,7 +18,7 @@ use crate::{camera_rig::CameraRig, scene::Moment};
 /// Pixels of an egocentric frame, both ways.
 const EGOCENTRIC_SIZE: u32 = 300;
 /// The size of a frame for people.
-const SPECTATOR_SIZE: [u32; 2] = [854, 480];
+pub const SPECTATOR_SIZE: [u32; 2] = [854, 480];
 /// At most so often for people.
 const SPECTATOR_EVERY: Duration = Duration::from_millis(33);
 /// At most so often for a body.
@@ -63,9 +63,24 @@ pub struct Studio {
     scene: Scene,
     renderer: CpuRenderer,
     layout: Arc<Layout>,
+    crews: Vec<Crew>,
+}
+
+/// The cameras of one body.
+struct Crew {
     rig: CameraRig,
     spectator: Post,
     egocentric: Post,
+}
+
+impl Crew {
+    fn new(bus: &dyn Transport, body: u8) -> Result<Self, BusError> {
+        Ok(Self {
+            rig: CameraRig::default(),
+            spectator: Post::new(bus, CameraId::Spectator(body), SPECTATOR_EVERY)?,
+            egocentric: Post::new(bus, CameraId::Egocentric(body), EGOCENTRIC_EVERY)?,
+        })
+    }
 }
 
 /// A camera's publisher and when it last sent.
@@ -93,7 +108,7 @@ impl Post {
 }
 
 impl Studio {
-    /// The studio of a floor plan.
+    /// The studio of a floor plan, with cameras for so many bodies.
     ///
     /// # Errors
     /// [`BusError`].
@@ -101,15 +116,15 @@ impl Studio {
         meshes: Arc<MeshLibrary>,
         layout: Arc<Layout>,
         threads: usize,
+        bodies: usize,
         bus: &dyn Transport,
     ) -> Result<Self, BusError> {
+        let ids = (0..=u8::MAX).take(bodies);
         Ok(Self {
             scene: Scene::new(meshes, &layout),
             renderer: CpuRenderer::new(threads),
             layout,
-            rig: CameraRig::default(),
-            spectator: Post::new(bus, CameraId::Spectator(0), SPECTATOR_EVERY)?,
-            egocentric: Post::new(bus, CameraId::Egocentric(0), EGOCENTRIC_EVERY)?,
+            crews: ids.map(|body| Crew::new(bus, body)).collect::<Result<_, _>>()?,
         })
     }
 
@@ -125,21 +140,24 @@ impl Studio {
     }
 
     fn shoot(&mut self, moment: &Moment) -> Result<(), BusError> {
-        let spectator = self.spectator.due();
-        let egocentric = self.egocentric.due();
-        if spectator.is_none() && egocentric.is_none() {
+        let due: Vec<_> = self.crews.iter_mut().map(|crew| (crew.spectator.due(), crew.egocentric.due())).collect();
+        if due.iter().all(|(spectator, egocentric)| spectator.is_none() && egocentric.is_none()) {
             return Ok(());
         }
         self.set_up(moment);
-        if let (Some(since), Some(standing)) = (spectator, moment.bodies.first()) {
-            let camera = self.rig.follow(standing, &self.layout, since.as_secs_f32().min(0.5), SPECTATOR_SIZE);
-            let planes = [Plane::Color];
-            publish(&mut self.renderer, &self.scene, &camera, moment, &planes, &mut *self.spectator.publisher)?;
-        }
-        if egocentric.is_some()
-            && let Some(camera) = moment.egocentric(0, EGOCENTRIC_SIZE, EGOCENTRIC_SIZE)
-        {
-            publish(&mut self.renderer, &self.scene, &camera, moment, &Plane::ALL, &mut *self.egocentric.publisher)?;
+        let Self { scene, renderer, layout, crews, .. } = self;
+        for (body, (crew, (spectator, egocentric))) in crews.iter_mut().zip(due).enumerate() {
+            let Some(standing) = moment.bodies.get(body) else { continue };
+            if let Some(since) = spectator {
+                let followed = crew.rig.follow(standing, layout, since.as_secs_f32().min(0.5), SPECTATOR_SIZE);
+                let camera = moment.shot.unwrap_or(followed);
+                publish(renderer, scene, &camera, body, moment, &[Plane::Color], &mut *crew.spectator.publisher)?;
+            }
+            if egocentric.is_some()
+                && let Some(camera) = moment.egocentric(body, EGOCENTRIC_SIZE, EGOCENTRIC_SIZE)
+            {
+                publish(renderer, scene, &camera, body, moment, &Plane::ALL, &mut *crew.egocentric.publisher)?;
+            }
         }
         Ok(())
     }
@@ -158,6 +176,7 @@ fn publish(
     renderer: &mut CpuRenderer,
     scene: &Scene,
     camera: &Camera,
+    body: usize,
     moment: &Moment,
     planes: &[Plane],
     publisher: &mut dyn Publisher,
@@ -180,7 +199,7 @@ fn publish(
             width: camera.width,
             height: camera.height,
             planes: layout.plane_bits(),
-            body: 0,
+            body: u32::try_from(body).unwrap_or(0),
             position_m: camera.position_m,
             yaw_rad: camera.yaw_rad,
             pitch_rad: camera.pitch_rad,

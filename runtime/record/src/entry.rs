@@ -4,7 +4,7 @@ use cohabit_bus::{
     Envelope,
     message::{CommandMessage, DialogView, EventMessage, MissionMessage, TickView},
 };
-use cohabit_cdf::{Action, Status};
+use cohabit_cdf::{Action, BodyRequest, Status};
 use serde::{Deserialize, Serialize};
 
 /// The kinds of entries, each on its own channel.
@@ -30,6 +30,9 @@ pub struct SessionEntry {
     pub mission_text: String,
     /// The seed of all that was random.
     pub seed: u64,
+    /// Bodies beside those of the mission.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub bodies: Vec<BodyRequest>,
 }
 
 impl SessionEntry {
@@ -46,13 +49,14 @@ impl SessionEntry {
             mission_file: mission.header.file.as_str().to_owned(),
             mission_text: mission.text.clone(),
             seed: mission.header.seed,
+            bodies: mission.bodies.clone(),
         }
     }
 }
 
 impl Entry for SessionEntry {
     const TOPIC: &'static str = "/session";
-    const SCHEMA: &'static str = r#"{"title":"Session","type":"object","properties":{"format":{"type":"integer"},"program":{"type":"string"},"session":{"type":"string"},"mission_file":{"type":"string"},"mission_text":{"type":"string"},"seed":{"type":"integer"}}}"#;
+    const SCHEMA: &'static str = r#"{"title":"Session","type":"object","properties":{"format":{"type":"integer"},"program":{"type":"string"},"session":{"type":"string"},"mission_file":{"type":"string"},"mission_text":{"type":"string"},"seed":{"type":"integer"},"bodies":{"type":"array","items":{"type":"object"}}}}"#;
 }
 
 /// One tick: what went in, and the digest of what came out.

@@ -145,6 +145,7 @@ mod tests {
             mission_file: "m.json".to_owned(),
             mission_text: "{}".to_owned(),
             seed: u64::MAX,
+            bodies: vec!["person@Lab1".parse().unwrap()],
         };
         let inputs = vec![InputEntry { command: 1 << 50, turn: 1, body: 0, action: Action::LookAround }];
         let ticks: Vec<_> = (0..50)

@@ -14,6 +14,8 @@ pub(crate) struct Anchor {
     pub at: Vec3,
     /// Height free above it, m.
     pub clearance_m: f32,
+    /// How wide a thing may be that stands here, m: what is behind a door fits in whole, or the door would not shut.
+    pub width_m: f32,
 }
 
 impl Anchor {
@@ -26,8 +28,14 @@ impl Anchor {
 /// All anchors of `receptacle`, surface by surface; none, if it takes nothing.
 pub(crate) fn anchors(facts: &Facts<'_>, receptacle: ObjectId) -> Vec<Anchor> {
     let Some(kind) = &facts.class(receptacle).receptacle else { return Vec::new() };
-    let places = kind.surfaces.iter().flat_map(|surface| places(surface).map(|at| (at, surface.clearance_m)));
-    (0..=u16::MAX).zip(places).map(|(index, (at, clearance_m))| Anchor { index, at, clearance_m }).collect()
+    let width = |surface: &Surface| {
+        if kind.enclosed { surface.size_m[0].max(surface.size_m[1]) } else { f32::INFINITY }
+    };
+    let places = kind.surfaces.iter().flat_map(|surface| places(surface).map(move |at| (at, surface)));
+    (0..=u16::MAX)
+        .zip(places)
+        .map(|(index, (at, surface))| Anchor { index, at, clearance_m: surface.clearance_m, width_m: width(surface) })
+        .collect()
 }
 
 fn places(surface: &Surface) -> impl Iterator<Item = Vec3> + '_ {
@@ -78,6 +86,7 @@ pub(crate) fn roomy_and_tight(facts: &Facts<'_>, receptacle: ObjectId, size: Vec
     free_anchors(facts, receptacle)
         .into_iter()
         .filter(|anchor| size.z <= anchor.clearance_m * scale[2] + 1e-3)
+        .filter(|anchor| size.x.min(size.y) <= anchor.width_m * scale[0] + 1e-3)
         .partition(|anchor| has_elbow_room(facts, receptacle, anchor.local(scale).position, reach))
 }
 

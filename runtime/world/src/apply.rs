@@ -1,11 +1,11 @@
 //! The only place where a world changes because somebody did something: effects in, state and events out.
 
-use cohabit_cdf::{BodyId, Catalog, ObjectId, Property, StateFlag};
+use cohabit_cdf::{BodyId, Catalog, ClassId, ObjectId, Property, RoomId, StateFlag};
 use glam::{Quat, Vec3};
 
 use crate::{
     anchors::anchors,
-    effect::Effect,
+    effect::{Effect, Spot},
     entity::{Object, Support},
     facts::Facts,
     floor::Floor,
@@ -14,6 +14,7 @@ use crate::{
     physics, power,
     report::{Ending, Event, SoundKind},
     state::State,
+    works,
 };
 
 /// A world's changing part, with what is constant about it, and where its events go.
@@ -49,21 +50,12 @@ impl Changes<'_> {
                 self.changed(object);
             }
             Effect::Hold(object, body) => self.hold(object, body),
-            Effect::PutOn { object, parent, anchor } => self.put_on(object, parent, anchor),
+            Effect::Put { object, spot } => self.put(object, spot),
             Effect::LetGo(object, velocity) => self.let_go(object, velocity),
-            Effect::Spawn { class, instance, parent, anchor, yesterday, by } => {
-                let room = self.state.at(parent).room;
-                let mut object = Object::new(instance, class, room, self.state.at(parent).pose);
-                object.yesterday = yesterday;
-                let id = self.add(object);
-                self.put_on(id, parent, anchor);
-                self.events.push(Event::Spawned { object: id, by });
-            }
+            Effect::Spawn { class, instance, spot, by, was } => self.spawn(class, instance, spot, by, was),
+            Effect::Return { object, spot } => self.bring_back(object, spot),
             Effect::Remove(object) => self.remove(object),
-            Effect::Scale(object, factor) => {
-                self.state.at_mut(object).scale = self.state.at(object).scale.map(|side| side * factor);
-                self.changed(object);
-            }
+            Effect::Scale(object, factor) => self.scale(object, factor),
             Effect::Start(object, run) => {
                 self.state.at_mut(object).run = Some(run);
                 self.set(object, StateFlag::Toggled, true);
@@ -72,6 +64,18 @@ impl Changes<'_> {
                 }
             }
             Effect::Feed(circuit, fed) => self.feed(circuit, fed),
+            Effect::Turn(generator) => {
+                if let Some(gate) = self.state.portals.get_mut(&generator) {
+                    gate.turn();
+                }
+            }
+            Effect::Sate(dino) => {
+                if let Some(dinosaur) = self.state.dinosaurs.get_mut(&dino) {
+                    dinosaur.fed = true;
+                }
+                self.changed(dino);
+            }
+            Effect::Touch(object) => self.state.at_mut(object).touched = true,
             Effect::Kill(body) => self.kill(body),
             Effect::Tell(event) => self.events.push(event),
         }
@@ -88,6 +92,54 @@ impl Changes<'_> {
         id
     }
 
+    fn spawn(&mut self, class: ClassId, instance: String, spot: Spot, by: Option<ObjectId>, was: Option<ObjectId>) {
+        let (room, pose) = match spot {
+            Spot::Anchor { parent, .. } => (self.state.at(parent).room, self.state.at(parent).pose),
+            Spot::Floor(at) => {
+                let room = self.floor.room_at(at.truncate()).or_else(|| by.map(|by| self.state.at(by).room));
+                (room.unwrap_or(RoomId::Hallway), Pose::level(at, 0.0))
+            }
+        };
+        let mut object = Object::new(instance, class, room, pose);
+        (object.was, object.requested) = (was, true);
+        let id = self.add(object);
+        self.put(id, spot);
+        self.events.push(Event::Spawned { object: id, by });
+    }
+
+    /// What left the world, or was not there yet, comes into it as it was.
+    fn bring_back(&mut self, object: ObjectId, spot: Spot) {
+        self.state.away.remove(&object);
+        self.put(object, spot);
+        let facts = self.facts();
+        let powered =
+            facts.has(object, Property::Powerable) && power::is_fed(facts.state, facts.object(object).circuit);
+        if facts.has(object, Property::Powerable) {
+            self.set(object, StateFlag::Powered, powered);
+        }
+        self.events.push(Event::Spawned { object, by: None });
+        self.state.floor_version += u64::from(blocks_the_way(&self.facts(), object));
+    }
+
+    fn put(&mut self, object: ObjectId, spot: Spot) {
+        match spot {
+            Spot::Anchor { parent, anchor } => self.put_on(object, parent, anchor),
+            Spot::Floor(at) => self.put_down(object, at),
+        }
+    }
+
+    /// Makes an object so many times its size; what stands on it stays at its place on it.
+    pub fn scale(&mut self, object: ObjectId, factor: f32) {
+        self.state.at_mut(object).scale = self.state.at(object).scale.map(|side| side * factor);
+        for child in self.state.children(object).collect::<Vec<_>>() {
+            if let Support::On { local, .. } = &mut self.state.at_mut(child).support {
+                local.position *= factor;
+            }
+        }
+        self.settle(object);
+        self.changed(object);
+    }
+
     fn changed(&mut self, object: ObjectId) {
         let event = Event::ObjectChanged { object };
         // Several changes of one object in a row are one to those who listen.
@@ -99,6 +151,10 @@ impl Changes<'_> {
     fn set(&mut self, object: ObjectId, flag: StateFlag, value: bool) {
         if self.state.at(object).flags.has(flag) == value {
             return;
+        }
+        if value && flag.is_mood() {
+            // A face shows one mood at a time.
+            StateFlag::MOODS.into_iter().for_each(|mood| self.state.at_mut(object).flags.set(mood, false));
         }
         self.state.at_mut(object).flags.set(flag, value);
         self.changed(object);
@@ -181,16 +237,21 @@ impl Changes<'_> {
     }
 
     fn feed(&mut self, circuit: i32, fed: bool) {
-        let catalog = self.catalog;
-        let powerable = |state: &State, id: ObjectId| catalog.class(state.at(id).class).has(Property::Powerable);
-        for id in power::feed(powerable, self.state, circuit, fed) {
+        for id in power::feed(self.catalog, self.state, circuit, fed) {
             self.changed(id);
         }
         self.state.floor_version += 1;
+        if fed {
+            let effects = works::on_power(&self.facts(), circuit);
+            self.apply(effects);
+        }
     }
 
     fn kill(&mut self, body: BodyId) {
         self.state.bodies[body.0 as usize].alive = false;
+        if let Some(held) = self.state.bodies[body.0 as usize].held {
+            self.let_go(held, Vec3::ZERO);
+        }
         if self.state.ended.is_none() {
             self.state.ended = Some((self.state.tick, Ending::KilledByHazard));
             self.events.push(Event::MissionEnded { ending: Ending::KilledByHazard });

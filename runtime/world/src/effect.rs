@@ -8,6 +8,20 @@ use crate::{
     works::Run,
 };
 
+/// Where something comes to be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Spot {
+    /// An anchor of a receptacle.
+    Anchor {
+        /// Which receptacle.
+        parent: ObjectId,
+        /// Which of its anchors.
+        anchor: u16,
+    },
+    /// The floor, m.
+    Floor(Vec3),
+}
+
 /// One change.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Effect {
@@ -19,31 +33,34 @@ pub(crate) enum Effect {
     Paint(ObjectId, Color),
     /// An object goes into a hand.
     Hold(ObjectId, BodyId),
-    /// An object goes to an anchor of a receptacle.
-    PutOn {
+    /// An object goes somewhere.
+    Put {
         /// What.
         object: ObjectId,
         /// Where.
-        parent: ObjectId,
-        /// At which anchor.
-        anchor: u16,
+        spot: Spot,
     },
     /// An object is let go in mid-air, with this velocity, m/s.
     LetGo(ObjectId, Vec3),
-    /// A new object comes to an anchor of a receptacle.
+    /// A new object comes into being.
     Spawn {
         /// Of which class.
         class: ClassId,
         /// The id it gets.
         instance: String,
         /// Where.
-        parent: ObjectId,
-        /// At which anchor.
-        anchor: u16,
-        /// What the time machine will make of it.
-        yesterday: Option<ClassId>,
+        spot: Spot,
         /// The machine that makes it, if one does.
         by: Option<ObjectId>,
+        /// What it was before, and becomes again in the time machine.
+        was: Option<ObjectId>,
+    },
+    /// An object that left the world comes back.
+    Return {
+        /// What.
+        object: ObjectId,
+        /// Where.
+        spot: Spot,
     },
     /// An object leaves the world; what stands on it takes its place.
     Remove(ObjectId),
@@ -53,6 +70,12 @@ pub(crate) enum Effect {
     Start(ObjectId, Run),
     /// A circuit is fed, or cut.
     Feed(i32, bool),
+    /// The portal of a generator leads elsewhere the next time.
+    Turn(ObjectId),
+    /// A dinosaur is fed.
+    Sate(ObjectId),
+    /// Somebody did something to an object.
+    Touch(ObjectId),
     /// A body dies.
     Kill(BodyId),
     /// Somebody is told.

@@ -28,6 +28,16 @@ pub(crate) enum Support {
     Gone,
 }
 
+impl Support {
+    /// The receptacle that it is in or on.
+    pub fn parent(&self) -> Option<ObjectId> {
+        match self {
+            Self::On { parent, .. } => Some(*parent),
+            _ => None,
+        }
+    }
+}
+
 /// One object.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub(crate) struct Object {
@@ -55,14 +65,18 @@ pub(crate) struct Object {
     pub circuit: Option<i32>,
     /// The circuit that it switches.
     pub feeds: Option<i32>,
-    /// What the time machine makes of it.
+    /// The class that the time machine makes of it, if the mission says so.
     pub yesterday: Option<ClassId>,
+    /// What it was before a machine made a carrot of it: gone, until the time machine brings it back.
+    pub was: Option<ObjectId>,
     /// What the printer makes of it.
     pub prints: Option<ClassId>,
     /// The work it is doing for a moment.
     pub run: Option<Run>,
-    /// Whether the mission asked for it.
+    /// Whether the mission asked for it, or a machine made it since.
     pub requested: bool,
+    /// Whether anybody ever did something to it.
+    pub touched: bool,
 }
 
 impl Object {
@@ -86,9 +100,11 @@ impl Object {
             circuit: None,
             feeds: None,
             yesterday: None,
+            was: None,
             prints: None,
             run: None,
             requested: false,
+            touched: false,
         }
     }
 
@@ -99,10 +115,7 @@ impl Object {
 
     /// The receptacle it is in or on.
     pub fn parent(&self) -> Option<ObjectId> {
-        match self.support {
-            Support::On { parent, .. } => Some(parent),
-            _ => None,
-        }
+        self.support.parent()
     }
 
     /// Who holds it.
@@ -156,4 +169,6 @@ pub struct ObjectView<'a> {
     pub text: &'a str,
     /// What it switches, or aims at.
     pub works: Option<ObjectId>,
+    /// Whether it is there for the mission's sake, or was made since; not only part of the furnishings.
+    pub in_mission: bool,
 }

@@ -1,10 +1,11 @@
-//! The bare floor plan: rooms, walls with their gaps, and what blocks a straight line. Never knows the furniture.
+//! What never changes about a floor: rooms, walls with their gaps, and how each class of furniture opens. Never knows
+//! what stands where.
 
 use cohabit_cdf::layout::{Layout, OpeningKind, RoomId};
-use cohabit_cdf::{ObjectId, model::Axis};
+use cohabit_cdf::{Catalog, ObjectId, model::Axis};
 use glam::Vec2;
 
-use crate::geometry::Footprint;
+use crate::{geometry::Footprint, swing::Swings};
 
 /// Thickness of all walls, m: the renderer draws the same.
 pub(crate) const WALL_THICKNESS_M: f32 = 0.12;
@@ -34,6 +35,10 @@ pub(crate) struct Floor {
     pub gaps: Vec<Gap>,
     /// `[west, south, east, north]` of everything, m.
     pub bounds: [f32; 4],
+    /// Height of all rooms, m.
+    pub wall_height_m: f32,
+    /// The moving parts of all classes.
+    pub swings: Swings,
 }
 
 /// A stretch of a wall's middle line.
@@ -47,7 +52,7 @@ struct Line {
 
 impl Floor {
     /// Works out walls and gaps.
-    pub fn new(layout: &Layout) -> Self {
+    pub fn new(layout: &Layout, catalog: &Catalog) -> Self {
         let rooms: Vec<(RoomId, [f32; 4])> =
             layout.rooms.iter().flat_map(|room| room.rects_m.iter().map(|rect| (room.id, *rect))).collect();
         let mut lines: Vec<Line> = rooms.iter().flat_map(|room| room_lines(*room, &rooms)).collect();
@@ -81,7 +86,14 @@ impl Floor {
         let bounds = rooms.iter().fold([f32::MAX, f32::MAX, f32::MIN, f32::MIN], |all, (_, rect)| {
             [all[0].min(rect[0]), all[1].min(rect[1]), all[2].max(rect[2]), all[3].max(rect[3])]
         });
-        Self { walls: lines.into_iter().map(Line::print).collect(), rooms, gaps, bounds }
+        Self {
+            walls: lines.into_iter().map(Line::print).collect(),
+            rooms,
+            gaps,
+            bounds,
+            wall_height_m: layout.wall_height_m,
+            swings: Swings::new(catalog),
+        }
     }
 
     /// The room that `point` is in.
@@ -95,6 +107,11 @@ impl Floor {
     /// The rectangles of a room, `[west, south, east, north]`, m.
     pub fn rects(&self, room: RoomId) -> impl Iterator<Item = [f32; 4]> + '_ {
         self.rooms.iter().filter(move |(id, _)| *id == room).map(|(_, rect)| *rect)
+    }
+
+    /// The rectangles of all rooms, `[west, south, east, north]`, m.
+    pub fn all_rects(&self) -> impl Iterator<Item = [f32; 4]> + '_ {
+        self.rooms.iter().map(|(_, rect)| *rect)
     }
 
     /// Whether a wall stands between two points.

@@ -98,6 +98,15 @@ impl Footprint {
         (self.local(point).abs() - self.half).max(Vec2::ZERO).length()
     }
 
+    /// How far the segment from `a` to `b` is from it.
+    pub fn distance_to(&self, a: Vec2, b: Vec2) -> f32 {
+        if self.cut_by(a, b) {
+            return 0.0;
+        }
+        let corners = self.corners().map(|corner| nearest_on(a, b, corner).distance(corner));
+        corners.into_iter().fold(self.distance(a).min(self.distance(b)), f32::min)
+    }
+
     /// The corners, counter-clockwise.
     pub fn corners(&self) -> [Vec2; 4] {
         let Vec2 { x, y } = self.half;
@@ -144,6 +153,17 @@ impl Footprint {
         })
     }
 
+    /// How far it reaches into another, along the axis where that is least, m; 0 if they are apart.
+    pub fn penetration(&self, other: &Self) -> f32 {
+        let (mine, theirs) = (self.corners(), other.corners());
+        let shared = [self.axis, self.axis.perp(), other.axis, other.axis.perp()].into_iter().map(|axis| {
+            let (low, high) = extent(&mine, axis);
+            let (other_low, other_high) = extent(&theirs, axis);
+            (high - other_low).min(other_high - low)
+        });
+        shared.fold(f32::MAX, f32::min).max(0.0)
+    }
+
     /// The same rectangle, larger by `margin` on every side.
     pub fn grown(&self, margin: f32) -> Self {
         Self { half: self.half + margin, ..*self }
@@ -168,6 +188,13 @@ impl Footprint {
         }
         enter <= leave
     }
+}
+
+/// The point of the segment from `a` to `b` nearest to `point`.
+pub(crate) fn nearest_on(a: Vec2, b: Vec2, point: Vec2) -> Vec2 {
+    let along = b - a;
+    let length = along.length_squared();
+    if length == 0.0 { a } else { a + along * ((point - a).dot(along) / length).clamp(0.0, 1.0) }
 }
 
 fn extent(points: &[Vec2], axis: Vec2) -> (f32, f32) {

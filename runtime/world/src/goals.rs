@@ -1,14 +1,15 @@
 //! Goals: whether what a mission asks for holds now, and whether it was met before.
 
 use cohabit_cdf::{
-    Expression, Goal, GoalState, InstancePattern, Mission, ObjectId, Predicate, Property, Relation, StateFlag,
+    Expression, Fluid, Goal, GoalState, InstancePattern, Mission, ObjectId, Occasion, Predicate, Property, Relation,
+    StateFlag, StateFlags,
 };
 use serde::{Deserialize, Serialize};
 
-use crate::{anchors::is_full, body::Body, facts::Facts, state::State};
+use crate::{anchors::is_full, facts::Facts, sight::sees, state::State};
 
-/// How wide a camera sees to each side: the cosine of 45 degrees.
-const SIGHT_COS: f32 = 0.707;
+/// What missions call the robots: `TAM_1`, `TAM_2`, in the order of the bodies.
+const ROBOT: &str = "TAM";
 
 /// How far a mission's goal has come.
 #[derive(Clone, Copy, Debug, Default, Deserialize, Eq, PartialEq, Serialize)]
@@ -56,13 +57,22 @@ pub(crate) fn judge(facts: &Facts<'_>, mission: &Mission) -> Vec<GoalChange> {
             .preconditions
             .iter()
             .all(|id| mission.goals.iter().position(|goal| goal.id == *id).is_none_or(|before| progress[before].met));
-        let holds = ready && judge.holds(goal);
+        let holds = ready && judge.all_hold(&goal.states, goal.relation);
         if holds != progress[index].met {
             progress[index].met = holds;
             changes.push(if holds { GoalChange::Met(index) } else { GoalChange::Reset(index) });
         }
     }
     changes
+}
+
+/// Whether what a mission waits for holds now.
+pub(crate) fn occurs(facts: &Facts<'_>, mission: &Mission, occasion: &Occasion) -> bool {
+    let judge = Judge { facts, mission };
+    match occasion {
+        Occasion::States(states, relation) => judge.all_hold(states, *relation),
+        Occasion::Expression(expression) => judge.expression_holds(expression),
+    }
 }
 
 /// The goals as everybody outside may know them.
@@ -101,20 +111,20 @@ impl Judge<'_> {
         self.meant(pattern).any(holds)
     }
 
+    /// A hidden goal without a key is shown from the start; any other once somebody did something to its key.
     fn is_unlocked(&self, goal: &Goal) -> bool {
-        goal.unlocked_by.as_ref().is_none_or(|instance| {
-            self.facts
-                .state
-                .find(instance)
-                .is_some_and(|id| self.facts.is(id, StateFlag::Examined) || self.facts.is(id, StateFlag::Used))
-        })
+        let key = |instance: &String| self.facts.state.objects.iter().find(|object| object.is_called(instance));
+        let seen = StateFlags::default().with(StateFlag::Examined).with(StateFlag::Used).with(StateFlag::Scanned);
+        goal.unlocked_by
+            .as_ref()
+            .is_none_or(|instance| key(instance).is_some_and(|key| key.touched || key.flags.0 & seen.0 != 0))
     }
 
-    fn holds(&self, goal: &Goal) -> bool {
+    fn all_hold(&self, states: &[GoalState], relation: Relation) -> bool {
         let holds = |state: &GoalState| self.state_holds(state);
-        match goal.relation {
-            Relation::And => !goal.states.is_empty() && goal.states.iter().all(holds),
-            Relation::Or => goal.states.iter().any(holds),
+        match relation {
+            Relation::And => !states.is_empty() && states.iter().all(holds),
+            Relation::Or => states.iter().any(holds),
         }
     }
 
@@ -122,20 +132,32 @@ impl Judge<'_> {
         let facts = self.facts;
         let of = &state.instance;
         match &state.predicate {
-            Predicate::Flag(flag, value) => self.any(of, |id| facts.is(id, *flag) == *value),
+            Predicate::Flag(flag, value) => self.flag_holds(of, *flag, *value),
             Predicate::Filled(fluid) => self.any(of, |id| facts.object(id).fluid == *fluid),
+            Predicate::FilledWithAny => self.any(of, |id| facts.object(id).fluid != Fluid::None),
             Predicate::Color(color) => self.any(of, |id| facts.object(id).color == *color),
             Predicate::Contains(what) => self.any(of, |id| self.contains(id, what)),
             Predicate::ContainsCereal(value) => self.any(of, |id| facts.is(id, StateFlag::Cereal) == *value),
-            Predicate::Empty(value) => self.any(of, |id| facts.held_in(id).is_empty() == *value),
+            Predicate::Empty(value) => self.any(of, |id| self.is_empty(id) == *value),
             Predicate::Condition(name, value) => self
                 .mission
-                .conditions
-                .iter()
-                .find(|condition| condition.name == *name && of.matches(&condition.context))
-                .or_else(|| self.mission.conditions.iter().find(|condition| condition.name == *name))
+                .condition(name, &of.0)
                 .is_some_and(|condition| self.expression_holds(&condition.expression) == *value),
         }
+    }
+
+    /// Whether a flag of an object, or of a robot, has that value.
+    fn flag_holds(&self, of: &InstancePattern, flag: StateFlag, value: bool) -> bool {
+        let robots =
+            || (1..).zip(&self.facts.state.bodies).filter(|(number, _)| of.matches(&format!("{ROBOT}_{number}")));
+        self.any(of, |id| self.facts.is(id, flag) == value)
+            || (of.0.starts_with(ROBOT) && robots().any(|(_, body)| body.flags.has(flag) == value))
+    }
+
+    /// Whether nothing is in or on it, neither things nor a fluid.
+    fn is_empty(&self, id: ObjectId) -> bool {
+        let facts = self.facts;
+        facts.held_in(id).is_empty() && facts.object(id).fluid == Fluid::None && !facts.is(id, StateFlag::Cereal)
     }
 
     fn contains(&self, receptacle: ObjectId, what: &InstancePattern) -> bool {
@@ -148,18 +170,18 @@ impl Judge<'_> {
             Expression::And(all) => all.iter().all(|inner| self.expression_holds(inner)),
             Expression::Or(any) => any.iter().any(|inner| self.expression_holds(inner)),
             Expression::Not(inner) => !self.expression_holds(inner),
-            Expression::Flag { target, flag, value } => self.any(target, |id| facts.is(id, *flag) == *value),
+            Expression::Flag { target, flag, value } => self.flag_holds(target, *flag, *value),
             Expression::Contains { target, contains } => self.any(target, |id| self.contains(id, contains)),
             Expression::FilledWith { target, fluid } => self.any(target, |id| facts.object(id).fluid == *fluid),
+            Expression::FilledWithAny { target } => self.any(target, |id| facts.object(id).fluid != Fluid::None),
             Expression::CanBeSeen { target, distance_m } => {
-                self.any(target, |id| facts.state.bodies.iter().any(|body| self.sees(body, id, *distance_m)))
+                self.any(target, |id| facts.state.bodies.iter().any(|body| sees(facts, body, id, *distance_m)))
             }
             Expression::InRange { target, distance_m } => self.any(target, |id| {
                 facts.state.bodies.iter().any(|body| facts.reach_to(id, body.position) <= *distance_m)
             }),
             Expression::HasColor { target, color } => self.any(target, |id| facts.object(id).color == *color),
-            // No object of the catalogue can be fed.
-            Expression::DinoFed { target, value } => self.any(target, |_| !*value),
+            Expression::DinoFed { target, value } => self.dino_fed(target) == *value,
             Expression::IsReceptacle { target, value } => {
                 self.any(target, |id| facts.has(id, Property::Receptacle) == *value)
             }
@@ -167,12 +189,11 @@ impl Judge<'_> {
         }
     }
 
-    fn sees(&self, body: &Body, id: ObjectId, within_m: f32) -> bool {
-        let facts = self.facts;
-        let to = facts.object(id).pose.point(glam::Vec3::Z * (facts.size(id).z / 2.0)) - body.eye();
-        to.length() <= within_m
-            && to.normalize_or_zero().dot(body.gaze()) >= SIGHT_COS
-            && facts.shut_around(id).is_none()
-            && !facts.walled_off(id, body.position)
+    /// Whether that dinosaur was fed; any, if the target is none.
+    fn dino_fed(&self, target: &InstancePattern) -> bool {
+        let dinosaurs = &self.facts.state.dinosaurs;
+        let known = |id: &ObjectId| is_meant(self.facts, target, *id);
+        let named = dinosaurs.keys().any(known);
+        dinosaurs.iter().any(|(id, dinosaur)| dinosaur.fed && (!named || known(id)))
     }
 }

@@ -32,6 +32,7 @@
 
 mod anchors;
 mod apply;
+mod avoid;
 mod body;
 mod build;
 mod digest;
@@ -43,23 +44,28 @@ mod geometry;
 mod goals;
 mod motion;
 mod navigation;
+mod passage;
 mod physics;
 mod power;
+mod push;
 mod report;
 mod rules;
 mod score;
+mod sight;
 mod snapshot;
 mod state;
+mod story;
+mod swing;
 mod tasks;
 mod works;
 mod world;
 
 pub use body::BodyView;
 pub use build::BuildError;
-pub use cohabit_cdf::{Action, BodyId, GoToTarget, ObjectId, Status, Verb};
+pub use cohabit_cdf::{Action, BodyId, BodyKind, GoToTarget, ObjectId, Status, Verb};
 pub use entity::ObjectView;
 pub use glam::{Quat, Vec2, Vec3};
 pub use goals::GoalStatus;
-pub use report::{Ending, Event, Input, Outcome, Report, SoundKind};
+pub use report::{CameraTarget, Ending, Event, Input, Outcome, Report, SoundKind};
 pub use snapshot::SnapshotError;
 pub use world::{DT_NANOS, World};

@@ -3,17 +3,13 @@
 use glam::{Vec2, Vec3};
 
 use crate::{
-    body::{Body, EYE_HEIGHT_M, Step},
+    body::{Body, Step},
     geometry::{direction, heading, wrap},
 };
 
 /// Length of a tick, s.
 pub(crate) const DT_S: f32 = 1.0 / 60.0;
-/// Walking speed, m/s: an unhurried person's.
-const WALK_M_S: f32 = 1.4;
 const WALK_M_S2: f32 = 2.5;
-/// Turning speed: 150 degrees a second.
-const TURN_RAD_S: f32 = 2.617_994;
 const TURN_RAD_S2: f32 = 14.0;
 const PITCH_RAD_S: f32 = 2.0;
 /// How far the head pitches up and down: 60 degrees each.
@@ -50,6 +46,11 @@ pub(crate) fn advance(body: &mut Body, step: &mut Step, is_free: &dyn Fn(Vec2) -
             let looking = pitch(body, up);
             done_if(turn(body, &mut left) && looking)
         }
+        Step::Yield { ticks_left, .. } => {
+            *ticks_left = ticks_left.saturating_sub(1);
+            body.speed_m_s = 0.0;
+            done_if(*ticks_left == 0)
+        }
         Step::Pitch { to_rad } => done_if(pitch(body, *to_rad)),
         Step::Reach => {
             body.arm = (body.arm + ARM_OUT_PER_S * DT_S).min(1.0);
@@ -73,13 +74,13 @@ fn toward(body: &Body, point: Vec3) -> (f32, f32) {
     if level.length() < 1e-3 {
         return (body.yaw_rad, 0.0);
     }
-    let up = libm::atan2f(point.z - EYE_HEIGHT_M, level.length());
+    let up = libm::atan2f(point.z - body.figure().eye_height_m, level.length());
     (heading(level), up.clamp(-PITCH_LIMIT_RAD, PITCH_LIMIT_RAD))
 }
 
 /// Turns towards an angle that is left; true once it is reached.
 fn turn(body: &mut Body, left_rad: &mut f32) -> bool {
-    let wanted = left_rad.signum() * TURN_RAD_S.min((2.0 * TURN_RAD_S2 * left_rad.abs()).sqrt());
+    let wanted = left_rad.signum() * body.figure().turn_rad_s.min((2.0 * TURN_RAD_S2 * left_rad.abs()).sqrt());
     body.turn_rad_s = approach(body.turn_rad_s, wanted, TURN_RAD_S2 * DT_S);
     let by = body.turn_rad_s * DT_S;
     if left_rad.abs() <= by.abs().max(2e-3) {
@@ -103,12 +104,11 @@ fn approach(value: f32, wanted: f32, by: f32) -> f32 {
 }
 
 fn drive(body: &mut Body, left_m: &mut f32, is_free: &dyn Fn(Vec2) -> bool) -> Progress {
-    let wanted = left_m.signum() * WALK_M_S.min((2.0 * WALK_M_S2 * left_m.abs()).sqrt());
+    let wanted = left_m.signum() * body.figure().walk_m_s.min((2.0 * WALK_M_S2 * left_m.abs()).sqrt());
     body.speed_m_s = approach(body.speed_m_s, wanted, WALK_M_S2 * DT_S);
     let by = if left_m.abs() <= (body.speed_m_s * DT_S).abs().max(1e-3) { *left_m } else { body.speed_m_s * DT_S };
     let next = body.position + direction(body.yaw_rad) * by;
-    // A body that stands too close to something already may still move away from it.
-    if !is_free(next) && is_free(body.position) {
+    if !is_free(next) {
         body.speed_m_s = 0.0;
         return Progress::Blocked;
     }
@@ -130,6 +130,7 @@ fn walk(body: &mut Body, path: &[Vec2], next: &mut usize, is_free: &dyn Fn(Vec2)
         return Progress::Done;
     };
     let ahead = goal - body.position;
+    let walk_m_s = body.figure().walk_m_s;
     let mut left = wrap(heading(ahead) - body.yaw_rad);
     let off_course = left;
     turn(body, &mut left);
@@ -138,10 +139,10 @@ fn walk(body: &mut Body, path: &[Vec2], next: &mut usize, is_free: &dyn Fn(Vec2)
     let facing = libm::cosf(off_course).max(0.0);
     let corner = path.get(*next + 1).map_or(0.0, |after| {
         let bend = libm::cosf(wrap(heading(*after - goal) - heading(ahead))).max(0.0);
-        WALK_M_S * bend * bend
+        walk_m_s * bend * bend
     });
     let brake = (corner * corner + 2.0 * WALK_M_S2 * ahead.length()).sqrt();
-    let wanted = (WALK_M_S * facing * facing * facing).min(brake);
+    let wanted = (walk_m_s * facing * facing * facing).min(brake);
     // Turning away on the spot stops it at once, or it would slide sideways.
     let rate = if facing < 0.5 { 10.0 } else { WALK_M_S2 } * DT_S;
     body.speed_m_s = approach(body.speed_m_s.max(0.0), wanted, rate);
@@ -163,9 +164,10 @@ mod tests {
     use cohabit_cdf::RoomId;
 
     use super::*;
+    use cohabit_cdf::BodyKind;
 
     fn run(step: Step) -> (Body, usize) {
-        let (mut body, mut step) = (Body::new(Vec2::ZERO, 0.0, RoomId::Lab1), step);
+        let (mut body, mut step) = (Body::new(BodyKind::Robot, Vec2::ZERO, 0.0, RoomId::Lab1), step);
         for tick in 1..2000 {
             if advance(&mut body, &mut step, &|_| true) == Progress::Done {
                 return (body, tick);

@@ -9,6 +9,7 @@ use crate::{
     entity::Support,
     facts::Facts,
     geometry::{Footprint, GRID_M, direction},
+    push::is_pushable,
 };
 
 /// How far, level, a body stands at most from what it was sent to, m.
@@ -25,12 +26,50 @@ const MARGIN_M: f32 = 0.005;
 /// The walkable floor at one moment.
 pub(crate) struct Navigation {
     mesh: Mesh,
-    /// All that stands on the floor, walls too.
-    pub obstacles: Vec<Footprint>,
+    blockers: Blockers,
+    /// The floors of the rooms, `[west, south, east, north]`, m: the mesh goes on outside.
+    rooms: Vec<[f32; 4]>,
+    /// Whether bodies push open doors and drawers of furniture aside on it.
+    pushes_leaves: bool,
     /// The floor's version that this is of.
     pub version: u64,
     /// Area a body's middle can be on, grown by its radius, m².
     pub area_m2: f64,
+}
+
+/// All that the mesh leaves out.
+#[derive(Clone, Debug, PartialEq)]
+struct Blockers {
+    /// What stands fast, and the walls, which are no object.
+    fast: Vec<(Footprint, Option<ObjectId>)>,
+    /// What can be pushed.
+    pushable: Vec<Footprint>,
+    /// Open doors and drawers.
+    leaves: Vec<Footprint>,
+    /// What has doors or drawers that a body could run into.
+    swinging: Vec<ObjectId>,
+}
+
+impl Blockers {
+    fn of(facts: &Facts<'_>) -> Self {
+        let mut blockers = Self::but_for_locks(facts);
+        blockers.fast.extend(locked_doors(facts).map(|(door, print)| (print, Some(door))));
+        blockers
+    }
+
+    /// The same, were no door locked.
+    fn but_for_locks(facts: &Facts<'_>) -> Self {
+        let swinging: Vec<ObjectId> =
+            facts.state.existing().map(|(id, _)| id).filter(|id| swings_at_body_height(facts, *id)).collect();
+        let (pushable, mut fast) = standing(facts);
+        fast.extend(facts.floor.walls.iter().map(|wall| (*wall, None)));
+        let leaves = swinging.iter().flat_map(|id| resting_leaves(facts, *id)).collect();
+        Self { fast, pushable, leaves, swinging }
+    }
+
+    fn all(&self) -> impl Iterator<Item = &Footprint> {
+        self.fast.iter().map(|(print, _)| print).chain(&self.pushable).chain(&self.leaves)
+    }
 }
 
 /// A place to stand at, and the way there.
@@ -44,49 +83,108 @@ pub(crate) struct Approach {
 impl Navigation {
     /// Works out the walkable floor.
     pub fn new(facts: &Facts<'_>) -> Self {
-        let obstacles = obstacles(facts);
+        Self::over(facts, Blockers::of(facts), &[])
+    }
+
+    /// Brings it up to date; the mesh stays, if nothing came into the way or went out of it.
+    pub fn renew(&mut self, facts: &Facts<'_>) {
+        let blockers = Blockers::of(facts);
+        if blockers == self.blockers {
+            self.version = facts.state.floor_version;
+        } else {
+            *self = Self::over(facts, blockers, &[]);
+        }
+    }
+
+    /// The floor as it would be if no door were locked; `None` if none is.
+    pub fn but_for_locks(facts: &Facts<'_>) -> Option<Self> {
+        locked_doors(facts).next()?;
+        Some(Self::over(facts, Blockers::but_for_locks(facts), &[]))
+    }
+
+    /// The floor as it would be if the open doors and drawers of furniture were pushed aside; `None` if none is open.
+    pub fn but_for_leaves(facts: &Facts<'_>) -> Option<Self> {
+        let mut blockers = Blockers::of(facts);
+        let between_rooms = |id: &ObjectId| facts.floor.gaps.iter().any(|gap| gap.door_object == Some(*id));
+        let doors = blockers.swinging.iter().filter(|id| between_rooms(id));
+        let hard: Vec<Footprint> = doors.flat_map(|id| resting_leaves(facts, *id)).collect();
+        if hard.len() == blockers.leaves.len() {
+            return None;
+        }
+        blockers.leaves = hard;
+        Some(Self { pushes_leaves: true, ..Self::over(facts, blockers, &[]) })
+    }
+
+    /// A walkable floor with more that the middle of a body has to keep out of.
+    pub fn around(facts: &Facts<'_>, closed: &[Vec<Vec2>]) -> Self {
+        Self::over(facts, Blockers::of(facts), closed)
+    }
+
+    fn over(facts: &Facts<'_>, blockers: Blockers, closed: &[Vec<Vec2>]) -> Self {
         let [west, south, east, north] = facts.floor.bounds.map(|edge| (edge / GRID_M).round() * GRID_M);
         let corners = [(west, south), (east, south), (east, north), (west, north)];
         let mut triangulation = Triangulation::from_outer_edges(&corners.map(|(x, y)| Vec2::new(x, y)));
-        triangulation.add_obstacles(obstacles.iter().map(|print| print.inflated(RADIUS_M + MARGIN_M)));
+        let outlines = blockers.all().map(|print| print.inflated(RADIUS_M + MARGIN_M));
+        triangulation.add_obstacles(outlines.chain(closed.iter().cloned()));
         let mut mesh = triangulation.as_navmesh();
         let area_m2 = walkable_area(&mesh, facts);
         mesh.merge_polygons();
         mesh.set_search_delta(0.001);
         mesh.bake();
-        Self { mesh, obstacles, version: facts.state.floor_version, area_m2 }
+        let rooms = facts.floor.all_rects().collect();
+        Self { mesh, blockers, rooms, pushes_leaves: false, version: facts.state.floor_version, area_m2 }
+    }
+
+    /// What has doors or drawers that a body could run into.
+    pub fn swinging(&self) -> &[ObjectId] {
+        &self.blockers.swinging
     }
 
     /// Whether the middle of a body may be at `point`.
     pub fn is_walkable(&self, point: Vec2) -> bool {
-        self.mesh.point_in_mesh(point)
+        let inside = |[west, south, east, north]: &[f32; 4]| {
+            point.x >= *west && point.x <= *east && point.y >= *south && point.y <= *north
+        };
+        self.rooms.iter().any(inside) && self.mesh.point_in_mesh(point)
     }
 
-    /// Whether a body at `point` touches nothing that stands on the floor.
-    pub fn is_clear(&self, point: Vec2) -> bool {
-        self.obstacles.iter().all(|print| print.distance(point) >= RADIUS_M)
+    /// What stands fast and a body of this radius that goes from one point to another comes closer to than it may (a
+    /// wall is no object); one that is too close already may still part from it.
+    pub fn barrier(&self, from: Vec2, to: Vec2, radius: f32) -> Option<Option<ObjectId>> {
+        let met = self.blockers.fast.iter().find(|(print, _)| {
+            let distance = print.distance(to);
+            distance < radius && distance < print.distance(from)
+        });
+        met.map(|(_, object)| *object)
+    }
+
+    /// Whether something that stands fast reaches further into a rectangle than into the one it was.
+    pub fn is_wedged(&self, was: &Footprint, is: &Footprint) -> bool {
+        self.blockers.fast.iter().any(|(print, _)| print.penetration(is) > print.penetration(was) + 1e-4)
+    }
+
+    /// Whether a body can still walk along these points, as far as what stands on the floor goes.
+    pub fn is_open(&self, way: &[Vec2]) -> bool {
+        let kept = RADIUS_M - MARGIN_M;
+        way.windows(2).all(|stretch| !self.blockers.all().any(|print| print.distance_to(stretch[0], stretch[1]) < kept))
     }
 
     /// The walkable point nearest to `point`, no further than `within` m.
     pub fn snap(&self, point: Vec2, within: f32) -> Option<Vec2> {
-        const RING_M: f32 = 0.05;
-        const SPOKES: u32 = 24;
-        if self.is_walkable(point) {
-            return Some(point);
-        }
-        let rings = (within / RING_M) as u32;
-        (1..=rings)
-            .flat_map(|ring| (0..SPOKES).map(move |spoke| (ring, spoke)))
-            .map(|(ring, spoke)| {
-                let angle = spoke as f32 * (std::f32::consts::TAU / SPOKES as f32);
-                point + direction(angle) * (ring as f32 * RING_M)
-            })
-            .find(|candidate| self.is_walkable(*candidate))
+        rings(point, within).find(|candidate| self.is_walkable(*candidate))
+    }
+
+    /// The walkable point nearest to where a body is, with nothing in between.
+    fn step_onto(&self, from: Vec2) -> Option<Vec2> {
+        rings(from, SNAP_M).find(|point| {
+            self.is_walkable(*point)
+                && (*point == from || !self.blockers.fast.iter().any(|(print, _)| print.cut_by(from, *point)))
+        })
     }
 
     /// The way between two points and its length, m; both may be a little off the mesh.
     pub fn path(&self, from: Vec2, to: Vec2) -> Option<(Vec<Vec2>, f32)> {
-        let start = self.snap(from, SNAP_M)?;
+        let start = self.step_onto(from)?;
         let end = self.snap(to, RADIUS_M)?;
         let first = (start != from).then_some(start);
         if start.distance(end) < 1e-3 {
@@ -119,20 +217,55 @@ impl Navigation {
 
     /// The way to a place from which `object` is in reach, in front of it and in sight if possible.
     pub fn approach_object(&self, facts: &Facts<'_>, from: Vec2, object: ObjectId) -> Option<Approach> {
+        let sweep = Sweep::before(facts, object);
+        let cost = |place| place_cost(facts, object, place) + sweep.cost(place);
         let mut places: Vec<(f32, Vec2)> = standing_places(facts, object)
-            .filter(|place| self.is_walkable(*place) && !facts.walled_off(object, *place))
-            .map(|place| (place_cost(facts, object, place), place))
+            .filter(|place| self.is_walkable(*place) && self.is_before(facts, object, *place))
+            .map(|place| (cost(place), place))
             .collect();
-        if !self.is_walkable(from) || facts.reach_to(object, from) < STAND_WITHIN_M {
-            places.push((place_cost(facts, object, from), from));
+        let near = !self.is_walkable(from) || facts.reach_to(object, from) < STAND_WITHIN_M;
+        if near && self.is_before(facts, object, from) {
+            places.push((cost(from), from));
         }
-        let (_, path) = places
-            .into_iter()
-            .filter(|(_, place)| *place != from || !facts.walled_off(object, from))
-            .filter_map(|(cost, place)| self.path(from, place).map(|(path, length)| (cost + length * 0.3, path)))
-            .min_by(|one, two| one.0.total_cmp(&two.0))?;
+        // No way is shorter than the straight line: the best place is found long before all are tried.
+        const WAY_COST: f32 = 0.3;
+        let mut bounded: Vec<(f32, f32, Vec2)> =
+            places.into_iter().map(|(cost, place)| (cost + from.distance(place) * WAY_COST, cost, place)).collect();
+        bounded.sort_by(|one, two| one.0.total_cmp(&two.0));
+        let mut best: Option<(f32, Vec<Vec2>)> = None;
+        for (bound, cost, place) in bounded {
+            if best.as_ref().is_some_and(|(least, _)| bound >= *least) {
+                break;
+            }
+            let Some((path, length)) = self.path(from, place) else { continue };
+            let total = cost + length * WAY_COST;
+            if best.as_ref().is_none_or(|(least, _)| total < *least) {
+                best = Some((total, path));
+            }
+        }
+        let (_, path) = best?;
         Some(Approach { path, alternate: false })
     }
+
+    /// Whether nothing stands between a place and an object, or nothing that does not swing aside for who stands there.
+    fn is_before(&self, facts: &Facts<'_>, object: ObjectId, place: Vec2) -> bool {
+        let mut around = std::iter::once(object).chain(facts.state.ancestors(object));
+        let swings_aside = self.pushes_leaves
+            && around.any(|id| facts.leaves_at(id, 1.0).any(|leaf| leaf.print.distance(place) < RADIUS_M));
+        swings_aside || !facts.walled_off(object, place)
+    }
+}
+
+/// A point, and points around it in rings further and further out.
+fn rings(middle: Vec2, within: f32) -> impl Iterator<Item = Vec2> {
+    const RING_M: f32 = 0.05;
+    const SPOKES: u32 = 24;
+    let rings = (within / RING_M) as u32;
+    let around = (1..=rings).flat_map(|ring| (0..SPOKES).map(move |spoke| (ring, spoke))).map(move |(ring, spoke)| {
+        let angle = spoke as f32 * (std::f32::consts::TAU / SPOKES as f32);
+        middle + direction(angle) * (ring as f32 * RING_M)
+    });
+    std::iter::once(middle).chain(around)
 }
 
 /// Points around an object where a body could stand to reach it.
@@ -155,6 +288,35 @@ fn standing_places<'a>(facts: &'a Facts<'a>, object: ObjectId) -> impl Iterator<
     around.chain(along).filter(move |place| facts.reach_to(object, *place) <= STAND_WITHIN_M)
 }
 
+/// The space that doors and drawers of an object take as they open.
+pub(crate) struct Sweep(Vec<Footprint>);
+
+impl Sweep {
+    /// That of an object.
+    pub fn of(facts: &Facts<'_>, id: ObjectId) -> Self {
+        const STAGES: u8 = 8;
+        let stages = (0..=STAGES).flat_map(|stage| facts.leaves_at(id, f32::from(stage) / f32::from(STAGES)));
+        Self(stages.filter(|leaf| leaf.low_m < WALK_UNDER_M).map(|leaf| leaf.print).collect())
+    }
+
+    /// That of all around an object that is still to be opened.
+    fn before(facts: &Facts<'_>, object: ObjectId) -> Self {
+        let around = std::iter::once(object).chain(facts.state.ancestors(object));
+        let shut = around.filter(|id| facts.has(*id, Property::Openable) && !facts.is(*id, StateFlag::Opened));
+        Self(shut.flat_map(|id| Self::of(facts, id).0).collect())
+    }
+
+    /// How far a point is from it, m; far, if nothing swings.
+    pub fn distance(&self, point: Vec2) -> f32 {
+        self.0.iter().map(|print| print.distance(point)).fold(f32::MAX, f32::min)
+    }
+
+    /// What it costs to stand in it, in metres of way.
+    fn cost(&self, place: Vec2) -> f32 {
+        if self.distance(place) < RADIUS_M + MARGIN_M { 2.0 } else { 0.0 }
+    }
+}
+
 /// How poor a place is to work on an object from, in metres of way.
 fn place_cost(facts: &Facts<'_>, object: ObjectId, place: Vec2) -> f32 {
     const GOOD_DISTANCE_M: f32 = 0.75;
@@ -175,21 +337,46 @@ fn needs_front(facts: &Facts<'_>, object: ObjectId) -> bool {
     class.has(Property::Openable) || class.has(Property::Toggleable) || class.stands == Stands::OnWall
 }
 
-/// All that a body cannot walk through now: walls, locked doors, and what stands on the floor.
-fn obstacles(facts: &Facts<'_>) -> Vec<Footprint> {
-    let shut_doors = facts.floor.gaps.iter().filter(|gap| {
-        gap.door_object.is_some_and(|door| {
-            facts.object(door).exists() && facts.is(door, StateFlag::Locked) && !facts.is(door, StateFlag::Opened)
-        })
-    });
+/// Doors that are shut and locked, and the gaps that they shut.
+fn locked_doors(facts: &Facts<'_>) -> impl Iterator<Item = (ObjectId, Footprint)> {
+    facts.floor.gaps.iter().filter_map(move |gap| {
+        let door = gap.door_object?;
+        let locked =
+            facts.object(door).exists() && facts.is(door, StateFlag::Locked) && !facts.is(door, StateFlag::Opened);
+        locked.then_some((door, gap.print))
+    })
+}
+
+/// What stands on the floor now: what can be pushed, and what cannot.
+fn standing(facts: &Facts<'_>) -> (Vec<Footprint>, Vec<(Footprint, Option<ObjectId>)>) {
     let doors: Vec<ObjectId> = facts.floor.gaps.iter().filter_map(|gap| gap.door_object).collect();
-    let furniture = facts
-        .state
-        .existing()
-        .map(|(id, _)| id)
-        .filter(|id| !doors.contains(id) && blocks_the_way(facts, *id))
-        .map(|id| facts.footprint(id));
-    facts.floor.walls.iter().copied().chain(shut_doors.map(|gap| gap.print)).chain(furniture).collect()
+    let on_the_move: Vec<ObjectId> =
+        facts.state.bodies.iter().filter_map(|body| body.task.as_ref()).flat_map(|task| task.pushing.clone()).collect();
+    let (mut pushable, mut fast) = (Vec::new(), Vec::new());
+    for (id, _) in facts.state.existing() {
+        if doors.contains(&id) || on_the_move.contains(&id) || !blocks_the_way(facts, id) {
+            continue;
+        }
+        if is_pushable(facts, id) {
+            pushable.push(facts.footprint(id));
+        } else {
+            fast.push((facts.footprint(id), Some(id)));
+        }
+    }
+    (pushable, fast)
+}
+
+/// Whether an object has moving parts that a body could run into.
+fn swings_at_body_height(facts: &Facts<'_>, id: ObjectId) -> bool {
+    facts.leaves_at(id, 0.0).any(|leaf| leaf.low_m < WALK_UNDER_M)
+}
+
+/// The open doors and drawers of an object, once they rest; doors between rooms are opened in passing.
+fn resting_leaves<'a>(facts: &Facts<'a>, id: ObjectId) -> impl Iterator<Item = Footprint> + 'a {
+    let between_rooms = facts.floor.gaps.iter().any(|gap| gap.door_object == Some(id));
+    let open = facts.is(id, StateFlag::Opened) || (between_rooms && !facts.is(id, StateFlag::Locked));
+    let leaves = open.then(|| facts.leaves_at(id, 1.0)).into_iter().flatten();
+    leaves.filter(|leaf| leaf.low_m < WALK_UNDER_M).map(|leaf| leaf.print)
 }
 
 /// Whether an object stands in the way of bodies.

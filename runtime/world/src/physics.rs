@@ -1,13 +1,19 @@
 //! Falling, flying and sliding: only what nothing holds is in the solver, and leaves it again once it lies still.
+//!
+//! While nothing flies the solver is empty: what stands around is put in, as it stands then, when the first thing is let
+//! go. So a tick without flights costs nothing, and the solver's state never depends on flights that are over.
 
 use std::collections::BTreeMap;
 
-use cohabit_cdf::{Catalog, ObjectId, Property};
-use glam::{Vec2, Vec3};
+use cohabit_cdf::{Catalog, ObjectId, Property, catalog::Stands};
+use glam::{Quat, Vec2, Vec3};
 use rapier3d::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::{body::RADIUS_M, entity::Support, facts::Facts, geometry::Pose as ObjectPose, motion::DT_S, state::State};
+use crate::{
+    entity::Support, facts::Facts, floor::Floor, geometry::Pose as ObjectPose, motion::DT_S,
+    navigation::blocks_the_way, state::State,
+};
 
 /// Ticks of stillness after which a thing is taken to lie.
 const STILL_TICKS: u32 = 20;
@@ -15,8 +21,10 @@ const STILL_TICKS: u32 = 20;
 const LONGEST_TICKS: u32 = 600;
 const STILL_M_S: f32 = 0.03;
 const STILL_RAD_S: f32 = 0.3;
-/// Height of a body's cylinder, m.
-const BODY_HEIGHT_M: f32 = 1.4;
+/// How near a thing that flies may come to one at rest before that is woken, m.
+const WAKE_M: f32 = 0.03;
+/// What was woken and moved less than this was not hit, m.
+const UNMOVED_M: f32 = 0.005;
 
 /// The solver's world, and who is who in it.
 #[derive(Serialize, Deserialize)]
@@ -24,6 +32,16 @@ pub(crate) struct Physics {
     world: PhysicsWorld,
     loose: BTreeMap<ObjectId, Flight>,
     bodies: Vec<RigidBodyHandle>,
+    furniture: BTreeMap<ObjectId, Standing>,
+    furnished: bool,
+}
+
+/// A piece of furniture in the solver, and how it stood when it was put in.
+#[derive(Clone, Serialize, Deserialize)]
+struct Standing {
+    colliders: Vec<ColliderHandle>,
+    pose: ObjectPose,
+    opened: f32,
 }
 
 /// A thing in the solver.
@@ -32,6 +50,8 @@ struct Flight {
     handle: RigidBodyHandle,
     ticks: u32,
     still: u32,
+    /// What held it, and where, if it lay still until something came near.
+    rested: Option<(Support, ObjectPose)>,
 }
 
 impl Physics {
@@ -39,61 +59,114 @@ impl Physics {
     pub fn empty() -> Self {
         let mut world = PhysicsWorld { gravity: Vector::new(0.0, 0.0, -9.81), ..PhysicsWorld::default() };
         world.integration_parameters.dt = DT_S;
-        Self { world, loose: BTreeMap::new(), bodies: Vec::new() }
+        Self { world, loose: BTreeMap::new(), bodies: Vec::new(), furniture: BTreeMap::new(), furnished: false }
     }
 
-    /// Puts the floor, the walls and all that stands in, in the order of ids.
-    pub fn furnish(facts: &Facts<'_>, wall_height_m: f32) -> Self {
-        let mut physics = Self::empty();
+    /// Puts in the floor, the walls and all that stands around, in the order of ids.
+    fn furnish(&mut self, facts: &Facts<'_>) {
         let [west, south, east, north] = facts.floor.bounds;
         let middle = Vec3::new((west + east) / 2.0, (south + north) / 2.0, -0.5);
-        physics.insert_box(
-            middle,
-            Vec3::new(east - west, north - south, 1.0) / 2.0,
-            ObjectPose::level(Vec3::ZERO, 0.0),
-        );
+        let level = Quat::IDENTITY;
+        self.insert_box(middle, Vec3::new(east - west, north - south, 1.0) / 2.0, level);
         for wall in &facts.floor.walls {
-            let center = wall.center.extend(wall_height_m / 2.0);
-            let half = wall.half.extend(wall_height_m / 2.0);
-            physics.insert_box(center, half, ObjectPose::level(Vec3::ZERO, 0.0));
+            let height = facts.floor.wall_height_m;
+            self.insert_box(wall.center.extend(height / 2.0), wall.half.extend(height / 2.0), level);
         }
-        for (id, object) in facts.state.existing() {
-            let solid = matches!(object.support, Support::Fixed | Support::On { .. })
-                && !facts.has(id, Property::Pickupable)
-                && facts.class(id).id != "Door_01";
-            if solid {
-                physics.insert_furniture(facts, id);
+        for (id, _) in facts.state.existing() {
+            if stands(facts, id) {
+                self.insert_furniture(facts, id);
             }
         }
-        physics
+        self.furnished = true;
     }
 
-    /// Open furniture is its boards; everything else its whole box.
+    /// Takes up what furniture did since it was put in: doors swing, boxes are pushed about, things leave.
+    fn follow_furniture(&mut self, facts: &Facts<'_>) {
+        let moved = |id: ObjectId, standing: &Standing| {
+            let object = facts.object(id);
+            !stands(facts, id) || object.pose != standing.pose || object.opened != standing.opened
+        };
+        let changed: Vec<ObjectId> =
+            self.furniture.iter().filter(|(id, standing)| moved(**id, standing)).map(|(id, _)| *id).collect();
+        for id in changed {
+            let Some(old) = self.furniture.remove(&id) else { continue };
+            for handle in old.colliders {
+                let PhysicsWorld { colliders, islands, bodies, soft_bodies, .. } = &mut self.world;
+                colliders.remove(handle, islands, bodies, soft_bodies, true);
+            }
+            if stands(facts, id) {
+                self.insert_furniture(facts, id);
+            }
+        }
+    }
+
+    /// Open furniture is its boards, everything else its whole box; doors and drawers come beside it.
     fn insert_furniture(&mut self, facts: &Facts<'_>, id: ObjectId) {
         const BOARD_M: f32 = 0.04;
-        let class = facts.class(id);
-        let pose = facts.object(id).pose;
-        let scale = Vec3::from(facts.object(id).scale);
+        let (class, object) = (facts.class(id), facts.object(id));
+        let (pose, scale) = (object.pose, Vec3::from(object.scale));
+        let mut colliders = Vec::new();
+        let is_only_a_leaf = facts.floor.gaps.iter().any(|gap| gap.door_object == Some(id));
         match &class.receptacle {
+            _ if is_only_a_leaf => {}
             Some(kind) if !kind.enclosed => {
                 for surface in &kind.surfaces {
                     let center = (Vec3::from(surface.center_m) - Vec3::Z * (BOARD_M / 2.0)) * scale;
                     let half = Vec2::from(surface.size_m).extend(BOARD_M) / 2.0 * scale;
-                    self.insert_box(pose.point(center), half, pose);
+                    colliders.push(self.insert_box(pose.point(center), half, pose.rotation));
                 }
             }
             _ => {
                 let half = Vec3::from(class.size_m) / 2.0 * scale;
-                self.insert_box(pose.point(Vec3::Z * half.z), half, pose);
+                colliders.push(self.insert_box(pose.point(Vec3::Z * half.z), half, pose.rotation));
             }
         }
+        if object.opened > 0.0 || is_only_a_leaf {
+            for leaf in facts.leaves(id) {
+                let half = leaf.print.half.extend((leaf.high_m - leaf.low_m) / 2.0).max(Vec3::splat(0.005));
+                let center = leaf.print.center.extend((leaf.high_m + leaf.low_m) / 2.0);
+                let turned = crate::geometry::turn(crate::geometry::heading(leaf.print.axis));
+                colliders.push(self.insert_box(center, half, turned));
+            }
+        }
+        self.furniture.insert(id, Standing { colliders, pose, opened: object.opened });
     }
 
-    fn insert_box(&mut self, center: Vec3, half: Vec3, turned: ObjectPose) {
-        let collider = ColliderBuilder::cuboid(half.x, half.y, half.z)
-            .position(Pose::from_parts(center, turned.rotation))
-            .friction(0.7);
-        self.world.colliders.insert(collider);
+    fn insert_box(&mut self, center: Vec3, half: Vec3, rotation: Quat) -> ColliderHandle {
+        let collider =
+            ColliderBuilder::cuboid(half.x, half.y, half.z).position(Pose::from_parts(center, rotation)).friction(0.7);
+        self.world.colliders.insert(collider)
+    }
+
+    /// What lies at rest and something that flies is about to touch, in the order of ids.
+    fn soon_hit(&self, facts: &Facts<'_>) -> Vec<ObjectId> {
+        const SLOW_M_S: f32 = 0.3;
+        let flying: Vec<(Vec3, Vec3)> = self
+            .loose
+            .iter()
+            .filter_map(|(id, flight)| {
+                let body = &self.world.bodies[flight.handle];
+                let (middle, reach) = ball(facts, *id);
+                let by = body.linvel() * DT_S;
+                (body.linvel().length() > SLOW_M_S).then(|| {
+                    let (low, high) = (middle.min(middle + by), middle.max(middle + by));
+                    (low - reach - WAKE_M, high + reach + WAKE_M)
+                })
+            })
+            .collect();
+        if flying.is_empty() {
+            return Vec::new();
+        }
+        facts
+            .state
+            .existing()
+            .map(|(id, _)| id)
+            .filter(|id| {
+                let (middle, reach) = ball(facts, *id);
+                flying.iter().any(|(low, high)| middle.cmpge(*low - reach).all() && middle.cmple(*high + reach).all())
+                    && is_light(facts, *id)
+            })
+            .collect()
     }
 
     /// What flies or slides now, with its velocity: the part of the solver that a digest covers.
@@ -104,6 +177,34 @@ impl Physics {
             (*id, [line.x, line.y, line.z, turn.x, turn.y, turn.z])
         })
     }
+}
+
+/// Whether an object stands around and is solid: what is carried about is not, until it flies.
+fn stands(facts: &Facts<'_>, id: ObjectId) -> bool {
+    matches!(facts.object(id).support, Support::Fixed | Support::On { .. }) && !facts.has(id, Property::Pickupable)
+}
+
+/// Whether something that lies about openly would fly off when it is hit.
+fn is_light(facts: &Facts<'_>, id: ObjectId) -> bool {
+    const LIGHT_KG: f32 = 5.0;
+    let class = facts.class(id);
+    let works = [Property::Openable, Property::Toggleable, Property::Powerable];
+    let lies_about = class.has(Property::Pickupable)
+        || (class.stands == Stands::OnSurface && !works.iter().any(|property| class.has(*property)));
+    let in_the_open = facts.state.ancestors(id).all(|around| {
+        facts.class(around).receptacle.as_ref().is_none_or(|kind| !kind.enclosed && kind.keys.is_empty())
+    });
+    matches!(facts.object(id).support, Support::Fixed | Support::On { .. })
+        && lies_about
+        && class.mass_kg <= LIGHT_KG
+        && in_the_open
+        && !blocks_the_way(facts, id)
+}
+
+/// The middle of an object, and how far it reaches from there, m.
+fn ball(facts: &Facts<'_>, id: ObjectId) -> (Vec3, f32) {
+    let half = facts.size(id) / 2.0;
+    (facts.object(id).pose.point(Vec3::Z * half.z), half.length())
 }
 
 /// Puts an object into the solver where it is, with this velocity, m/s.
@@ -126,7 +227,7 @@ pub(crate) fn add_body(catalog: &Catalog, state: &mut State, object: ObjectId, v
     let physics = &mut state.physics;
     let handle = physics.world.bodies.insert(body);
     physics.world.colliders.insert_with_parent(collider, handle, &mut physics.world.bodies);
-    physics.loose.insert(object, Flight { handle, ticks: 0, still: 0 });
+    physics.loose.insert(object, Flight { handle, ticks: 0, still: 0, rested: None });
 }
 
 /// Takes an object out of the solver, if it is in it.
@@ -134,10 +235,8 @@ pub(crate) fn drop_body(state: &mut State, object: ObjectId) {
     if let Some(flight) = state.physics.loose.remove(&object) {
         remove(&mut state.physics, flight.handle);
     }
-    if state.physics.loose.is_empty() {
-        for handle in std::mem::take(&mut state.physics.bodies) {
-            remove(&mut state.physics, handle);
-        }
+    if state.physics.loose.is_empty() && state.physics.furnished {
+        state.physics = Physics::empty();
     }
 }
 
@@ -154,13 +253,71 @@ fn remove(physics: &mut Physics, handle: RigidBodyHandle) {
     );
 }
 
-/// Moves all that is loose by one tick; returns what came to rest.
-pub(crate) fn step(state: &mut State) -> Vec<ObjectId> {
+/// What a tick came to for things that fly.
+#[derive(Debug, Default)]
+pub(crate) struct Flown {
+    /// They came to rest somewhere, and belong there now.
+    pub landed: Vec<ObjectId>,
+    /// They were knocked loose, or lie again where they lay.
+    pub changed: Vec<ObjectId>,
+}
+
+/// Moves all that is loose by one tick.
+pub(crate) fn step(catalog: &Catalog, floor: &Floor, state: &mut State) -> Flown {
     if state.physics.loose.is_empty() {
-        return Vec::new();
+        return Flown::default();
+    }
+    // The facts are read while the solver is changed, which is no part of them.
+    let mut physics = std::mem::replace(&mut state.physics, Physics::empty());
+    let facts = Facts { catalog, floor, state };
+    if physics.furnished {
+        physics.follow_furniture(&facts);
+    } else {
+        physics.furnish(&facts);
+    }
+    let woken = physics.soon_hit(&facts);
+    state.physics = physics;
+    for id in &woken {
+        wake(catalog, state, *id);
     }
     follow_bodies(state);
     state.physics.world.step();
+    let resting = settle_flights(state);
+    let mut flown = restore_unmoved(state, resting);
+    flown.changed.extend(woken);
+    flown
+}
+
+/// Takes what lies at rest into the solver, where it may be hit.
+fn wake(catalog: &Catalog, state: &mut State, id: ObjectId) {
+    let rested = (state.at(id).support, state.at(id).pose);
+    add_body(catalog, state, id, Vec3::ZERO);
+    state.at_mut(id).support = Support::Loose;
+    if let Some(flight) = state.physics.loose.get_mut(&id) {
+        flight.rested = Some(rested);
+    }
+}
+
+/// Of what came to rest, gives back its place to what was woken for nothing.
+fn restore_unmoved(state: &mut State, resting: Vec<ObjectId>) -> Flown {
+    let mut flown = Flown::default();
+    for id in resting {
+        let rested = state.physics.loose.get(&id).and_then(|flight| flight.rested);
+        match rested.filter(|(_, pose)| pose.position.distance(state.at(id).pose.position) < UNMOVED_M) {
+            Some((support, pose)) => {
+                drop_body(state, id);
+                state.at_mut(id).support = support;
+                state.at_mut(id).pose = pose;
+                flown.changed.push(id);
+            }
+            None => flown.landed.push(id),
+        }
+    }
+    flown
+}
+
+/// Reads the poses of all that is loose; returns what has come to rest.
+fn settle_flights(state: &mut State) -> Vec<ObjectId> {
     let mut resting = Vec::new();
     let physics = &mut state.physics;
     for (id, flight) in &mut physics.loose {
@@ -185,7 +342,8 @@ pub(crate) fn step(state: &mut State) -> Vec<ObjectId> {
 fn follow_bodies(state: &mut State) {
     let physics = &mut state.physics;
     for (index, body) in state.bodies.iter().enumerate() {
-        let at = body.position.extend(BODY_HEIGHT_M / 2.0);
+        let figure = body.figure();
+        let at = body.position.extend(figure.height_m / 2.0);
         match physics.bodies.get(index) {
             Some(handle) => {
                 if let Some(pushed) = physics.world.bodies.get_mut(*handle) {
@@ -194,9 +352,11 @@ fn follow_bodies(state: &mut State) {
             }
             None => {
                 let handle = physics.world.bodies.insert(RigidBodyBuilder::kinematic_position_based().translation(at));
-                // A sphere-ended cylinder lying on z: the solver's capsules stand on y.
-                let half = BODY_HEIGHT_M / 2.0 - RADIUS_M;
-                let collider = ColliderBuilder::capsule_z(half, RADIUS_M);
+                // The solver's cylinders stand on y.
+                const UPRIGHT: Quat =
+                    Quat::from_xyzw(std::f32::consts::FRAC_1_SQRT_2, 0.0, 0.0, std::f32::consts::FRAC_1_SQRT_2);
+                let collider = ColliderBuilder::cylinder(figure.height_m / 2.0, figure.radius_m)
+                    .position(Pose::from_parts(Vec3::ZERO, UPRIGHT));
                 physics.world.colliders.insert_with_parent(collider, handle, &mut physics.world.bodies);
                 physics.bodies.push(handle);
             }

@@ -1,6 +1,6 @@
 //! What goes into a tick and what comes out of it.
 
-use cohabit_cdf::{Action, BodyId, ObjectId, Status};
+use cohabit_cdf::{Action, BodyId, ObjectId, RoomId, Status};
 use serde::{Deserialize, Serialize};
 
 /// One command for one body.
@@ -68,6 +68,19 @@ pub enum SoundKind {
     Spark,
 }
 
+/// What the camera that people watch turns to.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
+pub enum CameraTarget {
+    /// An object.
+    Object(ObjectId),
+    /// A room.
+    Room(RoomId),
+    /// What is seen from a viewpoint: its room, and its number from 1.
+    Viewpoint(RoomId, u8),
+    /// A point, m in the world.
+    Point([f32; 3]),
+}
+
 /// Something that happened.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub enum Event {
@@ -111,6 +124,15 @@ pub enum Event {
     /// The mission says something.
     Message {
         /// What.
+        text: String,
+    },
+    /// The mission shows something to the people who watch.
+    CameraMovement {
+        /// What.
+        target: CameraTarget,
+        /// How long, s.
+        duration_s: f32,
+        /// What is written below it; empty for nothing.
         text: String,
     },
     /// A body points an object out.

@@ -5,7 +5,15 @@ use std::collections::BTreeMap;
 use cohabit_cdf::{BodyId, ObjectId};
 use serde::{Deserialize, Serialize};
 
-use crate::{body::Body, entity::Object, goals::GoalProgress, physics::Physics, report::Ending};
+use crate::{
+    body::Body,
+    entity::Object,
+    goals::GoalProgress,
+    physics::Physics,
+    report::Ending,
+    story::Away,
+    works::portal::{Dinosaur, Gate},
+};
 
 /// The changing part of a world.
 #[derive(Serialize, Deserialize)]
@@ -16,6 +24,16 @@ pub(crate) struct State {
     /// Which circuits are fed.
     pub circuits: BTreeMap<i32, bool>,
     pub goals: Vec<GoalProgress>,
+    /// Which of the mission's messages and camera movements that wait for an occasion have it now, in their order.
+    pub occasions: Vec<bool>,
+    /// Where the portal generators lead.
+    pub portals: BTreeMap<ObjectId, Gate>,
+    /// The names of the portals that objects go through; what is not here goes through all.
+    pub passes: BTreeMap<ObjectId, Vec<String>>,
+    /// Dinosaurs, by the objects that they are, or the generators behind which they live.
+    pub dinosaurs: BTreeMap<ObjectId, Dinosaur>,
+    /// What is not there yet.
+    pub away: BTreeMap<ObjectId, Away>,
     pub ended: Option<(u64, Ending)>,
     pub physics: Physics,
     /// Counts changes of what blocks the way, so that paths are planned on a floor that is up to date.

@@ -1,27 +1,26 @@
 //! Commands in the making: what a body does, tick by tick, from being told to the outcome.
 
-use cohabit_cdf::{Action, BodyId, GoToTarget, ObjectId, StateFlag, Status};
+use std::cell::Cell;
+
+use cohabit_cdf::{Action, BodyId, GoToTarget, ObjectId, StateFlag, Status, Verb};
 use glam::Vec2;
 
 use crate::{
-    body::{Body, RADIUS_M, Step, Task},
-    facts::Facts,
+    body::{Body, Step, Task},
     geometry::wrap,
     motion::{PITCH_LIMIT_RAD, Progress, advance, retract},
-    navigation::Approach,
+    navigation::{Approach, Navigation, Sweep},
     report::{Event, Input, Outcome},
     rules::{self, Ruling},
     world::World,
 };
 
-/// Ticks that a body waits for its way to become free: three seconds.
-const PATIENCE_TICKS: u32 = 180;
+/// Ticks that a body waits for its way to become free: five seconds.
+const PATIENCE_TICKS: u32 = 300;
 /// No command moves a body further than this, m.
 const FURTHEST_M: f32 = 100.0;
-/// How near a body comes to a closed door before it opens it, m.
-const DOOR_NEAR_M: f32 = 0.9;
-/// How far a door must be open to be walked through.
-const DOOR_WIDE: f32 = 0.7;
+/// How near a body comes to a closed door before it opens it, m: an arm's reach, beyond the swing of the leaf.
+const DOOR_NEAR_M: f32 = 1.5;
 
 /// An outcome before it has a command: status and detail.
 type End = (Status, String);
@@ -43,7 +42,8 @@ impl World {
         match self.plan(input.body, &input.action, events) {
             Err(end) => outcomes.push(outcome(end)),
             Ok((steps, alternate)) => {
-                let task = Task { command: input.command, action: input.action, steps, alternate, waited: 0 };
+                let version = self.state.floor_version;
+                let task = Task::new(input.command, input.action, steps, alternate, version);
                 self.state.bodies[input.body.0 as usize].task = Some(task);
             }
         }
@@ -55,6 +55,7 @@ impl World {
         body.turn_rad_s = 0.0;
         body.speed_m_s = 0.0;
         let task = body.task.take()?;
+        self.let_stand(&task.pushing);
         Some(Outcome {
             command: task.command,
             body: id,
@@ -82,13 +83,13 @@ impl World {
                 Ok((vec![Step::Pitch { to_rad }], false))
             }
             Action::LookAround => Ok((vec![Step::Turn { left_rad: std::f32::consts::TAU }], false)),
-            Action::GoTo { target } => self.plan_walk(body, target),
+            Action::GoTo { target } => self.plan_any_walk(body, target),
             Action::PickUp { .. } | Action::Place { .. } | Action::Interact { .. } => {
                 let ruling = rules::rule(&facts, id, action);
                 if ruling.is_plain_refusal() {
                     return Err((ruling.status, ruling.detail));
                 }
-                Ok((hand_steps(&facts, id, action), false))
+                Ok((self.hand_steps(id, action), false))
             }
             Action::Highlight { object } => {
                 let name = facts.name(object);
@@ -99,7 +100,30 @@ impl World {
         }
     }
 
-    fn plan_walk(&self, body: &Body, target: GoToTarget) -> Result<(Vec<Step>, bool), End> {
+    /// The steps of a walk: around what stands open, if that can be; else through it; a refusal names the lock, if one it
+    /// is.
+    fn plan_any_walk(&self, body: &Body, target: GoToTarget) -> Result<(Vec<Step>, bool), End> {
+        let facts = self.facts();
+        let (status, detail) = match self.plan_walk(body, target, &self.navigation) {
+            Err(end) if end.0 == Status::UnsupportedNavigation => end,
+            planned => return planned,
+        };
+        if let Some(floor) = Navigation::but_for_leaves(&facts)
+            && let Ok(planned) = self.plan_walk(body, target, &floor)
+        {
+            return Ok(planned);
+        }
+        let locked = self.locked_out(body, target);
+        Err((status, locked.map_or(detail, |door| format!("{} on the way there is locked", facts.name(door)))))
+    }
+
+    /// The steps of a walk over a floor.
+    pub(crate) fn plan_walk(
+        &self,
+        body: &Body,
+        target: GoToTarget,
+        floor: &Navigation,
+    ) -> Result<(Vec<Step>, bool), End> {
         let facts = self.facts();
         let from = body.position;
         let viewpoints = |room| self.layout.viewpoints.iter().filter(move |viewpoint| viewpoint.room == room);
@@ -109,13 +133,13 @@ impl World {
                 if facts.object(object).held_by().is_some() {
                     return Err((Status::InvalidCommand, format!("{} is in a hand", facts.name(object))));
                 }
-                let approach = self.navigation.approach_object(&facts, from, object);
+                let approach = floor.approach_object(&facts, from, object);
                 let approach = approach.ok_or_else(|| no_way(facts.name(object)))?;
                 (approach, Step::Face { point: facts.aim_point(object) })
             }
             GoToTarget::Room(room) => {
                 let points: Vec<Vec2> = viewpoints(room).map(|viewpoint| viewpoint.at_m.into()).collect();
-                let approach = self.navigation.approach_room(&facts, from, room, &points);
+                let approach = floor.approach_room(&facts, from, room, &points);
                 let approach = approach.ok_or_else(|| no_way(format!("the {}", room.name())))?;
                 let yaw_rad = self.viewpoint_yaw(&approach).unwrap_or(body.yaw_rad);
                 (approach, Step::Head { yaw_rad })
@@ -124,12 +148,12 @@ impl World {
                 let viewpoint = viewpoints(room).find(|viewpoint| viewpoint.number == number);
                 let viewpoint = viewpoint
                     .ok_or_else(|| (Status::InvalidCommand, format!("there is no viewpoint {}_{number}", room.id())))?;
-                let approach = self.navigation.approach_point(from, viewpoint.at_m.into());
+                let approach = floor.approach_point(from, viewpoint.at_m.into());
                 let approach = approach.ok_or_else(|| no_way(format!("viewpoint {}_{number}", room.id())))?;
                 (approach, Step::Head { yaw_rad: wrap(viewpoint.yaw_deg.to_radians()) })
             }
             GoToTarget::Point(point) => {
-                let approach = self.navigation.approach_point(from, point.into());
+                let approach = floor.approach_point(from, point.into());
                 (approach.ok_or_else(|| no_way("that place".to_owned()))?, Step::Pitch { to_rad: 0.0 })
             }
         };
@@ -151,10 +175,17 @@ impl World {
             retract(&mut self.state.bodies[index]);
             return None;
         };
+        self.mind_the_way(id, &mut task);
+        let from = self.state.bodies[index].position;
         let mut body = self.state.bodies[index].clone();
         let Some(mut step) = task.steps.pop() else {
-            return Some(finish(id, &task, (Status::ActionSuccessful, "done".to_owned())));
+            return Some(self.finish(id, &task, (Status::ActionSuccessful, "done".to_owned())));
         };
+        if let Step::Yield { to, ticks_left } = &mut step
+            && self.has_passed(id, *to)
+        {
+            *ticks_left = 0;
+        }
         if let Some(door) = self.door_ahead(&body, &step) {
             self.changes(events).open(door);
         }
@@ -162,9 +193,17 @@ impl World {
             retract(&mut body);
         }
         let walking = matches!(step, Step::Walk { .. });
-        let progress = advance(&mut body, &mut step, &|point| self.is_free(id, point, walking));
+        let met = Cell::new(None);
+        let progress = advance(&mut body, &mut step, &|point| {
+            met.set(self.obstruction(id, point, walking));
+            met.get().is_none()
+        });
         body.room = self.floor.room_at(body.position).unwrap_or(body.room);
         self.state.bodies[index] = body;
+        if self.state.bodies[index].position != from {
+            self.push_along(id, from, &mut task.pushing, events);
+            self.push_leaves(id);
+        }
         let end = match progress {
             Progress::Going => {
                 task.waited = 0;
@@ -177,17 +216,25 @@ impl World {
             Progress::Blocked if walking && task.waited < PATIENCE_TICKS => {
                 task.waited += 1;
                 task.steps.push(step);
+                if let Some(met) = met.get() {
+                    self.make_way(id, &mut task, met);
+                }
                 None
             }
-            Progress::Blocked => Some((Status::TargetInaccessible, "something is in my way".to_owned())),
+            Progress::Blocked => Some((Status::TargetInaccessible, self.complaint(met.get()))),
         };
         match end {
-            Some(end) => Some(finish(id, &task, end)),
+            Some(end) => Some(self.finish(id, &task, end)),
             None => {
                 self.state.bodies[index].task = Some(task);
                 None
             }
         }
+    }
+
+    fn finish(&mut self, body: BodyId, task: &Task, (status, detail): End) -> Outcome {
+        self.let_stand(&task.pushing);
+        Outcome { command: task.command, body, status, detail }
     }
 
     /// Rules the action as things stand now, and applies what follows.
@@ -197,23 +244,28 @@ impl World {
         (status, detail)
     }
 
-    /// Whether the middle of a body may be at a point; on a planned way only what moves is in question.
-    fn is_free(&self, id: BodyId, point: Vec2, planned: bool) -> bool {
-        let own = self.state.bodies[id.0 as usize].position;
-        let others = self.state.bodies.iter().enumerate().filter(|(index, _)| *index != id.0 as usize);
-        let crowded = others.into_iter().any(|(_, other)| {
-            let distance = other.position.distance(point);
-            // Two that stand too close already may still part.
-            distance < 2.0 * RADIUS_M && distance < other.position.distance(own)
-        });
-        let shut = self.floor.gaps.iter().any(|gap| {
-            gap.print.distance(point) < RADIUS_M
-                && gap.print.distance(point) < gap.print.distance(own)
-                && gap
-                    .door_object
-                    .is_some_and(|door| self.state.at(door).exists() && self.state.at(door).opened < DOOR_WIDE)
-        });
-        !crowded && !shut && (planned || self.navigation.is_clear(point))
+    /// What a hand does: step out of the swing of what it opens, turn to it, reach out. What is in the hand already
+    /// needs no turning.
+    fn hand_steps(&self, id: BodyId, action: &Action) -> Vec<Step> {
+        let facts = self.facts();
+        let mut steps = vec![Step::Reach];
+        let Some(object) = rules::object_of(action).filter(|object| facts.object(*object).held_by() != Some(id)) else {
+            return steps;
+        };
+        steps.push(Step::Face { point: facts.aim_point(object) });
+        if matches!(action, Action::Interact { verb: Verb::Open | Verb::Close, .. }) {
+            let body = &self.state.bodies[id.0 as usize];
+            let sweep = Sweep::of(&facts, object);
+            let beside = (sweep.distance(body.position) < body.figure().radius_m)
+                .then(|| {
+                    self.place_clear_of(&sweep, body, |place| {
+                        facts.reach_to(object, place) < rules::REACH_M - 0.1 && !facts.walled_off(object, place)
+                    })
+                })
+                .flatten();
+            steps.extend(beside.map(|place| Step::Walk { path: vec![place], next: 0 }));
+        }
+        steps
     }
 
     /// The closed door on the next stretch of a walk that a body is close enough to, and may open.
@@ -236,10 +288,6 @@ impl World {
     }
 }
 
-fn finish(body: BodyId, task: &Task, (status, detail): End) -> Outcome {
-    Outcome { command: task.command, body, status, detail }
-}
-
 /// How a motion ends that came to its end.
 fn arrived(task: &Task) -> End {
     if task.alternate {
@@ -253,15 +301,6 @@ fn arrived(task: &Task) -> End {
         _ => "done",
     };
     (Status::ActionSuccessful, detail.to_owned())
-}
-
-/// What a hand does: turn to the thing, reach out. What is in the hand already needs no turning.
-fn hand_steps(facts: &Facts<'_>, id: BodyId, action: &Action) -> Vec<Step> {
-    let mut steps = vec![Step::Reach];
-    if let Some(object) = rules::object_of(action).filter(|object| facts.object(*object).held_by() != Some(id)) {
-        steps.push(Step::Face { point: facts.aim_point(object) });
-    }
-    steps
 }
 
 /// The object that an action names.

@@ -1,9 +1,9 @@
 //! The world: one state, stepped by a fixed tick, and what may be seen of it from outside.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use cohabit_cdf::{
-    BodyId, Catalog, Layout, Mission, ObjectId, Property, RoomId, StateFlag, catalog::Stands, mission::MessageTime,
+    BodyId, BodyKind, Catalog, Layout, Mission, ObjectId, Property, RoomId, StateFlag, catalog::Stands, mission::MessageTime,
 };
 use glam::Vec3;
 
@@ -24,7 +24,8 @@ use crate::{
     score::score,
     snapshot::{self, SnapshotError},
     state::{State, ids},
-    works::{self, EFFECT_TICKS, MOMENT_TICKS},
+    story,
+    works::{self, EFFECT_TICKS, MOMENT_TICKS, portal},
 };
 
 /// Length of a tick, ns: 60 ticks a second.
@@ -40,13 +41,14 @@ pub struct World {
     pub(crate) floor: Floor,
     pub(crate) state: State,
     pub(crate) navigation: Navigation,
-    identity: [u8; 32],
+    /// What a snapshot is of; worked out when the first one is wanted.
+    identity: OnceLock<[u8; 32]>,
 }
 
 impl World {
     /// Furnishes the floor plan and changes it as the mission asks; one robot stands in the mission's start room.
     ///
-    /// All that is left to chance follows from `seed`.
+    /// All that is left to chance follows from the mission's own seed, or from `seed` if it has none.
     ///
     /// # Errors
     /// [`BuildError`] names the object that cannot be had or has no place.
@@ -58,19 +60,26 @@ impl World {
     ) -> Result<Self, BuildError> {
         let (floor, state) = build::build(&catalog, &layout, &mission, seed)?;
         let navigation = Navigation::new(&Facts { catalog: &catalog, floor: &floor, state: &state });
-        let identity = identity(&catalog, &layout, &mission);
-        Ok(Self { catalog, layout, mission, floor, state, navigation, identity })
+        Ok(Self { catalog, layout, mission, floor, state, navigation, identity: OnceLock::new() })
     }
 
-    /// Adds a body at a free viewpoint of a room.
+    /// Adds a robot at a free viewpoint of a room.
     ///
     /// # Errors
     /// [`BuildError::NoFreeSpot`] if the room has no place left to stand.
     pub fn add_body(&mut self, room: RoomId) -> Result<BodyId, BuildError> {
+        self.add_body_of(BodyKind::Robot, room)
+    }
+
+    /// Adds a body of a kind at a free viewpoint of a room.
+    ///
+    /// # Errors
+    /// [`BuildError::NoFreeSpot`] if the room has no place left to stand.
+    pub fn add_body_of(&mut self, kind: BodyKind, room: RoomId) -> Result<BodyId, BuildError> {
         let (position, yaw_rad) = build::start(&self.facts(), &self.layout, room, &self.state.bodies)
             .ok_or_else(|| BuildError::NoFreeSpot { object: "the robot".to_owned(), room })?;
         let id = BodyId(u32::try_from(self.state.bodies.len()).expect("invariant: few bodies"));
-        self.state.bodies.push(Body::new(position, yaw_rad, room));
+        self.state.bodies.push(Body::new(kind, position, yaw_rad, room));
         Ok(id)
     }
 
@@ -93,6 +102,7 @@ impl World {
         self.run_machines(&mut report.events);
         self.animate();
         self.step_physics(&mut report.events);
+        self.cross_times(&mut report.events);
         self.judge(&mut report.events);
         self.state.tick += 1;
         report
@@ -108,7 +118,7 @@ impl World {
 
     fn refresh_navigation(&mut self) {
         if self.navigation.version != self.state.floor_version {
-            self.navigation = Navigation::new(&self.facts());
+            self.navigation.renew(&Facts { catalog: &self.catalog, floor: &self.floor, state: &self.state });
         }
     }
 
@@ -123,11 +133,9 @@ impl World {
         /// A foot's breadth, m.
         const FOOT_M: f32 = 0.1;
         let facts = self.facts();
-        let live = facts.state.existing().filter(|(_, object)| {
-            object.flags.has(StateFlag::Sparking) && object.pose.position.z < 0.1 && object.parent().is_none()
-        });
-        let struck: Vec<(BodyId, ObjectId)> = live
-            .flat_map(|(id, _)| {
+        let struck: Vec<(BodyId, ObjectId)> = power::live_on_floor(&facts)
+            .into_iter()
+            .flat_map(|id| {
                 let print = facts.footprint(id);
                 let bodies = (0_u32..).map(BodyId).zip(&facts.state.bodies);
                 bodies
@@ -169,16 +177,24 @@ impl World {
     /// Moving parts follow their states; what the gravity pad lifts goes with it.
     fn animate(&mut self) {
         let by = OPEN_PER_S * DT_S;
-        let mut lifting = Vec::new();
+        let (mut lifting, mut swinging) = (Vec::new(), Vec::new());
         for id in ids(self.state.objects.len()) {
             let object = self.state.at_mut(id);
             let target = |flag| f32::from(u8::from(object.flags.has(flag)));
             let (opened, running) = (target(StateFlag::Opened), target(StateFlag::Toggled));
-            object.opened = (object.opened + (opened - object.opened).clamp(-by, by)).clamp(0.0, 1.0);
+            if opened != object.opened {
+                swinging.push((id, (object.opened + (opened - object.opened).clamp(-by, by)).clamp(0.0, 1.0)));
+            }
             let was = object.running;
             object.running = (was + (running - was).clamp(-by, by)).clamp(0.0, 1.0);
             if was != object.running {
                 lifting.push(id);
+            }
+        }
+        for (id, opened) in swinging {
+            // A door or drawer stops at a body, and goes on once that is gone.
+            if !self.hits_body(id, opened) {
+                self.state.at_mut(id).opened = opened;
             }
         }
         for id in lifting {
@@ -190,7 +206,9 @@ impl World {
 
     /// What flies or slides does so; what comes to rest belongs to what it lies on.
     fn step_physics(&mut self, events: &mut Vec<Event>) {
-        for id in physics::step(&mut self.state) {
+        let flown = physics::step(&self.catalog, &self.floor, &mut self.state);
+        events.extend(flown.changed.into_iter().map(|object| Event::ObjectChanged { object }));
+        for id in flown.landed {
             let facts = self.facts();
             let pose = facts.object(id).pose;
             let below = receptacle_below(&facts, id, pose.position);
@@ -248,8 +266,27 @@ impl World {
     }
 
     fn say(&self, when: &MessageTime, events: &mut Vec<Event>) {
-        let due = self.mission.messages.iter().filter(|message| message.when == *when);
-        events.extend(due.map(|message| Event::Message { text: message.text.clone() }));
+        events.extend(story::due(&self.facts(), &self.mission, when));
+    }
+
+    /// What flies into portals goes through, dinosaurs eat, what was away comes, and what waits for that is told.
+    fn cross_times(&mut self, events: &mut Vec<Event>) {
+        if !self.state.portals.is_empty() && self.state.physics.moving().next().is_some() {
+            let effects = portal::swallowed(&self.facts());
+            self.changes(events).apply(effects);
+        }
+        let hungry = self.state.dinosaurs.keys().any(|dino| !self.state.portals.contains_key(dino));
+        if hungry {
+            let effects = portal::meals(&self.facts());
+            self.changes(events).apply(effects);
+        }
+        if !self.state.away.is_empty() {
+            let effects = story::arrivals(&self.facts(), &self.mission);
+            self.changes(events).apply(effects);
+        }
+        let (due, now) = story::on_occasions(&self.facts(), &self.mission);
+        events.extend(due);
+        self.state.occasions = now;
     }
 }
 
@@ -270,7 +307,7 @@ impl World {
     /// All simulated state as bytes.
     #[must_use]
     pub fn snapshot(&self) -> Vec<u8> {
-        snapshot::write(&self.identity, &self.state)
+        snapshot::write(self.identity(), &self.state)
     }
 
     /// Takes up a snapshot of a world of the same catalogue, floor plan and mission, and goes on from it bit for bit.
@@ -278,8 +315,8 @@ impl World {
     /// # Errors
     /// [`SnapshotError`] says why the bytes are not one; the world is then as it was.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<(), SnapshotError> {
-        self.state = snapshot::read(&self.identity, &self.mission.name, bytes)?;
-        self.navigation = Navigation::new(&self.facts());
+        self.state = snapshot::read(self.identity(), &self.mission.name, bytes)?;
+        self.navigation.renew(&Facts { catalog: &self.catalog, floor: &self.floor, state: &self.state });
         Ok(())
     }
 
@@ -289,6 +326,10 @@ impl World {
             let id = ObjectId(u32::try_from(index).expect("invariant: fewer than 2^32 objects"));
             view(&self.facts(), id, object)
         })
+    }
+
+    fn identity(&self) -> &[u8; 32] {
+        self.identity.get_or_init(|| identity(&self.catalog, &self.layout, &self.mission))
     }
 
     /// One object.
@@ -394,6 +435,7 @@ fn view<'a>(facts: &Facts<'a>, id: ObjectId, object: &'a Object) -> ObjectView<'
         hidden: !object.exists() || facts.shut_around(id).is_some_and(|shut| facts.object(shut).opened <= 0.0),
         text: &object.text,
         works: object.works,
+        in_mission: object.requested,
     }
 }
 

@@ -1,132 +1,123 @@
-//! The same inputs give the same world, bit for bit; nothing is lost, doubled or left without an outcome.
+//! The same inputs give the same world, bit for bit: a second time, in another process, and after a snapshot.
 
 #![allow(clippy::unwrap_used)]
 
 mod support;
 
-use std::sync::Arc;
+use std::{process::Command, sync::Arc};
 
 use cohabit_cdf::{Catalog, RoomId, mission::builtin};
-use cohabit_world::{Action, BodyId, GoToTarget, Input, ObjectId, SnapshotError, Status, Verb, World};
+use cohabit_world::{Action, BodyId, GoToTarget, Input, SnapshotError, Status, World};
 use proptest::prelude::*;
-use support::{build, plain_mission, world};
+use support::{build, plain_mission, play::lives, script::Line, stage::kitchen, world};
 
 fn cereal() -> World {
     let (name, text) = builtin().iter().find(|(name, _)| name.contains("make_cereal")).unwrap();
     world(name, text, 3)
 }
 
-/// Any action, over more ids than there are.
-fn action(objects: u32) -> impl Strategy<Value = Action> {
-    let object = (0..objects + 3).prop_map(ObjectId);
-    let verb = prop::sample::select(Verb::ALL.to_vec());
-    prop_oneof![
-        (-3.0_f32..3.0).prop_map(|distance_m| Action::Move { distance_m }),
-        (-7.0_f32..7.0).prop_map(|yaw_rad| Action::Rotate { yaw_rad }),
-        any::<f32>().prop_map(|pitch_rad| Action::Look { pitch_rad }),
-        Just(Action::LookAround),
-        Just(Action::Stop),
-        object.clone().prop_map(|object| Action::GoTo { target: GoToTarget::Object(object) }),
-        (0_u32..8).prop_map(|room| Action::GoTo { target: GoToTarget::Room(RoomId::from_index(room).unwrap()) }),
-        (any::<f32>(), any::<f32>()).prop_map(|(x, y)| Action::GoTo { target: GoToTarget::Point([x, y]) }),
-        object.clone().prop_map(|object| Action::PickUp { object }),
-        object.clone().prop_map(|receptacle| Action::Place { receptacle }),
-        (verb, object.clone()).prop_map(|(verb, object)| Action::Interact { verb, object }),
-        object.prop_map(|object| Action::Highlight { object }),
-    ]
+/// Steps both by the same inputs, and finds no difference.
+fn step_both(one: &mut World, two: &mut World, inputs: &[Input]) {
+    let report = one.step(inputs);
+    assert_eq!(report, two.step(inputs), "tick {}", one.tick());
+    assert_eq!(one.digest(), two.digest(), "tick {}", one.tick());
 }
 
-/// What must hold of every world at every tick.
-fn check_sound(world: &World) {
-    for view in world.objects() {
-        assert!(view.position_m.is_finite() && view.rotation.is_finite(), "{}", view.instance);
-        if let Some(body) = view.held_by {
-            assert_eq!(world.body(body).unwrap().held, Some(view.id), "{}", view.instance);
+#[test]
+fn a_second_life_and_a_restored_one_agree_tick_for_tick() {
+    let catalog = Arc::new(Catalog::builtin());
+    for (number, mut life) in lives().enumerate() {
+        let [mut second, mut restored] = [(); 2].map(|()| support::play::life(&catalog, number).unwrap().world);
+        // Some in the middle of a walk, some in the middle of a flight.
+        let cut = 150 + 67 * number as u64;
+        for _ in 0..cut {
+            let inputs = life.step();
+            second.step(&inputs);
+            assert_eq!(life.world.digest(), second.digest(), "{}: tick {}", life.name, life.world.tick());
         }
-        if let Some(parent) = view.parent {
-            assert!(world.exists(parent), "{} is in something that is gone", view.instance);
+        restored.restore(&life.world.snapshot()).unwrap();
+        for _ in 0..600 {
+            let inputs = life.step();
+            step_both(&mut second, &mut restored, &inputs);
+            assert_eq!(life.world.digest(), second.digest(), "{}: tick {}", life.name, life.world.tick());
         }
     }
-    for body in world.bodies() {
-        if let Some(held) = body.held {
-            assert_eq!(world.object(held).unwrap().held_by, Some(body.id));
-        }
-    }
-    let mut names: Vec<&str> = world.objects().map(|view| view.instance).collect();
-    names.sort_unstable();
-    names.dedup();
-    assert_eq!(names.len(), world.objects().len(), "two objects share an id");
-}
-
-fn ids_in(world: &World) -> usize {
-    world.objects().filter(|view| world.exists(view.id)).count()
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 24, max_shrink_iters: 40, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 48, max_shrink_iters: 200, ..ProptestConfig::default() })]
 
+    /// Also a world that was restored before, and has been elsewhere since.
     #[test]
-    fn any_commands_give_one_outcome_each_and_lose_nothing(
-        script in prop::collection::vec((1_usize..160, 0_u32..3, action(420)), 1..40),
+    fn a_restored_world_forgets_where_it_was(
+        bytes in prop::collection::vec(any::<u8>(), 6..90),
+        elsewhere in prop::collection::vec(any::<u8>(), 6..40),
+        cut in 0_u64..400,
     ) {
-        let mut world = cereal();
-        world.add_body(RoomId::Reception).unwrap();
-        let (mut given, mut ended) = (Vec::new(), Vec::new());
-        let mut balance = ids_in(&world) as i64;
-        for (index, (ticks, body, action)) in script.into_iter().enumerate() {
-            let mut inputs = vec![Input { command: index as u64, body: BodyId(body), action }];
-            given.push(index as u64);
-            for _ in 0..ticks {
-                let report = world.step(&inputs);
-                inputs.clear();
-                ended.extend(report.outcomes.into_iter().map(|outcome| outcome.command));
-                for event in &report.events {
-                    match event {
-                        cohabit_world::Event::Spawned { .. } => balance += 1,
-                        cohabit_world::Event::Removed { .. } => balance -= 1,
-                        _ => {}
-                    }
-                }
-                prop_assert_eq!(ids_in(&world) as i64, balance);
+        let catalog = Arc::new(Catalog::builtin());
+        let mut first = kitchen(&catalog, "OfficeLayout1B_mirror");
+        let mut other = kitchen(&catalog, "OfficeLayout1B_mirror");
+        tell(&mut other, &Line::script(&elsewhere), |world, inputs| {
+            world.step(inputs);
+        });
+        let mut restored = false;
+        tell(&mut first, &Line::script(&bytes), |world, inputs| {
+            if world.tick() == cut {
+                other.restore(&world.snapshot()).unwrap();
+                restored = true;
             }
-            check_sound(&world);
-        }
-        let stops = [0, 1].map(|body| Input { command: 1_000 + u64::from(body), body: BodyId(body), action: Action::Stop });
-        ended.extend(world.step(&stops).outcomes.into_iter().map(|outcome| outcome.command));
-        given.extend([1_000, 1_001]);
-        ended.sort_unstable();
-        prop_assert_eq!(ended, given);
+            if restored {
+                step_both(world, &mut other, inputs);
+            } else {
+                world.step(inputs);
+            }
+        });
     }
+}
 
-    #[test]
-    fn a_second_run_and_a_restored_one_agree_digest_for_digest(
-        script in prop::collection::vec((1_usize..120, action(420)), 1..14),
-        cut in 0_usize..600,
-    ) {
-        let (mut first, mut second) = (cereal(), cereal());
-        prop_assert_eq!(first.digest(), second.digest());
-        let mut third: Option<World> = None;
-        let mut tick = 0;
-        for (index, (ticks, action)) in script.into_iter().enumerate() {
-            let mut inputs = vec![Input { command: index as u64, body: BodyId(0), action }];
-            for _ in 0..ticks {
-                if tick == cut {
-                    let mut restored = cereal();
-                    restored.restore(&first.snapshot()).unwrap();
-                    third = Some(restored);
-                }
-                let report = first.step(&inputs);
-                prop_assert_eq!(&report, &second.step(&inputs));
-                prop_assert_eq!(first.digest(), second.digest());
-                if let Some(third) = &mut third {
-                    prop_assert_eq!(&report, &third.step(&inputs));
-                    prop_assert_eq!(first.digest(), third.digest());
-                }
-                inputs.clear();
-                tick += 1;
-            }
+/// Tells a world a script; `step` must step it.
+fn tell(world: &mut World, script: &[Line], mut step: impl FnMut(&mut World, &[Input])) {
+    for (command, line) in (1..).zip(script) {
+        let mut inputs = vec![line.input(world, command)];
+        for _ in 0..line.wait().0.clamp(1, 60) {
+            step(world, &inputs);
+            inputs.clear();
         }
     }
+}
+
+/// What is set for the process that [`two_processes_agree_tick_for_tick`] starts.
+const CHILD: &str = "COHABIT_PRINT_DIGESTS";
+
+#[test]
+fn two_processes_agree_tick_for_tick() {
+    let print = |digests: &mut dyn FnMut(String)| {
+        for mut life in lives() {
+            for _ in 0..200 {
+                life.step();
+                let digest = blake3::Hash::from_bytes(life.world.digest());
+                digests(format!("{} {} {}", life.name, life.world.tick(), digest.to_hex()));
+            }
+        }
+    };
+    if std::env::var_os(CHILD).is_some() {
+        print(&mut |line| println!("digest: {line}"));
+        return;
+    }
+    let child = Command::new(std::env::current_exe().unwrap())
+        .args(["--exact", "two_processes_agree_tick_for_tick", "--nocapture"])
+        .env(CHILD, "1")
+        .output()
+        .unwrap();
+    assert!(child.status.success(), "{}", String::from_utf8_lossy(&child.stderr));
+    let text = String::from_utf8(child.stdout).unwrap();
+    let mut theirs = text.lines().filter_map(|line| line.split_once("digest: ")).map(|(_, line)| line);
+    let mut count = 0;
+    print(&mut |line| {
+        assert_eq!(theirs.next(), Some(line.as_str()));
+        count += 1;
+    });
+    assert!(theirs.next().is_none() && count > 2_000, "{count} ticks");
 }
 
 #[test]

@@ -1,4 +1,8 @@
-//! Whole missions, solved by lists of actions.
+//! Whole missions, solved by lists of actions; and long lives of worlds, whose digests are recorded.
+//!
+//! `golden.txt` holds the digests of every life, so that every build profile and every machine is held to the same
+//! numbers. A change that means to change what happens writes them anew:
+//! `BLESS=1 cargo test -p cohabit-world --test golden`.
 
 #![allow(clippy::unwrap_used)]
 
@@ -7,7 +11,7 @@ mod support;
 use std::path::PathBuf;
 
 use cohabit_world::{Ending, Event};
-use support::{Player, world};
+use support::{Player, play::lives, world};
 
 /// The text of a reference mission, if the reference data are there.
 fn reference(name: &str) -> Option<String> {
@@ -183,5 +187,42 @@ fn the_built_in_others() {
             "goto ManagerDesk_10000",
             "place ManagerDesk_10000",
         ],
+    );
+}
+
+/// Ticks that each life lasts, and after how many its digests are written down.
+const LIFE_TICKS: u64 = 3_000;
+const EVERY_TICKS: u64 = 500;
+
+/// One line for each stretch of each life: the hash of the digests of all its ticks so far.
+fn digests() -> String {
+    let mut lines = String::new();
+    for mut life in lives() {
+        let mut all = blake3::Hasher::new();
+        for tick in 1..=LIFE_TICKS {
+            life.step();
+            all.update(&life.world.digest());
+            if tick % EVERY_TICKS == 0 {
+                lines += &format!("{} {tick} {}\n", life.name, &all.finalize().to_hex()[..32]);
+            }
+        }
+        println!("{}: {} commands came to a good end", life.name, life.succeeded);
+    }
+    lines
+}
+
+#[test]
+fn lives_come_out_as_recorded() {
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/golden.txt");
+    let found = digests();
+    if std::env::var_os("BLESS").is_some() {
+        std::fs::write(&path, &found).unwrap();
+    }
+    let recorded = std::fs::read_to_string(&path).unwrap();
+    let differs = found.lines().zip(recorded.lines()).find(|(found, recorded)| found != recorded);
+    assert!(
+        differs.is_none() && found.lines().count() == recorded.lines().count(),
+        "found and recorded differ first at {differs:?}; if that is meant, \
+         run `BLESS=1 cargo test -p cohabit-world --test golden`"
     );
 }

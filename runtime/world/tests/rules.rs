@@ -3,62 +3,16 @@
 #![allow(clippy::unwrap_used)]
 
 mod support;
+mod wishes;
 
 use std::sync::Arc;
 
-use cohabit_cdf::{Catalog, Color, Fluid, Mission, ObjectRequest, RoomId, StateFlag, StateFlags};
-use cohabit_world::{Action, BodyId, Ending, Event, GoToTarget, ObjectId, Status};
+use cohabit_cdf::{Catalog, Color, Fluid, Mission, ObjectRequest, Property, RoomId, StateFlag};
+use cohabit_world::{Action, BodyId, Ending, Event, GoToTarget, ObjectId, Status, Verb};
 use support::{Player, build, plain_mission};
-
-/// `Instance`, or `Instance in Receptacle`, or `Instance at Room`; then `+flag` and `-flag` words.
-fn request(line: &str) -> ObjectRequest {
-    let mut words = line.split(' ');
-    let mut request = ObjectRequest { instance: words.next().unwrap().to_owned(), ..ObjectRequest::default() };
-    while let Some(word) = words.next() {
-        match word {
-            "in" => request.inside = Some(words.next().unwrap().to_owned()),
-            "at" => request.room = RoomId::from_id(words.next().unwrap()),
-            "yesterday" => request.yesterday = Some(words.next().unwrap().to_owned()),
-            "filled" => request.fluid = Fluid::from_name(words.next().unwrap()),
-            "unique" => request.unique = true,
-            "emptied" => request.remove_initial_contents = true,
-            flag => {
-                let value = flag.starts_with('+');
-                let found = StateFlag::ALL.into_iter().find(|known| format!("{known:?}") == flag[1..]).unwrap();
-                request.flags.push((found, value));
-            }
-        }
-    }
-    request
-}
-
-fn player(room: RoomId, wishes: &[&str]) -> Player {
-    let objects = wishes.iter().map(|line| request(line)).collect();
-    let mission = Mission { objects, ..plain_mission(room) };
-    Player::new(build(&Arc::new(Catalog::builtin()), mission, 5))
-}
-
-/// Runs `lines`, of which the last must come to `expected`; all before must succeed.
-fn check(wishes: &[&str], lines: &[&str], expected: Status) -> Player {
-    let mut player = player(RoomId::BreakRoom, wishes);
-    let (last, before) = lines.split_last().unwrap();
-    player.must(before);
-    let outcome = player.run(last);
-    assert_eq!(outcome.status, expected, "{wishes:?} {lines:?}: {}", outcome.detail);
-    assert!(outcome.command == 0 || !outcome.detail.is_empty());
-    player
-}
-
-fn flags(player: &Player, instance: &str) -> StateFlags {
-    player.world.object(player.id(instance)).unwrap().flags
-}
-
-fn fluid(player: &Player, instance: &str) -> Fluid {
-    player.world.object(player.id(instance)).unwrap().fluid
-}
+use wishes::{OK, check, flags, fluid, player, request};
 
 const ON_TABLE: &str = "Apple_1 in TableRound_02_1";
-const OK: Status = Status::ActionSuccessful;
 
 #[test]
 fn hands() {
@@ -221,7 +175,10 @@ fn the_time_machine_undoes() {
     }
     let wishes =
         [open, "Carrot_01_1 in YesterdayMachine_01_1 yesterday Donut_01", "Donut_01_1 unique in TableRound_02_1"];
-    let player = check(&wishes, &["goto YesterdayMachine_01_1", "toggle YesterdayMachine_01_1", "wait 140"], OK);
+    let machine = "YesterdayMachine_01_1";
+    let steps = ["goto", "close", "toggle"].map(|verb| format!("{verb} {machine}"));
+    check(&wishes, &[&steps[0], &steps[2]], Status::ActionExecutionError);
+    let player = check(&wishes, &[&steps[0], &steps[1], &steps[2], "wait 140"], OK);
     assert!(player.world.find("Carrot_01_1").is_none());
     assert_eq!(player.world.object(player.id("Donut_01_2")).unwrap().parent, Some(player.id("YesterdayMachine_01_1")));
     assert!(!flags(&player, "YesterdayMachine_01_1").has(StateFlag::Toggled));
@@ -360,7 +317,7 @@ fn power() {
         .collect();
     for switch in switches {
         assert!(player.play(Action::GoTo { target: GoToTarget::Object(switch) }).status.is_success());
-        let press = Action::Interact { verb: cohabit_world::Verb::Toggle, object: switch };
+        let press = Action::Interact { verb: Verb::Toggle, object: switch };
         assert!(player.play(press).status.is_success());
     }
     assert!(!player.world.room_lit(RoomId::BreakRoom));
@@ -389,5 +346,159 @@ fn nonsense_is_refused() {
         (Action::GoTo { target: GoToTarget::Point([500.0, 500.0]) }, Status::UnsupportedNavigation),
     ] {
         assert_eq!(player.play(action).status, expected, "{action:?}");
+    }
+}
+
+/// The situations that lead to each status, and whether something would help that the sentence must name.
+const SITUATIONS: &[(Status, bool, &[&str], &[&str])] = &[
+    (Status::ActionSuccessful, false, &[], &["goto TableRound_02_1"]),
+    (Status::UnsupportedAction, false, &[], &["goto TableRound_02_1", "pickup TableRound_02_1"]),
+    (Status::UnsupportedAction, true, &["Laser_1"], &["goto Laser_1", "toggle Laser_1"]),
+    (
+        Status::UnsupportedAction,
+        true,
+        &["TableRound_02_1 emptied", ON_TABLE],
+        &["goto Apple_1", "pickup Apple_1", "goto Toaster_02", "place Toaster_02"],
+    ),
+    (Status::UnsupportedNavigation, false, &["Door_01_3 -Opened +Locked"], &["room Warehouse"]),
+    (
+        Status::AlreadyHoldingObject,
+        true,
+        &["TableRound_02_1 emptied", ON_TABLE, "Bowl_01_1 in TableRound_02_1"],
+        &["goto Apple_1", "pickup Apple_1", "pickup Bowl_01_1"],
+    ),
+    (
+        Status::ReceptacleIsFull,
+        true,
+        &["TableRound_02_1 emptied", ON_TABLE, "Microwave_01_1 emptied +Opened", "Bowl_01_1 in Microwave_01_1"],
+        &["goto Apple_1", "pickup Apple_1", "goto Microwave_01_1", "place Microwave_01_1"],
+    ),
+    (
+        Status::ReceptacleIsFull,
+        true,
+        &["Printer_Cartridge_Mug_1 in Printer_3D_1"],
+        &["goto Printer_3D_1", "toggle Printer_3D_1", "wait 130", "toggle Printer_3D_1"],
+    ),
+    (
+        Status::ReceptacleIsClosed,
+        true,
+        &["FridgeLower_02_1", "Apple_1 in FridgeLower_02_1"],
+        &["goto FridgeLower_02_1", "pickup Apple_1"],
+    ),
+    (
+        Status::TargetInaccessible,
+        true,
+        &["VendingMachine_01 +Opened emptied", "Apple_1 in VendingMachine_01"],
+        &["goto VendingMachine_01", "pickup Apple_1"],
+    ),
+    (Status::KilledByHazard, false, &["Microwave_01_1 +Sparking"], &["goto Microwave_01_1", "toggle Microwave_01_1"]),
+    (Status::TargetOutOfRange, true, &["TableRound_02_1 emptied", ON_TABLE], &["room Warehouse", "pickup Apple_1"]),
+    (Status::ObjectUnpowered, true, &["Microwave_01_1 -Powered"], &["goto Microwave_01_1", "toggle Microwave_01_1"]),
+    (
+        Status::ObjectOverloaded,
+        true,
+        &["Microwave_01_1 +Overloaded"],
+        &["goto Microwave_01_1", "toggle Microwave_01_1"],
+    ),
+    (Status::InvalidCommand, false, &["FridgeLower_02_1 +Opened"], &["goto FridgeLower_02_1", "open FridgeLower_02_1"]),
+    (Status::ObjectNotPickedUp, true, &[], &["goto TableRound_02_1", "place TableRound_02_1"]),
+    (
+        Status::ActionExecutionError,
+        true,
+        &["KitchenCounterSink_01_1 -Toggled", "TableRound_02_1 emptied", "Bowl_01_1 in TableRound_02_1"],
+        &["goto Bowl_01_1", "pickup Bowl_01_1", "goto KitchenCounterSink_01_1", "fill KitchenCounterSink_01_1"],
+    ),
+    (
+        Status::ActionExecutionError,
+        true,
+        &["Laser_1 emptied"],
+        &["goto V_Monitor_Laser_10000", "toggle V_Monitor_Laser_10000"],
+    ),
+    (
+        Status::ActionExecutionError,
+        true,
+        &["FridgeLower_02_1 +Locked"],
+        &["goto FridgeLower_02_1", "open FridgeLower_02_1"],
+    ),
+    (Status::ActionExecutionError, true, &["EAC_Machine_1"], &["goto EAC_Machine_1", "toggle EAC_Machine_1"]),
+    (
+        Status::PostProcessError,
+        true,
+        &["TableRound_02_1 emptied", "Floppy_Virus_1 in TableRound_02_1", "V_Monitor_Laser_10000 -Powered"],
+        &["goto Floppy_Virus_1", "pickup Floppy_Virus_1", "goto V_Monitor_Laser_10000", "place V_Monitor_Laser_10000"],
+    ),
+];
+
+/// A sentence for people: not empty, without ids, and with what would help after a colon.
+fn check_sentence(detail: &str, helps: bool, status: Status) {
+    assert!(!detail.trim().is_empty(), "{status:?} says nothing");
+    assert!(!detail.contains('_') && !detail.contains(|letter: char| letter.is_ascii_digit()), "{status:?}: {detail}");
+    let (cause, help) = detail.split_once(": ").unwrap_or((detail, ""));
+    assert!(!cause.is_empty() && (!helps || help.len() > 5), "{status:?} names no remedy: {detail}");
+}
+
+#[test]
+fn every_status_has_its_situation_and_its_sentence() {
+    for (status, helps, wishes, lines) in SITUATIONS {
+        let mut player = player(RoomId::BreakRoom, wishes);
+        let (last, before) = lines.split_last().unwrap();
+        player.must(before);
+        let outcome = player.run(last);
+        assert_eq!(outcome.status, *status, "{wishes:?} {lines:?}: {}", outcome.detail);
+        check_sentence(&outcome.detail, *helps, *status);
+    }
+    let mut player = player(RoomId::BreakRoom, &[]);
+    for (action, status) in [
+        (Action::Move { distance_m: f32::INFINITY }, Status::IncorrectActionFormat),
+        (Action::PickUp { object: ObjectId(u32::MAX) }, Status::InvalidObjectClass),
+    ] {
+        let outcome = player.play(action);
+        assert_eq!(outcome.status, status);
+        check_sentence(&outcome.detail, false, status);
+    }
+    // Whoever is told something else while at it was interrupted; a place in a wall is gone to as near as can be.
+    let walk = Action::GoTo { target: GoToTarget::Room(RoomId::Warehouse) };
+    let input = |command, action| cohabit_world::Input { command, body: BodyId(0), action };
+    let report = player.world.step(&[input(900, walk), input(901, Action::Stop)]);
+    let interrupted = report.outcomes.iter().find(|outcome| outcome.command == 900).unwrap();
+    assert_eq!(interrupted.status, Status::Interrupted);
+    check_sentence(&interrupted.detail, false, interrupted.status);
+    let table = player.world.object(player.id("TableRound_02_1")).unwrap().position_m;
+    let outcome = player.play(Action::GoTo { target: GoToTarget::Point([table.x, table.y]) });
+    assert_eq!(outcome.status, Status::AlternateNavigationUsed, "{}", outcome.detail);
+    check_sentence(&outcome.detail, false, outcome.status);
+    // `ArenaUnavailable` alone is never a world's: it says that there is none.
+    let told = SITUATIONS.iter().map(|(status, ..)| *status);
+    let elsewhere = [
+        Status::IncorrectActionFormat,
+        Status::InvalidObjectClass,
+        Status::Interrupted,
+        Status::AlternateNavigationUsed,
+        Status::ArenaUnavailable,
+    ];
+    let all: Vec<Status> = told.chain(elsewhere).collect();
+    assert!(Status::ALL.iter().all(|status| all.contains(status)));
+}
+
+#[test]
+fn decor_can_only_be_looked_at() {
+    let mut player = player(RoomId::MainOffice, &[]);
+    let catalog = player.world.catalog().clone();
+    let decor = |view: &cohabit_world::ObjectView<'_>| catalog.class(view.class).properties == [Property::Decor];
+    let room = RoomId::MainOffice;
+    let found =
+        player.world.objects().find(|view| decor(view) && view.room == room && view.position_m.z < 1.5).unwrap();
+    let (id, instance) = (found.id, found.instance.to_owned());
+    player.must(&[&format!("goto {instance}"), &format!("examine {instance}")]);
+    for action in [
+        Action::PickUp { object: id },
+        Action::Interact { verb: Verb::Open, object: id },
+        Action::Interact { verb: Verb::Close, object: id },
+        Action::Interact { verb: Verb::Toggle, object: id },
+        Action::Interact { verb: Verb::Break, object: id },
+    ] {
+        let outcome = player.play(action);
+        assert_eq!(outcome.status, Status::UnsupportedAction, "{action:?} {instance}");
+        check_sentence(&outcome.detail, false, outcome.status);
     }
 }

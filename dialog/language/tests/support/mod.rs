@@ -189,6 +189,7 @@ pub fn scene(catalog: &Catalog, marks: &[&str]) -> Known {
             text: String::new(),
             visible: line[1] == "BreakRoom",
             works: None,
+            in_mission: false,
         };
         for mark in line[4].split(' ') {
             match mark.strip_prefix("works=") {

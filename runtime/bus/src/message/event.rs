@@ -36,10 +36,12 @@ pub enum EventKind {
     Sound = 12,
     /// A hidden goal can be seen now: `number`.
     GoalShown = 13,
+    /// The mission shows people something: `object` if it is one, for `number` milliseconds, with a text.
+    CameraMovement = 14,
 }
 
 impl EventKind {
-    const ALL: [Self; 13] = [
+    const ALL: [Self; 14] = [
         Self::Outcome,
         Self::Started,
         Self::GoalMet,
@@ -53,6 +55,7 @@ impl EventKind {
         Self::Spawned,
         Self::Sound,
         Self::GoalShown,
+        Self::CameraMovement,
     ];
 }
 

@@ -1,8 +1,9 @@
 //! The mission that a simulator plays.
 
 use bytemuck::{Pod, Zeroable};
+use cohabit_cdf::{BodyKind, BodyRequest, RoomId};
 
-use super::{Malformed, layout};
+use super::{Malformed, NONE, layout};
 use crate::text::Text;
 
 /// What stands before a mission's text.
@@ -13,17 +14,49 @@ pub struct MissionHeader {
     pub seed: u64,
     /// Length of the text, bytes.
     pub text_bytes: u32,
+    /// Bodies asked for beside the mission's.
+    pub bodies: u32,
     /// 1 in lock-step, 0 in real time.
     pub lock_step: u32,
+    /// Zero.
+    pub reserved: u32,
     /// The name of the file it came from.
     pub file: Text<254>,
+}
+
+/// A body asked for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+struct BodyRequestRecord {
+    kind: u32,
+    /// The room's index, or [`NONE`].
+    room: u32,
+}
+
+impl From<&BodyRequest> for BodyRequestRecord {
+    fn from(request: &BodyRequest) -> Self {
+        Self { kind: request.kind as u32, room: request.room.map_or(NONE, |room| room as u32) }
+    }
+}
+
+impl TryFrom<&BodyRequestRecord> for BodyRequest {
+    type Error = Malformed;
+
+    fn try_from(record: &BodyRequestRecord) -> Result<Self, Malformed> {
+        let kind = BodyKind::ALL.get(record.kind as usize).copied().ok_or(Malformed("no such kind of body"))?;
+        let known = |index| RoomId::from_index(index).ok_or(Malformed("no such room"));
+        let room = (record.room != NONE).then(|| known(record.room)).transpose()?;
+        Ok(Self { kind, room })
+    }
 }
 
 /// A mission: its file's text, and what was chosen beyond it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MissionMessage {
-    /// All but the text.
+    /// All but the text and the bodies.
     pub header: MissionHeader,
+    /// Bodies asked for beside the mission's, in the order of their ids.
+    pub bodies: Vec<BodyRequest>,
     /// The mission file's text.
     pub text: String,
 }
@@ -32,7 +65,9 @@ impl MissionMessage {
     /// Bytes of the payload.
     #[must_use]
     pub const fn bytes(&self) -> usize {
-        layout::space::<MissionHeader>(1) + layout::space::<u8>(self.text.len())
+        layout::space::<MissionHeader>(1)
+            + layout::space::<BodyRequestRecord>(self.bodies.len())
+            + layout::space::<u8>(self.text.len())
     }
 
     /// Writes the payload.
@@ -41,7 +76,10 @@ impl MissionMessage {
     /// When `payload` is shorter than [`Self::bytes`].
     pub fn write(&self, payload: &mut [u8]) {
         let mut writer = layout::Writer::new(payload);
-        writer.put(&[MissionHeader { text_bytes: u32::try_from(self.text.len()).unwrap_or(0), ..self.header }]);
+        let length = |length: usize| u32::try_from(length).unwrap_or(0);
+        let (text_bytes, bodies) = (length(self.text.len()), length(self.bodies.len()));
+        writer.put(&[MissionHeader { text_bytes, bodies, ..self.header }]);
+        writer.put(&self.bodies.iter().map(BodyRequestRecord::from).collect::<Vec<_>>());
         writer.put(self.text.as_bytes());
     }
 
@@ -52,7 +90,9 @@ impl MissionMessage {
     pub fn read(payload: &[u8]) -> Result<Self, Malformed> {
         let mut reader = layout::Reader::new(payload);
         let header: &MissionHeader = reader.one()?;
+        let bodies = reader.take::<BodyRequestRecord>(header.bodies)?;
+        let bodies = bodies.iter().map(BodyRequest::try_from).collect::<Result<_, _>>()?;
         let text = reader.take::<u8>(header.text_bytes)?.to_vec();
-        Ok(Self { header: *header, text: String::from_utf8(text).map_err(|_| Malformed("not UTF-8"))? })
+        Ok(Self { header: *header, bodies, text: String::from_utf8(text).map_err(|_| Malformed("not UTF-8"))? })
     }
 }

@@ -39,6 +39,10 @@ pub struct BodyRecord {
     pub held: u32,
     /// 1 while it carries out a command.
     pub busy: u32,
+    /// `BodyKind`.
+    pub kind: u32,
+    /// Zero.
+    pub reserved: u32,
     /// The command it carries out; 0 is none.
     pub command: u64,
     /// On the floor, m.
@@ -69,8 +73,10 @@ pub struct ObjectRecord {
     pub fluid: u8,
     /// 1 if it cannot be seen: in something closed, or gone.
     pub hidden: u8,
+    /// 1 if it is there for the mission's sake, or was made since.
+    pub in_mission: u8,
     /// Zero.
-    pub reserved: u16,
+    pub reserved: u8,
     /// What it stands on or in, or [`NONE`](super::NONE).
     pub parent: u32,
     /// The body that holds it, or [`NONE`](super::NONE).

@@ -1,8 +1,12 @@
 //! Building a world: a floor plan furnished, and then changed as a mission asks.
 
+mod mentions;
 mod plan;
+mod power;
 mod request;
+mod robots;
 mod spot;
+mod times;
 
 use std::collections::BTreeMap;
 
@@ -107,6 +111,8 @@ struct Builder<'a> {
 }
 
 /// Builds the changing part of a world, and its bare floor plan.
+///
+/// What is left to chance follows from the mission's own seed, or from `seed` if it has none.
 pub(crate) fn build(
     catalog: &Catalog,
     layout: &Layout,
@@ -119,6 +125,11 @@ pub(crate) fn build(
         bodies: Vec::new(),
         circuits: BTreeMap::new(),
         goals: vec![GoalProgress::default(); mission.goals.len()],
+        occasions: Vec::new(),
+        portals: BTreeMap::new(),
+        passes: BTreeMap::new(),
+        dinosaurs: BTreeMap::new(),
+        away: BTreeMap::new(),
         ended: None,
         physics: Physics::empty(),
         floor_version: 0,
@@ -127,9 +138,9 @@ pub(crate) fn build(
         catalog,
         layout,
         mission,
-        floor: Floor::new(layout),
+        floor: Floor::new(layout, catalog),
         state,
-        rng: ChaCha8Rng::seed_from_u64(seed),
+        rng: ChaCha8Rng::seed_from_u64(mission.seed.unwrap_or(seed)),
         requested: BTreeMap::new(),
         events: Vec::new(),
     };
@@ -137,7 +148,8 @@ pub(crate) fn build(
     builder.find_doors();
     builder.fulfil()?;
     builder.find_doors();
-    builder.add_robot()?;
+    builder.open_times();
+    builder.add_robots()?;
     builder.finish();
     Ok((builder.floor, builder.state))
 }
@@ -177,15 +189,6 @@ impl Builder<'_> {
         }
     }
 
-    /// The robot stands at the first viewpoint of its room that is free.
-    fn add_robot(&mut self) -> Result<(), BuildError> {
-        let room = self.check_room("the robot", self.mission.start_room)?;
-        let (position, yaw_rad) = start(&self.facts(), self.layout, room, &self.state.bodies)
-            .ok_or_else(|| BuildError::NoFreeSpot { object: "the robot".to_owned(), room })?;
-        self.state.bodies.push(Body::new(position, yaw_rad, room));
-        Ok(())
-    }
-
     fn finish(&mut self) {
         for id in ids(self.state.objects.len()) {
             let object = self.state.at_mut(id);
@@ -197,7 +200,6 @@ impl Builder<'_> {
                 self.changes().settle(id);
             }
         }
-        self.state.physics = Physics::furnish(&self.facts(), self.layout.wall_height_m);
     }
 }
 

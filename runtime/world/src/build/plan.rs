@@ -11,6 +11,7 @@ use crate::{
     anchors::free_anchors,
     entity::Object,
     geometry::{Pose, turn, wrap},
+    works,
 };
 
 impl Builder<'_> {
@@ -40,7 +41,10 @@ impl Builder<'_> {
         })?;
         // The plan gives its yaw in the world, what holds it needs it in its own frame.
         let rotation = self.state.at(parent).pose.rotation.inverse() * turn(yaw_rad);
-        let free = free_anchors(&self.facts(), parent);
+        let facts = self.facts();
+        let mut free = free_anchors(&facts, parent);
+        // Goods stand in the slots of a vending machine, not in its tray.
+        free.sort_by_key(|anchor| !works::is_slot(&facts, parent, anchor.index));
         let (anchor, position) = match (placement.anchor, free.first()) {
             (true, Some(anchor)) => (Some(anchor.index), anchor.local(self.state.at(parent).scale).position),
             (true, None) => {

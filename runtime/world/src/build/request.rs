@@ -1,15 +1,15 @@
 //! What a mission asks for: which of the plan's things it means, what must be made, where it goes, how it starts.
 
-use cohabit_cdf::{ClassId, ObjectId, ObjectRequest, Property, RoomId, StateFlag, catalog::Stands};
+use cohabit_cdf::{ClassId, Fluid, ObjectId, ObjectRequest, Property, RoomId, StateFlag, catalog::Stands};
 use glam::Vec3;
 
-use super::{BuildError, Builder, plan::UPRIGHT};
+use super::{BuildError, Builder, mentions::mentions, plan::UPRIGHT};
 use crate::{
-    anchors::{fitting_anchors, free_anchors},
+    anchors::{Anchor, fitting_anchors, free_anchors},
     entity::Support,
     geometry::{Pose, turn, wrap},
-    power,
     rules::keyed_anchors,
+    works,
 };
 
 const NOTE: &str = "StickyNote";
@@ -19,6 +19,7 @@ impl Builder<'_> {
     pub(super) fn fulfil(&mut self) -> Result<(), BuildError> {
         let mission = self.mission;
         self.recognise()?;
+        self.recognise_mentions();
         for index in 0..mission.objects.len() {
             self.clear_contents(index);
         }
@@ -35,6 +36,7 @@ impl Builder<'_> {
             self.thin_out(index);
         }
         self.set_circuits();
+        self.read_disks();
         Ok(())
     }
 
@@ -65,6 +67,24 @@ impl Builder<'_> {
             }
         }
         Ok(())
+    }
+
+    /// What is named without being asked for, `Microwave_01_1` in a goal, is the plan's own if that has just one.
+    fn recognise_mentions(&mut self) {
+        for name in mentions(self.mission) {
+            let Some(class) = self.catalog.class_of_instance(&name) else { continue };
+            let asked = self.mission.objects.iter().any(|request| request.instance == name);
+            if asked || self.catalog.class(class).has(Property::Pickupable) || self.state.find(&name).is_some() {
+                continue;
+            }
+            let mut all = self.state.existing().filter(|(_, object)| object.class == class).map(|(id, _)| id);
+            if let (Some(id), None) = (all.next(), all.next()) {
+                drop(all);
+                let object = self.state.at_mut(id);
+                let before = std::mem::replace(&mut object.instance, name);
+                object.aliases.push(before);
+            }
+        }
     }
 
     fn claim(&mut self, index: usize, id: ObjectId) {
@@ -166,8 +186,15 @@ impl Builder<'_> {
         let facts = self.facts();
         let keyed = keyed_anchors(&facts, receptacle, &facts.class(id).id).filter(|anchors| !anchors.is_empty());
         let own = keyed.is_some();
+        let slot = |anchor: &Anchor| works::is_slot(&facts, receptacle, anchor.index);
         let fitting = keyed.unwrap_or_else(|| fitting_anchors(&facts, receptacle, facts.size(id)));
-        let any = if fitting.is_empty() { free_anchors(&facts, receptacle) } else { fitting };
+        let mut any = if fitting.is_empty() { free_anchors(&facts, receptacle) } else { fitting };
+        // Goods stand in the slots of a vending machine, in the order of its buttons.
+        let vends = any.iter().any(slot);
+        if vends {
+            any.retain(slot);
+            any.sort_by_key(|anchor| anchor.index);
+        }
         if any.is_empty() {
             let spare = facts
                 .state
@@ -183,7 +210,7 @@ impl Builder<'_> {
             return self.put_into(id, receptacle);
         }
         // Roomy places come first: half of them is choice enough.
-        let choice = if own { 0 } else { self.pick(any.len().div_ceil(2)) };
+        let choice = if own || vends { 0 } else { self.pick(any.len().div_ceil(2)) };
         let anchor = any[choice];
         let facts = self.facts();
         let yaw_rad = if facts.has(id, Property::Pickupable) && !own { (self.fraction() - 0.5) * 0.8 } else { 0.0 };
@@ -279,8 +306,18 @@ impl Builder<'_> {
         if let Some(text) = &request.text {
             object.text.clone_from(text);
         }
+        if request.empty {
+            object.fluid = Fluid::None;
+            object.flags.set(StateFlag::Cereal, false);
+        }
         for (flag, value) in &request.flags {
+            if *value && flag.is_mood() {
+                StateFlag::MOODS.into_iter().for_each(|mood| object.flags.set(mood, false));
+            }
             object.flags.set(*flag, *value);
+        }
+        if object.flags.has(StateFlag::Embiggenated) {
+            self.changes().scale(id, works::EMBIGGEN);
         }
     }
 
@@ -306,52 +343,6 @@ impl Builder<'_> {
             .collect();
         for id in others {
             self.changes().remove(id);
-        }
-    }
-
-    /// Feeds the circuits as the fuse boxes and generators say, and powers what hangs on them.
-    fn set_circuits(&mut self) {
-        let cut: Vec<i32> = self
-            .mission
-            .objects
-            .iter()
-            .enumerate()
-            .filter_map(|(index, request)| {
-                let id = self.requested.get(&index)?;
-                let off = request.flags.iter().any(|(flag, on)| *flag == StateFlag::Powered && !on);
-                let lever_off = request.flags.iter().any(|(flag, on)| *flag == StateFlag::Toggled && !on);
-                let object = self.state.at(*id);
-                let fuse_box = object.feeds.map(|circuit| (circuit, off || lever_off));
-                let is_lever = self.catalog.class(object.class).id == "FuseBox_01_Lever";
-                let lever = object
-                    .parent()
-                    .filter(|_| is_lever)
-                    .and_then(|parent| Some((self.state.at(parent).feeds?, lever_off)));
-                fuse_box.or(lever).filter(|(_, cut)| *cut).map(|(circuit, _)| circuit)
-            })
-            .collect();
-        for circuit in cut {
-            self.state.circuits.insert(circuit, false);
-        }
-        let said: Vec<ObjectId> = self
-            .mission
-            .objects
-            .iter()
-            .enumerate()
-            .filter(|(_, request)| request.flags.iter().any(|(flag, _)| *flag == StateFlag::Powered))
-            .filter_map(|(index, _)| self.requested.get(&index).copied())
-            .collect();
-        for id in crate::state::ids(self.state.objects.len()) {
-            let powerable = self.facts().has(id, Property::Powerable);
-            let live = self.facts().class(id).id == "Broken_Cord_01" || self.facts().class(id).id == "CableFrayed_01";
-            let fed = power::is_fed(&self.state, self.state.at(id).circuit);
-            let object = self.state.at_mut(id);
-            if powerable && !said.contains(&id) {
-                object.flags.set(StateFlag::Powered, fed);
-            }
-            if live && object.flags.has(StateFlag::Toggled) && fed {
-                object.flags.set(StateFlag::Sparking, true);
-            }
         }
     }
 }

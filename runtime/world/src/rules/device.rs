@@ -9,11 +9,15 @@ use crate::works::Work;
 pub(super) enum Toggling {
     /// On if off, off if on.
     Flips,
+    /// The same, and the tap with it: water runs, or is gone.
+    Runs,
     /// The same, and what it works with it.
     FlipsBoth,
+    /// The same; what it works is a portal.
+    Portal,
     /// On for a moment.
     Moment,
-    /// On for a moment, if something is in it.
+    /// On for a moment, if something is in it and its door, if it has one, is shut.
     MomentWithContents,
     /// On for a moment, if something is in it and a fluid is there.
     MomentWithFluid,
@@ -36,6 +40,13 @@ pub(super) enum Toggling {
     Sparks,
     /// Never by itself: this is what works it.
     WorkedBy(&'static str),
+}
+
+impl Toggling {
+    /// Whether a press is answered whatever the class affords.
+    pub const fn answers_always(self) -> bool {
+        matches!(self, Self::Doors | Self::WorkedBy(_))
+    }
 }
 
 /// One kind of device.
@@ -64,6 +75,7 @@ const VENDING: &[&str] = &["VendingMachine_01"];
 
 /// All devices that do more than flip.
 pub(super) const DEVICES: &[Device] = &[
+    device("KitchenCounterSink_01", Toggling::Runs, Work::Nothing),
     device("FireAlarm_01", Toggling::Moment, Work::Nothing),
     device("Microwave_01", Toggling::Moment, Work::Heat),
     device("Toaster_02", Toggling::Moment, Work::Toast),
@@ -83,13 +95,13 @@ pub(super) const DEVICES: &[Device] = &[
     control("V_Monitor_FreezeRay", Toggling::Fires { parts: &[] }, Work::Chill, &["FreezeRay"]),
     control("V_Monitor_Embiggenator", Toggling::MomentAt, Work::Embiggen, &["Embiggenator"]),
     control("V_Monitor_Gravity", Toggling::FlipsBoth, Work::Nothing, &["GravityPad"]),
-    control("V_Monitor_Portal", Toggling::FlipsBoth, Work::Nothing, &["PortalGenerator"]),
+    control("V_Monitor_Portal", Toggling::Portal, Work::Nothing, &["PortalGenerator"]),
     control("Laser", Toggling::WorkedBy("the red computer"), Work::Nothing, RED_SHELVES),
     control("FreezeRay", Toggling::WorkedBy("the blue computer"), Work::Nothing, BLUE_SHELVES),
     device("GravityPad", Toggling::WorkedBy("the green computer"), Work::Nothing),
     device("Embiggenator", Toggling::WorkedBy("the pink computer"), Work::Nothing),
     device("PortalGenerator", Toggling::WorkedBy("the black computer"), Work::Nothing),
-    device("ColorChangerStation", Toggling::WorkedBy("the coloured buttons"), Work::Nothing),
+    device("ColorChangerStation", Toggling::WorkedBy("one of the coloured buttons"), Work::Nothing),
     device("FuseBox_01", Toggling::WorkedBy("its lever"), Work::Nothing),
     device("FuseBox_02", Toggling::WorkedBy("its lever"), Work::Nothing),
     device("FuseBox_01_Lever", Toggling::Breaker, Work::Nothing),

@@ -13,7 +13,7 @@ pub(crate) use hand::keyed_anchors;
 
 use cohabit_cdf::{Action, BodyId, ObjectId, StateFlag, Status, Verb};
 
-use crate::{effect::Effect, facts::Facts, report::SoundKind};
+use crate::{effect::Effect, facts::Facts, report::SoundKind, works};
 
 /// How far a hand reaches, level, m.
 pub(crate) const REACH_M: f32 = 1.6;
@@ -52,6 +52,12 @@ fn refuse<T>(status: Status, detail: impl Into<String>) -> Result<T, Ruling> {
     Err(Ruling::refusal(status, detail))
 }
 
+/// What is said of something shut.
+fn closed(facts: &Facts<'_>, shut: ObjectId) -> String {
+    let locked = if facts.is(shut, StateFlag::Locked) { "locked" } else { "closed: it has to be opened first" };
+    format!("{} is {locked}", facts.name(shut))
+}
+
 /// Rules an action of the hand; other actions are motions, and have no rule.
 pub(crate) fn rule(facts: &Facts<'_>, body: BodyId, action: &Action) -> Ruling {
     let scene = Scene { facts, body };
@@ -78,7 +84,11 @@ pub(crate) fn rule(facts: &Facts<'_>, body: BodyId, action: &Action) -> Ruling {
         | Action::Highlight { .. }
         | Action::Stop => Ok(Ruling::done("done", Vec::new())),
     };
-    verdict.unwrap_or_else(|refusal| refusal)
+    let mut ruling = verdict.unwrap_or_else(|refusal| refusal);
+    if let (true, Some(object)) = (ruling.status.is_success(), object_of(action)) {
+        ruling.effects.push(Effect::Touch(object));
+    }
+    ruling
 }
 
 /// What an action is about, if it is about an object.
@@ -104,13 +114,22 @@ impl Scene<'_> {
 
     /// What the body holds, or the refusal for an empty hand.
     fn held_or_refuse(&self) -> Result<ObjectId, Ruling> {
-        self.held().map_or_else(|| refuse(Status::ObjectNotPickedUp, "my hand is empty"), Ok)
+        let empty = "my hand is empty: I have to pick something up first";
+        self.held().map_or_else(|| refuse(Status::ObjectNotPickedUp, empty), Ok)
     }
 
     /// Refuses what is out of reach, behind a wall, shut away, or deadly to touch.
     fn touch(&self, object: ObjectId) -> Result<(), Ruling> {
         self.near(object, REACH_M)?;
         let facts = self.facts;
+        if let Some(machine) = works::behind_glass(facts, object) {
+            let detail = format!(
+                "{} is behind the glass of {}: its button brings it out",
+                facts.name(object),
+                facts.name(machine)
+            );
+            return refuse(Status::TargetInaccessible, detail);
+        }
         if facts.is(object, StateFlag::Sparking) {
             let detail = format!("{} was live: the shock was deadly", facts.name(object));
             return Err(Ruling {
@@ -136,11 +155,11 @@ impl Scene<'_> {
             return refuse(Status::TargetInaccessible, format!("somebody else is holding {name}"));
         }
         if let Some(shut) = facts.shut_around(object) {
-            return refuse(Status::ReceptacleIsClosed, format!("{} is closed", facts.name(shut)));
+            return refuse(Status::ReceptacleIsClosed, closed(facts, shut));
         }
         let from = facts.state.bodies[self.body.0 as usize].position;
         if facts.reach_to(object, from) > within {
-            return refuse(Status::TargetOutOfRange, format!("{name} is too far away"));
+            return refuse(Status::TargetOutOfRange, format!("{name} is too far away: I have to go there first"));
         }
         if facts.walled_off(object, from) {
             return refuse(Status::TargetInaccessible, format!("there is a wall between me and {name}"));

@@ -3,7 +3,7 @@
 use cohabit_cdf::{ObjectId, Property, StateFlag, Status};
 
 use super::{Ruling, Scene, Verdict, refuse};
-use crate::{effect::Effect, report::SoundKind, works};
+use crate::{effect::Effect, facts::Facts, report::SoundKind, works};
 
 pub(super) fn open(scene: &Scene<'_>, object: ObjectId) -> Verdict {
     let facts = scene.facts;
@@ -11,7 +11,7 @@ pub(super) fn open(scene: &Scene<'_>, object: ObjectId) -> Verdict {
     scene.needs(object, Property::Openable, "opened")?;
     scene.touch(object)?;
     if facts.is(object, StateFlag::Locked) {
-        return refuse(Status::ActionExecutionError, format!("{name} is locked"));
+        return refuse(Status::ActionExecutionError, format!("{name} is locked: it does not open by hand"));
     }
     if facts.is(object, StateFlag::Opened) {
         return refuse(Status::InvalidCommand, format!("{name} is already open"));
@@ -28,15 +28,19 @@ pub(super) fn close(scene: &Scene<'_>, object: ObjectId) -> Verdict {
     if !facts.is(object, StateFlag::Opened) {
         return refuse(Status::InvalidCommand, format!("{name} is already closed"));
     }
-    let in_the_way = facts.floor.gaps.iter().find(|gap| gap.door_object == Some(object)).is_some_and(|gap| {
+    clear_doorway(facts, object)?;
+    let mut effects = vec![Effect::Set(object, StateFlag::Opened, false), Effect::sound(SoundKind::Close, object)];
+    effects.extend(works::freeze(facts, object));
+    Ok(Ruling::done(format!("I closed {name}"), effects))
+}
+
+/// Refuses to close a door on somebody.
+pub(super) fn clear_doorway(facts: &Facts<'_>, door: ObjectId) -> Result<(), Ruling> {
+    let in_the_way = facts.floor.gaps.iter().find(|gap| gap.door_object == Some(door)).is_some_and(|gap| {
         facts.state.bodies.iter().any(|body| gap.print.distance(body.position) < crate::body::RADIUS_M)
     });
     if in_the_way {
-        return refuse(Status::TargetInaccessible, "somebody stands in the doorway");
+        return refuse(Status::TargetInaccessible, "somebody stands in the doorway: it has to be clear first");
     }
-    let mut effects = vec![Effect::Set(object, StateFlag::Opened, false), Effect::sound(SoundKind::Close, object)];
-    if facts.class(object).id == "FridgeUpper_02" {
-        effects.extend(facts.contents(object).into_iter().flat_map(|id| works::chill(facts, id)));
-    }
-    Ok(Ruling::done(format!("I closed {name}"), effects))
+    Ok(())
 }

@@ -5,6 +5,7 @@ use cohabit_cdf::{Fluid, ObjectId, Property, RoomId, StateFlag, Status};
 use super::{
     Ruling, Scene, Verdict,
     device::{Device, Toggling, of_class},
+    opening::clear_doorway,
     refuse,
 };
 use crate::{
@@ -12,13 +13,13 @@ use crate::{
     facts::Facts,
     power::lacks_power,
     report::SoundKind,
-    works::{self, Run, Work},
+    works::{self, Run, Work, portal},
 };
 
 pub(super) fn toggle(scene: &Scene<'_>, object: ObjectId) -> Verdict {
     let facts = scene.facts;
     let device = of_class(&facts.class(object).id);
-    if !matches!(device.toggling, Toggling::Doors | Toggling::WorkedBy(_)) {
+    if !device.toggling.answers_always() {
         scene.needs(object, Property::Toggleable, "switched on or off")?;
     }
     scene.touch(object)?;
@@ -41,13 +42,16 @@ impl Press<'_> {
     fn rule(&self) -> Verdict {
         match self.device.toggling {
             Toggling::Flips => Ok(self.flip(&[])),
+            Toggling::Runs => Ok(self.run_water()),
             Toggling::FlipsBoth => {
                 let machine = self.machine()?;
                 self.check_power(machine)?;
                 Ok(self.flip(&[machine]))
             }
+            Toggling::Portal => self.portal(),
             Toggling::Moment => Ok(self.start(self.object, None)),
             Toggling::MomentWithContents => {
+                self.check_shut()?;
                 self.check_contents(self.object)?;
                 Ok(self.start(self.object, None))
             }
@@ -64,7 +68,10 @@ impl Press<'_> {
             Toggling::Breaker => self.breaker(),
             Toggling::Doors => self.doors(),
             Toggling::Sparks => Ok(self.spark()),
-            Toggling::WorkedBy(what) => refuse(Status::UnsupportedAction, format!("{} is worked by {what}", self.name)),
+            Toggling::WorkedBy(what) => {
+                let detail = format!("{} has no switch of its own: {what} works it", self.name);
+                refuse(Status::UnsupportedAction, detail)
+            }
         }
     }
 
@@ -76,9 +83,40 @@ impl Press<'_> {
     fn flip(&self, others: &[ObjectId]) -> Ruling {
         let on = !self.is_on();
         let mut effects = vec![Effect::Set(self.object, StateFlag::Toggled, on)];
-        effects.extend(others.iter().map(|other| Effect::Set(*other, StateFlag::Toggled, on)));
+        for other in others {
+            effects.extend([StateFlag::Toggled, StateFlag::Used].map(|flag| {
+                let value = on || flag == StateFlag::Used;
+                Effect::Set(*other, flag, value)
+            }));
+        }
         effects.push(Effect::sound(SoundKind::Click, self.object));
         Ruling::done(format!("I switched {} {}", self.name, if on { "on" } else { "off" }), effects)
+    }
+
+    /// A sink fills while its tap runs, and drains when that is turned off.
+    fn run_water(&self) -> Ruling {
+        let water = if self.is_on() { Fluid::None } else { Fluid::Water };
+        let mut ruling = self.flip(&[]);
+        ruling.effects.extend([Effect::Fill(self.object, water), Effect::sound(SoundKind::Pour, self.object)]);
+        ruling
+    }
+
+    /// Opens or closes a portal; once closed, it leads elsewhere the next time.
+    fn portal(&self) -> Verdict {
+        let facts = self.facts;
+        let generator = self.machine()?;
+        self.check_power(generator)?;
+        let open = facts.is(generator, StateFlag::Toggled);
+        let mut ruling = self.flip(&[generator]);
+        // Monitor and generator agree, however they stood before.
+        ruling.effects[0] = Effect::Set(self.object, StateFlag::Toggled, !open);
+        ruling.effects[1] = Effect::Set(generator, StateFlag::Toggled, !open);
+        if open {
+            ruling.effects.push(Effect::Turn(generator));
+            return Ok(Ruling { detail: "I closed the portal".to_owned(), ..ruling });
+        }
+        let era = facts.state.portals.get(&generator).map_or("unknown", |gate| portal::era_word(gate.way().era));
+        Ok(Ruling { detail: format!("I opened the portal to the {era}"), ..ruling })
     }
 
     /// Starts the device for a moment, to do its work at `site`.
@@ -93,17 +131,36 @@ impl Press<'_> {
     fn check_power(&self, machine: ObjectId) -> Result<(), Ruling> {
         let name = self.facts.name(machine);
         if lacks_power(self.facts, machine) {
-            return refuse(Status::ObjectUnpowered, format!("{name} has no power"));
+            return refuse(
+                Status::ObjectUnpowered,
+                format!("{name} has no power: the lever in the fuse box switches it on"),
+            );
         }
         if self.facts.is(machine, StateFlag::Overloaded) {
-            return refuse(Status::ObjectOverloaded, format!("{name} is overloaded: its room's power must be cycled"));
+            return refuse(
+                Status::ObjectOverloaded,
+                format!("{name} is overloaded: its power has to be switched off and on at the fuse box"),
+            );
         }
         Ok(())
     }
 
     fn check_contents(&self, machine: ObjectId) -> Result<(), Ruling> {
         if self.facts.held_in(machine).is_empty() {
-            return refuse(Status::ActionExecutionError, format!("{} is empty", self.facts.name(machine)));
+            return refuse(
+                Status::ActionExecutionError,
+                format!("{} is empty: something has to be put in first", self.facts.name(machine)),
+            );
+        }
+        Ok(())
+    }
+
+    fn check_shut(&self) -> Result<(), Ruling> {
+        let facts = self.facts;
+        let has_door = facts.has(self.object, Property::Openable);
+        if has_door && facts.is(self.object, StateFlag::Opened) {
+            let detail = format!("{} is open: it has to be closed first", self.name);
+            return refuse(Status::ActionExecutionError, detail);
         }
         Ok(())
     }
@@ -117,23 +174,27 @@ impl Press<'_> {
     fn brew(&self) -> Verdict {
         let facts = self.facts;
         self.check_contents(self.object)?;
-        let contents = facts.contents(self.object);
-        let filled = facts.object(self.object).fluid != Fluid::None
-            || contents
-                .iter()
-                .any(|id| facts.object(*id).fluid != Fluid::None || facts.class(*id).id == "CoffeeBeans_01");
-        if !filled {
-            return refuse(Status::ActionExecutionError, format!("{} has neither water nor beans", self.name));
+        if !works::can_brew(facts, self.object) {
+            return refuse(
+                Status::ActionExecutionError,
+                format!("{} has neither water nor beans: I have to fill it first", self.name),
+            );
         }
         Ok(self.start(self.object, None))
     }
 
     fn print(&self) -> Verdict {
         if works::cartridge(self.facts, self.object).is_none() {
-            return refuse(Status::ActionExecutionError, format!("{} has no cartridge", self.name));
+            return refuse(
+                Status::ActionExecutionError,
+                format!("{} has no cartridge: one has to be put in first", self.name),
+            );
         }
         if works::product_anchor(self.facts, self.object).is_none() {
-            return refuse(Status::ReceptacleIsFull, format!("{} has no room to print", self.name));
+            return refuse(
+                Status::ReceptacleIsFull,
+                format!("{} has no room to print: something has to be taken out first", self.name),
+            );
         }
         Ok(self.start(self.object, None))
     }
@@ -142,10 +203,13 @@ impl Press<'_> {
         let machine = self.machine()?;
         self.check_power(machine)?;
         if works::vended(self.facts, machine, slot).is_none() {
-            return refuse(Status::ActionExecutionError, format!("{}: that slot is sold out", self.name));
+            return refuse(Status::ActionExecutionError, format!("the slot of {} is sold out", self.name));
         }
         if works::tray_anchor(self.facts, machine).is_none() {
-            return refuse(Status::ReceptacleIsFull, format!("the tray of {} is full", self.facts.name(machine)));
+            return refuse(
+                Status::ReceptacleIsFull,
+                format!("the tray of {} is full: something has to be taken out first", self.facts.name(machine)),
+            );
         }
         Ok(self.start(machine, None))
     }
@@ -162,7 +226,7 @@ impl Press<'_> {
         let inside: Vec<&str> = facts.state.children(machine).map(|child| facts.class(child).id.as_str()).collect();
         if let Some(part) = parts.iter().find(|part| !inside.contains(part)) {
             let part = facts.catalog.find(part).map_or(*part, |class| facts.catalog.class(class).name.as_str());
-            let detail = format!("{machine_name} lacks its {}", part.to_lowercase());
+            let detail = format!("{machine_name} lacks its {0}: the {0} has to be put in first", part.to_lowercase());
             return refuse(Status::ActionExecutionError, detail);
         }
         let shelf = linked(facts, machine, &of_class(&facts.class(machine).id));
@@ -180,7 +244,10 @@ impl Press<'_> {
     fn breaker(&self) -> Verdict {
         let facts = self.facts;
         let Some(circuit) = facts.object(self.object).parent().and_then(|fuse_box| facts.object(fuse_box).feeds) else {
-            return refuse(Status::ActionExecutionError, format!("{} is in no fuse box", self.name));
+            return refuse(
+                Status::ActionExecutionError,
+                format!("{} is in no fuse box: it has to be put into one first", self.name),
+            );
         };
         let mut ruling = self.flip(&[]);
         let fuse_box = facts.object(self.object).parent();
@@ -200,6 +267,9 @@ impl Press<'_> {
             .filter(|door| facts.object(*door).exists())
             .collect();
         let open = doors.iter().any(|door| !facts.is(*door, StateFlag::Opened));
+        if !open {
+            doors.iter().try_for_each(|door| clear_doorway(facts, *door))?;
+        }
         let mut ruling = self.start(self.object, None);
         for door in doors {
             ruling.effects.push(Effect::Set(door, StateFlag::Opened, open));

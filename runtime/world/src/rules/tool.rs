@@ -1,33 +1,30 @@
-//! Breaking and cutting with a tool in hand, scanning, examining, and what floppy disks do.
+//! Breaking and cutting with a tool in hand, scanning, examining.
 
 use cohabit_cdf::{ObjectId, Property, StateFlag, Status};
 
 use super::{LOOK_CLOSELY_M, Ruling, Scene, Verdict, refuse};
 use crate::{
     effect::Effect,
-    facts::Facts,
     report::{Event, SoundKind},
     works,
 };
 
-/// What comes off when something is cut.
-const SLICES: &[(&str, &str)] = &[
-    ("Apple", "AppleSlice_01"),
-    ("BreadLoaf", "BreadSlice_01"),
-    ("Cake_02", "CakeSlice_02"),
-    ("PieFruit_01", "PieFruitSlice_01"),
-];
+const HAMMER: &str = "Hammer";
+const KNIFE: &str = "Knife_01";
 
 /// Breaks with the hammer; with the knife, cuts.
 pub(super) fn break_or_cut(scene: &Scene<'_>, object: ObjectId) -> Verdict {
     let facts = scene.facts;
     let tool = scene.held().map(|held| (held, facts.class(held).id.as_str()));
-    if let (Some((knife, "Knife_01")), true) = (tool, facts.has(object, Property::Cuttable)) {
+    if let (Some((knife, KNIFE)), true) = (tool, facts.has(object, Property::Cuttable)) {
         return cut(scene, knife, object);
     }
+    if facts.has(object, Property::Cuttable) && !facts.has(object, Property::Breakable) {
+        return refuse(Status::ObjectNotPickedUp, format!("I have to hold the knife to cut {}", facts.name(object)));
+    }
     scene.needs(object, Property::Breakable, "broken")?;
-    let Some((hammer, "Hammer")) = tool else {
-        return refuse(Status::ObjectNotPickedUp, "I need the hammer in my hand");
+    let Some((hammer, HAMMER)) = tool else {
+        return refuse(Status::ObjectNotPickedUp, "I have to hold the hammer to break something");
     };
     scene.touch(object)?;
     if facts.is(object, StateFlag::Broken) {
@@ -46,13 +43,13 @@ pub(super) fn break_or_cut(scene: &Scene<'_>, object: ObjectId) -> Verdict {
 fn cut(scene: &Scene<'_>, knife: ObjectId, object: ObjectId) -> Verdict {
     let facts = scene.facts;
     scene.touch(object)?;
+    if facts.is(object, StateFlag::Cut) {
+        return refuse(Status::InvalidCommand, format!("{} is cut already", facts.name(object)));
+    }
     let mut effects = vec![Effect::Set(object, StateFlag::Cut, true), Effect::Set(knife, StateFlag::Used, true)];
-    let slice = SLICES.iter().find(|(whole, _)| *whole == facts.class(object).id);
-    if let Some(class) = slice.and_then(|(_, slice)| facts.catalog.find(slice))
-        && let Some((parent, anchor)) = works::slice_place(facts, object, class)
-    {
+    if let Some((class, spot)) = works::slice(facts, object) {
         let instance = works::free_instance(facts, &facts.catalog.class(class).id);
-        effects.push(Effect::Spawn { class, instance, parent, anchor, yesterday: None, by: None });
+        effects.push(Effect::Spawn { class, instance, spot, by: None, was: None });
     }
     Ok(Ruling::done(format!("I cut {}", facts.name(object)), effects))
 }
@@ -73,16 +70,4 @@ pub(super) fn examine(scene: &Scene<'_>, object: ObjectId) -> Verdict {
     }
     effects.push(Effect::Tell(Event::NoteRead { object, text: text.clone() }));
     Ok(Ruling::done(format!("{} says: {text}", facts.name(object)), effects))
-}
-
-/// A whole virus disk in a clean terminal infects it; an antivirus disk in an infected one cleans it.
-pub(super) fn infection(facts: &Facts<'_>, disk: ObjectId, terminal: ObjectId) -> Option<Effect> {
-    if !facts.has(terminal, Property::Infectable) || facts.is(disk, StateFlag::Broken) {
-        return None;
-    }
-    match facts.class(disk).id.as_str() {
-        "Floppy_Virus" => Some(Effect::Set(terminal, StateFlag::Infected, true)),
-        "Floppy_AntiVirus" => Some(Effect::Set(terminal, StateFlag::Infected, false)),
-        _ => None,
-    }
 }

@@ -2,6 +2,13 @@
 
 #![allow(clippy::unwrap_used, dead_code)]
 
+pub mod play;
+pub mod script;
+pub mod sound;
+pub mod stage;
+pub mod trial;
+pub mod walls;
+
 use std::sync::Arc;
 
 use cohabit_cdf::{Catalog, Layout, Mission, RoomId, mission::read_mission};
@@ -37,16 +44,10 @@ pub fn build(catalog: &Arc<Catalog>, mission: Mission, seed: u64) -> World {
 pub fn plain_mission(start_room: RoomId) -> Mission {
     Mission {
         name: "plain".to_owned(),
-        goal_text: String::new(),
-        description: String::new(),
         layout: "OfficeLayout1".to_owned(),
         seed: Some(0),
         start_room,
-        objects: Vec::new(),
-        notes: Vec::new(),
-        goals: Vec::new(),
-        conditions: Vec::new(),
-        messages: Vec::new(),
+        ..Mission::default()
     }
 }
 
@@ -61,13 +62,19 @@ impl Player {
 
     /// `verb instance`, such as `goto Bowl_01_1` or `place Desk_01_1`; `room Lab1`; `wait 60`.
     pub fn action(&self, line: &str) -> Action {
+        Self::action_in(&self.world, line)
+    }
+
+    /// The same in any world.
+    pub fn action_in(world: &World, line: &str) -> Action {
         let (verb, what) = line.split_once(' ').unwrap();
-        let interact = |verb| Action::Interact { verb, object: self.id(what) };
+        let id = |what: &str| world.find(what).unwrap_or_else(|| panic!("there is no `{what}`"));
+        let interact = |verb| Action::Interact { verb, object: id(what) };
         match verb {
-            "goto" => Action::GoTo { target: GoToTarget::Object(self.id(what)) },
+            "goto" => Action::GoTo { target: GoToTarget::Object(id(what)) },
             "room" => Action::GoTo { target: GoToTarget::Room(RoomId::from_id(what).unwrap()) },
-            "pickup" => Action::PickUp { object: self.id(what) },
-            "place" => Action::Place { receptacle: self.id(what) },
+            "pickup" => Action::PickUp { object: id(what) },
+            "place" => Action::Place { receptacle: id(what) },
             "open" => interact(Verb::Open),
             "close" => interact(Verb::Close),
             "toggle" => interact(Verb::Toggle),

@@ -1,0 +1,187 @@
+//! `cohabit eval`: are missions solved by what is said in them?
+
+use std::{
+    io,
+    path::{Path, PathBuf},
+    process::Command,
+    str::FromStr,
+    sync::Arc,
+    time::Instant,
+};
+
+use cohabit_cdf::Catalog;
+use cohabit_eval::{Caps, Played, Report, Settings, Tally, Task, play, pool, read_tasks};
+use indicatif::{ProgressBar, ProgressStyle};
+
+use crate::failure::bad_input;
+
+/// Plays missions headless and in lock-step, through the real dialog and agent code, and reports what came of them.
+#[derive(clap::Args)]
+pub struct Eval {
+    /// A .jsonl of missions with utterances, a data set of sessions, a mission (CDF), or a folder of missions
+    file: PathBuf,
+    /// What to say and do in missions that have no .script beside them
+    #[arg(long, value_name = "FILE")]
+    script: Option<PathBuf>,
+    /// Play only missions whose name contains this
+    #[arg(long, value_name = "TEXT")]
+    only: Option<String>,
+    /// Worker processes; one for each core if not given
+    #[arg(long, value_name = "N")]
+    workers: Option<usize>,
+    /// Give a mission up beyond so many actions, or at so many failed ones
+    #[arg(long, value_name = "ACTIONS,FAILED", num_args = 0..=1, default_missing_value = "50,10", require_equals = true)]
+    caps: Option<CapsText>,
+    /// Where missions leave it to chance
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Write a session log of each mission into this folder
+    #[arg(long, value_name = "DIR")]
+    record: Option<PathBuf>,
+    /// Write all results to this file, as JSON
+    #[arg(long, value_name = "FILE")]
+    report: Option<PathBuf>,
+    /// Play the missions whose numbers come in, write their results out
+    #[arg(long, hide = true)]
+    worker: bool,
+}
+
+/// `50,10`.
+#[derive(Clone, Copy)]
+struct CapsText(Caps);
+
+impl FromStr for CapsText {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let numbers = text.split_once(',').and_then(|(actions, failed)| {
+            Some(Caps { actions: actions.trim().parse().ok()?, failed: failed.trim().parse().ok()? })
+        });
+        numbers.map(Self).ok_or_else(|| "two numbers with a comma, such as 50,10".to_owned())
+    }
+}
+
+impl Eval {
+    /// Plays them all; that some are not solved is a result, not a failure.
+    pub fn run(&self) -> anyhow::Result<()> {
+        let tasks = self.tasks()?;
+        if self.worker {
+            return Ok(self.serve(&tasks)?);
+        }
+        if let Some(folder) = &self.record {
+            std::fs::create_dir_all(folder).map_err(|error| bad_input(format!("{}: {error}", folder.display())))?;
+        }
+        // Before an hour of work, not after it.
+        let out = self.report.as_ref().map(|path| create(path)).transpose()?;
+        let report = self.play(&tasks)?;
+        print(&report);
+        if let Some(out) = out {
+            serde_json::to_writer_pretty(out, &report)?;
+        }
+        Ok(())
+    }
+
+    fn tasks(&self) -> anyhow::Result<Vec<Task>> {
+        let mut tasks = read_tasks(&self.file, self.script.as_deref()).map_err(bad_input)?;
+        if let Some(only) = &self.only {
+            tasks.retain(|task| task.id.contains(only.as_str()));
+            if tasks.is_empty() {
+                return Err(bad_input(format!("{}: no mission's name contains `{only}`", self.file.display())));
+            }
+        }
+        Ok(tasks)
+    }
+
+    fn settings(&self) -> Settings {
+        Settings { seed: self.seed, caps: self.caps.map(|caps| caps.0), record: self.record.clone() }
+    }
+
+    fn serve(&self, tasks: &[Task]) -> io::Result<()> {
+        let (settings, catalog) = (self.settings(), Arc::new(Catalog::builtin()));
+        pool::serve(io::stdin().lock(), io::stdout().lock(), |number| {
+            let task = tasks.get(number).ok_or_else(|| io::Error::other(format!("there is no mission {number}")))?;
+            play(task, &settings, &catalog).map_err(io::Error::other)
+        })
+    }
+
+    fn play(&self, tasks: &[Task]) -> anyhow::Result<Report> {
+        let cores = std::thread::available_parallelism().map_or(1, usize::from);
+        let workers = self.workers.unwrap_or(cores).clamp(1, tasks.len());
+        let bar = ProgressBar::new(tasks.len() as u64).with_style(
+            ProgressStyle::with_template("{bar:30} {pos}/{len} played, {elapsed} ({eta} left) {msg}")
+                .unwrap_or_else(|_| ProgressStyle::default_bar()),
+        );
+        let program = std::env::current_exe()?;
+        let start = || {
+            let mut command = Command::new(&program);
+            // What missions warn of is what `check` is for.
+            command.args(std::env::args_os().skip(1)).arg("--worker").env("COHABIT_LOG", "error");
+            command
+        };
+        let began = Instant::now();
+        let results = pool::run(tasks.len(), workers, &start, &|_, _| bar.inc(1))?;
+        bar.finish_and_clear();
+        let wall_s = began.elapsed().as_secs_f64();
+        let lost =
+            |task: &Task, why: String| Played { id: task.id.clone(), ended_early: Some(why), ..Played::default() };
+        let missions =
+            tasks.iter().zip(results).map(|(task, result)| result.unwrap_or_else(|why| lost(task, why))).collect();
+        let caps = self.caps.map(|caps| caps.0);
+        Ok(Report::new(&self.file.to_string_lossy(), self.seed, caps, workers, wall_s, missions))
+    }
+}
+
+fn create(path: &Path) -> anyhow::Result<io::BufWriter<std::fs::File>> {
+    let file = std::fs::File::create(path).map_err(|error| bad_input(format!("{}: {error}", path.display())))?;
+    Ok(io::BufWriter::new(file))
+}
+
+/// Unsolved missions that are printed at most; the report has all.
+const MOST_PRINTED: usize = 30;
+
+fn print(report: &Report) {
+    let unsolved: Vec<&Played> = report.missions.iter().filter(|task| !task.success).collect();
+    for task in unsolved.iter().take(MOST_PRINTED) {
+        println!("not solved: {}", why(task));
+    }
+    if unsolved.len() > MOST_PRINTED {
+        println!("... and {} more; `--report FILE` has them all", unsolved.len() - MOST_PRINTED);
+    }
+    let width = report.families.keys().map(String::len).max().unwrap_or(0).max(8);
+    println!("{:width$}  missions  solved   rate  95 % interval  goals met  actions  failed", "family");
+    for (name, tally) in &report.families {
+        row(if name.is_empty() { "not played" } else { name }, width, tally);
+    }
+    row("all", width, &report.total);
+    let ticks: u64 = report.missions.iter().map(|task| task.ticks).sum();
+    println!(
+        "{} ticks in {:.1} s with {} workers: {:.0} times real time",
+        ticks,
+        report.wall_s,
+        report.workers,
+        ticks as f64 * cohabit_engine::replay::TICK_S / report.wall_s.max(1e-9)
+    );
+}
+
+fn row(name: &str, width: usize, tally: &Tally) {
+    let [low, high] = tally.interval_95;
+    println!(
+        "{name:width$}  {:8}  {:6}  {:5.1}  {:5.1} – {:5.1}  {:9}  {:7.1}  {:6.1}",
+        tally.missions,
+        tally.solved,
+        tally.success_rate * 100.0,
+        low * 100.0,
+        high * 100.0,
+        format!("{}/{}", tally.goals_met, tally.goals),
+        tally.mean_actions,
+        tally.mean_failed_actions
+    );
+}
+
+fn why(task: &Played) -> String {
+    let mut parts = vec![task.id.clone()];
+    parts.extend(task.ended_early.clone());
+    parts.extend(task.first_trouble.as_ref().map(|trouble| format!("\"{}\" {}", trouble.line, trouble.why)));
+    parts.extend(task.open_goals.iter().map(|goal| format!("open goal {goal}")));
+    parts.join("; ")
+}

@@ -1,0 +1,26 @@
+//! Missions played headless and in lock-step: what is said goes through the real dialog and agent code into the world,
+//! and what came of it is counted.
+//!
+//! A [`Task`] is a mission with what its people say. [`read_tasks`] finds tasks in the formats that missions come in;
+//! [`play`] plays one to its end; a [`Report`] sums many up. [`pool::run`] spreads them over worker processes.
+//!
+//! Nothing here is special to a mission, and nothing renders. Time is the world's own: nobody thinks while it runs.
+
+mod dataset;
+mod family;
+mod interval;
+mod lock_step;
+mod play;
+pub mod pool;
+mod report;
+mod script;
+mod source;
+mod task;
+mod trace;
+mod trajectory;
+
+pub use lock_step::LockStep;
+pub use play::{Caps, Played, Said, Settings, Trouble, play};
+pub use report::{Report, Tally};
+pub use source::{SourceError, read_tasks};
+pub use task::{Line, Task};

@@ -1,0 +1,218 @@
+//! World, conversation and agent in one thread, one tick after the other.
+
+use std::{collections::BTreeMap, path::Path};
+
+use cohabit_agent::{Agent, Deed, Heard, PlanFollower};
+use cohabit_bus::message::{DialogKind, DialogMessage, EventMessage, StateView};
+use cohabit_cdf::{Action, BodyId, Status};
+use cohabit_dialog::{Conversation, Reaction, TurnEnd, known};
+use cohabit_engine::{SessionPlan, report};
+use cohabit_language::Known;
+use cohabit_record::{InputEntry, LogError};
+use cohabit_world::{Input, Outcome, World};
+
+use crate::trace::Trace;
+
+/// The body that is spoken to.
+const BODY: BodyId = BodyId(0);
+
+/// A session whose world waits for everybody: what follows from a tick is said and decided before the next.
+pub struct LockStep {
+    world: World,
+    conversation: Conversation,
+    agent: PlanFollower,
+    commands: u64,
+    waiting: Vec<InputEntry>,
+    turn_by_command: BTreeMap<u64, u64>,
+    heard: Heardings,
+    trace: Option<Trace>,
+}
+
+/// What is noted of a session until somebody takes it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Heardings {
+    /// Commands that ended.
+    pub outcomes: Vec<Outcome>,
+    /// What the robot said, with its kind.
+    pub said: Vec<(DialogKind, String)>,
+    /// Turns that ended.
+    pub turns: Vec<(u64, TurnEnd)>,
+}
+
+impl LockStep {
+    /// A session at its first tick, in which nothing was said yet.
+    #[must_use]
+    pub fn new(world: World, conversation: Conversation) -> Self {
+        Self {
+            world,
+            conversation,
+            agent: PlanFollower::new(BODY.0),
+            commands: 0,
+            waiting: Vec::new(),
+            turn_by_command: BTreeMap::new(),
+            heard: Heardings::default(),
+            trace: None,
+        }
+    }
+
+    /// Records all that follows in a new log.
+    ///
+    /// # Errors
+    /// [`LogError`].
+    pub fn record(&mut self, path: &Path, session: &str, plan: &SessionPlan) -> Result<(), LogError> {
+        self.trace = Some(Trace::create(path, session, plan)?);
+        Ok(())
+    }
+
+    /// The world as it is.
+    #[must_use]
+    pub const fn world(&self) -> &World {
+        &self.world
+    }
+
+    /// All that was noted since this was last asked.
+    pub fn take_heard(&mut self) -> Heardings {
+        std::mem::take(&mut self.heard)
+    }
+
+    /// Whether nothing is left to be done.
+    #[must_use]
+    pub fn is_idle(&self) -> bool {
+        self.waiting.is_empty() && self.world.body(BODY).is_none_or(|body| !body.busy)
+    }
+
+    /// Somebody says something to the robot; gives the turn's number.
+    ///
+    /// # Errors
+    /// [`LogError`].
+    pub fn say(&mut self, text: &str) -> Result<u64, LogError> {
+        let known = self.known();
+        let (turn, reactions) = self.conversation.hear(text, known.as_ref());
+        self.carry_on(reactions)?;
+        Ok(turn)
+    }
+
+    /// Commands the body, past dialog and agent.
+    pub fn command(&mut self, action: Action) {
+        self.act(0, action);
+    }
+
+    /// One tick, and all that is said and decided about it.
+    ///
+    /// # Errors
+    /// [`LogError`].
+    pub fn tick(&mut self) -> Result<(), LogError> {
+        let entries = std::mem::take(&mut self.waiting);
+        let inputs: Vec<Input> = entries
+            .iter()
+            .map(|entry| Input { command: entry.command, body: BodyId(entry.body), action: entry.action })
+            .collect();
+        let told = self.world.step(&inputs);
+        if let Some(trace) = &mut self.trace {
+            let tick = self.world.tick();
+            trace.tick(&self.world, entries)?;
+            for input in &inputs {
+                let turn = self.turn_by_command.get(&input.command).copied().unwrap_or(0);
+                trace.event(tick, &report::started(input, turn))?;
+            }
+            for event in &told.events {
+                trace.event(tick, &report::event(&self.world, event))?;
+            }
+        }
+        for outcome in told.outcomes {
+            self.end_command(outcome)?;
+        }
+        Ok(())
+    }
+
+    /// Ends the log.
+    ///
+    /// # Errors
+    /// [`LogError`].
+    pub fn finish(&mut self) -> Result<(), LogError> {
+        self.trace.take().map_or(Ok(()), Trace::finish)
+    }
+
+    fn end_command(&mut self, outcome: Outcome) -> Result<(), LogError> {
+        let turn = self.turn_by_command.remove(&outcome.command).unwrap_or(0);
+        if let Some(trace) = &mut self.trace {
+            let Outcome { command, body, status, detail } = &outcome;
+            trace.event(self.world.tick(), &EventMessage::outcome(*command, turn, body.0, *status, detail))?;
+        }
+        if outcome.command == self.commands && turn != 0 {
+            let mut deeds = Vec::new();
+            self.agent.hear(&Heard::Outcome { status: outcome.status, detail: &outcome.detail }, &mut deeds);
+            self.carry_out(deeds)?;
+        }
+        self.heard.outcomes.push(outcome);
+        Ok(())
+    }
+
+    /// What the agent decided.
+    fn carry_out(&mut self, deeds: Vec<Deed>) -> Result<(), LogError> {
+        for deed in deeds {
+            match deed {
+                Deed::Act { turn, action } => self.act(turn, action),
+                Deed::Tell(message) => {
+                    self.write_down(&message)?;
+                    let known = self.known();
+                    let reactions = self.conversation.follow(&message.header, known.as_ref());
+                    self.carry_on(reactions)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// What the conversation wants done.
+    fn carry_on(&mut self, reactions: Vec<Reaction>) -> Result<(), LogError> {
+        for reaction in reactions {
+            match reaction {
+                Reaction::Bus(message) => self.pass_on(&message)?,
+                Reaction::TurnEnded { turn, end } => self.heard.turns.push((turn, end)),
+                Reaction::Chat(_) | Reaction::Page(_) => {}
+            }
+        }
+        Ok(())
+    }
+
+    fn pass_on(&mut self, message: &DialogMessage) -> Result<(), LogError> {
+        self.write_down(message)?;
+        match message.header.kind() {
+            Some(DialogKind::Plan) => {
+                let mut deeds = Vec::new();
+                self.agent.hear(&Heard::Plan { turn: message.header.turn, steps: &message.steps }, &mut deeds);
+                self.carry_out(deeds)
+            }
+            Some(kind @ (DialogKind::Reply | DialogKind::Question)) => {
+                self.heard.said.push((kind, message.header.text.as_str().to_owned()));
+                Ok(())
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn write_down(&mut self, message: &DialogMessage) -> Result<(), LogError> {
+        self.trace.as_mut().map_or(Ok(()), |trace| trace.dialog(message))
+    }
+
+    fn act(&mut self, turn: u64, action: Action) {
+        self.commands += 1;
+        self.turn_by_command.insert(self.commands, turn);
+        self.waiting.push(InputEntry { command: self.commands, turn, body: BODY.0, action });
+    }
+
+    /// What the robot knows, from the state as it would be published.
+    fn known(&self) -> Option<Known> {
+        let parts = report::state(&self.world);
+        let mut words = vec![0_u64; parts.bytes().div_ceil(size_of::<u64>())];
+        let bytes = &mut bytemuck::cast_slice_mut(&mut words)[..parts.bytes()];
+        parts.write(bytes);
+        known(StateView::new(bytes).ok()?, BODY)
+    }
+}
+
+/// Whether a command with this outcome failed, rather than being overtaken by the next.
+pub const fn is_failure(status: Status) -> bool {
+    !status.is_success() && !matches!(status, Status::Interrupted)
+}

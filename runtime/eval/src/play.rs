@@ -1,0 +1,310 @@
+//! One task, played to its end.
+
+use std::{collections::BTreeMap, path::PathBuf, sync::Arc, time::Instant};
+
+use cohabit_bus::message::DialogKind;
+use cohabit_cdf::Catalog;
+use cohabit_dialog::Conversation;
+use cohabit_engine::SessionPlan;
+use cohabit_record::LogError;
+use cohabit_world::{Outcome, World};
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    family::family,
+    lock_step::{Heardings, LockStep, is_failure},
+    task::{Answer, Line, Task},
+    trajectory,
+};
+
+/// What people wait after a turn before they speak again: machines that are on for a moment are done by then.
+const PAUSE_TICKS: u64 = 150;
+/// The longest that one line may take.
+const PATIENCE_TICKS: u64 = 60 * 240;
+
+/// How tasks are played.
+#[derive(Clone, Debug, Default)]
+pub struct Settings {
+    /// The seed where a mission leaves it to chance.
+    pub seed: u64,
+    /// When to give up.
+    pub caps: Option<Caps>,
+    /// The folder for session logs, if they are wanted.
+    pub record: Option<PathBuf>,
+}
+
+/// The commands that a task may take; what prepares it is not counted.
+#[derive(Clone, Copy, Debug, Deserialize, Eq, PartialEq, Serialize)]
+pub struct Caps {
+    /// Commands in all.
+    pub actions: u32,
+    /// Commands that failed.
+    pub failed: u32,
+}
+
+/// What came of a task.
+#[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]
+pub struct Played {
+    /// The task.
+    pub id: String,
+    /// What kind of task it is, by its goals.
+    pub family: String,
+    /// Whether every goal was met.
+    pub success: bool,
+    /// Goals met.
+    pub goals_met: usize,
+    /// Goals in all.
+    pub goals: usize,
+    /// Goals that were met before the mission counted.
+    pub goals_met_in_preparation: usize,
+    /// What the goals that stayed open ask for.
+    pub open_goals: Vec<String>,
+    /// Commands that ended.
+    pub actions: u32,
+    /// Commands that failed.
+    pub failed_actions: u32,
+    /// Commands by status.
+    pub statuses: BTreeMap<String, u32>,
+    /// Questions that the robot asked.
+    pub questions: u32,
+    /// Simulated ticks.
+    pub ticks: u64,
+    /// Wall time from the text of the mission to its first tick, s.
+    pub load_s: f64,
+    /// Wall time in all, s.
+    pub wall_s: f64,
+    /// The first line that did not do what it says.
+    pub first_trouble: Option<Trouble>,
+    /// What was said, and what the robot said to it.
+    pub transcript: Vec<Said>,
+    /// Why it was not played to the end, if it was not.
+    pub ended_early: Option<String>,
+    /// Its session log.
+    pub log: Option<PathBuf>,
+}
+
+/// A line that did not do what it says.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub struct Trouble {
+    /// The line.
+    pub line: String,
+    /// Why.
+    pub why: String,
+}
+
+/// A line, and what the robot said to it.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub struct Said {
+    /// The line.
+    pub line: String,
+    /// What the robot said, in order.
+    pub replies: Vec<String>,
+}
+
+/// Plays a task. That it cannot be played is a result too.
+///
+/// # Errors
+/// [`LogError`], when its log cannot be written.
+pub fn play(task: &Task, settings: &Settings, catalog: &Arc<Catalog>) -> Result<Played, LogError> {
+    let began = Instant::now();
+    let mut played = Played { id: task.id.clone(), ..Played::default() };
+    let built = SessionPlan::new(&task.id, &task.cdf, Arc::clone(catalog), settings.seed)
+        .and_then(|plan| plan.build().map(|world| (plan, world)));
+    let (plan, world) = match built {
+        Ok(built) => built,
+        Err(error) => {
+            played.ended_early = Some(format!("not playable: {error}"));
+            played.wall_s = began.elapsed().as_secs_f64();
+            return Ok(played);
+        }
+    };
+    played.load_s = began.elapsed().as_secs_f64();
+    played.family = family(&plan.mission);
+    let mut session = LockStep::new(world, Conversation::new(Arc::clone(catalog), 0));
+    if let Some(folder) = &settings.record {
+        let path = folder.join(format!("{}.mcap", file_name(&task.id)));
+        session.record(&path, &task.id, &plan)?;
+        played.log = Some(path);
+    }
+    let mut player = Player { session, played, caps: settings.caps, counts: false };
+    player.run(task)?;
+    player.session.finish()?;
+    let mut played = player.judged();
+    played.wall_s = began.elapsed().as_secs_f64();
+    Ok(played)
+}
+
+/// A task's id as the name of a file.
+fn file_name(id: &str) -> String {
+    let fits = |letter: char| letter.is_ascii_alphanumeric() || matches!(letter, '-' | '_' | '.' | '#');
+    id.chars().map(|letter| if fits(letter) { letter } else { '_' }).collect()
+}
+
+struct Player {
+    session: LockStep,
+    played: Played,
+    caps: Option<Caps>,
+    /// Whether the preparation is over.
+    counts: bool,
+}
+
+impl Player {
+    fn run(&mut self, task: &Task) -> Result<(), LogError> {
+        for line in &task.preparation {
+            if !self.goes_on() {
+                return Ok(());
+            }
+            self.line(line)?;
+        }
+        self.played.goals_met_in_preparation = goals_met(self.session.world());
+        self.counts = true;
+        for line in &task.script {
+            if !self.goes_on() {
+                break;
+            }
+            self.line(line)?;
+        }
+        Ok(())
+    }
+
+    fn goes_on(&self) -> bool {
+        self.played.ended_early.is_none() && self.session.world().finished().is_none()
+    }
+
+    /// Says or does one line, and waits until it is over and done with.
+    fn line(&mut self, line: &Line) -> Result<(), LogError> {
+        let trouble = match line {
+            Line::Utterance { text, answers } => self.utterance(text, answers)?,
+            Line::Action(action) => self.action(action)?,
+        };
+        if let Some(why) = trouble {
+            self.played.first_trouble.get_or_insert(Trouble { line: line.to_string(), why });
+        }
+        self.wait(PAUSE_TICKS)
+    }
+
+    /// Says something and answers the questions that come back; gives why it did not do what it says.
+    fn utterance(&mut self, text: &str, answers: &[Answer]) -> Result<Option<String>, LogError> {
+        let mut answers: Vec<&Answer> = answers.iter().collect();
+        let mut text = text;
+        loop {
+            let turn = self.session.say(text)?;
+            let heard =
+                self.until(|heard| heard.turns.iter().find(|(ended, _)| *ended == turn).map(|(_, end)| *end))?;
+            let (end, said) = heard;
+            let replies = said.iter().map(|(_, text)| text.clone()).collect();
+            self.played.transcript.push(Said { line: text.to_owned(), replies });
+            let Some(end) = end else { return Ok(Some("it did not come to an end".to_owned())) };
+            let asked = said.iter().rev().find(|(kind, _)| *kind == DialogKind::Question);
+            let Some((_, question)) = asked else {
+                let last = said.last().map_or("", |(_, text)| text);
+                return Ok((!end.is_success()).then(|| format!("{}: {last}", end.name())));
+            };
+            self.played.questions += 1;
+            let Some(best) = best_answer(question, &answers) else {
+                return Ok(Some(format!("nobody answers: {question}")));
+            };
+            text = &answers.remove(best).text;
+        }
+    }
+
+    fn action(&mut self, action: &serde_json::Value) -> Result<Option<String>, LogError> {
+        let action = match trajectory::action(action, self.session.world()) {
+            Ok(Some(action)) => action,
+            Ok(None) => return Ok(None),
+            Err(why) => return Ok(Some(why)),
+        };
+        self.session.command(action);
+        let (outcome, _) = self.until(|heard| heard.outcomes.last().cloned())?;
+        Ok(match outcome {
+            None => Some("it did not come to an end".to_owned()),
+            Some(outcome) if is_failure(outcome.status) => Some(format!("{:?}: {}", outcome.status, outcome.detail)),
+            Some(_) => None,
+        })
+    }
+
+    /// Ticks until `done`; gives what it gave, and what the robot said meanwhile.
+    fn until<T>(
+        &mut self,
+        done: impl Fn(&Heardings) -> Option<T>,
+    ) -> Result<(Option<T>, Vec<(DialogKind, String)>), LogError> {
+        let mut said = Vec::new();
+        for _ in 0..PATIENCE_TICKS {
+            let heard = self.session.take_heard();
+            let found = done(&heard);
+            heard.outcomes.iter().for_each(|outcome| self.count(outcome));
+            said.extend(heard.said);
+            if found.is_some() || self.played.ended_early.is_some() {
+                return Ok((found, said));
+            }
+            self.session.tick()?;
+        }
+        self.played.ended_early = Some("a line took too long".to_owned());
+        Ok((None, said))
+    }
+
+    fn wait(&mut self, ticks: u64) -> Result<(), LogError> {
+        for _ in 0..ticks {
+            self.session.tick()?;
+        }
+        Ok(())
+    }
+
+    fn count(&mut self, outcome: &Outcome) {
+        let played = &mut self.played;
+        if !self.counts {
+            return;
+        }
+        played.actions += 1;
+        played.failed_actions += u32::from(is_failure(outcome.status));
+        *played.statuses.entry(format!("{:?}", outcome.status)).or_default() += 1;
+        let Some(caps) = self.caps else { return };
+        let too_much = [(played.actions > caps.actions, "actions"), (played.failed_actions >= caps.failed, "failures")];
+        if let Some((_, what)) = too_much.into_iter().find(|(over, _)| *over) {
+            played.ended_early = Some(format!("too many {what}"));
+        }
+    }
+
+    fn judged(self) -> Played {
+        let (world, mut played) = (self.session.world(), self.played);
+        let goals = world.goals();
+        played.goals = goals.len();
+        played.goals_met = goals_met(world);
+        played.success = played.goals > 0 && played.goals_met == played.goals && played.ended_early.is_none();
+        played.open_goals = open_goals(world);
+        played.ticks = world.tick();
+        if played.ended_early.is_none()
+            && let Some(cohabit_world::Ending::KilledByHazard) = world.finished()
+        {
+            played.ended_early = Some("a hazard destroyed the robot".to_owned());
+        }
+        played
+    }
+}
+
+fn goals_met(world: &World) -> usize {
+    world.goals().iter().filter(|goal| goal.met).count()
+}
+
+/// The states of the open goals, in the words of their mission.
+fn open_goals(world: &World) -> Vec<String> {
+    let open: Vec<i64> = world.goals().iter().filter(|goal| !goal.met).map(|goal| goal.id).collect();
+    let goals = world.mission().goals.iter().filter(|goal| open.contains(&goal.id));
+    goals
+        .map(|goal| {
+            let states: Vec<String> = goal.states.iter().map(ToString::to_string).collect();
+            format!("{}: {}", goal.id, states.join(", "))
+        })
+        .collect()
+}
+
+/// The answer whose question is most like the one asked; the first where none is.
+fn best_answer(question: &str, answers: &[&Answer]) -> Option<usize> {
+    let words = |text: &str| -> Vec<String> {
+        let lower = text.to_lowercase();
+        lower.split(|letter: char| !letter.is_alphanumeric()).filter(|word| word.len() > 2).map(str::to_owned).collect()
+    };
+    let asked = words(question);
+    let likeness = |answer: &Answer| words(&answer.question).iter().filter(|word| asked.contains(word)).count();
+    (0..answers.len()).max_by_key(|index| (likeness(answers[*index]), std::cmp::Reverse(*index)))
+}

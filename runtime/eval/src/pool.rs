@@ -1,0 +1,120 @@
+//! Worker processes: tasks go out by number, results come back as lines of JSON.
+//!
+//! A worker that dies takes one task with it, and is replaced. A worker whose master dies reads the end of its input,
+//! and ends.
+
+use std::{
+    io::{self, BufRead, BufReader, Write},
+    process::{Child, ChildStdin, Command, Stdio},
+    sync::{
+        Mutex, PoisonError,
+        atomic::{AtomicUsize, Ordering},
+    },
+    thread,
+};
+
+use crate::play::Played;
+
+/// Why workers could not be run.
+#[derive(Debug, thiserror::Error)]
+#[error("start a worker process: {0}")]
+pub struct PoolError(#[from] io::Error);
+
+/// Has tasks `0..tasks` played by `workers` processes, each started by `start`; `done` is told of each result.
+///
+/// A result is `Err` where a worker died or answered nonsense: with what is known about that.
+///
+/// # Errors
+/// [`PoolError`], when no process can be started.
+pub fn run(
+    tasks: usize,
+    workers: usize,
+    start: &(dyn Fn() -> Command + Sync),
+    done: &(dyn Fn(usize, &Result<Played, String>) + Sync),
+) -> Result<Vec<Result<Played, String>>, PoolError> {
+    let next = AtomicUsize::new(0);
+    let results = Mutex::new((0..tasks).map(|_| None).collect::<Vec<_>>());
+    let work = || -> Result<(), PoolError> {
+        let mut worker: Option<Worker> = None;
+        loop {
+            let task = next.fetch_add(1, Ordering::Relaxed);
+            if task >= tasks {
+                return Ok(());
+            }
+            let mut running = match worker.take() {
+                Some(running) => running,
+                None => Worker::start(start())?,
+            };
+            let result = running.play(task);
+            done(task, &result);
+            if result.is_ok() {
+                worker = Some(running);
+            }
+            results.lock().unwrap_or_else(PoisonError::into_inner)[task] = Some(result);
+        }
+    };
+    thread::scope(|scope| {
+        let handles: Vec<_> = (0..workers.clamp(1, tasks.max(1))).map(|_| scope.spawn(work)).collect();
+        let joined =
+            handles.into_iter().map(|handle| handle.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)));
+        joined.collect::<Vec<_>>().into_iter().collect::<Result<(), _>>()
+    })?;
+    let results = results.into_inner().unwrap_or_else(PoisonError::into_inner);
+    Ok(results.into_iter().map(|result| result.unwrap_or_else(|| Err("it was not played".to_owned()))).collect())
+}
+
+struct Worker {
+    child: Child,
+    input: ChildStdin,
+    output: BufReader<std::process::ChildStdout>,
+}
+
+impl Worker {
+    fn start(mut command: Command) -> io::Result<Self> {
+        let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn()?;
+        let missing = || io::Error::other("it has no pipes");
+        let input = child.stdin.take().ok_or_else(missing)?;
+        let output = BufReader::new(child.stdout.take().ok_or_else(missing)?);
+        Ok(Self { child, input, output })
+    }
+
+    fn play(&mut self, task: usize) -> Result<Played, String> {
+        let asked = writeln!(self.input, "{task}").and_then(|()| self.input.flush());
+        let mut line = String::new();
+        let answered = asked.and_then(|()| self.output.read_line(&mut line));
+        match answered {
+            Ok(1..) => serde_json::from_str(&line).map_err(|error| format!("its worker answered nonsense: {error}")),
+            Ok(0) | Err(_) => Err(match self.child.wait() {
+                Ok(status) => format!("its worker died ({status})"),
+                Err(error) => format!("its worker is lost: {error}"),
+            }),
+        }
+    }
+}
+
+impl Drop for Worker {
+    fn drop(&mut self) {
+        // Its input ends with this struct; but one that hangs would keep us for ever.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+/// The other side: plays what is asked for on the input, until it ends.
+///
+/// # Errors
+/// When the master's pipes fail, or a log cannot be written.
+pub fn serve(
+    input: impl BufRead,
+    mut output: impl Write,
+    mut play: impl FnMut(usize) -> Result<Played, io::Error>,
+) -> io::Result<()> {
+    for line in input.lines() {
+        let task = line?.trim().parse().map_err(io::Error::other)?;
+        let played = play(task)?;
+        serde_json::to_writer(&mut output, &played)?;
+        writeln!(output)?;
+        output.flush()?;
+    }
+    Ok(())
+}

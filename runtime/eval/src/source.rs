@@ -1,0 +1,146 @@
+//! Finds tasks in the files that people have.
+
+use std::{
+    collections::BTreeSet,
+    io,
+    path::{Path, PathBuf},
+};
+
+use serde::Deserialize;
+use serde_json::Value;
+
+use crate::{
+    dataset, script,
+    task::{Line, Task},
+};
+
+/// Why tasks could not be read.
+#[derive(Debug, thiserror::Error)]
+pub enum SourceError {
+    /// A file or folder cannot be read.
+    #[error("{path}: {source}")]
+    File {
+        /// Which.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+    /// A line is not what it should be.
+    #[error("{path}:{line}: {reason}")]
+    Line {
+        /// Which file.
+        path: PathBuf,
+        /// Which line, from 1.
+        line: usize,
+        /// What is wrong.
+        reason: String,
+    },
+    /// There is nothing to play.
+    #[error(
+        "{path}: no missions in it; give a .jsonl of missions, a data set of sessions, a mission (CDF) or a folder of missions, each with a .script"
+    )]
+    Empty {
+        /// Which.
+        path: PathBuf,
+    },
+    /// A mission has no script.
+    #[error("{path}: nothing says what to do in it; put {} beside it, or name one with `--script`", .script.display())]
+    NoScript {
+        /// Which.
+        path: PathBuf,
+        /// What would be read.
+        script: PathBuf,
+    },
+    /// Two tasks have one name.
+    #[error("{path}: two missions are named {id}")]
+    Twice {
+        /// Where.
+        path: PathBuf,
+        /// The name.
+        id: String,
+    },
+}
+
+/// One line of a `.jsonl`.
+#[derive(Deserialize)]
+struct MissionLine {
+    id: String,
+    #[serde(default)]
+    preparation_utterances: Vec<String>,
+    utterances: Vec<String>,
+    cdf: Value,
+}
+
+/// The tasks of `path`: a `.jsonl` of missions with their utterances, the reference's data set of sessions, a mission
+/// (CDF) with its script, or a folder of missions with scripts. `script` is for missions without one of their own.
+///
+/// # Errors
+/// [`SourceError`].
+pub fn read_tasks(path: &Path, script: Option<&Path>) -> Result<Vec<Task>, SourceError> {
+    let tasks = if path.is_dir() {
+        missions_in(path)?.iter().map(|mission| with_script(mission, script)).collect::<Result<_, _>>()?
+    } else if path.extension().is_some_and(|extension| extension == "jsonl") {
+        lines(path, &read(path)?)?
+    } else {
+        let text = read(path)?;
+        match serde_json::from_str::<Value>(&text) {
+            Ok(value) if value.get("scene").is_some() || !value.is_object() => vec![with_script(path, script)?],
+            Ok(_) => dataset::read(&text).map_err(|error| at_line(path, error.line(), &error))?,
+            Err(error) => return Err(at_line(path, error.line(), &error)),
+        }
+    };
+    if tasks.is_empty() {
+        return Err(SourceError::Empty { path: path.to_owned() });
+    }
+    let mut ids = BTreeSet::new();
+    match tasks.iter().find(|task| !ids.insert(&task.id)) {
+        Some(task) => Err(SourceError::Twice { path: path.to_owned(), id: task.id.clone() }),
+        None => Ok(tasks),
+    }
+}
+
+fn at_line(path: &Path, line: usize, reason: &impl ToString) -> SourceError {
+    SourceError::Line { path: path.to_owned(), line, reason: reason.to_string() }
+}
+
+fn read(path: &Path) -> Result<String, SourceError> {
+    std::fs::read_to_string(path).map_err(|source| SourceError::File { path: path.to_owned(), source })
+}
+
+fn lines(path: &Path, text: &str) -> Result<Vec<Task>, SourceError> {
+    let filled = (1..).zip(text.lines()).filter(|(_, line)| !line.trim().is_empty());
+    filled
+        .map(|(number, line)| {
+            let read: MissionLine = serde_json::from_str(line).map_err(|error| at_line(path, number, &error))?;
+            let said = |texts: &[String]| texts.iter().map(|text| Line::utterance(text)).collect();
+            Ok(Task {
+                id: read.id,
+                cdf: read.cdf.to_string(),
+                preparation: said(&read.preparation_utterances),
+                script: said(&read.utterances),
+            })
+        })
+        .collect()
+}
+
+/// The mission files of a folder, by name.
+fn missions_in(folder: &Path) -> Result<Vec<PathBuf>, SourceError> {
+    let failed = |source| SourceError::File { path: folder.to_owned(), source };
+    let entries = std::fs::read_dir(folder).map_err(failed)?;
+    let mut paths = entries.map(|entry| Ok(entry.map_err(failed)?.path())).collect::<Result<Vec<_>, _>>()?;
+    paths.retain(|path| path.extension().is_some_and(|extension| extension == "json"));
+    paths.sort();
+    Ok(paths)
+}
+
+fn with_script(mission: &Path, script: Option<&Path>) -> Result<Task, SourceError> {
+    let own = mission.with_extension("script");
+    let path = match script {
+        _ if own.is_file() => own,
+        Some(script) => script.to_owned(),
+        None => return Err(SourceError::NoScript { path: mission.to_owned(), script: own }),
+    };
+    let (preparation, script) = script::read(&read(&path)?).map_err(|(line, reason)| at_line(&path, line, &reason))?;
+    let id = mission.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    Ok(Task { id, cdf: read(mission)?, preparation, script })
+}

@@ -1,0 +1,56 @@
+//! A mission and what is said in it.
+
+use serde_json::Value;
+
+/// A mission, and its script.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Task {
+    /// Its name in the report; no two of one source are equal.
+    pub id: String,
+    /// The mission's text (CDF).
+    pub cdf: String,
+    /// What comes before the mission counts.
+    pub preparation: Vec<Line>,
+    /// What is to solve it.
+    pub script: Vec<Line>,
+}
+
+/// One line of a script.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Line {
+    /// Something said to the robot.
+    Utterance {
+        /// What.
+        text: String,
+        /// What the person answers to questions that may come back.
+        answers: Vec<Answer>,
+    },
+    /// A command, as the reference's models emit them: `{"type": "Pickup", "pickup": {"object": {"id": "Mug_1"}}}`.
+    Action(Value),
+}
+
+/// An answer that a person has ready.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Answer {
+    /// To what question.
+    pub question: String,
+    /// What they say.
+    pub text: String,
+}
+
+impl Line {
+    /// Something said, to which no question is answered.
+    #[must_use]
+    pub fn utterance(text: &str) -> Self {
+        Self::Utterance { text: text.to_owned(), answers: Vec::new() }
+    }
+}
+
+impl std::fmt::Display for Line {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Utterance { text, .. } => f.write_str(text),
+            Self::Action(action) => write!(f, "{action}"),
+        }
+    }
+}

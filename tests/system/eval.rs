@@ -1,0 +1,112 @@
+//! Missions played by the program headless, in many ways.
+
+use std::path::{Path, PathBuf};
+
+use cohabit_tests::{reference_data, run};
+use serde_json::Value;
+
+use crate::COHABIT;
+
+fn folder(name: &str) -> PathBuf {
+    let folder = std::env::temp_dir().join(format!("cohabit-eval-{name}-{}", std::process::id()));
+    let _ = std::fs::remove_dir_all(&folder);
+    std::fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+fn builtin() -> String {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cdf/missions").to_str().unwrap().to_owned()
+}
+
+/// Runs `cohabit eval` and gives its report and what it printed.
+fn eval(folder: &Path, arguments: &[&str]) -> (Value, String) {
+    let report = folder.join("report.json");
+    let all = [&["eval"], arguments, &["--report", report.to_str().unwrap()]].concat();
+    let output = run(COHABIT, &all).unwrap();
+    assert!(output.status.success(), "{output:?}");
+    let text = std::fs::read_to_string(&report).unwrap();
+    (serde_json::from_str(&text).unwrap(), String::from_utf8_lossy(&output.stdout).into_owned())
+}
+
+#[test]
+fn the_built_in_missions_are_solved_and_their_logs_replay() {
+    let folder = folder("builtin");
+    let (report, printed) = eval(&folder, &[&builtin(), "--workers", "2", "--record", folder.to_str().unwrap()]);
+    let missions = report["missions"].as_array().unwrap();
+    assert!(missions.len() >= 4, "{printed}");
+    for mission in missions {
+        assert_eq!(mission["success"], true, "{mission:#}");
+        assert_eq!(mission["goals_met"], mission["goals"]);
+        assert!(mission["actions"].as_u64().unwrap() > 0 && mission["ticks"].as_u64().unwrap() > 0, "{mission:#}");
+        let replayed = run(COHABIT, &["replay", mission["log"].as_str().unwrap()]).unwrap();
+        let text = String::from_utf8_lossy(&replayed.stdout).into_owned();
+        assert!(text.contains("no tick differs"), "{text}");
+    }
+    assert_eq!(report["total"]["solved"], missions.len());
+    assert!(printed.contains("95 % interval"), "{printed}");
+}
+
+#[test]
+fn a_mission_stops_at_its_caps() {
+    let folder = folder("caps");
+    let (report, _) = eval(&folder, &[&builtin(), "--only", "make_cereal", "--caps=3,10"]);
+    let mission = &report["missions"][0];
+    assert_eq!(
+        (&mission["success"], &mission["ended_early"]),
+        (&false.into(), &"too many actions".into()),
+        "{mission:#}"
+    );
+    assert!(!mission["open_goals"].as_array().unwrap().is_empty());
+}
+
+#[test]
+fn what_failed_first_is_told() {
+    let folder = folder("trouble");
+    let mission = Path::new(&builtin()).join("cold_soda.json");
+    let script = folder.join("wrong.script");
+    std::fs::write(&script, "pick up the soda can\npick up the unicorn\n{\"type\": \"Toggle\", \"toggle\": {\"object\": {\"id\": \"Nothing_1\"}}}\n").unwrap();
+    std::fs::copy(&mission, folder.join("alone.json")).unwrap();
+    let alone = folder.join("alone.json");
+    let (report, _) = eval(&folder, &[alone.to_str().unwrap(), "--script", script.to_str().unwrap()]);
+    let trouble = &report["missions"][0]["first_trouble"];
+    assert_eq!(trouble["line"], "pick up the unicorn");
+    assert!(trouble["why"].as_str().unwrap().starts_with("refused: "), "{trouble}");
+}
+
+#[test]
+fn bad_sources_are_refused_with_their_place() {
+    let folder = folder("bad");
+    let bad = folder.join("missions.jsonl");
+    std::fs::write(&bad, "{\"id\": \"one\", \"utterances\": [], \"cdf\": {}}\n{\"id\": \"two\"\n").unwrap();
+    for (arguments, expected) in [
+        (vec![bad.to_str().unwrap()], "missions.jsonl:2"),
+        (vec!["/nowhere/at/all.jsonl"], "/nowhere/at/all.jsonl"),
+        (vec![folder.to_str().unwrap()], "no missions in it"),
+    ] {
+        let output = run(COHABIT, &[&["eval"], arguments.as_slice()].concat()).unwrap();
+        let text = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{text}");
+        assert!(text.contains(expected), "{text}");
+    }
+}
+
+#[test]
+fn nearly_all_real_missions_are_solved_by_what_their_users_said() {
+    let Some(data) = reference_data() else { return };
+    let folder = folder("missions");
+    let (report, printed) = eval(&folder, &[data.join("missions-dev.jsonl").to_str().unwrap()]);
+    let rate = report["total"]["success_rate"].as_f64().unwrap();
+    assert!(rate >= 0.98, "{printed}");
+}
+
+#[test]
+fn the_data_set_of_sessions_is_played() {
+    let Some(data) = reference_data() else { return };
+    let folder = folder("sessions");
+    let (report, printed) = eval(&folder, &[data.join("human-sessions-dev.json").to_str().unwrap()]);
+    let missions = report["missions"].as_array().unwrap();
+    let of =
+        |kind: &str| missions.iter().filter(|task| task["id"].as_str().unwrap().contains(kind)).collect::<Vec<_>>();
+    assert_eq!(of("#human").len(), 6);
+    assert!(of("#expert").iter().all(|task| task["success"] == true), "{printed}");
+}
