@@ -21,8 +21,10 @@ const LEVELS: &[(&str, u8, &[&str])] = &[
 ];
 
 /// Dependencies that others may name too: the log and the page speak JSON, tests report errors of all kinds.
-const SHARED: &[(&str, &[&str])] =
-    &[("serde_json", &["cohabit-record", "cohabit-dialog", "cohabit-eval", "cohabit", "cohabit-tests"]), ("anyhow", &["cohabit-tests"])];
+const SHARED: &[(&str, &[&str])] = &[
+    ("serde_json", &["cohabit-record", "cohabit-dialog", "cohabit-eval", "cohabit", "cohabit-tests"]),
+    ("anyhow", &["cohabit-tests"]),
+];
 
 fn metadata() -> Value {
     let output = Command::new(env!("CARGO"))

@@ -213,9 +213,8 @@ fn goals_are_checked() {
         ("FoodPlate_01_1", json!(3), "expected `key=value`, found a number; write a text such as `isHot=true`"),
         (
             "FoodPlate_01_1",
-            json!("Contains=FoodPlate_01_7"),
-            "warning: `FoodPlate_01_7` is not among `required_objects`; taken as the layout's `FoodPlate_01_10000`; \
-             did you mean `FoodPlate_01_1`?",
+            json!("Contains=Printer_3D_7"),
+            "no object `Printer_3D_7`: the layout's is `Printer_3D_10000`; did you mean `Printer_3D_1`?",
         ),
     ] {
         let expected = format!("m.json: /task_goals/0/object_states/0/{instance}: {expected}");

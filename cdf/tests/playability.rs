@@ -185,6 +185,30 @@ fn places_that_are_not_there_or_take_nothing_more() {
 }
 
 #[test]
+fn names_of_what_is_not_there() {
+    let objects = json!([{"name": "Bowl_01_1"}, {"name": "Apple_1", "state": [{"Removed": "true"}]}]);
+    for (states, expected) in [
+        (json!([{"TAM_1": "isHappy=true"}]), ""),
+        (json!([{"Carrot_01_*": "isPickedUp=true"}]), ""),
+        (json!([{"Microwave_01_1": "isOpen=true"}]), ""),
+        (
+            json!([{"Apple_1": "isPickedUp=true"}]),
+            "goal 0 cannot be met: `Apple_1` is taken out of the world: it is `Removed`",
+        ),
+        (json!([{"Light_Ceiling_77_*": "isToggledOn=true"}]), "unknown object `Light_Ceiling_77_*`"),
+    ] {
+        assert_eq!(said(&objects, &states, &json!([])).0, expected, "{states}");
+    }
+}
+
+/// A name that is wrong where it is introduced is not held against those who write it well.
+#[test]
+fn a_misspelt_object_is_told_once() {
+    let (found, _) = said(&json!([{"name": "Appel_1"}]), &json!([{"Apple_1": "isPickedUp=true"}]), &json!([]));
+    assert_eq!(found, "unknown object `Appel_1`; did you mean `Apple_1`?");
+}
+
+#[test]
 fn goals_that_wait_in_a_circle() {
     let goal = |id: u32, after: u32| json!({"goal_id": id, "object_states": [{"Apple_1": "isPickedUp=true"}], "preconditions": [after]});
     let mission = json!({

@@ -138,3 +138,65 @@ fn rays_face_their_shelves() {
         }
     }
 }
+
+/// A plan and its mirror image aside, no two plans are built alike or look alike.
+#[test]
+fn builtin_plans_differ_in_shape_and_finish() {
+    let plans: Vec<Layout> = Layout::builtin_ids()
+        .into_iter()
+        .filter(|id| !id.ends_with(mirror::SUFFIX))
+        .map(|id| Layout::builtin(&id).unwrap())
+        .collect();
+    assert_eq!(plans.len(), 5);
+    for (index, plan) in plans.iter().enumerate() {
+        for other in &plans[..index] {
+            for room in &plan.rooms {
+                let twin = other.room(room.id).unwrap();
+                let both = format!("{} and {}: {:?}", plan.id, other.id, room.id);
+                assert_ne!(sides_m(room), sides_m(twin), "{both} have the same outline");
+                assert_ne!((&room.floor, &room.wall), (&twin.floor, &twin.wall), "{both} have the same finish");
+            }
+        }
+    }
+}
+
+/// Lengths of a room's rectangles, m, wherever they lie.
+fn sides_m(room: &Room) -> Vec<[f32; 2]> {
+    room.rects_m.iter().map(|rect| [rect[2] - rect[0], rect[3] - rect[1]]).collect()
+}
+
+#[test]
+fn viewpoints_are_apart_and_show_their_room() {
+    /// No two viewpoints of a room are nearer, m.
+    const APART_M: f32 = 0.5;
+    /// Half of what is seen to the left and right, degrees.
+    const HALF_VIEW_DEG: f32 = 35.0;
+    /// Nearest and farthest that things count as shown, m.
+    const SHOWN_M: std::ops::Range<f32> = 0.8..9.0;
+    /// Things shown at least.
+    const SHOWN: usize = 4;
+    for id in Layout::builtin_ids() {
+        let plan = Layout::builtin(&id).unwrap();
+        for room in RoomId::ALL {
+            let views: Vec<&Viewpoint> = plan.viewpoints.iter().filter(|view| view.room == room).collect();
+            assert_eq!(views.len(), 8, "{id}: {room:?}");
+            for (index, view) in views.iter().enumerate() {
+                let apart = |other: &&Viewpoint| distance_m(view.at_m, other.at_m) >= APART_M;
+                assert!(views[..index].iter().all(apart), "{id}: {room:?} {} is near another", view.number);
+                let shows = |placement: &&Placement| {
+                    let [x, y, _] = plan.origin_in_world_m(placement);
+                    let bearing_deg = libm::atan2f(y - view.at_m[1], x - view.at_m[0]).to_degrees();
+                    let turn_deg = (bearing_deg - view.yaw_deg + 180.0).rem_euclid(360.0) - 180.0;
+                    let is_near = SHOWN_M.contains(&distance_m(view.at_m, [x, y]));
+                    placement.room == room && is_near && turn_deg.abs() < HALF_VIEW_DEG
+                };
+                let shown = plan.placements.iter().filter(shows).count();
+                assert!(shown >= SHOWN, "{id}: {room:?} {} shows {shown} things", view.number);
+            }
+        }
+    }
+}
+
+fn distance_m(from_m: [f32; 2], to_m: [f32; 2]) -> f32 {
+    libm::hypotf(from_m[0] - to_m[0], from_m[1] - to_m[1])
+}

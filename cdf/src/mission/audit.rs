@@ -138,7 +138,8 @@ impl Reader<'_> {
     /// Goals that cannot be met.
     fn audit_goals(&mut self, mission: &Mission, places: &[GoalPlaces]) {
         for (goal, places) in mission.goals.iter().zip(places) {
-            let possibility = Possibility { catalog: self.catalog, conditions: &mission.conditions };
+            let possibility =
+                Possibility { catalog: self.catalog, conditions: &mission.conditions, objects: &mission.objects };
             let states: Vec<_> = goal.states.iter().collect();
             let reasons: Vec<_> = states.iter().map(|state| possibility.never_state(state)).collect();
             let never = possibility.never_all(&states, goal.relation);

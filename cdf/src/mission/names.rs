@@ -6,10 +6,18 @@ use super::{
     raw::{Loose, Scalar},
     reader::{Reader, did_you_mean},
 };
-use crate::catalog::ClassId;
+use crate::catalog::{ClassId, Property};
 
 /// What stands between a machine's instance id and the class it makes.
 const SPAWNED: &str = "_Spawned_";
+
+/// What stands before the number of a robot, which missions may name but do not list.
+const ROBOT: &str = "TAM_";
+
+/// Whether `name` is a robot's.
+pub(super) fn is_robot(name: &str) -> bool {
+    name.strip_prefix(ROBOT).is_some_and(|number| !number.is_empty() && number.chars().all(|c| c.is_ascii_digit()))
+}
 
 /// What a machine made, without the machine: `Hammer_1` of `Printer_3D_1_Spawned_Hammer_1`.
 pub(super) fn made(instance: &str) -> &str {
@@ -28,6 +36,8 @@ impl Reader<'_> {
         };
         if self.class_of(at, &name).is_none() {
             self.error(at, format!("unknown object `{name}`"), self.near_class(&name));
+            // What is meant is told once: naming it elsewhere is right.
+            self.misspelt.extend(self.near_instance(&name));
             return None;
         }
         if self.listed.contains(&name) {
@@ -65,7 +75,7 @@ impl Reader<'_> {
 
     /// Checks that `name`, perhaps with a `*` at its end, can mean an object of this mission.
     pub fn reference(&mut self, at: &Pointer, name: &str) {
-        if self.listed.iter().any(|listed| listed == name) {
+        if self.listed.iter().chain(&self.misspelt).any(|listed| listed == name) || is_robot(name) {
             return;
         }
         if let Some((machine, made)) = name.split_once(SPAWNED) {
@@ -76,6 +86,9 @@ impl Reader<'_> {
         } else if name.ends_with('*') {
             if !self.is_class_pattern(name) {
                 self.unknown_object(at, name);
+            } else if self.is_of_nothing(name) {
+                let message = format!("no object `{name}`: neither the mission lists one, nor has the layout");
+                self.error(at, message, Some("add it to `required_objects`".to_owned()));
             }
         } else {
             match self.class_of(at, name) {
@@ -93,30 +106,41 @@ impl Reader<'_> {
             || (!prefix.is_empty() && self.catalog.classes().iter().any(|class| class.id.starts_with(prefix)))
     }
 
-    /// An instance that the mission does not list must be the layout's: under its id, or as the only one of its class.
+    /// Whether a wildcard means only what is neither there nor ever made: what can be carried may be made by a machine.
+    fn is_of_nothing(&self, pattern: &str) -> bool {
+        let prefix = pattern.trim_end_matches('*');
+        let class = prefix.trim_end_matches('_');
+        let mut meant = self.catalog.classes().iter().filter(|known| known.id == class || known.id.starts_with(prefix));
+        let placed = self.layout.map_or(&[][..], |layout| &layout.placements).iter().map(|placed| &placed.instance);
+        self.layout.is_some()
+            && !self.unlisted_all
+            && !self.listed.iter().chain(&self.misspelt).chain(placed).any(|name| name.starts_with(prefix))
+            && meant.all(|class| !class.has(Property::Pickupable))
+    }
+
+    /// An instance that the mission does not list must be the layout's: under its id, or as the only machine of its class.
     fn unlisted(&mut self, at: &Pointer, name: &str, class: ClassId) {
         let Some(layout) = self.layout else { return };
-        if layout.placements.iter().any(|placement| placement.instance == name) {
+        if self.unlisted_all || layout.placements.iter().any(|placement| placement.instance == name) {
             return;
         }
         let of_class = |instance: &&str| self.catalog.class_of_instance(instance) == Some(class);
         let placed: Vec<_> =
             layout.placements.iter().map(|placement| placement.instance.as_str()).filter(of_class).collect();
-        let listed = || self.listed.iter().map(String::as_str).filter(of_class);
-        let near = did_you_mean(name, listed());
-        match placed.as_slice() {
-            [] => {
-                let message =
-                    format!("no object `{name}`: neither the mission lists one, nor has layout `{}`", layout.id);
-                let remedy = near.unwrap_or_else(|| "add it to `required_objects`".to_owned());
-                self.error(at, message, Some(remedy));
-            }
-            [_] if listed().count() == 0 => {}
-            [first, ..] => {
-                let message = format!("`{name}` is not among `required_objects`; taken as the layout's `{first}`");
-                self.warn(at, message, near);
-            }
+        let listed: Vec<_> = self.listed.iter().map(String::as_str).filter(of_class).collect();
+        let carried = self.catalog.class(class).has(Property::Pickupable);
+        if placed.len() == 1 && listed.is_empty() && !carried {
+            return;
         }
+        let near = did_you_mean(name, listed.iter().chain(&placed).copied());
+        let message = match placed.as_slice() {
+            [] => format!("no object `{name}`: neither the mission lists one, nor has layout `{}`", layout.id),
+            [only] => format!("no object `{name}`: the layout's is `{only}`"),
+            [first, .., last] => {
+                format!("no object `{name}`: the layout has {}, `{first}` to `{last}`", placed.len())
+            }
+        };
+        self.error(at, message, Some(near.unwrap_or_else(|| "add it to `required_objects`".to_owned())));
     }
 
     fn unknown_object(&mut self, at: &Pointer, name: &str) {
@@ -125,13 +149,18 @@ impl Reader<'_> {
         self.error(at, format!("unknown object `{name}`"), remedy);
     }
 
-    /// A remedy for a misspelt instance: the nearest class, with the same number if there is one.
+    /// A remedy for a misspelt instance.
     fn near_class(&self, instance: &str) -> Option<String> {
+        self.near_instance(instance).map(|near| format!("did you mean `{near}`?"))
+    }
+
+    /// What a misspelt instance may be: the nearest class, with the same number if there is one.
+    fn near_instance(&self, instance: &str) -> Option<String> {
         let classes = || self.catalog.classes().iter().map(|class| class.id.as_str());
-        did_you_mean(instance, classes()).or_else(|| {
-            let (class, number) = instance.rsplit_once('_')?;
-            let class = nearest(class, classes())?;
-            Some(format!("did you mean `{class}_{number}`?"))
-        })
+        if let Some(class) = nearest(instance, classes()) {
+            return Some(class.to_owned());
+        }
+        let (class, number) = instance.rsplit_once('_')?;
+        Some(format!("{}_{number}", nearest(class, classes())?))
     }
 }

@@ -7,6 +7,7 @@ use serde_json::Value;
 use super::{
     DinoFood, Era, ObjectRequest, Portal,
     key::{InitialKey, property_of},
+    names::is_robot,
     problem::Pointer,
     raw::{Entry, Loose, RequiredObject, Scalar},
     reader::{Reader, did_you_mean, shape},
@@ -26,6 +27,7 @@ impl Reader<'_> {
         portals: &[Portal],
     ) -> Vec<ObjectRequest> {
         let objects = self.items(at, list, "an object with a name");
+        self.unlisted_all = list.misfit().is_some();
         // All names first: a location may name an object that comes later.
         let named: Vec<_> = objects
             .into_iter()
@@ -105,6 +107,10 @@ impl Reader<'_> {
     fn reference_to_one(&mut self, at: &Pointer, name: &str) -> Option<ClassId> {
         if name.ends_with('*') {
             self.error(at, format!("`{name}` may be several objects; a place is one"), None);
+            return None;
+        }
+        if is_robot(name) {
+            self.error(at, format!("`{name}` is a robot: what it holds is said in `simbot_init`"), None);
             return None;
         }
         self.reference(at, name);

@@ -3,6 +3,7 @@
 //! Only what the catalogue and the mission say for certain counts; where a world might surprise, nothing is said.
 
 use super::{
+    ObjectRequest,
     key::{flag_key, property_of},
     names::made,
 };
@@ -19,6 +20,7 @@ const BOWL: &str = "Bowl_01";
 pub(super) struct Possibility<'a> {
     pub catalog: &'a Catalog,
     pub conditions: &'a [StateCondition],
+    pub objects: &'a [ObjectRequest],
 }
 
 /// One state of one object, asked for together with others.
@@ -46,6 +48,11 @@ impl Possibility<'_> {
     /// Why a state never holds.
     pub fn never_state(&self, state: &GoalState) -> Option<String> {
         let of = &state.instance;
+        if !matches!(state.predicate, Predicate::Condition(..))
+            && let Some(reason) = self.gone(of)
+        {
+            return Some(reason);
+        }
         match &state.predicate {
             Predicate::Flag(flag, true) => self.never_flag(of, *flag),
             Predicate::Filled(Fluid::None) | Predicate::Flag(_, false) | Predicate::ContainsCereal(false) => None,
@@ -67,6 +74,12 @@ impl Possibility<'_> {
                 Some(format!("of condition `{name}`: {reason}"))
             }
         }
+    }
+
+    /// Why an object is not there to have any state.
+    fn gone(&self, of: &InstancePattern) -> Option<String> {
+        let removed = self.objects.iter().any(|object| object.removed && object.instance == of.0);
+        removed.then(|| format!("`{of}` is taken out of the world: it is `Removed`"))
     }
 
     /// The condition that a goal's state means.
@@ -164,6 +177,12 @@ impl Possibility<'_> {
         }
         let (receptacle, content) = (self.class(of)?, self.class(what)?);
         let keys = &receptacle.receptacle.as_ref()?.keys;
+        let from_the_start = |object: &ObjectRequest| {
+            what.matches(&object.instance) && object.inside.as_ref().is_some_and(|inside| of.matches(inside))
+        };
+        if self.objects.iter().any(from_the_start) {
+            return None;
+        }
         let within = |key: &String| self.catalog.find(key).is_none_or(|id| takes_things(self.catalog.class(id)));
         if keys.is_empty() || keys.contains(&content.id) || keys.iter().any(within) {
             return None;

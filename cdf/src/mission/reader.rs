@@ -21,6 +21,10 @@ pub(super) struct Reader<'a> {
     pub layout: Option<&'static Layout>,
     /// The instances that the mission lists, in the order of the file.
     pub listed: Vec<String>,
+    /// Whether its list of objects is none, so that nothing is known to be missing.
+    pub unlisted_all: bool,
+    /// The instances that it seems to mean by names that are unknown.
+    pub misspelt: Vec<String>,
     /// Names of conditions that could not be read: what is wrong with them is said once.
     pub unreadable: Vec<String>,
     /// The conditions for objects to be there, by their index among the objects: they may name what comes later.
@@ -54,6 +58,8 @@ impl<'a> Reader<'a> {
             catalog,
             layout: None,
             listed: Vec::new(),
+            unlisted_all: false,
+            misspelt: Vec::new(),
             unreadable: Vec::new(),
             object_conditions: Vec::new(),
             named_conditions: BTreeSet::new(),

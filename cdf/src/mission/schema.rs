@@ -25,19 +25,26 @@ use crate::{
 /// The schema, with the classes of `catalog` as the objects there are.
 #[must_use]
 pub fn schema(catalog: &Catalog) -> Value {
-    let mut schema = SchemaSettings::draft2020_12().into_generator().into_root_schema_for::<Cdf>();
+    let generated = SchemaSettings::draft2020_12().into_generator().into_root_schema_for::<Cdf>().to_value();
+    // What it is comes first, for those who read it.
+    let mut schema = Map::new();
+    for key in ["$schema", "title", "description"] {
+        schema.insert(key.to_owned(), generated[key].clone());
+    }
     schema.insert("title".to_owned(), json!("Cohabit mission (CDF)"));
-    let mut schema = schema.to_value();
+    for (key, value) in generated.as_object().into_iter().flatten().filter(|(key, _)| *key != "title") {
+        schema.insert(key.clone(), value.clone());
+    }
     if let Some(definitions) = schema.get_mut("$defs").and_then(Value::as_object_mut) {
         definitions.extend(vocabulary(catalog));
     }
-    schema
+    Value::Object(schema)
 }
 
 /// The words of the format, and the shapes made of them.
 fn vocabulary(catalog: &Catalog) -> Map<String, Value> {
     let classes: Vec<&str> = catalog.classes().iter().map(|class| class.id.as_str()).collect();
-    let instance = format!("^$|^({})(_.*)?\\*?$", classes.join("|"));
+    let instance = format!("^$|^TAM_[0-9]+$|^({})(_.*)?\\*?$", classes.join("|"));
     let defined = [
         ("ObjectClass", words("A class of object.", classes)),
         ("Instance", pattern("An instance: a class and a number, such as `Bowl_01_1`.", &instance)),

@@ -91,10 +91,8 @@ impl Language {
             return report::success(&self.catalog, scene, step, status);
         }
         let planner = remedy::planner(&self.catalog, &self.devices, scene, Focus::default());
-        let text = report::failure(&self.catalog, scene, step, status, detail);
-        match remedy::remedy(planner, step, status) {
-            Some(remedy) => format!("{text} {}", remedy.question),
-            None => text,
-        }
+        let remedy = remedy::remedy(planner, step, status);
+        let offer = remedy.as_ref().map(|remedy| remedy.question.as_str());
+        report::failure(&self.catalog, scene, step, status, detail, offer)
     }
 }

@@ -69,15 +69,27 @@ fn toggled(the: &str, scene: &Known, step: &Step, id: ObjectId) -> String {
     }
 }
 
-/// What is said after a failure: the world's own sentence, or else what the status means, and what would help.
-pub(crate) fn failure(catalog: &Catalog, scene: &Known, step: &Step, status: Status, detail: &str) -> String {
-    let cause = if detail.trim().is_empty() { cause(status) } else { detail };
-    let help = help(catalog, scene, step, status);
-    let start = match status {
-        Status::Interrupted => return "I stopped.".to_owned(),
-        _ => describe::sentence(cause),
+/// What is said after a failure: the world's own sentence, which may end in `: ` and what would help, or else what the
+/// status means; and what would help, unless an `offer` follows.
+pub(crate) fn failure(
+    catalog: &Catalog,
+    scene: &Known,
+    step: &Step,
+    status: Status,
+    detail: &str,
+    offer: Option<&str>,
+) -> String {
+    if status == Status::Interrupted {
+        return "I stopped.".to_owned();
+    }
+    let detail = if detail.trim().is_empty() { cause(status) } else { detail };
+    let (cause, remedy) = detail.split_once(": ").map_or((detail, None), |(cause, remedy)| (cause, Some(remedy)));
+    let help = match (offer, remedy) {
+        (Some(offer), _) => offer.to_owned(),
+        (None, Some(remedy)) => describe::sentence(remedy),
+        (None, None) => help(catalog, scene, step, status),
     };
-    format!("{start} {help}").trim().to_owned()
+    format!("{} {help}", describe::sentence(cause)).trim().to_owned()
 }
 
 pub(crate) const fn cause(status: Status) -> &'static str {

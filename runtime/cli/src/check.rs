@@ -48,10 +48,21 @@ struct Verdict {
 impl Check {
     /// Checks all files; fails if any has an error.
     pub fn run(&self) -> anyhow::Result<()> {
+        match self.report() {
+            // Who reads has read enough.
+            Err(error)
+                if error.downcast_ref::<io::Error>().is_some_and(|error| error.kind() == io::ErrorKind::BrokenPipe) =>
+            {
+                Ok(())
+            }
+            done => done,
+        }
+    }
+
+    fn report(&self) -> anyhow::Result<()> {
         let mut out = BufWriter::new(io::stdout().lock());
         if self.schema {
-            serde_json::to_writer_pretty(&mut out, &mission::schema::schema(&Catalog::builtin()))?;
-            writeln!(out)?;
+            writeln!(out, "{:#}", mission::schema::schema(&Catalog::builtin()))?;
             return Ok(out.flush()?);
         }
         let catalog = Catalog::builtin();
@@ -67,8 +78,7 @@ impl Check {
             }
         }
         if self.json {
-            serde_json::to_writer_pretty(&mut out, &report)?;
-            writeln!(out)?;
+            writeln!(out, "{:#}", Value::Array(report))?;
         } else if all > 1 {
             writeln!(out, "{} of {all} missions are playable", all - bad)?;
         }

@@ -101,7 +101,7 @@ fn body_record(body: &BodyView) -> BodyRecord {
         held: body.held.map_or(NONE, |object| object.0),
         busy: u32::from(body.busy),
         kind: body.kind as u32,
-        reserved: 0,
+        flags: body.flags.0,
         command: body.command.unwrap_or(0),
         position_m: body.position_m.to_array(),
         yaw_rad: body.yaw_rad,

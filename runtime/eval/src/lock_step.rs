@@ -24,13 +24,13 @@ pub struct LockStep {
     commands: u64,
     waiting: Vec<InputEntry>,
     turn_by_command: BTreeMap<u64, u64>,
-    heard: Heardings,
+    noted: Noted,
     trace: Option<Trace>,
 }
 
 /// What is noted of a session until somebody takes it.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Heardings {
+pub struct Noted {
     /// Commands that ended.
     pub outcomes: Vec<Outcome>,
     /// What the robot said, with its kind.
@@ -50,7 +50,7 @@ impl LockStep {
             commands: 0,
             waiting: Vec::new(),
             turn_by_command: BTreeMap::new(),
-            heard: Heardings::default(),
+            noted: Noted::default(),
             trace: None,
         }
     }
@@ -71,8 +71,8 @@ impl LockStep {
     }
 
     /// All that was noted since this was last asked.
-    pub fn take_heard(&mut self) -> Heardings {
-        std::mem::take(&mut self.heard)
+    pub fn take_noted(&mut self) -> Noted {
+        std::mem::take(&mut self.noted)
     }
 
     /// Whether nothing is left to be done.
@@ -144,7 +144,7 @@ impl LockStep {
             self.agent.hear(&Heard::Outcome { status: outcome.status, detail: &outcome.detail }, &mut deeds);
             self.carry_out(deeds)?;
         }
-        self.heard.outcomes.push(outcome);
+        self.noted.outcomes.push(outcome);
         Ok(())
     }
 
@@ -169,7 +169,7 @@ impl LockStep {
         for reaction in reactions {
             match reaction {
                 Reaction::Bus(message) => self.pass_on(&message)?,
-                Reaction::TurnEnded { turn, end } => self.heard.turns.push((turn, end)),
+                Reaction::TurnEnded { turn, end } => self.noted.turns.push((turn, end)),
                 Reaction::Chat(_) | Reaction::Page(_) => {}
             }
         }
@@ -185,7 +185,7 @@ impl LockStep {
                 self.carry_out(deeds)
             }
             Some(kind @ (DialogKind::Reply | DialogKind::Question)) => {
-                self.heard.said.push((kind, message.header.text.as_str().to_owned()));
+                self.noted.said.push((kind, message.header.text.as_str().to_owned()));
                 Ok(())
             }
             _ => Ok(()),

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     family::family,
-    lock_step::{Heardings, LockStep, is_failure},
+    lock_step::{LockStep, Noted, is_failure},
     task::{Answer, Line, Task},
     trajectory,
 };
@@ -140,6 +140,9 @@ fn file_name(id: &str) -> String {
     id.chars().map(|letter| if fits(letter) { letter } else { '_' }).collect()
 }
 
+/// What the robot said, in order.
+type Replies = Vec<(DialogKind, String)>;
+
 struct Player {
     session: LockStep,
     played: Played,
@@ -190,7 +193,7 @@ impl Player {
         loop {
             let turn = self.session.say(text)?;
             let heard =
-                self.until(|heard| heard.turns.iter().find(|(ended, _)| *ended == turn).map(|(_, end)| *end))?;
+                self.until(|noted| noted.turns.iter().find(|(ended, _)| *ended == turn).map(|(_, end)| *end))?;
             let (end, said) = heard;
             let replies = said.iter().map(|(_, text)| text.clone()).collect();
             self.played.transcript.push(Said { line: text.to_owned(), replies });
@@ -215,7 +218,7 @@ impl Player {
             Err(why) => return Ok(Some(why)),
         };
         self.session.command(action);
-        let (outcome, _) = self.until(|heard| heard.outcomes.last().cloned())?;
+        let (outcome, _) = self.until(|noted| noted.outcomes.last().cloned())?;
         Ok(match outcome {
             None => Some("it did not come to an end".to_owned()),
             Some(outcome) if is_failure(outcome.status) => Some(format!("{:?}: {}", outcome.status, outcome.detail)),
@@ -224,16 +227,13 @@ impl Player {
     }
 
     /// Ticks until `done`; gives what it gave, and what the robot said meanwhile.
-    fn until<T>(
-        &mut self,
-        done: impl Fn(&Heardings) -> Option<T>,
-    ) -> Result<(Option<T>, Vec<(DialogKind, String)>), LogError> {
+    fn until<T>(&mut self, done: impl Fn(&Noted) -> Option<T>) -> Result<(Option<T>, Replies), LogError> {
         let mut said = Vec::new();
         for _ in 0..PATIENCE_TICKS {
-            let heard = self.session.take_heard();
-            let found = done(&heard);
-            heard.outcomes.iter().for_each(|outcome| self.count(outcome));
-            said.extend(heard.said);
+            let noted = self.session.take_noted();
+            let found = done(&noted);
+            noted.outcomes.iter().for_each(|outcome| self.count(outcome));
+            said.extend(noted.said);
             if found.is_some() || self.played.ended_early.is_some() {
                 return Ok((found, said));
             }

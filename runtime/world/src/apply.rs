@@ -101,6 +101,11 @@ impl Changes<'_> {
             }
         };
         let mut object = Object::new(instance, class, room, pose);
+        if let Some(machine) = by.map(|by| self.state.at(by)) {
+            // It is named after its machine, by every name that this has.
+            let names = machine.aliases.iter().map(|alias| object.instance.replacen(&machine.instance, alias, 1));
+            object.aliases = names.collect();
+        }
         (object.was, object.requested) = (was, true);
         let id = self.add(object);
         self.put(id, spot);

@@ -5,9 +5,10 @@ use cohabit_cdf::{Action, BodyId, ObjectId};
 use glam::Vec2;
 
 use crate::{
+    approach::Sweep,
     body::{Body, Step, Task},
     geometry::{Footprint, direction, heading, nearest_on},
-    navigation::{Navigation, Sweep},
+    navigation::Navigation,
     passage::Obstruction,
     world::World,
 };
@@ -23,7 +24,7 @@ const RETRY_TICKS: u64 = 45;
 /// Ticks between two looks ahead.
 const LOOK_TICKS: u64 = 6;
 /// A body that changed its way so often does not any more.
-const MOST_DETOURS: u32 = 40;
+const MOST_DETOURS: u32 = 150;
 /// Ticks after which a body with the higher, and the lower, id steps aside where two cannot pass.
 const ASIDE_TICKS: [u32; 2] = [20, 100];
 /// Ticks that a body that stepped aside waits at most.
@@ -42,7 +43,8 @@ impl World {
             }
             return;
         }
-        let looks = (self.state.tick + u64::from(id.0)) % LOOK_TICKS == 0 && self.state.tick >= task.settled_until;
+        let looks =
+            (self.state.tick + u64::from(id.0)).is_multiple_of(LOOK_TICKS) && self.state.tick >= task.settled_until;
         if !looks || task.steps.iter().any(|step| matches!(step, Step::Yield { .. })) {
             return;
         }
@@ -152,9 +154,13 @@ impl World {
     pub(crate) fn make_way(&self, id: BodyId, task: &mut Task, met: Obstruction) {
         match met {
             Obstruction::Body(other) => {
-                let patience = ASIDE_TICKS[usize::from(id.0 < other.0)];
-                let asked = task.waited % patience == patience - 1 && self.wants_through(other, id);
-                if asked && self.step_aside(id, task, other) {
+                // Whoever comes first in the order of ids has the right of way, also where several wait for each other.
+                let patience = |walker: BodyId| ASIDE_TICKS[usize::from(id.0 < walker.0)];
+                let asks = |walker: BodyId| {
+                    task.waited % patience(walker) == patience(walker) - 1 && self.wants_through(walker, id)
+                };
+                let asked = self.others(id).map(|(walker, _)| walker).find(|walker| asks(*walker));
+                if asked.is_some_and(|walker| self.step_aside(id, task, walker)) {
                     return;
                 }
                 if self.state.tick >= task.settled_until {
@@ -183,7 +189,10 @@ impl World {
         /// Nobody goes further to make way, m.
         const FURTHEST_M: f32 = 12.0;
         let body = &self.state.bodies[id.0 as usize];
-        let Some(goal) = task.way().and_then(|way| way.last().copied()) else { return false };
+        // Whoever is already on the way aside goes on to where it was going before.
+        let first = task.steps.iter().position(|step| matches!(step, Step::Walk { .. }));
+        let Some((first, Step::Walk { path: whole, .. })) = first.map(|at| (at, &task.steps[at])) else { return false };
+        let Some(goal) = whole.last().copied() else { return false };
         let ways: Vec<(&Body, &[Vec2])> = self
             .others(id)
             .filter(|(_, other)| other.position.distance(body.position) < FURTHEST_M)
@@ -210,7 +219,7 @@ impl World {
             (length < FURTHEST_M).then_some((aside, back))
         });
         let Some((aside, back)) = found else { return false };
-        task.steps.pop();
+        task.steps.truncate(first);
         task.steps.push(Step::Walk { path: back, next: 0 });
         task.steps.push(Step::Yield { to: other, ticks_left: ASIDE_FOR_TICKS });
         task.steps.push(Step::Walk { path: aside, next: 0 });

@@ -1,6 +1,6 @@
 //! One object: what it is, where it is, and the states it is in.
 
-use cohabit_cdf::{BodyId, ClassId, Color, Fluid, ObjectId, RoomId, StateFlags};
+use cohabit_cdf::{BodyId, ClassId, Color, Fluid, ObjectClass, ObjectId, RoomId, StateFlags};
 use glam::{Quat, Vec3};
 use serde::{Deserialize, Serialize};
 
@@ -116,6 +116,11 @@ impl Object {
     /// The receptacle it is in or on.
     pub fn parent(&self) -> Option<ObjectId> {
         self.support.parent()
+    }
+
+    /// What it weighs, kg: what is embiggened weighs as much more as it is larger.
+    pub fn mass_kg(&self, class: &ObjectClass) -> f32 {
+        class.mass_kg * self.scale.iter().product::<f32>()
     }
 
     /// Who holds it.

@@ -8,7 +8,6 @@ use crate::{
     floor::Floor,
     geometry::Footprint,
     state::State,
-    swing::Leaf,
 };
 
 /// A read-only view of everything.
@@ -33,7 +32,8 @@ impl<'a> Facts<'a> {
     /// What people call it, with the article: `the fridge`.
     pub fn name(&self, id: ObjectId) -> String {
         let class = self.class(id);
-        let word = if class.name.is_empty() { class.words.first().map_or("thing", String::as_str) } else { &class.name };
+        let word =
+            if class.name.is_empty() { class.words.first().map_or("thing", String::as_str) } else { &class.name };
         format!("the {}", word.to_lowercase())
     }
 
@@ -115,56 +115,6 @@ impl<'a> Facts<'a> {
     /// How far a hand at `from` has to reach to it, level, m.
     pub fn reach_to(&self, id: ObjectId, from: Vec2) -> f32 {
         self.footprint(id).distance(from).min(self.aim_point(id).truncate().distance(from))
-    }
-
-    /// Its doors, lids and drawers, where they are now.
-    pub fn leaves(&self, id: ObjectId) -> impl Iterator<Item = Leaf> + 'a {
-        self.leaves_at(id, self.object(id).opened)
-    }
-
-    /// The same, were it open so far, 0 to 1.
-    pub fn leaves_at(&self, id: ObjectId, opened: f32) -> impl Iterator<Item = Leaf> + 'a {
-        let object = self.object(id);
-        let scale = Vec3::from(object.scale);
-        self.floor.swings.of(object.class).iter().map(move |swing| swing.leaf(&object.pose, scale, opened))
-    }
-
-    /// Whether a wall, or a door, stands between a body at `from` and the object.
-    pub fn walled_off(&self, id: ObjectId, from: Vec2) -> bool {
-        // Things on walls and in doorways touch the wall themselves: the last hand's breadth does not count.
-        const TOUCH_M: f32 = 0.2;
-        /// Height of a shoulder, m.
-        const SHOULDER_M: f32 = 1.0;
-        let doors = self.doors_near(id, from);
-        let blocked = |to: Vec3| {
-            let line = to - from.extend(SHOULDER_M);
-            let level = line.truncate().length();
-            let to = from.extend(SHOULDER_M) + line * ((level - TOUCH_M) / level.max(TOUCH_M));
-            level > TOUCH_M
-                && (self.floor.wall_between(from, to.truncate())
-                    || doors.iter().any(|leaf| leaf.cuts(from.extend(SHOULDER_M), to)))
-        };
-        let aim = self.aim_point(id);
-        blocked(aim) && blocked(self.footprint(id).closest(from).extend(aim.z))
-    }
-
-    /// The leaves that could stand between a body and an object: of doors between rooms, and of furniture that stands
-    /// wide open; a door that is on its way gives way to an arm.
-    fn doors_near(&self, id: ObjectId, from: Vec2) -> Vec<Leaf> {
-        /// No leaf reaches further from the middle of its object, m.
-        const LEAF_M: f32 = 1.6;
-        const WIDE: f32 = 0.99;
-        let to = self.object(id).pose.position.truncate();
-        let (low, high) = (from.min(to) - LEAF_M, from.max(to) + LEAF_M);
-        let near = self.state.existing().filter(|(other, object)| {
-            let at = object.pose.position.truncate();
-            *other != id
-                && !self.floor.swings.of(object.class).is_empty()
-                && at.cmpge(low).all()
-                && at.cmple(high).all()
-                && (object.opened >= WIDE || self.floor.gaps.iter().any(|gap| gap.door_object == Some(*other)))
-        });
-        near.flat_map(|(other, _)| self.leaves(other)).collect()
     }
 
     /// The objects of a class in a room, in order of ids.

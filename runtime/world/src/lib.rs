@@ -32,6 +32,7 @@
 
 mod anchors;
 mod apply;
+mod approach;
 mod avoid;
 mod body;
 mod build;
@@ -48,6 +49,7 @@ mod passage;
 mod physics;
 mod power;
 mod push;
+mod reach;
 mod report;
 mod rules;
 mod score;

@@ -1,6 +1,7 @@
-//! The floor that a body can walk on: the mesh, paths over it, and where to stand to reach something.
+//! The floor that a body can walk on: what blocks it, the mesh that is left, and paths over it. Never knows what a
+//! path is for.
 
-use cohabit_cdf::{ObjectId, Property, RoomId, StateFlag, catalog::Stands};
+use cohabit_cdf::{ObjectId, Property, StateFlag, catalog::Stands};
 use glam::Vec2;
 use polyanya::{Mesh, Triangulation};
 
@@ -12,16 +13,14 @@ use crate::{
     push::is_pushable,
 };
 
-/// How far, level, a body stands at most from what it was sent to, m.
-const STAND_WITHIN_M: f32 = 1.3;
 /// How far a body may be off the mesh (beside a corner, after a push) and still find back, m.
 const SNAP_M: f32 = 0.6;
 /// What is lower than this is stepped over, m.
 const STEP_OVER_M: f32 = 0.1;
 /// What begins higher than this is walked under, m.
-const WALK_UNDER_M: f32 = 1.0;
+pub(crate) const WALK_UNDER_M: f32 = 1.0;
 /// Added to the radius of a body on the mesh, so that rounding never makes a path touch.
-const MARGIN_M: f32 = 0.005;
+pub(crate) const MARGIN_M: f32 = 0.005;
 
 /// The walkable floor at one moment.
 pub(crate) struct Navigation {
@@ -30,7 +29,7 @@ pub(crate) struct Navigation {
     /// The floors of the rooms, `[west, south, east, north]`, m: the mesh goes on outside.
     rooms: Vec<[f32; 4]>,
     /// Whether bodies push open doors and drawers of furniture aside on it.
-    pushes_leaves: bool,
+    pub pushes_leaves: bool,
     /// The floor's version that this is of.
     pub version: u64,
     /// Area a body's middle can be on, grown by its radius, m².
@@ -72,14 +71,6 @@ impl Blockers {
     }
 }
 
-/// A place to stand at, and the way there.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Approach {
-    pub path: Vec<Vec2>,
-    /// Whether what was asked for cannot be reached from there.
-    pub alternate: bool,
-}
-
 impl Navigation {
     /// Works out the walkable floor.
     pub fn new(facts: &Facts<'_>) -> Self {
@@ -105,7 +96,7 @@ impl Navigation {
     /// The floor as it would be if the open doors and drawers of furniture were pushed aside; `None` if none is open.
     pub fn but_for_leaves(facts: &Facts<'_>) -> Option<Self> {
         let mut blockers = Blockers::of(facts);
-        let between_rooms = |id: &ObjectId| facts.floor.gaps.iter().any(|gap| gap.door_object == Some(*id));
+        let between_rooms = |id: &ObjectId| facts.is_room_door(*id);
         let doors = blockers.swinging.iter().filter(|id| between_rooms(id));
         let hard: Vec<Footprint> = doors.flat_map(|id| resting_leaves(facts, *id)).collect();
         if hard.len() == blockers.leaves.len() {
@@ -193,71 +184,10 @@ impl Navigation {
         let found = self.mesh.path(start, end)?;
         Some((first.into_iter().chain(found.path).collect(), found.length + from.distance(start)))
     }
-
-    /// The way to a point; to one nearby, if it is taken.
-    pub fn approach_point(&self, from: Vec2, to: Vec2) -> Option<Approach> {
-        const NEARBY_M: f32 = 1.0;
-        let end = self.snap(to, NEARBY_M)?;
-        let (path, _) = self.path(from, end)?;
-        Some(Approach { path, alternate: end.distance(to) > 0.05 })
-    }
-
-    /// The way into a room: to its first named viewpoint that can be reached, else to its middle.
-    pub fn approach_room(&self, facts: &Facts<'_>, from: Vec2, room: RoomId, viewpoints: &[Vec2]) -> Option<Approach> {
-        let middles = facts
-            .floor
-            .rects(room)
-            .map(|[west, south, east, north]| Vec2::new((west + east) / 2.0, (south + north) / 2.0));
-        viewpoints.iter().copied().chain(middles).find_map(|point| {
-            let approach = self.approach_point(from, point)?;
-            let end = approach.path.last().copied()?;
-            (facts.floor.room_at(end) == Some(room)).then_some(Approach { alternate: false, ..approach })
-        })
-    }
-
-    /// The way to a place from which `object` is in reach, in front of it and in sight if possible.
-    pub fn approach_object(&self, facts: &Facts<'_>, from: Vec2, object: ObjectId) -> Option<Approach> {
-        let sweep = Sweep::before(facts, object);
-        let cost = |place| place_cost(facts, object, place) + sweep.cost(place);
-        let mut places: Vec<(f32, Vec2)> = standing_places(facts, object)
-            .filter(|place| self.is_walkable(*place) && self.is_before(facts, object, *place))
-            .map(|place| (cost(place), place))
-            .collect();
-        let near = !self.is_walkable(from) || facts.reach_to(object, from) < STAND_WITHIN_M;
-        if near && self.is_before(facts, object, from) {
-            places.push((cost(from), from));
-        }
-        // No way is shorter than the straight line: the best place is found long before all are tried.
-        const WAY_COST: f32 = 0.3;
-        let mut bounded: Vec<(f32, f32, Vec2)> =
-            places.into_iter().map(|(cost, place)| (cost + from.distance(place) * WAY_COST, cost, place)).collect();
-        bounded.sort_by(|one, two| one.0.total_cmp(&two.0));
-        let mut best: Option<(f32, Vec<Vec2>)> = None;
-        for (bound, cost, place) in bounded {
-            if best.as_ref().is_some_and(|(least, _)| bound >= *least) {
-                break;
-            }
-            let Some((path, length)) = self.path(from, place) else { continue };
-            let total = cost + length * WAY_COST;
-            if best.as_ref().is_none_or(|(least, _)| total < *least) {
-                best = Some((total, path));
-            }
-        }
-        let (_, path) = best?;
-        Some(Approach { path, alternate: false })
-    }
-
-    /// Whether nothing stands between a place and an object, or nothing that does not swing aside for who stands there.
-    fn is_before(&self, facts: &Facts<'_>, object: ObjectId, place: Vec2) -> bool {
-        let mut around = std::iter::once(object).chain(facts.state.ancestors(object));
-        let swings_aside = self.pushes_leaves
-            && around.any(|id| facts.leaves_at(id, 1.0).any(|leaf| leaf.print.distance(place) < RADIUS_M));
-        swings_aside || !facts.walled_off(object, place)
-    }
 }
 
 /// A point, and points around it in rings further and further out.
-fn rings(middle: Vec2, within: f32) -> impl Iterator<Item = Vec2> {
+pub(crate) fn rings(middle: Vec2, within: f32) -> impl Iterator<Item = Vec2> {
     const RING_M: f32 = 0.05;
     const SPOKES: u32 = 24;
     let rings = (within / RING_M) as u32;
@@ -266,75 +196,6 @@ fn rings(middle: Vec2, within: f32) -> impl Iterator<Item = Vec2> {
         middle + direction(angle) * (ring as f32 * RING_M)
     });
     std::iter::once(middle).chain(around)
-}
-
-/// Points around an object where a body could stand to reach it.
-fn standing_places<'a>(facts: &'a Facts<'a>, object: ObjectId) -> impl Iterator<Item = Vec2> + 'a {
-    const SPOKES: u32 = 32;
-    const RINGS_M: [f32; 6] = [0.35, 0.5, 0.65, 0.8, 1.0, 1.2];
-    let print = facts.footprint(object);
-    let aim = facts.aim_point(object).truncate();
-    let around = (0..SPOKES).flat_map(move |spoke| {
-        let away = direction(spoke as f32 * (std::f32::consts::TAU / SPOKES as f32));
-        let rim = print.closest(print.center + away * 10.0);
-        RINGS_M.into_iter().flat_map(move |ring| [aim + away * ring, rim + away * ring])
-    });
-    // Before a wide front there is more than the spokes from its middle find.
-    let along = (-4_i8..=4).flat_map(move |side| {
-        RINGS_M
-            .into_iter()
-            .map(move |ring| print.world(Vec2::new(print.half.x + ring, print.half.y * f32::from(side) / 4.0)))
-    });
-    around.chain(along).filter(move |place| facts.reach_to(object, *place) <= STAND_WITHIN_M)
-}
-
-/// The space that doors and drawers of an object take as they open.
-pub(crate) struct Sweep(Vec<Footprint>);
-
-impl Sweep {
-    /// That of an object.
-    pub fn of(facts: &Facts<'_>, id: ObjectId) -> Self {
-        const STAGES: u8 = 8;
-        let stages = (0..=STAGES).flat_map(|stage| facts.leaves_at(id, f32::from(stage) / f32::from(STAGES)));
-        Self(stages.filter(|leaf| leaf.low_m < WALK_UNDER_M).map(|leaf| leaf.print).collect())
-    }
-
-    /// That of all around an object that is still to be opened.
-    fn before(facts: &Facts<'_>, object: ObjectId) -> Self {
-        let around = std::iter::once(object).chain(facts.state.ancestors(object));
-        let shut = around.filter(|id| facts.has(*id, Property::Openable) && !facts.is(*id, StateFlag::Opened));
-        Self(shut.flat_map(|id| Self::of(facts, id).0).collect())
-    }
-
-    /// How far a point is from it, m; far, if nothing swings.
-    pub fn distance(&self, point: Vec2) -> f32 {
-        self.0.iter().map(|print| print.distance(point)).fold(f32::MAX, f32::min)
-    }
-
-    /// What it costs to stand in it, in metres of way.
-    fn cost(&self, place: Vec2) -> f32 {
-        if self.distance(place) < RADIUS_M + MARGIN_M { 2.0 } else { 0.0 }
-    }
-}
-
-/// How poor a place is to work on an object from, in metres of way.
-fn place_cost(facts: &Facts<'_>, object: ObjectId, place: Vec2) -> f32 {
-    const GOOD_DISTANCE_M: f32 = 0.75;
-    // What an object stands in decides the side to come from.
-    let front =
-        facts.state.ancestors(object).find(|parent| !facts.has(*parent, Property::Pickupable)).unwrap_or(object);
-    let faced = facts.footprint(front);
-    let out = (place - faced.closest(place)).normalize_or_zero();
-    let has_front = !facts.has(front, Property::Pickupable);
-    let side = if has_front { 1.0 - out.dot(faced.axis) } else { 0.0 };
-    let distance = facts.aim_point(object).truncate().distance(place);
-    (distance - GOOD_DISTANCE_M).abs() * 1.5 + side * if needs_front(facts, front) { 3.0 } else { 0.4 }
-}
-
-/// Whether it can only be worked from its front.
-fn needs_front(facts: &Facts<'_>, object: ObjectId) -> bool {
-    let class = facts.class(object);
-    class.has(Property::Openable) || class.has(Property::Toggleable) || class.stands == Stands::OnWall
 }
 
 /// Doors that are shut and locked, and the gaps that they shut.
@@ -373,7 +234,7 @@ fn swings_at_body_height(facts: &Facts<'_>, id: ObjectId) -> bool {
 
 /// The open doors and drawers of an object, once they rest; doors between rooms are opened in passing.
 fn resting_leaves<'a>(facts: &Facts<'a>, id: ObjectId) -> impl Iterator<Item = Footprint> + 'a {
-    let between_rooms = facts.floor.gaps.iter().any(|gap| gap.door_object == Some(id));
+    let between_rooms = facts.is_room_door(id);
     let open = facts.is(id, StateFlag::Opened) || (between_rooms && !facts.is(id, StateFlag::Locked));
     let leaves = open.then(|| facts.leaves_at(id, 1.0)).into_iter().flatten();
     leaves.filter(|leaf| leaf.low_m < WALK_UNDER_M).map(|leaf| leaf.print)

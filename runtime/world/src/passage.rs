@@ -4,9 +4,10 @@ use cohabit_cdf::{BodyId, BodyKind, GoToTarget, ObjectId, StateFlag};
 use glam::Vec2;
 
 use crate::{
+    approach::Sweep,
     body::{Body, Step},
     facts::Facts,
-    navigation::{Navigation, Sweep},
+    navigation::Navigation,
     push::{Push, push},
     world::World,
 };
@@ -68,9 +69,9 @@ impl World {
                     let distance = leaf.print.distance(to);
                     distance < radius && distance < leaf.print.distance(from)
                 });
-                let between_rooms = self.floor.gaps.iter().any(|gap| gap.door_object == Some(*door));
+                let between_rooms = facts.is_room_door(*door);
                 // A way leads through the open doors of furniture only where it must: then they swing aside.
-                (touched && !(planned && !between_rooms))
+                (touched && (between_rooms || !planned))
                     || (between_rooms
                         && is_swinging(&facts, *door)
                         && enters(&Sweep::of(&facts, *door), from, to, radius))
@@ -86,7 +87,7 @@ impl World {
         let facts = self.facts();
         let near = self.navigation.swinging().iter().copied().filter(|door| {
             let from = facts.object(*door).pose.position.truncate() - at;
-            from.abs().max_element() < LEAF_M && !self.floor.gaps.iter().any(|gap| gap.door_object == Some(*door))
+            from.abs().max_element() < LEAF_M && !facts.is_room_door(*door)
         });
         let pushed: Vec<(ObjectId, f32)> = near
             .filter_map(|door| {
@@ -125,7 +126,7 @@ impl World {
         let facts = self.facts();
         match obstruction {
             Some(Obstruction::Body(other)) => format!("{} is in my way", self.body_name(other)),
-            Some(Obstruction::Leaf(door)) if self.floor.gaps.iter().any(|gap| gap.door_object == Some(door)) => {
+            Some(Obstruction::Leaf(door)) if facts.is_room_door(door) => {
                 format!("{} is in my way", facts.name(door))
             }
             Some(Obstruction::Leaf(door)) => format!("the open door of {} is in my way", facts.name(door)),

@@ -11,8 +11,13 @@ use rapier3d::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    entity::Support, facts::Facts, floor::Floor, geometry::Pose as ObjectPose, motion::DT_S,
-    navigation::blocks_the_way, state::State,
+    entity::{Object, Support},
+    facts::Facts,
+    floor::Floor,
+    geometry::Pose as ObjectPose,
+    motion::DT_S,
+    navigation::blocks_the_way,
+    state::State,
 };
 
 /// Ticks of stillness after which a thing is taken to lie.
@@ -50,8 +55,8 @@ struct Flight {
     handle: RigidBodyHandle,
     ticks: u32,
     still: u32,
-    /// What held it, and where, if it lay still until something came near.
-    rested: Option<(Support, ObjectPose)>,
+    /// Whether it lies where it belongs, and is here only because something comes near.
+    rests: bool,
 }
 
 impl Physics {
@@ -106,7 +111,7 @@ impl Physics {
         let (class, object) = (facts.class(id), facts.object(id));
         let (pose, scale) = (object.pose, Vec3::from(object.scale));
         let mut colliders = Vec::new();
-        let is_only_a_leaf = facts.floor.gaps.iter().any(|gap| gap.door_object == Some(id));
+        let is_only_a_leaf = facts.is_room_door(id);
         match &class.receptacle {
             _ if is_only_a_leaf => {}
             Some(kind) if !kind.enclosed => {
@@ -164,9 +169,15 @@ impl Physics {
             .filter(|id| {
                 let (middle, reach) = ball(facts, *id);
                 flying.iter().any(|(low, high)| middle.cmpge(*low - reach).all() && middle.cmple(*high + reach).all())
+                    && !self.loose.contains_key(id)
                     && is_light(facts, *id)
             })
             .collect()
+    }
+
+    /// Whether anything flies or slides.
+    pub fn is_active(&self) -> bool {
+        !self.loose.is_empty()
     }
 
     /// What flies or slides now, with its velocity: the part of the solver that a digest covers.
@@ -196,9 +207,27 @@ fn is_light(facts: &Facts<'_>, id: ObjectId) -> bool {
     });
     matches!(facts.object(id).support, Support::Fixed | Support::On { .. })
         && lies_about
-        && class.mass_kg <= LIGHT_KG
+        && facts.object(id).mass_kg(class) <= LIGHT_KG
         && in_the_open
         && !blocks_the_way(facts, id)
+}
+
+/// What came to rest on top of a thing, held by nothing else.
+pub(crate) fn lying_on(facts: &Facts<'_>, id: ObjectId) -> Vec<ObjectId> {
+    /// Room between two things that touch, m.
+    const TOUCH_M: f32 = 0.05;
+    let (print, base) = (facts.footprint(id), facts.object(id).pose.position.z);
+    let lies_on = |(other, object): &(ObjectId, &Object)| {
+        let height = object.pose.position.z - base;
+        *other != id
+            && object.support == Support::Fixed
+            && facts.has(*other, Property::Pickupable)
+            && height > 0.0
+            && height < facts.size(id).max_element() + TOUCH_M
+            && object.pose.position.z > TOUCH_M
+            && facts.footprint(*other).overlaps(&print)
+    };
+    facts.state.existing().filter(lies_on).map(|(other, _)| other).collect()
 }
 
 /// The middle of an object, and how far it reaches from there, m.
@@ -221,13 +250,13 @@ pub(crate) fn add_body(catalog: &Catalog, state: &mut State, object: ObjectId, v
     let volume = 8.0 * half.x * half.y * half.z;
     let collider = ColliderBuilder::cuboid(half.x, half.y, half.z)
         .translation(Vec3::Z * half.z)
-        .density(class.mass_kg.max(0.01) / volume)
+        .density(this.mass_kg(class).max(0.01) / volume)
         .friction(0.7)
         .restitution(0.2);
     let physics = &mut state.physics;
     let handle = physics.world.bodies.insert(body);
     physics.world.colliders.insert_with_parent(collider, handle, &mut physics.world.bodies);
-    physics.loose.insert(object, Flight { handle, ticks: 0, still: 0, rested: None });
+    physics.loose.insert(object, Flight { handle, ticks: 0, still: 0, rests: false });
 }
 
 /// Takes an object out of the solver, if it is in it.
@@ -258,8 +287,8 @@ fn remove(physics: &mut Physics, handle: RigidBodyHandle) {
 pub(crate) struct Flown {
     /// They came to rest somewhere, and belong there now.
     pub landed: Vec<ObjectId>,
-    /// They were knocked loose, or lie again where they lay.
-    pub changed: Vec<ObjectId>,
+    /// They lay at rest, and were knocked loose.
+    pub knocked: Vec<ObjectId>,
 }
 
 /// Moves all that is loose by one tick.
@@ -277,65 +306,50 @@ pub(crate) fn step(catalog: &Catalog, floor: &Floor, state: &mut State) -> Flown
     }
     let woken = physics.soon_hit(&facts);
     state.physics = physics;
-    for id in &woken {
-        wake(catalog, state, *id);
+    for id in woken {
+        // It stays where it belongs until it has really moved.
+        add_body(catalog, state, id, Vec3::ZERO);
+        if let Some(flight) = state.physics.loose.get_mut(&id) {
+            flight.rests = true;
+        }
     }
     follow_bodies(state);
     state.physics.world.step();
-    let resting = settle_flights(state);
-    let mut flown = restore_unmoved(state, resting);
-    flown.changed.extend(woken);
-    flown
-}
-
-/// Takes what lies at rest into the solver, where it may be hit.
-fn wake(catalog: &Catalog, state: &mut State, id: ObjectId) {
-    let rested = (state.at(id).support, state.at(id).pose);
-    add_body(catalog, state, id, Vec3::ZERO);
-    state.at_mut(id).support = Support::Loose;
-    if let Some(flight) = state.physics.loose.get_mut(&id) {
-        flight.rested = Some(rested);
-    }
-}
-
-/// Of what came to rest, gives back its place to what was woken for nothing.
-fn restore_unmoved(state: &mut State, resting: Vec<ObjectId>) -> Flown {
-    let mut flown = Flown::default();
-    for id in resting {
-        let rested = state.physics.loose.get(&id).and_then(|flight| flight.rested);
-        match rested.filter(|(_, pose)| pose.position.distance(state.at(id).pose.position) < UNMOVED_M) {
-            Some((support, pose)) => {
-                drop_body(state, id);
-                state.at_mut(id).support = support;
-                state.at_mut(id).pose = pose;
-                flown.changed.push(id);
-            }
-            None => flown.landed.push(id),
-        }
+    let (flown, missed) = read_flights(state);
+    for id in missed {
+        drop_body(state, id);
     }
     flown
 }
 
-/// Reads the poses of all that is loose; returns what has come to rest.
-fn settle_flights(state: &mut State) -> Vec<ObjectId> {
-    let mut resting = Vec::new();
+/// Reads the poses of all that is loose; returns what has come to rest or was knocked loose, and what nothing hit.
+fn read_flights(state: &mut State) -> (Flown, Vec<ObjectId>) {
+    let (mut flown, mut missed) = (Flown::default(), Vec::new());
     let physics = &mut state.physics;
     for (id, flight) in &mut physics.loose {
         let body = &physics.world.bodies[flight.handle];
+        let object = &mut state.objects[id.0 as usize];
         let still = body.linvel().length() < STILL_M_S && body.angvel().length() < STILL_RAD_S;
         flight.ticks += 1;
         flight.still = if still { flight.still + 1 } else { 0 };
         let position = body.translation();
         let lost = position.z < -0.5 || !position.is_finite();
-        if flight.still >= STILL_TICKS || flight.ticks >= LONGEST_TICKS || lost {
-            resting.push(*id);
+        let ends = flight.still >= STILL_TICKS || flight.ticks >= LONGEST_TICKS || lost;
+        if flight.rests {
+            if lost || position.distance(object.pose.position) < UNMOVED_M {
+                missed.extend(ends.then_some(*id));
+                continue;
+            }
+            flight.rests = false;
+            object.support = Support::Loose;
+            flown.knocked.push(*id);
         }
+        flown.landed.extend(ends.then_some(*id));
         if !lost {
-            let object = &mut state.objects[id.0 as usize];
             object.pose = ObjectPose { position, rotation: *body.rotation() };
         }
     }
-    resting
+    (flown, missed)
 }
 
 /// The cylinders of the walking bodies push what is loose.
@@ -361,5 +375,75 @@ fn follow_bodies(state: &mut State) {
                 physics.bodies.push(handle);
             }
         }
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use std::sync::Arc;
+
+    use cohabit_cdf::{Action, BodyId, BodyKind, Layout, Mission, ObjectRequest, RoomId};
+
+    use super::*;
+    use crate::{Input, World};
+
+    /// A world with these things somewhere in the reception.
+    fn world(things: &[&str]) -> World {
+        let request = |thing: &&str| ObjectRequest {
+            instance: (*thing).to_owned(),
+            room: Some(RoomId::Reception),
+            ..ObjectRequest::default()
+        };
+        let mission = Mission {
+            layout: "OfficeLayout1".to_owned(),
+            start_room: RoomId::Reception,
+            objects: things.iter().map(request).collect(),
+            ..Mission::default()
+        };
+        let layout = Layout::builtin("OfficeLayout1").unwrap();
+        World::new(Arc::new(Catalog::builtin()), Arc::new(layout), Arc::new(mission), 1).unwrap()
+    }
+
+    /// Stands a thing free at a place.
+    fn put(world: &mut World, thing: &str, at: Vec3) -> ObjectId {
+        let id = world.find(thing).unwrap();
+        world.state.at_mut(id).support = Support::Fixed;
+        world.state.at_mut(id).pose = ObjectPose::level(at, 0.0);
+        id
+    }
+
+    #[test]
+    fn what_lay_on_a_thing_that_is_taken_away_falls() {
+        let mut world = world(&["Trophy01_1", "Apple_1"]);
+        let at = world.state.bodies[0].position + world.state.bodies[0].velocity() + Vec2::new(0.6, 0.0);
+        let trophy = put(&mut world, "Trophy01_1", at.extend(0.0));
+        let apple = put(&mut world, "Apple_1", at.extend(0.22));
+        world.step(&[Input { command: 1, body: BodyId(0), action: Action::PickUp { object: trophy } }]);
+        for _ in 0..300 {
+            world.step(&[]);
+        }
+        assert_eq!(world.state.bodies[0].held, Some(trophy));
+        let fallen = world.state.at(apple).pose.position;
+        assert!(fallen.z < 0.1 && fallen.z > -0.02, "{fallen}");
+    }
+
+    #[test]
+    fn what_is_dropped_from_a_hand_falls_to_the_floor_and_lies() {
+        let mut world = world(&["Apple_1"]);
+        world.add_body_of(BodyKind::Person, RoomId::MainOffice).unwrap();
+        let mut events = Vec::new();
+        let apple = world.find("Apple_1").unwrap();
+        world.changes(&mut events).apply(vec![crate::effect::Effect::Hold(apple, BodyId(1))]);
+        let held = world.state.at(apple).pose.position;
+        world.changes(&mut events).apply(vec![crate::effect::Effect::LetGo(apple, Vec3::ZERO)]);
+        let ticks = (1..400).find(|_| {
+            world.step(&[]);
+            !world.state.physics.is_active()
+        });
+        let at = world.state.at(apple).pose.position;
+        assert!(ticks.is_some() && held.z > 0.9 && at.z < 0.1, "{held} to {at} after {ticks:?}");
+        assert!(at.truncate().distance(held.truncate()) < 0.5, "{held} to {at}");
+        assert_eq!(world.state.at(apple).support, Support::Fixed);
     }
 }

@@ -47,7 +47,7 @@ pub(crate) fn is_pushable(facts: &Facts<'_>, id: ObjectId) -> bool {
 
 /// What it weighs with all that stands on it, kg.
 fn mass_kg(facts: &Facts<'_>, id: ObjectId) -> f32 {
-    let own = facts.class(id).mass_kg;
+    let own = facts.object(id).mass_kg(facts.class(id));
     if own > PUSHED_KG {
         return own;
     }

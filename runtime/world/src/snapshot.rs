@@ -3,7 +3,7 @@
 use crate::state::State;
 
 /// What a snapshot begins with; the number rises with every change of the encoding.
-const MAGIC: &[u8; 8] = b"cohabW01";
+const MAGIC: &[u8; 8] = b"cohabW02";
 const DIGEST_BYTES: usize = 32;
 
 /// Why a snapshot could not be taken up.

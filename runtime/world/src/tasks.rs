@@ -3,20 +3,25 @@
 use std::cell::Cell;
 
 use cohabit_cdf::{Action, BodyId, GoToTarget, ObjectId, StateFlag, Status, Verb};
-use glam::Vec2;
+use glam::{Vec2, Vec3};
 
 use crate::{
+    approach::{Approach, Sweep},
     body::{Body, Step, Task},
+    effect::Effect,
     geometry::wrap,
     motion::{PITCH_LIMIT_RAD, Progress, advance, retract},
-    navigation::{Approach, Navigation, Sweep},
+    navigation::Navigation,
+    passage::Obstruction,
+    physics,
     report::{Event, Input, Outcome},
     rules::{self, Ruling},
     world::World,
 };
 
-/// Ticks that a body waits for its way to become free: five seconds.
+/// Ticks that a body waits for its way to become free: five seconds for what stands, fifteen for who is about to go.
 const PATIENCE_TICKS: u32 = 300;
+const PATIENCE_WITH_WALKERS_TICKS: u32 = 900;
 /// No command moves a body further than this, m.
 const FURTHEST_M: f32 = 100.0;
 /// How near a body comes to a closed door before it opens it, m: an arm's reach, beyond the swing of the leaf.
@@ -100,8 +105,8 @@ impl World {
         }
     }
 
-    /// The steps of a walk: around what stands open, if that can be; else through it; a refusal names the lock, if one it
-    /// is.
+    /// The steps of a walk: around what stands open, if that can be; else through it; else as near as can be. A refusal
+    /// names the lock, if it is one.
     fn plan_any_walk(&self, body: &Body, target: GoToTarget) -> Result<(Vec<Step>, bool), End> {
         let facts = self.facts();
         let (status, detail) = match self.plan_walk(body, target, &self.navigation) {
@@ -114,6 +119,13 @@ impl World {
             return Ok(planned);
         }
         let locked = self.locked_out(body, target);
+        if let (None, GoToTarget::Object(object)) = (locked, target)
+            && let Some(approach) = self.navigation.approach_afar(&facts, body.position, object)
+        {
+            let steps =
+                vec![Step::Face { point: facts.aim_point(object) }, Step::Walk { path: approach.path, next: 0 }];
+            return Ok((steps, true));
+        }
         Err((status, locked.map_or(detail, |door| format!("{} on the way there is locked", facts.name(door)))))
     }
 
@@ -206,14 +218,16 @@ impl World {
         }
         let end = match progress {
             Progress::Going => {
-                task.waited = 0;
+                // Turning on the spot is no progress; who gets on forgets by and by how long it stood.
+                let moved = self.state.bodies[index].position != from;
+                task.waited = task.waited.saturating_sub(u32::from(moved));
                 task.steps.push(step);
                 None
             }
             Progress::Done if matches!(step, Step::Reach) => Some(self.carry_out(id, &task.action, events)),
             Progress::Done if task.steps.is_empty() => Some(arrived(&task)),
             Progress::Done => None,
-            Progress::Blocked if walking && task.waited < PATIENCE_TICKS => {
+            Progress::Blocked if walking && task.waited < self.patience(met.get()) => {
                 task.waited += 1;
                 task.steps.push(step);
                 if let Some(met) = met.get() {
@@ -232,6 +246,13 @@ impl World {
         }
     }
 
+    fn patience(&self, met: Option<Obstruction>) -> u32 {
+        match met {
+            Some(Obstruction::Body(other)) if self.state.bodies[other.0 as usize].busy() => PATIENCE_WITH_WALKERS_TICKS,
+            _ => PATIENCE_TICKS,
+        }
+    }
+
     fn finish(&mut self, body: BodyId, task: &Task, (status, detail): End) -> Outcome {
         self.let_stand(&task.pushing);
         Outcome { command: task.command, body, status, detail }
@@ -239,7 +260,15 @@ impl World {
 
     /// Rules the action as things stand now, and applies what follows.
     fn carry_out(&mut self, id: BodyId, action: &Action, events: &mut Vec<Event>) -> End {
-        let Ruling { status, detail, effects } = rules::rule(&self.facts(), id, action);
+        let facts = self.facts();
+        let Ruling { status, detail, effects } = rules::rule(&facts, id, action);
+        // What lay on a thing that is taken away falls.
+        let falling = match action {
+            Action::PickUp { object } if status.is_success() => physics::lying_on(&facts, *object),
+            _ => Vec::new(),
+        };
+        let effects = effects.into_iter().chain(falling.into_iter().map(|object| Effect::LetGo(object, Vec3::ZERO)));
+        let effects = effects.collect();
         self.changes(events).apply(effects);
         (status, detail)
     }

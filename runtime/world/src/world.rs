@@ -3,7 +3,8 @@
 use std::sync::{Arc, OnceLock};
 
 use cohabit_cdf::{
-    BodyId, BodyKind, Catalog, Layout, Mission, ObjectId, Property, RoomId, StateFlag, catalog::Stands, mission::MessageTime,
+    BodyId, BodyKind, Catalog, Layout, Mission, ObjectId, Property, RoomId, StateFlag, catalog::Stands,
+    mission::MessageTime,
 };
 use glam::Vec3;
 
@@ -41,6 +42,8 @@ pub struct World {
     pub(crate) floor: Floor,
     pub(crate) state: State,
     pub(crate) navigation: Navigation,
+    /// Whether the state is still the one that goals and occasions were last judged on.
+    is_judged: bool,
     /// What a snapshot is of; worked out when the first one is wanted.
     identity: OnceLock<[u8; 32]>,
 }
@@ -58,9 +61,9 @@ impl World {
         mission: Arc<Mission>,
         seed: u64,
     ) -> Result<Self, BuildError> {
-        let (floor, state) = build::build(&catalog, &layout, &mission, seed)?;
-        let navigation = Navigation::new(&Facts { catalog: &catalog, floor: &floor, state: &state });
-        Ok(Self { catalog, layout, mission, floor, state, navigation, identity: OnceLock::new() })
+        let (floor, state, mut navigation) = build::build(&catalog, &layout, &mission, seed)?;
+        navigation.renew(&Facts { catalog: &catalog, floor: &floor, state: &state });
+        Ok(Self { catalog, layout, mission, floor, state, navigation, is_judged: false, identity: OnceLock::new() })
     }
 
     /// Adds a robot at a free viewpoint of a room.
@@ -76,10 +79,12 @@ impl World {
     /// # Errors
     /// [`BuildError::NoFreeSpot`] if the room has no place left to stand.
     pub fn add_body_of(&mut self, kind: BodyKind, room: RoomId) -> Result<BodyId, BuildError> {
-        let (position, yaw_rad) = build::start(&self.facts(), &self.layout, room, &self.state.bodies)
+        self.refresh_navigation();
+        let (position, yaw_rad) = build::start(&self.facts(), &self.navigation, &self.layout, room)
             .ok_or_else(|| BuildError::NoFreeSpot { object: "the robot".to_owned(), room })?;
         let id = BodyId(u32::try_from(self.state.bodies.len()).expect("invariant: few bodies"));
         self.state.bodies.push(Body::new(kind, position, yaw_rad, room));
+        self.is_judged = false;
         Ok(id)
     }
 
@@ -100,10 +105,18 @@ impl World {
         }
         self.strike_from_below(&mut report.events);
         self.run_machines(&mut report.events);
-        self.animate();
+        let animated = self.animate();
         self.step_physics(&mut report.events);
-        self.cross_times(&mut report.events);
-        self.judge(&mut report.events);
+        // What is judged follows from the state alone: where nothing changed, nothing new comes of it.
+        let acted = !inputs.is_empty()
+            || self.state.bodies.iter().any(|body| body.busy() || body.arm > 0.0)
+            || !report.outcomes.is_empty();
+        let changed = animated || acted || self.state.physics.is_active() || !report.events.is_empty();
+        if changed || !self.is_judged {
+            self.cross_times(&mut report.events);
+            self.judge(&mut report.events);
+            self.is_judged = !changed && report.events.is_empty();
+        }
         self.state.tick += 1;
         report
     }
@@ -174,8 +187,8 @@ impl World {
         }
     }
 
-    /// Moving parts follow their states; what the gravity pad lifts goes with it.
-    fn animate(&mut self) {
+    /// Moving parts follow their states; what the gravity pad lifts goes with it. Whether anything moved.
+    fn animate(&mut self) -> bool {
         let by = OPEN_PER_S * DT_S;
         let (mut lifting, mut swinging) = (Vec::new(), Vec::new());
         for id in ids(self.state.objects.len()) {
@@ -191,6 +204,7 @@ impl World {
                 lifting.push(id);
             }
         }
+        let moved = !swinging.is_empty() || !lifting.is_empty();
         for (id, opened) in swinging {
             // A door or drawer stops at a body, and goes on once that is gone.
             if !self.hits_body(id, opened) {
@@ -202,12 +216,13 @@ impl World {
                 settle(&self.catalog, &self.floor, &mut self.state, child);
             }
         }
+        moved
     }
 
     /// What flies or slides does so; what comes to rest belongs to what it lies on.
     fn step_physics(&mut self, events: &mut Vec<Event>) {
         let flown = physics::step(&self.catalog, &self.floor, &mut self.state);
-        events.extend(flown.changed.into_iter().map(|object| Event::ObjectChanged { object }));
+        events.extend(flown.knocked.into_iter().map(|object| Event::ObjectChanged { object }));
         for id in flown.landed {
             let facts = self.facts();
             let pose = facts.object(id).pose;
@@ -317,6 +332,7 @@ impl World {
     pub fn restore(&mut self, bytes: &[u8]) -> Result<(), SnapshotError> {
         self.state = snapshot::read(self.identity(), &self.mission.name, bytes)?;
         self.navigation.renew(&Facts { catalog: &self.catalog, floor: &self.floor, state: &self.state });
+        self.is_judged = false;
         Ok(())
     }
 

@@ -45,7 +45,7 @@ fn a_second_life_and_a_restored_one_agree_tick_for_tick() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 48, max_shrink_iters: 200, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 48, failure_persistence: None, ..ProptestConfig::default() })]
 
     /// Also a world that was restored before, and has been elsewhere since.
     #[test]

@@ -445,6 +445,17 @@ fn robots_start_as_asked() {
     assert!(met(&player), "goals know robots by their names");
 }
 
+#[test]
+fn a_room_takes_more_bodies_than_it_has_viewpoints() {
+    let mut world = player(RoomId::MainOffice, &[]).world;
+    for _ in 0..19 {
+        world.add_body(RoomId::MainOffice).unwrap();
+    }
+    let places: Vec<_> = world.bodies().map(|body| body.position_m).collect();
+    let apart = |index: usize| places[..index].iter().all(|other| other.distance(places[index]) > 0.5);
+    assert!((0..places.len()).all(apart), "{places:?}");
+}
+
 /// A mission with a portal to the past and one to the future, and a generator at hand.
 fn portals(wishes: &[&str], open: bool) -> Mission {
     let portal = |name: &str, era, open| Portal { name: name.to_owned(), era, open };

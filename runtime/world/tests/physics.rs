@@ -263,6 +263,27 @@ fn reach_and_obstruction_are_real() {
 }
 
 #[test]
+fn what_is_in_an_open_fridge_is_reached_though_its_door_fills_the_way() {
+    // A corner: the open door reaches so near to the boxes that nobody gets past; it swings aside for who must.
+    let things = r#"
+  { instance = "FridgeLower_02_1", room = "Reception", at_m = [0.5, 4.5, 0.0] },
+  { instance = "MilkCarton_01_1", room = "Reception", on = "FridgeLower_02_1", anchor = true },
+  { instance = "Warehouse_Boxes_1", room = "Reception", at_m = [2.5, 4.3, 0.0] },
+"#;
+    let mut play = Play::new(floor(TWO_ROOMS, things, &[], RoomId::Reception));
+    let (fridge, milk) = (play.id("FridgeLower_02_1"), play.id("MilkCarton_01_1"));
+    play.must(0, to(fridge));
+    play.must(0, act(Verb::Open, fridge));
+    for _ in 0..2 {
+        play.must(0, point(4.0, 1.0));
+        play.wait(60);
+        assert!(play.world.object(fridge).unwrap().opened > 0.99, "nobody stands in its way now");
+        play.must(0, to(milk));
+    }
+    play.must(0, Action::PickUp { object: milk });
+}
+
+#[test]
 fn an_open_drawer_is_walked_around_and_closes_against_nobody() {
     let things = r#"{ instance = "KitchenCounterDrawer_02_1", room = "Reception", at_m = [0.4, 2.5, 0.0] },"#;
     let mut play = Play::new(floor(TWO_ROOMS, things, &[], RoomId::Reception));

@@ -30,7 +30,7 @@ fn script() -> impl Strategy<Value = Vec<Line>> {
     let body = prop_oneof![8 => Just(0_u8), 3 => Just(1), 1 => Just(2), 1 => any::<u8>()];
     let line = (kind, body, any::<u16>(), any::<u8>(), any::<u8>());
     let line = line.prop_map(|(kind, body, pick, amount, pace)| Line { kind, body, pick, amount, pace });
-    prop::collection::vec(line, 1..6)
+    prop::collection::vec(line, 1..5)
 }
 
 fn rng() -> TestRng {
@@ -62,14 +62,7 @@ impl Theatre {
         scene.restore(stage);
         let place = format!("in the {}, {}", scene.name, scene.stages[stage].name);
         let trial = Trial::new(&mut scene.world, &scene.walls, &mut self.tally, &mut self.told);
-        let r = trial.play(script).map_err(|fault| format!("{place}: {fault}"));
-        if std::env::var_os("KEEP_GOING").is_some()
-            && let Err(e) = &r
-        {
-            println!("FAULT {e}\n{}", self.told.join("\n"));
-            return Ok(());
-        }
-        r
+        trial.play(script).map_err(|fault| format!("{place}: {fault}"))
     }
 }
 
@@ -94,7 +87,11 @@ fn ten_thousand_scripts_lose_nothing_and_answer_everything() {
         println!("{verb:16} {given:6} given, {succeeded:6} succeeded");
     }
     println!("{:#?}\n{:#?}", tally.statuses, tally.events);
+    // What is not given often enough to succeed, or never makes or takes anything, tests nothing.
     let never = verbs().into_iter().filter(|verb| tally.verbs.get(verb).is_none_or(|(_, succeeded)| *succeeded == 0));
     let never: Vec<String> = never.collect();
     assert!(never.is_empty() || cases < SCRIPTS, "of all scripts, none ever succeeded in: {never:?}");
+    for event in ["Spawned", "Removed", "MissionEnded", "Scanned", "Sound"] {
+        assert!(tally.events.contains_key(event) || cases < SCRIPTS, "of all scripts, none ever led to: {event}");
+    }
 }

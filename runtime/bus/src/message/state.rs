@@ -41,8 +41,8 @@ pub struct BodyRecord {
     pub busy: u32,
     /// `BodyKind`.
     pub kind: u32,
-    /// Zero.
-    pub reserved: u32,
+    /// `StateFlags` bits that it shows, such as its mood.
+    pub flags: u32,
     /// The command it carries out; 0 is none.
     pub command: u64,
     /// On the floor, m.

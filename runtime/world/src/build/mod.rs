@@ -19,7 +19,6 @@ use rand_chacha::{
 
 use crate::{
     apply::Changes,
-    body::Body,
     facts::Facts,
     floor::Floor,
     geometry::wrap,
@@ -110,7 +109,7 @@ struct Builder<'a> {
     events: Vec<Event>,
 }
 
-/// Builds the changing part of a world, and its bare floor plan.
+/// Builds the changing part of a world, its bare floor plan, and the floor that can be walked on.
 ///
 /// What is left to chance follows from the mission's own seed, or from `seed` if it has none.
 pub(crate) fn build(
@@ -118,7 +117,7 @@ pub(crate) fn build(
     layout: &Layout,
     mission: &Mission,
     seed: u64,
-) -> Result<(Floor, State), BuildError> {
+) -> Result<(Floor, State, Navigation), BuildError> {
     let state = State {
         tick: 0,
         objects: Vec::new(),
@@ -149,9 +148,9 @@ pub(crate) fn build(
     builder.fulfil()?;
     builder.find_doors();
     builder.open_times();
-    builder.add_robots()?;
+    let navigation = builder.add_robots()?;
     builder.finish();
-    Ok((builder.floor, builder.state))
+    Ok((builder.floor, builder.state, navigation))
 }
 
 impl Builder<'_> {
@@ -204,8 +203,7 @@ impl Builder<'_> {
 }
 
 /// Where a new body can stand in a room, and its heading.
-pub(crate) fn start(facts: &Facts<'_>, layout: &Layout, room: RoomId, bodies: &[Body]) -> Option<(Vec2, f32)> {
-    let navigation = Navigation::new(facts);
+pub(crate) fn start(facts: &Facts<'_>, floor: &Navigation, layout: &Layout, room: RoomId) -> Option<(Vec2, f32)> {
     let viewpoints = layout
         .viewpoints
         .iter()
@@ -215,9 +213,17 @@ pub(crate) fn start(facts: &Facts<'_>, layout: &Layout, room: RoomId, bodies: &[
         .floor
         .rects(room)
         .map(|[west, south, east, north]| (Vec2::new((west + east) / 2.0, (south + north) / 2.0), 0.0));
-    viewpoints.chain(middles).find_map(|(point, yaw)| {
-        let free = navigation.snap(point, 1.5).filter(|point| facts.floor.room_at(*point) == Some(room))?;
-        let crowded = bodies.iter().any(|body| body.position.distance(free) < 2.5 * crate::body::RADIUS_M);
+    // More bodies than viewpoints stand wherever there is room, from the south-west on.
+    const APART_M: f32 = 0.7;
+    let anywhere = facts.floor.rects(room).flat_map(|[west, south, east, north]| {
+        let steps = |from: f32, to: f32| {
+            (0_u8..=u8::MAX).map(move |step| from + f32::from(step) * APART_M).take_while(move |at| *at < to)
+        };
+        steps(south, north).flat_map(move |y| steps(west, east).map(move |x| (Vec2::new(x, y), 0.0)))
+    });
+    viewpoints.chain(middles).chain(anywhere).find_map(|(point, yaw)| {
+        let free = floor.snap(point, 1.5).filter(|point| facts.floor.room_at(*point) == Some(room))?;
+        let crowded = facts.state.bodies.iter().any(|body| body.position.distance(free) < 2.5 * crate::body::RADIUS_M);
         (!crowded).then_some((free, yaw))
     })
 }

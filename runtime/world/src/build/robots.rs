@@ -11,23 +11,25 @@ use cohabit_cdf::{BodyId, BodyKind, Property, RoomId};
 const NEAR_M: f32 = 1.5;
 
 impl Builder<'_> {
-    /// Stands each robot where it is wanted, or else at the first free viewpoint of its room.
-    pub(super) fn add_robots(&mut self) -> Result<(), BuildError> {
+    /// Stands each robot where it is wanted, or else at the first free viewpoint of its room; returns the floor that
+    /// they stand on.
+    pub(super) fn add_robots(&mut self) -> Result<Navigation, BuildError> {
+        let floor = Navigation::new(&self.facts());
         let alone = [RobotRequest::default()];
         let wanted = if self.mission.robots.is_empty() { &alone[..] } else { &self.mission.robots };
         for (number, request) in (0..).zip(wanted) {
-            self.add_robot(BodyId(number), request)?;
+            self.add_robot(&floor, BodyId(number), request)?;
         }
-        Ok(())
+        Ok(floor)
     }
 
-    fn add_robot(&mut self, id: BodyId, request: &RobotRequest) -> Result<(), BuildError> {
+    fn add_robot(&mut self, floor: &Navigation, id: BodyId, request: &RobotRequest) -> Result<(), BuildError> {
         const NAME: &str = "the robot";
         let room = self.check_room(NAME, request.room.unwrap_or(self.mission.start_room))?;
-        let (position, yaw_rad, room) = match self.wanted_place(request, room) {
+        let (position, yaw_rad, room) = match self.wanted_place(floor, request, room) {
             Some(place) => place,
             None => {
-                let (position, yaw_rad) = start(&self.facts(), self.layout, room, &self.state.bodies)
+                let (position, yaw_rad) = start(&self.facts(), floor, self.layout, room)
                     .ok_or_else(|| BuildError::NoFreeSpot { object: NAME.to_owned(), room })?;
                 (position, yaw_rad, room)
             }
@@ -47,7 +49,7 @@ impl Builder<'_> {
     }
 
     /// The point or viewpoint that a robot wants, if it can stand near it.
-    fn wanted_place(&self, request: &RobotRequest, room: RoomId) -> Option<(Vec2, f32, RoomId)> {
+    fn wanted_place(&self, floor: &Navigation, request: &RobotRequest, room: RoomId) -> Option<(Vec2, f32, RoomId)> {
         let mut viewpoints = self.layout.viewpoints.iter();
         let viewpoint = viewpoints.find(|known| known.room == room && Some(known.number) == request.viewpoint);
         let (at, yaw_rad) = match (request.at_m, viewpoint) {
@@ -55,7 +57,7 @@ impl Builder<'_> {
             (None, Some(viewpoint)) => (Vec2::from(viewpoint.at_m), wrap(viewpoint.yaw_deg.to_radians())),
             (None, None) => return None,
         };
-        let at = Navigation::new(&self.facts()).snap(at, NEAR_M)?;
+        let at = floor.snap(at, NEAR_M)?;
         let crowded = self.state.bodies.iter().any(|body| body.position.distance(at) < 2.5 * crate::body::RADIUS_M);
         let room = self.floor.room_at(at).filter(|_| !crowded)?;
         Some((at, yaw_rad, room))

@@ -13,7 +13,7 @@ pub(crate) use hand::keyed_anchors;
 
 use cohabit_cdf::{Action, BodyId, ObjectId, StateFlag, Status, Verb};
 
-use crate::{effect::Effect, facts::Facts, report::SoundKind, works};
+use crate::{effect::Effect, facts::Facts, reach::Barrier, report::SoundKind, works};
 
 /// How far a hand reaches, level, m.
 pub(crate) const REACH_M: f32 = 1.6;
@@ -161,10 +161,21 @@ impl Scene<'_> {
         if facts.reach_to(object, from) > within {
             return refuse(Status::TargetOutOfRange, format!("{name} is too far away: I have to go there first"));
         }
-        if facts.walled_off(object, from) {
-            return refuse(Status::TargetInaccessible, format!("there is a wall between me and {name}"));
+        match facts.barrier(object, from) {
+            None => Ok(()),
+            Some(Barrier::Wall) => refuse(Status::TargetInaccessible, format!("there is a wall between me and {name}")),
+            Some(Barrier::Door(door)) if facts.is_room_door(door) => {
+                refuse(Status::TargetInaccessible, format!("{} is between me and {name}", facts.name(door)))
+            }
+            Some(Barrier::Door(door)) => {
+                let detail = format!("the open door of {} is between me and {name}", facts.name(door));
+                refuse(Status::TargetInaccessible, detail)
+            }
+            Some(Barrier::Side(hollow)) => {
+                let detail = format!("I must stand in front of {} to reach {name}", facts.name(hollow));
+                refuse(Status::TargetInaccessible, detail)
+            }
         }
-        Ok(())
     }
 
     /// Refuses what does not afford something.

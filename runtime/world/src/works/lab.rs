@@ -57,13 +57,14 @@ pub(super) fn anchor_of(facts: &Facts<'_>, id: ObjectId) -> u16 {
     }
 }
 
-/// The class that the first cartridge in a printer prints.
+/// The class that a printer prints: what somebody put in counts before what it came with.
 pub(crate) fn cartridge(facts: &Facts<'_>, printer: ObjectId) -> Option<ClassId> {
-    facts.state.children(printer).find_map(|child| {
+    let loaded = facts.state.children(printer).filter_map(|child| {
         let object = facts.object(child);
         let by_class = recipes::printed(facts.catalog, object.class)?;
-        Some(object.prints.unwrap_or(by_class))
-    })
+        Some((object.touched, object.prints.unwrap_or(by_class)))
+    });
+    loaded.max_by_key(|(touched, _)| *touched).map(|(_, class)| class)
 }
 
 /// The anchor of a printer where its product comes out: the last free one.

@@ -196,7 +196,7 @@ pub(crate) fn foot(facts: &Facts<'_>, around: ObjectId) -> Vec3 {
     let yaw = facts.object(around).pose.yaw_rad();
     let room = facts.object(around).room;
     let spread = |step: usize| {
-        let side = if step % 2 == 0 { 1.0 } else { -1.0 };
+        let side = if step.is_multiple_of(2) { 1.0 } else { -1.0 };
         side * step.div_ceil(2) as f32 * std::f32::consts::TAU / STEPS as f32
     };
     let reach = print.half.x + HALF_M + 0.15;

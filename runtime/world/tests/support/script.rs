@@ -12,7 +12,7 @@ const TRY_M: f32 = 1.7;
 const LOOK_M: f32 = 3.2;
 const THROW_M: f32 = 5.0;
 /// A short walk, m.
-const ROOM_M: f32 = 3.5;
+const ROOM_M: f32 = 2.5;
 /// Most lines wait no longer for their end than this, ticks: enough for a hand, and for a walk across a room.
 const SHORT_TICKS: u32 = 100;
 /// No line waits longer than this: enough for a walk through two doors.
@@ -170,7 +170,13 @@ impl Line {
             Kind::PickUp => {
                 let wanted = |thing: &Candidate<'_>| thing.has(Property::Pickupable) && !thing.view.hidden;
                 let near = find(&wanted, TRY_M).map(|object| Action::PickUp { object });
-                near.unwrap_or_else(|| goto(GoToTarget::Object(object(&wanted, ROOM_M))))
+                // Looking is cheaper than walking, and there are many lines that find nothing in reach.
+                near.unwrap_or_else(|| match self.pick % 4 {
+                    0 => goto(GoToTarget::Object(object(&wanted, ROOM_M))),
+                    1 => interact(Verb::Scan, object(&|thing| !thing.view.hidden, LOOK_M)),
+                    2 => interact(Verb::Toggle, object(&|thing| thing.has(Property::Toggleable), TRY_M)),
+                    _ => interact(Verb::Examine, object(&|thing| !thing.view.hidden, LOOK_M)),
+                })
             }
             Kind::Place => Action::Place { receptacle: object(&|thing| thing.takes(held), TRY_M) },
             Kind::Open => interact(Verb::Open, object(&|thing| thing.opens(false), TRY_M)),
