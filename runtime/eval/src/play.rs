@@ -192,9 +192,8 @@ impl Player {
         let mut text = text;
         loop {
             let turn = self.session.say(text)?;
-            let heard =
+            let (end, said) =
                 self.until(|noted| noted.turns.iter().find(|(ended, _)| *ended == turn).map(|(_, end)| *end))?;
-            let (end, said) = heard;
             let replies = said.iter().map(|(_, text)| text.clone()).collect();
             self.played.transcript.push(Said { line: text.to_owned(), replies });
             let Some(end) = end else { return Ok(Some("it did not come to an end".to_owned())) };

@@ -85,7 +85,8 @@ fn some_devices_need_something_in_them() {
         (&["CoffeeMaker_01_1 emptied filled Water", "CoffeeMug_Boss_1 in CoffeeMaker_01_1"], "CoffeeMaker_01_1", OK),
         (&["CoffeeMaker_01_1 emptied", "CoffeeBeans_01_1 in CoffeeMaker_01_1"], "CoffeeMaker_01_1", OK),
         (&["ColorChangerStation_1"], "ColorChanger_Button_Red_10000", FAILS),
-        (&["Printer_3D_1"], "Printer_3D_1", FAILS),
+        (&["Printer_3D_1 emptied"], "Printer_3D_1", FAILS),
+        (&["Printer_3D_1"], "Printer_3D_1", OK),
         (
             &["Printer_Cartridge_Mug_1 in Printer_3D_1", "Printer_Cartridge_Lever_1 in Printer_3D_1"],
             "Printer_3D_1",
