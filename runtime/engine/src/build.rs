@@ -75,7 +75,7 @@ impl SessionPlan {
             (Arc::clone(&self.catalog), Arc::clone(&self.layout), Arc::clone(&self.mission));
         let mut world = World::new(catalog, layout, mission, self.seed).map_err(failed)?;
         for request in &self.bodies {
-            world.add_body_of(request.kind, request.room.unwrap_or(self.mission.start_room)).map_err(failed)?;
+            world.add_body(request.kind, request.room.unwrap_or(self.mission.start_room)).map_err(failed)?;
         }
         Ok(world)
     }

@@ -19,8 +19,8 @@ const WORDS: &[(Asked, &str)] = &[
     (Asked::Flag(StateFlag::Opened, false), "close"),
     (Asked::Flag(StateFlag::Broken, true), "break"),
     (Asked::Flag(StateFlag::Broken, false), "repair"),
-    (Asked::Flag(StateFlag::Dirty, false), "clean"),
     (Asked::Flag(StateFlag::Eaten, false), "repair"),
+    (Asked::Flag(StateFlag::Dirty, false), "clean"),
     (Asked::Flag(StateFlag::Hot, true), "heat"),
     (Asked::Flag(StateFlag::Cold, true), "freeze"),
     (Asked::Flag(StateFlag::Cooked, true), "cook"),
@@ -65,8 +65,7 @@ pub fn family(mission: &Mission) -> String {
             }
         }
     }
-    let words: Vec<&str> = WORDS.iter().filter(|(kind, _)| asked.contains(kind)).map(|(_, word)| *word).collect();
-    let mut words = words;
+    let mut words: Vec<&str> = WORDS.iter().filter(|(kind, _)| asked.contains(kind)).map(|(_, word)| *word).collect();
     words.dedup();
     if words.is_empty() { "other".to_owned() } else { words.join("&") }
 }

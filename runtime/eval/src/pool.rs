@@ -118,3 +118,41 @@ pub fn serve(
     }
     Ok(())
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    fn shell(script: &str) -> Command {
+        let mut command = Command::new("sh");
+        command.args(["-c", script]);
+        command
+    }
+
+    #[test]
+    fn a_worker_that_dies_takes_one_task_with_it() {
+        let played = serde_json::to_string(&Played::default()).unwrap();
+        // It dies of task 2, and talks nonsense about task 4.
+        let script =
+            format!("while read task; do case $task in 2) exit 9;; 4) echo nonsense;; *) echo '{played}';; esac; done");
+        let results = run(6, 2, &|| shell(&script), &|_, _| {}).unwrap();
+        let failed: Vec<usize> = (0..6).filter(|task| results[*task].is_err()).collect();
+        assert_eq!(failed, [2, 4]);
+        assert!(results[2].as_ref().unwrap_err().contains("exit status: 9"), "{:?}", results[2]);
+        assert!(run(1, 1, &|| Command::new("/nowhere/cohabit"), &|_, _| {}).is_err());
+    }
+
+    #[test]
+    fn a_worker_serves_until_its_input_ends() {
+        let mut output = Vec::new();
+        let play = |task: usize| Ok(Played { id: task.to_string(), ..Played::default() });
+        serve("3\n1\n".as_bytes(), &mut output, play).unwrap();
+        let ids: Vec<String> = String::from_utf8(output)
+            .unwrap()
+            .lines()
+            .map(|line| serde_json::from_str::<Played>(line).unwrap().id)
+            .collect();
+        assert_eq!(ids, ["3", "1"]);
+    }
+}

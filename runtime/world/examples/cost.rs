@@ -13,7 +13,7 @@ use std::{
 };
 
 use cohabit_cdf::{Catalog, Layout, RoomId, mission};
-use cohabit_world::{Action, BodyId, GoToTarget, Input, World};
+use cohabit_world::{Action, BodyId, BodyKind, GoToTarget, Input, World};
 use support::play::Life;
 
 #[global_allocator]
@@ -51,7 +51,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     print("step, walking", steps(|tick| walk(&mut walker, tick)));
     let mut crowd = again()?;
     for room in [RoomId::MainOffice, RoomId::BreakRoom] {
-        crowd.add_body(room)?;
+        crowd.add_body(BodyKind::Robot, room)?;
     }
     let mut life = Life::new("crowd", crowd, 1);
     print("step, busy", steps(|_| drop(life.step())));

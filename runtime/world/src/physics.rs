@@ -431,7 +431,7 @@ mod tests {
     #[test]
     fn what_is_dropped_from_a_hand_falls_to_the_floor_and_lies() {
         let mut world = world(&["Apple_1"]);
-        world.add_body_of(BodyKind::Person, RoomId::MainOffice).unwrap();
+        world.add_body(BodyKind::Person, RoomId::MainOffice).unwrap();
         let mut events = Vec::new();
         let apple = world.find("Apple_1").unwrap();
         world.changes(&mut events).apply(vec![crate::effect::Effect::Hold(apple, BodyId(1))]);

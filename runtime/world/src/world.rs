@@ -66,19 +66,11 @@ impl World {
         Ok(Self { catalog, layout, mission, floor, state, navigation, is_judged: false, identity: OnceLock::new() })
     }
 
-    /// Adds a robot at a free viewpoint of a room.
-    ///
-    /// # Errors
-    /// [`BuildError::NoFreeSpot`] if the room has no place left to stand.
-    pub fn add_body(&mut self, room: RoomId) -> Result<BodyId, BuildError> {
-        self.add_body_of(BodyKind::Robot, room)
-    }
-
     /// Adds a body of a kind at a free viewpoint of a room.
     ///
     /// # Errors
     /// [`BuildError::NoFreeSpot`] if the room has no place left to stand.
-    pub fn add_body_of(&mut self, kind: BodyKind, room: RoomId) -> Result<BodyId, BuildError> {
+    pub fn add_body(&mut self, kind: BodyKind, room: RoomId) -> Result<BodyId, BuildError> {
         self.refresh_navigation();
         let (position, yaw_rad) = build::start(&self.facts(), &self.navigation, &self.layout, room)
             .ok_or_else(|| BuildError::NoFreeSpot { object: "the robot".to_owned(), room })?;

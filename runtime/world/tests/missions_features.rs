@@ -12,7 +12,7 @@ use cohabit_cdf::{
     Relation, RoomId, StateCondition, StateFlag,
     mission::{CameraMovement, CameraView, DinoFood, Era, Message, MessageTime, NoteRequest, Portal, RobotRequest},
 };
-use cohabit_world::{BodyId, CameraTarget, Ending, Event, Status};
+use cohabit_world::{BodyId, BodyKind, CameraTarget, Ending, Event, Status};
 use support::{Player, build, plain_mission};
 use wishes::{OK, check, fluid, inside, is, mission, play, player, request};
 
@@ -449,7 +449,7 @@ fn robots_start_as_asked() {
 fn a_room_takes_more_bodies_than_it_has_viewpoints() {
     let mut world = player(RoomId::MainOffice, &[]).world;
     for _ in 0..19 {
-        world.add_body(RoomId::MainOffice).unwrap();
+        world.add_body(BodyKind::Robot, RoomId::MainOffice).unwrap();
     }
     let places: Vec<_> = world.bodies().map(|body| body.position_m).collect();
     let apart = |index: usize| places[..index].iter().all(|other| other.distance(places[index]) > 0.5);

@@ -103,7 +103,7 @@ impl Play {
     }
 
     pub fn join(&mut self, kind: BodyKind, room: RoomId) -> BodyId {
-        self.world.add_body_of(kind, room).unwrap()
+        self.world.add_body(kind, room).unwrap()
     }
 
     /// Tells a body to do something, and goes on by a tick.

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use cohabit_cdf::{Catalog, RoomId};
-use cohabit_world::{Input, World};
+use cohabit_world::{BodyKind, Input, World};
 
 use super::{
     script::Line,
@@ -35,7 +35,7 @@ pub fn life(catalog: &Arc<Catalog>, number: usize) -> Option<Life> {
     let missions = cohabit_cdf::mission::builtin();
     if let Some((name, text)) = missions.get(number) {
         let mut world = world(name, text, 11);
-        world.add_body(RoomId::MainOffice).unwrap();
+        world.add_body(BodyKind::Robot, RoomId::MainOffice).unwrap();
         return Some(Life::new(name.trim_end_matches(".json"), world, number as u64));
     }
     let layouts = cohabit_cdf::Layout::builtin_ids();

@@ -234,8 +234,8 @@ fn furnished(catalog: &Arc<Catalog>, layout: &str, room: RoomId, things: &[Thing
     };
     let layout = Arc::new(Layout::builtin(layout).unwrap());
     let mut world = World::new(Arc::clone(catalog), layout, Arc::new(mission), 5).unwrap();
-    world.add_body_of(BodyKind::Person, RoomId::MainOffice).unwrap();
-    world.add_body(room).unwrap();
+    world.add_body(BodyKind::Person, RoomId::MainOffice).unwrap();
+    world.add_body(BodyKind::Robot, room).unwrap();
     world
 }
 
