@@ -41,7 +41,7 @@ pub struct Eval {
     /// Write all results to this file, as JSON
     #[arg(long, value_name = "FILE")]
     report: Option<PathBuf>,
-    /// Play the missions whose numbers come in, write their results out
+    /// Play the missions that come in, write their results out
     #[arg(long, hide = true)]
     worker: bool,
 }
@@ -64,10 +64,10 @@ impl FromStr for CapsText {
 impl Eval {
     /// Plays them all; that some are not solved is a result, not a failure.
     pub fn run(&self) -> anyhow::Result<()> {
-        let tasks = self.tasks()?;
         if self.worker {
-            return Ok(self.serve(&tasks)?);
+            return Ok(self.serve()?);
         }
+        let tasks = self.tasks()?;
         if let Some(folder) = &self.record {
             std::fs::create_dir_all(folder).map_err(|error| bad_input(format!("{}: {error}", folder.display())))?;
         }
@@ -96,10 +96,9 @@ impl Eval {
         Settings { seed: self.seed, caps: self.caps.map(|caps| caps.0), record: self.record.clone() }
     }
 
-    fn serve(&self, tasks: &[Task]) -> io::Result<()> {
+    fn serve(&self) -> io::Result<()> {
         let (settings, catalog) = (self.settings(), Arc::new(Catalog::builtin()));
-        pool::serve(io::stdin().lock(), io::stdout().lock(), |number| {
-            let task = tasks.get(number).ok_or_else(|| io::Error::other(format!("there is no mission {number}")))?;
+        pool::serve(io::stdin().lock(), io::stdout().lock(), |task| {
             play(task, &settings, &catalog).map_err(io::Error::other)
         })
     }
@@ -119,7 +118,7 @@ impl Eval {
             command
         };
         let began = Instant::now();
-        let results = pool::run(tasks.len(), workers, &start, &|_, _| bar.inc(1))?;
+        let results = pool::run(tasks, workers, &start, &|| bar.inc(1))?;
         bar.finish_and_clear();
         let wall_s = began.elapsed().as_secs_f64();
         let lost =

@@ -1,4 +1,4 @@
-//! Worker processes: tasks go out by number, results come back as lines of JSON.
+//! Worker processes: tasks go out and results come back as lines of JSON.
 //!
 //! A worker that dies takes one task with it, and is replaced. A worker whose master dies reads the end of its input,
 //! and ends.
@@ -13,48 +13,48 @@ use std::{
     thread,
 };
 
-use crate::play::Played;
+use serde::Serialize;
+
+use crate::{play::Played, task::Task};
 
 /// Why workers could not be run.
 #[derive(Debug, thiserror::Error)]
 #[error("start a worker process: {0}")]
 pub struct PoolError(#[from] io::Error);
 
-/// Has tasks `0..tasks` played by `workers` processes, each started by `start`; `done` is told of each result.
+/// Has tasks played by `workers` processes, each started by `start`; `done` is told whenever one was.
 ///
 /// A result is `Err` where a worker died or answered nonsense: with what is known about that.
 ///
 /// # Errors
 /// [`PoolError`], when no process can be started.
 pub fn run(
-    tasks: usize,
+    tasks: &[Task],
     workers: usize,
     start: &(dyn Fn() -> Command + Sync),
-    done: &(dyn Fn(usize, &Result<Played, String>) + Sync),
+    done: &(dyn Fn() + Sync),
 ) -> Result<Vec<Result<Played, String>>, PoolError> {
     let next = AtomicUsize::new(0);
-    let results = Mutex::new((0..tasks).map(|_| None).collect::<Vec<_>>());
+    let results = Mutex::new(tasks.iter().map(|_| None).collect::<Vec<_>>());
     let work = || -> Result<(), PoolError> {
         let mut worker: Option<Worker> = None;
         loop {
-            let task = next.fetch_add(1, Ordering::Relaxed);
-            if task >= tasks {
-                return Ok(());
-            }
+            let number = next.fetch_add(1, Ordering::Relaxed);
+            let Some(task) = tasks.get(number) else { return Ok(()) };
             let mut running = match worker.take() {
                 Some(running) => running,
                 None => Worker::start(start())?,
             };
             let result = running.play(task);
-            done(task, &result);
+            done();
             if result.is_ok() {
                 worker = Some(running);
             }
-            results.lock().unwrap_or_else(PoisonError::into_inner)[task] = Some(result);
+            results.lock().unwrap_or_else(PoisonError::into_inner)[number] = Some(result);
         }
     };
     thread::scope(|scope| {
-        let handles: Vec<_> = (0..workers.clamp(1, tasks.max(1))).map(|_| scope.spawn(work)).collect();
+        let handles: Vec<_> = (0..workers.clamp(1, tasks.len().max(1))).map(|_| scope.spawn(work)).collect();
         let joined =
             handles.into_iter().map(|handle| handle.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)));
         joined.collect::<Vec<_>>().into_iter().collect::<Result<(), _>>()
@@ -78,8 +78,8 @@ impl Worker {
         Ok(Self { child, input, output })
     }
 
-    fn play(&mut self, task: usize) -> Result<Played, String> {
-        let asked = writeln!(self.input, "{task}").and_then(|()| self.input.flush());
+    fn play(&mut self, task: &Task) -> Result<Played, String> {
+        let asked = write_line(&mut self.input, task);
         let mut line = String::new();
         let answered = asked.and_then(|()| self.output.read_line(&mut line));
         match answered {
@@ -107,16 +107,19 @@ impl Drop for Worker {
 pub fn serve(
     input: impl BufRead,
     mut output: impl Write,
-    mut play: impl FnMut(usize) -> Result<Played, io::Error>,
+    mut play: impl FnMut(&Task) -> Result<Played, io::Error>,
 ) -> io::Result<()> {
     for line in input.lines() {
-        let task = line?.trim().parse().map_err(io::Error::other)?;
-        let played = play(task)?;
-        serde_json::to_writer(&mut output, &played)?;
-        writeln!(output)?;
-        output.flush()?;
+        let played = play(&serde_json::from_str(&line?)?)?;
+        write_line(&mut output, &played)?;
     }
     Ok(())
+}
+
+fn write_line(output: &mut impl Write, value: &impl Serialize) -> io::Result<()> {
+    serde_json::to_writer(&mut *output, value)?;
+    writeln!(output)?;
+    output.flush()
 }
 
 #[cfg(test)]
@@ -130,24 +133,31 @@ mod tests {
         command
     }
 
+    fn task(id: usize) -> Task {
+        Task { id: id.to_string(), cdf: String::new(), preparation: Vec::new(), script: Vec::new() }
+    }
+
     #[test]
     fn a_worker_that_dies_takes_one_task_with_it() {
         let played = serde_json::to_string(&Played::default()).unwrap();
         // It dies of task 2, and talks nonsense about task 4.
-        let script =
-            format!("while read task; do case $task in 2) exit 9;; 4) echo nonsense;; *) echo '{played}';; esac; done");
-        let results = run(6, 2, &|| shell(&script), &|_, _| {}).unwrap();
+        let script = format!(
+            r#"while read task; do case $task in *:'"2"'*) exit 9;; *:'"4"'*) echo nonsense;; *) echo '{played}';; esac; done"#
+        );
+        let tasks: Vec<Task> = (0..6).map(task).collect();
+        let results = run(&tasks, 2, &|| shell(&script), &|| {}).unwrap();
         let failed: Vec<usize> = (0..6).filter(|task| results[*task].is_err()).collect();
         assert_eq!(failed, [2, 4]);
         assert!(results[2].as_ref().unwrap_err().contains("exit status: 9"), "{:?}", results[2]);
-        assert!(run(1, 1, &|| Command::new("/nowhere/cohabit"), &|_, _| {}).is_err());
+        assert!(run(&tasks, 1, &|| Command::new("/nowhere/cohabit"), &|| {}).is_err());
     }
 
     #[test]
     fn a_worker_serves_until_its_input_ends() {
         let mut output = Vec::new();
-        let play = |task: usize| Ok(Played { id: task.to_string(), ..Played::default() });
-        serve("3\n1\n".as_bytes(), &mut output, play).unwrap();
+        let play = |task: &Task| Ok(Played { id: task.id.clone(), ..Played::default() });
+        let asked: Vec<String> = [3, 1].map(|id| serde_json::to_string(&task(id)).unwrap()).to_vec();
+        serve(asked.join("\n").as_bytes(), &mut output, play).unwrap();
         let ids: Vec<String> = String::from_utf8(output)
             .unwrap()
             .lines()

@@ -1,9 +1,10 @@
 //! A mission and what is said in it.
 
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 /// A mission, and its script.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Task {
     /// Its name in the report; no two of one source are equal.
     pub id: String,
@@ -16,7 +17,7 @@ pub struct Task {
 }
 
 /// One line of a script.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub enum Line {
     /// Something said to the robot.
     Utterance {
@@ -30,7 +31,7 @@ pub enum Line {
 }
 
 /// An answer that a person has ready.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Answer {
     /// To what question.
     pub question: String,
