@@ -192,6 +192,24 @@ pub enum When {
     Eaten,
     /// Not eaten.
     Uneaten,
+    /// Cut with a knife.
+    Cut,
+    /// Not cut.
+    Uncut,
+    /// On, and leads to the past, or nowhere in particular.
+    Past,
+    /// On, and leads to the future.
+    Future,
+    /// Shows no feeling, or is not asked to show any.
+    Neutral,
+    /// Shows a happy face.
+    Happy,
+    /// Shows a sad face.
+    Sad,
+    /// Shows an angry face.
+    Angry,
+    /// Shows a scared face.
+    Scared,
 }
 
 /// How a moving part moves as its object opens (0 closed, 1 open) or runs.
@@ -212,6 +230,34 @@ pub struct Joint {
     /// Moved by this along the axis when fully driven, m.
     #[serde(default)]
     pub slide_m: f32,
+    /// The joint that carries it, which must come before it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub parent: Option<String>,
+    /// How it keeps moving while it is driven; it stays where it is driven to, if absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cycle: Option<Cycle>,
+}
+
+/// A motion that repeats while its joint is driven.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct Cycle {
+    /// Which.
+    pub way: CycleWay,
+    /// How often a second.
+    pub per_s: f32,
+}
+
+/// How a joint repeats its motion.
+#[derive(Clone, Copy, Debug, Deserialize, Eq, Hash, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum CycleWay {
+    /// Full turns about its axis, the other way round where `turn_deg` is negative.
+    Around,
+    /// To where it is driven, and back.
+    BackAndForth,
+    /// To where it is driven, then at once from the start again.
+    OverAndOver,
 }
 
 /// What drives a joint from 0 to 1.

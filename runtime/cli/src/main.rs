@@ -3,6 +3,7 @@
 mod check;
 mod eval;
 mod failure;
+mod gallery;
 mod mission_file;
 mod peers;
 mod play;
@@ -33,6 +34,8 @@ enum Command {
     Replay(replay::Replay),
     /// Play many missions headless, by what is said in them, and report what came of them
     Eval(eval::Eval),
+    /// Draw all objects in all their states, all floor plans and all rooms
+    Gallery(gallery::Gallery),
     /// The world of a session, its cameras and its clock
     Sim(peers::Sim),
     /// One robot's mind
@@ -55,6 +58,7 @@ fn main() -> ExitCode {
         Command::Check(check) => check.run(),
         Command::Replay(replay) => replay.run(),
         Command::Eval(eval) => eval.run(),
+        Command::Gallery(gallery) => gallery.run(),
         Command::Sim(sim) => sim.run(),
         Command::Agent(agent) => agent.run(),
         Command::Dialog(dialog) => dialog.run(),

@@ -18,4 +18,5 @@ mod studio;
 
 pub use build::{BuildError, SessionPlan};
 pub use engine::{Engine, EngineError};
+pub use scene::furnishings;
 pub use simulator::Simulator;

@@ -1,7 +1,8 @@
 //! The world as the renderer sees it.
 
-use cohabit_cdf::{BodyId, Color, Fluid, RoomId, StateFlags};
+use cohabit_cdf::{BodyId, BodyKind, Color, Fluid, RoomId, mission::Era};
 use cohabit_render::{Camera, Highlight, Instance, Look};
+use cohabit_world::{BodyView, DT_NANOS, World};
 
 use crate::{engine::Engine, shot, studio::SPECTATOR_SIZE};
 
@@ -57,17 +58,57 @@ pub const fn body_instance_id(body: BodyId) -> u32 {
 
 const HIGHLIGHT_COLOR: [u8; 3] = [255, 196, 61];
 
+/// An unhurried pace, m/s: at this speed a person's legs swing fully.
+const PACE_M_S: f32 = 1.3;
+
+/// How a body looks at a tick. Its way so far is not known, so its legs and wheels keep step with the clock, and rest
+/// while it stands.
+fn look_of(body: &BodyView, tick: u64) -> Look {
+    let pace = (body.speed_m_s / PACE_M_S).clamp(-1.0, 1.0);
+    // Long enough to hide where it begins anew.
+    let seconds = (tick % (3600 * 60)) as f32 * (DT_NANOS as f32 * 1e-9);
+    let way_m = if pace == 0.0 { 0.0 } else { seconds * PACE_M_S.copysign(pace) };
+    let (head_pitch_rad, arm, holds) = (body.head_pitch_rad, body.arm, body.held.is_some());
+    match body.kind {
+        BodyKind::Robot => Look::Robot { head_pitch_rad, arm, holds, rolled_m: way_m },
+        BodyKind::Person => {
+            Look::Person { outfit: body.id.0, head_pitch_rad, arm, holds, walked_m: way_m, pace: pace.abs() }
+        }
+    }
+}
+
+/// All objects of a world as they look now.
+pub fn furnishings(world: &World) -> impl Iterator<Item = Instance> + '_ {
+    world.objects().map(|object| Instance {
+        id: object_instance_id(object.id),
+        look: match object.leads_to {
+            Some(era) => Look::Gate { class: object.class, future: era == Era::Future },
+            None => Look::Object(object.class),
+        },
+        position_m: object.position_m.to_array(),
+        rotation: object.rotation.to_array(),
+        scale: object.scale,
+        flags: object.flags,
+        fluid: object.fluid,
+        color: object.color,
+        opened: object.opened,
+        running: object.running,
+        room: object.room,
+        visible: !object.hidden,
+    })
+}
+
 impl Moment {
     /// Captures an engine's world.
     pub fn capture(engine: &Engine, seen_nanos: u64) -> Self {
         let world = engine.world();
         let bodies = world.bodies().map(|body| Instance {
             id: body_instance_id(body.id),
-            look: Look::Robot { head_pitch_rad: body.head_pitch_rad, arm: body.arm },
+            look: look_of(&body, world.tick()),
             position_m: body.position_m.to_array(),
             rotation: glam::Quat::from_rotation_z(body.yaw_rad).to_array(),
             scale: [1.0; 3],
-            flags: StateFlags::default(),
+            flags: body.flags,
             fluid: Fluid::None,
             color: Color::Original,
             opened: 0.0,
@@ -75,25 +116,11 @@ impl Moment {
             room: body.room,
             visible: true,
         });
-        let objects = world.objects().map(|object| Instance {
-            id: object_instance_id(object.id),
-            look: Look::Object(object.class),
-            position_m: object.position_m.to_array(),
-            rotation: object.rotation.to_array(),
-            scale: object.scale,
-            flags: object.flags,
-            fluid: object.fluid,
-            color: object.color,
-            opened: object.opened,
-            running: object.running,
-            room: object.room,
-            visible: !object.hidden,
-        });
         Self {
             tick: world.tick(),
             command: engine.latest_started(),
             seen_nanos,
-            instances: bodies.chain(objects).collect(),
+            instances: bodies.chain(furnishings(world)).collect(),
             highlights: engine
                 .highlighted()
                 .map(|object| Highlight { id: object_instance_id(object), color: HIGHLIGHT_COLOR })

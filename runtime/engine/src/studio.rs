@@ -163,6 +163,7 @@ impl Studio {
     }
 
     fn set_up(&mut self, moment: &Moment) {
+        self.scene.set_time(moment.tick * cohabit_world::DT_NANOS);
         self.scene.set_instances(&moment.instances);
         self.scene.set_highlights(&moment.highlights);
         for (room, lit) in cohabit_cdf::RoomId::ALL.into_iter().zip(moment.lit) {

@@ -44,7 +44,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     for id in words.iter().filter(is_layout) {
         let plan = match &files {
             Some(files) => {
-                let files: Vec<(&str, &str)> = files.iter().map(|(name, text)| (name.as_str(), text.as_str())).collect();
+                let files: Vec<(&str, &str)> =
+                    files.iter().map(|(name, text)| (name.as_str(), text.as_str())).collect();
                 Layout::parse(id, &files)?
             }
             None => Layout::builtin(id)?,

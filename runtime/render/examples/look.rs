@@ -1,8 +1,9 @@
-//! Pictures for modellers: a contact sheet of objects, or a view into a floor plan.
+//! Pictures for modellers: contact sheets of objects in all their states, or a view into a floor plan.
 //!
 //! ```text
-//! look objects OUT.png CLASS...            each class in its usual state, open, on, broken, filled, ... where that shows
-//! look bodies OUT.png                      the robot, a person, a note
+//! look objects OUT.png CLASS...            each class in every state that its properties allow
+//! look bodies OUT.png                      the robot, people, a note, what is poured
+//! look sheets OUT_FOLDER [NAME...]         every class, sheet by sheet; the sheets whose names begin so
 //! look view OUT.png LAYOUT x y z yaw_deg pitch_deg [no-ceiling] [WxH] [planes] [time]
 //! ```
 
@@ -13,15 +14,13 @@ use std::io::BufWriter;
 use std::sync::Arc;
 
 use cohabit_cdf::catalog::Receptacle;
-use cohabit_cdf::layout::{Finish, Layout, Room};
-use cohabit_cdf::model::{Drive, Material, Model, When};
+use cohabit_cdf::layout::Layout;
 use cohabit_cdf::{Catalog, ClassId, Color, Fluid, RoomId, StateFlag, StateFlags};
+use cohabit_render::gallery::{self, Sheet};
 use cohabit_render::{Camera, CpuRenderer, Highlight, Instance, Look, MeshLibrary, Planes, Renderer, Scene};
 
 /// Side of one picture of a contact sheet.
-const CELL: u32 = 280;
-/// Pictures in a row of a contact sheet.
-const COLUMNS: usize = 5;
+const CELL: u32 = 260;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -29,192 +28,59 @@ fn main() -> Result<(), Box<dyn Error>> {
     match arguments.as_slice() {
         ["objects", out, classes @ ..] if !classes.is_empty() => objects(out, classes),
         ["bodies", out] => bodies(out),
+        ["sheets", folder, names @ ..] => sheets(folder, names),
         ["view", out, layout, x, y, z, yaw, pitch, options @ ..] => {
             let place = [x, y, z, yaw, pitch].map(|text| text.parse::<f32>());
             let [x, y, z, yaw, pitch] = place;
             view(out, layout, [x?, y?, z?], yaw?.to_radians(), pitch?.to_radians(), options)
         }
-        _ => Err("write: objects OUT.png CLASS... | bodies OUT.png | view OUT.png LAYOUT x y z yaw_deg pitch_deg \
-                  [no-ceiling] [WxH] [planes] [time]"
+        _ => Err("write: objects OUT.png CLASS... | bodies OUT.png | sheets OUT_FOLDER [NAME...] | \
+                  view OUT.png LAYOUT x y z yaw_deg pitch_deg [no-ceiling] [WxH] [planes] [time]"
             .into()),
     }
-}
-
-/// One picture of a contact sheet.
-struct Pose {
-    title: String,
-    look: Look,
-    flags: StateFlags,
-    fluid: Fluid,
-    color: Color,
-    opened: f32,
-    running: f32,
-}
-
-impl Pose {
-    fn plain(title: &str, look: Look) -> Self {
-        let flags = StateFlags::default().with(StateFlag::Powered);
-        Self {
-            title: title.to_owned(),
-            look,
-            flags,
-            fluid: Fluid::None,
-            color: Color::Original,
-            opened: 0.0,
-            running: 0.0,
-        }
-    }
-
-    fn with(class: ClassId, title: &str, flag: StateFlag) -> Self {
-        let plain = Self::plain(title, Look::Object(class));
-        Self { flags: plain.flags.with(flag), ..plain }
-    }
-}
-
-/// Every state of a class that its model shows.
-fn poses(id: &str, class: ClassId, model: &Model) -> Vec<Pose> {
-    let mut poses = vec![Pose::plain(id, Look::Object(class))];
-    let has = |when: When| model.parts.iter().any(|part| part.when == Some(when));
-    let moves = |drive: Drive| model.joints.iter().any(|joint| joint.driven_by == drive);
-    if moves(Drive::Open) {
-        poses.push(Pose { opened: 1.0, ..Pose::with(class, "open", StateFlag::Opened) });
-    }
-    if moves(Drive::On) || has(When::On) {
-        poses.push(Pose { running: 1.0, ..Pose::with(class, "on", StateFlag::Toggled) });
-    }
-    let states = [
-        (When::Broken, "broken", StateFlag::Broken),
-        (When::Cereal, "cereal", StateFlag::Cereal),
-        (When::Dirty, "dirty", StateFlag::Dirty),
-        (When::Hot, "hot", StateFlag::Hot),
-        (When::Cold, "cold", StateFlag::Cold),
-        (When::Infected, "infected", StateFlag::Infected),
-        (When::Cooked, "cooked", StateFlag::Cooked),
-        (When::Eaten, "eaten", StateFlag::Eaten),
-    ];
-    poses
-        .extend(states.into_iter().filter(|state| has(state.0)).map(|(_, title, flag)| Pose::with(class, title, flag)));
-    if has(When::Filled) {
-        poses.push(Pose { fluid: Fluid::Coffee, ..Pose::plain("coffee", Look::Object(class)) });
-    }
-    if has(When::Unpowered) {
-        poses.push(Pose { flags: StateFlags::default(), ..Pose::plain("unpowered", Look::Object(class)) });
-    }
-    poses
 }
 
 fn objects(out: &str, classes: &[&str]) -> Result<(), Box<dyn Error>> {
     let catalog = Catalog::builtin();
     let meshes = Arc::new(MeshLibrary::build(&catalog)?);
-    let mut all = Vec::new();
+    let mut cells = Vec::new();
     for id in classes {
         let class = catalog.find(id).ok_or_else(|| format!("the catalogue has no `{id}`"))?;
         let size = meshes.bounds(class).size();
-        println!("{id}: {:.3} x {:.3} x {:.3} m, {} triangles", size.x, size.y, size.z, meshes.triangles(class));
-        all.extend(poses(id, class, catalog.model(class)));
+        println!(
+            "{id}: {:.3} x {:.3} x {:.3} m, {:?} triangles",
+            size.x,
+            size.y,
+            size.z,
+            meshes.triangles_by_level(class)
+        );
+        cells.extend(gallery::cells(&meshes, &catalog, class));
     }
-    sheet(out, &meshes, &all)
+    paint(out, &meshes, &Sheet { name: "objects".to_owned(), cells })
 }
 
 fn bodies(out: &str) -> Result<(), Box<dyn Error>> {
-    let meshes = Arc::new(MeshLibrary::build(&Catalog::builtin())?);
-    let all = [
-        Pose::plain("robot", Look::Robot { head_pitch_rad: 0.0, arm: 0.0 }),
-        Pose::plain("robot up", Look::Robot { head_pitch_rad: 0.4, arm: 1.0 }),
-        Pose::plain("robot down", Look::Robot { head_pitch_rad: -0.5, arm: 0.5 }),
-        Pose::plain("human", Look::Human { arm: 0.0 }),
-        Pose::plain("human arm", Look::Human { arm: 1.0 }),
-        Pose::plain("note", Look::Note {}),
-    ];
-    sheet(out, &meshes, &all)
+    let catalog = Catalog::builtin();
+    let meshes = Arc::new(MeshLibrary::build(&catalog)?);
+    let sheet = gallery::sheets(&meshes, &catalog).next().ok_or("there are no sheets")?;
+    paint(out, &meshes, &sheet)
 }
 
-fn sheet(out: &str, meshes: &Arc<MeshLibrary>, poses: &[Pose]) -> Result<(), Box<dyn Error>> {
-    let rows = poses.len().div_ceil(COLUMNS);
-    let columns = poses.len().min(COLUMNS);
-    let (width, height) = (columns * CELL as usize, rows * CELL as usize);
-    let mut picture = vec![255_u8; width * height * 4];
-    let mut renderer = CpuRenderer::new(2);
-    for (index, pose) in poses.iter().enumerate() {
-        println!("row {} column {}: {}", index / COLUMNS + 1, index % COLUMNS + 1, pose.title);
-        let cell = portrait(&mut renderer, meshes, pose);
-        let (left, top) = (index % COLUMNS * CELL as usize, index / COLUMNS * CELL as usize);
-        for (row, line) in cell.chunks(CELL as usize * 4).enumerate() {
-            let start = ((top + row) * width + left) * 4;
-            picture[start..start + line.len()].copy_from_slice(line);
+fn sheets(folder: &str, names: &[&str]) -> Result<(), Box<dyn Error>> {
+    let catalog = Catalog::builtin();
+    let meshes = Arc::new(MeshLibrary::build(&catalog)?);
+    std::fs::create_dir_all(folder)?;
+    for sheet in gallery::sheets(&meshes, &catalog) {
+        if names.is_empty() || names.iter().any(|name| sheet.name.starts_with(name)) {
+            paint(&format!("{folder}/{}.png", sheet.name), &meshes, &sheet)?;
         }
     }
-    write(out, &picture, width as u32, height as u32)
+    Ok(())
 }
 
-/// One object on the floor of an empty room, filling the picture.
-fn portrait(renderer: &mut CpuRenderer, meshes: &Arc<MeshLibrary>, pose: &Pose) -> Vec<u8> {
-    let (low, high) = match pose.look {
-        Look::Object(class) => {
-            let bounds = meshes.bounds(class);
-            (bounds.min.to_array(), bounds.max.to_array())
-        }
-        Look::Note {} => ([0.0, -0.05, 0.0], [0.01, 0.05, 0.1]),
-        Look::Robot { .. } => ([-0.25, -0.28, 0.0], [0.25, 0.28, 1.36]),
-        Look::Human { .. } => ([-0.15, -0.28, 0.0], [0.25, 0.28, 1.78]),
-    };
-    let mut scene = Scene::new(Arc::clone(meshes), &studio());
-    scene.set_instances(&[Instance {
-        id: 1,
-        look: pose.look,
-        position_m: [0.0, 0.0, 0.0],
-        rotation: [0.0, 0.0, 0.0, 1.0],
-        scale: [1.0; 3],
-        flags: pose.flags,
-        fluid: pose.fluid,
-        color: pose.color,
-        opened: pose.opened,
-        running: pose.running,
-        room: RoomId::Lab1,
-        visible: true,
-    }]);
-    let middle: [f32; 3] = std::array::from_fn(|axis| (low[axis] + high[axis]) * 0.5);
-    let radius = (0..3).map(|axis| (high[axis] - low[axis]).powi(2)).sum::<f32>().sqrt() * 0.5;
-    let fov_y_rad = 0.6_f32;
-    let grown = if pose.opened > 0.0 { 1.35 } else { 1.0 };
-    let distance = (radius * grown / (fov_y_rad * 0.5).sin()).max(0.08);
-    let (yaw, pitch) = (0.62_f32, -0.42_f32);
-    let back = [pitch.cos() * yaw.cos(), -pitch.cos() * yaw.sin(), -pitch.sin()];
-    let camera = Camera {
-        position_m: std::array::from_fn(|axis| middle[axis] + back[axis] * distance),
-        yaw_rad: std::f32::consts::PI - yaw,
-        pitch_rad: pitch,
-        fov_y_rad,
-        width: CELL,
-        height: CELL,
-        hide: None,
-        for_people: true,
-        ceiling: false,
-    };
-    let mut color = vec![0; camera.pixels() * 4];
-    renderer.render(&scene, &camera, &mut Planes { color: Some(&mut color), ..Planes::default() });
-    color
-}
-
-fn studio() -> Layout {
-    let finish = |color: &str| Finish { material: Material::Plain, color: color.to_owned() };
-    let room = Room {
-        id: RoomId::Lab1,
-        rects_m: vec![[-40.0, -40.0, 40.0, 40.0]],
-        floor: finish("#b9b6ae"),
-        wall: finish("#c8c6be"),
-        wainscot: None,
-        circuit: 1,
-    };
-    Layout {
-        id: "studio".to_owned(),
-        wall_height_m: 6.0,
-        rooms: vec![room],
-        openings: Vec::new(),
-        placements: Vec::new(),
-        viewpoints: Vec::new(),
-        note_places: Vec::new(),
-    }
+fn paint(out: &str, meshes: &Arc<MeshLibrary>, sheet: &Sheet) -> Result<(), Box<dyn Error>> {
+    let picture = sheet.paint(&mut CpuRenderer::new(2), meshes, CELL);
+    write(out, &picture.rgba, picture.width, picture.height)
 }
 
 /// The layout's placements, as the catalogue knows them; what stands on an anchor takes the next free one.
@@ -293,7 +159,7 @@ fn view(
             .find(|room| room.rects_m.iter().any(|rect| rect[0] < x && x < rect[2] && rect[1] < y && y < rect[3]));
         instances.push(Instance {
             id: 5000,
-            look: Look::Robot { head_pitch_rad: 0.1, arm: 0.3 },
+            look: Look::Robot { head_pitch_rad: 0.1, arm: 0.3, holds: false, rolled_m: 0.0 },
             position_m: [x, y, 0.0],
             rotation: [0.0, 0.0, (turned * 0.5).sin(), (turned * 0.5).cos()],
             scale: [1.0; 3],

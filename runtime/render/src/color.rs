@@ -54,13 +54,20 @@ fn roll_off(c: f32) -> f32 {
     KNEE + room * (1.0 - libm::powf(1.0 - t, bend))
 }
 
+/// Where in the table a channel's display byte stands; its lower twelve bits count.
+#[inline(always)]
+pub(crate) fn step(c: f32) -> u32 {
+    // Beside this large number the last bits of a float are its whole part: much cheaper than a conversion.
+    const LARGE: f32 = 8_388_608.0;
+    let c = if c > 0.0 { c } else { 0.0 };
+    let c = if c < WHITE { c } else { WHITE };
+    (c * ((STEPS - 1) as f32 / WHITE) + LARGE).to_bits()
+}
+
 /// Display bytes of linear light.
 #[inline(always)]
 pub(crate) fn to_srgb(table: &[u8; STEPS], light: Vec3) -> [u8; 3] {
-    // Beside this large number the last bits of a float are its whole part: much cheaper than a conversion.
-    const LARGE: f32 = 8_388_608.0;
-    let step = |c: f32| (c.clamp(0.0, WHITE) * ((STEPS - 1) as f32 / WHITE) + LARGE).to_bits() as usize;
-    let channel = |c: f32| table[step(c) & (STEPS - 1)];
+    let channel = |c: f32| table[step(c) as usize & (STEPS - 1)];
     [channel(light.x), channel(light.y), channel(light.z)]
 }
 

@@ -4,23 +4,27 @@
 //! Rows are shared out to threads in bands; each band's pixels depend on nothing but the scene and the camera.
 
 mod draw;
+mod facet;
 mod outline;
 mod raster;
 mod setup;
 mod shade;
 mod smooth;
+mod strip;
 
 use std::sync::{Mutex, PoisonError};
 
+use crate::Renderer;
 use crate::camera::{Camera, FAR_M, View};
 use crate::planes::Planes;
 use crate::portals::Visible;
 use crate::scene::Scene;
-use crate::{Renderer, color};
 
 use draw::Draw;
+use facet::Facets;
 use setup::Triangle;
 use shade::Shader;
+use strip::{Out, Strip};
 
 /// Bands a thread: enough to share work evenly, few because every band goes through all triangles.
 const BANDS_PER_THREAD: usize = 4;
@@ -31,6 +35,8 @@ const NOTHING: u32 = u32::MAX;
 #[derive(Debug)]
 pub struct CpuRenderer {
     threads: usize,
+    /// Whether the processor has AVX2; the bits are the same without. True only where it has.
+    wide: bool,
     /// False in tests alone: every room is drawn, whether it can be seen or not.
     through_doors: bool,
     seen: Vec<u32>,
@@ -39,6 +45,8 @@ pub struct CpuRenderer {
     smoothing: smooth::Buffers,
     mask: Vec<u8>,
     own_ids: Vec<u32>,
+    /// One for each thread at work.
+    facets: Mutex<Vec<Facets>>,
 }
 
 impl CpuRenderer {
@@ -48,6 +56,7 @@ impl CpuRenderer {
         let threads = threads.clamp(1, 64);
         Self {
             threads,
+            wide: has_wide_vectors(),
             through_doors: true,
             seen: Vec::new(),
             nearness: Vec::new(),
@@ -55,6 +64,7 @@ impl CpuRenderer {
             smoothing: smooth::Buffers::default(),
             mask: Vec::new(),
             own_ids: Vec::new(),
+            facets: Mutex::default(),
         }
     }
 
@@ -62,6 +72,12 @@ impl CpuRenderer {
     #[cfg(test)]
     pub(crate) fn without_portals() -> Self {
         Self { through_doors: false, ..Self::new(1) }
+    }
+
+    /// One that does without the widest vectors, to compare with.
+    #[cfg(test)]
+    pub(crate) fn without_wide_vectors() -> Self {
+        Self { wide: false, ..Self::new(1) }
     }
 
     /// Turns all draws into triangles on the screen.
@@ -82,7 +98,8 @@ impl CpuRenderer {
             first += count as u32;
         }
         // The shares add up to more than everything, so nothing is left over.
-        share_out(self.threads, jobs, |(batch, own, first)| setup::all(batch, own, first, view));
+        let wide = self.wide;
+        share_out(self.threads, jobs, |(batch, own, first)| setup::all(wide, batch, own, first, view));
     }
 }
 
@@ -154,7 +171,7 @@ impl Renderer for CpuRenderer {
         self.seen.resize(pixels, NOTHING);
         self.nearness.resize(pixels, 0.0);
         self.own_ids.resize(if outlined && planes.ids.is_none() { pixels } else { 0 }, 0);
-        let shader = Shader::new(&view, &draws, &self.batches, &shadows, camera.for_people);
+        let shader = Shader::new(&view, &draws, &self.batches, &shadows, wants_color);
         let width = camera.width as usize;
         let band_rows = band_rows(self.threads, camera.height as usize);
         let (rows, count) = (band_rows * width, (camera.height as usize).div_ceil(band_rows));
@@ -180,7 +197,14 @@ impl Renderer for CpuRenderer {
                 ids: ids.next().flatten(),
             })
             .collect();
-        share_out(self.threads, jobs, |band| fill(band, width, &shader));
+        let (pool, wide) = (&self.facets, self.wide);
+        let kept = || pool.lock().unwrap_or_else(PoisonError::into_inner);
+        share_out(self.threads, jobs, |band| {
+            let mut facets = kept().pop().unwrap_or_default();
+            facets.clear(shader.triangles());
+            fill(wide, band, width, &shader, &mut facets);
+            kept().push(facets);
+        });
 
         if let Some(color) = planes.color.as_deref_mut().filter(|_| camera.for_people) {
             smooth::run(self.threads, color, &mut self.smoothing, &self.seen, width);
@@ -207,27 +231,35 @@ fn check_lengths(planes: &Planes<'_>, pixels: usize) {
     assert!(lengths.into_iter().flatten().all(|length| length == pixels), "a plane is not {pixels} pixels long");
 }
 
-/// Draws one band. SSE 4.1 rounds and chooses in one instruction each, with the same bits; AVX2 was slower for colour.
-/// All that it is to reach has to be inlined here.
-fn fill(band: Band<'_>, width: usize, shader: &Shader<'_>) {
+/// Whether the processor has the vectors that this is compiled for besides those every processor has.
+fn has_wide_vectors() -> bool {
     #[cfg(target_arch = "x86_64")]
-    if std::arch::is_x86_feature_detected!("sse4.1") {
-        // SAFETY: the processor has just been asked whether it has them.
-        unsafe { fill_sse41(band, width, shader) };
+    return std::arch::is_x86_feature_detected!("avx2");
+    #[cfg(not(target_arch = "x86_64"))]
+    false
+}
+
+/// Draws one band. All that it is to reach has to be inlined here, to be compiled for the wide vectors too.
+fn fill(wide: bool, band: Band<'_>, width: usize, shader: &Shader<'_>, facets: &mut Facets) {
+    #[cfg(target_arch = "x86_64")]
+    if wide {
+        // SAFETY: `wide` is true only where the processor has AVX2.
+        unsafe { fill_avx2(band, width, shader, facets) };
         return;
     }
-    fill_rows(band, width, shader);
+    let _ = wide;
+    fill_rows(band, width, shader, facets);
 }
 
 #[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "sse4.1")]
-fn fill_sse41(band: Band<'_>, width: usize, shader: &Shader<'_>) {
-    fill_rows(band, width, shader);
+#[target_feature(enable = "avx2")]
+fn fill_avx2(band: Band<'_>, width: usize, shader: &Shader<'_>, facets: &mut Facets) {
+    fill_rows(band, width, shader, facets);
 }
 
 /// First what each pixel sees, then what is wanted of it.
 #[inline(always)]
-fn fill_rows(mut band: Band<'_>, width: usize, shader: &Shader<'_>) {
+fn fill_rows(mut band: Band<'_>, width: usize, shader: &Shader<'_>, facets: &mut Facets) {
     band.seen.fill(NOTHING);
     band.nearness.fill(1.0 / FAR_M);
     raster::all(shader.batches(), band.first_row, width, band.seen, band.nearness);
@@ -236,20 +268,21 @@ fn fill_rows(mut band: Band<'_>, width: usize, shader: &Shader<'_>) {
             *depth = 1.0 / nearness;
         }
     }
+    let mut strip = Strip::new();
     for (row, seen) in band.seen.chunks(width).enumerate() {
         let span = row * width..(row + 1) * width;
-        let nearness = &band.nearness[span.clone()];
-        let y = band.first_row + row;
         if let Some(ids) = &mut band.ids {
             shader.ids(seen, &mut ids[span.clone()]);
         }
-        if let Some(normals) = &mut band.normals {
-            shader.normals(y, seen, nearness, normals[span.start * 4..span.end * 4].as_chunks_mut().0);
+        if band.color.is_none() && band.normals.is_none() {
+            continue;
         }
-        if let Some(color) = &mut band.color {
-            let table = color::srgb_table();
-            shader.color(table, y, seen, nearness, color[span.start * 4..span.end * 4].as_chunks_mut().0);
-        }
+        let four = span.start * 4..span.end * 4;
+        let out = Out {
+            color: band.color.as_deref_mut().map(|plane| plane[four.clone()].as_chunks_mut().0),
+            normals: band.normals.as_deref_mut().map(|plane| plane[four].as_chunks_mut().0),
+        };
+        shader.row(&mut strip, facets, band.first_row + row, seen, &band.nearness[span], out);
     }
 }
 

@@ -36,17 +36,43 @@ pub struct Instance {
 pub enum Look {
     /// As the catalogue has it.
     Object(ClassId),
-    /// The robot.
+    /// An object of the catalogue that is a gate to another time, while it is on.
+    Gate {
+        /// Its class.
+        class: ClassId,
+        /// To the future; otherwise to the past.
+        future: bool,
+    },
+    /// The robot. Its flags say which face it shows.
     Robot {
         /// How far its head looks up.
         head_pitch_rad: f32,
-        /// Its arms: 0 at rest, 1 reaching forward.
+        /// Its right arm: 0 at rest, 1 reaching forward.
         arm: f32,
+        /// Whether it holds something.
+        holds: bool,
+        /// How far it has rolled: turns its wheels.
+        rolled_m: f32,
     },
-    /// A person.
-    Human {
-        /// The arms: 0 at rest, 1 reaching forward.
+    /// A person. Its flags say which face they show.
+    Person {
+        /// Which of the outfits, counted round and round.
+        outfit: u32,
+        /// How far the head looks up.
+        head_pitch_rad: f32,
+        /// The right arm: 0 at rest, 1 reaching forward.
         arm: f32,
+        /// Whether they hold something.
+        holds: bool,
+        /// How far they have walked: moves their legs.
+        walked_m: f32,
+        /// How briskly: 0 standing, 1 walking.
+        pace: f32,
+    },
+    /// What is being poured: falls from the instance's place by this height, in the colour of its fluid.
+    Stream {
+        /// How far it falls.
+        height_m: f32,
     },
     /// A sticky note: faces `+x`, its back on the wall at `x = 0`, its lower edge at `z = 0`.
     Note {},

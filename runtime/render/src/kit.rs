@@ -41,6 +41,8 @@ impl Detail {
         };
         match self {
             Self::Fine => fine,
+            // Cups and cans are looked at from the middle distance.
+            Self::Medium if fine == 16 => 12,
             Self::Medium => (fine / 2).max(6),
             Self::Coarse => (fine / 4).max(5),
         }
@@ -178,6 +180,11 @@ pub(crate) fn build(shape: &Shape, detail: Detail) -> Result<Solid, ShapeError> 
             Ok(text::build(text, *height, detail))
         }
     }
+}
+
+/// The strokes of a line of text in a plane, from its left end on the baseline; capitals are 1 high.
+pub(crate) fn line_of_text(line: &str) -> Vec<[[f32; 2]; 2]> {
+    text::line(line)
 }
 
 fn length(what: &'static str, value: f32) -> Result<(), ShapeError> {

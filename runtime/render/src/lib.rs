@@ -23,6 +23,7 @@
 mod camera;
 mod color;
 mod cpu;
+pub mod gallery;
 mod instance;
 mod kit;
 mod library;
@@ -31,12 +32,15 @@ mod model_mesh;
 mod noise;
 mod occlusion;
 mod pattern;
+mod people;
 mod plan;
 mod planes;
 mod portals;
+mod pose;
 mod rig;
 mod scene;
 mod shadow;
+mod signs;
 
 pub use camera::{Camera, FAR_M};
 pub use cpu::CpuRenderer;

@@ -7,7 +7,7 @@ use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use cohabit_cdf::catalog::Stands;
-use cohabit_cdf::model::Model;
+use cohabit_cdf::model::{Model, When};
 use cohabit_cdf::{Catalog, ClassId, Property};
 use glam::Vec3;
 
@@ -17,10 +17,13 @@ use crate::mesh::{Aabb, Mesh};
 use crate::model_mesh;
 use crate::occlusion::Occluder;
 use crate::pattern::Pictures;
-use crate::rig::{self, Rig};
+use crate::people;
+use crate::rig::{self, Driver, Rig};
+use crate::signs::SIGNS;
 
-/// Looks that no catalogue needs to have.
-const BODIES: &str = include_str!("bodies.toml");
+/// Looks that no catalogue needs to have: of bodies, and of signs.
+const OWN: [(&str, &str); 2] =
+    [("bodies.toml", include_str!("bodies.toml")), ("signs.toml", include_str!("signs.toml"))];
 
 /// Why a model has no mesh.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -63,6 +66,16 @@ pub enum ModelError {
         /// The joint it names.
         joint: String,
     },
+    /// A joint is carried by none that comes before it.
+    #[error("model `{model}`: joint `{joint}` is carried by `{parent}`, which is no joint before it")]
+    NoParent {
+        /// The model.
+        model: String,
+        /// The joint.
+        joint: String,
+        /// What it names.
+        parent: String,
+    },
     /// A model has more than a mesh can hold.
     #[error("model `{model}` has {count} {what}; {most} at most")]
     TooMany {
@@ -88,6 +101,8 @@ pub(crate) struct ModelMesh {
     pub bounds: Aabb,
     /// Around all that may ever be drawn.
     pub reach: Aabb,
+    /// The states that some piece of it shows: see [`Self::shows`].
+    shown: u64,
     /// Whether a floor lies at z = 0.
     standing: bool,
     /// By [`Detail`], how much of the surrounding light reaches each corner; baked on first use.
@@ -95,6 +110,11 @@ pub(crate) struct ModelMesh {
 }
 
 impl ModelMesh {
+    /// Whether some of it is drawn in this state alone, or moves in it.
+    pub(crate) fn shows(&self, when: When) -> bool {
+        self.shown & (1 << when as u64) != 0
+    }
+
     /// How much of the surrounding light, 0 to 1, reaches each corner of a level.
     pub(crate) fn ambient(&self, level: usize) -> &[f32] {
         self.ambient[level].get_or_init(|| self.occluder().bake(&self.levels[level], self.standing))
@@ -127,7 +147,6 @@ pub(crate) struct ClassLook {
     pub model: usize,
     pub tint: Vec3,
     pub needs_power: bool,
-    pub own_dirt: bool,
 }
 
 /// The meshes of all models of a [`Catalog`], of the robot, of people, and of signs of states.
@@ -139,13 +158,16 @@ pub struct MeshLibrary {
 }
 
 /// Where in the library the looks lie that belong to no class.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Bodies {
     pub robot: usize,
-    pub human: usize,
+    /// By outfit.
+    pub people: Vec<usize>,
     pub note: usize,
-    pub steam: usize,
-    pub sparks: usize,
+    /// A stream of what is poured.
+    pub stream: usize,
+    /// For each of [`SIGNS`], its frames.
+    pub signs: Vec<Vec<usize>>,
 }
 
 impl MeshLibrary {
@@ -154,7 +176,7 @@ impl MeshLibrary {
     /// # Errors
     /// [`ModelError`] names the model and the part that cannot be built.
     pub fn build(catalog: &Catalog) -> Result<Self, ModelError> {
-        let own = Catalog::parse(&[], &[("bodies.toml", BODIES)]).expect("invariant: the tests parse the same text");
+        let own = Catalog::parse(&[], &OWN).expect("invariant: the tests parse the same text");
         let mut stands = vec![false; catalog.models().len()];
         for index in 0..catalog.classes().len() {
             let id = ClassId(index as u16);
@@ -164,23 +186,30 @@ impl MeshLibrary {
         for mesh in all_meshes(catalog.models(), &stands) {
             models.push(mesh?);
         }
-        let mut body = |id: &str| -> Result<usize, ModelError> {
-            if let Some(index) = catalog.models().iter().position(|model| model.id == id) {
-                return Ok(index);
-            }
-            let model = own.models().iter().find(|model| model.id == id);
-            models
-                .push(mesh_of(model.expect("invariant: bodies.toml has every body"), id == "robot" || id == "human")?);
+        let mut add = |model: &Model, body: bool| -> Result<usize, ModelError> {
+            models.push(mesh_of(model, body, body)?);
             Ok(models.len() - 1)
         };
-        let bodies = Bodies {
-            robot: body("robot")?,
-            human: body("human")?,
-            note: body("note")?,
-            steam: body("steam")?,
-            sparks: body("sparks")?,
+        let named = |id: &str| {
+            let model = own.models().iter().find(|model| model.id == id);
+            model.expect("invariant: the tests look for every body and sign")
         };
-        let classes = class_looks(catalog, &models)?;
+        let robot = catalog.models().iter().find(|model| model.id == "robot").unwrap_or_else(|| named("robot"));
+        let mut bodies = Bodies {
+            robot: add(robot, true)?,
+            people: Vec::new(),
+            note: add(named("note"), false)?,
+            stream: add(named("stream"), false)?,
+            signs: Vec::new(),
+        };
+        for model in people::dressed(own.models()) {
+            bodies.people.push(add(&model, true)?);
+        }
+        for sign in &SIGNS {
+            let frames = sign.frames.iter().map(|id| add(named(id), false));
+            bodies.signs.push(frames.collect::<Result<_, _>>()?);
+        }
+        let classes = class_looks(catalog)?;
         Ok(Self { models, classes, bodies })
     }
 
@@ -209,6 +238,14 @@ impl MeshLibrary {
         look.map_or(0, |look| self.models[look.model].levels[0].triangles.len())
     }
 
+    /// The same at each level of detail, the finest first.
+    #[must_use]
+    pub fn triangles_by_level(&self, class: ClassId) -> Vec<usize> {
+        let look = self.classes.get(usize::from(class.0));
+        let levels = look.map(|look| &self.models[look.model].levels);
+        levels.into_iter().flatten().map(|mesh| mesh.triangles.len()).collect()
+    }
+
     pub(crate) fn model(&self, index: usize) -> &ModelMesh {
         &self.models[index]
     }
@@ -217,8 +254,8 @@ impl MeshLibrary {
         self.classes.get(usize::from(class.0)).copied()
     }
 
-    pub(crate) fn bodies(&self) -> Bodies {
-        self.bodies
+    pub(crate) fn bodies(&self) -> &Bodies {
+        &self.bodies
     }
 }
 
@@ -227,7 +264,7 @@ fn all_meshes(models: &[Model], stands: &[bool]) -> Vec<Result<ModelMesh, ModelE
     let threads = std::thread::available_parallelism().map_or(1, usize::from).min(8);
     let jobs: Vec<(&Model, bool)> = models.iter().zip(stands.iter().copied()).collect();
     let worker = |first: usize| -> Vec<_> {
-        jobs.iter().skip(first).step_by(threads).map(|(model, standing)| mesh_of(model, *standing)).collect()
+        jobs.iter().skip(first).step_by(threads).map(|(model, standing)| mesh_of(model, *standing, false)).collect()
     };
     let mut shares: Vec<std::vec::IntoIter<_>> = std::thread::scope(|scope| {
         let workers: Vec<_> = (0..threads).map(|first| scope.spawn(move || worker(first))).collect();
@@ -237,22 +274,25 @@ fn all_meshes(models: &[Model], stands: &[bool]) -> Vec<Result<ModelMesh, ModelE
     (0..jobs.len()).filter_map(|index| shares[index % threads].next()).collect()
 }
 
-fn class_looks(catalog: &Catalog, models: &[ModelMesh]) -> Result<Vec<ClassLook>, ModelError> {
+fn class_looks(catalog: &Catalog) -> Result<Vec<ClassLook>, ModelError> {
     let mut looks = Vec::with_capacity(catalog.classes().len());
     for (index, class) in catalog.classes().iter().enumerate() {
         let text = class.tint.as_deref().unwrap_or("#b8b4aa");
         let tint = color::parse_hex(text)
             .ok_or_else(|| ModelError::Tint { class: class.id.clone(), color: text.to_owned() })?;
         let model = catalog.model_index(ClassId(index as u16));
-        let own_dirt =
-            models[model].levels[0].pieces.iter().any(|piece| piece.when == Some(cohabit_cdf::model::When::Dirty));
-        looks.push(ClassLook { model, tint, needs_power: class.has(Property::Powerable), own_dirt });
+        looks.push(ClassLook { model, tint, needs_power: class.has(Property::Powerable) });
     }
     Ok(looks)
 }
 
-fn mesh_of(model: &Model, standing: bool) -> Result<ModelMesh, ModelError> {
-    let joints = rig::rigs(model);
+/// The mesh of a model; a `body` is moved by its pose.
+fn mesh_of(model: &Model, standing: bool, body: bool) -> Result<ModelMesh, ModelError> {
+    let joints = rig::rigs(model, body).map_err(|index| {
+        let joint = &model.joints[index];
+        let parent = joint.parent.clone().unwrap_or_default();
+        ModelError::NoParent { model: model.id.clone(), joint: joint.id.clone(), parent }
+    })?;
     let mut levels = Vec::with_capacity(Detail::ALL.len());
     for detail in Detail::ALL {
         levels.push(model_mesh::build(model, detail)?);
@@ -269,11 +309,15 @@ fn mesh_of(model: &Model, standing: bool) -> Result<ModelMesh, ModelError> {
         }
         reach = reach.union(own);
         if let Some(joint) = piece.joint {
-            reach = reach.union(rig::swept(own, &joints[usize::from(joint)]));
+            reach = reach.union(rig::swept(own, &joints, joint));
         }
     }
     let ambient = [const { OnceLock::new() }; Detail::ALL.len()];
-    Ok(ModelMesh { levels, joints, bounds, reach: reach_or_point(reach), standing, ambient })
+    let mut shown = fine.pieces.iter().filter_map(|piece| piece.when).fold(0, |all, when| all | 1 << when as u64);
+    if shown & 1 << When::Off as u64 != 0 || joints.iter().any(|rig| rig.driver == Driver::Running) {
+        shown |= 1 << When::On as u64;
+    }
+    Ok(ModelMesh { levels, joints, bounds, reach: reach_or_point(reach), shown, standing, ambient })
 }
 
 fn reach_or_point(bounds: Aabb) -> Aabb {

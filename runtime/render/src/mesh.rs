@@ -112,8 +112,8 @@ pub(crate) struct Mesh {
 impl Piece {
     /// Whether it is drawn while nothing has happened to the object.
     pub(crate) fn is_usual(&self) -> bool {
-        use When::{Off, Powered, Raw, Uneaten, Whole};
-        self.when.is_none_or(|when| matches!(when, Off | Powered | Raw | Uneaten | Whole))
+        use When::{Neutral, Off, Powered, Raw, Uncut, Uneaten, Whole};
+        self.when.is_none_or(|when| matches!(when, Off | Powered | Raw | Uneaten | Whole | Uncut | Neutral))
     }
 }
 

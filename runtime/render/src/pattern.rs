@@ -258,11 +258,15 @@ const SIDE: usize = 256;
 /// Copies, each half as fine: down to 2 by 2.
 const LEVELS: usize = 8;
 
-/// One picture and its coarser copies, one after another; texels hold factors times 128.
+/// One picture and its coarser copies, one after another; texels hold factors times 128, a byte a channel from
+/// the lowest.
+#[derive(Debug)]
 pub(crate) struct Picture {
-    texels: Vec<[u8; 4]>,
+    texels: Vec<u32>,
     starts: [usize; LEVELS],
     per_m: f32,
+    /// Texels a square metre, somewhat more than there are.
+    squared: f32,
 }
 
 /// All pictures, by pattern, each painted on first use.
@@ -296,37 +300,40 @@ impl Pictures {
 
 impl Picture {
     fn paint(pattern: Pattern) -> Self {
-        let mut finest = Vec::with_capacity(SIDE * SIDE);
+        let mut all = Vec::with_capacity(SIDE * SIDE * 4 / 3 + 1);
         for y in 0..SIDE {
             for x in 0..SIDE {
                 let place = |i: usize| (i as f32 + 0.5) / SIDE as f32;
                 let factors = pattern.paint(place(x), place(y)).map(|f| (f * 128.0 + 0.5).clamp(0.0, 255.0) as u8);
-                finest.push([factors[0], factors[1], factors[2], 0]);
+                all.push([factors[0], factors[1], factors[2], 0]);
             }
         }
-        let mut picture = Self { texels: finest, starts: [0; LEVELS], per_m: SIDE as f32 / pattern.period_m() };
+        let per_m = SIDE as f32 / pattern.period_m();
+        let mut picture = Self { texels: Vec::new(), starts: [0; LEVELS], per_m, squared: per_m * per_m * 1.69 };
         for level in 1..LEVELS {
             let (start, side) = (picture.starts[level - 1], SIDE >> (level - 1));
-            picture.starts[level] = picture.texels.len();
+            picture.starts[level] = all.len();
             for y in (0..side).step_by(2) {
                 for x in (0..side).step_by(2) {
-                    let texel = |dx: usize, dy: usize| picture.texels[start + (y + dy) * side + x + dx];
+                    let texel = |dx: usize, dy: usize| all[start + (y + dy) * side + x + dx];
                     let four = [texel(0, 0), texel(1, 0), texel(0, 1), texel(1, 1)];
                     let mean = |c: usize| ((four.iter().map(|t| u32::from(t[c])).sum::<u32>() + 2) / 4) as u8;
                     let texel = [mean(0), mean(1), mean(2), 0];
-                    picture.texels.push(texel);
+                    all.push(texel);
                 }
             }
         }
+        picture.texels = all.into_iter().map(u32::from_le_bytes).collect();
         picture
     }
 
-    /// Which copy suits a pixel that covers `footprint_m` of the surface, and that copy's texels a metre.
+    /// Which copy suits a pixel that covers a square of `footprint_m2` of the surface, and that copy's texels a metre.
     #[inline(always)]
-    pub(crate) fn level(&self, footprint_m: f32) -> Level<'_> {
-        let texels = footprint_m * self.per_m;
-        // The exponent of a float is the floor of its logarithm.
-        let level = (((texels * 1.3).max(1.0).to_bits() >> 23) as usize - 127).min(LEVELS - 1);
+    pub(crate) fn level(&self, footprint_m2: f32) -> Level<'_> {
+        let texels = footprint_m2 * self.squared;
+        let texels = if texels > 1.0 { texels } else { 1.0 };
+        // The exponent of a float is the floor of its logarithm; half of that is the root's.
+        let level = (((texels.to_bits() >> 23) as usize - 127) / 2).min(LEVELS - 1);
         let side = SIDE >> level;
         let start = self.starts[level];
         Level {
@@ -349,12 +356,52 @@ fn split(x: f32) -> (u32, f32) {
 /// One copy of a picture.
 #[derive(Clone, Copy)]
 pub(crate) struct Level<'a> {
-    texels: &'a [[u8; 4]],
+    texels: &'a [u32],
     shift: u32,
     per_m: f32,
 }
 
 impl Level<'_> {
+    /// The factors at several places, smoothly between texels: an array a channel.
+    #[inline(always)]
+    pub(crate) fn lanes<const N: usize>(&self, u_m: &[f32; N], v_m: &[f32; N]) -> [[f32; N]; 3] {
+        const ONE: f32 = 1.0 / 128.0;
+        let mask = (1 << self.shift) - 1;
+        let (mut fx, mut fy) = ([0.0; N], [0.0; N]);
+        let mut corners = [[0_u32; N]; 4];
+        for i in 0..N {
+            let ((ix, x), (iy, y)) = (split(u_m[i] * self.per_m - 0.5), split(v_m[i] * self.per_m - 0.5));
+            (fx[i], fy[i]) = (x, y);
+            let (x0, x1) = (ix & mask, (ix + 1) & mask);
+            let (y0, y1) = ((iy & mask) << self.shift, ((iy + 1) & mask) << self.shift);
+            corners[0][i] = y0 + x0;
+            corners[1][i] = y0 + x1;
+            corners[2][i] = y1 + x0;
+            corners[3][i] = y1 + x1;
+        }
+        assert!(!self.texels.is_empty(), "a level has at least four texels");
+        // The sides are powers of two: nothing lies beyond this.
+        let last = self.texels.len() - 1;
+        for corner in &mut corners {
+            for place in corner {
+                // SAFETY: there are texels, so that what is masked by the number of the last one is the number of one.
+                *place = unsafe { *self.texels.get_unchecked(*place as usize & last) };
+            }
+        }
+        let mut factors = [[0.0; N]; 3];
+        for (c, factors) in factors.iter_mut().enumerate() {
+            // Masked and not shifted, the bytes stay in the vectors that hold the texels.
+            let (mask, one) = (0xFF_u32 << (8 * c), ONE / (1_u32 << (8 * c)) as f32);
+            for i in 0..N {
+                let channel = |corner: usize| (corners[corner][i] & mask) as i32 as f32;
+                let near = channel(0) + (channel(1) - channel(0)) * fx[i];
+                let far = channel(2) + (channel(3) - channel(2)) * fx[i];
+                factors[i] = (near + (far - near) * fy[i]) * one;
+            }
+        }
+        factors
+    }
+
     /// The factors at a place, smoothly between texels.
     #[inline(always)]
     pub(crate) fn at(&self, u_m: f32, v_m: f32) -> [f32; 3] {
@@ -362,7 +409,7 @@ impl Level<'_> {
         let mask = (1 << self.shift) - 1;
         let (x0, x1) = ((ix & mask) as usize, ((ix + 1) & mask) as usize);
         let (y0, y1) = (((iy & mask) << self.shift) as usize, (((iy + 1) & mask) << self.shift) as usize);
-        let (a, b, c, d) = (self.texels[y0 + x0], self.texels[y0 + x1], self.texels[y1 + x0], self.texels[y1 + x1]);
+        let [a, b, c, d] = [y0 + x0, y0 + x1, y1 + x0, y1 + x1].map(|place| self.texels[place].to_le_bytes());
         const ONE: f32 = 1.0 / 128.0;
         let near = [(1.0 - fx) * (1.0 - fy) * ONE, fx * (1.0 - fy) * ONE];
         let far = [(1.0 - fx) * fy * ONE, fx * fy * ONE];

@@ -12,8 +12,10 @@ use crate::instance::{Highlight, Instance, Look};
 use crate::library::MeshLibrary;
 use crate::mesh::Aabb;
 use crate::plan::{HALF_WALL_M, Plan};
-use crate::rig::Driver;
+use crate::pose::{self, Pose};
+use crate::rig::{self, Drives};
 use crate::shadow::ShadowMap;
+use crate::signs::{SIGNS, Sign};
 
 /// From an instance's frame, or a moving part's, to the world, and back.
 #[derive(Clone, Copy, Debug)]
@@ -78,7 +80,9 @@ pub struct Scene {
     pub(crate) plan: Plan,
     instances: Vec<Instance>,
     /// For each instance its body, and signs of its states; nothing while it is hidden.
-    placed: Vec<Vec<Placed>>,
+    placed: Vec<Placing>,
+    /// Simulated time, ns.
+    nanos: u64,
     pub(crate) lit: [bool; 8],
     pub(crate) highlights: Vec<Highlight>,
     /// Brought up to date by the first renderer that wants shadows after a change.
@@ -96,6 +100,7 @@ impl Scene {
             plan,
             instances: Vec::new(),
             placed: Vec::new(),
+            nanos: 0,
             lit: [true; 8],
             highlights: Vec::new(),
             shadows,
@@ -105,8 +110,8 @@ impl Scene {
     /// Takes over all instances, each time all of them, in an order that stays; costs little where little changed.
     pub fn set_instances(&mut self, instances: &[Instance]) {
         let shadows = self.shadows.get_mut().unwrap_or_else(std::sync::PoisonError::into_inner);
-        for index in instances.len()..self.placed.len() {
-            self.placed[index].iter().for_each(|placed| shadows.soil(placed.bounds));
+        for placing in self.placed.iter().skip(instances.len()) {
+            placing.soil(shadows);
         }
         self.placed.truncate(instances.len());
         self.instances.truncate(instances.len());
@@ -114,19 +119,31 @@ impl Scene {
             if self.instances.get(index) == Some(instance) {
                 continue;
             }
-            let placed = place(&self.meshes, &self.plan, instance);
-            placed.iter().for_each(|placed| shadows.soil(placed.bounds));
+            let placing = place(&self.meshes, &self.plan, instance, self.nanos);
+            placing.soil(shadows);
             match self.placed.get_mut(index) {
                 Some(known) => {
-                    known.iter().for_each(|placed| shadows.soil(placed.bounds));
-                    *known = placed;
+                    known.soil(shadows);
+                    *known = placing;
                     self.instances[index] = instance.clone();
                 }
                 None => {
-                    self.placed.push(placed);
+                    self.placed.push(placing);
                     self.instances.push(instance.clone());
                 }
             }
+        }
+    }
+
+    /// Sets simulated time: what runs, steams or sparks moves with it. Costs nothing where nothing does.
+    pub fn set_time(&mut self, nanos: u64) {
+        if self.nanos == nanos {
+            return;
+        }
+        self.nanos = nanos;
+        // Shadows stay: nothing that moves with time alone casts one.
+        for (placing, instance) in self.placed.iter_mut().zip(&self.instances).filter(|(placing, _)| placing.moves) {
+            *placing = place(&self.meshes, &self.plan, instance, nanos);
         }
     }
 
@@ -140,74 +157,157 @@ impl Scene {
         self.highlights = highlights.to_vec();
     }
 
+    /// Whether anything looks different at another time.
+    #[must_use]
+    pub fn moves(&self) -> bool {
+        self.placed.iter().any(|placing| placing.moves)
+    }
+
     /// Everything placed, in the order of the instances.
     pub(crate) fn placed(&self) -> impl Iterator<Item = &Placed> + Clone {
-        self.placed.iter().flatten()
+        self.placed.iter().flat_map(|placing| &placing.placed)
     }
 }
 
-fn place(meshes: &MeshLibrary, plan: &Plan, instance: &Instance) -> Vec<Placed> {
-    if !instance.visible {
-        return Vec::new();
+/// What is drawn for an instance.
+#[derive(Debug, Default)]
+struct Placing {
+    placed: Vec<Placed>,
+    /// Whether it looks different at another time.
+    moves: bool,
+}
+
+impl Placing {
+    /// Has the shadows redrawn that it casts.
+    fn soil(&self, shadows: &mut ShadowMap) {
+        self.placed.iter().filter(|placed| placed.casts_shadow).for_each(|placed| shadows.soil(placed.bounds));
     }
+}
+
+/// What of a look decides how it is placed.
+struct Figure {
+    model: usize,
+    tint: Vec3,
+    needs_power: bool,
+    pose: Option<Pose>,
+    stretch: Vec3,
+}
+
+fn figure(meshes: &MeshLibrary, look: Look) -> Option<Figure> {
     let bodies = meshes.bodies();
-    let (model, tint, needs_power, own_dirt) = match instance.look {
-        Look::Object(class) => match meshes.class(class) {
-            Some(look) => (look.model, look.tint, look.needs_power, look.own_dirt),
-            None => return Vec::new(),
-        },
-        Look::Robot { .. } => (bodies.robot, color::from_srgb([232, 232, 228]), false, false),
-        Look::Human { .. } => (bodies.human, human_tint(instance.id), false, false),
-        Look::Note {} => (bodies.note, color::from_srgb([246, 222, 106]), false, false),
-    };
-    let mesh = meshes.model(model);
+    let plain = |model| Figure { model, tint: Vec3::ONE, needs_power: false, pose: None, stretch: Vec3::ONE };
+    Some(match look {
+        Look::Object(class) | Look::Gate { class, .. } => {
+            let own = meshes.class(class)?;
+            Figure { tint: own.tint, needs_power: own.needs_power, ..plain(own.model) }
+        }
+        Look::Robot { head_pitch_rad, arm, holds, rolled_m } => {
+            let pose = Some(pose::robot(head_pitch_rad, arm, holds, rolled_m));
+            Figure { tint: color::from_srgb([232, 232, 228]), pose, ..plain(bodies.robot) }
+        }
+        Look::Person { outfit, head_pitch_rad, arm, holds, walked_m, pace } => {
+            let model = bodies.people[outfit as usize % bodies.people.len()];
+            Figure { pose: Some(pose::person(head_pitch_rad, arm, holds, walked_m, pace)), ..plain(model) }
+        }
+        Look::Stream { height_m } => {
+            Figure { stretch: Vec3::new(1.0, 1.0, height_m.clamp(0.01, 3.0)), ..plain(bodies.stream) }
+        }
+        Look::Note {} => Figure { tint: color::from_srgb([246, 222, 106]), ..plain(bodies.note) },
+    })
+}
+
+fn place(meshes: &MeshLibrary, plan: &Plan, instance: &Instance, nanos: u64) -> Placing {
+    let Some(figure) = figure(meshes, instance.look).filter(|_| instance.visible) else { return Placing::default() };
+    let mesh = meshes.model(figure.model);
+    let flags = instance.flags;
     let rotation = Quat::from_array(instance.rotation);
     let rotation = if rotation.length_squared() > 1e-6 { rotation.normalize() } else { Quat::IDENTITY };
-    let scaled = Mat3::from_quat(rotation) * Mat3::from_diagonal(Vec3::from_array(instance.scale));
-    let offset = Vec3::from_array(instance.position_m);
-    let mut transforms = vec![Transform::new(scaled, offset)];
-    for rig in &mesh.joints {
-        let (turn, slide) = rig.moved(drive(instance, rig.driver));
-        transforms.push(Transform::new(scaled * turn, scaled * slide + offset));
+    let scale = Vec3::from_array(instance.scale) * figure.stretch;
+    let mut scaled = Mat3::from_quat(rotation) * Mat3::from_diagonal(scale);
+    if flags.has(StateFlag::Broken) && !mesh.shows(When::Broken) {
+        scaled *= slumped();
     }
-    let mut pieces = Vec::new();
+    if flags.has(StateFlag::Eaten) && !mesh.shows(When::Eaten) {
+        scaled *= Mat3::from_diagonal(LEFT_OVER);
+    }
+    let offset = Vec3::from_array(instance.position_m);
+    let running = instance.running.clamp(0.0, 1.0);
+    let drives = Drives { opened: instance.opened.clamp(0.0, 1.0), running, pose: figure.pose.as_ref(), nanos };
+    let transforms: Vec<Transform> = std::iter::once(Transform::new(scaled, offset))
+        .chain(
+            rig::transforms(&mesh.joints, &drives)
+                .into_iter()
+                .map(|(turn, slide)| Transform::new(scaled * turn, scaled * slide + offset)),
+        )
+        .collect();
+    let (mut still, mut moving) = (Vec::new(), Vec::new());
     for (index, piece) in mesh.levels[0].pieces.iter().enumerate() {
-        if piece.when.is_none_or(|when| shown(when, instance, needs_power)) {
+        if piece.when.is_none_or(|when| shown(when, instance, figure.needs_power)) {
+            let cycles = piece.joint.is_some_and(|joint| rig::cycles(&mesh.joints, joint));
+            let pieces = if cycles { &mut moving } else { &mut still };
             pieces.push((index as u16, piece.joint.map_or(0, |joint| u16::from(joint) + 1)));
         }
     }
-    let flags = instance.flags;
+    let bounds = transforms[0].bounds(mesh.reach);
     let weather = Weather {
-        dirty: flags.has(StateFlag::Dirty) && !own_dirt,
+        dirty: flags.has(StateFlag::Dirty) && !mesh.shows(When::Dirty),
         cold: flags.has(StateFlag::Cold),
         infected: flags.has(StateFlag::Infected),
     };
-    let bounds = transforms[0].bounds(mesh.reach);
-    let body = finish(plan, instance, model, transforms, pieces, bounds);
-    let body = Placed { tint: color::of_color(instance.color).unwrap_or(tint), weather, ..body };
-    let mut all = vec![body];
-    for (flag, sign) in [(StateFlag::Hot, bodies.steam), (StateFlag::Sparking, bodies.sparks)] {
-        if flags.has(flag) {
-            all.push(sign_over(meshes, plan, instance, sign, transforms_bounds(&all[0], mesh.bounds)));
-        }
+    let casts_shadow = !matches!(instance.look, Look::Stream { .. });
+    let body = Placed {
+        tint: color::of_color(instance.color).unwrap_or(figure.tint),
+        weather,
+        casts_shadow,
+        ..finish(plan, instance, figure.model, transforms, still, bounds)
+    };
+    let mut all = Placing { placed: Vec::new(), moves: false };
+    if !moving.is_empty() {
+        // What never rests casts no shadow, or the map of shadows would never rest either.
+        all.placed.push(Placed { pieces: moving, casts_shadow: false, ..body.clone() });
+        all.moves = mesh.joints.iter().any(|rig| rig.cycle.is_some() && rig.is_driven(&drives));
     }
+    all.placed.insert(0, body);
+    signs_of(meshes, plan, instance, figure.model, nanos, &mut all);
     all
 }
 
-fn transforms_bounds(body: &Placed, own: Aabb) -> Aabb {
-    body.transforms[0].bounds(own)
+/// What is left of a thing that was eaten and has no looks for that.
+const LEFT_OVER: Vec3 = Vec3::new(0.7, 0.7, 0.4);
+
+/// How a thing stands that is broken and has no looks for that.
+fn slumped() -> Mat3 {
+    let (sin, cos) = libm::sincosf(0.14);
+    let sunk = Mat3::from_diagonal(Vec3::new(1.0, 1.0, 0.86));
+    Mat3::from_cols(Vec3::X, Vec3::new(0.0, cos, sin), Vec3::new(0.0, -sin, cos)) * sunk
 }
 
-/// Steam or sparks above an instance's box.
-fn sign_over(meshes: &MeshLibrary, plan: &Plan, instance: &Instance, sign: usize, over: Aabb) -> Placed {
-    let mesh = meshes.model(sign);
-    let wide = over.size().x.max(over.size().y).clamp(0.06, 0.5);
-    let scale = Vec3::new(wide, wide, (wide * 0.9).clamp(0.08, 0.25));
-    let foot = over.center().with_z(over.max.z);
-    let transforms = vec![Transform::new(Mat3::from_diagonal(scale), foot)];
-    let pieces = (0..mesh.levels[0].pieces.len()).map(|piece| (piece as u16, 0)).collect();
-    let bounds = transforms[0].bounds(mesh.reach);
-    Placed { casts_shadow: false, ..finish(plan, instance, sign, transforms, pieces, bounds) }
+/// Adds signs of the states that an instance's model does not show.
+fn signs_of(meshes: &MeshLibrary, plan: &Plan, instance: &Instance, model: usize, nanos: u64, all: &mut Placing) {
+    let (body, shows) = (&all.placed[0], meshes.model(model));
+    let (turn, offset, tint) = (body.transforms[0].rotation, body.transforms[0].offset, body.tint);
+    let over = body.transforms[0].bounds(shows.bounds);
+    let needed = |sign: &Sign| instance.flags.has(sign.flag) && !sign.unless.is_some_and(|own| shows.shows(own));
+    for (sign, frames) in SIGNS.iter().zip(&meshes.bodies().signs).filter(|(sign, _)| needed(sign)) {
+        let model = frames[sign.frame(nanos)];
+        let mesh = meshes.model(model);
+        let (fit, foot) = sign.fit.place(shows.bounds, turn, offset, over);
+        let drives = Drives { opened: 0.0, running: 1.0, pose: None, nanos };
+        let joints = rig::transforms(&mesh.joints, &drives);
+        let transforms: Vec<Transform> = std::iter::once(Transform::new(fit, foot))
+            .chain(joints.into_iter().map(|(turn, slide)| Transform::new(fit * turn, fit * slide + foot)))
+            .collect();
+        let joint = |joint: Option<u8>| joint.map_or(0, |joint| u16::from(joint) + 1);
+        let pieces = mesh.levels[0].pieces.iter().enumerate();
+        let pieces = pieces.map(|(index, piece)| (index as u16, joint(piece.joint))).collect();
+        let bounds = transforms[0].bounds(mesh.reach);
+        all.moves |= frames.len() > 1 || mesh.joints.iter().any(|rig| rig.cycle.is_some());
+        all.placed.push(Placed {
+            tint,
+            casts_shadow: false,
+            ..finish(plan, instance, model, transforms, pieces, bounds)
+        });
+    }
 }
 
 fn finish(
@@ -238,16 +338,6 @@ fn finish(
     }
 }
 
-fn drive(instance: &Instance, driver: Driver) -> f32 {
-    match (driver, instance.look) {
-        (Driver::Opened, _) => instance.opened.clamp(0.0, 1.0),
-        (Driver::Running, _) => instance.running.clamp(0.0, 1.0),
-        (Driver::Head, Look::Robot { head_pitch_rad, .. }) => head_pitch_rad.clamp(-1.2, 1.2),
-        (Driver::Arm, Look::Robot { arm, .. } | Look::Human { arm }) => arm.clamp(0.0, 1.0),
-        (Driver::Head | Driver::Arm, _) => 0.0,
-    }
-}
-
 fn shown(when: When, instance: &Instance, needs_power: bool) -> bool {
     let has = |flag| instance.flags.has(flag);
     let powered = !needs_power || has(StateFlag::Powered);
@@ -268,12 +358,18 @@ fn shown(when: When, instance: &Instance, needs_power: bool) -> bool {
         When::Raw => !has(StateFlag::Cooked),
         When::Eaten => has(StateFlag::Eaten),
         When::Uneaten => !has(StateFlag::Eaten),
+        When::Cut => has(StateFlag::Cut),
+        When::Uncut => !has(StateFlag::Cut),
+        When::Past => has(StateFlag::Toggled) && !leads_to_the_future(instance.look),
+        When::Future => has(StateFlag::Toggled) && leads_to_the_future(instance.look),
+        When::Neutral => !StateFlag::MOODS.into_iter().any(|mood| mood != StateFlag::Neutral && has(mood)),
+        When::Happy => has(StateFlag::Happy),
+        When::Sad => has(StateFlag::Sad),
+        When::Angry => has(StateFlag::Angry),
+        When::Scared => has(StateFlag::Scared),
     }
 }
 
-/// People's shirts, so that two are told apart.
-fn human_tint(id: u32) -> Vec3 {
-    const SHIRTS: [[u8; 3]; 6] =
-        [[84, 122, 150], [168, 96, 74], [104, 138, 96], [196, 168, 96], [122, 100, 148], [208, 206, 198]];
-    color::from_srgb(SHIRTS[id as usize % SHIRTS.len()])
+fn leads_to_the_future(look: Look) -> bool {
+    matches!(look, Look::Gate { future: true, .. })
 }

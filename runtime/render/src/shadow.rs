@@ -20,6 +20,11 @@ const MARGIN_M: f32 = 0.6;
 
 /// How fast shadows fade with the height of what throws them, for a step of a texel's value: by 1 over 1.8 m.
 const FADE: f32 = 1.0 / (1.8 * 16_000.0);
+/// Texels along a side of a square whose greatest height is kept, a power of two.
+const CELL: usize = 4;
+/// Texels that a look meets before and after its own.
+const BEFORE: usize = 1;
+const AFTER: usize = 2;
 /// Soiled places kept apart.
 const MOST_SOILED: usize = 24;
 
@@ -30,6 +35,9 @@ pub(crate) struct ShadowMap {
     width: usize,
     height: usize,
     texels: Vec<u16>,
+    /// For each square of [`CELL`] by [`CELL`] texels the most that a look at one of them meets; before them a free one.
+    cells: Vec<u16>,
+    cells_a_row: usize,
     soiled: Vec<[i32; 4]>,
 }
 
@@ -39,7 +47,10 @@ impl ShadowMap {
         let texels = |length: f32| (((length + 2.0 * MARGIN_M) / TEXEL_M) as usize + 2).min(MOST);
         let (width, height) = if size == Vec3::ZERO { (8, 8) } else { (texels(size.x), texels(size.y)) };
         let low = if size == Vec3::ZERO { Vec3::ZERO } else { bounds.min };
+        let cells_a_row = width.div_ceil(CELL);
         Self {
+            cells: vec![0; cells_a_row * height.div_ceil(CELL) + 1],
+            cells_a_row,
             origin: [low.x - MARGIN_M, low.y - MARGIN_M],
             width,
             height,
@@ -80,6 +91,24 @@ impl ShadowMap {
                 if own[0] <= clip[2] && own[2] >= clip[0] && own[1] <= clip[3] && own[3] >= clip[1] {
                     self.draw(meshes, placed, clip);
                 }
+            }
+            self.sum_up(clip);
+        }
+    }
+
+    /// Works out the greatest heights around some texels.
+    fn sum_up(&mut self, clip: [i32; 4]) {
+        let clip = clip.map(|texel| texel as usize);
+        let first = [clip[0], clip[1]].map(|texel| texel.saturating_sub(AFTER) / CELL);
+        let last = [clip[2], clip[3]].map(|texel| texel + BEFORE).map(|texel| texel / CELL);
+        for row in first[1]..=last[1].min(self.height.div_ceil(CELL) - 1) {
+            let top = (row * CELL).saturating_sub(BEFORE);
+            let bottom = (row * CELL + CELL + AFTER).min(self.height);
+            for column in first[0]..=last[0].min(self.cells_a_row - 1) {
+                let left = (column * CELL).saturating_sub(BEFORE);
+                let right = (column * CELL + CELL + AFTER).min(self.width);
+                let texels = (top..bottom).flat_map(|y| &self.texels[y * self.width + left..y * self.width + right]);
+                self.cells[row * self.cells_a_row + column + 1] = texels.copied().max().unwrap_or(0);
             }
         }
     }
@@ -165,43 +194,58 @@ impl ShadowMap {
         }
     }
 
-    /// How much lamplight reaches a place in `room`, 0 to 1, softly. The place is already off its own surface.
+    /// Texels a metre.
     #[inline(always)]
-    pub(crate) fn light(&self, point: Vec3, room: u16) -> f32 {
-        let [x, y] = self.project(point);
-        let (x, y) = (x - 0.5, y - 0.5);
-        if !(x > 2.0 && y > 2.0 && x < self.width as f32 - 4.0 && y < self.height as f32 - 4.0) {
-            return 1.0;
-        }
+    pub(crate) fn texels_a_metre(&self) -> f32 {
+        1.0 / TEXEL_M
+    }
+
+    /// Where its first texel lies, m.
+    #[inline(always)]
+    pub(crate) fn origin(&self) -> [f32; 2] {
+        self.origin
+    }
+
+    /// The greatest place that can be looked up, in texels; the least is 2.
+    #[inline(always)]
+    pub(crate) fn most(&self) -> [f32; 2] {
+        [self.width as f32 - 4.0, self.height as f32 - 4.0]
+    }
+
+    /// Which cell tells of a texel; 0 is one that is free.
+    #[inline(always)]
+    pub(crate) fn cell(&self, x: u32, y: u32) -> u32 {
+        y / CELL as u32 * self.cells_a_row as u32 + x / CELL as u32 + 1
+    }
+
+    /// Whether anything around a cell's texels lies above a limit: see [`Self::light`].
+    #[inline(always)]
+    pub(crate) fn may_shade(&self, cell: u32, limit: i32) -> bool {
+        i32::from(self.cells[cell as usize]) > limit
+    }
+
+    /// How much lamplight reaches a place in `room`, 0 to 1, softly. The place is already off its own surface; `limit` is
+    /// the greatest texel that throws no shadow on it.
+    #[inline(always)]
+    pub(crate) fn light(&self, [x, y]: [f32; 2], limit: i32, room: u16) -> f32 {
         let (ix, iy) = (x as usize, y as usize);
-        let (fx, fy) = (x - ix as f32, y - iy as f32);
-        let limit = i32::from(((point.z * 1000.0).clamp(0.0, 4095.0) as u16) << 4 | 0xF);
-        let row = |j: usize| {
-            let start = (iy + j - 1) * self.width + ix - 1;
-            &self.texels[start..start + 4]
-        };
-        let rows = [row(0), row(1), row(2), row(3)];
-        // Most of a floor lies free.
-        if !rows.iter().any(|row| row.iter().any(|texel| i32::from(*texel) > limit)) {
-            return 1.0;
-        }
-        // What hangs high above throws a shadow too soft to be seen.
-        let blocked = |texel: u16| {
-            let over = i32::from(texel) - limit;
-            let dark = (1.3 - over as f32 * FADE).min(1.0);
-            if over > 0 && texel & 0xF == room { dark.max(0.0) } else { 0.0 }
-        };
         // A tent four texels wide: each sample weighs by how much of it the tent covers.
-        let (wx, wy) = (tent(fx), tent(fy));
-        let mut dark = 0.0;
-        for (texels, weight) in rows.iter().zip(wy) {
-            let sum = blocked(texels[0]) * wx[0]
-                + blocked(texels[1]) * wx[1]
-                + blocked(texels[2]) * wx[2]
-                + blocked(texels[3]) * wx[3];
-            dark += sum * weight;
+        let (wx, wy) = (tent(x - ix as f32), tent(y - iy as f32));
+        let first = (iy - BEFORE) * self.width + ix - BEFORE;
+        let mut dark = [0.0; 4];
+        for (row, weight) in wy.into_iter().enumerate() {
+            let start = first + row * self.width;
+            let Some(texels) = self.texels[start..].first_chunk::<4>() else { continue };
+            for (dark, texel) in dark.iter_mut().zip(texels) {
+                let texel = i32::from(*texel);
+                let over = texel - limit;
+                // What hangs high above throws a shadow too soft to be seen.
+                let own = (1.3 - over as f32 * FADE).clamp(0.0, 1.0);
+                let counts = over > 0 && texel & 0xF == i32::from(room);
+                *dark += if counts { own * weight } else { 0.0 };
+            }
         }
-        1.0 - dark
+        1.0 - (dark[0] * wx[0] + dark[1] * wx[1] + dark[2] * wx[2] + dark[3] * wx[3])
     }
 }
 

@@ -1,6 +1,6 @@
 //! One object: what it is, where it is, and the states it is in.
 
-use cohabit_cdf::{BodyId, ClassId, Color, Fluid, ObjectClass, ObjectId, RoomId, StateFlags};
+use cohabit_cdf::{BodyId, ClassId, Color, Fluid, ObjectClass, ObjectId, RoomId, StateFlags, mission::Era};
 use glam::{Quat, Vec3};
 use serde::{Deserialize, Serialize};
 
@@ -174,6 +174,8 @@ pub struct ObjectView<'a> {
     pub text: &'a str,
     /// What it switches, or aims at.
     pub works: Option<ObjectId>,
+    /// Where it leads, if it is an open portal.
+    pub leads_to: Option<Era>,
     /// Whether it is there for the mission's sake, or was made since; not only part of the furnishings.
     pub in_mission: bool,
 }

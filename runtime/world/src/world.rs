@@ -443,6 +443,7 @@ fn view<'a>(facts: &Facts<'a>, id: ObjectId, object: &'a Object) -> ObjectView<'
         hidden: !object.exists() || facts.shut_around(id).is_some_and(|shut| facts.object(shut).opened <= 0.0),
         text: &object.text,
         works: object.works,
+        leads_to: works::portal::open_gate(facts, id).map(|gate| gate.way().era),
         in_mission: object.requested,
     }
 }

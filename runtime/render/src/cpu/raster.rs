@@ -15,6 +15,7 @@ struct Side {
     per_y: i32,
 }
 
+#[inline(always)]
 fn side(from: [i32; 2], to: [i32; 2]) -> Side {
     let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
     // A pixel's centre on a side belongs to the triangle for which the side is a left or an upper one.
@@ -47,14 +48,16 @@ pub(super) fn all(batches: &[Vec<Triangle>], first_row: usize, width: usize, see
 
 /// Whether few of its pixels lie side by side, and it is small enough as a whole, also beyond the picture's edges, for
 /// [`narrow`]'s 32 bits: with extents of `w` and `h` pixels no side exceeds `2 * w * h * SUB * SUB`.
+#[inline(always)]
 fn is_narrow(triangle: &Triangle) -> bool {
     const MOST_AREA_PX: i64 = 1 << 17;
-    let extent = |axis: usize| {
-        let along = triangle.at.map(|corner| corner[axis]);
-        let length = along.iter().max().unwrap_or(&0) - along.iter().min().unwrap_or(&0);
-        i64::from(length / SUB) + 2
-    };
-    i32::from(triangle.rect[2] - triangle.rect[0]) < NARROW_PX && extent(0) * extent(1) < MOST_AREA_PX
+    if i32::from(triangle.rect[2] - triangle.rect[0]) >= NARROW_PX {
+        return false;
+    }
+    let [a, b, c] = triangle.at;
+    let width = a[0].max(b[0]).max(c[0]) - a[0].min(b[0]).min(c[0]);
+    let height = a[1].max(b[1]).max(c[1]) - a[1].min(b[1]).min(c[1]);
+    (i64::from(width / SUB) + 2) * (i64::from(height / SUB) + 2) < MOST_AREA_PX
 }
 
 #[expect(clippy::too_many_arguments, reason = "the innermost loop takes plain values")]

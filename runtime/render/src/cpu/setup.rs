@@ -1,6 +1,6 @@
 //! From triangles in space to triangles on the screen: projected, cut at the picture's surroundings, back sides dropped.
 
-use glam::Vec3;
+use glam::{Mat3, Vec3};
 
 use super::draw::Draw;
 use crate::camera::{NEAR_M, View};
@@ -35,28 +35,67 @@ struct Corner {
     in_camera: Vec3,
     at: [i32; 2],
     nearness: f32,
-    /// Whether it lies before the near plane and within the guard band, so that `at` holds.
-    simple: bool,
+    /// Beyond which sides of the picture it lies, a bit each; with [`AWKWARD`], `at` does not hold.
+    beyond: u32,
 }
 
-/// Sets up all triangles of some draws, of which the first has the number `first`.
-pub(super) fn all(out: &mut Vec<Triangle>, draws: &[Draw<'_>], first: u32, view: &View) {
+/// The corner lies before the near plane or beyond the guard band.
+const AWKWARD: u32 = 1 << 8;
+/// Corners that are worked out at a time.
+const LANES: usize = 8;
+
+/// Sets up all triangles of some draws, of which the first has the number `first`. `wide` may be true only where the
+/// processor has AVX2; the bits are the same.
+pub(super) fn all(wide: bool, out: &mut Vec<Triangle>, draws: &[Draw<'_>], first: u32, view: &View) {
+    #[cfg(target_arch = "x86_64")]
+    if wide {
+        // SAFETY: the caller says that the processor has AVX2.
+        unsafe { all_avx2(out, draws, first, view) };
+        return;
+    }
+    let _ = wide;
+    all_draws(out, draws, first, view);
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+fn all_avx2(out: &mut Vec<Triangle>, draws: &[Draw<'_>], first: u32, view: &View) {
+    all_draws(out, draws, first, view);
+}
+
+#[inline(always)]
+fn all_draws(out: &mut Vec<Triangle>, draws: &[Draw<'_>], first: u32, view: &View) {
     let mut corners = Vec::new();
     for (index, draw) in draws.iter().enumerate() {
         one(out, draw, first + index as u32, view, &mut corners);
     }
 }
 
+#[inline(always)]
 fn one(out: &mut Vec<Triangle>, draw: &Draw<'_>, number: u32, view: &View, corners: &mut Vec<Corner>) {
-    let (turn, offset) = draw.to_camera;
     let base = draw.piece.corners.start;
     let positions = &draw.mesh.positions[base as usize..draw.piece.corners.end as usize];
     corners.clear();
-    corners.extend(positions.iter().map(|position| project(turn * *position + offset, view)));
+    corners.reserve(positions.len() + LANES);
+    let (eights, rest) = positions.as_chunks::<LANES>();
+    for eight in eights {
+        project(draw.to_camera, eight, view, corners);
+    }
+    if !rest.is_empty() {
+        let mut eight = [rest[0]; LANES];
+        eight[..rest.len()].copy_from_slice(rest);
+        project(draw.to_camera, &eight, view, corners);
+    }
     let size = [view.size[0] as i32, view.size[1] as i32];
-    for index in draw.piece.triangles.clone() {
-        let [a, b, c] = draw.mesh.triangles[index as usize].map(|corner| corners[(corner - base) as usize]);
-        if a.simple && b.simple && c.simple {
+    let triangles = draw.piece.triangles.clone();
+    let all = &draw.mesh.triangles[triangles.start as usize..triangles.end as usize];
+    for (index, triangle) in triangles.zip(all) {
+        let [a, b, c] = triangle.map(|corner| &corners[(corner - base) as usize]);
+        // Wholly on the far side of one of the picture's sides, or of the near plane.
+        if a.beyond & b.beyond & c.beyond & !AWKWARD != 0 {
+            continue;
+        }
+        if (a.beyond | b.beyond | c.beyond) & AWKWARD == 0 {
             push(out, [a, b, c], size, number, index);
         } else {
             clip(out, [a.in_camera, b.in_camera, c.in_camera], view, number, index);
@@ -64,19 +103,53 @@ fn one(out: &mut Vec<Triangle>, draw: &Draw<'_>, number: u32, view: &View, corne
     }
 }
 
-#[inline]
-fn project(in_camera: Vec3, view: &View) -> Corner {
-    let ahead = in_camera.z >= NEAR_M;
-    let nearness = 1.0 / in_camera.z;
-    let scale = view.focal * nearness;
-    let (x, y) = (in_camera.x * scale + view.center[0], in_camera.y * scale + view.center[1]);
-    let simple = ahead && x.abs() < GUARD_PX && y.abs() < GUARD_PX;
-    let fixed = |v: f32| (v * SUB as f32 + 524_288.5) as i32 - 524_288;
-    Corner { in_camera, at: if simple { [fixed(x), fixed(y)] } else { [0, 0] }, nearness, simple }
+/// Brings eight corners to the screen.
+#[inline(always)]
+fn project((turn, offset): (Mat3, Vec3), positions: &[Vec3; LANES], view: &View, out: &mut Vec<Corner>) {
+    let [c0, c1, c2] = [turn.x_axis, turn.y_axis, turn.z_axis];
+    let (mut xs, mut ys, mut zs) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
+    for (i, place) in positions.iter().enumerate() {
+        (xs[i], ys[i], zs[i]) = (place.x, place.y, place.z);
+    }
+    let (mut cx, mut cy, mut cz, mut near) = ([0.0; LANES], [0.0; LANES], [0.0; LANES], [0.0; LANES]);
+    let (mut left, mut top, mut beyond) = ([0; LANES], [0; LANES], [0_u32; LANES]);
+    let (width, height) = (view.size[0] as f32, view.size[1] as f32);
+    for i in 0..LANES {
+        let (x, y, z) = (xs[i], ys[i], zs[i]);
+        cx[i] = c0.x * x + c1.x * y + c2.x * z + offset.x;
+        cy[i] = c0.y * x + c1.y * y + c2.y * z + offset.y;
+        cz[i] = c0.z * x + c1.z * y + c2.z * z + offset.z;
+        near[i] = 1.0 / cz[i];
+        let scale = view.focal * near[i];
+        let (px, py) = (cx[i] * scale + view.center[0], cy[i] * scale + view.center[1]);
+        let ahead = cz[i] >= NEAR_M;
+        let simple = ahead & (px.abs() < GUARD_PX) & (py.abs() < GUARD_PX);
+        left[i] = fixed(if simple { px } else { 0.0 });
+        top[i] = fixed(if simple { py } else { 0.0 });
+        // With a pixel to spare.
+        beyond[i] = if ahead {
+            u32::from(px < -1.0)
+                | u32::from(px > width + 1.0) << 1
+                | u32::from(py < -1.0) << 2
+                | u32::from(py > height + 1.0) << 3
+        } else {
+            1 << 4
+        } | if simple { 0 } else { AWKWARD };
+    }
+    for i in 0..LANES {
+        let in_camera = Vec3::new(cx[i], cy[i], cz[i]);
+        out.push(Corner { in_camera, at: [left[i], top[i]], nearness: near[i], beyond: beyond[i] });
+    }
 }
 
-#[inline]
-fn push(out: &mut Vec<Triangle>, [a, b, c]: [Corner; 3], size: [i32; 2], draw: u32, index: u32) {
+/// A place within the guard band in fractions of pixels.
+#[inline(always)]
+fn fixed(place: f32) -> i32 {
+    (place * SUB as f32 + 524_288.5) as i32 - 524_288
+}
+
+#[inline(always)]
+fn push(out: &mut Vec<Triangle>, [a, b, c]: [&Corner; 3], size: [i32; 2], draw: u32, index: u32) {
     let area = i64::from(b.at[0] - a.at[0]) * i64::from(c.at[1] - a.at[1])
         - i64::from(b.at[1] - a.at[1]) * i64::from(c.at[0] - a.at[0]);
     // Counter-clockwise from outside is clockwise where y runs down.
@@ -107,7 +180,8 @@ fn push(out: &mut Vec<Triangle>, [a, b, c]: [Corner; 3], size: [i32; 2], draw: u
 }
 
 /// The plane through three corners' nearness; in double precision, for slivers.
-fn plane([a, b, c]: [Corner; 3], area: i64) -> [f32; 3] {
+#[inline(always)]
+fn plane([a, b, c]: [&Corner; 3], area: i64) -> [f32; 3] {
     let scale = f64::from(SUB) / area as f64;
     let (bx, by) = (f64::from(b.at[0] - a.at[0]), f64::from(b.at[1] - a.at[1]));
     let (cx, cy) = (f64::from(c.at[0] - a.at[0]), f64::from(c.at[1] - a.at[1]));
@@ -120,6 +194,7 @@ fn plane([a, b, c]: [Corner; 3], area: i64) -> [f32; 3] {
 }
 
 /// Cuts a triangle at the near plane and at the guard band, and sets up what is left.
+#[inline(never)]
 fn clip(out: &mut Vec<Triangle>, corners: [Vec3; 3], view: &View, draw: u32, index: u32) {
     let slope = (GUARD_PX * 0.45) / view.focal;
     let planes = [
@@ -152,10 +227,14 @@ fn clip(out: &mut Vec<Triangle>, corners: [Vec3; 3], view: &View, draw: u32, ind
         }
     }
     let size = [view.size[0] as i32, view.size[1] as i32];
-    let projected: Vec<Corner> = polygon.iter().map(|corner| project(*corner, view)).collect();
-    for i in 1..projected.len() - 1 {
-        let fan = [projected[0], projected[i], projected[i + 1]];
-        if fan.iter().all(|corner| corner.simple) {
+    let mut projected = Vec::with_capacity(LANES);
+    let mut eight = [polygon[0]; LANES];
+    let count = polygon.len().min(LANES);
+    eight[..count].copy_from_slice(&polygon[..count]);
+    project((Mat3::IDENTITY, Vec3::ZERO), &eight, view, &mut projected);
+    for i in 1..count - 1 {
+        let fan = [&projected[0], &projected[i], &projected[i + 1]];
+        if fan.iter().all(|corner| corner.beyond & AWKWARD == 0) {
             push(out, fan, size, draw, index);
         }
     }

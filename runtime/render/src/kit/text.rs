@@ -34,6 +34,20 @@ pub(super) fn build(text: &str, height: f32, detail: Detail) -> Solid {
     solid
 }
 
+/// The strokes of a line of text in a plane, from its left end on the baseline; capitals are 1 high.
+pub(super) fn line(text: &str) -> Vec<[[f32; 2]; 2]> {
+    let mut all = Vec::new();
+    for (column, letter) in text.chars().enumerate() {
+        let capital = letter.to_uppercase().next().unwrap_or(letter);
+        let scale = (if capital == letter { 1.0 } else { SMALL }) / HEIGHT;
+        let left = column as f32 * ADVANCE / HEIGHT;
+        let shape = if known(capital) { capital } else { 'O' };
+        let at = |p: [f32; 2]| [left + p[0] * scale, p[1] * scale];
+        all.extend(strokes(shape).into_iter().map(|[a, b]| [at(a), at(b)]));
+    }
+    all
+}
+
 fn draw(solid: &mut Solid, letter: char, origin: [f32; 2], unit: f32) {
     let capital = letter.to_uppercase().next().unwrap_or(letter);
     let scale = if capital == letter { unit } else { unit * SMALL };

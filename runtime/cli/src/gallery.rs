@@ -1,0 +1,134 @@
+//! `cohabit gallery`: pictures of all there is to see, for reviewers.
+
+use std::{
+    fs::{self, File},
+    io::BufWriter,
+    path::{Path, PathBuf},
+    sync::Arc,
+};
+
+use anyhow::Context as _;
+use cohabit_cdf::{Catalog, Layout, Mission, RoomId};
+use cohabit_render::{Camera, CpuRenderer, MeshLibrary, Planes, Renderer as _, Scene, gallery};
+use cohabit_world::World;
+use indicatif::ProgressBar;
+
+use crate::failure::bad_input;
+
+/// Draws all objects in all their states, all floor plans from above, and a view of each room, as PNG files.
+#[derive(clap::Args)]
+pub struct Gallery {
+    /// The folder to write into
+    folder: PathBuf,
+    /// Threads that render
+    #[arg(long, default_value_t = 2)]
+    threads: usize,
+}
+
+/// Side of one object's picture.
+const CELL_PX: u32 = 220;
+/// Size of a room's picture.
+const ROOM_PX: [u32; 2] = [854, 480];
+/// Pixels a metre of a floor plan.
+const PLAN_PX_M: f32 = 50.0;
+/// Height from which floor plans are seen, and of what is seen of them, m.
+const ABOVE_M: f32 = 60.0;
+const TABLE_M: f32 = 0.8;
+
+impl Gallery {
+    /// Draws them all.
+    pub fn run(&self) -> anyhow::Result<()> {
+        fs::create_dir_all(&self.folder).map_err(|error| bad_input(format!("{}: {error}", self.folder.display())))?;
+        let catalog = Arc::new(Catalog::builtin());
+        let meshes = Arc::new(MeshLibrary::build(&catalog).context("build the models")?);
+        let mut renderer = CpuRenderer::new(self.threads);
+        let bar = ProgressBar::new_spinner().with_message("objects");
+        for sheet in gallery::sheets(&meshes, &catalog) {
+            let picture = sheet.paint(&mut renderer, &meshes, CELL_PX);
+            self.write(&format!("objects-{}", sheet.name), &picture.rgba, [picture.width, picture.height])?;
+            bar.tick();
+        }
+        for id in Layout::builtin_ids() {
+            bar.set_message(id.clone());
+            self.floor_plan(&id, &catalog, &meshes, &mut renderer)?;
+        }
+        bar.finish_and_clear();
+        println!("{} pictures in {}", fs::read_dir(&self.folder)?.count(), self.folder.display());
+        Ok(())
+    }
+
+    fn floor_plan(
+        &self,
+        id: &str,
+        catalog: &Arc<Catalog>,
+        meshes: &Arc<MeshLibrary>,
+        renderer: &mut CpuRenderer,
+    ) -> anyhow::Result<()> {
+        let layout = Arc::new(Layout::builtin(id)?);
+        let mission = Mission { layout: id.to_owned(), ..Mission::default() };
+        let world = World::new(Arc::clone(catalog), Arc::clone(&layout), Arc::new(mission), 1)?;
+        let mut scene = Scene::new(Arc::clone(meshes), &layout);
+        scene.set_instances(&cohabit_engine::furnishings(&world).collect::<Vec<_>>());
+        let mut shoot = |name: &str, camera: Camera| {
+            let mut rgba = vec![255; camera.pixels() * 4];
+            let mut planes = Planes { color: Some(&mut rgba), depth_m: None, normals: None, ids: None };
+            renderer.render(&scene, &camera, &mut planes);
+            self.write(name, &rgba, [camera.width, camera.height])
+        };
+        shoot(&format!("plan-{id}"), above(&layout))?;
+        for room in RoomId::ALL {
+            if let Some(camera) = inside(&layout, room) {
+                shoot(&format!("room-{id}-{}", room.id()), camera)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn write(&self, name: &str, rgba: &[u8], size: [u32; 2]) -> anyhow::Result<()> {
+        let path = self.folder.join(format!("{name}.png"));
+        write_png(&path, rgba, size).with_context(|| path.display().to_string())
+    }
+}
+
+fn write_png(path: &Path, rgba: &[u8], [width, height]: [u32; 2]) -> anyhow::Result<()> {
+    let mut encoder = png::Encoder::new(BufWriter::new(File::create(path)?), width, height);
+    encoder.set_color(png::ColorType::Rgba);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.write_header()?.write_image_data(rgba)?;
+    Ok(())
+}
+
+/// A floor plan from above, north up.
+fn above(layout: &Layout) -> Camera {
+    let [west, south, east, north] = layout.bounds_m();
+    let [width_m, depth_m] = [east - west + 1.5, north - south + 1.5];
+    let [width, height] = [width_m, depth_m].map(|length_m| (length_m * PLAN_PX_M) as u32);
+    Camera {
+        position_m: [f32::midpoint(west, east), f32::midpoint(south, north), ABOVE_M],
+        yaw_rad: std::f32::consts::FRAC_PI_2,
+        pitch_rad: -std::f32::consts::FRAC_PI_2,
+        fov_y_rad: 2.0 * (depth_m / 2.0 / (ABOVE_M - TABLE_M)).atan(),
+        width,
+        height,
+        hide: None,
+        for_people: true,
+        ceiling: false,
+    }
+}
+
+/// A room from its first viewpoint, as a person would see it.
+fn inside(layout: &Layout, room: RoomId) -> Option<Camera> {
+    let viewpoint = layout.viewpoints.iter().find(|viewpoint| viewpoint.room == room)?;
+    let [width, height] = ROOM_PX;
+    Some(Camera {
+        position_m: [viewpoint.at_m[0], viewpoint.at_m[1], 1.6],
+        yaw_rad: viewpoint.yaw_deg.to_radians(),
+        pitch_rad: -0.2,
+        fov_y_rad: 1.1,
+        width,
+        height,
+        hide: None,
+        for_people: true,
+        ceiling: true,
+    })
+}

@@ -1,0 +1,176 @@
+//! How fast pictures are drawn: frames a second and CPU time a frame, over viewpoints of several furnished floor plans.
+//!
+//! ```text
+//! cargo bench -p cohabit-render                    # measures
+//! cargo bench -p cohabit-render -- quick           # measures less long
+//! cargo bench -p cohabit-render -- save=FOLDER     # keeps pictures instead
+//! cargo bench -p cohabit-render -- compare=FOLDER  # says by how much they differ now
+//! ```
+
+mod keep;
+mod office;
+
+use std::path::Path;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use cohabit_cdf::Catalog;
+use cohabit_render::{Camera, CpuRenderer, MeshLibrary, Planes, Renderer, Scene};
+use rustix::time::{ClockId, clock_gettime};
+
+use office::Office;
+
+/// The floor plans looked at.
+const PLANS: [&str; 3] = ["OfficeLayout1", "OfficeLayout2", "OfficeLayout3"];
+/// Every so many-th viewpoint is taken.
+const STEP: usize = 7;
+
+/// One kind of picture.
+struct Kind {
+    name: &'static str,
+    size: [u32; 2],
+    all_planes: bool,
+    for_people: bool,
+    repeats: u32,
+}
+
+const KINDS: [Kind; 5] = [
+    Kind { name: "84x84, four modalities", size: [84, 84], all_planes: true, for_people: false, repeats: 60 },
+    Kind { name: "300x300, four modalities", size: [300, 300], all_planes: true, for_people: false, repeats: 24 },
+    Kind { name: "854x480, colour for people", size: [854, 480], all_planes: false, for_people: true, repeats: 6 },
+    Kind { name: "1280x720, colour", size: [1280, 720], all_planes: false, for_people: false, repeats: 4 },
+    Kind { name: "1280x720, colour for people", size: [1280, 720], all_planes: false, for_people: true, repeats: 4 },
+];
+
+fn main() {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let value = |key: &str| arguments.iter().find_map(|argument| argument.strip_prefix(key));
+    let catalog = Catalog::builtin();
+    let meshes = Arc::new(MeshLibrary::build(&catalog).expect("the built-in catalogue has meshes"));
+    let offices = PLANS.map(|id| Office::new(id, &catalog, &meshes));
+    if let Some(folder) = value("save=") {
+        return keep::save(Path::new(folder), &offices);
+    }
+    if let Some(folder) = value("compare=") {
+        return keep::compare(Path::new(folder), &offices);
+    }
+    tell_machine(&offices);
+    let quick = arguments.iter().any(|argument| argument == "quick");
+    let only = value("only=");
+    for kind in KINDS.iter().filter(|kind| only.is_none_or(|only| kind.name.starts_with(only))) {
+        println!("{}", kind.name);
+        let repeats = if quick { kind.repeats.div_ceil(4) } else { kind.repeats };
+        for (cameras, threads) in [(1, 1), (1, 2), (1, 4), (2, 1)] {
+            measure(kind, repeats, &offices, cameras, threads);
+        }
+    }
+}
+
+fn tell_machine(offices: &[Office]) {
+    let processor = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let model = processor.lines().find_map(|line| line.strip_prefix("model name")).unwrap_or(": unknown");
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    println!("machine: {}, {cores} cores", model.trim_start_matches([' ', '\t', ':']));
+    println!("version: cohabit-render {}", env!("CARGO_PKG_VERSION"));
+    for office in offices {
+        let count = office.instances.len();
+        println!("plan: {}, {count} instances, {} triangles at the finest level", office.id, office.triangles);
+    }
+    println!("mean over all viewpoints of the fastest frame there, and of the median one; shadows are on\n");
+}
+
+/// Room for the planes of one picture.
+struct Room {
+    color: Vec<u8>,
+    depth_m: Vec<f32>,
+    normals: Vec<i8>,
+    ids: Vec<u32>,
+}
+
+impl Room {
+    fn new(pixels: usize) -> Self {
+        Self {
+            color: vec![0; pixels * 4],
+            depth_m: vec![0.0; pixels],
+            normals: vec![0; pixels * 4],
+            ids: vec![0; pixels],
+        }
+    }
+
+    fn planes(&mut self, all: bool) -> Planes<'_> {
+        Planes {
+            color: Some(&mut self.color),
+            depth_m: all.then_some(&mut self.depth_m),
+            normals: all.then_some(&mut self.normals),
+            ids: all.then_some(&mut self.ids),
+        }
+    }
+}
+
+/// Draws from every viewpoint, with so many cameras at once, each drawn by so many threads.
+fn measure(kind: &Kind, repeats: u32, offices: &[Office], cameras: usize, threads: usize) {
+    let (mut walls, mut cpus) = (Vec::new(), Vec::new());
+    for office in offices {
+        for camera in office.cameras(kind.size[0], kind.size[1], kind.for_people, STEP) {
+            let samples = draw_at_once(kind, repeats, &office.scene, &camera, cameras, threads);
+            walls.push(spread(samples.iter().map(|sample| sample.0).collect()));
+            cpus.push(spread(samples.iter().map(|sample| sample.1).collect()));
+        }
+    }
+    let mean =
+        |times: &[[f64; 2]], which: usize| times.iter().map(|time| time[which]).sum::<f64>() / times.len() as f64;
+    let rate = |which: usize| 1e3 * cameras as f64 / mean(&walls, which);
+    println!(
+        "  {cameras} camera{} x {threads} thread{}: {:7.1} frames/s undisturbed, {:7.1} median; CPU {:.3} ms, {:.3} median",
+        if cameras == 1 { " " } else { "s" },
+        if threads == 1 { " " } else { "s" },
+        rate(0),
+        rate(1),
+        mean(&cpus, 0),
+        mean(&cpus, 1),
+    );
+}
+
+/// The least of some times, and their median, ms.
+fn spread(mut times: Vec<Duration>) -> [f64; 2] {
+    times.sort_unstable();
+    [times[0], times[times.len() / 2]].map(|time| time.as_secs_f64() * 1e3)
+}
+
+/// Wall time and CPU time of each of so many frames, by each of so many cameras at once.
+fn draw_at_once(
+    kind: &Kind,
+    frames: u32,
+    scene: &Scene,
+    camera: &Camera,
+    cameras: usize,
+    threads: usize,
+) -> Vec<(Duration, Duration)> {
+    let clock = if threads == 1 { ClockId::ThreadCPUTime } else { ClockId::ProcessCPUTime };
+    let draw = || {
+        let mut renderer = CpuRenderer::new(threads);
+        let mut room = Room::new(camera.pixels());
+        // Patterns and occlusion are worked out when they are first seen.
+        renderer.render(scene, camera, &mut room.planes(kind.all_planes));
+        let frame = || {
+            let (start, cpu) = (Instant::now(), cpu_time(clock));
+            renderer.render(scene, camera, &mut room.planes(kind.all_planes));
+            (start.elapsed(), cpu_time(clock) - cpu)
+        };
+        std::iter::repeat_with(frame).take(frames as usize).collect::<Vec<_>>()
+    };
+    std::thread::scope(|scope| {
+        let others: Vec<_> = (1..cameras).map(|_| scope.spawn(draw)).collect();
+        let mut all = draw();
+        for other in others {
+            all.extend(other.join().expect("drawing never panics"));
+        }
+        all
+    })
+}
+
+/// Processor time of this thread, or of the whole process.
+fn cpu_time(clock: ClockId) -> Duration {
+    let time = clock_gettime(clock);
+    Duration::new(time.tv_sec as u64, time.tv_nsec as u32)
+}
