@@ -1,7 +1,7 @@
 //! The camera that follows a body for people to watch: behind and above it, smooth, and never outside its room.
 
 use cohabit_cdf::Layout;
-use cohabit_render::Camera;
+use cohabit_render::{Camera, Instance};
 use libm::{cosf, expf, sinf};
 
 use crate::scene::Standing;
@@ -38,7 +38,7 @@ struct Pose {
 
 impl CameraRig {
     /// Moves the camera on by `dt_s` seconds and gives where it is now.
-    pub fn follow(&mut self, standing: &Standing, layout: &Layout, dt_s: f32, size: [u32; 2]) -> Camera {
+    pub fn follow(&mut self, standing: &Standing, layout: &Layout, tall: &[Tall], dt_s: f32, size: [u32; 2]) -> Camera {
         let [x, y, _] = standing.position_m;
         let mut pose =
             self.pose.unwrap_or(Pose { x, y, yaw_rad: standing.yaw_rad, boom_m: BEHIND_M, pitch_rad: PITCH_RAD });
@@ -49,7 +49,7 @@ impl CameraRig {
         pose.yaw_rad += wrap(standing.yaw_rad - pose.yaw_rad) * turned;
         pose.pitch_rad += (PITCH_RAD + standing.head_pitch_rad * HEAD_SHARE - pose.pitch_rad) * turned;
         let back = [-cosf(pose.yaw_rad), -sinf(pose.yaw_rad)];
-        let free = free_length_m(layout, [pose.x, pose.y], back, BEHIND_M);
+        let free = free_length_m(layout, tall, [pose.x, pose.y], back, BEHIND_M);
         // Walls pull the camera in at once; it eases out again.
         pose.boom_m = free.min(pose.boom_m + (free - pose.boom_m).max(0.0) * near * 0.4);
         self.pose = Some(pose);
@@ -76,19 +76,51 @@ fn wrap(angle_rad: f32) -> f32 {
     if turned < 0.0 { turned + PI } else { turned - PI }
 }
 
-/// How far one can go from a point before leaving the rooms' floors, at most `most_m`.
-pub fn free_length_m(layout: &Layout, from: [f32; 2], direction: [f32; 2], most_m: f32) -> f32 {
+/// How far one can go from a point before leaving the rooms' floors or coming to something tall, at most `most_m`.
+pub fn free_length_m(layout: &Layout, tall: &[Tall], from: [f32; 2], direction: [f32; 2], most_m: f32) -> f32 {
     const STEP_M: f32 = 0.05;
     let mut length = 0.0;
     while length < most_m {
         let next = length + STEP_M;
         let point = [from[0] + direction[0] * next, from[1] + direction[1] * next];
-        if !on_clear_floor(layout, point) {
+        if !on_clear_floor(layout, point) || tall.iter().any(|tall| tall.holds(point)) {
             break;
         }
         length = next;
     }
     length
+}
+
+/// The outline of something at the height of the camera.
+#[derive(Clone, Copy, Debug)]
+pub struct Tall {
+    middle_m: [f32; 2],
+    half_m: [f32; 2],
+    /// Along its own x.
+    axis: [f32; 2],
+}
+
+impl Tall {
+    /// Where a camera may be, m above the floor.
+    const HEIGHTS_M: [f32; 2] = [ABOVE_FLOOR_M - 0.1, ABOVE_FLOOR_M + RISE_M + 0.1];
+
+    /// The outline of an instance with a box of that size; `None` if the camera passes above or below it.
+    pub fn of(instance: &Instance, size_m: [f32; 3]) -> Option<Self> {
+        let [x, y, z] = instance.position_m;
+        let [length, width, height] = [0, 1, 2].map(|axis| size_m[axis] * instance.scale[axis]);
+        let [low, high] = Self::HEIGHTS_M;
+        let is_there = instance.visible && z < high && z + height > low;
+        let [_, _, sin_half, cos_half] = instance.rotation;
+        let axis = [cos_half * cos_half - sin_half * sin_half, 2.0 * sin_half * cos_half];
+        is_there.then_some(Self { middle_m: [x, y], half_m: [length / 2.0, width / 2.0], axis })
+    }
+
+    fn holds(&self, [x, y]: [f32; 2]) -> bool {
+        let (dx, dy) = (x - self.middle_m[0], y - self.middle_m[1]);
+        let [cos, sin] = self.axis;
+        (dx * cos + dy * sin).abs() < self.half_m[0] + CLEAR_OF_WALLS_M
+            && (dy * cos - dx * sin).abs() < self.half_m[1] + CLEAR_OF_WALLS_M
+    }
 }
 
 fn on_clear_floor(layout: &Layout, [x, y]: [f32; 2]) -> bool {
@@ -112,8 +144,34 @@ fn in_opening(opening: &cohabit_cdf::layout::Opening, [x, y]: [f32; 2]) -> bool 
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_camera_keeps_off_what_is_at_its_height() {
+        let at = |z: f32| Instance {
+            id: 1,
+            look: cohabit_render::Look::Object(cohabit_cdf::ClassId(0)),
+            position_m: [2.0, 3.0, z],
+            rotation: [0.0, 0.0, std::f32::consts::FRAC_1_SQRT_2, std::f32::consts::FRAC_1_SQRT_2],
+            scale: [1.0; 3],
+            flags: cohabit_cdf::StateFlags::default(),
+            fluid: cohabit_cdf::Fluid::None,
+            color: cohabit_cdf::Color::Original,
+            opened: 0.0,
+            running: 0.0,
+            room: cohabit_cdf::RoomId::BreakRoom,
+            visible: true,
+        };
+        let cupboard = [0.4, 1.0, 0.7];
+        assert!(Tall::of(&at(0.0), cupboard).is_none(), "it looks over a counter");
+        let tall = Tall::of(&at(1.5), cupboard).unwrap();
+        // Turned by 90 degrees, it is 1.0 m long from west to east.
+        assert!(
+            tall.holds([2.6, 3.0]) && tall.holds([2.0, 3.35]) && !tall.holds([2.0, 3.6]) && !tall.holds([2.8, 3.0])
+        );
+    }
 
     #[test]
     fn angles_wrap_to_the_short_way() {

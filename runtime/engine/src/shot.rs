@@ -36,7 +36,7 @@ fn near(point_m: [f32; 3], layout: &Layout, size: [u32; 2]) -> Camera {
     });
     let length = sqrtf(dx * dx + dy * dy);
     let back = if length > 0.01 { [dx / length, dy / length] } else { [1.0, 0.0] };
-    let away_m = free_length_m(layout, [x, y], back, AWAY_M).max(NEAREST_M);
+    let away_m = free_length_m(layout, &[], [x, y], back, AWAY_M).max(NEAREST_M);
     let position_m = [x + back[0] * away_m, y + back[1] * away_m, (z + ABOVE_M).max(EYE_M)];
     let pitch_rad = atan2f(z - position_m[2], away_m);
     view(position_m, atan2f(-back[1], -back[0]), pitch_rad, size)
@@ -48,7 +48,7 @@ fn from_viewpoint(room: RoomId, number: Option<u8>, layout: &Layout, size: [u32;
     let [x, y] = viewpoint.at_m;
     let yaw_rad = viewpoint.yaw_deg.to_radians();
     let back = [-cosf(yaw_rad), -sinf(yaw_rad)];
-    let away_m = free_length_m(layout, [x, y], back, AWAY_M / 2.0);
+    let away_m = free_length_m(layout, &[], [x, y], back, AWAY_M / 2.0);
     Some(view([x + back[0] * away_m, y + back[1] * away_m, EYE_M], yaw_rad, -0.15, size))
 }
 

@@ -46,7 +46,14 @@ impl Simulator {
         threads: usize,
         bus: &dyn Transport,
     ) -> Result<Self, EngineError> {
-        let studio = Studio::new(Arc::clone(&meshes), Arc::clone(&plan.layout), threads, world.bodies().len(), bus)?;
+        let studio = Studio::new(
+            Arc::clone(&meshes),
+            Arc::clone(&plan.layout),
+            Arc::clone(&plan.catalog),
+            threads,
+            world.bodies().len(),
+            bus,
+        )?;
         Ok(Self { engine: Engine::new(plan, world, bus)?, studio, meshes })
     }
 

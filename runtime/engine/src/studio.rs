@@ -10,10 +10,13 @@ use cohabit_bus::{
     message::{FrameHeader, FrameLayout, Plane},
     monotonic_nanos,
 };
-use cohabit_cdf::Layout;
-use cohabit_render::{Camera, CpuRenderer, MeshLibrary, Planes, Renderer, Scene};
+use cohabit_cdf::{Catalog, Layout};
+use cohabit_render::{Camera, CpuRenderer, Instance, Look, MeshLibrary, Planes, Renderer, Scene};
 
-use crate::{camera_rig::CameraRig, scene::Moment};
+use crate::{
+    camera_rig::{CameraRig, Tall},
+    scene::Moment,
+};
 
 /// Pixels of an egocentric frame, both ways.
 const EGOCENTRIC_SIZE: u32 = 300;
@@ -63,6 +66,7 @@ pub struct Studio {
     scene: Scene,
     renderer: CpuRenderer,
     layout: Arc<Layout>,
+    catalog: Arc<Catalog>,
     crews: Vec<Crew>,
 }
 
@@ -115,6 +119,7 @@ impl Studio {
     pub fn new(
         meshes: Arc<MeshLibrary>,
         layout: Arc<Layout>,
+        catalog: Arc<Catalog>,
         threads: usize,
         bodies: usize,
         bus: &dyn Transport,
@@ -124,6 +129,7 @@ impl Studio {
             scene: Scene::new(meshes, &layout),
             renderer: CpuRenderer::new(threads),
             layout,
+            catalog,
             crews: ids.map(|body| Crew::new(bus, body)).collect::<Result<_, _>>()?,
         })
     }
@@ -145,11 +151,12 @@ impl Studio {
             return Ok(());
         }
         self.set_up(moment);
-        let Self { scene, renderer, layout, crews, .. } = self;
+        let Self { scene, renderer, layout, catalog, crews } = self;
+        let tall: Vec<Tall> = moment.instances.iter().filter_map(|instance| tall(instance, catalog, layout)).collect();
         for (body, (crew, (spectator, egocentric))) in crews.iter_mut().zip(due).enumerate() {
             let Some(standing) = moment.bodies.get(body) else { continue };
             if let Some(since) = spectator {
-                let followed = crew.rig.follow(standing, layout, since.as_secs_f32().min(0.5), SPECTATOR_SIZE);
+                let followed = crew.rig.follow(standing, layout, &tall, since.as_secs_f32().min(0.5), SPECTATOR_SIZE);
                 let camera = moment.shot.unwrap_or(followed);
                 publish(renderer, scene, &camera, body, moment, &[Plane::Color], &mut *crew.spectator.publisher)?;
             }
@@ -169,6 +176,22 @@ impl Studio {
         for (room, lit) in cohabit_cdf::RoomId::ALL.into_iter().zip(moment.lit) {
             self.scene.set_lights(room, lit);
         }
+    }
+}
+
+/// What keeps cameras off: furniture, but neither bodies nor the doors that they pass.
+fn tall(instance: &Instance, catalog: &Catalog, layout: &Layout) -> Option<Tall> {
+    /// How far a door's middle may be from that of its opening, m.
+    const DOOR_M: f32 = 0.7;
+    let [x, y, _] = instance.position_m;
+    let is_door = |at_m: [f32; 2]| (at_m[0] - x).abs() < DOOR_M && (at_m[1] - y).abs() < DOOR_M;
+    match instance.look {
+        Look::Object(class) | Look::Gate { class, .. }
+            if !layout.openings.iter().any(|opening| is_door(opening.at_m)) =>
+        {
+            Tall::of(instance, catalog.class(class).size_m)
+        }
+        _ => None,
     }
 }
 
