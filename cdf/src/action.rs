@@ -196,4 +196,10 @@ impl Status {
     pub const fn is_success(self) -> bool {
         matches!(self, Self::ActionSuccessful | Self::AlternateNavigationUsed)
     }
+
+    /// Whether the command failed, rather than being overtaken by the next.
+    #[must_use]
+    pub const fn is_failure(self) -> bool {
+        !self.is_success() && !matches!(self, Self::Interrupted)
+    }
 }

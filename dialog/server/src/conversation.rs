@@ -130,8 +130,8 @@ impl Conversation {
         (turn, reactions)
     }
 
-    /// The agent told something about a plan.
-    pub fn follow(&mut self, header: &DialogHeader, known: Option<&Known>) -> Vec<Reaction> {
+    /// The agent told something about a plan. What the robot knows is asked for only where it is spoken of.
+    pub fn follow(&mut self, header: &DialogHeader, known: impl FnOnce() -> Option<Known>) -> Vec<Reaction> {
         let mut reactions = Vec::new();
         let turn = header.turn;
         let (Some(kind), Some(plan)) = (header.kind(), self.plans.get_mut(&turn)) else { return reactions };
@@ -147,11 +147,11 @@ impl Conversation {
                 let (Some(step), Some(status)) = (step, header.status()) else { return reactions };
                 self.context.note_outcome(&step, status);
                 let whole = status.is_success() && header.step as usize + 1 == count;
-                let failed = !status.is_success() && status != Status::Interrupted;
+                let failed = status.is_failure();
                 if (whole && worth_telling(step.action)) || failed {
                     plan.told_end = true;
-                    if let Some(known) = known {
-                        let text = self.language.report(&step, status, header.text.as_str(), known);
+                    if let Some(known) = known() {
+                        let text = self.language.report(&step, status, header.text.as_str(), &known);
                         let line = if failed { LineKind::Problem } else { LineKind::Say };
                         self.say(turn, DialogKind::Reply, line, &text, &mut reactions);
                     }
@@ -161,7 +161,7 @@ impl Conversation {
                 let told = plan.told_end;
                 self.plans.remove(&turn);
                 let status = header.status().unwrap_or(Status::ActionExecutionError);
-                if !told && !status.is_success() && status != Status::Interrupted {
+                if !told && status.is_failure() {
                     self.say(turn, DialogKind::Reply, LineKind::Problem, "That did not work.", &mut reactions);
                 }
                 let end = match status {

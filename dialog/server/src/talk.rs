@@ -85,8 +85,10 @@ impl Talk {
     /// An agent said something about a plan.
     fn follow(&self, view: DialogView<'_>) -> Result<(), DialogError> {
         let mut inner = self.lock();
-        let known = inner.known()?;
-        let reactions = inner.conversation.follow(view.header, known.as_ref());
+        inner.refresh()?;
+        let Inner { conversation, newest, .. } = &mut *inner;
+        let state = newest.as_ref().map(|sample| StateView::new(sample.payload())).transpose()?;
+        let reactions = conversation.follow(view.header, || known::known(state?, BODY));
         self.carry_out(&mut inner, reactions)
     }
 

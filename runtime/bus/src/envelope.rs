@@ -1,5 +1,7 @@
 //! What stands before every message, and the unit of memory that messages are made of.
 
+use std::time::{SystemTime, UNIX_EPOCH};
+
 use bytemuck::{Pod, Zeroable};
 use iceoryx2::prelude::ZeroCopySend;
 
@@ -53,6 +55,13 @@ impl Envelope {
 }
 
 const _: () = assert!(size_of::<Envelope>() == size_of::<Block>());
+
+/// Nanoseconds since 1970 by the machine's wall clock: for people and logs, never a key.
+#[must_use]
+pub fn wall_nanos() -> u64 {
+    let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+    u64::try_from(since.as_nanos()).unwrap_or(u64::MAX)
+}
 
 /// Nanoseconds of the machine's monotonic clock: comparable between the processes of one machine until it restarts.
 #[must_use]

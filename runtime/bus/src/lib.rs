@@ -28,7 +28,7 @@ mod text;
 mod topic;
 mod transport;
 
-pub use envelope::{Block, Envelope, monotonic_nanos};
+pub use envelope::{Block, Envelope, monotonic_nanos, wall_nanos};
 pub use error::BusError;
 pub use local::Local;
 pub use session::{Session, SessionError};

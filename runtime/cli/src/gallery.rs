@@ -31,8 +31,7 @@ const CELL_PX: u32 = 220;
 const ROOM_PX: [u32; 2] = [854, 480];
 /// Pixels a metre of a floor plan.
 const PLAN_PX_M: f32 = 50.0;
-/// Height from which floor plans are seen, and of what is seen of them, m.
-const ABOVE_M: f32 = 60.0;
+/// Height at which floor plans are to scale, m.
 const TABLE_M: f32 = 0.8;
 
 impl Gallery {
@@ -75,7 +74,7 @@ impl Gallery {
             renderer.render(&scene, &camera, &mut planes);
             self.write(name, &rgba, [camera.width, camera.height])
         };
-        shoot(&format!("plan-{id}"), above(&layout))?;
+        shoot(&format!("plan-{id}"), Camera::above(layout.bounds_m(), TABLE_M, PLAN_PX_M))?;
         for room in RoomId::ALL {
             if let Some(camera) = inside(&layout, room) {
                 shoot(&format!("room-{id}-{}", room.id()), camera)?;
@@ -96,24 +95,6 @@ fn write_png(path: &Path, rgba: &[u8], [width, height]: [u32; 2]) -> anyhow::Res
     encoder.set_depth(png::BitDepth::Eight);
     encoder.write_header()?.write_image_data(rgba)?;
     Ok(())
-}
-
-/// A floor plan from above, north up.
-fn above(layout: &Layout) -> Camera {
-    let [west, south, east, north] = layout.bounds_m();
-    let [width_m, depth_m] = [east - west + 1.5, north - south + 1.5];
-    let [width, height] = [width_m, depth_m].map(|length_m| (length_m * PLAN_PX_M) as u32);
-    Camera {
-        position_m: [f32::midpoint(west, east), f32::midpoint(south, north), ABOVE_M],
-        yaw_rad: std::f32::consts::FRAC_PI_2,
-        pitch_rad: -std::f32::consts::FRAC_PI_2,
-        fov_y_rad: 2.0 * (depth_m / 2.0 / (ABOVE_M - TABLE_M)).atan(),
-        width,
-        height,
-        hide: None,
-        for_people: true,
-        ceiling: false,
-    }
 }
 
 /// A room from its first viewpoint, as a person would see it.

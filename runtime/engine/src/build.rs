@@ -2,6 +2,10 @@
 
 use std::sync::Arc;
 
+use cohabit_bus::{
+    Text,
+    message::{MissionHeader, MissionMessage},
+};
 use cohabit_cdf::{BodyRequest, Catalog, Layout, LayoutError, Mission, mission};
 use cohabit_world::World;
 
@@ -63,6 +67,13 @@ impl SessionPlan {
     #[must_use]
     pub fn with_bodies(self, bodies: Vec<BodyRequest>) -> Self {
         Self { bodies, ..self }
+    }
+
+    /// What others are told of it.
+    #[must_use]
+    pub fn message(&self) -> MissionMessage {
+        let header = MissionHeader { seed: self.seed, file: Text::new(&self.file), ..MissionHeader::default() };
+        MissionMessage { header, bodies: self.bodies.clone(), text: self.text.clone() }
     }
 
     /// The world at its first tick.

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use cohabit_bus::{
     BusError, Publisher, Subscriber, Topic, Transport,
-    message::{self, CommandMessage, EventMessage, Malformed, MissionHeader, MissionMessage, TickHeader, TickMessage},
+    message::{self, CommandMessage, EventMessage, Malformed, TickHeader, TickMessage},
 };
 use cohabit_cdf::{Action, BodyId, ObjectId, Status};
 use cohabit_world::{CameraTarget, DT_NANOS, Event, Input, Report, World};
@@ -58,8 +58,7 @@ impl Engine {
             highlighted: Vec::new(),
             shown: Vec::new(),
         };
-        let header = MissionHeader { seed: plan.seed, file: cohabit_bus::Text::new(&plan.file), ..Default::default() };
-        let message = MissionMessage { header, bodies: plan.bodies.clone(), text: plan.text.clone() };
+        let message = plan.message();
         engine.mission.send(0, message.bytes(), &mut |bytes| message.write(bytes))?;
         Ok(engine)
     }

@@ -6,10 +6,10 @@ use std::{
         atomic::{AtomicBool, Ordering},
     },
     thread,
-    time::{Duration, Instant, SystemTime, UNIX_EPOCH},
+    time::{Duration, Instant},
 };
 
-use cohabit_bus::{Transport, monotonic_nanos};
+use cohabit_bus::{Transport, monotonic_nanos, wall_nanos};
 use cohabit_render::MeshLibrary;
 use cohabit_world::{DT_NANOS, World};
 
@@ -122,9 +122,4 @@ impl Pace {
             self.next = now;
         }
     }
-}
-
-fn wall_nanos() -> u64 {
-    let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
-    u64::try_from(since.as_nanos()).unwrap_or(u64::MAX)
 }

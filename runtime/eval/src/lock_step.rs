@@ -4,7 +4,7 @@ use std::{collections::BTreeMap, path::Path};
 
 use cohabit_agent::{Agent, Deed, Heard, PlanFollower};
 use cohabit_bus::message::{DialogKind, DialogMessage, EventMessage, StateView};
-use cohabit_cdf::{Action, BodyId, Status};
+use cohabit_cdf::{Action, BodyId};
 use cohabit_dialog::{Conversation, Reaction, TurnEnd, known};
 use cohabit_engine::{SessionPlan, report};
 use cohabit_language::Known;
@@ -75,18 +75,12 @@ impl LockStep {
         std::mem::take(&mut self.noted)
     }
 
-    /// Whether nothing is left to be done.
-    #[must_use]
-    pub fn is_idle(&self) -> bool {
-        self.waiting.is_empty() && self.world.body(BODY).is_none_or(|body| !body.busy)
-    }
-
     /// Somebody says something to the robot; gives the turn's number.
     ///
     /// # Errors
     /// [`LogError`].
     pub fn say(&mut self, text: &str) -> Result<u64, LogError> {
-        let known = self.known();
+        let known = known_in(&self.world);
         let (turn, reactions) = self.conversation.hear(text, known.as_ref());
         self.carry_on(reactions)?;
         Ok(turn)
@@ -155,8 +149,8 @@ impl LockStep {
                 Deed::Act { turn, action } => self.act(turn, action),
                 Deed::Tell(message) => {
                     self.write_down(&message)?;
-                    let known = self.known();
-                    let reactions = self.conversation.follow(&message.header, known.as_ref());
+                    let Self { world, conversation, .. } = self;
+                    let reactions = conversation.follow(&message.header, || known_in(world));
                     self.carry_on(reactions)?;
                 }
             }
@@ -201,18 +195,13 @@ impl LockStep {
         self.turn_by_command.insert(self.commands, turn);
         self.waiting.push(InputEntry { command: self.commands, turn, body: BODY.0, action });
     }
-
-    /// What the robot knows, from the state as it would be published.
-    fn known(&self) -> Option<Known> {
-        let parts = report::state(&self.world);
-        let mut words = vec![0_u64; parts.bytes().div_ceil(size_of::<u64>())];
-        let bytes = &mut bytemuck::cast_slice_mut(&mut words)[..parts.bytes()];
-        parts.write(bytes);
-        known(StateView::new(bytes).ok()?, BODY)
-    }
 }
 
-/// Whether a command with this outcome failed, rather than being overtaken by the next.
-pub const fn is_failure(status: Status) -> bool {
-    !status.is_success() && !matches!(status, Status::Interrupted)
+/// What the robot knows, from the state as it would be published.
+fn known_in(world: &World) -> Option<Known> {
+    let parts = report::state(world);
+    let mut words = vec![0_u64; parts.bytes().div_ceil(size_of::<u64>())];
+    let bytes = &mut bytemuck::cast_slice_mut(&mut words)[..parts.bytes()];
+    parts.write(bytes);
+    known(StateView::new(bytes).ok()?, BODY)
 }

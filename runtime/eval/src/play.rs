@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     family::family,
-    lock_step::{LockStep, Noted, is_failure},
+    lock_step::{LockStep, Noted},
     task::{Answer, Line, Task},
     trajectory,
 };
@@ -220,7 +220,7 @@ impl Player {
         let (outcome, _) = self.until(|noted| noted.outcomes.last().cloned())?;
         Ok(match outcome {
             None => Some("it did not come to an end".to_owned()),
-            Some(outcome) if is_failure(outcome.status) => Some(format!("{:?}: {}", outcome.status, outcome.detail)),
+            Some(outcome) if outcome.status.is_failure() => Some(format!("{:?}: {}", outcome.status, outcome.detail)),
             Some(_) => None,
         })
     }
@@ -255,7 +255,7 @@ impl Player {
             return;
         }
         played.actions += 1;
-        played.failed_actions += u32::from(is_failure(outcome.status));
+        played.failed_actions += u32::from(outcome.status.is_failure());
         *played.statuses.entry(format!("{:?}", outcome.status)).or_default() += 1;
         let Some(caps) = self.caps else { return };
         let too_much = [(played.actions > caps.actions, "actions"), (played.failed_actions >= caps.failed, "failures")];

@@ -1,14 +1,11 @@
 //! The session log of a task played in lock-step: the same entries as of a session that people played.
 
-use std::{
-    path::Path,
-    time::{SystemTime, UNIX_EPOCH},
-};
+use std::path::Path;
 
 use cohabit_bus::{
     Envelope,
     message::{DialogMessage, DialogView, EventMessage},
-    monotonic_nanos,
+    monotonic_nanos, wall_nanos,
 };
 use cohabit_engine::SessionPlan;
 use cohabit_record::{DialogEntry, EventEntry, InputEntry, LogError, LogWriter, SessionEntry, TickEntry, entry::hex};
@@ -22,15 +19,7 @@ pub struct Trace {
 impl Trace {
     /// Creates the log of `plan`, which must not exist.
     pub fn create(path: &Path, session: &str, plan: &SessionPlan) -> Result<Self, LogError> {
-        let entry = SessionEntry {
-            format: SessionEntry::FORMAT,
-            program: env!("CARGO_PKG_VERSION").to_owned(),
-            session: session.to_owned(),
-            mission_file: plan.file.clone(),
-            mission_text: plan.text.clone(),
-            seed: plan.seed,
-            bodies: plan.bodies.clone(),
-        };
+        let entry = SessionEntry::new(session, &plan.message());
         Ok(Self { log: LogWriter::create(path, &entry, wall_nanos())? })
     }
 
@@ -62,9 +51,4 @@ impl Trace {
     pub fn finish(self) -> Result<(), LogError> {
         self.log.finish()
     }
-}
-
-fn wall_nanos() -> u64 {
-    let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
-    u64::try_from(since.as_nanos()).unwrap_or(u64::MAX)
 }

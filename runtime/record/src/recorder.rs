@@ -3,12 +3,13 @@
 use std::{
     path::Path,
     sync::atomic::{AtomicBool, Ordering},
-    time::{Duration, Instant, SystemTime, UNIX_EPOCH},
+    time::{Duration, Instant},
 };
 
 use cohabit_bus::{
     BusError, Listener, Sample, Subscriber, Topic, Transport, Wake,
     message::{self, DialogView, EventMessage, Malformed, MissionMessage, TickView},
+    wall_nanos,
 };
 
 use crate::{
@@ -127,9 +128,4 @@ fn for_each(
         take(&sample)?;
     }
     Ok(())
-}
-
-fn wall_nanos() -> u64 {
-    let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
-    u64::try_from(since.as_nanos()).unwrap_or(u64::MAX)
 }

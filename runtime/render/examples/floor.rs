@@ -8,16 +8,15 @@
 //! `LAYOUT-above.png` and, for each room, `LAYOUT-ROOM.png` with its eight viewpoints; `above` or names of rooms narrow
 //! that down.
 
-use std::collections::HashMap;
 use std::error::Error;
 use std::fs::{self, File};
 use std::io::BufWriter;
 use std::path::Path;
 use std::sync::Arc;
 
-use cohabit_cdf::layout::{FreeFloor, Layout, Placement, Viewpoint};
-use cohabit_cdf::{Catalog, Color, Fluid, RoomId, StateFlag, StateFlags};
-use cohabit_render::{Camera, CpuRenderer, Instance, Look, MeshLibrary, Planes, Renderer, Scene};
+use cohabit_cdf::layout::{FreeFloor, Layout, Viewpoint};
+use cohabit_cdf::{Catalog, RoomId};
+use cohabit_render::{Camera, CpuRenderer, MeshLibrary, Planes, Renderer, Scene, furnish};
 
 /// Height of the robot's eye, m.
 const EYE_M: f32 = 1.3;
@@ -96,26 +95,14 @@ struct Studio {
 impl Studio {
     fn new(plan: &Layout, catalog: &Catalog, meshes: &Arc<MeshLibrary>) -> Self {
         let mut scene = Scene::new(Arc::clone(meshes), plan);
-        scene.set_instances(&furnish(plan, catalog));
+        scene.set_instances(&furnish(catalog, plan));
         Self { scene, renderer: CpuRenderer::new(2), bounds_m: plan.bounds_m() }
     }
 
     fn above(&mut self) -> Picture {
-        const HEIGHT_M: f32 = 60.0;
-        let [west, south, east, north] = self.bounds_m;
-        let [width_m, depth_m] = [east - west + 1.5, north - south + 1.5];
-        let [width, height] = [width_m, depth_m].map(|length_m| (length_m * ABOVE_PX_M) as u32);
-        let camera = Camera {
-            position_m: [(west + east) / 2.0, (south + north) / 2.0, HEIGHT_M],
-            yaw_rad: std::f32::consts::FRAC_PI_2,
-            pitch_rad: -std::f32::consts::FRAC_PI_2,
-            fov_y_rad: 2.0 * (depth_m / 2.0 / (HEIGHT_M - 2.8)).atan(),
-            width,
-            height,
-            hide: None,
-            for_people: true,
-            ceiling: false,
-        };
+        /// Where the picture is to scale, m above the floor: at the tops of the walls.
+        const LEVEL_M: f32 = 2.8;
+        let camera = Camera::above(self.bounds_m, LEVEL_M, ABOVE_PX_M);
         self.shoot(&camera)
     }
 
@@ -175,35 +162,4 @@ impl Picture {
         encoder.write_header()?.write_image_data(&self.rgba)?;
         Ok(())
     }
-}
-
-/// All that the plan places; what takes an anchor stands in the middle of its surface here.
-fn furnish(plan: &Layout, catalog: &Catalog) -> Vec<Instance> {
-    let by_id: HashMap<&str, &Placement> = plan.placements.iter().map(|own| (own.instance.as_str(), own)).collect();
-    let instance = |(id, placement): (u32, &Placement)| {
-        let class = catalog.class_of_instance(&placement.instance)?;
-        let [x, y, mut z] = plan.origin_in_world_m(placement);
-        let host = placement.on.as_deref().filter(|_| placement.anchor).and_then(|on| by_id.get(on));
-        let surface = host.and_then(|host| {
-            let receptacle = catalog.class(catalog.class_of_instance(&host.instance)?).receptacle.as_ref()?;
-            receptacle.surfaces.first().map(|surface| surface.center_m[2])
-        });
-        z += surface.unwrap_or(0.0);
-        let half_yaw = placement.yaw_deg.to_radians() / 2.0;
-        Some(Instance {
-            id,
-            look: Look::Object(class),
-            position_m: [x, y, z],
-            rotation: [0.0, 0.0, half_yaw.sin(), half_yaw.cos()],
-            scale: placement.scale,
-            flags: StateFlags::default().with(StateFlag::Powered),
-            fluid: Fluid::None,
-            color: Color::Original,
-            opened: 0.0,
-            running: 0.0,
-            room: placement.room,
-            visible: true,
-        })
-    };
-    (1..).zip(&plan.placements).filter_map(instance).collect()
 }

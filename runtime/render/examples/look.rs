@@ -7,17 +7,15 @@
 //! look view OUT.png LAYOUT x y z yaw_deg pitch_deg [no-ceiling] [WxH] [planes] [time]
 //! ```
 
-use std::collections::HashMap;
 use std::error::Error;
 use std::fs::File;
 use std::io::BufWriter;
 use std::sync::Arc;
 
-use cohabit_cdf::catalog::Receptacle;
 use cohabit_cdf::layout::Layout;
-use cohabit_cdf::{Catalog, ClassId, Color, Fluid, RoomId, StateFlag, StateFlags};
+use cohabit_cdf::{Catalog, Color, Fluid, RoomId, StateFlags};
 use cohabit_render::gallery::{self, Sheet};
-use cohabit_render::{Camera, CpuRenderer, Highlight, Instance, Look, MeshLibrary, Planes, Renderer, Scene};
+use cohabit_render::{Camera, CpuRenderer, Highlight, Instance, Look, MeshLibrary, Planes, Renderer, Scene, furnish};
 
 /// Side of one picture of a contact sheet.
 const CELL: u32 = 260;
@@ -81,57 +79,6 @@ fn sheets(folder: &str, names: &[&str]) -> Result<(), Box<dyn Error>> {
 fn paint(out: &str, meshes: &Arc<MeshLibrary>, sheet: &Sheet) -> Result<(), Box<dyn Error>> {
     let picture = sheet.paint(&mut CpuRenderer::new(2), meshes, CELL);
     write(out, &picture.rgba, picture.width, picture.height)
-}
-
-/// The layout's placements, as the catalogue knows them; what stands on an anchor takes the next free one.
-fn furnish(catalog: &Catalog, layout: &Layout) -> Vec<Instance> {
-    let mut placed: HashMap<&str, ([f32; 3], f32, ClassId, usize)> = HashMap::new();
-    let mut instances = Vec::new();
-    for placement in &layout.placements {
-        let Some(class) = catalog.class_of_instance(&placement.instance) else { continue };
-        let mut at = placement.at_m;
-        if let Some((origin, yaw, host, used)) = placement.on.as_deref().and_then(|on| placed.get_mut(on)) {
-            if placement.anchor {
-                let taken = *used;
-                *used += 1;
-                at = catalog.class(*host).receptacle.as_ref().and_then(|own| anchor(own, taken)).unwrap_or(at);
-            }
-            let (sin, cos) = yaw.sin_cos();
-            at = [origin[0] + at[0] * cos - at[1] * sin, origin[1] + at[0] * sin + at[1] * cos, origin[2] + at[2]];
-        }
-        let yaw = placement.yaw_deg.to_radians();
-        placed.insert(&placement.instance, (at, yaw, class, 0));
-        let on = StateFlags::default().with(StateFlag::Powered);
-        instances.push(Instance {
-            id: instances.len() as u32 + 1,
-            look: Look::Object(class),
-            position_m: at,
-            rotation: [0.0, 0.0, (yaw * 0.5).sin(), (yaw * 0.5).cos()],
-            scale: placement.scale,
-            flags: on,
-            fluid: Fluid::None,
-            color: Color::Original,
-            opened: 0.0,
-            running: 0.0,
-            room: placement.room,
-            visible: true,
-        });
-    }
-    instances
-}
-
-fn anchor(receptacle: &Receptacle, mut index: usize) -> Option<[f32; 3]> {
-    for surface in &receptacle.surfaces {
-        let [columns, rows] = surface.anchors.map(|count| count as usize);
-        if index < columns * rows {
-            let share = |i: usize, n: usize| (i as f32 + 0.5) / n as f32 - 0.5;
-            let [x, y, z] = surface.center_m;
-            let (i, j) = (index % columns, index / columns);
-            return Some([x + surface.size_m[0] * share(i, columns), y + surface.size_m[1] * share(j, rows), z]);
-        }
-        index -= columns * rows;
-    }
-    None
 }
 
 fn view(

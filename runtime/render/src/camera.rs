@@ -31,6 +31,29 @@ pub struct Camera {
 }
 
 impl Camera {
+    /// Looks down on `[west, south, east, north]`, north up and without ceilings, so that what is `level_m` above the floor
+    /// is to scale.
+    #[must_use]
+    pub fn above([west, south, east, north]: [f32; 4], level_m: f32, pixels_per_m: f32) -> Self {
+        /// High enough that walls lean little, m.
+        const HEIGHT_M: f32 = 60.0;
+        /// What is seen around the rectangle, m in all.
+        const MARGIN_M: f32 = 1.5;
+        let [width_m, depth_m] = [east - west + MARGIN_M, north - south + MARGIN_M];
+        let [width, height] = [width_m, depth_m].map(|length_m| (length_m * pixels_per_m) as u32);
+        Self {
+            position_m: [f32::midpoint(west, east), f32::midpoint(south, north), HEIGHT_M],
+            yaw_rad: std::f32::consts::FRAC_PI_2,
+            pitch_rad: -std::f32::consts::FRAC_PI_2,
+            fov_y_rad: 2.0 * libm::atanf(depth_m / 2.0 / (HEIGHT_M - level_m)),
+            width,
+            height,
+            hide: None,
+            for_people: true,
+            ceiling: false,
+        }
+    }
+
     /// Pixels of the picture.
     #[must_use]
     pub fn pixels(&self) -> usize {

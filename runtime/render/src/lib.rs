@@ -23,6 +23,7 @@
 mod camera;
 mod color;
 mod cpu;
+mod furnish;
 pub mod gallery;
 mod instance;
 mod kit;
@@ -44,6 +45,7 @@ mod signs;
 
 pub use camera::{Camera, FAR_M};
 pub use cpu::CpuRenderer;
+pub use furnish::furnish;
 pub use instance::{Highlight, Instance, Look};
 pub use kit::ShapeError;
 pub use library::{MeshLibrary, ModelError};

@@ -9,11 +9,9 @@ use crate::{
     facts::Facts,
     navigation::Navigation,
     push::{Push, push},
+    swing::LEAF_M,
     world::World,
 };
-
-/// No leaf reaches further from the middle of its object, m.
-const LEAF_M: f32 = 1.6;
 
 /// What a body would run into.
 #[derive(Clone, Copy, Debug, PartialEq)]

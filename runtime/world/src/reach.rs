@@ -3,7 +3,10 @@
 use cohabit_cdf::ObjectId;
 use glam::{Vec2, Vec3};
 
-use crate::{facts::Facts, swing::Leaf};
+use crate::{
+    facts::Facts,
+    swing::{LEAF_M, Leaf},
+};
 
 /// Things on walls and in doorways touch the wall themselves: the last hand's breadth does not count, m.
 const TOUCH_M: f32 = 0.2;
@@ -11,8 +14,6 @@ const TOUCH_M: f32 = 0.2;
 const SHOULDER_M: f32 = 1.0;
 /// A hand bends around the edge of a front by so much, m.
 const AROUND_M: f32 = 0.1;
-/// No leaf reaches further from the middle of its object, m.
-const LEAF_M: f32 = 1.6;
 /// A door of furniture that is open less than this gives way to an arm.
 const WIDE: f32 = 0.99;
 

@@ -60,15 +60,11 @@ fn between(facts: &Facts<'_>, id: ObjectId, eye: Vec3, points: &[Vec3]) -> Vec<B
             && at.cmpge(low - radius).all()
             && at.cmple(high + radius).all()
             && large(*other)
-            && !is_door(facts, *other)
+            // These count with the walls that they are in.
+            && !facts.is_room_door(*other)
             && !own(*other)
     });
     solid.flat_map(|(other, _)| blocks(facts, other)).collect()
-}
-
-/// Doors between rooms count with the walls that they are in.
-fn is_door(facts: &Facts<'_>, id: ObjectId) -> bool {
-    facts.floor.gaps.iter().any(|gap| gap.door_object == Some(id))
 }
 
 /// Open furniture is its boards; what is hollow and small hides nothing; everything else is its whole box.

@@ -11,6 +11,9 @@ use glam::{Quat, Vec2, Vec3};
 
 use crate::geometry::{Footprint, Pose, direction};
 
+/// No leaf reaches further from the middle of its object, m.
+pub(crate) const LEAF_M: f32 = 1.6;
+
 /// The moving parts of all classes, by class.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Swings(Vec<Vec<Swing>>);

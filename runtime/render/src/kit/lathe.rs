@@ -9,6 +9,13 @@ use super::{Detail, Solid};
 /// Where two pieces of a profile meet at a larger angle than this, there is an edge: cos 40°.
 const EDGE_COS: f32 = 0.766;
 
+/// What is narrower than this comes to a point, in metres.
+const POINT_M: f32 = 0.000_5;
+
+fn to_point(radius: f32) -> f32 {
+    if radius < POINT_M { 0.0 } else { radius }
+}
+
 /// A point of a profile: radius and height, and the normal there in the same plane.
 #[derive(Clone, Copy)]
 struct Ring {
@@ -20,7 +27,7 @@ struct Ring {
 pub(super) fn turn(profile: &[[f32; 2]], detail: Detail) -> Solid {
     let mut points: Vec<Vec2> = Vec::with_capacity(profile.len() + 2);
     for point in profile {
-        let point = Vec2::new(point[0].max(0.0), point[1]);
+        let point = Vec2::new(to_point(point[0]), point[1]);
         if points.last().is_none_or(|last| last.distance_squared(point) > 1e-12) {
             points.push(point);
         }
@@ -40,7 +47,7 @@ pub(super) fn turn(profile: &[[f32; 2]], detail: Detail) -> Solid {
 
 /// A cylinder or cone frustum from z = 0, with rounded rims.
 pub(super) fn cylinder(radii: [f32; 2], height: f32, bevel: Option<f32>, detail: Detail) -> Solid {
-    let [base, top] = radii;
+    let [base, top] = [radii[0], to_point(radii[1])];
     let smallest = base.max(top).min(height);
     let wanted = bevel.unwrap_or((smallest * 0.12).min(0.006));
     let round = |radius: f32| if detail == Detail::Coarse { 0.0 } else { wanted.clamp(0.0, radius.min(height) * 0.5) };

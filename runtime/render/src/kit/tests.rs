@@ -57,6 +57,7 @@ fn shapes_are_closed() {
         Shape::Box { size: [2.562_399_9, 1.562_309_3, 2.858_778_7], bevel: Some(0.558_969_6) },
         Shape::Cylinder { radius: 0.1, top_radius: None, height: 0.4, bevel: None },
         Shape::Cylinder { radius: 0.2, top_radius: Some(0.0), height: 0.4, bevel: Some(0.01) },
+        Shape::Cylinder { radius: 0.005, top_radius: Some(1.3e-5), height: 1.7, bevel: None },
         Shape::Sphere { radii: [0.1, 0.2, 0.3] },
         Shape::Lathe { profile: vec![[0.0, 0.0], [0.1, 0.0], [0.12, 0.1], [0.1, 0.1], [0.08, 0.02], [0.0, 0.02]] },
         Shape::Lathe { profile: vec![[0.1, 0.0], [0.2, 0.3]] },
