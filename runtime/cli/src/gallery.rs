@@ -9,7 +9,7 @@ use std::{
 
 use anyhow::Context as _;
 use cohabit_cdf::{Catalog, Layout, Mission, RoomId};
-use cohabit_render::{Camera, CpuRenderer, MeshLibrary, Planes, Renderer as _, Scene, gallery};
+use cohabit_render::{Camera, CpuRenderer, MeshLibrary, Planes, Renderer, Scene, gallery};
 use cohabit_world::World;
 use indicatif::ProgressBar;
 
@@ -61,7 +61,7 @@ impl Gallery {
         id: &str,
         catalog: &Arc<Catalog>,
         meshes: &Arc<MeshLibrary>,
-        renderer: &mut CpuRenderer,
+        renderer: &mut dyn Renderer,
     ) -> anyhow::Result<()> {
         let layout = Arc::new(Layout::builtin(id)?);
         let mission = Mission { layout: id.to_owned(), ..Mission::default() };

@@ -20,7 +20,7 @@ use cohabit_cdf::BodyRequest;
 use cohabit_dialog::DialogConfig;
 use cohabit_engine::{SessionPlan, Simulator};
 use cohabit_record::Recorder;
-use cohabit_render::MeshLibrary;
+use cohabit_render::{CpuRenderer, MeshLibrary};
 
 use crate::{failure::bad_input, mission_file::MissionFile, stop};
 
@@ -73,7 +73,8 @@ impl Sim {
             (world, meshes.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
         });
         let meshes = Arc::new(meshes.context("build the models")?);
-        let simulator = Simulator::new(&plan, world.map_err(bad_input)?, meshes, self.threads, &bus)?;
+        let renderer = Box::new(CpuRenderer::new(self.threads));
+        let simulator = Simulator::new(&plan, world.map_err(bad_input)?, meshes, renderer, &bus)?;
         simulator.run(&stop)?;
         Ok(())
     }

@@ -10,7 +10,7 @@ use std::{
 };
 
 use cohabit_bus::{Transport, monotonic_nanos, wall_nanos};
-use cohabit_render::MeshLibrary;
+use cohabit_render::{MeshLibrary, Renderer};
 use cohabit_world::{DT_NANOS, World};
 
 use crate::{
@@ -35,7 +35,7 @@ pub struct Simulator {
 }
 
 impl Simulator {
-    /// Connects a plan's world to `bus`; `threads` render.
+    /// Connects a plan's world to `bus`; `renderer` draws for its cameras.
     ///
     /// # Errors
     /// [`EngineError`].
@@ -43,14 +43,14 @@ impl Simulator {
         plan: &SessionPlan,
         world: World,
         meshes: Arc<MeshLibrary>,
-        threads: usize,
+        renderer: Box<dyn Renderer>,
         bus: &dyn Transport,
     ) -> Result<Self, EngineError> {
         let studio = Studio::new(
             Arc::clone(&meshes),
             Arc::clone(&plan.layout),
             Arc::clone(&plan.catalog),
-            threads,
+            renderer,
             world.bodies().len(),
             bus,
         )?;

@@ -11,7 +11,7 @@ use cohabit_bus::{
     monotonic_nanos,
 };
 use cohabit_cdf::{Catalog, Layout};
-use cohabit_render::{Camera, CpuRenderer, Instance, Look, MeshLibrary, Planes, Renderer, Scene};
+use cohabit_render::{Camera, Instance, Look, MeshLibrary, Planes, Renderer, Scene};
 
 use crate::{
     camera_rig::{CameraRig, Tall},
@@ -64,7 +64,7 @@ impl Desk {
 /// The cameras of one session.
 pub struct Studio {
     scene: Scene,
-    renderer: CpuRenderer,
+    renderer: Box<dyn Renderer>,
     layout: Arc<Layout>,
     catalog: Arc<Catalog>,
     crews: Vec<Crew>,
@@ -120,14 +120,14 @@ impl Studio {
         meshes: Arc<MeshLibrary>,
         layout: Arc<Layout>,
         catalog: Arc<Catalog>,
-        threads: usize,
+        renderer: Box<dyn Renderer>,
         bodies: usize,
         bus: &dyn Transport,
     ) -> Result<Self, BusError> {
         let ids = (0..=u8::MAX).take(bodies);
         Ok(Self {
             scene: Scene::new(meshes, &layout),
-            renderer: CpuRenderer::new(threads),
+            renderer,
             layout,
             catalog,
             crews: ids.map(|body| Crew::new(bus, body)).collect::<Result<_, _>>()?,
@@ -158,12 +158,20 @@ impl Studio {
             if let Some(since) = spectator {
                 let followed = crew.rig.follow(standing, layout, &tall, since.as_secs_f32().min(0.5), SPECTATOR_SIZE);
                 let camera = moment.shot.unwrap_or(followed);
-                publish(renderer, scene, &camera, body, moment, &[Plane::Color], &mut *crew.spectator.publisher)?;
+                publish(
+                    &mut **renderer,
+                    scene,
+                    &camera,
+                    body,
+                    moment,
+                    &[Plane::Color],
+                    &mut *crew.spectator.publisher,
+                )?;
             }
             if egocentric.is_some()
                 && let Some(camera) = moment.egocentric(body, EGOCENTRIC_SIZE, EGOCENTRIC_SIZE)
             {
-                publish(renderer, scene, &camera, body, moment, &Plane::ALL, &mut *crew.egocentric.publisher)?;
+                publish(&mut **renderer, scene, &camera, body, moment, &Plane::ALL, &mut *crew.egocentric.publisher)?;
             }
         }
         Ok(())
@@ -197,7 +205,7 @@ fn tall(instance: &Instance, catalog: &Catalog, layout: &Layout) -> Option<Tall>
 
 /// Renders a frame straight into the sample that is sent.
 fn publish(
-    renderer: &mut CpuRenderer,
+    renderer: &mut dyn Renderer,
     scene: &Scene,
     camera: &Camera,
     body: usize,

@@ -17,7 +17,7 @@ use cohabit_bus::{
 };
 use cohabit_cdf::{Action, BodyKind, BodyRequest, Catalog, Status, mission};
 use cohabit_engine::{SessionPlan, Simulator};
-use cohabit_render::MeshLibrary;
+use cohabit_render::{CpuRenderer, MeshLibrary};
 
 fn plan(bodies: &[&str]) -> SessionPlan {
     let (file, text) = mission::builtin()[0];
@@ -44,7 +44,7 @@ fn each_body_has_its_own_cameras_and_outcomes() {
     let plan = plan(&["person@Lab1", "robot"]);
     let bus = Local::new(1);
     let meshes = Arc::new(MeshLibrary::build(&plan.catalog).unwrap());
-    let simulator = Simulator::new(&plan, plan.build().unwrap(), meshes, 1, &bus).unwrap();
+    let simulator = Simulator::new(&plan, plan.build().unwrap(), meshes, Box::new(CpuRenderer::new(1)), &bus).unwrap();
     let mut mission = bus.subscriber(Topic::Mission).unwrap();
     let mut states = bus.subscriber(Topic::State).unwrap();
     let mut events = bus.subscriber(Topic::Events).unwrap();

@@ -6,10 +6,14 @@
 //! look sheets OUT_FOLDER [NAME...]         every class, sheet by sheet; the sheets whose names begin so
 //! look view OUT.png LAYOUT x y z yaw_deg pitch_deg [no-ceiling] [WxH] [planes] [time]
 //! ```
+//!
+//! With `--catalog FOLDER` models are read from that copy of `cdf/catalog`, so that they can be changed without
+//! building anything.
 
 use std::error::Error;
 use std::fs::File;
 use std::io::BufWriter;
+use std::path::Path;
 use std::sync::Arc;
 
 use cohabit_cdf::layout::Layout;
@@ -22,15 +26,22 @@ const CELL: u32 = 260;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let mut arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let catalog = match arguments.iter().position(|argument| *argument == "--catalog") {
+        Some(option) if option + 1 < arguments.len() => {
+            let folder = arguments.drain(option..option + 2).nth(1).unwrap_or_default();
+            catalog_in(Path::new(folder))?
+        }
+        _ => Catalog::builtin(),
+    };
     match arguments.as_slice() {
-        ["objects", out, classes @ ..] if !classes.is_empty() => objects(out, classes),
-        ["bodies", out] => bodies(out),
-        ["sheets", folder, names @ ..] => sheets(folder, names),
+        ["objects", out, classes @ ..] if !classes.is_empty() => objects(&catalog, out, classes),
+        ["bodies", out] => bodies(&catalog, out),
+        ["sheets", folder, names @ ..] => sheets(&catalog, folder, names),
         ["view", out, layout, x, y, z, yaw, pitch, options @ ..] => {
             let place = [x, y, z, yaw, pitch].map(|text| text.parse::<f32>());
             let [x, y, z, yaw, pitch] = place;
-            view(out, layout, [x?, y?, z?], yaw?.to_radians(), pitch?.to_radians(), options)
+            view(&catalog, out, layout, [x?, y?, z?], yaw?.to_radians(), pitch?.to_radians(), options)
         }
         _ => Err("write: objects OUT.png CLASS... | bodies OUT.png | sheets OUT_FOLDER [NAME...] | \
                   view OUT.png LAYOUT x y z yaw_deg pitch_deg [no-ceiling] [WxH] [planes] [time]"
@@ -38,9 +49,27 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
 }
 
-fn objects(out: &str, classes: &[&str]) -> Result<(), Box<dyn Error>> {
-    let catalog = Catalog::builtin();
-    let meshes = Arc::new(MeshLibrary::build(&catalog)?);
+/// The catalogue whose files lie in the folders `objects` and `models`.
+fn catalog_in(folder: &Path) -> Result<Catalog, Box<dyn Error>> {
+    let files = |name: &str| -> Result<Vec<(String, String)>, Box<dyn Error>> {
+        let mut files = Vec::new();
+        for entry in std::fs::read_dir(folder.join(name))? {
+            let path = entry?.path();
+            files.push((path.display().to_string(), std::fs::read_to_string(&path)?));
+        }
+        files.sort();
+        Ok(files)
+    };
+    let (objects, models) = (files("objects")?, files("models")?);
+    Ok(Catalog::parse(&texts(&objects), &texts(&models))?)
+}
+
+fn texts(files: &[(String, String)]) -> Vec<(&str, &str)> {
+    files.iter().map(|(name, text)| (name.as_str(), text.as_str())).collect()
+}
+
+fn objects(catalog: &Catalog, out: &str, classes: &[&str]) -> Result<(), Box<dyn Error>> {
+    let meshes = Arc::new(MeshLibrary::build(catalog)?);
     let mut cells = Vec::new();
     for id in classes {
         let class = catalog.find(id).ok_or_else(|| format!("the catalogue has no `{id}`"))?;
@@ -52,23 +81,21 @@ fn objects(out: &str, classes: &[&str]) -> Result<(), Box<dyn Error>> {
             size.z,
             meshes.triangles_by_level(class)
         );
-        cells.extend(gallery::cells(&meshes, &catalog, class));
+        cells.extend(gallery::cells(&meshes, catalog, class));
     }
     paint(out, &meshes, &Sheet { name: "objects".to_owned(), cells })
 }
 
-fn bodies(out: &str) -> Result<(), Box<dyn Error>> {
-    let catalog = Catalog::builtin();
-    let meshes = Arc::new(MeshLibrary::build(&catalog)?);
-    let sheet = gallery::sheets(&meshes, &catalog).next().ok_or("there are no sheets")?;
+fn bodies(catalog: &Catalog, out: &str) -> Result<(), Box<dyn Error>> {
+    let meshes = Arc::new(MeshLibrary::build(catalog)?);
+    let sheet = gallery::sheets(&meshes, catalog).next().ok_or("there are no sheets")?;
     paint(out, &meshes, &sheet)
 }
 
-fn sheets(folder: &str, names: &[&str]) -> Result<(), Box<dyn Error>> {
-    let catalog = Catalog::builtin();
-    let meshes = Arc::new(MeshLibrary::build(&catalog)?);
+fn sheets(catalog: &Catalog, folder: &str, names: &[&str]) -> Result<(), Box<dyn Error>> {
+    let meshes = Arc::new(MeshLibrary::build(catalog)?);
     std::fs::create_dir_all(folder)?;
-    for sheet in gallery::sheets(&meshes, &catalog) {
+    for sheet in gallery::sheets(&meshes, catalog) {
         if names.is_empty() || names.iter().any(|name| sheet.name.starts_with(name)) {
             paint(&format!("{folder}/{}.png", sheet.name), &meshes, &sheet)?;
         }
@@ -82,6 +109,7 @@ fn paint(out: &str, meshes: &Arc<MeshLibrary>, sheet: &Sheet) -> Result<(), Box<
 }
 
 fn view(
+    catalog: &Catalog,
     out: &str,
     layout: &str,
     at: [f32; 3],
@@ -89,13 +117,12 @@ fn view(
     pitch_rad: f32,
     options: &[&str],
 ) -> Result<(), Box<dyn Error>> {
-    let catalog = Catalog::builtin();
     let start = std::time::Instant::now();
-    let meshes = Arc::new(MeshLibrary::build(&catalog)?);
+    let meshes = Arc::new(MeshLibrary::build(catalog)?);
     println!("meshes: {:?}", start.elapsed());
     let layout = Layout::builtin(layout)?;
     let mut scene = Scene::new(meshes, &layout);
-    let mut instances = furnish(&catalog, &layout);
+    let mut instances = furnish(catalog, &layout);
     if options.contains(&"robot") {
         let (sin, cos) = yaw_rad.sin_cos();
         let turned = yaw_rad + 2.4;

@@ -54,11 +54,30 @@ pub use plan::{RoomSurface, room_surface_id};
 pub use planes::Planes;
 pub use scene::Scene;
 
-/// Draws what a camera sees of a scene.
-pub trait Renderer {
+/// One picture that is wanted.
+#[derive(Debug)]
+pub struct Shot<'a> {
+    /// Who looks.
+    pub camera: Camera,
+    /// What is filled.
+    pub planes: Planes<'a>,
+}
+
+/// Draws what cameras see of a scene.
+pub trait Renderer: Send {
     /// Fills the planes that are wanted.
     ///
     /// # Panics
     /// When a plane's length is not that of the camera's picture.
     fn render(&mut self, scene: &Scene, camera: &Camera, planes: &mut Planes<'_>);
+
+    /// Draws many pictures of the same moment, which may cost less than one after another.
+    ///
+    /// # Panics
+    /// As [`Self::render`].
+    fn render_all(&mut self, scene: &Scene, shots: &mut [Shot<'_>]) {
+        for shot in shots {
+            self.render(scene, &shot.camera, &mut shot.planes);
+        }
+    }
 }
