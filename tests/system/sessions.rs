@@ -25,14 +25,14 @@ fn what_dies_but_the_simulator_is_started_again() {
     let play = Play::start(COHABIT, &[]).unwrap();
     let dead = play.processes("agent");
     assert_eq!(dead.len(), 1);
-    kill_process(Pid::from_raw(dead[0]).unwrap(), Signal::KILL).unwrap();
-    while play.processes("agent").first().is_none_or(|pid| dead.contains(pid)) {
-        std::thread::yield_now();
-    }
     let mut page = Page::open(play.authority()).unwrap();
-    page.say("turn left").unwrap();
-    // The new agent may have come too late for this one; it is there for one that follows.
-    page.wait("a state", |_, message| message["type"] == "state").unwrap();
+    // In the middle of a plan, and before another one: what was asked for is done by the agent that comes next.
+    page.say("turn left 90 degrees, turn right 90 degrees and go to the robotics lab").unwrap();
+    page.wait("a first step", |_, message| message["type"] == "progress").unwrap();
+    kill_process(Pid::from_raw(dead[0]).unwrap(), Signal::KILL).unwrap();
+    let ended = page.wait("the end of the plan", |_, message| message["type"] == "turn" && message["ended"] == true);
+    assert_eq!(ended.unwrap()["status"], "done", "{:?}", page.chat);
+    assert!(play.processes("agent").iter().all(|pid| !dead.contains(pid)));
     play.end().unwrap();
 }
 

@@ -4,6 +4,7 @@
 //! This crate never knows the world's insides: an agent acts by commands and learns by outcomes.
 
 mod agent;
+mod past;
 mod peer;
 mod plan_follower;
 

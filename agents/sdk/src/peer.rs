@@ -11,7 +11,14 @@ use cohabit_bus::{
     monotonic_nanos,
 };
 
-use crate::agent::{Agent, Deed, Heard};
+use crate::{
+    agent::{Agent, Deed, Heard},
+    past::Past,
+};
+
+/// How long a late joiner listens to what was before it takes anything up: all publishers have greeted it by then, and
+/// a short command that is under way has ended.
+const SETTLE_NANOS: u64 = 600_000_000;
 
 /// Why an agent left its session.
 #[derive(Debug, thiserror::Error)]
@@ -24,7 +31,7 @@ pub enum PeerError {
     Malformed(#[from] Malformed),
 }
 
-/// Runs `agent` for that body on `bus` until `stop`.
+/// Runs `agent` for that body on `bus` until `stop`. One that joins in the middle of a plan carries on with it.
 ///
 /// # Errors
 /// [`PeerError`].
@@ -39,33 +46,42 @@ pub fn run(agent: &mut dyn Agent, body: u32, bus: &dyn Transport, stop: &AtomicB
         count: 0,
         base: first_command(),
     };
-    // What a late joiner is handed of plans and outcomes from before is not this agent's business.
     let joined_nanos = monotonic_nanos();
+    let mut past = Some(Past::default());
     let mut deeds = Vec::new();
     while !stop.load(Ordering::Relaxed) {
         listener.wait(Duration::from_millis(100))?;
         while let Some(sample) = events.receive()? {
-            if sample.envelope().sent_nanos < joined_nanos {
-                continue;
-            }
             let event: EventMessage = message::read(sample.payload())?;
-            if event.kind() == Some(EventKind::Outcome)
-                && event.command == mouth.latest()
-                && let Some(status) = event.status()
-            {
+            let (Some(EventKind::Outcome), Some(status)) = (event.kind(), event.status()) else { continue };
+            if let Some(past) = past.as_mut().filter(|_| event.body == body) {
+                past.note_outcome(event.turn, status, event.text.as_str());
+            } else if event.command == mouth.latest() {
                 agent.hear(&Heard::Outcome { status, detail: event.text.as_str() }, &mut deeds);
                 mouth.carry_out(&mut deeds)?;
             }
         }
         while let Some(sample) = dialog.receive()? {
-            if sample.envelope().sent_nanos < joined_nanos {
+            let view = DialogView::new(sample.payload())?;
+            if view.header.kind() != Some(DialogKind::Plan) || view.header.body != body {
                 continue;
             }
-            let view = DialogView::new(sample.payload())?;
-            if view.header.kind() == Some(DialogKind::Plan) && view.header.body == body {
-                agent.hear(&Heard::Plan { turn: view.header.turn, steps: view.steps }, &mut deeds);
-                mouth.carry_out(&mut deeds)?;
+            let is_new = sample.envelope().sent_nanos >= joined_nanos;
+            match &mut past {
+                Some(past) if !is_new => past.note_plan(view.header.turn, view.steps),
+                None if !is_new => {}
+                _ => {
+                    past = None;
+                    agent.hear(&Heard::Plan { turn: view.header.turn, steps: view.steps }, &mut deeds);
+                    mouth.carry_out(&mut deeds)?;
+                }
             }
+        }
+        if monotonic_nanos() - joined_nanos > SETTLE_NANOS
+            && let Some(past) = past.take()
+        {
+            deeds.extend(past.relive(agent));
+            mouth.carry_out(&mut deeds)?;
         }
     }
     Ok(())

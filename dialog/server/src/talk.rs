@@ -218,10 +218,13 @@ pub fn listen(bus: &dyn Transport, talk: &Talk, over: &dyn Fn() -> bool) -> Resu
     Ok(())
 }
 
-/// Shows the state to the pages again and again, until `over`.
+/// Shows the state to the pages, and what was said to peers that joined, again and again, until `over`.
 pub fn show_state(talk: &Talk, every: Duration, over: &dyn Fn() -> bool) -> Result<(), DialogError> {
     while !over() {
-        talk.show_state(&mut talk.lock())?;
+        let mut inner = talk.lock();
+        talk.show_state(&mut inner)?;
+        inner.dialog.update()?;
+        drop(inner);
         thread::sleep(every);
     }
     Ok(())
