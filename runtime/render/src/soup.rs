@@ -1,12 +1,14 @@
 //! What there is to see as bare triangles in the world: for other renderers, and for programs that model.
 
+use std::collections::BTreeMap;
+
 use glam::Vec3;
 
 use crate::color;
 use crate::mesh::{Mesh, Paint, Piece};
 use crate::scene::{Placed, Scene, Transform};
 
-/// The triangles of one instance, or of one surface of a room, at the finest level of detail.
+/// The triangles of one instance, or of one surface of a room.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Soup {
     /// What stands in the id plane where it is seen.
@@ -23,34 +25,45 @@ pub struct Soup {
 
 impl Scene {
     /// Everything that is drawn at this moment: the rooms' surfaces, then the instances that are visible, in their order.
+    /// The finest level of detail is 0; the coarsest there is stands for all coarser ones.
     #[must_use]
-    pub fn soups(&self) -> Vec<Soup> {
-        let mut soups: Vec<Soup> = Vec::new();
+    pub fn soups(&self, level: usize) -> Vec<Soup> {
+        let mut soups = Soups::default();
         let mesh = &self.plan.mesh;
         for part in &self.plan.parts {
             let surface = |paint| flat(paint, Vec3::ONE, Vec3::ONE);
-            soup_of(&mut soups, part.id).push(mesh, &mesh.pieces[part.piece as usize], &Transform::IDENTITY, surface);
+            soups.of(part.id).push(mesh, &mesh.pieces[part.piece as usize], &Transform::IDENTITY, surface);
         }
         for placed in self.placed() {
             let Placed { id, model, tint, fluid, .. } = *placed;
-            let mesh = &self.meshes.model(model).levels[0];
+            let levels = &self.meshes.model(model).levels;
+            let mesh = &levels[level.min(levels.len() - 1)];
             for (piece, transform) in &placed.pieces {
                 let transform = &placed.transforms[usize::from(*transform)];
                 let surface = |paint| flat(paint, tint, fluid);
-                soup_of(&mut soups, id).push(mesh, &mesh.pieces[usize::from(*piece)], transform, surface);
+                soups.of(id).push(mesh, &mesh.pieces[usize::from(*piece)], transform, surface);
             }
         }
-        soups
+        soups.all
     }
 }
 
-/// The soup with this id, if it is the last one; else a new one.
-fn soup_of(soups: &mut Vec<Soup>, id: u32) -> &mut Soup {
-    if soups.last().is_none_or(|last| last.id != id) {
-        soups.push(Soup { id, ..Soup::default() });
+/// Soups, and where the one of each id is.
+#[derive(Default)]
+struct Soups {
+    all: Vec<Soup>,
+    places: BTreeMap<u32, usize>,
+}
+
+impl Soups {
+    /// The soup with this id; a new one, if there is none yet.
+    fn of(&mut self, id: u32) -> &mut Soup {
+        let place = *self.places.entry(id).or_insert(self.all.len());
+        if place == self.all.len() {
+            self.all.push(Soup { id, ..Soup::default() });
+        }
+        &mut self.all[place]
     }
-    let last = soups.len() - 1;
-    &mut soups[last]
 }
 
 fn flat(paint: Paint, tint: Vec3, fluid: Vec3) -> [u8; 3] {
@@ -97,10 +110,10 @@ mod tests {
         let (catalog, layout) = (Catalog::builtin(), Layout::builtin("OfficeLayout1").unwrap());
         let meshes = Arc::new(MeshLibrary::build(&catalog).unwrap());
         let mut scene = Scene::new(meshes, &layout);
-        let rooms = scene.soups().len();
+        let rooms = scene.soups(0).len();
         let instances = furnish(&catalog, &layout);
         scene.set_instances(&instances);
-        let soups = scene.soups();
+        let soups = scene.soups(0);
         assert!(soups[rooms..].iter().map(|soup| soup.id).eq(instances.iter().map(|instance| instance.id)));
         for soup in &soups[rooms..] {
             let bounds = scene.placed().find(|placed| placed.id == soup.id).unwrap().bounds;
@@ -108,6 +121,8 @@ mod tests {
                 assert!((at.clamp(bounds.min, bounds.max) - at).length() < 1e-4, "{} lies outside at {at}", soup.id);
             }
         }
+        let count = |soups: &[Soup]| soups.iter().map(|soup| soup.triangles.len()).sum::<usize>();
+        assert!(count(&soups) > count(&scene.soups(1)) && count(&scene.soups(2)) == count(&scene.soups(99)));
         for soup in &soups {
             assert_eq!((soup.positions.len(), soup.triangles.len()), (soup.normals.len(), soup.colors.len()));
             assert!(soup.normals.iter().all(|normal| (Vec3::from_array(*normal).length() - 1.0).abs() < 1e-3));
