@@ -42,6 +42,7 @@ mod rig;
 mod scene;
 mod shadow;
 mod signs;
+mod soup;
 mod veil;
 
 pub use camera::{Camera, FAR_M};
@@ -54,6 +55,7 @@ pub use mesh::Aabb;
 pub use plan::{RoomSurface, room_surface_id};
 pub use planes::Planes;
 pub use scene::Scene;
+pub use soup::Soup;
 
 /// One picture that is wanted.
 #[derive(Debug)]

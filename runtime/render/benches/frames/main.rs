@@ -7,7 +7,9 @@
 //! cargo bench -p cohabit-render -- compare=FOLDER  # says by how much they differ now
 //! ```
 
+mod buffers;
 mod keep;
+mod machine;
 mod office;
 
 use std::path::Path;
@@ -15,9 +17,11 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use cohabit_cdf::Catalog;
-use cohabit_render::{Camera, CpuRenderer, MeshLibrary, Planes, Renderer, Scene};
-use rustix::time::{ClockId, clock_gettime};
+use cohabit_render::{Camera, CpuRenderer, MeshLibrary, Renderer, Scene};
+use rustix::time::ClockId;
 
+use buffers::Buffers;
+use machine::cpu_time;
 use office::Office;
 
 /// The floor plans looked at.
@@ -67,44 +71,13 @@ fn main() {
 }
 
 fn tell_machine(offices: &[Office]) {
-    let processor = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-    let model = processor.lines().find_map(|line| line.strip_prefix("model name")).unwrap_or(": unknown");
-    let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    println!("machine: {}, {cores} cores", model.trim_start_matches([' ', '\t', ':']));
+    println!("machine: {}", machine::describe());
     println!("version: cohabit-render {}", env!("CARGO_PKG_VERSION"));
     for office in offices {
         let count = office.instances.len();
         println!("plan: {}, {count} instances, {} triangles at the finest level", office.id, office.triangles);
     }
     println!("mean over all viewpoints of the fastest frame there, and of the median one; shadows are on\n");
-}
-
-/// Room for the planes of one picture.
-struct Room {
-    color: Vec<u8>,
-    depth_m: Vec<f32>,
-    normals: Vec<i8>,
-    ids: Vec<u32>,
-}
-
-impl Room {
-    fn new(pixels: usize) -> Self {
-        Self {
-            color: vec![0; pixels * 4],
-            depth_m: vec![0.0; pixels],
-            normals: vec![0; pixels * 4],
-            ids: vec![0; pixels],
-        }
-    }
-
-    fn planes(&mut self, all: bool) -> Planes<'_> {
-        Planes {
-            color: Some(&mut self.color),
-            depth_m: all.then_some(&mut self.depth_m),
-            normals: all.then_some(&mut self.normals),
-            ids: all.then_some(&mut self.ids),
-        }
-    }
 }
 
 /// Draws from every viewpoint, with so many cameras at once, each drawn by so many threads.
@@ -149,12 +122,12 @@ fn draw_at_once(
     let clock = if threads == 1 { ClockId::ThreadCPUTime } else { ClockId::ProcessCPUTime };
     let draw = || {
         let mut renderer = CpuRenderer::new(threads);
-        let mut room = Room::new(camera.pixels());
+        let mut buffers = Buffers::new(camera.pixels());
         // Patterns and occlusion are worked out when they are first seen.
-        renderer.render(scene, camera, &mut room.planes(kind.all_planes));
+        renderer.render(scene, camera, &mut buffers.planes(kind.all_planes));
         let frame = || {
             let (start, cpu) = (Instant::now(), cpu_time(clock));
-            renderer.render(scene, camera, &mut room.planes(kind.all_planes));
+            renderer.render(scene, camera, &mut buffers.planes(kind.all_planes));
             (start.elapsed(), cpu_time(clock) - cpu)
         };
         std::iter::repeat_with(frame).take(frames as usize).collect::<Vec<_>>()
@@ -167,10 +140,4 @@ fn draw_at_once(
         }
         all
     })
-}
-
-/// Processor time of this thread, or of the whole process.
-fn cpu_time(clock: ClockId) -> Duration {
-    let time = clock_gettime(clock);
-    Duration::new(time.tv_sec as u64, time.tv_nsec as u32)
 }
