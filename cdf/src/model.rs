@@ -37,6 +37,10 @@ pub struct Part {
     /// What it is made of: decides pattern and gloss.
     #[serde(default)]
     pub material: Material,
+    /// How much of what is behind it a see-through material hides where it is looked at squarely, 0 to 1; the
+    /// material's own, if absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub opacity: Option<f32>,
     /// The joint that moves it, by name.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub joint: Option<String>,
@@ -154,6 +158,14 @@ pub enum Material {
     Leaf,
     /// Things to eat.
     Food,
+    /// Clear glass: what is behind it shows through, tinted by its colour; it is what is pointed at.
+    Clear,
+    /// A clear fluid: hides more than glass does.
+    Liquid,
+    /// Steam, cold air, smoke: softest at its edges; what is behind it is what is pointed at.
+    Mist,
+    /// Light in the air: a beam, a flame, a swirl, with a bright core. As [`Self::Mist`] but for that it shines by itself.
+    Beam,
 }
 
 /// A state that shows or hides a part.

@@ -11,6 +11,7 @@ mod setup;
 mod shade;
 mod smooth;
 mod strip;
+mod veil;
 
 use std::sync::{Mutex, PoisonError};
 
@@ -25,6 +26,7 @@ use facet::Facets;
 use setup::Triangle;
 use shade::Shader;
 use strip::{Out, Strip};
+use veil::Veils;
 
 /// Bands a thread: enough to share work evenly, few because every band goes through all triangles.
 const BANDS_PER_THREAD: usize = 4;
@@ -164,7 +166,7 @@ impl Renderer for CpuRenderer {
         let view = View::new(camera);
         let visible =
             if self.through_doors { Visible::new(&scene.plan, &view, camera) } else { Visible::everything(&view) };
-        let draws = draw::collect(scene, camera, &view, &visible);
+        let (draws, see_through) = draw::collect(scene, camera, &view, &visible);
         self.set_up(&draws, &view);
 
         let outlined = camera.for_people && wants_color && !scene.highlights.is_empty();
@@ -172,6 +174,7 @@ impl Renderer for CpuRenderer {
         self.nearness.resize(pixels, 0.0);
         self.own_ids.resize(if outlined && planes.ids.is_none() { pixels } else { 0 }, 0);
         let shader = Shader::new(&view, &draws, &self.batches, &shadows, wants_color);
+        let veils = Veils::new(self.wide, &see_through, &view, shader.triangles());
         let width = camera.width as usize;
         let band_rows = band_rows(self.threads, camera.height as usize);
         let (rows, count) = (band_rows * width, (camera.height as usize).div_ceil(band_rows));
@@ -199,11 +202,12 @@ impl Renderer for CpuRenderer {
             .collect();
         let (pool, wide) = (&self.facets, self.wide);
         let kept = || pool.lock().unwrap_or_else(PoisonError::into_inner);
-        share_out(self.threads, jobs, |band| {
+        share_out(self.threads, jobs, |mut band| {
             let mut facets = kept().pop().unwrap_or_default();
             facets.clear(shader.triangles());
-            fill(wide, band, width, &shader, &mut facets);
+            fill(wide, &mut band, width, &shader, &mut facets);
             kept().push(facets);
+            veils.blend(wide, &mut band, width);
         });
 
         if let Some(color) = planes.color.as_deref_mut().filter(|_| camera.for_people) {
@@ -240,7 +244,7 @@ fn has_wide_vectors() -> bool {
 }
 
 /// Draws one band. All that it is to reach has to be inlined here, to be compiled for the wide vectors too.
-fn fill(wide: bool, band: Band<'_>, width: usize, shader: &Shader<'_>, facets: &mut Facets) {
+fn fill(wide: bool, band: &mut Band<'_>, width: usize, shader: &Shader<'_>, facets: &mut Facets) {
     #[cfg(target_arch = "x86_64")]
     if wide {
         // SAFETY: `wide` is true only where the processor has AVX2.
@@ -253,13 +257,13 @@ fn fill(wide: bool, band: Band<'_>, width: usize, shader: &Shader<'_>, facets: &
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
-fn fill_avx2(band: Band<'_>, width: usize, shader: &Shader<'_>, facets: &mut Facets) {
+fn fill_avx2(band: &mut Band<'_>, width: usize, shader: &Shader<'_>, facets: &mut Facets) {
     fill_rows(band, width, shader, facets);
 }
 
 /// First what each pixel sees, then what is wanted of it.
 #[inline(always)]
-fn fill_rows(mut band: Band<'_>, width: usize, shader: &Shader<'_>, facets: &mut Facets) {
+fn fill_rows(band: &mut Band<'_>, width: usize, shader: &Shader<'_>, facets: &mut Facets) {
     band.seen.fill(NOTHING);
     band.nearness.fill(1.0 / FAR_M);
     raster::all(shader.batches(), band.first_row, width, band.seen, band.nearness);

@@ -42,6 +42,7 @@ mod rig;
 mod scene;
 mod shadow;
 mod signs;
+mod veil;
 
 pub use camera::{Camera, FAR_M};
 pub use cpu::CpuRenderer;

@@ -20,6 +20,7 @@ use crate::pattern::Pictures;
 use crate::people;
 use crate::rig::{self, Driver, Rig};
 use crate::signs::SIGNS;
+use crate::veil::Veil;
 
 /// Looks that no catalogue needs to have: of bodies, and of signs.
 const OWN: [(&str, &str); 2] =
@@ -304,7 +305,7 @@ fn mesh_of(model: &Model, standing: bool, body: bool) -> Result<ModelMesh, Model
         if piece.corners.is_empty() {
             continue;
         }
-        if piece.is_usual() {
+        if piece.is_usual() && piece.veil != Some(Veil::Airy) {
             bounds = bounds.union(own);
         }
         reach = reach.union(own);

@@ -7,6 +7,7 @@ use glam::Vec3;
 
 use crate::kit::Solid;
 use crate::pattern::Pattern;
+use crate::veil::Veil;
 
 /// A box along the axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -77,6 +78,8 @@ pub(crate) struct Surface {
     pub u: (Vec3, f32),
     /// The same for the second coordinate.
     pub v: (Vec3, f32),
+    /// Of a see-through pattern: how much of what is behind it it hides where it is looked at squarely.
+    pub opacity: f32,
 }
 
 /// Triangles that are drawn, and move, together.
@@ -86,6 +89,8 @@ pub(crate) struct Piece {
     pub when: Option<When>,
     /// The joint that moves them.
     pub joint: Option<u8>,
+    /// How they are seen through; nothing for what is drawn first, and hides what is behind it.
+    pub veil: Option<Veil>,
     /// Their corners.
     pub corners: Range<u32>,
     /// Which triangles.
@@ -119,9 +124,9 @@ impl Piece {
 
 impl Mesh {
     /// Starts a piece; what is pushed until [`Self::end_piece`] belongs to it.
-    pub(crate) fn begin_piece(&mut self, when: Option<When>, joint: Option<u8>) {
+    pub(crate) fn begin_piece(&mut self, when: Option<When>, joint: Option<u8>, veil: Option<Veil>) {
         let (corner, triangle) = (self.positions.len() as u32, self.triangles.len() as u32);
-        self.pieces.push(Piece { when, joint, corners: corner..corner, triangles: triangle..triangle });
+        self.pieces.push(Piece { when, joint, veil, corners: corner..corner, triangles: triangle..triangle });
     }
 
     /// Ends the piece that was begun last.

@@ -8,6 +8,7 @@ use crate::kit::{self, Detail, Solid};
 use crate::library::ModelError;
 use crate::mesh::{Mesh, Paint, Surface};
 use crate::pattern::Pattern;
+use crate::veil::{self, Veil};
 
 /// Most parts of a model.
 const MOST_PARTS: usize = 500;
@@ -23,13 +24,13 @@ pub(crate) fn build(model: &Model, detail: Detail) -> Result<Mesh, ModelError> {
     if model.joints.len() > 64 {
         return Err(too_many("joints", model.joints.len(), 64));
     }
-    let mut groups: Vec<(Option<When>, Option<u8>)> = Vec::new();
+    let mut groups: Vec<(Option<When>, Option<u8>, Option<Veil>)> = Vec::new();
     let mut group_of = Vec::with_capacity(model.parts.len());
     for (index, part) in model.parts.iter().enumerate() {
         if let Some(repeat) = part.repeat.filter(|repeat| repeat.count > MOST_COPIES) {
             return Err(too_many("copies of a part", repeat.count as usize, MOST_COPIES as usize));
         }
-        let key = (part.when, joint_of(model, part, index)?);
+        let key = (part.when, joint_of(model, part, index)?, veil::of(pattern(part)));
         let group = groups.iter().position(|known| *known == key).unwrap_or_else(|| {
             groups.push(key);
             groups.len() - 1
@@ -37,8 +38,8 @@ pub(crate) fn build(model: &Model, detail: Detail) -> Result<Mesh, ModelError> {
         group_of.push(group);
     }
     let mut mesh = Mesh::default();
-    for (group, (when, joint)) in groups.iter().enumerate() {
-        mesh.begin_piece(*when, *joint);
+    for (group, (when, joint, veil)) in groups.iter().enumerate() {
+        mesh.begin_piece(*when, *joint, *veil);
         for (index, part) in model.parts.iter().enumerate().filter(|(index, _)| group_of[*index] == group) {
             push_part(&mut mesh, model, part, index, detail)?;
         }
@@ -72,11 +73,14 @@ fn push_part(mesh: &mut Mesh, model: &Model, part: &Part, index: usize, detail: 
     solid.transform(frame, Vec3::from_array(part.at));
     // Each part has its own place in the pattern, so that two boards never show the same knot.
     let offset = index as f32 * 0.3719;
-    let pattern = pattern_of(part.material, matches!(part.shape, Shape::Text { .. }));
+    let pattern = pattern(part);
+    let own = veil::look(pattern).map_or(1.0, |look| look.squarely);
+    let opacity = part.opacity.unwrap_or(own).clamp(0.0, 1.0);
+    let surface = |outward| Surface { opacity, ..surface(paint, pattern, frame, grain, outward, offset) };
     let copies = part.repeat.map_or(1, |repeat| repeat.count);
     let step = part.repeat.map_or(Vec3::ZERO, |repeat| Vec3::from_array(repeat.step));
     for _ in 0..copies {
-        mesh.push(&solid, |outward| surface(paint, pattern, frame, grain, outward, offset));
+        mesh.push(&solid, surface);
         if let Some(axis) = part.mirror {
             let mut twin = solid.clone();
             twin.mirror(match axis {
@@ -84,7 +88,7 @@ fn push_part(mesh: &mut Mesh, model: &Model, part: &Part, index: usize, detail: 
                 Axis::Y => 1,
                 Axis::Z => 2,
             });
-            mesh.push(&twin, |outward| surface(paint, pattern, frame, grain, outward, offset));
+            mesh.push(&twin, surface);
         }
         solid.transform(Mat3::IDENTITY, step);
     }
@@ -113,19 +117,20 @@ fn longest_axis(solid: &Solid) -> usize {
 /// Lays the pattern on the side of the part that `outward` looks out of, grain along `u`.
 fn surface(paint: Paint, pattern: Pattern, frame: Mat3, grain: usize, outward: Vec3, offset: f32) -> Surface {
     if !pattern.is_textured() {
-        return Surface { paint, pattern, u: (Vec3::X, 0.0), v: (Vec3::Y, 0.0) };
+        return Surface { paint, pattern, u: (Vec3::X, 0.0), v: (Vec3::Y, 0.0), opacity: 1.0 };
     }
     let inside = frame.transpose() * outward;
     let side = (0..3).max_by(|a, b| inside[*a].abs().total_cmp(&inside[*b].abs()).then(b.cmp(a))).unwrap_or(2);
     let along = if side == grain { (side + 1) % 3 } else { grain };
     let across = 3 - side - along;
-    Surface { paint, pattern, u: (frame.col(along), offset), v: (frame.col(across), offset * 1.7) }
+    Surface { paint, pattern, u: (frame.col(along), offset), v: (frame.col(across), offset * 1.7), opacity: 1.0 }
 }
 
-fn pattern_of(material: Material, text: bool) -> Pattern {
-    match material {
+fn pattern(part: &Part) -> Pattern {
+    let text = matches!(part.shape, Shape::Text { .. });
+    match part.material {
         _ if text => {
-            if material == Material::Glow {
+            if part.material == Material::Glow {
                 Pattern::Glow
             } else {
                 Pattern::Ink
@@ -145,5 +150,9 @@ fn pattern_of(material: Material, text: bool) -> Pattern {
         Material::Carpet => Pattern::Carpet,
         Material::Leaf => Pattern::Leaf,
         Material::Food => Pattern::Food,
+        Material::Clear => Pattern::Clear,
+        Material::Liquid => Pattern::Liquid,
+        Material::Mist => Pattern::Mist,
+        Material::Beam => Pattern::Beam,
     }
 }

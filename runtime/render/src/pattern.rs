@@ -56,6 +56,14 @@ pub(crate) enum Pattern {
     Lamp,
     /// What is seen through a window to the outside.
     Sky,
+    /// A clear pane, or the wall of a glass.
+    Clear,
+    /// A clear fluid.
+    Liquid,
+    /// Steam and cold air.
+    Mist,
+    /// Light in the air.
+    Beam,
 }
 
 /// How light plays on a pattern.

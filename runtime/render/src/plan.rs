@@ -144,7 +144,7 @@ impl Plan {
 
     /// Begins a part; what is pushed until [`Self::end`] belongs to it.
     fn begin(&mut self, room: RoomId, rooms: u8, surface: RoomSurface) {
-        self.mesh.begin_piece(None, None);
+        self.mesh.begin_piece(None, None, None);
         let piece = self.mesh.pieces.len() as u32 - 1;
         let id = room_surface_id(room, surface);
         self.parts.push(PlanPart { piece, room, rooms, id, bounds: Aabb::EMPTY, surface });

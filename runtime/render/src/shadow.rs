@@ -8,6 +8,7 @@ use glam::Vec3;
 use crate::library::MeshLibrary;
 use crate::mesh::Aabb;
 use crate::scene::Placed;
+use crate::veil::Veil;
 
 /// How far light moves along x and y while it falls by one metre.
 pub(crate) const SLANT: [f32; 2] = [0.24, -0.17];
@@ -141,6 +142,9 @@ impl ShadowMap {
         let mut corners = Vec::new();
         for (piece, transform) in &placed.pieces {
             let (piece, transform) = (&mesh.pieces[usize::from(*piece)], &placed.transforms[usize::from(*transform)]);
+            if piece.veil == Some(Veil::Airy) {
+                continue;
+            }
             let range = piece.corners.start as usize..piece.corners.end as usize;
             corners.clear();
             corners.extend(mesh.positions[range].iter().map(|corner| {

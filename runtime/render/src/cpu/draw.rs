@@ -65,9 +65,14 @@ impl Draw<'_> {
     }
 }
 
-/// Everything that may be seen, the nearest first.
-pub(super) fn collect<'a>(scene: &'a Scene, camera: &Camera, view: &View, visible: &Visible) -> Vec<Draw<'a>> {
-    let mut draws = Vec::with_capacity(1024);
+/// Everything that may be seen, the nearest first; and apart from it what is see-through, the farthest first.
+pub(super) fn collect<'a>(
+    scene: &'a Scene,
+    camera: &Camera,
+    view: &View,
+    visible: &Visible,
+) -> (Vec<Draw<'a>>, Vec<Draw<'a>>) {
+    let (mut draws, mut veils) = (Vec::with_capacity(1024), Vec::new());
     let light = |room: usize| if scene.lit[room] { Vec3::ONE } else { UNLIT };
     for part in &scene.plan.parts {
         if !camera.ceiling && matches!(part.surface, RoomSurface::Ceiling | RoomSurface::Lamp) {
@@ -113,10 +118,12 @@ pub(super) fn collect<'a>(scene: &'a Scene, camera: &Camera, view: &View, visibl
         let near_m = nearest(view, placed.bounds.min, placed.bounds.max);
         for (piece, transform) in &placed.pieces {
             let transform = placed.transforms[usize::from(*transform)];
-            draws.push(Draw {
+            let piece = &mesh.pieces[usize::from(*piece)];
+            let list = if piece.veil.is_some() { &mut veils } else { &mut draws };
+            list.push(Draw {
                 mesh,
                 ambient: Ambient::Of(model, level),
-                piece: &mesh.pieces[usize::from(*piece)],
+                piece,
                 transform,
                 id: placed.id,
                 tint: placed.tint,
@@ -133,7 +140,8 @@ pub(super) fn collect<'a>(scene: &'a Scene, camera: &Camera, view: &View, visibl
     }
     // Stable: what is equally near stays in the order of the scene.
     draws.sort_by(|a, b| a.near_m.total_cmp(&b.near_m));
-    draws
+    veils.sort_by(|a, b| b.near_m.total_cmp(&a.near_m));
+    (draws, veils)
 }
 
 fn to_camera(view: &View, transform: &Transform) -> (Mat3, Vec3) {

@@ -55,7 +55,7 @@ pub(super) fn build(plan: &mut Plan, room: &Room) {
 }
 
 fn flat(pattern: Pattern, srgb: [u8; 3]) -> Surface {
-    Surface { paint: Paint::Fixed(color::from_srgb(srgb)), pattern, u: (Vec3::X, 0.0), v: (Vec3::Y, 0.0) }
+    Surface { paint: Paint::Fixed(color::from_srgb(srgb)), pattern, u: (Vec3::X, 0.0), v: (Vec3::Y, 0.0), opacity: 1.0 }
 }
 
 fn paint(finish: &Finish) -> Paint {
@@ -70,7 +70,7 @@ fn floor_surface(finish: &Finish) -> Surface {
         Material::Brick => Pattern::Brick,
         _ => Pattern::Concrete,
     };
-    Surface { paint: paint(finish), pattern, u: (Vec3::X, 0.0), v: (Vec3::Y, 0.0) }
+    Surface { paint: paint(finish), pattern, u: (Vec3::X, 0.0), v: (Vec3::Y, 0.0), opacity: 1.0 }
 }
 
 fn wall_surface(finish: &Finish, along: Vec3, low: bool) -> Surface {
@@ -88,7 +88,7 @@ fn wall_surface(finish: &Finish, along: Vec3, low: bool) -> Surface {
         _ if low => Pattern::Panels,
         _ => Pattern::Wall,
     };
-    Surface { paint: paint(finish), pattern, u: (along, 0.0), v: (Vec3::Z, 0.0) }
+    Surface { paint: paint(finish), pattern, u: (along, 0.0), v: (Vec3::Z, 0.0), opacity: 1.0 }
 }
 
 /// Lines that divide a length: close together at the ends, where the light changes.
