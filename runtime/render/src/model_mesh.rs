@@ -58,6 +58,10 @@ fn joint_of(model: &Model, part: &Part, index: usize) -> Result<Option<u8>, Mode
 
 fn push_part(mesh: &mut Mesh, model: &Model, part: &Part, index: usize, detail: Detail) -> Result<(), ModelError> {
     let shape = |source| ModelError::Shape { model: model.id.clone(), part: index + 1, source };
+    let pattern = pattern(part);
+    // What fades at its edges shows no corners there.
+    let coarser = usize::from(veil::of(pattern) == Some(Veil::Airy));
+    let detail = Detail::ALL[(detail as usize + coarser).min(Detail::ALL.len() - 1)];
     let mut solid = kit::build(&part.shape, detail).map_err(shape)?;
     let paint = match part.color.as_str() {
         "tint" => Paint::Tint,
@@ -73,7 +77,6 @@ fn push_part(mesh: &mut Mesh, model: &Model, part: &Part, index: usize, detail: 
     solid.transform(frame, Vec3::from_array(part.at));
     // Each part has its own place in the pattern, so that two boards never show the same knot.
     let offset = index as f32 * 0.3719;
-    let pattern = pattern(part);
     let own = veil::look(pattern).map_or(1.0, |look| look.squarely);
     let opacity = part.opacity.unwrap_or(own).clamp(0.0, 1.0);
     let surface = |outward| Surface { opacity, ..surface(paint, pattern, frame, grain, outward, offset) };
