@@ -113,8 +113,17 @@ fn corner(
     let seen = vec3(dot(away, camera.right.xyz), dot(away, camera.down.xyz), dot(away, camera.forward.xyz));
     let size = camera.tile.zw;
     let axis = vec2(camera.right.w, camera.down.w);
-    // Twice the place in the picture, from its middle, times depth.
-    let twice = 2.0 * (seen.xy * camera.eye.w + seen.z * (axis - 0.5 * size)) / size;
+    var place = seen.xy * (camera.eye.w / seen.z) + axis;
+    if seen.z >= NEAR_M && all(abs(place) < vec2(GUARD_PX)) {
+        // To the same fractions of pixels as the reference, so that edges cover the same pixels.
+        place = floor(place * SUB + 0.5) / SUB;
+    }
+    // What is behind the eye has no place in the picture.
+    let twice = select(
+        2.0 * (seen.xy * camera.eye.w + seen.z * (axis - 0.5 * size)) / size,
+        (2.0 * place / size - 1.0) * seen.z,
+        seen.z >= NEAR_M,
+    );
     var out: Corner;
     // One over depth, reversed: what is near is greater.
     out.at = vec4(twice.x, -twice.y, NEAR_M, seen.z);

@@ -128,6 +128,8 @@ fn constants() -> String {
     number("WHITE", from::WHITE);
     number("LIFT_M", from::LIFT_M);
     number("FADE", from::FADE);
+    number("GUARD_PX", from::GUARD_PX);
+    number("SUB", from::SUB as f32);
     let levels = from::picture(0).levels.len();
     let [x, y] = from::SLANT;
     let _ = writeln!(text, "const LEVELS: u32 = {levels}u;\nconst SLANT: vec2<f32> = vec2<f32>({x:?}, {y:?});");

@@ -20,7 +20,7 @@ pub use stage::{Piece, PlanKey, Seen, Sight, Stage, Thing};
 
 pub use crate::camera::NEAR_M;
 pub use crate::color::{WHITE, from_srgb as linear_light, srgb_table as display_bytes};
-pub use crate::cpu::{ABOVE, BELOW, DIRT, FROST, KEY, LIFT_M, SLIME};
+pub use crate::cpu::{ABOVE, BELOW, DIRT, FROST, GUARD_PX, KEY, LIFT_M, SLIME, SUB};
 pub use crate::mesh::Paint;
 pub use crate::pattern::Gloss;
 pub use crate::shadow::{FADE, SLANT, towards_light};

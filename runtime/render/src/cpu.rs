@@ -20,6 +20,7 @@ use crate::planes::Planes;
 use crate::portals::Visible;
 use crate::scene::Scene;
 
+pub use setup::{GUARD_PX, SUB};
 pub use shade::{ABOVE, BELOW, DIRT, FROST, KEY, LIFT_M, SLIME};
 
 use draw::Draw;
