@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 /// Nothing nearer is drawn, m.
-pub(crate) const NEAR_M: f32 = 0.03;
+pub const NEAR_M: f32 = 0.03;
 /// What the depth plane holds where there is nothing, m; nothing farther is drawn.
 pub const FAR_M: f32 = 100.0;
 

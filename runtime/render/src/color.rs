@@ -6,9 +6,9 @@ use cohabit_cdf::{Color, Fluid};
 use glam::Vec3;
 
 /// Steps of the table from linear light to display bytes.
-const STEPS: usize = 4096;
+pub(crate) const STEPS: usize = 4096;
 /// Linear light that is shown as white.
-const WHITE: f32 = 2.0;
+pub const WHITE: f32 = 2.0;
 /// Linear light up to which nothing is changed.
 const KNEE: f32 = 0.6;
 
@@ -20,7 +20,8 @@ pub(crate) fn parse_hex(text: &str) -> Option<Vec3> {
 }
 
 /// The linear light of display bytes.
-pub(crate) fn from_srgb(bytes: [u8; 3]) -> Vec3 {
+#[must_use]
+pub fn from_srgb(bytes: [u8; 3]) -> Vec3 {
     let channel = |byte: u8| {
         let c = f32::from(byte) / 255.0;
         if c <= 0.04045 { c / 12.92 } else { libm::powf((c + 0.055) / 1.055, 2.4) }
@@ -29,7 +30,8 @@ pub(crate) fn from_srgb(bytes: [u8; 3]) -> Vec3 {
 }
 
 /// The table behind [`to_srgb`], made once.
-pub(crate) fn srgb_table() -> &'static [u8; STEPS] {
+#[must_use]
+pub fn srgb_table() -> &'static [u8; STEPS] {
     static TABLE: OnceLock<Box<[u8; STEPS]>> = OnceLock::new();
     TABLE.get_or_init(|| {
         let mut table = Box::new([0; STEPS]);

@@ -5,11 +5,11 @@
 
 mod draw;
 mod facet;
-mod outline;
+pub(crate) mod outline;
 mod raster;
 mod setup;
 mod shade;
-mod smooth;
+pub(crate) mod smooth;
 mod strip;
 mod veil;
 
@@ -20,6 +20,9 @@ use crate::camera::{Camera, FAR_M, View};
 use crate::planes::Planes;
 use crate::portals::Visible;
 use crate::scene::Scene;
+
+pub use setup::{GUARD_PX, SUB};
+pub use shade::{ABOVE, BELOW, DIRT, FROST, KEY, LIFT_M, SLIME};
 
 use draw::Draw;
 use facet::Facets;
@@ -151,18 +154,16 @@ fn bands_of<T>(plane: Option<&mut [T]>, values: usize, count: usize) -> Vec<Opti
 impl Renderer for CpuRenderer {
     fn render(&mut self, scene: &Scene, camera: &Camera, planes: &mut Planes<'_>) {
         let pixels = camera.pixels();
-        check_lengths(planes, pixels);
+        planes.check_lengths(pixels);
         if pixels == 0 {
             return;
         }
         let wants_color = planes.color.is_some();
-        if wants_color {
-            let mut shadows = scene.shadows.write().unwrap_or_else(PoisonError::into_inner);
-            if shadows.is_soiled() {
-                shadows.clean(&scene.meshes, scene.placed());
-            }
-        }
-        let shadows = scene.shadows.read().unwrap_or_else(PoisonError::into_inner);
+        let shadows = if wants_color {
+            scene.clean_shadows()
+        } else {
+            scene.shadows.read().unwrap_or_else(PoisonError::into_inner)
+        };
         let view = View::new(camera);
         let visible =
             if self.through_doors { Visible::new(&scene.plan, &view, camera) } else { Visible::everything(&view) };
@@ -223,16 +224,6 @@ impl Renderer for CpuRenderer {
 /// Rows of a band.
 fn band_rows(threads: usize, height: usize) -> usize {
     if threads <= 1 { height.max(1) } else { height.div_ceil(threads * BANDS_PER_THREAD).max(1) }
-}
-
-fn check_lengths(planes: &Planes<'_>, pixels: usize) {
-    let lengths = [
-        planes.color.as_ref().map(|plane| plane.len() / 4),
-        planes.depth_m.as_ref().map(|plane| plane.len()),
-        planes.normals.as_ref().map(|plane| plane.len() / 4),
-        planes.ids.as_ref().map(|plane| plane.len()),
-    ];
-    assert!(lengths.into_iter().flatten().all(|length| length == pixels), "a plane is not {pixels} pixels long");
 }
 
 /// Whether the processor has the vectors that this is compiled for besides those every processor has.

@@ -20,6 +20,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod backend;
 mod camera;
 mod color;
 mod cpu;
@@ -40,6 +41,7 @@ mod portals;
 mod pose;
 mod rig;
 mod scene;
+mod seen;
 mod shadow;
 mod signs;
 mod soup;

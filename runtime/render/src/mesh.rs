@@ -58,7 +58,7 @@ impl Aabb {
 
 /// Where a surface's colour comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Paint {
+pub enum Paint {
     /// Always this linear light.
     Fixed(Vec3),
     /// The instance's tint.

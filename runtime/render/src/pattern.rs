@@ -68,7 +68,7 @@ pub(crate) enum Pattern {
 
 /// How light plays on a pattern.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Gloss {
+pub struct Gloss {
     /// Strength of the highlight.
     pub shine: f32,
     /// Its sharpness: how often the cosine is squared.
@@ -81,7 +81,7 @@ pub(crate) struct Gloss {
 
 impl Pattern {
     /// Those that have a picture.
-    const TEXTURED: [Self; 14] = [
+    pub(crate) const TEXTURED: [Self; 14] = [
         Self::Wall,
         Self::Metal,
         Self::Wood,
@@ -101,6 +101,11 @@ impl Pattern {
     /// Whether it has a picture.
     pub(crate) fn is_textured(self) -> bool {
         Self::TEXTURED.contains(&self)
+    }
+
+    /// Which of [`Self::TEXTURED`] it is.
+    pub(crate) fn picture_index(self) -> Option<usize> {
+        Self::TEXTURED.iter().position(|textured| *textured == self)
     }
 
     /// The length of its picture's side, m.
@@ -262,9 +267,9 @@ fn ceiling(u: f32, v: f32) -> [f32; 3] {
 }
 
 /// Texels along a side of the finest picture.
-const SIDE: usize = 256;
+pub(crate) const SIDE: usize = 256;
 /// Copies, each half as fine: down to 2 by 2.
-const LEVELS: usize = 8;
+pub(crate) const LEVELS: usize = 8;
 
 /// One picture and its coarser copies, one after another; texels hold factors times 128, a byte a channel from
 /// the lowest.
@@ -291,7 +296,7 @@ impl Pictures {
 
     /// The picture of a pattern; nothing if it has none.
     pub(crate) fn of(&self, pattern: Pattern) -> Option<&Picture> {
-        let index = Pattern::TEXTURED.iter().position(|textured| *textured == pattern)?;
+        let index = pattern.picture_index()?;
         Some(self.all[index].get_or_init(|| Picture::paint(pattern)))
     }
 
@@ -333,6 +338,17 @@ impl Picture {
         }
         picture.texels = all.into_iter().map(u32::from_le_bytes).collect();
         picture
+    }
+
+    /// The texels of one copy.
+    pub(crate) fn texels(&self, level: usize) -> &[u32] {
+        let side = SIDE >> level;
+        &self.texels[self.starts[level]..self.starts[level] + side * side]
+    }
+
+    /// Texels a metre, and what is compared with a pixel's footprint, texels a square metre.
+    pub(crate) fn density(&self) -> (f32, f32) {
+        (self.per_m, self.squared)
     }
 
     /// Which copy suits a pixel that covers a square of `footprint_m2` of the surface, and that copy's texels a metre.

@@ -12,3 +12,19 @@ pub struct Planes<'a> {
     /// The instance seen, or a [`crate::room_surface_id`]; 0 where there is nothing.
     pub ids: Option<&'a mut [u32]>,
 }
+
+impl Planes<'_> {
+    /// Makes sure that every plane that is wanted has so many pixels.
+    ///
+    /// # Panics
+    /// When one has not.
+    pub fn check_lengths(&self, pixels: usize) {
+        let lengths = [
+            self.color.as_ref().map(|plane| plane.len() / 4),
+            self.depth_m.as_ref().map(|plane| plane.len()),
+            self.normals.as_ref().map(|plane| plane.len() / 4),
+            self.ids.as_ref().map(|plane| plane.len()),
+        ];
+        assert!(lengths.into_iter().flatten().all(|length| length == pixels), "a plane is not {pixels} pixels long");
+    }
+}

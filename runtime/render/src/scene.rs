@@ -1,6 +1,6 @@
 //! What there is to see: a floor plan, and instances in it.
 
-use std::sync::{Arc, RwLock};
+use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard};
 
 use cohabit_cdf::layout::Layout;
 use cohabit_cdf::model::When;
@@ -16,6 +16,9 @@ use crate::pose::{self, Pose};
 use crate::rig::{self, Drives};
 use crate::shadow::ShadowMap;
 use crate::signs::{SIGNS, Sign};
+
+/// What is left of the light where the lamps are off.
+const UNLIT: Vec3 = Vec3::new(0.13, 0.15, 0.20);
 
 /// From an instance's frame, or a moving part's, to the world, and back.
 #[derive(Clone, Copy, Debug)]
@@ -77,7 +80,7 @@ pub(crate) struct Placed {
 #[derive(Debug)]
 pub struct Scene {
     pub(crate) meshes: Arc<MeshLibrary>,
-    pub(crate) plan: Plan,
+    pub(crate) plan: Arc<Plan>,
     instances: Vec<Instance>,
     /// For each instance its body, and signs of its states; nothing while it is hidden.
     placed: Vec<Placing>,
@@ -93,7 +96,7 @@ impl Scene {
     /// An empty office: the layout's rooms and openings, no instances, all lamps on.
     #[must_use]
     pub fn new(meshes: Arc<MeshLibrary>, layout: &Layout) -> Self {
-        let plan = Plan::new(layout);
+        let plan = Arc::new(Plan::new(layout));
         let shadows = RwLock::new(ShadowMap::new(plan.bounds));
         Self {
             meshes,
@@ -109,7 +112,7 @@ impl Scene {
 
     /// Takes over all instances, each time all of them, in an order that stays; costs little where little changed.
     pub fn set_instances(&mut self, instances: &[Instance]) {
-        let shadows = self.shadows.get_mut().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let shadows = self.shadows.get_mut().unwrap_or_else(PoisonError::into_inner);
         for placing in self.placed.iter().skip(instances.len()) {
             placing.soil(shadows);
         }
@@ -161,6 +164,21 @@ impl Scene {
     #[must_use]
     pub fn moves(&self) -> bool {
         self.placed.iter().any(|placing| placing.moves)
+    }
+
+    /// The light in a room, as a factor.
+    pub(crate) fn light(&self, room: usize) -> Vec3 {
+        if self.lit[room] { Vec3::ONE } else { UNLIT }
+    }
+
+    /// The map of shadows, brought up to date.
+    pub(crate) fn clean_shadows(&self) -> RwLockReadGuard<'_, ShadowMap> {
+        let mut shadows = self.shadows.write().unwrap_or_else(PoisonError::into_inner);
+        if shadows.is_soiled() {
+            shadows.clean(&self.meshes, self.placed());
+        }
+        drop(shadows);
+        self.shadows.read().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Everything placed, in the order of the instances.

@@ -11,7 +11,14 @@ use crate::scene::Placed;
 use crate::veil::Veil;
 
 /// How far light moves along x and y while it falls by one metre.
-pub(crate) const SLANT: [f32; 2] = [0.24, -0.17];
+pub const SLANT: [f32; 2] = [0.24, -0.17];
+
+/// The direction towards the light.
+#[must_use]
+pub fn towards_light() -> Vec3 {
+    Vec3::new(-SLANT[0], -SLANT[1], 1.0).normalize()
+}
+
 /// Side of a texel, m.
 const TEXEL_M: f32 = 0.025;
 /// Most texels along a side: a plan larger than this has coarser shadows at its far end, none beyond.
@@ -20,7 +27,7 @@ const MOST: usize = 4096;
 const MARGIN_M: f32 = 0.6;
 
 /// How fast shadows fade with the height of what throws them, for a step of a texel's value: by 1 over 1.8 m.
-const FADE: f32 = 1.0 / (1.8 * 16_000.0);
+pub const FADE: f32 = 1.0 / (1.8 * 16_000.0);
 /// Texels along a side of a square whose greatest height is kept, a power of two.
 const CELL: usize = 4;
 /// Texels that a look meets before and after its own.
@@ -40,6 +47,8 @@ pub(crate) struct ShadowMap {
     cells: Vec<u16>,
     cells_a_row: usize,
     soiled: Vec<[i32; 4]>,
+    /// How often it was redrawn.
+    revision: u64,
 }
 
 impl ShadowMap {
@@ -57,6 +66,7 @@ impl ShadowMap {
             height,
             texels: vec![0; width * height],
             soiled: Vec::new(),
+            revision: 0,
         }
     }
 
@@ -82,6 +92,7 @@ impl ShadowMap {
 
     /// Redraws what is soiled.
     pub(crate) fn clean<'a>(&mut self, meshes: &MeshLibrary, placed: impl Iterator<Item = &'a Placed> + Clone) {
+        self.revision += 1;
         for clip in core::mem::take(&mut self.soiled) {
             for y in clip[1]..=clip[3] {
                 let row = y as usize * self.width;
@@ -196,6 +207,21 @@ impl ShadowMap {
                 *texel = packed.max(*texel);
             }
         }
+    }
+
+    /// How often it was redrawn.
+    pub(crate) fn revision(&self) -> u64 {
+        self.revision
+    }
+
+    /// Texels a row, and rows.
+    pub(crate) fn size(&self) -> [u32; 2] {
+        [self.width as u32, self.height as u32]
+    }
+
+    /// Row by row: heights in millimetres in the upper twelve bits, the room in the lower four.
+    pub(crate) fn texels(&self) -> &[u16] {
+        &self.texels
     }
 
     /// Texels a metre.

@@ -5,16 +5,10 @@ use glam::{Mat3, Vec3};
 use crate::camera::{Camera, View};
 use crate::library::ModelMesh;
 use crate::mesh::{Mesh, Piece};
-use crate::plan::RoomSurface;
+use crate::plan::PlanPart;
 use crate::portals::Visible;
-use crate::scene::{Scene, Transform, Weather};
-
-/// Radius in pixels above which an instance is drawn finely, and above which it is not drawn coarsely.
-const LEVEL_PX: [f32; 2] = [130.0, 36.0];
-/// Less than this radius in pixels is nothing to see.
-const LEAST_PX: f32 = 0.35;
-/// What is left of the light where the lamps are off.
-const UNLIT: Vec3 = Vec3::new(0.13, 0.15, 0.20);
+use crate::scene::{Placed, Scene, Transform, Weather};
+use crate::seen::{self, Thing};
 
 /// How much of the surrounding light reaches the corners of a mesh.
 #[derive(Clone, Copy, Debug)]
@@ -54,8 +48,6 @@ pub(super) struct Draw<'a> {
     pub to_camera: (Mat3, Vec3),
     /// The eye in the mesh's frame.
     pub eye: Vec3,
-    /// How far from the eye it begins, to draw near things first.
-    near_m: f32,
 }
 
 impl Draw<'_> {
@@ -72,83 +64,77 @@ pub(super) fn collect<'a>(
     view: &View,
     visible: &Visible,
 ) -> (Vec<Draw<'a>>, Vec<Draw<'a>>) {
-    let (mut draws, mut veils) = (Vec::with_capacity(1024), Vec::new());
-    let light = |room: usize| if scene.lit[room] { Vec3::ONE } else { UNLIT };
-    for part in &scene.plan.parts {
-        if !camera.ceiling && matches!(part.surface, RoomSurface::Ceiling | RoomSurface::Lamp) {
-            continue;
+    let all = seen::collect(scene, camera, view, visible);
+    let mut draws = Vec::with_capacity(all.len() * 2);
+    for seen in &all {
+        match seen.thing {
+            Thing::Part(part) => draws.push(of_part(scene, part, view)),
+            Thing::Placed(placed, level) => {
+                draws.extend(of_placed(scene, placed, level, view, false));
+            }
         }
-        let (center, radius) = (part.bounds.center(), part.bounds.size().length() * 0.5);
-        let Some(rect) = view.sphere_rect(center, radius) else { continue };
-        if !visible.sees(part.rooms, rect) {
-            continue;
+    }
+    let mut veils = Vec::new();
+    for seen in all.iter().rev() {
+        if let Thing::Placed(placed, level) = seen.thing {
+            veils.extend(of_placed(scene, placed, level, view, true));
         }
-        let room = part.room as usize;
-        draws.push(Draw {
-            mesh: &scene.plan.mesh,
-            ambient: Ambient::Known(&scene.plan.ambient),
-            piece: &scene.plan.mesh.pieces[part.piece as usize],
-            transform: Transform::IDENTITY,
-            id: part.id,
-            tint: Vec3::ONE,
-            fluid: Vec3::ONE,
-            weather: Weather::default(),
-            light: light(room),
+    }
+    (draws, veils)
+}
+
+/// The pieces that are see-through, or those that are not.
+fn of_placed<'a>(
+    scene: &'a Scene,
+    placed: &'a Placed,
+    level: usize,
+    view: &View,
+    veils: bool,
+) -> impl Iterator<Item = Draw<'a>> {
+    let model = scene.meshes.model(placed.model);
+    let mesh = &model.levels[level];
+    let room = placed.room as usize;
+    let pieces = placed.pieces.iter().map(|(piece, transform)| (&mesh.pieces[usize::from(*piece)], transform));
+    pieces.filter(move |(piece, _)| piece.veil.is_some() == veils).map(move |(piece, transform)| {
+        let transform = placed.transforms[usize::from(*transform)];
+        Draw {
+            mesh,
+            ambient: Ambient::Of(model, level),
+            piece,
+            transform,
+            id: placed.id,
+            tint: placed.tint,
+            fluid: placed.fluid,
+            weather: placed.weather,
+            light: scene.light(room),
             lit: scene.lit[room],
             room: room as u16,
-            to_camera: to_camera(view, &Transform::IDENTITY),
-            eye: view.eye,
-            near_m: nearest(view, part.bounds.min, part.bounds.max),
-        });
+            to_camera: to_camera(view, &transform),
+            eye: transform.inverse * (view.eye - transform.offset),
+        }
+    })
+}
+
+fn of_part<'a>(scene: &'a Scene, part: &PlanPart, view: &View) -> Draw<'a> {
+    let room = part.room as usize;
+    Draw {
+        mesh: &scene.plan.mesh,
+        ambient: Ambient::Known(&scene.plan.ambient),
+        piece: &scene.plan.mesh.pieces[part.piece as usize],
+        transform: Transform::IDENTITY,
+        id: part.id,
+        tint: Vec3::ONE,
+        fluid: Vec3::ONE,
+        weather: Weather::default(),
+        light: scene.light(room),
+        lit: scene.lit[room],
+        room: room as u16,
+        to_camera: to_camera(view, &Transform::IDENTITY),
+        eye: view.eye,
     }
-    for placed in scene.placed().filter(|placed| camera.hide != Some(placed.id)) {
-        let Some(rect) = view.sphere_rect(placed.center, placed.radius) else { continue };
-        if !visible.sees(placed.rooms, rect) {
-            continue;
-        }
-        let depth = view.in_camera(placed.center).z.max(0.05);
-        let pixels = placed.radius * view.focal / depth;
-        if pixels < LEAST_PX {
-            continue;
-        }
-        let level = LEVEL_PX.iter().filter(|limit| pixels < **limit).count();
-        let model = scene.meshes.model(placed.model);
-        let mesh = &model.levels[level];
-        let room = placed.room as usize;
-        let near_m = nearest(view, placed.bounds.min, placed.bounds.max);
-        for (piece, transform) in &placed.pieces {
-            let transform = placed.transforms[usize::from(*transform)];
-            let piece = &mesh.pieces[usize::from(*piece)];
-            let list = if piece.veil.is_some() { &mut veils } else { &mut draws };
-            list.push(Draw {
-                mesh,
-                ambient: Ambient::Of(model, level),
-                piece,
-                transform,
-                id: placed.id,
-                tint: placed.tint,
-                fluid: placed.fluid,
-                weather: placed.weather,
-                light: light(room),
-                lit: scene.lit[room],
-                room: room as u16,
-                to_camera: to_camera(view, &transform),
-                eye: transform.inverse * (view.eye - transform.offset),
-                near_m,
-            });
-        }
-    }
-    // Stable: what is equally near stays in the order of the scene.
-    draws.sort_by(|a, b| a.near_m.total_cmp(&b.near_m));
-    veils.sort_by(|a, b| b.near_m.total_cmp(&a.near_m));
-    (draws, veils)
 }
 
 fn to_camera(view: &View, transform: &Transform) -> (Mat3, Vec3) {
     let turn = Mat3::from_cols(view.right, view.down, view.forward).transpose();
     (turn * transform.rotation, turn * (transform.offset - view.eye))
-}
-
-fn nearest(view: &View, min: Vec3, max: Vec3) -> f32 {
-    (view.eye.clamp(min, max) - view.eye).length()
 }

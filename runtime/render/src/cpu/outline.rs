@@ -6,7 +6,7 @@ use crate::instance::Highlight;
 const ROWS_A_PIXEL: usize = 220;
 
 /// Paints a coloured rim around each highlighted instance, and a breath of colour over it.
-pub(super) fn run(color: &mut [u8], mask: &mut Vec<u8>, ids: &[u32], highlights: &[Highlight], width: usize) {
+pub(crate) fn run(color: &mut [u8], mask: &mut Vec<u8>, ids: &[u32], highlights: &[Highlight], width: usize) {
     let height = ids.len() / width;
     let reach = (height / ROWS_A_PIXEL).clamp(1, 6) as isize + 1;
     let pixels = color.as_chunks_mut::<4>().0;

@@ -8,9 +8,9 @@ use crate::camera::{NEAR_M, View};
 /// Bits of a pixel's fraction.
 pub(super) const SUB_BITS: u32 = 6;
 /// Steps of a pixel's fraction.
-pub(super) const SUB: i32 = 1 << SUB_BITS;
+pub const SUB: i32 = 1 << SUB_BITS;
 /// Triangles are cut when they reach farther than this from the picture's corner, in pixels.
-const GUARD_PX: f32 = 6000.0;
+pub const GUARD_PX: f32 = 6000.0;
 
 /// A triangle on the screen.
 #[derive(Clone, Copy, Debug)]

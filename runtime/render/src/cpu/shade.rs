@@ -12,15 +12,22 @@ use super::strip::{LONG, Out, Strip};
 use crate::camera::View;
 use crate::color::{from_srgb, srgb_table, to_srgb};
 use crate::pattern::{Pattern, Picture, Pictures};
-use crate::shadow::{SLANT, ShadowMap};
+use crate::shadow::{ShadowMap, towards_light};
 
-/// Light from above, and light thrown back from below.
-pub(super) const ABOVE: Vec3 = Vec3::new(0.66, 0.655, 0.64);
-pub(super) const BELOW: Vec3 = Vec3::new(0.44, 0.41, 0.37);
+/// Light from above.
+pub const ABOVE: Vec3 = Vec3::new(0.66, 0.655, 0.64);
+/// Light thrown back from below.
+pub const BELOW: Vec3 = Vec3::new(0.44, 0.41, 0.37);
 /// Light along the shadows' direction.
-pub(super) const KEY: Vec3 = Vec3::new(0.60, 0.575, 0.52);
+pub const KEY: Vec3 = Vec3::new(0.60, 0.575, 0.52);
+/// The display bytes of what lies over weathered surfaces.
+pub const DIRT: [u8; 3] = [96, 74, 48];
+/// See [`DIRT`].
+pub const SLIME: [u8; 3] = [96, 200, 70];
+/// See [`DIRT`].
+pub const FROST: [u8; 3] = [206, 228, 244];
 /// How far a place is lifted off its surface before its shadow is looked up, m.
-pub(super) const LIFT_M: f32 = 0.03;
+pub const LIFT_M: f32 = 0.03;
 
 /// Everything that shading reads.
 pub(super) struct Shader<'a> {
@@ -62,7 +69,7 @@ impl<'a> Shader<'a> {
             firsts,
             shadows,
             pictures: Pictures::get(),
-            towards_light: Vec3::new(-SLANT[0], -SLANT[1], 1.0).normalize(),
+            towards_light: towards_light(),
             first_ray: view.ray(0.5, 0.5),
             per_x: view.right / view.focal,
             per_y: view.down / view.focal,
@@ -180,15 +187,15 @@ impl<'a> Shader<'a> {
         };
         if draw.weather.dirty {
             let amount = ((spots(14.0) - 0.985) * 14.0).clamp(0.0, 0.85);
-            albedo = albedo.lerp(from_srgb([96, 74, 48]), amount);
+            albedo = albedo.lerp(from_srgb(DIRT), amount);
         }
         if draw.weather.infected {
             let amount = ((spots(10.0) - 0.99) * 12.0).clamp(0.0, 0.8);
-            albedo = albedo.lerp(from_srgb([96, 200, 70]), amount);
+            albedo = albedo.lerp(from_srgb(SLIME), amount);
         }
         if draw.weather.cold {
             let amount = 0.38 + 0.3 * normal.z.max(0.0) + ((spots(18.0) - 1.0) * 3.0).clamp(-0.2, 0.25);
-            albedo = albedo.lerp(from_srgb([206, 228, 244]), amount);
+            albedo = albedo.lerp(from_srgb(FROST), amount);
         }
         albedo
     }

@@ -27,13 +27,13 @@ impl Brightness<'_> {
 
 /// Buffers kept from picture to picture.
 #[derive(Debug, Default)]
-pub(super) struct Buffers {
+pub(crate) struct Buffers {
     original: Vec<[u8; 4]>,
     brightness: Vec<u8>,
 }
 
 /// Blends pixels at edges with the neighbour across.
-pub(super) fn run(threads: usize, color: &mut [u8], buffers: &mut Buffers, seen: &[u32], width: usize) {
+pub(crate) fn run(threads: usize, color: &mut [u8], buffers: &mut Buffers, seen: &[u32], width: usize) {
     let pixels = color.as_chunks_mut::<4>().0;
     buffers.original.clear();
     buffers.original.extend_from_slice(pixels);
