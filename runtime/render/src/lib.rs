@@ -22,6 +22,8 @@
 
 mod camera;
 mod color;
+#[cfg(test)]
+mod coplanar;
 mod cpu;
 mod furnish;
 pub mod gallery;
