@@ -29,7 +29,9 @@ impl Occluder {
         let mut filled = vec![false; size.iter().product()];
         let origin = bounds.min - Vec3::splat(cell_m);
         let mut occluder = Self { origin, cell_m, size, filled: Vec::new() };
-        for piece in mesh.pieces.iter().filter(|piece| piece.is_usual() && piece.joint.is_none() && piece.veil.is_none()) {
+        for piece in
+            mesh.pieces.iter().filter(|piece| piece.is_usual() && piece.joint.is_none() && piece.veil.is_none())
+        {
             for triangle in &mesh.triangles[piece.triangles.start as usize..piece.triangles.end as usize] {
                 let corners = triangle.map(|corner| mesh.positions[corner as usize]);
                 occluder.sample(corners, |index| filled[index] = true);
