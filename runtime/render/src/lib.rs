@@ -23,6 +23,8 @@
 pub mod backend;
 mod camera;
 mod color;
+#[cfg(test)]
+mod coplanar;
 mod cpu;
 mod furnish;
 pub mod gallery;
