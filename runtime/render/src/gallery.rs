@@ -91,6 +91,9 @@ pub fn states(catalog: &Catalog, class: ClassId) -> Vec<State> {
     if has(Property::Openable) {
         add("open", Instance { opened: 1.0, ..with(StateFlag::Opened) });
     }
+    if has(Property::Openable) {
+        add("locked", with(StateFlag::Locked));
+    }
     // What is no switch itself may be switched by another: a portal by its computer.
     if has(Property::Toggleable) || shows(When::On) {
         add("on", on());

@@ -18,6 +18,8 @@ pub(crate) enum Fit {
     Foot,
     /// Hovers above the box, of a size that can be read.
     Badge,
+    /// Hangs on the front of the box, of the same size; through it, if it is as thin as a door.
+    Front,
 }
 
 /// One state and what shows it.
@@ -36,7 +38,7 @@ pub(crate) struct Sign {
 const STILL: Sign = Sign { flag: StateFlag::Hot, unless: None, frames: &[], per_s: 0.0, fit: Fit::Around };
 
 /// All signs.
-pub(crate) const SIGNS: [Sign; 10] = [
+pub(crate) const SIGNS: [Sign; 11] = [
     Sign { flag: StateFlag::Hot, unless: Some(When::Hot), frames: &["steam"], fit: Fit::Above, ..STILL },
     Sign { flag: StateFlag::Cold, unless: Some(When::Cold), frames: &["frost"], ..STILL },
     Sign { flag: StateFlag::Sparking, frames: &["bolts_1", "bolts_2", "bolts_3", "bolts_4"], per_s: 11.0, ..STILL },
@@ -47,6 +49,7 @@ pub(crate) const SIGNS: [Sign; 10] = [
     Sign { flag: StateFlag::Eaten, unless: Some(When::Eaten), frames: &["crumbs"], fit: Fit::Foot, ..STILL },
     Sign { flag: StateFlag::Toggled, unless: Some(When::On), frames: &["lamp"], fit: Fit::Badge, ..STILL },
     Sign { flag: StateFlag::Embiggenated, frames: &["growth"], fit: Fit::Foot, ..STILL },
+    Sign { flag: StateFlag::Locked, frames: &["padlock"], fit: Fit::Front, ..STILL },
 ];
 
 impl Sign {
@@ -87,6 +90,18 @@ impl Fit {
             Self::Badge => {
                 let wide = (wide * 0.5).clamp(0.07, 0.22);
                 (Mat3::from_diagonal(Vec3::splat(wide)), top + Vec3::Z * (wide * 0.25))
+            }
+            Self::Front => {
+                const THIN_M: f32 = 0.25;
+                let size = own.size();
+                let side = (size.y.min(size.z) * 0.3).clamp(0.04, 0.16);
+                let (deep, x) = if size.x < THIN_M {
+                    (size.x + side * 0.5, own.center().x)
+                } else {
+                    (side * 0.4, own.max.x + side * 0.2)
+                };
+                let place = Vec3::new(x, own.center().y, own.min.z + size.z * 0.5 - side * 0.5);
+                (rotation * Mat3::from_diagonal(Vec3::new(deep, side, side)), rotation * place + offset)
             }
         }
     }
