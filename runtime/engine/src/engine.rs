@@ -9,7 +9,7 @@ use cohabit_bus::{
 use cohabit_cdf::{Action, BodyId, ObjectId, Status};
 use cohabit_world::{CameraTarget, DT_NANOS, Event, Input, Report, World};
 
-use crate::{build::SessionPlan, report};
+use crate::{build::SessionPlan, motion::Motion, report};
 
 /// Commands that one tick takes in at most; the rest wait for the next.
 const MAX_INPUTS: usize = 64;
@@ -38,6 +38,7 @@ pub struct Engine {
     highlighted: Vec<(ObjectId, u64)>,
     /// What the mission shows, one after the other, each until a tick.
     shown: Vec<(CameraTarget, u64)>,
+    motion: Motion,
 }
 
 impl Engine {
@@ -57,6 +58,7 @@ impl Engine {
             latest_started: 0,
             highlighted: Vec::new(),
             shown: Vec::new(),
+            motion: Motion::default(),
         };
         let message = plan.message();
         engine.mission.send(0, message.bytes(), &mut |bytes| message.write(bytes))?;
@@ -73,6 +75,11 @@ impl Engine {
     #[must_use]
     pub const fn latest_started(&self) -> u64 {
         self.latest_started
+    }
+
+    /// What is seen to move besides.
+    pub(crate) const fn motion(&self) -> &Motion {
+        &self.motion
     }
 
     /// The objects that are outlined now.
@@ -96,6 +103,7 @@ impl Engine {
         let report = self.world.step(&inputs);
         self.note_started(&inputs);
         self.note_shown(&report);
+        self.motion.note(&self.world, &report);
         // State before events: who hears of an event finds the state that it speaks of.
         self.publish_state()?;
         self.publish_events(&inputs, report)?;

@@ -9,6 +9,7 @@
 mod build;
 mod camera_rig;
 mod engine;
+mod motion;
 pub mod replay;
 pub mod report;
 mod scene;

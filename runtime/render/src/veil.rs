@@ -57,8 +57,8 @@ pub(crate) const fn of(pattern: Pattern) -> Option<Veil> {
     }
 }
 
-/// How often the cosine of the angle of view is multiplied: `1 - (1 - cosine)^3` of a clear surface's way from glancing
-/// to squarely, `cosine^2` of an airy one's, and `cosine^6` of a beam's core.
+/// How much of what is behind a surface hides whose normal is at an angle of that cosine, 0 to 1, to the line of sight:
+/// from glancing to squarely a clear surface goes as `1 - (1 - cosine)^3`, an airy one as `cosine^2`.
 pub(crate) fn opacity(look: &VeilLook, squarely: f32, cosine: f32) -> f32 {
     let share = match look.veil {
         Veil::Clear => {

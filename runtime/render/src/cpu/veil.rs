@@ -297,3 +297,6 @@ fn rounded(value: f32) -> i8 {
     const LARGE: f32 = 12_582_912.0;
     ((value + LARGE).to_bits().wrapping_sub(LARGE.to_bits()) & 0xFF) as u8 as i8
 }
+
+#[cfg(test)]
+mod tests;
