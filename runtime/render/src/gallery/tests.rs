@@ -170,3 +170,37 @@ fn every_sheet_has_pictures_and_a_name_of_its_own() {
     assert_eq!(picture.rgba.len(), (picture.width * picture.height * 4) as usize);
     assert_eq!((picture.width, picture.height), (80, 40 + LABEL_PX as u32));
 }
+
+/// Where each state is seen.
+fn shown_by(flag: StateFlag) -> Option<When> {
+    Some(match flag {
+        StateFlag::Toggled => When::On,
+        StateFlag::Powered => When::Powered,
+        StateFlag::Cooked => When::Cooked,
+        StateFlag::Cut => When::Cut,
+        StateFlag::Cereal => When::Cereal,
+        StateFlag::Neutral => When::Neutral,
+        StateFlag::Happy => When::Happy,
+        StateFlag::Sad => When::Sad,
+        StateFlag::Angry => When::Angry,
+        StateFlag::Scared => When::Scared,
+        _ => return None,
+    })
+}
+
+#[test]
+fn every_state_has_a_look_but_what_only_tells_of_the_past() {
+    // By place: in a hand, or by how far it stands open. And what was once done to a thing leaves no trace on it: a
+    // picture must not tell what no eye could know.
+    let elsewhere = [StateFlag::PickedUp, StateFlag::Opened];
+    let past = [StateFlag::Scanned, StateFlag::Examined, StateFlag::Used];
+    let (catalog, meshes) = library();
+    let models = classes(&catalog).filter_map(|class| meshes.class(class)).map(|look| look.model);
+    let models: Vec<usize> = models.chain([meshes.bodies().robot, meshes.bodies().people[0]]).collect();
+    for flag in StateFlag::ALL {
+        let sign = SIGNS.iter().any(|sign| sign.flag == flag);
+        let model = |when| models.iter().any(|model| meshes.model(*model).shows(when));
+        let seen = sign || elsewhere.contains(&flag) || shown_by(flag).is_some_and(model);
+        assert_eq!(seen, !past.contains(&flag), "{flag:?}");
+    }
+}
