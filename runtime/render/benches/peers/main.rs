@@ -27,12 +27,14 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use cohabit_cdf::Catalog;
-use cohabit_render::{CpuRenderer, MeshLibrary};
+use cohabit_gpu::{Adapter, GpuRenderer, Wanted};
+use cohabit_render::{CpuRenderer, MeshLibrary, Renderer};
 
 use contender::{Contender, Frame, Kind, Own, Peer, short};
 use office::Office;
 use stage::Stage;
 
+const VERSION: &str = env!("CARGO_PKG_VERSION");
 /// The floor plan looked at.
 const PLAN: &str = "OfficeLayout1";
 /// The levels of detail at which others draw it, whatever is near or far; this project chooses by distance.
@@ -64,14 +66,18 @@ fn main() -> Result<(), Box<dyn Error>> {
     for (stage, level) in stages.iter().zip(["finest", "coarsest"]) {
         println!("at the {level} level: {} triangles in {} meshes", stage.triangles, stage.meshes);
     }
-    let own = Own {
-        name: format!("cohabit-render {} (CPU, 1 thread)", env!("CARGO_PKG_VERSION")),
-        renderer: Box::new(CpuRenderer::new(1)),
-        scene: &office.scene,
-        cameras,
-        stage: &stages[0],
+    let own = |name: &str, renderer: Box<dyn Renderer>| -> Box<dyn Contender> {
+        let name = format!("{name} {VERSION}");
+        Box::new(Own { name, renderer, scene: &office.scene, cameras: cameras.clone(), stage: &stages[0] })
     };
-    let mut contenders: Vec<Box<dyn Contender>> = vec![Box::new(own)];
+    let mut contenders = vec![own("cohabit-render", Box::new(CpuRenderer::new(1)))];
+    match Adapter::find(Wanted::Any).and_then(|adapter| GpuRenderer::new(&adapter, 1)) {
+        Ok(renderer) => {
+            println!("cohabit-gpu draws on {}", renderer.describe());
+            contenders.push(own("cohabit-gpu", Box::new(renderer)));
+        }
+        Err(error) => println!("cohabit-gpu is not measured: {error}"),
+    }
     let save_in = arguments.iter().find_map(|argument| argument.strip_prefix("save="));
     match python::environment(&folder.join("venv")) {
         Ok(python) => {

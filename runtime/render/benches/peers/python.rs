@@ -59,7 +59,8 @@ pub fn start(python: &Path, stage: &Stage) -> Vec<Peer> {
             Err(error) => {
                 let text = fs::read_to_string(&log).unwrap_or_default();
                 let why = text.lines().rfind(|line| !line.trim().is_empty()).unwrap_or_default();
-                println!("{} with {:?}: {error} ({why}); it needs {}", way.package, way.settings, way.needs);
+                let settings: String = way.settings.iter().map(|(key, value)| format!("{key}={value} ")).collect();
+                println!("{settings}{}: {error} ({why}); it needs {}", way.script, way.needs);
             }
         }
     }
