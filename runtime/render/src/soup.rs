@@ -7,6 +7,7 @@ use glam::Vec3;
 use crate::color;
 use crate::mesh::{Mesh, Paint, Piece};
 use crate::scene::{Placed, Scene, Transform};
+use crate::veil::Veil;
 
 /// The triangles of one instance, or of one surface of a room.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -25,7 +26,8 @@ pub struct Soup {
 
 impl Scene {
     /// Everything that is drawn at this moment: the rooms' surfaces, then the instances that are visible, in their order.
-    /// The finest level of detail is 0; the coarsest there is stands for all coarser ones.
+    /// The finest level of detail is 0; the coarsest there is stands for all coarser ones. What is nothing but light in the
+    /// air is not among them.
     #[must_use]
     pub fn soups(&self, level: usize) -> Vec<Soup> {
         let mut soups = Soups::default();
@@ -38,7 +40,8 @@ impl Scene {
             let Placed { id, model, tint, fluid, .. } = *placed;
             let levels = &self.meshes.model(model).levels;
             let mesh = &levels[level.min(levels.len() - 1)];
-            for (piece, transform) in &placed.pieces {
+            let solid = |(piece, _): &&(u16, u16)| mesh.pieces[usize::from(*piece)].veil != Some(Veil::Airy);
+            for (piece, transform) in placed.pieces.iter().filter(solid) {
                 let transform = &placed.transforms[usize::from(*transform)];
                 let surface = |paint| flat(paint, tint, fluid);
                 soups.of(id).push(mesh, &mesh.pieces[usize::from(*piece)], transform, surface);

@@ -75,7 +75,8 @@ fn tell_machine(offices: &[Office]) {
     println!("version: cohabit-render {}", env!("CARGO_PKG_VERSION"));
     for office in offices {
         let count = office.instances.len();
-        println!("plan: {}, {count} instances, {} triangles at the finest level", office.id, office.triangles);
+        let triangles: usize = office.scene.soups(0).iter().map(|soup| soup.triangles.len()).sum();
+        println!("plan: {}, {count} instances, {triangles} triangles at the finest level", office.id);
     }
     println!("mean over all viewpoints of the fastest frame there, and of the median one; shadows are on\n");
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use cohabit_cdf::Catalog;
 use cohabit_cdf::layout::Layout;
-use cohabit_render::{Camera, Instance, Look, MeshLibrary, Scene, furnish};
+use cohabit_render::{Camera, Instance, MeshLibrary, Scene, furnish};
 
 /// Height of the robot's eye, m.
 const EYE_M: f32 = 1.3;
@@ -17,8 +17,6 @@ pub struct Office {
     pub scene: Scene,
     /// What stands in it.
     pub instances: Vec<Instance>,
-    /// Triangles of all its instances at the finest level, in all their states.
-    pub triangles: usize,
     layout: Layout,
 }
 
@@ -29,12 +27,7 @@ impl Office {
         let mut scene = Scene::new(Arc::clone(meshes), &layout);
         let instances = furnish(catalog, &layout);
         scene.set_instances(&instances);
-        let count = |instance: &Instance| match instance.look {
-            Look::Object(class) => meshes.triangles(class),
-            _ => 0,
-        };
-        let triangles = instances.iter().map(count).sum();
-        Self { id: id.to_owned(), scene, instances, triangles, layout }
+        Self { id: id.to_owned(), scene, instances, layout }
     }
 
     /// A camera at every `step`-th of its viewpoints.

@@ -11,6 +11,7 @@ use rustix::time::ClockId;
 
 use crate::buffers::Buffers;
 use crate::machine::cpu_time;
+use crate::stage::Stage;
 
 /// Frames drawn before any is measured, to find warm caches after others were at work.
 const WARM_UP_FRAMES: usize = 2;
@@ -37,11 +38,14 @@ pub trait Contender {
     /// Its name and version.
     fn name(&self) -> &str;
 
+    /// How many triangles the whole scene has for it.
+    fn triangles(&self) -> usize;
+
     /// What it delivers when all is wanted.
     fn modalities(&self) -> &'static str;
 
-    /// A frame from each camera in turn. With a folder, it keeps each as `NAME-INDEX.raw` there: all colours as three
-    /// bytes, all depths as floats, all objects by their places on the stage as integers, -1 for none.
+    /// A frame from each camera in turn. With a folder, each is kept there as `NAME-CAMERA.raw`: all colours as three bytes,
+    /// all depths as floats, all objects by their places on the stage as integers, -1 for none.
     fn draw_all(&mut self, kind: &Kind, keep: Option<&Path>) -> io::Result<Vec<Frame>>;
 }
 
@@ -51,13 +55,17 @@ pub struct Own<'a> {
     pub renderer: Box<dyn Renderer>,
     pub scene: &'a Scene,
     pub cameras: Vec<Camera>,
-    /// For each object on the stage its id.
-    pub ids: &'a [u32],
+    /// The same things as others draw them.
+    pub stage: &'a Stage,
 }
 
 impl Contender for Own<'_> {
     fn name(&self) -> &str {
         &self.name
+    }
+
+    fn triangles(&self) -> usize {
+        self.stage.triangles
     }
 
     fn modalities(&self) -> &'static str {
@@ -83,22 +91,23 @@ impl Contender for Own<'_> {
             let Some(folder) = keep else { continue };
             let mut raw: Vec<u8> = buffers.color.chunks(4).flat_map(|pixel| &pixel[..3]).copied().collect();
             raw.extend(buffers.depth_m.iter().flat_map(|depth| depth.to_le_bytes()));
-            let place = |id: &u32| self.ids.iter().position(|known| known == id).map_or(-1, |place| place as i32);
+            let place = |id: &u32| self.stage.ids.iter().position(|known| known == id).map_or(-1, |place| place as i32);
             raw.extend(buffers.ids.iter().flat_map(|id| place(id).to_le_bytes()));
-            fs::write(folder.join(raw_name(&self.name, index)), raw)?;
+            fs::write(folder.join(format!("{}-{index}.raw", short(&self.name))), raw)?;
         }
         Ok(frames)
     }
 }
 
-/// The file in which a contender's picture is kept.
-pub fn raw_name(name: &str, camera: usize) -> String {
-    format!("{}-{camera}.raw", name.split(' ').next().unwrap_or_default())
+/// A name without its version.
+pub fn short(name: &str) -> &str {
+    name.split(' ').next().unwrap_or_default()
 }
 
 /// A process that draws what it is told to, line by line: see `stage.py`.
 pub struct Peer {
     name: String,
+    triangles: usize,
     child: Child,
     input: ChildStdin,
     output: BufReader<ChildStdout>,
@@ -106,11 +115,11 @@ pub struct Peer {
 
 impl Peer {
     /// Waits until the process is ready.
-    pub fn new(mut child: Child) -> io::Result<Self> {
+    pub fn new(mut child: Child, triangles: usize) -> io::Result<Self> {
         let (Some(input), Some(output)) = (child.stdin.take(), child.stdout.take()) else {
             return Err(io::Error::other("its input and output must be pipes"));
         };
-        let mut peer = Self { name: String::new(), child, input, output: BufReader::new(output) };
+        let mut peer = Self { name: String::new(), triangles, child, input, output: BufReader::new(output) };
         peer.name = peer.answer("ready ")?;
         Ok(peer)
     }
@@ -131,6 +140,10 @@ impl Peer {
 impl Contender for Peer {
     fn name(&self) -> &str {
         &self.name
+    }
+
+    fn triangles(&self) -> usize {
+        self.triangles
     }
 
     fn modalities(&self) -> &'static str {

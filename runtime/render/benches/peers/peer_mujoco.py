@@ -1,6 +1,7 @@
 """MuJoCo's renderer on a software driver: colour and depth in one pass, segmentation in a second; shadows on.
 
-Nothing is asked for that costs more: no multisampling, shadows as coarse as the bench's own.
+Nothing is asked for that costs more: no multisampling, no reflections, shadows as coarse as this project's own. The
+ceilings throw shadows too, so that rooms lie in ambient light; without ceilings a frame costs as much.
 """
 
 import sys
@@ -20,11 +21,11 @@ def numbers(values):
 
 
 def build(stage):
-    """One geom an object, in the order of the stage; what is not quite opaque lets light through."""
+    """One geom an object, in the order of the stage."""
     meshes = "".join(f'<mesh name="{m.stem}" file="{m}" inertia="shell"/>' for m in stage.meshes)
     geoms = "".join(
         f'<geom type="mesh" mesh="{stage.meshes[int(mesh)].stem}" pos="{numbers(place[:3])}" '
-        f'quat="{numbers([place[6], *place[3:6]])}" material="{"overhead" if place[7] else "palette"}" contype="0" conaffinity="0"/>'
+        f'quat="{numbers([place[6], *place[3:6]])}" material="palette" contype="0" conaffinity="0"/>'
         for mesh, *place in stage.objects
     )
     cameras = "".join(
@@ -45,7 +46,6 @@ def build(stage):
       <asset>
         <texture name="palette" type="2d" file="{stage.folder}/palette.png"/>
         <material name="palette" texture="palette" specular="0"/>
-        <material name="overhead" texture="palette" specular="0" rgba="1 1 1 0.999"/>
         {meshes}
       </asset>
       <worldbody>
@@ -97,8 +97,8 @@ def main():
 
         return draw
 
-    driver = GL.glGetString(GL.GL_RENDERER).decode()
-    serve(f"mujoco {mujoco.__version__} ({driver})", stage, prepare)
+    driver, release = (GL.glGetString(what).decode() for what in (GL.GL_RENDERER, GL.GL_VERSION))
+    serve(f"mujoco {mujoco.__version__} ({driver.split()[0]}, {release.split(') ')[-1]})", stage, prepare)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,7 @@
-"""PyBullet's CPU renderer: DIRECT, TinyRenderer, shadows on; a segmentation mask where ids are wanted."""
+"""PyBullet's CPU renderer: DIRECT, TinyRenderer, shadows on; a segmentation mask where ids are wanted.
+
+Light stands as near as it does by default: its shadows, around the world's origin, then cost least.
+"""
 
 import sys
 from importlib.metadata import version
@@ -18,7 +21,7 @@ def build(stage):
     palette = p.loadTexture(str(stage.folder / "palette.png"))
     for mesh, *place in stage.objects:
         shape = p.createVisualShape(p.GEOM_MESH, fileName=str(stage.meshes[int(mesh)]), rgbaColor=[1, 1, 1, 1])
-        body = p.createMultiBody(0, -1, shape, place[:3], place[3:7])
+        body = p.createMultiBody(0, -1, shape, place[:3], place[3:])
         p.changeVisualShape(body, -1, textureUniqueId=palette)
 
 

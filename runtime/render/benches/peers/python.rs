@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use crate::contender::Peer;
+use crate::stage::Stage;
 
 /// Where the scripts are.
 const SCRIPTS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/benches/peers");
@@ -41,23 +42,16 @@ const WAYS: [Way; 3] = [
     },
 ];
 
-/// Starts all that can be started on the stage in `stage`; says what cannot be, and why.
-pub fn start(folder: &Path, stage: &Path) -> Vec<Peer> {
-    let python = match environment(&folder.join("venv")) {
-        Ok(python) => python,
-        Err(error) => {
-            println!("peers are not measured: {error}");
-            return Vec::new();
-        }
-    };
+/// Starts all that can be started on a stage; says what cannot be, and why.
+pub fn start(python: &Path, stage: &Stage) -> Vec<Peer> {
     let mut peers = Vec::new();
     let mut started = "";
     for way in WAYS {
         if started == way.package {
             continue;
         }
-        let log = folder.join(format!("{}.log", way.package));
-        match start_one(&python, &way, stage, &log) {
+        let log = stage.folder.join(format!("{}.log", way.package));
+        match start_one(python, &way, stage, &log) {
             Ok(peer) => {
                 started = way.package;
                 peers.push(peer);
@@ -65,28 +59,34 @@ pub fn start(folder: &Path, stage: &Path) -> Vec<Peer> {
             Err(error) => {
                 let text = fs::read_to_string(&log).unwrap_or_default();
                 let why = text.lines().rfind(|line| !line.trim().is_empty()).unwrap_or_default();
-                println!("{} with {:?}: {error} ({why}); it needs {}", way.package, way.settings, way.needs);
+                let settings: String = way.settings.iter().map(|(key, value)| format!("{key}={value} ")).collect();
+                println!("{settings}{}: {error} ({why}); it needs {}", way.script, way.needs);
             }
         }
     }
     peers
 }
 
-fn start_one(python: &Path, way: &Way, stage: &Path, log: &Path) -> io::Result<Peer> {
+fn start_one(python: &Path, way: &Way, stage: &Stage, log: &Path) -> io::Result<Peer> {
     let child = Command::new(python)
         .arg(Path::new(SCRIPTS).join(way.script))
-        .arg(stage)
+        .arg(&stage.folder)
         .env("PYTHONDONTWRITEBYTECODE", "1")
         .envs(way.settings.iter().copied())
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
         .stderr(File::create(log)?)
         .spawn()?;
-    Peer::new(child)
+    Peer::new(child, stage.triangles)
+}
+
+/// Runs one of the scripts to its end.
+pub fn run_script(python: &Path, script: &str, arguments: &[String]) -> io::Result<()> {
+    run(Command::new(python).arg(Path::new(SCRIPTS).join(script)).args(arguments), "numpy")
 }
 
 /// The environment's interpreter; makes the environment if it is not there, or of other versions.
-fn environment(venv: &Path) -> io::Result<PathBuf> {
+pub fn environment(venv: &Path) -> io::Result<PathBuf> {
     let python = venv.join("bin/python");
     let wanted = fs::read_to_string(Path::new(SCRIPTS).join("requirements.txt"))?;
     let stamp = venv.join("installed.txt");
@@ -109,14 +109,11 @@ fn environment(venv: &Path) -> io::Result<PathBuf> {
 }
 
 fn run(command: &mut Command, needs: &str) -> io::Result<()> {
-    let name = format!(
-        "{} {}",
-        command.get_program().display(),
-        command.get_args().map(|a| a.display().to_string()).collect::<Vec<_>>().join(" ")
-    );
-    match command.status() {
+    let status = command.status();
+    let failed = |why: String| io::Error::other(format!("{command:?} {why}; it needs {needs}"));
+    match status {
         Ok(status) if status.success() => Ok(()),
-        Ok(status) => Err(io::Error::other(format!("`{name}` ended with {status}; it needs {needs}"))),
-        Err(error) => Err(io::Error::other(format!("`{name}` cannot be run: {error}; it needs {needs}"))),
+        Ok(status) => Err(failed(format!("ended with {status}"))),
+        Err(error) => Err(failed(format!("cannot be run: {error}"))),
     }
 }

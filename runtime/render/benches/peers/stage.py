@@ -17,7 +17,7 @@ class Stage:
     def __init__(self, folder):
         self.folder = Path(folder)
         self.meshes = sorted(self.folder.glob("*.obj"))
-        # A row each: mesh, x, y, z, the rotation as x, y, z, w, and whether it is overhead, where light comes through.
+        # A row each: mesh, x, y, z, and the rotation as x, y, z, w.
         self.objects = np.loadtxt(self.folder / "objects.txt")
         # A row each: x, y, z, yaw, pitch, vertical field of view.
         self.cameras = [Camera(*row) for row in np.loadtxt(self.folder / "cameras.txt")]

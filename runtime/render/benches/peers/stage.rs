@@ -6,8 +6,7 @@ use std::fs::{self, File};
 use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};
 
-use cohabit_cdf::RoomId;
-use cohabit_render::{Camera, Instance, Look, RoomSurface, Soup, room_surface_id};
+use cohabit_render::{Camera, Instance, Look, Soup};
 use glam::{Quat, Vec3};
 
 use crate::office::Office;
@@ -38,9 +37,6 @@ impl Stage {
         colors.dedup();
         write_palette(&folder.join("palette.png"), &colors)?;
         let known: BTreeMap<u32, &Instance> = office.instances.iter().map(|instance| (instance.id, instance)).collect();
-        let surfaces = [RoomSurface::Ceiling, RoomSurface::Lamp];
-        let overhead: Vec<u32> =
-            RoomId::ALL.iter().flat_map(|room| surfaces.map(|surface| room_surface_id(*room, surface))).collect();
         let mut of_class = BTreeMap::new();
         let (mut meshes, mut objects) = (0, String::new());
         for soup in &soups {
@@ -62,8 +58,7 @@ impl Stage {
                 }
             };
             let (Vec3 { x, y, z }, turn) = place;
-            let overhead = u8::from(overhead.contains(&soup.id));
-            let _ = writeln!(objects, "{mesh} {x} {y} {z} {} {} {} {} {overhead}", turn.x, turn.y, turn.z, turn.w);
+            let _ = writeln!(objects, "{mesh} {x} {y} {z} {} {} {} {}", turn.x, turn.y, turn.z, turn.w);
         }
         fs::write(folder.join("objects.txt"), objects)?;
         let mut lines = String::new();
