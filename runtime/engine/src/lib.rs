@@ -7,8 +7,10 @@
 //! This crate never knows dialog.
 
 mod build;
+mod camera_plan;
 mod camera_rig;
 mod engine;
+mod exposure;
 pub mod replay;
 pub mod report;
 mod scene;
@@ -17,6 +19,7 @@ mod simulator;
 mod studio;
 
 pub use build::{BuildError, SessionPlan};
+pub use camera_plan::{CameraPlan, CameraPlanError, Mount};
 pub use engine::{Engine, EngineError};
 pub use scene::furnishings;
 pub use simulator::Simulator;
