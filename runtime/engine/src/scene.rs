@@ -1,5 +1,6 @@
 //! The world as the renderer sees it.
 
+use cohabit_bus::message::Thing;
 use cohabit_cdf::{BodyId, BodyKind, Color, Fluid, RoomId, mission::Era};
 use cohabit_render::{Highlight, Instance, Look};
 use cohabit_world::{BodyView, DT_NANOS, World};
@@ -8,9 +9,6 @@ use crate::{
     engine::Engine,
     shot::{self, Outlook},
 };
-
-/// The id of body `body` in the id plane; objects have their index + 1.
-const FIRST_BODY_ID: u32 = 1 << 20;
 
 /// One moment of a world, complete enough to be rendered elsewhere.
 #[derive(Clone, Debug, Default)]
@@ -53,7 +51,7 @@ pub const fn object_instance_id(object: cohabit_cdf::ObjectId) -> u32 {
 
 /// The id of a body in the id plane.
 pub const fn body_instance_id(body: BodyId) -> u32 {
-    FIRST_BODY_ID + body.0
+    Thing::FIRST_BODY + body.0
 }
 
 const HIGHLIGHT_COLOR: [u8; 3] = [255, 196, 61];
