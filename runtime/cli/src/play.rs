@@ -14,6 +14,7 @@ use crate::{
     failure::bad_input,
     mission_file::MissionFile,
     peers::Listening,
+    rendering::Rendering,
     stop,
     supervisor::{Role, Supervisor},
 };
@@ -37,9 +38,8 @@ pub struct Play {
     /// The session log to write; one in the user's data folder if absent
     #[arg(long)]
     log: Option<PathBuf>,
-    /// Threads that render
-    #[arg(long, default_value_t = 2)]
-    threads: usize,
+    #[command(flatten)]
+    rendering: Rendering,
 }
 
 impl Play {
@@ -50,6 +50,7 @@ impl Play {
         let seed = self.seed.unwrap_or_else(clock_seed);
         let mission = MissionFile::find(self.mission.as_deref())?;
         let plan = mission.plan(seed, &self.bodies)?;
+        self.rendering.check()?;
         for name in Session::wipe_dead() {
             println!("cleaned up after session {name}, which was not ended");
         }
@@ -62,7 +63,7 @@ impl Play {
         })?;
         println!("Playing \"{}\" ({})", plan.mission.goal_text, mission.name);
         let roles = [
-            Role::sim(self.mission.as_deref(), seed, &self.bodies, self.threads),
+            Role::sim(self.mission.as_deref(), seed, &self.bodies, self.rendering),
             Role::record(&log),
             Role::agent(),
             Role::dialog(&self.listening),

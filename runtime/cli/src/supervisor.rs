@@ -18,7 +18,7 @@ use anyhow::Context as _;
 use cohabit_cdf::BodyRequest;
 use rustix::process::{Pid, Signal, kill_process};
 
-use crate::{failure::BadInput, peers::Listening};
+use crate::{failure::BadInput, peers::Listening, rendering::Rendering};
 
 /// How long a process may take to end when asked.
 const GRACE: Duration = Duration::from_secs(3);
@@ -35,9 +35,9 @@ pub struct Role {
 
 impl Role {
     /// The simulator: without it there is no session.
-    pub fn sim(mission: Option<&str>, seed: u64, bodies: &[BodyRequest], threads: usize) -> Self {
+    pub fn sim(mission: Option<&str>, seed: u64, bodies: &[BodyRequest], rendering: Rendering) -> Self {
         let mut arguments = vec!["--seed".into(), seed.to_string().into()];
-        arguments.extend(["--threads".into(), threads.to_string().into()]);
+        arguments.extend(rendering.arguments());
         arguments.extend(bodies.iter().map(|body| format!("--body={body}").into()));
         arguments.extend(mission.map(OsString::from));
         Self { name: "sim", arguments }
