@@ -10,14 +10,14 @@ use std::{
 use anyhow::Context as _;
 use cohabit_cdf::{Catalog, Layout, Mission, RoomId};
 use cohabit_render::{
-    Camera, CpuRenderer, Lens, MeshLibrary, Planes, Renderer, Scene,
+    Camera, Lens, MeshLibrary, Planes, Renderer, Scene,
     gallery::{self, Picture},
     minimap,
 };
 use cohabit_world::World;
 use indicatif::ProgressBar;
 
-use crate::failure::bad_input;
+use crate::{failure::bad_input, rendering::Rendering};
 
 /// Draws all objects in all their states, all floor plans from above and as maps, and a view of each room, as PNG
 /// files.
@@ -25,9 +25,8 @@ use crate::failure::bad_input;
 pub struct Gallery {
     /// The folder to write into
     folder: PathBuf,
-    /// Threads that render
-    #[arg(long, default_value_t = 2)]
-    threads: usize,
+    #[command(flatten)]
+    rendering: Rendering,
 }
 
 /// Side of one object's picture.
@@ -49,16 +48,16 @@ impl Gallery {
         fs::create_dir_all(&self.folder).map_err(|error| bad_input(format!("{}: {error}", self.folder.display())))?;
         let catalog = Arc::new(Catalog::builtin());
         let meshes = Arc::new(MeshLibrary::build(&catalog).context("build the models")?);
-        let mut renderer = CpuRenderer::new(self.threads);
+        let mut renderer = self.rendering.start()?;
         let bar = ProgressBar::new_spinner().with_message("objects");
         for sheet in gallery::sheets(&meshes, &catalog) {
-            let picture = sheet.paint(&mut renderer, &meshes, CELL_PX);
+            let picture = sheet.paint(&mut *renderer, &meshes, CELL_PX);
             self.write(&format!("objects-{}", sheet.name), &picture.rgba, [picture.width, picture.height])?;
             bar.tick();
         }
         for id in Layout::builtin_ids() {
             bar.set_message(id.clone());
-            self.floor_plan(&id, &catalog, &meshes, &mut renderer)?;
+            self.floor_plan(&id, &catalog, &meshes, &mut *renderer)?;
         }
         bar.finish_and_clear();
         println!("{} pictures in {}", fs::read_dir(&self.folder)?.count(), self.folder.display());

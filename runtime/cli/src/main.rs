@@ -7,6 +7,7 @@ mod gallery;
 mod mission_file;
 mod peers;
 mod play;
+mod rendering;
 mod replay;
 mod stop;
 mod supervisor;

@@ -20,9 +20,9 @@ use cohabit_cdf::BodyRequest;
 use cohabit_dialog::DialogConfig;
 use cohabit_engine::{CameraPlan, SessionPlan, Simulator};
 use cohabit_record::Recorder;
-use cohabit_render::{CpuRenderer, MeshLibrary};
+use cohabit_render::MeshLibrary;
 
-use crate::{failure::bad_input, mission_file::MissionFile, stop};
+use crate::{failure::bad_input, mission_file::MissionFile, rendering::Rendering, stop};
 
 /// What all peers of a session are told.
 #[derive(clap::Args)]
@@ -62,9 +62,8 @@ pub struct Sim {
     /// size=WxH, rate=, planes=color+depth+normals+ids, and most body= and fov=; as often as needed
     #[arg(long = "camera", value_name = "NAME=KIND[,OPTION=VALUE]")]
     cameras: Vec<CameraPlan>,
-    /// Threads that render
-    #[arg(long, default_value_t = 2)]
-    threads: usize,
+    #[command(flatten)]
+    rendering: Rendering,
 }
 
 impl Sim {
@@ -79,7 +78,7 @@ impl Sim {
             (world, meshes.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
         });
         let meshes = Arc::new(meshes.context("build the models")?);
-        let renderer = Box::new(CpuRenderer::new(self.threads));
+        let renderer = self.rendering.start()?;
         let simulator = Simulator::new(&plan, world.map_err(bad_input)?, meshes, renderer, &bus)?;
         simulator.run(&stop)?;
         Ok(())

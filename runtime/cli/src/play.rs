@@ -15,6 +15,7 @@ use crate::{
     failure::bad_input,
     mission_file::MissionFile,
     peers::Listening,
+    rendering::Rendering,
     stop,
     supervisor::{Role, Supervisor},
 };
@@ -43,9 +44,8 @@ pub struct Play {
     /// The session log to write; one in the user's data folder if absent
     #[arg(long)]
     log: Option<PathBuf>,
-    /// Threads that render
-    #[arg(long, default_value_t = 2)]
-    threads: usize,
+    #[command(flatten)]
+    rendering: Rendering,
 }
 
 impl Play {
@@ -56,6 +56,7 @@ impl Play {
         let seed = self.seed.unwrap_or_else(clock_seed);
         let mission = MissionFile::find(self.mission.as_deref())?;
         let plan = mission.plan(seed, &self.bodies)?.with_cameras(self.cameras.clone()).map_err(bad_input)?;
+        self.rendering.check()?;
         for name in Session::wipe_dead() {
             println!("cleaned up after session {name}, which was not ended");
         }
@@ -68,7 +69,7 @@ impl Play {
         })?;
         println!("Playing \"{}\" ({})", plan.mission.goal_text, mission.name);
         let roles = [
-            Role::sim(self.mission.as_deref(), seed, &self.bodies, &self.cameras, self.threads),
+            Role::sim(self.mission.as_deref(), seed, &self.bodies, &self.cameras, self.rendering),
             Role::record(&log),
             Role::agent(),
             Role::dialog(&self.listening),

@@ -19,7 +19,7 @@ use cohabit_cdf::BodyRequest;
 use cohabit_engine::CameraPlan;
 use rustix::process::{Pid, Signal, kill_process};
 
-use crate::{failure::BadInput, peers::Listening};
+use crate::{failure::BadInput, peers::Listening, rendering::Rendering};
 
 /// How long a process may take to end when asked.
 const GRACE: Duration = Duration::from_secs(3);
@@ -41,10 +41,10 @@ impl Role {
         seed: u64,
         bodies: &[BodyRequest],
         cameras: &[CameraPlan],
-        threads: usize,
+        rendering: Rendering,
     ) -> Self {
         let mut arguments = vec!["--seed".into(), seed.to_string().into()];
-        arguments.extend(["--threads".into(), threads.to_string().into()]);
+        arguments.extend(rendering.arguments());
         arguments.extend(bodies.iter().map(|body| format!("--body={body}").into()));
         arguments.extend(cameras.iter().map(|camera| format!("--camera={camera}").into()));
         arguments.extend(mission.map(OsString::from));

@@ -46,6 +46,9 @@ impl Adapter {
     /// # Errors
     /// [`GpuError::NoAdapter`].
     pub fn find(wanted: Wanted) -> Result<Self, GpuError> {
+        if wanted == Wanted::Real && !has_device_node() {
+            return Err(GpuError::NoAdapter { wanted: wanted.text(), found: "no GPU under /dev".to_owned() });
+        }
         let mut descriptor = InstanceDescriptor::new_without_display_handle();
         descriptor.backends = Backends::VULKAN;
         // What is drawn indirectly is written by this crate alone, and never out of bounds.
@@ -72,6 +75,18 @@ impl Adapter {
     pub fn is_software(&self) -> bool {
         self.inner.get_info().device_type == DeviceType::Cpu
     }
+}
+
+/// Whether the kernel knows of a GPU. Asked first, because loading drivers takes a while, and one in software ends the
+/// whole program on processors that it does not know.
+fn has_device_node() -> bool {
+    if !cfg!(target_os = "linux") {
+        return true;
+    }
+    const NAMES: [&str; 4] = ["renderD", "nvidia", "dxg", "kgsl"];
+    let is_gpu = |name: &std::ffi::OsStr| NAMES.iter().any(|known| name.to_string_lossy().starts_with(known));
+    let folders = ["/dev", "/dev/dri"].into_iter().filter_map(|folder| std::fs::read_dir(folder).ok());
+    folders.flatten().flatten().any(|entry| is_gpu(&entry.file_name()))
 }
 
 fn describe(adapter: &wgpu::Adapter) -> String {

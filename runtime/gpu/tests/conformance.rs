@@ -148,7 +148,7 @@ fn only_what_is_wanted_is_written() {
 fn a_thousand_cameras_at_once() {
     let Some(mut gpu) = gpu() else { return };
     let (catalog, meshes) = meshes();
-    let layout = Layout::builtin("OfficeLayout4").unwrap();
+    let layout = Layout::builtin("OfficeLayout3").unwrap();
     let scene = office(&catalog, &meshes, &layout);
     let all = viewpoints(&layout, [84, 84], false, 1);
     let cameras: Vec<Camera> = (0..1024)
