@@ -10,6 +10,7 @@ use glam::Vec3;
 use crate::camera::{Camera, View};
 use crate::plan::RoomSurface;
 use crate::scene::{Scene, Transform};
+use crate::veil::Veil;
 
 mod tests;
 
@@ -63,6 +64,8 @@ pub(super) struct Fight {
     pub gap_m: f64,
     /// Where.
     pub place: Place,
+    /// Which way they look.
+    pub outward: Place,
 }
 
 /// All triangles of a scene at one level of detail.
@@ -91,6 +94,10 @@ fn push(
     transform: &Transform,
     (id, model): (u32, Option<usize>),
 ) {
+    if piece.veil == Some(Veil::Airy) {
+        // Hides nothing, and is never told from what is behind it.
+        return;
+    }
     for triangle in piece.triangles.clone() {
         let place = |corner: u32| -> Vec3 { transform.rotation * mesh.positions[corner as usize] + transform.offset };
         let corners = mesh.triangles[triangle as usize].map(|corner| exact(place(corner)));
@@ -152,7 +159,13 @@ pub(super) fn fights(faces: &[Face], camera: &Camera, gap_m: f64) -> Vec<Fight> 
             let place = exact(view.eye + view.ray(x as f32 + 0.5, y as f32 + 0.5) * before as f32);
             let mut owners = [faces[winner].owner, faces[flat.face].owner];
             owners.sort();
-            let known = found.entry(owners).or_insert(Fight { owners, count: 0, gap_m: gap, place });
+            let known = found.entry(owners).or_insert(Fight {
+                owners,
+                count: 0,
+                gap_m: gap,
+                place,
+                outward: faces[winner].outward,
+            });
             known.count += 1;
             known.gap_m = known.gap_m.min(gap);
         });

@@ -282,4 +282,6 @@ fn fill_rows(band: &mut Band<'_>, width: usize, shader: &Shader<'_>, facets: &mu
 }
 
 #[cfg(test)]
+mod offices;
+#[cfg(test)]
 mod tests;

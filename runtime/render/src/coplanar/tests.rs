@@ -3,7 +3,9 @@
 use std::fmt::Write as _;
 use std::sync::Arc;
 
+use cohabit_cdf::catalog::Stands;
 use cohabit_cdf::layout::Layout;
+use cohabit_cdf::model::{Model, Part};
 use cohabit_cdf::{Catalog, ClassId};
 
 use super::*;
@@ -14,6 +16,13 @@ use crate::{Instance, Look, furnish, model_mesh};
 
 /// Surfaces are at least this far apart, m.
 const GAP_M: f64 = 0.0004;
+
+/// From where objects are looked at: yaw and pitch, the front ones first. Nobody sees the back of what hangs on a wall.
+fn sides(stands: Stands) -> &'static [[f32; 2]] {
+    const ALL: [[f32; 2]; 7] =
+        [[2.5, -0.4], [3.9, -0.3], [3.3, -1.35], [2.9, 0.5], [0.62, -0.42], [5.4, -0.3], [0.4, 0.5]];
+    if stands == Stands::OnWall { &ALL[..4] } else { &ALL }
+}
 
 /// A camera around a cell's box.
 fn around(cell: &Cell, yaw_rad: f32, pitch_rad: f32, side_px: u32) -> Camera {
@@ -27,32 +36,27 @@ fn around(cell: &Cell, yaw_rad: f32, pitch_rad: f32, side_px: u32) -> Camera {
     Camera { position_m, yaw_rad, pitch_rad, ceiling: true, for_people: false, ..front }
 }
 
-/// Which part of its model a triangle belongs to, from 1, and what the part is.
-fn part_of(catalog: &Catalog, model: usize, level: usize, triangle: u32) -> String {
-    let Some(model) = catalog.models().get(model) else { return "a body or sign".to_owned() };
+/// The part, from 0, of each triangle of a model: pieces take their parts in turn.
+fn parts_of(model: &Model, level: usize) -> Vec<usize> {
+    let alone = |part: &Part| {
+        let mut alone = model.clone();
+        alone.parts = vec![part.clone()];
+        let mesh = model_mesh::build(&alone, Detail::ALL[level]).unwrap();
+        ((part.when, part.joint.clone(), mesh.pieces[0].veil), mesh.triangles.len())
+    };
+    let parts: Vec<_> = model.parts.iter().map(alone).collect();
     let mut groups = Vec::new();
-    for part in &model.parts {
-        let key = (part.when, part.joint.clone());
+    for (key, _) in &parts {
         if !groups.contains(&key) {
             groups.push(key);
         }
     }
-    let mut before = 0;
-    for (when, joint) in groups {
-        for (index, part) in model.parts.iter().enumerate() {
-            if part.when != when || part.joint != joint {
-                continue;
-            }
-            let mut alone = model.clone();
-            alone.parts = vec![part.clone()];
-            before += model_mesh::build(&alone, Detail::ALL[level]).unwrap().triangles.len() as u32;
-            if triangle < before {
-                let shape = format!("{:?}", part.shape);
-                return format!("{} part {} at {:?} {} {:?}", model.id, index + 1, part.at, shape, part.color);
-            }
-        }
-    }
-    "?".to_owned()
+    let of = |group| parts.iter().enumerate().filter(move |(_, (key, _))| key == group);
+    groups
+        .iter()
+        .flat_map(|group| of(*group))
+        .flat_map(|(index, (_, count))| std::iter::repeat_n(index, *count))
+        .collect()
 }
 
 /// What stands in the id plane, in words.
@@ -64,13 +68,18 @@ fn name(catalog: &Catalog, instances: &[Instance], id: u32) -> String {
     }
 }
 
-/// All fights of a scene from some cameras, one for each pair of parts, the largest first.
+/// All fights of a scene from some cameras, one for each pair of parts and direction.
 struct Report<'a> {
     catalog: &'a Catalog,
-    all: BTreeMap<[String; 2], (u32, f64, Place, String)>,
+    parts: BTreeMap<(usize, usize), Vec<usize>>,
+    all: BTreeMap<[String; 3], (u32, f64, String)>,
 }
 
-impl Report<'_> {
+impl<'a> Report<'a> {
+    fn new(catalog: &'a Catalog) -> Self {
+        Self { catalog, parts: BTreeMap::new(), all: BTreeMap::new() }
+    }
+
     fn add(
         &mut self,
         scene: &Scene,
@@ -85,26 +94,35 @@ impl Report<'_> {
             // Nobody sees what things stand on.
             let seen = |fight: &Fight| camera.pitch_rad < 0.0 || fight.place[2] > 0.001;
             for fight in fights(&faces, camera, gap_m).into_iter().filter(seen) {
-                let names = fight.owners.map(|owner| {
-                    let part =
-                        owner.model.map_or(String::new(), |model| part_of(self.catalog, model, level, owner.triangle));
-                    let name = name(self.catalog, instances, owner.id);
-                    format!("{name} {part} surface {}", owner.surface)
-                });
-                let entry = self.all.entry(names).or_insert((0, f64::MAX, fight.place, label.to_owned()));
+                let [a, b] = fight.owners.map(|owner| self.name(instances, owner, level));
+                let facing = format!("facing {:.1?}", fight.outward.map(|value| value + 0.0));
+                let at = || format!("{label} at {:.3?} {facing}", fight.place);
+                let entry = self.all.entry([a, b, facing.clone()]).or_insert_with(|| (0, f64::MAX, at()));
                 entry.0 += fight.count;
                 entry.1 = entry.1.min(fight.gap_m);
             }
         }
     }
 
+    fn name(&mut self, instances: &[Instance], owner: Owner, level: usize) -> String {
+        let name = name(self.catalog, instances, owner.id);
+        let Some((index, model)) = owner.model.and_then(|index| Some((index, self.catalog.models().get(index)?)))
+        else {
+            return format!("{name} surface {}", owner.surface);
+        };
+        let parts = self.parts.entry((index, level)).or_insert_with(|| parts_of(model, level));
+        let part = parts[owner.triangle as usize];
+        let Part { at, shape, color, .. } = &model.parts[part];
+        let shape: String = format!("{shape:?}").chars().take(90).collect();
+        format!("{name} {} part {} at {at:?} {shape} {color:?} surface {}", model.id, part + 1, owner.surface)
+    }
+
     fn text(&self) -> String {
         let mut lines: Vec<_> = self.all.iter().collect();
         lines.sort_by_key(|(_, fight)| std::cmp::Reverse(fight.0));
         let mut text = String::new();
-        for ([a, b], (count, gap_m, place, label)) in lines {
-            writeln!(text, "{count} px, {:.3} mm apart, {label} at {place:.3?}:\n    {a}\n    {b}", gap_m * 1e3)
-                .unwrap();
+        for ([a, b, _], (count, gap_m, at)) in lines {
+            writeln!(text, "{count} px, {:.3} mm apart, {at}:\n    {a}\n    {b}", gap_m * 1e3).unwrap();
         }
         text
     }
@@ -116,7 +134,7 @@ fn models_thoroughly() {
     let catalog = Catalog::builtin();
     let meshes = Arc::new(MeshLibrary::build(&catalog).unwrap());
     let gap_m = std::env::var("GAP_MM").ok().and_then(|text| text.parse::<f64>().ok()).map_or(GAP_M, |gap| gap / 1e3);
-    let mut report = Report { catalog: &catalog, all: BTreeMap::new() };
+    let mut report = Report::new(&catalog);
     let mut stage = gallery::stage(&meshes);
     for index in 0..catalog.classes().len() {
         let class = ClassId(index as u16);
@@ -126,10 +144,10 @@ fn models_thoroughly() {
                 continue;
             }
             cell.enter(&mut stage);
-            let cameras: Vec<Camera> =
-                [(0.62, -0.42), (2.2, -0.3), (3.8, -0.3), (5.3, -0.42), (0.3, -1.4), (1.0, 0.5), (4.0, 0.5)]
-                    .map(|(yaw, pitch)| around(&cell, yaw, pitch, 160))
-                    .to_vec();
+            let cameras: Vec<Camera> = sides(catalog.class(class).stands)
+                .iter()
+                .map(|[yaw, pitch]| around(&cell, *yaw, *pitch, 160))
+                .collect();
             for level in 0..3 {
                 report.add(&stage, &cell.instances, &cameras, level, gap_m, &format!("{} level {level}", cell.label));
             }
@@ -145,7 +163,7 @@ fn layouts_thoroughly() {
     let meshes = Arc::new(MeshLibrary::build(&catalog).unwrap());
     let gap_m = std::env::var("GAP_MM").ok().and_then(|text| text.parse::<f64>().ok()).map_or(GAP_M, |gap| gap / 1e3);
     for id in Layout::builtin_ids().iter().filter(|id| !id.ends_with("_mirror")) {
-        let mut report = Report { catalog: &catalog, all: BTreeMap::new() };
+        let mut report = Report::new(&catalog);
         let layout = Layout::builtin(id).unwrap();
         let mut scene = Scene::new(Arc::clone(&meshes), &layout);
         let instances = furnish(&catalog, &layout);
@@ -171,7 +189,7 @@ fn layouts_thoroughly() {
             report.add(&scene, &opened, &cameras, level, gap_m, &format!("{id} level {level}"));
         }
         // Within one instance is the models' own business.
-        report.all.retain(|[a, b], _| a.split(')').next() != b.split(')').next() || a.starts_with("room"));
+        report.all.retain(|[a, b, _], _| a.split(')').next() != b.split(')').next() || a.starts_with("room"));
         println!("{id}\n{}", report.text());
     }
 }

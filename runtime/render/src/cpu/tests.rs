@@ -148,14 +148,14 @@ fn camera() -> Camera {
 
 /// All planes of one picture.
 #[derive(Clone, Debug, PartialEq)]
-struct Picture {
-    color: Vec<u8>,
-    depth_m: Vec<f32>,
-    normals: Vec<i8>,
-    ids: Vec<u32>,
+pub(super) struct Picture {
+    pub color: Vec<u8>,
+    pub depth_m: Vec<f32>,
+    pub normals: Vec<i8>,
+    pub ids: Vec<u32>,
 }
 
-fn picture(renderer: &mut CpuRenderer, scene: &Scene, camera: &Camera) -> Picture {
+pub(super) fn picture(renderer: &mut CpuRenderer, scene: &Scene, camera: &Camera) -> Picture {
     let pixels = camera.pixels();
     let mut all = Picture {
         color: vec![1; pixels * 4],

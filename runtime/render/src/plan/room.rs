@@ -16,6 +16,8 @@ use crate::pattern::Pattern;
 const WAINSCOT_M: f32 = 1.0;
 /// Height and depth of the skirting, m.
 const SKIRTING_M: [f32; 2] = [0.09, 0.016];
+/// How far before a corner skirting and rails end, m.
+const TRIM_END_M: f32 = 0.002;
 /// How wide a frame is, and how far it stands out of the wall, m.
 const FRAME_M: [f32; 2] = [0.075, 0.018];
 
@@ -32,6 +34,9 @@ pub(super) fn build(plan: &mut Plan, room: &Room) {
         for rect in &room.rects_m {
             let z = if surface == RoomSurface::Floor { 0.0 } else { plan.height_m };
             plan.mesh.push(&sheet(*rect, z, surface == RoomSurface::Ceiling), |_| finish);
+        }
+        if surface == RoomSurface::Floor {
+            seams(plan, bit, finish);
         }
         bake(plan, first, &light);
         plan.end();
@@ -52,6 +57,22 @@ pub(super) fn build(plan: &mut Plan, room: &Room) {
         panels(plan, lamps);
     }
     plan.end();
+}
+
+/// A strip under every door and passage, once for both rooms: their floors meet there, divided differently, and rounding
+/// leaves a pixel between them now and then.
+fn seams(plan: &mut Plan, bit: u8, finish: Surface) {
+    /// How far the strip reaches under the floors, and how far it lies below them, m.
+    const STRIP_M: [f32; 2] = [0.06, 0.003];
+    for gap in plan.gaps.clone() {
+        let is_first = gap.rooms & gap.rooms.wrapping_neg() == bit && gap.rooms != bit;
+        if !is_first || gap.bounds.min.z > 0.0 {
+            continue;
+        }
+        let (min, max) = (gap.bounds.min, gap.bounds.max);
+        let rect = [min.x - STRIP_M[0], min.y - STRIP_M[0], max.x + STRIP_M[0], max.y + STRIP_M[0]];
+        plan.mesh.push(&sheet(rect, -STRIP_M[1], false), |_| finish);
+    }
 }
 
 fn flat(pattern: Pattern, srgb: [u8; 3]) -> Surface {
@@ -148,11 +169,17 @@ impl WallRun {
             let (along, across) = if self.runs_x { (0, 1) } else { (1, 0) };
             let here = gap.runs_x == self.runs_x && (gap.bounds.center()[across] - self.line_m).abs() < 0.15;
             let (from, to) = (gap.bounds.min[along] - 0.01, gap.bounds.max[along] + 0.01);
-            let low = if gap.bounds.min.z > 0.0 { gap.bounds.min.z - 0.01 } else { 0.0 };
-            (here && from < self.to_m && to > self.from_m).then_some([from, to, low, gap.bounds.max.z + 0.01])
+            let [low, high] = hole_levels(gap);
+            (here && from < self.to_m && to > self.from_m).then_some([from, to, low, high])
         };
         gaps.iter().filter_map(hole).collect()
     }
+}
+
+/// From where to where the hole for a gap reaches.
+fn hole_levels(gap: &Gap) -> [f32; 2] {
+    let low = if gap.bounds.min.z > 0.0 { gap.bounds.min.z - 0.01 } else { 0.0 };
+    [low, gap.bounds.max.z + 0.01]
 }
 
 fn wall(plan: &mut Plan, room: &Room, run: &WallRun, light: &RoomLight<'_>) {
@@ -160,7 +187,10 @@ fn wall(plan: &mut Plan, room: &Room, run: &WallRun, light: &RoomLight<'_>) {
     let along = if run.runs_x { Vec3::X } else { Vec3::Y };
     let upper = wall_surface(&room.wall, along, false);
     let lower = room.wainscot.as_ref().map_or(upper, |finish| wall_surface(finish, along, true));
-    let mut levels: Vec<f32> = holes.iter().flat_map(|hole| [hole[2], hole[3]]).filter(|z| *z > 0.0).collect();
+    // The same for all walls of a room: where two meet, their corners do too, and nothing shines through between them.
+    let bit = 1 << room.id as u8;
+    let gaps = plan.gaps.iter().filter(|gap| gap.rooms & bit != 0);
+    let mut levels: Vec<f32> = gaps.flat_map(|gap| hole_levels(gap)).filter(|z| *z > 0.0).collect();
     if room.wainscot.is_some() {
         levels.push(WAINSCOT_M);
     }
@@ -205,15 +235,19 @@ fn trim(plan: &mut Plan, room: &Room, run: &WallRun, holes: &[[f32; 4]]) {
     if room.wainscot.is_some() {
         bars.push((WAINSCOT_M - 0.02, [0.045, 0.022]));
     }
+    // Bars that meet in a corner are not equally high, and end before the other wall's face: no two lie in one plane.
+    let lower_m = if run.runs_x { 0.0015 } else { 0.0 };
     for (base, [height, depth]) in bars {
+        let height = height - lower_m;
         let mut blocked: Vec<[f32; 2]> = holes
             .iter()
             .filter(|hole| hole[2] < base + height && hole[3] > base)
             .map(|hole| [hole[0] - FRAME_M[0], hole[1] + FRAME_M[0]])
             .collect();
         blocked.sort_by(|a, b| a[0].total_cmp(&b[0]));
-        let mut from = run.from_m;
-        for [start, end] in blocked.into_iter().chain([[run.to_m, run.to_m]]) {
+        let last = run.to_m - TRIM_END_M;
+        let mut from = run.from_m + TRIM_END_M;
+        for [start, end] in blocked.into_iter().chain([[last, last]]) {
             if start - from > 0.02 {
                 // Sunk into the wall, so that it stands on nothing coplanar.
                 let size = along_size(run, start - from, depth + 0.02, height);
