@@ -301,7 +301,7 @@ fn mesh_of(model: &Model, standing: bool, body: bool) -> Result<ModelMesh, Model
     let fine = &levels[0];
     let (mut bounds, mut reach) = (Aabb::EMPTY, Aabb::EMPTY);
     for piece in &fine.pieces {
-        let own = fine.piece_bounds(piece);
+        let own = piece.bounds;
         if piece.corners.is_empty() {
             continue;
         }

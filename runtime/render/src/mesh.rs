@@ -95,6 +95,8 @@ pub(crate) struct Piece {
     pub corners: Range<u32>,
     /// Which triangles.
     pub triangles: Range<u32>,
+    /// The box around their corners.
+    pub bounds: Aabb,
 }
 
 /// Everything there is to draw of one model at one level of detail.
@@ -126,7 +128,8 @@ impl Mesh {
     /// Starts a piece; what is pushed until [`Self::end_piece`] belongs to it.
     pub(crate) fn begin_piece(&mut self, when: Option<When>, joint: Option<u8>, veil: Option<Veil>) {
         let (corner, triangle) = (self.positions.len() as u32, self.triangles.len() as u32);
-        self.pieces.push(Piece { when, joint, veil, corners: corner..corner, triangles: triangle..triangle });
+        let (corners, triangles) = (corner..corner, triangle..triangle);
+        self.pieces.push(Piece { when, joint, veil, corners, triangles, bounds: Aabb::EMPTY });
     }
 
     /// Ends the piece that was begun last.
@@ -134,6 +137,8 @@ impl Mesh {
         if let Some(piece) = self.pieces.last_mut() {
             piece.corners.end = self.positions.len() as u32;
             piece.triangles.end = self.triangles.len() as u32;
+            let own = &self.positions[piece.corners.start as usize..];
+            piece.bounds = own.iter().fold(Aabb::EMPTY, |bounds, corner| bounds.with(*corner));
         }
     }
 
@@ -156,11 +161,5 @@ impl Mesh {
             self.surfaces.push(surface);
             self.surfaces.len() - 1
         }) as u16
-    }
-
-    /// The box around a piece's corners.
-    pub(crate) fn piece_bounds(&self, piece: &Piece) -> Aabb {
-        let corners = &self.positions[piece.corners.start as usize..piece.corners.end as usize];
-        corners.iter().fold(Aabb::EMPTY, |bounds, corner| bounds.with(*corner))
     }
 }

@@ -172,7 +172,7 @@ impl Plan {
     fn end(&mut self) {
         self.mesh.end_piece();
         if let (Some(part), Some(piece)) = (self.parts.last_mut(), self.mesh.pieces.last()) {
-            part.bounds = self.mesh.piece_bounds(piece);
+            part.bounds = piece.bounds;
         }
         if self.mesh.pieces.last().is_some_and(|piece| piece.triangles.is_empty()) {
             self.parts.pop();

@@ -5,6 +5,7 @@
 //! cargo bench -p cohabit-render -- quick           # measures less long
 //! cargo bench -p cohabit-render -- save=FOLDER     # keeps pictures instead
 //! cargo bench -p cohabit-render -- compare=FOLDER  # says by how much they differ now
+//! cargo bench -p cohabit-render -- once            # draws each picture once in `counted`, for tools that count
 //! ```
 
 mod buffers;
@@ -17,7 +18,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use cohabit_cdf::Catalog;
-use cohabit_render::{Camera, CpuRenderer, MeshLibrary, Renderer, Scene};
+use cohabit_render::{Camera, CpuRenderer, MeshLibrary, Planes, Renderer, Scene, Shot};
 use rustix::time::ClockId;
 
 use buffers::Buffers;
@@ -58,10 +59,14 @@ fn main() {
     if let Some(folder) = value("compare=") {
         return keep::compare(Path::new(folder), &offices);
     }
+    let only = value("only=");
+    let kinds = KINDS.iter().filter(|kind| only.is_none_or(|only| kind.name.starts_with(only)));
+    if arguments.iter().any(|argument| argument == "once") {
+        return kinds.for_each(|kind| draw_once(kind, &offices));
+    }
     tell_machine(&offices);
     let quick = arguments.iter().any(|argument| argument == "quick");
-    let only = value("only=");
-    for kind in KINDS.iter().filter(|kind| only.is_none_or(|only| kind.name.starts_with(only))) {
+    for kind in kinds {
         println!("{}", kind.name);
         let repeats = if quick { kind.repeats.div_ceil(4) } else { kind.repeats };
         for (cameras, threads) in [(1, 1), (1, 2), (1, 4), (2, 1)] {
@@ -88,7 +93,7 @@ fn measure(kind: &Kind, repeats: u32, offices: &[Office], cameras: usize, thread
         for camera in office.cameras(kind.size[0], kind.size[1], kind.for_people, STEP) {
             let samples = draw_at_once(kind, repeats, &office.scene, &camera, cameras, threads);
             walls.push(spread(samples.iter().map(|sample| sample.0).collect()));
-            cpus.push(spread(samples.iter().map(|sample| sample.1).collect()));
+            cpus.push(spread(samples.iter().map(|sample| sample.1 / cameras as u32).collect()));
         }
     }
     let mean =
@@ -105,40 +110,51 @@ fn measure(kind: &Kind, repeats: u32, offices: &[Office], cameras: usize, thread
     );
 }
 
+/// Draws each picture twice, the second time in [`counted`].
+fn draw_once(kind: &Kind, offices: &[Office]) {
+    let mut renderer = CpuRenderer::new(1);
+    let mut buffers = Buffers::new((kind.size[0] * kind.size[1]) as usize);
+    for office in offices {
+        for camera in office.cameras(kind.size[0], kind.size[1], kind.for_people, STEP) {
+            renderer.render(&office.scene, &camera, &mut buffers.planes(kind.all_planes));
+            counted(&mut renderer, &office.scene, &camera, &mut buffers.planes(kind.all_planes));
+        }
+    }
+}
+
+/// One picture, when everything it needs has been worked out before.
+#[inline(never)]
+fn counted(renderer: &mut CpuRenderer, scene: &Scene, camera: &Camera, planes: &mut Planes<'_>) {
+    renderer.render(scene, camera, planes);
+}
+
 /// The least of some times, and their median, ms.
 fn spread(mut times: Vec<Duration>) -> [f64; 2] {
     times.sort_unstable();
     [times[0], times[times.len() / 2]].map(|time| time.as_secs_f64() * 1e3)
 }
 
-/// Wall time and CPU time of each of so many frames, by each of so many cameras at once.
+/// Wall time and CPU time of each of so many moments, at which so many cameras draw.
 fn draw_at_once(
     kind: &Kind,
-    frames: u32,
+    moments: u32,
     scene: &Scene,
     camera: &Camera,
     cameras: usize,
     threads: usize,
 ) -> Vec<(Duration, Duration)> {
+    let threads = threads * cameras;
     let clock = if threads == 1 { ClockId::ThreadCPUTime } else { ClockId::ProcessCPUTime };
-    let draw = || {
-        let mut renderer = CpuRenderer::new(threads);
-        let mut buffers = Buffers::new(camera.pixels());
-        // Patterns and occlusion are worked out when they are first seen.
-        renderer.render(scene, camera, &mut buffers.planes(kind.all_planes));
-        let frame = || {
-            let (start, cpu) = (Instant::now(), cpu_time(clock));
-            renderer.render(scene, camera, &mut buffers.planes(kind.all_planes));
-            (start.elapsed(), cpu_time(clock) - cpu)
-        };
-        std::iter::repeat_with(frame).take(frames as usize).collect::<Vec<_>>()
+    let mut renderer = CpuRenderer::new(threads);
+    let mut buffers: Vec<_> = (0..cameras).map(|_| Buffers::new(camera.pixels())).collect();
+    let mut moment = || {
+        let planes = buffers.iter_mut().map(|own| own.planes(kind.all_planes));
+        let mut shots: Vec<_> = planes.map(|planes| Shot { camera: *camera, planes }).collect();
+        let (start, cpu) = (Instant::now(), cpu_time(clock));
+        renderer.render_all(scene, &mut shots);
+        (start.elapsed(), cpu_time(clock) - cpu)
     };
-    std::thread::scope(|scope| {
-        let others: Vec<_> = (1..cameras).map(|_| scope.spawn(draw)).collect();
-        let mut all = draw();
-        for other in others {
-            all.extend(other.join().expect("drawing never panics"));
-        }
-        all
-    })
+    // Patterns and occlusion are worked out when they are first seen.
+    moment();
+    std::iter::repeat_with(moment).take(moments as usize).collect()
 }

@@ -50,13 +50,6 @@ pub(super) struct Draw<'a> {
     pub eye: Vec3,
 }
 
-impl Draw<'_> {
-    /// How much work it is to set up.
-    pub(super) fn cost(&self) -> usize {
-        self.piece.triangles.len() + 8
-    }
-}
-
 /// Everything that may be seen, the nearest first; and apart from it what is see-through, the farthest first.
 pub(super) fn collect<'a>(
     scene: &'a Scene,

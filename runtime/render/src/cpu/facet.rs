@@ -88,12 +88,12 @@ pub(super) struct Facets {
 
 impl Facets {
     /// Forgets all, and makes ready for so many triangles.
-    pub(super) fn clear(&mut self, triangles: usize) {
+    pub(super) fn clear(&mut self, triangles: u32) {
         for facet in self.all.drain(..) {
             self.of[facet.number as usize] = NOTHING;
         }
-        if self.of.len() < triangles {
-            self.of.resize(triangles, NOTHING);
+        if self.of.len() < triangles as usize {
+            self.of.resize(triangles as usize, NOTHING);
         }
     }
 
@@ -113,9 +113,9 @@ impl Facets {
 impl Facet {
     #[inline(never)]
     fn new(shader: &Shader<'_>, number: u32) -> Self {
-        let triangle = shader.triangle(number);
-        let draw = shader.draw(triangle.draw);
-        let (mesh, index) = (draw.mesh, triangle.index as usize);
+        let (place, index) = shader.triangle(number);
+        let draw = shader.draw(place);
+        let mesh = draw.mesh;
         let corners = mesh.triangles[index].map(|corner| corner as usize);
         let [a, b, c] = corners.map(|corner| mesh.positions[corner]);
         let (e1, e2) = (b - a, c - a);
@@ -163,7 +163,7 @@ impl Facet {
         };
         Self {
             number,
-            draw: triangle.draw,
+            draw: place,
             shine,
             flat,
             normal,

@@ -4,6 +4,8 @@ use super::setup::{SUB, Triangle};
 
 /// Wider triangles are filled span by span, narrower ones tested pixel by pixel.
 const NARROW_PX: i32 = 12;
+/// Pixels tested at a time.
+const LANES: usize = 8;
 /// Less than the distance of any crossing that is not a whole pixel from the nearest whole pixel.
 const CROSSING_SLACK: f64 = 1.0 / (1u64 << 29) as f64;
 
@@ -25,32 +27,131 @@ fn side(from: [i32; 2], to: [i32; 2]) -> Side {
     Side { origin: origin - i64::from(!inclusive), per_x: -dy * SUB, per_y: dx * SUB }
 }
 
-/// Draws all triangles into the rows of one band.
-#[inline(always)]
-pub(super) fn all(batches: &[Vec<Triangle>], first_row: usize, width: usize, seen: &mut [u32], nearness: &mut [f32]) {
-    let rows = (first_row as i32, (first_row + seen.len() / width) as i32 - 1);
-    let mut number = 0;
-    for batch in batches {
-        for triangle in batch {
-            let (top, bottom) = (i32::from(triangle.rect[1]).max(rows.0), i32::from(triangle.rect[3]).min(rows.1));
-            if top <= bottom {
-                let sides = [0, 1, 2].map(|i| side(triangle.at[i], triangle.at[(i + 1) % 3]));
-                if is_narrow(triangle) {
-                    narrow(triangle, sides, number, (top, bottom), first_row, width, seen, nearness);
-                } else {
-                    wide(triangle, sides, number, (top, bottom), first_row, width, seen, nearness);
+/// The rows of a picture that are drawn together.
+pub(super) struct Rows<'a> {
+    pub first: usize,
+    pub width: usize,
+    /// The number of the triangle that each pixel sees.
+    pub seen: &'a mut [u32],
+    /// How near it is there, 1/m.
+    pub nearness: &'a mut [f32],
+}
+
+impl Rows<'_> {
+    /// How many there are.
+    pub(super) fn count(&self) -> usize {
+        self.seen.len() / self.width
+    }
+
+    /// Draws a triangle that has this number.
+    #[inline(always)]
+    pub(super) fn draw(&mut self, triangle: &Triangle, number: u32) {
+        let (first, last) = (self.first as i32, (self.first + self.count()) as i32 - 1);
+        let (top, bottom) = (i32::from(triangle.rect[1]).max(first), i32::from(triangle.rect[3]).min(last));
+        if top > bottom {
+            return;
+        }
+        let sides = [0, 1, 2].map(|i| side(triangle.at[i], triangle.at[(i + 1) % 3]));
+        if is_narrow(triangle) {
+            self.narrow(triangle, sides, number, (top, bottom));
+        } else {
+            self.wide(triangle, sides, number, (top, bottom));
+        }
+    }
+
+    /// Tests eight pixels at a time against all three sides.
+    #[inline(always)]
+    fn narrow(&mut self, triangle: &Triangle, sides: [Side; 3], number: u32, (top, bottom): (i32, i32)) {
+        let (left, right) = (i32::from(triangle.rect[0]), i32::from(triangle.rect[2]));
+        // Near a narrow triangle's box every value fits 32 bits once it is taken relative to a corner of the box.
+        let mut start = sides.map(|side| {
+            (side.origin + i64::from(left) * i64::from(side.per_x) + i64::from(top) * i64::from(side.per_y)) as i32
+        });
+        let [at_origin, per_x, per_y] = triangle.nearness;
+        let [least, most] = triangle.bounds;
+        for y in top..=bottom {
+            let row = (y as usize - self.first) * self.width;
+            let near = at_origin + per_x * left as f32 + per_y * y as f32;
+            for done in (0..=right - left).step_by(LANES) {
+                let at = row + (left + done) as usize;
+                // Negative beyond the right end, and outside of any side.
+                let outside = |i: i32| {
+                    let [a, b, c] = [0, 1, 2].map(|s| start[s] + sides[s].per_x * (done + i));
+                    a | b | c | (right - left - done - i)
+                };
+                let value = |i: i32| (near + per_x * (done + i) as f32).clamp(least, most);
+                let seen = self.seen[at..].first_chunk_mut::<LANES>();
+                let nearness = self.nearness[at..].first_chunk_mut::<LANES>();
+                if let (Some(seen), Some(nearness)) = (seen, nearness) {
+                    for i in 0..LANES {
+                        let value = value(i as i32);
+                        let wins = (outside(i as i32) >= 0) & (value > nearness[i]);
+                        nearness[i] = if wins { value } else { nearness[i] };
+                        seen[i] = if wins { number } else { seen[i] };
+                    }
+                    continue;
+                }
+                // At the end of the last row there may be fewer.
+                for (i, (seen, nearness)) in self.seen[at..].iter_mut().zip(&mut self.nearness[at..]).enumerate() {
+                    let value = value(i as i32);
+                    if outside(i as i32) >= 0 && value > *nearness {
+                        (*seen, *nearness) = (number, value);
+                    }
                 }
             }
-            number += 1;
+            for (value, side) in start.iter_mut().zip(sides) {
+                *value += side.per_y;
+            }
+        }
+    }
+
+    /// Works out for each row which of its pixels lie inside.
+    #[inline(always)]
+    fn wide(&mut self, triangle: &Triangle, sides: [Side; 3], number: u32, (top, bottom): (i32, i32)) {
+        let inverse = sides.map(|side| 1.0 / f64::from(side.per_x));
+        let [at_origin, per_x, per_y] = triangle.nearness;
+        let [least, most] = triangle.bounds;
+        for y in top..=bottom {
+            let (mut from, mut to) = (i32::from(triangle.rect[0]), i32::from(triangle.rect[2]));
+            for (side, inverse) in sides.iter().zip(inverse) {
+                let value = side.origin + i64::from(y) * i64::from(side.per_y);
+                if side.per_x == 0 {
+                    if value < 0 {
+                        to = -1;
+                    }
+                    continue;
+                }
+                let crossing = (-value as f64 * inverse).clamp(-65_536.0, 65_536.0);
+                if side.per_x > 0 {
+                    // The first whole number not below the crossing.
+                    from = from.max(65_537 - (65_537.0 - crossing + CROSSING_SLACK) as i32);
+                } else {
+                    to = to.min((crossing + CROSSING_SLACK + 65_537.0) as i32 - 65_537);
+                }
+            }
+            if from > to {
+                continue;
+            }
+            let row = (y as usize - self.first) * self.width;
+            let span = row + from as usize..row + to as usize + 1;
+            let start = at_origin + per_x * from as f32 + per_y * y as f32;
+            let pixels = self.seen[span.clone()].iter_mut().zip(&mut self.nearness[span]);
+            for (step, (seen, nearness)) in pixels.enumerate() {
+                let value = (start + per_x * step as f32).clamp(least, most);
+                let wins = value > *nearness;
+                *nearness = if wins { value } else { *nearness };
+                *seen = if wins { number } else { *seen };
+            }
         }
     }
 }
 
 /// Whether few of its pixels lie side by side, and it is small enough as a whole, also beyond the picture's edges, for
-/// [`narrow`]'s 32 bits: with extents of `w` and `h` pixels no side exceeds `2 * w * h * SUB * SUB`.
+/// [`Rows::narrow`]'s 32 bits: with extents of `w` and `h` pixels no side exceeds `2 * w * h * SUB * SUB`, nor five times
+/// as much as far beyond its right end as is tested.
 #[inline(always)]
 fn is_narrow(triangle: &Triangle) -> bool {
-    const MOST_AREA_PX: i64 = 1 << 17;
+    const MOST_AREA_PX: i64 = 1 << 14;
     if i32::from(triangle.rect[2] - triangle.rect[0]) >= NARROW_PX {
         return false;
     }
@@ -58,93 +159,4 @@ fn is_narrow(triangle: &Triangle) -> bool {
     let width = a[0].max(b[0]).max(c[0]) - a[0].min(b[0]).min(c[0]);
     let height = a[1].max(b[1]).max(c[1]) - a[1].min(b[1]).min(c[1]);
     (i64::from(width / SUB) + 2) * (i64::from(height / SUB) + 2) < MOST_AREA_PX
-}
-
-#[expect(clippy::too_many_arguments, reason = "the innermost loop takes plain values")]
-#[inline(always)]
-fn narrow(
-    triangle: &Triangle,
-    sides: [Side; 3],
-    number: u32,
-    (top, bottom): (i32, i32),
-    first_row: usize,
-    width: usize,
-    seen: &mut [u32],
-    nearness: &mut [f32],
-) {
-    let (left, right) = (i32::from(triangle.rect[0]), i32::from(triangle.rect[2]));
-    // Within a narrow triangle's box every value fits 32 bits once it is taken relative to a corner of the box.
-    let mut start = sides.map(|side| {
-        (side.origin + i64::from(left) * i64::from(side.per_x) + i64::from(top) * i64::from(side.per_y)) as i32
-    });
-    let [at_origin, per_x, per_y] = triangle.nearness;
-    for y in top..=bottom {
-        let row = (y as usize - first_row) * width;
-        let mut near = at_origin + per_x * left as f32 + per_y * y as f32;
-        let [mut a, mut b, mut c] = start;
-        for x in row + left as usize..=row + right as usize {
-            if a | b | c >= 0 {
-                let value = near.clamp(triangle.bounds[0], triangle.bounds[1]);
-                if value > nearness[x] {
-                    nearness[x] = value;
-                    seen[x] = number;
-                }
-            }
-            a += sides[0].per_x;
-            b += sides[1].per_x;
-            c += sides[2].per_x;
-            near += per_x;
-        }
-        for (value, side) in start.iter_mut().zip(sides) {
-            *value += side.per_y;
-        }
-    }
-}
-
-#[expect(clippy::too_many_arguments, reason = "the innermost loop takes plain values")]
-#[inline(always)]
-fn wide(
-    triangle: &Triangle,
-    sides: [Side; 3],
-    number: u32,
-    (top, bottom): (i32, i32),
-    first_row: usize,
-    width: usize,
-    seen: &mut [u32],
-    nearness: &mut [f32],
-) {
-    let inverse = sides.map(|side| 1.0 / f64::from(side.per_x));
-    let [at_origin, per_x, per_y] = triangle.nearness;
-    let [least, most] = triangle.bounds;
-    for y in top..=bottom {
-        let (mut from, mut to) = (i32::from(triangle.rect[0]), i32::from(triangle.rect[2]));
-        for (side, inverse) in sides.iter().zip(inverse) {
-            let value = side.origin + i64::from(y) * i64::from(side.per_y);
-            if side.per_x == 0 {
-                if value < 0 {
-                    to = -1;
-                }
-                continue;
-            }
-            let crossing = (-value as f64 * inverse).clamp(-65_536.0, 65_536.0);
-            if side.per_x > 0 {
-                // The first whole number not below the crossing.
-                from = from.max(65_537 - (65_537.0 - crossing + CROSSING_SLACK) as i32);
-            } else {
-                to = to.min((crossing + CROSSING_SLACK + 65_537.0) as i32 - 65_537);
-            }
-        }
-        if from > to {
-            continue;
-        }
-        let row = (y as usize - first_row) * width;
-        let span = row + from as usize..row + to as usize + 1;
-        let start = at_origin + per_x * from as f32 + per_y * y as f32;
-        for (step, (seen, nearness)) in seen[span.clone()].iter_mut().zip(&mut nearness[span]).enumerate() {
-            let value = (start + per_x * step as f32).clamp(least, most);
-            let wins = value > *nearness;
-            *nearness = if wins { value } else { *nearness };
-            *seen = if wins { number } else { *seen };
-        }
-    }
 }

@@ -7,7 +7,7 @@ use glam::Vec3;
 use super::NOTHING;
 use super::draw::Draw;
 use super::facet::{Facets, Shine};
-use super::setup::Triangle;
+use super::numbers::Numbers;
 use super::strip::{LONG, Out, Strip};
 use crate::camera::View;
 use crate::color::{from_srgb, srgb_table, to_srgb};
@@ -33,9 +33,7 @@ pub const LIFT_M: f32 = 0.03;
 pub(super) struct Shader<'a> {
     view: &'a View,
     draws: &'a [Draw<'a>],
-    batches: &'a [Vec<Triangle>],
-    /// The number of each batch's first triangle.
-    firsts: Vec<u32>,
+    numbers: &'a Numbers,
     pub shadows: &'a ShadowMap,
     pictures: &'static Pictures,
     pub towards_light: Vec3,
@@ -52,21 +50,14 @@ impl<'a> Shader<'a> {
     pub(super) fn new(
         view: &'a View,
         draws: &'a [Draw<'a>],
-        batches: &'a [Vec<Triangle>],
+        numbers: &'a Numbers,
         shadows: &'a ShadowMap,
         wants_color: bool,
     ) -> Self {
-        let mut firsts = Vec::with_capacity(batches.len());
-        let mut next = 0;
-        for batch in batches {
-            firsts.push(next);
-            next += batch.len() as u32;
-        }
         Self {
             view,
             draws,
-            batches,
-            firsts,
+            numbers,
             shadows,
             pictures: Pictures::get(),
             towards_light: towards_light(),
@@ -78,30 +69,25 @@ impl<'a> Shader<'a> {
         }
     }
 
-    pub(super) fn batches(&self) -> &[Vec<Triangle>] {
-        self.batches
+    /// The draw that a triangle belongs to, and its place in that draw's mesh.
+    pub(super) fn triangle(&self, number: u32) -> (u32, usize) {
+        let draw = self.numbers.draw_of(number);
+        let index = number - self.numbers.first(draw) + self.draws[draw].piece.triangles.start;
+        (draw as u32, index as usize)
     }
 
-    /// How many triangles there are.
-    pub(super) fn triangles(&self) -> usize {
-        self.batches.iter().map(Vec::len).sum()
-    }
-
-    pub(super) fn triangle(&self, number: u32) -> &Triangle {
-        let batch = self.firsts.partition_point(|first| *first <= number) - 1;
-        &self.batches[batch][(number - self.firsts[batch]) as usize]
-    }
-
-    pub(super) fn id(&self, number: u32) -> u32 {
-        self.draws[self.triangle(number).draw as usize].id
-    }
-
+    #[inline(always)]
     pub(super) fn ids(&self, seen: &[u32], out: &mut [u32]) {
-        let (mut known, mut id) = (NOTHING, 0);
+        // Those of the draw that was met last.
+        let (mut known, mut id) = (0..0, 0);
         for (number, out) in seen.iter().zip(out) {
-            if *number != known {
-                known = *number;
-                id = if known == NOTHING { 0 } else { self.id(known) };
+            if !known.contains(number) {
+                (known, id) = if *number == NOTHING {
+                    (NOTHING..NOTHING, 0)
+                } else {
+                    let draw = self.numbers.draw_of(*number);
+                    (self.numbers.of(draw), self.draws[draw].id)
+                };
             }
             *out = id;
         }

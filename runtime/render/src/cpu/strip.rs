@@ -124,7 +124,8 @@ impl Strip {
         near[..nearness.len()].copy_from_slice(nearness);
         self.look(shader, first, y as f32, &near);
         let wants_color = out.color.is_some();
-        let (mut glossy, mut lit, mut alone) = (false, false, false);
+        let (mut glossy, mut lit) = (false, false);
+        let (mut alone, mut others) = ([(Run { from: 0, to: 0 }, Shine::Lit); LONG], 0);
         let mut from = 0;
         while from < seen.len() {
             let number = seen[from];
@@ -136,7 +137,8 @@ impl Strip {
             from = to;
             if number == super::NOTHING {
                 self.fill_normal(run, Vec3::ZERO);
-                alone = true;
+                alone[others] = (run, Shine::Sky);
+                others += 1;
                 continue;
             }
             let facet = facets.get(shader, number);
@@ -147,7 +149,8 @@ impl Strip {
                 glossy |= facet.gloss.shine > 0.0;
                 lit = true;
             } else {
-                alone = true;
+                alone[others] = (run, facet.shine);
+                others += 1;
             }
         }
         if let Some(normals) = &mut out.normals {
@@ -162,8 +165,8 @@ impl Strip {
                 }
                 self.write_color(color);
             }
-            if alone {
-                shine_alone(shader, facets, (first, y), seen, color);
+            for (run, shine) in &alone[..others] {
+                shine_alone(shader, (first, y), *run, *shine, color);
             }
         }
     }
@@ -461,25 +464,16 @@ impl Strip {
 
 /// Pixels whose colour does not come from the lamps.
 #[inline(always)]
-fn shine_alone(
-    shader: &Shader<'_>,
-    facets: &mut Facets,
-    (first, y): (usize, usize),
-    seen: &[u32],
-    out: &mut [[u8; 4]],
-) {
-    let table = color::srgb_table();
-    let (mut known, mut shine) = (super::NOTHING, Shine::Sky);
-    for (i, (number, out)) in seen.iter().zip(out).enumerate() {
-        if *number != known {
-            known = *number;
-            shine = if known == super::NOTHING { Shine::Sky } else { facets.get(shader, known).shine };
-        }
-        match shine {
-            Shine::Lit => {}
-            Shine::Own(color) => *out = color,
-            Shine::Sky => {
-                let [r, g, b] = to_srgb(table, outside(shader.ray((first + i) as f32, y as f32).normalize()));
+fn shine_alone(shader: &Shader<'_>, (first, y): (usize, usize), run: Run, shine: Shine, out: &mut [[u8; 4]]) {
+    let out = &mut out[run.from..run.to];
+    match shine {
+        Shine::Lit => {}
+        Shine::Own(color) => out.fill(color),
+        Shine::Sky => {
+            let table = color::srgb_table();
+            for (i, out) in out.iter_mut().enumerate() {
+                let ray = shader.ray((first + run.from + i) as f32, y as f32);
+                let [r, g, b] = to_srgb(table, outside(ray.normalize()));
                 *out = [r, g, b, 255];
             }
         }

@@ -7,7 +7,8 @@
 
 use glam::Vec3;
 
-use super::Band;
+use super::avx2::Avx2;
+use super::band::Band;
 use super::draw::Draw;
 use super::setup::{self, SUB, Triangle};
 use super::shade::{ABOVE, BELOW};
@@ -58,24 +59,24 @@ struct Span {
 }
 
 impl<'a> Veils<'a> {
-    /// `draws` in the order of drawing; `wide` only where the processor has AVX2; `first` triangles were drawn before.
-    pub(super) fn new(wide: bool, draws: &'a [Draw<'a>], view: &'a View, first: usize) -> Self {
+    /// `draws` in the order of drawing; triangles below `first` were drawn before.
+    pub(super) fn new(wide: Option<Avx2>, draws: &'a [Draw<'a>], view: &'a View, first: u32) -> Self {
         let mut triangles = Vec::new();
         if !draws.is_empty() {
-            setup::all(wide, &mut triangles, draws, 0, view);
+            setup::all(wide, &mut triangles, draws, view);
         }
         let towards_light = Vec3::new(-SLANT[0], -SLANT[1], 1.0).normalize();
-        Self { view, draws, triangles, towards_light, first: first as u32 }
+        Self { view, draws, triangles, towards_light, first }
     }
 
     /// Blends everything over the rows of a finished band.
-    pub(super) fn blend(&self, wide: bool, band: &mut Band<'_>, width: usize) {
+    pub(super) fn blend(&self, wide: Option<Avx2>, band: &mut Band<'_>, width: usize) {
         if self.triangles.is_empty() {
             return;
         }
         #[cfg(target_arch = "x86_64")]
-        if wide {
-            // SAFETY: `wide` is true only where the processor has AVX2.
+        if wide.is_some() {
+            // SAFETY: the proof says that the processor has AVX2.
             unsafe { self.blend_avx2(band, width) };
             return;
         }
