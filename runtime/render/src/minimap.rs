@@ -182,7 +182,7 @@ fn fit(words: &[String], wide_m: f32, high_m: f32) -> (Vec<String>, f32) {
     let size = |lines: &[String]| {
         let longest = lines.iter().map(|line| width_of(&kit::line_of_text(line))).fold(0.1, f32::max);
         let rows = (lines.len() as f32 - 1.0) * LINE + 1.0;
-        (wide_m / longest).min(high_m / rows).min(CAPITAL_M).max(0.01)
+        (wide_m / longest).min(high_m / rows).clamp(0.01, CAPITAL_M)
     };
     let (one, each) = (vec![words.join(" ")], words.to_vec());
     let (large, small) = (size(&one), size(&each));

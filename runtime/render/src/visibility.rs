@@ -137,7 +137,7 @@ impl SeenTable {
                 (*west, *east, *bottom) = ((*west).min(left), (*east).max(right), row + 1);
                 return;
             }
-            slot = slot + 1 & mask;
+            slot = (slot + 1) & mask;
         }
         self.slots[slot] = self.seen.len() as u32;
         let bounds = [left, row, right, row + 1];
@@ -154,7 +154,7 @@ impl SeenTable {
         for (place, seen) in self.seen.iter().enumerate() {
             let mut slot = seen.id.wrapping_mul(0x9E37_79B1) as usize >> 12 & (length - 1);
             while self.slots[slot] != FREE {
-                slot = slot + 1 & (length - 1);
+                slot = (slot + 1) & (length - 1);
             }
             self.slots[slot] = place as u32;
         }

@@ -190,7 +190,7 @@ fn wall(plan: &mut Plan, room: &Room, run: &WallRun, light: &RoomLight<'_>) {
     // The same for all walls of a room: where two meet, their corners do too, and nothing shines through between them.
     let bit = 1 << room.id as u8;
     let gaps = plan.gaps.iter().filter(|gap| gap.rooms & bit != 0);
-    let mut levels: Vec<f32> = gaps.flat_map(|gap| hole_levels(gap)).filter(|z| *z > 0.0).collect();
+    let mut levels: Vec<f32> = gaps.flat_map(hole_levels).filter(|z| *z > 0.0).collect();
     if room.wainscot.is_some() {
         levels.push(WAINSCOT_M);
     }
