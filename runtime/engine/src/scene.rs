@@ -213,3 +213,6 @@ impl Moment {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;
