@@ -44,10 +44,10 @@ def main():
     for camera in range(cameras):
         pictures = [read(folder / f"{name}-{camera}.raw", width, height) for name in names]
         _, depth_m, objects = pictures[0]
-        for row, (_, depth, seen) in zip(alike, pictures):
+        for row, (_, depth, seen) in zip(alike, pictures, strict=True):
             row += (seen == objects).mean(), (np.abs(depth - depth_m) < 0.02 * depth_m).mean()
         write_png(folder / f"{camera}.png", np.concatenate([shown(*picture) for picture in pictures], axis=1))
-    for name, (objects, depths) in zip(names, alike * 100 / cameras):
+    for name, (objects, depths) in zip(names, alike * 100 / cameras, strict=True):
         print(f"{name}: same object on {objects:.1f} % of the pixels, same depth within 2 % on {depths:.1f} %")
 
 
