@@ -9,6 +9,8 @@ mod mirror;
 use serde::{Deserialize, Serialize};
 
 use crate::builtin;
+use crate::catalog::Catalog;
+use footprint::Footprint;
 
 pub use check::LayoutFault;
 pub use floor::FreeFloor;
@@ -155,6 +157,24 @@ impl Layout {
     #[must_use]
     pub fn placement(&self, instance: &str) -> Option<&Placement> {
         self.placements.iter().find(|placement| placement.instance == instance)
+    }
+
+    /// The outlines of the furniture seen from above, m: corners in order, lower pieces before those above them. What
+    /// stands on other things, and doors, are not among them.
+    #[must_use]
+    pub fn furniture_outlines_m(&self, catalog: &Catalog) -> Vec<[[f32; 2]; 4]> {
+        let is_door = |placement: &Placement| {
+            self.openings.iter().any(|opening| opening.door.as_ref() == Some(&placement.instance))
+        };
+        let stands = |placement: &&Placement| placement.on.is_none() && !is_door(placement);
+        let mut prints: Vec<Footprint> = (self.placements.iter().filter(stands))
+            .filter_map(|placement| {
+                let class = catalog.class(catalog.class_of_instance(&placement.instance)?);
+                Some(Footprint::of(self, placement, class))
+            })
+            .collect();
+        prints.sort_by(|a, b| a.height_m[1].total_cmp(&b.height_m[1]));
+        prints.iter().map(Footprint::corners_m).collect()
     }
 
     /// Where a placement's origin lies in the world, m: its own `at_m`, through the frames of all it stands on. One

@@ -14,6 +14,7 @@ pub mod goal;
 pub mod layout;
 pub mod mission;
 pub mod model;
+pub mod semantic;
 pub mod state;
 
 /// The project's own data files, as `(file name, text)`.
@@ -28,4 +29,5 @@ pub use goal::{Expression, Goal, GoalState, InstancePattern, Occasion, Predicate
 pub use layout::{Layout, LayoutError, RoomId};
 pub use mission::{Mission, ObjectRequest};
 pub use model::Model;
+pub use semantic::SemanticClass;
 pub use state::{Color, Fluid, StateFlag, StateFlags};

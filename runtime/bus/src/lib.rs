@@ -18,6 +18,7 @@
 //! # Ok::<(), cohabit_bus::BusError>(())
 //! ```
 
+mod camera;
 mod envelope;
 mod error;
 mod local;
@@ -28,11 +29,12 @@ mod text;
 mod topic;
 mod transport;
 
+pub use camera::{CameraId, CameraName, CameraNameError};
 pub use envelope::{Block, Envelope, monotonic_nanos, wall_nanos};
 pub use error::BusError;
 pub use local::Local;
 pub use session::{Session, SessionError};
 pub use shm::Shm;
 pub use text::Text;
-pub use topic::{CameraId, Topic, Wake};
+pub use topic::{Topic, Wake};
 pub use transport::{Listener, Publisher, Sample, Subscriber, Transport};

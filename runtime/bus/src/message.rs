@@ -1,6 +1,7 @@
 //! The messages of a session, as they lie in shared memory: fixed records, and lists of them behind a header.
 
 mod action;
+mod camera;
 mod command;
 mod dialog;
 mod event;
@@ -11,10 +12,11 @@ mod state;
 mod tick;
 
 pub use action::ActionRecord;
+pub use camera::{CameraKind, CameraRecord};
 pub use command::CommandMessage;
 pub use dialog::{DialogHeader, DialogKind, DialogMessage, DialogView, PlanStep};
 pub use event::{EventKind, EventMessage};
-pub use frame::{FrameHeader, FrameLayout, FrameView, Plane};
+pub use frame::{FrameHeader, FrameLayout, FrameParts, FrameView, Plane, SeenRecord};
 pub use mission::{MissionHeader, MissionMessage};
 pub use state::{BodyRecord, GoalRecord, NoteRecord, ObjectRecord, StateHeader, StateParts, StateView};
 pub use tick::{TickHeader, TickMessage, TickView};

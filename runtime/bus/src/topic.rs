@@ -2,14 +2,7 @@
 
 use std::fmt;
 
-/// A camera of the simulator.
-#[derive(Clone, Copy, Debug, Eq, Hash, Ord, PartialEq, PartialOrd)]
-pub enum CameraId {
-    /// A body's own eyes: 300x300, all modalities.
-    Egocentric(u8),
-    /// For people who watch a body: colour alone, larger.
-    Spectator(u8),
-}
+use crate::camera::CameraId;
 
 /// A topic: one kind of message, from anybody to everybody who subscribes.
 #[derive(Clone, Copy, Debug, Eq, Hash, Ord, PartialEq, PartialOrd)]
@@ -70,8 +63,8 @@ impl Topic {
         match self {
             Self::Mission => 64 << 10,
             Self::State => 96 << 10,
-            Self::Frames(CameraId::Egocentric(_)) => 300 * 300 * 16 + 4096,
-            Self::Frames(CameraId::Spectator(_)) => 640 * 360 * 4 + 4096,
+            Self::Frames(CameraId::Egocentric(_)) => 300 * 300 * 16 + (16 << 10),
+            Self::Frames(_) => 854 * 480 * 8 + (16 << 10),
             Self::Events | Self::Commands | Self::Ticks => 512,
             Self::Dialog => 4096,
         }
@@ -85,15 +78,6 @@ impl Topic {
             Self::Events | Self::Dialog => Wake::Talk,
             Self::Commands => Wake::Commands,
             Self::Frames(camera) => Wake::Frames(camera),
-        }
-    }
-}
-
-impl fmt::Display for CameraId {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Egocentric(body) => write!(f, "egocentric/{body}"),
-            Self::Spectator(body) => write!(f, "spectator/{body}"),
         }
     }
 }

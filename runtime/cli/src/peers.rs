@@ -18,7 +18,7 @@ use cohabit_agent::PlanFollower;
 use cohabit_bus::{Session, Shm, Topic, Transport, Wake, message::MissionMessage};
 use cohabit_cdf::BodyRequest;
 use cohabit_dialog::DialogConfig;
-use cohabit_engine::{SessionPlan, Simulator};
+use cohabit_engine::{CameraPlan, SessionPlan, Simulator};
 use cohabit_record::Recorder;
 use cohabit_render::{CpuRenderer, MeshLibrary};
 
@@ -57,6 +57,11 @@ pub struct Sim {
     /// A body beside the mission's own robot: `robot` or `person`, with a room if wanted; as often as needed
     #[arg(long = "body", value_name = "KIND[@ROOM]")]
     bodies: Vec<BodyRequest>,
+    /// A camera beside those of the bodies, on the topic `frames/NAME`: KIND is `egocentric`, `panorama`,
+    /// `third-person`, `fixed` (x=, y=, z= in metres, yaw=, pitch= in degrees) or `top-down` (span= in metres); all have
+    /// size=WxH, rate=, planes=color+depth+normals+ids, and most body= and fov=; as often as needed
+    #[arg(long = "camera", value_name = "NAME=KIND[,OPTION=VALUE]")]
+    cameras: Vec<CameraPlan>,
     /// Threads that render
     #[arg(long, default_value_t = 2)]
     threads: usize,
@@ -66,6 +71,7 @@ impl Sim {
     /// Runs the simulator.
     pub fn run(&self) -> anyhow::Result<()> {
         let plan = MissionFile::find(self.mission.as_deref())?.plan(self.seed, &self.bodies)?;
+        let plan = plan.with_cameras(self.cameras.clone()).map_err(bad_input)?;
         let (bus, stop) = self.joining.join()?;
         let (world, meshes) = thread::scope(|scope| {
             let meshes = scope.spawn(|| MeshLibrary::build(&plan.catalog));

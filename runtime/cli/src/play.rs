@@ -9,6 +9,7 @@ use std::{
 use anyhow::Context as _;
 use cohabit_bus::{Session, SessionError};
 use cohabit_cdf::BodyRequest;
+use cohabit_engine::CameraPlan;
 
 use crate::{
     failure::bad_input,
@@ -34,6 +35,11 @@ pub struct Play {
     /// A body beside the mission's own robot: `robot` or `person`, with a room if wanted; as often as needed
     #[arg(long = "body", value_name = "KIND[@ROOM]")]
     bodies: Vec<BodyRequest>,
+    /// A camera beside those of the bodies, on the topic `frames/NAME`: KIND is `egocentric`, `panorama`,
+    /// `third-person`, `fixed` (x=, y=, z= in metres, yaw=, pitch= in degrees) or `top-down` (span= in metres); all have
+    /// size=WxH, rate=, planes=color+depth+normals+ids, and most body= and fov=; as often as needed
+    #[arg(long = "camera", value_name = "NAME=KIND[,OPTION=VALUE]")]
+    cameras: Vec<CameraPlan>,
     /// The session log to write; one in the user's data folder if absent
     #[arg(long)]
     log: Option<PathBuf>,
@@ -49,7 +55,7 @@ impl Play {
         let stop = stop::on_request()?;
         let seed = self.seed.unwrap_or_else(clock_seed);
         let mission = MissionFile::find(self.mission.as_deref())?;
-        let plan = mission.plan(seed, &self.bodies)?;
+        let plan = mission.plan(seed, &self.bodies)?.with_cameras(self.cameras.clone()).map_err(bad_input)?;
         for name in Session::wipe_dead() {
             println!("cleaned up after session {name}, which was not ended");
         }
@@ -62,7 +68,7 @@ impl Play {
         })?;
         println!("Playing \"{}\" ({})", plan.mission.goal_text, mission.name);
         let roles = [
-            Role::sim(self.mission.as_deref(), seed, &self.bodies, self.threads),
+            Role::sim(self.mission.as_deref(), seed, &self.bodies, &self.cameras, self.threads),
             Role::record(&log),
             Role::agent(),
             Role::dialog(&self.listening),

@@ -16,6 +16,7 @@ use std::{
 
 use anyhow::Context as _;
 use cohabit_cdf::BodyRequest;
+use cohabit_engine::CameraPlan;
 use rustix::process::{Pid, Signal, kill_process};
 
 use crate::{failure::BadInput, peers::Listening};
@@ -35,10 +36,11 @@ pub struct Role {
 
 impl Role {
     /// The simulator: without it there is no session.
-    pub fn sim(mission: Option<&str>, seed: u64, bodies: &[BodyRequest], threads: usize) -> Self {
+    pub fn sim(mission: Option<&str>, seed: u64, bodies: &[BodyRequest], cameras: &[CameraPlan], threads: usize) -> Self {
         let mut arguments = vec!["--seed".into(), seed.to_string().into()];
         arguments.extend(["--threads".into(), threads.to_string().into()]);
         arguments.extend(bodies.iter().map(|body| format!("--body={body}").into()));
+        arguments.extend(cameras.iter().map(|camera| format!("--camera={camera}").into()));
         arguments.extend(mission.map(OsString::from));
         Self { name: "sim", arguments }
     }

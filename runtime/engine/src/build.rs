@@ -3,11 +3,13 @@
 use std::sync::Arc;
 
 use cohabit_bus::{
-    Text,
+    CameraId, Text,
     message::{MissionHeader, MissionMessage},
 };
 use cohabit_cdf::{BodyRequest, Catalog, Layout, LayoutError, Mission, mission};
 use cohabit_world::World;
+
+use crate::camera_plan::CameraPlan;
 
 /// All that does not change while a session runs, and the seed of what is random in it.
 #[derive(Clone, Debug)]
@@ -26,7 +28,12 @@ pub struct SessionPlan {
     pub seed: u64,
     /// Bodies beside those of the mission.
     pub bodies: Vec<BodyRequest>,
+    /// Cameras beside those of the bodies.
+    pub cameras: Vec<CameraPlan>,
 }
+
+/// The most cameras that can be asked for.
+const MOST_CAMERAS: usize = 64;
 
 /// Why a session cannot be built.
 #[derive(Debug, thiserror::Error)]
@@ -45,6 +52,22 @@ pub enum BuildError {
         /// What is wrong.
         source: cohabit_world::BuildError,
     },
+    /// Two cameras have one name.
+    #[error("two cameras are called `{0}`: give each a name of its own")]
+    CameraTwice(CameraId),
+    /// There are too many cameras.
+    #[error("{0} cameras are asked for: at most {MOST_CAMERAS}")]
+    Cameras(usize),
+    /// A camera belongs to a body that is not there.
+    #[error("camera `{camera}` is to be with body {body}: the session has bodies 0 to {last}; `--body robot` adds one")]
+    CameraBody {
+        /// The camera.
+        camera: CameraId,
+        /// Its body.
+        body: u8,
+        /// The last body there is.
+        last: usize,
+    },
 }
 
 impl SessionPlan {
@@ -60,7 +83,7 @@ impl SessionPlan {
         let mission = Arc::new(checked.mission);
         let layout = Arc::new(Layout::builtin(&mission.layout)?);
         let seed = mission.seed.unwrap_or(seed);
-        Ok(Self { file: file.to_owned(), text: text.to_owned(), catalog, layout, mission, seed, bodies: Vec::new() })
+        Ok(Self { file: file.to_owned(), text: text.to_owned(), catalog, layout, mission, seed, bodies: Vec::new(), cameras: Vec::new() })
     }
 
     /// The same with these bodies beside those of the mission.
@@ -69,17 +92,37 @@ impl SessionPlan {
         Self { bodies, ..self }
     }
 
-    /// What others are told of it.
+    /// The same with these cameras beside those of the bodies.
+    ///
+    /// # Errors
+    /// [`BuildError::Cameras`], [`BuildError::CameraTwice`].
+    pub fn with_cameras(self, cameras: Vec<CameraPlan>) -> Result<Self, BuildError> {
+        if cameras.len() > MOST_CAMERAS {
+            return Err(BuildError::Cameras(cameras.len()));
+        }
+        let twice = (1..cameras.len()).find(|later| cameras[..*later].iter().any(|one| one.id == cameras[*later].id));
+        match twice {
+            Some(later) => Err(BuildError::CameraTwice(cameras[later].id)),
+            None => Ok(Self { cameras, ..self }),
+        }
+    }
+
+    /// All cameras of a session with so many bodies.
+    pub(crate) fn cameras(&self, bodies: usize) -> Vec<CameraPlan> {
+        CameraPlan::of_bodies(bodies).chain(self.cameras.iter().cloned()).collect()
+    }
+
+    /// What others are told of it, but for the cameras.
     #[must_use]
     pub fn message(&self) -> MissionMessage {
         let header = MissionHeader { seed: self.seed, file: Text::new(&self.file), ..MissionHeader::default() };
-        MissionMessage { header, bodies: self.bodies.clone(), text: self.text.clone() }
+        MissionMessage { header, bodies: self.bodies.clone(), cameras: Vec::new(), text: self.text.clone() }
     }
 
     /// The world at its first tick.
     ///
     /// # Errors
-    /// [`BuildError::World`].
+    /// [`BuildError::World`], [`BuildError::CameraBody`].
     pub fn build(&self) -> Result<World, BuildError> {
         let failed = |source| BuildError::World { file: self.file.clone(), source };
         let (catalog, layout, mission) =
@@ -87,6 +130,12 @@ impl SessionPlan {
         let mut world = World::new(catalog, layout, mission, self.seed).map_err(failed)?;
         for request in &self.bodies {
             world.add_body(request.kind, request.room.unwrap_or(self.mission.start_room)).map_err(failed)?;
+        }
+        let bodies = world.bodies().len();
+        for camera in &self.cameras {
+            if let Some(body) = camera.body().filter(|body| usize::from(*body) >= bodies) {
+                return Err(BuildError::CameraBody { camera: camera.id, body, last: bodies - 1 });
+            }
         }
         Ok(world)
     }

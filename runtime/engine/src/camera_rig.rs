@@ -1,7 +1,7 @@
 //! The camera that follows a body for people to watch: behind and above it, smooth, and never outside its room.
 
 use cohabit_cdf::Layout;
-use cohabit_render::{Camera, Instance};
+use cohabit_render::{Camera, Instance, Lens};
 use libm::{cosf, expf, sinf};
 
 use crate::scene::Standing;
@@ -12,7 +12,6 @@ const ABOVE_FLOOR_M: f32 = 1.95;
 const PITCH_RAD: f32 = -0.32;
 /// How much of the head's pitch the camera takes on.
 const HEAD_SHARE: f32 = 0.2;
-const FOV_Y_RAD: f32 = 0.96;
 /// How much higher the camera is, and how much farther down it looks, with a wall right behind the body.
 const RISE_M: f32 = 0.6;
 const LOOK_DOWN_RAD: f32 = 0.6;
@@ -38,7 +37,7 @@ struct Pose {
 
 impl CameraRig {
     /// Moves the camera on by `dt_s` seconds and gives where it is now.
-    pub fn follow(&mut self, standing: &Standing, layout: &Layout, tall: &[Tall], dt_s: f32, size: [u32; 2]) -> Camera {
+    pub fn follow(&mut self, standing: &Standing, layout: &Layout, tall: &[Tall], dt_s: f32, lens: Lens) -> Camera {
         let [x, y, _] = standing.position_m;
         let mut pose =
             self.pose.unwrap_or(Pose { x, y, yaw_rad: standing.yaw_rad, boom_m: BEHIND_M, pitch_rad: PITCH_RAD });
@@ -56,17 +55,8 @@ impl CameraRig {
         let boom = pose.boom_m.max(NEAREST_M);
         // With a wall at its back the camera rises and looks down on the body instead.
         let near_wall = 1.0 - boom / BEHIND_M;
-        Camera {
-            position_m: [pose.x + back[0] * boom, pose.y + back[1] * boom, ABOVE_FLOOR_M + near_wall * RISE_M],
-            yaw_rad: pose.yaw_rad,
-            pitch_rad: pose.pitch_rad - near_wall * LOOK_DOWN_RAD,
-            fov_y_rad: FOV_Y_RAD,
-            width: size[0],
-            height: size[1],
-            hide: None,
-            for_people: true,
-            ceiling: true,
-        }
+        let place = [boom, ABOVE_FLOOR_M + near_wall * RISE_M];
+        Camera::third_person(lens, [pose.x, pose.y], pose.yaw_rad, place, pose.pitch_rad - near_wall * LOOK_DOWN_RAD)
     }
 }
 

@@ -4,12 +4,12 @@ use std::collections::BTreeMap;
 
 use cohabit_bus::{
     BusError, Publisher, Subscriber, Topic, Transport,
-    message::{self, CommandMessage, EventMessage, Malformed, TickHeader, TickMessage},
+    message::{self, CommandMessage, EventMessage, Malformed, MissionMessage, TickHeader, TickMessage},
 };
 use cohabit_cdf::{Action, BodyId, ObjectId, Status};
 use cohabit_world::{CameraTarget, DT_NANOS, Event, Input, Report, World};
 
-use crate::{build::SessionPlan, motion::Motion, report};
+use crate::{build::SessionPlan, camera_plan::CameraPlan, motion::Motion, report};
 
 /// Commands that one tick takes in at most; the rest wait for the next.
 const MAX_INPUTS: usize = 64;
@@ -42,11 +42,11 @@ pub struct Engine {
 }
 
 impl Engine {
-    /// Connects a plan's world to `bus`, and publishes the mission.
+    /// Connects a plan's world to `bus`, and publishes the mission and which cameras there are.
     ///
     /// # Errors
     /// [`EngineError::Bus`].
-    pub fn new(plan: &SessionPlan, world: World, bus: &dyn Transport) -> Result<Self, EngineError> {
+    pub fn new(plan: &SessionPlan, world: World, cameras: &[CameraPlan], bus: &dyn Transport) -> Result<Self, EngineError> {
         let mut engine = Self {
             world,
             commands: bus.subscriber(Topic::Commands)?,
@@ -60,7 +60,8 @@ impl Engine {
             shown: Vec::new(),
             motion: Motion::default(),
         };
-        let message = plan.message();
+        let cameras = cameras.iter().map(CameraPlan::record).collect();
+        let message = MissionMessage { cameras, ..plan.message() };
         engine.mission.send(0, message.bytes(), &mut |bytes| message.write(bytes))?;
         Ok(engine)
     }

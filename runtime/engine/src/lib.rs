@@ -7,8 +7,10 @@
 //! This crate never knows dialog.
 
 mod build;
+mod camera_plan;
 mod camera_rig;
 mod engine;
+mod exposure;
 mod motion;
 pub mod replay;
 pub mod report;
@@ -18,6 +20,7 @@ mod simulator;
 mod studio;
 
 pub use build::{BuildError, SessionPlan};
+pub use camera_plan::{CameraPlan, CameraPlanError, Mount};
 pub use engine::{Engine, EngineError};
 pub use scene::furnishings;
 pub use simulator::Simulator;

@@ -5,15 +5,14 @@ use cohabit_cdf::{
     mission::Era,
     model::{Drive, Material},
 };
-use cohabit_render::{Camera, Highlight, Instance, Look};
+use cohabit_render::{Highlight, Instance, Look};
 use cohabit_world::{BodyView, ObjectView, World};
 use glam::{Quat, Vec3};
 
 use crate::{
     engine::Engine,
     motion::{Gait, Motion, Pour},
-    shot,
-    studio::SPECTATOR_SIZE,
+    shot::{self, Outlook},
 };
 
 /// The id of body `body` in the id plane; objects have their index + 1.
@@ -21,9 +20,6 @@ const FIRST_BODY_ID: u32 = 1 << 20;
 
 /// The id of what a body pours, less the body's own index.
 const FIRST_STREAM_ID: u32 = 1 << 21;
-
-/// How far a robot's own eye sees up and down: the original's camera.
-const EGOCENTRIC_FOV_RAD: f32 = 60.0 / 180.0 * std::f32::consts::PI;
 
 /// One moment of a world, complete enough to be rendered elsewhere.
 #[derive(Clone, Debug, Default)]
@@ -43,7 +39,7 @@ pub struct Moment {
     /// Where each body is, and where its eye.
     pub bodies: Vec<Standing>,
     /// What the mission shows to the people who watch, instead of their body.
-    pub shot: Option<Camera>,
+    pub shot: Option<Outlook>,
 }
 
 /// Where a body stands and looks.
@@ -217,23 +213,7 @@ impl Moment {
                     head_pitch_rad: body.head_pitch_rad,
                 })
                 .collect(),
-            shot: engine.shown().and_then(|target| shot::camera(target, world, SPECTATOR_SIZE)),
+            shot: engine.shown().and_then(|target| shot::outlook(target, world)),
         }
-    }
-
-    /// What a body sees with its own eyes.
-    pub fn egocentric(&self, body: usize, width: u32, height: u32) -> Option<Camera> {
-        let standing = self.bodies.get(body)?;
-        Some(Camera {
-            position_m: standing.eye_m,
-            yaw_rad: standing.yaw_rad,
-            pitch_rad: standing.head_pitch_rad,
-            fov_y_rad: EGOCENTRIC_FOV_RAD,
-            width,
-            height,
-            hide: Some(FIRST_BODY_ID + u32::try_from(body).unwrap_or(0)),
-            for_people: false,
-            ceiling: true,
-        })
     }
 }

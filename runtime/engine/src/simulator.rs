@@ -46,15 +46,16 @@ impl Simulator {
         renderer: Box<dyn Renderer>,
         bus: &dyn Transport,
     ) -> Result<Self, EngineError> {
+        let cameras = plan.cameras(world.bodies().len());
         let studio = Studio::new(
             Arc::clone(&meshes),
             Arc::clone(&plan.layout),
             Arc::clone(&plan.catalog),
             renderer,
-            world.bodies().len(),
+            &cameras,
             bus,
         )?;
-        Ok(Self { engine: Engine::new(plan, world, bus)?, studio, meshes })
+        Ok(Self { engine: Engine::new(plan, world, &cameras, bus)?, studio, meshes })
     }
 
     /// Ticks 60 times a second until `stop`.

@@ -6,26 +6,23 @@ use std::{
 };
 
 use cohabit_bus::{
-    BusError, CameraId, Publisher, Topic, Transport,
-    message::{FrameHeader, FrameLayout, Plane},
-    monotonic_nanos,
+    BusError, Publisher, Topic, Transport,
+    message::{FrameLayout, NONE, Plane},
 };
 use cohabit_cdf::{Catalog, Layout};
-use cohabit_render::{Camera, Instance, Look, MeshLibrary, Planes, Renderer, Scene};
+use cohabit_render::{Camera, Classes, Instance, Look, MeshLibrary, Renderer, Scene, SeenTable};
 
 use crate::{
+    camera_plan::{CameraPlan, Mount},
     camera_rig::{CameraRig, Tall},
-    scene::Moment,
+    exposure::{Darkroom, Take},
+    scene::{Moment, Standing, body_instance_id},
 };
 
-/// Pixels of an egocentric frame, both ways.
-const EGOCENTRIC_SIZE: u32 = 300;
-/// The size of a frame for people.
-pub const SPECTATOR_SIZE: [u32; 2] = [854, 480];
-/// At most so often for people.
-const SPECTATOR_EVERY: Duration = Duration::from_millis(33);
-/// At most so often for a body.
-const EGOCENTRIC_EVERY: Duration = Duration::from_millis(100);
+/// What a camera above the whole plan, or above a body, is to scale at, m above the floor.
+const TABLE_M: f32 = 0.8;
+/// What a camera above a body sees from south to north, if nothing else is said, m.
+const ROUND_A_BODY_M: f32 = 9.0;
 
 /// Where the tick leaves moments and the studio takes them: holds one, the newest.
 #[derive(Default)]
@@ -67,52 +64,78 @@ pub struct Studio {
     renderer: Box<dyn Renderer>,
     layout: Arc<Layout>,
     catalog: Arc<Catalog>,
-    crews: Vec<Crew>,
+    posts: Vec<Post>,
+    classes: Classes,
+    table: SeenTable,
 }
 
-/// The cameras of one body.
-struct Crew {
-    rig: CameraRig,
-    spectator: Post,
-    egocentric: Post,
-}
-
-impl Crew {
-    fn new(bus: &dyn Transport, body: u8) -> Result<Self, BusError> {
-        Ok(Self {
-            rig: CameraRig::default(),
-            spectator: Post::new(bus, CameraId::Spectator(body), SPECTATOR_EVERY)?,
-            egocentric: Post::new(bus, CameraId::Egocentric(body), EGOCENTRIC_EVERY)?,
-        })
-    }
-}
-
-/// A camera's publisher and when it last sent.
+/// A camera with its publisher, and when it last sent.
 struct Post {
+    plan: CameraPlan,
     publisher: Box<dyn Publisher>,
-    every: Duration,
+    rig: CameraRig,
     sent: Option<Instant>,
 }
 
 impl Post {
-    fn new(bus: &dyn Transport, camera: CameraId, every: Duration) -> Result<Self, BusError> {
-        Ok(Self { publisher: bus.publisher(Topic::Frames(camera))?, every, sent: None })
+    fn new(bus: &dyn Transport, plan: CameraPlan) -> Result<Self, BusError> {
+        let publisher = bus.publisher(Topic::Frames(plan.id))?;
+        Ok(Self { plan, publisher, rig: CameraRig::default(), sent: None })
     }
 
     /// Whether a frame is due, and how long after the one before.
     fn due(&mut self) -> Option<Duration> {
-        let now = Instant::now();
-        let since = self.sent.map_or(self.every, |sent| now - sent);
-        if since + Duration::from_millis(4) < self.every || self.publisher.subscribers() == 0 {
+        let (now, every) = (Instant::now(), self.plan.every());
+        let since = self.sent.map_or(every, |sent| now - sent);
+        if since + Duration::from_millis(4) < every || self.publisher.subscribers() == 0 {
             return None;
         }
         self.sent = Some(now);
         Some(since)
     }
+
+    /// A camera for each picture of its frame; none if its body is not there.
+    fn aim(&mut self, moment: &Moment, layout: &Layout, tall: &[Tall], since: Duration) -> Vec<Camera> {
+        let lens = self.plan.lens;
+        let standing = |body: u8| moment.bodies.get(usize::from(body));
+        let own = |body: u8| body_instance_id(cohabit_cdf::BodyId(u32::from(body)));
+        let cameras = match self.plan.mount {
+            Mount::Head { body } => standing(body).map(|Standing { eye_m, yaw_rad, head_pitch_rad, .. }| {
+                vec![Camera::egocentric(lens, *eye_m, *yaw_rad, *head_pitch_rad, own(body))]
+            }),
+            Mount::Panorama { body } => standing(body).map(|Standing { eye_m, yaw_rad, head_pitch_rad, .. }| {
+                Camera::panorama(lens, *eye_m, *yaw_rad, *head_pitch_rad, own(body)).to_vec()
+            }),
+            Mount::Behind { body } => standing(body).map(|standing| {
+                let followed = self.rig.follow(standing, layout, tall, since.as_secs_f32().min(0.5), lens);
+                vec![moment.shot.map_or(followed, |shot| shot.camera(lens))]
+            }),
+            Mount::Fixed { at_m, yaw_deg, pitch_deg } => {
+                Some(vec![Camera::fixed(lens, at_m, yaw_deg.to_radians(), pitch_deg.to_radians())])
+            }
+            Mount::Above { body: Some(body), span_m } => standing(body).map(|standing| {
+                let [x, y, _] = standing.position_m;
+                vec![Camera::top_down(lens.size(), [x, y], TABLE_M, span_m.unwrap_or(ROUND_A_BODY_M))]
+            }),
+            Mount::Above { body: None, span_m } => {
+                let bounds @ [west, south, east, north] = layout.bounds_m();
+                let middle = [f32::midpoint(west, east), f32::midpoint(south, north)];
+                Some(vec![span_m.map_or_else(
+                    || Camera::top_down_on(lens.size(), bounds, TABLE_M),
+                    |span_m| Camera::top_down(lens.size(), middle, TABLE_M, span_m),
+                )])
+            }
+        };
+        let mut cameras = cameras.unwrap_or_default();
+        for camera in &mut cameras {
+            camera.for_people = self.plan.for_people;
+        }
+        cameras
+    }
 }
 
 impl Studio {
-    /// The studio of a floor plan, with cameras for so many bodies.
+    /// The studio of a floor plan, with these cameras.
     ///
     /// # Errors
     /// [`BusError`].
@@ -121,16 +144,17 @@ impl Studio {
         layout: Arc<Layout>,
         catalog: Arc<Catalog>,
         renderer: Box<dyn Renderer>,
-        bodies: usize,
+        cameras: &[CameraPlan],
         bus: &dyn Transport,
     ) -> Result<Self, BusError> {
-        let ids = (0..=u8::MAX).take(bodies);
         Ok(Self {
             scene: Scene::new(meshes, &layout),
             renderer,
             layout,
             catalog,
-            crews: ids.map(|body| Crew::new(bus, body)).collect::<Result<_, _>>()?,
+            posts: cameras.iter().map(|plan| Post::new(bus, plan.clone())).collect::<Result<_, _>>()?,
+            classes: Classes::default(),
+            table: SeenTable::default(),
         })
     }
 
@@ -146,40 +170,33 @@ impl Studio {
     }
 
     fn shoot(&mut self, moment: &Moment) -> Result<(), BusError> {
-        let due: Vec<_> = self.crews.iter_mut().map(|crew| (crew.spectator.due(), crew.egocentric.due())).collect();
-        if due.iter().all(|(spectator, egocentric)| spectator.is_none() && egocentric.is_none()) {
+        let due: Vec<(usize, Duration)> =
+            self.posts.iter_mut().enumerate().filter_map(|(index, post)| Some((index, post.due()?))).collect();
+        if due.is_empty() {
             return Ok(());
         }
         self.set_up(moment);
-        let Self { scene, renderer, layout, catalog, crews } = self;
+        let Self { scene, renderer, layout, catalog, posts, classes, table } = self;
         let tall: Vec<Tall> = moment.instances.iter().filter_map(|instance| tall(instance, catalog, layout)).collect();
-        for (body, (crew, (spectator, egocentric))) in crews.iter_mut().zip(due).enumerate() {
-            let Some(standing) = moment.bodies.get(body) else { continue };
-            if let Some(since) = spectator {
-                let followed = crew.rig.follow(standing, layout, &tall, since.as_secs_f32().min(0.5), SPECTATOR_SIZE);
-                let camera = moment.shot.unwrap_or(followed);
-                publish(
-                    &mut **renderer,
-                    scene,
-                    &camera,
-                    body,
-                    moment,
-                    &[Plane::Color],
-                    &mut *crew.spectator.publisher,
-                )?;
-            }
-            if egocentric.is_some()
-                && let Some(camera) = moment.egocentric(body, EGOCENTRIC_SIZE, EGOCENTRIC_SIZE)
-            {
-                publish(&mut **renderer, scene, &camera, body, moment, &Plane::ALL, &mut *crew.egocentric.publisher)?;
+        let mut due = due.into_iter().peekable();
+        let mut takes = Vec::new();
+        for (index, post) in posts.iter_mut().enumerate() {
+            let Some((_, since)) = due.next_if(|(due, _)| *due == index) else { continue };
+            let cameras = post.aim(moment, layout, &tall, since);
+            if !cameras.is_empty() {
+                let Post { plan, publisher, .. } = post;
+                let layout = frame_layout(plan, classes);
+                let body = plan.body().map_or(NONE, u32::from);
+                takes.push(Take { publisher: &mut **publisher, layout, cameras, body });
             }
         }
-        Ok(())
+        Darkroom { renderer: &mut **renderer, scene, classes, table, moment }.expose(&mut takes)
     }
 
     fn set_up(&mut self, moment: &Moment) {
         self.scene.set_time(moment.tick * cohabit_world::DT_NANOS);
         self.scene.set_instances(&moment.instances);
+        self.classes.set(&moment.instances);
         self.scene.set_highlights(&moment.highlights);
         for (room, lit) in cohabit_cdf::RoomId::ALL.into_iter().zip(moment.lit) {
             self.scene.set_lights(room, lit);
@@ -203,44 +220,10 @@ fn tall(instance: &Instance, catalog: &Catalog, layout: &Layout) -> Option<Tall>
     }
 }
 
-/// Renders a frame straight into the sample that is sent.
-fn publish(
-    renderer: &mut dyn Renderer,
-    scene: &Scene,
-    camera: &Camera,
-    body: usize,
-    moment: &Moment,
-    planes: &[Plane],
-    publisher: &mut dyn Publisher,
-) -> Result<(), BusError> {
-    let layout = FrameLayout::new(camera.width, camera.height, planes);
-    publisher.send(moment.tick, layout.bytes(), &mut |payload| {
-        let began = monotonic_nanos();
-        let (header, [color, depth, normals, ids]) = layout.split_mut(payload);
-        renderer.render(
-            scene,
-            camera,
-            &mut Planes {
-                color,
-                depth_m: depth.map(bytemuck::cast_slice_mut),
-                normals: normals.map(bytemuck::cast_slice_mut),
-                ids: ids.map(bytemuck::cast_slice_mut),
-            },
-        );
-        *header = FrameHeader {
-            width: camera.width,
-            height: camera.height,
-            planes: layout.plane_bits(),
-            body: u32::try_from(body).unwrap_or(0),
-            position_m: camera.position_m,
-            yaw_rad: camera.yaw_rad,
-            pitch_rad: camera.pitch_rad,
-            fov_y_rad: camera.fov_y_rad,
-            render_nanos: monotonic_nanos() - began,
-            command: moment.command,
-            seen_nanos: moment.seen_nanos,
-            reserved: [0; 8],
-        };
-    })?;
-    Ok(())
+/// Where the parts of a camera's frames lie: with room for all that may be seen, if ids are.
+fn frame_layout(plan: &CameraPlan, classes: &Classes) -> FrameLayout {
+    let ([width, height], views) = (plan.lens.size(), plan.views());
+    let most = classes.most().min((width * height) as usize);
+    let room = if plan.planes.contains(&Plane::Ids) { u32::try_from(most).unwrap_or(u32::MAX) * views } else { 0 };
+    FrameLayout::new(width, height, views, &plan.planes, room)
 }

@@ -2,10 +2,17 @@
 
 use glam::Vec3;
 
+use crate::lens::Lens;
+
 /// Nothing nearer is drawn, m.
 pub const NEAR_M: f32 = 0.03;
 /// What the depth plane holds where there is nothing, m; nothing farther is drawn.
 pub const FAR_M: f32 = 100.0;
+
+/// How high cameras are that look down: high enough that walls lean little, m.
+const ABOVE_M: f32 = 60.0;
+/// What they see around what they look at, m in all.
+const MARGIN_M: f32 = 1.5;
 
 /// A pinhole camera with square pixels. Its frame: x right, y down, z forward.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,23 +42,74 @@ impl Camera {
     /// is to scale.
     #[must_use]
     pub fn above([west, south, east, north]: [f32; 4], level_m: f32, pixels_per_m: f32) -> Self {
-        /// High enough that walls lean little, m.
-        const HEIGHT_M: f32 = 60.0;
-        /// What is seen around the rectangle, m in all.
-        const MARGIN_M: f32 = 1.5;
         let [width_m, depth_m] = [east - west + MARGIN_M, north - south + MARGIN_M];
         let [width, height] = [width_m, depth_m].map(|length_m| (length_m * pixels_per_m) as u32);
+        Self::top_down([width, height], [f32::midpoint(west, east), f32::midpoint(south, north)], level_m, depth_m)
+    }
+
+    /// In one place, for people.
+    #[must_use]
+    pub fn fixed(lens: Lens, position_m: [f32; 3], yaw_rad: f32, pitch_rad: f32) -> Self {
+        let [width, height] = lens.size();
+        let fov_y_rad = lens.fov_y_rad();
+        Self { position_m, yaw_rad, pitch_rad, fov_y_rad, width, height, hide: None, for_people: true, ceiling: true }
+    }
+
+    /// In the head of a body, which is instance `own` and does not see itself: exactly what is there, no outlines.
+    #[must_use]
+    pub fn egocentric(lens: Lens, eye_m: [f32; 3], yaw_rad: f32, head_pitch_rad: f32, own: u32) -> Self {
+        let camera = Self::fixed(lens, eye_m, yaw_rad, head_pitch_rad);
+        Self { hide: Some(own), for_people: false, ..camera }
+    }
+
+    /// The same four times: ahead, to the right, back and to the left. With a field of view of 90 degrees both ways the
+    /// pictures meet at their edges.
+    #[must_use]
+    pub fn panorama(lens: Lens, eye_m: [f32; 3], yaw_rad: f32, head_pitch_rad: f32, own: u32) -> [Self; 4] {
+        [0.0, 1.0, 2.0, 3.0].map(|quarters| {
+            let yaw_rad = yaw_rad - quarters * std::f32::consts::FRAC_PI_2;
+            Self::egocentric(lens, eye_m, yaw_rad, head_pitch_rad, own)
+        })
+    }
+
+    /// Behind and above a body at `standing_m` on the floor: `back_m` behind it, `up_m` above the floor, looking the way
+    /// it does and `pitch_rad` up.
+    #[must_use]
+    pub fn third_person(
+        lens: Lens,
+        standing_m: [f32; 2],
+        yaw_rad: f32,
+        [back_m, up_m]: [f32; 2],
+        pitch_rad: f32,
+    ) -> Self {
+        let (sin, cos) = libm::sincosf(yaw_rad);
+        let [x, y] = standing_m;
+        Self::fixed(lens, [x - cos * back_m, y - sin * back_m, up_m], yaw_rad, pitch_rad)
+    }
+
+    /// Looks down on a place, north up and without ceilings, so that `span_m` of what is `level_m` above the floor are
+    /// seen from south to north.
+    #[must_use]
+    pub fn top_down([width, height]: [u32; 2], [x, y]: [f32; 2], level_m: f32, span_m: f32) -> Self {
         Self {
-            position_m: [f32::midpoint(west, east), f32::midpoint(south, north), HEIGHT_M],
+            position_m: [x, y, ABOVE_M],
             yaw_rad: std::f32::consts::FRAC_PI_2,
             pitch_rad: -std::f32::consts::FRAC_PI_2,
-            fov_y_rad: 2.0 * libm::atanf(depth_m / 2.0 / (HEIGHT_M - level_m)),
+            fov_y_rad: 2.0 * libm::atanf(span_m / 2.0 / (ABOVE_M - level_m)),
             width,
             height,
             hide: None,
             for_people: true,
             ceiling: false,
         }
+    }
+
+    /// Looks down on all of `[west, south, east, north]`, however long the picture's sides are.
+    #[must_use]
+    pub fn top_down_on(size: [u32; 2], [west, south, east, north]: [f32; 4], level_m: f32) -> Self {
+        let [width, height] = size.map(|pixels| pixels as f32);
+        let span_m = (north - south + MARGIN_M).max((east - west + MARGIN_M) * height / width);
+        Self::top_down(size, [f32::midpoint(west, east), f32::midpoint(south, north)], level_m, span_m)
     }
 
     /// Pixels of the picture.

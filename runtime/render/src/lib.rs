@@ -28,10 +28,14 @@ mod coplanar;
 mod cpu;
 mod furnish;
 pub mod gallery;
+mod ink;
 mod instance;
+mod instance_color;
 mod kit;
+mod lens;
 mod library;
 mod mesh;
+mod minimap;
 mod model_mesh;
 mod noise;
 mod occlusion;
@@ -48,18 +52,23 @@ mod shadow;
 mod signs;
 mod soup;
 mod veil;
+mod visibility;
 
 pub use camera::{Camera, FAR_M};
 pub use cpu::CpuRenderer;
 pub use furnish::furnish;
 pub use instance::{Highlight, Instance, Look};
+pub use instance_color::{instance_color, instance_of_color};
 pub use kit::ShapeError;
+pub use lens::{Lens, LensError};
 pub use library::{MeshLibrary, ModelError};
 pub use mesh::Aabb;
+pub use minimap::{Minimap, minimap};
 pub use plan::{RoomSurface, room_surface_id};
 pub use planes::Planes;
 pub use scene::Scene;
 pub use soup::Soup;
+pub use visibility::{Classes, Seen, SeenTable, room_surface_of_id};
 
 /// One picture that is wanted.
 #[derive(Debug)]

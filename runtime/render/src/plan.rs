@@ -11,6 +11,8 @@ use cohabit_cdf::layout::{Layout, OpeningKind};
 use cohabit_cdf::model::Axis;
 use glam::Vec3;
 
+pub(crate) use outline::walls;
+
 use crate::mesh::{Aabb, Mesh};
 
 /// Half a wall's thickness, m.
@@ -37,6 +39,23 @@ pub enum RoomSurface {
     /// Lamps in the ceiling.
     Lamp,
 }
+
+impl RoomSurface {
+    /// All of them.
+    pub const ALL: [Self; 8] = [
+        Self::Floor,
+        Self::Ceiling,
+        Self::EastWall,
+        Self::NorthWall,
+        Self::WestWall,
+        Self::SouthWall,
+        Self::Frame,
+        Self::Lamp,
+    ];
+}
+
+/// The ids of rooms' surfaces: those of instances are below.
+pub(crate) const SURFACE_IDS: core::ops::Range<u32> = 1 << 24..(1 << 24) + (1 << 16);
 
 /// What stands in the id plane where `surface` of `room` is seen: never the id of an instance below 2^24.
 #[must_use]

@@ -3,7 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 use cohabit_cdf::{BodyKind, BodyRequest, RoomId};
 
-use super::{Malformed, NONE, layout};
+use super::{CameraRecord, Malformed, NONE, layout};
 use crate::text::Text;
 
 /// What stands before a mission's text.
@@ -18,8 +18,8 @@ pub struct MissionHeader {
     pub bodies: u32,
     /// 1 in lock-step, 0 in real time.
     pub lock_step: u32,
-    /// Zero.
-    pub reserved: u32,
+    /// Cameras that there are.
+    pub cameras: u32,
     /// The name of the file it came from.
     pub file: Text<254>,
 }
@@ -53,10 +53,12 @@ impl TryFrom<&BodyRequestRecord> for BodyRequest {
 /// A mission: its file's text, and what was chosen beyond it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MissionMessage {
-    /// All but the text and the bodies.
+    /// All but the lists and the text.
     pub header: MissionHeader,
     /// Bodies asked for beside the mission's, in the order of their ids.
     pub bodies: Vec<BodyRequest>,
+    /// The session's cameras.
+    pub cameras: Vec<CameraRecord>,
     /// The mission file's text.
     pub text: String,
 }
@@ -67,6 +69,7 @@ impl MissionMessage {
     pub const fn bytes(&self) -> usize {
         layout::space::<MissionHeader>(1)
             + layout::space::<BodyRequestRecord>(self.bodies.len())
+            + layout::space::<CameraRecord>(self.cameras.len())
             + layout::space::<u8>(self.text.len())
     }
 
@@ -78,8 +81,10 @@ impl MissionMessage {
         let mut writer = layout::Writer::new(payload);
         let length = |length: usize| u32::try_from(length).unwrap_or(0);
         let (text_bytes, bodies) = (length(self.text.len()), length(self.bodies.len()));
-        writer.put(&[MissionHeader { text_bytes, bodies, ..self.header }]);
+        let cameras = length(self.cameras.len());
+        writer.put(&[MissionHeader { text_bytes, bodies, cameras, ..self.header }]);
         writer.put(&self.bodies.iter().map(BodyRequestRecord::from).collect::<Vec<_>>());
+        writer.put(&self.cameras);
         writer.put(self.text.as_bytes());
     }
 
@@ -92,7 +97,9 @@ impl MissionMessage {
         let header: &MissionHeader = reader.one()?;
         let bodies = reader.take::<BodyRequestRecord>(header.bodies)?;
         let bodies = bodies.iter().map(BodyRequest::try_from).collect::<Result<_, _>>()?;
+        let cameras = reader.take::<CameraRecord>(header.cameras)?.to_vec();
         let text = reader.take::<u8>(header.text_bytes)?.to_vec();
-        Ok(Self { header: *header, bodies, text: String::from_utf8(text).map_err(|_| Malformed("not UTF-8"))? })
+        let text = String::from_utf8(text).map_err(|_| Malformed("not UTF-8"))?;
+        Ok(Self { header: *header, bodies, cameras, text })
     }
 }

@@ -4,7 +4,7 @@ use super::HALF_WALL_M;
 
 /// One straight wall face of a room.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct WallRun {
+pub(crate) struct WallRun {
     /// Whether it runs east-west.
     pub runs_x: bool,
     /// Where the wall's middle lies on the other axis, m.
@@ -18,7 +18,7 @@ pub(super) struct WallRun {
 }
 
 /// All wall faces of the union of `rects`.
-pub(super) fn walls(rects: &[[f32; 4]]) -> Vec<WallRun> {
+pub(crate) fn walls(rects: &[[f32; 4]]) -> Vec<WallRun> {
     let xs = stops(rects.iter().flat_map(|rect| [rect[0], rect[2]]));
     let ys = stops(rects.iter().flat_map(|rect| [rect[1], rect[3]]));
     let inside = |i: isize, j: isize| {
