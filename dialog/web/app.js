@@ -6,7 +6,7 @@ const calm = window.matchMedia("(prefers-reduced-motion: reduce)");
 const narrow = window.matchMedia("(max-width: 820px)");
 
 /** What tests and curious people may read. */
-window.cohabit = { frames: 0, state: null, latency: null };
+window.cohabit = { frames: 0, state: null, latency: null, view: null, seen: null };
 
 function element(tag, className, text) {
   const made = document.createElement(tag);
@@ -70,6 +70,7 @@ const receivers = {
   progress: takeProgress,
   turn: takeTurn,
   latency: takeLatency,
+  seen: takeSeen,
   highlight: (message) => floor.pointOut(message),
   error: (message) => toast(message.text),
 };
@@ -78,7 +79,7 @@ function take(message) {
   receivers[message.type]?.(message);
 }
 
-function takeHello({ session, mission, map }) {
+function takeHello({ session, mission, map, views }) {
   pauseMs = FIRST_PAUSE_MS;
   showLink("open");
   byId("session").textContent = session;
@@ -86,6 +87,7 @@ function takeHello({ session, mission, map }) {
   byId("goals-title").textContent = mission.title || "Mission";
   byId("goals-about").textContent = mission.description === mission.title ? "" : mission.description;
   floor.build(map);
+  buildViews(views);
   clearChat();
   endDoing();
 }
@@ -130,7 +132,10 @@ let told = false;
 let drawnAt = [];
 
 function takeFrame(buffer) {
-  if (buffer.byteLength <= HEADER_BYTES || new Uint8Array(buffer, 0, 1)[0] !== FRAME_KIND) return;
+  if (buffer.byteLength <= HEADER_BYTES) return;
+  const [kind, index] = new Uint8Array(buffer, 0, 2);
+  // What was under way when the view changed is of another camera.
+  if (kind !== FRAME_KIND || index !== views.indexOf(looking)) return;
   waiting = buffer;
   if (!drawing) drawNewest();
 }
@@ -140,10 +145,12 @@ async function drawNewest() {
   drawing = true;
   while (waiting) {
     const jpeg = new Blob([new Uint8Array(waiting, HEADER_BYTES)], { type: "image/jpeg" });
+    const tick = Number(new DataView(waiting).getBigUint64(8, true));
+    const from = looking;
     waiting = null;
     try {
       const bitmap = await createImageBitmap(jpeg);
-      draw(bitmap);
+      if (from === looking) draw(bitmap, tick);
       bitmap.close();
     } catch (problem) {
       console.warn("a frame could not be drawn", problem);
@@ -152,12 +159,14 @@ async function drawNewest() {
   drawing = false;
 }
 
-function draw(bitmap) {
+function draw(bitmap, tick) {
   if (view.width !== bitmap.width || view.height !== bitmap.height) {
     view.width = bitmap.width;
     view.height = bitmap.height;
   }
   picture.drawImage(bitmap, 0, 0);
+  shown = { camera: looking.camera, tick };
+  window.cohabit.view = looking.camera;
   drawnAt.push(performance.now());
   window.cohabit.frames += 1;
   if (!told) {
@@ -165,6 +174,126 @@ function draw(bitmap) {
     document.body.classList.add("seeing");
     showLink("open");
   }
+}
+
+// ---------------------------------------------------------------------------------------------- the views
+
+const REMEMBERED = "cohabit-view";
+const SEEN_MS = 2600;
+/** Views of the first body, which have buttons of their own; the others share a list. */
+const MAIN_VIEWS = {
+  "spectator/0": "M10 3.2a2.3 2.3 0 1 1 0 4.6 2.3 2.3 0 0 1 0-4.6M4.6 16.8c.3-4 2.6-6 5.4-6s5.1 2 5.4 6",
+  "eyes/0": "M1.8 10C4 6.3 6.8 4.6 10 4.6S16 6.3 18.2 10C16 13.7 13.2 15.4 10 15.4S4 13.7 1.8 10M10 7.6a2.4 2.4 0 1 0 0 4.8 2.4 2.4 0 0 0 0-4.8",
+  "overhead/0": "M3 3.5h14v13H3zM3 9.5h6.5M11.5 3.5v7M11.5 13.5v3",
+};
+
+let views = [];
+let looking = null;
+/** The picture on the screen: its camera and tick. */
+let shown = null;
+let seenTimer = 0;
+
+function buildViews(all) {
+  views = all;
+  const icon = (path) => drawn("svg", { viewBox: "0 0 20 20", "aria-hidden": "true" }, drawn("path", { d: path }));
+  byId("views-main").replaceChildren(...views.filter(({ camera }) => camera in MAIN_VIEWS).map((view) => {
+    const button = element("button", "view-button");
+    button.type = "button";
+    button.title = `${view.name} (Alt+C)`;
+    button.dataset.camera = view.camera;
+    button.append(icon(MAIN_VIEWS[view.camera]), element("span", "view-name", view.name));
+    button.addEventListener("click", () => lookThrough(view));
+    return button;
+  }));
+  const others = views.filter(({ camera }) => !(camera in MAIN_VIEWS));
+  const title = new Option("More", "", true, true);
+  title.disabled = true;
+  byId("views-more").replaceChildren(title, ...others.map(({ camera, name }) => new Option(capitalised(name), camera)));
+  byId("views-more").hidden = !others.length;
+  byId("views").hidden = views.length < 2;
+  const wanted = looking?.camera ?? recallView();
+  looking = null;
+  lookThrough(views.find(({ camera }) => camera === wanted) ?? views[0]);
+}
+
+function lookThrough(view) {
+  if (!view || view === looking) return;
+  const first = looking === null;
+  looking = view;
+  waiting = null;
+  // A session shows its first view unasked.
+  if (!first || view !== views[0]) send({ type: "view", camera: view.camera });
+  for (const button of byId("views-main").children) {
+    button.setAttribute("aria-pressed", String(button.dataset.camera === view.camera));
+  }
+  const listed = view.camera in MAIN_VIEWS ? "" : view.camera;
+  byId("views-more").value = listed;
+  byId("views-more").classList.toggle("chosen", Boolean(listed));
+  hideSeen();
+  if (!first) {
+    rememberView(view.camera);
+    byId("seen").textContent = view.name;
+  }
+}
+
+function nextView() {
+  if (views.length) lookThrough(views[(views.indexOf(looking) + 1) % views.length]);
+}
+
+/** A browser may refuse to keep anything; the view is then not remembered. */
+function rememberView(camera) {
+  try {
+    localStorage.setItem(REMEMBERED, camera);
+  } catch {}
+}
+
+function recallView() {
+  try {
+    return localStorage.getItem(REMEMBERED);
+  } catch {
+    return null;
+  }
+}
+
+byId("views-more").addEventListener("change", ({ target }) => lookThrough(views.find(({ camera }) => camera === target.value)));
+
+/** Where in the picture, which may be narrower or lower than the canvas's place, a click falls: 0 to 1. */
+function placeOf({ clientX, clientY }) {
+  const box = view.getBoundingClientRect();
+  const scale = Math.min(box.width / view.width, box.height / view.height);
+  const [width, height] = [view.width * scale, view.height * scale];
+  return {
+    x: (clientX - box.left - (box.width - width) / 2) / width,
+    y: (clientY - box.top - (box.height - height) / 2) / height,
+  };
+}
+
+view.addEventListener("click", (event) => {
+  const { x, y } = placeOf(event);
+  if (!shown || Math.min(x, y) < 0 || Math.max(x, y) > 1) return;
+  send({ type: "point", ...shown, x, y });
+});
+
+function takeSeen({ name, x, y, at }) {
+  window.cohabit.seen = name;
+  const label = byId("seen");
+  const [frame, box] = [view.parentElement.getBoundingClientRect(), view.getBoundingClientRect()];
+  const scale = Math.min(box.width / view.width, box.height / view.height);
+  const left = box.left - frame.left + (box.width - view.width * scale) / 2 + x * view.width * scale;
+  const top = box.top - frame.top + (box.height - view.height * scale) / 2 + y * view.height * scale;
+  label.textContent = capitalised(name);
+  label.classList.add("placed");
+  const half = label.offsetWidth / 2 + 6;
+  label.style.left = `${Math.max(half, Math.min(frame.width - half, left))}px`;
+  label.style.top = `${Math.max(40, top)}px`;
+  clearTimeout(seenTimer);
+  seenTimer = setTimeout(hideSeen, SEEN_MS);
+  if (at) floor.pointOut({ x: at[0], y: at[1], name });
+}
+
+function hideSeen() {
+  byId("seen").classList.remove("placed");
+  byId("seen").textContent = "";
 }
 
 function showRate() {
@@ -185,6 +314,7 @@ function takeState(state) {
   showScore(state.score);
   showRobot(state.robot);
   floor.follow(state.robot);
+  floor.showOthers(state.others);
   floor.showNotes(state.notes);
   showGoals(state.goals);
   showEnding(state);
@@ -359,7 +489,7 @@ class Floor {
     this.notesShown = "";
   }
 
-  build({ rooms, openings }) {
+  build({ rooms, openings, furniture }) {
     const rects = rooms.flatMap((room) => room.rects);
     const [west, south] = [0, 1].map((side) => Math.min(...rects.map((rect) => rect[side])) - MARGIN_M);
     const [east, north] = [2, 3].map((side) => Math.max(...rects.map((rect) => rect[side])) + MARGIN_M);
@@ -369,6 +499,8 @@ class Floor {
       const tiles = room.rects.map(([w, s, e, n]) => drawn("rect", { x: w, y: -n, width: e - w, height: n - s }));
       return [room.id, drawn("g", { class: "map-room", fill: room.floor }, ...tiles)];
     }));
+    const outlines = furniture.map((corners) => `M${corners.map(([x, y]) => `${x} ${-y}`).join("L")}Z`);
+    this.others = drawn("g", {});
     this.notes = drawn("g", {});
     this.notesShown = "";
     this.pulses = drawn("g", {});
@@ -378,9 +510,10 @@ class Floor {
       drawn("path", { class: "map-arrow", d: "M.82 0L-.6 .62L-.3 0L-.6 -.62Z" }));
     this.svg.replaceChildren(
       ...this.rooms.values(),
+      drawn("path", { class: "map-furniture", d: outlines.join("") }),
       drawn("path", { class: "map-walls", d: rooms.map((room) => wallsOf(room, openings)).join("") }),
       ...rooms.map(labelOf),
-      this.notes, this.robot, this.pulses);
+      this.notes, this.others, this.robot, this.pulses);
     this.pose = null;
   }
 
@@ -419,6 +552,23 @@ class Floor {
   place() {
     const { x, y, yaw } = this.pose;
     this.robot.setAttribute("transform", `translate(${x} ${-y}) rotate(${(-yaw * 180) / Math.PI})`);
+  }
+
+  showOthers(others) {
+    if (!this.others) return;
+    while (this.others.childElementCount > others.length) this.others.lastElementChild.remove();
+    others.forEach(({ kind, x, y, yaw }, index) => {
+      let body = this.others.children[index];
+      if (!body) {
+        body = drawn("g", { class: `map-body map-${kind}` },
+          drawn("circle", { class: "map-halo", r: 0.85 }),
+          drawn("path", { class: "map-arrow", d: "M.66 0L-.48 .5L-.24 0L-.48 -.5Z" }));
+        body.append(drawn("title", {}));
+        body.lastElementChild.textContent = capitalised(kind);
+        this.others.append(body);
+      }
+      body.setAttribute("transform", `translate(${x} ${-y}) rotate(${(-yaw * 180) / Math.PI})`);
+    });
   }
 
   showNotes(notes) {
@@ -630,13 +780,17 @@ byId("chips").addEventListener("click", ({ target }) => {
 });
 byId("stop").addEventListener("click", () => say("stop"));
 
-/** Whatever has the focus: Escape stops the robot, and a letter or a slash begins a sentence. */
+/** Whatever has the focus: Escape stops the robot, Alt+C changes the view, and a letter or a slash begins a sentence. */
 document.addEventListener("keydown", (event) => {
+  if (event.altKey && event.code === "KeyC" && !event.ctrlKey && !event.metaKey) {
+    event.preventDefault();
+    nextView();
+  }
   if (event.isComposing || event.ctrlKey || event.metaKey || event.altKey) return;
   if (event.key === "Escape" && !event.repeat) {
     enlargeMap(false);
     say("stop");
-  } else if (document.activeElement !== input && /^[\p{L}\p{N}/]$/u.test(event.key)) {
+  } else if (document.activeElement !== input && !(document.activeElement instanceof HTMLSelectElement) && /^[\p{L}\p{N}/]$/u.test(event.key)) {
     if (event.key === "/") event.preventDefault();
     input.focus();
   }

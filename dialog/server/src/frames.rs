@@ -1,52 +1,68 @@
-//! The live view: the newest frame for people, as JPEG.
+//! The live views: the newest frame of each camera that a page looks through, as JPEG.
 
 use std::{sync::Arc, time::Duration};
 
 use cohabit_bus::{
-    CameraId, Sample, Topic, Transport, Wake,
+    Sample, Topic, Transport, Wake,
     message::{FrameView, Plane},
 };
 use jpeg_encoder::{ColorType, Encoder, EncodingError};
 
-use crate::{DialogError, hub::Hub, talk::Talk};
+use crate::{
+    DialogError,
+    talk::Talk,
+    view::{Ids, View},
+};
 
-const CAMERA: CameraId = CameraId::Spectator(0);
 /// JPEG quality, of 100.
 const QUALITY: u8 = 82;
+/// How long a relay that nobody needs sleeps before it looks whether the session is over.
+const DOZE: Duration = Duration::from_millis(100);
 
-/// Relays frames to the pages of `hub` until `over`. Subscribes, and so has frames rendered, only while a page is open
-/// or none was had yet.
-pub fn relay(bus: &dyn Transport, hub: &Hub, talk: &Talk, over: &dyn Fn() -> bool) -> Result<(), DialogError> {
-    let mut listener = bus.listener(Wake::Frames(CAMERA))?;
-    let mut had_one = false;
+/// Relays frames to the pages that look through the view with this index until `over`. Subscribes, and so has frames
+/// rendered, only while there are any; of the first view at the start too, until one was had.
+pub fn relay(
+    bus: &dyn Transport,
+    (index, view): (u8, &Arc<View>),
+    talk: &Talk,
+    over: &dyn Fn() -> bool,
+) -> Result<(), DialogError> {
+    let mut had_one = index > 0;
     while !over() {
-        if hub.viewers() == 0 && had_one {
-            std::thread::sleep(Duration::from_millis(20));
+        if !view.is_wanted() && had_one {
+            view.wait_until_wanted(DOZE);
             continue;
         }
-        let mut frames = bus.subscriber(Topic::Frames(CAMERA))?;
-        while !over() && (hub.viewers() > 0 || !had_one) {
+        let mut listener = bus.listener(Wake::Frames(view.camera))?;
+        let mut frames = bus.subscriber(Topic::Frames(view.camera))?;
+        while !over() && (view.is_wanted() || !had_one) {
             listener.wait(Duration::from_millis(50))?;
             let Some(sample) = frames.latest()? else { continue };
-            show(&sample, hub, talk)?;
+            show(&sample, (index, view), talk)?;
             had_one = true;
+        }
+        if index > 0 {
+            view.forget();
         }
     }
     Ok(())
 }
 
-fn show(sample: &Sample, hub: &Hub, talk: &Talk) -> Result<(), DialogError> {
+fn show(sample: &Sample, (index, view): (u8, &Arc<View>), talk: &Talk) -> Result<(), DialogError> {
     let frame = FrameView::new(sample.payload())?;
     let Some(color) = frame.plane(Plane::Color) else { return Ok(()) };
-    match encode(sample.envelope().tick, frame.header.width, frame.header.height, color) {
-        Ok(bytes) => hub.show_frame(Arc::new(bytes)),
+    let tick = sample.envelope().tick;
+    // The pictures of a panorama stand one above the other.
+    let size = [frame.header.width, frame.header.height * frame.header.views];
+    match encode(index, tick, size, color) {
+        Ok(bytes) => view.show(Arc::new(bytes), frame.ids().map(|ids| Ids::new(tick, size, ids))),
         Err(error) => tracing::warn!("a frame could not be encoded: {error}"),
     }
     talk.note_frame(frame.header.command, sample.envelope().sent_nanos)
 }
 
-fn encode(tick: u64, width: u32, height: u32, rgba: &[u8]) -> Result<Vec<u8>, EncodingError> {
-    let mut bytes = vec![1, 0, 0, 0, 0, 0, 0, 0];
+fn encode(index: u8, tick: u64, [width, height]: [u32; 2], rgba: &[u8]) -> Result<Vec<u8>, EncodingError> {
+    let mut bytes = vec![1, index, 0, 0, 0, 0, 0, 0];
     bytes.extend(tick.to_le_bytes());
     let side = |pixels: u32| u16::try_from(pixels).unwrap_or(u16::MAX);
     Encoder::new(&mut bytes, QUALITY).encode(rgba, side(width), side(height), ColorType::Rgba)?;

@@ -1,4 +1,4 @@
-//! What all open pages share: the chat so far, the newest state and frame, and who is watching.
+//! What all open pages share: the chat so far, the newest state, the views, and how many there are.
 
 use std::{
     collections::VecDeque,
@@ -9,17 +9,14 @@ use std::{
 };
 
 use serde_json::Value;
-use tokio::sync::{broadcast, watch};
+use tokio::sync::broadcast;
 
-use crate::page::Line;
+use crate::{page::Line, view::View};
 
 /// Lines of chat kept for a page that opens or reconnects.
 const LINES_KEPT: usize = 500;
 /// Messages kept for a page that is slow; then it is told to reload what it missed.
 const MESSAGES_KEPT: usize = 256;
-
-/// A frame as pages get it: JPEG behind a header of one kind byte (1), seven zero bytes, and the tick, little-endian.
-pub type Frame = Arc<Vec<u8>>;
 
 /// Where the service's parts and the pages meet.
 pub struct Hub {
@@ -27,18 +24,19 @@ pub struct Hub {
     lines: Mutex<VecDeque<String>>,
     state: Mutex<Option<String>>,
     messages: broadcast::Sender<Arc<str>>,
-    frame: watch::Sender<Option<Frame>>,
-    viewers: AtomicUsize,
+    /// The cameras that pages can look through, the usual one first.
+    pub views: Vec<Arc<View>>,
+    pages: AtomicUsize,
     first_frame_shown: AtomicBool,
     on_first_frame: Box<dyn Fn() + Send + Sync>,
 }
 
-/// Counts a page as a viewer while it lives.
-pub struct Viewing(Arc<Hub>);
+/// Counts a page as open while it lives.
+pub struct Visit(Arc<Hub>);
 
-impl Drop for Viewing {
+impl Drop for Visit {
     fn drop(&mut self) {
-        self.0.viewers.fetch_sub(1, Ordering::Relaxed);
+        self.0.pages.fetch_sub(1, Ordering::Relaxed);
     }
 }
 
@@ -48,38 +46,33 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 
 impl Hub {
     /// A hub whose pages are greeted with `hello`.
-    pub fn new(hello: Value, on_first_frame: Box<dyn Fn() + Send + Sync>) -> Self {
+    pub fn new(hello: Value, views: Vec<View>, on_first_frame: Box<dyn Fn() + Send + Sync>) -> Self {
         Self {
             hello: hello.to_string(),
             lines: Mutex::default(),
             state: Mutex::default(),
             messages: broadcast::Sender::new(MESSAGES_KEPT),
-            frame: watch::Sender::new(None),
-            viewers: AtomicUsize::new(0),
+            views: views.into_iter().map(Arc::new).collect(),
+            pages: AtomicUsize::new(0),
             first_frame_shown: AtomicBool::new(false),
             on_first_frame,
         }
     }
 
     /// Takes a page in, if there is room: what it is to be told first, and what comes after.
-    pub fn join(self: &Arc<Self>) -> Option<(Vec<String>, broadcast::Receiver<Arc<str>>, Viewing)> {
-        if self.viewers.fetch_add(1, Ordering::Relaxed) >= crate::limits::MOST_PAGES {
-            self.viewers.fetch_sub(1, Ordering::Relaxed);
+    pub fn join(self: &Arc<Self>) -> Option<(Vec<String>, broadcast::Receiver<Arc<str>>, Visit)> {
+        if self.pages.fetch_add(1, Ordering::Relaxed) >= crate::limits::MOST_PAGES {
+            self.pages.fetch_sub(1, Ordering::Relaxed);
             return None;
         }
-        let viewing = Viewing(Arc::clone(self));
+        let visit = Visit(Arc::clone(self));
         // The lines stay locked until the page listens, so that none is missed or told twice.
         let lines = lock(&self.lines);
         let receiver = self.messages.subscribe();
         let mut first = vec![self.hello.clone()];
         first.extend(lines.iter().cloned());
         first.extend(lock(&self.state).clone());
-        Some((first, receiver, viewing))
-    }
-
-    /// How many pages are open.
-    pub fn viewers(&self) -> usize {
-        self.viewers.load(Ordering::Relaxed)
+        Some((first, receiver, visit))
     }
 
     /// Tells all pages a line of chat, and keeps it.
@@ -106,16 +99,6 @@ impl Hub {
             *kept = Some(text.clone());
             let _ = self.messages.send(text.into());
         }
-    }
-
-    /// Gives all pages a frame.
-    pub fn show_frame(&self, frame: Frame) {
-        self.frame.send_replace(Some(frame));
-    }
-
-    /// The newest frame, and those to come.
-    pub fn frames(&self) -> watch::Receiver<Option<Frame>> {
-        self.frame.subscribe()
     }
 
     /// A page has shown a frame.

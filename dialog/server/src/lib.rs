@@ -12,6 +12,7 @@ mod limits;
 mod page;
 mod talk;
 mod token;
+mod view;
 mod web;
 
 use std::{
@@ -24,13 +25,13 @@ use std::{
     time::Duration,
 };
 
-use cohabit_bus::{BusError, Transport};
+use cohabit_bus::{BusError, Transport, message::CameraRecord};
 use cohabit_cdf::{Catalog, Layout, Mission};
 
 pub use conversation::{Conversation, Reaction, TurnEnd};
 pub use known::known;
 
-use crate::{hub::Hub, talk::Talk};
+use crate::{hub::Hub, talk::Talk, view::View};
 
 /// Settings of a dialog service.
 pub struct DialogConfig {
@@ -38,6 +39,8 @@ pub struct DialogConfig {
     pub session: String,
     /// Where the page is served; port 0 takes any that is free.
     pub listen: SocketAddr,
+    /// The session's cameras.
+    pub cameras: Vec<CameraRecord>,
     /// Called once, when a page says that it has shown a frame.
     pub on_first_frame: Box<dyn Fn() + Send + Sync>,
 }
@@ -80,7 +83,10 @@ pub fn serve(
     stop: &AtomicBool,
     ready: impl FnOnce(&str),
 ) -> Result<(), DialogError> {
-    let hub = Arc::new(Hub::new(page::hello(&config.session, &mission, &layout), config.on_first_frame));
+    let views = page::views(&config.cameras);
+    let hello = page::hello(&config.session, &mission, &layout, &catalog, &views);
+    let views = views.into_iter().map(|view| View::new(view.camera)).collect();
+    let hub = Arc::new(Hub::new(hello, views, config.on_first_frame));
     let talk = Talk::new(&*bus, catalog, Arc::clone(&hub))?;
     let token = token::for_address(config.listen).map_err(DialogError::Serve)?;
     let listener = std::net::TcpListener::bind(config.listen)
@@ -89,11 +95,14 @@ pub fn serve(
     let ended = AtomicBool::new(false);
     let over = || stop.load(Ordering::Relaxed) || ended.load(Ordering::Relaxed);
     thread::scope(|scope| {
-        let workers = [
+        let mut workers = vec![
             scope.spawn(|| until_ended(&ended, || talk::listen(&*bus, &talk, &over))),
             scope.spawn(|| until_ended(&ended, || talk::show_state(&talk, STATE_EVERY, &over))),
-            scope.spawn(|| until_ended(&ended, || frames::relay(&*bus, &hub, &talk, &over))),
         ];
+        for view in (0..=u8::MAX).zip(&hub.views) {
+            let (bus, talk, over, ended) = (&*bus, &talk, &over, &ended);
+            workers.push(scope.spawn(move || until_ended(ended, || frames::relay(bus, view, talk, over))));
+        }
         let served = talk.wait_for_world(&*bus, &over).and_then(|()| {
             ready(&token::page_address(address, token.as_deref()));
             web::serve(listener, token, Arc::clone(&hub), Arc::clone(&talk), &over).map_err(DialogError::Serve)

@@ -1,7 +1,10 @@
 //! What the page is told, as JSON.
 
-use cohabit_bus::message::{NONE, ObjectRecord, StateView};
-use cohabit_cdf::{Catalog, ClassId, Layout, Mission, RoomId, layout::OpeningKind, model::Axis};
+use cohabit_bus::{
+    CameraId,
+    message::{BodyRecord, CameraRecord, NONE, ObjectRecord, Plane, StateView, Thing},
+};
+use cohabit_cdf::{BodyKind, Catalog, ClassId, Layout, Mission, RoomId, layout::OpeningKind, model::Axis};
 use serde::Serialize;
 use serde_json::{Value, json};
 
@@ -60,8 +63,47 @@ impl Line {
     }
 }
 
-/// What a page learns first: the mission and the floor plan.
-pub fn hello(session: &str, mission: &Mission, layout: &Layout) -> Value {
+/// A camera that a page can look through, and what people call it.
+pub struct ViewName {
+    /// Which.
+    pub camera: CameraId,
+    /// What people call it.
+    pub name: String,
+}
+
+/// The cameras that people can look through, the one behind the first body first.
+pub fn views(cameras: &[CameraRecord]) -> Vec<ViewName> {
+    let mut views: Vec<ViewName> = (cameras.iter().filter(|camera| camera.has(Plane::Color)))
+        .filter_map(|record| {
+            let camera = record.camera()?;
+            let of = |name: &str, body: u8| {
+                if body == 0 { name.to_owned() } else { format!("{name}, body {body}") }
+            };
+            let name = match camera {
+                CameraId::Spectator(body) => of("Third person", body),
+                CameraId::Eyes(body) => of("Robot's eyes", body),
+                CameraId::Overhead(body) => of("From above", body),
+                CameraId::Named(name) => name.to_string(),
+                // People have the same, larger, by `Eyes`.
+                CameraId::Egocentric(_) => return None,
+            };
+            Some(ViewName { camera, name })
+        })
+        .take(usize::from(u8::MAX))
+        .collect();
+    let rank = |camera: CameraId| match camera {
+        CameraId::Spectator(0) => 0,
+        CameraId::Eyes(0) => 1,
+        CameraId::Overhead(0) => 2,
+        CameraId::Named(_) => 3,
+        _ => 4,
+    };
+    views.sort_by_key(|view| rank(view.camera));
+    views
+}
+
+/// What a page learns first: the mission, the floor plan and the views.
+pub fn hello(session: &str, mission: &Mission, layout: &Layout, catalog: &Catalog, views: &[ViewName]) -> Value {
     let rooms: Vec<Value> = layout
         .rooms
         .iter()
@@ -76,11 +118,14 @@ pub fn hello(session: &str, mission: &Mission, layout: &Layout) -> Value {
                     "along": if opening.wall_runs == Axis::X { "x" } else { "y" } })
         })
         .collect();
+    let view = |view: &ViewName| json!({ "camera": view.camera.to_string(), "name": view.name });
+    let views: Vec<Value> = views.iter().map(view).collect();
     json!({
         "type": "hello",
         "session": session,
         "mission": { "title": mission.goal_text, "description": mission.description },
-        "map": { "rooms": rooms, "openings": openings },
+        "map": { "rooms": rooms, "openings": openings, "furniture": layout.furniture_outlines_m(catalog) },
+        "views": views,
     })
 }
 
@@ -111,6 +156,7 @@ pub fn state(tick: u64, state: StateView<'_>, catalog: &Catalog) -> Value {
         "score": state.header.score,
         "ending": ending,
         "robot": robot(state, catalog),
+        "others": others(state),
         "goals": goals,
         "notes": notes,
     })
@@ -130,6 +176,36 @@ fn robot(state: StateView<'_>, catalog: &Catalog) -> Value {
         "holding": held.map(|object| name(object, catalog)),
         "busy": body.busy == 1,
     })
+}
+
+/// All bodies but the one that people speak to.
+fn others(state: StateView<'_>) -> Vec<Value> {
+    let place = |body: &BodyRecord| {
+        let [x, y, _] = body.position_m;
+        json!({ "kind": body_kind(body), "x": x, "y": y, "yaw": body.yaw_rad })
+    };
+    state.bodies.iter().skip(1).map(place).collect()
+}
+
+fn body_kind(body: &BodyRecord) -> &'static str {
+    BodyKind::ALL.get(body.kind as usize).map_or("somebody", |kind| kind.name())
+}
+
+/// What somebody points at, at a place of the picture.
+pub fn seen(thing: Thing, [x, y]: [f32; 2], state: StateView<'_>, catalog: &Catalog) -> Option<Value> {
+    let (name, at_m) = match thing {
+        Thing::Object(id) => {
+            let object = state.objects.iter().find(|object| object.object == id.0)?;
+            (name(object, catalog), Some(object.position_m))
+        }
+        Thing::Body(id) => {
+            let body = state.bodies.iter().find(|body| body.body == id.0)?;
+            (body_kind(body), Some(body.position_m))
+        }
+        Thing::Surface(room) => (room.name(), None),
+        Thing::Nothing => return None,
+    };
+    Some(json!({ "type": "seen", "name": name, "x": x, "y": y, "at": at_m.map(|[x, y, _]| [x, y]) }))
 }
 
 /// What people call an object.

@@ -8,11 +8,12 @@ use std::{
 
 use cohabit_bus::{
     Publisher, Sample, Subscriber, Topic, Transport, Wake,
-    message::{self, DialogKind, DialogMessage, DialogView, EventKind, EventMessage, StateView},
+    message::{self, DialogKind, DialogMessage, DialogView, EventKind, EventMessage, StateView, Thing},
     monotonic_nanos,
 };
 use cohabit_cdf::{BodyId, Catalog};
 use cohabit_language::Known;
+use serde_json::Value;
 
 use crate::{
     DialogError,
@@ -129,6 +130,14 @@ impl Talk {
             self.hub.tell(&page::highlight(record, &self.catalog));
         }
         Ok(())
+    }
+
+    /// What a thing is that somebody points at, at a place of the picture; `None` if it is gone.
+    pub fn seen(&self, thing: Thing, place: [f32; 2]) -> Result<Option<Value>, DialogError> {
+        let mut inner = self.lock();
+        inner.refresh()?;
+        let Some(sample) = &inner.newest else { return Ok(None) };
+        Ok(page::seen(thing, place, StateView::new(sample.payload())?, &self.catalog))
     }
 
     /// A frame was shown that was seen after `command` began.

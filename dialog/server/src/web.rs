@@ -18,8 +18,9 @@ use axum::{
     response::{IntoResponse, Response},
     routing::get,
 };
-use cohabit_bus::monotonic_nanos;
+use cohabit_bus::{message::Thing, monotonic_nanos};
 use serde::Deserialize;
+use serde_json::Value;
 use tokio::sync::broadcast::error::RecvError;
 
 use crate::{
@@ -28,6 +29,7 @@ use crate::{
     page,
     talk::Talk,
     token,
+    view::View,
 };
 
 const INDEX: &str = include_str!("../../web/index.html");
@@ -43,6 +45,13 @@ struct Service {
     token: Option<Arc<str>>,
 }
 
+impl Service {
+    fn view(&self, camera: &str) -> Result<Arc<View>, String> {
+        let is_meant = |view: &&Arc<View>| view.camera.to_string() == camera;
+        self.hub.views.iter().find(is_meant).cloned().ok_or_else(|| format!("There is no camera {camera}."))
+    }
+}
+
 /// What a page sends.
 #[derive(Deserialize)]
 #[serde(tag = "type", rename_all = "snake_case")]
@@ -51,6 +60,10 @@ enum FromPage {
     Say { text: String },
     /// The page has shown its first frame.
     Shown,
+    /// Somebody wants to look through another camera.
+    View { camera: String },
+    /// Somebody points at something in the picture: how far from the left and from the top, 0 to 1.
+    Point { camera: String, tick: u64, x: f32, y: f32 },
 }
 
 /// Serves on `listener` until `over`.
@@ -122,8 +135,7 @@ async fn frame(State(service): State<Service>, parameters: Parameters) -> Respon
     if let Some(refusal) = refused(&service, &parameters) {
         return refusal;
     }
-    let newest = service.hub.frames().borrow().clone();
-    match newest {
+    match service.hub.views.first().and_then(|view| view.newest()) {
         Some(frame) => {
             let headers = [(header::CONTENT_TYPE, "image/jpeg"), (header::CACHE_CONTROL, "no-store")];
             (headers, frame[16..].to_vec()).into_response()
@@ -158,7 +170,7 @@ fn same_origin(headers: &HeaderMap) -> bool {
 }
 
 async fn converse(service: Service, mut socket: WebSocket) {
-    let Some((first, mut messages, _viewing)) = service.hub.join() else {
+    let Some((first, mut messages, _visit)) = service.hub.join() else {
         let text = format!("{MOST_PAGES} pages are open already; close one and reload.");
         let _ = socket.send(Message::text(page::error(&text).to_string())).await;
         return;
@@ -168,7 +180,8 @@ async fn converse(service: Service, mut socket: WebSocket) {
             return;
         }
     }
-    let mut frames = service.hub.frames();
+    let Some(view) = service.hub.views.first() else { return };
+    let (mut frames, mut _viewing) = view.join();
     frames.mark_changed();
     let mut throttle = Throttle::new(Instant::now());
     loop {
@@ -190,7 +203,13 @@ async fn converse(service: Service, mut socket: WebSocket) {
             }
             received = socket.recv() => match received {
                 Some(Ok(Message::Text(text))) => match take(&service, &text, &mut throttle).await {
-                    Ok(()) => Ok(()),
+                    Ok(Answer::Nothing) => Ok(()),
+                    Ok(Answer::Tell(message)) => socket.send(Message::text(message.to_string())).await,
+                    Ok(Answer::View(view)) => {
+                        (frames, _viewing) = view.join();
+                        frames.mark_changed();
+                        Ok(())
+                    }
                     Err(problem) => socket.send(Message::text(page::error(&problem).to_string())).await,
                 },
                 Some(Ok(Message::Close(_)) | Err(_)) | None => return,
@@ -203,8 +222,18 @@ async fn converse(service: Service, mut socket: WebSocket) {
     }
 }
 
+/// What a page gets for a message at once.
+enum Answer {
+    /// Nothing; what comes of it comes by the hub.
+    Nothing,
+    /// The frames of another view, from now on.
+    View(Arc<View>),
+    /// A message.
+    Tell(Value),
+}
+
 /// Takes a message of a page; says what is wrong with it, if anything.
-async fn take(service: &Service, text: &str, throttle: &mut Throttle) -> Result<(), String> {
+async fn take(service: &Service, text: &str, throttle: &mut Throttle) -> Result<Answer, String> {
     let received_nanos = monotonic_nanos();
     if !throttle.admits(Instant::now()) {
         return Err("That was a lot at once; wait a moment, please.".to_owned());
@@ -212,10 +241,17 @@ async fn take(service: &Service, text: &str, throttle: &mut Throttle) -> Result<
     let message: FromPage = serde_json::from_str(text).map_err(|error| format!("The page sent nonsense: {error}"))?;
     match message {
         FromPage::Shown => service.hub.note_shown(),
+        FromPage::View { camera } => return service.view(&camera).map(Answer::View),
+        FromPage::Point { camera, tick, x, y } => {
+            let view = service.view(&camera)?;
+            let Some(id) = view.id_at(tick, [x, y]) else { return Ok(Answer::Nothing) };
+            let seen = service.talk.seen(Thing::of_id(id), [x, y]).map_err(|error| error.to_string())?;
+            return Ok(seen.map_or(Answer::Nothing, Answer::Tell));
+        }
         FromPage::Say { text } => {
             let text = text.trim().to_owned();
             if text.is_empty() {
-                return Ok(());
+                return Ok(Answer::Nothing);
             }
             if text.len() > LONGEST_TEXT {
                 return Err(format!("That is too long for me: {} characters at most, please.", LONGEST_TEXT));
@@ -228,5 +264,5 @@ async fn take(service: &Service, text: &str, throttle: &mut Throttle) -> Result<
             }
         }
     }
-    Ok(())
+    Ok(Answer::Nothing)
 }

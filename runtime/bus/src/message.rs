@@ -16,7 +16,7 @@ pub use camera::{CameraKind, CameraRecord};
 pub use command::CommandMessage;
 pub use dialog::{DialogHeader, DialogKind, DialogMessage, DialogView, PlanStep};
 pub use event::{EventKind, EventMessage};
-pub use frame::{FrameHeader, FrameLayout, FrameParts, FrameView, Plane, SeenRecord};
+pub use frame::{FrameHeader, FrameLayout, FrameParts, FrameView, Plane, SeenRecord, Thing};
 pub use mission::{MissionHeader, MissionMessage};
 pub use state::{BodyRecord, GoalRecord, NoteRecord, ObjectRecord, StateHeader, StateParts, StateView};
 pub use tick::{TickHeader, TickMessage, TickView};

@@ -9,13 +9,18 @@ use std::{
 
 use anyhow::Context as _;
 use cohabit_cdf::{Catalog, Layout, Mission, RoomId};
-use cohabit_render::{Camera, CpuRenderer, MeshLibrary, Planes, Renderer, Scene, gallery};
+use cohabit_render::{
+    Camera, CpuRenderer, Lens, MeshLibrary, Planes, Renderer, Scene,
+    gallery::{self, Picture},
+    minimap,
+};
 use cohabit_world::World;
 use indicatif::ProgressBar;
 
 use crate::failure::bad_input;
 
-/// Draws all objects in all their states, all floor plans from above, and a view of each room, as PNG files.
+/// Draws all objects in all their states, all floor plans from above and as maps, and a view of each room, as PNG
+/// files.
 #[derive(clap::Args)]
 pub struct Gallery {
     /// The folder to write into
@@ -29,8 +34,12 @@ pub struct Gallery {
 const CELL_PX: u32 = 220;
 /// Size of a room's picture.
 const ROOM_PX: [u32; 2] = [854, 480];
+/// What it takes in from its upper to its lower edge.
+const ROOM_FOV_DEG: f32 = 63.0;
 /// Pixels a metre of a floor plan.
 const PLAN_PX_M: f32 = 50.0;
+/// Pixels a metre of its schematic map.
+const MAP_PX_M: f32 = 32.0;
 /// Height at which floor plans are to scale, m.
 const TABLE_M: f32 = 0.8;
 
@@ -75,6 +84,8 @@ impl Gallery {
             self.write(name, &rgba, [camera.width, camera.height])
         };
         shoot(&format!("plan-{id}"), Camera::above(layout.bounds_m(), TABLE_M, PLAN_PX_M))?;
+        let Picture { width, height, rgba } = minimap(&layout, catalog, MAP_PX_M).picture;
+        self.write(&format!("map-{id}"), &rgba, [width, height])?;
         for room in RoomId::ALL {
             if let Some(camera) = inside(&layout, room) {
                 shoot(&format!("room-{id}-{}", room.id()), camera)?;
@@ -101,15 +112,6 @@ fn write_png(path: &Path, rgba: &[u8], [width, height]: [u32; 2]) -> anyhow::Res
 fn inside(layout: &Layout, room: RoomId) -> Option<Camera> {
     let viewpoint = layout.viewpoints.iter().find(|viewpoint| viewpoint.room == room)?;
     let [width, height] = ROOM_PX;
-    Some(Camera {
-        position_m: [viewpoint.at_m[0], viewpoint.at_m[1], 1.6],
-        yaw_rad: viewpoint.yaw_deg.to_radians(),
-        pitch_rad: -0.2,
-        fov_y_rad: 1.1,
-        width,
-        height,
-        hide: None,
-        for_people: true,
-        ceiling: true,
-    })
+    let lens = Lens::new(width, height, ROOM_FOV_DEG).ok()?;
+    Some(Camera::fixed(lens, [viewpoint.at_m[0], viewpoint.at_m[1], 1.6], viewpoint.yaw_deg.to_radians(), -0.2))
 }

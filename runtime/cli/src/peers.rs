@@ -142,11 +142,12 @@ impl Dialog {
     /// Runs the dialog service. Prints its address, and later the time of the first frame shown, for its supervisor.
     pub fn run(&self) -> anyhow::Result<()> {
         let (bus, stop) = self.joining.join()?;
-        let Some(mission) = wait_for_mission(&bus, &stop)? else { return Ok(()) };
-        let file = MissionFile { name: mission.header.file.as_str().to_owned(), text: mission.text };
-        let SessionPlan { catalog, layout, mission, .. } = file.plan(mission.header.seed, &mission.bodies)?;
+        let Some(message) = wait_for_mission(&bus, &stop)? else { return Ok(()) };
+        let file = MissionFile { name: message.header.file.as_str().to_owned(), text: message.text };
+        let SessionPlan { catalog, layout, mission, .. } = file.plan(message.header.seed, &message.bodies)?;
         let config = DialogConfig {
             session: self.joining.session.clone(),
+            cameras: message.cameras,
             listen: SocketAddr::new(self.listening.listen, self.listening.port),
             on_first_frame: Box::new(|| tell_supervisor("shown")),
         };

@@ -36,7 +36,13 @@ pub struct Role {
 
 impl Role {
     /// The simulator: without it there is no session.
-    pub fn sim(mission: Option<&str>, seed: u64, bodies: &[BodyRequest], cameras: &[CameraPlan], threads: usize) -> Self {
+    pub fn sim(
+        mission: Option<&str>,
+        seed: u64,
+        bodies: &[BodyRequest],
+        cameras: &[CameraPlan],
+        threads: usize,
+    ) -> Self {
         let mut arguments = vec!["--seed".into(), seed.to_string().into()];
         arguments.extend(["--threads".into(), threads.to_string().into()]);
         arguments.extend(bodies.iter().map(|body| format!("--body={body}").into()));

@@ -83,7 +83,16 @@ impl SessionPlan {
         let mission = Arc::new(checked.mission);
         let layout = Arc::new(Layout::builtin(&mission.layout)?);
         let seed = mission.seed.unwrap_or(seed);
-        Ok(Self { file: file.to_owned(), text: text.to_owned(), catalog, layout, mission, seed, bodies: Vec::new(), cameras: Vec::new() })
+        Ok(Self {
+            file: file.to_owned(),
+            text: text.to_owned(),
+            catalog,
+            layout,
+            mission,
+            seed,
+            bodies: Vec::new(),
+            cameras: Vec::new(),
+        })
     }
 
     /// The same with these bodies beside those of the mission.

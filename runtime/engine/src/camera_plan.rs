@@ -323,7 +323,8 @@ impl FromStr for CameraPlan {
         let [width, height] = size.unwrap_or(usual.lens.size());
         let fov = options.number("fov", Lens::FOV_DEG, "degrees from the upper to the lower edge, 1 to 150")?;
         let rate = options.number("rate", RATE_HZ, "frames a second, 0.1 to 60")?;
-        let planes = options.get("planes", "`all`, or some of color, depth, normals, ids with `+` between", read_planes)?;
+        let planes =
+            options.get("planes", "`all`, or some of color, depth, normals, ids with `+` between", read_planes)?;
         let smooth = options.get("smooth", "yes or no", read_yes)?;
         Ok(Self {
             lens: Lens::new(width, height, fov.unwrap_or(usual.lens.fov_y_deg()))?,

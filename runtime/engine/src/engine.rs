@@ -46,7 +46,12 @@ impl Engine {
     ///
     /// # Errors
     /// [`EngineError::Bus`].
-    pub fn new(plan: &SessionPlan, world: World, cameras: &[CameraPlan], bus: &dyn Transport) -> Result<Self, EngineError> {
+    pub fn new(
+        plan: &SessionPlan,
+        world: World,
+        cameras: &[CameraPlan],
+        bus: &dyn Transport,
+    ) -> Result<Self, EngineError> {
         let mut engine = Self {
             world,
             commands: bus.subscriber(Topic::Commands)?,

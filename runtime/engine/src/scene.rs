@@ -1,5 +1,6 @@
 //! The world as the renderer sees it.
 
+use cohabit_bus::message::Thing;
 use cohabit_cdf::{
     BodyId, BodyKind, Color, Fluid, RoomId, StateFlags,
     mission::Era,
@@ -14,12 +15,6 @@ use crate::{
     motion::{Gait, Motion, Pour},
     shot::{self, Outlook},
 };
-
-/// The id of body `body` in the id plane; objects have their index + 1.
-const FIRST_BODY_ID: u32 = 1 << 20;
-
-/// The id of what a body pours, less the body's own index.
-const FIRST_STREAM_ID: u32 = 1 << 21;
 
 /// One moment of a world, complete enough to be rendered elsewhere.
 #[derive(Clone, Debug, Default)]
@@ -62,7 +57,7 @@ pub const fn object_instance_id(object: cohabit_cdf::ObjectId) -> u32 {
 
 /// The id of a body in the id plane.
 pub const fn body_instance_id(body: BodyId) -> u32 {
-    FIRST_BODY_ID + body.0
+    Thing::FIRST_BODY + body.0
 }
 
 const HIGHLIGHT_COLOR: [u8; 3] = [255, 196, 61];
@@ -129,7 +124,7 @@ fn show_pour(world: &World, pour: &Pour, instances: &mut Vec<Instance>) {
     if pour.flows(world.tick()) {
         let depth_m = (brim.z - into.position_m.z) * (1.0 - BOTTOM);
         instances.push(Instance {
-            id: FIRST_STREAM_ID + pour.body.0,
+            id: Thing::FIRST_STREAM + pour.body.0,
             look: Look::Stream { height_m: FALL_M + depth_m },
             position_m: (brim + Vec3::Z * FALL_M).to_array(),
             rotation: Quat::IDENTITY.to_array(),

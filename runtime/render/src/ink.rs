@@ -146,9 +146,10 @@ mod tests {
 
         let mut paper = Paper::new([4.0, 4.0], [0.0, 4.0], 10.0);
         paper.polygon([[3.0, 2.0], [2.0, 3.0], [1.0, 2.0], [2.0, 1.0]], BLACK);
-        assert_eq!([(20, 20), (12, 12), (12, 20), (29, 29)].map(|(x, y)| alpha(&paper, x, y) > 200), [
-            true, false, true, false
-        ]);
+        assert_eq!(
+            [(20, 20), (12, 12), (12, 20), (29, 29)].map(|(x, y)| alpha(&paper, x, y) > 200),
+            [true, false, true, false]
+        );
 
         let mut paper = Paper::new([4.0, 4.0], [0.0, 4.0], 10.0);
         paper.strokes(&[[[1.0, 2.0], [3.0, 2.0]]], 0.4, Ink([9, 9, 9], 0.5));

@@ -4,6 +4,7 @@
 //! header says where in the payload each part begins.
 
 use bytemuck::{Pod, Zeroable};
+use cohabit_cdf::{BodyId, ObjectId, RoomId};
 
 use super::Malformed;
 
@@ -16,8 +17,7 @@ pub enum Plane {
     Depth,
     /// `[views, height, width, 4]` `i8`: the surface's normal in the world, x, y, z times 127, and 0.
     Normals,
-    /// `[views, height, width]` `u32`: the instance's id + 1; 0 is nothing, from `1 << 24` on it is a room's floor or
-    /// walls.
+    /// `[views, height, width]` `u32`: 0 is nothing; all else is read by [`Thing::of_id`].
     Ids,
 }
 
@@ -107,6 +107,40 @@ pub struct SeenRecord {
 }
 
 const _: () = assert!(size_of::<SeenRecord>() == 24);
+
+/// What an id of the id plane stands for.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum Thing {
+    /// An object.
+    Object(ObjectId),
+    /// A robot or a person.
+    Body(BodyId),
+    /// A floor, a wall or another part of a room.
+    Surface(RoomId),
+    /// Nothing that can be named: what is being poured is none.
+    Nothing,
+}
+
+impl Thing {
+    /// The id of the first body; those of objects are below.
+    pub const FIRST_BODY: u32 = 1 << 20;
+    /// The id of what the first body pours; those of bodies are below.
+    pub const FIRST_STREAM: u32 = 1 << 21;
+    /// The id of the first room's surface: 256 a room; all others are below.
+    pub const FIRST_SURFACE: u32 = 1 << 24;
+
+    /// The thing with this id.
+    #[must_use]
+    pub fn of_id(id: u32) -> Self {
+        match id {
+            0 => Self::Nothing,
+            _ if id < Self::FIRST_BODY => Self::Object(ObjectId(id - 1)),
+            _ if id < Self::FIRST_STREAM => Self::Body(BodyId(id - Self::FIRST_BODY)),
+            _ if id < Self::FIRST_SURFACE => Self::Nothing,
+            _ => RoomId::from_index(id - Self::FIRST_SURFACE >> 8).map_or(Self::Nothing, Self::Surface),
+        }
+    }
+}
 
 /// Where the parts of a frame lie.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]

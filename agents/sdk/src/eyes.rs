@@ -1,0 +1,95 @@
+//! What a body's cameras show: pictures as they lie in shared memory, and the things in them by name.
+
+use std::sync::Arc;
+
+use cohabit_bus::{
+    CameraId, Sample, Subscriber, Topic, Transport,
+    message::{FrameView, Malformed, Thing},
+};
+use cohabit_cdf::{Catalog, SemanticClass};
+
+use crate::peer::PeerError;
+
+/// A camera that is looked through; while it lives, its frames are rendered.
+pub struct Eyes {
+    frames: Box<dyn Subscriber>,
+    catalog: Arc<Catalog>,
+}
+
+/// One frame of it.
+pub struct Glance {
+    sample: Sample,
+    catalog: Arc<Catalog>,
+}
+
+/// A thing that is seen in a picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SeenThing<'a> {
+    /// Its id in the id plane.
+    pub id: u32,
+    /// The object or body behind the id.
+    pub thing: Thing,
+    /// What kind of thing it is.
+    pub class: SemanticClass,
+    /// What people call things of its kind.
+    pub name: &'a str,
+    /// The picture: 0, or up to 3 of a panorama.
+    pub view: u16,
+    /// Pixels that show it.
+    pub pixels: u32,
+    /// `[left, top, right, bottom]` around them: the first column and row, and those after the last.
+    pub bounds: [u16; 4],
+}
+
+impl Eyes {
+    /// Looks through a camera of the session on `bus`.
+    ///
+    /// # Errors
+    /// [`PeerError::Bus`].
+    pub fn open(bus: &dyn Transport, camera: CameraId, catalog: Arc<Catalog>) -> Result<Self, PeerError> {
+        Ok(Self { frames: bus.subscriber(Topic::Frames(camera))?, catalog })
+    }
+
+    /// The newest frame, if there is one that was not seen yet.
+    ///
+    /// # Errors
+    /// [`PeerError`].
+    pub fn look(&mut self) -> Result<Option<Glance>, PeerError> {
+        let Some(sample) = self.frames.latest()? else { return Ok(None) };
+        FrameView::new(sample.payload())?;
+        Ok(Some(Glance { sample, catalog: Arc::clone(&self.catalog) }))
+    }
+}
+
+impl Glance {
+    /// The tick at which the world was so.
+    #[must_use]
+    pub fn tick(&self) -> u64 {
+        self.sample.envelope().tick
+    }
+
+    /// The pictures, viewed in place.
+    ///
+    /// # Errors
+    /// [`Malformed`], if a peer has spoilt them meanwhile.
+    pub fn frame(&self) -> Result<FrameView<'_>, Malformed> {
+        FrameView::new(self.sample.payload())
+    }
+
+    /// What is seen, by picture, then by id.
+    pub fn things(&self) -> impl Iterator<Item = SeenThing<'_>> {
+        let records = self.frame().map_or(&[][..], |frame| frame.seen());
+        records.iter().map(|record| {
+            let class = SemanticClass::from_index(record.class);
+            SeenThing {
+                id: record.id,
+                thing: Thing::of_id(record.id),
+                class,
+                name: class.name(&self.catalog),
+                view: record.view,
+                pixels: record.pixels,
+                bounds: [record.left, record.top, record.right, record.bottom],
+            }
+        })
+    }
+}

@@ -1,0 +1,162 @@
+//! One camera's picture as pages get it, and who wants it.
+
+use std::{
+    collections::VecDeque,
+    sync::{
+        Arc, Condvar, Mutex, MutexGuard, PoisonError,
+        atomic::{AtomicUsize, Ordering},
+    },
+    time::Duration,
+};
+
+use cohabit_bus::CameraId;
+use tokio::sync::watch;
+
+/// A frame as pages get it: JPEG behind a header of one kind byte (1), the view's index, six zero bytes, and the tick,
+/// little-endian.
+pub type Frame = Arc<Vec<u8>>;
+
+/// Frames whose ids are kept, so that a click on one that was just replaced still finds what was there.
+const FRAMES_KEPT: usize = 4;
+
+/// Which thing is where in a frame: each thing's id, and the pixel after its last in a row of equal ones.
+pub struct Ids {
+    tick: u64,
+    size: [u32; 2],
+    runs: Vec<(u32, u32)>,
+}
+
+impl Ids {
+    /// The ids of a frame, row-major.
+    pub fn new(tick: u64, size: [u32; 2], ids: &[u32]) -> Self {
+        let mut end = 0;
+        let runs = ids.chunk_by(|one, next| one == next).map(|run| {
+            end += run.len() as u32;
+            (run[0], end)
+        });
+        Self { tick, size, runs: runs.collect() }
+    }
+
+    /// The id at a place: 0 to 1 from the left and from the top.
+    fn at(&self, place: [f32; 2]) -> Option<u32> {
+        let [x, y] = [0, 1].map(|axis| ((place[axis] * self.size[axis] as f32) as u32).min(self.size[axis] - 1));
+        let pixel = y * self.size[0] + x;
+        let run = self.runs.partition_point(|(_, end)| *end <= pixel);
+        self.runs.get(run).map(|(id, _)| *id)
+    }
+}
+
+/// A camera that pages can look through.
+pub struct View {
+    /// Which.
+    pub camera: CameraId,
+    frame: watch::Sender<Option<Frame>>,
+    ids: Mutex<VecDeque<Ids>>,
+    viewers: AtomicUsize,
+    gate: Mutex<()>,
+    wanted: Condvar,
+}
+
+/// Counts a page as a viewer while it lives.
+pub struct Viewing(Arc<View>);
+
+impl Drop for Viewing {
+    fn drop(&mut self) {
+        self.0.viewers.fetch_sub(1, Ordering::Relaxed);
+    }
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl View {
+    /// A view of which nothing was seen yet.
+    pub fn new(camera: CameraId) -> Self {
+        Self {
+            camera,
+            frame: watch::Sender::new(None),
+            ids: Mutex::default(),
+            viewers: AtomicUsize::new(0),
+            gate: Mutex::default(),
+            wanted: Condvar::new(),
+        }
+    }
+
+    /// Somebody looks: the newest frame if it is no older than they are, and those to come.
+    pub fn join(self: &Arc<Self>) -> (watch::Receiver<Option<Frame>>, Viewing) {
+        let frames = self.frame.subscribe();
+        if self.viewers.fetch_add(1, Ordering::Relaxed) == 0 {
+            drop(lock(&self.gate));
+            self.wanted.notify_all();
+        }
+        (frames, Viewing(Arc::clone(self)))
+    }
+
+    /// Whether anybody looks.
+    pub fn is_wanted(&self) -> bool {
+        self.viewers.load(Ordering::Relaxed) > 0
+    }
+
+    /// Sleeps until somebody looks, at most so long.
+    pub fn wait_until_wanted(&self, most: Duration) {
+        let gate = lock(&self.gate);
+        let _ = self.wanted.wait_timeout_while(gate, most, |()| !self.is_wanted());
+    }
+
+    /// Shows a frame, whose ids are kept for a while.
+    pub fn show(&self, frame: Frame, ids: Option<Ids>) {
+        if let Some(ids) = ids {
+            let mut kept = lock(&self.ids);
+            kept.truncate(FRAMES_KEPT - 1);
+            kept.push_front(ids);
+        }
+        self.frame.send_replace(Some(frame));
+    }
+
+    /// The newest frame.
+    pub fn newest(&self) -> Option<Frame> {
+        self.frame.borrow().clone()
+    }
+
+    /// Nobody has looked for a while: what was seen is no longer so.
+    pub fn forget(&self) {
+        lock(&self.ids).clear();
+        self.frame.send_replace(None);
+    }
+
+    /// The id at a place (0 to 1 from the left and from the top) of the frame of a tick, or of the one nearest to it.
+    pub fn id_at(&self, tick: u64, place: [f32; 2]) -> Option<u32> {
+        lock(&self.ids).iter().min_by_key(|ids| ids.tick.abs_diff(tick))?.at(place)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_click_finds_what_its_own_frame_showed() {
+        let view = View::new(CameraId::Spectator(0));
+        assert_eq!(view.id_at(1, [0.5, 0.5]), None);
+        for tick in 1..=6 {
+            let ids = [7, 7, tick as u32, 9, 9, 9];
+            view.show(Frame::default(), Some(Ids::new(tick, [3, 2], &ids)));
+        }
+        let at = |tick, x, y| view.id_at(tick, [x, y]);
+        assert_eq!([at(6, 0.9, 0.1), at(5, 0.9, 0.1), at(99, 0.9, 0.1)], [Some(6), Some(5), Some(6)]);
+        assert_eq!([at(6, 0.0, 0.0), at(6, 0.6, 0.4), at(6, 1.0, 1.0)], [Some(7), Some(7), Some(9)]);
+        assert_eq!(at(1, 0.9, 0.1), Some(3), "the oldest that is kept");
+        view.forget();
+        assert_eq!(at(6, 0.9, 0.1), None);
+    }
+
+    #[test]
+    fn a_view_is_wanted_while_somebody_looks() {
+        let view = Arc::new(View::new(CameraId::Overhead(0)));
+        let (_frames, viewing) = view.join();
+        assert!(view.is_wanted());
+        drop(viewing);
+        assert!(!view.is_wanted());
+    }
+}
