@@ -69,6 +69,15 @@ fn a_port_in_use_is_named() {
 }
 
 #[test]
+fn a_camera_that_cannot_be_is_named() {
+    check(&["--camera", "door=drone"], &["--camera", "drone", "third-person, fixed, top-down"]);
+    check(&["--camera", "door=fixed,x=4"], &["needs `y=`"]);
+    check(&["--camera", "a=egocentric,size=5000"], &["5000x5000", "16 to 4096"]);
+    check(&["--camera", "a=egocentric,body=4", "--port", "0"], &["body 4", "bodies 0 to 0", "--body"]);
+    check(&["--camera", "a=egocentric", "--camera", "a=panorama"], &["two cameras are called `a`"]);
+}
+
+#[test]
 fn a_file_that_is_no_log_is_not_replayed() {
     let path = file("no-log.mcap", "hello");
     let output = run(COHABIT, &["replay", path.to_str().unwrap()]).unwrap();

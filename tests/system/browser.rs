@@ -8,7 +8,7 @@ use crate::COHABIT;
 #[test]
 fn a_person_opens_the_page_types_and_sees_the_robot_move() {
     let Some(browser) = Browser::start().unwrap() else { return };
-    let mut play = Play::start(COHABIT, &[]).unwrap();
+    let mut play = Play::start(COHABIT, &["--camera", "door=fixed,x=4,y=10,yaw=90,rate=5"]).unwrap();
     let mut tab = browser.open(&play.address, 1280, 720).unwrap();
     tab.wait_until("document.querySelector('#chat-input') !== null && window.cohabit?.frames > 0").unwrap();
     let line = play.wait_for_line("First frame on the page").unwrap();
@@ -31,9 +31,30 @@ fn a_person_opens_the_page_types_and_sees_the_robot_move() {
         return s.size; })()";
     assert!(tab.evaluate(spread).unwrap().as_u64().unwrap() > 12, "the view is flat");
 
+    // Other views are chosen by a button, by a key and from a list, and the next page begins with the one chosen.
+    let looks_through = |camera: &str| format!("window.cohabit.view === '{camera}'");
+    tab.evaluate("document.querySelector('[data-camera=\"eyes/0\"]').click()").unwrap();
+    tab.wait_until(&looks_through("eyes/0")).unwrap();
+    tab.evaluate("document.dispatchEvent(new KeyboardEvent('keydown', { code: 'KeyC', key: 'c', altKey: true }))")
+        .unwrap();
+    tab.wait_until(&looks_through("overhead/0")).unwrap();
+    let choose = "{ const more = document.querySelector('#views-more'); more.value = 'door'; \
+        more.dispatchEvent(new Event('change')); }";
+    tab.evaluate(choose).unwrap();
+    tab.wait_until(&looks_through("door")).unwrap();
+    tab.evaluate("document.querySelector('[data-camera=\"overhead/0\"]').click()").unwrap();
+    tab.wait_until(&looks_through("overhead/0")).unwrap();
+    // The robot is in the middle of the picture from above, and says so to who clicks on it.
+    let click = "{ const box = document.querySelector('#view').getBoundingClientRect(); \
+        document.querySelector('#view').dispatchEvent(new MouseEvent('click', { \
+        clientX: box.x + box.width / 2, clientY: box.y + box.height / 2 })); }";
+    tab.evaluate(click).unwrap();
+    tab.wait_until("window.cohabit.seen === 'robot'").unwrap();
+
     // On a phone nothing is cut off at the side.
     let mut phone = browser.open(&play.address, 390, 844).unwrap();
     phone.wait_until("document.querySelector('#chat-input') !== null && window.cohabit?.frames > 0").unwrap();
+    phone.wait_until(&looks_through("overhead/0")).unwrap();
     assert_eq!(phone.evaluate("document.documentElement.scrollWidth <= 390").unwrap(), json!(true));
     drop((tab, phone, browser));
     play.end().unwrap();

@@ -255,4 +255,45 @@ mod tests {
         assert!((at.z - 1.0).abs() < 1e-5);
         assert!((at.x * view.focal + 50.0 - 13.0).abs() < 1e-3 && (at.y * view.focal + 40.0 - 57.0).abs() < 1e-3);
     }
+
+    #[test]
+    fn pictures_of_a_panorama_meet_at_their_edges() {
+        let lens = Lens::new(64, 64, 90.0).expect("a lens");
+        let views = Camera::panorama(lens, [1.0, 2.0, 1.5], 0.4, 0.0, 7).map(|camera| View::new(&camera));
+        for (index, view) in views.iter().enumerate() {
+            let next = &views[(index + 1) % 4];
+            for row in [0.0, 20.0, 64.0] {
+                let (right, left) = (view.ray(64.0, row), next.ray(0.0, row));
+                assert!((right - left).length() < 1e-4, "{index}: {right} {left}");
+            }
+        }
+    }
+
+    #[test]
+    fn cameras_above_see_what_they_should() {
+        let place = |camera: &Camera, point: Vec3| {
+            let view = View::new(camera);
+            let at = view.in_camera(point);
+            [at.x / at.z * view.focal + view.center[0], at.y / at.z * view.focal + view.center[1]]
+        };
+        let bounds = [-3.0, 2.0, 17.0, 30.0];
+        for size in [[854, 480], [300, 900], [64, 64]] {
+            let camera = Camera::top_down_on(size, bounds, 0.8);
+            for corner in [Vec3::new(-3.0, 2.0, 0.8), Vec3::new(17.0, 30.0, 0.8)] {
+                let [x, y] = place(&camera, corner);
+                assert!(x > 0.0 && y > 0.0 && x < size[0] as f32 && y < size[1] as f32, "{size:?}: {x} {y}");
+            }
+        }
+        let camera = Camera::top_down([200, 100], [5.0, 6.0], 0.8, 4.0);
+        let [x, y] = place(&camera, Vec3::new(9.0, 8.0, 0.8));
+        assert!((x - 200.0).abs() < 0.1 && y.abs() < 0.1, "east is right, north is up: {x} {y}");
+    }
+
+    #[test]
+    fn a_third_person_stands_behind() {
+        let lens = Lens::new(64, 64, 60.0).expect("a lens");
+        let camera = Camera::third_person(lens, [1.0, 2.0], std::f32::consts::FRAC_PI_2, [2.0, 1.9], -0.3);
+        let off = Vec3::from_array(camera.position_m) - Vec3::new(1.0, 0.0, 1.9);
+        assert!(off.length() < 1e-5 && camera.for_people && camera.pitch_rad == -0.3);
+    }
 }

@@ -3,7 +3,7 @@
 #![no_main]
 
 use cohabit_bus::message::{
-    CommandMessage, DialogView, EventMessage, FrameView, MissionMessage, Plane, StateView, TickView, read,
+    CommandMessage, DialogView, EventMessage, FrameView, MissionMessage, Plane, StateView, Thing, TickView, read,
 };
 use cohabit_cdf::Action;
 use cohabit_record::entry::{EventEntry, InputEntry};
@@ -53,6 +53,7 @@ fn look(kind: u8, payload: &[u8]) {
                 let _ = view.plane(plane).map(|bytes| bytes.iter().map(|byte| u64::from(*byte)).sum::<u64>());
             }
             let _ = (view.depth_m().map(<[f32]>::len), view.ids().map(<[u32]>::len));
+            let _ = view.seen().iter().map(|record| Thing::of_id(record.id)).count();
         }
         5 => {
             let Ok(view) = TickView::new(payload) else { return };
