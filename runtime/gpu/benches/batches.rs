@@ -123,7 +123,9 @@ fn measure(renderer: &mut dyn Renderer, scene: &Scene, layout: &Layout, size: [u
     };
     // Patterns, occlusion and shaders are worked out when they are first needed.
     let warm_up = if count == 1 { all.len() } else { 1 };
-    (0..warm_up).for_each(|first| drop(draw(first)));
+    for first in 0..warm_up {
+        draw(first);
+    }
     let (mut spent, mut batches) = (Duration::ZERO, 0);
     while spent < least || batches < 3 {
         spent += draw(batches);

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use bytemuck::{Pod, Zeroable};
 use cohabit_render::MeshLibrary;
-use cohabit_render::backend::{self, Light, MeshData, Paint, PlanKey, Stage};
+use cohabit_render::backend::{self, Light, MeshData, Paint, PlanKey, Stage, Veil};
 use wgpu::{BufferUsages, Device, Queue, VertexAttribute, VertexBufferLayout, VertexFormat, VertexStepMode};
 
 use crate::arena::Arena;
@@ -31,14 +31,22 @@ struct Surface {
     v: [f32; 4],
     gloss: [f32; 4],
     pattern: [f32; 4],
+    veil: [f32; 4],
+}
+
+/// Where a piece's indices lie.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SlotPiece {
+    pub first_index: u32,
+    pub index_count: u32,
+    pub veil: Option<Veil>,
 }
 
 /// Where a mesh lies in the buffers.
 #[derive(Clone, Debug)]
 pub(crate) struct Slot {
     pub base_vertex: i32,
-    /// For each piece its first index, and how many there are.
-    pub pieces: Vec<[u32; 2]>,
+    pub pieces: Vec<SlotPiece>,
 }
 
 /// All triangles.
@@ -143,8 +151,12 @@ impl Geometry {
             .collect();
         let base_vertex = self.vertices.push(device, queue, &vertices) as i32;
         let first_index = self.indices.push(device, queue, &mesh.indices);
-        let pieces = mesh.pieces.iter().map(|range| [first_index + range.start, range.end - range.start]).collect();
-        Slot { base_vertex, pieces }
+        let pieces = mesh.pieces.iter().map(|piece| SlotPiece {
+            first_index: first_index + piece.indices.start,
+            index_count: piece.indices.len() as u32,
+            veil: piece.veil,
+        });
+        Slot { base_vertex, pieces: pieces.collect() }
     }
 }
 
@@ -171,5 +183,8 @@ fn surface(own: &backend::Surface) -> Surface {
         v: own.v.0.extend(own.v.1).to_array(),
         gloss: [gloss.shine, f32::from(gloss.squarings), gloss.mirror, f32::from(u8::from(gloss.colored))],
         pattern: [layer, per_m, squared, light],
+        veil: own.veil.map_or([1.0, 1.0, 0.0, 0.0], |look| {
+            [own.opacity, look.glancing, look.shine, f32::from(u8::from(look.shines))]
+        }),
     }
 }

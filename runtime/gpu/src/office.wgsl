@@ -35,6 +35,8 @@ struct Surface {
     gloss: vec4<f32>,
     // Layer or -1, pictures a metre, texels a square metre, what light it has.
     pattern: vec4<f32>,
+    // How much it hides squarely and at a glance, its highlight, 1 if it shines by itself.
+    veil: vec4<f32>,
 }
 
 struct Draw {
@@ -64,6 +66,8 @@ const SKY: f32 = 3.0;
 
 // Whether colour is wanted.
 override COLORED: bool = true;
+// Whether what is see-through is nothing but colour.
+override AIRY: bool = false;
 
 @group(0) @binding(0) var<storage, read> cameras: array<Camera>;
 @group(0) @binding(1) var<storage, read> pieces: array<Piece>;
@@ -95,14 +99,13 @@ struct Pixel {
     @location(4) facet: u32,
 }
 
-@vertex
-fn corner(
-    @location(0) position: vec3<f32>,
-    @location(1) normal: vec3<f32>,
-    @location(2) ambient: f32,
-    @location(3) surface: u32,
-    @builtin(vertex_index) vertex: u32,
-    @builtin(instance_index) instance: u32,
+fn placed(
+    position: vec3<f32>,
+    normal: vec3<f32>,
+    ambient: f32,
+    surface: u32,
+    vertex: u32,
+    instance: u32,
 ) -> Corner {
     let draw = draws[instance];
     let camera = cameras[draw.camera];
@@ -137,6 +140,18 @@ fn corner(
     out.what = vec3(draw.piece, draw.camera, surface);
     out.facet = instance * 2654435769u + vertex + 1u;
     return out;
+}
+
+@vertex
+fn corner(
+    @location(0) position: vec3<f32>,
+    @location(1) normal: vec3<f32>,
+    @location(2) ambient: f32,
+    @location(3) surface: u32,
+    @builtin(vertex_index) vertex: u32,
+    @builtin(instance_index) instance: u32,
+) -> Corner {
+    return placed(position, normal, ambient, surface, vertex, instance);
 }
 
 // The display byte of a channel, as a share of 255.
@@ -317,6 +332,80 @@ fn solid(in: Corner) -> Pixel {
         out.color = vec4(display(color_of(in, ray, depth, normal, min(slant, 12.5))), 1.0);
     }
     out.depth_m = depth;
+    out.normal = packed(normal);
+    out.id = pieces[in.what.x].id;
+    out.facet = in.facet;
+    return out;
+}
+
+// As corner, but for normals, which are of unit length at the corners.
+@vertex
+fn veil_corner(
+    @location(0) position: vec3<f32>,
+    @location(1) normal: vec3<f32>,
+    @location(2) ambient: f32,
+    @location(3) surface: u32,
+    @builtin(vertex_index) vertex: u32,
+    @builtin(instance_index) instance: u32,
+) -> Corner {
+    var out = placed(position, normal, ambient, surface, vertex, instance);
+    out.normal *= inverseSqrt(max(dot(out.normal, out.normal), 1e-24));
+    return out;
+}
+
+// Linear light, and how much of what is behind it hides.
+fn veil_color(in: Corner, ray: vec3<f32>, normal: vec3<f32>) -> vec4<f32> {
+    let piece = in.what.x;
+    let surface = in.what.z;
+    let look = surfaces[surface].veil;
+    let flags = pieces[piece].flags;
+    var paint = paint_of(surface, piece);
+    var squarely = look.x;
+    if !AIRY {
+        if (flags & DIRTY) != 0u {
+            paint = mix(paint, VEIL_DIRT, 0.6);
+            squarely += (1.0 - squarely) * 0.35;
+        }
+        if (flags & INFECTED) != 0u {
+            paint = mix(paint, SLIME, 0.6);
+            squarely += (1.0 - squarely) * 0.3;
+        }
+        if (flags & COLD) != 0u {
+            paint = mix(paint, VEIL_FROST, 0.6);
+            squarely += (1.0 - squarely) * 0.45;
+        }
+    }
+    let direction = normalize(ray);
+    let along = dot(direction, normal);
+    let cosine = clamp(-along, 0.0, 1.0);
+    let thrown = direction - normal * (2.0 * along);
+    var power = clamp(dot(thrown, TOWARDS_LIGHT), 0.0, 1.0);
+    for (var turn = 0; turn < 6; turn++) {
+        power *= power;
+    }
+    let highlight = power * look.z;
+    let aside = 1.0 - cosine;
+    let share = select(1.0 - aside * aside * aside, cosine * cosine, AIRY);
+    let opacity = clamp(look.y + (squarely - look.y) * share + highlight, 0.0, 1.0);
+    if look.w > 0.0 {
+        let core = cosine * cosine * cosine;
+        return vec4(mix(paint * 1.15, vec3(1.9), core * core), opacity);
+    }
+    let i = pieces[piece].inverse;
+    let mirror = aside * aside * aside * 0.5 * (0.22 + 0.75 * clamp(thrown.z * 0.7 + 0.45, 0.0, 1.0));
+    let around = 0.3 + BELOW + (ABOVE - BELOW) * (normal.z * 0.5 + 0.5);
+    return vec4(vec3(i[0].w, i[1].w, i[2].w) * (paint * around + look.z * mirror + highlight), opacity);
+}
+
+@fragment
+fn veil(in: Corner) -> Pixel {
+    let normal = in.normal * inverseSqrt(max(dot(in.normal, in.normal), 1e-12));
+    var out: Pixel;
+    if COLORED {
+        let color = veil_color(in, ray_through(in.what.y, in.at.xy), normal);
+        out.color = vec4(display(color.rgb), color.a);
+    }
+    out.depth_m = 1.0 / in.at.w;
     out.normal = packed(normal);
     out.id = pieces[in.what.x].id;
     out.facet = in.facet;

@@ -4,15 +4,15 @@ use std::collections::HashMap;
 use std::fmt::Write as _;
 
 use cohabit_render::FAR_M;
-use cohabit_render::backend as from;
+use cohabit_render::backend::{self as from, Veil};
 use glam::Vec3;
 use wgpu::{
     BindGroup, BindGroupDescriptor, BindGroupEntry, BindGroupLayout, BindGroupLayoutDescriptor, BindGroupLayoutEntry,
-    BindingResource, BindingType, Buffer, BufferBindingType, ColorTargetState, ColorWrites, CompareFunction,
-    DepthBiasState, DepthStencilState, Device, Face, FragmentState, FrontFace, MultisampleState,
-    PipelineCompilationOptions, PipelineLayout, PipelineLayoutDescriptor, PrimitiveState, RenderPipeline,
-    RenderPipelineDescriptor, SamplerBindingType, ShaderModule, ShaderModuleDescriptor, ShaderSource, ShaderStages,
-    StencilState, TextureSampleType, TextureViewDimension, VertexState,
+    BindingResource, BindingType, BlendComponent, BlendFactor, BlendOperation, BlendState, Buffer, BufferBindingType,
+    ColorTargetState, ColorWrites, CompareFunction, DepthBiasState, DepthStencilState, Device, Face, FragmentState,
+    FrontFace, MultisampleState, PipelineCompilationOptions, PipelineLayout, PipelineLayoutDescriptor, PrimitiveState,
+    RenderPipeline, RenderPipelineDescriptor, SamplerBindingType, ShaderModule, ShaderModuleDescriptor, ShaderSource,
+    ShaderStages, StencilState, TextureSampleType, TextureViewDimension, VertexState,
 };
 
 use crate::geometry::Geometry;
@@ -25,6 +25,18 @@ pub(crate) struct Pipelines {
     pub solid: RenderPipeline,
     /// The sky, where colour is wanted.
     pub sky: Option<RenderPipeline>,
+    /// See-through surfaces that have ids.
+    pub clear: RenderPipeline,
+    /// Those that have none, where colour is wanted.
+    pub airy: Option<RenderPipeline>,
+}
+
+/// What a pipeline draws.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+enum Kind {
+    Solid,
+    Sky,
+    Veil(Veil),
 }
 
 /// The compiled shader.
@@ -57,8 +69,10 @@ impl Shading {
     pub(crate) fn prepare(&mut self, device: &Device, mask: Mask) {
         let Self { module, layout, by_mask, .. } = self;
         by_mask.entry(mask).or_insert_with(|| Pipelines {
-            solid: solid(device, module, layout, mask),
-            sky: mask.has(COLOR).then(|| sky(device, module, layout, mask)),
+            solid: compile(device, module, layout, mask, Kind::Solid),
+            sky: mask.has(COLOR).then(|| compile(device, module, layout, mask, Kind::Sky)),
+            clear: compile(device, module, layout, mask, Kind::Veil(Veil::Clear)),
+            airy: mask.has(COLOR).then(|| compile(device, module, layout, mask, Kind::Veil(Veil::Airy))),
         });
     }
 
@@ -144,63 +158,70 @@ fn constants() -> String {
     vector("DIRT", from::linear_light(from::DIRT));
     vector("SLIME", from::linear_light(from::SLIME));
     vector("FROST", from::linear_light(from::FROST));
+    vector("VEIL_DIRT", from::linear_light([110, 90, 62]));
+    vector("VEIL_FROST", from::linear_light([214, 233, 246]));
     text
 }
 
-fn solid(device: &Device, module: &ShaderModule, layout: &PipelineLayout, mask: Mask) -> RenderPipeline {
+fn compile(device: &Device, module: &ShaderModule, layout: &PipelineLayout, mask: Mask, kind: Kind) -> RenderPipeline {
+    let (vertex, fragment) = match kind {
+        Kind::Solid => ("corner", "solid"),
+        Kind::Sky => ("backdrop", "sky"),
+        Kind::Veil(_) => ("veil_corner", "veil"),
+    };
+    let flag = |set: bool| f64::from(u8::from(set));
+    let airy = kind == Kind::Veil(Veil::Airy);
+    let constants = [("COLORED", flag(mask.has(COLOR))), ("AIRY", flag(airy))];
+    let compilation_options = PipelineCompilationOptions { constants: &constants, ..Default::default() };
+    let corners = Some(Geometry::layout());
+    let only_color = airy || kind == Kind::Sky;
     device.create_render_pipeline(&RenderPipelineDescriptor {
-        label: Some("solid"),
+        label: Some(fragment),
         layout: Some(layout),
         vertex: VertexState {
             module,
-            entry_point: Some("corner"),
-            compilation_options: PipelineCompilationOptions::default(),
-            buffers: &[Some(Geometry::layout())],
+            entry_point: Some(vertex),
+            compilation_options: compilation_options.clone(),
+            buffers: if kind == Kind::Sky { &[] } else { core::slice::from_ref(&corners) },
         },
         primitive: PrimitiveState {
             front_face: FrontFace::Ccw,
-            cull_mode: Some(Face::Back),
+            cull_mode: (kind != Kind::Sky).then_some(Face::Back),
             ..PrimitiveState::default()
         },
-        depth_stencil: Some(depth(true)),
+        depth_stencil: Some(depth(!only_color)),
         multisample: MultisampleState::default(),
         fragment: Some(FragmentState {
             module,
-            entry_point: Some("solid"),
-            compilation_options: PipelineCompilationOptions {
-                constants: &[("COLORED", f64::from(u8::from(mask.has(COLOR))))],
-                ..PipelineCompilationOptions::default()
-            },
-            targets: &targets(mask, |_| true),
+            entry_point: Some(fragment),
+            compilation_options,
+            targets: &core::array::from_fn::<_, 5, _>(|target| {
+                let written = target == COLOR || !only_color;
+                mask.has(target).then_some(ColorTargetState {
+                    format: FORMATS[target],
+                    blend: (target == COLOR && matches!(kind, Kind::Veil(_))).then_some(LAID_OVER),
+                    write_mask: if written { ColorWrites::ALL } else { ColorWrites::empty() },
+                })
+            }),
         }),
         multiview_mask: None,
         cache: None,
     })
 }
 
-fn sky(device: &Device, module: &ShaderModule, layout: &PipelineLayout, mask: Mask) -> RenderPipeline {
-    device.create_render_pipeline(&RenderPipelineDescriptor {
-        label: Some("sky"),
-        layout: Some(layout),
-        vertex: VertexState {
-            module,
-            entry_point: Some("backdrop"),
-            compilation_options: PipelineCompilationOptions::default(),
-            buffers: &[],
-        },
-        primitive: PrimitiveState::default(),
-        depth_stencil: Some(depth(false)),
-        multisample: MultisampleState::default(),
-        fragment: Some(FragmentState {
-            module,
-            entry_point: Some("sky"),
-            compilation_options: PipelineCompilationOptions::default(),
-            targets: &targets(mask, |target| target == COLOR),
-        }),
-        multiview_mask: None,
-        cache: None,
-    })
-}
+/// Display bytes are mixed by opacity; pictures stay opaque.
+const LAID_OVER: BlendState = BlendState {
+    color: BlendComponent {
+        src_factor: BlendFactor::SrcAlpha,
+        dst_factor: BlendFactor::OneMinusSrcAlpha,
+        operation: BlendOperation::Add,
+    },
+    alpha: BlendComponent {
+        src_factor: BlendFactor::Zero,
+        dst_factor: BlendFactor::One,
+        operation: BlendOperation::Add,
+    },
+};
 
 /// What is nearer wins; of what is equally near, the first.
 fn depth(written: bool) -> DepthStencilState {
@@ -211,11 +232,4 @@ fn depth(written: bool) -> DepthStencilState {
         stencil: StencilState::default(),
         bias: DepthBiasState::default(),
     }
-}
-
-fn targets(mask: Mask, written: impl Fn(usize) -> bool) -> [Option<ColorTargetState>; 5] {
-    core::array::from_fn(|target| {
-        let write_mask = if written(target) { ColorWrites::ALL } else { ColorWrites::empty() };
-        mask.has(target).then_some(ColorTargetState { format: FORMATS[target], blend: None, write_mask })
-    })
 }

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use cohabit_render::backend::{ForPeople, Seen, Sight, Stage};
+use cohabit_render::backend::{ForPeople, Seen, Sight, Stage, Veil};
 use cohabit_render::{Camera, CpuRenderer, FAR_M, Planes, Renderer, Scene, Shot, backend};
 use wgpu::{
     Buffer, BufferUsages, Device, DeviceDescriptor, Features, IndexFormat, LoadOp, MapMode, Operations, PollType,
@@ -18,7 +18,7 @@ use crate::geometry::Geometry;
 use crate::light::Lighting;
 use crate::pipeline::Shading;
 use crate::targets::{COLOR, DEPTH, FACETS, IDS, Mask, NORMALS, Targets};
-use crate::work::{self, Work};
+use crate::work::{self, Office, Work};
 
 /// Most pixels of an atlas: 36 bytes each where everything is wanted.
 const MOST_PIXELS: u64 = 1 << 24;
@@ -191,10 +191,11 @@ impl GpuRenderer {
         for atlas in atlas::pack(&sizes, self.most_side, self.most_pixels) {
             let range = atlas.first..atlas.first + atlas.tiles.len();
             self.work.clear();
+            let office = Office { geometry: &self.geometry, plan, things: &things, pieces: &pieces };
             for (tile, number) in atlas.tiles.iter().zip(range.clone()) {
                 let (sight, seen) = &culled[number];
                 let camera = work::Camera::new(sight, *tile, sizes[number]);
-                self.work.add(&self.geometry, plan, &things, &pieces, camera, seen);
+                self.work.add(&office, camera, seen);
             }
             self.draw_atlas(scene, &atlas, &sizes[range.clone()], mask, &mut wanted[range])?;
         }
@@ -309,6 +310,16 @@ impl GpuRenderer {
                 look(&mut pass, camera);
                 pass.draw(0..3, camera as u32..camera as u32 + 1);
             }
+        }
+        for run in &work.veils {
+            let pipeline = match run.veil {
+                Veil::Clear => Some(&pipelines.clear),
+                Veil::Airy => pipelines.airy.as_ref(),
+            };
+            let Some(pipeline) = pipeline else { continue };
+            pass.set_pipeline(pipeline);
+            look(&mut pass, run.camera as usize);
+            self.issue(&mut pass, work, arguments, run.draws.clone());
         }
         drop(pass);
         targets.read_back(&mut encoder);

@@ -3,9 +3,9 @@
 use core::ops::Range;
 
 use bytemuck::{Pod, Zeroable};
-use cohabit_render::backend::{self, Seen, Sight, Thing};
+use cohabit_render::backend::{self, Seen, Sight, Thing, Veil};
 
-use crate::geometry::Geometry;
+use crate::geometry::{Geometry, Slot, SlotPiece};
 
 /// A camera as the shader reads it.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -91,6 +91,16 @@ pub(crate) struct Work {
     pub arguments: Vec<Arguments>,
     /// For each camera which of the draws are its own.
     pub solid: Vec<Range<u32>>,
+    /// What is see-through, in the order of drawing.
+    pub veils: Vec<VeilRun>,
+}
+
+/// See-through draws of one camera and one kind.
+#[derive(Clone, Debug)]
+pub(crate) struct VeilRun {
+    pub camera: u32,
+    pub veil: Veil,
+    pub draws: Range<u32>,
 }
 
 impl Work {
@@ -99,41 +109,64 @@ impl Work {
         self.draws.clear();
         self.arguments.clear();
         self.solid.clear();
+        self.veils.clear();
     }
 
     /// Adds what a camera sees, the nearest first. Every mesh was uploaded.
-    pub(crate) fn add(
-        &mut self,
-        geometry: &Geometry,
-        plan: usize,
-        things: &[Thing],
-        pieces: &[backend::Piece],
-        camera: Camera,
-        seen: &[Seen],
-    ) {
-        let (number, first) = (self.cameras.len() as u32, self.draws.len() as u32);
+    pub(crate) fn add(&mut self, office: &Office<'_>, camera: Camera, seen: &[Seen]) {
+        let number = self.cameras.len() as u32;
         self.cameras.push(camera);
+        let first = self.draws.len() as u32;
         for seen in seen {
-            let thing = &things[seen.thing as usize];
-            let slot = match thing.model {
-                None => Some(geometry.plan(plan)),
-                Some(model) => geometry.model(model, seen.level),
-            };
-            let Some(slot) = slot else { continue };
-            for piece in thing.first..thing.first + thing.count {
-                let [first_index, index_count] = slot.pieces[pieces[piece as usize].piece as usize];
-                let first_instance = self.draws.len() as u32;
-                self.draws.push(Draw { piece, camera: number });
-                let base_vertex = slot.base_vertex;
-                self.arguments.push(Arguments {
-                    index_count,
-                    instance_count: 1,
-                    first_index,
-                    base_vertex,
-                    first_instance,
-                });
-            }
+            office.each(seen, |piece, slot, own| {
+                if own.veil.is_none() {
+                    self.draw(number, piece, slot, own);
+                }
+            });
         }
         self.solid.push(first..self.draws.len() as u32);
+        for seen in seen.iter().rev() {
+            office.each(seen, |piece, slot, own| {
+                if let Some(veil) = own.veil {
+                    let at = self.draw(number, piece, slot, own);
+                    match self.veils.last_mut().filter(|run| run.camera == number && run.veil == veil) {
+                        Some(run) => run.draws.end = at + 1,
+                        None => self.veils.push(VeilRun { camera: number, veil, draws: at..at + 1 }),
+                    }
+                }
+            });
+        }
+    }
+
+    fn draw(&mut self, camera: u32, piece: u32, slot: &Slot, own: SlotPiece) -> u32 {
+        let (first_instance, base_vertex) = (self.draws.len() as u32, slot.base_vertex);
+        let SlotPiece { first_index, index_count, .. } = own;
+        self.draws.push(Draw { piece, camera });
+        self.arguments.push(Arguments { index_count, instance_count: 1, first_index, base_vertex, first_instance });
+        first_instance
+    }
+}
+
+/// All that stands in a scene, and where it lies on the GPU.
+#[derive(Clone, Copy)]
+pub(crate) struct Office<'a> {
+    pub geometry: &'a Geometry,
+    pub plan: usize,
+    pub things: &'a [Thing],
+    pub pieces: &'a [backend::Piece],
+}
+
+impl Office<'_> {
+    /// Calls for each piece of a thing with its number, the mesh and the mesh's piece.
+    fn each(&self, seen: &Seen, mut call: impl FnMut(u32, &Slot, SlotPiece)) {
+        let thing = &self.things[seen.thing as usize];
+        let slot = match thing.model {
+            None => Some(self.geometry.plan(self.plan)),
+            Some(model) => self.geometry.model(model, seen.level),
+        };
+        let Some(slot) = slot else { return };
+        for piece in thing.first..thing.first + thing.count {
+            call(piece, slot, slot.pieces[self.pieces[piece as usize].piece as usize]);
+        }
     }
 }

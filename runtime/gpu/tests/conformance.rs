@@ -25,13 +25,12 @@ fn renderers() -> Vec<(&'static str, Box<dyn Renderer>)> {
     all
 }
 
-/// One on any adapter.
+/// One on any adapter; nothing where there is none.
 fn gpu() -> Option<GpuRenderer> {
-    let made = Adapter::find(Wanted::Any).and_then(|adapter| GpuRenderer::new(&adapter, 2));
-    match made {
-        Ok(gpu) => {
-            println!("on {}", gpu.describe());
-            Some(gpu.on_loss(|loss| panic!("{loss}")))
+    match Adapter::find(Wanted::Any) {
+        Ok(adapter) => {
+            println!("on {}", adapter.describe());
+            Some(GpuRenderer::new(&adapter, 2).unwrap().on_loss(|loss| panic!("{loss}")))
         }
         Err(error) => {
             println!("SKIPPED for want of a GPU: {error}");
@@ -175,11 +174,7 @@ fn a_thousand_cameras_at_once() {
 
 #[test]
 fn a_lost_device_is_replaced_by_the_reference() {
-    let made = Adapter::find(Wanted::Any).and_then(|adapter| GpuRenderer::new(&adapter, 2));
-    let Ok(gpu) = made else {
-        println!("SKIPPED for want of a GPU");
-        return;
-    };
+    let Some(gpu) = gpu() else { return };
     let (tell, told) = std::sync::mpsc::channel();
     let mut gpu = gpu.on_loss(move |loss| tell.send(loss.to_string()).unwrap());
     let (catalog, meshes) = meshes();

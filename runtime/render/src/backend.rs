@@ -12,7 +12,7 @@ mod people;
 mod shadow;
 mod stage;
 
-pub use mesh::{Light, MeshData, Surface, Vertex};
+pub use mesh::{Light, MeshData, MeshPiece, Surface, Vertex};
 pub use pattern::{PICTURES, PictureData, picture, spots};
 pub use people::ForPeople;
 pub use shadow::Shadows;
@@ -24,3 +24,4 @@ pub use crate::cpu::{ABOVE, BELOW, DIRT, FROST, GUARD_PX, KEY, LIFT_M, SLIME, SU
 pub use crate::mesh::Paint;
 pub use crate::pattern::Gloss;
 pub use crate::shadow::{FADE, SLANT, towards_light};
+pub use crate::veil::{Veil, VeilLook};

@@ -16,7 +16,7 @@ use crate::scene::Weather;
 
 /// How a surface is seen through.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
-pub(crate) enum Veil {
+pub enum Veil {
     /// Colour is laid over; everything else is the surface's own.
     Clear,
     /// Colour is laid over; everything else is that of what is behind.
@@ -25,7 +25,8 @@ pub(crate) enum Veil {
 
 /// How a see-through pattern looks.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct VeilLook {
+pub struct VeilLook {
+    /// How it is seen through.
     pub veil: Veil,
     /// How much of what is behind it hides where it is looked at squarely; a surface may have its own.
     pub squarely: f32,

@@ -7,6 +7,7 @@ use glam::Vec3;
 
 use crate::mesh::{Mesh, Paint};
 use crate::pattern::{Gloss, Pattern};
+use crate::veil::{self, Veil, VeilLook};
 
 /// A corner of triangles that have the same surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,6 +50,19 @@ pub struct Surface {
     pub u: (Vec3, f32),
     /// The same for the second coordinate.
     pub v: (Vec3, f32),
+    /// How it looks if it is see-through.
+    pub veil: Option<VeilLook>,
+    /// How much of what is behind it hides where it is looked at squarely, if it is see-through.
+    pub opacity: f32,
+}
+
+/// Triangles that are drawn, and move, together.
+#[derive(Clone, Debug, Eq, PartialEq)]
+pub struct MeshPiece {
+    /// Where its indices lie.
+    pub indices: Range<u32>,
+    /// How it is seen through, if it is.
+    pub veil: Option<Veil>,
 }
 
 /// A mesh of which each piece is a range of indices.
@@ -58,8 +72,8 @@ pub struct MeshData {
     pub vertices: Vec<Vertex>,
     /// Three corners a triangle, counter-clockwise seen from outside.
     pub indices: Vec<u32>,
-    /// Where each piece's indices lie.
-    pub pieces: Vec<Range<u32>>,
+    /// All pieces.
+    pub pieces: Vec<MeshPiece>,
     /// All surfaces.
     pub surfaces: Vec<Surface>,
 }
@@ -88,7 +102,7 @@ impl MeshData {
                     data.indices.push(index);
                 }
             }
-            data.pieces.push(first..data.indices.len() as u32);
+            data.pieces.push(MeshPiece { indices: first..data.indices.len() as u32, veil: piece.veil });
         }
         data
     }
@@ -101,6 +115,14 @@ fn surface(own: &crate::mesh::Surface) -> Surface {
         Pattern::Sky => Light::Sky,
         _ => Light::Lit,
     };
-    let (paint, u, v) = (own.paint, own.u, own.v);
-    Surface { paint, light, gloss: own.pattern.gloss(), picture: own.pattern.picture_index(), u, v }
+    Surface {
+        paint: own.paint,
+        light,
+        gloss: own.pattern.gloss(),
+        picture: own.pattern.picture_index(),
+        u: own.u,
+        v: own.v,
+        veil: veil::look(own.pattern),
+        opacity: own.opacity,
+    }
 }
