@@ -97,7 +97,23 @@ pub(crate) struct Piece {
     pub triangles: Range<u32>,
     /// The box around their corners.
     pub bounds: Aabb,
+    /// The same triangles in smaller parts, of which some may be seen while others are not; empty where it is small.
+    pub clusters: Vec<Cluster>,
 }
+
+/// Some triangles of a piece that follow each other, and share no corners with others.
+#[derive(Clone, Debug)]
+pub(crate) struct Cluster {
+    /// Their corners.
+    pub corners: Range<u32>,
+    /// Which triangles.
+    pub triangles: Range<u32>,
+    /// The box around their corners.
+    pub bounds: Aabb,
+}
+
+/// Corners that a cluster has at least.
+const CLUSTER_CORNERS: u32 = 64;
 
 /// Everything there is to draw of one model at one level of detail.
 #[derive(Clone, Debug, Default)]
@@ -129,7 +145,7 @@ impl Mesh {
     pub(crate) fn begin_piece(&mut self, when: Option<When>, joint: Option<u8>, veil: Option<Veil>) {
         let (corner, triangle) = (self.positions.len() as u32, self.triangles.len() as u32);
         let (corners, triangles) = (corner..corner, triangle..triangle);
-        self.pieces.push(Piece { when, joint, veil, corners, triangles, bounds: Aabb::EMPTY });
+        self.pieces.push(Piece { when, joint, veil, corners, triangles, bounds: Aabb::EMPTY, clusters: Vec::new() });
     }
 
     /// Ends the piece that was begun last.
@@ -137,8 +153,8 @@ impl Mesh {
         if let Some(piece) = self.pieces.last_mut() {
             piece.corners.end = self.positions.len() as u32;
             piece.triangles.end = self.triangles.len() as u32;
-            let own = &self.positions[piece.corners.start as usize..];
-            piece.bounds = own.iter().fold(Aabb::EMPTY, |bounds, corner| bounds.with(*corner));
+            piece.bounds = bounds_of(&self.positions[piece.corners.start as usize..]);
+            piece.clusters = clusters(&self.positions, &self.triangles, piece);
         }
     }
 
@@ -162,4 +178,33 @@ impl Mesh {
             self.surfaces.len() - 1
         }) as u16
     }
+}
+
+fn bounds_of(positions: &[Vec3]) -> Aabb {
+    positions.iter().fold(Aabb::EMPTY, |bounds, corner| bounds.with(*corner))
+}
+
+/// Cuts a piece wherever no later triangle has a corner of an earlier one; nothing, if that leaves it in one.
+fn clusters(positions: &[Vec3], triangles: &[[u32; 3]], piece: &Piece) -> Vec<Cluster> {
+    let own = &triangles[piece.triangles.start as usize..piece.triangles.end as usize];
+    // For each triangle the least corner that it and all later ones have.
+    let mut least = piece.corners.end;
+    let mut leasts: Vec<u32> =
+        own.iter().rev().map(|[a, b, c]| (least = least.min(*a).min(*b).min(*c), least).1).collect();
+    leasts.reverse();
+    let (mut all, mut corner, mut triangle, mut next) = (Vec::new(), piece.corners.start, piece.triangles.start, 0);
+    for (index, ([a, b, c], least)) in piece.triangles.clone().zip(own.iter().zip(leasts)) {
+        if least >= next && next >= corner + CLUSTER_CORNERS && piece.corners.end >= next + CLUSTER_CORNERS {
+            let bounds = bounds_of(&positions[corner as usize..next as usize]);
+            all.push(Cluster { corners: corner..next, triangles: triangle..index, bounds });
+            (corner, triangle) = (next, index);
+        }
+        next = next.max(a + 1).max(b + 1).max(c + 1);
+    }
+    if !all.is_empty() {
+        let (corners, triangles) = (corner..piece.corners.end, triangle..piece.triangles.end);
+        let bounds = bounds_of(&positions[corner as usize..piece.corners.end as usize]);
+        all.push(Cluster { corners, triangles, bounds });
+    }
+    all
 }

@@ -173,11 +173,12 @@ impl Scene {
 
     /// The map of shadows, brought up to date.
     pub(crate) fn clean_shadows(&self) -> RwLockReadGuard<'_, ShadowMap> {
-        let mut shadows = self.shadows.write().unwrap_or_else(PoisonError::into_inner);
-        if shadows.is_soiled() {
+        // Who only reads never waits for others who do.
+        let soiled = self.shadows.read().unwrap_or_else(PoisonError::into_inner).is_soiled();
+        if soiled {
+            let mut shadows = self.shadows.write().unwrap_or_else(PoisonError::into_inner);
             shadows.clean(&self.meshes, self.placed());
         }
-        drop(shadows);
         self.shadows.read().unwrap_or_else(PoisonError::into_inner)
     }
 

@@ -2,6 +2,8 @@
 //!
 //! A value that changes evenly over a triangle in space is, at a pixel, `a + depth * (b + c x + d y)`.
 
+use core::ops::Range;
+
 use glam::Vec3;
 
 use super::NOTHING;
@@ -84,11 +86,14 @@ pub(super) struct Facets {
     /// By triangle: which facet it has.
     of: Vec<u32>,
     all: Vec<Facet>,
+    /// The numbers of the draw that was met last, and which it is.
+    last: (Range<u32>, usize),
 }
 
 impl Facets {
     /// Forgets all, and makes ready for so many triangles.
     pub(super) fn clear(&mut self, triangles: u32) {
+        self.last = (0..0, 0);
         for facet in self.all.drain(..) {
             self.of[facet.number as usize] = NOTHING;
         }
@@ -104,7 +109,7 @@ impl Facets {
         if index == NOTHING {
             index = self.all.len() as u32;
             self.of[number as usize] = index;
-            self.all.push(Facet::new(shader, number));
+            self.all.push(Facet::new(shader, number, &mut self.last));
         }
         &self.all[index as usize]
     }
@@ -112,9 +117,13 @@ impl Facets {
 
 impl Facet {
     #[inline(never)]
-    fn new(shader: &Shader<'_>, number: u32) -> Self {
-        let (place, index) = shader.triangle(number);
+    fn new(shader: &Shader<'_>, number: u32, last: &mut (Range<u32>, usize)) -> Self {
+        if !last.0.contains(&number) {
+            *last = shader.draw_of(number);
+        }
+        let place = last.1 as u32;
         let draw = shader.draw(place);
+        let index = (number - last.0.start + draw.piece.triangles.start) as usize;
         let mesh = draw.mesh;
         let corners = mesh.triangles[index].map(|corner| corner as usize);
         let [a, b, c] = corners.map(|corner| mesh.positions[corner]);

@@ -1,5 +1,7 @@
 //! Which triangle each pixel sees: exact sides in whole numbers, the nearest triangle wins.
 
+#![expect(clippy::needless_range_loop, reason = "one index into many arrays is what vectorises")]
+
 use super::setup::{SUB, Triangle};
 
 /// Wider triangles are filled span by span, narrower ones tested pixel by pixel.
@@ -68,39 +70,54 @@ impl Rows<'_> {
             (side.origin + i64::from(left) * i64::from(side.per_x) + i64::from(top) * i64::from(side.per_y)) as i32
         });
         let [at_origin, per_x, per_y] = triangle.nearness;
-        let [least, most] = triangle.bounds;
+        let (mut steps, mut near_steps) = ([[0; LANES]; 3], [0.0; LANES]);
+        for i in 0..LANES {
+            for (steps, side) in steps.iter_mut().zip(&sides) {
+                steps[i] = side.per_x * i as i32;
+            }
+            near_steps[i] = per_x * i as f32;
+        }
         for y in top..=bottom {
             let row = (y as usize - self.first) * self.width;
             let near = at_origin + per_x * left as f32 + per_y * y as f32;
             for done in (0..=right - left).step_by(LANES) {
-                let at = row + (left + done) as usize;
-                // Negative beyond the right end, and outside of any side.
-                let outside = |i: i32| {
-                    let [a, b, c] = [0, 1, 2].map(|s| start[s] + sides[s].per_x * (done + i));
-                    a | b | c | (right - left - done - i)
-                };
-                let value = |i: i32| (near + per_x * (done + i) as f32).clamp(least, most);
-                let seen = self.seen[at..].first_chunk_mut::<LANES>();
-                let nearness = self.nearness[at..].first_chunk_mut::<LANES>();
-                if let (Some(seen), Some(nearness)) = (seen, nearness) {
-                    for i in 0..LANES {
-                        let value = value(i as i32);
-                        let wins = (outside(i as i32) >= 0) & (value > nearness[i]);
-                        nearness[i] = if wins { value } else { nearness[i] };
-                        seen[i] = if wins { number } else { seen[i] };
-                    }
-                    continue;
+                let [a, b, c] = [0, 1, 2].map(|s| start[s] + sides[s].per_x * done);
+                let near = near + per_x * done as f32;
+                let count = right - left - done;
+                let (mut value, mut inside) = ([0.0; LANES], [false; LANES]);
+                for i in 0..LANES {
+                    value[i] = near + near_steps[i];
+                    // Negative outside of any side, and beyond the right end.
+                    let sides = (a + steps[0][i]) | (b + steps[1][i]) | (c + steps[2][i]) | (count - i as i32);
+                    inside[i] = sides >= 0;
                 }
-                // At the end of the last row there may be fewer.
-                for (i, (seen, nearness)) in self.seen[at..].iter_mut().zip(&mut self.nearness[at..]).enumerate() {
-                    let value = value(i as i32);
-                    if outside(i as i32) >= 0 && value > *nearness {
-                        (*seen, *nearness) = (number, value);
-                    }
-                }
+                self.meet(row + (left + done) as usize, &value, &inside, triangle.bounds, number);
             }
             for (value, side) in start.iter_mut().zip(sides) {
                 *value += side.per_y;
+            }
+        }
+    }
+
+    /// Lets eight pixels that lie inside a triangle see it, where nothing nearer is seen.
+    #[inline(always)]
+    fn meet(&mut self, at: usize, near: &[f32; LANES], inside: &[bool; LANES], [least, most]: [f32; 2], number: u32) {
+        let seen = self.seen[at..].first_chunk_mut::<LANES>();
+        let nearness = self.nearness[at..].first_chunk_mut::<LANES>();
+        if let (Some(seen), Some(nearness)) = (seen, nearness) {
+            for i in 0..LANES {
+                let value = within(near[i], least, most);
+                let wins = inside[i] & (value > nearness[i]);
+                nearness[i] = if wins { value } else { nearness[i] };
+                seen[i] = if wins { number } else { seen[i] };
+            }
+            return;
+        }
+        // At the end of the last row there may be fewer.
+        for (i, (seen, nearness)) in self.seen[at..].iter_mut().zip(&mut self.nearness[at..]).enumerate() {
+            let value = within(near[i], least, most);
+            if inside[i] && value > *nearness {
+                (*seen, *nearness) = (number, value);
             }
         }
     }
@@ -110,7 +127,6 @@ impl Rows<'_> {
     fn wide(&mut self, triangle: &Triangle, sides: [Side; 3], number: u32, (top, bottom): (i32, i32)) {
         let inverse = sides.map(|side| 1.0 / f64::from(side.per_x));
         let [at_origin, per_x, per_y] = triangle.nearness;
-        let [least, most] = triangle.bounds;
         for y in top..=bottom {
             let (mut from, mut to) = (i32::from(triangle.rect[0]), i32::from(triangle.rect[2]));
             for (side, inverse) in sides.iter().zip(inverse) {
@@ -135,15 +151,24 @@ impl Rows<'_> {
             let row = (y as usize - self.first) * self.width;
             let span = row + from as usize..row + to as usize + 1;
             let start = at_origin + per_x * from as f32 + per_y * y as f32;
-            let pixels = self.seen[span.clone()].iter_mut().zip(&mut self.nearness[span]);
-            for (step, (seen, nearness)) in pixels.enumerate() {
-                let value = (start + per_x * step as f32).clamp(least, most);
-                let wins = value > *nearness;
-                *nearness = if wins { value } else { *nearness };
-                *seen = if wins { number } else { *seen };
+            for at in span.clone().step_by(LANES) {
+                let (done, count) = ((at - span.start) as i32, (span.end - at) as i32);
+                let (mut value, mut inside) = ([0.0; LANES], [false; LANES]);
+                for i in 0..LANES {
+                    value[i] = start + per_x * (done + i as i32) as f32;
+                    inside[i] = (i as i32) < count;
+                }
+                self.meet(at, &value, &inside, triangle.bounds, number);
             }
         }
     }
+}
+
+/// A value between two others.
+#[inline(always)]
+fn within(value: f32, least: f32, most: f32) -> f32 {
+    let value = if value > least { value } else { least };
+    if value < most { value } else { most }
 }
 
 /// Whether few of its pixels lie side by side, and it is small enough as a whole, also beyond the picture's edges, for

@@ -1,5 +1,7 @@
 //! From triangles in space to triangles on the screen: projected, cut at the picture's surroundings, back sides dropped.
 
+use core::ops::Range;
+
 use glam::{Mat3, Vec3};
 
 use super::avx2::Avx2;
@@ -96,15 +98,23 @@ fn all_draws(out: &mut Vec<Triangle>, draws: &[Draw<'_>], view: &View) {
     let frame = Frame::rows(view, 0, view.size[1] as usize);
     let mut corners = Vec::new();
     for (index, draw) in draws.iter().enumerate() {
-        one(draw, index as u32, frame, &mut corners, out);
+        one(draw, &draw.piece.corners, &draw.piece.triangles, index as u32, frame, &mut corners, out);
     }
 }
 
 /// Sets up the triangles of one draw that may be seen, and hands each on.
 #[inline(always)]
-pub(super) fn one(draw: &Draw<'_>, number: u32, frame: Frame<'_>, corners: &mut Vec<Corner>, sink: &mut impl Sink) {
-    let base = draw.piece.corners.start;
-    let positions = &draw.mesh.positions[base as usize..draw.piece.corners.end as usize];
+pub(super) fn one(
+    draw: &Draw<'_>,
+    own: &Range<u32>,
+    triangles: &Range<u32>,
+    number: u32,
+    frame: Frame<'_>,
+    corners: &mut Vec<Corner>,
+    sink: &mut impl Sink,
+) {
+    let base = own.start;
+    let positions = &draw.mesh.positions[base as usize..own.end as usize];
     let padded = positions.len().next_multiple_of(LANES);
     if corners.len() < padded {
         corners.resize(padded, Corner::default());
@@ -120,9 +130,8 @@ pub(super) fn one(draw: &Draw<'_>, number: u32, frame: Frame<'_>, corners: &mut 
         *out = project(draw.to_camera, &eight, frame);
     }
     let size = [frame.view.size[0] as i32, frame.view.size[1] as i32];
-    let triangles = draw.piece.triangles.clone();
     let all = &draw.mesh.triangles[triangles.start as usize..triangles.end as usize];
-    for (index, triangle) in triangles.zip(all) {
+    for (index, triangle) in triangles.clone().zip(all) {
         let [a, b, c] = triangle.map(|corner| corners[(corner - base) as usize]);
         // Wholly on the far side of one of the picture's sides, or of the near plane.
         if a.beyond & b.beyond & c.beyond & !AWKWARD != 0 {

@@ -2,6 +2,8 @@
 //!
 //! A pixel's place on its triangle follows from its depth, so that nothing has to be interpolated on the screen.
 
+use core::ops::Range;
+
 use glam::Vec3;
 
 use super::NOTHING;
@@ -69,11 +71,10 @@ impl<'a> Shader<'a> {
         }
     }
 
-    /// The draw that a triangle belongs to, and its place in that draw's mesh.
-    pub(super) fn triangle(&self, number: u32) -> (u32, usize) {
+    /// The numbers of the draw that a triangle belongs to, and which it is.
+    pub(super) fn draw_of(&self, number: u32) -> (Range<u32>, usize) {
         let draw = self.numbers.draw_of(number);
-        let index = number - self.numbers.first(draw) + self.draws[draw].piece.triangles.start;
-        (draw as u32, index as usize)
+        (self.numbers.of(draw), draw)
     }
 
     #[inline(always)]
@@ -85,8 +86,8 @@ impl<'a> Shader<'a> {
                 (known, id) = if *number == NOTHING {
                     (NOTHING..NOTHING, 0)
                 } else {
-                    let draw = self.numbers.draw_of(*number);
-                    (self.numbers.of(draw), self.draws[draw].id)
+                    let (numbers, draw) = self.draw_of(*number);
+                    (numbers, self.draws[draw].id)
                 };
             }
             *out = id;

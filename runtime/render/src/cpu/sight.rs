@@ -6,6 +6,7 @@ use super::numbers::Numbers;
 use super::raster::Rows;
 use super::setup::{self, AWKWARD, Corner, Frame, SUB, SUB_BITS, Sink, Triangle};
 use crate::camera::View;
+use crate::mesh::Aabb;
 
 /// Pieces of fewer corners are drawn without asking whether they are hidden: asking costs about as much.
 const FEW_CORNERS: usize = 24;
@@ -45,12 +46,26 @@ fn draw_avx2(draws: &[Draw<'_>], numbers: &Numbers, view: &View, rows: &mut Rows
 fn draw_all(draws: &[Draw<'_>], numbers: &Numbers, view: &View, rows: &mut Rows<'_>, corners: &mut Vec<Corner>) {
     let frame = Frame::rows(view, rows.first, rows.count());
     for (index, draw) in draws.iter().enumerate() {
-        if draw.piece.corners.len() >= FEW_CORNERS && is_hidden(draw, frame, rows) {
+        let piece = draw.piece;
+        if piece.corners.len() >= FEW_CORNERS && is_hidden(draw, piece.bounds, frame, rows) {
             continue;
         }
         // A triangle's number less its place in its mesh.
-        let first = numbers.first(index).wrapping_sub(draw.piece.triangles.start);
-        setup::one(draw, index as u32, frame, corners, &mut Onto { rows, first });
+        let first = numbers.first(index).wrapping_sub(piece.triangles.start);
+        // One way for pieces in one part and in many: what draws them is compiled into here only once.
+        let mut clusters = piece.clusters.iter();
+        let mut whole = piece.clusters.is_empty();
+        loop {
+            let (own, triangles) = if core::mem::take(&mut whole) {
+                (&piece.corners, &piece.triangles)
+            } else {
+                let Some(cluster) = clusters.find(|cluster| !is_hidden(draw, cluster.bounds, frame, rows)) else {
+                    break;
+                };
+                (&cluster.corners, &cluster.triangles)
+            };
+            setup::one(draw, own, triangles, index as u32, frame, corners, &mut Onto { rows, first });
+        }
     }
 }
 
@@ -67,10 +82,10 @@ impl Sink for Onto<'_, '_> {
     }
 }
 
-/// Whether nothing of a piece can be seen in some rows, told by the box around it.
+/// Whether nothing within a box can be seen in some rows.
 #[inline(always)]
-fn is_hidden(draw: &Draw<'_>, frame: Frame<'_>, rows: &Rows<'_>) -> bool {
-    let corners = setup::project(draw.to_camera, &draw.piece.bounds.corners(), frame);
+fn is_hidden(draw: &Draw<'_>, bounds: Aabb, frame: Frame<'_>, rows: &Rows<'_>) -> bool {
+    let corners = setup::project(draw.to_camera, &bounds.corners(), frame);
     let all = corners.iter().fold(!AWKWARD, |all, corner| all & corner.beyond);
     let any = corners.iter().fold(0, |any, corner| any | corner.beyond);
     if all != 0 || any & AWKWARD != 0 {

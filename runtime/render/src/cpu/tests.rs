@@ -155,21 +155,30 @@ pub(super) struct Picture {
     pub ids: Vec<u32>,
 }
 
+impl Picture {
+    /// What no renderer has drawn on.
+    fn blank(pixels: usize) -> Self {
+        Self {
+            color: vec![1; pixels * 4],
+            depth_m: vec![-1.0; pixels],
+            normals: vec![1; pixels * 4],
+            ids: vec![77; pixels],
+        }
+    }
+
+    fn planes(&mut self) -> Planes<'_> {
+        Planes {
+            color: Some(&mut self.color),
+            depth_m: Some(&mut self.depth_m),
+            normals: Some(&mut self.normals),
+            ids: Some(&mut self.ids),
+        }
+    }
+}
+
 pub(super) fn picture(renderer: &mut CpuRenderer, scene: &Scene, camera: &Camera) -> Picture {
-    let pixels = camera.pixels();
-    let mut all = Picture {
-        color: vec![1; pixels * 4],
-        depth_m: vec![-1.0; pixels],
-        normals: vec![1; pixels * 4],
-        ids: vec![77; pixels],
-    };
-    let mut planes = Planes {
-        color: Some(&mut all.color),
-        depth_m: Some(&mut all.depth_m),
-        normals: Some(&mut all.normals),
-        ids: Some(&mut all.ids),
-    };
-    renderer.render(scene, camera, &mut planes);
+    let mut all = Picture::blank(camera.pixels());
+    renderer.render(scene, camera, &mut all.planes());
     all
 }
 
@@ -220,6 +229,29 @@ fn the_same_bits_with_any_number_of_threads() {
         let one = picture(&mut CpuRenderer::new(1), &scene, &camera);
         for threads in [2, 3, 8] {
             assert!(one == picture(&mut CpuRenderer::new(threads), &scene, &camera), "{threads} threads");
+        }
+    }
+}
+
+#[test]
+fn the_same_bits_whether_drawn_together_or_one_by_one() {
+    let (scene, _) = scene();
+    // Of different sizes and kinds, and some for people.
+    let mut cameras = cameras();
+    for (index, camera) in (0_u32..).zip(&mut cameras) {
+        camera.width += index * 7;
+        camera.height -= index * 5;
+        camera.for_people = index % 2 == 1;
+    }
+    let alone: Vec<_> = cameras.iter().map(|camera| picture(&mut CpuRenderer::new(1), &scene, camera)).collect();
+    for (threads, count) in [(1, 6), (2, 6), (3, 2), (4, 1), (8, 3), (2, 0)] {
+        let mut renderer = CpuRenderer::new(threads);
+        let mut together: Vec<_> = cameras[..count].iter().map(|camera| Picture::blank(camera.pixels())).collect();
+        for turn in 0..2 {
+            let shots = cameras.iter().zip(&mut together);
+            let mut shots: Vec<_> = shots.map(|(camera, own)| Shot { camera: *camera, planes: own.planes() }).collect();
+            renderer.render_all(&scene, &mut shots);
+            assert!(together == alone[..count], "{threads} threads, {count} pictures, turn {turn}");
         }
     }
 }
