@@ -114,7 +114,7 @@ fn states_lights_and_effects() {
             // What changed is seen, and what is hidden is not.
             scene.set_time(700_000_000);
             for room in RoomId::ALL {
-                scene.set_lights(room, room as u8 % 2 == 0);
+                scene.set_lights(room, (room as u8).is_multiple_of(2));
             }
             let hiding: Vec<Camera> = cameras.iter().map(|camera| Camera { hide: Some(5), ..*camera }).collect();
             let worst = check(name, &mut *renderer, &scene, &hiding);
