@@ -134,7 +134,7 @@ impl Thing {
             0 => Self::Nothing,
             _ if id < Self::FIRST_BODY => Self::Object(ObjectId(id - 1)),
             _ if id < Self::FIRST_SURFACE => Self::Body(BodyId(id - Self::FIRST_BODY)),
-            _ => RoomId::from_index(id - Self::FIRST_SURFACE >> 8).map_or(Self::Nothing, Self::Surface),
+            _ => RoomId::from_index((id - Self::FIRST_SURFACE) >> 8).map_or(Self::Nothing, Self::Surface),
         }
     }
 }

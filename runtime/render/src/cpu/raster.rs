@@ -1,7 +1,5 @@
 //! Which triangle each pixel sees: exact sides in whole numbers, the nearest triangle wins.
 
-#![expect(clippy::needless_range_loop, reason = "one index into many arrays is what vectorises")]
-
 use super::setup::{SUB, Triangle};
 
 /// Wider triangles are filled span by span, narrower ones tested pixel by pixel.
