@@ -72,7 +72,7 @@ impl Pour {
     /// Whether something flows.
     pub(crate) fn flows(&self, tick: u64) -> bool {
         let share = self.share(tick);
-        self.fluid != Fluid::None && share >= FLOWS[0] && share < FLOWS[1]
+        self.fluid != Fluid::None && (FLOWS[0]..FLOWS[1]).contains(&share)
     }
 }
 
