@@ -8,7 +8,7 @@ use cohabit_world::{Input, Report};
 use super::*;
 use crate::build::SessionPlan;
 
-/// A table with cereal's bowl, and milk in the fridge of the same room; a microwave with nothing in it.
+/// A bowl and milk on a table, an apple in the microwave, a pear in the fridge.
 const MISSION: &str = r#"{ "scene": { "scene_id": "pours", "floor_plan": "0", "layoutOverride": "OfficeLayout1",
   "roomLocation": ["BreakRoom"], "required_objects": [
     { "name": "TableRound_02_1", "roomLocation": ["BreakRoom"] },
