@@ -21,6 +21,8 @@ const PLAN: &str = "OfficeLayout1";
 const EYE_M: f32 = 1.3;
 const SIZES: [[u32; 2]; 3] = [[84, 84], [300, 300], [1280, 720]];
 const CAMERAS: [usize; 3] = [1, 64, 1024];
+/// What would take longer is not measured.
+const PATIENCE: Duration = Duration::from_secs(30);
 /// Bytes of a pixel of all modalities.
 const PIXEL_BYTES: u64 = 16;
 
@@ -51,13 +53,18 @@ fn main() {
     println!("plan: {PLAN}, {} instances; four modalities, shadows are on\n", instances.len());
     let least = Duration::from_millis(if has("quick") { 300 } else { 3000 });
     for size in SIZES {
+        let mut frame = Duration::ZERO;
         for count in CAMERAS {
             let bytes = count as u64 * u64::from(size[0]) * u64::from(size[1]) * PIXEL_BYTES;
             if bytes > free_bytes() / 2 {
                 println!("{}x{}, {count} cameras: skipped, their pictures need {} MB", size[0], size[1], bytes >> 20);
                 continue;
             }
-            measure(&mut *renderer, &scene, &layout, size, count, least);
+            if frame * count as u32 > PATIENCE {
+                println!("{}x{}, {count} cameras: skipped, they would take minutes", size[0], size[1]);
+                continue;
+            }
+            frame = measure(&mut *renderer, &scene, &layout, size, count, least);
         }
     }
 }
@@ -135,6 +142,7 @@ fn measure(renderer: &mut dyn Renderer, scene: &Scene, layout: &Layout, size: [u
     let each = spent.as_secs_f64() * 1e3 / batches as f64;
     let s = if count == 1 { "" } else { "s" };
     println!("{}x{}, {count} camera{s}: {rate:9.1} frames/s ({each:.2} ms for all)", size[0], size[1]);
+    spent / (batches * count) as u32
 }
 
 /// The version that this was built with.
