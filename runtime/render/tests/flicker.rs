@@ -27,6 +27,9 @@ const GAP_M: f32 = 0.0015;
 /// Surfaces face the same way when their normals' product is at least this, of 127 squared.
 const PARALLEL: i32 = 15_900;
 
+/// How often two flicker in one move, at least, to count: once, rounding may do it where an edge lies along the move.
+const LEAST: u32 = 2;
+
 /// What one frame shows.
 struct Frame {
     ids: Vec<u32>,
@@ -66,6 +69,7 @@ fn fights(renderer: &mut CpuRenderer, scene: &Scene, camera: &Camera) -> BTreeMa
             }
         }
     }
+    found.retain(|_, count: &mut u32| *count >= LEAST);
     found
 }
 
