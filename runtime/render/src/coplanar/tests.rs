@@ -30,27 +30,12 @@ fn around(cell: &Cell, yaw_rad: f32, pitch_rad: f32, side_px: u32) -> Camera {
 /// Which part of its model a triangle belongs to, from 1, and what the part is.
 fn part_of(catalog: &Catalog, model: usize, level: usize, triangle: u32) -> String {
     let Some(model) = catalog.models().get(model) else { return "a body or sign".to_owned() };
-    let mut groups = Vec::new();
-    for part in &model.parts {
-        let key = (part.when, part.joint.clone());
-        if !groups.contains(&key) {
-            groups.push(key);
-        }
-    }
-    let mut before = 0;
-    for (when, joint) in groups {
-        for (index, part) in model.parts.iter().enumerate() {
-            if part.when != when || part.joint != joint {
-                continue;
-            }
-            let mut alone = model.clone();
-            alone.parts = vec![part.clone()];
-            before += model_mesh::build(&alone, Detail::ALL[level]).unwrap().triangles.len() as u32;
-            if triangle < before {
-                let shape = format!("{:?}", part.shape);
-                return format!("{} part {} at {:?} {} {:?}", model.id, index + 1, part.at, shape, part.color);
-            }
-        }
+    let precision = model_mesh::precision(model, Detail::ALL[level]).unwrap();
+    let mut ends = Vec::new();
+    model_mesh::build_and_tell(model, &precision, |index, end| ends.push((index, end))).unwrap();
+    if let Some((index, _)) = ends.into_iter().find(|(_, end)| (triangle as usize) < *end) {
+        let part = &model.parts[index];
+        return format!("{} part {} at {:?} {:?} {:?}", model.id, index + 1, part.at, part.shape, part.color);
     }
     "?".to_owned()
 }
