@@ -29,7 +29,7 @@ pub fn from_srgb(bytes: [u8; 3]) -> Vec3 {
     Vec3::new(channel(bytes[0]), channel(bytes[1]), channel(bytes[2]))
 }
 
-/// The table behind [`to_srgb`], made once.
+/// The table behind `to_srgb`, made once.
 #[must_use]
 pub fn srgb_table() -> &'static [u8; STEPS] {
     static TABLE: OnceLock<Box<[u8; STEPS]>> = OnceLock::new();

@@ -247,6 +247,15 @@ impl MeshLibrary {
         levels.into_iter().flatten().map(|mesh| mesh.triangles.len()).collect()
     }
 
+    /// How many triangles of an object of this class are drawn at once at each level of detail, the finest first: in
+    /// its usual state or in that one other state that takes the most.
+    #[must_use]
+    pub fn triangles_at_once(&self, class: ClassId) -> Vec<usize> {
+        let look = self.classes.get(usize::from(class.0));
+        let levels = look.map(|look| &self.models[look.model].levels);
+        levels.into_iter().flatten().map(Mesh::triangles_at_once).collect()
+    }
+
     pub(crate) fn model(&self, index: usize) -> &ModelMesh {
         &self.models[index]
     }
@@ -296,7 +305,7 @@ fn mesh_of(model: &Model, standing: bool, body: bool) -> Result<ModelMesh, Model
     })?;
     let mut levels = Vec::with_capacity(Detail::ALL.len());
     for detail in Detail::ALL {
-        levels.push(model_mesh::build(model, detail)?);
+        levels.push(model_mesh::build(model, &model_mesh::precision(model, detail)?)?);
     }
     let fine = &levels[0];
     let (mut bounds, mut reach) = (Aabb::EMPTY, Aabb::EMPTY);
