@@ -116,12 +116,26 @@ pub enum Shape {
         #[serde(default)]
         bevel: Option<f32>,
     },
-    /// Letters standing on a vertical plane that faces `+x`; the origin is the middle of the text.
+    /// Letters standing on a vertical plane that faces `+x`; the origin is the middle of the text, unless it is written around
+    /// something.
     Text {
         /// What it says; `\n` starts a new line.
         text: String,
         /// Height of a capital letter, m.
         height: f32,
+        /// Written around an upright cylinder of this radius, m, whose axis passes through the origin.
+        #[serde(default)]
+        around: Option<f32>,
+    },
+    /// A flat line as a pen draws it, on a vertical plane that faces `+x`.
+    Line {
+        /// `[y, z]`, m.
+        path: Vec<[f32; 2]>,
+        /// How wide, m.
+        width: f32,
+        /// Whether the last point joins the first.
+        #[serde(default)]
+        closed: bool,
     },
 }
 

@@ -2,12 +2,13 @@
 //!
 //! ```text
 //! look objects OUT.png CLASS...            each class in every state that its properties allow
+//! look count                               triangles of every class at each level: at once, and in all states
 //! look bodies OUT.png                      the robot, people, a note, what is poured
 //! look sheets OUT_FOLDER [NAME...]         every class, sheet by sheet; the sheets whose names begin so
 //! look view OUT.png LAYOUT x y z yaw_deg pitch_deg [no-ceiling] [WxH] [planes] [time]
 //! ```
 //!
-//! With `--catalog FOLDER` models are read from that copy of `cdf/catalog`, so that they can be changed without
+//! Pictures of sheets are `--cell PIXELS` wide and high. With `--catalog FOLDER` models are read from that copy of `cdf/catalog`, so that they can be changed without
 //! building anything.
 
 use std::error::Error;
@@ -17,36 +18,41 @@ use std::path::Path;
 use std::sync::Arc;
 
 use cohabit_cdf::layout::Layout;
-use cohabit_cdf::{Catalog, Color, Fluid, RoomId, StateFlags};
+use cohabit_cdf::{Catalog, ClassId, Color, Fluid, RoomId, StateFlags};
 use cohabit_render::gallery::{self, Sheet};
 use cohabit_render::{Camera, CpuRenderer, Highlight, Instance, Look, MeshLibrary, Planes, Renderer, Scene, furnish};
 
-/// Side of one picture of a contact sheet.
-const CELL: u32 = 260;
+/// Side of one picture of a contact sheet, unless `--cell` says otherwise.
+const CELL: &str = "260";
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let mut arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
-    let catalog = match arguments.iter().position(|argument| *argument == "--catalog") {
-        Some(option) if option + 1 < arguments.len() => {
-            let folder = arguments.drain(option..option + 2).nth(1).unwrap_or_default();
-            catalog_in(Path::new(folder))?
-        }
-        _ => Catalog::builtin(),
+    let catalog = match option(&mut arguments, "--catalog") {
+        Some(folder) => catalog_in(Path::new(folder))?,
+        None => Catalog::builtin(),
     };
+    let cell_px: u32 = option(&mut arguments, "--cell").unwrap_or(CELL).parse()?;
     match arguments.as_slice() {
-        ["objects", out, classes @ ..] if !classes.is_empty() => objects(&catalog, out, classes),
-        ["bodies", out] => bodies(&catalog, out),
-        ["sheets", folder, names @ ..] => sheets(&catalog, folder, names),
+        ["objects", out, classes @ ..] if !classes.is_empty() => objects(&catalog, out, classes, cell_px),
+        ["count"] => count(&catalog),
+        ["bodies", out] => bodies(&catalog, out, cell_px),
+        ["sheets", folder, names @ ..] => sheets(&catalog, folder, names, cell_px),
         ["view", out, layout, x, y, z, yaw, pitch, options @ ..] => {
             let place = [x, y, z, yaw, pitch].map(|text| text.parse::<f32>());
             let [x, y, z, yaw, pitch] = place;
             view(&catalog, out, layout, [x?, y?, z?], yaw?.to_radians(), pitch?.to_radians(), options)
         }
-        _ => Err("write: objects OUT.png CLASS... | bodies OUT.png | sheets OUT_FOLDER [NAME...] | \
+        _ => Err("write: objects OUT.png CLASS... | count | bodies OUT.png | sheets OUT_FOLDER [NAME...] | \
                   view OUT.png LAYOUT x y z yaw_deg pitch_deg [no-ceiling] [WxH] [planes] [time]"
             .into()),
     }
+}
+
+/// What follows an option, which is taken away with it.
+fn option<'a>(arguments: &mut Vec<&'a str>, name: &str) -> Option<&'a str> {
+    let at = arguments.iter().position(|argument| *argument == name).filter(|at| at + 1 < arguments.len())?;
+    arguments.drain(at..at + 2).nth(1)
 }
 
 /// The catalogue whose files lie in the folders `objects` and `models`.
@@ -68,43 +74,54 @@ fn texts(files: &[(String, String)]) -> Vec<(&str, &str)> {
     files.iter().map(|(name, text)| (name.as_str(), text.as_str())).collect()
 }
 
-fn objects(catalog: &Catalog, out: &str, classes: &[&str]) -> Result<(), Box<dyn Error>> {
+fn objects(catalog: &Catalog, out: &str, classes: &[&str], cell_px: u32) -> Result<(), Box<dyn Error>> {
     let meshes = Arc::new(MeshLibrary::build(catalog)?);
     let mut cells = Vec::new();
     for id in classes {
         let class = catalog.find(id).ok_or_else(|| format!("the catalogue has no `{id}`"))?;
         let size = meshes.bounds(class).size();
         println!(
-            "{id}: {:.3} x {:.3} x {:.3} m, {:?} triangles",
+            "{id}: {:.3} x {:.3} x {:.3} m, {:?} triangles at once, {:?} in all",
             size.x,
             size.y,
             size.z,
+            meshes.triangles_at_once(class),
             meshes.triangles_by_level(class)
         );
         cells.extend(gallery::cells(&meshes, catalog, class));
     }
-    paint(out, &meshes, &Sheet { name: "objects".to_owned(), cells })
+    paint(out, &meshes, &Sheet { name: "objects".to_owned(), cells }, cell_px)
 }
 
-fn bodies(catalog: &Catalog, out: &str) -> Result<(), Box<dyn Error>> {
+/// Writes for every class how many triangles it takes.
+fn count(catalog: &Catalog) -> Result<(), Box<dyn Error>> {
+    let meshes = MeshLibrary::build(catalog)?;
+    for (index, class) in catalog.classes().iter().enumerate() {
+        let id = ClassId(index as u16);
+        println!("{} {:?} {:?}", class.id, meshes.triangles_at_once(id), meshes.triangles_by_level(id));
+    }
+    Ok(())
+}
+
+fn bodies(catalog: &Catalog, out: &str, cell_px: u32) -> Result<(), Box<dyn Error>> {
     let meshes = Arc::new(MeshLibrary::build(catalog)?);
     let sheet = gallery::sheets(&meshes, catalog).next().ok_or("there are no sheets")?;
-    paint(out, &meshes, &sheet)
+    paint(out, &meshes, &sheet, cell_px)
 }
 
-fn sheets(catalog: &Catalog, folder: &str, names: &[&str]) -> Result<(), Box<dyn Error>> {
+fn sheets(catalog: &Catalog, folder: &str, names: &[&str], cell_px: u32) -> Result<(), Box<dyn Error>> {
     let meshes = Arc::new(MeshLibrary::build(catalog)?);
     std::fs::create_dir_all(folder)?;
     for sheet in gallery::sheets(&meshes, catalog) {
         if names.is_empty() || names.iter().any(|name| sheet.name.starts_with(name)) {
-            paint(&format!("{folder}/{}.png", sheet.name), &meshes, &sheet)?;
+            paint(&format!("{folder}/{}.png", sheet.name), &meshes, &sheet, cell_px)?;
         }
     }
     Ok(())
 }
 
-fn paint(out: &str, meshes: &Arc<MeshLibrary>, sheet: &Sheet) -> Result<(), Box<dyn Error>> {
-    let picture = sheet.paint(&mut CpuRenderer::new(2), meshes, CELL);
+fn paint(out: &str, meshes: &Arc<MeshLibrary>, sheet: &Sheet, cell_px: u32) -> Result<(), Box<dyn Error>> {
+    let picture = sheet.paint(&mut CpuRenderer::new(2), meshes, cell_px);
     write(out, &picture.rgba, picture.width, picture.height)
 }
 

@@ -7,13 +7,15 @@ mod block;
 mod extrude;
 mod glyphs;
 mod lathe;
+mod line;
+mod path;
 mod text;
 mod tube;
 
 use cohabit_cdf::model::Shape;
 use glam::Vec3;
 
-/// How finely curved surfaces are divided.
+/// How closely a mesh is looked at.
 #[derive(Clone, Copy, Debug, Eq, Ord, PartialEq, PartialOrd)]
 pub(crate) enum Detail {
     /// For looking at closely.
@@ -27,25 +29,91 @@ pub(crate) enum Detail {
 impl Detail {
     /// All, the finest first.
     pub(crate) const ALL: [Self; 3] = [Self::Fine, Self::Medium, Self::Coarse];
+}
 
-    /// Sides of a full circle of this radius.
-    fn sides(self, radius: f32) -> u32 {
-        let fine = if radius < 0.012 {
-            8
-        } else if radius < 0.05 {
-            16
-        } else if radius < 0.25 {
-            24
-        } else {
-            36
+/// How finely shapes are divided.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Precision {
+    /// For which distance.
+    pub detail: Detail,
+    /// By how much a surface may differ from the true one, m: a pixel or two at that distance.
+    pub tolerance_m: f32,
+    /// Radii that lie near each other, as their least and their greatest, m: see [`Self::with_radii`].
+    alike: Vec<[f32; 2]>,
+}
+
+impl Precision {
+    /// For a model that lies in a ball of this radius.
+    pub(crate) fn of(detail: Detail, radius_m: f32) -> Self {
+        let radius_m = radius_m.clamp(0.01, 10.0);
+        // From 130 pixels on the fine level is drawn, from 36 on the medium one: see `cpu::draw`.
+        let medium_m = radius_m / 108.0;
+        let tolerance_m = match detail {
+            // Small things are held before the eyes; large ones are walked up to: 720 rows at 40 cm and at 1 m, in
+            // pixels a metre.
+            Detail::Fine => (1.9 / (400.0 / radius_m).clamp(620.0, 1560.0)).min(0.8 * medium_m),
+            Detail::Medium => medium_m,
+            Detail::Coarse => radius_m / 22.0,
         };
-        match self {
-            Self::Fine => fine,
-            // Cups and cans are looked at from the middle distance.
-            Self::Medium if fine == 16 => 12,
-            Self::Medium => (fine / 2).max(6),
-            Self::Coarse => (fine / 4).max(5),
+        Self { detail, tolerance_m, alike: Vec::new() }
+    }
+
+    /// For what nobody sees as sharply.
+    pub(crate) fn coarser(&self) -> Self {
+        let next = (self.detail as usize + 1).min(Detail::ALL.len() - 1);
+        Self { detail: Detail::ALL[next], tolerance_m: self.tolerance_m * 2.5, alike: self.alike.clone() }
+    }
+
+    /// Gives circles of radii that lie near each other the same number of sides, so that a label keeps outside of the
+    /// bottle around which it lies.
+    pub(crate) fn with_radii(mut self, mut radii: Vec<f32>) -> Self {
+        radii.sort_by(|a, b| b.total_cmp(a));
+        for radius in radii {
+            match self.alike.last_mut() {
+                Some([least, greatest]) if radius * 1.15 > *least && radius * 1.6 > *greatest => *least = radius,
+                _ => self.alike.push([radius, radius]),
+            }
         }
+        self
+    }
+
+    /// Sides of a full circle of this radius: even, so that it is as wide as it is long.
+    fn sides(&self, radius: f32) -> u32 {
+        let around = self.alike.iter().find(|[least, greatest]| *least <= radius && radius <= *greatest);
+        let radius = around.map_or(radius, |[_, greatest]| *greatest);
+        let (least, most) = match self.detail {
+            Detail::Fine => (6, 32),
+            Detail::Medium => (6, 20),
+            Detail::Coarse => (4, 10),
+        };
+        let halves = core::f32::consts::PI * 0.5 * (radius / (2.0 * self.tolerance_m)).sqrt();
+        (2 * (halves + 0.4) as u32).clamp(least, most)
+    }
+
+    /// Whether an edge that is cut off by this much, m, looks unlike a sharp one.
+    fn rounds(&self, cut: f32) -> bool {
+        let least = match self.detail {
+            Detail::Fine => 1.2,
+            Detail::Medium => 2.0,
+            Detail::Coarse => 4.0,
+        };
+        cut > 1e-4 && cut >= least * self.tolerance_m
+    }
+
+    /// What stands out less, m, looks as if drawn upon what it stands on.
+    pub(crate) fn flat_m(&self) -> f32 {
+        self.tolerance_m * if self.detail == Detail::Fine { 1.0 } else { 0.6 }
+    }
+
+    /// Whether anything of a shape of this size can be seen at its distance.
+    pub(crate) fn shows(&self, size: Vec3) -> bool {
+        if self.detail == Detail::Fine {
+            return true;
+        }
+        let longest = size.max_element();
+        let thinnest = size.min_element();
+        let across = size.x + size.y + size.z - longest - thinnest;
+        longest > 1.2 * self.tolerance_m && across > 0.3 * self.tolerance_m
     }
 }
 
@@ -137,14 +205,14 @@ pub enum ShapeError {
     Crossed,
 }
 
-/// The surface of `shape` at this level of detail.
-pub(crate) fn build(shape: &Shape, detail: Detail) -> Result<Solid, ShapeError> {
+/// The surface of `shape` at this precision.
+pub(crate) fn build(shape: &Shape, precision: &Precision) -> Result<Solid, ShapeError> {
     match shape {
         Shape::Box { size, bevel } => {
             for value in size {
                 length("size", *value)?;
             }
-            Ok(block::build(Vec3::from_array(*size), *bevel, detail))
+            Ok(block::build(Vec3::from_array(*size), *bevel, precision))
         }
         Shape::Cylinder { radius, top_radius, height, bevel } => {
             length("radius", *radius)?;
@@ -153,31 +221,41 @@ pub(crate) fn build(shape: &Shape, detail: Detail) -> Result<Solid, ShapeError> 
             if !(0.0..100.0).contains(&top) {
                 return Err(ShapeError::Length { what: "top_radius", value: top });
             }
-            Ok(lathe::cylinder([*radius, top], *height, *bevel, detail))
+            Ok(lathe::cylinder([*radius, top], *height, *bevel, precision))
         }
         Shape::Sphere { radii } => {
             for value in radii {
                 length("radii", *value)?;
             }
-            Ok(lathe::ellipsoid(Vec3::from_array(*radii), detail))
+            Ok(lathe::ellipsoid(Vec3::from_array(*radii), precision))
         }
         Shape::Lathe { profile } => {
             points("profile", profile.len(), 2, profile.as_flattened())?;
-            Ok(lathe::turn(profile, detail))
+            Ok(lathe::turn(profile, precision))
         }
         Shape::Tube { path, radius, closed } => {
             length("radius", *radius)?;
             points("path", path.len(), 2, path.as_flattened())?;
-            Ok(tube::build(path, *radius, *closed, detail))
+            Ok(tube::build(path, *radius, *closed, precision))
         }
         Shape::Extrude { outline, height, bevel } => {
             length("height", *height)?;
             points("outline", outline.len(), 3, outline.as_flattened())?;
-            extrude::build(outline, *height, *bevel, detail)
+            extrude::build(outline, *height, *bevel, precision)
         }
-        Shape::Text { text, height } => {
+        Shape::Text { text, height, around } => {
             length("height", *height)?;
-            Ok(text::build(text, *height, detail))
+            let mut solid = text::build(text, *height, precision);
+            if let Some(radius) = around {
+                length("around", *radius)?;
+                text::wrap(&mut solid, *radius);
+            }
+            Ok(solid)
+        }
+        Shape::Line { path, width, closed } => {
+            length("width", *width)?;
+            points("path", path.len(), 2, path.as_flattened())?;
+            Ok(line::build(path, *width, *closed, precision))
         }
     }
 }
@@ -185,6 +263,15 @@ pub(crate) fn build(shape: &Shape, detail: Detail) -> Result<Solid, ShapeError> 
 /// The strokes of a line of text in a plane, from its left end on the baseline; capitals are 1 high.
 pub(crate) fn line_of_text(line: &str) -> Vec<[[f32; 2]; 2]> {
     text::line(line)
+}
+
+/// The radius of a shape that is round about its own z axis, m.
+pub(crate) fn radius_of(shape: &Shape) -> Option<f32> {
+    match shape {
+        Shape::Cylinder { radius, top_radius, .. } => Some(radius.max(top_radius.unwrap_or(*radius))),
+        Shape::Lathe { profile } => profile.iter().map(|point| point[0]).reduce(f32::max),
+        _ => None,
+    }
 }
 
 fn length(what: &'static str, value: f32) -> Result<(), ShapeError> {

@@ -28,6 +28,7 @@ mod coplanar;
 mod cpu;
 mod furnish;
 pub mod gallery;
+mod hidden;
 mod ink;
 mod instance;
 mod instance_color;

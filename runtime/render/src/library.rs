@@ -12,7 +12,7 @@ use cohabit_cdf::{Catalog, ClassId, Property};
 use glam::Vec3;
 
 use crate::color;
-use crate::kit::{Detail, ShapeError};
+use crate::kit::{self, Detail, Precision, ShapeError};
 use crate::mesh::{Aabb, Mesh};
 use crate::model_mesh;
 use crate::occlusion::Occluder;
@@ -247,6 +247,15 @@ impl MeshLibrary {
         levels.into_iter().flatten().map(|mesh| mesh.triangles.len()).collect()
     }
 
+    /// How many triangles of an object of this class are drawn at once at each level of detail, the finest first: in
+    /// its usual state or in that one other state that takes the most.
+    #[must_use]
+    pub fn triangles_at_once(&self, class: ClassId) -> Vec<usize> {
+        let look = self.classes.get(usize::from(class.0));
+        let levels = look.map(|look| &self.models[look.model].levels);
+        levels.into_iter().flatten().map(Mesh::triangles_at_once).collect()
+    }
+
     pub(crate) fn model(&self, index: usize) -> &ModelMesh {
         &self.models[index]
     }
@@ -295,8 +304,11 @@ fn mesh_of(model: &Model, standing: bool, body: bool) -> Result<ModelMesh, Model
         ModelError::NoParent { model: model.id.clone(), joint: joint.id.clone(), parent }
     })?;
     let mut levels = Vec::with_capacity(Detail::ALL.len());
+    let radius_m = model_mesh::radius(model)?;
+    let radii: Vec<f32> = model.parts.iter().filter_map(|part| kit::radius_of(&part.shape)).collect();
     for detail in Detail::ALL {
-        levels.push(model_mesh::build(model, detail)?);
+        let precision = Precision::of(detail, radius_m).with_radii(radii.clone());
+        levels.push(model_mesh::build(model, &precision)?);
     }
     let fine = &levels[0];
     let (mut bounds, mut reach) = (Aabb::EMPTY, Aabb::EMPTY);

@@ -135,12 +135,51 @@ pub(crate) struct Mesh {
 impl Piece {
     /// Whether it is drawn while nothing has happened to the object.
     pub(crate) fn is_usual(&self) -> bool {
-        use When::{Neutral, Off, Powered, Raw, Uncut, Uneaten, Whole};
-        self.when.is_none_or(|when| matches!(when, Off | Powered | Raw | Uneaten | Whole | Uncut | Neutral))
+        self.when.is_none_or(is_usual)
     }
 }
 
+/// Whether an object is in this state while nothing has happened to it.
+pub(crate) fn is_usual(when: When) -> bool {
+    use When::{Neutral, Off, Powered, Raw, Uncut, Uneaten, Whole};
+    matches!(when, Off | Powered | Raw | Uneaten | Whole | Uncut | Neutral)
+}
+
+/// The usual state that another one ends.
+fn instead_of(when: When) -> Option<When> {
+    Some(match when {
+        When::On | When::Past | When::Future => When::Off,
+        When::Broken => When::Whole,
+        When::Unpowered => When::Powered,
+        When::Cooked => When::Raw,
+        When::Eaten => When::Uneaten,
+        When::Cut => When::Uncut,
+        When::Happy | When::Sad | When::Angry | When::Scared => When::Neutral,
+        _ => return None,
+    })
+}
+
 impl Mesh {
+    /// How many triangles are drawn at once, in the usual state or in the one other state that takes the most.
+    pub(crate) fn triangles_at_once(&self) -> usize {
+        let others = self.pieces.iter().filter(|piece| !piece.is_usual()).filter_map(|piece| piece.when);
+        let states = core::iter::once(None).chain(others.map(Some));
+        states.map(|state| self.triangles_in(state)).max().unwrap_or(0)
+    }
+
+    /// How many are drawn in one state that is not usual, or in none.
+    fn triangles_in(&self, state: Option<When>) -> usize {
+        let hidden = state.and_then(instead_of);
+        let shown = |piece: &&Piece| match piece.when {
+            None => true,
+            Some(when) if is_usual(when) => hidden != Some(when),
+            // What leads to the past or the future is on.
+            Some(When::On) => matches!(state, Some(When::On | When::Past | When::Future)),
+            Some(when) => state == Some(when),
+        };
+        self.pieces.iter().filter(shown).map(|piece| piece.triangles.len()).sum()
+    }
+
     /// Starts a piece; what is pushed until [`Self::end_piece`] belongs to it.
     pub(crate) fn begin_piece(&mut self, when: Option<When>, joint: Option<u8>, veil: Option<Veil>) {
         let (corner, triangle) = (self.positions.len() as u32, self.triangles.len() as u32);

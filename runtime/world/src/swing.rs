@@ -164,7 +164,7 @@ fn shape_bounds(shape: &Shape) -> (Vec3, Vec3) {
             outline.iter().map(at).reduce(join).unwrap_or_default()
         }
         // Letters are painted on something else.
-        Shape::Text { .. } => (Vec3::ZERO, Vec3::ZERO),
+        Shape::Text { .. } | Shape::Line { .. } => (Vec3::ZERO, Vec3::ZERO),
     }
 }
 

@@ -2,13 +2,13 @@
 
 use glam::Vec3;
 
-use super::{Detail, Solid};
+use super::{Detail, Precision, Solid};
 
 /// A box of `size` with its base at zero. The rounded edges carry smooth normals, so that they catch the light.
-pub(super) fn build(size: Vec3, bevel: Option<f32>, detail: Detail) -> Solid {
+pub(super) fn build(size: Vec3, bevel: Option<f32>, precision: &Precision) -> Solid {
     let smallest = size.min_element();
     let radius = bevel.unwrap_or((smallest * 0.15).min(0.012)).clamp(0.0, smallest * 0.5);
-    let steps = steps(radius, smallest, detail);
+    let steps = steps(radius, precision);
     let mut solid = if steps == 0 { sharp(size) } else { rounded(size, radius, steps) };
     for position in &mut solid.positions {
         position.z += size.z * 0.5;
@@ -17,17 +17,19 @@ pub(super) fn build(size: Vec3, bevel: Option<f32>, detail: Detail) -> Solid {
 }
 
 /// How many flat strips make one rounded edge.
-fn steps(radius: f32, smallest: f32, detail: Detail) -> u32 {
-    if radius < 1e-4 {
+fn steps(radius: f32, precision: &Precision) -> u32 {
+    if !precision.rounds(radius) {
         return 0;
     }
-    let large = radius > 0.02 || radius > 0.3 * smallest && radius > 0.008;
-    match (detail, large) {
-        (Detail::Fine, true) => 4,
-        (Detail::Medium, true) => 2,
-        (Detail::Fine, false) | (Detail::Coarse, true) => 1,
-        (Detail::Medium | Detail::Coarse, false) => 0,
-    }
+    let most = match precision.detail {
+        Detail::Fine => 3,
+        Detail::Medium => 2,
+        Detail::Coarse => 1,
+    };
+    // A quarter of a circle of `steps` strips misses the true one by radius / 3.24 steps²; smooth normals hide half
+    // of that.
+    let wanted = (radius / (3.24 * precision.tolerance_m)).sqrt();
+    ((wanted + 0.5) as u32).clamp(1, most)
 }
 
 fn sharp(size: Vec3) -> Solid {

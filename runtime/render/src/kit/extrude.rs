@@ -2,7 +2,8 @@
 
 use glam::{Vec2, Vec3};
 
-use super::{Detail, ShapeError, Solid};
+use super::path::simplified_ring;
+use super::{Precision, ShapeError, Solid};
 
 /// Sides that meet at a smaller angle than this look like one curved side: cos 32°.
 const SMOOTH_COS: f32 = 0.848;
@@ -12,7 +13,7 @@ pub(super) fn build(
     outline: &[[f32; 2]],
     height: f32,
     bevel: Option<f32>,
-    detail: Detail,
+    precision: &Precision,
 ) -> Result<Solid, ShapeError> {
     let mut points: Vec<Vec2> = Vec::with_capacity(outline.len());
     for point in outline.iter().copied().map(Vec2::from_array) {
@@ -26,14 +27,21 @@ pub(super) fn build(
     if signed_area(&points) < 0.0 {
         points.reverse();
     }
-    let ears = clip_ears(&points).ok_or(ShapeError::Crossed)?;
+    let mut ears = clip_ears(&points).ok_or(ShapeError::Crossed)?;
+    let fewer = simplified_ring(&points, precision.tolerance_m * 0.5);
+    if fewer.len() < points.len()
+        && let Some(found) = clip_ears(&fewer).filter(|_| signed_area(&fewer) > 0.0)
+    {
+        (points, ears) = (fewer, found);
+    }
     let narrowest = (0..points.len()).map(|i| points[i].distance(points[(i + 1) % points.len()])).fold(1.0, f32::min);
     let wanted = bevel.unwrap_or((height * 0.15).min(0.006));
-    let chamfer = if detail == Detail::Fine { wanted.clamp(0.0, (height * 0.45).min(narrowest * 0.4)) } else { 0.0 };
-    let lid = if chamfer > 1e-4 { inset(&points, chamfer) } else { points.clone() };
+    let cut = wanted.clamp(0.0, (height * 0.45).min(narrowest * 0.4));
+    let chamfer = if precision.rounds(cut) { cut } else { 0.0 };
+    let lid = if chamfer > 0.0 { inset(&points, chamfer) } else { points.clone() };
     let mut solid = Solid::default();
     lids(&mut solid, &lid, &ears, height);
-    sides(&mut solid, &points, &lid, height, if chamfer > 1e-4 { chamfer } else { 0.0 });
+    sides(&mut solid, &points, &lid, height, chamfer);
     Ok(solid)
 }
 

@@ -4,7 +4,8 @@ use core::f32::consts::{PI, TAU};
 
 use glam::{Vec2, Vec3};
 
-use super::{Detail, Solid};
+use super::path::simplified;
+use super::{Precision, Solid};
 
 /// Where two pieces of a profile meet at a larger angle than this, there is an edge: cos 40°.
 const EDGE_COS: f32 = 0.766;
@@ -24,7 +25,7 @@ struct Ring {
 }
 
 /// Turns a profile of `[radius, z]`; ends away from the axis are closed with flat discs.
-pub(super) fn turn(profile: &[[f32; 2]], detail: Detail) -> Solid {
+pub(super) fn turn(profile: &[[f32; 2]], precision: &Precision) -> Solid {
     let mut points: Vec<Vec2> = Vec::with_capacity(profile.len() + 2);
     for point in profile {
         let point = Vec2::new(to_point(point[0]), point[1]);
@@ -32,6 +33,7 @@ pub(super) fn turn(profile: &[[f32; 2]], detail: Detail) -> Solid {
             points.push(point);
         }
     }
+    let mut points = simplified(&points, precision.tolerance_m * 0.4);
     let ring_shaped = points.len() > 2 && points[0].distance_squared(points[points.len() - 1]) < 1e-12;
     if !ring_shaped && !points.is_empty() {
         let (first, last) = (points[0], points[points.len() - 1]);
@@ -42,15 +44,18 @@ pub(super) fn turn(profile: &[[f32; 2]], detail: Detail) -> Solid {
             points.push(Vec2::new(0.0, last.y));
         }
     }
-    revolve(&rings(&points, ring_shaped), detail)
+    revolve(&rings(&points, ring_shaped), precision)
 }
 
 /// A cylinder or cone frustum from z = 0, with rounded rims.
-pub(super) fn cylinder(radii: [f32; 2], height: f32, bevel: Option<f32>, detail: Detail) -> Solid {
+pub(super) fn cylinder(radii: [f32; 2], height: f32, bevel: Option<f32>, precision: &Precision) -> Solid {
     let [base, top] = [radii[0], to_point(radii[1])];
     let smallest = base.max(top).min(height);
     let wanted = bevel.unwrap_or((smallest * 0.12).min(0.006));
-    let round = |radius: f32| if detail == Detail::Coarse { 0.0 } else { wanted.clamp(0.0, radius.min(height) * 0.5) };
+    let round = |radius: f32| {
+        let cut = wanted.clamp(0.0, radius.min(height) * 0.5);
+        if precision.rounds(cut) { cut } else { 0.0 }
+    };
     let side = Vec2::new(height, base - top).normalize();
     let (low, high) = (round(base), round(top));
     let along = Vec2::new(top - base, height).normalize();
@@ -62,12 +67,13 @@ pub(super) fn cylinder(radii: [f32; 2], height: f32, bevel: Option<f32>, detail:
         rings.push(Ring { at: Vec2::new(top - high, height), normal: Vec2::Y });
         rings.push(Ring { at: Vec2::new(0.0, height), normal: Vec2::Y });
     }
-    revolve(&rings, detail)
+    revolve(&rings, precision)
 }
 
 /// An ellipsoid about the origin.
-pub(super) fn ellipsoid(radii: Vec3, detail: Detail) -> Solid {
-    let rows = (detail.sides(radii.max_element()) / 2).max(4);
+pub(super) fn ellipsoid(radii: Vec3, precision: &Precision) -> Solid {
+    let sides = precision.sides(radii.max_element());
+    let rows = ((sides * 2 + 2) / 5).max(3);
     let rings: Vec<Ring> = (0..=rows)
         .map(|row| {
             let (sin, cos) = libm::sincosf(PI * (row as f32 / rows as f32 - 0.5));
@@ -75,7 +81,7 @@ pub(super) fn ellipsoid(radii: Vec3, detail: Detail) -> Solid {
             Ring { at: normal, normal }
         })
         .collect();
-    let mut solid = revolve_sides(&rings, rows * 2);
+    let mut solid = revolve_sides(&rings, sides);
     for position in &mut solid.positions {
         *position *= radii;
     }
@@ -113,9 +119,9 @@ fn rings(points: &[Vec2], ring_shaped: bool) -> Vec<Ring> {
     rings
 }
 
-fn revolve(rings: &[Ring], detail: Detail) -> Solid {
+fn revolve(rings: &[Ring], precision: &Precision) -> Solid {
     let widest = rings.iter().map(|ring| ring.at.x).fold(0.0, f32::max);
-    revolve_sides(rings, detail.sides(widest))
+    revolve_sides(rings, precision.sides(widest))
 }
 
 fn revolve_sides(rings: &[Ring], sides: u32) -> Solid {
@@ -129,6 +135,9 @@ fn revolve_sides(rings: &[Ring], sides: u32) -> Solid {
     }
     for row in 1..rings.len() as u32 {
         let (low, high) = ((row - 1) * sides, row * sides);
+        if solid.positions[low as usize].distance_squared(solid.positions[high as usize]) < 1e-12 {
+            continue;
+        }
         for side in 0..sides {
             let next = (side + 1) % sides;
             solid.quad([low + side, low + next, high + next, high + side]);

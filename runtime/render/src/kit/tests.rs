@@ -6,6 +6,10 @@ use proptest::prelude::*;
 
 use super::*;
 
+fn fine() -> Precision {
+    Precision::of(Detail::Fine, 0.1)
+}
+
 /// For each corner the first that lies at the same place, but for rounding.
 fn weld(solid: &Solid) -> Vec<usize> {
     let near = |a: Vec3, b: Vec3| (a - b).abs().max_element() < 1e-5;
@@ -36,8 +40,8 @@ fn volume(solid: &Solid) -> f32 {
 
 /// Every edge is walked as often one way as the other, and the surface faces outwards.
 fn check_closed(shape: &Shape) {
-    for detail in Detail::ALL {
-        let solid = build(shape, detail).unwrap();
+    for detail in Detail::ALL.into_iter().map(|detail| Precision::of(detail, 0.5)) {
+        let solid = build(shape, &detail).unwrap();
         assert!(!solid.triangles.is_empty(), "{shape:?} at {detail:?} is empty");
         let open = edges(&solid).into_iter().filter(|(_, walked)| *walked != 0).count();
         assert_eq!(open, 0, "{shape:?} at {detail:?} has {open} open edges");
@@ -91,14 +95,14 @@ fn bad_shapes_are_refused() {
         Shape::Lathe { profile: vec![[0.1, f32::INFINITY], [0.1, 0.0]] },
     ];
     for shape in &bad {
-        assert!(build(shape, Detail::Fine).is_err(), "{shape:?}");
+        assert!(build(shape, &fine()).is_err(), "{shape:?}");
     }
 }
 
 #[test]
 fn text_reads_from_left_to_right() {
     // The reader stands in front (+x) and looks along -x: the right hand points along +y.
-    let solid = build(&Shape::Text { text: "L".to_owned(), height: 0.6 }, Detail::Fine).unwrap();
+    let solid = build(&Shape::Text { text: "L".to_owned(), height: 0.6, around: None }, &fine()).unwrap();
     let upright = solid.positions.iter().filter(|p| p.z > 0.2);
     assert!(upright.clone().count() > 0);
     assert!(upright.into_iter().all(|p| p.y < 0.0), "the upright of an L is on the left");
@@ -110,7 +114,7 @@ proptest! {
     fn boxes_fill_their_size(x in 0.01_f32..3.0, y in 0.01_f32..3.0, z in 0.01_f32..3.0, bevel in prop::option::of(0.0_f32..1.0)) {
         let shape = Shape::Box { size: [x, y, z], bevel };
         check_closed(&shape);
-        let solid = build(&shape, Detail::Fine).unwrap();
+        let solid = build(&shape, &fine()).unwrap();
         let low = solid.positions.iter().copied().reduce(Vec3::min).unwrap();
         let high = solid.positions.iter().copied().reduce(Vec3::max).unwrap();
         prop_assert!((low - Vec3::new(-x / 2.0, -y / 2.0, 0.0)).length() < 1e-4);

@@ -3,17 +3,17 @@
 use glam::Vec3;
 
 use super::glyphs::{ADVANCE, HEIGHT, STROKE, known, strokes};
-use super::{Detail, Solid};
+use super::{Detail, Precision, Solid};
 
 /// How far the strokes stand out, m: enough for the depth buffer at the far end of an office.
-const RAISE_M: f32 = 0.002;
+pub(super) const RAISE_M: f32 = 0.002;
 /// Small letters against capitals.
 const SMALL: f32 = 0.78;
 /// From line to line, in heights of a capital letter.
 const LINE: f32 = 1.6;
 
 /// Lines of text about the origin, facing `+x`: who reads it looks along `-x` and has `+y` to the right.
-pub(super) fn build(text: &str, height: f32, detail: Detail) -> Solid {
+pub(super) fn build(text: &str, height: f32, precision: &Precision) -> Solid {
     let mut solid = Solid::default();
     let unit = height / HEIGHT;
     let lines: Vec<&str> = text.split('\n').collect();
@@ -21,9 +21,13 @@ pub(super) fn build(text: &str, height: f32, detail: Detail) -> Solid {
     for (index, line) in lines.iter().enumerate() {
         let width = (line.chars().count() as f32 * ADVANCE - (ADVANCE - 4.0)) * unit;
         let base = total * 0.5 - height - index as f32 * LINE * height;
-        if detail == Detail::Coarse {
-            // Far away a line of text is a grey bar; as wide, and as dark, as its strokes.
-            bar(&mut solid, [-width * 0.5, base + height * 0.3], [width * 0.5, base + height * 0.6]);
+        if !is_readable(height, precision) {
+            let words = words(line, precision.detail == Detail::Coarse);
+            for [first, last] in words {
+                let left = |column: usize| column as f32 * ADVANCE * unit - width * 0.5;
+                let right = left(last) + 4.0 * unit;
+                bar(&mut solid, [left(first), base + height * 0.3], [right, base + height * 0.6]);
+            }
             continue;
         }
         for (column, letter) in line.chars().enumerate() {
@@ -32,6 +36,38 @@ pub(super) fn build(text: &str, height: f32, detail: Detail) -> Solid {
         }
     }
     solid
+}
+
+/// Bends text around the z axis, out to a cylinder of this radius.
+pub(super) fn wrap(solid: &mut Solid, radius: f32) {
+    for (position, normal) in solid.positions.iter_mut().zip(&mut solid.normals) {
+        let (sin, cos) = libm::sincosf(position.y / radius);
+        *position = Vec3::new((radius + position.x) * cos, (radius + position.x) * sin, position.z);
+        *normal = Vec3::new(cos, sin, 0.0);
+    }
+}
+
+/// Whether letters of this height can be told apart.
+fn is_readable(height: f32, precision: &Precision) -> bool {
+    let least = match precision.detail {
+        Detail::Fine => 2.5,
+        Detail::Medium => 4.0,
+        Detail::Coarse => f32::INFINITY,
+    };
+    height >= least * precision.tolerance_m
+}
+
+/// The first and the last column of each word, or of the line as one. From far away a word is a grey bar: as wide, and
+/// as dark, as its strokes.
+fn words(line: &str, as_one: bool) -> Vec<[usize; 2]> {
+    let mut words: Vec<[usize; 2]> = Vec::new();
+    for (column, _) in line.chars().enumerate().filter(|(_, letter)| *letter != ' ') {
+        match words.last_mut() {
+            Some(word) if as_one || word[1] + 1 == column => word[1] = column,
+            _ => words.push([column, column]),
+        }
+    }
+    words
 }
 
 /// The strokes of a line of text in a plane, from its left end on the baseline; capitals are 1 high.

@@ -4,23 +4,27 @@ use core::f32::consts::TAU;
 
 use glam::Vec3;
 
-use super::{Detail, Solid};
+use super::path::{simplified, simplified_ring};
+use super::{Detail, Precision, Solid};
 
 /// A tube through the points, its corners a little rounded, its ends capped.
-pub(super) fn build(path: &[[f32; 3]], radius: f32, closed: bool, detail: Detail) -> Solid {
+pub(super) fn build(path: &[[f32; 3]], radius: f32, closed: bool, precision: &Precision) -> Solid {
     let points = distinct(path, closed);
     let closed = closed && points.len() > 2;
-    let centers = if detail == Detail::Coarse { points } else { fillet(&points, radius, closed, detail) };
-    sweep(&centers, radius, closed, sides(radius, detail))
+    let slack = precision.tolerance_m * 0.9;
+    let points = if closed { simplified_ring(&points, slack) } else { simplified(&points, slack) };
+    let centers = fillet(&points, radius, closed, precision);
+    sweep(&centers, radius, closed, sides(radius, precision))
 }
 
-fn sides(radius: f32, detail: Detail) -> u32 {
-    match detail {
-        Detail::Fine if radius > 0.02 => 12,
-        Detail::Fine => 8,
-        Detail::Medium => 5,
-        Detail::Coarse => 3,
-    }
+fn sides(radius: f32, precision: &Precision) -> u32 {
+    let (least, most) = match precision.detail {
+        Detail::Fine => (4, 12),
+        Detail::Medium => (4, 8),
+        Detail::Coarse => (3, 5),
+    };
+    let wanted = core::f32::consts::PI * (radius / (2.0 * precision.tolerance_m)).sqrt();
+    ((wanted + 0.6) as u32).clamp(least, most)
 }
 
 fn distinct(path: &[[f32; 3]], closed: bool) -> Vec<Vec3> {
@@ -37,7 +41,7 @@ fn distinct(path: &[[f32; 3]], closed: bool) -> Vec<Vec3> {
 }
 
 /// Replaces every sharp corner by a short curve.
-fn fillet(points: &[Vec3], radius: f32, closed: bool, detail: Detail) -> Vec<Vec3> {
+fn fillet(points: &[Vec3], radius: f32, closed: bool, precision: &Precision) -> Vec<Vec3> {
     let count = points.len();
     let mut out = Vec::with_capacity(count * 4);
     for (index, at) in points.iter().copied().enumerate() {
@@ -47,14 +51,18 @@ fn fillet(points: &[Vec3], radius: f32, closed: bool, detail: Detail) -> Vec<Vec
         }
         let (before, after) = (points[(index + count - 1) % count], points[(index + 1) % count]);
         let (to_before, to_after) = (before - at, after - at);
-        let straightness = -to_before.normalize_or_zero().dot(to_after.normalize_or_zero());
-        if straightness > 0.9 {
+        let (back, forth) = (to_before.normalize_or_zero(), to_after.normalize_or_zero());
+        let reach = (2.0 * radius).min(0.35 * to_before.length()).min(0.35 * to_after.length());
+        // By how much the curve cuts the corner.
+        let cut = 0.25 * reach * (back + forth).length();
+        // What turns this little is one of the many corners of a curve already.
+        let straightness = -back.dot(forth);
+        if straightness > 0.85 || cut < precision.tolerance_m {
             out.push(at);
             continue;
         }
-        let reach = (2.0 * radius).min(0.35 * to_before.length()).min(0.35 * to_after.length());
-        let (start, end) = (at + to_before.normalize() * reach, at + to_after.normalize() * reach);
-        let steps = if detail == Detail::Fine { 4 } else { 2 };
+        let (start, end) = (at + back * reach, at + forth * reach);
+        let steps = ((cut / precision.tolerance_m).sqrt() as u32).clamp(1, 3);
         for step in 0..=steps {
             let t = step as f32 / steps as f32;
             out.push(start.lerp(at, t).lerp(at.lerp(end, t), t));

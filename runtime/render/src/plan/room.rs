@@ -8,7 +8,7 @@ use super::light::{GRID_M, Lamps, RoomLight};
 use super::outline::{WallRun, walls};
 use super::{Gap, HALF_WALL_M, Plan, RoomSurface};
 use crate::color;
-use crate::kit::{self, Detail, Solid};
+use crate::kit::{self, Detail, Precision, Solid};
 use crate::mesh::{Paint, Surface};
 use crate::pattern::Pattern;
 
@@ -273,7 +273,7 @@ fn push_box(plan: &mut Plan, size: Vec3, base: Vec3, surface: Surface) {
     }
     // Sharp: a rounded edge here is narrower than a pixel nearly everywhere, and would only flicker.
     let shape = Shape::Box { size: size.to_array(), bevel: Some(0.0) };
-    if let Ok(mut solid) = kit::build(&shape, Detail::Fine) {
+    if let Ok(mut solid) = kit::build(&shape, &Precision::of(Detail::Fine, 1.0)) {
         solid.transform(Mat3::IDENTITY, base);
         plan.mesh.push(&solid, |_| surface);
     }
