@@ -72,7 +72,9 @@ pub(super) fn cylinder(radii: [f32; 2], height: f32, bevel: Option<f32>, precisi
 
 /// An ellipsoid about the origin.
 pub(super) fn ellipsoid(radii: Vec3, precision: &Precision) -> Solid {
-    let sides = precision.sides(radii.max_element());
+    // Between the radii of the outline that is seen of it most often.
+    let middling = radii.x + radii.y + radii.z - radii.max_element() - radii.min_element();
+    let sides = precision.sides((radii.max_element() * middling).sqrt());
     let rows = ((sides * 2 + 2) / 5).max(3);
     let rings: Vec<Ring> = (0..=rows)
         .map(|row| {

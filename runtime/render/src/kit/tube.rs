@@ -19,12 +19,12 @@ pub(super) fn build(path: &[[f32; 3]], radius: f32, closed: bool, precision: &Pr
 
 fn sides(radius: f32, precision: &Precision) -> u32 {
     let (least, most) = match precision.detail {
-        Detail::Fine => (4, 12),
+        Detail::Fine => (4, 10),
         Detail::Medium => (4, 8),
         Detail::Coarse => (3, 5),
     };
     let wanted = core::f32::consts::PI * (radius / (2.0 * precision.tolerance_m)).sqrt();
-    ((wanted + 0.6) as u32).clamp(least, most)
+    ((wanted + 0.25) as u32).clamp(least, most)
 }
 
 fn distinct(path: &[[f32; 3]], closed: bool) -> Vec<Vec3> {
