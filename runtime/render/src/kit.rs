@@ -53,7 +53,7 @@ impl Precision {
             // pixels a metre.
             Detail::Fine => (1.9 / (400.0 / radius_m).clamp(620.0, 1560.0)).min(0.8 * medium_m),
             Detail::Medium => medium_m,
-            Detail::Coarse => radius_m / 22.0,
+            Detail::Coarse => radius_m / 19.0,
         };
         Self { detail, tolerance_m, alike: Vec::new() }
     }
@@ -107,13 +107,15 @@ impl Precision {
 
     /// Whether anything of a shape of this size can be seen at its distance.
     pub(crate) fn shows(&self, size: Vec3) -> bool {
-        if self.detail == Detail::Fine {
-            return true;
-        }
+        let least = match self.detail {
+            Detail::Fine => return true,
+            Detail::Medium => 1.2,
+            Detail::Coarse => 1.8,
+        };
         let longest = size.max_element();
         let thinnest = size.min_element();
         let across = size.x + size.y + size.z - longest - thinnest;
-        longest > 1.2 * self.tolerance_m && across > 0.3 * self.tolerance_m
+        longest > least * self.tolerance_m && across > 0.3 * self.tolerance_m
     }
 }
 

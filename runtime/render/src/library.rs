@@ -12,7 +12,7 @@ use cohabit_cdf::{Catalog, ClassId, Property};
 use glam::Vec3;
 
 use crate::color;
-use crate::kit::{self, Detail, Precision, ShapeError};
+use crate::kit::{Detail, ShapeError};
 use crate::mesh::{Aabb, Mesh};
 use crate::model_mesh;
 use crate::occlusion::Occluder;
@@ -304,11 +304,8 @@ fn mesh_of(model: &Model, standing: bool, body: bool) -> Result<ModelMesh, Model
         ModelError::NoParent { model: model.id.clone(), joint: joint.id.clone(), parent }
     })?;
     let mut levels = Vec::with_capacity(Detail::ALL.len());
-    let radius_m = model_mesh::radius(model)?;
-    let radii: Vec<f32> = model.parts.iter().filter_map(|part| kit::radius_of(&part.shape)).collect();
     for detail in Detail::ALL {
-        let precision = Precision::of(detail, radius_m).with_radii(radii.clone());
-        levels.push(model_mesh::build(model, &precision)?);
+        levels.push(model_mesh::build(model, &model_mesh::precision(model, detail)?)?);
     }
     let fine = &levels[0];
     let (mut bounds, mut reach) = (Aabb::EMPTY, Aabb::EMPTY);

@@ -20,6 +20,15 @@ const ROUGH_M: f32 = 0.2;
 
 /// The mesh of `model` at this precision.
 pub(crate) fn build(model: &Model, precision: &Precision) -> Result<Mesh, ModelError> {
+    build_and_tell(model, precision, |_, _| ())
+}
+
+/// The same; says of each part, in the order of the mesh, which it is and how many triangles the mesh has with it.
+pub(crate) fn build_and_tell(
+    model: &Model,
+    precision: &Precision,
+    mut tell: impl FnMut(usize, usize),
+) -> Result<Mesh, ModelError> {
     let too_many = |what, count, most| ModelError::TooMany { model: model.id.clone(), what, count, most };
     if model.parts.len() > MOST_PARTS {
         return Err(too_many("parts", model.parts.len(), MOST_PARTS));
@@ -56,14 +65,24 @@ pub(crate) fn build(model: &Model, precision: &Precision) -> Result<Mesh, ModelE
             .collect();
         mesh.begin_piece(when, joint, veil);
         let mut members = shaped.iter().zip(&model.parts).enumerate().filter(|(index, _)| group_of[*index] == group);
-        members.try_for_each(|(index, (own, part))| own.push(&mut mesh, model, part, index, &over, precision))?;
+        members.try_for_each(|(index, (own, part))| {
+            own.push(&mut mesh, model, part, index, &over, precision)?;
+            tell(index, mesh.triangles.len());
+            Ok(())
+        })?;
         mesh.end_piece();
     }
     Ok(mesh)
 }
 
+/// How finely shapes of `model` are divided.
+pub(crate) fn precision(model: &Model, detail: Detail) -> Result<Precision, ModelError> {
+    let radii = model.parts.iter().filter_map(|part| kit::radius_of(&part.shape)).collect();
+    Ok(Precision::of(detail, radius(model)?).with_radii(radii))
+}
+
 /// The radius of the least ball about the box around what is drawn of `model` while nothing has happened, m.
-pub(crate) fn radius(model: &Model) -> Result<f32, ModelError> {
+fn radius(model: &Model) -> Result<f32, ModelError> {
     let rough = Precision::of(Detail::Coarse, ROUGH_M);
     let mut bounds = Aabb::EMPTY;
     for (index, part) in model.parts.iter().enumerate().filter(|(_, part)| part.when.is_none_or(is_usual)) {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use cohabit_cdf::catalog::Stands;
 use cohabit_cdf::layout::Layout;
-use cohabit_cdf::model::{Model, Part};
+use cohabit_cdf::model::Model;
 use cohabit_cdf::{Catalog, ClassId};
 
 use super::*;
@@ -36,27 +36,12 @@ fn around(cell: &Cell, yaw_rad: f32, pitch_rad: f32, side_px: u32) -> Camera {
     Camera { position_m, yaw_rad, pitch_rad, ceiling: true, for_people: false, ..front }
 }
 
-/// The part, from 0, of each triangle of a model: pieces take their parts in turn.
+/// The part, from 0, of each triangle of a model.
 fn parts_of(model: &Model, level: usize) -> Vec<usize> {
-    let alone = |part: &Part| {
-        let mut alone = model.clone();
-        alone.parts = vec![part.clone()];
-        let mesh = model_mesh::build(&alone, Detail::ALL[level]).unwrap();
-        ((part.when, part.joint.clone(), mesh.pieces[0].veil), mesh.triangles.len())
-    };
-    let parts: Vec<_> = model.parts.iter().map(alone).collect();
-    let mut groups = Vec::new();
-    for (key, _) in &parts {
-        if !groups.contains(&key) {
-            groups.push(key);
-        }
-    }
-    let of = |group| parts.iter().enumerate().filter(move |(_, (key, _))| key == group);
-    groups
-        .iter()
-        .flat_map(|group| of(*group))
-        .flat_map(|(index, (_, count))| std::iter::repeat_n(index, *count))
-        .collect()
+    let precision = model_mesh::precision(model, Detail::ALL[level]).unwrap();
+    let mut parts = Vec::new();
+    model_mesh::build_and_tell(model, &precision, |index, end| parts.resize(end, index)).unwrap();
+    parts
 }
 
 /// What stands in the id plane, in words.

@@ -18,19 +18,19 @@ const MOST_TRIANGLES: usize = 1500;
 const MANY_TRIANGLES: usize = 400;
 /// What may have more, and how many. Machines of which an office has one, as large as a person and looked at from near:
 const LARGE: [(&str, usize); 10] = [
-    ("FreezeRay", 3800),
-    ("PortalGenerator", 3800),
+    ("FreezeRay", 4300),
+    ("PortalGenerator", 4000),
     ("Embiggenator", 3600),
-    ("TeslaCoil", 3000),
+    ("TeslaCoil", 3300),
     ("Laser", 3000),
-    ("ForkLift", 2700),
+    ("ForkLift", 2800),
     ("ColorChangerStation", 2500),
     ("GravityPad", 2500),
     ("YesterdayMachine_01", 2000),
     ("EAC_Machine", 1800),
 ];
-/// Cables and coils, each turn of which is round, and fine work to look at closely.
-const FINE: [(&str, usize); 8] = [
+/// Cables and coils, each turn of which is round, and what is written all over or finely woven.
+const FINE: [(&str, usize); 9] = [
     ("SM_Prop_Powercable_02", 2600),
     ("TeslaCoil_Small", 2500),
     ("SM_Prop_Plastic_Pipe_Spool_01", 2500),
@@ -38,10 +38,26 @@ const FINE: [(&str, usize); 8] = [
     ("SM_Prop_Wirespool_01", 2200),
     ("SM_Prop_Wirespool_Small_01", 1800),
     ("PieFruit_01", 1700),
+    ("Jar_PeanutButter_01", 1700),
     ("CoffeeUnMaker_01", 1700),
 ];
-/// What is nothing but sheets and boards: boxes, which no level divides.
-const BOXES: [&str; 0] = [];
+/// What is nothing but sheets, boards and lumps, which no level makes simpler.
+const BOXES: [&str; 14] = [
+    "AP_Prop_Plant_01",
+    "AP_Prop_PaperTray_01_Full_01",
+    "SM_Prop_PaperTray_01_Full_01",
+    "SM_Prop_Book_Phone_Open_01",
+    "SM_Prop_Warehouse_Boxes_Stacked_04",
+    "SM_Prop_Crate_Stack_01",
+    "SM_Prop_PalletStack_02",
+    "SM_Tool_Drill_Chuck_01",
+    "Bookshelf_Wooden_01",
+    "CandyJar_01",
+    "Deembiggenator_Crates",
+    "WaterPuddle_01",
+    "Laser_CircuitBoard",
+    "PBJ_Sandwich",
+];
 
 fn library() -> (Catalog, Arc<MeshLibrary>) {
     let catalog = Catalog::builtin();
