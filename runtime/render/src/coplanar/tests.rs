@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use cohabit_cdf::catalog::Stands;
 use cohabit_cdf::layout::Layout;
-use cohabit_cdf::model::Model;
+use cohabit_cdf::model::{Model, Part};
 use cohabit_cdf::{Catalog, ClassId};
 
 use super::*;
