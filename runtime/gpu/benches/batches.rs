@@ -98,7 +98,14 @@ struct Room {
     ids: Vec<u32>,
 }
 
-fn measure(renderer: &mut dyn Renderer, scene: &Scene, layout: &Layout, size: [u32; 2], count: usize, least: Duration) {
+fn measure(
+    renderer: &mut dyn Renderer,
+    scene: &Scene,
+    layout: &Layout,
+    size: [u32; 2],
+    count: usize,
+    least: Duration,
+) -> Duration {
     // One camera alone goes from viewpoint to viewpoint.
     let all = cameras(layout, size, count.max(16));
     let pixels = all[0].pixels();
