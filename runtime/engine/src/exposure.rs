@@ -115,7 +115,8 @@ impl Exposure<'_> {
         let mut free = records.iter_mut();
         for (view, ids) in (0..).zip(ids.chunks(pixels)) {
             let seen = table.look(ids, width, classes);
-            for (record, seen) in free.by_ref().zip(seen) {
+            // The records come second: none is taken that is not filled.
+            for (seen, record) in seen.iter().zip(free.by_ref()) {
                 let [left, top, right, bottom] = seen.bounds.map(|place| u16::try_from(place).unwrap_or(u16::MAX));
                 let (id, pixels, class) = (seen.id, seen.pixels, seen.class.index());
                 *record = SeenRecord { id, pixels, class, view, left, top, right, bottom, reserved: 0 };

@@ -61,6 +61,15 @@ fn check_seen(frame: &FrameView<'_>) {
     }
 }
 
+/// Ends the simulator also when a check fails.
+struct Stop<'a>(&'a AtomicBool);
+
+impl Drop for Stop<'_> {
+    fn drop(&mut self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+}
+
 #[test]
 fn cameras_deliver_what_was_asked_for() {
     let asked = [
@@ -81,6 +90,7 @@ fn cameras_deliver_what_was_asked_for() {
     let stop = AtomicBool::new(false);
     thread::scope(|scope| {
         let running = scope.spawn(|| simulator.run(&stop));
+        let ending = Stop(&stop);
         let told = next(&mut *missions, &bus, Topic::Mission);
         let cameras = MissionMessage::read(told.payload()).unwrap().cameras;
         // Four of each of the two bodies, then those asked for.
@@ -105,7 +115,7 @@ fn cameras_deliver_what_was_asked_for() {
         // All rooms are in the plan.
         let rooms = views[3].seen().iter().filter(|record| record.class == SemanticClass::Floor.index());
         assert_eq!(rooms.count(), 8);
-        stop.store(true, Ordering::Relaxed);
+        drop(ending);
         running.join().unwrap().unwrap();
     });
 }
