@@ -248,37 +248,59 @@ impl ShadowMap {
         y / CELL as u32 * self.cells_a_row as u32 + x / CELL as u32 + 1
     }
 
-    /// Whether anything around a cell's texels lies above a limit: see [`Self::light`].
+    /// Whether anything around a cell's texels lies above a limit: see [`Around::light`].
     #[inline(always)]
     pub(crate) fn may_shade(&self, cell: u32, limit: i32) -> bool {
         i32::from(self.cells[cell as usize]) > limit
     }
 
-    /// How much lamplight reaches a place in `room`, 0 to 1, softly. The place is already off its own surface; `limit` is
-    /// the greatest texel that throws no shadow on it.
+    /// What lies around a place, in texels, at least 2 and at most [`Self::most`] from the map's edge.
     #[inline(always)]
-    pub(crate) fn light(&self, [x, y]: [f32; 2], limit: i32, room: u16) -> f32 {
+    pub(crate) fn around(&self, [x, y]: [f32; 2]) -> Around<'_> {
         let (ix, iy) = (x as usize, y as usize);
-        // A tent four texels wide: each sample weighs by how much of it the tent covers.
-        let (wx, wy) = (tent(x - ix as f32), tent(y - iy as f32));
         let first = (iy - BEFORE) * self.width + ix - BEFORE;
-        let mut dark = [0.0; 4];
-        for (row, weight) in wy.into_iter().enumerate() {
-            let start = first + row * self.width;
-            let Some(texels) = self.texels[start..].first_chunk::<4>() else { continue };
-            for (dark, texel) in dark.iter_mut().zip(texels) {
-                let texel = i32::from(*texel);
-                let over = texel - limit;
-                // What hangs high above throws a shadow too soft to be seen.
-                let own = (1.3 - over as f32 * FADE).clamp(0.0, 1.0);
-                let counts = over > 0 && texel & 0xF == i32::from(room);
-                *dark += if counts { own * weight } else { 0.0 };
-            }
-        }
-        1.0 - (dark[0] * wx[0] + dark[1] * wx[1] + dark[2] * wx[2] + dark[3] * wx[3])
+        let row = |row: usize| self.texels[first + row * self.width..].first_chunk().unwrap_or(&[0; SIDE]);
+        Around { texels: [row(0), row(1), row(2), row(3)], beyond: [x - ix as f32, y - iy as f32] }
     }
 }
 
+/// Texels along a side of what a look at the map meets.
+const SIDE: usize = BEFORE + 1 + AFTER;
+
+/// What a look at the map meets.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Around<'a> {
+    /// Row by row.
+    pub texels: [&'a [u16; SIDE]; SIDE],
+    /// How far the place lies beyond the middle of its own texel, along rows and down.
+    pub beyond: [f32; 2],
+}
+
+impl Around<'_> {
+    /// How much lamplight reaches the place if it is in `room`, 0 to 1, softly. The place is already off its own surface;
+    /// `limit` is the greatest texel that throws no shadow on it.
+    #[inline(always)]
+    pub(crate) fn light(&self, limit: i32, room: u16) -> f32 {
+        let [across, down] = self.beyond.map(tent);
+        let mut dark = [0.0; SIDE * SIDE];
+        for (i, dark) in dark.iter_mut().enumerate() {
+            let texel = i32::from(self.texels[i / SIDE][i % SIDE]);
+            let over = texel - limit;
+            // What hangs high above throws a shadow too soft to be seen.
+            let own = 1.3 - over as f32 * FADE;
+            let own = if own > 0.0 { own } else { 0.0 };
+            let own = if own < 1.0 { own } else { 1.0 };
+            let counts = over > 0 && texel & 0xF == i32::from(room);
+            *dark = if counts { own * (across[i % SIDE] * down[i / SIDE]) } else { 0.0 };
+        }
+        // Added in halves, as vectors are.
+        let halves: [f32; 8] = core::array::from_fn(|i| dark[i] + dark[i + 8]);
+        let quarters: [f32; 4] = core::array::from_fn(|i| halves[i] + halves[i + 4]);
+        1.0 - ((quarters[0] + quarters[2]) + (quarters[1] + quarters[3]))
+    }
+}
+
+/// A tent four texels wide: each sample weighs by how much of it the tent covers.
 #[inline(always)]
 fn tent(f: f32) -> [f32; 4] {
     [(1.0 - f) * 0.25, (2.0 - f) * 0.25, (1.0 + f) * 0.25, f * 0.25]

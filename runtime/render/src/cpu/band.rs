@@ -1,6 +1,6 @@
 //! A band: some rows of a picture, drawn by one thread.
 
-use super::avx2::Avx2;
+use super::avx2::{Avx2, Plain, Vectors};
 use super::facet::Facets;
 use super::raster::Rows;
 use super::setup::Corner;
@@ -70,7 +70,8 @@ impl Band<'_> {
     pub(super) fn rows(&mut self, width: usize) -> Rows<'_> {
         self.seen.fill(NOTHING);
         self.nearness.fill(1.0 / FAR_M);
-        Rows { first: self.first_row, width, seen: self.seen, nearness: self.nearness }
+        let count = self.seen.len() / width;
+        Rows { first: self.first_row, count, width, seen: self.seen, nearness: self.nearness }
     }
 }
 
@@ -78,23 +79,29 @@ impl Band<'_> {
 /// here, to be compiled for the wide vectors too.
 pub(super) fn fill(wide: Option<Avx2>, band: &mut Band<'_>, width: usize, shader: &Shader<'_>, facets: &mut Facets) {
     #[cfg(target_arch = "x86_64")]
-    if wide.is_some() {
+    if let Some(wide) = wide {
         // SAFETY: the proof says that the processor has AVX2.
-        unsafe { fill_avx2(band, width, shader, facets) };
+        unsafe { fill_avx2(wide, band, width, shader, facets) };
         return;
     }
     let _ = wide;
-    fill_rows(band, width, shader, facets);
+    fill_rows(Plain, band, width, shader, facets);
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
-fn fill_avx2(band: &mut Band<'_>, width: usize, shader: &Shader<'_>, facets: &mut Facets) {
-    fill_rows(band, width, shader, facets);
+fn fill_avx2(wide: Avx2, band: &mut Band<'_>, width: usize, shader: &Shader<'_>, facets: &mut Facets) {
+    fill_rows(wide, band, width, shader, facets);
 }
 
 #[inline(always)]
-fn fill_rows(band: &mut Band<'_>, width: usize, shader: &Shader<'_>, facets: &mut Facets) {
+fn fill_rows(
+    vectors: impl Vectors,
+    band: &mut Band<'_>,
+    width: usize,
+    shader: &Shader<'_>,
+    facets: &mut Facets,
+) {
     if let Some(depth) = &mut band.depth_m {
         for (depth, nearness) in depth.iter_mut().zip(&*band.nearness) {
             *depth = 1.0 / nearness;
@@ -103,17 +110,19 @@ fn fill_rows(band: &mut Band<'_>, width: usize, shader: &Shader<'_>, facets: &mu
     let mut strip = Strip::new();
     for (row, seen) in band.seen.chunks(width).enumerate() {
         let span = row * width..(row + 1) * width;
-        if let Some(ids) = &mut band.ids {
-            shader.ids(seen, &mut ids[span.clone()]);
-        }
+        let ids = band.ids.as_deref_mut().map(|plane| &mut plane[span.clone()]);
         if band.color.is_none() && band.normals.is_none() {
+            if let Some(ids) = ids {
+                shader.ids(seen, ids);
+            }
             continue;
         }
         let four = span.start * 4..span.end * 4;
         let out = Out {
             color: band.color.as_deref_mut().map(|plane| plane[four.clone()].as_chunks_mut().0),
             normals: band.normals.as_deref_mut().map(|plane| plane[four].as_chunks_mut().0),
+            ids,
         };
-        shader.row(&mut strip, facets, band.first_row + row, seen, &band.nearness[span], out);
+        shader.row(vectors, &mut strip, facets, band.first_row + row, seen, &band.nearness[span], out);
     }
 }

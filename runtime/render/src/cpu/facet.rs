@@ -59,6 +59,8 @@ pub(super) struct Facet {
     number: u32,
     /// Which draw it belongs to.
     pub draw: u32,
+    /// Which instance.
+    pub id: u32,
     pub shine: Shine,
     /// Whether its normal is the same everywhere.
     pub flat: bool,
@@ -173,6 +175,7 @@ impl Facet {
         Self {
             number,
             draw: place,
+            id: draw.id,
             shine,
             flat,
             normal,

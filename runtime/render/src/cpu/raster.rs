@@ -9,27 +9,48 @@ const LANES: usize = 8;
 /// Less than the distance of any crossing that is not a whole pixel from the nearest whole pixel.
 const CROSSING_SLACK: f64 = 1.0 / (1u64 << 29) as f64;
 
-/// One side: positive inside; its value at a pixel's centre is `origin + x * per_x + y * per_y`.
+/// One side, from corner to corner in fractions of pixels: a pixel is inside where the side's value at its centre,
+/// `origin + x * per_x + y * per_y`, is not negative.
 #[derive(Clone, Copy)]
 struct Side {
-    origin: i64,
+    from: [i32; 2],
+    dx: i32,
+    dy: i32,
     per_x: i32,
     per_y: i32,
+    /// A pixel's centre on a side belongs to the triangle for which the side is a left or an upper one.
+    exclusive: bool,
 }
 
 #[inline(always)]
 fn side(from: [i32; 2], to: [i32; 2]) -> Side {
     let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
-    // A pixel's centre on a side belongs to the triangle for which the side is a left or an upper one.
-    let inclusive = dy < 0 || dy == 0 && dx > 0;
-    let center = SUB / 2;
-    let origin = i64::from(dx) * i64::from(center - from[1]) - i64::from(dy) * i64::from(center - from[0]);
-    Side { origin: origin - i64::from(!inclusive), per_x: -dy * SUB, per_y: dx * SUB }
+    let exclusive = dy > 0 || dy == 0 && dx <= 0;
+    Side { from, dx, dy, per_x: -dy * SUB, per_y: dx * SUB, exclusive }
+}
+
+impl Side {
+    /// Its value at a pixel's centre, where that fits 32 bits: what does not fit on the way cancels out.
+    #[inline(always)]
+    fn near(&self, x: i32, y: i32) -> i32 {
+        let (x, y) = (x * SUB + SUB / 2 - self.from[0], y * SUB + SUB / 2 - self.from[1]);
+        let value = self.dx.wrapping_mul(y).wrapping_sub(self.dy.wrapping_mul(x));
+        value.wrapping_sub(i32::from(self.exclusive))
+    }
+
+    /// Its value at the centre of the first pixel of a row: exact, as it has far fewer bits than a double.
+    #[inline(always)]
+    fn far(&self, y: i32) -> f64 {
+        let center = SUB / 2;
+        let (x, y) = (center - self.from[0], y * SUB + center - self.from[1]);
+        f64::from(self.dx) * f64::from(y) - f64::from(self.dy) * f64::from(x) - f64::from(u8::from(self.exclusive))
+    }
 }
 
 /// The rows of a picture that are drawn together.
 pub(super) struct Rows<'a> {
     pub first: usize,
+    pub count: usize,
     pub width: usize,
     /// The number of the triangle that each pixel sees.
     pub seen: &'a mut [u32],
@@ -38,15 +59,10 @@ pub(super) struct Rows<'a> {
 }
 
 impl Rows<'_> {
-    /// How many there are.
-    pub(super) fn count(&self) -> usize {
-        self.seen.len() / self.width
-    }
-
     /// Draws a triangle that has this number.
     #[inline(always)]
     pub(super) fn draw(&mut self, triangle: &Triangle, number: u32) {
-        let (first, last) = (self.first as i32, (self.first + self.count()) as i32 - 1);
+        let (first, last) = (self.first as i32, (self.first + self.count) as i32 - 1);
         let (top, bottom) = (i32::from(triangle.rect[1]).max(first), i32::from(triangle.rect[3]).min(last));
         if top > bottom {
             return;
@@ -64,9 +80,7 @@ impl Rows<'_> {
     fn narrow(&mut self, triangle: &Triangle, sides: [Side; 3], number: u32, (top, bottom): (i32, i32)) {
         let (left, right) = (i32::from(triangle.rect[0]), i32::from(triangle.rect[2]));
         // Near a narrow triangle's box every value fits 32 bits once it is taken relative to a corner of the box.
-        let mut start = sides.map(|side| {
-            (side.origin + i64::from(left) * i64::from(side.per_x) + i64::from(top) * i64::from(side.per_y)) as i32
-        });
+        let mut start = sides.map(|side| side.near(left, top));
         let [at_origin, per_x, per_y] = triangle.nearness;
         let (mut steps, mut near_steps) = ([[0; LANES]; 3], [0.0; LANES]);
         for i in 0..LANES {
@@ -123,26 +137,26 @@ impl Rows<'_> {
     /// Works out for each row which of its pixels lie inside.
     #[inline(always)]
     fn wide(&mut self, triangle: &Triangle, sides: [Side; 3], number: u32, (top, bottom): (i32, i32)) {
+        // Of sides that lie along the rows, the inverse is infinite, and so are the crossings, or there are none.
         let inverse = sides.map(|side| 1.0 / f64::from(side.per_x));
+        let (first, last) = (f64::from(triangle.rect[0]), f64::from(triangle.rect[2]));
+        let mut values = sides.map(|side| side.far(top));
         let [at_origin, per_x, per_y] = triangle.nearness;
         for y in top..=bottom {
-            let (mut from, mut to) = (i32::from(triangle.rect[0]), i32::from(triangle.rect[2]));
-            for (side, inverse) in sides.iter().zip(inverse) {
-                let value = side.origin + i64::from(y) * i64::from(side.per_y);
-                if side.per_x == 0 {
-                    if value < 0 {
-                        to = -1;
-                    }
-                    continue;
-                }
-                let crossing = (-value as f64 * inverse).clamp(-65_536.0, 65_536.0);
+            let (mut from, mut to) = (first, last);
+            for (i, side) in sides.iter().enumerate() {
+                let crossing = -values[i] * inverse[i];
+                values[i] += f64::from(side.per_y);
                 if side.per_x > 0 {
-                    // The first whole number not below the crossing.
-                    from = from.max(65_537 - (65_537.0 - crossing + CROSSING_SLACK) as i32);
-                } else {
-                    to = to.min((crossing + CROSSING_SLACK + 65_537.0) as i32 - 65_537);
+                    from = if crossing - CROSSING_SLACK > from { crossing - CROSSING_SLACK } else { from };
+                } else if side.per_x < 0 {
+                    to = if crossing + CROSSING_SLACK < to { crossing + CROSSING_SLACK } else { to };
+                } else if values[i] - f64::from(side.per_y) < 0.0 {
+                    to = -1.0;
                 }
             }
+            // The first whole number not below, and the last not above.
+            let (from, to) = (65_536 - (65_536.0 - from) as i32, (to + 1.0) as i32 - 1);
             if from > to {
                 continue;
             }

@@ -7,6 +7,7 @@ use core::ops::Range;
 use glam::Vec3;
 
 use super::NOTHING;
+use super::avx2::Vectors;
 use super::draw::Draw;
 use super::facet::{Facets, Shine};
 use super::numbers::Numbers;
@@ -28,6 +29,12 @@ pub const DIRT: [u8; 3] = [96, 74, 48];
 pub const SLIME: [u8; 3] = [96, 200, 70];
 /// See [`DIRT`].
 pub const FROST: [u8; 3] = [206, 228, 244];
+/// What is seen where there is no building: a pale sky over distant ground.
+pub(super) const HORIZON: Vec3 = Vec3::new(0.80, 0.87, 0.94);
+/// See [`HORIZON`].
+pub(super) const ZENITH: Vec3 = Vec3::new(0.36, 0.56, 0.86);
+/// See [`HORIZON`].
+pub(super) const GROUND: Vec3 = Vec3::new(0.30, 0.33, 0.26);
 /// How far a place is lifted off its surface before its shadow is looked up, m.
 pub const LIFT_M: f32 = 0.03;
 
@@ -98,6 +105,7 @@ impl<'a> Shader<'a> {
     #[inline(always)]
     pub(super) fn row(
         &self,
+        vectors: impl Vectors,
         strip: &mut Strip,
         facets: &mut Facets,
         y: usize,
@@ -110,8 +118,9 @@ impl<'a> Shader<'a> {
             let mut out = Out {
                 color: out.color.as_deref_mut().map(|row| &mut row[from..to]),
                 normals: out.normals.as_deref_mut().map(|row| &mut row[from..to]),
+                ids: out.ids.as_deref_mut().map(|row| &mut row[from..to]),
             };
-            strip.shade(self, facets, (from, y), &seen[from..to], &nearness[from..to], &mut out);
+            strip.shade(vectors, self, facets, (from, y), &seen[from..to], &nearness[from..to], &mut out);
         }
     }
 
@@ -185,16 +194,5 @@ impl<'a> Shader<'a> {
             albedo = albedo.lerp(from_srgb(FROST), amount);
         }
         albedo
-    }
-}
-
-/// What is seen where there is no building: a pale sky over distant ground.
-pub(super) fn outside(ray: Vec3) -> Vec3 {
-    let (horizon, zenith, ground) =
-        (Vec3::new(0.80, 0.87, 0.94), Vec3::new(0.36, 0.56, 0.86), Vec3::new(0.30, 0.33, 0.26));
-    if ray.z >= 0.0 {
-        horizon.lerp(zenith, (ray.z * 2.2).min(1.0))
-    } else {
-        horizon.lerp(ground, (-ray.z * 9.0).min(1.0))
     }
 }

@@ -44,7 +44,7 @@ fn draw_avx2(draws: &[Draw<'_>], numbers: &Numbers, view: &View, rows: &mut Rows
 
 #[inline(always)]
 fn draw_all(draws: &[Draw<'_>], numbers: &Numbers, view: &View, rows: &mut Rows<'_>, corners: &mut Vec<Corner>) {
-    let frame = Frame::rows(view, rows.first, rows.count());
+    let frame = Frame::rows(view, rows.first, rows.count);
     for (index, draw) in draws.iter().enumerate() {
         let piece = draw.piece;
         if piece.corners.len() >= FEW_CORNERS && is_hidden(draw, piece.bounds, frame, rows) {
@@ -97,7 +97,7 @@ fn is_hidden(draw: &Draw<'_>, bounds: Aabb, frame: Frame<'_>, rows: &Rows<'_>) -
         let (low, high) = ((low >> SUB_BITS).max(first as i32), (high >> SUB_BITS).min((first + count) as i32 - 1));
         low as usize..(high + 1).max(low) as usize
     };
-    let (across, down) = (bound(0, 0, rows.width), bound(1, rows.first, rows.count()));
+    let (across, down) = (bound(0, 0, rows.width), bound(1, rows.first, rows.count));
     let nearest = corners.iter().fold(0.0_f32, |nearest, corner| nearest.max(corner.nearness));
     let nearest = nearest / (1.0 - SLACK_M * nearest);
     down.into_iter().all(|y| {

@@ -8,9 +8,10 @@
 
 use glam::Vec3;
 
+use super::avx2::Vectors;
 use super::facet::{Facet, Facets, Shine};
-use super::shade::{ABOVE, BELOW, KEY, LIFT_M, Shader, outside};
-use crate::color::{self, to_srgb};
+use super::shade::{ABOVE, BELOW, GROUND, HORIZON, KEY, LIFT_M, Shader, ZENITH};
+use crate::color;
 use crate::pattern::Level;
 use crate::shadow::SLANT;
 
@@ -77,6 +78,7 @@ pub(super) struct Strip {
 pub(super) struct Out<'a> {
     pub color: Option<&'a mut [[u8; 4]]>,
     pub normals: Option<&'a mut [[i8; 4]]>,
+    pub ids: Option<&'a mut [u32]>,
 }
 
 /// Part of a strip that sees one triangle.
@@ -113,6 +115,7 @@ impl Strip {
     #[inline(always)]
     pub(super) fn shade(
         &mut self,
+        vectors: impl Vectors,
         shader: &Shader<'_>,
         facets: &mut Facets,
         (first, y): (usize, usize),
@@ -120,11 +123,16 @@ impl Strip {
         nearness: &[f32],
         out: &mut Out<'_>,
     ) {
-        let mut near = [1.0; LONG];
-        near[..nearness.len()].copy_from_slice(nearness);
-        self.look(shader, first, y as f32, &near);
+        match nearness.first_chunk() {
+            Some(whole) => self.look(shader, first, y as f32, whole),
+            None => {
+                let mut near = [1.0; LONG];
+                near[..nearness.len()].copy_from_slice(nearness);
+                self.look(shader, first, y as f32, &near);
+            }
+        }
         let wants_color = out.color.is_some();
-        let (mut glossy, mut lit) = (false, false);
+        let (mut glossy, mut most_squarings, mut lit, mut open) = (false, 0, false, false);
         let (mut alone, mut others) = ([(Run { from: 0, to: 0 }, Shine::Lit); LONG], 0);
         let mut from = 0;
         while from < seen.len() {
@@ -137,20 +145,25 @@ impl Strip {
             from = to;
             if number == super::NOTHING {
                 self.fill_normal(run, Vec3::ZERO);
+                write_id(out, run, 0);
                 alone[others] = (run, Shine::Sky);
                 others += 1;
+                open = true;
                 continue;
             }
             let facet = facets.get(shader, number);
             let color = wants_color && matches!(facet.shine, Shine::Lit);
+            write_id(out, run, facet.id);
             self.shape(facet, run, y as f32);
             if color {
                 self.paint(shader, facet, run, y as f32);
                 glossy |= facet.gloss.shine > 0.0;
+                most_squarings = most_squarings.max(facet.gloss.squarings);
                 lit = true;
             } else {
                 alone[others] = (run, facet.shine);
                 others += 1;
+                open |= matches!(facet.shine, Shine::Sky);
             }
         }
         if let Some(normals) = &mut out.normals {
@@ -158,15 +171,22 @@ impl Strip {
         }
         if let Some(color) = &mut out.color {
             if lit {
-                self.look_for_light(shader, y as f32, seen.len());
+                self.look_for_light(vectors, shader, y as f32, seen.len());
                 self.illuminate();
                 if glossy {
-                    self.gloss(shader, y as f32);
+                    self.gloss(shader, y as f32, most_squarings);
                 }
+            }
+            if open {
+                self.look_outside(shader, y as f32, &alone[..others]);
+            }
+            if lit || open {
                 self.write_color(color);
             }
             for (run, shine) in &alone[..others] {
-                shine_alone(shader, (first, y), *run, *shine, color);
+                if let Shine::Own(own) = shine {
+                    color[run.from..run.to].fill(*own);
+                }
             }
         }
     }
@@ -325,7 +345,7 @@ impl Strip {
 
     /// How much lamplight meets each pixel.
     #[inline(always)]
-    fn look_for_light(&mut self, shader: &Shader<'_>, y: f32, length: usize) {
+    fn look_for_light(&mut self, vectors: impl Vectors, shader: &Shader<'_>, y: f32, length: usize) {
         let towards = shader.towards_light;
         let row = shader.ray(0.0, y);
         let [_, per_x, _] = shader.rays();
@@ -363,7 +383,8 @@ impl Strip {
             self.lit.0[i] = if facing <= 0.0 {
                 0.0
             } else if map.may_shade(self.cell.0[i], self.limit.0[i]) {
-                map.light([self.shadow[0].0[i], self.shadow[1].0[i]], self.limit.0[i], self.room.0[i])
+                let around = map.around([self.shadow[0].0[i], self.shadow[1].0[i]]);
+                vectors.light(&around, self.limit.0[i], self.room.0[i])
             } else {
                 1.0
             };
@@ -391,7 +412,7 @@ impl Strip {
 
     /// Highlights, and what surfaces mirror of the room.
     #[inline(always)]
-    fn gloss(&mut self, shader: &Shader<'_>, y: f32) {
+    fn gloss(&mut self, shader: &Shader<'_>, y: f32, most_squarings: u8) {
         let towards = shader.towards_light;
         let row = shader.ray(0.0, y);
         let [_, per_x, _] = shader.rays();
@@ -413,10 +434,10 @@ impl Strip {
             let room = 0.22 + 0.75 * within(tz * 0.7 + 0.45, 0.0, 1.0);
             mirror[i] = (self.mirror.0[i] + 0.25 * self.shine.0[i] * edge) * room * self.ambient.0[i];
         }
-        // As often as the glossiest pattern asks for.
-        for turn in 0..7 {
+        for turn in 0..most_squarings {
+            let turn = f32::from(turn);
             for i in 0..LONG {
-                power[i] = if self.squarings.0[i] > turn as f32 { power[i] * power[i] } else { power[i] };
+                power[i] = if self.squarings.0[i] > turn { power[i] * power[i] } else { power[i] };
             }
         }
         for i in 0..LONG {
@@ -430,6 +451,33 @@ impl Strip {
                 // A tint left over from another strip may be anything.
                 let more = if power[i] > 0.0 { tint.0[i] * power[i] } else { 0.0 };
                 out.0[i] += more;
+            }
+        }
+    }
+
+    /// What is outside, where it is seen.
+    #[inline(always)]
+    fn look_outside(&mut self, shader: &Shader<'_>, y: f32, runs: &[(Run, Shine)]) {
+        let row = shader.ray(0.0, y);
+        let [_, per_x, _] = shader.rays();
+        let (mut beyond, mut share, mut up) = ([[0.0; LONG]; 3], [0.0; LONG], [false; LONG]);
+        for i in 0..LONG {
+            let x = self.x.0[i];
+            let (rx, ry, rz) = (row.x + per_x.x * x, row.y + per_x.y * x, row.z + per_x.z * x);
+            let z = rz * (1.0 / (rx * rx + ry * ry + rz * rz).sqrt());
+            up[i] = z >= 0.0;
+            let rise = if up[i] { z * 2.2 } else { z * -9.0 };
+            share[i] = if rise < 1.0 { rise } else { 1.0 };
+        }
+        for (c, beyond) in beyond.iter_mut().enumerate() {
+            for i in 0..LONG {
+                let end = if up[i] { ZENITH[c] } else { GROUND[c] };
+                beyond[i] = HORIZON[c] * (1.0 - share[i]) + end * share[i];
+            }
+        }
+        for (run, _) in runs.iter().filter(|(_, shine)| matches!(shine, Shine::Sky)) {
+            for (light, beyond) in self.light.iter_mut().zip(&beyond) {
+                light.0[run.from..run.to].copy_from_slice(&beyond[run.from..run.to]);
             }
         }
     }
@@ -462,21 +510,11 @@ impl Strip {
     }
 }
 
-/// Pixels whose colour does not come from the lamps.
+/// Says of pixels whose id they show.
 #[inline(always)]
-fn shine_alone(shader: &Shader<'_>, (first, y): (usize, usize), run: Run, shine: Shine, out: &mut [[u8; 4]]) {
-    let out = &mut out[run.from..run.to];
-    match shine {
-        Shine::Lit => {}
-        Shine::Own(color) => out.fill(color),
-        Shine::Sky => {
-            let table = color::srgb_table();
-            for (i, out) in out.iter_mut().enumerate() {
-                let ray = shader.ray((first + run.from + i) as f32, y as f32);
-                let [r, g, b] = to_srgb(table, outside(ray.normalize()));
-                *out = [r, g, b, 255];
-            }
-        }
+fn write_id(out: &mut Out<'_>, run: Run, id: u32) {
+    if let Some(ids) = &mut out.ids {
+        ids[run.from..run.to].fill(id);
     }
 }
 
