@@ -4,7 +4,7 @@
 //! Rows are shared out to threads in bands, each drawn as if it were a picture of its own; many pictures at once are
 //! shared out whole. A pixel depends on nothing but the scene and the camera.
 
-mod avx2;
+pub(crate) mod avx2;
 mod band;
 mod draw;
 mod facet;
@@ -140,7 +140,7 @@ impl CpuRenderer {
         });
 
         if let Some(color) = planes.color.as_deref_mut().filter(|_| camera.for_people) {
-            smooth::run(threads, color, &mut canvas.smoothing, &canvas.seen, width);
+            smooth::run(self.wide, threads, color, &mut canvas.smoothing, &canvas.seen, width);
             if outlined {
                 let ids = planes.ids.as_deref().unwrap_or(&canvas.own_ids);
                 outline::run(color, &mut canvas.mask, ids, &scene.highlights, width);

@@ -324,7 +324,8 @@ impl Picture {
             }
         }
         let per_m = SIDE as f32 / pattern.period_m();
-        let mut picture = Self { texels: Vec::new(), pairs: Vec::new(), starts: [0; LEVELS], per_m, squared: per_m * per_m * 1.69 };
+        let mut picture =
+            Self { texels: Vec::new(), pairs: Vec::new(), starts: [0; LEVELS], per_m, squared: per_m * per_m * 1.69 };
         for level in 1..LEVELS {
             let (start, side) = (picture.starts[level - 1], SIDE >> (level - 1));
             picture.starts[level] = all.len();
@@ -373,9 +374,9 @@ impl Picture {
 
 /// Each texel of a square picture with the next in its row.
 fn pairs(texels: &[u32], side: usize) -> impl Iterator<Item = u64> {
-    texels.chunks(side).flat_map(move |row| {
-        (0..side).map(move |x| u64::from(row[x]) | u64::from(row[(x + 1) % side]) << 32)
-    })
+    texels
+        .chunks(side)
+        .flat_map(move |row| (0..side).map(move |x| u64::from(row[x]) | u64::from(row[(x + 1) % side]) << 32))
 }
 
 /// The whole number at or below a coordinate, and what is left. Once a float has this large number added, its last

@@ -1,5 +1,6 @@
 //! What is done to pictures for people once they are drawn.
 
+use crate::cpu::avx2::Avx2;
 use crate::cpu::{outline, smooth};
 use crate::scene::Scene;
 
@@ -7,6 +8,7 @@ use crate::scene::Scene;
 #[derive(Debug)]
 pub struct ForPeople {
     threads: usize,
+    wide: Option<Avx2>,
     smoothing: smooth::Buffers,
     mask: Vec<u8>,
 }
@@ -15,7 +17,8 @@ impl ForPeople {
     /// Works with so many threads, at least one.
     #[must_use]
     pub fn new(threads: usize) -> Self {
-        Self { threads: threads.clamp(1, 64), smoothing: smooth::Buffers::default(), mask: Vec::new() }
+        let (threads, wide) = (threads.clamp(1, 64), Avx2::detect());
+        Self { threads, wide, smoothing: smooth::Buffers::default(), mask: Vec::new() }
     }
 
     /// Finishes a picture of which each pixel's `facet` tells its triangle from others nearby.
@@ -28,7 +31,7 @@ impl ForPeople {
             return;
         }
         assert!(facets.len().is_multiple_of(width), "no whole number of rows");
-        smooth::run(self.threads, color, &mut self.smoothing, facets, width);
+        smooth::run(self.wide, self.threads, color, &mut self.smoothing, facets, width);
         if !scene.highlights.is_empty() {
             outline::run(color, &mut self.mask, ids, &scene.highlights, width);
         }

@@ -22,11 +22,11 @@ impl Vectors for Plain {
 
 /// Proof that the processor has AVX2, and what is compiled for it may run.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Avx2(());
+pub(crate) struct Avx2(());
 
 impl Avx2 {
     /// The proof, if the processor has AVX2.
-    pub(super) fn detect() -> Option<Self> {
+    pub(crate) fn detect() -> Option<Self> {
         #[cfg(target_arch = "x86_64")]
         return std::arch::is_x86_feature_detected!("avx2").then_some(Self(()));
         #[cfg(not(target_arch = "x86_64"))]
@@ -81,7 +81,8 @@ mod x86 {
     #[target_feature(enable = "avx2")]
     fn rows(upper: &[u16; 4], lower: &[u16; 4]) -> __m128i {
         // SAFETY: rows are eight bytes long, which is what is read of each.
-        let [upper, lower] = unsafe { [_mm_loadl_epi64(ptr::from_ref(upper).cast()), _mm_loadl_epi64(ptr::from_ref(lower).cast())] };
+        let [upper, lower] =
+            unsafe { [_mm_loadl_epi64(ptr::from_ref(upper).cast()), _mm_loadl_epi64(ptr::from_ref(lower).cast())] };
         _mm_unpacklo_epi64(upper, lower)
     }
 

@@ -95,13 +95,7 @@ fn fill_avx2(wide: Avx2, band: &mut Band<'_>, width: usize, shader: &Shader<'_>,
 }
 
 #[inline(always)]
-fn fill_rows(
-    vectors: impl Vectors,
-    band: &mut Band<'_>,
-    width: usize,
-    shader: &Shader<'_>,
-    facets: &mut Facets,
-) {
+fn fill_rows(vectors: impl Vectors, band: &mut Band<'_>, width: usize, shader: &Shader<'_>, facets: &mut Facets) {
     if let Some(depth) = &mut band.depth_m {
         for (depth, nearness) in depth.iter_mut().zip(&*band.nearness) {
             *depth = 1.0 / nearness;

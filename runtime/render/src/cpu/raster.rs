@@ -3,7 +3,7 @@
 use super::setup::{SUB, Triangle};
 
 /// Wider triangles are filled span by span, narrower ones tested pixel by pixel.
-const NARROW_PX: i32 = 12;
+const NARROW_PX: i32 = 24;
 /// Pixels tested at a time.
 const LANES: usize = 8;
 /// Less than the distance of any crossing that is not a whole pixel from the nearest whole pixel.

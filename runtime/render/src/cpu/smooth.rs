@@ -2,26 +2,59 @@
 //! followed both ways to its ends; where a pixel lies along it says how much of the other side covers the pixel (after
 //! Lottes, "FXAA", 2009). Patterns within a triangle stay as sharp as they are.
 
+use super::avx2::Avx2;
 use super::{band_rows, share_out};
 
 /// Less contrast than this is no edge, in steps of brightness.
-const LEAST_CONTRAST: i32 = 10;
+const LEAST_CONTRAST: u8 = 10;
 /// Pixels an edge is followed each way.
-const REACH: isize = 12;
+const REACH: usize = 12;
+/// How far the brightness is known beyond the picture: there it is as at the nearest place inside.
+const MARGIN: usize = REACH + 1;
 
-/// A picture's brightness, a byte a pixel.
-struct Brightness<'a> {
-    values: &'a [u8],
-    width: isize,
-    height: isize,
+/// A picture's brightness, a byte a pixel, with a margin all around.
+#[derive(Debug, Default)]
+struct Brightness {
+    values: Vec<u8>,
+    stride: usize,
 }
 
-impl Brightness<'_> {
-    /// At a place, or at the nearest place inside the picture.
+impl Brightness {
+    /// Takes over that of a picture.
+    fn set(&mut self, pixels: &[[u8; 4]], width: usize) {
+        let height = pixels.len() / width;
+        self.stride = width + 2 * MARGIN;
+        self.values.resize(self.stride * (height + 2 * MARGIN), 0);
+        let luma = |[r, g, b, _]: [u8; 4]| ((u32::from(r) * 77 + u32::from(g) * 150 + u32::from(b) * 29) >> 8) as u8;
+        let rows = self.values.chunks_exact_mut(self.stride).enumerate();
+        for (row, values) in rows {
+            let y = row.saturating_sub(MARGIN).min(height - 1);
+            let pixels = &pixels[y * width..(y + 1) * width];
+            let (before, rest) = values.split_at_mut(MARGIN);
+            let (own, after) = rest.split_at_mut(width);
+            for (value, pixel) in own.iter_mut().zip(pixels) {
+                *value = luma(*pixel);
+            }
+            before.fill(own[0]);
+            after.fill(own[width - 1]);
+        }
+    }
+
+    /// Where a pixel's value stands.
     #[inline]
-    fn at(&self, x: isize, y: isize) -> i32 {
-        let (x, y) = (x.clamp(0, self.width - 1), y.clamp(0, self.height - 1));
-        i32::from(self.values[(y * self.width + x) as usize])
+    fn place(&self, x: usize, y: usize) -> usize {
+        (y + MARGIN) * self.stride + x + MARGIN
+    }
+
+    /// So many values from a place on.
+    #[inline(always)]
+    fn row(&self, place: usize, length: usize) -> &[u8] {
+        &self.values[place..place + length]
+    }
+
+    #[inline]
+    fn at(&self, place: usize) -> i32 {
+        i32::from(self.values[place])
     }
 }
 
@@ -29,94 +62,150 @@ impl Brightness<'_> {
 #[derive(Debug, Default)]
 pub(crate) struct Buffers {
     original: Vec<[u8; 4]>,
-    brightness: Vec<u8>,
+    brightness: Brightness,
 }
 
-/// Blends pixels at edges with the neighbour across.
-pub(crate) fn run(threads: usize, color: &mut [u8], buffers: &mut Buffers, seen: &[u32], width: usize) {
+/// Blends pixels at edges with the neighbour across. The bits are the same with and without AVX2.
+pub(crate) fn run(
+    wide: Option<Avx2>,
+    threads: usize,
+    color: &mut [u8],
+    buffers: &mut Buffers,
+    seen: &[u32],
+    width: usize,
+) {
     let pixels = color.as_chunks_mut::<4>().0;
     buffers.original.clear();
     buffers.original.extend_from_slice(pixels);
-    buffers.brightness.clear();
-    let luma = |[r, g, b, _]: &[u8; 4]| ((u32::from(*r) * 77 + u32::from(*g) * 150 + u32::from(*b) * 29) >> 8) as u8;
-    buffers.brightness.extend(pixels.iter().map(luma));
-    let (original, height) = (&buffers.original, seen.len() / width);
-    let brightness = Brightness { values: &buffers.brightness, width: width as isize, height: height as isize };
+    buffers.brightness.set(pixels, width);
+    let Buffers { original, brightness } = &*buffers;
+    let height = seen.len() / width;
     let band_rows = band_rows(threads, height);
     let bands: Vec<_> = pixels.chunks_mut(band_rows * width).enumerate().collect();
     share_out(threads, bands, |(band, out)| {
+        let mut edges = vec![0; width.next_multiple_of(8)];
         for (row, out) in out.chunks_mut(width).enumerate() {
             let y = band * band_rows + row;
-            let own = &seen[y * width..(y + 1) * width];
-            let above = &seen[y.saturating_sub(1) * width..][..width];
-            let below = &seen[(y + 1).min(height - 1) * width..][..width];
-            for x in 0..width {
-                let beside = (own[x.saturating_sub(1)], own[(x + 1).min(width - 1)]);
-                let same = beside.0 == own[x] && beside.1 == own[x] && above[x] == own[x] && below[x] == own[x];
-                if same {
-                    continue;
-                }
-                if let Some((dx, dy, share)) = edge(&brightness, x as isize, y as isize) {
-                    let other = ((y as isize + dy) as usize) * width + (x as isize + dx) as usize;
-                    out[x] = mix(original[y * width + x], original[other], share);
+            find_edges(wide, brightness, seen, y, &mut edges[..width]);
+            // Most pixels lie at no edge: passed over in eights.
+            for (eight, marks) in edges.as_chunks::<8>().0.iter().enumerate().filter(|(_, marks)| **marks != [0; 8]) {
+                for x in (0..8).filter(|i| marks[*i] != 0).map(|i| eight * 8 + i) {
+                    if let Some((across, share)) = edge(brightness, (x, y), (width, height)) {
+                        let own = y * width + x;
+                        let other = own.wrapping_add_signed(across.y * width as isize + across.x);
+                        out[x] = mix(original[own], original[other], share);
+                    }
                 }
             }
         }
     });
 }
 
+/// Marks the pixels of a row that see another triangle than a neighbour, and differ from one in brightness.
+fn find_edges(wide: Option<Avx2>, brightness: &Brightness, seen: &[u32], y: usize, edges: &mut [u8]) {
+    #[cfg(target_arch = "x86_64")]
+    if wide.is_some() {
+        // SAFETY: the proof says that the processor has AVX2.
+        unsafe { find_edges_avx2(brightness, seen, y, edges) };
+        return;
+    }
+    let _ = wide;
+    find_edges_in(brightness, seen, y, edges);
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+fn find_edges_avx2(brightness: &Brightness, seen: &[u32], y: usize, edges: &mut [u8]) {
+    find_edges_in(brightness, seen, y, edges);
+}
+
+#[inline(always)]
+fn find_edges_in(brightness: &Brightness, seen: &[u32], y: usize, edges: &mut [u8]) {
+    let width = edges.len();
+    let height = seen.len() / width;
+    let row = |y: usize| &seen[y * width..][..width];
+    let (own, above, below) = (row(y), row(y.saturating_sub(1)), row((y + 1).min(height - 1)));
+    for x in 0..width {
+        edges[x] = u8::from((own[x] ^ above[x]) | (own[x] ^ below[x]) != 0);
+    }
+    let (west, east) = (&own[..width - 1], &own[1..]);
+    for (edge, (west, east)) in edges[1..].iter_mut().zip(west.iter().zip(east)) {
+        *edge |= u8::from(west != east);
+    }
+    for (edge, (west, east)) in edges.iter_mut().zip(west.iter().zip(east)) {
+        *edge |= u8::from(west != east);
+    }
+    let place = brightness.place(0, y);
+    let [own, north, south, west, east] =
+        [place, place - brightness.stride, place + brightness.stride, place - 1, place + 1]
+            .map(|place| brightness.row(place, width));
+    for x in 0..width {
+        let most = own[x].max(north[x]).max(south[x]).max(west[x]).max(east[x]);
+        let least = own[x].min(north[x]).min(south[x]).min(west[x]).min(east[x]);
+        edges[x] &= u8::from(most - least >= LEAST_CONTRAST.max(most / 10));
+    }
+}
+
 fn mix(a: [u8; 4], b: [u8; 4], share: f32) -> [u8; 4] {
     core::array::from_fn(|c| (f32::from(a[c]) + (f32::from(b[c]) - f32::from(a[c])) * share + 0.5) as u8)
 }
 
+/// A step from a pixel to one beside it.
+#[derive(Clone, Copy)]
+struct Step {
+    x: isize,
+    y: isize,
+}
+
 /// The neighbour across the edge at a pixel, and how much of the pixel it covers.
-fn edge(brightness: &Brightness<'_>, x: isize, y: isize) -> Option<(isize, isize, f32)> {
-    let at = |dx: isize, dy: isize| brightness.at(x + dx, y + dy);
-    let (own, north, south, west, east) = (at(0, 0), at(0, -1), at(0, 1), at(-1, 0), at(1, 0));
-    let most = own.max(north).max(south).max(west).max(east);
-    let least = own.min(north).min(south).min(west).min(east);
-    let contrast = most - least;
-    if contrast < LEAST_CONTRAST.max(most / 10) {
-        return None;
-    }
-    let (nw, ne, sw, se) = (at(-1, -1), at(1, -1), at(-1, 1), at(1, 1));
+fn edge(brightness: &Brightness, (x, y): (usize, usize), size: (usize, usize)) -> Option<(Step, f32)> {
+    let (place, stride) = (brightness.place(x, y), brightness.stride);
+    let (up, down) = (place - stride, place + stride);
+    let at = |place: usize| brightness.at(place);
+    let (own, north, south, west, east) = (at(place), at(up), at(down), at(place - 1), at(place + 1));
+    let (nw, ne, sw, se) = (at(up - 1), at(up + 1), at(down - 1), at(down + 1));
     let curve = |a: i32, b: i32, c: i32| (a + c - 2 * b).abs();
     let level = curve(north, own, south) * 2 + curve(nw, west, sw) + curve(ne, east, se);
     let upright = curve(west, own, east) * 2 + curve(nw, north, ne) + curve(sw, south, se);
     let lies_flat = level >= upright;
     let (before, after) = if lies_flat { (north, south) } else { (west, east) };
     let side = if (before - own).abs() >= (after - own).abs() { -1 } else { 1 };
-    let across = if lies_flat { (0, side) } else { (side, 0) };
-    let (beyond_x, beyond_y) = (x + across.0, y + across.1);
-    if beyond_x < 0 || beyond_y < 0 || beyond_x >= brightness.width || beyond_y >= brightness.height {
+    let across = if lies_flat { Step { x: 0, y: side } } else { Step { x: side, y: 0 } };
+    if x.checked_add_signed(across.x)? >= size.0 || y.checked_add_signed(across.y)? >= size.1 {
         return None;
     }
+    let (along, over) = if lies_flat { (1, side * stride as isize) } else { (stride, side) };
     let other = if side < 0 { before } else { after };
-    let share = along(brightness, (x, y), across, own + other, (other - own).abs().max(4));
+    let share = follow(brightness, place, along, over, own + other, (other - own).abs().max(4));
     // A pixel that stands alone against all around it gives some of itself away too.
+    let most = own.max(north).max(south).max(west).max(east);
+    let least = own.min(north).min(south).min(west).min(east);
     let around = (2 * (north + south + west + east) + nw + ne + sw + se) / 12;
-    let alone = ((around - own).abs() as f32 / contrast as f32).min(1.0);
+    let alone = ((around - own).abs() as f32 / (most - least) as f32).min(1.0);
     let share = share.max(alone * alone * 0.45);
-    (share > 0.0).then_some((across.0, across.1, share))
+    (share > 0.0).then_some((across, share))
 }
 
-/// Follows the edge both ways; `pair` is the sum of the two sides' brightness here.
-fn along(brightness: &Brightness<'_>, (x, y): (isize, isize), across: (isize, isize), pair: i32, jump: i32) -> f32 {
-    let (step_x, step_y) = (across.1.abs(), across.0.abs());
-    let end = |direction: isize| {
-        for step in 1..=REACH {
-            let (px, py) = (x + step_x * step * direction, y + step_y * step * direction);
-            let here = brightness.at(px, py) + brightness.at(px + across.0, py + across.1) - pair;
+/// Follows an edge both ways from a place, `along` it, with the other side `over` there; `pair` is the sum of the two
+/// sides' brightness at the place. Gives how much of the pixel the other side covers.
+fn follow(brightness: &Brightness, place: usize, along: usize, over: isize, pair: i32, jump: i32) -> f32 {
+    let beside = place.wrapping_add_signed(over);
+    let end = |back: bool| {
+        let mut step = 0;
+        for length in 1..=REACH {
+            step += along;
+            let (own, other) = if back { (place - step, beside - step) } else { (place + step, beside + step) };
+            let here = brightness.at(own) + brightness.at(other) - pair;
             if here.abs() * 2 >= jump {
-                return (step, here);
+                return (length, here);
             }
         }
         (REACH, 0)
     };
-    let ((back, at_back), (ahead, at_ahead)) = (end(-1), end(1));
+    let ((back, at_back), (ahead, at_ahead)) = (end(true), end(false));
     let (near, at_near) = if back < ahead { (back, at_back) } else { (ahead, at_ahead) };
     // The edge bends towards this pixel only if, at its nearer end, the pair changes away from this pixel's side.
-    let own_is_darker = 2 * brightness.at(x, y) < pair;
+    let own_is_darker = 2 * brightness.at(place) < pair;
     if at_near == 0 || (at_near < 0) == own_is_darker {
         return 0.0;
     }
