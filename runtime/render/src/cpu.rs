@@ -6,6 +6,7 @@
 
 pub(crate) mod avx2;
 mod band;
+pub(crate) mod crew;
 mod draw;
 mod facet;
 mod numbers;
@@ -31,6 +32,7 @@ pub use shade::{ABOVE, BELOW, DIRT, FROST, KEY, LIFT_M, SLIME};
 
 use avx2::Avx2;
 use band::Scratch;
+use crew::Crew;
 use numbers::Numbers;
 use shade::Shader;
 use veil::Veils;
@@ -43,7 +45,7 @@ const NOTHING: u32 = u32::MAX;
 /// Draws on the CPU, with as many threads as it was given. Keeps its buffers from picture to picture.
 #[derive(Debug)]
 pub struct CpuRenderer {
-    threads: usize,
+    crew: Crew,
     /// Nothing makes it do without the widest vectors; the bits are the same.
     wide: Option<Avx2>,
     /// False in tests alone: every room is drawn, whether it can be seen or not.
@@ -80,9 +82,8 @@ impl CpuRenderer {
     /// A renderer that uses this many threads, at least one.
     #[must_use]
     pub fn new(threads: usize) -> Self {
-        let threads = threads.clamp(1, 64);
         Self {
-            threads,
+            crew: Crew::new(threads),
             wide: Avx2::detect(),
             through_doors: true,
             canvases: Pool::default(),
@@ -130,7 +131,7 @@ impl CpuRenderer {
         let width = camera.width as usize;
         let rows = band_rows(threads, camera.height as usize);
         let bands = band::cut(canvas, planes, rows, width);
-        share_out(threads, bands, |mut band| {
+        self.crew.share_out(threads, bands, |mut band| {
             with_kept(&self.scratches, |scratch| {
                 sight::draw(self.wide, &draws, &numbers, &view, &mut band.rows(width), &mut scratch.corners);
                 scratch.facets.clear(numbers.total());
@@ -140,7 +141,7 @@ impl CpuRenderer {
         });
 
         if let Some(color) = planes.color.as_deref_mut().filter(|_| camera.for_people) {
-            smooth::run(self.wide, threads, color, &mut canvas.smoothing, &canvas.seen, width);
+            smooth::run(self.wide, (&self.crew, threads), color, &mut canvas.smoothing, &canvas.seen, width);
             if outlined {
                 let ids = planes.ids.as_deref().unwrap_or(&canvas.own_ids);
                 outline::run(color, &mut canvas.mask, ids, &scene.highlights, width);
@@ -151,7 +152,7 @@ impl CpuRenderer {
 
 impl Renderer for CpuRenderer {
     fn render(&mut self, scene: &Scene, camera: &Camera, planes: &mut Planes<'_>) {
-        with_kept(&self.canvases, |canvas| self.draw(self.threads, canvas, scene, camera, planes));
+        with_kept(&self.canvases, |canvas| self.draw(self.crew.threads(), canvas, scene, camera, planes));
     }
 
     fn render_all(&mut self, scene: &Scene, shots: &mut [Shot<'_>]) {
@@ -159,35 +160,12 @@ impl Renderer for CpuRenderer {
             drop(scene.clean_shadows());
         }
         // Pictures are shared out whole; threads that are left over help with each.
-        let each = self.threads / shots.len().clamp(1, self.threads);
-        share_out(self.threads / each, shots.iter_mut().collect(), |shot| {
+        let threads = self.crew.threads();
+        let each = threads / shots.len().clamp(1, threads);
+        self.crew.share_out(threads / each, shots.iter_mut().collect(), |shot| {
             with_kept(&self.canvases, |canvas| self.draw(each, canvas, scene, &shot.camera, &mut shot.planes));
         });
     }
-}
-
-/// Runs every job once, on as many threads.
-fn share_out<J: Send>(threads: usize, jobs: Vec<J>, work: impl Fn(J) + Sync) {
-    if threads <= 1 || jobs.len() <= 1 {
-        jobs.into_iter().for_each(work);
-        return;
-    }
-    let queue = Mutex::new(jobs.into_iter());
-    let drain = || {
-        loop {
-            let next = queue.lock().unwrap_or_else(PoisonError::into_inner).next();
-            match next {
-                Some(job) => work(job),
-                None => break,
-            }
-        }
-    };
-    std::thread::scope(|scope| {
-        for _ in 1..threads {
-            scope.spawn(drain);
-        }
-        drain();
-    });
 }
 
 /// Rows of a band.

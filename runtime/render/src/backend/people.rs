@@ -1,13 +1,14 @@
 //! What is done to pictures for people once they are drawn.
 
 use crate::cpu::avx2::Avx2;
+use crate::cpu::crew::Crew;
 use crate::cpu::{outline, smooth};
 use crate::scene::Scene;
 
 /// Smooths edges and outlines highlights, as [`crate::CpuRenderer`] does. Keeps its buffers from picture to picture.
 #[derive(Debug)]
 pub struct ForPeople {
-    threads: usize,
+    crew: Crew,
     wide: Option<Avx2>,
     smoothing: smooth::Buffers,
     mask: Vec<u8>,
@@ -17,8 +18,8 @@ impl ForPeople {
     /// Works with so many threads, at least one.
     #[must_use]
     pub fn new(threads: usize) -> Self {
-        let (threads, wide) = (threads.clamp(1, 64), Avx2::detect());
-        Self { threads, wide, smoothing: smooth::Buffers::default(), mask: Vec::new() }
+        let (crew, wide) = (Crew::new(threads), Avx2::detect());
+        Self { crew, wide, smoothing: smooth::Buffers::default(), mask: Vec::new() }
     }
 
     /// Finishes a picture of which each pixel's `facet` tells its triangle from others nearby.
@@ -31,7 +32,7 @@ impl ForPeople {
             return;
         }
         assert!(facets.len().is_multiple_of(width), "no whole number of rows");
-        smooth::run(self.wide, self.threads, color, &mut self.smoothing, facets, width);
+        smooth::run(self.wide, (&self.crew, self.crew.threads()), color, &mut self.smoothing, facets, width);
         if !scene.highlights.is_empty() {
             outline::run(color, &mut self.mask, ids, &scene.highlights, width);
         }

@@ -3,7 +3,8 @@
 //! Lottes, "FXAA", 2009). Patterns within a triangle stay as sharp as they are.
 
 use super::avx2::Avx2;
-use super::{band_rows, share_out};
+use super::band_rows;
+use super::crew::Crew;
 
 /// Less contrast than this is no edge, in steps of brightness.
 const LEAST_CONTRAST: u8 = 10;
@@ -68,7 +69,7 @@ pub(crate) struct Buffers {
 /// Blends pixels at edges with the neighbour across. The bits are the same with and without AVX2.
 pub(crate) fn run(
     wide: Option<Avx2>,
-    threads: usize,
+    (crew, threads): (&Crew, usize),
     color: &mut [u8],
     buffers: &mut Buffers,
     seen: &[u32],
@@ -82,7 +83,7 @@ pub(crate) fn run(
     let height = seen.len() / width;
     let band_rows = band_rows(threads, height);
     let bands: Vec<_> = pixels.chunks_mut(band_rows * width).enumerate().collect();
-    share_out(threads, bands, |(band, out)| {
+    crew.share_out(threads, bands, |(band, out)| {
         let mut edges = vec![0; width.next_multiple_of(8)];
         for (row, out) in out.chunks_mut(width).enumerate() {
             let y = band * band_rows + row;
