@@ -1,12 +1,16 @@
 //! What is written out for the vectors of a processor, where the compiler does not find how. The bits are the same with
 //! all of them.
 
+use super::raster::{Eight, LANES};
 use crate::shadow::Around;
 
 /// What differs between processors.
 pub(super) trait Vectors: Copy {
     /// See [`Around::light`].
     fn light(self, around: &Around<'_>, limit: i32, room: u16) -> f32;
+
+    /// See [`Eight::meet`].
+    fn meet(self, eight: &Eight, seen: &mut [u32; LANES], nearness: &mut [f32; LANES]);
 }
 
 /// No more than what every processor has.
@@ -17,6 +21,11 @@ impl Vectors for Plain {
     #[inline(always)]
     fn light(self, around: &Around<'_>, limit: i32, room: u16) -> f32 {
         around.light(limit, room)
+    }
+
+    #[inline(always)]
+    fn meet(self, eight: &Eight, seen: &mut [u32; LANES], nearness: &mut [f32; LANES]) {
+        eight.meet(seen, nearness);
     }
 }
 
@@ -41,6 +50,12 @@ impl Vectors for Avx2 {
         // SAFETY: the proof says that the processor has AVX2.
         unsafe { x86::light(around, limit, room) }
     }
+
+    #[inline(always)]
+    fn meet(self, eight: &Eight, seen: &mut [u32; LANES], nearness: &mut [f32; LANES]) {
+        // SAFETY: the proof says that the processor has AVX2.
+        unsafe { x86::meet(eight, seen, nearness) }
+    }
 }
 
 #[cfg(target_arch = "x86_64")]
@@ -48,6 +63,7 @@ mod x86 {
     use core::arch::x86_64::*;
     use core::ptr;
 
+    use crate::cpu::raster::{Eight, LANES};
     use crate::shadow::{Around, FADE};
 
     #[inline]
@@ -77,6 +93,33 @@ mod x86 {
         1.0 - _mm_cvtss_f32(_mm_add_ss(pairs, _mm_shuffle_ps::<1>(pairs, pairs)))
     }
 
+    #[inline]
+    #[target_feature(enable = "avx2")]
+    pub(super) fn meet(eight: &Eight, seen: &mut [u32; LANES], nearness: &mut [f32; LANES]) {
+        let counted = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
+        let (near, per_x) = eight.near;
+        let grown = _mm256_mul_ps(_mm256_set1_ps(per_x), _mm256_cvtepi32_ps(counted));
+        let value = _mm256_add_ps(_mm256_set1_ps(near), grown);
+        let [least, most] = eight.bounds;
+        let value = _mm256_min_ps(_mm256_max_ps(value, _mm256_set1_ps(least)), _mm256_set1_ps(most));
+        let mut outside = _mm256_sub_epi32(_mm256_set1_epi32(eight.last), counted);
+        for (first, per_x) in eight.sides {
+            let grown = _mm256_mullo_epi32(_mm256_set1_epi32(per_x), counted);
+            outside = _mm256_or_si256(outside, _mm256_add_epi32(_mm256_set1_epi32(first), grown));
+        }
+        // SAFETY: both are eight values long, which is what is read and written.
+        unsafe {
+            let before = _mm256_loadu_ps(nearness.as_ptr());
+            let nearer = _mm256_cmp_ps::<_CMP_GT_OQ>(value, before);
+            let wins = _mm256_andnot_ps(_mm256_castsi256_ps(outside), nearer);
+            _mm256_storeu_ps(nearness.as_mut_ptr(), _mm256_blendv_ps(before, value, wins));
+            let seen: *mut f32 = seen.as_mut_ptr().cast();
+            let number = _mm256_castsi256_ps(_mm256_set1_epi32(eight.number as i32));
+            _mm256_storeu_ps(seen, _mm256_blendv_ps(_mm256_loadu_ps(seen), number, wins));
+        }
+    }
+
+    /// Two rows of texels.
     #[inline]
     #[target_feature(enable = "avx2")]
     fn rows(upper: &[u16; 4], lower: &[u16; 4]) -> __m128i {

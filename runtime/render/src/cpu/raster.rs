@@ -1,11 +1,12 @@
 //! Which triangle each pixel sees: exact sides in whole numbers, the nearest triangle wins.
 
+use super::avx2::Vectors;
 use super::setup::{SUB, Triangle};
 
 /// Wider triangles are filled span by span, narrower ones tested pixel by pixel.
 const NARROW_PX: i32 = 24;
 /// Pixels tested at a time.
-const LANES: usize = 8;
+pub(super) const LANES: usize = 8;
 /// Less than the distance of any crossing that is not a whole pixel from the nearest whole pixel.
 const CROSSING_SLACK: f64 = 1.0 / (1u64 << 29) as f64;
 
@@ -61,7 +62,7 @@ pub(super) struct Rows<'a> {
 impl Rows<'_> {
     /// Draws a triangle that has this number.
     #[inline(always)]
-    pub(super) fn draw(&mut self, triangle: &Triangle, number: u32) {
+    pub(super) fn draw(&mut self, vectors: impl Vectors, triangle: &Triangle, number: u32) {
         let (first, last) = (self.first as i32, (self.first + self.count) as i32 - 1);
         let (top, bottom) = (i32::from(triangle.rect[1]).max(first), i32::from(triangle.rect[3]).min(last));
         if top > bottom {
@@ -69,41 +70,38 @@ impl Rows<'_> {
         }
         let sides = [0, 1, 2].map(|i| side(triangle.at[i], triangle.at[(i + 1) % 3]));
         if is_narrow(triangle) {
-            self.narrow(triangle, sides, number, (top, bottom));
+            self.narrow(vectors, triangle, sides, number, (top, bottom));
         } else {
-            self.wide(triangle, sides, number, (top, bottom));
+            self.wide(vectors, triangle, sides, number, (top, bottom));
         }
     }
 
     /// Tests eight pixels at a time against all three sides.
     #[inline(always)]
-    fn narrow(&mut self, triangle: &Triangle, sides: [Side; 3], number: u32, (top, bottom): (i32, i32)) {
+    fn narrow(
+        &mut self,
+        vectors: impl Vectors,
+        triangle: &Triangle,
+        sides: [Side; 3],
+        number: u32,
+        (top, bottom): (i32, i32),
+    ) {
         let (left, right) = (i32::from(triangle.rect[0]), i32::from(triangle.rect[2]));
         // Near a narrow triangle's box every value fits 32 bits once it is taken relative to a corner of the box.
         let mut start = sides.map(|side| side.near(left, top));
         let [at_origin, per_x, per_y] = triangle.nearness;
-        let (mut steps, mut near_steps) = ([[0; LANES]; 3], [0.0; LANES]);
-        for i in 0..LANES {
-            for (steps, side) in steps.iter_mut().zip(&sides) {
-                steps[i] = side.per_x * i as i32;
-            }
-            near_steps[i] = per_x * i as f32;
-        }
         for y in top..=bottom {
             let row = (y as usize - self.first) * self.width;
             let near = at_origin + per_x * left as f32 + per_y * y as f32;
             for done in (0..=right - left).step_by(LANES) {
-                let [a, b, c] = [0, 1, 2].map(|s| start[s] + sides[s].per_x * done);
-                let near = near + per_x * done as f32;
-                let count = right - left - done;
-                let (mut value, mut inside) = ([0.0; LANES], [false; LANES]);
-                for i in 0..LANES {
-                    value[i] = near + near_steps[i];
-                    // Negative outside of any side, and beyond the right end.
-                    let sides = (a + steps[0][i]) | (b + steps[1][i]) | (c + steps[2][i]) | (count - i as i32);
-                    inside[i] = sides >= 0;
-                }
-                self.meet(row + (left + done) as usize, &value, &inside, triangle.bounds, number);
+                let eight = Eight {
+                    sides: [0, 1, 2].map(|s| (start[s] + sides[s].per_x * done, sides[s].per_x)),
+                    last: right - left - done,
+                    near: (near + per_x * done as f32, per_x),
+                    bounds: triangle.bounds,
+                    number,
+                };
+                self.meet(vectors, row + (left + done) as usize, &eight);
             }
             for (value, side) in start.iter_mut().zip(sides) {
                 *value += side.per_y;
@@ -111,33 +109,29 @@ impl Rows<'_> {
         }
     }
 
-    /// Lets eight pixels that lie inside a triangle see it, where nothing nearer is seen.
     #[inline(always)]
-    fn meet(&mut self, at: usize, near: &[f32; LANES], inside: &[bool; LANES], [least, most]: [f32; 2], number: u32) {
-        let seen = self.seen[at..].first_chunk_mut::<LANES>();
-        let nearness = self.nearness[at..].first_chunk_mut::<LANES>();
+    fn meet(&mut self, vectors: impl Vectors, at: usize, eight: &Eight) {
+        let seen = self.seen[at..].first_chunk_mut();
+        let nearness = self.nearness[at..].first_chunk_mut();
         if let (Some(seen), Some(nearness)) = (seen, nearness) {
-            for i in 0..LANES {
-                let value = within(near[i], least, most);
-                let wins = inside[i] & (value > nearness[i]);
-                nearness[i] = if wins { value } else { nearness[i] };
-                seen[i] = if wins { number } else { seen[i] };
-            }
-            return;
-        }
-        // At the end of the last row there may be fewer.
-        for (i, (seen, nearness)) in self.seen[at..].iter_mut().zip(&mut self.nearness[at..]).enumerate() {
-            let value = within(near[i], least, most);
-            if inside[i] && value > *nearness {
-                (*seen, *nearness) = (number, value);
-            }
+            vectors.meet(eight, seen, nearness);
+        } else {
+            // At the end of the last row there may be fewer.
+            eight.meet(&mut self.seen[at..], &mut self.nearness[at..]);
         }
     }
 
     /// Works out for each row which of its pixels lie inside.
     #[inline(always)]
-    fn wide(&mut self, triangle: &Triangle, sides: [Side; 3], number: u32, (top, bottom): (i32, i32)) {
-        // Of sides that lie along the rows, the inverse is infinite, and so are the crossings, or there are none.
+    fn wide(
+        &mut self,
+        vectors: impl Vectors,
+        triangle: &Triangle,
+        sides: [Side; 3],
+        number: u32,
+        (top, bottom): (i32, i32),
+    ) {
+        // Of sides that lie along the rows, the inverse is infinite: they have no crossings.
         let inverse = sides.map(|side| 1.0 / f64::from(side.per_x));
         let (first, last) = (f64::from(triangle.rect[0]), f64::from(triangle.rect[2]));
         let mut values = sides.map(|side| side.far(top));
@@ -145,42 +139,67 @@ impl Rows<'_> {
         for y in top..=bottom {
             let (mut from, mut to) = (first, last);
             for (i, side) in sides.iter().enumerate() {
-                let crossing = -values[i] * inverse[i];
+                let value = values[i];
                 values[i] += f64::from(side.per_y);
+                let crossing = -value * inverse[i];
                 if side.per_x > 0 {
-                    from = if crossing - CROSSING_SLACK > from { crossing - CROSSING_SLACK } else { from };
+                    let crossing = crossing - CROSSING_SLACK;
+                    from = if crossing > from { crossing } else { from };
                 } else if side.per_x < 0 {
-                    to = if crossing + CROSSING_SLACK < to { crossing + CROSSING_SLACK } else { to };
-                } else if values[i] - f64::from(side.per_y) < 0.0 {
+                    let crossing = crossing + CROSSING_SLACK;
+                    to = if crossing < to { crossing } else { to };
+                } else if value < 0.0 {
                     to = -1.0;
                 }
             }
             // The first whole number not below, and the last not above.
             let (from, to) = (65_536 - (65_536.0 - from) as i32, (to + 1.0) as i32 - 1);
-            if from > to {
-                continue;
-            }
             let row = (y as usize - self.first) * self.width;
-            let span = row + from as usize..row + to as usize + 1;
-            let start = at_origin + per_x * from as f32 + per_y * y as f32;
-            for at in span.clone().step_by(LANES) {
-                let (done, count) = ((at - span.start) as i32, (span.end - at) as i32);
-                let (mut value, mut inside) = ([0.0; LANES], [false; LANES]);
-                for i in 0..LANES {
-                    value[i] = start + per_x * (done + i as i32) as f32;
-                    inside[i] = (i as i32) < count;
-                }
-                self.meet(at, &value, &inside, triangle.bounds, number);
+            let near = at_origin + per_x * from as f32 + per_y * y as f32;
+            for at in (from..=to).step_by(LANES) {
+                let eight = Eight {
+                    sides: [(0, 0); 3],
+                    last: to - at,
+                    near: (near + per_x * (at - from) as f32, per_x),
+                    bounds: triangle.bounds,
+                    number,
+                };
+                self.meet(vectors, row + at as usize, &eight);
             }
         }
     }
 }
 
-/// A value between two others.
-#[inline(always)]
-fn within(value: f32, least: f32, most: f32) -> f32 {
-    let value = if value > least { value } else { least };
-    if value < most { value } else { most }
+/// What a triangle is to eight pixels, side by side. Values are given at the first, with their growth a pixel.
+#[derive(Clone, Copy)]
+pub(super) struct Eight {
+    /// Negative outside of a side.
+    pub sides: [(i32, i32); 3],
+    /// The last that may lie inside, from 0.
+    pub last: i32,
+    /// The triangle's nearness, 1/m.
+    pub near: (f32, f32),
+    /// The least and the greatest of it.
+    pub bounds: [f32; 2],
+    /// The triangle's number.
+    pub number: u32,
+}
+
+impl Eight {
+    /// Lets pixels that lie inside see it, where nothing nearer is seen.
+    #[inline(always)]
+    pub(super) fn meet(&self, seen: &mut [u32], nearness: &mut [f32]) {
+        let [least, most] = self.bounds;
+        for (i, (seen, nearness)) in (0..LANES as i32).zip(seen.iter_mut().zip(nearness)) {
+            let value = self.near.0 + self.near.1 * i as f32;
+            let value = if value > least { value } else { least };
+            let value = if value < most { value } else { most };
+            let outside = self.sides.iter().fold(self.last - i, |all, (first, per_x)| all | (first + per_x * i)) < 0;
+            let wins = !outside & (value > *nearness);
+            *nearness = if wins { value } else { *nearness };
+            *seen = if wins { self.number } else { *seen };
+        }
+    }
 }
 
 /// Whether few of its pixels lie side by side, and it is small enough as a whole, also beyond the picture's edges, for

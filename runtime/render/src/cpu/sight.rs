@@ -1,6 +1,6 @@
 //! What each pixel sees: all draws, the nearest first, but for those that are hidden behind what has been drawn already.
 
-use super::avx2::Avx2;
+use super::avx2::{Avx2, Plain, Vectors};
 use super::draw::Draw;
 use super::numbers::Numbers;
 use super::raster::Rows;
@@ -27,23 +27,37 @@ pub(super) fn draw(
     corners: &mut Vec<Corner>,
 ) {
     #[cfg(target_arch = "x86_64")]
-    if wide.is_some() {
+    if let Some(wide) = wide {
         // SAFETY: the proof says that the processor has AVX2.
-        unsafe { draw_avx2(draws, numbers, view, rows, corners) };
+        unsafe { draw_avx2(wide, draws, numbers, view, rows, corners) };
         return;
     }
     let _ = wide;
-    draw_all(draws, numbers, view, rows, corners);
+    draw_all(Plain, draws, numbers, view, rows, corners);
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
-fn draw_avx2(draws: &[Draw<'_>], numbers: &Numbers, view: &View, rows: &mut Rows<'_>, corners: &mut Vec<Corner>) {
-    draw_all(draws, numbers, view, rows, corners);
+fn draw_avx2(
+    wide: Avx2,
+    draws: &[Draw<'_>],
+    numbers: &Numbers,
+    view: &View,
+    rows: &mut Rows<'_>,
+    corners: &mut Vec<Corner>,
+) {
+    draw_all(wide, draws, numbers, view, rows, corners);
 }
 
 #[inline(always)]
-fn draw_all(draws: &[Draw<'_>], numbers: &Numbers, view: &View, rows: &mut Rows<'_>, corners: &mut Vec<Corner>) {
+fn draw_all(
+    vectors: impl Vectors,
+    draws: &[Draw<'_>],
+    numbers: &Numbers,
+    view: &View,
+    rows: &mut Rows<'_>,
+    corners: &mut Vec<Corner>,
+) {
     let frame = Frame::rows(view, rows.first, rows.count);
     for (index, draw) in draws.iter().enumerate() {
         let piece = draw.piece;
@@ -64,21 +78,22 @@ fn draw_all(draws: &[Draw<'_>], numbers: &Numbers, view: &View, rows: &mut Rows<
                 };
                 (&cluster.corners, &cluster.triangles)
             };
-            setup::one(draw, own, triangles, index as u32, frame, corners, &mut Onto { rows, first });
+            setup::one(draw, own, triangles, index as u32, frame, corners, &mut Onto { vectors, rows, first });
         }
     }
 }
 
 /// Draws triangles as they come.
-struct Onto<'a, 'b> {
+struct Onto<'a, 'b, V> {
+    vectors: V,
     rows: &'a mut Rows<'b>,
     first: u32,
 }
 
-impl Sink for Onto<'_, '_> {
+impl<V: Vectors> Sink for Onto<'_, '_, V> {
     #[inline(always)]
     fn take(&mut self, triangle: &Triangle) {
-        self.rows.draw(triangle, self.first.wrapping_add(triangle.index));
+        self.rows.draw(self.vectors, triangle, self.first.wrapping_add(triangle.index));
     }
 }
 
