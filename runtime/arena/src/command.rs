@@ -451,8 +451,18 @@ mod tests {
     /// Values that look like commands, and others.
     fn values() -> impl Strategy<Value = Value> {
         const KEYS: [&str; 12] = [
-            "commandType", "magnitude", "goToCommand", "officeRoom", "raycast", "position", "interactCommand", "verb",
-            "destinationObjectID", "lookAroundCommand", "fieldOfView", "x",
+            "commandType",
+            "magnitude",
+            "goToCommand",
+            "officeRoom",
+            "raycast",
+            "position",
+            "interactCommand",
+            "verb",
+            "destinationObjectID",
+            "lookAroundCommand",
+            "fieldOfView",
+            "x",
         ];
         let leaf = prop_oneof![
             Just(Value::Null),

@@ -224,7 +224,8 @@ impl Game {
             Destination::Viewpoint(room, number) => GoToTarget::Viewpoint(*room, *number),
             Destination::Place(place) => GoToTarget::Point(place.on_floor()),
             Destination::Pixel(pixel) => {
-                let nothing = || Failure::Refused(Status::InvalidObjectClass, "there is nothing at that pixel".to_owned());
+                let nothing =
+                    || Failure::Refused(Status::InvalidObjectClass, "there is nothing at that pixel".to_owned());
                 self.target_at(*pixel)?.ok_or_else(nothing)?
             }
         })
@@ -308,7 +309,8 @@ impl Game {
         let mut end = None;
         while let Some(sample) = self.events.receive()? {
             let event: EventMessage = message::read(sample.payload())?;
-            if let (Some(EventKind::Outcome), Some(status), true) = (event.kind(), event.status(), event.command == command)
+            if let (Some(EventKind::Outcome), Some(status), true) =
+                (event.kind(), event.status(), event.command == command)
             {
                 end = Some((status, event.text.as_str().to_owned()));
             }

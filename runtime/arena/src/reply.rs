@@ -77,7 +77,9 @@ impl Reply {
             normals_image: normals,
             instance_segmentation_image: instances,
             objects: object::records(world),
-            agent: AgentRecord { right_hand_held_object: held.map_or_else(String::new, |held| held.instance.to_owned()) },
+            agent: AgentRecord {
+                right_hand_held_object: held.map_or_else(String::new, |held| held.instance.to_owned()),
+            },
             scene_metadata: SceneRecord { go_to_points: go_to_points(world) },
             challenge_progress: ProgressRecord { challenge_goals: goals(world) },
         }
