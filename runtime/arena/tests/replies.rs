@@ -93,15 +93,15 @@ fn what_is_looked_at_is_found_by_its_colour() {
     let reply = client.batch(&[]);
     assert_eq!(reply["lastActionSuccess"], OK);
     let mug = color(find(&reply, "CoffeeMug_Boss_1"));
-    let middle: Vec<usize> = pictures(&reply, "instanceSegmentationImage")[0]
+    let pixels: Vec<usize> = pictures(&reply, "instanceSegmentationImage")[0]
         .iter()
         .enumerate()
         .filter(|(_, pixel)| **pixel == mug)
         .map(|(place, _)| place)
         .collect();
-    assert!(middle.len() > 100, "{} pixels show the mug", middle.len());
+    assert!(pixels.len() > 100, "{} pixels show the mug", pixels.len());
     // The same by a pixel of it.
-    let place = middle[middle.len() / 2];
+    let place = pixels[pixels.len() / 2];
     client.must(&["room Reception", "goto KitchenCounterTop_02_1", "goto CoffeeMug_Boss_1"]);
     let raycast = json!({"commandType": "GoTo", "goToCommand": {"raycast": {"x": place % 300, "y": place / 300}}});
     assert_eq!(client.batch(&[raycast])["lastActionSuccess"], OK);
@@ -291,7 +291,8 @@ fn a_sink_fills_and_a_carton_pours() {
     let on = |name: &str| object(name, json!([{"TableRound_02_1": "on"}]), json!([]));
     let mut client = Client::launched(&mission(json!([on("Bowl_01_1"), on("CoffeeMug_Boss_1")])));
     client.must(&["goto Bowl_01_1", "pickup Bowl_01_1", "goto KitchenCounterSink_01_1"]);
-    let running = find(&client.batch(&[]), "KitchenCounterSink_01_1")["currentStates"]
+    let reply = client.batch(&[]);
+    let running = find(&reply, "KitchenCounterSink_01_1")["currentStates"]
         .as_array()
         .unwrap()
         .contains(&json!("TOGGLED"));
@@ -367,8 +368,8 @@ fn each_game_has_a_log_that_replays() {
     client.must(&["rotate 30"]);
     client.arena.finish();
     let catalog = Arc::new(Catalog::builtin());
-    let ticks = client.folder.logs().iter().map(|path| {
-        let log = cohabit_record::Log::open(path).unwrap();
+    let ticks = client.folder.logs().into_iter().map(|path| {
+        let log = cohabit_record::Log::open(&path).unwrap();
         let replay = cohabit_engine::replay::replay(&log, Arc::clone(&catalog)).unwrap();
         assert_eq!(replay.difference, None, "{}", path.display());
         replay.ticks
