@@ -204,54 +204,51 @@ fn a_batch_stops_at_the_first_failure() {
 
 #[test]
 fn every_status_can_be_reached() {
-    let on = |name: &str, place: &str| object(name, json!([{ place: "on" }]), json!([]));
+    let on = |name: &str| object(name, json!([{"TableRound_02_1": "on"}]), json!([]));
+    let within = |name: &str, place: &str| object(name, json!([{ place: "in" }]), json!([]));
     let is = |name: &str, state: Value| object(name, json!([]), json!([state]));
-    let table = "TableRound_02_1";
+    let shut = json!([{"isOpen": "false"}, {"isLocked": "true"}]);
+    let to_microwave = &["goto Microwave_01_1"][..];
     type Case<'a> = (&'a str, Vec<Value>, &'a [&'a str], &'a str);
     let cases: Vec<Case<'_>> = vec![
         ("UnsupportedAction", vec![], &["goto TableRound_02_1"], "pickup TableRound_02_1"),
-        (
-            "UnsupportedNavigation",
-            vec![is("Door_01_3", json!({"isOpen": "false"})), is("Door_01_3", json!({"isLocked": "true"}))],
-            &[],
-            "room Warehouse",
-        ),
+        ("UnsupportedNavigation", vec![object("Door_01_3", json!([]), shut)], &[], "room Warehouse"),
         (
             "AlreadyHoldingObject",
-            vec![on("Apple_1", table), on("Bowl_01_1", table)],
+            vec![on("Apple_1"), on("Bowl_01_1")],
             &["goto Apple_1", "pickup Apple_1"],
             "pickup Bowl_01_1",
         ),
         (
             "ReceptacleIsFull",
-            vec![
-                on("Apple_1", table),
-                is("Microwave_01_1", json!({"isOpen": "true"})),
-                object("Bowl_01_1", json!([{"Microwave_01_1": "in"}]), json!([])),
-            ],
+            vec![on("Apple_1"), is("Microwave_01_1", json!({"isOpen": "true"})), within("Bowl_01_1", "Microwave_01_1")],
             &["goto Apple_1", "pickup Apple_1", "goto Microwave_01_1"],
             "place Microwave_01_1",
         ),
         (
             "ReceptacleIsClosed",
-            vec![
-                is("FridgeLower_02_1", json!({"isOpen": "false"})),
-                object("Apple_1", json!([{"FridgeLower_02_1": "in"}]), json!([])),
-            ],
+            vec![is("FridgeLower_02_1", json!({"isOpen": "false"})), within("Apple_1", "FridgeLower_02_1")],
             &["goto FridgeLower_02_1"],
             "pickup Apple_1",
         ),
+        ("TargetInaccessible", vec![], &[], "forward 30"),
         (
             "KilledByHazard",
             vec![is("Microwave_01_1", json!({"isSparking": "true"}))],
-            &["goto Microwave_01_1"],
+            to_microwave,
             "toggle Microwave_01_1",
         ),
-        ("TargetOutOfRange", vec![on("Apple_1", table)], &["room Warehouse"], "pickup Apple_1"),
+        ("TargetOutOfRange", vec![on("Apple_1")], &["room Warehouse"], "pickup Apple_1"),
+        (
+            "ObjectUnpowered",
+            vec![is("Microwave_01_1", json!({"isPowered": "false"}))],
+            to_microwave,
+            "toggle Microwave_01_1",
+        ),
         (
             "ObjectOverloaded",
             vec![is("Microwave_01_1", json!({"isOverloaded": "true"}))],
-            &["goto Microwave_01_1"],
+            to_microwave,
             "toggle Microwave_01_1",
         ),
         (
@@ -263,18 +260,25 @@ fn every_status_can_be_reached() {
         ("ObjectNotPickedUp", vec![], &["goto TableRound_02_1"], "place TableRound_02_1"),
         (
             "ObjectNotPickedUp",
-            vec![on("Bowl_01_1", table), on("MilkCarton_01_1", table)],
+            vec![on("Bowl_01_1"), on("MilkCarton_01_1")],
             &["goto Bowl_01_1"],
             "pour MilkCarton_01_1 Bowl_01_1",
         ),
         (
             "ActionExecutionError",
-            vec![on("Bowl_01_1", table), is("KitchenCounterSink_01_1", json!({"isToggledOn": "false"}))],
+            vec![on("Bowl_01_1"), is("KitchenCounterSink_01_1", json!({"isToggledOn": "false"}))],
             &["goto Bowl_01_1", "pickup Bowl_01_1", "goto KitchenCounterSink_01_1"],
             "fill KitchenCounterSink_01_1 Bowl_01_1",
         ),
+        (
+            "PostProcessError",
+            vec![on("Floppy_Virus_1"), is("V_Monitor_Laser_10000", json!({"isPowered": "false"}))],
+            &["goto Floppy_Virus_1", "pickup Floppy_Virus_1", "goto V_Monitor_Laser_10000"],
+            "place V_Monitor_Laser_10000",
+        ),
         ("InvalidObjectClass", vec![], &[], "goto Unicorn_01_1"),
         ("InvalidObjectClass", vec![], &[], "pickup Unassigned"),
+        ("IncorrectActionFormat", vec![], &[], "rotate 100000"),
         ("ActionSuccessful", vec![], &[], "goto TableRound_02_1"),
     ];
     for (status, objects, before, line) in cases {
@@ -284,21 +288,23 @@ fn every_status_can_be_reached() {
         check_form(&reply);
         assert!(!reply["message"].as_str().unwrap().is_empty());
     }
+    // To where a table stands one comes as near as can be.
+    let mut client = Client::launched(builtin("warm_coffee"));
+    let table = find(&client.batch(&[]), "TableRound_02_1")["position"].clone();
+    let to_table = json!({"commandType": "GoTo", "goToCommand": {"position": table}});
+    let reply = client.batch(&[to_table.clone()]);
+    assert_eq!(reply["lastActionSuccess"], "AlternateNavigationUsed", "{}", reply["message"]);
+    // That is a success: the batch goes on.
+    assert_eq!(client.batch(&[to_table, command("rotate 10")])["lastActionSuccess"], OK);
 }
 
 #[test]
 fn a_sink_fills_and_a_carton_pours() {
     let on = |name: &str| object(name, json!([{"TableRound_02_1": "on"}]), json!([]));
-    let mut client = Client::launched(&mission(json!([on("Bowl_01_1"), on("CoffeeMug_Boss_1")])));
+    let sink = object("KitchenCounterSink_01_1", json!([]), json!([{"isToggledOn": "false"}]));
+    let mut client = Client::launched(&mission(json!([on("Bowl_01_1"), on("CoffeeMug_Boss_1"), sink])));
     client.must(&["goto Bowl_01_1", "pickup Bowl_01_1", "goto KitchenCounterSink_01_1"]);
-    let reply = client.batch(&[]);
-    let running = find(&reply, "KitchenCounterSink_01_1")["currentStates"]
-        .as_array()
-        .unwrap()
-        .contains(&json!("TOGGLED"));
-    if !running {
-        client.must(&["toggle KitchenCounterSink_01_1"]);
-    }
+    client.must(&["toggle KitchenCounterSink_01_1"]);
     client.must(&["fill KitchenCounterSink_01_1 Bowl_01_1", "goto CoffeeMug_Boss_1"]);
     let states = |reply: &Value, instance: &str| find(reply, instance)["currentStates"].to_string();
     let reply = client.check("pour Bowl_01_1 CoffeeMug_Boss_1", OK);
