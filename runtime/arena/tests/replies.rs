@@ -113,7 +113,7 @@ fn a_look_around_gives_four_pictures_until_the_next_command() {
     for turns in [false, true] {
         let around =
             json!({"commandType": "LookAround", "lookAroundCommand": {"fieldOfView": 100, "shouldRotate": turns}});
-        let reply = client.batch(&[around.clone()]);
+        let reply = client.batch(std::slice::from_ref(&around));
         for field in ["colorImage", "depthImage", "normalsImage", "instanceSegmentationImage"] {
             let four = pictures(&reply, field);
             assert_eq!(four.len(), 4, "{field}");
@@ -292,7 +292,7 @@ fn every_status_can_be_reached() {
     let mut client = Client::launched(builtin("warm_coffee"));
     let table = find(&client.batch(&[]), "TableRound_02_1")["position"].clone();
     let to_table = json!({"commandType": "GoTo", "goToCommand": {"position": table}});
-    let reply = client.batch(&[to_table.clone()]);
+    let reply = client.batch(std::slice::from_ref(&to_table));
     assert_eq!(reply["lastActionSuccess"], "AlternateNavigationUsed", "{}", reply["message"]);
     // That is a success: the batch goes on.
     assert_eq!(client.batch(&[to_table, command("rotate 10")])["lastActionSuccess"], OK);
