@@ -75,7 +75,8 @@ fn what_does_not_go_together_is_named() {
     };
     check(&["sim"], "--session");
     check(&["sim", "--arena-port", "0", "--session", "x"], "--session");
-    check(&["sim", "--session", "x", "--logs", "y"], "--arena-port");
+    check(&["sim", "--session", "x", "--logs", "y"], "cannot be used with '--logs");
+    check(&["sim", "--logs", "y"], "--arena-port");
     check(&["sim", "/nowhere.json", "--arena-port", "0"], "/nowhere.json");
     let taken = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
     let port = taken.local_addr().unwrap().port().to_string();

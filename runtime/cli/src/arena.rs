@@ -23,10 +23,10 @@ pub struct ArenaOptions {
     #[arg(long, value_name = "PORT", conflicts_with_all = ["session", "cameras"])]
     arena_port: Option<u16>,
     /// The address that existing clients are listened to on; beyond this machine anybody can command the robot
-    #[arg(long, default_value = "127.0.0.1", requires = "arena_port")]
+    #[arg(long, default_value = "127.0.0.1", requires = "arena_port", conflicts_with = "session")]
     listen: IpAddr,
     /// The folder for the log of each game; the user's data folder if absent
-    #[arg(long, value_name = "DIR", requires = "arena_port")]
+    #[arg(long, value_name = "DIR", requires = "arena_port", conflicts_with = "session")]
     logs: Option<PathBuf>,
 }
 
