@@ -384,6 +384,27 @@ fn each_game_has_a_log_that_replays() {
     assert!(ticks.len() == 2 && ticks[0] > 300 && ticks[1] > 10, "{ticks:?}");
 }
 
+/// Every so many missions of the reference data are launched.
+const EVERY: usize = 24;
+
+#[test]
+fn missions_of_the_reference_are_launched() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/arena/missions-dev.jsonl");
+    let Ok(missions) = std::fs::read_to_string(path) else {
+        eprintln!("skipped: {path} is not there");
+        return;
+    };
+    let mut client = Client::new();
+    for line in missions.lines().step_by(EVERY) {
+        let task: Value = serde_json::from_str(line).unwrap();
+        assert!(client.send(task["cdf"].to_string().as_bytes()).is_none());
+        let reply = client.check("rotate 0", OK);
+        check_form(&reply);
+        let goals = reply["challengeProgress"]["ChallengeGoals"].as_array().unwrap().len();
+        assert_eq!(goals, task["cdf"]["task_goals"].as_array().unwrap().len(), "{}", task["id"]);
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 48, ..ProptestConfig::default() })]
 

@@ -179,3 +179,18 @@ fn for_each(
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use cohabit_bus::Local;
+
+    use super::*;
+
+    #[test]
+    fn where_no_simulator_came_there_is_nothing_to_record() {
+        let path = std::env::temp_dir().join(format!("cohabit-no-mission-{}.mcap", std::process::id()));
+        let recorder = Recorder::new(&Local::new(1)).expect("a bus");
+        assert!(matches!(recorder.begin("s", &path), Err(RecordError::NoMission)));
+        assert!(!path.exists());
+    }
+}
