@@ -72,10 +72,14 @@ impl Arena {
                 self.launch("CDF", &cdf);
                 None
             }
-            Message::Batch(batch) => Some(self.play(&batch).json()),
+            Message::Batch(batch) => Some(self.reply(|game| game.play(&batch)).json()),
             Message::Malformed(problem) => {
                 tracing::warn!("a message was refused: {problem}");
-                Some(Reply::without_game(Status::IncorrectActionFormat, problem).json())
+                let status = Status::IncorrectActionFormat;
+                Some(match self.state {
+                    State::Idle(_) => Reply::without_game(status, problem).json(),
+                    State::Playing(_) => self.reply(|game| game.refuse(status, problem)).json(),
+                })
             }
         }
     }
@@ -123,13 +127,14 @@ impl Arena {
         Ok(game)
     }
 
-    fn play(&mut self, batch: &[Value]) -> Reply {
+    /// What the game replies, if there is one.
+    fn reply(&mut self, ask: impl FnOnce(&mut Game) -> Result<Reply, GameError>) -> Reply {
         let error = match &mut self.state {
             State::Idle(why) => {
                 tracing::warn!("a batch was refused: {why}");
                 return Reply::without_game(Status::ArenaUnavailable, why.clone());
             }
-            State::Playing(game) => match game.play(batch) {
+            State::Playing(game) => match ask(game) {
                 Ok(reply) => return reply,
                 Err(error) => error,
             },
@@ -157,6 +162,7 @@ fn read(message: &[u8], first: bool) -> Message {
             let found = command::kind(&other);
             Message::Malformed(format!("expected an array of commands, or a CDF with a `scene`; found {found}"))
         }
+        Err(_) if first && text.trim_start().starts_with('{') => Message::Launch(text.to_owned()),
         Err(error) => Message::Malformed(format!("not JSON: {error}")),
     }
 }

@@ -135,6 +135,18 @@ impl Game {
             tracing::info!("{status:?}: {detail}");
         }
         self.keep(Recording::flush);
+        self.reply(status, detail, around)
+    }
+
+    /// Answers what is no batch, and changes nothing.
+    ///
+    /// # Errors
+    /// [`GameError`]; the game is over then.
+    pub fn refuse(&mut self, status: Status, problem: String) -> Result<Reply, GameError> {
+        self.reply(status, problem, None)
+    }
+
+    fn reply(&mut self, status: Status, detail: String, around: Option<Lens>) -> Result<Reply, GameError> {
         let pictures = self.look(around)?;
         Ok(Reply::new(status, detail, self.world(), BODY, pictures))
     }

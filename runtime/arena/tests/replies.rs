@@ -341,6 +341,12 @@ fn nonsense_is_answered_with_what_is_wrong() {
     check(b"7", "found a number");
     check(br#"{"commandType": "Rotate"}"#, "expected an array of commands");
     check("[".repeat(10_000).as_bytes(), "recursion limit");
+    // Where there is a game, it goes on, and is shown.
+    client.send(builtin("warm_coffee").as_bytes());
+    let reply = client.send(b"7").unwrap();
+    assert_eq!(reply["lastActionSuccess"], "IncorrectActionFormat");
+    assert!(reply["colorImage"].as_array().unwrap().len() == 1 && !reply["objects"].as_array().unwrap().is_empty());
+    client.check("rotate 10", OK);
 }
 
 #[test]
@@ -355,9 +361,12 @@ fn a_mission_that_cannot_be_launched_is_named() {
     check(r#"{"scene": 1}"#, "CDF:1:");
     check(&mission(json!([object("Bowl_1", json!([]), json!([]))])), "Bowl_01");
     // One that opens a connection is meant as a mission, whatever it is.
-    let mut client = Client::new();
-    assert!(client.send(br#"{"mission": {}}"#).is_none());
-    assert!(client.batch(&[])["message"].as_str().unwrap().contains("/scene"));
+    for (message, part) in [(r#"{"mission": {}}"#, "/scene"), (r#"{"scene": {"#, "CDF:1:11")] {
+        let mut client = Client::new();
+        assert!(client.send(message.as_bytes()).is_none());
+        let reply = client.batch(&[]);
+        assert!(reply["message"].as_str().unwrap().contains(part), "{}", reply["message"]);
+    }
     // A log that cannot be written is no game either.
     let folder = Folder::new();
     let mut arena = arena(&folder.0.join("nowhere"));

@@ -1,8 +1,8 @@
 //! The tick: takes commands from the bus, steps the world, publishes what came of it, and has cameras rendered.
 //!
 //! In real time the world never waits for anybody: [`Simulator::run`] steps it 60 times a second, and a thread of its
-//! own renders the newest scene. Who steps an [`Engine`] itself takes pictures with [`Stills`], when it wants them. Fed from a log instead of a bus, the same world replays a session
-//! ([`replay`](replay::replay)).
+//! own renders the newest scene. Who steps an [`Engine`] itself takes pictures with [`Stills`], when it wants them. Fed
+//! from a log instead of a bus, the same world replays a session ([`replay`](replay::replay)).
 //!
 //! This crate never knows dialog.
 
