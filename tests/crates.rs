@@ -16,14 +16,15 @@ const LEVELS: &[(&str, u8, &[&str])] = &[
     ("cohabit-language", 2, &[]),
     ("cohabit-gpu", 3, &["wgpu"]),
     ("cohabit-engine", 3, &[]),
+    ("cohabit-arena", 4, &[]),
     ("cohabit-dialog", 4, &["tokio", "axum"]),
     ("cohabit-eval", 5, &[]),
     ("cohabit", 6, &["clap", "anyhow", "indicatif"]),
 ];
 
-/// Dependencies that others may name too: the log and the page speak JSON, tests report errors of all kinds.
+/// Dependencies that others may name too: the log, the page and existing clients speak JSON, tests report errors of all kinds.
 const SHARED: &[(&str, &[&str])] = &[
-    ("serde_json", &["cohabit-record", "cohabit-dialog", "cohabit-eval", "cohabit", "cohabit-tests"]),
+    ("serde_json", &["cohabit-record", "cohabit-arena", "cohabit-dialog", "cohabit-eval", "cohabit", "cohabit-tests"]),
     ("anyhow", &["cohabit-tests"]),
 ];
 

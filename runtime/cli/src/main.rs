@@ -1,5 +1,6 @@
 //! `cohabit`: people and robots together in a simulated office.
 
+mod arena;
 mod check;
 mod eval;
 mod failure;
@@ -9,6 +10,7 @@ mod peers;
 mod play;
 mod rendering;
 mod replay;
+mod sessions;
 mod stop;
 mod supervisor;
 
@@ -37,7 +39,7 @@ enum Command {
     Eval(eval::Eval),
     /// Draw all objects in all their states, all floor plans and all rooms
     Gallery(gallery::Gallery),
-    /// The world of a session, its cameras and its clock
+    /// The world of a session, its cameras and its clock; or, with --arena-port, a simulator for existing clients
     Sim(peers::Sim),
     /// One robot's mind
     Agent(peers::Agent),

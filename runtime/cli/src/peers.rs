@@ -22,7 +22,13 @@ use cohabit_engine::{CameraPlan, SessionPlan, Simulator};
 use cohabit_record::Recorder;
 use cohabit_render::MeshLibrary;
 
-use crate::{failure::bad_input, mission_file::MissionFile, rendering::Rendering, stop};
+use crate::{
+    arena::{ArenaOptions, Games},
+    failure::bad_input,
+    mission_file::MissionFile,
+    rendering::Rendering,
+    stop,
+};
 
 /// What all peers of a session are told.
 #[derive(clap::Args)]
@@ -44,13 +50,19 @@ impl Joining {
     }
 }
 
-/// Builds the world and steps it in real time.
+/// Builds the world and steps it in real time; or, with --arena-port, as existing clients command.
 #[derive(clap::Args)]
 pub struct Sim {
     /// A mission file (CDF), or the name of a built-in mission
     mission: Option<String>,
+    /// The session's name
+    #[arg(long, required_unless_present = "arena_port")]
+    session: Option<String>,
+    /// The process that supervises this one
+    #[arg(long, hide = true)]
+    supervisor: Option<i32>,
     #[command(flatten)]
-    joining: Joining,
+    arena: ArenaOptions,
     /// The seed of all that is random, where the mission does not fix it
     #[arg(long, default_value_t = 0)]
     seed: u64,
@@ -69,9 +81,14 @@ pub struct Sim {
 impl Sim {
     /// Runs the simulator.
     pub fn run(&self) -> anyhow::Result<()> {
+        if let Some(port) = self.arena.port() {
+            let (mission, rendering) = (self.mission.as_deref(), self.rendering);
+            return self.arena.serve(port, &Games { mission, seed: self.seed, bodies: &self.bodies, rendering });
+        }
         let plan = MissionFile::find(self.mission.as_deref())?.plan(self.seed, &self.bodies)?;
         let plan = plan.with_cameras(self.cameras.clone()).map_err(bad_input)?;
-        let (bus, stop) = self.joining.join()?;
+        let session = self.session.clone().unwrap_or_default();
+        let (bus, stop) = Joining { session, supervisor: self.supervisor }.join()?;
         let (world, meshes) = thread::scope(|scope| {
             let meshes = scope.spawn(|| MeshLibrary::build(&plan.catalog));
             let world = plan.build();

@@ -1,12 +1,10 @@
 //! `cohabit play`: one session from start to end.
 
 use std::{
-    fs,
-    path::{Path, PathBuf},
+    path::PathBuf,
     time::{Instant, SystemTime, UNIX_EPOCH},
 };
 
-use anyhow::Context as _;
 use cohabit_bus::{Session, SessionError};
 use cohabit_cdf::BodyRequest;
 use cohabit_engine::CameraPlan;
@@ -16,7 +14,7 @@ use crate::{
     mission_file::MissionFile,
     peers::Listening,
     rendering::Rendering,
-    stop,
+    sessions, stop,
     supervisor::{Role, Supervisor},
 };
 
@@ -89,17 +87,8 @@ impl Play {
             }
             return Ok(path.clone());
         }
-        let folder = data_folder().join("sessions");
-        fs::create_dir_all(&folder).with_context(|| folder.display().to_string())?;
-        let time = jiff::Zoned::now().strftime("%Y-%m-%d_%H-%M-%S").to_string();
-        Ok(folder.join(format!("{time}_{session}.mcap")))
+        Ok(sessions::folder(None)?.join(format!("{}_{session}.mcap", sessions::time())))
     }
-}
-
-fn data_folder() -> PathBuf {
-    let home = || std::env::var_os("HOME").map(|home| Path::new(&home).join(".local/share"));
-    let base = std::env::var_os("XDG_DATA_HOME").map(PathBuf::from).filter(|path| path.is_absolute());
-    base.or_else(home).unwrap_or_else(std::env::temp_dir).join("cohabit")
 }
 
 fn clock_seed() -> u64 {

@@ -1,8 +1,8 @@
 //! The tick: takes commands from the bus, steps the world, publishes what came of it, and has cameras rendered.
 //!
 //! In real time the world never waits for anybody: [`Simulator::run`] steps it 60 times a second, and a thread of its
-//! own renders the newest scene. Fed from a log instead of a bus, the same world replays a session
-//! ([`replay`](replay::replay)).
+//! own renders the newest scene. Who steps an [`Engine`] itself takes pictures with [`Stills`], when it wants them. Fed
+//! from a log instead of a bus, the same world replays a session ([`replay`](replay::replay)).
 //!
 //! This crate never knows dialog.
 
@@ -17,10 +17,12 @@ pub mod report;
 mod scene;
 mod shot;
 mod simulator;
+mod stills;
 mod studio;
 
 pub use build::{BuildError, SessionPlan};
 pub use camera_plan::{CameraPlan, CameraPlanError, Mount};
 pub use engine::{Engine, EngineError};
-pub use scene::furnishings;
+pub use scene::{furnishings, object_instance_id};
 pub use simulator::Simulator;
+pub use stills::Stills;

@@ -6,11 +6,11 @@ use std::{
 };
 
 use cohabit_bus::{
-    BusError, Publisher, Topic, Transport,
+    BusError, CameraId, Publisher, Topic, Transport,
     message::{FrameLayout, NONE, Plane},
 };
 use cohabit_cdf::{Catalog, Layout};
-use cohabit_render::{Camera, Classes, Instance, Look, MeshLibrary, Renderer, Scene, SeenTable};
+use cohabit_render::{Camera, Classes, Instance, Lens, Look, MeshLibrary, Renderer, Scene, SeenTable};
 
 use crate::{
     camera_plan::{CameraPlan, Mount},
@@ -172,9 +172,27 @@ impl Studio {
     fn shoot(&mut self, moment: &Moment) -> Result<(), BusError> {
         let due: Vec<(usize, Duration)> =
             self.posts.iter_mut().enumerate().filter_map(|(index, post)| Some((index, post.due()?))).collect();
-        if due.is_empty() {
-            return Ok(());
-        }
+        if due.is_empty() { Ok(()) } else { self.expose(moment, due) }
+    }
+
+    /// Renders and sends a frame of one camera, due or not; with another lens than its own, if one is given.
+    ///
+    /// # Errors
+    /// [`BusError`].
+    pub fn shoot_now(&mut self, moment: &Moment, camera: CameraId, lens: Option<Lens>) -> Result<(), BusError> {
+        let Some(index) = self.posts.iter().position(|post| post.plan.id == camera) else { return Ok(()) };
+        let post = &mut self.posts[index];
+        // Nobody has seen where it was before: it need not come from there.
+        post.rig = CameraRig::default();
+        let own = post.plan.lens;
+        post.plan.lens = lens.unwrap_or(own);
+        let shot = self.expose(moment, vec![(index, Duration::from_secs(1))]);
+        self.posts[index].plan.lens = own;
+        shot
+    }
+
+    /// Renders and sends the frames of these cameras, each given by its place and the time since its last frame.
+    fn expose(&mut self, moment: &Moment, due: Vec<(usize, Duration)>) -> Result<(), BusError> {
         self.set_up(moment);
         let Self { scene, renderer, layout, catalog, posts, classes, table } = self;
         let tall: Vec<Tall> = moment.instances.iter().filter_map(|instance| tall(instance, catalog, layout)).collect();

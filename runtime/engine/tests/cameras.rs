@@ -16,8 +16,8 @@ use cohabit_bus::{
     message::{CameraKind, FrameView, MissionMessage, NONE, Plane, Thing},
 };
 use cohabit_cdf::{Catalog, SemanticClass, mission};
-use cohabit_engine::{BuildError, CameraPlan, SessionPlan, Simulator};
-use cohabit_render::{CpuRenderer, MeshLibrary};
+use cohabit_engine::{BuildError, CameraPlan, Engine, SessionPlan, Simulator, Stills};
+use cohabit_render::{CpuRenderer, Lens, MeshLibrary};
 
 fn plan(cameras: &[&str]) -> Result<SessionPlan, BuildError> {
     let (file, text) = mission::builtin()[0];
@@ -118,6 +118,31 @@ fn cameras_deliver_what_was_asked_for() {
         drop(ending);
         running.join().unwrap().unwrap();
     });
+}
+
+#[test]
+fn stills_are_taken_when_they_are_asked_for() {
+    let plan = plan(&["small=egocentric,size=84x64,fov=90,planes=ids", "over=top-down,size=64,planes=ids"]).unwrap();
+    let bus = Local::new(1);
+    let meshes = Arc::new(MeshLibrary::build(&plan.catalog).unwrap());
+    let mut stills = Stills::new(&plan, meshes, Box::new(CpuRenderer::new(1)), &plan.cameras, &bus).unwrap();
+    let mut engine = Engine::new(&plan, plan.build().unwrap(), &plan.cameras, &bus).unwrap();
+    let mut frames = bus.subscriber(Topic::Frames(plan.cameras[0].id)).unwrap();
+    let mut shoot = |engine: &Engine, lens| {
+        stills.shoot(engine, plan.cameras[0].id, lens).unwrap();
+        frames.receive().unwrap().unwrap()
+    };
+    let size = |sample: &Sample| {
+        let frame = FrameView::new(sample.payload()).unwrap();
+        check_seen(&frame);
+        (sample.envelope().tick, [frame.header.width, frame.header.height], frame.header.fov_y_rad.to_degrees().round())
+    };
+    // However soon one comes after the other, and whatever the lens of the one before.
+    assert_eq!(size(&shoot(&engine, None)), (0, [84, 64], 90.0));
+    assert_eq!(size(&shoot(&engine, Some(Lens::new(50, 40, 30.0).unwrap()))), (0, [50, 40], 30.0));
+    engine.tick(0).unwrap();
+    assert_eq!(size(&shoot(&engine, None)), (1, [84, 64], 90.0));
+    assert!(bus.subscriber(Topic::Frames(plan.cameras[1].id)).unwrap().receive().unwrap().is_none());
 }
 
 #[test]

@@ -13,5 +13,5 @@ mod writer;
 
 pub use entry::{DialogEntry, EventEntry, InputEntry, SessionEntry, TickEntry};
 pub use log::{Log, LogError};
-pub use recorder::{RecordError, Recorder};
+pub use recorder::{RecordError, Recorder, Recording};
 pub use writer::LogWriter;

@@ -33,6 +33,9 @@ pub enum RecordError {
     /// A peer sent nonsense.
     #[error(transparent)]
     Malformed(#[from] Malformed),
+    /// There is nothing to record.
+    #[error("no simulator has published a mission yet")]
+    NoMission,
 }
 
 /// Records one session.
@@ -67,19 +70,28 @@ impl Recorder {
     /// [`RecordError`].
     pub fn run(mut self, session: &str, path: &Path, stop: &AtomicBool) -> Result<(), RecordError> {
         let Some(mission) = self.wait_for_mission(stop)? else { return Ok(()) };
-        let mut log = LogWriter::create(path, &SessionEntry::new(session, &mission), wall_nanos())?;
-        let mut flushed = Instant::now();
+        let mut recording = self.open(session, path, &mission)?;
         while !stop.load(Ordering::Relaxed) {
-            self.listener.wait(FLUSH_EVERY / 2)?;
-            self.drain(&mut log)?;
-            if flushed.elapsed() >= FLUSH_EVERY {
-                log.flush()?;
-                flushed = Instant::now();
-            }
+            recording.recorder.listener.wait(FLUSH_EVERY / 2)?;
+            recording.take_down()?;
         }
-        self.drain(&mut log)?;
-        log.finish()?;
-        Ok(())
+        recording.finish()
+    }
+
+    /// Begins the log of a simulator that has published its mission already, for somebody who says when there is
+    /// something to take down: where the world runs as fast as it can, a recorder beside it would miss ticks.
+    ///
+    /// # Errors
+    /// [`RecordError`].
+    pub fn begin(mut self, session: &str, path: &Path) -> Result<Recording, RecordError> {
+        let sample = self.mission.latest()?.ok_or(RecordError::NoMission)?;
+        let mission = MissionMessage::read(sample.payload())?;
+        self.open(session, path, &mission)
+    }
+
+    fn open(self, session: &str, path: &Path, mission: &MissionMessage) -> Result<Recording, RecordError> {
+        let log = LogWriter::create(path, &SessionEntry::new(session, mission), wall_nanos())?;
+        Ok(Recording { recorder: self, log, flushed: Instant::now() })
     }
 
     fn wait_for_mission(&mut self, stop: &AtomicBool) -> Result<Option<MissionMessage>, RecordError> {
@@ -120,6 +132,44 @@ impl Recorder {
     }
 }
 
+/// A log that is being written.
+pub struct Recording {
+    recorder: Recorder,
+    log: LogWriter,
+    flushed: Instant,
+}
+
+impl Recording {
+    /// Takes down all that was published since the last time.
+    ///
+    /// # Errors
+    /// [`RecordError`].
+    pub fn take_down(&mut self) -> Result<(), RecordError> {
+        self.recorder.drain(&mut self.log)?;
+        if self.flushed.elapsed() >= FLUSH_EVERY { self.flush() } else { Ok(()) }
+    }
+
+    /// Hands all that was taken down to the operating system.
+    ///
+    /// # Errors
+    /// [`RecordError::Log`].
+    pub fn flush(&mut self) -> Result<(), RecordError> {
+        self.log.flush()?;
+        self.flushed = Instant::now();
+        Ok(())
+    }
+
+    /// Ends the log.
+    ///
+    /// # Errors
+    /// [`RecordError`].
+    pub fn finish(mut self) -> Result<(), RecordError> {
+        self.recorder.drain(&mut self.log)?;
+        self.log.finish()?;
+        Ok(())
+    }
+}
+
 fn for_each(
     subscriber: &mut dyn Subscriber,
     mut take: impl FnMut(&Sample) -> Result<(), RecordError>,
@@ -128,4 +178,19 @@ fn for_each(
         take(&sample)?;
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use cohabit_bus::Local;
+
+    use super::*;
+
+    #[test]
+    fn where_no_simulator_came_there_is_nothing_to_record() {
+        let path = std::env::temp_dir().join(format!("cohabit-no-mission-{}.mcap", std::process::id()));
+        let recorder = Recorder::new(&Local::new(1)).expect("a bus");
+        assert!(matches!(recorder.begin("s", &path), Err(RecordError::NoMission)));
+        assert!(!path.exists());
+    }
 }

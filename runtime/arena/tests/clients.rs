@@ -1,0 +1,147 @@
+//! Clients on a socket, one of them in Python.
+
+#![allow(clippy::unwrap_used)]
+
+mod support;
+
+use std::{
+    io::{Read as _, Write as _},
+    net::{SocketAddr, TcpListener, TcpStream},
+    process::Command,
+    sync::atomic::{AtomicBool, Ordering},
+    thread,
+    time::Duration,
+};
+
+use cohabit_arena::{LONGEST, framed, serve};
+use serde_json::Value;
+use support::{Folder, arena, builtin, command};
+
+/// Ends the server also when a check fails.
+struct Stop<'a>(&'a AtomicBool);
+
+impl Drop for Stop<'_> {
+    fn drop(&mut self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+}
+
+/// Has clients talk to a server; gives what they found.
+fn served<T>(folder: &Folder, clients: impl FnOnce(SocketAddr) -> T) -> T {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let (address, stop, arena) = (listener.local_addr().unwrap(), AtomicBool::new(false), arena(&folder.0));
+    thread::scope(|scope| {
+        let server = scope.spawn(|| serve(&listener, arena, &stop));
+        let ending = Stop(&stop);
+        let found = clients(address);
+        drop(ending);
+        server.join().unwrap().unwrap();
+        found
+    })
+}
+
+fn connect(address: SocketAddr) -> TcpStream {
+    let stream = TcpStream::connect(address).unwrap();
+    stream.set_read_timeout(Some(Duration::from_secs(60))).unwrap();
+    stream
+}
+
+fn receive(stream: &mut TcpStream) -> Value {
+    let mut length = [0; 4];
+    stream.read_exact(&mut length).unwrap();
+    let mut bytes = vec![0; u32::from_le_bytes(length) as usize];
+    stream.read_exact(&mut bytes).unwrap();
+    serde_json::from_slice(&bytes).unwrap()
+}
+
+fn ask(stream: &mut TcpStream, commands: &[Value]) -> Value {
+    stream.write_all(&framed(Value::from(commands).to_string().as_bytes())).unwrap();
+    receive(stream)
+}
+
+#[test]
+fn a_game_outlives_its_connection() {
+    let folder = Folder::new();
+    served(&folder, |address| {
+        let mut first = connect(address);
+        let mut bytes = vec![0; 8];
+        bytes.extend(framed(builtin("laser_lab").as_bytes()));
+        // In pieces, after two empty messages.
+        for piece in bytes.chunks(1000) {
+            first.write_all(piece).unwrap();
+        }
+        let here = ask(&mut first, &[command("room Lab2")])["objects"][0]["position"].clone();
+        drop(first);
+        let (mut second, mut third) = (connect(address), connect(address));
+        assert_eq!(ask(&mut second, &[])["objects"][0]["position"], here);
+        // Whoever only looks whether the port is open does not disturb.
+        drop(connect(address));
+        assert_eq!(ask(&mut third, &[])["objects"][0]["position"], here);
+        third.write_all(&framed(builtin("warm_coffee").as_bytes())).unwrap();
+        assert_eq!(ask(&mut third, &[])["challengeProgress"]["ChallengeGoals"].as_array().unwrap().len(), 3);
+        assert_eq!(ask(&mut second, &[])["challengeProgress"]["ChallengeGoals"].as_array().unwrap().len(), 3);
+    });
+    assert_eq!(folder.logs().len(), 2);
+}
+
+#[test]
+fn too_long_a_message_is_refused_and_ends_the_connection() {
+    let folder = Folder::new();
+    served(&folder, |address| {
+        let mut client = connect(address);
+        client.write_all(&u32::try_from(LONGEST + 1).unwrap().to_le_bytes()).unwrap();
+        client.write_all(&[b' '; 5000]).unwrap();
+        let reply = receive(&mut client);
+        assert_eq!(reply["lastActionSuccess"], "IncorrectActionFormat");
+        assert!(reply["message"].as_str().unwrap().contains("67108865 bytes"), "{reply}");
+        assert_eq!(client.read(&mut [0]).unwrap(), 0);
+        assert_eq!(ask(&mut connect(address), &[])["lastActionSuccess"], "ArenaUnavailable");
+    });
+}
+
+#[test]
+fn clients_beyond_the_most_are_sent_away() {
+    let folder = Folder::new();
+    served(&folder, |address| {
+        let mut clients: Vec<TcpStream> = (0..16).map(|_| connect(address)).collect();
+        for client in &mut clients {
+            assert_eq!(ask(client, &[])["lastActionSuccess"], "ArenaUnavailable");
+        }
+        assert_eq!(connect(address).read(&mut [0]).unwrap_or(0), 0);
+        assert_eq!(ask(&mut clients[7], &[])["lastActionSuccess"], "ArenaUnavailable");
+    });
+}
+
+#[test]
+fn a_mask_agent_in_python_plays_a_mission() {
+    if Command::new("python3").arg("--version").output().is_err() {
+        eprintln!("skipped: there is no python3");
+        return;
+    }
+    let folder = Folder::new();
+    let missions = Folder::new();
+    let file = |name: &str| {
+        let path = missions.0.join(name);
+        std::fs::write(&path, builtin(name)).unwrap();
+        path
+    };
+    let output = served(&folder, |address| {
+        Command::new("python3")
+            .arg(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/mask_agent.py"))
+            .arg(address.port().to_string())
+            .args([file("warm_coffee.json"), file("laser_lab.json")])
+            .env("PYTHONDONTWRITEBYTECODE", "1")
+            .output()
+            .unwrap()
+    });
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let result: Value = serde_json::from_slice(&output.stdout).unwrap();
+    println!("{result}");
+    assert_eq!(result["goals"], Value::from(vec![true; 3]));
+    assert!(result["masks"].as_u64().unwrap() >= 10);
+    assert_eq!(result["nothing"], "InvalidObjectClass");
+    assert!(result["relaunched"].as_array().unwrap().contains(&Value::from(false)));
+    assert_eq!((&result["carried_on"], &result["again"][0]), (&Value::from(true), &Value::from(false)));
+    assert_eq!(result["second"], "ActionSuccessful");
+    assert_eq!(folder.logs().len(), 4);
+}

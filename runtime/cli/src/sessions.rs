@@ -1,0 +1,26 @@
+//! Where the logs of sessions are kept.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+use anyhow::Context as _;
+
+/// The folder that was asked for, or the one for sessions in the user's data folder; made if it is not there.
+pub fn folder(asked: Option<&Path>) -> anyhow::Result<PathBuf> {
+    let folder = asked.map_or_else(|| data_folder().join("sessions"), Path::to_owned);
+    fs::create_dir_all(&folder).with_context(|| folder.display().to_string())?;
+    Ok(folder)
+}
+
+/// The time now, as names of logs have it.
+pub fn time() -> String {
+    jiff::Zoned::now().strftime("%Y-%m-%d_%H-%M-%S").to_string()
+}
+
+fn data_folder() -> PathBuf {
+    let home = || std::env::var_os("HOME").map(|home| Path::new(&home).join(".local/share"));
+    let base = std::env::var_os("XDG_DATA_HOME").map(PathBuf::from).filter(|path| path.is_absolute());
+    base.or_else(home).unwrap_or_else(std::env::temp_dir).join("cohabit")
+}

@@ -1,0 +1,39 @@
+//! Pictures when somebody asks for them: for those who step an engine themselves, as fast as they like.
+
+use std::sync::Arc;
+
+use cohabit_bus::{BusError, CameraId, Transport, monotonic_nanos};
+use cohabit_render::{Lens, MeshLibrary, Renderer};
+
+use crate::{build::SessionPlan, camera_plan::CameraPlan, engine::Engine, scene::Moment, studio::Studio};
+
+/// Cameras of one session that look only when they are told to.
+pub struct Stills {
+    studio: Studio,
+}
+
+impl Stills {
+    /// These cameras in the floor plan of `plan`, each with its topic on `bus`.
+    ///
+    /// # Errors
+    /// [`BusError`].
+    pub fn new(
+        plan: &SessionPlan,
+        meshes: Arc<MeshLibrary>,
+        renderer: Box<dyn Renderer>,
+        cameras: &[CameraPlan],
+        bus: &dyn Transport,
+    ) -> Result<Self, BusError> {
+        let (layout, catalog) = (Arc::clone(&plan.layout), Arc::clone(&plan.catalog));
+        Ok(Self { studio: Studio::new(meshes, layout, catalog, renderer, cameras, bus)? })
+    }
+
+    /// Renders what a camera sees of the world as it is now, and sends it on the camera's topic; with another lens than
+    /// its own, if one is given. A camera that is not there, or whose body is not, sends nothing.
+    ///
+    /// # Errors
+    /// [`BusError::Send`].
+    pub fn shoot(&mut self, engine: &Engine, camera: CameraId, lens: Option<Lens>) -> Result<(), BusError> {
+        self.studio.shoot_now(&Moment::capture(engine, monotonic_nanos()), camera, lens)
+    }
+}
