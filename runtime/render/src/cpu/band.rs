@@ -5,7 +5,7 @@ use super::facet::Facets;
 use super::raster::Rows;
 use super::setup::Corner;
 use super::shade::Shader;
-use super::strip::{Out, Strip};
+use super::strip::{Out, Sight, Strip};
 use super::{Canvas, NOTHING};
 use crate::camera::FAR_M;
 use crate::planes::Planes;
@@ -117,6 +117,7 @@ fn fill_rows(vectors: impl Vectors, band: &mut Band<'_>, width: usize, shader: &
             normals: band.normals.as_deref_mut().map(|plane| plane[four].as_chunks_mut().0),
             ids,
         };
-        shader.row(vectors, &mut strip, facets, band.first_row + row, seen, &band.nearness[span], out);
+        let sight = Sight { seen, nearness: &band.nearness[span] };
+        shader.row(vectors, &mut strip, facets, band.first_row + row, sight, out);
     }
 }

@@ -11,7 +11,7 @@ use super::avx2::Vectors;
 use super::draw::Draw;
 use super::facet::{Facets, Shine};
 use super::numbers::Numbers;
-use super::strip::{LONG, Out, Strip};
+use super::strip::{LONG, Out, Sight, Strip};
 use crate::camera::View;
 use crate::color::{from_srgb, srgb_table, to_srgb};
 use crate::pattern::{Pattern, Picture, Pictures};
@@ -109,18 +109,18 @@ impl<'a> Shader<'a> {
         strip: &mut Strip,
         facets: &mut Facets,
         y: usize,
-        seen: &[u32],
-        nearness: &[f32],
+        sight: Sight<'_>,
         mut out: Out<'_>,
     ) {
-        for from in (0..seen.len()).step_by(LONG) {
-            let to = (from + LONG).min(seen.len());
+        for from in (0..sight.seen.len()).step_by(LONG) {
+            let to = (from + LONG).min(sight.seen.len());
+            let sight = Sight { seen: &sight.seen[from..to], nearness: &sight.nearness[from..to] };
             let mut out = Out {
                 color: out.color.as_deref_mut().map(|row| &mut row[from..to]),
                 normals: out.normals.as_deref_mut().map(|row| &mut row[from..to]),
                 ids: out.ids.as_deref_mut().map(|row| &mut row[from..to]),
             };
-            strip.shade(vectors, self, facets, (from, y), &seen[from..to], &nearness[from..to], &mut out);
+            strip.shade(vectors, self, facets, (from, y), sight, &mut out);
         }
     }
 

@@ -74,6 +74,13 @@ pub(super) struct Strip {
     light: [Floats; 3],
 }
 
+/// What pixels see: the number of a triangle, and one over the depth there, 1/m.
+#[derive(Clone, Copy)]
+pub(super) struct Sight<'a> {
+    pub seen: &'a [u32],
+    pub nearness: &'a [f32],
+}
+
 /// The rows of the planes that a strip fills.
 pub(super) struct Out<'a> {
     pub color: Option<&'a mut [[u8; 4]]>,
@@ -119,8 +126,7 @@ impl Strip {
         shader: &Shader<'_>,
         facets: &mut Facets,
         (first, y): (usize, usize),
-        seen: &[u32],
-        nearness: &[f32],
+        Sight { seen, nearness }: Sight<'_>,
         out: &mut Out<'_>,
     ) {
         match nearness.first_chunk() {
