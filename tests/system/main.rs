@@ -4,6 +4,7 @@
 mod bad_input;
 mod browser;
 mod determinism;
+mod doctor;
 mod eval;
 mod missions;
 mod sessions;

@@ -22,7 +22,7 @@ pub enum BusError {
         reason: String,
     },
     /// A sample could not be sent: shared memory is full, say.
-    #[error("send on topic `{topic}`: {reason} (is /dev/shm full?)")]
+    #[error("send on topic `{topic}`: {reason} (is /dev/shm full? `cohabit doctor` tells)")]
     Send {
         /// Which.
         topic: Topic,
@@ -39,7 +39,7 @@ pub enum BusError {
     },
     /// A sample is not of this version of the messages.
     #[error(
-        "a peer on topic `{topic}` speaks version {found} of the messages, this program version {expected}: use one build for all"
+        "a peer on topic `{topic}` speaks version {found} of the messages, this program version {expected}: use one build for all, `cohabit doctor` tells which sessions run another"
     )]
     Version {
         /// Which.

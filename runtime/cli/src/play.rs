@@ -96,7 +96,8 @@ impl Play {
     }
 }
 
-fn data_folder() -> PathBuf {
+/// Where this user's data lies.
+pub fn data_folder() -> PathBuf {
     let home = || std::env::var_os("HOME").map(|home| Path::new(&home).join(".local/share"));
     let base = std::env::var_os("XDG_DATA_HOME").map(PathBuf::from).filter(|path| path.is_absolute());
     base.or_else(home).unwrap_or_else(std::env::temp_dir).join("cohabit")
