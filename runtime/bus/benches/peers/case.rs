@@ -52,7 +52,6 @@ impl Case {
     }
 
     /// The name that no other measurement has.
-    #[allow(dead_code, reason = "sockets need none")]
     pub fn name(&self) -> &str {
         self.folder.file_name().and_then(|name| name.to_str()).unwrap_or_default()
     }

@@ -1,7 +1,9 @@
 //! zenoh between peers: over TCP, with or without its shared memory.
 
+#[allow(dead_code, reason = "who starts this program uses the rest")]
 #[path = "../../board.rs"]
 mod board;
+#[allow(dead_code, reason = "who starts this program uses the rest")]
 #[path = "../../case.rs"]
 mod case;
 #[path = "../../work.rs"]

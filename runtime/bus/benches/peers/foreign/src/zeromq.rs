@@ -1,7 +1,9 @@
 //! ZeroMQ's publish and subscribe sockets over its `ipc://` carrier.
 
+#[allow(dead_code, reason = "who starts this program uses the rest")]
 #[path = "../../board.rs"]
 mod board;
+#[allow(dead_code, reason = "who starts this program uses the rest")]
 #[path = "../../case.rs"]
 mod case;
 #[path = "../../work.rs"]
