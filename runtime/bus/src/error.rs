@@ -29,6 +29,16 @@ pub enum BusError {
         /// What the transport said.
         reason: String,
     },
+    /// A payload is longer than its topic takes.
+    #[error("a message of {bytes} bytes on topic `{topic}`, which takes at most {most}: send it in parts")]
+    TooLong {
+        /// Which.
+        topic: Topic,
+        /// The payload's length.
+        bytes: usize,
+        /// The longest that is taken.
+        most: usize,
+    },
     /// A sample could not be received.
     #[error("receive on topic `{topic}`: {reason}")]
     Receive {

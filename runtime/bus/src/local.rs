@@ -167,7 +167,9 @@ impl Drop for LocalPublisher {
 }
 
 pub(crate) fn payload_bytes(topic: Topic, bytes: usize) -> Result<u32, BusError> {
-    u32::try_from(bytes).map_err(|_| BusError::Send { topic, reason: format!("{bytes} bytes are too many") })
+    let most = topic.most_bytes().unwrap_or(u32::MAX as usize);
+    let fits = u32::try_from(bytes).ok().filter(|_| bytes <= most);
+    fits.ok_or(BusError::TooLong { topic, bytes, most })
 }
 
 fn ring(bell: &Bell) -> bool {

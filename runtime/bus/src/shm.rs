@@ -80,7 +80,7 @@ impl Shm {
             .subscriber_max_buffer_size(topic.depth())
             .subscriber_max_borrowed_samples(MOST_HELD)
             .max_publishers(MAX_PEERS)
-            .max_subscribers(MAX_PEERS)
+            .max_subscribers(topic.most_subscribers())
             .max_nodes(MAX_PEERS)
             .open_or_create()
             .map_err(|e| failed(format!("{e:?}")))
@@ -99,10 +99,12 @@ impl Transport for Shm {
     fn publisher(&self, topic: Topic) -> Result<Box<dyn Publisher>, BusError> {
         let failed = |reason: String| BusError::Open { topic, reason };
         let service = self.topic_service(topic)?;
+        let grows = topic.most_bytes().is_none();
+        let strategy = if grows { AllocationStrategy::PowerOfTwo } else { AllocationStrategy::Static };
         let port = service
             .publisher_builder()
             .initial_max_slice_len(1 + Block::count_for(topic.usual_bytes()))
-            .allocation_strategy(AllocationStrategy::PowerOfTwo)
+            .allocation_strategy(strategy)
             .backpressure_strategy(BackpressureStrategy::DiscardData)
             .create()
             .map_err(|e| failed(format!("{e:?}")))?;

@@ -35,7 +35,7 @@ pub trait Publisher: Send {
     /// Gives the sample's sequence number.
     ///
     /// # Errors
-    /// [`BusError::Send`], when there is no memory left.
+    /// [`BusError::Send`], when there is no memory left; [`BusError::TooLong`].
     fn send(&mut self, tick: u64, bytes: usize, write: &mut dyn FnMut(&mut [u8])) -> Result<u64, BusError>;
 
     /// How many subscribe now; a publisher whose samples are costly need make none for nobody.

@@ -96,6 +96,18 @@ fn payloads_of_any_length_arrive() {
 }
 
 #[test]
+fn a_message_too_long_for_its_topic_is_refused_and_the_next_arrives() {
+    check(|bus| {
+        let mut reader = bus.subscriber(Topic::Commands).unwrap();
+        let mut writer = bus.publisher(Topic::Commands).unwrap();
+        let error = writer.send(1, 100_000, &mut |_| ()).unwrap_err();
+        assert!(error.to_string().contains("100000 bytes on topic `commands`"), "{error}");
+        send(&mut *writer, 2, b"x");
+        assert_eq!((ticks(&mut *reader), reader.lost()), (vec![2], 0));
+    });
+}
+
+#[test]
 fn every_reader_gets_everything() {
     check(|bus| {
         let mut readers: Vec<_> = (0..16).map(|_| bus.subscriber(Topic::Dialog).unwrap()).collect();

@@ -16,7 +16,7 @@ use super::{
 /// What a log grows by in an hour of the default session: measured, and rounded up.
 const LOG_BYTES_PER_HOUR: u64 = 128 << 20;
 /// Files that the busiest process of a session holds open: measured, and rounded up.
-const OPEN_FILES: u64 = 512;
+const OPEN_FILES: u64 = 256;
 
 /// Whether sessions can have their small files.
 pub fn runtime_folder(machine: &Machine) -> Finding {
