@@ -1,7 +1,7 @@
 //! What processes sleep on: a count in shared memory, and the kernel's queue of those that wait for it to change.
 //!
-//! Ringing is one system call however many sleep, and none when nobody does. A process that is killed in its sleep leaves
-//! the count of sleepers one too high, which costs later ringers that one call and nothing else.
+//! Ringing is one system call however many sleep, and none when nobody does. A process that is killed in its sleep
+//! leaves the count of sleepers one too high, which costs later ringers that one call and nothing else.
 
 use std::{
     fs::File,
@@ -27,8 +27,8 @@ pub(crate) struct Bell {
     memory: NonNull<Strokes>,
 }
 
-/// What lies in the file of a group's wake-ups, `/dev/shm/cohabit_<user>_<session>_wake.<group>`: who has sent adds one to
-/// `rung` and wakes all that wait for it to change (`FUTEX_WAKE`); who sleeps counts among `sleepers` meanwhile.
+/// What lies in the file of a group's wake-ups, `/dev/shm/cohabit_<user>_<session>_wake.<group>`: who has sent adds one
+/// to `rung` and wakes all that wait for it to change (`FUTEX_WAKE`); who sleeps counts among `sleepers` meanwhile.
 #[derive(Debug)]
 #[repr(C)]
 struct Strokes {

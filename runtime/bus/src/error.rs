@@ -49,7 +49,8 @@ pub enum BusError {
     },
     /// A sample is not of this version of the messages.
     #[error(
-        "a peer on topic `{topic}` speaks version {found} of the messages, this program version {expected}: use one build for all, `cohabit doctor` tells which sessions run another"
+        "a peer on topic `{topic}` speaks version {found} of the messages, this program version {expected}: use one \
+         build for all (`cohabit doctor` tells which sessions run another)"
     )]
     Version {
         /// Which.

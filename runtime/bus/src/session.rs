@@ -35,7 +35,8 @@ pub enum SessionError {
     },
     /// There is no shared memory, or none left.
     #[error(
-        "/dev/shm cannot be used: {0}; free it, or mount a writable tmpfs there (`mount -t tmpfs tmpfs /dev/shm`), `cohabit doctor` tells more"
+        "/dev/shm cannot be used: {0}; free it, or mount a writable tmpfs there (`mount -t tmpfs tmpfs /dev/shm`); \
+         `cohabit doctor` tells more"
     )]
     NoSharedMemory(io::Error),
 }

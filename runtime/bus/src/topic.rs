@@ -67,8 +67,8 @@ impl Topic {
         }
     }
 
-    /// The most bytes of a payload where messages have a bound. Such a topic's memory need not be able to grow, which would
-    /// take 256 bytes for each sample in each connection: many, where many samples are kept.
+    /// The most bytes of a payload where messages have a bound. Such a topic's memory need not be able to grow, which
+    /// would take 256 bytes for each sample in each connection: many, where many samples are kept.
     pub(crate) const fn most_bytes(self) -> Option<usize> {
         match self {
             Self::Events | Self::Commands => Some(1024),

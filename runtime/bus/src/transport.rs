@@ -29,7 +29,8 @@ pub trait Transport: Send + Sync {
     fn listener(&self, wake: Wake) -> Result<Box<dyn Listener>, BusError>;
 }
 
-/// Sends samples on one topic. What it has sent before a subscriber first looked for it may go with it when it is dropped.
+/// Sends samples on one topic. What it has sent before a subscriber first looked for it may go with it when it is
+/// dropped.
 pub trait Publisher: Send {
     /// Sends a sample of `bytes` bytes, written in place by `write` (the memory is not zeroed: write all of it).
     /// Gives the sample's sequence number.
@@ -48,10 +49,12 @@ pub trait Publisher: Send {
     fn update(&mut self) -> Result<(), BusError>;
 }
 
-/// Receives samples of one topic: those of a publisher in the order in which they were sent. What a publisher has sent is
-/// received also after it is gone, if anything of it was before. A topic holds so many of the newest samples of each publisher for a slow subscriber.
+/// Receives samples of one topic: those of a publisher in the order in which they were sent. What a publisher has sent
+/// is received also after it is gone, if anything of it was before. A topic holds so many of the newest samples of each
+/// publisher for a slow subscriber.
 pub trait Subscriber: Send {
-    /// The next sample, if one is there. A subscriber may hold eight at once, and receives no more until it lets go of one.
+    /// The next sample, if one is there. A subscriber may hold eight at once, and receives no more until it lets go of
+    /// one.
     ///
     /// # Errors
     /// [`BusError::Receive`], [`BusError::Version`], [`BusError::Malformed`].
@@ -69,8 +72,8 @@ pub trait Subscriber: Send {
         Ok(newest)
     }
 
-    /// How many samples came and went unread because this subscriber was slow: of each publisher, since the first one of
-    /// it that was received.
+    /// How many samples came and went unread because this subscriber was slow: of each publisher, since the first one
+    /// of it that was received.
     fn lost(&self) -> u64;
 }
 

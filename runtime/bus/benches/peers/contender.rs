@@ -40,20 +40,24 @@ const FOREIGNERS: [Foreign; 2] = [
 ];
 
 /// What is not measured, and why.
-const LEFT_OUT: [&str; 1] = [
-    "dora is not measured: its nodes run under its daemon and command line alone, which Cargo cannot build as a library",
-];
+const LEFT_OUT: [&str; 1] =
+    ["dora is not measured: its nodes run under a daemon of its own alone, which this bench does not start"];
 
-/// All that can be measured here; says what cannot.
-pub fn all(folder: &Path) -> std::io::Result<Vec<Contender>> {
+/// This bus, and what needs nothing that is not here.
+pub fn own() -> std::io::Result<Vec<Contender>> {
     let own = std::env::current_exe()?;
     let of = |carrier, title: String, copies| Contender { carrier, title, copies, program: own.clone() };
-    let mut all = vec![
+    Ok(vec![
         of("own", format!("cohabit-bus {}", env!("CARGO_PKG_VERSION")), false),
         of("iceoryx2", format!("iceoryx2 {}, its own events", version(Path::new(LOCK), "iceoryx2")), false),
         of("unix", "Unix stream socket".to_owned(), true),
         of("tcp", "TCP loopback".to_owned(), true),
-    ];
+    ])
+}
+
+/// Those that can be built; says of which it cannot.
+pub fn foreign(folder: &Path) -> Vec<Contender> {
+    let mut all = Vec::new();
     for foreign in FOREIGNERS {
         match build(foreign.program, folder) {
             Ok(program) => {
@@ -69,7 +73,7 @@ pub fn all(folder: &Path) -> std::io::Result<Vec<Contender>> {
         }
     }
     LEFT_OUT.iter().for_each(|line| println!("{line}"));
-    Ok(all)
+    all
 }
 
 /// Builds a program of the foreign package, as its lock file says.

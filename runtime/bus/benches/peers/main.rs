@@ -4,16 +4,17 @@
 //! ```text
 //! cargo bench -p cohabit-bus --bench peers              # measures: about a quarter of an hour
 //! cargo bench -p cohabit-bus --bench peers -- quick     # measures less, in about a minute
-//! cargo bench -p cohabit-bus --bench peers -- own       # this bus alone
+//! cargo bench -p cohabit-bus --bench peers -- own       # without peers that must be built
 //! ```
 //!
-//! A sender and each subscriber are processes of their own, so sixteen subscribers share what cores there are. The sender
-//! stamps a message when it is written and nothing is left but to send it; a subscriber stamps it when it has it or, where
-//! it is touched, has read every cache line of it. Messages go at a pace, and one more is only sent once all have the
-//! last one; then as fast as all take them, two under way at once. Processor time is that of all processes of a message.
+//! A sender and each subscriber are processes of their own, so sixteen subscribers share what cores there are. The
+//! sender stamps a message when it is written and nothing is left but to send it; a subscriber stamps it when it has it
+//! or, where it is touched, has read every cache line of it. Messages go at a pace, and one more is only sent once all
+//! have the last one; then as fast as all take them, two under way at once. Processor time is that of all processes of
+//! a message.
 //!
-//! Peers from elsewhere are built into the target folder on the first run, from a package and a lock file of their own, so
-//! that nobody else compiles them.
+//! Peers from elsewhere are built into the target folder on the first run, from a package and a lock file of their own,
+//! so that nobody else compiles them.
 
 mod board;
 mod case;
@@ -60,9 +61,9 @@ fn main() -> Result<(), Failure> {
     }
     let has = |word: &str| arguments.iter().any(|argument| argument == word);
     let extent = if has("quick") { &QUICK } else { &FULL };
-    let mut contenders = contender::all(&Path::new(env!("CARGO_TARGET_TMPDIR")).join("peers"))?;
-    if has("own") {
-        contenders.truncate(1);
+    let mut contenders = contender::own()?;
+    if !has("own") {
+        contenders.extend(contender::foreign(&Path::new(env!("CARGO_TARGET_TMPDIR")).join("peers")));
     }
     println!("machine: {}; load before: {}", machine(), load());
     let rows = run(extent, &contenders)?;

@@ -17,8 +17,8 @@ What lies in shared memory, byte by byte, for programs that do not use this crat
 
 Numbers are little-endian. A sample is 64-byte blocks on a 64-byte boundary: the first is the `Envelope`, the payload
 begins with the second, and `payload_bytes` says where it ends. Records lie one behind the other without padding; a list
-begins on an 8-byte boundary from the payload's start, and what is between is zero. `Text<N>` is a `u16` length, then `N`
-bytes of UTF-8 of which so many count; the rest is zero.
+begins on an 8-byte boundary from the payload's start, and what is between is zero. `Text<N>` is a `u16` length, then
+`N` bytes of UTF-8 of which so many count; the rest is zero.
 ";
 
 /// The unit that a field's name ends in.

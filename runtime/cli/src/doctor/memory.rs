@@ -11,7 +11,8 @@ use super::{
 
 /// What the kernel calls a tmpfs.
 const TMPFS: i64 = 0x0102_1994;
-/// What the default session takes of it, with a page that shows every camera of one body in turn: measured, and rounded up.
+/// What the default session takes of it, with a page that shows every camera of one body in turn: measured, and rounded
+/// up.
 const SESSION_BYTES: u64 = 48 << 20;
 /// What one takes with more bodies and cameras.
 const LARGE_SESSION_BYTES: u64 = 512 << 20;
