@@ -10,7 +10,7 @@ use super::{
 };
 
 /// What the kernel calls a tmpfs.
-const TMPFS: i64 = 0x0102_1994;
+const TMPFS: rustix::fs::FsWord = 0x0102_1994;
 /// What the default session takes of it, with a page that shows every camera of one body in turn: measured, and rounded
 /// up.
 const SESSION_BYTES: u64 = 48 << 20;
@@ -46,7 +46,7 @@ pub fn shared_memory(machine: &Machine) -> Finding {
     };
     let all = system.f_blocks * u64::try_from(system.f_bsize).unwrap_or(0);
     let found = format!("{} of {} free in {}", size(free), size(all), folder.display());
-    judge(found, free, i64::try_from(system.f_type).unwrap_or(0) == TMPFS)
+    judge(found, free, system.f_type == TMPFS)
 }
 
 fn judge(found: String, free: u64, is_tmpfs: bool) -> Finding {
