@@ -99,7 +99,7 @@ fn result(child: &mut Child, deadline: Instant) -> Result<HashMap<String, String
     let status = loop {
         match child.try_wait()? {
             Some(status) => break status,
-            None if Instant::now() > deadline => return Err("it does not end".into()),
+            None if Instant::now() > deadline => return Err("one of its processes does not end".into()),
             None => sleep(Duration::from_millis(20)),
         }
     };

@@ -39,7 +39,9 @@ impl Row {
                 continue;
             };
             let Figures { p50_us, p99_us, most_us, cpu_us, messages_s, lost, left_out } = figures;
-            let mb_s = messages_s * bytes as f64 / 1e6;
+            // Where nothing is copied and nobody reads, no bytes move.
+            let moved = touched || contender.copies;
+            let mb_s = if moved { format!("{:.0}", messages_s * bytes as f64 / 1e6) } else { "-".to_owned() };
             let ratio = best / p50_us;
             let mut notes = String::new();
             if *lost > 0 {
@@ -49,7 +51,8 @@ impl Row {
                 notes += &format!("  {left_out} beats left out");
             }
             println!(
-                "{:38} {p50_us:9.0} {p99_us:9.0} {most_us:9.0} {cpu_us:9.0} {messages_s:10.0} {mb_s:9.0} {ratio:6.1}{notes}",
+                "{:38} {p50_us:9.0} {p99_us:9.0} {most_us:9.0} {cpu_us:9.0} {messages_s:10.0} {mb_s:>9} {ratio:6.1}\
+                 {notes}",
                 contender.title
             );
         }
