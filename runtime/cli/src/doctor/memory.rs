@@ -11,13 +11,12 @@ use super::{
 
 /// What the kernel calls a tmpfs.
 const TMPFS: rustix::fs::FsWord = 0x0102_1994;
-/// What the default session takes of it, with a page that shows every camera of one body in turn: measured, and rounded
-/// up.
-const SESSION_BYTES: u64 = 48 << 20;
-/// What one takes with more bodies and cameras.
+/// What the default session with one page takes of it: 17 MiB, measured, and as much to spare.
+const SESSION_BYTES: u64 = 32 << 20;
+/// Room for many bodies and large cameras.
 const LARGE_SESSION_BYTES: u64 = 512 << 20;
-/// What all processes of a session take beside it: measured, and rounded up.
-const SESSION_MEMORY: u64 = 512 << 20;
+/// What all processes of a session take beside it: 230 MiB, measured, and something to spare.
+const SESSION_MEMORY: u64 = 384 << 20;
 
 const FOLDER: &str = "dev/shm";
 

@@ -13,9 +13,9 @@ use super::{
     machine::{Machine, existing, free_bytes},
 };
 
-/// What a log grows by in an hour of the default session: measured, and rounded up.
+/// What a log grows by in an hour of the default session: 41 MiB while nothing much happens, measured; three times that.
 const LOG_BYTES_PER_HOUR: u64 = 128 << 20;
-/// Files that the busiest process of a session holds open: measured, and rounded up.
+/// Files that the busiest process of a session holds open: 61, measured with one body and one page; four times that.
 const OPEN_FILES: u64 = 256;
 
 /// Whether sessions can have their small files.
