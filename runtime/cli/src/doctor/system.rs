@@ -13,7 +13,7 @@ use super::{
     machine::{Machine, existing, free_bytes},
 };
 
-/// What a log grows by in an hour of the default session: 41 MiB while nothing much happens, measured; three times that.
+/// What a log grows by in an hour of the default session: some 40 MiB while nothing much happens, measured; three times that.
 const LOG_BYTES_PER_HOUR: u64 = 128 << 20;
 /// Files that the busiest process of a session holds open: 61, measured with one body and one page; four times that.
 const OPEN_FILES: u64 = 256;
