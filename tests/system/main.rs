@@ -5,6 +5,7 @@ mod arena;
 mod bad_input;
 mod browser;
 mod determinism;
+mod doctor;
 mod eval;
 mod missions;
 mod sessions;

@@ -22,12 +22,22 @@ pub enum BusError {
         reason: String,
     },
     /// A sample could not be sent: shared memory is full, say.
-    #[error("send on topic `{topic}`: {reason} (is /dev/shm full?)")]
+    #[error("send on topic `{topic}`: {reason} (is /dev/shm full? `cohabit doctor` tells)")]
     Send {
         /// Which.
         topic: Topic,
         /// What the transport said.
         reason: String,
+    },
+    /// A payload is longer than its topic takes.
+    #[error("a message of {bytes} bytes on topic `{topic}`, which takes at most {most}: send it in parts")]
+    TooLong {
+        /// Which.
+        topic: Topic,
+        /// The payload's length.
+        bytes: usize,
+        /// The longest that is taken.
+        most: usize,
     },
     /// A sample could not be received.
     #[error("receive on topic `{topic}`: {reason}")]
@@ -39,7 +49,8 @@ pub enum BusError {
     },
     /// A sample is not of this version of the messages.
     #[error(
-        "a peer on topic `{topic}` speaks version {found} of the messages, this program version {expected}: use one build for all"
+        "a peer on topic `{topic}` speaks version {found} of the messages, this program version {expected}: use one \
+         build for all (`cohabit doctor` tells which sessions run another)"
     )]
     Version {
         /// Which.

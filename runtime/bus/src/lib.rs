@@ -18,6 +18,7 @@
 //! # Ok::<(), cohabit_bus::BusError>(())
 //! ```
 
+mod bell;
 mod camera;
 mod envelope;
 mod error;
@@ -33,7 +34,7 @@ pub use camera::{CameraId, CameraName, CameraNameError};
 pub use envelope::{Block, Envelope, monotonic_nanos, wall_nanos};
 pub use error::BusError;
 pub use local::Local;
-pub use session::{Session, SessionError};
+pub use session::{Remains, Session, SessionError};
 pub use shm::Shm;
 pub use text::Text;
 pub use topic::{Topic, Wake};

@@ -10,7 +10,10 @@ use crate::{
     envelope::{Block, Envelope},
     error::BusError,
     topic::{Topic, Wake},
-    transport::{GapCounter, Listener, Publisher, Sample, SampleMemory, Subscriber, Transport, fill, new_run},
+    transport::{
+        GapCounter, Listener, MOST_HELD, Publisher, Sample, SampleMemory, Subscriber, Transport, fill, holds_too_many,
+        new_run,
+    },
 };
 
 /// A transport between the threads of one process. Clones share it.
@@ -28,13 +31,33 @@ struct Hub {
 
 #[derive(Default)]
 struct Channel {
-    kept: VecDeque<Arc<Vec<Block>>>,
+    /// For late joiners.
+    kept: Queue,
     queues: Vec<Weak<Mutex<Queue>>>,
 }
 
-#[derive(Default)]
+/// Samples in the order in which they were sent, so many of each publisher's run at most.
+#[derive(Clone, Default)]
 struct Queue {
-    samples: VecDeque<Arc<Vec<Block>>>,
+    samples: VecDeque<(u64, Arc<Vec<Block>>)>,
+}
+
+impl Queue {
+    /// Adds a sample; drops the oldest of that run if there are now more than `depth` of it.
+    fn push(&mut self, run: u64, sample: Arc<Vec<Block>>, depth: usize) {
+        self.samples.push_back((run, sample));
+        let of_run = || self.samples.iter().enumerate().filter(|(_, (other, _))| *other == run);
+        if self.samples.len() > depth && of_run().count() > depth {
+            let oldest = of_run().next().map(|(index, _)| index);
+            if let Some(index) = oldest {
+                self.samples.remove(index);
+            }
+        }
+    }
+
+    fn forget(&mut self, run: u64) {
+        self.samples.retain(|(other, _)| *other != run);
+    }
 }
 
 #[derive(Default)]
@@ -43,9 +66,15 @@ struct Bell {
     changed: Condvar,
 }
 
-impl SampleMemory for Arc<Vec<Block>> {
+/// A sample that somebody holds: its subscriber's count of them goes down when it is dropped.
+struct Held {
+    blocks: Arc<Vec<Block>>,
+    _count: Arc<()>,
+}
+
+impl SampleMemory for Held {
     fn blocks(&self) -> &[Block] {
-        self
+        &self.blocks
     }
 }
 
@@ -69,9 +98,9 @@ impl Transport for Local {
     fn subscriber(&self, topic: Topic) -> Result<Box<dyn Subscriber>, BusError> {
         let mut hub = lock(&self.hub);
         let channel = hub.topics.entry(topic).or_default();
-        let queue = Arc::new(Mutex::new(Queue { samples: channel.kept.clone() }));
+        let queue = Arc::new(Mutex::new(channel.kept.clone()));
         channel.queues.push(Arc::downgrade(&queue));
-        Ok(Box::new(LocalSubscriber { topic, queue, gaps: GapCounter::default() }))
+        Ok(Box::new(LocalSubscriber { topic, queue, gaps: GapCounter::default(), held: Arc::default() }))
     }
 
     fn listener(&self, wake: Wake) -> Result<Box<dyn Listener>, BusError> {
@@ -105,10 +134,10 @@ impl Publisher for LocalPublisher {
         let blocks = Arc::new(blocks);
         let mut hub = lock(&self.bus.hub);
         let channel = hub.topics.entry(self.topic).or_default();
-        keep(&mut channel.kept, Arc::clone(&blocks), self.topic.history());
+        channel.kept.push(self.run, Arc::clone(&blocks), self.topic.history());
         channel.queues.retain(|queue| {
             queue.upgrade().is_some_and(|queue| {
-                keep(&mut lock(&queue).samples, Arc::clone(&blocks), self.topic.depth());
+                lock(&queue).push(self.run, Arc::clone(&blocks), self.topic.depth());
                 true
             })
         });
@@ -129,15 +158,18 @@ impl Publisher for LocalPublisher {
     }
 }
 
-pub(crate) fn payload_bytes(topic: Topic, bytes: usize) -> Result<u32, BusError> {
-    u32::try_from(bytes).map_err(|_| BusError::Send { topic, reason: format!("{bytes} bytes are too many") })
+impl Drop for LocalPublisher {
+    fn drop(&mut self) {
+        if let Some(channel) = lock(&self.bus.hub).topics.get_mut(&self.topic) {
+            channel.kept.forget(self.run);
+        }
+    }
 }
 
-fn keep(queue: &mut VecDeque<Arc<Vec<Block>>>, sample: Arc<Vec<Block>>, depth: usize) {
-    queue.push_back(sample);
-    while queue.len() > depth {
-        queue.pop_front();
-    }
+pub(crate) fn payload_bytes(topic: Topic, bytes: usize) -> Result<u32, BusError> {
+    let most = topic.most_bytes().unwrap_or(u32::MAX as usize);
+    let fits = u32::try_from(bytes).ok().filter(|_| bytes <= most);
+    fits.ok_or(BusError::TooLong { topic, bytes, most })
 }
 
 fn ring(bell: &Bell) -> bool {
@@ -150,12 +182,17 @@ struct LocalSubscriber {
     topic: Topic,
     queue: Arc<Mutex<Queue>>,
     gaps: GapCounter,
+    /// Shared by all samples that are held.
+    held: Arc<()>,
 }
 
 impl Subscriber for LocalSubscriber {
     fn receive(&mut self) -> Result<Option<Sample>, BusError> {
-        let Some(memory) = lock(&self.queue).samples.pop_front() else { return Ok(None) };
-        let sample = Sample::new(self.topic, Box::new(memory))?;
+        if Arc::strong_count(&self.held) > MOST_HELD {
+            return Err(holds_too_many(self.topic));
+        }
+        let Some((_, blocks)) = lock(&self.queue).samples.pop_front() else { return Ok(None) };
+        let sample = Sample::new(self.topic, Box::new(Held { blocks, _count: Arc::clone(&self.held) }))?;
         self.gaps.saw(sample.envelope());
         Ok(Some(sample))
     }

@@ -1,9 +1,10 @@
 //! A session's name, where its shared memory lies, and how it is cleaned away.
 
 use std::{
+    collections::BTreeMap,
     fs::{self, File},
     io,
-    os::unix::fs::DirBuilderExt,
+    os::unix::fs::{DirBuilderExt as _, MetadataExt as _},
     path::{Path, PathBuf},
 };
 
@@ -33,7 +34,10 @@ pub enum SessionError {
         source: io::Error,
     },
     /// There is no shared memory, or none left.
-    #[error("/dev/shm cannot be used: {0}; free it, or mount a writable tmpfs there (`mount -t tmpfs tmpfs /dev/shm`)")]
+    #[error(
+        "/dev/shm cannot be used: {0}; free it, or mount a writable tmpfs there (`mount -t tmpfs tmpfs /dev/shm`); \
+         `cohabit doctor` tells more"
+    )]
     NoSharedMemory(io::Error),
 }
 
@@ -44,7 +48,20 @@ pub struct SessionLock {
     _file: File,
 }
 
+/// What lies in shared memory under the name of one session.
+#[derive(Clone, Debug, Eq, PartialEq)]
+pub struct Remains {
+    /// The user whose it is, by number.
+    pub user: u32,
+    /// The session's name.
+    pub session: String,
+    /// Memory that it takes now, bytes.
+    pub bytes: u64,
+}
+
 const SHARED_MEMORY: &str = "/dev/shm";
+/// What the names of all sessions' shared memory begin with.
+const PREFIX: &str = "cohabit_";
 
 impl Session {
     /// A session of that name.
@@ -73,13 +90,47 @@ impl Session {
     /// What the names of its shared memory begin with.
     #[must_use]
     pub fn prefix(&self) -> String {
-        format!("cohabit_{}_{}_", rustix::process::getuid().as_raw(), self.name)
+        format!("{PREFIX}{}_{}_", rustix::process::getuid().as_raw(), self.name)
+    }
+
+    /// A file of its shared memory, beside those that the transport makes.
+    pub(crate) fn shared_file(&self, name: &str) -> PathBuf {
+        Path::new(SHARED_MEMORY).join(format!("{}{}", self.prefix(), name.replace('/', ".")))
     }
 
     /// The folder of its small files.
     #[must_use]
     pub fn folder(&self) -> PathBuf {
         sessions_folder().join(&self.name)
+    }
+
+    /// The folder that holds those of all of this user's sessions.
+    #[must_use]
+    pub fn folder_of_all() -> PathBuf {
+        sessions_folder()
+    }
+
+    /// Whether a process supervises it now.
+    #[must_use]
+    pub fn is_supervised(&self) -> bool {
+        let file = File::options().write(true).open(self.lock_path());
+        file.is_ok_and(|file| flock(&file, FlockOperation::NonBlockingLockExclusive).is_err())
+    }
+
+    /// What lies in a folder of shared memory of any session of any user, in the order of users and names.
+    ///
+    /// # Errors
+    /// When the folder cannot be read.
+    pub fn in_shared_memory(folder: &Path) -> io::Result<Vec<Remains>> {
+        let mut all = BTreeMap::new();
+        for entry in fs::read_dir(folder)?.flatten() {
+            let (file, name) = (entry.metadata(), entry.file_name());
+            if let (Ok(file), Some(owner)) = (file, name.to_str().and_then(owner)) {
+                *all.entry(owner).or_default() += file.blocks() * 512;
+            }
+        }
+        let remains = |((user, session), bytes)| Remains { user, session, bytes };
+        Ok(all.into_iter().map(remains).collect())
     }
 
     /// Takes the session for this process to supervise, and wipes what an earlier one of that name left behind.
@@ -158,6 +209,13 @@ impl Session {
     }
 }
 
+/// The user and the session that shared memory of this name belongs to.
+fn owner(file: &str) -> Option<(u32, String)> {
+    let (user, rest) = file.strip_prefix(PREFIX)?.split_once('_')?;
+    let (session, _) = rest.split_once('_')?;
+    Some((user.parse().ok()?, session.to_owned()))
+}
+
 fn sessions_folder() -> PathBuf {
     let base = std::env::var_os("XDG_RUNTIME_DIR").map(PathBuf::from).filter(|path| path.is_dir());
     let base = base.unwrap_or_else(std::env::temp_dir);
@@ -189,9 +247,26 @@ mod tests {
         let lock = session.supervise().unwrap();
         assert!(matches!(session.supervise(), Err(SessionError::Busy(_))));
         assert!(session.folder().is_dir());
+        assert!(session.is_supervised());
         session.end(lock);
+        assert!(!session.is_supervised());
         assert!(!session.folder().exists());
         let lock = session.supervise().unwrap();
         session.end(lock);
+    }
+
+    #[test]
+    fn shared_memory_is_told_by_user_and_session() {
+        let folder = std::env::temp_dir().join(format!("cohabit-remains-{}", std::process::id()));
+        fs::create_dir_all(&folder).unwrap();
+        for name in ["cohabit_7_a-1_x", "cohabit_7_a-1_y", "cohabit_8_b_z", "cohabit_x_c_z", "cohabit_9", "other"] {
+            fs::write(folder.join(name), [1; 5000]).unwrap();
+        }
+        let found = Session::in_shared_memory(&folder).unwrap();
+        let named: Vec<_> = found.iter().map(|remains| (remains.user, remains.session.as_str())).collect();
+        assert_eq!(named, [(7, "a-1"), (8, "b")]);
+        assert_eq!(found[0].bytes, 2 * found[1].bytes);
+        assert!(found[1].bytes >= 5000);
+        fs::remove_dir_all(&folder).unwrap();
     }
 }

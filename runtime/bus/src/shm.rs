@@ -3,15 +3,12 @@
 //! Every session has its own name prefix and root folder, so sessions never meet, and a supervisor can wipe all that
 //! one left behind. All files are the user's own (0600).
 
-use std::{sync::Arc, time::Duration};
+use std::{io, sync::Arc, time::Duration};
 
 use iceoryx2::{
     node::{Node, NodeBuilder},
     port::{
-        listener::{Listener as IoxListener, ListenerWaitError},
-        notifier::Notifier,
-        publisher::Publisher as IoxPublisher,
-        subscriber::Subscriber as IoxSubscriber,
+        ReceiveError, publisher::Publisher as IoxPublisher, subscriber::Subscriber as IoxSubscriber,
         update_connections::UpdateConnections,
     },
     prelude::*,
@@ -20,12 +17,16 @@ use iceoryx2::{
 };
 
 use crate::{
+    bell::Bell,
     envelope::{Block, Envelope},
     error::BusError,
     local::payload_bytes,
     session::Session,
     topic::{Topic, Wake},
-    transport::{GapCounter, Listener, Publisher, Sample, SampleMemory, Subscriber, Transport, fill, new_run},
+    transport::{
+        GapCounter, Listener, MOST_HELD, Publisher, Sample, SampleMemory, Subscriber, Transport, fill, holds_too_many,
+        new_run,
+    },
 };
 
 type Ipc = ipc_threadsafe::Service;
@@ -34,7 +35,7 @@ const MAX_PEERS: usize = 32;
 
 /// The shared-memory transport of one session.
 pub struct Shm {
-    session: u64,
+    session: Session,
     node: Arc<Node<Ipc>>,
 }
 
@@ -61,7 +62,7 @@ impl Shm {
             .signal_handling_mode(SignalHandlingMode::Disabled)
             .create::<Ipc>()
             .map_err(|e| failed(format!("{e:?}")))?;
-        Ok(Self { session: session.number(), node: Arc::new(node) })
+        Ok(Self { session: session.clone(), node: Arc::new(node) })
     }
 
     /// Frees what peers that died have left in the session; call it about once a second.
@@ -77,23 +78,16 @@ impl Shm {
             .enable_safe_overflow(true)
             .history_size(topic.history())
             .subscriber_max_buffer_size(topic.depth())
-            .subscriber_max_borrowed_samples(8)
+            .subscriber_max_borrowed_samples(MOST_HELD)
             .max_publishers(MAX_PEERS)
-            .max_subscribers(MAX_PEERS)
+            .max_subscribers(topic.most_subscribers())
             .max_nodes(MAX_PEERS)
             .open_or_create()
             .map_err(|e| failed(format!("{e:?}")))
     }
 
-    fn wake_service(&self, wake: Wake) -> Result<iceoryx2::service::port_factory::event::PortFactory<Ipc>, String> {
-        self.node
-            .service_builder(&service_name(&wake.to_string())?)
-            .event()
-            .max_notifiers(4 * MAX_PEERS)
-            .max_listeners(4 * MAX_PEERS)
-            .max_nodes(MAX_PEERS)
-            .open_or_create()
-            .map_err(|e| format!("{e:?}"))
+    fn bell(&self, wake: Wake) -> io::Result<Bell> {
+        Bell::open(&self.session.shared_file(&wake.to_string()))
     }
 }
 
@@ -105,19 +99,18 @@ impl Transport for Shm {
     fn publisher(&self, topic: Topic) -> Result<Box<dyn Publisher>, BusError> {
         let failed = |reason: String| BusError::Open { topic, reason };
         let service = self.topic_service(topic)?;
+        let grows = topic.most_bytes().is_none();
+        let strategy = if grows { AllocationStrategy::PowerOfTwo } else { AllocationStrategy::Static };
         let port = service
             .publisher_builder()
             .initial_max_slice_len(1 + Block::count_for(topic.usual_bytes()))
-            .allocation_strategy(AllocationStrategy::PowerOfTwo)
+            .allocation_strategy(strategy)
             .backpressure_strategy(BackpressureStrategy::DiscardData)
             .create()
             .map_err(|e| failed(format!("{e:?}")))?;
-        let notifier = self
-            .wake_service(topic.wake())
-            .and_then(|service| service.notifier_builder().create().map_err(|e| format!("{e:?}")))
-            .map_err(failed)?;
-        let session = self.session;
-        Ok(Box::new(ShmPublisher { topic, session, port, service, notifier, run: new_run(), sequence: 0 }))
+        let bell = self.bell(topic.wake()).map_err(|error| failed(error.to_string()))?;
+        let session = self.session.number();
+        Ok(Box::new(ShmPublisher { topic, session, port, service, bell, run: new_run(), sequence: 0 }))
     }
 
     fn subscriber(&self, topic: Topic) -> Result<Box<dyn Subscriber>, BusError> {
@@ -136,11 +129,8 @@ impl Transport for Shm {
             Wake::State => Topic::State,
             Wake::Frames(camera) => Topic::Frames(camera),
         };
-        let port = self
-            .wake_service(wake)
-            .and_then(|service| service.listener_builder().create().map_err(|e| format!("{e:?}")))
-            .map_err(|reason| BusError::Open { topic, reason })?;
-        Ok(Box::new(ShmListener { topic, port }))
+        let bell = self.bell(wake).map_err(|error| BusError::Open { topic, reason: error.to_string() })?;
+        Ok(Box::new(ShmListener { topic, heard: bell.rung(), bell }))
     }
 }
 
@@ -149,7 +139,7 @@ struct ShmPublisher {
     session: u64,
     port: IoxPublisher<Ipc, [Block], ()>,
     service: PortFactory<Ipc, [Block], ()>,
-    notifier: Notifier<Ipc>,
+    bell: Bell,
     run: u64,
     sequence: u64,
 }
@@ -174,7 +164,7 @@ impl Publisher for ShmPublisher {
         let mut sample = unsafe { sample.assume_init() };
         fill(sample.payload_mut(), envelope, write);
         sample.send().map_err(|e| failed(format!("{e:?}")))?;
-        self.notifier.notify().map_err(|e| failed(format!("{e:?}")))?;
+        self.bell.ring();
         self.sequence += 1;
         Ok(sequence)
     }
@@ -203,7 +193,10 @@ impl SampleMemory for IoxSample<Ipc, [Block], ()> {
 impl Subscriber for ShmSubscriber {
     fn receive(&mut self) -> Result<Option<Sample>, BusError> {
         let received = self.port.receive();
-        let received = received.map_err(|e| BusError::Receive { topic: self.topic, reason: format!("{e:?}") })?;
+        let received = received.map_err(|error| match error {
+            ReceiveError::ExceedsMaxBorrows => holds_too_many(self.topic),
+            other => BusError::Receive { topic: self.topic, reason: format!("{other:?}") },
+        })?;
         let Some(memory) = received else { return Ok(None) };
         let sample = Sample::new(self.topic, Box::new(memory))?;
         self.gaps.saw(sample.envelope());
@@ -217,16 +210,16 @@ impl Subscriber for ShmSubscriber {
 
 struct ShmListener {
     topic: Topic,
-    port: IoxListener<Ipc>,
+    bell: Bell,
+    heard: u32,
 }
 
 impl Listener for ShmListener {
     fn wait(&mut self, timeout: Duration) -> Result<bool, BusError> {
-        let mut woken = false;
-        match self.port.timed_wait(|_| woken = true, timeout) {
-            // A signal is for the caller to look after: it sees that nothing woke it.
-            Ok(_) | Err(ListenerWaitError::InterruptSignal) => Ok(woken),
-            Err(error) => Err(BusError::Receive { topic: self.topic, reason: format!("{error:?}") }),
-        }
+        // A signal is for the caller to look after: it sees that nothing woke it.
+        let slept = self.bell.sleep(self.heard, timeout);
+        slept.map_err(|error| BusError::Receive { topic: self.topic, reason: error.to_string() })?;
+        let rung = self.bell.rung();
+        Ok(std::mem::replace(&mut self.heard, rung) != rung)
     }
 }

@@ -58,6 +58,25 @@ impl Topic {
         }
     }
 
+    /// The most that may subscribe at once. A connection's memory grows with it, times [`Self::depth`].
+    pub(crate) const fn most_subscribers(self) -> usize {
+        match self {
+            // Recorders and viewers.
+            Self::Ticks => 8,
+            _ => 32,
+        }
+    }
+
+    /// The most bytes of a payload where messages have a bound. Such a topic's memory need not be able to grow, which
+    /// would take 256 bytes for each sample in each connection: many, where many samples are kept.
+    pub(crate) const fn most_bytes(self) -> Option<usize> {
+        match self {
+            Self::Events | Self::Commands => Some(1024),
+            Self::Dialog => Some(48 << 10),
+            Self::Mission | Self::State | Self::Ticks | Self::Frames(_) => None,
+        }
+    }
+
     /// A first guess at a sample's size, in bytes; larger ones grow the segment.
     pub(crate) const fn usual_bytes(self) -> usize {
         match self {
@@ -65,8 +84,11 @@ impl Topic {
             Self::State => 96 << 10,
             Self::Frames(CameraId::Egocentric(_)) => 300 * 300 * 16 + (16 << 10),
             Self::Frames(_) => 854 * 480 * 8 + (16 << 10),
-            Self::Events | Self::Commands | Self::Ticks => 512,
-            Self::Dialog => 4096,
+            Self::Ticks => 512,
+            Self::Events | Self::Commands | Self::Dialog => match self.most_bytes() {
+                Some(bytes) => bytes,
+                None => 0,
+            },
         }
     }
 
@@ -103,6 +125,26 @@ impl fmt::Display for Wake {
             Self::Talk => f.write_str("wake/talk"),
             Self::State => f.write_str("wake/state"),
             Self::Frames(camera) => write!(f, "wake/frames/{camera}"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::message::{CommandMessage, DialogKind, DialogMessage, EventMessage, PlanStep};
+
+    #[test]
+    fn the_largest_messages_fit() {
+        let mut dialog = DialogMessage::new(DialogKind::Plan, 0, 0, "");
+        dialog.steps = vec![PlanStep::default(); 10_000];
+        let largest = [
+            (Topic::Events, size_of::<EventMessage>()),
+            (Topic::Commands, size_of::<CommandMessage>()),
+            (Topic::Dialog, dialog.bytes()),
+        ];
+        for (topic, bytes) in largest {
+            assert!(topic.most_bytes().is_some_and(|most| bytes <= most), "{topic}: {bytes}");
         }
     }
 }

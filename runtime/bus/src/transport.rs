@@ -16,7 +16,7 @@ pub trait Transport: Send + Sync {
     /// [`BusError::Open`].
     fn publisher(&self, topic: Topic) -> Result<Box<dyn Publisher>, BusError>;
 
-    /// A new subscriber to `topic`; it first receives what the topic keeps for late joiners.
+    /// A new subscriber to `topic`; it first receives what the topic keeps of each present publisher for late joiners.
     ///
     /// # Errors
     /// [`BusError::Open`].
@@ -29,13 +29,14 @@ pub trait Transport: Send + Sync {
     fn listener(&self, wake: Wake) -> Result<Box<dyn Listener>, BusError>;
 }
 
-/// Sends samples on one topic.
+/// Sends samples on one topic. What it has sent before a subscriber first looked for it may go with it when it is
+/// dropped.
 pub trait Publisher: Send {
     /// Sends a sample of `bytes` bytes, written in place by `write` (the memory is not zeroed: write all of it).
     /// Gives the sample's sequence number.
     ///
     /// # Errors
-    /// [`BusError::Send`], when there is no memory left.
+    /// [`BusError::Send`], when there is no memory left; [`BusError::TooLong`].
     fn send(&mut self, tick: u64, bytes: usize, write: &mut dyn FnMut(&mut [u8])) -> Result<u64, BusError>;
 
     /// How many subscribe now; a publisher whose samples are costly need make none for nobody.
@@ -48,9 +49,12 @@ pub trait Publisher: Send {
     fn update(&mut self) -> Result<(), BusError>;
 }
 
-/// Receives samples of one topic, in order.
+/// Receives samples of one topic: those of a publisher in the order in which they were sent. What a publisher has sent
+/// is received also after it is gone, if anything of it was before. A topic holds so many of the newest samples of each
+/// publisher for a slow subscriber.
 pub trait Subscriber: Send {
-    /// The next sample, if one is there.
+    /// The next sample, if one is there. A subscriber may hold eight at once, and receives no more until it lets go of
+    /// one.
     ///
     /// # Errors
     /// [`BusError::Receive`], [`BusError::Version`], [`BusError::Malformed`].
@@ -68,8 +72,18 @@ pub trait Subscriber: Send {
         Ok(newest)
     }
 
-    /// How many samples came and went unread because this subscriber was slow.
+    /// How many samples came and went unread because this subscriber was slow: of each publisher, since the first one
+    /// of it that was received.
     fn lost(&self) -> u64;
+}
+
+/// The most samples that one subscriber may hold.
+pub(crate) const MOST_HELD: usize = 8;
+
+/// Why a subscriber receives no more.
+pub(crate) fn holds_too_many(topic: Topic) -> BusError {
+    let reason = format!("{MOST_HELD} samples are held already; let go of one");
+    BusError::Receive { topic, reason }
 }
 
 /// Sleeps until woken.
@@ -161,4 +175,51 @@ pub(crate) fn new_run() -> u64 {
     static COUNT: AtomicU64 = AtomicU64::new(0);
     let count = COUNT.fetch_add(1, Ordering::Relaxed);
     (u64::from(std::process::id()) << 40) ^ (count << 32) ^ (monotonic_nanos() >> 10)
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    impl SampleMemory for Vec<Block> {
+        fn blocks(&self) -> &[Block] {
+            self
+        }
+    }
+
+    fn sample(envelope: Envelope, more: usize) -> Result<Sample, BusError> {
+        let mut blocks = vec![Block([7; 64]); 1 + more];
+        blocks[0] = bytemuck::cast(envelope);
+        Sample::new(Topic::State, Box::new(blocks))
+    }
+
+    #[test]
+    fn envelopes_of_another_version_and_with_wrong_lengths_are_refused() {
+        let envelope = Envelope { version: Envelope::VERSION, payload_bytes: 128, ..Envelope::default() };
+        assert_eq!(sample(envelope, 2).unwrap().payload(), [7; 128]);
+        assert!(matches!(sample(envelope, 1), Err(BusError::Malformed { .. })));
+        let other = Envelope { version: 1, ..envelope };
+        let Err(error) = sample(other, 2) else { panic!("read") };
+        assert!(matches!(error, BusError::Version { found: 1, .. }), "{error}");
+        assert!(error.to_string().contains("`state`"), "{error}");
+        assert!(matches!(Sample::new(Topic::State, Box::new(Vec::<Block>::new())), Err(BusError::Malformed { .. })));
+    }
+
+    proptest! {
+        #[test]
+        fn any_first_block_is_an_envelope_or_refused(
+            bytes in proptest::collection::vec(any::<u8>(), 64..256),
+            version in prop_oneof![Just(Envelope::VERSION), any::<u32>()],
+        ) {
+            let whole: Vec<Block> = bytes.as_chunks().0.iter().map(|chunk| Block(*chunk)).collect();
+            let mut envelope: Envelope = bytemuck::cast(whole[0].0);
+            envelope.version = version;
+            envelope.payload_bytes %= 300;
+            if let Ok(sample) = sample(envelope, whole.len() - 1) {
+                prop_assert_eq!(sample.payload().len(), envelope.payload_bytes as usize);
+            }
+        }
+    }
 }

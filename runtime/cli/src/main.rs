@@ -2,6 +2,7 @@
 
 mod arena;
 mod check;
+mod doctor;
 mod eval;
 mod failure;
 mod gallery;
@@ -37,6 +38,8 @@ enum Command {
     Replay(replay::Replay),
     /// Play many missions headless, by what is said in them, and report what came of them
     Eval(eval::Eval),
+    /// Say what this machine lacks for a session, and what that costs
+    Doctor(doctor::Doctor),
     /// Draw all objects in all their states, all floor plans and all rooms
     Gallery(gallery::Gallery),
     /// The world of a session, its cameras and its clock; or, with --arena-port, a simulator for existing clients
@@ -61,6 +64,7 @@ fn main() -> ExitCode {
         Command::Check(check) => check.run(),
         Command::Replay(replay) => replay.run(),
         Command::Eval(eval) => eval.run(),
+        Command::Doctor(doctor) => doctor.run(),
         Command::Gallery(gallery) => gallery.run(),
         Command::Sim(sim) => sim.run(),
         Command::Agent(agent) => agent.run(),

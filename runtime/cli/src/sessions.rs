@@ -9,7 +9,7 @@ use anyhow::Context as _;
 
 /// The folder that was asked for, or the one for sessions in the user's data folder; made if it is not there.
 pub fn folder(asked: Option<&Path>) -> anyhow::Result<PathBuf> {
-    let folder = asked.map_or_else(|| data_folder().join("sessions"), Path::to_owned);
+    let folder = asked.map_or_else(usual_folder, Path::to_owned);
     fs::create_dir_all(&folder).with_context(|| folder.display().to_string())?;
     Ok(folder)
 }
@@ -19,8 +19,9 @@ pub fn time() -> String {
     jiff::Zoned::now().strftime("%Y-%m-%d_%H-%M-%S").to_string()
 }
 
-fn data_folder() -> PathBuf {
+/// The folder for sessions in the user's data folder.
+pub fn usual_folder() -> PathBuf {
     let home = || std::env::var_os("HOME").map(|home| Path::new(&home).join(".local/share"));
     let base = std::env::var_os("XDG_DATA_HOME").map(PathBuf::from).filter(|path| path.is_absolute());
-    base.or_else(home).unwrap_or_else(std::env::temp_dir).join("cohabit")
+    base.or_else(home).unwrap_or_else(std::env::temp_dir).join("cohabit/sessions")
 }

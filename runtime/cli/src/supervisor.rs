@@ -182,6 +182,9 @@ fn describe(status: ExitStatus) -> String {
     use std::os::unix::process::ExitStatusExt as _;
     match (status.code(), status.signal()) {
         (Some(code), _) => format!("exit code {code}"),
+        (None, Some(signal)) if signal == Signal::BUS.as_raw() => {
+            format!("signal {signal}: shared memory is full, `cohabit doctor` tells how much there is")
+        }
         (None, Some(signal)) => format!("signal {signal}"),
         (None, None) => "for an unknown reason".to_owned(),
     }

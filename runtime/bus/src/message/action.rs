@@ -9,27 +9,47 @@ use super::Malformed;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct ActionRecord {
+    /// Which action: a constant of `action.rs`.
     kind: u32,
+    /// The object's index.
     object: u32,
+    /// `Verb`.
     verb: u32,
+    /// `RoomId`.
     room: u32,
+    /// Which of the room's viewpoints, from 1.
     number: u32,
+    /// A distance in m, or an angle in rad.
     value: f32,
+    /// On the floor, x and y in m.
     point: [f32; 2],
 }
 
+/// Move by `value` m; negative is backwards.
 const MOVE: u32 = 1;
+/// Turn by `value` rad; positive is to the left.
 const ROTATE: u32 = 2;
+/// Pitch the head by `value` rad; positive is up.
 const LOOK: u32 = 3;
+/// Turn once around, looking.
 const LOOK_AROUND: u32 = 4;
+/// Walk to where `object` is in reach.
 const GO_TO_OBJECT: u32 = 5;
+/// Walk into `room`.
 const GO_TO_ROOM: u32 = 6;
+/// Walk to viewpoint `number` of `room`.
 const GO_TO_VIEWPOINT: u32 = 7;
+/// Walk to `point`.
 const GO_TO_POINT: u32 = 8;
+/// Take `object`.
 const PICK_UP: u32 = 9;
+/// Put what is held on or into `object`.
 const PLACE: u32 = 10;
+/// Do `verb` to `object`.
 const INTERACT: u32 = 11;
+/// Point `object` out.
 const HIGHLIGHT: u32 = 12;
+/// Let go of whatever it is doing.
 const STOP: u32 = 13;
 
 impl From<Action> for ActionRecord {

@@ -42,7 +42,9 @@ impl CameraKind {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct CameraRecord {
+    /// As in the topic, after `frames/`.
     name: Text<30>,
+    /// `CameraKind`.
     kind: u32,
     /// The body it belongs to, or [`NONE`](super::NONE).
     pub body: u32,

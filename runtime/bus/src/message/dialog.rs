@@ -45,6 +45,7 @@ impl DialogKind {
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct DialogHeader {
+    /// `DialogKind`.
     kind: u32,
     /// The body spoken to, or speaking.
     pub body: u32,
@@ -52,6 +53,7 @@ pub struct DialogHeader {
     pub turn: u64,
     /// Which step of the turn's plan.
     pub step: u32,
+    /// `Status` of the step.
     status: u32,
     /// Steps that follow.
     pub steps: u32,

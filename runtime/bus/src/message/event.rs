@@ -63,6 +63,7 @@ impl EventKind {
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct EventMessage {
+    /// `EventKind`.
     kind: u32,
     /// The body concerned.
     pub body: u32,
@@ -74,6 +75,7 @@ pub struct EventMessage {
     pub number: i64,
     /// The object concerned.
     pub object: u32,
+    /// `Status` of an outcome.
     status: u32,
     /// A sentence for people.
     pub text: Text<502>,

@@ -28,6 +28,7 @@ pub struct MissionHeader {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 struct BodyRequestRecord {
+    /// `BodyKind`.
     kind: u32,
     /// The room's index, or [`NONE`].
     room: u32,
