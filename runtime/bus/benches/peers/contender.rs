@@ -30,13 +30,12 @@ struct Foreign {
     carriers: &'static [(&'static str, &'static str, bool)],
 }
 
-const FOREIGNERS: [Foreign; 2] = [
+const FOREIGNERS: [Foreign; 1] = [
     Foreign {
         package: "zenoh",
         program: "zenoh-peer",
         carriers: &[("zenoh-shm", "zenoh, shared memory", false), ("zenoh-tcp", "zenoh, TCP", true)],
     },
-    Foreign { package: "zeromq-src", program: "zeromq-peer", carriers: &[("zeromq", "ZeroMQ, ipc://", true)] },
 ];
 
 /// What is not measured, and why.
