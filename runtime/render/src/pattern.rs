@@ -276,8 +276,6 @@ pub(crate) const LEVELS: usize = 8;
 #[derive(Debug)]
 pub(crate) struct Picture {
     texels: Vec<u32>,
-    /// Each texel, and above it the next in its row, which the first one follows on the last.
-    pairs: Vec<u64>,
     starts: [usize; LEVELS],
     per_m: f32,
     /// Texels a square metre, somewhat more than there are.
@@ -324,8 +322,7 @@ impl Picture {
             }
         }
         let per_m = SIDE as f32 / pattern.period_m();
-        let mut picture =
-            Self { texels: Vec::new(), pairs: Vec::new(), starts: [0; LEVELS], per_m, squared: per_m * per_m * 1.69 };
+        let mut picture = Self { texels: Vec::new(), starts: [0; LEVELS], per_m, squared: per_m * per_m * 1.69 };
         for level in 1..LEVELS {
             let (start, side) = (picture.starts[level - 1], SIDE >> (level - 1));
             picture.starts[level] = all.len();
@@ -340,7 +337,6 @@ impl Picture {
             }
         }
         picture.texels = all.into_iter().map(u32::from_le_bytes).collect();
-        picture.pairs = (0..LEVELS).flat_map(|level| pairs(picture.texels(level), SIDE >> level)).collect();
         picture
     }
 
@@ -365,18 +361,11 @@ impl Picture {
         let side = SIDE >> level;
         let start = self.starts[level];
         Level {
-            pairs: &self.pairs[start..start + side * side],
+            texels: &self.texels[start..start + side * side],
             shift: 8 - level as u32,
             per_m: self.per_m / (1 << level) as f32,
         }
     }
-}
-
-/// Each texel of a square picture with the next in its row.
-fn pairs(texels: &[u32], side: usize) -> impl Iterator<Item = u64> {
-    texels
-        .chunks(side)
-        .flat_map(move |row| (0..side).map(move |x| u64::from(row[x]) | u64::from(row[(x + 1) % side]) << 32))
 }
 
 /// The whole number at or below a coordinate, and what is left. Once a float has this large number added, its last
@@ -391,8 +380,7 @@ fn split(x: f32) -> (u32, f32) {
 /// One copy of a picture.
 #[derive(Clone, Copy)]
 pub(crate) struct Level<'a> {
-    /// Each texel, and above it the next in its row.
-    pairs: &'a [u64],
+    texels: &'a [u32],
     shift: u32,
     per_m: f32,
 }
@@ -404,30 +392,25 @@ impl Level<'_> {
         const ONE: f32 = 1.0 / 128.0;
         let mask = (1 << self.shift) - 1;
         let (mut fx, mut fy) = ([0.0; N], [0.0; N]);
-        let mut rows = [[0_u32; N]; 2];
+        let mut corners = [[0_u32; N]; 4];
         for i in 0..N {
             let ((ix, x), (iy, y)) = (split(u_m[i] * self.per_m - 0.5), split(v_m[i] * self.per_m - 0.5));
             (fx[i], fy[i]) = (x, y);
-            let x = ix & mask;
-            rows[0][i] = ((iy & mask) << self.shift) + x;
-            rows[1][i] = (((iy + 1) & mask) << self.shift) + x;
+            let (x0, x1) = (ix & mask, (ix + 1) & mask);
+            let (y0, y1) = ((iy & mask) << self.shift, ((iy + 1) & mask) << self.shift);
+            corners[0][i] = y0 + x0;
+            corners[1][i] = y0 + x1;
+            corners[2][i] = y1 + x0;
+            corners[3][i] = y1 + x1;
         }
-        assert!(!self.pairs.is_empty(), "a level has at least four texels");
+        assert!(!self.texels.is_empty(), "a level has at least four texels");
         // The sides are powers of two: nothing lies beyond this.
-        let last = self.pairs.len() - 1;
-        let mut pairs = [[0_u64; N]; 2];
-        for (pairs, row) in pairs.iter_mut().zip(&rows) {
-            for i in 0..N {
-                // SAFETY: there are pairs, so that what is masked by the number of the last one is the number of one.
-                pairs[i] = unsafe { *self.pairs.get_unchecked(row[i] as usize & last) };
+        let last = self.texels.len() - 1;
+        for corner in &mut corners {
+            for place in corner {
+                // SAFETY: there are texels, so that what is masked by the number of the last one is the number of one.
+                *place = unsafe { *self.texels.get_unchecked(*place as usize & last) };
             }
-        }
-        let mut corners = [[0_u32; N]; 4];
-        for i in 0..N {
-            corners[0][i] = pairs[0][i] as u32;
-            corners[1][i] = (pairs[0][i] >> 32) as u32;
-            corners[2][i] = pairs[1][i] as u32;
-            corners[3][i] = (pairs[1][i] >> 32) as u32;
         }
         let mut factors = [[0.0; N]; 3];
         for (c, factors) in factors.iter_mut().enumerate() {
@@ -450,7 +433,7 @@ impl Level<'_> {
         let mask = (1 << self.shift) - 1;
         let (x0, x1) = ((ix & mask) as usize, ((ix + 1) & mask) as usize);
         let (y0, y1) = (((iy & mask) << self.shift) as usize, (((iy + 1) & mask) << self.shift) as usize);
-        let [a, b, c, d] = [y0 + x0, y0 + x1, y1 + x0, y1 + x1].map(|place| (self.pairs[place] as u32).to_le_bytes());
+        let [a, b, c, d] = [y0 + x0, y0 + x1, y1 + x0, y1 + x1].map(|place| self.texels[place].to_le_bytes());
         const ONE: f32 = 1.0 / 128.0;
         let near = [(1.0 - fx) * (1.0 - fy) * ONE, fx * (1.0 - fy) * ONE];
         let far = [(1.0 - fx) * fy * ONE, fx * fy * ONE];
