@@ -30,13 +30,11 @@ struct Foreign {
     carriers: &'static [(&'static str, &'static str, bool)],
 }
 
-const FOREIGNERS: [Foreign; 1] = [
-    Foreign {
-        package: "zenoh",
-        program: "zenoh-peer",
-        carriers: &[("zenoh-shm", "zenoh, shared memory", false), ("zenoh-tcp", "zenoh, TCP", true)],
-    },
-];
+const FOREIGNERS: [Foreign; 1] = [Foreign {
+    package: "zenoh",
+    program: "zenoh-peer",
+    carriers: &[("zenoh-shm", "zenoh, shared memory", false), ("zenoh-tcp", "zenoh, TCP", true)],
+}];
 
 /// What is not measured, and why.
 const LEFT_OUT: [&str; 1] =
