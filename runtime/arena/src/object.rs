@@ -1,7 +1,7 @@
 //! Objects and robots as clients are told of them.
 
-use cohabit_bus::message::Thing;
-use cohabit_cdf::{BodyId, Fluid, ObjectClass, ObjectId, Property, StateFlag};
+use cohabit_cdf::{BodyId, Fluid, ObjectClass, Property, StateFlag};
+use cohabit_engine::{body_instance_id, object_instance_id};
 use cohabit_render::instance_color;
 use cohabit_world::{BodyView, ObjectView, Quat, World};
 use serde::Serialize;
@@ -130,7 +130,7 @@ fn robot_record(body: &BodyView) -> ObjectRecord {
         supported_states: StateFlag::MOODS.map(name).to_vec(),
         current_states: body.flags.iter().map(name).collect(),
         parent_receptacle: String::new(),
-        instance_segmentation_color: Rgba::of_instance(Thing::FIRST_BODY + body.id.0),
+        instance_segmentation_color: Rgba::of_instance(body_instance_id(body.id)),
     }
 }
 
@@ -150,13 +150,8 @@ fn object_record(world: &World, object: &ObjectView<'_>) -> ObjectRecord {
         supported_states,
         current_states,
         parent_receptacle: parent.map_or_else(String::new, |parent| parent.instance.to_owned()),
-        instance_segmentation_color: Rgba::of_instance(instance_id(object.id)),
+        instance_segmentation_color: Rgba::of_instance(object_instance_id(object.id)),
     }
-}
-
-/// The id of an object in the id plane.
-fn instance_id(object: ObjectId) -> u32 {
-    cohabit_engine::object_instance_id(object)
 }
 
 /// Cereal and milk are both what fills a bowl.

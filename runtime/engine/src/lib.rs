@@ -23,6 +23,6 @@ mod studio;
 pub use build::{BuildError, SessionPlan};
 pub use camera_plan::{CameraPlan, CameraPlanError, Mount};
 pub use engine::{Engine, EngineError};
-pub use scene::{furnishings, object_instance_id};
+pub use scene::{body_instance_id, furnishings, object_instance_id};
 pub use simulator::Simulator;
 pub use stills::Stills;

@@ -4,7 +4,6 @@
 //! Rows are shared out to threads in bands, each drawn as if it were a picture of its own; many pictures at once are
 //! shared out whole. A pixel depends on nothing but the scene and the camera.
 
-pub(crate) mod avx2;
 mod band;
 pub(crate) mod crew;
 mod draw;
@@ -17,6 +16,7 @@ mod shade;
 mod sight;
 pub(crate) mod smooth;
 mod strip;
+pub(crate) mod vectors;
 mod veil;
 
 use std::sync::{Mutex, PoisonError};
@@ -30,11 +30,11 @@ use crate::{Renderer, Shot};
 pub use setup::{GUARD_PX, SUB};
 pub use shade::{ABOVE, BELOW, DIRT, FROST, KEY, LIFT_M, SLIME};
 
-use avx2::Avx2;
 use band::Scratch;
 use crew::Crew;
 use numbers::Numbers;
 use shade::Shader;
+use vectors::Avx2;
 use veil::Veils;
 
 /// Bands a thread: enough to share work evenly, few because every band goes through all draws.
@@ -166,6 +166,12 @@ impl Renderer for CpuRenderer {
             with_kept(&self.canvases, |canvas| self.draw(each, canvas, scene, &shot.camera, &mut shot.planes));
         });
     }
+}
+
+/// Whether the processor has the widest vectors that are made use of: AVX2.
+#[must_use]
+pub fn has_wide_vectors() -> bool {
+    Avx2::detect().is_some()
 }
 
 /// Rows of a band.

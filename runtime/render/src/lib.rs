@@ -56,7 +56,7 @@ mod veil;
 mod visibility;
 
 pub use camera::{Camera, FAR_M};
-pub use cpu::CpuRenderer;
+pub use cpu::{CpuRenderer, has_wide_vectors};
 pub use furnish::furnish;
 pub use instance::{Highlight, Instance, Look};
 pub use instance_color::{instance_color, instance_of_color};

@@ -35,11 +35,7 @@ pub fn cores(machine: &Machine) -> Finding {
 
 /// Whether the renderer's quick paths can be taken.
 pub fn vectors(_: &Machine) -> Finding {
-    #[cfg(target_arch = "x86_64")]
-    let has = std::arch::is_x86_feature_detected!("avx2");
-    #[cfg(not(target_arch = "x86_64"))]
-    let has = false;
-    if has {
+    if cohabit_render::has_wide_vectors() {
         return Finding::good("AVX2");
     }
     Finding::costs("no AVX2", "the renderer on the CPU is slower; the pictures are the same", "")

@@ -1,7 +1,7 @@
 //! What is done to pictures for people once they are drawn.
 
-use crate::cpu::avx2::Avx2;
 use crate::cpu::crew::Crew;
+use crate::cpu::vectors::Avx2;
 use crate::cpu::{outline, smooth};
 use crate::scene::Scene;
 

@@ -1,11 +1,11 @@
 //! A band: some rows of a picture, drawn by one thread.
 
-use super::avx2::{Avx2, Plain, Vectors};
 use super::facet::Facets;
 use super::raster::Rows;
 use super::setup::Corner;
 use super::shade::Shader;
 use super::strip::{Out, Sight, Strip};
+use super::vectors::{Avx2, Vectors, widest};
 use super::{Canvas, NOTHING};
 use crate::camera::FAR_M;
 use crate::planes::Planes;
@@ -78,20 +78,7 @@ impl Band<'_> {
 /// Works out what is wanted of each pixel, once it is known what it sees. All that it is to reach has to be inlined
 /// here, to be compiled for the wide vectors too.
 pub(super) fn fill(wide: Option<Avx2>, band: &mut Band<'_>, width: usize, shader: &Shader<'_>, facets: &mut Facets) {
-    #[cfg(target_arch = "x86_64")]
-    if let Some(wide) = wide {
-        // SAFETY: the proof says that the processor has AVX2.
-        unsafe { fill_avx2(wide, band, width, shader, facets) };
-        return;
-    }
-    let _ = wide;
-    fill_rows(Plain, band, width, shader, facets);
-}
-
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2")]
-fn fill_avx2(wide: Avx2, band: &mut Band<'_>, width: usize, shader: &Shader<'_>, facets: &mut Facets) {
-    fill_rows(wide, band, width, shader, facets);
+    widest!(wide, fill_rows(band: &mut Band<'_>, width: usize, shader: &Shader<'_>, facets: &mut Facets));
 }
 
 #[inline(always)]

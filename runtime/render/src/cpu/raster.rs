@@ -1,7 +1,7 @@
 //! Which triangle each pixel sees: exact sides in whole numbers, the nearest triangle wins.
 
-use super::avx2::Vectors;
 use super::setup::{SUB, Triangle};
+use super::vectors::Vectors;
 
 /// Wider triangles are filled span by span, narrower ones tested pixel by pixel.
 const NARROW_PX: i32 = 24;
@@ -30,6 +30,11 @@ fn side(from: [i32; 2], to: [i32; 2]) -> Side {
     Side { from, dx, dy, per_x: -dy * SUB, per_y: dx * SUB, exclusive }
 }
 
+#[inline(always)]
+fn sides(triangle: &Triangle) -> [Side; 3] {
+    [0, 1, 2].map(|i| side(triangle.at[i], triangle.at[(i + 1) % 3]))
+}
+
 impl Side {
     /// Its value at a pixel's centre, where that fits 32 bits: what does not fit on the way cancels out.
     #[inline(always)]
@@ -45,6 +50,56 @@ impl Side {
         let center = SUB / 2;
         let (x, y) = (center - self.from[0], y * SUB + center - self.from[1]);
         f64::from(self.dx) * f64::from(y) - f64::from(self.dy) * f64::from(x) - f64::from(u8::from(self.exclusive))
+    }
+}
+
+/// Which pixels of a triangle's rows lie inside, one row after the other.
+pub(super) struct Spans {
+    sides: [Side; 3],
+    /// One over the sides' growth a pixel; infinite for sides that lie along the rows, which have no crossings.
+    inverse: [f64; 3],
+    /// The sides' values at the start of the next row.
+    values: [f64; 3],
+    /// The columns of the triangle's box.
+    columns: [f64; 2],
+}
+
+impl Spans {
+    /// From the row `top` on.
+    #[inline(always)]
+    pub(super) fn new(triangle: &Triangle, top: i32) -> Self {
+        let sides = sides(triangle);
+        Self {
+            sides,
+            inverse: sides.map(|side| 1.0 / f64::from(side.per_x)),
+            values: sides.map(|side| side.far(top)),
+            columns: [triangle.rect[0], triangle.rect[2]].map(f64::from),
+        }
+    }
+
+    /// The first column inside and the last, of which the first is greater where none is.
+    #[inline(always)]
+    pub(super) fn next_row(&mut self) -> (i32, i32) {
+        let [mut from, mut to] = self.columns;
+        for (i, side) in self.sides.iter().enumerate() {
+            let value = self.values[i];
+            self.values[i] += f64::from(side.per_y);
+            let crossing = -value * self.inverse[i];
+            if side.per_x > 0 {
+                let crossing = crossing - CROSSING_SLACK;
+                from = if crossing > from { crossing } else { from };
+            } else if side.per_x < 0 {
+                let crossing = crossing + CROSSING_SLACK;
+                to = if crossing < to { crossing } else { to };
+            } else if value < 0.0 {
+                to = -1.0;
+            }
+        }
+        // A row that the triangle reaches has no crossings farther away; no other is to upset the conversion.
+        let from = if from < 65_536.0 { from } else { 65_536.0 };
+        let to = if to > -65_536.0 { to } else { -65_536.0 };
+        // The first whole number not below, and the last not above.
+        (65_536 - (65_536.0 - from) as i32, (to + 1.0) as i32 - 1)
     }
 }
 
@@ -68,24 +123,17 @@ impl Rows<'_> {
         if top > bottom {
             return;
         }
-        let sides = [0, 1, 2].map(|i| side(triangle.at[i], triangle.at[(i + 1) % 3]));
         if is_narrow(triangle) {
-            self.narrow(vectors, triangle, sides, number, (top, bottom));
+            self.narrow(vectors, triangle, number, (top, bottom));
         } else {
-            self.wide(vectors, triangle, sides, number, (top, bottom));
+            self.wide(vectors, triangle, number, (top, bottom));
         }
     }
 
     /// Tests eight pixels at a time against all three sides.
     #[inline(always)]
-    fn narrow(
-        &mut self,
-        vectors: impl Vectors,
-        triangle: &Triangle,
-        sides: [Side; 3],
-        number: u32,
-        (top, bottom): (i32, i32),
-    ) {
+    fn narrow(&mut self, vectors: impl Vectors, triangle: &Triangle, number: u32, (top, bottom): (i32, i32)) {
+        let sides = sides(triangle);
         let (left, right) = (i32::from(triangle.rect[0]), i32::from(triangle.rect[2]));
         // Near a narrow triangle's box every value fits 32 bits once it is taken relative to a corner of the box.
         let mut start = sides.map(|side| side.near(left, top));
@@ -123,37 +171,11 @@ impl Rows<'_> {
 
     /// Works out for each row which of its pixels lie inside.
     #[inline(always)]
-    fn wide(
-        &mut self,
-        vectors: impl Vectors,
-        triangle: &Triangle,
-        sides: [Side; 3],
-        number: u32,
-        (top, bottom): (i32, i32),
-    ) {
-        // Of sides that lie along the rows, the inverse is infinite: they have no crossings.
-        let inverse = sides.map(|side| 1.0 / f64::from(side.per_x));
-        let (first, last) = (f64::from(triangle.rect[0]), f64::from(triangle.rect[2]));
-        let mut values = sides.map(|side| side.far(top));
+    fn wide(&mut self, vectors: impl Vectors, triangle: &Triangle, number: u32, (top, bottom): (i32, i32)) {
         let [at_origin, per_x, per_y] = triangle.nearness;
+        let mut spans = Spans::new(triangle, top);
         for y in top..=bottom {
-            let (mut from, mut to) = (first, last);
-            for (i, side) in sides.iter().enumerate() {
-                let value = values[i];
-                values[i] += f64::from(side.per_y);
-                let crossing = -value * inverse[i];
-                if side.per_x > 0 {
-                    let crossing = crossing - CROSSING_SLACK;
-                    from = if crossing > from { crossing } else { from };
-                } else if side.per_x < 0 {
-                    let crossing = crossing + CROSSING_SLACK;
-                    to = if crossing < to { crossing } else { to };
-                } else if value < 0.0 {
-                    to = -1.0;
-                }
-            }
-            // The first whole number not below, and the last not above.
-            let (from, to) = (65_536 - (65_536.0 - from) as i32, (to + 1.0) as i32 - 1);
+            let (from, to) = spans.next_row();
             let row = (y as usize - self.first) * self.width;
             let near = at_origin + per_x * from as f32 + per_y * y as f32;
             for at in (from..=to).step_by(LANES) {

@@ -4,8 +4,8 @@ use core::ops::Range;
 
 use glam::{Mat3, Vec3};
 
-use super::avx2::Avx2;
 use super::draw::Draw;
+use super::vectors::{Avx2, Vectors, widest};
 use crate::camera::{NEAR_M, View};
 
 /// Bits of a pixel's fraction.
@@ -77,24 +77,11 @@ impl<'a> Frame<'a> {
 
 /// Sets up all triangles of some draws. The bits are the same with and without AVX2.
 pub(super) fn all(wide: Option<Avx2>, out: &mut Vec<Triangle>, draws: &[Draw<'_>], view: &View) {
-    #[cfg(target_arch = "x86_64")]
-    if wide.is_some() {
-        // SAFETY: the proof says that the processor has AVX2.
-        unsafe { all_avx2(out, draws, view) };
-        return;
-    }
-    let _ = wide;
-    all_draws(out, draws, view);
-}
-
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2")]
-fn all_avx2(out: &mut Vec<Triangle>, draws: &[Draw<'_>], view: &View) {
-    all_draws(out, draws, view);
+    widest!(wide, all_draws(out: &mut Vec<Triangle>, draws: &[Draw<'_>], view: &View));
 }
 
 #[inline(always)]
-fn all_draws(out: &mut Vec<Triangle>, draws: &[Draw<'_>], view: &View) {
+fn all_draws(_: impl Vectors, out: &mut Vec<Triangle>, draws: &[Draw<'_>], view: &View) {
     let frame = Frame::rows(view, 0, view.size[1] as usize);
     let mut corners = Vec::new();
     for (index, draw) in draws.iter().enumerate() {

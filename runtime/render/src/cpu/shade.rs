@@ -7,11 +7,11 @@ use core::ops::Range;
 use glam::Vec3;
 
 use super::NOTHING;
-use super::avx2::Vectors;
 use super::draw::Draw;
 use super::facet::{Facets, Shine};
 use super::numbers::Numbers;
 use super::strip::{LONG, Out, Sight, Strip};
+use super::vectors::Vectors;
 use crate::camera::View;
 use crate::color::{from_srgb, srgb_table, to_srgb};
 use crate::pattern::{Pattern, Picture, Pictures};

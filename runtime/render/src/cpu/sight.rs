@@ -1,10 +1,10 @@
 //! What each pixel sees: all draws, the nearest first, but for those that are hidden behind what has been drawn already.
 
-use super::avx2::{Avx2, Plain, Vectors};
 use super::draw::Draw;
 use super::numbers::Numbers;
 use super::raster::Rows;
 use super::setup::{self, AWKWARD, Corner, Frame, SUB, SUB_BITS, Sink, Triangle};
+use super::vectors::{Avx2, Vectors, widest};
 use crate::camera::View;
 use crate::mesh::Aabb;
 
@@ -26,27 +26,16 @@ pub(super) fn draw(
     rows: &mut Rows<'_>,
     corners: &mut Vec<Corner>,
 ) {
-    #[cfg(target_arch = "x86_64")]
-    if let Some(wide) = wide {
-        // SAFETY: the proof says that the processor has AVX2.
-        unsafe { draw_avx2(wide, draws, numbers, view, rows, corners) };
-        return;
-    }
-    let _ = wide;
-    draw_all(Plain, draws, numbers, view, rows, corners);
-}
-
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2")]
-fn draw_avx2(
-    wide: Avx2,
-    draws: &[Draw<'_>],
-    numbers: &Numbers,
-    view: &View,
-    rows: &mut Rows<'_>,
-    corners: &mut Vec<Corner>,
-) {
-    draw_all(wide, draws, numbers, view, rows, corners);
+    widest!(
+        wide,
+        draw_all(
+            draws: &[Draw<'_>],
+            numbers: &Numbers,
+            view: &View,
+            rows: &mut Rows<'_>,
+            corners: &mut Vec<Corner>,
+        )
+    );
 }
 
 #[inline(always)]

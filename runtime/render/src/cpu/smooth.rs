@@ -2,9 +2,9 @@
 //! followed both ways to its ends; where a pixel lies along it says how much of the other side covers the pixel (after
 //! Lottes, "FXAA", 2009). Patterns within a triangle stay as sharp as they are.
 
-use super::avx2::Avx2;
 use super::band_rows;
 use super::crew::Crew;
+use super::vectors::{Avx2, Vectors, widest};
 
 /// Less contrast than this is no edge, in steps of brightness.
 const LEAST_CONTRAST: u8 = 10;
@@ -104,24 +104,11 @@ pub(crate) fn run(
 
 /// Marks the pixels of a row that see another triangle than a neighbour, and differ from one in brightness.
 fn find_edges(wide: Option<Avx2>, brightness: &Brightness, seen: &[u32], y: usize, edges: &mut [u8]) {
-    #[cfg(target_arch = "x86_64")]
-    if wide.is_some() {
-        // SAFETY: the proof says that the processor has AVX2.
-        unsafe { find_edges_avx2(brightness, seen, y, edges) };
-        return;
-    }
-    let _ = wide;
-    find_edges_in(brightness, seen, y, edges);
-}
-
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2")]
-fn find_edges_avx2(brightness: &Brightness, seen: &[u32], y: usize, edges: &mut [u8]) {
-    find_edges_in(brightness, seen, y, edges);
+    widest!(wide, find_edges_in(brightness: &Brightness, seen: &[u32], y: usize, edges: &mut [u8]));
 }
 
 #[inline(always)]
-fn find_edges_in(brightness: &Brightness, seen: &[u32], y: usize, edges: &mut [u8]) {
+fn find_edges_in(_: impl Vectors, brightness: &Brightness, seen: &[u32], y: usize, edges: &mut [u8]) {
     let width = edges.len();
     let height = seen.len() / width;
     let row = |y: usize| &seen[y * width..][..width];

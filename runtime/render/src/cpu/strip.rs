@@ -8,9 +8,9 @@
 
 use glam::Vec3;
 
-use super::avx2::Vectors;
 use super::facet::{Facet, Facets, Shine};
 use super::shade::{ABOVE, BELOW, GROUND, HORIZON, KEY, LIFT_M, Shader, ZENITH};
+use super::vectors::Vectors;
 use crate::color;
 use crate::pattern::Level;
 use crate::shadow::SLANT;

@@ -7,15 +7,16 @@
 
 use glam::Vec3;
 
-use super::avx2::Avx2;
 use super::band::Band;
 use super::draw::Draw;
-use super::setup::{self, SUB, Triangle};
+use super::raster::Spans;
+use super::setup::{self, Triangle};
 use super::shade::{ABOVE, BELOW};
+use super::vectors::{Avx2, Vectors, widest};
 use crate::camera::View;
 use crate::color::{self, srgb_table};
 use crate::mesh::Paint;
-use crate::shadow::SLANT;
+use crate::shadow::towards_light;
 use crate::veil::{self, Veil, VeilLook};
 
 /// Pixels worked out at a time.
@@ -58,6 +59,34 @@ struct Span {
     to: usize,
 }
 
+/// Blends everything over the rows of a finished band: exactly the pixels that [`super::raster`] would fill.
+#[inline(always)]
+fn blend_all(_: impl Vectors, veils: &Veils<'_>, band: &mut Band<'_>, width: usize) {
+    let rows = band.first_row as i32..(band.first_row + band.nearness.len() / width) as i32;
+    let colored = band.color.is_some();
+    for (index, triangle) in veils.triangles.iter().enumerate() {
+        let top = i32::from(triangle.rect[1]).max(rows.start);
+        let bottom = i32::from(triangle.rect[3]).min(rows.end - 1);
+        if top > bottom {
+            continue;
+        }
+        let sheet = veils.sheet(triangle);
+        if sheet.look.veil == Veil::Airy && !colored {
+            continue;
+        }
+        let number = veils.first + index as u32;
+        let mut spans = Spans::new(triangle, top);
+        for y in top..=bottom {
+            let (from, to) = spans.next_row();
+            for from in (from..=to).step_by(LANES) {
+                let (from, to) = (from as usize, to as usize);
+                let span = Span { y: y as usize, from, to: to.min(from + LANES - 1) };
+                veils.lay(&sheet, triangle, number, &span, band, width);
+            }
+        }
+    }
+}
+
 impl<'a> Veils<'a> {
     /// `draws` in the order of drawing; triangles below `first` were drawn before.
     pub(super) fn new(wide: Option<Avx2>, draws: &'a [Draw<'a>], view: &'a View, first: u32) -> Self {
@@ -65,8 +94,7 @@ impl<'a> Veils<'a> {
         if !draws.is_empty() {
             setup::all(wide, &mut triangles, draws, view);
         }
-        let towards_light = Vec3::new(-SLANT[0], -SLANT[1], 1.0).normalize();
-        Self { view, draws, triangles, towards_light, first }
+        Self { view, draws, triangles, towards_light: towards_light(), first }
     }
 
     /// Blends everything over the rows of a finished band.
@@ -74,45 +102,8 @@ impl<'a> Veils<'a> {
         if self.triangles.is_empty() {
             return;
         }
-        #[cfg(target_arch = "x86_64")]
-        if wide.is_some() {
-            // SAFETY: the proof says that the processor has AVX2.
-            unsafe { self.blend_avx2(band, width) };
-            return;
-        }
-        let _ = wide;
-        self.blend_all(band, width);
-    }
-
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2")]
-    fn blend_avx2(&self, band: &mut Band<'_>, width: usize) {
-        self.blend_all(band, width);
-    }
-
-    #[inline(always)]
-    fn blend_all(&self, band: &mut Band<'_>, width: usize) {
-        let rows = band.first_row as i32..(band.first_row + band.nearness.len() / width) as i32;
-        let colored = band.color.is_some();
-        for (index, triangle) in self.triangles.iter().enumerate() {
-            let top = i32::from(triangle.rect[1]).max(rows.start);
-            let bottom = i32::from(triangle.rect[3]).min(rows.end - 1);
-            if top > bottom {
-                continue;
-            }
-            let sheet = self.sheet(triangle);
-            if sheet.look.veil == Veil::Airy && !colored {
-                continue;
-            }
-            let number = self.first + index as u32;
-            for y in top..=bottom {
-                let Some((from, to)) = span(triangle, y) else { continue };
-                for from in (from..=to).step_by(LANES) {
-                    let span = Span { y: y as usize, from, to: to.min(from + LANES - 1) };
-                    self.lay(&sheet, triangle, number, &span, band, width);
-                }
-            }
-        }
+        let veils = self;
+        widest!(wide, blend_all(veils: &Veils<'_>, band: &mut Band<'_>, width: usize));
     }
 
     /// What a triangle's pixels have in common.
@@ -266,30 +257,6 @@ impl<'a> Veils<'a> {
         }
         (light, opacity)
     }
-}
-
-/// The pixels of a row whose centres lie in a triangle, first and last; exactly those that [`super::raster`] fills.
-#[inline(always)]
-fn span(triangle: &Triangle, y: i32) -> Option<(usize, usize)> {
-    let (mut from, mut to) = (i64::from(triangle.rect[0]), i64::from(triangle.rect[2]));
-    for corner in 0..3 {
-        let (a, b) = (triangle.at[corner], triangle.at[(corner + 1) % 3]);
-        let (dx, dy) = (i64::from(b[0] - a[0]), i64::from(b[1] - a[1]));
-        let inclusive = dy < 0 || dy == 0 && dx > 0;
-        let half = i64::from(SUB / 2);
-        let (py, sub) = (i64::from(y * SUB) + half - i64::from(a[1]), i64::from(SUB));
-        // Inside where this plus `x` times `per_x` is not negative.
-        let value = dx * py - dy * (half - i64::from(a[0])) - i64::from(!inclusive);
-        let per_x = -dy * sub;
-        if per_x > 0 {
-            from = from.max((-value).div_euclid(per_x) + i64::from((-value).rem_euclid(per_x) != 0));
-        } else if per_x < 0 {
-            to = to.min(value.div_euclid(-per_x));
-        } else if value < 0 {
-            return None;
-        }
-    }
-    (from <= to).then_some((from as usize, to as usize))
 }
 
 /// The nearest whole number of a value between -127 and 127.

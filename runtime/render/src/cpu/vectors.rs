@@ -1,5 +1,5 @@
-//! What is written out for the vectors of a processor, where the compiler does not find how. The bits are the same with
-//! all of them.
+//! The processor's vectors: work that is compiled for the widest there are as well as for any, and what is written out
+//! for them where the compiler does not find how. The bits are the same with all of them.
 
 use super::raster::{Eight, LANES};
 use crate::shadow::Around;
@@ -42,6 +42,25 @@ impl Avx2 {
         None
     }
 }
+
+/// Runs a function with the widest vectors there are: `wide` says which. The function takes them first, and has to be
+/// `#[inline(always)]`, as all that it is to reach, to be compiled for them.
+macro_rules! widest {
+    ($wide:expr, $work:ident($($argument:ident: $type:ty),* $(,)?)) => {{
+        #[cfg(target_arch = "x86_64")]
+        #[target_feature(enable = "avx2")]
+        fn with_avx2(wide: $crate::cpu::vectors::Avx2, $($argument: $type),*) {
+            $work(wide, $($argument),*);
+        }
+        match $wide {
+            #[cfg(target_arch = "x86_64")]
+            // SAFETY: the proof says that the processor has AVX2.
+            Some(wide) => unsafe { with_avx2(wide, $($argument),*) },
+            _ => $work($crate::cpu::vectors::Plain, $($argument),*),
+        }
+    }};
+}
+pub(super) use widest;
 
 #[cfg(target_arch = "x86_64")]
 impl Vectors for Avx2 {
