@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use cohabit_bus::{
     CameraId, Sample, Subscriber, Topic, Transport,
-    message::{FrameView, Malformed, Thing},
+    message::{FrameView, Malformed, ObjectRecord, StateView, Thing},
 };
-use cohabit_cdf::{Catalog, SemanticClass};
+use cohabit_cdf::{Catalog, ObjectId, SemanticClass};
 
 use crate::peer::PeerError;
 
@@ -41,6 +41,43 @@ pub struct SeenThing<'a> {
     pub bounds: [u16; 4],
 }
 
+/// What an agent sees: a picture, and what there is to know of the things in it, and of nothing else.
+#[derive(Clone, Copy, Debug)]
+pub struct Sight<'a> {
+    glance: &'a Glance,
+    state: StateView<'a>,
+}
+
+/// A thing in view.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct InView<'a> {
+    /// What and where in the picture.
+    pub seen: SeenThing<'a>,
+    /// What there is to know of it, if it is an object.
+    pub object: Option<&'a ObjectRecord>,
+}
+
+impl<'a> Sight<'a> {
+    pub(crate) const fn new(glance: &'a Glance, state: StateView<'a>) -> Self {
+        Self { glance, state }
+    }
+
+    /// The picture.
+    #[must_use]
+    pub const fn glance(&self) -> &'a Glance {
+        self.glance
+    }
+
+    /// The things in view, by picture, then by id.
+    pub fn things(&self) -> impl Iterator<Item = InView<'a>> + use<'a> {
+        let objects = self.state.objects;
+        self.glance.things().map(move |seen| {
+            let of_thing = |object: &&ObjectRecord| seen.thing == Thing::Object(ObjectId(object.object));
+            InView { seen, object: objects.iter().find(of_thing) }
+        })
+    }
+}
+
 impl Eyes {
     /// Looks through a camera of the session on `bus`.
     ///
@@ -58,6 +95,12 @@ impl Eyes {
         let Some(sample) = self.frames.latest()? else { return Ok(None) };
         FrameView::new(sample.payload())?;
         Ok(Some(Glance { sample, catalog: Arc::clone(&self.catalog) }))
+    }
+}
+
+impl std::fmt::Debug for Glance {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Glance").field("sample", &self.sample).finish_non_exhaustive()
     }
 }
 

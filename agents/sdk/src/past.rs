@@ -67,7 +67,7 @@ mod tests {
         outcomes.iter().for_each(|(turn, status)| past.note_outcome(*turn, *status, ""));
         past.relive(&mut PlanFollower::new(0)).into_iter().find_map(|deed| match deed {
             Deed::Act { turn, action } => Some((turn == 2).then_some(action)?),
-            Deed::Tell(_) => None,
+            Deed::Tell(_) | Deed::Rest(_) => None,
         })
     }
 

@@ -125,6 +125,9 @@ impl Agent for PlanFollower {
                     None => {}
                 }
             }
+            // Others may have moved the body meanwhile.
+            Heard::Commands(_) => self.stands_at = None,
+            Heard::Now(_) => {}
         }
     }
 }
@@ -171,7 +174,7 @@ mod tests {
         });
         let acts = deeds.iter().filter_map(|deed| match deed {
             Deed::Act { action, .. } => Some(*action),
-            Deed::Tell(_) => None,
+            Deed::Tell(_) | Deed::Rest(_) => None,
         });
         (acts.collect(), ended)
     }

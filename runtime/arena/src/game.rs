@@ -122,7 +122,9 @@ impl Game {
         let failed = |source| GameError::Record { path: log.to_owned(), source };
         let recording = Some(recorder.begin(session, log).map_err(failed)?);
         let (log, perspective) = (log.to_owned(), Perspective::default());
-        Ok(Self { engine, stills, commands, events, frames, recording, log, perspective, commanded: 0 })
+        let mut game = Self { engine, stills, commands, events, frames, recording, log, perspective, commanded: 0 };
+        game.send(&CommandMessage::claim(0, BODY.0, "client", false))?;
+        Ok(game)
     }
 
     /// Carries a batch out, in order, up to the first command that fails.
@@ -303,11 +305,15 @@ impl Game {
     fn command(&mut self, action: Action) -> Result<u64, GameError> {
         self.commanded += 1;
         let command = self.commanded;
-        let message = CommandMessage { command, turn: 0, body: BODY.0, reserved: 0, action: action.into() };
-        self.commands.send(self.engine.world().tick(), size_of::<CommandMessage>(), &mut |bytes| {
-            bytes.copy_from_slice(bytemuck::bytes_of(&message));
-        })?;
+        self.send(&CommandMessage::act(command, 0, BODY.0, action))?;
         Ok(command)
+    }
+
+    fn send(&mut self, message: &CommandMessage) -> Result<(), GameError> {
+        self.commands.send(self.engine.world().tick(), size_of::<CommandMessage>(), &mut |bytes| {
+            bytes.copy_from_slice(bytemuck::bytes_of(message));
+        })?;
+        Ok(())
     }
 
     fn tick(&mut self) -> Result<(), GameError> {

@@ -37,7 +37,7 @@ pub struct Envelope {
     pub payload_bytes: u32,
     /// The session, as a number: equal in all its processes.
     pub session: u64,
-    /// A number unlike that of any other run of any process: tells restarts.
+    /// A number unlike that of any other publisher; its upper 24 bits are the process id.
     pub run: u64,
     /// The simulator's tick that the message belongs to; 0 where none does.
     pub tick: u64,
@@ -51,7 +51,7 @@ pub struct Envelope {
 
 impl Envelope {
     /// Counts changes of any message's layout.
-    pub const VERSION: u32 = 2;
+    pub const VERSION: u32 = 3;
 }
 
 const _: () = assert!(size_of::<Envelope>() == size_of::<Block>());

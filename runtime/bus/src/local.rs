@@ -148,6 +148,10 @@ impl Publisher for LocalPublisher {
         Ok(sequence)
     }
 
+    fn run(&self) -> u64 {
+        self.run
+    }
+
     fn subscribers(&self) -> usize {
         let hub = lock(&self.bus.hub);
         hub.topics.get(&self.topic).map_or(0, |c| c.queues.iter().filter(|q| q.strong_count() > 0).count())

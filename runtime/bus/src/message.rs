@@ -3,23 +3,29 @@
 mod action;
 mod camera;
 mod command;
+mod control;
 mod dialog;
 mod event;
 mod frame;
 mod layout;
 mod mission;
+mod pulse;
 mod state;
+mod step;
 mod tick;
 
 pub use action::ActionRecord;
 pub use camera::{CameraKind, CameraRecord};
-pub use command::CommandMessage;
+pub use command::{CommandKind, CommandMessage};
+pub use control::{Control, ControlMessage};
 pub use dialog::{DialogHeader, DialogKind, DialogMessage, DialogView, PlanStep};
 pub use event::{EventKind, EventMessage};
 pub use frame::{FrameHeader, FrameLayout, FrameParts, FrameView, Plane, SeenRecord, Thing};
 pub use mission::{MissionHeader, MissionMessage};
+pub use pulse::PulseMessage;
 pub use state::{BodyRecord, GoalRecord, NoteRecord, ObjectRecord, StateHeader, StateParts, StateView};
-pub use tick::{TickHeader, TickMessage, TickView};
+pub use step::{StepHeader, StepView};
+pub use tick::{Stage, TickHeader, TickMessage, TickView};
 
 /// Stands for "no object", "no body" and "no command" in records.
 pub const NONE: u32 = u32::MAX;

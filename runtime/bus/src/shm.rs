@@ -125,6 +125,7 @@ impl Transport for Shm {
     fn listener(&self, wake: Wake) -> Result<Box<dyn Listener>, BusError> {
         let topic = match wake {
             Wake::Commands => Topic::Commands,
+            Wake::Pulses => Topic::Pulses,
             Wake::Talk => Topic::Dialog,
             Wake::State => Topic::State,
             Wake::Frames(camera) => Topic::Frames(camera),
@@ -167,6 +168,10 @@ impl Publisher for ShmPublisher {
         self.bell.ring();
         self.sequence += 1;
         Ok(sequence)
+    }
+
+    fn run(&self) -> u64 {
+        self.run
     }
 
     fn subscribers(&self) -> usize {

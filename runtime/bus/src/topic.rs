@@ -15,8 +15,14 @@ pub enum Topic {
     Ticks,
     /// Outcomes of commands and what else happened.
     Events,
-    /// What bodies are told to do.
+    /// What bodies are told to do, by whom, and who is waited for.
     Commands,
+    /// How the world's time is to go by.
+    Control,
+    /// In lock-step, whose turn it is: the last message of a tick.
+    Steps,
+    /// The heartbeats of all peers.
+    Pulses,
     /// What people and robots say, and plans.
     Dialog,
     /// One camera's frames; the latest is kept for late joiners.
@@ -26,9 +32,11 @@ pub enum Topic {
 /// What a process can sleep on: groups of topics.
 #[derive(Clone, Copy, Debug, Eq, Hash, Ord, PartialEq, PartialOrd)]
 pub enum Wake {
-    /// [`Topic::Commands`].
+    /// [`Topic::Commands`] and [`Topic::Control`].
     Commands,
-    /// [`Topic::Dialog`] and [`Topic::Events`].
+    /// [`Topic::Pulses`].
+    Pulses,
+    /// [`Topic::Dialog`], [`Topic::Events`] and [`Topic::Steps`].
     Talk,
     /// [`Topic::State`], [`Topic::Mission`] and [`Topic::Ticks`].
     State,
@@ -41,9 +49,11 @@ impl Topic {
     pub(crate) const fn depth(self) -> usize {
         match self {
             Self::Mission => 1,
-            Self::State => 4,
+            Self::State | Self::Steps => 4,
             Self::Ticks => 2048,
             Self::Frames(_) => 2,
+            Self::Pulses => 8,
+            Self::Control => 64,
             Self::Events | Self::Commands | Self::Dialog => 512,
         }
     }
@@ -51,10 +61,10 @@ impl Topic {
     /// Samples kept for a subscriber that joins late.
     pub(crate) const fn history(self) -> usize {
         match self {
-            Self::Mission | Self::State | Self::Frames(_) => 1,
+            Self::Mission | Self::State | Self::Frames(_) | Self::Pulses => 1,
             Self::Dialog | Self::Events => 512,
             Self::Ticks => 2048,
-            Self::Commands => 0,
+            Self::Commands | Self::Control | Self::Steps => 0,
         }
     }
 
@@ -72,6 +82,8 @@ impl Topic {
     pub(crate) const fn most_bytes(self) -> Option<usize> {
         match self {
             Self::Events | Self::Commands => Some(1024),
+            Self::Control | Self::Pulses => Some(128),
+            Self::Steps => Some(512),
             Self::Dialog => Some(48 << 10),
             Self::Mission | Self::State | Self::Ticks | Self::Frames(_) => None,
         }
@@ -85,10 +97,12 @@ impl Topic {
             Self::Frames(CameraId::Egocentric(_)) => 300 * 300 * 16 + (16 << 10),
             Self::Frames(_) => 854 * 480 * 8 + (16 << 10),
             Self::Ticks => 512,
-            Self::Events | Self::Commands | Self::Dialog => match self.most_bytes() {
-                Some(bytes) => bytes,
-                None => 0,
-            },
+            Self::Events | Self::Commands | Self::Dialog | Self::Control | Self::Steps | Self::Pulses => {
+                match self.most_bytes() {
+                    Some(bytes) => bytes,
+                    None => 0,
+                }
+            }
         }
     }
 
@@ -97,8 +111,9 @@ impl Topic {
     pub const fn wake(self) -> Wake {
         match self {
             Self::Mission | Self::State | Self::Ticks => Wake::State,
-            Self::Events | Self::Dialog => Wake::Talk,
-            Self::Commands => Wake::Commands,
+            Self::Events | Self::Dialog | Self::Steps => Wake::Talk,
+            Self::Commands | Self::Control => Wake::Commands,
+            Self::Pulses => Wake::Pulses,
             Self::Frames(camera) => Wake::Frames(camera),
         }
     }
@@ -112,6 +127,9 @@ impl fmt::Display for Topic {
             Self::Ticks => f.write_str("ticks"),
             Self::Events => f.write_str("events"),
             Self::Commands => f.write_str("commands"),
+            Self::Control => f.write_str("control"),
+            Self::Steps => f.write_str("steps"),
+            Self::Pulses => f.write_str("pulses"),
             Self::Dialog => f.write_str("dialog"),
             Self::Frames(camera) => write!(f, "frames/{camera}"),
         }
@@ -122,6 +140,7 @@ impl fmt::Display for Wake {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Commands => f.write_str("wake/commands"),
+            Self::Pulses => f.write_str("wake/pulses"),
             Self::Talk => f.write_str("wake/talk"),
             Self::State => f.write_str("wake/state"),
             Self::Frames(camera) => write!(f, "wake/frames/{camera}"),
@@ -132,7 +151,9 @@ impl fmt::Display for Wake {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::message::{CommandMessage, DialogKind, DialogMessage, EventMessage, PlanStep};
+    use crate::message::{
+        CommandMessage, ControlMessage, DialogKind, DialogMessage, EventMessage, PlanStep, PulseMessage, StepView,
+    };
 
     #[test]
     fn the_largest_messages_fit() {
@@ -141,6 +162,9 @@ mod tests {
         let largest = [
             (Topic::Events, size_of::<EventMessage>()),
             (Topic::Commands, size_of::<CommandMessage>()),
+            (Topic::Control, size_of::<ControlMessage>()),
+            (Topic::Pulses, size_of::<PulseMessage>()),
+            (Topic::Steps, StepView::bytes(32)),
             (Topic::Dialog, dialog.bytes()),
         ];
         for (topic, bytes) in largest {

@@ -39,6 +39,9 @@ pub trait Publisher: Send {
     /// [`BusError::Send`], when there is no memory left; [`BusError::TooLong`].
     fn send(&mut self, tick: u64, bytes: usize, write: &mut dyn FnMut(&mut [u8])) -> Result<u64, BusError>;
 
+    /// The `run` in the envelopes of its samples: who it is.
+    fn run(&self) -> u64;
+
     /// How many subscribe now; a publisher whose samples are costly need make none for nobody.
     fn subscribers(&self) -> usize;
 
@@ -173,8 +176,23 @@ pub(crate) fn fill(blocks: &mut [Block], mut envelope: Envelope, write: &mut dyn
 pub(crate) fn new_run() -> u64 {
     use std::sync::atomic::{AtomicU64, Ordering};
     static COUNT: AtomicU64 = AtomicU64::new(0);
+    /// Beyond it a count and the time would reach the process id.
+    const MASK: u64 = (1 << 40) - 1;
     let count = COUNT.fetch_add(1, Ordering::Relaxed);
-    (u64::from(std::process::id()) << 40) ^ (count << 32) ^ (monotonic_nanos() >> 10)
+    (u64::from(std::process::id()) << 40) | (((count << 28) ^ (monotonic_nanos() >> 12)) & MASK)
+}
+
+/// The process of a publisher, by its run.
+#[must_use]
+pub const fn process_of(run: u64) -> u32 {
+    (run >> 40) as u32
+}
+
+/// Whether the process of a publisher lives.
+#[must_use]
+pub fn is_alive(run: u64) -> bool {
+    let process = i32::try_from(process_of(run)).ok().and_then(rustix::process::Pid::from_raw);
+    process.is_some_and(|process| rustix::process::test_kill_process(process).is_ok())
 }
 
 #[cfg(test)]

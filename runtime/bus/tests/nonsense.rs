@@ -8,8 +8,8 @@ mod payload;
 use cohabit_bus::{
     Topic,
     message::{
-        CommandMessage, DialogView, EventMessage, FrameView, Malformed, MissionMessage, Plane, StateView, Thing,
-        TickView, read,
+        CommandMessage, Control, ControlMessage, DialogView, EventMessage, FrameView, Malformed, MissionMessage, Plane,
+        PulseMessage, StateView, StepView, Thing, TickView, read,
     },
 };
 use cohabit_cdf::Action;
@@ -28,6 +28,9 @@ fn look(topic: Topic, payload: &[u8]) -> Result<(), Malformed> {
             drop(format!("{event:?} {:?} {:?}", event.kind(), event.status()));
         }
         Topic::Commands => drop(format!("{:?}", Action::try_from(read::<CommandMessage>(payload)?.action)?)),
+        Topic::Control => drop(format!("{:?}", Control::try_from(read::<ControlMessage>(payload)?)?)),
+        Topic::Steps => drop(format!("{:?}", StepView::new(payload)?)),
+        Topic::Pulses => drop(format!("{:?}", read::<PulseMessage>(payload)?)),
         Topic::Dialog => {
             let view = DialogView::new(payload)?;
             drop(format!("{view:?} {:?} {:?}", view.header.kind(), view.header.status()));

@@ -30,6 +30,8 @@ pub struct SessionPlan {
     pub bodies: Vec<BodyRequest>,
     /// Cameras beside those of the bodies.
     pub cameras: Vec<CameraPlan>,
+    /// How many agents the world waits for, tick by tick, if it goes in lock-step; else it goes in real time.
+    pub lock_step: Option<usize>,
 }
 
 /// The most cameras that can be asked for.
@@ -92,6 +94,7 @@ impl SessionPlan {
             seed,
             bodies: Vec::new(),
             cameras: Vec::new(),
+            lock_step: None,
         })
     }
 
@@ -116,6 +119,12 @@ impl SessionPlan {
         }
     }
 
+    /// The same in lock-step: the world begins when so many agents attend, and waits for each that does.
+    #[must_use]
+    pub fn in_lock_step(self, agents: usize) -> Self {
+        Self { lock_step: Some(agents), ..self }
+    }
+
     /// All cameras of a session with so many bodies.
     pub(crate) fn cameras(&self, bodies: usize) -> Vec<CameraPlan> {
         CameraPlan::of_bodies(bodies).chain(self.cameras.iter().cloned()).collect()
@@ -124,7 +133,9 @@ impl SessionPlan {
     /// What others are told of it, but for the cameras.
     #[must_use]
     pub fn message(&self) -> MissionMessage {
-        let header = MissionHeader { seed: self.seed, file: Text::new(&self.file), ..MissionHeader::default() };
+        let lock_step = u32::from(self.lock_step.is_some());
+        let header =
+            MissionHeader { seed: self.seed, file: Text::new(&self.file), lock_step, ..MissionHeader::default() };
         MissionMessage { header, bodies: self.bodies.clone(), cameras: Vec::new(), text: self.text.clone() }
     }
 

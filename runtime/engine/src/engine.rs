@@ -3,16 +3,23 @@
 use std::collections::BTreeMap;
 
 use cohabit_bus::{
-    BusError, Publisher, Subscriber, Topic, Transport,
-    message::{self, CommandMessage, EventMessage, Malformed, MissionMessage, TickHeader, TickMessage},
+    BusError, Heart, Publisher, Topic, Transport,
+    message::{
+        CommandMessage, Control, EventKind, EventMessage, MissionMessage, NONE, Stage, StepView, TickHeader,
+        TickMessage,
+    },
 };
-use cohabit_cdf::{Action, BodyId, ObjectId, Status};
+use cohabit_cdf::{Action, BodyId, ObjectId};
 use cohabit_world::{CameraTarget, DT_NANOS, Event, Input, Report, World};
 
-use crate::{build::SessionPlan, camera_plan::CameraPlan, motion::Motion, report};
-
-/// Commands that one tick takes in at most; the rest wait for the next.
-const MAX_INPUTS: usize = 64;
+use crate::{
+    build::SessionPlan,
+    camera_plan::CameraPlan,
+    intake::Intake,
+    motion::Motion,
+    report,
+    stopwatch::{Stopwatch, stage_of},
+};
 
 /// How long an object that is pointed out stays outlined.
 const HIGHLIGHT_TICKS: u64 = 240;
@@ -28,11 +35,15 @@ pub enum EngineError {
 /// The world of one session, connected to a bus.
 pub struct Engine {
     world: World,
-    commands: Box<dyn Subscriber>,
+    intake: Intake,
     mission: Box<dyn Publisher>,
     state: Box<dyn Publisher>,
     ticks: Box<dyn Publisher>,
     events: Box<dyn Publisher>,
+    steps: Box<dyn Publisher>,
+    heart: Heart,
+    stopwatch: Stopwatch,
+    paused: bool,
     turn_by_command: BTreeMap<u64, u64>,
     latest_started: u64,
     highlighted: Vec<(ObjectId, u64)>,
@@ -54,11 +65,15 @@ impl Engine {
     ) -> Result<Self, EngineError> {
         let mut engine = Self {
             world,
-            commands: bus.subscriber(Topic::Commands)?,
+            intake: Intake::new(bus)?,
             mission: bus.publisher(Topic::Mission)?,
             state: bus.publisher(Topic::State)?,
             ticks: bus.publisher(Topic::Ticks)?,
             events: bus.publisher(Topic::Events)?,
+            steps: bus.publisher(Topic::Steps)?,
+            heart: Heart::new(bus, "sim", NONE)?,
+            stopwatch: Stopwatch::new(),
+            paused: false,
             turn_by_command: BTreeMap::new(),
             latest_started: 0,
             highlighted: Vec::new(),
@@ -104,53 +119,113 @@ impl Engine {
     /// # Errors
     /// [`EngineError::Bus`].
     pub fn tick(&mut self, wall_nanos: u64) -> Result<(), EngineError> {
-        let messages = self.drain()?;
+        self.tick_late(wall_nanos, 0)
+    }
+
+    /// The same, so many nanoseconds later than it should have begun.
+    pub(crate) fn tick_late(&mut self, wall_nanos: u64, late_nanos: u64) -> Result<(), EngineError> {
+        self.stopwatch.restart();
+        self.listen()?;
+        let messages = self.intake.commands();
         let inputs: Vec<Input> = messages.iter().filter_map(|message| self.input(message)).collect();
-        let report = self.world.step(&inputs);
+        self.stopwatch.over(Stage::Drain);
+        let report = self.world.step_telling(&inputs, &mut |phase| self.stopwatch.over(stage_of(phase)));
         self.note_started(&inputs);
         self.note_shown(&report);
         self.motion.note(&self.world, &report);
         // State before events: who hears of an event finds the state that it speaks of.
         self.publish_state()?;
         self.publish_events(&inputs, report)?;
-        self.publish_tick(messages, wall_nanos)?;
+        self.stopwatch.over(Stage::Publish);
+        self.publish_tick(messages, wall_nanos, late_nanos)?;
+        self.stopwatch.over(Stage::Record);
+        self.beat()
+    }
+
+    /// Takes in what has arrived, and tells what comes of it at once.
+    ///
+    /// # Errors
+    /// [`EngineError::Bus`].
+    pub(crate) fn listen(&mut self) -> Result<(), EngineError> {
+        let told = self.intake.take_in(self.world.tick(), self.world.bodies().len())?;
+        told.iter().try_for_each(|event| self.send_event(event))
+    }
+
+    /// What was asked of the clock since this was last called.
+    pub(crate) fn take_controls(&mut self) -> Vec<Control> {
+        std::mem::take(&mut self.intake.controls)
+    }
+
+    /// Tells that time goes otherwise now, and shows the world as it stands.
+    pub(crate) fn set_clock(&mut self, paused: bool, sentence: &str) -> Result<(), EngineError> {
+        self.paused = paused;
+        self.show_state()?;
+        self.send_event(&EventMessage::new(EventKind::Clock).saying(sentence))
+    }
+
+    /// How many are waited for in lock-step.
+    pub(crate) fn attending(&self) -> usize {
+        self.intake.attendance.count()
+    }
+
+    /// Whether somebody's turn is not over yet.
+    pub(crate) fn is_awaited(&self) -> bool {
+        self.intake.attendance.is_awaited()
+    }
+
+    /// Whose turn it is now.
+    pub(crate) fn ask(&mut self) -> Vec<u64> {
+        self.intake.attendance.ask(self.world.tick())
+    }
+
+    /// Tells them so: all that belongs to this tick has been sent.
+    pub(crate) fn publish_step(&mut self, due: &[u64]) -> Result<(), EngineError> {
+        self.steps.send(self.world.tick(), StepView::bytes(due.len()), &mut |bytes| StepView::write(due, bytes))?;
         Ok(())
     }
 
-    /// Hands the mission and the state to peers that joined since the last tick.
+    /// Goes on without those who took too long.
+    pub(crate) fn give_up_waiting(&mut self) -> Result<(), EngineError> {
+        for late in self.intake.attendance.give_up(self.world.tick()) {
+            let mut event = EventMessage::new(EventKind::TimedOut).saying(&late.sentence);
+            (event.body, event.number) = (late.body, late.count.cast_signed());
+            self.send_event(&event)?;
+        }
+        Ok(())
+    }
+
+    /// A stage of the tick that is not the engine's own is over.
+    pub(crate) fn note_stage(&mut self, stage: Stage) {
+        self.stopwatch.over(stage);
+    }
+
+    /// What is timed next begins now.
+    pub(crate) fn restart_stopwatch(&mut self) {
+        self.stopwatch.restart();
+    }
+
+    /// Hands what is kept for late joiners to peers that joined meanwhile, and says whose commander is gone.
     ///
     /// # Errors
     /// [`EngineError::Bus`].
     pub fn greet(&mut self) -> Result<(), EngineError> {
-        self.mission.update()?;
-        self.events.update()?;
-        Ok(())
+        for topic in [&mut self.mission, &mut self.state, &mut self.events, &mut self.ticks] {
+            topic.update()?;
+        }
+        let buried = self.intake.bury();
+        buried.iter().try_for_each(|event| self.send_event(event))
     }
 
-    fn drain(&mut self) -> Result<Vec<CommandMessage>, EngineError> {
-        let mut messages = Vec::new();
-        while messages.len() < MAX_INPUTS {
-            let Some(sample) = self.commands.receive()? else { break };
-            match message::read::<CommandMessage>(sample.payload()) {
-                Ok(message) if Action::try_from(message.action).is_ok() => messages.push(message),
-                Ok(message) => self.refuse(&message, Malformed("no such action"))?,
-                Err(malformed) => tracing::warn!("a command was dropped: {malformed}"),
-            }
-        }
-        Ok(messages)
+    /// Shows that the simulator lives.
+    pub(crate) fn beat(&mut self) -> Result<(), EngineError> {
+        self.heart.beat(self.world.tick(), self.intake.lost())?;
+        Ok(())
     }
 
     fn input(&mut self, message: &CommandMessage) -> Option<Input> {
         self.turn_by_command.insert(message.command, message.turn);
         let action = Action::try_from(message.action).ok()?;
         Some(Input { command: message.command, body: BodyId(message.body), action })
-    }
-
-    fn refuse(&mut self, message: &CommandMessage, malformed: Malformed) -> Result<(), EngineError> {
-        let status = Status::IncorrectActionFormat;
-        let outcome =
-            EventMessage::outcome(message.command, message.turn, message.body, status, &malformed.to_string());
-        self.send_event(&outcome)
     }
 
     fn note_started(&mut self, inputs: &[Input]) {
@@ -188,6 +263,7 @@ impl Engine {
             self.send_event(&report::event(&self.world, event))?;
         }
         for outcome in &report.outcomes {
+            self.intake.attendance.note_outcome(outcome.body.0);
             let turn = self.turn_by_command.remove(&outcome.command).unwrap_or(0);
             self.send_event(&EventMessage::outcome(
                 outcome.command,
@@ -200,18 +276,30 @@ impl Engine {
         Ok(())
     }
 
-    fn publish_tick(&mut self, inputs: Vec<CommandMessage>, wall_nanos: u64) -> Result<(), EngineError> {
-        let header = TickHeader { digest: self.world.digest(), wall_nanos, ..TickHeader::default() };
+    fn publish_tick(
+        &mut self,
+        inputs: Vec<CommandMessage>,
+        wall_nanos: u64,
+        late_nanos: u64,
+    ) -> Result<(), EngineError> {
+        let (digest, stage_nanos) = (self.world.digest(), self.stopwatch.nanos);
+        let header = TickHeader { digest, wall_nanos, late_nanos, stage_nanos, ..TickHeader::default() };
         let message = TickMessage { header, inputs };
         self.ticks.send(self.world.tick(), message.bytes(), &mut |bytes| message.write(bytes))?;
         Ok(())
     }
 
     fn publish_state(&mut self) -> Result<(), EngineError> {
-        if self.state.subscribers() == 0 {
-            return Ok(());
+        if self.state.subscribers() == 0 { Ok(()) } else { self.show_state() }
+    }
+
+    /// Sends the state, whether or not anybody is there to see it: the latest is kept for late joiners.
+    pub(crate) fn show_state(&mut self) -> Result<(), EngineError> {
+        let mut parts = report::state(&self.world);
+        parts.header.paused = u32::from(self.paused);
+        for body in &mut parts.bodies {
+            body.commander = self.intake.commander(body.body);
         }
-        let parts = report::state(&self.world);
         self.state.send(self.world.tick(), parts.bytes(), &mut |bytes| parts.write(bytes))?;
         Ok(())
     }

@@ -1,23 +1,28 @@
 //! The tick: takes commands from the bus, steps the world, publishes what came of it, and has cameras rendered.
 //!
-//! In real time the world never waits for anybody: [`Simulator::run`] steps it 60 times a second, and a thread of its
-//! own renders the newest scene. Who steps an [`Engine`] itself takes pictures with [`Stills`], when it wants them. Fed
+//! In real time the world never waits for anybody: [`Simulator::run`] steps it 60 times a second, or as often as is asked
+//! for, and a thread of its own renders the newest scene. In lock-step it waits for each agent that attends. Who steps an [`Engine`] itself takes pictures with [`Stills`], when it wants them. Fed
 //! from a log instead of a bus, the same world replays a session ([`replay`](replay::replay)).
 //!
 //! This crate never knows dialog.
 
+mod attendance;
 mod build;
 mod camera_plan;
 mod camera_rig;
+mod commanders;
 mod engine;
 mod exposure;
+mod intake;
 mod motion;
+mod pace;
 pub mod replay;
 pub mod report;
 mod scene;
 mod shot;
 mod simulator;
 mod stills;
+mod stopwatch;
 mod studio;
 
 pub use build::{BuildError, SessionPlan};

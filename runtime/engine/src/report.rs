@@ -103,6 +103,7 @@ fn body_record(body: &BodyView) -> BodyRecord {
         kind: body.kind as u32,
         flags: body.flags.0,
         command: body.command.unwrap_or(0),
+        commander: 0,
         position_m: body.position_m.to_array(),
         yaw_rad: body.yaw_rad,
         head_pitch_rad: body.head_pitch_rad,

@@ -1,4 +1,4 @@
-//! The simulator of one session in real time.
+//! The simulator of one session: its world, its cameras, its clock.
 
 use std::{
     sync::{
@@ -6,32 +6,46 @@ use std::{
         atomic::{AtomicBool, Ordering},
     },
     thread,
-    time::{Duration, Instant},
+    time::Duration,
 };
 
-use cohabit_bus::{Transport, monotonic_nanos, wall_nanos};
-use cohabit_render::{MeshLibrary, Renderer};
+use cohabit_bus::{Listener, Transport, Wake, message::Stage, monotonic_nanos, wall_nanos};
+use cohabit_render::{CpuRenderer, MeshLibrary, Renderer};
 use cohabit_world::{DT_NANOS, World};
 
 use crate::{
     build::SessionPlan,
     engine::{Engine, EngineError},
+    pace::Pace,
     scene::Moment,
     studio::{Desk, Studio},
 };
 
 /// Ticks between two greetings of peers that joined late.
 const GREET_EVERY: u64 = 15;
-
 /// The tick at which the shading of models that were not seen yet begins to be baked, so that none makes a frame late:
 /// the first frames come first.
 const BAKE_AT: u64 = 90;
+/// How often those who joined are looked after while the world stands still or waits.
+const LOOK_EVERY: Duration = Duration::from_millis(20);
 
-/// A world in real time, with its cameras.
+/// A world with its cameras and its clock.
 pub struct Simulator {
     engine: Engine,
+    /// The cameras that deliver as well as they can; in lock-step, those for people alone.
     studio: Studio,
     meshes: Arc<MeshLibrary>,
+    bell: Box<dyn Listener>,
+    pace: Pace,
+    lock_step: Option<LockStep>,
+}
+
+/// What a world in lock-step needs besides.
+struct LockStep {
+    /// The world begins when so many attend.
+    agents: usize,
+    /// The cameras whose frames belong to an agent's turn.
+    studio: Studio,
 }
 
 impl Simulator {
@@ -47,80 +61,171 @@ impl Simulator {
         bus: &dyn Transport,
     ) -> Result<Self, EngineError> {
         let cameras = plan.cameras(world.bodies().len());
-        let studio = Studio::new(
-            Arc::clone(&meshes),
-            Arc::clone(&plan.layout),
-            Arc::clone(&plan.catalog),
-            renderer,
-            &cameras,
-            bus,
-        )?;
-        Ok(Self { engine: Engine::new(plan, world, &cameras, bus)?, studio, meshes })
+        let engine = Engine::new(plan, world, &cameras, bus)?;
+        let studio = |renderer, cameras: &[_]| {
+            let (layout, catalog) = (Arc::clone(&plan.layout), Arc::clone(&plan.catalog));
+            Studio::new(Arc::clone(&meshes), layout, catalog, renderer, cameras, bus)
+        };
+        let (studio, lock_step) = match plan.lock_step {
+            None => (studio(renderer, &cameras)?, None),
+            Some(agents) => {
+                let (people, minds): (Vec<_>, Vec<_>) = cameras.into_iter().partition(|camera| camera.for_people);
+                let lock_step = LockStep { agents, studio: studio(renderer, &minds)? };
+                (studio(Box::new(CpuRenderer::new(1)), &people)?, Some(lock_step))
+            }
+        };
+        let bell = bus.listener(Wake::Commands)?;
+        Ok(Self { engine, studio, meshes, bell, pace: Pace::new(1.0, false), lock_step })
     }
 
-    /// Ticks 60 times a second until `stop`.
+    /// The same, beginning so many times as fast as real time, and perhaps standing still at first.
+    #[must_use]
+    pub fn starting(self, speed: f32, paused: bool) -> Self {
+        Self { pace: Pace::new(speed, paused), ..self }
+    }
+
+    /// Goes on until `stop`.
     ///
     /// # Errors
     /// [`EngineError`].
     pub fn run(self, stop: &AtomicBool) -> Result<(), EngineError> {
-        let Self { mut engine, studio, meshes } = self;
+        let Self { engine, studio, meshes, bell, pace, lock_step } = self;
         let desk = Desk::default();
         let over = AtomicBool::new(false);
         thread::scope(|scope| {
             let cameras = scope.spawn(|| studio.run(&desk));
-            let each = |tick| {
+            let goes_on = |tick| {
                 if tick == BAKE_AT {
                     scope.spawn(|| meshes.bake_all(&over));
                 }
                 !stop.load(Ordering::Relaxed) && !cameras.is_finished()
             };
-            let ticked = tick_while(&mut engine, &desk, each);
+            let mut clock = Clock { engine, desk: &desk, bell, pace, goes_on, shown_nanos: 0 };
+            let ran = match lock_step {
+                None => clock.run_in_real_time(),
+                Some(lock_step) => clock.run_in_lock_step(lock_step),
+            };
             over.store(true, Ordering::Relaxed);
             desk.close();
             let shot = cameras.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
-            ticked.and(shot.map_err(EngineError::from))
+            ran.and(shot.map_err(EngineError::from))
         })
     }
 }
 
-/// Ticks until `each`, which is told the tick's number, says no.
-fn tick_while(engine: &mut Engine, desk: &Desk, each: impl Fn(u64) -> bool) -> Result<(), EngineError> {
-    let mut pace = Pace::new();
-    while each(engine.world().tick()) {
-        engine.tick(wall_nanos())?;
-        if engine.world().tick().is_multiple_of(GREET_EVERY) {
-            engine.greet()?;
+/// An engine that is ticking.
+struct Clock<'a, G> {
+    engine: Engine,
+    desk: &'a Desk,
+    bell: Box<dyn Listener>,
+    pace: Pace,
+    /// Whether it goes on at that tick.
+    goes_on: G,
+    /// When the scene was last shown to those who render.
+    shown_nanos: u64,
+}
+
+impl<G: Fn(u64) -> bool> Clock<'_, G> {
+    /// The world never waits.
+    fn run_in_real_time(&mut self) -> Result<(), EngineError> {
+        self.begin()?;
+        while self.goes_on() {
+            if self.pace.is_paused() {
+                self.stand_still()?;
+            } else {
+                let late_nanos = u64::try_from(self.pace.late().as_nanos()).unwrap_or(u64::MAX);
+                self.tick(late_nanos)?;
+                self.show();
+                self.engine.note_stage(Stage::Show);
+                self.pace.wait();
+            }
+            self.obey()?;
         }
-        desk.leave(Moment::capture(engine, monotonic_nanos()));
-        pace.wait();
-    }
-    Ok(())
-}
-
-/// Keeps ticks at their times. A tick that comes late is made up for, up to a limit; beyond it time is lost, and said.
-struct Pace {
-    next: Instant,
-}
-
-const TICK: Duration = Duration::from_nanos(DT_NANOS);
-const MOST_MADE_UP: Duration = Duration::from_millis(250);
-
-impl Pace {
-    fn new() -> Self {
-        Self { next: Instant::now() }
+        Ok(())
     }
 
-    fn wait(&mut self) {
-        self.next += TICK;
-        let now = Instant::now();
-        if let Some(early) = self.next.checked_duration_since(now) {
-            thread::sleep(early);
-        } else if now - self.next > MOST_MADE_UP {
-            tracing::warn!(
-                "the machine is too slow: {} ms of simulated time were dropped",
-                (now - self.next).as_millis()
-            );
-            self.next = now;
+    /// The world waits for all who attend, and goes as fast as they do.
+    fn run_in_lock_step(&mut self, LockStep { agents, mut studio }: LockStep) -> Result<(), EngineError> {
+        self.begin()?;
+        let mut begun = false;
+        while self.goes_on() {
+            let due = self.engine.ask();
+            if !due.is_empty() {
+                self.engine.restart_stopwatch();
+                studio.shoot_watched(&|nanos| Moment::capture(&self.engine, nanos))?;
+                self.engine.publish_step(&due)?;
+                self.engine.note_stage(Stage::Show);
+            }
+            begun |= self.engine.attending() >= agents;
+            let waits = self.engine.is_awaited() || self.engine.attending() == 0 || !begun;
+            if self.pace.is_paused() || waits {
+                self.stand_still()?;
+                self.engine.give_up_waiting()?;
+            } else {
+                self.engine.note_stage(Stage::Wait);
+                self.tick(0)?;
+                self.show_at_times();
+            }
+            self.obey()?;
+        }
+        Ok(())
+    }
+
+    fn goes_on(&self) -> bool {
+        (self.goes_on)(self.engine.world().tick())
+    }
+
+    /// Who joins before the first tick sees the world as well.
+    fn begin(&mut self) -> Result<(), EngineError> {
+        if self.pace.is_paused() {
+            self.engine.set_clock(true, "paused")?;
+        }
+        self.engine.show_state()?;
+        self.engine.restart_stopwatch();
+        Ok(())
+    }
+
+    fn tick(&mut self, late_nanos: u64) -> Result<(), EngineError> {
+        self.engine.tick_late(wall_nanos(), late_nanos)?;
+        if self.engine.world().tick().is_multiple_of(GREET_EVERY) {
+            self.engine.greet()?;
+        }
+        if self.pace.count() {
+            self.engine.set_clock(true, "paused")?;
+        }
+        Ok(())
+    }
+
+    /// Looks after those who join, look or command while no time goes by, until something comes or a moment is over.
+    fn stand_still(&mut self) -> Result<(), EngineError> {
+        if !self.bell.wait(LOOK_EVERY)? {
+            self.engine.greet()?;
+        }
+        self.engine.listen()?;
+        self.engine.beat()?;
+        self.show_at_times();
+        Ok(())
+    }
+
+    /// Does what the clock is asked to do.
+    fn obey(&mut self) -> Result<(), EngineError> {
+        for control in self.engine.take_controls() {
+            let sentence = self.pace.obey(control);
+            self.engine.set_clock(self.pace.is_paused(), &sentence)?;
+        }
+        Ok(())
+    }
+
+    /// Leaves the scene to those who render.
+    fn show(&mut self) {
+        self.shown_nanos = monotonic_nanos();
+        self.desk.leave(Moment::capture(&self.engine, self.shown_nanos));
+    }
+
+    /// The same, no more often than in real time.
+    fn show_at_times(&mut self) {
+        if monotonic_nanos() - self.shown_nanos >= DT_NANOS {
+            self.show();
         }
     }
 }

@@ -8,6 +8,7 @@ use std::{
 use cohabit_bus::{
     BusError, CameraId, Publisher, Topic, Transport,
     message::{FrameLayout, NONE, Plane},
+    monotonic_nanos,
 };
 use cohabit_cdf::{Catalog, Layout};
 use cohabit_render::{Camera, Classes, Instance, Lens, Look, MeshLibrary, Renderer, Scene, SeenTable};
@@ -173,6 +174,19 @@ impl Studio {
         let due: Vec<(usize, Duration)> =
             self.posts.iter_mut().enumerate().filter_map(|(index, post)| Some((index, post.due()?))).collect();
         if due.is_empty() { Ok(()) } else { self.expose(moment, due) }
+    }
+
+    /// Renders and sends a frame of each camera that somebody subscribes to, due or not; the moment is captured if there
+    /// is any.
+    ///
+    /// # Errors
+    /// [`BusError`].
+    pub fn shoot_watched(&mut self, capture: &dyn Fn(u64) -> Moment) -> Result<(), BusError> {
+        /// What the world's own time brings between two frames is no matter to cameras for minds.
+        const SINCE: Duration = Duration::from_millis(100);
+        let watched = self.posts.iter().enumerate().filter(|(_, post)| post.publisher.subscribers() > 0);
+        let watched: Vec<_> = watched.map(|(index, _)| (index, SINCE)).collect();
+        if watched.is_empty() { Ok(()) } else { self.expose(&capture(monotonic_nanos()), watched) }
     }
 
     /// Renders and sends a frame of one camera, due or not; with another lens than its own, if one is given.

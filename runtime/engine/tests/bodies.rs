@@ -77,17 +77,19 @@ fn each_body_has_its_own_cameras_and_outcomes() {
         assert_eq!(places.len(), 3);
         for body in 0..3 {
             let action = Action::Rotate { yaw_rad: 0.3 };
-            let message =
-                CommandMessage { command: u64::from(body) + 1, turn: 0, body, reserved: 0, action: action.into() };
-            commands
-                .send(0, size_of::<CommandMessage>(), &mut |bytes| bytes.copy_from_slice(bytemuck::bytes_of(&message)))
-                .unwrap();
+            let command = u64::from(body) + 1;
+            let claim = CommandMessage::claim(100 + command, body, "test", false);
+            for message in [claim, CommandMessage::act(command, 0, body, action)] {
+                let bytes = bytemuck::bytes_of(&message);
+                commands.send(0, bytes.len(), &mut |sample| sample.copy_from_slice(bytes)).unwrap();
+            }
         }
         let mut done: Vec<_> = (0..3)
             .map(|_| {
                 wait(&mut *events, |payload| {
                     let event: EventMessage = message::read(payload).unwrap();
-                    (event.kind() == Some(EventKind::Outcome)).then_some((event.command, event.body, event.status()))
+                    let is_of_act = event.kind() == Some(EventKind::Outcome) && event.command < 100;
+                    is_of_act.then_some((event.command, event.body, event.status()))
                 })
             })
             .collect();

@@ -147,6 +147,7 @@ impl LockStep {
         for deed in deeds {
             match deed {
                 Deed::Act { turn, action } => self.act(turn, action),
+                Deed::Rest(_) => {}
                 Deed::Tell(message) => {
                     self.write_down(&message)?;
                     let Self { world, conversation, .. } = self;

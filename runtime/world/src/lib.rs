@@ -70,4 +70,4 @@ pub use glam::{Quat, Vec2, Vec3};
 pub use goals::GoalStatus;
 pub use report::{CameraTarget, Ending, Event, Input, Outcome, Report, SoundKind};
 pub use snapshot::SnapshotError;
-pub use world::{DT_NANOS, World};
+pub use world::{DT_NANOS, Phase, World};

@@ -34,6 +34,21 @@ pub const DT_NANOS: u64 = 16_666_667;
 /// Doors, lids and drawers take 0.8 s; machines as long to come up to speed.
 const OPEN_PER_S: f32 = 1.0 / 0.8;
 
+/// What a step is made of, in order.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum Phase {
+    /// Commands are taken up.
+    Rule,
+    /// Bodies go on with what they do.
+    Move,
+    /// Machines work, doors and drawers move.
+    Work,
+    /// What flies and slides does so.
+    Physics,
+    /// Goals are judged, the story goes on.
+    Judge,
+}
+
 /// A simulated office.
 pub struct World {
     catalog: Arc<Catalog>,
@@ -82,6 +97,11 @@ impl World {
 
     /// Goes on by one tick: takes the commands up, moves everything, works the machines, judges the goals.
     pub fn step(&mut self, inputs: &[Input]) -> Report {
+        self.step_telling(inputs, &mut |_| ())
+    }
+
+    /// The same, and tells when each phase of it is over: the world has no clock to time them by.
+    pub fn step_telling(&mut self, inputs: &[Input], over: &mut dyn FnMut(Phase)) -> Report {
         let mut report = Report::default();
         if self.state.tick == 0 {
             self.say(&MessageTime::Beginning, &mut report.events);
@@ -90,15 +110,19 @@ impl World {
         for input in inputs {
             self.begin(input, &mut report.outcomes, &mut report.events);
         }
+        over(Phase::Rule);
         for index in 0..self.state.bodies.len() {
             let id = BodyId(u32::try_from(index).expect("invariant: few bodies"));
             report.outcomes.extend(self.advance_task(id, &mut report.events));
             self.carry_held(id);
         }
+        over(Phase::Move);
         self.strike_from_below(&mut report.events);
         self.run_machines(&mut report.events);
         let animated = self.animate();
+        over(Phase::Work);
         self.step_physics(&mut report.events);
+        over(Phase::Physics);
         // What is judged follows from the state alone: where nothing changed, nothing new comes of it.
         let acted = !inputs.is_empty()
             || self.state.bodies.iter().any(|body| body.busy() || body.arm > 0.0)
@@ -109,6 +133,7 @@ impl World {
             self.judge(&mut report.events);
             self.is_judged = !changed && report.events.is_empty();
         }
+        over(Phase::Judge);
         self.state.tick += 1;
         report
     }

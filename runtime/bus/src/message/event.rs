@@ -38,10 +38,18 @@ pub enum EventKind {
     GoalShown = 13,
     /// The mission shows people something: `object` if it is one, for `number` milliseconds, with a text.
     CameraMovement = 14,
+    /// Another commands a body: `body`, `number` is its run (0 is nobody), and a sentence.
+    Commander = 15,
+    /// The world's time goes otherwise: a sentence.
+    Clock = 16,
+    /// In lock-step, somebody was not waited for any longer: `number` of times in all, and a sentence.
+    TimedOut = 17,
+    /// A peer sent nonsense and is not heard any more: a sentence.
+    CutOff = 18,
 }
 
 impl EventKind {
-    const ALL: [Self; 14] = [
+    const ALL: [Self; 18] = [
         Self::Outcome,
         Self::Started,
         Self::GoalMet,
@@ -56,6 +64,10 @@ impl EventKind {
         Self::Sound,
         Self::GoalShown,
         Self::CameraMovement,
+        Self::Commander,
+        Self::Clock,
+        Self::TimedOut,
+        Self::CutOff,
     ];
 }
 

@@ -45,6 +45,8 @@ pub struct BodyRecord {
     pub flags: u32,
     /// The command it carries out; 0 is none.
     pub command: u64,
+    /// The run of who commands it; 0 is nobody.
+    pub commander: u64,
     /// On the floor, m.
     pub position_m: [f32; 3],
     /// Heading, rad.

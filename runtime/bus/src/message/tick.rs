@@ -16,6 +16,54 @@ pub struct TickHeader {
     pub reserved: u32,
     /// Wall time of the tick's start, ns since 1970: a stamp, never a key.
     pub wall_nanos: u64,
+    /// How much later than it should it began, ns; 0 in lock-step.
+    pub late_nanos: u64,
+    /// How long each [`Stage`] took, ns of wall time; the stages from `Record` on are those of the tick before.
+    pub stage_nanos: [u32; 10],
+}
+
+const _: () = assert!(Stage::ALL.len() == 10);
+
+/// What a tick is made of, in order.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+#[repr(u32)]
+pub enum Stage {
+    /// In lock-step, agents are waited for.
+    Wait = 0,
+    /// Queues are emptied.
+    Drain = 1,
+    /// Commands are ruled, their effects applied.
+    Rule = 2,
+    /// Bodies go on with what they do.
+    Move = 3,
+    /// Machines work, doors and drawers move.
+    Work = 4,
+    /// What flies and slides does so.
+    Physics = 5,
+    /// Goals and score.
+    Judge = 6,
+    /// State and events are sent.
+    Publish = 7,
+    /// The digest is taken, the tick sent to recorders.
+    Record = 8,
+    /// The scene goes to those who render; in lock-step, frames for agents are rendered.
+    Show = 9,
+}
+
+impl Stage {
+    /// All stages.
+    pub const ALL: [Self; 10] = [
+        Self::Wait,
+        Self::Drain,
+        Self::Rule,
+        Self::Move,
+        Self::Work,
+        Self::Physics,
+        Self::Judge,
+        Self::Publish,
+        Self::Record,
+        Self::Show,
+    ];
 }
 
 /// A tick to send.

@@ -10,8 +10,9 @@ use std::{fs, path::Path};
 use cohabit_bus::{
     Envelope, Topic,
     message::{
-        ActionRecord, BodyRecord, CameraRecord, CommandMessage, DialogHeader, EventMessage, FrameHeader, GoalRecord,
-        MissionHeader, NoteRecord, ObjectRecord, PlanStep, SeenRecord, StateHeader, TickHeader,
+        ActionRecord, BodyRecord, CameraRecord, CommandMessage, ControlMessage, DialogHeader, EventMessage,
+        FrameHeader, GoalRecord, MissionHeader, NoteRecord, ObjectRecord, PlanStep, PulseMessage, SeenRecord,
+        StateHeader, StepHeader, TickHeader,
     },
 };
 
@@ -30,6 +31,7 @@ const SIZES: &[(&str, usize)] = &sizes![
     BodyRecord,
     CameraRecord,
     CommandMessage,
+    ControlMessage,
     DialogHeader,
     Envelope,
     EventMessage,
@@ -39,8 +41,10 @@ const SIZES: &[(&str, usize)] = &sizes![
     NoteRecord,
     ObjectRecord,
     PlanStep,
+    PulseMessage,
     SeenRecord,
     StateHeader,
+    StepHeader,
     TickHeader,
 ];
 
@@ -82,7 +86,13 @@ fn payloads_are_made_of_what_the_document_says() {
         let mut length = source.record(payload.header).bytes().next_multiple_of(8);
         for (place, (record, count)) in payload.lists.iter().enumerate() {
             let found = field(&source, &payload, bytes, count);
-            let (each, most) = if *record == "u8" { (1, 3) } else { (source.record(record).bytes(), place + 1) };
+            let (each, most) = if *record == "u8" {
+                (1, 3)
+            } else if *record == "u64" {
+                (8, 1)
+            } else {
+                (source.record(record).bytes(), place + 1)
+            };
             assert_eq!(found, most, "{topic}: `{count}`");
             length += (each * found).next_multiple_of(8);
         }

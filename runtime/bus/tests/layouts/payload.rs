@@ -3,8 +3,9 @@
 use cohabit_bus::{
     Block, CameraId, Topic,
     message::{
-        BodyRecord, CameraKind, CameraRecord, CommandMessage, DialogKind, DialogMessage, EventKind, EventMessage,
-        FrameLayout, GoalRecord, MissionMessage, NoteRecord, ObjectRecord, PlanStep, Plane, StateParts, TickMessage,
+        BodyRecord, CameraKind, CameraRecord, CommandMessage, Control, ControlMessage, DialogKind, DialogMessage,
+        EventKind, EventMessage, FrameLayout, GoalRecord, MissionMessage, NoteRecord, ObjectRecord, PlanStep, Plane,
+        PulseMessage, StateParts, StepView, TickMessage,
     },
 };
 use cohabit_cdf::{BodyKind, BodyRequest};
@@ -26,7 +27,10 @@ pub fn topics() -> Vec<Topic> {
         Topic::State => Some(Topic::Ticks),
         Topic::Ticks => Some(Topic::Events),
         Topic::Events => Some(Topic::Commands),
-        Topic::Commands => Some(Topic::Dialog),
+        Topic::Commands => Some(Topic::Control),
+        Topic::Control => Some(Topic::Steps),
+        Topic::Steps => Some(Topic::Pulses),
+        Topic::Pulses => Some(Topic::Dialog),
         Topic::Dialog => Some(Topic::Frames(CameraId::Egocentric(0))),
         Topic::Frames(_) => None,
     };
@@ -57,6 +61,9 @@ impl Payload {
             Topic::Ticks => ("ticks", "TickHeader", &[("CommandMessage", "inputs")], ""),
             Topic::Events => ("events", "EventMessage", &[], ""),
             Topic::Commands => ("commands", "CommandMessage", &[], ""),
+            Topic::Control => ("control", "ControlMessage", &[], ""),
+            Topic::Steps => ("steps", "StepHeader", &[("u64", "due")], ", the runs of those whose turn it is"),
+            Topic::Pulses => ("pulses", "PulseMessage", &[], ""),
             Topic::Dialog => ("dialog", "DialogHeader", &[("PlanStep", "steps")], ""),
             Topic::Frames(_) => (
                 "frames/<camera>",
@@ -122,6 +129,11 @@ pub fn example(topic: Topic) -> Example {
             bytes.copy_from_slice(bytemuck::bytes_of(&EventMessage::new(EventKind::Sound)));
         }),
         Topic::Commands => filled(size_of::<CommandMessage>(), |_| ()),
+        Topic::Control => filled(size_of::<ControlMessage>(), |bytes| {
+            bytes.copy_from_slice(bytemuck::bytes_of(&ControlMessage::from(Control::Step(1))));
+        }),
+        Topic::Steps => filled(StepView::bytes(1), |bytes| StepView::write(&[7], bytes)),
+        Topic::Pulses => filled(size_of::<PulseMessage>(), |_| ()),
         Topic::Dialog => {
             let mut message = DialogMessage::new(DialogKind::Plan, 0, 1, "a plan");
             message.steps = vec![PlanStep::default()];
