@@ -6,7 +6,18 @@
 mod browser;
 mod page;
 mod play;
+mod soak;
 
 pub use browser::{Browser, Tab};
 pub use page::Page;
 pub use play::{Play, reference_data, run};
+pub use soak::{Soaked, soak};
+
+/// The processor and the number of cores, as benches print them.
+#[must_use]
+pub fn machine() -> String {
+    let text = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let name = text.lines().find_map(|line| line.strip_prefix("model name")?.split(": ").nth(1));
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    format!("{}, {cores} cores", name.unwrap_or("an unknown processor"))
+}

@@ -23,6 +23,8 @@ pub struct Client {
     count: u64,
     /// The newest tick that it heard of.
     tick: u64,
+    /// The newest tick whose world it has sensed, or at which it had its turn.
+    sensed: u64,
     commands_body: bool,
 }
 
@@ -56,6 +58,7 @@ impl Client {
             base: first_command(),
             count: 0,
             tick: 0,
+            sensed: 0,
             commands_body: false,
         })
     }
@@ -188,7 +191,7 @@ impl Client {
         while let Some((sample, is_due)) =
             self.steps.next(|sample| Ok(StepView::new(sample.payload())?.due.contains(&run)))?
         {
-            self.tick = self.tick.max(sample.envelope().tick);
+            self.note_sensed(sample.envelope().tick);
             if is_due {
                 turn = Some(sample.envelope().tick);
             }
@@ -217,7 +220,13 @@ impl Client {
     /// # Errors
     /// [`BusError::Send`].
     pub fn beat(&mut self) -> Result<(), BusError> {
-        self.heart.beat(self.tick, self.events.lost() + self.steps.lost())
+        self.heart.beat(self.sensed, self.events.lost() + self.steps.lost())
+    }
+
+    /// It has sensed the world as it was at a tick: how far it is behind shows in its heartbeat.
+    pub fn note_sensed(&mut self, tick: u64) {
+        self.tick = self.tick.max(tick);
+        self.sensed = self.sensed.max(tick);
     }
 
     const fn next_command(&mut self) -> u64 {

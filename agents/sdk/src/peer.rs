@@ -212,6 +212,9 @@ impl<'a> Mind<'a> {
         let state = self.world.as_mut().map(|world| world.latest()).transpose()?.flatten();
         let glance = self.eyes.as_mut().map(Eyes::look).transpose()?.flatten();
         let is_new = if self.senses.sight { glance.is_some() } else { state.is_some() };
+        if let Some(sample) = &state {
+            self.client.note_sensed(sample.envelope().tick);
+        }
         self.state = state.or(self.state.take());
         self.glance = glance.or(self.glance.take());
         Ok(is_new)

@@ -117,6 +117,15 @@ impl Session {
         file.is_ok_and(|file| flock(&file, FlockOperation::NonBlockingLockExclusive).is_err())
     }
 
+    /// All of this user's sessions that are supervised now, by name.
+    #[must_use]
+    pub fn all_supervised() -> Vec<Self> {
+        let mut all: Vec<Self> = locked_names().filter_map(|name| Self::new(&name).ok()).collect();
+        all.retain(Self::is_supervised);
+        all.sort_by(|one, other| one.name.cmp(&other.name));
+        all
+    }
+
     /// What lies in a folder of shared memory of any session of any user, in the order of users and names.
     ///
     /// # Errors
@@ -194,11 +203,8 @@ impl Session {
     /// Wipes every session of this user whose supervisor is dead; gives their names.
     pub fn wipe_dead() -> Vec<String> {
         let mut wiped = Vec::new();
-        for entry in fs::read_dir(sessions_folder()).into_iter().flatten().flatten() {
-            let path = entry.path();
-            let name = path.file_stem().and_then(|stem| stem.to_str()).unwrap_or_default();
-            let is_lock = path.extension().is_some_and(|ending| ending == "lock");
-            if let (true, Ok(session)) = (is_lock, Self::new(name))
+        for name in locked_names() {
+            if let Ok(session) = Self::new(&name)
                 && let Ok(Some(lock)) = session.lock()
             {
                 session.end(lock);
@@ -214,6 +220,13 @@ fn owner(file: &str) -> Option<(u32, String)> {
     let (user, rest) = file.strip_prefix(PREFIX)?.split_once('_')?;
     let (session, _) = rest.split_once('_')?;
     Some((user.parse().ok()?, session.to_owned()))
+}
+
+/// The names of all sessions of this user that have a lock, held or not.
+fn locked_names() -> impl Iterator<Item = String> {
+    let paths = fs::read_dir(sessions_folder()).into_iter().flatten().flatten().map(|entry| entry.path());
+    let locks = paths.filter(|path| path.extension().is_some_and(|ending| ending == "lock"));
+    locks.filter_map(|path| Some(path.file_stem()?.to_str()?.to_owned()))
 }
 
 fn sessions_folder() -> PathBuf {
@@ -248,6 +261,7 @@ mod tests {
         assert!(matches!(session.supervise(), Err(SessionError::Busy(_))));
         assert!(session.folder().is_dir());
         assert!(session.is_supervised());
+        assert!(Session::all_supervised().contains(&session));
         session.end(lock);
         assert!(!session.is_supervised());
         assert!(!session.folder().exists());

@@ -13,6 +13,7 @@ use std::{
 use cohabit_cdf::Catalog;
 use cohabit_engine::SessionPlan;
 use cohabit_eval::{Report, Task, read_tasks};
+use cohabit_tests::machine;
 
 fn main() {
     let file = std::env::args().skip(1).find(|argument| !argument.starts_with("--")).map(PathBuf::from);
@@ -75,12 +76,4 @@ fn play(file: &Path) {
         wall_s * report.workers as f64 / ticks.max(1) as f64 * 1e6,
         ticks as f64 * cohabit_engine::replay::TICK_S / wall_s
     );
-}
-
-fn machine() -> String {
-    let info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-    let model =
-        info.lines().find_map(|line| line.strip_prefix("model name")).map(|rest| rest.trim_matches([' ', '\t', ':']));
-    let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    format!("{}, {cores} cores", model.unwrap_or("an unknown processor"))
 }

@@ -14,6 +14,8 @@ mod replay;
 mod sessions;
 mod stop;
 mod supervisor;
+mod time;
+mod top;
 
 use std::process::ExitCode;
 
@@ -40,6 +42,10 @@ enum Command {
     Eval(eval::Eval),
     /// Say what this machine lacks for a session, and what that costs
     Doctor(doctor::Doctor),
+    /// Show a running session live: its ticks, how long their stages take, and its peers
+    Top(top::Top),
+    /// Have the world of a running session stand still, go on, step, or go faster
+    Time(time::Time),
     /// Draw all objects in all their states, all floor plans and all rooms
     Gallery(gallery::Gallery),
     /// The world of a session, its cameras and its clock; or, with --arena-port, a simulator for existing clients
@@ -65,6 +71,8 @@ fn main() -> ExitCode {
         Command::Replay(replay) => replay.run(),
         Command::Eval(eval) => eval.run(),
         Command::Doctor(doctor) => doctor.run(),
+        Command::Top(top) => top.run(),
+        Command::Time(time) => time.run(),
         Command::Gallery(gallery) => gallery.run(),
         Command::Sim(sim) => sim.run(),
         Command::Agent(agent) => agent.run(),

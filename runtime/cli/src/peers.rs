@@ -1,21 +1,18 @@
 //! The processes of a session, each of which can also be started by hand.
 
 use std::{
+    ffi::OsString,
     io::Write as _,
     net::{IpAddr, SocketAddr},
     path::PathBuf,
-    sync::{
-        Arc,
-        atomic::{AtomicBool, Ordering},
-    },
+    sync::{Arc, atomic::AtomicBool},
     thread,
-    time::Duration,
 };
 
 use anyhow::Context as _;
 use clap::ValueEnum;
 use cohabit_agent::PlanFollower;
-use cohabit_bus::{Session, Shm, Topic, Transport, Wake, message::MissionMessage};
+use cohabit_bus::{Session, Shm, message::Control};
 use cohabit_cdf::BodyRequest;
 use cohabit_dialog::DialogConfig;
 use cohabit_engine::{CameraPlan, SessionPlan, Simulator};
@@ -76,6 +73,51 @@ pub struct Sim {
     cameras: Vec<CameraPlan>,
     #[command(flatten)]
     rendering: Rendering,
+    #[command(flatten)]
+    timing: Timing,
+}
+
+/// How the world's time goes by.
+#[derive(clap::Args, Clone, Copy, Debug)]
+pub struct Timing {
+    /// How many times as fast as real time the world begins, 0.05 to 20
+    #[arg(long, default_value_t = 1.0, value_parser = speed)]
+    speed: f32,
+    /// Begin with the world standing still: `cohabit time resume` has it go on
+    #[arg(long)]
+    paused: bool,
+    /// In lock-step instead of real time: the world waits for each agent that attends, tick by tick, and goes as fast as
+    /// they do
+    #[arg(long, conflicts_with = "speed")]
+    lock_step: bool,
+    /// In lock-step, the world begins when so many agents attend
+    #[arg(long, default_value_t = 1, requires = "lock_step")]
+    agents: usize,
+}
+
+/// A speed that the clock takes.
+pub fn speed(text: &str) -> Result<f32, String> {
+    let speeds = Control::SPEEDS;
+    let speed = text.parse().ok().filter(|speed| speeds.contains(speed));
+    speed.ok_or_else(|| format!("from {} to {} times real time", speeds.start(), speeds.end()))
+}
+
+impl Timing {
+    /// The same choice as arguments of another process.
+    pub fn arguments(self) -> Vec<OsString> {
+        let mut arguments = Vec::new();
+        if self.lock_step {
+            arguments.extend(["--lock-step".into(), "--agents".into(), self.agents.to_string().into()]);
+        } else {
+            arguments.extend(["--speed".into(), self.speed.to_string().into()]);
+        }
+        arguments.extend(self.paused.then(|| "--paused".into()));
+        arguments
+    }
+
+    fn of(self, plan: SessionPlan) -> SessionPlan {
+        if self.lock_step { plan.in_lock_step(self.agents) } else { plan }
+    }
 }
 
 impl Sim {
@@ -86,7 +128,7 @@ impl Sim {
             return self.arena.serve(port, &Games { mission, seed: self.seed, bodies: &self.bodies, rendering });
         }
         let plan = MissionFile::find(self.mission.as_deref())?.plan(self.seed, &self.bodies)?;
-        let plan = plan.with_cameras(self.cameras.clone()).map_err(bad_input)?;
+        let plan = self.timing.of(plan.with_cameras(self.cameras.clone()).map_err(bad_input)?);
         let session = self.session.clone().unwrap_or_default();
         let (bus, stop) = Joining { session, supervisor: self.supervisor }.join()?;
         let (world, meshes) = thread::scope(|scope| {
@@ -97,7 +139,7 @@ impl Sim {
         let meshes = Arc::new(meshes.context("build the models")?);
         let renderer = self.rendering.start()?;
         let simulator = Simulator::new(&plan, world.map_err(bad_input)?, meshes, renderer, &bus)?;
-        simulator.run(&stop)?;
+        simulator.starting(self.timing.speed, self.timing.paused).run(&stop)?;
         Ok(())
     }
 }
@@ -158,7 +200,7 @@ impl Dialog {
     /// Runs the dialog service. Prints its address, and later the time of the first frame shown, for its supervisor.
     pub fn run(&self) -> anyhow::Result<()> {
         let (bus, stop) = self.joining.join()?;
-        let Some(message) = wait_for_mission(&bus, &stop)? else { return Ok(()) };
+        let Some(message) = cohabit_agent::wait_for_mission(&bus, &stop)? else { return Ok(()) };
         let file = MissionFile { name: message.header.file.as_str().to_owned(), text: message.text };
         let SessionPlan { catalog, layout, mission, .. } = file.plan(message.header.seed, &message.bodies)?;
         let config = DialogConfig {
@@ -176,18 +218,6 @@ fn tell_supervisor(line: &str) {
     let mut out = std::io::stdout().lock();
     // Nobody listening is no reason to stop serving.
     let _ = writeln!(out, "{line}").and_then(|()| out.flush());
-}
-
-fn wait_for_mission(bus: &Shm, stop: &AtomicBool) -> anyhow::Result<Option<MissionMessage>> {
-    let mut missions = bus.subscriber(Topic::Mission)?;
-    let mut listener = bus.listener(Wake::State)?;
-    while !stop.load(Ordering::Relaxed) {
-        if let Some(sample) = missions.latest()? {
-            return Ok(Some(MissionMessage::read(sample.payload())?));
-        }
-        listener.wait(Duration::from_millis(50))?;
-    }
-    Ok(None)
 }
 
 /// Writes the session log.

@@ -12,7 +12,7 @@ use cohabit_engine::CameraPlan;
 use crate::{
     failure::bad_input,
     mission_file::MissionFile,
-    peers::Listening,
+    peers::{Listening, Timing},
     rendering::Rendering,
     sessions, stop,
     supervisor::{Role, Supervisor},
@@ -44,6 +44,8 @@ pub struct Play {
     log: Option<PathBuf>,
     #[command(flatten)]
     rendering: Rendering,
+    #[command(flatten)]
+    timing: Timing,
 }
 
 impl Play {
@@ -67,7 +69,7 @@ impl Play {
         })?;
         println!("Playing \"{}\" ({})", plan.mission.goal_text, mission.name);
         let roles = [
-            Role::sim(self.mission.as_deref(), seed, &self.bodies, &self.cameras, self.rendering),
+            Role::sim(self.mission.as_deref(), seed, &self.bodies, &self.cameras, self.rendering, self.timing),
             Role::record(&log),
             Role::agent(),
             Role::dialog(&self.listening),

@@ -1,4 +1,4 @@
-//! Where the logs of sessions are kept.
+//! Sessions that run, and where the logs of those that did are kept.
 
 use std::{
     fs,
@@ -6,6 +6,9 @@ use std::{
 };
 
 use anyhow::Context as _;
+use cohabit_bus::Session;
+
+use crate::failure::bad_input;
 
 /// The folder that was asked for, or the one for sessions in the user's data folder; made if it is not there.
 pub fn folder(asked: Option<&Path>) -> anyhow::Result<PathBuf> {
@@ -24,4 +27,20 @@ pub fn usual_folder() -> PathBuf {
     let home = || std::env::var_os("HOME").map(|home| Path::new(&home).join(".local/share"));
     let base = std::env::var_os("XDG_DATA_HOME").map(PathBuf::from).filter(|path| path.is_absolute());
     base.or_else(home).unwrap_or_else(std::env::temp_dir).join("cohabit/sessions")
+}
+
+/// The session of that name, or the one that runs.
+pub fn running(name: Option<&str>) -> anyhow::Result<Session> {
+    if let Some(name) = name {
+        return Session::new(name).map_err(bad_input);
+    }
+    let mut running = Session::all_supervised();
+    match (running.pop(), running.is_empty()) {
+        (Some(session), true) => Ok(session),
+        (None, _) => Err(bad_input("no session runs here: start one with `cohabit play`")),
+        (Some(last), false) => {
+            let names: Vec<_> = running.iter().chain([&last]).map(Session::name).collect();
+            Err(bad_input(format!("several sessions run: choose one by `--session`: {}", names.join(", "))))
+        }
+    }
 }

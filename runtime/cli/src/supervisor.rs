@@ -19,7 +19,11 @@ use cohabit_cdf::BodyRequest;
 use cohabit_engine::CameraPlan;
 use rustix::process::{Pid, Signal, kill_process};
 
-use crate::{failure::BadInput, peers::Listening, rendering::Rendering};
+use crate::{
+    failure::BadInput,
+    peers::{Listening, Timing},
+    rendering::Rendering,
+};
 
 /// How long a process may take to end when asked.
 const GRACE: Duration = Duration::from_secs(3);
@@ -42,9 +46,11 @@ impl Role {
         bodies: &[BodyRequest],
         cameras: &[CameraPlan],
         rendering: Rendering,
+        timing: Timing,
     ) -> Self {
         let mut arguments = vec!["--seed".into(), seed.to_string().into()];
         arguments.extend(rendering.arguments());
+        arguments.extend(timing.arguments());
         arguments.extend(bodies.iter().map(|body| format!("--body={body}").into()));
         arguments.extend(cameras.iter().map(|camera| format!("--camera={camera}").into()));
         arguments.extend(mission.map(OsString::from));

@@ -1,0 +1,40 @@
+//! A session in real time under load: `cargo bench -p cohabit --bench soak [-- SECONDS]`, ten minutes if nothing is said.
+//!
+//! Four agents, a recorder, two pages that watch. Prints the machine, the version, how late ticks began, how many were
+//! missed, and what memory the processes held in the course of it.
+
+use std::time::Duration;
+
+use cohabit_tests::{Soaked, machine, soak};
+
+const MIB: f64 = 1_048_576.0;
+
+fn main() {
+    let seconds = std::env::args().skip(1).find_map(|argument| argument.parse().ok()).unwrap_or(600);
+    println!("cohabit {}, {}", env!("CARGO_PKG_VERSION"), machine());
+    println!("{seconds} s with four agents, a recorder and two pages");
+    match soak(env!("CARGO_BIN_EXE_cohabit"), Duration::from_secs(seconds)) {
+        Ok(soaked) => print(&soaked, seconds as f64),
+        Err(error) => println!("it failed: {error:#}"),
+    }
+}
+
+fn print(soaked: &Soaked, seconds: f64) {
+    let ticks = soaked.late_nanos.len();
+    let share = 100.0 * soaked.missed as f64 / ticks.max(1) as f64;
+    println!("ticks: {ticks} seen, {} not seen; {} missed ({share:.3} %)", soaked.lost, soaked.missed);
+    let late = [0.5, 0.9, 0.99, 0.999, 1.0].map(|share| soaked.late_ms(share));
+    let [p50, p90, p99, p999, max] = late;
+    println!("begun late by, ms: p50 {p50:.3}, p90 {p90:.3}, p99 {p99:.3}, p99.9 {p999:.3}, max {max:.3}");
+    for (role, looks) in &soaked.resident {
+        let at = |share: f64| looks.get(((looks.len() - 1) as f64 * share) as usize).map_or(0.0, |b| *b as f64 / MIB);
+        let quarters = [0.1, 0.25, 0.5, 0.75, 1.0].map(at);
+        let [tenth, quarter, half, three, end] = quarters;
+        println!(
+            "{role:>7} resident, MiB: {tenth:.1} after a tenth, then {quarter:.1}, {half:.1}, {three:.1}, {end:.1} at the end"
+        );
+    }
+    let frames = soaked.frames.map(|frames| frames as f64 / seconds);
+    println!("frames/s at the pages: {:.1}, {:.1}; {} turns spoken", frames[0], frames[1], soaked.turns);
+    print!("{}", soaked.replayed);
+}

@@ -1,0 +1,123 @@
+//! `cohabit top`: a running session, live in the terminal.
+
+mod process;
+mod sheet;
+mod window;
+
+use std::{
+    io::{self, IsTerminal as _, Write as _},
+    sync::atomic::{AtomicBool, Ordering},
+    thread,
+    time::Duration,
+};
+
+use anyhow::Context as _;
+use cohabit_bus::{
+    Heart, Inbox, Shm, Subscriber, Topic, Transport,
+    message::{self, NONE, PulseMessage, StateView, TickView},
+    monotonic_nanos,
+};
+
+use crate::{failure::bad_input, sessions, stop};
+use sheet::Sheet;
+use window::{Peer, Window};
+
+/// Shows a running session live: ticks a second, how long their stages take and how late they begin, and each peer.
+#[derive(clap::Args)]
+pub struct Top {
+    /// The session's name; the one that runs, if absent
+    #[arg(long)]
+    session: Option<String>,
+    /// Print one JSON document about the last ten seconds, and end
+    #[arg(long)]
+    json: bool,
+    /// Print once, after so many seconds, and end
+    #[arg(long, value_name = "SECONDS")]
+    once: Option<f32>,
+}
+
+/// How often the screen is drawn anew.
+const EVERY: Duration = Duration::from_millis(500);
+/// Clears the screen; goes to its top; clears what is left of a line, and of the screen.
+const CLEAR: &str = "\x1b[2J";
+const HOME: &str = "\x1b[H";
+const REST_OF_LINE: &str = "\x1b[K";
+const REST_OF_SCREEN: &str = "\x1b[J";
+
+impl Top {
+    /// Shows until the user ends it.
+    pub fn run(&self) -> anyhow::Result<()> {
+        let stop = stop::on_request()?;
+        let session = sessions::running(self.session.as_deref())?;
+        let bus = Shm::join(&session).map_err(bad_input)?;
+        let mut watch = Watch::new(&bus)?;
+        let live = io::stdout().is_terminal() && !self.json && self.once.is_none();
+        let lasting = if self.json { Some(1.0) } else { self.once };
+        if let Some(seconds) = lasting.or((!live).then_some(1.0)) {
+            watch.look_for(Duration::from_secs_f32(seconds.clamp(0.0, 3600.0)), &stop)?;
+            let sheet = watch.sheet(session.name());
+            println!("{}", if self.json { sheet.json().to_string() } else { sheet.to_string() });
+            return Ok(());
+        }
+        print!("{CLEAR}");
+        while !stop.load(Ordering::Relaxed) {
+            watch.look_for(EVERY, &stop)?;
+            let text = watch.sheet(session.name()).to_string().replace('\n', &format!("{REST_OF_LINE}\n"));
+            print!("{HOME}{text}{REST_OF_SCREEN}");
+            io::stdout().flush().context("the terminal")?;
+        }
+        Ok(())
+    }
+}
+
+/// What is watched of a session.
+struct Watch {
+    ticks: Inbox,
+    pulses: Inbox,
+    states: Box<dyn Subscriber>,
+    heart: Heart,
+    window: Window,
+    paused: bool,
+}
+
+impl Watch {
+    fn new(bus: &dyn Transport) -> anyhow::Result<Self> {
+        Ok(Self {
+            ticks: Inbox::new(bus, Topic::Ticks)?,
+            pulses: Inbox::new(bus, Topic::Pulses)?,
+            states: bus.subscriber(Topic::State)?,
+            heart: Heart::new(bus, "top", NONE)?,
+            window: Window::default(),
+            paused: false,
+        })
+    }
+
+    fn look_for(&mut self, time: Duration, stop: &AtomicBool) -> anyhow::Result<()> {
+        let until = monotonic_nanos() + u64::try_from(time.as_nanos())?;
+        while monotonic_nanos() < until && !stop.load(Ordering::Relaxed) {
+            // Ticks wait in shared memory: there is no need to be woken by each.
+            thread::sleep(Duration::from_millis(50));
+            self.take_in()?;
+        }
+        Ok(())
+    }
+
+    fn take_in(&mut self) -> anyhow::Result<()> {
+        while let Some((sample, header)) = self.ticks.next(|sample| Ok(*TickView::new(sample.payload())?.header))? {
+            self.window.note_tick(sample.envelope(), &header);
+        }
+        while let Some((sample, pulse)) = self.pulses.next(|sample| message::read::<PulseMessage>(sample.payload()))? {
+            self.window.note_pulse(Peer::new(sample.envelope(), pulse));
+        }
+        if let Some(sample) = self.states.latest()? {
+            self.paused = StateView::new(sample.payload()).is_ok_and(|state| state.header.paused == 1);
+        }
+        self.heart.beat(self.window.newest_tick(), self.ticks.lost())?;
+        Ok(())
+    }
+
+    fn sheet(&mut self, session: &str) -> Sheet {
+        self.window.forget();
+        Sheet::new(session, self.paused, &mut self.window)
+    }
+}

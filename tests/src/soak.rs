@@ -1,0 +1,159 @@
+//! A session under load for a while: four agents, a recorder, two pages that watch, one of which speaks.
+
+use std::{
+    collections::BTreeMap,
+    fs,
+    sync::atomic::{AtomicBool, Ordering},
+    thread,
+    time::{Duration, Instant},
+};
+
+use anyhow::{Context as _, ensure};
+use cohabit_bus::{Inbox, Session, Shm, Topic, message::TickView};
+use serde_json::json;
+
+use crate::{Page, Play, run};
+
+/// The bodies beside the mission's robot, and who commands them all.
+const ARGUMENTS: [&str; 14] = [
+    "--body",
+    "robot@Lab1",
+    "--body",
+    "person@MainOffice",
+    "--body",
+    "robot@BreakRoom",
+    "--agent",
+    "dialog",
+    "--agent",
+    "helper@1",
+    "--agent",
+    "random@2",
+    "--agent",
+    "random@3",
+];
+/// What is said, over and over, each as soon as the one before is done.
+const SAYINGS: [&str; 6] = [
+    "go to the break room",
+    "turn left 90 degrees",
+    "go to the robotics lab",
+    "what is left?",
+    "look around",
+    "go to the main office",
+];
+const ROLES: [&str; 4] = ["sim", "agent", "dialog", "record"];
+/// A tick that begins later than the next one should is missed, ns.
+const TICK_NANOS: u64 = 16_666_667;
+/// How often memory is looked at.
+const LOOK_EVERY: Duration = Duration::from_secs(2);
+
+/// What came of it.
+#[derive(Clone, Debug, Default)]
+pub struct Soaked {
+    /// How late each tick began, ns, in rising order.
+    pub late_nanos: Vec<u64>,
+    /// Ticks that began a whole tick too late.
+    pub missed: usize,
+    /// Ticks that were sent and not seen.
+    pub lost: u64,
+    /// Bytes that each role's processes hold, look by look.
+    pub resident: BTreeMap<&'static str, Vec<u64>>,
+    /// Frames that came to each page.
+    pub frames: [u64; 2],
+    /// Turns that came to their end.
+    pub turns: u64,
+    /// What `replay` said of the log.
+    pub replayed: String,
+}
+
+impl Soaked {
+    /// How late the given share of all ticks began at most, ms.
+    #[must_use]
+    pub fn late_ms(&self, share: f64) -> f64 {
+        let last = self.late_nanos.len().saturating_sub(1);
+        self.late_nanos.get((last as f64 * share).round() as usize).map_or(f64::NAN, |nanos| *nanos as f64 * 1e-6)
+    }
+}
+
+/// Plays for so long with `binary`; then ends the session, and replays its log.
+///
+/// # Errors
+/// When the session does not start, go on, or end as it should, or its log does not replay.
+pub fn soak(binary: &str, lasting: Duration) -> anyhow::Result<Soaked> {
+    let play = Play::start(binary, &ARGUMENTS)?;
+    let over = AtomicBool::new(false);
+    let mut soaked = Soaked::default();
+    thread::scope(|scope| -> anyhow::Result<()> {
+        let over = &over;
+        let ticks = scope.spawn(|| watch_ticks(&play.session, over));
+        let speaks = scope.spawn(|| speak(play.authority(), over));
+        let watches = scope.spawn(|| watch(play.authority(), over));
+        let until = Instant::now() + lasting;
+        while Instant::now() < until {
+            thread::sleep(LOOK_EVERY.min(lasting));
+            for role in ROLES {
+                let bytes = play.processes(role).into_iter().map(resident_bytes).sum();
+                soaked.resident.entry(role).or_default().push(bytes);
+            }
+        }
+        over.store(true, Ordering::Relaxed);
+        let fell = "a thread of the test fell over";
+        (soaked.late_nanos, soaked.lost) = ticks.join().ok().context(fell)??;
+        (soaked.frames[0], soaked.turns) = speaks.join().ok().context(fell)??;
+        soaked.frames[1] = watches.join().ok().context(fell)??;
+        Ok(())
+    })?;
+    soaked.late_nanos.sort_unstable();
+    soaked.missed = soaked.late_nanos.iter().filter(|late| **late >= TICK_NANOS).count();
+    let ended = play.end()?;
+    let replayed = run(binary, &["replay", ended.log.to_str().context("a path")?])?;
+    soaked.replayed = String::from_utf8_lossy(&replayed.stdout).into_owned();
+    ensure!(replayed.status.success(), "the log does not replay: {}", soaked.replayed);
+    Ok(soaked)
+}
+
+/// How late each tick began, and how many were not seen.
+fn watch_ticks(session: &str, over: &AtomicBool) -> anyhow::Result<(Vec<u64>, u64)> {
+    let bus = Shm::join(&Session::new(session)?)?;
+    let mut ticks = Inbox::new(&bus, Topic::Ticks)?;
+    let mut late = Vec::new();
+    while !over.load(Ordering::Relaxed) {
+        thread::sleep(Duration::from_millis(100));
+        while let Some((_, nanos)) = ticks.next(|sample| Ok(TickView::new(sample.payload())?.header.late_nanos))? {
+            late.push(nanos);
+        }
+    }
+    Ok((late, ticks.lost()))
+}
+
+/// A page at which somebody has the robot do one thing after the other; gives its frames, and the turns that ended.
+fn speak(authority: &str, over: &AtomicBool) -> anyhow::Result<(u64, u64)> {
+    let mut page = Page::open(authority)?;
+    let mut turns = 0;
+    for saying in SAYINGS.iter().cycle() {
+        page.say(saying)?;
+        let ended = |message: &serde_json::Value| message["type"] == "turn" && message["ended"] == true;
+        page.wait(&format!("the end of `{saying}`"), |_, message| over.load(Ordering::Relaxed) || ended(message))?;
+        if over.load(Ordering::Relaxed) {
+            break;
+        }
+        turns += 1;
+    }
+    Ok((page.frames, turns))
+}
+
+/// A page that watches the second body.
+fn watch(authority: &str, over: &AtomicBool) -> anyhow::Result<u64> {
+    let mut page = Page::open(authority)?;
+    page.send(&json!({ "type": "view", "camera": "spectator/1" }))?;
+    while !over.load(Ordering::Relaxed) {
+        page.next_message()?;
+    }
+    Ok(page.frames)
+}
+
+/// Memory that a process holds, its own and shared; 0 if it is gone.
+fn resident_bytes(pid: i32) -> u64 {
+    let statm = fs::read_to_string(format!("/proc/{pid}/statm")).unwrap_or_default();
+    let pages = statm.split(' ').nth(1).and_then(|pages| pages.parse::<u64>().ok());
+    pages.unwrap_or(0) * rustix::param::page_size() as u64
+}
