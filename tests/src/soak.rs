@@ -83,10 +83,11 @@ pub fn soak(binary: &str, lasting: Duration) -> anyhow::Result<Soaked> {
     let over = AtomicBool::new(false);
     let mut soaked = Soaked::default();
     thread::scope(|scope| -> anyhow::Result<()> {
-        let over = &over;
-        let ticks = scope.spawn(|| watch_ticks(&play.session, over));
-        let speaks = scope.spawn(|| speak(play.authority(), over));
-        let watches = scope.spawn(|| watch(play.authority(), over));
+        let (over, authority) = (&over, play.authority());
+        let session = play.session.as_str();
+        let ticks = scope.spawn(move || watch_ticks(session, over));
+        let speaks = scope.spawn(move || speak(authority, over));
+        let watches = scope.spawn(move || watch(authority, over));
         let until = Instant::now() + lasting;
         while Instant::now() < until {
             thread::sleep(LOOK_EVERY.min(lasting));
