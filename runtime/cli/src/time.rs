@@ -18,7 +18,7 @@ const PATIENCE: Duration = Duration::from_secs(2);
 #[derive(clap::Args)]
 pub struct Time {
     /// The session's name; the one that runs, if absent
-    #[arg(long)]
+    #[arg(long, global = true)]
     session: Option<String>,
     #[command(subcommand)]
     change: Change,

@@ -20,7 +20,7 @@ use cohabit_bus::{
 
 use crate::{failure::bad_input, sessions, stop};
 use sheet::Sheet;
-use window::{Peer, Window};
+use window::Window;
 
 /// Shows a running session live: ticks a second, how long their stages take and how late they begin, and each peer.
 #[derive(clap::Args)]
@@ -56,17 +56,24 @@ impl Top {
         if let Some(seconds) = lasting.or((!live).then_some(1.0)) {
             watch.look_for(Duration::from_secs_f32(seconds.clamp(0.0, 3600.0)), &stop)?;
             let sheet = watch.sheet(session.name());
-            println!("{}", if self.json { sheet.json().to_string() } else { sheet.to_string() });
-            return Ok(());
+            return show(&if self.json { format!("{}\n", sheet.json()) } else { sheet.to_string() });
         }
-        print!("{CLEAR}");
+        show(CLEAR)?;
         while !stop.load(Ordering::Relaxed) {
             watch.look_for(EVERY, &stop)?;
             let text = watch.sheet(session.name()).to_string().replace('\n', &format!("{REST_OF_LINE}\n"));
-            print!("{HOME}{text}{REST_OF_SCREEN}");
-            io::stdout().flush().context("the terminal")?;
+            show(&format!("{HOME}{text}{REST_OF_SCREEN}"))?;
         }
         Ok(())
+    }
+}
+
+/// Prints a text at once; that nobody reads it any more is no failure.
+fn show(text: &str) -> anyhow::Result<()> {
+    let mut out = io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(error).context("the terminal"),
+        _ => Ok(()),
     }
 }
 
@@ -93,6 +100,8 @@ impl Watch {
     }
 
     fn look_for(&mut self, time: Duration, stop: &AtomicBool) -> anyhow::Result<()> {
+        self.take_in()?;
+        self.window.forget();
         let until = monotonic_nanos() + u64::try_from(time.as_nanos())?;
         while monotonic_nanos() < until && !stop.load(Ordering::Relaxed) {
             // Ticks wait in shared memory: there is no need to be woken by each.
@@ -107,7 +116,7 @@ impl Watch {
             self.window.note_tick(sample.envelope(), &header);
         }
         while let Some((sample, pulse)) = self.pulses.next(|sample| message::read::<PulseMessage>(sample.payload()))? {
-            self.window.note_pulse(Peer::new(sample.envelope(), pulse));
+            self.window.note_pulse(sample.envelope(), pulse);
         }
         if let Some(sample) = self.states.latest()? {
             self.paused = StateView::new(sample.payload()).is_ok_and(|state| state.header.paused == 1);
@@ -118,6 +127,6 @@ impl Watch {
 
     fn sheet(&mut self, session: &str) -> Sheet {
         self.window.forget();
-        Sheet::new(session, self.paused, &mut self.window)
+        Sheet::new(session, self.paused, &self.window)
     }
 }

@@ -32,6 +32,13 @@ pub enum EngineError {
     Bus(#[from] BusError),
 }
 
+/// What is still to be recorded of a tick.
+struct Unrecorded {
+    inputs: Vec<CommandMessage>,
+    wall_nanos: u64,
+    late_nanos: u64,
+}
+
 /// The world of one session, connected to a bus.
 pub struct Engine {
     world: World,
@@ -44,6 +51,7 @@ pub struct Engine {
     heart: Heart,
     stopwatch: Stopwatch,
     paused: bool,
+    unrecorded: Option<Unrecorded>,
     turn_by_command: BTreeMap<u64, u64>,
     latest_started: u64,
     highlighted: Vec<(ObjectId, u64)>,
@@ -74,6 +82,7 @@ impl Engine {
             heart: Heart::new(bus, "sim", NONE)?,
             stopwatch: Stopwatch::new(),
             paused: false,
+            unrecorded: None,
             turn_by_command: BTreeMap::new(),
             latest_started: 0,
             highlighted: Vec::new(),
@@ -119,11 +128,12 @@ impl Engine {
     /// # Errors
     /// [`EngineError::Bus`].
     pub fn tick(&mut self, wall_nanos: u64) -> Result<(), EngineError> {
-        self.tick_late(wall_nanos, 0)
+        self.advance(wall_nanos, 0)?;
+        self.record()
     }
 
-    /// The same, so many nanoseconds later than it should have begun.
-    pub(crate) fn tick_late(&mut self, wall_nanos: u64, late_nanos: u64) -> Result<(), EngineError> {
+    /// The first part of a tick, which began so many nanoseconds later than it should: all but its record.
+    pub(crate) fn advance(&mut self, wall_nanos: u64, late_nanos: u64) -> Result<(), EngineError> {
         self.stopwatch.restart();
         self.listen()?;
         let messages = self.intake.commands();
@@ -137,8 +147,18 @@ impl Engine {
         self.publish_state()?;
         self.publish_events(&inputs, report)?;
         self.stopwatch.over(Stage::Publish);
-        self.publish_tick(messages, wall_nanos, late_nanos)?;
-        self.stopwatch.over(Stage::Record);
+        self.unrecorded = Some(Unrecorded { inputs: messages, wall_nanos, late_nanos });
+        Ok(())
+    }
+
+    /// The rest of a tick that was not recorded yet: its inputs, and the digest of what came of them, which takes longer
+    /// than the tick. In lock-step, agents think meanwhile.
+    pub(crate) fn record(&mut self) -> Result<(), EngineError> {
+        if let Some(tick) = self.unrecorded.take() {
+            self.stopwatch.restart();
+            self.publish_tick(tick)?;
+            self.stopwatch.over(Stage::Record);
+        }
         self.beat()
     }
 
@@ -276,12 +296,8 @@ impl Engine {
         Ok(())
     }
 
-    fn publish_tick(
-        &mut self,
-        inputs: Vec<CommandMessage>,
-        wall_nanos: u64,
-        late_nanos: u64,
-    ) -> Result<(), EngineError> {
+    fn publish_tick(&mut self, tick: Unrecorded) -> Result<(), EngineError> {
+        let Unrecorded { inputs, wall_nanos, late_nanos } = tick;
         let (digest, stage_nanos) = (self.world.digest(), self.stopwatch.nanos);
         let header = TickHeader { digest, wall_nanos, late_nanos, stage_nanos, ..TickHeader::default() };
         let message = TickMessage { header, inputs };

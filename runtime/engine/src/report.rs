@@ -7,7 +7,7 @@ use cohabit_bus::{
     },
 };
 use cohabit_cdf::{RoomId, StateFlag};
-use cohabit_world::{BodyView, CameraTarget, Ending, Event, Input, ObjectView, World};
+use cohabit_world::{BodyView, CameraTarget, Ending, Event, GoalStatus, Input, ObjectView, World};
 
 /// A command was taken up.
 #[must_use]
@@ -64,34 +64,43 @@ pub fn state(world: &World) -> StateParts {
         Some(Ending::KilledByHazard) => 2,
     };
     let lit_rooms = RoomId::ALL.iter().fold(0, |bits, room| bits | u32::from(world.room_lit(*room)) << (*room as u32));
-    StateParts {
+    let goals = world.goals();
+    let mut parts = StateParts {
         header: StateHeader { score: world.score(), ending, lit_rooms, ..StateHeader::default() },
         bodies: world.bodies().map(|body| body_record(&body)).collect(),
-        objects: present(world).map(|object| object_record(&object)).collect(),
-        goals: world
-            .goals()
-            .iter()
-            .map(|goal| GoalRecord {
-                number: goal.id,
-                met: u32::from(goal.met),
-                hidden: u32::from(goal.hidden),
-                description: Text::new(&goal.description),
-            })
-            .collect(),
-        notes: present(world)
-            .filter(|object| !object.text.is_empty())
-            .map(|object| NoteRecord {
-                object: object.id.0,
-                read: u32::from(object.flags.has(StateFlag::Examined)),
-                text: Text::new(object.text),
-            })
-            .collect(),
+        objects: Vec::with_capacity(world.objects().len()),
+        goals: goals.iter().map(goal_record).collect(),
+        notes: Vec::new(),
+    };
+    for object in present(world) {
+        parts.objects.push(object_record(&object));
+        if !object.text.is_empty() {
+            parts.notes.push(note_record(&object));
+        }
     }
+    parts
 }
 
 /// The objects that are in the world now: what was removed is nobody's business.
 fn present(world: &World) -> impl Iterator<Item = ObjectView<'_>> {
     world.objects().filter(|object| world.exists(object.id))
+}
+
+fn goal_record(goal: &GoalStatus) -> GoalRecord {
+    GoalRecord {
+        number: goal.id,
+        met: u32::from(goal.met),
+        hidden: u32::from(goal.hidden),
+        description: Text::new(&goal.description),
+    }
+}
+
+fn note_record(object: &ObjectView<'_>) -> NoteRecord {
+    NoteRecord {
+        object: object.id.0,
+        read: u32::from(object.flags.has(StateFlag::Examined)),
+        text: Text::new(object.text),
+    }
 }
 
 fn body_record(body: &BodyView) -> BodyRecord {

@@ -135,6 +135,7 @@ impl<G: Fn(u64) -> bool> Clock<'_, G> {
             } else {
                 let late_nanos = u64::try_from(self.pace.late().as_nanos()).unwrap_or(u64::MAX);
                 self.tick(late_nanos)?;
+                self.engine.record()?;
                 self.show();
                 self.engine.note_stage(Stage::Show);
                 self.pace.wait();
@@ -156,6 +157,8 @@ impl<G: Fn(u64) -> bool> Clock<'_, G> {
                 self.engine.publish_step(&due)?;
                 self.engine.note_stage(Stage::Show);
             }
+            // Meanwhile they think.
+            self.engine.record()?;
             begun |= self.engine.attending() >= agents;
             let waits = self.engine.is_awaited() || self.engine.attending() == 0 || !begun;
             if self.pace.is_paused() || waits {
@@ -168,7 +171,7 @@ impl<G: Fn(u64) -> bool> Clock<'_, G> {
             }
             self.obey()?;
         }
-        Ok(())
+        self.engine.record()
     }
 
     fn goes_on(&self) -> bool {
@@ -186,7 +189,7 @@ impl<G: Fn(u64) -> bool> Clock<'_, G> {
     }
 
     fn tick(&mut self, late_nanos: u64) -> Result<(), EngineError> {
-        self.engine.tick_late(wall_nanos(), late_nanos)?;
+        self.engine.advance(wall_nanos(), late_nanos)?;
         if self.engine.world().tick().is_multiple_of(GREET_EVERY) {
             self.engine.greet()?;
         }

@@ -113,7 +113,7 @@ fn a_body_obeys_one_at_a_time() {
     with_simulator(&plan(&[]), false, |bus| {
         let turn = Action::Rotate { yaw_rad: 0.2 };
         let (mut one, mut other) = (Client::join(bus, 0, "one").unwrap(), Client::join(bus, 0, "other").unwrap());
-        let mut end = |client: &mut Client, command| client.outcome(command, WATCHDOG).unwrap().unwrap();
+        let end = |client: &mut Client, command| client.outcome(command, WATCHDOG).unwrap().unwrap();
         let unclaimed = one.act(0, turn).unwrap();
         let refused = end(&mut one, unclaimed);
         assert!(refused.status == Status::InvalidCommand && refused.detail.contains("claimed first"), "{refused:?}");

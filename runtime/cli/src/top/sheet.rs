@@ -38,7 +38,7 @@ struct Row {
     peer: String,
     body: Option<u32>,
     process: u32,
-    behind: u64,
+    behind: Option<u64>,
     lost: u64,
     beat_s: f64,
     core: Option<f64>,
@@ -66,13 +66,13 @@ impl Spread {
 }
 
 impl Row {
-    fn new(peer: &Peer, newest_tick: u64) -> Self {
+    fn new(peer: &Peer) -> Self {
         let Peer { pulse, .. } = peer;
         Self {
             peer: pulse.peer.as_str().to_owned(),
             body: (pulse.body != NONE).then_some(pulse.body),
             process: peer.process,
-            behind: if pulse.tick == 0 { 0 } else { newest_tick.saturating_sub(pulse.tick) },
+            behind: peer.behind,
             lost: pulse.lost,
             beat_s: monotonic_nanos().saturating_sub(peer.beat_nanos) as f64 * 1e-9,
             core: peer.usage.core,
@@ -89,7 +89,7 @@ impl Row {
 }
 
 impl Sheet {
-    pub fn new(session: &str, paused: bool, window: &mut Window) -> Self {
+    pub fn new(session: &str, paused: bool, window: &Window) -> Self {
         let ticks = &window.ticks;
         let spans = ticks.front().zip(ticks.back()).map(|((first, _), (last, _))| last.saturating_sub(*first));
         let span_s = spans.unwrap_or(0) as f64 * 1e-9;
@@ -98,7 +98,7 @@ impl Sheet {
             (name(stage), Spread::of(nanos))
         };
         let late = |(_, header): &(u64, cohabit_bus::message::TickHeader)| header.late_nanos;
-        let mut peers: Vec<Row> = window.peers.values().map(|peer| Row::new(peer, window.newest_tick())).collect();
+        let mut peers: Vec<Row> = window.peers.values().map(Row::new).collect();
         peers.sort_by(|one, other| (&one.peer, one.body, one.process).cmp(&(&other.peer, other.body, other.process)));
         Self {
             session: session.to_owned(),
@@ -162,12 +162,13 @@ impl fmt::Display for Sheet {
         heads.iter().try_for_each(|head| write!(f, "{head:>9}"))?;
         writeln!(f)?;
         for row in &self.peers {
-            let body = row.body.map_or_else(|| "–".to_owned(), |body| body.to_string());
+            let or_none = |number: Option<u64>| number.map_or_else(|| "–".to_owned(), |number| number.to_string());
+            let (body, behind) = (or_none(row.body.map(u64::from)), or_none(row.behind));
             let core = row.core.map_or_else(|| "–".to_owned(), |core| format!("{:.0} %", 100.0 * core));
             let memory = format!("{} MB", row.resident_bytes >> 20);
             let beat = format!("{:.1} s", row.beat_s);
             let silent = if row.beat_s > SILENT_S { "  silent" } else { "" };
-            let Row { peer, process, behind, lost, .. } = row;
+            let Row { peer, process, lost, .. } = row;
             writeln!(f, "{peer:<12}{body:>9}{process:>9}{behind:>9}{lost:>9}{beat:>9}{core:>9}{memory:>9}{silent}")?;
         }
         Ok(())

@@ -21,24 +21,18 @@ pub struct Window {
     /// Each with when it was sent.
     pub ticks: VecDeque<(u64, TickHeader)>,
     newest_tick: u64,
+    /// By the run of their pulses.
     pub peers: BTreeMap<u64, Peer>,
 }
 
 /// A peer, by its last heartbeat.
 pub struct Peer {
-    /// The run of its pulses.
-    run: u64,
     pub process: u32,
     pub pulse: PulseMessage,
     pub beat_nanos: u64,
+    /// How many ticks it was behind then; nothing, if it takes in none.
+    pub behind: Option<u64>,
     pub usage: Usage,
-}
-
-impl Peer {
-    pub fn new(envelope: &Envelope, pulse: PulseMessage) -> Self {
-        let process = process_of(envelope.run);
-        Self { run: envelope.run, process, pulse, beat_nanos: envelope.sent_nanos, usage: Usage::default() }
-    }
 }
 
 impl Window {
@@ -47,9 +41,17 @@ impl Window {
         self.ticks.push_back((envelope.sent_nanos, *header));
     }
 
-    pub fn note_pulse(&mut self, peer: Peer) {
-        let usage = self.peers.remove(&peer.run).map(|before| before.usage).unwrap_or_default();
-        self.peers.insert(peer.run, Peer { usage, ..peer });
+    pub fn note_pulse(&mut self, envelope: &Envelope, pulse: PulseMessage) {
+        let usage = self.peers.remove(&envelope.run).map(|before| before.usage).unwrap_or_default();
+        let behind = (pulse.tick > 0).then(|| self.tick_at(envelope.sent_nanos).saturating_sub(pulse.tick));
+        let (process, beat_nanos) = (process_of(envelope.run), envelope.sent_nanos);
+        self.peers.insert(envelope.run, Peer { process, pulse, beat_nanos, behind, usage });
+    }
+
+    /// The newest tick that had been sent at some time.
+    fn tick_at(&self, nanos: u64) -> u64 {
+        let later = self.ticks.iter().rev().take_while(|(sent, _)| *sent > nanos).count() as u64;
+        self.newest_tick.saturating_sub(later)
     }
 
     pub const fn newest_tick(&self) -> u64 {
