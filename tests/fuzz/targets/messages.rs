@@ -3,7 +3,8 @@
 #![no_main]
 
 use cohabit_bus::message::{
-    CommandMessage, DialogView, EventMessage, FrameView, MissionMessage, Plane, StateView, Thing, TickView, read,
+    CommandMessage, Control, ControlMessage, DialogView, EventMessage, FrameView, MissionMessage, Plane, PulseMessage,
+    StateView, StepView, Thing, TickView, read,
 };
 use cohabit_cdf::Action;
 use cohabit_record::entry::{EventEntry, InputEntry};
@@ -24,13 +25,13 @@ fuzz_target!(|bytes: &[u8]| {
 });
 
 fn look(kind: u8, payload: &[u8]) {
-    match kind % 7 {
+    match kind % 10 {
         0 => {
             let Ok(command) = read::<CommandMessage>(payload) else { return };
             if let Some(input) = InputEntry::new(&command) {
                 let _ = serde_json::to_string(&input);
             }
-            let _ = Action::try_from(command.action);
+            let _ = (command.kind(), command.peer().as_str().len(), Action::try_from(command.action));
         }
         1 => {
             let Ok(event) = read::<EventMessage>(payload) else { return };
@@ -58,6 +59,18 @@ fn look(kind: u8, payload: &[u8]) {
         5 => {
             let Ok(view) = TickView::new(payload) else { return };
             let _ = format!("{view:?}");
+        }
+        6 => {
+            let Ok(control) = read::<ControlMessage>(payload) else { return };
+            let _ = Control::try_from(control);
+        }
+        7 => {
+            let Ok(view) = StepView::new(payload) else { return };
+            let _ = view.due.iter().fold(0, |all, run| all ^ run);
+        }
+        8 => {
+            let Ok(pulse) = read::<PulseMessage>(payload) else { return };
+            let _ = pulse.peer.as_str().len();
         }
         _ => {
             let Ok(mission) = MissionMessage::read(payload) else { return };
