@@ -1,6 +1,7 @@
 // Driving a body: who one may be, the keys, the stick and the mouse that move it, and what it can do with what it sees.
 
 import { byId, capitalised, element, toast } from "./dom.js";
+import { collapseGoals } from "./goals.js";
 import { send } from "./socket.js";
 import { hideSeen, isLookingThrough, lookThroughCamera, view } from "./view.js";
 
@@ -27,13 +28,15 @@ const MOVES = {
   KeyR: ["pitch", 1], PageUp: ["pitch", 1],
   KeyF: ["pitch", -1], PageDown: ["pitch", -1],
 };
-/** The keys of what is offered, the most obvious first. */
-const OFFER_KEYS = ["E", "Q", "X", "C", "V"];
+/** The keys of what is offered, the most obvious first; some deeds have their own, lest they be done by mistake. */
+const OFFER_KEYS = ["E", "Q", "X", "C", "Z"];
+const OWN_KEYS = { throw: "T", scan: "V" };
 
 let bodies = [];
 let driven = null;
 let before = null;
-let offered = null;
+let labelBefore = "";
+let offered = { object: null, options: [] };
 let held = new Set();
 let stick = { forward: 0, turn: 0 };
 /** What a drag has asked for and was not told yet, rad. */
@@ -110,11 +113,14 @@ function startDriving(body) {
   document.body.classList.add("driving");
   byId("walk-in").hidden = true;
   byId("driver-name").textContent = capitalised(body.name);
+  collapseGoals(true);
   lookThroughCamera(body.camera);
   hideSeen();
   takeAim({ object: null, options: [] });
   showHeld(window.cohabit.state);
   input.blur();
+  labelBefore = view.getAttribute("aria-label");
+  view.setAttribute("aria-label", `What ${body.name} sees: walk with W, A, S and D, leave with Escape`);
   view.tabIndex = 0;
   view.focus({ preventScroll: true });
 }
@@ -127,7 +133,9 @@ function stopDriving(text) {
   letGo();
   document.body.classList.remove("driving");
   byId("walk-in").hidden = !bodies.length;
+  collapseGoals(false);
   view.removeAttribute("tabindex");
+  view.setAttribute("aria-label", labelBefore);
   if (isLookingThrough(was.camera) && before) lookThroughCamera(before);
   before = null;
   if (text) toast(text);
@@ -157,9 +165,10 @@ export function takeKey(event) {
     tell();
     return true;
   }
-  const offer = OFFER_KEYS.findIndex((key) => event.code === `Key${key}`);
-  if (offer >= 0 && !event.repeat) act(offer);
-  return offer >= 0 || /^\p{L}$/u.test(event.key);
+  const offer = offered.options.find(({ key }) => event.code === `Key${key}`);
+  if (offer && !event.repeat) act(offer);
+  // Other letters begin no sentence while somebody walks.
+  return /^\p{L}$/u.test(event.key);
 }
 
 function isTyping() {
@@ -291,27 +300,26 @@ for (const end of ["pointerup", "pointercancel"]) {
 
 /** What is before the body, or was clicked, and what can be done with it. */
 export function takeAim(aim) {
-  offered = aim;
+  const keys = [...OFFER_KEYS];
+  offered = { ...aim, options: aim.options.map((option) => ({ ...option, key: OWN_KEYS[option.deed] ?? keys.shift() })) };
   window.cohabit.aim = aim;
   byId("hud").classList.toggle("aims", aim.object !== null);
   byId("aim-name").textContent = aim.name ? capitalised(aim.name) : "";
   byId("aim-hint").textContent = aim.far ? "come closer" : "";
-  byId("offers").replaceChildren(...aim.options.map(({ label }, index) => {
-    const button = element("button", "offer");
+  byId("offers").replaceChildren(...offered.options.map((option) => {
+    const button = element("button", option.key === OFFER_KEYS[0] ? "offer first" : "offer");
     button.type = "button";
-    button.setAttribute("aria-keyshortcuts", OFFER_KEYS[index]);
-    button.append(element("kbd", "", OFFER_KEYS[index]), element("span", "", label));
+    button.setAttribute("aria-keyshortcuts", option.key);
+    button.append(element("kbd", "", option.key), element("span", "", option.label));
     // The focus stays where the keys are taken from.
     button.addEventListener("pointerdown", (event) => event.preventDefault());
-    button.addEventListener("click", () => act(index));
+    button.addEventListener("click", () => act(option));
     return button;
   }));
 }
 
-function act(index) {
-  const option = offered?.options[index];
-  if (!option || !isDriving()) return;
-  send({ type: "act", deed: option.deed, object: offered.object });
+function act({ deed }) {
+  if (isDriving()) send({ type: "act", deed, object: offered.object });
 }
 
 /** What came of a deed of one's own. */

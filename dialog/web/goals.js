@@ -7,6 +7,7 @@ import { endDoing } from "./talk.js";
 let goalsShown = "";
 let metBefore = null;
 let endingShown = "running";
+let wereOpen = false;
 
 export function takeState(state) {
   window.cohabit.state = state;
@@ -101,6 +102,14 @@ byId("banner-close").addEventListener("click", () => {
 export function expandGoals(expanded) {
   byId("goals").classList.toggle("collapsed", !expanded);
   byId("goals-toggle").setAttribute("aria-expanded", String(expanded));
+}
+
+/** Makes room for who drives, and opens the goals again if they were open before. */
+export function collapseGoals(forWhile) {
+  const { classList } = byId("goals");
+  if (forWhile) wereOpen ||= !classList.contains("collapsed");
+  expandGoals(!forWhile && wereOpen);
+  if (!forWhile) wereOpen = false;
 }
 
 byId("goals-toggle").addEventListener("click", () => expandGoals(byId("goals").classList.contains("collapsed")));

@@ -73,6 +73,11 @@ impl Deed {
         Action::Interact { verb, object }
     }
 
+    /// Whether it takes more than a look or a throw.
+    pub const fn is_of_the_hand(self) -> bool {
+        !matches!(self, Self::Scan | Self::Examine | Self::Throw)
+    }
+
     /// How near one has to be, m.
     const fn within_m(self) -> f32 {
         match self {
@@ -345,7 +350,10 @@ mod tests {
     fn what_is_said_is_said_to_the_person() {
         let check = |detail: &str, expected: &str| assert_eq!(addressed(detail), expected);
         check("I am holding the bowl", "You are holding the bowl");
-        check("my hand is empty: I have to pick something up first", "Your hand is empty: you have to pick something up first");
+        check(
+            "my hand is empty: I have to pick something up first",
+            "Your hand is empty: you have to pick something up first",
+        );
         check("there is a wall between me and Milk", "There is a wall between you and Milk");
         check("the time machine is in my way", "The time machine is in your way");
         check("", "");

@@ -3,7 +3,9 @@
 //! It is a peer of the session's bus like any other: it reads state and frames, and what it says and plans is heard,
 //! and recorded, by all. It never knows the world's insides.
 
+mod affordances;
 mod conversation;
+mod driving;
 mod frames;
 mod hub;
 mod known;
@@ -13,6 +15,7 @@ mod page;
 mod talk;
 mod token;
 mod view;
+mod visit;
 mod web;
 
 use std::{
@@ -29,9 +32,10 @@ use cohabit_bus::{BusError, Transport, message::CameraRecord};
 use cohabit_cdf::{Catalog, Layout, Mission};
 
 pub use conversation::{Conversation, Reaction, TurnEnd};
+pub use driving::{Drivable, NotDrivable};
 pub use known::known;
 
-use crate::{hub::Hub, talk::Talk, view::View};
+use crate::{driving::Drivers, hub::Hub, talk::Talk, view::View, web::Service};
 
 /// Settings of a dialog service.
 pub struct DialogConfig {
@@ -41,6 +45,8 @@ pub struct DialogConfig {
     pub listen: SocketAddr,
     /// The session's cameras.
     pub cameras: Vec<CameraRecord>,
+    /// Which bodies people may drive from the page.
+    pub drivable: Drivable,
     /// Called once, when a page says that it has shown a frame.
     pub on_first_frame: Box<dyn Fn() + Send + Sync>,
 }
@@ -83,11 +89,13 @@ pub fn serve(
     stop: &AtomicBool,
     ready: impl FnOnce(&str),
 ) -> Result<(), DialogError> {
-    let views = page::views(&config.cameras);
-    let hello = page::hello(&config.session, &mission, &layout, &catalog, &views);
+    let bodies = talk::wait_for_world(&*bus, &|| stop.load(Ordering::Relaxed))?;
+    let drivers = Arc::new(Drivers::new(Arc::clone(&bus), config.drivable, &bodies));
+    let views = page::views(&config.cameras, &bodies);
+    let hello = page::hello(&config.session, &mission, &layout, &catalog, &views, drivers.bodies());
     let views = views.into_iter().map(|view| View::new(view.camera)).collect();
     let hub = Arc::new(Hub::new(hello, views, config.on_first_frame));
-    let talk = Talk::new(&*bus, catalog, Arc::clone(&hub))?;
+    let talk = Talk::new(&*bus, catalog, Arc::clone(&hub), Arc::clone(&drivers))?;
     let token = token::for_address(config.listen).map_err(DialogError::Serve)?;
     let listener = std::net::TcpListener::bind(config.listen)
         .map_err(|source| DialogError::Listen { address: config.listen, source })?;
@@ -103,10 +111,9 @@ pub fn serve(
             let (bus, talk, over, ended) = (&*bus, &talk, &over, &ended);
             workers.push(scope.spawn(move || until_ended(ended, || frames::relay(bus, view, talk, over))));
         }
-        let served = talk.wait_for_world(&*bus, &over).and_then(|()| {
-            ready(&token::page_address(address, token.as_deref()));
-            web::serve(listener, token, Arc::clone(&hub), Arc::clone(&talk), &over).map_err(DialogError::Serve)
-        });
+        ready(&token::page_address(address, token.as_deref()));
+        let (hub, talk, token) = (Arc::clone(&hub), Arc::clone(&talk), token.map(Arc::from));
+        let served = web::serve(listener, Service { hub, talk, drivers, token }, &over).map_err(DialogError::Serve);
         ended.store(true, Ordering::Relaxed);
         workers
             .into_iter()

@@ -8,16 +8,18 @@ use std::{
 
 use cohabit_bus::{
     Publisher, Sample, Subscriber, Topic, Transport, Wake,
-    message::{self, DialogKind, DialogMessage, DialogView, EventKind, EventMessage, StateView, Thing},
+    message::{self, BodyRecord, DialogKind, DialogMessage, DialogView, EventKind, EventMessage, StateView, Thing},
     monotonic_nanos,
 };
-use cohabit_cdf::{BodyId, Catalog};
+use cohabit_cdf::{BodyId, Catalog, ObjectId};
 use cohabit_language::Known;
 use serde_json::Value;
 
 use crate::{
     DialogError,
+    affordances::{self, Affordance},
     conversation::{Conversation, Reaction},
+    driving::Drivers,
     hub::Hub,
     known,
     latency::{Latency, Moments},
@@ -31,6 +33,7 @@ const BODY: BodyId = BodyId(0);
 pub struct Talk {
     inner: Mutex<Inner>,
     hub: Arc<Hub>,
+    drivers: Arc<Drivers>,
     catalog: Arc<Catalog>,
 }
 
@@ -44,7 +47,12 @@ struct Inner {
 
 impl Talk {
     /// A conversation on `bus`, shown to the pages of `hub`.
-    pub fn new(bus: &dyn Transport, catalog: Arc<Catalog>, hub: Arc<Hub>) -> Result<Arc<Self>, DialogError> {
+    pub fn new(
+        bus: &dyn Transport,
+        catalog: Arc<Catalog>,
+        hub: Arc<Hub>,
+        drivers: Arc<Drivers>,
+    ) -> Result<Arc<Self>, DialogError> {
         let inner = Inner {
             conversation: Conversation::new(Arc::clone(&catalog), BODY.0),
             latency: Latency::default(),
@@ -52,22 +60,7 @@ impl Talk {
             states: bus.subscriber(Topic::State)?,
             newest: None,
         };
-        Ok(Arc::new(Self { inner: Mutex::new(inner), hub, catalog }))
-    }
-
-    /// Waits until the world can be seen, or until `over`.
-    pub fn wait_for_world(&self, bus: &dyn Transport, over: &dyn Fn() -> bool) -> Result<(), DialogError> {
-        let mut listener = bus.listener(Wake::State)?;
-        while !over() {
-            let mut inner = self.lock();
-            inner.refresh()?;
-            if inner.newest.is_some() {
-                break;
-            }
-            drop(inner);
-            listener.wait(Duration::from_millis(20))?;
-        }
-        Ok(())
+        Ok(Arc::new(Self { inner: Mutex::new(inner), hub, drivers, catalog }))
     }
 
     fn lock(&self) -> MutexGuard<'_, Inner> {
@@ -96,6 +89,7 @@ impl Talk {
     /// Something happened in the world.
     fn note_event(&self, event: &EventMessage, sent_nanos: u64) -> Result<(), DialogError> {
         let text = event.text.as_str();
+        self.drivers.note(event);
         match event.kind() {
             Some(EventKind::Started) => {
                 let mut inner = self.lock();
@@ -140,6 +134,15 @@ impl Talk {
         Ok(page::seen(thing, place, StateView::new(sample.payload())?, &self.catalog))
     }
 
+    /// What a driven body has before it: the first of `things`, the nearest to the middle first, that it can do most with.
+    pub fn aim(&self, things: &[Thing], body: u32) -> Result<Value, DialogError> {
+        let mut inner = self.lock();
+        inner.refresh()?;
+        let Some(sample) = &inner.newest else { return Ok(page::aim(None, &[], false)) };
+        let state = StateView::new(sample.payload())?;
+        Ok(aimed(things, body, state, &self.catalog))
+    }
+
     /// A frame was shown that was seen after `command` began.
     pub fn note_frame(&self, command: u64, sent_nanos: u64) -> Result<(), DialogError> {
         let mut inner = self.lock();
@@ -155,7 +158,7 @@ impl Talk {
         inner.refresh()?;
         if let Some(sample) = &inner.newest {
             let state = StateView::new(sample.payload())?;
-            self.hub.show_state(&page::state(sample.envelope().tick, state, &self.catalog));
+            self.hub.show_state(&page::state(sample.envelope().tick, state, &self.drivers.driven(), &self.catalog));
         }
         Ok(())
     }
@@ -196,12 +199,47 @@ impl Inner {
     }
 }
 
+fn aimed(things: &[Thing], body: u32, state: StateView<'_>, catalog: &Catalog) -> Value {
+    let objects = things.iter().filter_map(|thing| match thing {
+        Thing::Object(id) => state.objects.iter().find(|record| record.object == id.0),
+        _ => None,
+    });
+    let seen: Vec<_> = objects
+        .map(|record| {
+            let (afforded, far) = affordances::afforded(state, body, ObjectId(record.object), catalog);
+            (record, afforded, far)
+        })
+        .collect();
+    let is_handled = |afforded: &[Affordance]| afforded.iter().any(|one| one.deed.is_of_the_hand());
+    let best = seen.iter().find(|(_, afforded, _)| is_handled(afforded)).or_else(|| seen.first());
+    match best {
+        Some((record, afforded, far)) => {
+            let far = *far && !is_handled(afforded);
+            page::aim(Some((record.object, page::name(record, catalog))), afforded, far)
+        }
+        None => page::aim(None, &[], false),
+    }
+}
+
 fn log_latency(moments: &Moments) {
     let [understood, moved, shown] = moments.milliseconds().map(Option::unwrap_or_default);
     tracing::info!(
         "turn {}: understood after {understood:.1} ms, moving after {moved:.1} ms, seen after {shown:.1} ms",
         moments.turn
     );
+}
+
+/// Waits until the world can be seen, or until `over`; gives the bodies in it.
+pub fn wait_for_world(bus: &dyn Transport, over: &dyn Fn() -> bool) -> Result<Vec<BodyRecord>, DialogError> {
+    let mut listener = bus.listener(Wake::State)?;
+    let mut states = bus.subscriber(Topic::State)?;
+    while !over() {
+        if let Some(sample) = states.latest()? {
+            return Ok(StateView::new(sample.payload())?.bodies.to_vec());
+        }
+        listener.wait(Duration::from_millis(20))?;
+    }
+    Ok(Vec::new())
 }
 
 /// Follows what others say on the bus, until `over`.
