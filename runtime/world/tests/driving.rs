@@ -108,9 +108,8 @@ fn a_closed_door_stops_who_drives_until_a_hand_opens_it() {
 fn a_hand_ends_the_driving_and_driving_ends_a_walk() {
     let mut play = person(1, 0.0, &["Apple_1"]);
     let apple = play.id("Apple_1");
-    let tell = |play: &mut Play, command, action| {
-        play.world.step(&[Input { command, body: BodyId(1), action }]).outcomes
-    };
+    let tell =
+        |play: &mut Play, command, action| play.world.step(&[Input { command, body: BodyId(1), action }]).outcomes;
     tell(&mut play, 900, drive(1.0, 0.0));
     let ended = tell(&mut play, 901, Action::Interact { verb: Verb::Examine, object: apple });
     assert_eq!((ended[0].command, ended[0].status), (900, Status::Interrupted));
