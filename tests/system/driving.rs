@@ -26,7 +26,8 @@ struct Avatar {
 impl Avatar {
     fn new(mut page: Page) -> Self {
         page.send(&json!({ "type": "drive_body", "body": 1 })).unwrap();
-        page.wait("the body", |_, message| message["type"] == "driving" && message["body"] == 1).unwrap();
+        let told = page.wait("the body", |_, message| message["type"] == "driving").unwrap();
+        assert_eq!(told["body"], 1, "{told}");
         page.send(&json!({ "type": "view", "camera": "overhead/1" })).unwrap();
         let frames = page.frames;
         page.wait("a picture from above", |page, _| page.frames > frames + 2).unwrap();

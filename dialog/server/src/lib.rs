@@ -35,7 +35,13 @@ pub use conversation::{Conversation, Reaction, TurnEnd};
 pub use driving::{Drivable, NotDrivable};
 pub use known::known;
 
-use crate::{driving::Drivers, hub::Hub, talk::Talk, view::View, web::Service};
+use crate::{
+    driving::Drivers,
+    hub::Hub,
+    talk::{Ears, Talk},
+    view::View,
+    web::Service,
+};
 
 /// Settings of a dialog service.
 pub struct DialogConfig {
@@ -96,6 +102,7 @@ pub fn serve(
     let views = views.into_iter().map(|view| View::new(view.camera)).collect();
     let hub = Arc::new(Hub::new(hello, views, config.on_first_frame));
     let talk = Talk::new(&*bus, catalog, Arc::clone(&hub), Arc::clone(&drivers))?;
+    let ears = Ears::new(&*bus)?;
     let token = token::for_address(config.listen).map_err(DialogError::Serve)?;
     let listener = std::net::TcpListener::bind(config.listen)
         .map_err(|source| DialogError::Listen { address: config.listen, source })?;
@@ -104,7 +111,7 @@ pub fn serve(
     let over = || stop.load(Ordering::Relaxed) || ended.load(Ordering::Relaxed);
     thread::scope(|scope| {
         let mut workers = vec![
-            scope.spawn(|| until_ended(&ended, || talk::listen(&*bus, &talk, &over))),
+            scope.spawn(|| until_ended(&ended, || talk::listen(ears, &talk, &over))),
             scope.spawn(|| until_ended(&ended, || talk::show_state(&talk, STATE_EVERY, &over))),
         ];
         for view in (0..=u8::MAX).zip(&hub.views) {

@@ -7,7 +7,7 @@ use std::{
 };
 
 use cohabit_bus::{
-    Publisher, Sample, Subscriber, Topic, Transport, Wake,
+    Listener, Publisher, Sample, Subscriber, Topic, Transport, Wake,
     message::{self, BodyRecord, DialogKind, DialogMessage, DialogView, EventKind, EventMessage, StateView, Thing},
     monotonic_nanos,
 };
@@ -242,22 +242,39 @@ pub fn wait_for_world(bus: &dyn Transport, over: &dyn Fn() -> bool) -> Result<Ve
     Ok(Vec::new())
 }
 
+/// Where the service hears what others say on the bus: to be had before the first page is let in, lest an answer to it
+/// be missed.
+pub struct Ears {
+    listener: Box<dyn Listener>,
+    dialog: Box<dyn Subscriber>,
+    events: Box<dyn Subscriber>,
+    joined_nanos: u64,
+}
+
+impl Ears {
+    /// Hears all that is said from now on.
+    pub fn new(bus: &dyn Transport) -> Result<Self, DialogError> {
+        Ok(Self {
+            listener: bus.listener(Wake::Talk)?,
+            dialog: bus.subscriber(Topic::Dialog)?,
+            events: bus.subscriber(Topic::Events)?,
+            joined_nanos: monotonic_nanos(),
+        })
+    }
+}
+
 /// Follows what others say on the bus, until `over`.
-pub fn listen(bus: &dyn Transport, talk: &Talk, over: &dyn Fn() -> bool) -> Result<(), DialogError> {
-    let mut listener = bus.listener(Wake::Talk)?;
-    let mut dialog = bus.subscriber(Topic::Dialog)?;
-    let mut events = bus.subscriber(Topic::Events)?;
-    let joined_nanos = monotonic_nanos();
+pub fn listen(mut ears: Ears, talk: &Talk, over: &dyn Fn() -> bool) -> Result<(), DialogError> {
     while !over() {
-        listener.wait(Duration::from_millis(100))?;
-        while let Some(sample) = events.receive()? {
+        ears.listener.wait(Duration::from_millis(100))?;
+        while let Some(sample) = ears.events.receive()? {
             let event: EventMessage = message::read(sample.payload())?;
-            if sample.envelope().sent_nanos >= joined_nanos {
+            if sample.envelope().sent_nanos >= ears.joined_nanos {
                 talk.note_event(&event, sample.envelope().sent_nanos)?;
             }
         }
-        while let Some(sample) = dialog.receive()? {
-            if sample.envelope().sent_nanos >= joined_nanos {
+        while let Some(sample) = ears.dialog.receive()? {
+            if sample.envelope().sent_nanos >= ears.joined_nanos {
                 talk.follow(DialogView::new(sample.payload())?)?;
             }
         }
