@@ -30,7 +30,7 @@ use crate::{
 /// How often it is seen whether a page that drives is still there.
 const BEAT: Duration = Duration::from_secs(3);
 /// A page that drives and is silent for so long, or takes so long to take something, is gone.
-const GONE: Duration = Duration::from_secs(10);
+const GONE: Duration = Duration::from_secs(15);
 /// Time between two looks at what is before a driven body.
 const AIM_EVERY: Duration = Duration::from_millis(90);
 /// How fast a page may ask anything to move or turn, m/s and rad/s; the body's own limits are narrower.
@@ -82,7 +82,8 @@ struct Visit {
     limits: Limits,
     driver: Option<Driver>,
     aim: Aim,
-    heard_at: Instant,
+    /// Since when the page has been asked whether it is there, without a word from it.
+    asked_at: Option<Instant>,
 }
 
 /// What a driven body has before it, as the page was told.
@@ -102,30 +103,32 @@ impl Visit {
         let (mut frames, viewing) = view.join();
         frames.mark_changed();
         let aim = Aim { told: Value::Null, at: now, picked: None };
-        Self { service, view, frames, _viewing: viewing, limits: Limits::new(now), driver: None, aim, heard_at: now }
+        Self { service, view, frames, _viewing: viewing, limits: Limits::new(now), driver: None, aim, asked_at: None }
     }
 
     async fn run(mut self, mut socket: WebSocket, mut messages: broadcast::Receiver<Arc<str>>) {
         let mut beat = interval(BEAT);
         beat.set_missed_tick_behavior(MissedTickBehavior::Delay);
         loop {
+            // In order: what a page has sent is read before it is found to be silent.
             let answers = tokio::select! {
-                message = messages.recv() => match message {
-                    Ok(message) => Ok(vec![Message::text(message.to_string())]),
-                    // It fell behind: closing makes it connect again and be told all anew.
-                    Err(RecvError::Lagged(_) | RecvError::Closed) => Err(Gone),
-                },
-                changed = self.frames.changed() => changed.map(|()| self.show()).map_err(|_| Gone),
-                news = next_news(&mut self.driver) => Ok(self.note(&news)),
-                _ = beat.tick() => self.beat(),
+                biased;
                 received = socket.recv() => {
-                    self.heard_at = Instant::now();
+                    self.asked_at = None;
                     match received {
                         Some(Ok(Message::Text(text))) => Ok(self.answer(&text).await),
                         Some(Ok(Message::Close(_)) | Err(_)) | None => Err(Gone),
                         Some(Ok(_)) => Ok(Vec::new()),
                     }
                 }
+                _ = beat.tick() => self.beat(),
+                news = next_news(&mut self.driver) => Ok(self.note(&news)),
+                message = messages.recv() => match message {
+                    Ok(message) => Ok(vec![Message::text(message.to_string())]),
+                    // It fell behind: closing makes it connect again and be told all anew.
+                    Err(RecvError::Lagged(_) | RecvError::Closed) => Err(Gone),
+                },
+                changed = self.frames.changed() => changed.map(|()| self.show()).map_err(|_| Gone),
             };
             let Ok(answers) = answers else { return };
             for answer in answers {
@@ -138,7 +141,7 @@ impl Visit {
 
     fn beat(&mut self) -> Result<Vec<Message>, Gone> {
         let Some(driver) = &self.driver else { return Ok(Vec::new()) };
-        if self.heard_at.elapsed() > GONE {
+        if self.asked_at.get_or_insert_with(Instant::now).elapsed() > GONE {
             return Err(Gone);
         }
         let mut answers = vec![Message::Ping(Vec::new().into())];
