@@ -13,6 +13,7 @@ use cohabit_bus::{
 };
 
 use crate::{
+    carry_on::Written,
     entry::{DialogEntry, EventEntry, SessionEntry, TickEntry},
     log::LogError,
     writer::LogWriter,
@@ -45,7 +46,12 @@ pub struct Recorder {
     events: Box<dyn Subscriber>,
     dialog: Box<dyn Subscriber>,
     listener: Box<dyn Listener>,
-    lost: u64,
+}
+
+/// What was published before a recorder took it down.
+struct Began {
+    run: u64,
+    mission: MissionMessage,
 }
 
 impl Recorder {
@@ -60,17 +66,24 @@ impl Recorder {
             events: bus.subscriber(Topic::Events)?,
             dialog: bus.subscriber(Topic::Dialog)?,
             listener: bus.listener(Wake::State)?,
-            lost: 0,
         })
     }
 
-    /// Records until `stop`, then ends the log. Writes nothing if no simulator ever came.
+    /// Records until `stop`, then ends the log. Writes nothing if no simulator ever came. Where the log is there already,
+    /// it carries on with it: an earlier recorder of the same session was killed.
     ///
     /// # Errors
     /// [`RecordError`].
     pub fn run(mut self, session: &str, path: &Path, stop: &AtomicBool) -> Result<(), RecordError> {
-        let Some(mission) = self.wait_for_mission(stop)? else { return Ok(()) };
-        let mut recording = self.open(session, path, &mission)?;
+        let Some(began) = self.wait_for_mission(stop)? else { return Ok(()) };
+        let (entry, now) = (began.entry(session), wall_nanos());
+        let (log, written) = match LogWriter::carry_on(path, &entry, now) {
+            Err(LogError::File { source, .. }) if source.kind() == std::io::ErrorKind::NotFound => {
+                (LogWriter::create(path, &entry, now)?, Written::default())
+            }
+            found => found?,
+        };
+        let mut recording = Recording::new(self, log, written);
         while !stop.load(Ordering::Relaxed) {
             recording.recorder.listener.wait(FLUSH_EVERY / 2)?;
             recording.take_down()?;
@@ -84,51 +97,30 @@ impl Recorder {
     /// # Errors
     /// [`RecordError`].
     pub fn begin(mut self, session: &str, path: &Path) -> Result<Recording, RecordError> {
-        let sample = self.mission.latest()?.ok_or(RecordError::NoMission)?;
-        let mission = MissionMessage::read(sample.payload())?;
-        self.open(session, path, &mission)
+        let began = self.mission()?.ok_or(RecordError::NoMission)?;
+        let log = LogWriter::create(path, &began.entry(session), wall_nanos())?;
+        Ok(Recording::new(self, log, Written::default()))
     }
 
-    fn open(self, session: &str, path: &Path, mission: &MissionMessage) -> Result<Recording, RecordError> {
-        let log = LogWriter::create(path, &SessionEntry::new(session, mission), wall_nanos())?;
-        Ok(Recording { recorder: self, log, flushed: Instant::now() })
+    fn mission(&mut self) -> Result<Option<Began>, RecordError> {
+        let Some(sample) = self.mission.latest()? else { return Ok(None) };
+        Ok(Some(Began { run: sample.envelope().run, mission: MissionMessage::read(sample.payload())? }))
     }
 
-    fn wait_for_mission(&mut self, stop: &AtomicBool) -> Result<Option<MissionMessage>, RecordError> {
-        while !stop.load(Ordering::Relaxed) {
-            if let Some(sample) = self.mission.latest()? {
-                return Ok(Some(MissionMessage::read(sample.payload())?));
-            }
-            self.listener.wait(FLUSH_EVERY)?;
+    fn wait_for_mission(&mut self, stop: &AtomicBool) -> Result<Option<Began>, RecordError> {
+        loop {
+            match self.mission()? {
+                None if stop.load(Ordering::Relaxed) => return Ok(None),
+                None => self.listener.wait(FLUSH_EVERY)?,
+                began => return Ok(began),
+            };
         }
-        Ok(None)
     }
+}
 
-    fn drain(&mut self, log: &mut LogWriter) -> Result<(), RecordError> {
-        let now = wall_nanos();
-        for_each(&mut *self.ticks, |sample| {
-            log.tick(&TickEntry::new(sample.envelope().tick, TickView::new(sample.payload())?))?;
-            Ok(())
-        })?;
-        for_each(&mut *self.events, |sample| {
-            let event: EventMessage = message::read(sample.payload())?;
-            if let Some(entry) = EventEntry::new(sample.envelope().tick, &event) {
-                log.event(&entry, now)?;
-            }
-            Ok(())
-        })?;
-        for_each(&mut *self.dialog, |sample| {
-            if let Some(entry) = DialogEntry::new(sample.envelope(), DialogView::new(sample.payload())?) {
-                log.dialog(&entry, now)?;
-            }
-            Ok(())
-        })?;
-        let lost = self.ticks.lost() + self.events.lost() + self.dialog.lost();
-        if lost > self.lost {
-            tracing::error!("the log misses {} messages: the disk is too slow", lost - self.lost);
-            self.lost = lost;
-        }
-        Ok(())
+impl Began {
+    fn entry(&self, session: &str) -> SessionEntry {
+        SessionEntry { run: self.run, ..SessionEntry::new(session, &self.mission) }
     }
 }
 
@@ -136,17 +128,62 @@ impl Recorder {
 pub struct Recording {
     recorder: Recorder,
     log: LogWriter,
+    written: Written,
+    missing: u64,
     flushed: Instant,
 }
 
 impl Recording {
+    fn new(recorder: Recorder, log: LogWriter, written: Written) -> Self {
+        Self { recorder, log, written, missing: 0, flushed: Instant::now() }
+    }
+
     /// Takes down all that was published since the last time.
     ///
     /// # Errors
     /// [`RecordError`].
     pub fn take_down(&mut self) -> Result<(), RecordError> {
-        self.recorder.drain(&mut self.log)?;
+        self.drain()?;
         if self.flushed.elapsed() >= FLUSH_EVERY { self.flush() } else { Ok(()) }
+    }
+
+    fn drain(&mut self) -> Result<(), RecordError> {
+        let now = wall_nanos();
+        let Self { recorder, log, written, missing, .. } = self;
+        let before = *missing;
+        for_each(&mut *recorder.ticks, |sample| {
+            let tick = sample.envelope().tick;
+            let Some(gap) = written.tick(tick) else { return Ok(()) };
+            *missing += gap;
+            log.tick(&TickEntry::new(tick, TickView::new(sample.payload())?))?;
+            Ok(())
+        })?;
+        for_each(&mut *recorder.events, |sample| {
+            let envelope = sample.envelope();
+            let Some(gap) = written.event(envelope.run, envelope.sequence) else { return Ok(()) };
+            *missing += gap;
+            let event: EventMessage = message::read(sample.payload())?;
+            if let Some(entry) = EventEntry::new(envelope, &event) {
+                log.event(&entry, now)?;
+            }
+            Ok(())
+        })?;
+        for_each(&mut *recorder.dialog, |sample| {
+            let envelope = sample.envelope();
+            let Some(gap) = written.dialog(envelope.run, envelope.sequence) else { return Ok(()) };
+            *missing += gap;
+            if let Some(entry) = DialogEntry::new(envelope, DialogView::new(sample.payload())?) {
+                log.dialog(&entry, now)?;
+            }
+            Ok(())
+        })?;
+        if *missing > before {
+            tracing::error!(
+                "the log misses {} messages: its recorder was away, or its disk slow, for too long",
+                *missing - before
+            );
+        }
+        Ok(())
     }
 
     /// Hands all that was taken down to the operating system.
@@ -164,7 +201,7 @@ impl Recording {
     /// # Errors
     /// [`RecordError`].
     pub fn finish(mut self) -> Result<(), RecordError> {
-        self.recorder.drain(&mut self.log)?;
+        self.drain()?;
         self.log.finish()?;
         Ok(())
     }

@@ -2,8 +2,11 @@
 
 #![no_main]
 
-use cohabit_bus::message::{
-    CommandMessage, DialogView, EventMessage, FrameView, MissionMessage, Plane, StateView, Thing, TickView, read,
+use cohabit_bus::{
+    Envelope,
+    message::{
+        CommandMessage, DialogView, EventMessage, FrameView, MissionMessage, Plane, StateView, Thing, TickView, read,
+    },
 };
 use cohabit_cdf::Action;
 use cohabit_record::entry::{EventEntry, InputEntry};
@@ -35,7 +38,7 @@ fn look(kind: u8, payload: &[u8]) {
         1 => {
             let Ok(event) = read::<EventMessage>(payload) else { return };
             let _ = (event.kind(), event.status(), event.text.as_str().len());
-            if let Some(entry) = EventEntry::new(1, &event) {
+            if let Some(entry) = EventEntry::new(&Envelope::default(), &event) {
                 let _ = serde_json::to_string(&entry);
             }
         }
