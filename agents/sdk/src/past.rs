@@ -27,6 +27,11 @@ impl Past {
         self.outcomes.push((turn, status, detail.to_owned()));
     }
 
+    /// Whether something was done about that turn.
+    pub(crate) fn knows(&self, turn: u64) -> bool {
+        turn != 0 && self.outcomes.iter().any(|(of, ..)| *of == turn)
+    }
+
     /// Has the agent hear it all again. Gives what it would do now; nothing, when the plan is at its end.
     pub(crate) fn relive(&self, agent: &mut dyn Agent) -> Vec<Deed> {
         let mut deeds = Vec::new();

@@ -29,8 +29,13 @@ use crate::{
 const GRACE: Duration = Duration::from_secs(3);
 /// How often the processes are looked after.
 const LOOK_EVERY: Duration = Duration::from_millis(20);
-/// A process that ends by itself more often than this within a session is not started again.
-const MOST_RESTARTS: u32 = 5;
+/// A process that ends by itself more often than this within a while is not started again.
+const MOST_RESTARTS: usize = 5;
+/// The while.
+const RESTARTS_COUNT_FOR: Duration = Duration::from_secs(60);
+/// This very program, also when its file was replaced or taken away since it was started: all processes of a session
+/// are of one build.
+const THIS_PROGRAM: &str = "/proc/self/exe";
 
 /// One process of a session.
 pub struct Role {
@@ -87,7 +92,16 @@ impl Role {
 struct Running {
     role: Role,
     child: Child,
-    restarts: u32,
+    /// When it was started again.
+    restarts: Vec<Instant>,
+}
+
+impl Running {
+    /// Whether it ends again and again.
+    fn is_hopeless(&mut self) -> bool {
+        self.restarts.retain(|at| at.elapsed() < RESTARTS_COUNT_FOR);
+        self.restarts.len() >= MOST_RESTARTS
+    }
 }
 
 /// The processes of one session.
@@ -102,15 +116,15 @@ impl Supervisor {
     pub fn start(session: &str, roles: impl IntoIterator<Item = Role>, began: Instant) -> anyhow::Result<Self> {
         let mut supervisor = Self { session: session.to_owned(), running: Vec::new(), began };
         for role in roles {
-            let child = supervisor.spawn(&role)?;
-            supervisor.running.push(Running { role, child, restarts: 0 });
+            let child = supervisor.spawn(&role, true)?;
+            supervisor.running.push(Running { role, child, restarts: Vec::new() });
         }
         Ok(supervisor)
     }
 
-    fn spawn(&self, role: &Role) -> anyhow::Result<Child> {
-        let program = std::env::current_exe().context("find this program's own file")?;
-        let mut child = Command::new(program)
+    fn spawn(&self, role: &Role, is_first: bool) -> anyhow::Result<Child> {
+        let mut child = Command::new(THIS_PROGRAM)
+            .arg0(std::env::args_os().next().unwrap_or_else(|| "cohabit".into()))
             .arg(role.name)
             .args(["--session", &self.session, "--supervisor", &std::process::id().to_string()])
             .args(&role.arguments)
@@ -122,7 +136,7 @@ impl Supervisor {
             .with_context(|| format!("start {}", role.name))?;
         if let Some(out) = child.stdout.take() {
             let began = self.began;
-            thread::spawn(move || relay(out, began));
+            thread::spawn(move || relay(out, is_first.then_some(began)));
         }
         Ok(child)
     }
@@ -146,14 +160,14 @@ impl Supervisor {
                 // It has said itself what is wrong with what it was given.
                 return Err(BadInput(String::new()).into());
             }
-            if name == "sim" || running.restarts >= MOST_RESTARTS {
+            if name == "sim" || running.is_hopeless() {
                 anyhow::bail!("the {name} process ended ({}); the session cannot go on without it", describe(status));
             }
             eprintln!("cohabit: the {name} process ended ({}); starting it again", describe(status));
-            let child = self.spawn(&self.running[index].role)?;
+            let child = self.spawn(&self.running[index].role, false)?;
             let running = &mut self.running[index];
             running.child = child;
-            running.restarts += 1;
+            running.restarts.push(Instant::now());
         }
         Ok(())
     }
@@ -196,15 +210,20 @@ fn describe(status: ExitStatus) -> String {
     }
 }
 
-/// Tells the user what a process tells its supervisor.
-fn relay(out: ChildStdout, began: Instant) {
+/// Tells the user what a process tells its supervisor; `began` is when the session was started, if the process was
+/// started with it.
+fn relay(out: ChildStdout, began: Option<Instant>) {
     for line in BufReader::new(out).lines().map_while(Result::ok) {
-        let seconds = began.elapsed().as_secs_f64();
-        match line.split_once(' ') {
-            Some(("page", address)) => {
+        let seconds = began.map(|began| began.elapsed().as_secs_f64());
+        match (line.split_once(' '), seconds) {
+            (Some(("page", address)), Some(seconds)) => {
                 println!("Open {address}  (ready after {seconds:.2} s; Ctrl-C ends the session)")
             }
-            _ if line == "shown" => println!("First frame on the page {seconds:.2} s after the start"),
+            (Some(("page", address)), None) => println!("The page is back at {address}"),
+            (None, Some(seconds)) if line == "shown" => {
+                println!("First frame on the page {seconds:.2} s after the start");
+            }
+            (None, None) if line == "shown" => {}
             _ => println!("{line}"),
         }
     }
