@@ -1,0 +1,333 @@
+//! One session, in which one process is killed, and what is left of it.
+
+use std::{
+    collections::BTreeMap,
+    fmt, fs,
+    path::Path,
+    thread,
+    time::{Duration, Instant},
+};
+
+use anyhow::{Context as _, ensure};
+use cohabit_bus::wall_nanos;
+use cohabit_record::Log;
+use cohabit_tests::{Page, Play, run};
+use rustix::process::{Pid, Signal, kill_process};
+
+use super::witness::Witness;
+use crate::COHABIT;
+
+/// What the robot is asked to do: some seconds of work of several kinds.
+const WORK: &str = "turn left 90 degrees, turn right 90 degrees, pick up the soda can and put it on the round table";
+/// The longest that work is gone on with before somebody is killed.
+const LONGEST_WORK_MS: u64 = 5000;
+/// The longest that a session is given to start before somebody is killed.
+const LONGEST_START_MS: u64 = 900;
+/// What may be missing of a log at the moment of a kill.
+const READABLE_WITHIN: Duration = Duration::from_millis(100);
+/// The longest that anything is waited for.
+const WATCHDOG: Duration = Duration::from_secs(60);
+
+/// Random numbers (SplitMix64).
+pub struct Dice(u64);
+
+impl Dice {
+    /// Those of one round.
+    pub fn new(seed: u64, round: usize) -> Self {
+        Self(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ (round as u64) << 32)
+    }
+
+    /// A number below `bound`.
+    fn below(&mut self, bound: u64) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mixed = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        (mixed ^ (mixed >> 31)) % bound
+    }
+}
+
+/// The processes of a session; with the first two it ends.
+const VICTIMS: [&str; 5] = ["sim", "play", "agent", "dialog", "record"];
+
+/// When somebody is killed.
+#[derive(Clone, Copy, Debug)]
+enum Moment {
+    /// So long after the session was started.
+    Starting(Duration),
+    /// So long after the robot was asked.
+    Working(Duration),
+}
+
+/// What is to be done in a round.
+#[derive(Clone, Copy, Debug)]
+pub struct Plan {
+    victim: &'static str,
+    moment: Moment,
+}
+
+/// What came of a round that went well.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Measured {
+    /// How much older than the kill the newest readable tick was, where the session ended or the recorder died.
+    log_behind: Duration,
+    /// How long the session took to end, where it did.
+    ended_after: Duration,
+    /// How long it took from the kill to the end of the work, where it went on.
+    done_after: Duration,
+}
+
+impl Plan {
+    /// One at random; rounds take turns with the victims.
+    pub fn draw(number: usize, dice: &mut Dice) -> Self {
+        let victim = VICTIMS[number % VICTIMS.len()];
+        let moment = if dice.below(4) == 0 {
+            Moment::Starting(Duration::from_millis(dice.below(LONGEST_START_MS)))
+        } else {
+            Moment::Working(Duration::from_millis(dice.below(LONGEST_WORK_MS)))
+        };
+        Self { victim, moment }
+    }
+
+    /// Plays it.
+    pub fn play(&self) -> anyhow::Result<Measured> {
+        let mut play = Play::spawn(COHABIT, &["cold_soda", "--seed", "5"])?;
+        match self.moment {
+            Moment::Starting(after) => {
+                thread::sleep(after);
+                let killed = self.kill(&play)?;
+                match self.victim {
+                    "sim" | "play" => self.check_ended(&mut play, None, killed),
+                    _ => {
+                        play.wait_until_ready()?;
+                        let page = Page::open(play.authority())?;
+                        let witness = Witness::new(&play.session)?;
+                        self.check_carries_on(play, page, witness, killed)
+                    }
+                }
+            }
+            Moment::Working(after) => {
+                play.wait_until_ready()?;
+                let witness = Witness::new(&play.session)?;
+                let mut page = Page::open(play.authority())?;
+                page.say(WORK)?;
+                thread::sleep(after);
+                let killed = self.kill(&play)?;
+                match self.victim {
+                    "sim" | "play" => self.check_ended(&mut play, Some(witness), killed),
+                    "record" => {
+                        let copy = play.folder.join("at-the-kill.mcap");
+                        fs::copy(&play.log, &copy)?;
+                        let log_behind = behind(&copy, &witness, killed)?;
+                        let measured = self.check_carries_on(play, page, witness, killed)?;
+                        Ok(Measured { log_behind, ..measured })
+                    }
+                    _ => self.check_carries_on(play, page, witness, killed),
+                }
+            }
+        }
+    }
+
+    /// Kills the victim as soon as it is there; when, in wall time.
+    fn kill(&self, play: &Play) -> anyhow::Result<u64> {
+        let deadline = Instant::now() + WATCHDOG;
+        loop {
+            let pid = match self.victim {
+                "play" => Some(i32::try_from(play.pid())?),
+                role => play.processes(role).first().copied(),
+            };
+            if let Some(pid) = pid.and_then(Pid::from_raw) {
+                kill_process(pid, Signal::KILL)?;
+                return Ok(wall_nanos());
+            }
+            ensure!(Instant::now() < deadline, "there is no {} process", self.victim);
+            thread::yield_now();
+        }
+    }
+
+    /// The session has ended, is recorded, and nothing is left of it after the next one has started.
+    fn check_ended(&self, play: &mut Play, witness: Option<Witness>, killed: u64) -> anyhow::Result<Measured> {
+        let status = play.wait_for_end()?;
+        ensure!(!status.success(), "it ended well without its {}", self.victim);
+        if self.victim == "play" {
+            wait_until("all processes are gone", || !play.left_behind().iter().any(|line| line.contains('\0')))?;
+        }
+        let ended_after = Duration::from_nanos(wall_nanos() - killed);
+        let mut log_behind = Duration::ZERO;
+        if let Some(witness) = &witness {
+            log_behind = behind(&play.log, witness, killed)?;
+            check_log(&play.log)?;
+        }
+        drop(witness);
+        if self.victim == "play" {
+            Play::start(COHABIT, &["cold_soda"])?.end()?;
+        } else {
+            let said = play.said();
+            ensure!(said.contains("the sim process ended (signal 9)"), "it does not say why it ended: {said}");
+        }
+        let left = play.left_behind();
+        ensure!(left.is_empty(), "left behind: {left:?}");
+        Ok(Measured { log_behind, ended_after, ..Measured::default() })
+    }
+
+    /// The session goes on: what was asked is done, the next thing is understood, and all is recorded.
+    fn check_carries_on(&self, play: Play, page: Page, witness: Witness, killed: u64) -> anyhow::Result<Measured> {
+        let mut person = Person { authority: play.authority().to_owned(), page };
+        person.have_done()?;
+        let done_after = Duration::from_nanos(wall_nanos() - killed);
+        person.ask("what are you holding?", 2)?;
+        drop(person);
+        let seen = witness.end()?;
+        let play = play.end()?;
+        let log = check_log(&play.log)?;
+        ensure!(log.ticks.last().is_some_and(|entry| entry.tick >= seen), "the log ends before tick {seen}");
+        for turn in [1, 2] {
+            let said = log.dialog.iter().filter(|entry| entry.kind == "Utterance" && entry.turn == turn).count();
+            ensure!(said > 0, "turn {turn} is not in the log");
+        }
+        Ok(Measured { done_after, ..Measured::default() })
+    }
+}
+
+/// A person at the page, who opens it again when it fails, and asks again what nobody heard.
+struct Person {
+    authority: String,
+    page: Page,
+}
+
+impl Person {
+    fn have_done(&mut self) -> anyhow::Result<()> {
+        let is_done = |page: &Page| {
+            let met = page.goals().first().is_some_and(|(_, met)| *met);
+            let replies = page.chat.iter().filter(|(from, _)| from == "robot").count();
+            met && replies >= 2 && page.state["robot"]["holding"].is_null() && page.state["robot"]["busy"] == false
+        };
+        let deadline = Instant::now() + WATCHDOG;
+        loop {
+            if !self.page.chat.iter().any(|(from, text)| from == "person" && text == WORK) {
+                // It may have been heard, and the page not been told yet.
+                self.page = self.open()?;
+                let _ = self.page.wait("the past", |page, _| page.state.is_object());
+                if !self.page.chat.iter().any(|(from, _)| from == "person") {
+                    self.page.say(WORK)?;
+                }
+            }
+            match self.page.wait("the work to be done", |page, _| is_done(page)) {
+                Ok(_) => return Ok(()),
+                Err(error) if Instant::now() > deadline => return Err(error),
+                Err(_) => self.page = self.open()?,
+            }
+        }
+    }
+
+    /// Asks something, which must be turn number so and so.
+    fn ask(&mut self, text: &str, turn: u64) -> anyhow::Result<()> {
+        self.page.say(text)?;
+        let found = self.page.wait("an answer", |_, message| message["type"] == "turn" && message["ended"] == true)?;
+        ensure!(found["turn"] == turn, "turn {} instead of {turn}", found["turn"]);
+        Ok(())
+    }
+
+    fn open(&self) -> anyhow::Result<Page> {
+        let deadline = Instant::now() + WATCHDOG;
+        loop {
+            match Page::open(&self.authority) {
+                Ok(page) => return Ok(page),
+                Err(error) if Instant::now() > deadline => return Err(error),
+                Err(_) => thread::park_timeout(Duration::from_millis(20)),
+            }
+        }
+    }
+}
+
+/// How much older than the kill the newest tick is that can be read.
+fn behind(path: &Path, witness: &Witness, killed: u64) -> anyhow::Result<Duration> {
+    let log = Log::open(path)?;
+    let last = log.ticks.last().context("no tick in the log")?;
+    let due = witness.tick_before(killed - u64::try_from(READABLE_WITHIN.as_nanos())?);
+    ensure!(last.tick >= due, "the log ends with tick {} at the kill, {due} was published long before", last.tick);
+    Ok(Duration::from_nanos(killed.saturating_sub(last.wall_nanos)))
+}
+
+/// Whether all is in a log, and comes out the same.
+fn check_log(path: &Path) -> anyhow::Result<Log> {
+    let log = Log::open(path)?;
+    ensure!(log.cut.is_none(), "the log was cut: {:?}", log.cut);
+    ensure!(log.missing() == 0, "{} messages are missing", log.missing());
+    let replayed = run(COHABIT, &["replay", path.to_str().context("a path")?])?;
+    ensure!(replayed.status.success(), "{replayed:?}");
+    Ok(log)
+}
+
+fn wait_until(what: &str, mut holds: impl FnMut() -> bool) -> anyhow::Result<()> {
+    let deadline = Instant::now() + WATCHDOG;
+    while !holds() {
+        ensure!(Instant::now() < deadline, "waited in vain until {what}");
+        thread::park_timeout(Duration::from_millis(5));
+    }
+    Ok(())
+}
+
+/// What came of many rounds.
+#[derive(Default)]
+pub struct Counts {
+    rounds: BTreeMap<&'static str, (usize, usize, Measured)>,
+    /// What failed, and how.
+    pub failures: Vec<String>,
+}
+
+impl Counts {
+    /// Takes note of a round.
+    pub fn note(&mut self, number: usize, plan: &Plan, came: anyhow::Result<Measured>) {
+        let (well, all, worst) = self.rounds.entry(plan.victim).or_default();
+        *all += 1;
+        match came {
+            Ok(measured) => {
+                *well += 1;
+                *worst = worst.most(measured);
+                eprintln!("round {number}: {plan:?}: {measured:?}");
+            }
+            Err(error) => {
+                let text = format!("round {number}: {plan:?}: {error:?}");
+                eprintln!("FAILED {text}");
+                self.failures.push(text);
+            }
+        }
+    }
+
+    /// With those of another.
+    pub fn and(mut self, other: Self) -> Self {
+        for (victim, (well, all, worst)) in other.rounds {
+            let sum = self.rounds.entry(victim).or_default();
+            *sum = (sum.0 + well, sum.1 + all, sum.2.most(worst));
+        }
+        self.failures.extend(other.failures);
+        self
+    }
+}
+
+impl Measured {
+    fn most(self, other: Self) -> Self {
+        Self {
+            log_behind: self.log_behind.max(other.log_behind),
+            ended_after: self.ended_after.max(other.ended_after),
+            done_after: self.done_after.max(other.done_after),
+        }
+    }
+}
+
+impl fmt::Display for Counts {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "killed   well/all   at most: log behind, ended after, work done after")?;
+        for (victim, (well, all, worst)) in &self.rounds {
+            let ms = |duration: Duration| duration.as_millis();
+            writeln!(
+                f,
+                "{victim:8} {well:4}/{all:<4} {:17} ms {:8} ms {:12} ms",
+                ms(worst.log_behind),
+                ms(worst.ended_after),
+                ms(worst.done_after)
+            )?;
+        }
+        self.failures.iter().try_for_each(|failure| writeln!(f, "{failure}"))
+    }
+}
