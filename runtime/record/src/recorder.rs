@@ -85,8 +85,10 @@ impl Recorder {
         };
         let mut recording = Recording::new(self, log, written);
         while !stop.load(Ordering::Relaxed) {
-            recording.recorder.listener.wait(FLUSH_EVERY / 2)?;
+            recording.recorder.listener.wait(FLUSH_EVERY)?;
             recording.take_down()?;
+            // Tick by tick: what was published before this process is killed can be read after.
+            recording.flush()?;
         }
         recording.finish()
     }

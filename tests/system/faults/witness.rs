@@ -44,10 +44,10 @@ impl Witness {
         Ok(Self { ticks, over, thread: Some(thread) })
     }
 
-    /// The newest tick that began before that wall time.
-    pub fn tick_before(&self, wall_nanos: u64) -> u64 {
+    /// When the first tick after this one began, ns since 1970.
+    pub fn wall_of_first_after(&self, tick: u64) -> Option<u64> {
         let ticks = self.ticks.lock().unwrap();
-        ticks.iter().rev().find(|(_, wall)| *wall < wall_nanos).map_or(0, |(tick, _)| *tick)
+        ticks.iter().find(|(number, _)| *number > tick).map(|(_, wall)| *wall)
     }
 
     /// Ends, and gives the newest tick of all.
@@ -55,7 +55,8 @@ impl Witness {
         self.over.store(true, Ordering::Relaxed);
         let thread = self.thread.take().context("a thread")?;
         thread.join().expect("it does not panic")?;
-        Ok(self.tick_before(u64::MAX))
+        let ticks = self.ticks.lock().unwrap();
+        Ok(ticks.last().map_or(0, |(tick, _)| *tick))
     }
 }
 
