@@ -7,7 +7,7 @@ use std::{
 };
 
 use cohabit_bus::{
-    Envelope, Publisher, Sample, Subscriber, Topic, Transport, Wake,
+    Envelope, Heart, Inbox, Publisher, Sample, Subscriber, Topic, Transport, Wake,
     message::{self, DialogKind, DialogMessage, DialogView, EventKind, EventMessage, StateView, Thing},
     monotonic_nanos,
 };
@@ -264,18 +264,22 @@ fn log_latency(moments: &Moments) {
 /// Follows what others say on the bus, until `over`.
 pub fn listen(bus: &dyn Transport, talk: &Talk, over: &dyn Fn() -> bool) -> Result<(), DialogError> {
     let mut listener = bus.listener(Wake::Talk)?;
-    let mut dialog = bus.subscriber(Topic::Dialog)?;
-    let mut events = bus.subscriber(Topic::Events)?;
+    let mut dialog = Inbox::new(bus, Topic::Dialog)?;
+    let mut events = Inbox::new(bus, Topic::Events)?;
+    let mut heart = Heart::new(bus, "dialog", BODY.0)?;
+    let mut tick = 0;
     let joined_nanos = monotonic_nanos();
     while !over() {
         listener.wait(Duration::from_millis(100))?;
-        while let Some(sample) = events.receive()? {
-            let event: EventMessage = message::read(sample.payload())?;
-            talk.note_event(sample.envelope(), &event, sample.envelope().sent_nanos >= joined_nanos)?;
+        while let Some((sample, event)) = events.next(|sample| message::read::<EventMessage>(sample.payload()))? {
+            let envelope = sample.envelope();
+            tick = tick.max(envelope.tick);
+            talk.note_event(envelope, &event, envelope.sent_nanos >= joined_nanos)?;
         }
-        while let Some(sample) = dialog.receive()? {
+        while let Some((sample, ())) = dialog.next(|sample| DialogView::new(sample.payload()).map(drop))? {
             talk.follow(sample.envelope(), DialogView::new(sample.payload())?)?;
         }
+        heart.beat(tick, events.lost() + dialog.lost())?;
     }
     Ok(())
 }

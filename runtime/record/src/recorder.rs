@@ -7,8 +7,8 @@ use std::{
 };
 
 use cohabit_bus::{
-    BusError, Listener, Sample, Subscriber, Topic, Transport, Wake,
-    message::{self, DialogView, EventMessage, Malformed, MissionMessage, TickView},
+    BusError, Heart, Inbox, Listener, Subscriber, Topic, Transport, Wake,
+    message::{self, DialogView, EventMessage, Malformed, MissionMessage, NONE, TickView},
     wall_nanos,
 };
 
@@ -42,10 +42,11 @@ pub enum RecordError {
 /// Records one session.
 pub struct Recorder {
     mission: Box<dyn Subscriber>,
-    ticks: Box<dyn Subscriber>,
-    events: Box<dyn Subscriber>,
-    dialog: Box<dyn Subscriber>,
+    ticks: Inbox,
+    events: Inbox,
+    dialog: Inbox,
     listener: Box<dyn Listener>,
+    heart: Heart,
 }
 
 /// What was published before a recorder took it down.
@@ -62,10 +63,11 @@ impl Recorder {
     pub fn new(bus: &dyn Transport) -> Result<Self, BusError> {
         Ok(Self {
             mission: bus.subscriber(Topic::Mission)?,
-            ticks: bus.subscriber(Topic::Ticks)?,
-            events: bus.subscriber(Topic::Events)?,
-            dialog: bus.subscriber(Topic::Dialog)?,
+            ticks: Inbox::new(bus, Topic::Ticks)?,
+            events: Inbox::new(bus, Topic::Events)?,
+            dialog: Inbox::new(bus, Topic::Dialog)?,
             listener: bus.listener(Wake::State)?,
+            heart: Heart::new(bus, "recorder", NONE)?,
         })
     }
 
@@ -153,32 +155,31 @@ impl Recording {
         let now = wall_nanos();
         let Self { recorder, log, written, missing, .. } = self;
         let before = *missing;
-        for_each(&mut *recorder.ticks, |sample| {
+        while let Some((sample, ())) = recorder.ticks.next(|sample| TickView::new(sample.payload()).map(drop))? {
             let tick = sample.envelope().tick;
-            let Some(gap) = written.tick(tick) else { return Ok(()) };
+            let Some(gap) = written.tick(tick) else { continue };
             *missing += gap;
             log.tick(&TickEntry::new(tick, TickView::new(sample.payload())?))?;
-            Ok(())
-        })?;
-        for_each(&mut *recorder.events, |sample| {
+        }
+        while let Some((sample, event)) =
+            recorder.events.next(|sample| message::read::<EventMessage>(sample.payload()))?
+        {
             let envelope = sample.envelope();
-            let Some(gap) = written.event(envelope.run, envelope.sequence) else { return Ok(()) };
+            let Some(gap) = written.event(envelope.run, envelope.sequence) else { continue };
             *missing += gap;
-            let event: EventMessage = message::read(sample.payload())?;
             if let Some(entry) = EventEntry::new(envelope, &event) {
                 log.event(&entry, now)?;
             }
-            Ok(())
-        })?;
-        for_each(&mut *recorder.dialog, |sample| {
+        }
+        while let Some((sample, ())) = recorder.dialog.next(|sample| DialogView::new(sample.payload()).map(drop))? {
             let envelope = sample.envelope();
-            let Some(gap) = written.dialog(envelope.run, envelope.sequence) else { return Ok(()) };
+            let Some(gap) = written.dialog(envelope.run, envelope.sequence) else { continue };
             *missing += gap;
             if let Some(entry) = DialogEntry::new(envelope, DialogView::new(sample.payload())?) {
                 log.dialog(&entry, now)?;
             }
-            Ok(())
-        })?;
+        }
+        recorder.heart.beat(written.tick, *missing)?;
         if *missing > before {
             tracing::error!(
                 "the log misses {} messages: its recorder was away, or its disk slow, for too long",
@@ -207,16 +208,6 @@ impl Recording {
         self.log.finish()?;
         Ok(())
     }
-}
-
-fn for_each(
-    subscriber: &mut dyn Subscriber,
-    mut take: impl FnMut(&Sample) -> Result<(), RecordError>,
-) -> Result<(), RecordError> {
-    while let Some(sample) = subscriber.receive()? {
-        take(&sample)?;
-    }
-    Ok(())
 }
 
 #[cfg(test)]
