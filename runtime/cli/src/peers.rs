@@ -235,7 +235,8 @@ impl Record {
     /// Runs the recorder.
     pub fn run(&self) -> anyhow::Result<()> {
         let (bus, stop) = self.joining.join()?;
-        Recorder::new(&bus)?.run(&self.joining.session, &self.log, &stop).map_err(|error| match error {
+        let caught_up = || tell_supervisor(&format!("recording {}", self.log.display()));
+        Recorder::new(&bus)?.run(&self.joining.session, &self.log, &stop, caught_up).map_err(|error| match error {
             RecordError::Log(LogError::Write { .. }) | RecordError::Bus(_) | RecordError::Malformed(_) => error.into(),
             RecordError::Log(_) | RecordError::NoMission => bad_input(error),
         })

@@ -7,9 +7,9 @@ use std::{
 };
 
 use cohabit_bus::{
-    BusError, Heart, Inbox, Listener, Subscriber, Topic, Transport, Wake,
+    BusError, Heart, Inbox, Listener, Sample, Topic, Transport, Wake,
     message::{self, DialogView, EventMessage, Malformed, MissionMessage, NONE, TickView},
-    wall_nanos,
+    process_of, wall_nanos,
 };
 
 use crate::{
@@ -21,6 +21,9 @@ use crate::{
 
 /// The longest that an entry stays in this process alone.
 const FLUSH_EVERY: Duration = Duration::from_millis(100);
+
+/// All peers hand what they keep to late joiners within this time.
+const GREETED_WITHIN: Duration = Duration::from_millis(300);
 
 /// Why recording ended early.
 #[derive(Debug, thiserror::Error)]
@@ -41,7 +44,7 @@ pub enum RecordError {
 
 /// Records one session.
 pub struct Recorder {
-    mission: Box<dyn Subscriber>,
+    mission: Inbox,
     ticks: Inbox,
     events: Inbox,
     dialog: Inbox,
@@ -62,7 +65,7 @@ impl Recorder {
     /// [`BusError`].
     pub fn new(bus: &dyn Transport) -> Result<Self, BusError> {
         Ok(Self {
-            mission: bus.subscriber(Topic::Mission)?,
+            mission: Inbox::new(bus, Topic::Mission)?,
             ticks: Inbox::new(bus, Topic::Ticks)?,
             events: Inbox::new(bus, Topic::Events)?,
             dialog: Inbox::new(bus, Topic::Dialog)?,
@@ -72,11 +75,18 @@ impl Recorder {
     }
 
     /// Records until `stop`, then ends the log. Writes nothing if no simulator ever came. Where the log is there already,
-    /// it carries on with it: an earlier recorder of the same session was killed.
+    /// it carries on with it: an earlier recorder of the same session was killed. `caught_up` is called once, when all
+    /// that peers keep for who joins late has been taken down.
     ///
     /// # Errors
     /// [`RecordError`].
-    pub fn run(mut self, session: &str, path: &Path, stop: &AtomicBool) -> Result<(), RecordError> {
+    pub fn run(
+        mut self,
+        session: &str,
+        path: &Path,
+        stop: &AtomicBool,
+        caught_up: impl FnOnce(),
+    ) -> Result<(), RecordError> {
         let Some(began) = self.wait_for_mission(stop)? else { return Ok(()) };
         let (entry, now) = (began.entry(session), wall_nanos());
         let (log, written) = match LogWriter::carry_on(path, &entry, now) {
@@ -85,12 +95,16 @@ impl Recorder {
             }
             found => found?,
         };
-        let mut recording = Recording::new(self, log, written);
+        let mut recording = Recording::new(self, process_of(began.run), log, written);
+        let (opened, mut caught_up) = (Instant::now(), Some(caught_up));
         while !stop.load(Ordering::Relaxed) {
             recording.recorder.listener.wait(FLUSH_EVERY)?;
             recording.take_down()?;
             // Tick by tick: what was published before this process is killed can be read after.
             recording.flush()?;
+            if let Some(caught_up) = caught_up.take_if(|_| opened.elapsed() > GREETED_WITHIN) {
+                caught_up();
+            }
         }
         recording.finish()
     }
@@ -103,12 +117,15 @@ impl Recorder {
     pub fn begin(mut self, session: &str, path: &Path) -> Result<Recording, RecordError> {
         let began = self.mission()?.ok_or(RecordError::NoMission)?;
         let log = LogWriter::create(path, &began.entry(session), wall_nanos())?;
-        Ok(Recording::new(self, log, Written::default()))
+        Ok(Recording::new(self, process_of(began.run), log, Written::default()))
     }
 
     fn mission(&mut self) -> Result<Option<Began>, RecordError> {
-        let Some(sample) = self.mission.latest()? else { return Ok(None) };
-        Ok(Some(Began { run: sample.envelope().run, mission: MissionMessage::read(sample.payload())? }))
+        let mut newest = None;
+        while let Some((sample, mission)) = self.mission.next(|sample| MissionMessage::read(sample.payload()))? {
+            newest = Some(Began { run: sample.envelope().run, mission });
+        }
+        Ok(newest)
     }
 
     fn wait_for_mission(&mut self, stop: &AtomicBool) -> Result<Option<Began>, RecordError> {
@@ -133,13 +150,15 @@ pub struct Recording {
     recorder: Recorder,
     log: LogWriter,
     written: Written,
+    /// The process that publishes ticks and events.
+    simulator: u32,
     missing: u64,
     flushed: Instant,
 }
 
 impl Recording {
-    fn new(recorder: Recorder, log: LogWriter, written: Written) -> Self {
-        Self { recorder, log, written, missing: 0, flushed: Instant::now() }
+    fn new(recorder: Recorder, simulator: u32, log: LogWriter, written: Written) -> Self {
+        Self { recorder, log, written, simulator, missing: 0, flushed: Instant::now() }
     }
 
     /// Takes down all that was published since the last time.
@@ -153,16 +172,24 @@ impl Recording {
 
     fn drain(&mut self) -> Result<(), RecordError> {
         let now = wall_nanos();
-        let Self { recorder, log, written, missing, .. } = self;
+        let Self { recorder, log, written, missing, simulator, .. } = self;
+        let is_simulator = |sample: &Sample| {
+            let whose = process_of(sample.envelope().run);
+            if whose == *simulator { Ok(()) } else { Err(Malformed("it is the simulator's to say")) }
+        };
         let before = *missing;
-        while let Some((sample, ())) = recorder.ticks.next(|sample| TickView::new(sample.payload()).map(drop))? {
+        while let Some((sample, ())) = recorder.ticks.next(|sample| {
+            is_simulator(sample)?;
+            TickView::new(sample.payload()).map(drop)
+        })? {
             let tick = sample.envelope().tick;
             let Some(gap) = written.tick(tick) else { continue };
             *missing += gap;
             log.tick(&TickEntry::new(tick, TickView::new(sample.payload())?))?;
         }
-        while let Some((sample, event)) =
-            recorder.events.next(|sample| message::read::<EventMessage>(sample.payload()))?
+        while let Some((sample, event)) = recorder
+            .events
+            .next(|sample| is_simulator(sample).and_then(|()| message::read::<EventMessage>(sample.payload())))?
         {
             let envelope = sample.envelope();
             let Some(gap) = written.event(envelope.run, envelope.sequence) else { continue };

@@ -159,7 +159,7 @@ fn recorders_one_after_the_other_write_one_log() {
             world.tick(20 * round + number);
         }
         // Each finds all that was published, of which it must write what is new.
-        Recorder::new(&bus).unwrap().run("s", &file.0, &AtomicBool::new(true)).unwrap();
+        Recorder::new(&bus).unwrap().run("s", &file.0, &AtomicBool::new(true), || {}).unwrap();
     }
     let log = Log::open(&file.0).unwrap();
     let all: Vec<u64> = (1..=100).collect();
