@@ -7,7 +7,7 @@ use std::{
 };
 
 use cohabit_bus::{
-    Envelope, Heart, Inbox, Publisher, Sample, Subscriber, Topic, Transport, Wake,
+    Envelope, Heart, Inbox, Publisher, Sample, Topic, Transport, Wake,
     message::{self, DialogKind, DialogMessage, DialogView, EventKind, EventMessage, StateView, Thing},
     monotonic_nanos,
 };
@@ -40,7 +40,7 @@ struct Inner {
     journal: Journal,
     latency: Latency,
     dialog: Box<dyn Publisher>,
-    states: Box<dyn Subscriber>,
+    states: Inbox,
     newest: Option<Sample>,
 }
 
@@ -59,7 +59,7 @@ impl Talk {
             journal,
             latency: Latency::default(),
             dialog: bus.publisher(Topic::Dialog)?,
-            states: bus.subscriber(Topic::State)?,
+            states: Inbox::new(bus, Topic::State)?,
             newest: None,
         };
         inner.tell_again()?;
@@ -219,7 +219,7 @@ impl Talk {
 
 impl Inner {
     fn refresh(&mut self) -> Result<(), DialogError> {
-        if let Some(sample) = self.states.latest()? {
+        while let Some((sample, ())) = self.states.next(|sample| StateView::new(sample.payload()).map(drop))? {
             self.newest = Some(sample);
         }
         Ok(())
