@@ -4,6 +4,8 @@
 //! `cargo test -p cohabit --test system -- --ignored --nocapture faults::many_rounds`
 //! (`COHABIT_ROUNDS` and `COHABIT_SEED` say how many others, and which).
 
+mod memory;
+mod person;
 mod round;
 mod witness;
 
@@ -14,7 +16,14 @@ use std::{
     time::{SystemTime, UNIX_EPOCH},
 };
 
+use cohabit_bus::{CameraId, Session, Shm, Topic, Transport as _};
+use cohabit_tests::{Page, Play, run};
+use person::{Person, WORK};
 use round::{Counts, Dice, Plan};
+use rustix::process::{Pid, Signal, kill_process};
+use witness::Witness;
+
+use crate::COHABIT;
 
 /// The seed that was asked for, or the clock's; printed, so that what failed can be tried again.
 fn seed() -> u64 {
@@ -42,6 +51,93 @@ fn play(seed: u64, rounds: usize, at_once: usize) -> Counts {
         let workers: Vec<_> = (0..at_once).map(|_| scope.spawn(worker)).collect();
         workers.into_iter().map(|worker| worker.join().unwrap()).fold(Counts::default(), Counts::and)
     })
+}
+
+/// Sends a signal to the process of a session that runs as that role.
+fn send(play: &Play, role: &str, signal: Signal) {
+    let pid = play.processes(role)[0];
+    kill_process(Pid::from_raw(pid).unwrap(), signal).unwrap();
+}
+
+#[test]
+fn a_process_that_hangs_slows_nobody_and_carries_on_when_it_wakes() {
+    for role in ["agent", "dialog", "record"] {
+        let play = Play::start(COHABIT, &["cold_soda", "--seed", "5"]).unwrap();
+        let witness = Witness::new(&play.session).unwrap();
+        let mut person = Person::at(play.authority()).unwrap();
+        person.page.say(WORK).unwrap();
+        send(&play, role, Signal::STOP);
+        // The world goes on: it is not asked how fast.
+        witness.wait_for(witness.newest() + 120).unwrap();
+        send(&play, role, Signal::CONT);
+        person.have_done().unwrap();
+        person.ask("what are you holding?", 2).unwrap();
+        let seen = witness.end().unwrap();
+        let play = play.end().unwrap();
+        let log = round::check_log(&play.log).unwrap();
+        assert!(log.ticks.last().unwrap().tick >= seen, "{role}");
+        assert!(log.events.iter().filter(|entry| entry.kind == "Started").count() >= 4, "{role}");
+    }
+}
+
+#[test]
+fn who_hangs_for_ever_keeps_no_session_from_ending() {
+    let play = Play::start(COHABIT, &[]).unwrap();
+    // Pages that are never read.
+    let deaf: Vec<_> = (0..3).map(|_| Page::open(play.authority()).unwrap()).collect();
+    let mut page = Page::open(play.authority()).unwrap();
+    page.do_and_wait("turn left 90 degrees").unwrap();
+    ["agent", "dialog"].iter().for_each(|role| send(&play, role, Signal::STOP));
+    play.end().unwrap();
+    drop(deaf);
+}
+
+#[test]
+fn who_sends_nonsense_is_cut_off_and_nobody_else_is_harmed() {
+    let mut play = Play::start(COHABIT, &["cold_soda", "--seed", "5"]).unwrap();
+    let witness = Witness::new(&play.session).unwrap();
+    let bus = Shm::join(&Session::new(&play.session).unwrap()).unwrap();
+    let camera = CameraId::Spectator(0);
+    let topics = [Topic::Commands, Topic::Control, Topic::Dialog, Topic::Events, Topic::Ticks, Topic::State];
+    let mut dice = Dice::new(seed(), 0);
+    // What a publisher has sent may go with it.
+    let mut publishers = Vec::new();
+    for topic in topics.into_iter().chain([Topic::Pulses, Topic::Steps, Topic::Mission, Topic::Frames(camera)]) {
+        let mut publisher = bus.publisher(topic).unwrap();
+        for _ in 0..20 {
+            let length = usize::try_from(dice.below(120)).unwrap();
+            publisher.send(dice.below(u64::MAX), length, &mut |bytes| bytes.fill_with(|| dice.byte())).unwrap();
+        }
+        publishers.push(publisher);
+    }
+    let mut person = Person::at(play.authority()).unwrap();
+    person.page.say(WORK).unwrap();
+    person.have_done().unwrap();
+    play.wait_for_line("sent nonsense on topic `commands`").unwrap();
+    let seen = witness.end().unwrap();
+    drop((publishers, bus));
+    let play = play.end().unwrap();
+    assert!(round::check_log(&play.log).unwrap().ticks.last().unwrap().tick >= seen);
+    let said = play.said();
+    assert!(!said.contains("starting it again"), "{said}");
+}
+
+#[test]
+fn a_peer_of_another_version_says_so_and_nobody_notices() {
+    let play = Play::start(COHABIT, &[]).unwrap();
+    let version = Session::new(&play.session).unwrap().folder().join("version");
+    let spoken = std::fs::read_to_string(&version).unwrap();
+    std::fs::write(&version, "4000000000").unwrap();
+    for role in ["agent", "dialog", "sim"] {
+        let joined = run(COHABIT, &[role, "--session", &play.session]).unwrap();
+        let said = String::from_utf8_lossy(&joined.stderr).into_owned();
+        assert_eq!(joined.status.code(), Some(2), "{role}: {said}");
+        assert!(said.contains("version 4000000000") && said.contains("use the build"), "{role}: {said}");
+    }
+    std::fs::write(&version, spoken).unwrap();
+    let mut page = Page::open(play.authority()).unwrap();
+    page.do_and_wait("turn left").unwrap();
+    play.end().unwrap();
 }
 
 #[test]

@@ -13,13 +13,13 @@ use cohabit_bus::wall_nanos;
 use cohabit_record::Log;
 use cohabit_tests::{Page, Play, run};
 use rustix::process::{Pid, Signal, kill_process};
-use serde_json::Value;
 
-use super::witness::Witness;
+use super::{
+    person::{Person, WORK},
+    witness::Witness,
+};
 use crate::COHABIT;
 
-/// What the robot is asked to do: some seconds of work of several kinds.
-const WORK: &str = "turn left 90 degrees, turn right 90 degrees, pick up the soda can and put it on the round table";
 /// The longest that work is gone on with before somebody is killed.
 const LONGEST_WORK_MS: u64 = 5000;
 /// The longest that a session is given to start before somebody is killed.
@@ -41,11 +41,16 @@ impl Dice {
     }
 
     /// A number below `bound`.
-    fn below(&mut self, bound: u64) -> u64 {
+    pub fn below(&mut self, bound: u64) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mixed = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
         (mixed ^ (mixed >> 31)) % bound
+    }
+
+    /// Any byte; zeros more often.
+    pub fn byte(&mut self) -> u8 {
+        u8::try_from(self.below(512)).unwrap_or(0)
     }
 }
 
@@ -103,7 +108,8 @@ impl Plan {
                     "sim" | "play" => self.check_ended(&mut play, None, killed),
                     _ => {
                         play.wait_until_ready()?;
-                        let page = Page::open(play.authority())?;
+                        let mut page = Page::open(play.authority())?;
+                        page.say(WORK)?;
                         let witness = Witness::new(&play.session)?;
                         self.check_carries_on(play, page, witness, killed)
                     }
@@ -165,8 +171,7 @@ impl Plan {
         if self.victim == "play" {
             Play::start(COHABIT, &["cold_soda"])?.end()?;
         } else {
-            let said = play.said();
-            ensure!(said.contains("the sim process ended (signal 9)"), "it does not say why it ended: {said}");
+            play.wait_for_line("the sim process ended (signal 9)")?;
         }
         let left = play.left_behind();
         ensure!(left.is_empty(), "left behind: {left:?}");
@@ -192,59 +197,6 @@ impl Plan {
     }
 }
 
-/// A person at the page, who opens it again when it fails, and asks again what nobody heard.
-struct Person {
-    authority: String,
-    page: Page,
-}
-
-impl Person {
-    fn have_done(&mut self) -> anyhow::Result<()> {
-        let is_done = |page: &Page| {
-            let met = page.goals().first().is_some_and(|(_, met)| *met);
-            let replies = page.chat.iter().filter(|(from, _)| from == "robot").count();
-            met && replies >= 2 && page.state["robot"]["holding"].is_null() && page.state["robot"]["busy"] == false
-        };
-        let deadline = Instant::now() + WATCHDOG;
-        loop {
-            if !self.page.chat.iter().any(|(from, text)| from == "person" && text == WORK) {
-                // It may have been heard, and the page not been told yet.
-                self.page = self.open()?;
-                let _ = self.page.wait("the past", |page, _| page.state.is_object());
-                if !self.page.chat.iter().any(|(from, _)| from == "person") {
-                    self.page.say(WORK)?;
-                }
-            }
-            match self.page.wait("the work to be done", |page, _| is_done(page)) {
-                Ok(_) => return Ok(()),
-                Err(error) if Instant::now() > deadline => return Err(error),
-                Err(_) => self.page = self.open()?,
-            }
-        }
-    }
-
-    /// Asks something, which must be turn number so and so.
-    fn ask(&mut self, text: &str, turn: u64) -> anyhow::Result<()> {
-        self.page.say(text)?;
-        let is_heard = |message: &Value| message["from"] == "person" && message["text"] == text;
-        let found = self.page.wait("what was asked", |_, message| is_heard(message))?;
-        ensure!(found["turn"] == turn, "turn {} instead of {turn}", found["turn"]);
-        self.page.wait("an answer", |_, message| message["type"] == "turn" && message["turn"] == turn)?;
-        Ok(())
-    }
-
-    fn open(&self) -> anyhow::Result<Page> {
-        let deadline = Instant::now() + WATCHDOG;
-        loop {
-            match Page::open(&self.authority) {
-                Ok(page) => return Ok(page),
-                Err(error) if Instant::now() > deadline => return Err(error),
-                Err(_) => thread::park_timeout(Duration::from_millis(20)),
-            }
-        }
-    }
-}
-
 /// How long before the kill the oldest tick was published that cannot be read.
 fn behind(path: &Path, witness: &Witness, killed: u64) -> anyhow::Result<Duration> {
     let log = Log::open(path)?;
@@ -256,7 +208,7 @@ fn behind(path: &Path, witness: &Witness, killed: u64) -> anyhow::Result<Duratio
 }
 
 /// Whether all is in a log, and comes out the same.
-fn check_log(path: &Path) -> anyhow::Result<Log> {
+pub fn check_log(path: &Path) -> anyhow::Result<Log> {
     let log = Log::open(path)?;
     ensure!(log.cut.is_none(), "the log was cut: {:?}", log.cut);
     ensure!(log.missing() == 0, "{} messages are missing", log.missing());
