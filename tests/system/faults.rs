@@ -81,6 +81,23 @@ fn a_process_that_hangs_slows_nobody_and_carries_on_when_it_wakes() {
 }
 
 #[test]
+fn a_question_outlives_who_asked_it() {
+    let play = Play::start(COHABIT, &[]).unwrap();
+    let mut person = Person::at(play.authority()).unwrap();
+    person.page.do_and_wait("go to the lab").unwrap();
+    let asked = person.page.chat.last().cloned().unwrap();
+    assert!(asked.1.contains('?'), "{asked:?}");
+    send(&play, "dialog", Signal::KILL);
+    while person.page.next_message().is_ok() {}
+    person.page = person.open().unwrap();
+    person.ask("the robotics lab", 2).unwrap();
+    assert!(person.page.chat.contains(&asked), "{:?}", person.page.chat);
+    let arrived = |page: &Page| page.state["robot"]["room"] == "Lab1";
+    person.page.wait("the robot in the lab", |page, _| arrived(page)).unwrap();
+    play.end().unwrap();
+}
+
+#[test]
 fn who_hangs_for_ever_keeps_no_session_from_ending() {
     let play = Play::start(COHABIT, &[]).unwrap();
     // Pages that are never read.

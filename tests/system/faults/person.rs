@@ -64,11 +64,12 @@ impl Person {
         let is_heard = |message: &Value| message["from"] == "person" && message["text"] == text;
         let found = self.page.wait("what was asked", |_, message| is_heard(message))?;
         ensure!(found["turn"] == turn, "turn {} instead of {turn}", found["turn"]);
-        self.page.wait("an answer", |_, message| message["type"] == "turn" && message["turn"] == turn)?;
+        self.page.wait("its end", |_, message| message["type"] == "turn" && message["turn"] == turn)?;
         Ok(())
     }
 
-    fn open(&self) -> anyhow::Result<Page> {
+    /// Opens the page as soon as it is served.
+    pub fn open(&self) -> anyhow::Result<Page> {
         let deadline = Instant::now() + WATCHDOG;
         loop {
             match Page::open(&self.authority) {
