@@ -7,6 +7,7 @@ mod browser;
 mod determinism;
 mod doctor;
 mod eval;
+mod faults;
 mod missions;
 mod sessions;
 

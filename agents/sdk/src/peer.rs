@@ -89,6 +89,8 @@ struct Mind<'a> {
     glance: Option<Glance>,
     /// What was before it joined, until it has taken that in.
     past: Option<Past>,
+    /// The turn of the newest plan.
+    turn: u64,
     joined_nanos: u64,
     lock_step: bool,
     attends: bool,
@@ -113,6 +115,7 @@ impl<'a> Mind<'a> {
             eyes: senses.sight.then(|| Eyes::open(bus, camera, catalog())).transpose()?,
             glance: None,
             past: Some(Past::default()),
+            turn: 0,
             joined_nanos: monotonic_nanos(),
             lock_step,
             attends: false,
@@ -128,6 +131,7 @@ impl<'a> Mind<'a> {
     fn live(&mut self) -> Result<(), PeerError> {
         let looks_up = !self.lock_step && (self.senses.sight || self.senses.state);
         self.client.sleep(if looks_up { SENSING_NAP } else { NAP })?;
+        self.tells.update()?;
         self.hear_events()?;
         self.hear_dialog()?;
         self.settle()?;
@@ -179,13 +183,18 @@ impl<'a> Mind<'a> {
             if view.header.kind() != Some(DialogKind::Plan) || view.header.body != self.client.body() {
                 continue;
             }
+            // A dialog service that takes a dead one's place tells the plan under way once more.
+            let turn = view.header.turn;
+            if std::mem::replace(&mut self.turn, turn) == turn && turn != 0 {
+                continue;
+            }
             let is_new = sample.envelope().sent_nanos >= self.joined_nanos;
             match &mut self.past {
-                Some(past) if !is_new => past.note_plan(view.header.turn, view.steps),
+                Some(past) if !is_new || past.knows(turn) => past.note_plan(turn, view.steps),
                 None if !is_new => {}
                 _ => {
                     self.past = None;
-                    self.hear(&Heard::Plan { turn: view.header.turn, steps: view.steps })?;
+                    self.hear(&Heard::Plan { turn, steps: view.steps })?;
                 }
             }
         }

@@ -44,7 +44,7 @@ impl Latency {
 
     /// The world took up a command of `turn`. Gives the moments if that is news.
     pub fn moved(&mut self, turn: u64, command: u64, nanos: u64) -> Option<Moments> {
-        if turn != self.now.turn || self.now.moved != 0 {
+        if turn == 0 || turn != self.now.turn || self.now.moved != 0 {
             return None;
         }
         self.now.moved = nanos;

@@ -6,6 +6,7 @@
 mod conversation;
 mod frames;
 mod hub;
+mod journal;
 mod known;
 mod latency;
 mod limits;
@@ -16,7 +17,8 @@ mod view;
 mod web;
 
 use std::{
-    net::SocketAddr,
+    net::{SocketAddr, TcpListener},
+    path::PathBuf,
     sync::{
         Arc,
         atomic::{AtomicBool, Ordering},
@@ -31,7 +33,12 @@ use cohabit_cdf::{Catalog, Layout, Mission};
 pub use conversation::{Conversation, Reaction, TurnEnd};
 pub use known::known;
 
-use crate::{hub::Hub, talk::Talk, view::View};
+use crate::{
+    hub::Hub,
+    journal::{Journal, Place},
+    talk::Talk,
+    view::View,
+};
 
 /// Settings of a dialog service.
 pub struct DialogConfig {
@@ -39,6 +46,8 @@ pub struct DialogConfig {
     pub session: String,
     /// Where the page is served; port 0 takes any that is free.
     pub listen: SocketAddr,
+    /// Where what is said is written down, for the service that takes a dead one's place; nowhere, if absent.
+    pub journal: Option<PathBuf>,
     /// The session's cameras.
     pub cameras: Vec<CameraRecord>,
     /// Called once, when a page says that it has shown a frame.
@@ -87,11 +96,11 @@ pub fn serve(
     let hello = page::hello(&config.session, &mission, &layout, &catalog, &views);
     let views = views.into_iter().map(|view| View::new(view.camera)).collect();
     let hub = Arc::new(Hub::new(hello, views, config.on_first_frame));
-    let talk = Talk::new(&*bus, catalog, Arc::clone(&hub))?;
-    let token = token::for_address(config.listen).map_err(DialogError::Serve)?;
-    let listener = std::net::TcpListener::bind(config.listen)
-        .map_err(|source| DialogError::Listen { address: config.listen, source })?;
-    let address = listener.local_addr().map_err(DialogError::Serve)?;
+    let journal = Journal::open(config.journal.as_deref());
+    let (listener, place) = listen(config.listen, journal.past().place.as_ref())?;
+    let talk = Talk::new(&*bus, catalog, Arc::clone(&hub), journal)?;
+    talk.serve_at(place.clone());
+    let Place { address, token } = place;
     let ended = AtomicBool::new(false);
     let over = || stop.load(Ordering::Relaxed) || ended.load(Ordering::Relaxed);
     thread::scope(|scope| {
@@ -113,6 +122,21 @@ pub fn serve(
             .map(|worker| worker.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
             .fold(served, Result::and)
     })
+}
+
+/// Listens where the service before this one did, as open pages know it; where there was none, at that address.
+fn listen(address: SocketAddr, before: Option<&Place>) -> Result<(TcpListener, Place), DialogError> {
+    let is_as_asked = |place: &&Place| address.port() == 0 || place.address.port() == address.port();
+    if let Some(place) = before.filter(|place| place.address.ip() == address.ip()).filter(is_as_asked) {
+        match TcpListener::bind(place.address) {
+            Ok(listener) => return Ok((listener, place.clone())),
+            Err(error) => tracing::warn!("serve the page on {} again: {error}", place.address),
+        }
+    }
+    let listener = TcpListener::bind(address).map_err(|source| DialogError::Listen { address, source })?;
+    let token = token::for_address(address).map_err(DialogError::Serve)?;
+    let address = listener.local_addr().map_err(DialogError::Serve)?;
+    Ok((listener, Place { address, token }))
 }
 
 /// Runs one of the service's loops; if it fails, all end.

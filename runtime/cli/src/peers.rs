@@ -16,7 +16,7 @@ use cohabit_bus::{Session, Shm, message::Control};
 use cohabit_cdf::BodyRequest;
 use cohabit_dialog::DialogConfig;
 use cohabit_engine::{CameraPlan, SessionPlan, Simulator};
-use cohabit_record::Recorder;
+use cohabit_record::{LogError, RecordError, Recorder};
 use cohabit_render::MeshLibrary;
 
 use crate::{
@@ -205,6 +205,7 @@ impl Dialog {
         let SessionPlan { catalog, layout, mission, .. } = file.plan(message.header.seed, &message.bodies)?;
         let config = DialogConfig {
             session: self.joining.session.clone(),
+            journal: Some(Session::new(&self.joining.session).map_err(bad_input)?.folder().join("dialog.journal")),
             cameras: message.cameras,
             listen: SocketAddr::new(self.listening.listen, self.listening.port),
             on_first_frame: Box::new(|| tell_supervisor("shown")),
@@ -225,7 +226,7 @@ fn tell_supervisor(line: &str) {
 pub struct Record {
     #[command(flatten)]
     joining: Joining,
-    /// The log file to write; it must not exist
+    /// The log file to write; one of the same session is carried on with
     #[arg(long)]
     log: PathBuf,
 }
@@ -234,7 +235,10 @@ impl Record {
     /// Runs the recorder.
     pub fn run(&self) -> anyhow::Result<()> {
         let (bus, stop) = self.joining.join()?;
-        Recorder::new(&bus)?.run(&self.joining.session, &self.log, &stop)?;
-        Ok(())
+        let caught_up = || tell_supervisor(&format!("recording {}", self.log.display()));
+        Recorder::new(&bus)?.run(&self.joining.session, &self.log, &stop, caught_up).map_err(|error| match error {
+            RecordError::Log(LogError::Write { .. }) | RecordError::Bus(_) | RecordError::Malformed(_) => error.into(),
+            RecordError::Log(_) | RecordError::NoMission => bad_input(error),
+        })
     }
 }

@@ -10,6 +10,7 @@ use cohabit_cdf::BodyRequest;
 use cohabit_engine::CameraPlan;
 
 use crate::{
+    doctor::ensure_room,
     failure::bad_input,
     mission_file::MissionFile,
     peers::{Listening, Timing},
@@ -60,6 +61,7 @@ impl Play {
         for name in Session::wipe_dead() {
             println!("cleaned up after session {name}, which was not ended");
         }
+        ensure_room()?;
         let name = self.session.clone().unwrap_or_else(|| format!("play-{}", std::process::id()));
         let session = Session::new(&name).map_err(bad_input)?;
         let log = self.log_path(&name)?;
