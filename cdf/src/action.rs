@@ -63,6 +63,16 @@ pub enum Action {
     },
     /// Let go of whatever it is doing, now.
     Stop,
+    /// Keep moving as a person at the controls asks, for half a simulated second unless told again; what is asked beyond
+    /// what the body can do is cut down to that. It slides along what it runs into.
+    Drive {
+        /// Signed speed along its heading, m/s; negative is backwards.
+        forward_m_s: f32,
+        /// Signed turning speed, rad/s; positive is to the left.
+        turn_rad_s: f32,
+        /// Signed speed of the head's pitch, rad/s; positive is up.
+        pitch_rad_s: f32,
+    },
 }
 
 /// Where a body can be told to walk.

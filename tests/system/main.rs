@@ -6,6 +6,7 @@ mod bad_input;
 mod browser;
 mod determinism;
 mod doctor;
+mod driving;
 mod eval;
 mod faults;
 mod missions;

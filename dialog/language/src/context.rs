@@ -109,7 +109,12 @@ impl Focus {
                     self.place = Some(object);
                 }
             }
-            Action::Move { .. } | Action::Rotate { .. } | Action::Look { .. } | Action::LookAround | Action::Stop => {}
+            Action::Move { .. }
+            | Action::Rotate { .. }
+            | Action::Look { .. }
+            | Action::LookAround
+            | Action::Stop
+            | Action::Drive { .. } => {}
         }
     }
 }

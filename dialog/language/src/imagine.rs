@@ -36,7 +36,12 @@ pub(crate) fn apply(scene: &mut Known, action: &Action, devices: &Devices) {
             walk(scene, object);
             interact(scene, verb, object, devices);
         }
-        Action::GoTo { .. } | Action::Look { .. } | Action::LookAround | Action::Highlight { .. } | Action::Stop => {}
+        Action::GoTo { .. }
+        | Action::Look { .. }
+        | Action::LookAround
+        | Action::Highlight { .. }
+        | Action::Stop
+        | Action::Drive { .. } => {}
     }
 }
 

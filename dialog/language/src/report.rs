@@ -24,6 +24,7 @@ pub(crate) fn success(catalog: &Catalog, scene: &Known, step: &Step, status: Sta
         Action::Highlight { object } => format!("this is {}", describe::full(catalog, scene, object)),
         Action::LookAround => "I have looked around".to_owned(),
         Action::Stop => "I have stopped".to_owned(),
+        Action::Drive { .. } => "done".to_owned(),
         Action::Move { .. } | Action::Rotate { .. } | Action::Look { .. } if step.says.is_empty() => "done".to_owned(),
         Action::Move { .. } | Action::Rotate { .. } | Action::Look { .. } => format!("I am done {}", step.says),
     };

@@ -38,6 +38,7 @@ impl Planner<'_> {
             | Action::LookAround
             | Action::Highlight { .. }
             | Action::Stop
+            | Action::Drive { .. }
             | Action::Interact { verb: Verb::Examine | Verb::Scan, .. } => {}
             Action::PickUp { .. } | Action::Interact { .. } => return Err(self.cannot_undo(step)),
         }

@@ -44,6 +44,7 @@ impl Latency {
 
     /// The world took up a command of `turn`. Gives the moments if that is news.
     pub fn moved(&mut self, turn: u64, command: u64, nanos: u64) -> Option<Moments> {
+        // What belongs to no turn, such as a person's own steps, has turn 0.
         if turn == 0 || turn != self.now.turn || self.now.moved != 0 {
             return None;
         }
@@ -73,6 +74,7 @@ mod tests {
         latency.begin(3, 1_000_000, 2_000_000);
         assert_eq!(latency.shown(7, 1), None, "no command of the turn yet");
         assert_eq!(latency.moved(2, 6, 1), None, "another turn");
+        assert_eq!(Latency::default().moved(0, 6, 1), None, "no turn");
         assert!(latency.moved(3, 7, 3_000_000).is_some());
         assert_eq!(latency.moved(3, 8, 9), None, "only the first");
         let moments = latency.shown(7, 5_000_000).unwrap();

@@ -3,7 +3,9 @@
 //! It is a peer of the session's bus like any other: it reads state and frames, and what it says and plans is heard,
 //! and recorded, by all. It never knows the world's insides.
 
+mod affordances;
 mod conversation;
+mod driving;
 mod frames;
 mod hub;
 mod journal;
@@ -14,6 +16,7 @@ mod page;
 mod talk;
 mod token;
 mod view;
+mod visit;
 mod web;
 
 use std::{
@@ -31,13 +34,16 @@ use cohabit_bus::{BusError, Transport, message::CameraRecord};
 use cohabit_cdf::{Catalog, Layout, Mission};
 
 pub use conversation::{Conversation, Reaction, TurnEnd};
+pub use driving::{Drivable, NotDrivable};
 pub use known::known;
 
 use crate::{
+    driving::Drivers,
     hub::Hub,
     journal::{Journal, Place},
-    talk::Talk,
+    talk::{Ears, Talk},
     view::View,
+    web::Service,
 };
 
 /// Settings of a dialog service.
@@ -50,6 +56,8 @@ pub struct DialogConfig {
     pub journal: Option<PathBuf>,
     /// The session's cameras.
     pub cameras: Vec<CameraRecord>,
+    /// Which bodies people may drive from the page.
+    pub drivable: Drivable,
     /// Called once, when a page says that it has shown a frame.
     pub on_first_frame: Box<dyn Fn() + Send + Sync>,
 }
@@ -92,30 +100,32 @@ pub fn serve(
     stop: &AtomicBool,
     ready: impl FnOnce(&str),
 ) -> Result<(), DialogError> {
-    let views = page::views(&config.cameras);
-    let hello = page::hello(&config.session, &mission, &layout, &catalog, &views);
+    let bodies = talk::wait_for_world(&*bus, &|| stop.load(Ordering::Relaxed))?;
+    let drivers = Arc::new(Drivers::new(Arc::clone(&bus), config.drivable, &bodies));
+    let views = page::views(&config.cameras, &bodies);
+    let hello = page::hello(&config.session, &mission, &layout, &catalog, &views, drivers.bodies());
     let views = views.into_iter().map(|view| View::new(view.camera)).collect();
     let hub = Arc::new(Hub::new(hello, views, config.on_first_frame));
     let journal = Journal::open(config.journal.as_deref());
     let (listener, place) = listen(config.listen, journal.past().place.as_ref())?;
-    let talk = Talk::new(&*bus, catalog, Arc::clone(&hub), journal)?;
+    let talk = Talk::new(&*bus, catalog, Arc::clone(&hub), Arc::clone(&drivers), journal)?;
+    let ears = Ears::new(&*bus)?;
     talk.serve_at(place.clone());
     let Place { address, token } = place;
     let ended = AtomicBool::new(false);
     let over = || stop.load(Ordering::Relaxed) || ended.load(Ordering::Relaxed);
     thread::scope(|scope| {
         let mut workers = vec![
-            scope.spawn(|| until_ended(&ended, || talk::listen(&*bus, &talk, &over))),
+            scope.spawn(|| until_ended(&ended, || talk::listen(ears, &talk, &over))),
             scope.spawn(|| until_ended(&ended, || talk::show_state(&talk, STATE_EVERY, &over))),
         ];
         for view in (0..=u8::MAX).zip(&hub.views) {
             let (bus, talk, over, ended) = (&*bus, &talk, &over, &ended);
             workers.push(scope.spawn(move || until_ended(ended, || frames::relay(bus, view, talk, over))));
         }
-        let served = talk.wait_for_world(&*bus, &over).and_then(|()| {
-            ready(&token::page_address(address, token.as_deref()));
-            web::serve(listener, token, Arc::clone(&hub), Arc::clone(&talk), &over).map_err(DialogError::Serve)
-        });
+        ready(&token::page_address(address, token.as_deref()));
+        let (hub, talk, token) = (Arc::clone(&hub), Arc::clone(&talk), token.map(Arc::from));
+        let served = web::serve(listener, Service { hub, talk, drivers, token }, &over).map_err(DialogError::Serve);
         ended.store(true, Ordering::Relaxed);
         workers
             .into_iter()

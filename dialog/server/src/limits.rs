@@ -8,26 +8,52 @@ pub const LONGEST_TEXT: usize = 2000;
 pub const LONGEST_MESSAGE: usize = 64 << 10;
 /// Pages open at once.
 pub const MOST_PAGES: usize = 16;
-/// Messages a second, with as many in hand at first.
-const PER_SECOND: f64 = 10.0;
+/// Messages of any kind a second: all that are looked at.
+const ALL_PER_SECOND: f64 = 40.0;
+/// Held keys a second: a page tells them again nine times a second, and at every change.
+const DRIVES_PER_SECOND: f64 = 20.0;
+/// All other messages a second.
+const OTHERS_PER_SECOND: f64 = 10.0;
 
-/// Lets so many messages a second through.
+/// How fast one page may send what.
+pub struct Limits {
+    /// Anything.
+    pub all: Throttle,
+    /// Held keys.
+    pub drives: Throttle,
+    /// Anything else.
+    pub others: Throttle,
+}
+
+impl Limits {
+    /// Of a page that has sent nothing yet.
+    pub fn new(now: Instant) -> Self {
+        Self {
+            all: Throttle::new(now, ALL_PER_SECOND),
+            drives: Throttle::new(now, DRIVES_PER_SECOND),
+            others: Throttle::new(now, OTHERS_PER_SECOND),
+        }
+    }
+}
+
+/// Lets so many messages a second through, with as many in hand at first.
 pub struct Throttle {
+    per_second: f64,
     in_hand: f64,
     at: Instant,
 }
 
 impl Throttle {
     /// A throttle that has let nothing through yet.
-    pub fn new(now: Instant) -> Self {
-        Self { in_hand: PER_SECOND, at: now }
+    fn new(now: Instant, per_second: f64) -> Self {
+        Self { per_second, in_hand: per_second, at: now }
     }
 
     /// Whether one more message may pass now.
     pub fn admits(&mut self, now: Instant) -> bool {
         let since = now.saturating_duration_since(self.at).as_secs_f64();
         self.at = now;
-        self.in_hand = (self.in_hand + since * PER_SECOND).min(PER_SECOND);
+        self.in_hand = (self.in_hand + since * self.per_second).min(self.per_second);
         let admitted = self.in_hand >= 1.0;
         if admitted {
             self.in_hand -= 1.0;
@@ -45,9 +71,21 @@ mod tests {
     #[test]
     fn ten_a_second_pass() {
         let start = Instant::now();
-        let mut throttle = Throttle::new(start);
+        let mut throttle = Limits::new(start).others;
         assert_eq!((0..30).filter(|_| throttle.admits(start)).count(), 10);
         assert!(throttle.admits(start + Duration::from_millis(150)));
         assert!(!throttle.admits(start + Duration::from_millis(160)));
+    }
+
+    #[test]
+    fn keys_held_down_are_never_cut_off() {
+        let start = Instant::now();
+        let mut limits = Limits::new(start);
+        for press in 0..200 {
+            let now = start + Duration::from_millis(press * 60);
+            assert!(limits.all.admits(now) && limits.drives.admits(now), "{press}");
+        }
+        let flood = (0..1000).filter(|_| limits.all.admits(start + Duration::from_secs(60))).count();
+        assert_eq!(flood, 40);
     }
 }

@@ -8,7 +8,7 @@ use cohabit_cdf::{BodyKind, Catalog, ClassId, Layout, Mission, RoomId, layout::O
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use crate::latency::Moments;
+use crate::{affordances::Affordance, driving::DrivableBody, latency::Moments};
 
 /// Who says a line of chat.
 #[derive(Clone, Copy, Debug, Deserialize, Eq, PartialEq, Serialize)]
@@ -75,18 +75,32 @@ pub struct ViewName {
     pub name: String,
 }
 
+/// What people call bodies: `robot`, `person`, with a number where there are several of a kind.
+pub fn body_names(bodies: &[BodyRecord]) -> Vec<String> {
+    let kind = |record: &BodyRecord| body_kind(record);
+    (0..bodies.len())
+        .map(|index| {
+            let kin = |records: &[BodyRecord]| records.iter().filter(|one| kind(one) == kind(&bodies[index])).count();
+            let name = kind(&bodies[index]);
+            if kin(bodies) > 1 { format!("{name} {}", kin(&bodies[..=index])) } else { name.to_owned() }
+        })
+        .collect()
+}
+
 /// The cameras that people can look through, the one behind the first body first.
-pub fn views(cameras: &[CameraRecord]) -> Vec<ViewName> {
+pub fn views(cameras: &[CameraRecord], bodies: &[BodyRecord]) -> Vec<ViewName> {
+    let names = body_names(bodies);
+    let name_of = |body: u8| names.get(usize::from(body)).map_or("somebody", String::as_str);
     let mut views: Vec<ViewName> = (cameras.iter().filter(|camera| camera.has(Plane::Color)))
         .filter_map(|record| {
             let camera = record.camera()?;
-            let of = |name: &str, body: u8| {
-                if body == 0 { name.to_owned() } else { format!("{name}, body {body}") }
-            };
             let name = match camera {
-                CameraId::Spectator(body) => of("Third person", body),
-                CameraId::Eyes(body) => of("Robot's eyes", body),
-                CameraId::Overhead(body) => of("From above", body),
+                CameraId::Spectator(0) => "Third person".to_owned(),
+                CameraId::Spectator(body) => format!("Behind the {}", name_of(body)),
+                CameraId::Eyes(0) => "Robot's eyes".to_owned(),
+                CameraId::Eyes(body) => format!("Eyes of the {}", name_of(body)),
+                CameraId::Overhead(0) => "From above".to_owned(),
+                CameraId::Overhead(body) => format!("Above the {}", name_of(body)),
                 CameraId::Named(name) => name.to_string(),
                 // People have the same, larger, by `Eyes`.
                 CameraId::Egocentric(_) => return None,
@@ -107,7 +121,14 @@ pub fn views(cameras: &[CameraRecord]) -> Vec<ViewName> {
 }
 
 /// What a page learns first: the mission, the floor plan and the views.
-pub fn hello(session: &str, mission: &Mission, layout: &Layout, catalog: &Catalog, views: &[ViewName]) -> Value {
+pub fn hello(
+    session: &str,
+    mission: &Mission,
+    layout: &Layout,
+    catalog: &Catalog,
+    views: &[ViewName],
+    drivable: &[DrivableBody],
+) -> Value {
     let rooms: Vec<Value> = layout
         .rooms
         .iter()
@@ -124,17 +145,22 @@ pub fn hello(session: &str, mission: &Mission, layout: &Layout, catalog: &Catalo
         .collect();
     let view = |view: &ViewName| json!({ "camera": view.camera.to_string(), "name": view.name });
     let views: Vec<Value> = views.iter().map(view).collect();
+    let drivable = drivable
+        .iter()
+        .map(|one| json!({ "body": one.body, "name": one.name, "camera": one.camera.to_string() }))
+        .collect::<Vec<Value>>();
     json!({
         "type": "hello",
         "session": session,
         "mission": { "title": mission.goal_text, "description": mission.description },
         "map": { "rooms": rooms, "openings": openings, "furniture": layout.furniture_outlines_m(catalog) },
         "views": views,
+        "drivable": drivable,
     })
 }
 
-/// The present state.
-pub fn state(tick: u64, state: StateView<'_>, catalog: &Catalog) -> Value {
+/// The present state, and which bodies people drive.
+pub fn state(tick: u64, state: StateView<'_>, driven: &[u32], catalog: &Catalog) -> Value {
     let goals: Vec<Value> = state
         .goals
         .iter()
@@ -160,7 +186,8 @@ pub fn state(tick: u64, state: StateView<'_>, catalog: &Catalog) -> Value {
         "score": state.header.score,
         "ending": ending,
         "robot": robot(state, catalog),
-        "others": others(state),
+        "others": others(state, catalog),
+        "driven": driven,
         "goals": goals,
         "notes": notes,
     })
@@ -170,23 +197,30 @@ fn robot(state: StateView<'_>, catalog: &Catalog) -> Value {
     let Some(body) = state.bodies.first() else { return Value::Null };
     let [x, y, _] = body.position_m;
     let room = RoomId::from_index(body.room);
-    let held = (body.held != NONE).then(|| state.objects.iter().find(|object| object.object == body.held)).flatten();
     json!({
+        "body": body.body,
         "x": x,
         "y": y,
         "yaw": body.yaw_rad,
         "room": room.map(RoomId::id),
         "room_name": room.map(RoomId::name),
-        "holding": held.map(|object| name(object, catalog)),
+        "holding": holding(body, state, catalog),
         "busy": body.busy == 1,
     })
 }
 
+/// What a body holds, in people's words.
+fn holding<'a>(body: &BodyRecord, state: StateView<'_>, catalog: &'a Catalog) -> Option<&'a str> {
+    let held = state.objects.iter().find(|object| body.held != NONE && object.object == body.held)?;
+    Some(name(held, catalog))
+}
+
 /// All bodies but the one that people speak to.
-fn others(state: StateView<'_>) -> Vec<Value> {
+fn others(state: StateView<'_>, catalog: &Catalog) -> Vec<Value> {
     let place = |body: &BodyRecord| {
         let [x, y, _] = body.position_m;
-        json!({ "kind": body_kind(body), "x": x, "y": y, "yaw": body.yaw_rad })
+        json!({ "body": body.body, "kind": body_kind(body), "x": x, "y": y, "yaw": body.yaw_rad,
+                "holding": holding(body, state, catalog) })
     };
     state.bodies.iter().skip(1).map(place).collect()
 }
@@ -238,6 +272,23 @@ pub fn turn_ended(turn: u64, status: &str) -> Value {
 pub fn latency(moments: &Moments) -> Value {
     let [understood, moved, shown] = moments.milliseconds();
     json!({ "type": "latency", "turn": moments.turn, "understood_ms": understood, "moved_ms": moved, "shown_ms": shown })
+}
+
+/// The page drives a body from now on, or none any more; why, if it did not ask for that.
+pub fn driving(body: Option<u32>, text: &str) -> Value {
+    json!({ "type": "driving", "body": body, "text": text })
+}
+
+/// What a driven body has before it, and what can be done with that; `far` if it is out of reach.
+pub fn aim(object: Option<(u32, &str)>, afforded: &[Affordance], far: bool) -> Value {
+    let options: Vec<Value> = afforded.iter().map(Affordance::json).collect();
+    let (object, name) = object.unzip();
+    json!({ "type": "aim", "object": object, "name": name, "options": options, "far": far })
+}
+
+/// What came of a deed.
+pub fn acted(ok: bool, text: &str) -> Value {
+    json!({ "type": "acted", "ok": ok, "text": text })
 }
 
 /// Something is wrong with what a page sent.

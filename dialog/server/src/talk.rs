@@ -7,17 +7,19 @@ use std::{
 };
 
 use cohabit_bus::{
-    Envelope, Heart, Inbox, Publisher, Sample, Topic, Transport, Wake,
-    message::{self, DialogKind, DialogMessage, DialogView, EventKind, EventMessage, StateView, Thing},
+    Envelope, Heart, Inbox, Listener, Publisher, Sample, Topic, Transport, Wake,
+    message::{self, BodyRecord, DialogKind, DialogMessage, DialogView, EventKind, EventMessage, StateView, Thing},
     monotonic_nanos,
 };
-use cohabit_cdf::{BodyId, Catalog};
+use cohabit_cdf::{BodyId, Catalog, ObjectId};
 use cohabit_language::Known;
 use serde_json::Value;
 
 use crate::{
     DialogError,
+    affordances::{self, Affordance},
     conversation::{Conversation, Reaction},
+    driving::Drivers,
     hub::Hub,
     journal::{Deed, Journal, Place},
     known,
@@ -32,6 +34,7 @@ const BODY: BodyId = BodyId(0);
 pub struct Talk {
     inner: Mutex<Inner>,
     hub: Arc<Hub>,
+    drivers: Arc<Drivers>,
     catalog: Arc<Catalog>,
 }
 
@@ -50,6 +53,7 @@ impl Talk {
         bus: &dyn Transport,
         catalog: Arc<Catalog>,
         hub: Arc<Hub>,
+        drivers: Arc<Drivers>,
         journal: Journal,
     ) -> Result<Arc<Self>, DialogError> {
         hub.restore(&journal.past().lines);
@@ -63,22 +67,7 @@ impl Talk {
             newest: None,
         };
         inner.tell_again()?;
-        Ok(Arc::new(Self { inner: Mutex::new(inner), hub, catalog }))
-    }
-
-    /// Waits until the world can be seen, or until `over`.
-    pub fn wait_for_world(&self, bus: &dyn Transport, over: &dyn Fn() -> bool) -> Result<(), DialogError> {
-        let mut listener = bus.listener(Wake::State)?;
-        while !over() {
-            let mut inner = self.lock();
-            inner.refresh()?;
-            if inner.newest.is_some() {
-                break;
-            }
-            drop(inner);
-            listener.wait(Duration::from_millis(20))?;
-        }
-        Ok(())
+        Ok(Arc::new(Self { inner: Mutex::new(inner), hub, drivers, catalog }))
     }
 
     fn lock(&self) -> MutexGuard<'_, Inner> {
@@ -117,6 +106,9 @@ impl Talk {
 
     /// Something happened in the world, while this service was there or before.
     fn note_event(&self, envelope: &Envelope, event: &EventMessage, is_new: bool) -> Result<(), DialogError> {
+        if is_new {
+            self.drivers.note(event);
+        }
         let mut inner = self.lock();
         if inner.journal.has_heard(envelope) {
             return Ok(());
@@ -169,6 +161,15 @@ impl Talk {
         Ok(page::seen(thing, place, StateView::new(sample.payload())?, &self.catalog))
     }
 
+    /// What a driven body has before it: the first of `things`, the nearest to the middle first, that it can do most with.
+    pub fn aim(&self, things: &[Thing], body: u32) -> Result<Value, DialogError> {
+        let mut inner = self.lock();
+        inner.refresh()?;
+        let Some(sample) = &inner.newest else { return Ok(page::aim(None, &[], false)) };
+        let state = StateView::new(sample.payload())?;
+        Ok(aimed(things, body, state, &self.catalog))
+    }
+
     /// A frame was shown that was seen after `command` began.
     pub fn note_frame(&self, command: u64, sent_nanos: u64) -> Result<(), DialogError> {
         let mut inner = self.lock();
@@ -184,7 +185,7 @@ impl Talk {
         inner.refresh()?;
         if let Some(sample) = &inner.newest {
             let state = StateView::new(sample.payload())?;
-            self.hub.show_state(&page::state(sample.envelope().tick, state, &self.catalog));
+            self.hub.show_state(&page::state(sample.envelope().tick, state, &self.drivers.driven(), &self.catalog));
         }
         Ok(())
     }
@@ -253,6 +254,28 @@ impl Inner {
     }
 }
 
+fn aimed(things: &[Thing], body: u32, state: StateView<'_>, catalog: &Catalog) -> Value {
+    let objects = things.iter().filter_map(|thing| match thing {
+        Thing::Object(id) => state.objects.iter().find(|record| record.object == id.0),
+        _ => None,
+    });
+    let seen: Vec<_> = objects
+        .map(|record| {
+            let (afforded, far) = affordances::afforded(state, body, ObjectId(record.object), catalog);
+            (record, afforded, far)
+        })
+        .collect();
+    let is_handled = |afforded: &[Affordance]| afforded.iter().any(|one| one.deed.is_of_the_hand());
+    let best = seen.iter().find(|(_, afforded, _)| is_handled(afforded)).or_else(|| seen.first());
+    match best {
+        Some((record, afforded, far)) => {
+            let far = *far && !is_handled(afforded);
+            page::aim(Some((record.object, page::name(record, catalog))), afforded, far)
+        }
+        None => page::aim(None, &[], false),
+    }
+}
+
 fn log_latency(moments: &Moments) {
     let [understood, moved, shown] = moments.milliseconds().map(Option::unwrap_or_default);
     tracing::info!(
@@ -261,14 +284,46 @@ fn log_latency(moments: &Moments) {
     );
 }
 
+/// Waits until the world can be seen, or until `over`; gives the bodies in it.
+pub fn wait_for_world(bus: &dyn Transport, over: &dyn Fn() -> bool) -> Result<Vec<BodyRecord>, DialogError> {
+    let mut listener = bus.listener(Wake::State)?;
+    let mut states = Inbox::new(bus, Topic::State)?;
+    while !over() {
+        if let Some((_, bodies)) = states.next(|sample| Ok(StateView::new(sample.payload())?.bodies.to_vec()))? {
+            return Ok(bodies);
+        }
+        listener.wait(Duration::from_millis(20))?;
+    }
+    Ok(Vec::new())
+}
+
+/// Where the service hears what others say on the bus: to be had before the first page is let in, lest an answer to it
+/// be missed.
+pub struct Ears {
+    listener: Box<dyn Listener>,
+    dialog: Inbox,
+    events: Inbox,
+    heart: Heart,
+    joined_nanos: u64,
+}
+
+impl Ears {
+    /// Hears all that is said from now on, and what is kept of what was said before.
+    pub fn new(bus: &dyn Transport) -> Result<Self, DialogError> {
+        Ok(Self {
+            listener: bus.listener(Wake::Talk)?,
+            dialog: Inbox::new(bus, Topic::Dialog)?,
+            events: Inbox::new(bus, Topic::Events)?,
+            heart: Heart::new(bus, "dialog", BODY.0)?,
+            joined_nanos: monotonic_nanos(),
+        })
+    }
+}
+
 /// Follows what others say on the bus, until `over`.
-pub fn listen(bus: &dyn Transport, talk: &Talk, over: &dyn Fn() -> bool) -> Result<(), DialogError> {
-    let mut listener = bus.listener(Wake::Talk)?;
-    let mut dialog = Inbox::new(bus, Topic::Dialog)?;
-    let mut events = Inbox::new(bus, Topic::Events)?;
-    let mut heart = Heart::new(bus, "dialog", BODY.0)?;
+pub fn listen(ears: Ears, talk: &Talk, over: &dyn Fn() -> bool) -> Result<(), DialogError> {
+    let Ears { mut listener, mut dialog, mut events, mut heart, joined_nanos } = ears;
     let mut tick = 0;
-    let joined_nanos = monotonic_nanos();
     while !over() {
         listener.wait(Duration::from_millis(100))?;
         while let Some((sample, event)) = events.next(|sample| message::read::<EventMessage>(sample.payload()))? {

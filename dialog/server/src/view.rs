@@ -131,6 +131,30 @@ impl View {
     }
 }
 
+/// How far around the middle of a picture something may be that is aimed at, as a part of its width, and how many places
+/// around it are looked at.
+const AIM_RINGS: [f32; 3] = [0.008, 0.018, 0.03];
+const AIM_SPOKES: [[f32; 2]; 8] =
+    [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0], [0.7, 0.7], [-0.7, 0.7], [-0.7, -0.7], [0.7, -0.7]];
+
+impl View {
+    /// What is in and around the middle of the newest frame, each thing once, the nearest first.
+    pub fn ids_in_the_middle(&self) -> Vec<u32> {
+        let kept = lock(&self.ids);
+        let Some(newest) = kept.front() else { return Vec::new() };
+        let aspect = newest.size[0] as f32 / newest.size[1].max(1) as f32;
+        let around =
+            AIM_RINGS.iter().flat_map(|ring| AIM_SPOKES.map(|[x, y]| [0.5 + x * ring, 0.5 + y * ring * aspect]));
+        let mut found = Vec::new();
+        for id in std::iter::once([0.5, 0.5]).chain(around).filter_map(|place| newest.at(place)) {
+            if !found.contains(&id) {
+                found.push(id);
+            }
+        }
+        found
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -149,6 +173,20 @@ mod tests {
         assert_eq!(at(1, 0.9, 0.1), Some(3), "the oldest that is kept");
         view.forget();
         assert_eq!(at(6, 0.9, 0.1), None);
+    }
+
+    #[test]
+    fn the_middle_is_seen_from_the_inside_out() {
+        let view = View::new(CameraId::Eyes(1));
+        assert!(view.ids_in_the_middle().is_empty());
+        // A thing of one pixel right of the middle, another one far off.
+        let mut ids = vec![1_u32; 200 * 100];
+        ids[50 * 200 + 100] = 3;
+        ids[50 * 200 + 102] = 2;
+        ids[50 * 200 + 160] = 4;
+        view.show(Frame::default(), Some(Ids::new(1, [200, 100], &ids)));
+        assert_eq!(view.ids_in_the_middle()[0], 3);
+        assert!(!view.ids_in_the_middle().contains(&4));
     }
 
     #[test]

@@ -14,7 +14,7 @@ use clap::ValueEnum;
 use cohabit_agent::PlanFollower;
 use cohabit_bus::{Session, Shm, message::Control};
 use cohabit_cdf::BodyRequest;
-use cohabit_dialog::DialogConfig;
+use cohabit_dialog::{DialogConfig, Drivable};
 use cohabit_engine::{CameraPlan, SessionPlan, Simulator};
 use cohabit_record::{LogError, RecordError, Recorder};
 use cohabit_render::MeshLibrary;
@@ -194,6 +194,10 @@ pub struct Listening {
     /// The address the page listens on; beyond this machine it asks for the session's token
     #[arg(long, default_value = "127.0.0.1")]
     pub listen: IpAddr,
+    /// Whom people may drive from the page: the avatars of `people`, `all` bodies, which robots' minds then hand over for
+    /// so long, or `none`
+    #[arg(long, default_value_t)]
+    pub drive: Drivable,
 }
 
 impl Dialog {
@@ -208,6 +212,7 @@ impl Dialog {
             journal: Some(Session::new(&self.joining.session).map_err(bad_input)?.folder().join("dialog.journal")),
             cameras: message.cameras,
             listen: SocketAddr::new(self.listening.listen, self.listening.port),
+            drivable: self.listening.drive,
             on_first_frame: Box::new(|| tell_supervisor("shown")),
         };
         let ready = |address: &str| tell_supervisor(&format!("page {address}"));

@@ -75,7 +75,8 @@ impl Role {
     /// The dialog service.
     pub fn dialog(listening: &Listening) -> Self {
         let (listen, port) = (listening.listen.to_string(), listening.port.to_string());
-        Self { name: "dialog", arguments: ["--listen", &listen, "--port", &port].map(OsString::from).to_vec() }
+        let arguments = ["--listen", &listen, "--port", &port, "--drive", &listening.drive.to_string()];
+        Self { name: "dialog", arguments: arguments.map(OsString::from).to_vec() }
     }
 
     /// The order in which roles are ended: who speaks first, who writes down last.

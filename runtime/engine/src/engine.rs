@@ -248,8 +248,10 @@ impl Engine {
         Some(Input { command: message.command, body: BodyId(message.body), action })
     }
 
+    /// What is driven is told anew all the time, and would hide all else.
     fn note_started(&mut self, inputs: &[Input]) {
-        if let Some(input) = inputs.last() {
+        let is_drive = |input: &&Input| matches!(input.action, Action::Drive { .. });
+        if let Some(input) = inputs.iter().rfind(|input| !is_drive(input)) {
             self.latest_started = input.command;
         }
     }

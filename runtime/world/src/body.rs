@@ -135,7 +135,7 @@ pub(crate) enum Step {
     /// Along a path on the floor, from the point at `next` on.
     Walk { path: Vec<Vec2>, next: usize },
     /// Straight on or back, as far as is left, m.
-    Drive { left_m: f32 },
+    Straight { left_m: f32 },
     /// Turn by what is left, rad.
     Turn { left_rad: f32 },
     /// Turn body and head until they point there.
@@ -148,6 +148,19 @@ pub(crate) enum Step {
     Yield { to: BodyId, ticks_left: u32 },
     /// Stretch the arm out; the effect comes at full reach.
     Reach,
+    /// As a person at the controls asks, for as many ticks at most; then to a halt.
+    Drive { controls: Controls, ticks_left: u32 },
+}
+
+/// What a person at the controls asks of a body, within what it can do.
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Serialize)]
+pub(crate) struct Controls {
+    /// Along its heading; negative is backwards, m/s.
+    pub forward_m_s: f32,
+    /// Positive is to the left, rad/s.
+    pub turn_rad_s: f32,
+    /// Of the head; positive is up, rad/s.
+    pub pitch_rad_s: f32,
 }
 
 impl Body {

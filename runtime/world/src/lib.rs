@@ -37,6 +37,7 @@ mod avoid;
 mod body;
 mod build;
 mod digest;
+mod drive;
 mod effect;
 mod entity;
 mod facts;

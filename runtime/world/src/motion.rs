@@ -1,17 +1,19 @@
-//! How a body moves in one tick: along a path, straight on, turning, looking, reaching. Never knows commands.
+//! How a body moves in one tick: along a path, straight on, turning, looking, reaching; `drive` adds how people drive
+//! one. Never knows commands.
 
 use glam::{Vec2, Vec3};
 
 use crate::{
     body::{Body, Step},
+    drive::drive,
     geometry::{direction, heading, wrap},
 };
 
 /// Length of a tick, s.
 pub(crate) const DT_S: f32 = 1.0 / 60.0;
-const WALK_M_S2: f32 = 2.5;
-const TURN_RAD_S2: f32 = 14.0;
-const PITCH_RAD_S: f32 = 2.0;
+pub(crate) const WALK_M_S2: f32 = 2.5;
+pub(crate) const TURN_RAD_S2: f32 = 14.0;
+pub(crate) const PITCH_RAD_S: f32 = 2.0;
 /// How far the head pitches up and down: 60 degrees each.
 pub(crate) const PITCH_LIMIT_RAD: f32 = std::f32::consts::FRAC_PI_3;
 /// The arm takes 0.4 s out and 0.3 s back.
@@ -33,7 +35,8 @@ pub(crate) enum Progress {
 pub(crate) fn advance(body: &mut Body, step: &mut Step, is_free: &dyn Fn(Vec2) -> bool) -> Progress {
     match step {
         Step::Walk { path, next } => walk(body, path, next, is_free),
-        Step::Drive { left_m } => drive(body, left_m, is_free),
+        Step::Straight { left_m } => straight(body, left_m, is_free),
+        Step::Drive { controls, ticks_left } => drive(body, controls, ticks_left, is_free),
         Step::Turn { left_rad } => done_if(turn(body, left_rad)),
         Step::Head { yaw_rad } => {
             let mut left = wrap(*yaw_rad - body.yaw_rad);
@@ -64,7 +67,7 @@ pub(crate) fn retract(body: &mut Body) {
     body.arm = (body.arm - ARM_BACK_PER_S * DT_S).max(0.0);
 }
 
-fn done_if(done: bool) -> Progress {
+pub(crate) fn done_if(done: bool) -> Progress {
     if done { Progress::Done } else { Progress::Going }
 }
 
@@ -99,11 +102,11 @@ fn pitch(body: &mut Body, to_rad: f32) -> bool {
     body.head_pitch_rad == to_rad
 }
 
-fn approach(value: f32, wanted: f32, by: f32) -> f32 {
+pub(crate) fn approach(value: f32, wanted: f32, by: f32) -> f32 {
     if (wanted - value).abs() <= by { wanted } else { value + by * (wanted - value).signum() }
 }
 
-fn drive(body: &mut Body, left_m: &mut f32, is_free: &dyn Fn(Vec2) -> bool) -> Progress {
+fn straight(body: &mut Body, left_m: &mut f32, is_free: &dyn Fn(Vec2) -> bool) -> Progress {
     let wanted = left_m.signum() * body.figure().walk_m_s.min((2.0 * WALK_M_S2 * left_m.abs()).sqrt());
     body.speed_m_s = approach(body.speed_m_s, wanted, WALK_M_S2 * DT_S);
     let by = if left_m.abs() <= (body.speed_m_s * DT_S).abs().max(1e-3) { *left_m } else { body.speed_m_s * DT_S };
@@ -177,9 +180,9 @@ mod tests {
     }
 
     #[test]
-    fn a_drive_ends_where_it_should() {
+    fn a_straight_stretch_ends_where_it_should() {
         for distance in [1.0, -0.5, 0.01, 3.0] {
-            let (body, _) = run(Step::Drive { left_m: distance });
+            let (body, _) = run(Step::Straight { left_m: distance });
             assert!((body.position.x - distance).abs() < 1e-4, "{distance}: {}", body.position);
         }
     }

@@ -7,7 +7,8 @@ use glam::{Vec2, Vec3};
 
 use crate::{
     approach::{Approach, Sweep},
-    body::{Body, Step, Task},
+    body::{Body, Controls, Step, Task},
+    drive::HELD_TICKS,
     effect::Effect,
     geometry::wrap,
     motion::{PITCH_LIMIT_RAD, Progress, advance, retract},
@@ -43,15 +44,31 @@ impl World {
             outcomes.push(outcome((Status::KilledByHazard, "this robot is out of order".to_owned())));
             return;
         }
-        outcomes.extend(self.interrupt(input.body));
+        let driven = self.drive_on(input, outcomes);
+        if driven.is_none() {
+            outcomes.extend(self.interrupt(input.body));
+        }
         match self.plan(input.body, &input.action, events) {
             Err(end) => outcomes.push(outcome(end)),
             Ok((steps, alternate)) => {
                 let version = self.state.floor_version;
-                let task = Task::new(input.command, input.action, steps, alternate, version);
+                let mut task = Task::new(input.command, input.action, steps, alternate, version);
+                task.pushing = driven.unwrap_or_default();
                 self.state.bodies[input.body.0 as usize].task = Some(task);
             }
         }
+    }
+
+    /// Ends the driving of a body that is driven on, without a halt; gives back what it is pushing along.
+    fn drive_on(&mut self, input: &Input, outcomes: &mut Vec<Outcome>) -> Option<Vec<ObjectId>> {
+        let is_drive = |action: &Action| matches!(action, Action::Drive { .. });
+        if !is_drive(&input.action) || check_numbers(&input.action).is_err() {
+            return None;
+        }
+        let task = self.state.bodies[input.body.0 as usize].task.take_if(|task| is_drive(&task.action))?;
+        let (status, detail) = arrived(&task);
+        outcomes.push(Outcome { command: task.command, body: input.body, status, detail });
+        Some(task.pushing)
     }
 
     /// Ends what a body is doing.
@@ -81,7 +98,7 @@ impl World {
         let facts = self.facts();
         let body = &self.state.bodies[id.0 as usize];
         match *action {
-            Action::Move { distance_m } => Ok((vec![Step::Drive { left_m: distance_m }], false)),
+            Action::Move { distance_m } => Ok((vec![Step::Straight { left_m: distance_m }], false)),
             Action::Rotate { yaw_rad } => Ok((vec![Step::Turn { left_rad: yaw_rad }], false)),
             Action::Look { pitch_rad } => {
                 let to_rad = (body.head_pitch_rad + pitch_rad).clamp(-PITCH_LIMIT_RAD, PITCH_LIMIT_RAD);
@@ -102,6 +119,10 @@ impl World {
                 Err((Status::ActionSuccessful, format!("I pointed out {name}")))
             }
             Action::Stop => Err((Status::ActionSuccessful, "I stopped".to_owned())),
+            Action::Drive { forward_m_s, turn_rad_s, pitch_rad_s } => {
+                let controls = Controls { forward_m_s, turn_rad_s, pitch_rad_s }.within(body);
+                Ok((vec![Step::Drive { controls, ticks_left: HELD_TICKS }], false))
+            }
         }
     }
 
@@ -327,6 +348,7 @@ fn arrived(task: &Task) -> End {
         Action::Move { .. } => "I moved",
         Action::Rotate { .. } => "I turned",
         Action::Look { .. } | Action::LookAround => "I looked",
+        Action::Drive { .. } => "I went as I was driven",
         _ => "done",
     };
     (Status::ActionSuccessful, detail.to_owned())
@@ -345,6 +367,9 @@ fn check_numbers(action: &Action) -> Result<(), End> {
         Action::Move { distance_m } => distance_m.is_finite() && distance_m.abs() <= FURTHEST_M,
         Action::Rotate { yaw_rad } => yaw_rad.is_finite() && yaw_rad.abs() <= 2.0 * std::f32::consts::TAU,
         Action::Look { pitch_rad } => pitch_rad.is_finite(),
+        Action::Drive { forward_m_s, turn_rad_s, pitch_rad_s } => {
+            [forward_m_s, turn_rad_s, pitch_rad_s].iter().all(|speed| speed.is_finite())
+        }
         Action::GoTo { target: GoToTarget::Point(point) } => {
             point.iter().all(|coordinate| coordinate.is_finite() && coordinate.abs() < 1e4)
         }

@@ -279,6 +279,7 @@ pub fn step_text(step: &Step, scene: &Known) -> String {
         Action::Interact { verb, object } => format!("{} {}", format!("{verb:?}").to_lowercase(), name(object)),
         Action::Highlight { object } => format!("show {}", name(object)),
         Action::Stop => "stop".to_owned(),
+        Action::Drive { .. } => "drive".to_owned(),
     }
 }
 

@@ -19,9 +19,9 @@ pub struct ActionRecord {
     room: u32,
     /// Which of the room's viewpoints, from 1.
     number: u32,
-    /// A distance in m, or an angle in rad.
+    /// A distance in m, an angle in rad, or a speed in m/s.
     value: f32,
-    /// On the floor, x and y in m.
+    /// On the floor, x and y in m; or how fast to turn and to pitch the head, rad/s.
     point: [f32; 2],
 }
 
@@ -51,6 +51,8 @@ const INTERACT: u32 = 11;
 const HIGHLIGHT: u32 = 12;
 /// Let go of whatever it is doing.
 const STOP: u32 = 13;
+/// Keep moving by `value` m/s, turning and pitching by `point` rad/s.
+const DRIVE: u32 = 14;
 
 impl From<Action> for ActionRecord {
     fn from(action: Action) -> Self {
@@ -73,6 +75,9 @@ impl From<Action> for ActionRecord {
             Action::Interact { verb, object } => Self { verb: verb as u32, object: object.0, ..of(INTERACT) },
             Action::Highlight { object } => Self { object: object.0, ..of(HIGHLIGHT) },
             Action::Stop => of(STOP),
+            Action::Drive { forward_m_s, turn_rad_s, pitch_rad_s } => {
+                Self { value: forward_m_s, point: [turn_rad_s, pitch_rad_s], ..of(DRIVE) }
+            }
         }
     }
 }
@@ -106,6 +111,11 @@ impl TryFrom<ActionRecord> for Action {
             }
             HIGHLIGHT => Self::Highlight { object },
             STOP => Self::Stop,
+            DRIVE => Self::Drive {
+                forward_m_s: number(record.value)?,
+                turn_rad_s: number(record.point[0])?,
+                pitch_rad_s: number(record.point[1])?,
+            },
             _ => return Err(Malformed("no such action")),
         })
     }
@@ -128,6 +138,7 @@ mod tests {
             Action::Place { receptacle: ObjectId(4) },
             Action::Highlight { object: ObjectId(5) },
             Action::Stop,
+            Action::Drive { forward_m_s: -1.0, turn_rad_s: 0.5, pitch_rad_s: 0.25 },
         ];
         actions.extend(Verb::ALL.map(|verb| Action::Interact { verb, object: ObjectId(9) }));
         for room in RoomId::ALL {
@@ -145,6 +156,7 @@ mod tests {
             ActionRecord { kind: 0, ..ActionRecord::default() },
             ActionRecord { kind: 99, ..ActionRecord::default() },
             ActionRecord { kind: MOVE, value: f32::NAN, ..ActionRecord::default() },
+            ActionRecord { kind: DRIVE, point: [0.0, f32::INFINITY], ..ActionRecord::default() },
             ActionRecord { kind: INTERACT, verb: 99, ..ActionRecord::default() },
             ActionRecord { kind: GO_TO_ROOM, room: 99, ..ActionRecord::default() },
         ] {

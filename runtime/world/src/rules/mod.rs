@@ -82,7 +82,8 @@ pub(crate) fn rule(facts: &Facts<'_>, body: BodyId, action: &Action) -> Ruling {
         | Action::LookAround
         | Action::GoTo { .. }
         | Action::Highlight { .. }
-        | Action::Stop => Ok(Ruling::done("done", Vec::new())),
+        | Action::Stop
+        | Action::Drive { .. } => Ok(Ruling::done("done", Vec::new())),
     };
     let mut ruling = verdict.unwrap_or_else(|refusal| refusal);
     if let (true, Some(object)) = (ruling.status.is_success(), object_of(action)) {

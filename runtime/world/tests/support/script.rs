@@ -44,6 +44,7 @@ pub enum Kind {
     Look,
     LookAround,
     Stop,
+    Drive,
     /// Ids and numbers that nobody should send.
     Nonsense,
 }
@@ -93,6 +94,8 @@ pub const KINDS: &[Kind] = &[
     Kind::Look,
     Kind::LookAround,
     Kind::Stop,
+    Kind::Drive,
+    Kind::Drive,
     Kind::Nonsense,
 ];
 
@@ -200,6 +203,10 @@ impl Line {
             Kind::Look => Action::Look { pitch_rad: part * 3.0 - 1.5 },
             Kind::LookAround => Action::LookAround,
             Kind::Stop => Action::Stop,
+            Kind::Drive => {
+                let turn_rad_s = f32::from(self.pick % 256) / 40.0 - 3.2;
+                Action::Drive { forward_m_s: part * 4.0 - 2.0, turn_rad_s, pitch_rad_s: part - 0.5 }
+            }
             Kind::Nonsense => self.nonsense(world),
         }
     }
@@ -242,7 +249,7 @@ impl Line {
         let number = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e30, -1e30, f32::MIN_POSITIVE, -0.0, 99.9];
         let number = number[usize::from(self.amount) % number.len()];
         let nobody = ObjectId([u32::MAX, world.objects().len() as u32, 1 << 31][usize::from(self.pick) % 3]);
-        match self.pick % 9 {
+        match self.pick % 10 {
             0 => Action::Move { distance_m: number },
             1 => Action::Rotate { yaw_rad: number },
             2 => Action::Look { pitch_rad: number },
@@ -250,7 +257,8 @@ impl Line {
             4 => Action::GoTo { target: GoToTarget::Object(nobody) },
             5 => Action::PickUp { object: nobody },
             6 => Action::Place { receptacle: nobody },
-            7 => Action::Interact { verb: Verb::ALL[usize::from(self.amount) % Verb::ALL.len()], object: nobody },
+            7 => Action::Drive { forward_m_s: 1.0, turn_rad_s: number, pitch_rad_s: -number },
+            8 => Action::Interact { verb: Verb::ALL[usize::from(self.amount) % Verb::ALL.len()], object: nobody },
             _ => Action::GoTo { target: GoToTarget::Viewpoint(room(self.pick), self.amount | 128) },
         }
     }
@@ -312,6 +320,7 @@ pub fn verbs() -> Vec<String> {
         Action::Place { receptacle: object },
         Action::Highlight { object },
         Action::Stop,
+        Action::Drive { forward_m_s: 0.0, turn_rad_s: 0.0, pitch_rad_s: 0.0 },
         Action::GoTo { target: GoToTarget::Object(object) },
         Action::GoTo { target: GoToTarget::Room(RoomId::Lab1) },
         Action::GoTo { target: GoToTarget::Viewpoint(RoomId::Lab1, 1) },

@@ -1,0 +1,330 @@
+//! One page's visit: what it sends and is sent, from its first greeting to its last word.
+
+use std::{
+    sync::Arc,
+    time::{Duration, Instant},
+};
+
+use axum::extract::ws::{Message, WebSocket};
+use cohabit_bus::{message::Thing, monotonic_nanos};
+use cohabit_cdf::ObjectId;
+use serde::Deserialize;
+use serde_json::Value;
+use tokio::{
+    sync::{
+        broadcast::{self, error::RecvError},
+        watch,
+    },
+    time::{MissedTickBehavior, interval, timeout},
+};
+
+use crate::{
+    affordances::Deed,
+    driving::{Driver, News, Told},
+    limits::{LONGEST_TEXT, Limits, MOST_PAGES},
+    page,
+    view::{Frame, View, Viewing},
+    web::Service,
+};
+
+/// How often it is seen whether a page that drives is still there.
+const BEAT: Duration = Duration::from_secs(3);
+/// A page that drives and is silent for so long, or takes so long to take something, is gone.
+const GONE: Duration = Duration::from_secs(10);
+/// Time between two looks at what is before a driven body.
+const AIM_EVERY: Duration = Duration::from_millis(90);
+/// How fast a page may ask anything to move or turn, m/s and rad/s; the body's own limits are narrower.
+const FASTEST: f32 = 20.0;
+
+/// What a page sends.
+#[derive(Deserialize)]
+#[serde(tag = "type", rename_all = "snake_case")]
+enum FromPage {
+    /// Somebody said something.
+    Say { text: String },
+    /// The page has shown its first frame.
+    Shown,
+    /// Somebody wants to look through another camera.
+    View { camera: String },
+    /// Somebody points at something in the picture: how far from the left and from the top, 0 to 1.
+    Point { camera: String, tick: u64, x: f32, y: f32 },
+    /// Somebody wants to drive a body.
+    DriveBody { body: u32 },
+    /// Somebody gives the body back.
+    Release,
+    /// The keys as they are held now, as speeds: along the heading, turning, and the head's pitch.
+    Drive { forward_m_s: f32, turn_rad_s: f32, pitch_rad_s: f32 },
+    /// Somebody does something to an object with the body's hand.
+    Act { deed: Deed, object: u32 },
+}
+
+/// Serves a page until it goes.
+pub async fn converse(service: Service, mut socket: WebSocket) {
+    let Some((first, messages, _visit)) = service.hub.join() else {
+        let text = format!("{MOST_PAGES} pages are open already; close one and reload.");
+        let _ = socket.send(Message::text(page::error(&text).to_string())).await;
+        return;
+    };
+    for message in first {
+        if socket.send(Message::text(message)).await.is_err() {
+            return;
+        }
+    }
+    let Some(view) = service.hub.views.first().cloned() else { return };
+    Visit::new(service, view).run(socket, messages).await;
+}
+
+struct Visit {
+    service: Service,
+    view: Arc<View>,
+    frames: watch::Receiver<Option<Frame>>,
+    _viewing: Viewing,
+    limits: Limits,
+    driver: Option<Driver>,
+    aim: Aim,
+    heard_at: Instant,
+}
+
+/// What a driven body has before it, as the page was told.
+struct Aim {
+    told: Value,
+    at: Instant,
+    /// What was clicked, until the body moves on.
+    picked: Option<ObjectId>,
+}
+
+/// The page is gone, or is to be.
+struct Gone;
+
+impl Visit {
+    fn new(service: Service, view: Arc<View>) -> Self {
+        let now = Instant::now();
+        let (mut frames, viewing) = view.join();
+        frames.mark_changed();
+        let aim = Aim { told: Value::Null, at: now, picked: None };
+        Self { service, view, frames, _viewing: viewing, limits: Limits::new(now), driver: None, aim, heard_at: now }
+    }
+
+    async fn run(mut self, mut socket: WebSocket, mut messages: broadcast::Receiver<Arc<str>>) {
+        let mut beat = interval(BEAT);
+        beat.set_missed_tick_behavior(MissedTickBehavior::Delay);
+        loop {
+            let answers = tokio::select! {
+                message = messages.recv() => match message {
+                    Ok(message) => Ok(vec![Message::text(message.to_string())]),
+                    // It fell behind: closing makes it connect again and be told all anew.
+                    Err(RecvError::Lagged(_) | RecvError::Closed) => Err(Gone),
+                },
+                changed = self.frames.changed() => changed.map(|()| self.show()).map_err(|_| Gone),
+                news = next_news(&mut self.driver) => Ok(self.note(&news)),
+                _ = beat.tick() => self.beat(),
+                received = socket.recv() => {
+                    self.heard_at = Instant::now();
+                    match received {
+                        Some(Ok(Message::Text(text))) => Ok(self.answer(&text).await),
+                        Some(Ok(Message::Close(_)) | Err(_)) | None => Err(Gone),
+                        Some(Ok(_)) => Ok(Vec::new()),
+                    }
+                }
+            };
+            let Ok(answers) = answers else { return };
+            for answer in answers {
+                if send(&mut socket, answer, self.driver.is_some()).await.is_err() {
+                    return;
+                }
+            }
+        }
+    }
+
+    fn beat(&mut self) -> Result<Vec<Message>, Gone> {
+        let Some(driver) = &self.driver else { return Ok(Vec::new()) };
+        if self.heard_at.elapsed() > GONE {
+            return Err(Gone);
+        }
+        let mut answers = vec![Message::Ping(Vec::new().into())];
+        if driver.gave_up() {
+            answers.extend(self.end("The session does not answer."));
+        }
+        Ok(answers)
+    }
+
+    /// The newest frame, and what is in the middle of it.
+    fn show(&mut self) -> Vec<Message> {
+        let frame = self.frames.borrow_and_update().clone();
+        let frame = frame.map(|frame| Message::binary(frame.to_vec()));
+        frame.into_iter().chain(self.look(false)).collect()
+    }
+
+    /// What is before the driven body, if that is news.
+    fn look(&mut self, at_once: bool) -> Option<Message> {
+        let driver = self.driver.as_ref().filter(|driver| driver.is_driving())?;
+        if !at_once && self.aim.at.elapsed() < AIM_EVERY {
+            return None;
+        }
+        self.aim.at = Instant::now();
+        let things: Vec<Thing> = match self.aim.picked {
+            Some(object) => vec![Thing::Object(object)],
+            None if self.view.camera == driver.camera => {
+                self.view.ids_in_the_middle().into_iter().map(Thing::of_id).collect()
+            }
+            None => Vec::new(),
+        };
+        let aim = self.service.talk.aim(&things, driver.body()).inspect_err(|error| tracing::warn!("{error}")).ok()?;
+        (aim != self.aim.told).then(|| {
+            self.aim.told = aim;
+            Message::text(self.aim.told.to_string())
+        })
+    }
+
+    /// What the page is told of what the bus told.
+    fn note(&mut self, news: &News) -> Vec<Message> {
+        let Some(driver) = &mut self.driver else { return Vec::new() };
+        let body = driver.body();
+        match driver.note(news) {
+            Ok(None) => Vec::new(),
+            Ok(Some(Told::Begun)) => {
+                self.aim = Aim { told: Value::Null, at: Instant::now(), picked: None };
+                let begun = tell(&page::driving(Some(body), ""));
+                std::iter::once(begun).chain(self.look(true)).collect()
+            }
+            Ok(Some(Told::Acted(ok, text))) => {
+                self.aim.picked = None;
+                std::iter::once(tell(&page::acted(ok, &text))).chain(self.look(true)).collect()
+            }
+            Ok(Some(Told::Over(text))) => self.end(&text),
+            Err(error) => {
+                tracing::error!("{error}");
+                self.end("The session cannot be reached.")
+            }
+        }
+    }
+
+    /// Gives the body back, and says why.
+    fn end(&mut self, why: &str) -> Vec<Message> {
+        self.driver = None;
+        vec![tell(&page::driving(None, why))]
+    }
+
+    /// What a page gets at once for what it sent; what else comes of it comes by the hub.
+    async fn answer(&mut self, text: &str) -> Vec<Message> {
+        match self.take(text).await {
+            Ok(answers) => answers,
+            Err(problem) => vec![tell(&page::error(&problem))],
+        }
+    }
+
+    /// Takes a message of the page; says what is wrong with it, if anything.
+    async fn take(&mut self, text: &str) -> Result<Vec<Message>, String> {
+        let (received_nanos, now) = (monotonic_nanos(), Instant::now());
+        let a_lot = || "That was a lot at once; wait a moment, please.".to_owned();
+        if !self.limits.all.admits(now) {
+            return Err(a_lot());
+        }
+        let message: FromPage =
+            serde_json::from_str(text).map_err(|error| format!("The page sent nonsense: {error}"))?;
+        if let FromPage::Drive { forward_m_s, turn_rad_s, pitch_rad_s } = message {
+            // One too many is left out: the next one says all anew.
+            return if self.limits.drives.admits(now) {
+                self.drive([forward_m_s, turn_rad_s, pitch_rad_s])
+            } else {
+                Ok(Vec::new())
+            };
+        }
+        if !self.limits.others.admits(now) {
+            return Err(a_lot());
+        }
+        match message {
+            FromPage::Shown => self.service.hub.note_shown(),
+            FromPage::View { camera } => self.look_through(&camera)?,
+            FromPage::Point { camera, tick, x, y } => return self.point(&camera, tick, [x, y]),
+            FromPage::DriveBody { body } => {
+                self.driver = None;
+                self.driver = Some(Driver::claim(&self.service.drivers, body)?);
+            }
+            FromPage::Release => self.driver = None,
+            FromPage::Act { deed, object } => return self.act(deed, ObjectId(object)),
+            FromPage::Say { text } => self.say(&text, received_nanos).await?,
+            FromPage::Drive { .. } => {}
+        }
+        Ok(Vec::new())
+    }
+
+    fn drive(&mut self, speeds: [f32; 3]) -> Result<Vec<Message>, String> {
+        let Some(driver) = &mut self.driver else { return Ok(Vec::new()) };
+        let [forward, turn, pitch] = speeds.map(|speed| speed.clamp(-FASTEST, FASTEST));
+        if [forward, turn, pitch] != [0.0; 3] {
+            self.aim.picked = None;
+        }
+        driver.drive(forward, turn, pitch).map_err(|error| error.to_string())?;
+        Ok(Vec::new())
+    }
+
+    fn act(&mut self, deed: Deed, object: ObjectId) -> Result<Vec<Message>, String> {
+        if let Some(driver) = &mut self.driver {
+            driver.act(deed, object).map_err(|error| error.to_string())?;
+        }
+        Ok(Vec::new())
+    }
+
+    fn view_of(&self, camera: &str) -> Result<Arc<View>, String> {
+        let is_meant = |view: &&Arc<View>| view.camera.to_string() == camera;
+        self.service.hub.views.iter().find(is_meant).cloned().ok_or_else(|| format!("There is no camera {camera}."))
+    }
+
+    fn look_through(&mut self, camera: &str) -> Result<(), String> {
+        self.view = self.view_of(camera)?;
+        (self.frames, self._viewing) = self.view.join();
+        self.frames.mark_changed();
+        Ok(())
+    }
+
+    /// Says what somebody points at; who drives may then do something with it.
+    fn point(&mut self, camera: &str, tick: u64, place: [f32; 2]) -> Result<Vec<Message>, String> {
+        let Some(id) = self.view_of(camera)?.id_at(tick, place) else { return Ok(Vec::new()) };
+        let thing = Thing::of_id(id);
+        if let (Thing::Object(object), Some(_)) = (thing, &self.driver) {
+            self.aim.picked = Some(object);
+            return Ok(self.look(true).into_iter().collect());
+        }
+        let seen = self.service.talk.seen(thing, place).map_err(|error| error.to_string())?;
+        Ok(seen.iter().map(tell).collect())
+    }
+
+    async fn say(&mut self, text: &str, received_nanos: u64) -> Result<(), String> {
+        let text = text.trim().to_owned();
+        if text.is_empty() {
+            return Ok(());
+        }
+        if text.len() > LONGEST_TEXT {
+            return Err(format!("That is too long for me: {LONGEST_TEXT} characters at most, please."));
+        }
+        let talk = Arc::clone(&self.service.talk);
+        let heard = tokio::task::spawn_blocking(move || talk.hear(&text, received_nanos)).await;
+        if let Ok(Err(error)) = heard {
+            tracing::error!("{error}");
+            return Err("The robot cannot be reached.".to_owned());
+        }
+        Ok(())
+    }
+}
+
+/// Sends a message. Who drives must not hang: the body is wanted by others.
+async fn send(socket: &mut WebSocket, message: Message, drives: bool) -> Result<(), Gone> {
+    let sent =
+        if drives { timeout(GONE, socket.send(message)).await.map_err(|_| Gone)? } else { socket.send(message).await };
+    sent.map_err(|_| Gone)
+}
+
+fn tell(message: &Value) -> Message {
+    Message::text(message.to_string())
+}
+
+/// The next news of who drives; pends where nobody does.
+async fn next_news(driver: &mut Option<Driver>) -> News {
+    if let Some(driver) = driver
+        && let Some(news) = driver.news().await
+    {
+        return news;
+    }
+    std::future::pending().await
+}

@@ -1,0 +1,30 @@
+// Small things that every part of the page makes its elements with.
+
+export const byId = (id) => document.getElementById(id);
+export const calm = window.matchMedia("(prefers-reduced-motion: reduce)");
+export const narrow = window.matchMedia("(max-width: 820px)");
+
+export function element(tag, className, text) {
+  const made = document.createElement(tag);
+  if (className) made.className = className;
+  if (text !== undefined) made.textContent = text;
+  return made;
+}
+
+export function drawn(tag, attributes, ...children) {
+  const made = document.createElementNS("http://www.w3.org/2000/svg", tag);
+  for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
+  made.append(...children);
+  return made;
+}
+
+export const capitalised = (text) => text.charAt(0).toUpperCase() + text.slice(1);
+
+
+const TOAST_MS = 5000;
+
+export function toast(text) {
+  const shown = element("p", "toast", text);
+  byId("toasts").replaceChildren(shown);
+  setTimeout(() => shown.remove(), TOAST_MS);
+}

@@ -1,0 +1,84 @@
+// The page's one connection to the session: reconnects by itself, and shows how it stands.
+
+import { byId } from "./dom.js";
+
+const FIRST_PAUSE_MS = 500;
+const LONGEST_PAUSE_MS = 5000;
+/** A session sends its state many times a second; this long without a word means that it hangs. */
+const SILENCE_MS = 4000;
+
+let receivers = {};
+let socket = null;
+let pauseMs = FIRST_PAUSE_MS;
+let heardAt = 0;
+
+function socketAddress() {
+  const token = new URLSearchParams(location.search).get("token");
+  const scheme = location.protocol === "https:" ? "wss" : "ws";
+  return `${scheme}://${location.host}/ws${token === null ? "" : `?token=${encodeURIComponent(token)}`}`;
+}
+
+/** What to call for each type of message, for a `frame`, and when the connection is `lost`. */
+export function listen(to) {
+  receivers = to;
+  connect();
+}
+
+function connect() {
+  socket = new WebSocket(socketAddress());
+  socket.binaryType = "arraybuffer";
+  socket.onmessage = ({ data }) => {
+    heardAt = performance.now();
+    if (typeof data === "string") take(JSON.parse(data));
+    else receivers.frame(data);
+  };
+  socket.onclose = () => {
+    showLink("lost");
+    receivers.lost();
+    setTimeout(connect, pauseMs);
+    pauseMs = Math.min(pauseMs * 1.8, LONGEST_PAUSE_MS);
+  };
+}
+
+export function send(message) {
+  if (socket?.readyState !== WebSocket.OPEN) return false;
+  socket.send(JSON.stringify(message));
+  return true;
+}
+
+function take(message) {
+  receivers[message.type]?.(message);
+}
+
+export function showLink(link) {
+  const { classList } = document.body;
+  classList.remove("connecting", "open", "lost", "quiet");
+  classList.add(link);
+  const words = { connecting: "connecting", open: "connected", lost: "not connected", quiet: "no word from the session" };
+  byId("link-text").textContent = words[link];
+  const notices = {
+    lost: "The session has ended or cannot be reached; trying again…",
+    quiet: "The session has gone quiet; waiting for it…",
+    open: window.cohabit.frames ? "" : "Waiting for the first picture…",
+  };
+  showNotice(notices[link] ?? "");
+}
+
+/** A session has greeted this page. */
+export function greeted() {
+  pauseMs = FIRST_PAUSE_MS;
+  showLink("open");
+}
+
+function showNotice(text) {
+  byId("notice-text").textContent = text;
+  byId("notice").hidden = !text;
+}
+
+export function watchSilence() {
+  if (socket?.readyState !== WebSocket.OPEN || !heardAt) return;
+  const silent = performance.now() - heardAt > SILENCE_MS;
+  const { classList } = document.body;
+  if (silent && classList.contains("open")) showLink("quiet");
+  else if (!silent && classList.contains("quiet")) showLink("open");
+}

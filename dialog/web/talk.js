@@ -1,0 +1,170 @@
+// The conversation: what was said, what the robot is about, and what a person types.
+
+import { byId, capitalised, element, narrow, toast } from "./dom.js";
+import { send } from "./socket.js";
+
+/** So near its end, the log follows what is said, px. */
+const NEAR_END_PX = 60;
+const NEW_GOAL = /^New goal:\s*/;
+
+const log = byId("chat");
+export const input = byId("chat-input");
+let lastFrom = "";
+let unseenLines = false;
+
+export function clearChat() {
+  log.setAttribute("aria-busy", "true");
+  log.replaceChildren();
+  lastFrom = "";
+  byId("chips").hidden = false;
+}
+
+export function takeLine(line) {
+  const atEnd = log.scrollHeight - log.scrollTop - log.clientHeight < NEAR_END_PX;
+  const replayed = log.hasAttribute("aria-busy");
+  const bubble = lineOf(line);
+  if (line.from === lastFrom) bubble.classList.add("follows");
+  if (!replayed) bubble.classList.add("fresh");
+  lastFrom = line.from;
+  log.append(bubble);
+  if (line.from !== "game") input.placeholder = line.kind === "question" ? "Answer the robot" : "Tell the robot what to do";
+  if (line.from === "person") {
+    remember(line.text);
+    byId("chips").hidden = true;
+  }
+  if (atEnd || replayed || line.from === "person") toNewest();
+  else {
+    unseenLines = true;
+    showToNewest();
+  }
+}
+
+function lineOf({ from, kind, text }) {
+  const bubble = element("div", `line from-${from} kind-${kind}`);
+  const speaker = { person: "You: ", robot: "Robot: ", game: "" }[from] ?? "";
+  if (speaker) bubble.append(element("span", "unseen", speaker));
+  if (from === "game" && kind === "goal") {
+    const added = NEW_GOAL.test(text);
+    bubble.classList.toggle("new-goal", added);
+    bubble.append(element("b", "line-label", added ? "New goal" : "✓ Goal reached"));
+    text = text.replace(NEW_GOAL, "");
+  } else if (from === "game" && kind === "note") {
+    bubble.append(element("b", "line-label", "Sticky note"));
+  } else if (from === "game" && kind === "ending") {
+    bubble.classList.toggle("failed", /fail/i.test(text));
+  }
+  bubble.append(element("span", "line-text", text));
+  return bubble;
+}
+
+function toNewest() {
+  log.scrollTop = log.scrollHeight;
+  unseenLines = false;
+  showToNewest();
+}
+
+function showToNewest() {
+  byId("to-newest").hidden = !unseenLines;
+}
+
+log.addEventListener("scroll", () => {
+  if (log.scrollHeight - log.scrollTop - log.clientHeight < NEAR_END_PX) {
+    unseenLines = false;
+    showToNewest();
+  }
+}, { passive: true });
+byId("to-newest").addEventListener("click", toNewest);
+// The log loses height when the keyboard of a phone opens or the chips appear: its end stays in sight.
+new ResizeObserver(() => {
+  if (!unseenLines) log.scrollTop = log.scrollHeight;
+}).observe(log);
+
+/** More steps than these are not drawn one by one. */
+const MOST_STEPS = 24;
+
+let doingTurn = 0;
+
+export function takeProgress({ turn, step, steps, text }) {
+  doingTurn = turn;
+  const several = steps > 1;
+  byId("doing").classList.remove("idle");
+  byId("doing-text").textContent = capitalised(text);
+  byId("doing-count").textContent = several ? `${step} of ${steps}` : "";
+  const marks = Array.from({ length: several && steps <= MOST_STEPS ? steps : 0 }, (_, index) =>
+    element("i", index + 1 < step ? "past" : index + 1 === step ? "now" : ""));
+  byId("doing-steps").replaceChildren(...marks);
+}
+
+export function takeTurn({ turn, ended }) {
+  if (ended && turn >= doingTurn) endDoing();
+}
+
+export function endDoing() {
+  doingTurn = 0;
+  byId("doing").classList.add("idle");
+  const idle = { running: "Ready", complete: "All done", failed: "The mission is over" };
+  byId("doing-text").textContent = document.body.classList.contains("lost") ? "Waiting for the session" : idle[window.cohabit.state?.ending ?? "running"];
+  byId("doing-count").textContent = "";
+  byId("doing-steps").replaceChildren();
+}
+
+export function takeLatency(latency) {
+  window.cohabit.latency = latency;
+  const words = { understood: latency.understood_ms, moving: latency.moved_ms, seen: latency.shown_ms };
+  const parts = Object.entries(words).filter(([, ms]) => typeof ms === "number");
+  byId("latency").textContent = parts.map(([word, ms]) => `${word} ${inMilliseconds(ms)}`).join(" · ");
+}
+
+function inMilliseconds(ms) {
+  return `${ms < 1 ? ms.toFixed(1) : Math.round(ms)} ms`;
+}
+
+const said = [];
+let recalled = 0;
+let draft = "";
+
+function remember(text) {
+  if (said.at(-1) !== text) said.push(text);
+  recalled = said.length;
+}
+
+export function say(text) {
+  if (send({ type: "say", text })) {
+    remember(text);
+    return true;
+  }
+  toast("There is no connection at the moment; please try again in a while.");
+  return false;
+}
+
+function recall(step) {
+  const next = recalled + step;
+  if (next < 0 || next > said.length) return;
+  if (recalled === said.length) draft = input.value;
+  recalled = next;
+  input.value = next === said.length ? draft : said[next];
+  input.setSelectionRange(input.value.length, input.value.length);
+}
+
+byId("composer").addEventListener("submit", (event) => {
+  event.preventDefault();
+  const text = input.value.trim();
+  if (text && say(text)) {
+    input.value = "";
+    draft = "";
+  }
+  input.focus();
+});
+
+input.addEventListener("keydown", (event) => {
+  if (event.isComposing || (event.key !== "ArrowUp" && event.key !== "ArrowDown")) return;
+  event.preventDefault();
+  recall(event.key === "ArrowUp" ? -1 : 1);
+});
+
+byId("chips").addEventListener("click", ({ target }) => {
+  if (!(target instanceof HTMLButtonElement)) return;
+  say(target.textContent);
+  if (!narrow.matches) input.focus();
+});
+byId("stop").addEventListener("click", () => say("stop"));
