@@ -10,6 +10,9 @@ use crate::{
     errand::{Errand, Progress},
 };
 
+/// In lock-step a plan waits for its turn, for so many ticks at most: a tenth of a second.
+const LISTENS_EVERY: u64 = 6;
+
 /// Follows plans. A step on an object that the body does not stand at is preceded by walking there.
 #[derive(Debug, Default)]
 pub struct PlanFollower {
@@ -80,7 +83,7 @@ impl Agent for PlanFollower {
             },
             // Others may have moved the body meanwhile.
             Heard::Commands(_) => self.errand.leave_place(),
-            Heard::Now(_) => {}
+            Heard::Now(_) => deeds.push(Deed::Rest(LISTENS_EVERY)),
         }
     }
 }
