@@ -10,8 +10,6 @@ use std::{
 };
 
 use anyhow::Context as _;
-use clap::ValueEnum;
-use cohabit_agent::PlanFollower;
 use cohabit_bus::{Session, Shm, message::Control};
 use cohabit_cdf::BodyRequest;
 use cohabit_dialog::{DialogConfig, Drivable};
@@ -22,6 +20,7 @@ use cohabit_render::MeshLibrary;
 use crate::{
     arena::{ArenaOptions, Games},
     failure::bad_input,
+    minds::MindKind,
     mission_file::MissionFile,
     rendering::Rendering,
     stop,
@@ -144,34 +143,31 @@ impl Sim {
     }
 }
 
-/// Kinds of minds.
-#[derive(Clone, Copy, ValueEnum)]
-enum AgentKind {
-    /// Does what the dialog service plans
-    Dialog,
-}
-
 /// Runs a mind for one body.
 #[derive(clap::Args)]
 pub struct Agent {
     /// What kind of mind
     #[arg(value_enum, default_value = "dialog")]
-    kind: AgentKind,
+    kind: MindKind,
     #[command(flatten)]
     joining: Joining,
     /// The body it commands
     #[arg(long, default_value_t = 0)]
     body: u32,
+    /// The seed of all that is random in it
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    /// What a scripted one does: a file with an action a line
+    #[arg(long, value_name = "FILE", required_if_eq("kind", "scripted"))]
+    script: Option<PathBuf>,
 }
 
 impl Agent {
     /// Runs the agent.
     pub fn run(&self) -> anyhow::Result<()> {
+        let mut mind = self.kind.mind(self.body, self.seed, self.script.as_deref())?;
         let (bus, stop) = self.joining.join()?;
-        let mut agent = match self.kind {
-            AgentKind::Dialog => PlanFollower::new(self.body),
-        };
-        cohabit_agent::run(&mut agent, self.body, &bus, &stop)?;
+        cohabit_agent::run(&mut *mind, self.body, &bus, &stop)?;
         Ok(())
     }
 }

@@ -21,6 +21,7 @@ use rustix::process::{Pid, Signal, kill_process};
 
 use crate::{
     failure::BadInput,
+    minds::MindRequest,
     peers::{Listening, Timing},
     rendering::Rendering,
 };
@@ -67,9 +68,9 @@ impl Role {
         Self { name: "record", arguments: vec!["--log".into(), log.into()] }
     }
 
-    /// The robot's mind.
-    pub fn agent() -> Self {
-        Self { name: "agent", arguments: vec!["dialog".into()] }
+    /// A mind.
+    pub fn agent(request: &MindRequest, seed: u64) -> Self {
+        Self { name: "agent", arguments: request.arguments(seed) }
     }
 
     /// The dialog service.
