@@ -1,0 +1,212 @@
+"""What environments of one and of many bodies have in common: a world in this process, and what its bodies sense.
+
+Observations are dictionaries. Pictures are those of each body's camera; all else is small:
+
+===================  ======================  =================================================================
+``color``            ``[H, W, 4]`` u1        red, green, blue, 255; the arrays of pictures are read-only views
+``depth``            ``[H, W]`` f4           metres along the camera's axis
+``normals``          ``[H, W, 4]`` i1        the surface's normal in the world, times 127, and 0
+``ids``              ``[H, W]`` u4           whose pixel it is; objects in view are those in ``slot_ids``
+``position``         ``[3]`` f4              where the body stands, m
+``heading``          ``[2]`` f4              its yaw and the pitch of its head, rad
+``room``             0 to 7                  an index into ``cohabit.ROOMS``
+``held``             0 to classes            1 + an index into ``cohabit.CLASSES``; 0 is nothing
+``busy``             0, 1                    whether it still carries out a command
+``goals``            ``[16]`` 0, 1           which goals are met
+``slot_ids``         ``[S]`` u4              the id of each slot's object in the id plane; 0 is empty
+``slot_classes``     ``[S]`` i8              its class, as ``held``
+``slot_positions``   ``[S, 3]`` f4           where it is from the body: ahead, to the left, up, m
+``slot_states``      ``[S, 25]`` 0, 1        its states, in the order of ``cohabit.FLAGS``
+===================  ======================  =================================================================
+
+A panorama's planes have four pictures, ``[4, H, W, …]``: ahead, right, back, left.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Mapping, Sequence
+from typing import Any, Optional, Union
+
+import gymnasium
+import numpy as np
+import numpy.typing as npt
+from gymnasium import spaces
+
+from . import _native
+
+MissionLike = Union[None, str, "os.PathLike[str]", Mapping[str, Any]]
+"""A built-in mission's name, a CDF file's path, or a CDF as a dictionary; ``None`` is the default mission."""
+
+Observation = dict[str, Any]
+ActionMask = tuple[npt.NDArray[np.int8], npt.NDArray[np.int8]]
+
+PLANES = ("color", "depth", "normals", "ids")
+"""The planes there are."""
+
+CHOICES: tuple[str, ...] = tuple(name for name, _ in _native.CHOICES)
+"""The kinds of actions of environments, by their numbers."""
+
+MOST_GOALS = 16
+"""Goals that an observation tells of."""
+
+_TAKES_SLOT = np.array([takes for _, takes in _native.CHOICES], dtype=bool)
+_FARTHEST_M = 1000.0
+_CLASSES = len(_native.class_ids())
+_PLANE_SPACES: dict[str, tuple[float, float, tuple[int, ...], Any]] = {
+    "color": (0, 255, (4,), np.uint8),
+    "depth": (0.0, np.inf, (), np.float32),
+    "normals": (-128, 127, (4,), np.int8),
+    "ids": (0, 2**32 - 1, (), np.uint32),
+}
+_VIEWS = {"panorama": 4}
+
+
+class Office:
+    """A world in this process, stepped only when it is told to.
+
+    :param mission: what is played.
+    :param bodies: bodies beside the mission's robot, such as ``"person@Lab1"``.
+    :param planes: of :data:`PLANES`, those that are observed; none for states alone, which is much faster.
+    :param camera: a kind of camera with options, as ``cohabit play --camera`` takes them after the name:
+        ``"egocentric"``, ``"panorama,fov=100"``.
+    :param size: width and height of a picture, or one number.
+    :param slots: objects that a body can choose from at once.
+    :param fill: what fills them: ``"seen"`` in the body's picture, the largest first; ``"near"``, what is not hidden in its
+        room, the nearest first; ``"all"``, by number. Left out, it is ``"seen"`` where there are pictures, else ``"near"``.
+    :param render: width and height of :meth:`render`'s pictures, if any are wanted.
+    :param threads: threads that draw.
+    """
+
+    def __init__(
+        self,
+        mission: MissionLike,
+        bodies: Sequence[str],
+        planes: Sequence[str],
+        camera: str,
+        size: Union[int, tuple[int, int]],
+        slots: int,
+        fill: Optional[str],
+        render: Optional[tuple[int, int]],
+        threads: int,
+    ) -> None:
+        unknown = [plane for plane in planes if plane not in PLANES]
+        if unknown:
+            raise ValueError(f"there is no plane `{unknown[0]}`: {', '.join(PLANES)}")
+        if not 1 <= slots <= 4096:
+            raise ValueError(f"{slots} slots: 1 to 4096")
+        self.planes = tuple(plane for plane in PLANES if plane in planes)
+        self.slots = slots
+        self.fill = fill or ("seen" if self.planes else "near")
+        self.size = (size, size) if isinstance(size, int) else size
+        self.kind = camera.split(",", 1)[0]
+        drawn = self.planes + (("ids",) if self.fill == "seen" and "ids" not in self.planes else ())
+        self._drawn = bool(drawn)
+        count = 1 + len(bodies)
+        cameras = [self._camera(body, camera, drawn) for body in range(count)] if drawn else []
+        if render is not None:
+            cameras += [
+                f"watch-{body}=third-person,body={body},size={render[0]}x{render[1]},planes=color" for body in range(count)
+            ]
+        name, text = _mission(mission)
+        self.stage = _native.Stage(name, text, list(bodies), cameras, 0, threads)
+        self.kinds = tuple(self.stage.kinds())
+        self.observation_space = self._observation_space()
+        self.action_space = spaces.MultiDiscrete([len(CHOICES), slots])
+
+    def _camera(self, body: int, camera: str, planes: Sequence[str]) -> str:
+        kind, _, options = camera.partition(",")
+        width, height = self.size
+        own = [f"size={width}x{height}", f"planes={'+'.join(planes)}", *([options] if options else [])]
+        if kind != "fixed" and "body=" not in options:
+            own.append(f"body={body}")
+        return f"sense-{body}={kind},{','.join(own)}"
+
+    def _observation_space(self) -> spaces.Dict:
+        width, height = self.size
+        views = (_VIEWS[self.kind],) if self.kind in _VIEWS else ()
+        parts: dict[str, gymnasium.Space[Any]] = {}
+        for plane in self.planes:
+            low, high, channels, dtype = _PLANE_SPACES[plane]
+            parts[plane] = spaces.Box(low, high, (*views, height, width, *channels), dtype)
+        parts["position"] = spaces.Box(-_FARTHEST_M, _FARTHEST_M, (3,), np.float32)
+        parts["heading"] = spaces.Box(-2 * np.pi, 2 * np.pi, (2,), np.float32)
+        parts["room"] = spaces.Discrete(len(_native.ROOMS))
+        parts["held"] = spaces.Discrete(_CLASSES + 1)
+        parts["busy"] = spaces.Discrete(2)
+        parts["goals"] = spaces.MultiBinary(MOST_GOALS)
+        parts["slot_ids"] = spaces.Box(0, 2**32 - 1, (self.slots,), np.uint32)
+        parts["slot_classes"] = spaces.Box(0, _CLASSES, (self.slots,), np.int64)
+        parts["slot_positions"] = spaces.Box(-_FARTHEST_M, _FARTHEST_M, (self.slots, 3), np.float32)
+        parts["slot_states"] = spaces.MultiBinary((self.slots, len(_native.FLAGS)))
+        return spaces.Dict(parts)
+
+    def observe(self, bodies: Sequence[int]) -> tuple[list[Observation], list[dict[str, Any]]]:
+        """What each of these bodies observes, and what may be known beyond it."""
+        frames: Sequence[Optional[_native.Frame]]
+        frames = self.stage.look([f"sense-{body}" for body in bodies]) if self._drawn else [None] * len(bodies)
+        tick, score, ending, goals = self.stage.progress()
+        met = np.zeros(MOST_GOALS, np.int8)
+        for index, (_, is_met) in enumerate(goals[:MOST_GOALS]):
+            met[index] = is_met
+        observations, infos = [], []
+        for body, frame in zip(bodies, frames):
+            senses = self.stage.sense(body, self.slots, self.fill, frame if self.fill == "seen" else None)
+            observation: Observation = {}
+            if frame is not None:
+                for plane in self.planes:
+                    observation[plane] = frame[plane]
+            observation["position"] = senses.position
+            observation["heading"] = np.array([senses.yaw_rad, senses.head_pitch_rad], np.float32)
+            observation["room"] = senses.room
+            observation["held"] = senses.held_class
+            observation["busy"] = int(senses.busy)
+            observation["goals"] = met
+            observation["slot_ids"] = senses.ids
+            observation["slot_classes"] = senses.classes
+            observation["slot_positions"] = senses.positions
+            observation["slot_states"] = senses.flags
+            observations.append(observation)
+            info = {"tick": tick, "score": score, "ending": ending, "goals": dict(goals)}
+            info["affordances"] = senses.afforded
+            info["action_mask"] = _mask(senses)
+            infos.append(info)
+        return observations, infos
+
+    def progress(self) -> tuple[int, bool]:
+        """The score, and whether the mission is over."""
+        _, score, ending, _ = self.stage.progress()
+        return score, ending != "running"
+
+    def render(self, body: int) -> npt.NDArray[np.uint8]:
+        """What somebody behind a body sees, ``[H, W, 3]``."""
+        (frame,) = self.stage.look([f"watch-{body}"])
+        return np.ascontiguousarray(frame.color[..., :3])
+
+
+def _mask(senses: _native.Senses) -> ActionMask:
+    """Which choices and which slots make sense, as ``MultiDiscrete.sample`` takes them."""
+    kinds = senses.afforded.any(axis=1).astype(np.int8)
+    slots = (senses.ids != 0).astype(np.int8)
+    if not slots.any():
+        # Something must be chosen, also by those that need nothing.
+        slots[0] = 1
+    return kinds, slots
+
+
+def _mission(mission: MissionLike) -> tuple[Optional[str], Optional[str]]:
+    """A mission's name, and its text if it is none that can be found by it."""
+    if mission is None or isinstance(mission, str):
+        return mission, None
+    if isinstance(mission, Mapping):
+        return "mission", json.dumps(mission)
+    return os.fspath(mission), None
+
+
+def outcome_info(outcomes: Sequence[_native.Outcome], body: int) -> dict[str, Any]:
+    """What came of a body's command, if it ended: ``status`` and ``detail``."""
+    for outcome in outcomes:
+        if outcome.body == body:
+            return {"status": outcome.status, "detail": outcome.detail}
+    return {"status": "", "detail": ""}
