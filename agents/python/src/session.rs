@@ -3,14 +3,14 @@
 use std::{
     collections::{BTreeMap, VecDeque},
     sync::{Arc, Mutex, MutexGuard, PoisonError},
+    thread,
     time::{Duration, Instant},
 };
 
+use cohabit_agent::Client;
 use cohabit_bus::{
-    BusError, CameraId, Publisher, Session as Name, Shm, Subscriber, Topic, Transport, Wake,
-    message::{
-        self, CommandMessage, DialogKind, DialogMessage, DialogView, EventKind, EventMessage, MissionMessage, NONE,
-    },
+    BusError, CameraId, Inbox, Publisher, Session as Name, Shm, Subscriber, Topic, Transport, Wake,
+    message::{self, DialogKind, DialogMessage, DialogView, EventKind, EventMessage, MissionMessage, NONE},
     monotonic_nanos,
 };
 use cohabit_cdf::Status;
@@ -26,6 +26,10 @@ use crate::{
 
 /// The longest that Python is kept from looking whether Ctrl-C was pressed.
 const NAP: Duration = Duration::from_millis(50);
+/// How often what came is taken in while Python is busy.
+const BEAT_EVERY: Duration = Duration::from_millis(400);
+/// What the others call a peer of this kind.
+const PEER: &str = "python";
 /// What was heard and not asked for: the oldest is forgotten beyond it.
 const MOST_HEARD: usize = 1024;
 
@@ -38,22 +42,12 @@ pub struct Session {
     state: Mutex<Latest>,
     cameras: Mutex<BTreeMap<CameraId, Arc<Mutex<Box<dyn Subscriber>>>>>,
     talk: Arc<Mutex<Talk>>,
-    mouth: Mutex<Mouth>,
-}
-
-/// What this process publishes.
-struct Mouth {
-    commands: Box<dyn Publisher>,
-    dialog: Box<dyn Publisher>,
-    /// The number of the latest command.
-    command: u64,
 }
 
 /// A command that was given.
 #[pyclass(frozen, module = "cohabit._native")]
 pub struct Command {
     session: Py<Session>,
-    body: u32,
     number: u64,
 }
 
@@ -66,8 +60,9 @@ struct Latest {
 /// What is told and said.
 struct Talk {
     joined_nanos: u64,
-    events: Box<dyn Subscriber>,
-    dialog: Box<dyn Subscriber>,
+    client: Client,
+    dialog: Inbox,
+    mouth: Box<dyn Publisher>,
     heard: VecDeque<Heard>,
     /// Of commands that were given here and have no outcome yet, nothing; else what came of them.
     outcomes: BTreeMap<u64, Option<(Status, String)>>,
@@ -158,24 +153,31 @@ impl Heard {
 }
 
 impl Talk {
-    /// Takes in all that came.
+    /// Takes in all that came, and shows that this peer lives.
     fn pump(&mut self) -> PyResult<()> {
-        while let Some(sample) = self.events.receive().map_err(failed)? {
-            let event: EventMessage = message::read(sample.payload()).map_err(failed)?;
-            if let Some(kind) = event.kind().filter(|_| sample.envelope().sent_nanos >= self.joined_nanos) {
-                if kind == EventKind::Outcome {
-                    self.note(&event);
-                }
-                self.hear(Heard::event(&event, kind, sample.envelope().tick));
+        self.client.beat().map_err(failed)?;
+        while let Some((envelope, event)) = self.client.event().map_err(failed)? {
+            let Some(kind) = event.kind().filter(|_| envelope.sent_nanos >= self.joined_nanos) else { continue };
+            if kind == EventKind::Outcome {
+                self.note(&event);
             }
+            self.hear(Heard::event(&event, kind, envelope.tick));
         }
-        while let Some(sample) = self.dialog.receive().map_err(failed)? {
+        while let Some((sample, ())) =
+            self.dialog.next(|sample| DialogView::new(sample.payload()).map(drop)).map_err(failed)?
+        {
             let view = DialogView::new(sample.payload()).map_err(failed)?;
             if let Some(kind) = view.header.kind().filter(|_| sample.envelope().sent_nanos >= self.joined_nanos) {
                 self.hear(Heard::dialog(&view, kind));
             }
         }
         Ok(())
+    }
+
+    /// The number of a command that was just given, whose outcome is to be kept.
+    fn expect(&mut self, number: u64) -> u64 {
+        self.outcomes.insert(number, None);
+        number
     }
 
     /// Notes the outcome of a command that was given here.
@@ -193,12 +195,26 @@ impl Talk {
     }
 }
 
-/// A time-out in seconds; none is for ever.
+fn seconds(seconds: f64) -> PyResult<Duration> {
+    Duration::try_from_secs_f64(seconds).map_err(|_| bad_argument(format!("{seconds} s: it must be 0 or more seconds")))
+}
+
+/// The end of a time in seconds; none is for ever.
 fn deadline(timeout_s: Option<f64>) -> PyResult<Option<Instant>> {
-    let Some(timeout_s) = timeout_s else { return Ok(None) };
-    let timeout = Duration::try_from_secs_f64(timeout_s)
-        .map_err(|_| bad_argument(format!("a time-out of {timeout_s} s: it must be 0 or more seconds")))?;
-    Ok(Instant::now().checked_add(timeout))
+    Ok(timeout_s.map(seconds).transpose()?.and_then(|timeout| Instant::now().checked_add(timeout)))
+}
+
+/// Takes in what comes while Python is busy, and shows that this peer lives, for as long as the session is joined.
+fn keep_beating(talk: &Arc<Mutex<Talk>>) {
+    let talk = Arc::downgrade(talk);
+    thread::spawn(move || {
+        while let Some(talk) = talk.upgrade() {
+            // What fails here fails for whoever calls next, too, and is told then.
+            let _ = lock(&talk).pump();
+            drop(talk);
+            thread::sleep(BEAT_EVERY);
+        }
+    });
 }
 
 impl Session {
@@ -268,38 +284,35 @@ fn newest_frame(frames: &mut dyn Subscriber) -> PyResult<Option<Frame>> {
 
 #[pymethods]
 impl Session {
-    /// Joins a session of this machine, and waits up to `timeout` seconds for its simulator.
+    /// Joins a session of this machine for one body, and waits up to `timeout` seconds for its simulator.
     #[new]
-    fn new(py: Python<'_>, name: String, timeout: f64) -> PyResult<Self> {
+    fn new(py: Python<'_>, name: String, body: u32, timeout: f64) -> PyResult<Self> {
+        let until = deadline(Some(timeout))?;
         let session = Name::new(&name).map_err(bad_argument)?;
         let bus = Arc::new(py.detach(|| Shm::join(&session)).map_err(failed)?);
-        let mut missions = bus.subscriber(Topic::Mission).map_err(failed)?;
+        let mut missions = Inbox::new(&*bus, Topic::Mission).map_err(failed)?;
         let talk = Talk {
             joined_nanos: monotonic_nanos(),
-            events: bus.subscriber(Topic::Events).map_err(failed)?,
-            dialog: bus.subscriber(Topic::Dialog).map_err(failed)?,
+            client: Client::join(&*bus, body, PEER).map_err(failed)?,
+            dialog: Inbox::new(&*bus, Topic::Dialog).map_err(failed)?,
+            mouth: bus.publisher(Topic::Dialog).map_err(failed)?,
             heard: VecDeque::new(),
             outcomes: BTreeMap::new(),
         };
-        let mouth = Mouth {
-            commands: bus.publisher(Topic::Commands).map_err(failed)?,
-            dialog: bus.publisher(Topic::Dialog).map_err(failed)?,
-            command: first_command(),
-        };
         let latest = Latest { states: bus.subscriber(Topic::State).map_err(failed)?, newest: None };
+        let talk = Arc::new(Mutex::new(talk));
+        keep_beating(&talk);
         let mut joined = Self {
             bus,
             name,
             mission: MissionMessage::default(),
             state: Mutex::new(latest),
             cameras: Mutex::default(),
-            talk: Arc::new(Mutex::new(talk)),
-            mouth: Mutex::new(mouth),
+            talk,
         };
-        let until = deadline(Some(timeout))?;
         let mission = joined.wait_for(py, Wake::State, until, || {
-            let Some(sample) = missions.latest().map_err(failed)? else { return Ok(None) };
-            MissionMessage::read(sample.payload()).map(Some).map_err(failed)
+            let next = missions.next(|sample| MissionMessage::read(sample.payload())).map_err(failed)?;
+            Ok(next.map(|(_, mission)| mission))
         })?;
         joined.mission = mission.ok_or_else(|| {
             let name = &joined.name;
@@ -387,26 +400,75 @@ impl Session {
         })
     }
 
-    /// Has a body do something. Whatever it was doing ends.
-    fn act(slf: &Bound<'_, Self>, body: u32, action: &Bound<'_, PyAction>) -> PyResult<Command> {
-        let this = slf.get();
-        let mut mouth = lock(&this.mouth);
-        mouth.command += 1;
-        let number = mouth.command;
-        lock(&this.talk).outcomes.insert(number, None);
-        let message = CommandMessage { command: number, turn: 0, body, reserved: 0, action: action.get().0.into() };
-        let write = &mut |bytes: &mut [u8]| bytes.copy_from_slice(bytemuck::bytes_of(&message));
-        mouth.commands.send(0, size_of::<CommandMessage>(), write).map_err(failed)?;
-        Ok(Command { session: slf.clone().unbind(), body, number })
+    /// The body.
+    #[getter]
+    fn body(&self) -> u32 {
+        lock(&self.talk).client.body()
     }
 
-    /// Says something as a body: to the log, and to all who listen.
-    fn say(&self, py: Python<'_>, body: u32, text: &str) -> PyResult<()> {
-        let message = DialogMessage::new(DialogKind::Reply, body, 0, text);
-        py.detach(|| {
-            let dialog = &mut lock(&self.mouth).dialog;
-            dialog.send(0, message.bytes(), &mut |bytes| message.write(bytes)).map_err(failed)
+    /// Whether it commands the body, as far as it has heard.
+    #[getter]
+    fn commands_body(&self) -> PyResult<bool> {
+        let mut talk = lock(&self.talk);
+        talk.pump()?;
+        Ok(talk.client.commands_body())
+    }
+
+    /// Asks to command the body, from whoever does if it is to be taken over. The outcome says whether that was granted.
+    fn claim(slf: &Bound<'_, Self>, take_over: bool) -> PyResult<Command> {
+        let mut talk = lock(&slf.get().talk);
+        let number = talk.client.claim(take_over).map_err(failed)?;
+        Ok(Command { session: slf.clone().unbind(), number: talk.expect(number) })
+    }
+
+    /// Lets go of the body: it goes back to whom it was taken from.
+    fn release(&self) -> PyResult<()> {
+        lock(&self.talk).client.release().map_err(failed)
+    }
+
+    /// Has the body do something. Whatever it was doing ends.
+    fn act(slf: &Bound<'_, Self>, action: &Bound<'_, PyAction>) -> PyResult<Command> {
+        let mut talk = lock(&slf.get().talk);
+        let number = talk.client.act(0, action.get().0).map_err(failed)?;
+        Ok(Command { session: slf.clone().unbind(), number: talk.expect(number) })
+    }
+
+    /// In lock-step: has the world wait for this peer, for `patience` seconds a turn at most; else for ever.
+    #[pyo3(signature = (patience=None))]
+    fn attend(&self, patience: Option<f64>) -> PyResult<()> {
+        let patience = patience.map(seconds).transpose()?;
+        lock(&self.talk).client.attend(patience).map_err(failed)
+    }
+
+    /// In lock-step: has the world wait for this peer no more.
+    fn leave(&self) -> PyResult<()> {
+        lock(&self.talk).client.leave().map_err(failed)
+    }
+
+    /// In lock-step: its turn is over, and the next comes so many ticks later, or with an outcome of its body.
+    fn ready(&self, ticks: u64) -> PyResult<()> {
+        lock(&self.talk).client.ready(ticks).map_err(failed)
+    }
+
+    /// In lock-step: waits up to `timeout` seconds for its turn; gives the tick.
+    #[pyo3(signature = (timeout=None))]
+    fn turn(&self, py: Python<'_>, timeout: Option<f64>) -> PyResult<u64> {
+        let tick = self.wait_for(py, Wake::Talk, deadline(timeout)?, || {
+            let mut talk = lock(&self.talk);
+            talk.pump()?;
+            talk.client.turn().map_err(failed)
         })?;
+        tick.ok_or_else(|| {
+            let (name, waited) = (&self.name, timeout.unwrap_or_default());
+            PyTimeoutError::new_err(format!("it was not its turn in session `{name}` for {waited} s"))
+        })
+    }
+
+    /// Says something as the body: to the log, and to all who listen.
+    fn say(&self, text: &str) -> PyResult<()> {
+        let mut talk = lock(&self.talk);
+        let message = DialogMessage::new(DialogKind::Reply, talk.client.body(), 0, text);
+        talk.mouth.send(0, message.bytes(), &mut |bytes| message.write(bytes)).map_err(failed)?;
         Ok(())
     }
 
@@ -436,11 +498,11 @@ impl Command {
             let waited = timeout.unwrap_or_default();
             PyTimeoutError::new_err(format!("command {} has no outcome after {waited} s", self.number))
         })?;
-        Ok(Outcome::new(self.number, self.body, status, &detail))
+        Ok(Outcome::new(self.number, self.session.get().body(), status, &detail))
     }
 
     fn __repr__(&self) -> String {
-        format!("Command({}, body={})", self.number, self.body)
+        format!("Command({})", self.number)
     }
 }
 
@@ -449,10 +511,4 @@ impl Drop for Command {
         // Nobody can ask for it any more.
         lock(&self.session.get().talk).outcomes.remove(&self.number);
     }
-}
-
-/// A number unlike that of other peers, in the upper bits of what JSON can hold exactly.
-fn first_command() -> u64 {
-    let mixed = monotonic_nanos() ^ (u64::from(std::process::id()) << 7);
-    (mixed & 0xf_ffff) << 32
 }

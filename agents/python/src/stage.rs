@@ -76,8 +76,8 @@ impl Theatre {
         let events = bus.subscriber(Topic::Events).map_err(failed)?;
         let slots = vec![Vec::new(); world.bodies().len()];
         let first = world.snapshot();
-        let engine = Some(Engine::new(&plan, world, &cameras, &bus).map_err(failed)?.without_recorder());
-        Ok(Self {
+        let engine = Some(Engine::new(&plan, world, &cameras, &bus).map_err(failed)?.unrecorded());
+        let mut theatre = Self {
             plan,
             bus,
             engine,
@@ -89,7 +89,9 @@ impl Theatre {
             commanded: 0,
             pending: Vec::new(),
             slots,
-        })
+        };
+        theatre.claim_all()?;
+        Ok(theatre)
     }
 
     fn engine(&self) -> &Engine {
@@ -114,23 +116,33 @@ impl Theatre {
             world
         };
         self.engine = None;
-        self.engine = Some(Engine::new(&self.plan, world, &self.cameras, &self.bus).map_err(failed)?.without_recorder());
+        self.engine = Some(Engine::new(&self.plan, world, &self.cameras, &self.bus).map_err(failed)?.unrecorded());
         // What the world before still had to tell.
         while self.events.receive().map_err(failed)?.is_some() {}
         self.pending.clear();
         self.commanded = 0;
         self.slots.iter_mut().for_each(Vec::clear);
-        Ok(())
+        self.claim_all()
     }
 
     fn command(&mut self, body: u32, action: Action) -> PyResult<()> {
         self.commanded += 1;
         let command = self.commanded;
-        let message = CommandMessage { command, turn: 0, body, reserved: 0, action: action.into() };
-        let tick = self.world().tick();
-        let write = &mut |bytes: &mut [u8]| bytes.copy_from_slice(bytemuck::bytes_of(&message));
-        self.commands.send(tick, size_of::<CommandMessage>(), write).map_err(failed)?;
+        self.send(&CommandMessage::act(command, 0, body, action))?;
         self.pending.push((command, body));
+        Ok(())
+    }
+
+    /// Makes this the commander of all bodies.
+    fn claim_all(&mut self) -> PyResult<()> {
+        let bodies = u32::try_from(self.slots.len()).unwrap_or(u32::MAX);
+        (0..bodies).try_for_each(|body| self.send(&CommandMessage::claim(0, body, "environment", true)))
+    }
+
+    fn send(&mut self, message: &CommandMessage) -> PyResult<()> {
+        let tick = self.world().tick();
+        let write = &mut |bytes: &mut [u8]| bytes.copy_from_slice(bytemuck::bytes_of(message));
+        self.commands.send(tick, size_of::<CommandMessage>(), write).map_err(failed)?;
         Ok(())
     }
 

@@ -35,6 +35,8 @@ pub struct Body {
     pub busy: bool,
     /// The command that it carries out; 0 is none.
     pub command: u64,
+    /// The run of whoever commands it; 0 is nobody.
+    pub commander: u64,
     /// On the floor, m.
     pub position: (f32, f32, f32),
     /// Heading, rad, counter-clockwise from east.
@@ -138,6 +140,7 @@ impl From<&BodyRecord> for Body {
             held: some(record.held),
             busy: record.busy != 0,
             command: record.command,
+            commander: record.commander,
             position: record.position_m.into(),
             yaw_rad: record.yaw_rad,
             head_pitch_rad: record.head_pitch_rad,

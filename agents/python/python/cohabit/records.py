@@ -22,6 +22,7 @@ DTYPES: dict[str, np.dtype[Any]] = {
             ("kind", "<u4"),
             ("flags", "<u4"),
             ("command", "<u8"),
+            ("commander", "<u8"),
             ("position_m", "<f4", 3),
             ("yaw_rad", "<f4"),
             ("head_pitch_rad", "<f4"),
