@@ -3,6 +3,9 @@
 use std::f32::consts::PI;
 
 use cohabit_cdf::{Action, GoToTarget, ObjectClass, ObjectId, Property, RoomId, Verb};
+use pyo3::prelude::*;
+
+use crate::{action::PyAction, error::bad_argument};
 
 /// One step ahead or back, m.
 const STRIDE_M: f32 = 0.5;
@@ -35,6 +38,15 @@ impl Choice {
         let moves = [Wait, MoveAhead, MoveBack, TurnLeft, TurnRight, LookUp, LookDown];
         let acts = [GoTo, PickUp, Place].into_iter().chain(Verb::ALL.map(Self::Interact));
         moves.into_iter().chain(RoomId::ALL.map(Self::GoToRoom)).chain(acts)
+    }
+
+    /// The choice of that number.
+    ///
+    /// # Errors
+    /// A `ValueError` if there is none.
+    pub fn numbered(number: usize) -> PyResult<Self> {
+        let last = Self::all().count() - 1;
+        Self::all().nth(number).ok_or_else(|| bad_argument(format!("there is no choice {number}: 0 to {last}")))
     }
 
     /// As documents call it.
@@ -96,4 +108,13 @@ impl Choice {
             _ => true,
         }
     }
+}
+
+/// The command that a choice means, done to an object if to one; none for waiting.
+///
+/// # Errors
+/// A `ValueError` if there is no such choice.
+#[pyfunction]
+pub fn choice_action(choice: usize, object: u32) -> PyResult<Option<PyAction>> {
+    Ok(Choice::numbered(choice)?.action(ObjectId(object)).map(PyAction))
 }

@@ -23,6 +23,7 @@ mod _native {
     #[pymodule_export]
     use crate::{
         action::PyAction,
+        choice::choice_action,
         error::Error,
         frame::{Frame, Seen},
         library::{class_ids, class_names},

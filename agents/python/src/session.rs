@@ -21,6 +21,7 @@ use crate::{
     error::{bad_argument, failed},
     frame::Frame,
     outcome::Outcome,
+    senses::{Filling, Sensed, Senses},
     state::State,
 };
 
@@ -28,6 +29,8 @@ use crate::{
 const NAP: Duration = Duration::from_millis(50);
 /// How often what came is taken in while Python is busy.
 const BEAT_EVERY: Duration = Duration::from_millis(400);
+/// How long the first state may take where something else is wanted, s.
+const SENSE_S: f64 = 5.0;
 /// What the others call a peer of this kind.
 const PEER: &str = "python";
 /// What was heard and not asked for: the oldest is forgotten beyond it.
@@ -248,6 +251,20 @@ impl Session {
         }
     }
 
+    fn newest_state(&self, py: Python<'_>, timeout: f64) -> PyResult<(Arc<Vec<u8>>, u64)> {
+        let newest = self.wait_for(py, Wake::State, deadline(Some(timeout))?, || {
+            let mut latest = lock(&self.state);
+            if let Some(sample) = latest.states.latest().map_err(failed)? {
+                latest.newest = Some((Arc::new(sample.payload().to_vec()), sample.envelope().tick));
+            }
+            Ok(latest.newest.clone())
+        })?;
+        newest.ok_or_else(|| {
+            let name = &self.name;
+            PyTimeoutError::new_err(format!("session `{name}` has told no state for {timeout} s"))
+        })
+    }
+
     fn camera(&self, name: &str) -> PyResult<(CameraId, Arc<Mutex<Box<dyn Subscriber>>>)> {
         let known = || {
             let names = self.mission.cameras.iter().filter_map(|camera| camera.camera());
@@ -359,18 +376,19 @@ impl Session {
     /// The newest state; waits up to `timeout` seconds for the first one.
     #[pyo3(signature = (timeout=5.0))]
     fn state(&self, py: Python<'_>, timeout: f64) -> PyResult<State> {
-        let newest = self.wait_for(py, Wake::State, deadline(Some(timeout))?, || {
-            let mut latest = lock(&self.state);
-            if let Some(sample) = latest.states.latest().map_err(failed)? {
-                latest.newest = Some((Arc::new(sample.payload().to_vec()), sample.envelope().tick));
-            }
-            Ok(latest.newest.clone())
-        })?;
-        let (payload, tick) = newest.ok_or_else(|| {
-            let name = &self.name;
-            PyTimeoutError::new_err(format!("session `{name}` has told no state for {timeout} s"))
-        })?;
+        let (payload, tick) = self.newest_state(py, timeout)?;
         State::try_from((&payload[..], tick)).map_err(failed)
+    }
+
+    /// What the body senses besides pictures, in the newest state, once its slots are filled anew: with what is `seen` in
+    /// `frame`, `near`, or `all`.
+    #[pyo3(signature = (slots, filling, frame=None))]
+    fn sense(&self, py: Python<'_>, slots: usize, filling: &str, frame: Option<&Bound<'_, Frame>>) -> PyResult<Senses> {
+        let filling = Filling::named(filling)?;
+        let state = self.state(py, SENSE_S)?;
+        let body = self.body();
+        let sensed = Sensed::of(state.surroundings(), body, slots, filling, frame.map(Bound::get));
+        sensed.ok_or_else(|| bad_argument(format!("there is no body {body} in this session")))?.into_python(py)
     }
 
     /// The newest frame of a camera that was not handed out yet; waits for one up to `timeout` seconds.
@@ -499,6 +517,16 @@ impl Command {
             PyTimeoutError::new_err(format!("command {} has no outcome after {waited} s", self.number))
         })?;
         Ok(Outcome::new(self.number, self.session.get().body(), status, &detail))
+    }
+
+    /// What came of it, if it has ended.
+    fn poll(&self) -> PyResult<Option<Outcome>> {
+        let session = self.session.get();
+        let mut talk = lock(&session.talk);
+        talk.pump()?;
+        let end = talk.outcomes.get(&self.number).cloned().flatten();
+        let body = talk.client.body();
+        Ok(end.map(|(status, detail)| Outcome::new(self.number, body, status, &detail)))
     }
 
     fn __repr__(&self) -> String {

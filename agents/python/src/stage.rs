@@ -6,7 +6,7 @@ use cohabit_bus::{
     CameraId, Local, Publisher, Subscriber, Topic, Transport,
     message::{self, CommandMessage, EventKind, EventMessage},
 };
-use cohabit_cdf::{Action, BodyId, BodyRequest, ObjectId, Status};
+use cohabit_cdf::{Action, BodyRequest, ObjectId, Status};
 use cohabit_engine::{CameraPlan, Engine, SessionPlan, Stills, report};
 use cohabit_render::CpuRenderer;
 use cohabit_world::{DT_NANOS, Ending, World};
@@ -20,7 +20,7 @@ use crate::{
     library,
     mission_file::MissionFile,
     outcome::Outcome,
-    senses::{self, Filling, Sensed, Senses},
+    senses::{Filling, Sensed, Senses, Surroundings},
     state::State,
 };
 
@@ -261,10 +261,7 @@ impl Stage {
         let ends = self.with(py, |theatre| {
             let mut actions = Vec::new();
             for (body, choice, slot) in choices {
-                let most = Choice::all().count();
-                let chosen = Choice::all().nth(choice);
-                let chosen =
-                    chosen.ok_or_else(|| bad_argument(format!("there is no choice {choice}: 0 to {}", most - 1)))?;
+                let chosen = Choice::numbered(choice)?;
                 // An empty slot is for the world to refuse.
                 let nothing = ObjectId(u32::MAX);
                 let object = theatre.slots.get(body as usize).and_then(|slots| slots.get(slot)).copied();
@@ -281,27 +278,31 @@ impl Stage {
         self.with(py, |theatre| theatre.look(&cameras))
     }
 
-    /// What a body senses besides pictures, once its slots are filled anew: with what is `seen` in `frame`, `near`, or
-    /// `all`.
-    #[pyo3(signature = (body, slots, filling, frame=None))]
+    /// What bodies sense besides pictures, once their slots are filled anew: with what is `seen` in each one's frame, `near`,
+    /// or `all`.
     fn sense(
         &self,
         py: Python<'_>,
-        body: u32,
+        bodies: Vec<u32>,
         slots: usize,
         filling: &str,
-        frame: Option<&Bound<'_, Frame>>,
-    ) -> PyResult<Senses> {
+        frames: Vec<Bound<'_, Frame>>,
+    ) -> PyResult<Vec<Senses>> {
         let filling = Filling::named(filling)?;
-        let frame = frame.map(Bound::get);
+        let frames: Vec<&Frame> = frames.iter().map(Bound::get).collect();
         let sensed = self.with(py, |theatre| {
-            let filled = senses::fill(theatre.world(), BodyId(body), filling, slots, frame);
-            let sensed = Sensed::of(theatre.world(), BodyId(body), slots, &filled);
-            let sensed = sensed.ok_or_else(|| bad_argument(format!("there is no body {body} here")))?;
-            theatre.slots[body as usize] = filled;
-            Ok(sensed)
+            let parts = report::state(theatre.world());
+            let around = Surroundings { bodies: &parts.bodies, objects: &parts.objects };
+            let mut all = Vec::new();
+            for (place, body) in bodies.into_iter().enumerate() {
+                let sensed = Sensed::of(around, body, slots, filling, frames.get(place).copied());
+                let sensed = sensed.ok_or_else(|| bad_argument(format!("there is no body {body} here")))?;
+                theatre.slots[body as usize] = sensed.objects();
+                all.push(sensed);
+            }
+            Ok(all)
         })?;
-        sensed.into_python(py)
+        sensed.into_iter().map(|sensed| sensed.into_python(py)).collect()
     }
 
     /// `(tick, score, ending, goals)`: the ending is `running`, `complete` or `failed`, and a goal `(number, met)`.

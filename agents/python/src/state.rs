@@ -10,6 +10,7 @@ use crate::{
     error::bad_argument,
     library::catalog,
     memory::{Memory, Owner},
+    senses::Surroundings,
 };
 
 /// The world at one tick. It is a copy: keep as many as you like.
@@ -191,6 +192,12 @@ impl State {
         let mut words = vec![0_u64; bytes.div_ceil(size_of::<u64>())];
         parts.write(&mut bytemuck::cast_slice_mut(&mut words)[..bytes]);
         Self { words: words.into(), bytes, tick }
+    }
+
+    /// Its bodies and objects.
+    pub fn surroundings(&self) -> Surroundings<'_> {
+        let StateView { bodies, objects, .. } = self.view();
+        Surroundings { bodies, objects }
     }
 
     fn payload(&self) -> &[u8] {

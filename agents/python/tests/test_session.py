@@ -105,7 +105,7 @@ def test_eight_frames_can_be_held_and_the_ninth_says_so(session: str) -> None:
 
 
 def test_a_command_gets_its_outcome(session: str) -> None:
-    with cohabit.join(session) as joined:
+    with cohabit.join(session, take_over=True) as joined:
         assert joined.do(cohabit.GoTo("bowl"), timeout=60)
         outcome = joined.do(cohabit.PickUp("bowl"), timeout=60)
         assert outcome.success, outcome
@@ -115,6 +115,20 @@ def test_a_command_gets_its_outcome(session: str) -> None:
         assert not refused and refused.status == "AlreadyHoldingObject" and refused.detail
         with pytest.raises(KeyError, match="no object unicorn"):
             joined.act(cohabit.PickUp("unicorn"))
+
+
+def test_a_body_has_one_commander(session: str) -> None:
+    with cohabit.join(session) as joined, cohabit.join(session, body=1) as other:
+        with pytest.raises(cohabit.Error, match="the agent commands body 0.*take_over=True"):
+            joined.act(cohabit.Stop())
+        other.claim()
+        assert other.peer.commands_body and not joined.peer.commands_body
+        taker = cohabit.join(session, body=1, take_over=True)
+        assert taker.do(cohabit.Rotate(0.1), timeout=60)
+        refused = other.do(cohabit.Rotate(0.1), timeout=60)
+        assert refused.status == "InvalidCommand" and "python commands body 1" in refused.detail
+        taker.close()
+        assert other.do(cohabit.Rotate(0.1), timeout=60), "it went back"
 
 
 def test_waiting_has_an_end(session: str) -> None:

@@ -9,6 +9,12 @@ from typing import Optional
 from . import _native
 from .actions import Action
 
+_ANSWER_S = 5.0
+"""How long a claim may take to be answered."""
+
+_LONG_TICKS = 60 * 240
+"""Longer than any command takes."""
+
 
 class Session:
     """A session of this machine, as one body takes part in it.
@@ -17,9 +23,12 @@ class Session:
     read-only arrays over what the simulator rendered, and nothing is copied.
     """
 
-    def __init__(self, name: str, body: int = 0, timeout: float = 5.0) -> None:
+    def __init__(self, name: str, body: int = 0, take_over: bool = False, timeout: float = 5.0) -> None:
         self.body = body
-        self.peer = _native.Session(name, timeout)
+        self.peer = _native.Session(name, body, timeout)
+        self._take_over = take_over
+        self._claimed = False
+        self._attends = False
 
     def state(self, timeout: float = 5.0) -> _native.State:
         """The world as it is now: bodies, objects, goals. Waits for the first state, at most ``timeout`` seconds."""
@@ -39,17 +48,62 @@ class Session:
         while True:
             yield self.look(camera, timeout)
 
+    def claim(self, take_over: bool = False) -> None:
+        """Commands the body from now on; nobody else then does, until it is let go of or taken over.
+
+        Raises :class:`cohabit.Error` if another commands it, unless it is to be taken over; it then goes back to that one
+        with :meth:`release`. The first :meth:`act` does this by itself.
+        """
+        outcome = self.peer.claim(take_over).wait(_ANSWER_S)
+        if not outcome:
+            raise _native.Error(f"{outcome.detail} (`take_over=True` does that)")
+        self._claimed = True
+
+    def release(self) -> None:
+        """Lets go of the body: it goes back to whom it was taken from."""
+        self.peer.release()
+        self._claimed = False
+
     def act(self, action: Action) -> _native.Command:
         """Has the body do something; what it was doing ends. ``.wait(timeout)`` waits for the outcome."""
-        return self.peer.act(self.body, action.plain(self.state(), self.body))
+        if not self._claimed:
+            self.claim(self._take_over)
+        return self.peer.act(action.plain(self.state(), self.body))
 
     def do(self, action: Action, timeout: Optional[float] = None) -> _native.Outcome:
-        """The same, and waits for the outcome."""
-        return self.act(action).wait(timeout)
+        """The same, and waits for the outcome; in lock-step, has the world go on until then."""
+        command = self.act(action)
+        while self._attends:
+            self.step(_LONG_TICKS, timeout)
+            if (outcome := command.poll()) is not None:
+                return outcome
+        return command.wait(timeout)
+
+    def attend(self, patience: Optional[float] = None, timeout: Optional[float] = None) -> int:
+        """In a session in lock-step: has the world wait for this peer from now on, and waits for its first turn.
+
+        Gives the tick. A turn may take ``patience`` seconds, or for ever. What the body sees and knows in a turn is of that
+        very tick, and no time goes by until :meth:`step`.
+        """
+        if not self.peer.lock_step:
+            raise _native.Error(f"session `{self.peer.name}` is not in lock-step: start it with `--lock-step`")
+        self.peer.attend(patience)
+        self._attends = True
+        return self.peer.turn(timeout)
+
+    def step(self, ticks: int = 1, timeout: Optional[float] = None) -> int:
+        """Ends this peer's turn, and waits for the next: ``ticks`` later, or earlier, with an outcome of its body."""
+        self.peer.ready(ticks)
+        return self.peer.turn(timeout)
+
+    def leave(self) -> None:
+        """Has the world wait for this peer no more."""
+        self.peer.leave()
+        self._attends = False
 
     def say(self, text: str) -> None:
         """Says something as the body: to the log, and to all who listen."""
-        self.peer.say(self.body, text)
+        self.peer.say(text)
 
     def listen(self, timeout: Optional[float] = None) -> Iterator[_native.Heard]:
         """What is told and said from when the session was joined: events, and dialog. Ends after ``timeout`` seconds of
@@ -58,7 +112,11 @@ class Session:
             yield heard
 
     def close(self) -> None:
-        """Lets go of all cameras; arrays that are still held stay as they are."""
+        """Lets go of the body and of all cameras; arrays that are still held stay as they are."""
+        if self._attends:
+            self.leave()
+        if self._claimed:
+            self.release()
         for name, *_ in self.peer.cameras:
             self.peer.close_camera(name)
 
@@ -77,9 +135,12 @@ class Session:
         return f"<cohabit.Session {self.peer.name!r}, body {self.body}>"
 
 
-def join(name: str, body: int = 0, timeout: float = 5.0) -> Session:
+def join(name: str, body: int = 0, take_over: bool = False, timeout: float = 5.0) -> Session:
     """Joins a session of this machine as one of its bodies, and waits up to ``timeout`` seconds for its simulator.
+
+    Looking and listening is free to all; the body is claimed by the first command. If another commands it then, as the
+    session's own agent does body 0, it has to be taken over (``take_over=True``), and goes back when this one lets go.
 
     Raises :class:`cohabit.Error` if there is no such session.
     """
-    return Session(name, body, timeout)
+    return Session(name, body, take_over, timeout)
