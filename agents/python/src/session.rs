@@ -401,6 +401,11 @@ impl Session {
             .ok_or_else(|| PyTimeoutError::new_err(format!("camera `{camera}` has delivered no frame for {timeout} s")))
     }
 
+    /// Looks through a camera from now on: it is rendered.
+    fn open_camera(&self, camera: &str) -> PyResult<()> {
+        self.camera(camera).map(drop)
+    }
+
     /// Lets go of a camera: it is not rendered any more for this process. Frames that were handed out stay.
     fn close_camera(&self, camera: &str) -> PyResult<()> {
         let camera: CameraId = camera.parse().map_err(bad_argument)?;

@@ -66,7 +66,7 @@ def test_the_same_seed_and_actions_give_the_same_bits() -> None:
     other = trace(cohabit.Env(size=64, ticks_per_step=20, threads=2), 5, 40)
     for second in (again, other):
         assert gymnasium.utils.env_checker.data_equivalence(first, second, exact=True)
-    assert one.office.stage.digest() == one.office.stage.digest()
+    assert one.office.world.digest() == one.office.world.digest()
 
 
 def test_chance_follows_the_seed() -> None:
@@ -76,7 +76,7 @@ def test_chance_follows_the_seed() -> None:
     digests = []
     for seed in (1, 2, 1):
         env.reset(seed=seed)
-        digests.append(env.office.stage.digest())
+        digests.append(env.office.world.digest())
     assert digests[0] == digests[2] != digests[1]
 
 

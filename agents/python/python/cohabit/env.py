@@ -12,6 +12,7 @@ import numpy.typing as npt
 from . import _native
 from .actions import Action
 from .office import MissionLike, Observation, Office, outcome_info
+from .session import Session
 
 
 class Env(gymnasium.Env[Observation, npt.NDArray[np.int64]]):
@@ -28,6 +29,9 @@ class Env(gymnasium.Env[Observation, npt.NDArray[np.int64]]):
     :param ticks_per_step: a step lasts so many ticks (of 1/60 s) whatever the body does, and a new command takes the place
         of one under way; ``wait`` lets it go on. Left out, a step lasts until its command came to its outcome.
     :param render_mode: ``"rgb_array"``, or none.
+
+    :param session: a session that was joined (:func:`cohabit.join`), whose world is played instead of one in this process. Its
+        world cannot begin anew: :meth:`reset` takes it as it is. In lock-step it waits for every step.
 
     All other parameters are those of :class:`~cohabit.office.Office`.
     """
@@ -49,57 +53,61 @@ class Env(gymnasium.Env[Observation, npt.NDArray[np.int64]]):
         render_mode: Optional[str] = None,
         render_size: tuple[int, int] = (640, 360),
         threads: int = 1,
+        session: Optional[Session] = None,
     ) -> None:
         if render_mode not in (None, "rgb_array"):
             raise ValueError(f"there is no render_mode `{render_mode}`: rgb_array")
+        if session is not None and render_mode is not None:
+            raise ValueError("a session is watched on its page: there is no render_mode then")
         if ticks_per_step is not None and ticks_per_step < 1:
             raise ValueError(f"{ticks_per_step} ticks a step: at least 1")
         self.render_mode = render_mode
         self.max_steps = max_steps
         self.ticks_per_step = ticks_per_step
         render = render_size if render_mode else None
-        self.office = Office(mission, bodies, planes, camera, size, slots, fill, render, threads)
+        self.office = Office(mission, bodies, planes, camera, size, slots, fill, render, threads, session)
         self.observation_space = self.office.observation_space
         self.action_space = self.office.action_space
+        self._body = 0 if session is None else session.body
         self._steps = 0
         self._score = 0
 
     @property
     def state(self) -> _native.State:
         """The whole world as it is, for those who may know it."""
-        return self.office.stage.state()
+        return self.office.world.state()
 
     def reset(
         self, *, seed: Optional[int] = None, options: Optional[dict[str, Any]] = None
     ) -> tuple[Observation, dict[str, Any]]:
         """Begins the mission anew. What it leaves to chance follows from ``seed``; there are no ``options``."""
         super().reset(seed=seed)
-        self.office.stage.reset(seed if seed is not None else int(self.np_random.integers(2**31)))
+        self.office.world.reset(seed if seed is not None else int(self.np_random.integers(2**31)))
         self._steps = 0
         self._score, _ = self.office.progress()
-        (observation,), (info,) = self.office.observe([0])
-        return observation, info | outcome_info([], 0)
+        (observation,), (info,) = self.office.observe([self._body])
+        return observation, info | outcome_info([], self._body)
 
     def step(
         self, action: npt.NDArray[np.int64]
     ) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
         """One command, carried out to its outcome, or for ``ticks_per_step``."""
         choice, slot = int(action[0]), int(action[1])
-        return self._after(self.office.stage.choose([(0, choice, slot)], self.ticks_per_step))
+        return self._after(self.office.world.choose([(self._body, choice, slot)], self.ticks_per_step))
 
     def act(self, action: Action) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
         """The same as :meth:`step` with an action in words, such as ``GoTo("bowl")``."""
-        plain = action.plain(self.state, 0)
-        return self._after(self.office.stage.act([(0, plain)], self.ticks_per_step))
+        plain = action.plain(self.state, self._body)
+        return self._after(self.office.world.act([(self._body, plain)], self.ticks_per_step))
 
     def _after(self, outcomes: Sequence[_native.Outcome]) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
         self._steps += 1
-        (observation,), (info,) = self.office.observe([0])
+        (observation,), (info,) = self.office.observe([self._body])
         reward = (info["score"] - self._score) / 100
         self._score = info["score"]
         terminated = info["ending"] != "running"
         truncated = not terminated and self._steps >= self.max_steps
-        return observation, reward, terminated, truncated, info | outcome_info(outcomes, 0)
+        return observation, reward, terminated, truncated, info | outcome_info(outcomes, self._body)
 
     def render(self) -> Optional[npt.NDArray[np.uint8]]:  # type: ignore[override]
         """What somebody behind the body sees, ``[H, W, 3]``, if there is a ``render_mode``."""

@@ -26,8 +26,9 @@ from __future__ import annotations
 
 import json
 import os
+import time
 from collections.abc import Mapping, Sequence
-from typing import Any, Optional, Union
+from typing import Any, Optional, Protocol, Union
 
 import gymnasium
 import numpy as np
@@ -35,6 +36,8 @@ import numpy.typing as npt
 from gymnasium import spaces
 
 from . import _native
+from .records import NONE
+from .session import Session
 
 MissionLike = Union[None, str, "os.PathLike[str]", Mapping[str, Any]]
 """A built-in mission's name, a CDF file's path, or a CDF as a dictionary; ``None`` is the default mission."""
@@ -51,7 +54,8 @@ CHOICES: tuple[str, ...] = tuple(name for name, _ in _native.CHOICES)
 MOST_GOALS = 16
 """Goals that an observation tells of."""
 
-_TAKES_SLOT = np.array([takes for _, takes in _native.CHOICES], dtype=bool)
+_LONG_TICKS = 60 * 240
+_WAIT_TICKS = 60
 _FARTHEST_M = 1000.0
 _CLASSES = len(_native.class_ids())
 _PLANE_SPACES: dict[str, tuple[float, float, tuple[int, ...], Any]] = {
@@ -61,6 +65,119 @@ _PLANE_SPACES: dict[str, tuple[float, float, tuple[int, ...], Any]] = {
     "ids": (0, 2**32 - 1, (), np.uint32),
 }
 _VIEWS = {"panorama": 4}
+
+
+class World(Protocol):
+    """What :class:`Office` needs of a world: one in this process, or that of a session."""
+
+    def kinds(self) -> list[str]:
+        """The kinds of all bodies that are played."""
+
+    def reset(self, seed: int) -> None:
+        """Begins anew."""
+
+    def act(self, actions: list[tuple[int, _native.Action]], ticks: Optional[int] = None) -> list[_native.Outcome]:
+        """Has bodies carry out actions until all have ended, or for so many ticks."""
+
+    def choose(self, choices: list[tuple[int, int, int]], ticks: Optional[int] = None) -> list[_native.Outcome]:
+        """The same with ``(body, choice, slot)``."""
+
+    def look(self, cameras: list[str]) -> list[_native.Frame]:
+        """What cameras see."""
+
+    def sense(self, bodies: list[int], slots: int, filling: str, frames: list[_native.Frame]) -> list[_native.Senses]:
+        """What bodies sense besides pictures."""
+
+    def progress(self) -> tuple[int, int, str, list[tuple[int, bool]]]:
+        """Tick, score, ending, and goals with whether they are met."""
+
+    def state(self) -> _native.State:
+        """The state of the world."""
+
+
+class Guest:
+    """The world of a session, as one body takes part in it; in lock-step, if the session is."""
+
+    def __init__(
+        self, session: Session, camera: Optional[str], planes: Sequence[str], size: tuple[int, int]
+    ) -> None:
+        if camera is not None:
+            told = {name: (width, height, has) for name, _, width, height, has in session.peer.cameras}
+            if camera not in told:
+                raise ValueError(f"session `{session.peer.name}` has no camera `{camera}`: {', '.join(told)}")
+            width, height, has = told[camera]
+            if (width, height) != size or not set(planes) <= set(has):
+                raise ValueError(f"camera `{camera}` has pictures of {width}x{height} of {', '.join(has)}")
+        self.session = session
+        self._slots: npt.NDArray[np.uint32] = np.zeros(0, np.uint32)
+        self._camera = camera
+        self._begun = False
+        self._pending: Optional[_native.Command] = None
+
+    def kinds(self) -> list[str]:
+        """The kind of the body that is played."""
+        return [self.session.state().bodies[self.session.body].kind]
+
+    def reset(self, seed: int) -> None:
+        """A session's world goes on as it is."""
+        if not self._begun:
+            self.session.claim(self.session.take_over)
+            if self.session.peer.lock_step:
+                self.session.attend()
+                if self._camera is not None:
+                    # A camera is drawn from the turn on after somebody first looks through it.
+                    self.session.peer.open_camera(self._camera)
+                    self.session.step()
+            self._begun = True
+
+    def act(self, actions: list[tuple[int, _native.Action]], ticks: Optional[int] = None) -> list[_native.Outcome]:
+        """Has the body carry out an action until it has ended, or for so many ticks."""
+        peer, lock_step = self.session.peer, self.session.peer.lock_step
+        for _, action in actions:
+            self._pending = peer.act(action)
+        last = self.session.state().tick + (ticks or (_LONG_TICKS if self._pending else _WAIT_TICKS))
+        while True:
+            if lock_step:
+                tick = self.session.step(max(1, last - self.session.state().tick))
+            else:
+                time.sleep(1 / 60)
+                tick = self.session.state().tick
+            outcome = self._pending.poll() if self._pending else None
+            if outcome is not None:
+                self._pending = None
+                if ticks is None:
+                    return [outcome]
+            if tick >= last or self.session.state().ending != "running":
+                return [] if outcome is None else [outcome]
+
+    def choose(self, choices: list[tuple[int, int, int]], ticks: Optional[int] = None) -> list[_native.Outcome]:
+        """The same with ``(body, choice, slot)``."""
+        actions = []
+        for body, choice, slot in choices:
+            number = int(self._slots[slot]) - 1 if slot < len(self._slots) and self._slots[slot] else NONE
+            action = _native.choice_action(choice, number)
+            if action is not None:
+                actions.append((body, action))
+        return self.act(actions, ticks)
+
+    def look(self, cameras: list[str]) -> list[_native.Frame]:
+        """What a camera saw last."""
+        return [self.session.look(camera) for camera in cameras]
+
+    def sense(self, bodies: list[int], slots: int, filling: str, frames: list[_native.Frame]) -> list[_native.Senses]:
+        """What the body senses besides pictures."""
+        senses = self.session.peer.sense(slots, filling, frames[0] if frames else None)
+        self._slots = senses.ids
+        return [senses]
+
+    def progress(self) -> tuple[int, int, str, list[tuple[int, bool]]]:
+        """Tick, score, ending, and goals with whether they are met."""
+        state = self.session.state()
+        return state.tick, state.score, state.ending, [(goal.number, goal.met) for goal in state.goals]
+
+    def state(self) -> _native.State:
+        """The state of the world."""
+        return self.session.state()
 
 
 class Office:
@@ -77,6 +194,8 @@ class Office:
         room, the nearest first; ``"all"``, by number. Left out, it is ``"seen"`` where there are pictures, else ``"near"``.
     :param render: width and height of :meth:`render`'s pictures, if any are wanted.
     :param threads: threads that draw.
+    :param session: a session that was joined, whose world it is instead; ``mission``, ``bodies`` and ``threads`` say nothing
+        then, ``camera`` is the name of one of its cameras (``"egocentric"`` for the body's own), and ``size`` that camera's.
     """
 
     def __init__(
@@ -90,6 +209,7 @@ class Office:
         fill: Optional[str],
         render: Optional[tuple[int, int]],
         threads: int,
+        session: Optional[Session] = None,
     ) -> None:
         unknown = [plane for plane in planes if plane not in PLANES]
         if unknown:
@@ -104,16 +224,27 @@ class Office:
         drawn = self.planes + (("ids",) if self.fill == "seen" and "ids" not in self.planes else ())
         self._drawn = bool(drawn)
         count = 1 + len(bodies)
-        cameras = [self._camera(body, camera, drawn) for body in range(count)] if drawn else []
+        self._session_camera = camera if session is not None else None
+        cameras = [self._camera(body, camera, drawn) for body in range(count)] if drawn and session is None else []
         if render is not None:
             cameras += [
                 f"watch-{body}=third-person,body={body},size={render[0]}x{render[1]},planes=color" for body in range(count)
             ]
-        name, text = _mission(mission)
-        self.stage = _native.Stage(name, text, list(bodies), cameras, 0, threads)
-        self.kinds = tuple(self.stage.kinds())
+        self.world: World
+        if session is None:
+            name, text = _mission(mission)
+            self.world = _native.Stage(name, text, list(bodies), cameras, 0, threads)
+        else:
+            self.world = Guest(session, self._eyes(session.body) if drawn else None, drawn, self.size)
+        self.kinds = tuple(self.world.kinds())
         self.observation_space = self._observation_space()
         self.action_space = spaces.MultiDiscrete([len(CHOICES), slots])
+
+    def _eyes(self, body: int) -> str:
+        """The camera that a body sees by."""
+        if self._session_camera is None:
+            return f"sense-{body}"
+        return f"egocentric/{body}" if self._session_camera == "egocentric" else self._session_camera
 
     def _camera(self, body: int, camera: str, planes: Sequence[str]) -> str:
         kind, _, options = camera.partition(",")
@@ -145,14 +276,14 @@ class Office:
     def observe(self, bodies: Sequence[int]) -> tuple[list[Observation], list[dict[str, Any]]]:
         """What each of these bodies observes, and what may be known beyond it."""
         frames: Sequence[Optional[_native.Frame]]
-        frames = self.stage.look([f"sense-{body}" for body in bodies]) if self._drawn else [None] * len(bodies)
-        tick, score, ending, goals = self.stage.progress()
+        frames = self.world.look([self._eyes(body) for body in bodies]) if self._drawn else [None] * len(bodies)
+        tick, score, ending, goals = self.world.progress()
         met = np.zeros(MOST_GOALS, np.int8)
         for index, (_, is_met) in enumerate(goals[:MOST_GOALS]):
             met[index] = is_met
+        seen = [frame for frame in frames if frame is not None] if self.fill == "seen" else []
         observations, infos = [], []
-        for body, frame in zip(bodies, frames):
-            senses = self.stage.sense(body, self.slots, self.fill, frame if self.fill == "seen" else None)
+        for frame, senses in zip(frames, self.world.sense(list(bodies), self.slots, self.fill, seen)):
             observation: Observation = {}
             if frame is not None:
                 for plane in self.planes:
@@ -176,12 +307,12 @@ class Office:
 
     def progress(self) -> tuple[int, bool]:
         """The score, and whether the mission is over."""
-        _, score, ending, _ = self.stage.progress()
+        _, score, ending, _ = self.world.progress()
         return score, ending != "running"
 
     def render(self, body: int) -> npt.NDArray[np.uint8]:
         """What somebody behind a body sees, ``[H, W, 3]``."""
-        (frame,) = self.stage.look([f"watch-{body}"])
+        (frame,) = self.world.look([f"watch-{body}"])
         return np.ascontiguousarray(frame.color[..., :3])
 
 

@@ -82,7 +82,7 @@ class ParallelEnv(Base):  # type: ignore[misc]
 
     def state(self) -> _native.State:  # type: ignore[override]
         """The whole world as it is, for those who may know it."""
-        return self.office.stage.state()
+        return self.office.world.state()
 
     def reset(
         self, seed: Optional[int] = None, options: Optional[dict[str, Any]] = None
@@ -90,7 +90,7 @@ class ParallelEnv(Base):  # type: ignore[misc]
         """Begins the mission anew. What it leaves to chance follows from ``seed``; there are no ``options``."""
         if seed is not None:
             self._random = np.random.default_rng(seed)
-        self.office.stage.reset(seed if seed is not None else int(self._random.integers(2**31)))
+        self.office.world.reset(seed if seed is not None else int(self._random.integers(2**31)))
         self.agents = list(self.possible_agents)
         self._steps = 0
         self._score, _ = self.office.progress()
@@ -100,13 +100,13 @@ class ParallelEnv(Base):  # type: ignore[misc]
     def step(self, actions: Mapping[str, npt.NDArray[np.int64]]) -> Step:
         """A command for each agent; agents that are left out wait."""
         choices = [(self._number[agent], int(action[0]), int(action[1])) for agent, action in actions.items()]
-        return self._after(self.office.stage.choose(choices, self.ticks_per_step))
+        return self._after(self.office.world.choose(choices, self.ticks_per_step))
 
     def act(self, actions: Mapping[str, Action]) -> Step:
         """The same as :meth:`step` with actions in words, such as ``GoTo("bowl")``."""
-        state = self.office.stage.state()
+        state = self.office.world.state()
         plain = [(self._number[agent], action.plain(state, self._number[agent])) for agent, action in actions.items()]
-        return self._after(self.office.stage.act(plain, self.ticks_per_step))
+        return self._after(self.office.world.act(plain, self.ticks_per_step))
 
     def _observe(self, outcomes: Sequence[_native.Outcome]) -> tuple[dict[str, Observation], Infos]:
         numbers = [self._number[agent] for agent in self.agents]

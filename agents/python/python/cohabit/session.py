@@ -26,7 +26,7 @@ class Session:
     def __init__(self, name: str, body: int = 0, take_over: bool = False, timeout: float = 5.0) -> None:
         self.body = body
         self.peer = _native.Session(name, body, timeout)
-        self._take_over = take_over
+        self.take_over = take_over
         self._claimed = False
         self._attends = False
 
@@ -67,7 +67,7 @@ class Session:
     def act(self, action: Action) -> _native.Command:
         """Has the body do something; what it was doing ends. ``.wait(timeout)`` waits for the outcome."""
         if not self._claimed:
-            self.claim(self._take_over)
+            self.claim(self.take_over)
         return self.peer.act(action.plain(self.state(), self.body))
 
     def do(self, action: Action, timeout: Optional[float] = None) -> _native.Outcome:
