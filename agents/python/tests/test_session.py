@@ -163,3 +163,14 @@ def test_a_session_that_is_not_there_is_told() -> None:
         cohabit.join("nobody-is-here")
     with pytest.raises(ValueError, match="use 1 to 24 letters"):
         cohabit.join("no such name")
+
+
+def test_the_world_of_a_session_in_real_time_is_an_environment(session: str) -> None:
+    with cohabit.join(session, body=1) as joined:
+        env = cohabit.Env(session=joined, planes=(), slots=8)
+        env.reset()
+        observation, _, _, _, info = env.act(cohabit.Rotate(0.3))
+        assert info["status"] == "ActionSuccessful"
+        assert env.observation_space.contains(observation)
+        with pytest.raises(cohabit.Error, match="not in lock-step"):
+            joined.attend()

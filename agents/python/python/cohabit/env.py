@@ -109,6 +109,6 @@ class Env(gymnasium.Env[Observation, npt.NDArray[np.int64]]):
         truncated = not terminated and self._steps >= self.max_steps
         return observation, reward, terminated, truncated, info | outcome_info(outcomes, self._body)
 
-    def render(self) -> Optional[npt.NDArray[np.uint8]]:  # type: ignore[override]
+    def render(self) -> Optional[npt.NDArray[np.uint8]]:
         """What somebody behind the body sees, ``[H, W, 3]``, if there is a ``render_mode``."""
         return self.office.render(0) if self.render_mode else None

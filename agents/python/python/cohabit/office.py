@@ -112,6 +112,7 @@ class Guest:
         self._slots: npt.NDArray[np.uint32] = np.zeros(0, np.uint32)
         self._camera = camera
         self._begun = False
+        self._frame: Optional[_native.Frame] = None
         self._pending: Optional[_native.Command] = None
 
     def kinds(self) -> list[str]:
@@ -161,8 +162,12 @@ class Guest:
         return self.act(actions, ticks)
 
     def look(self, cameras: list[str]) -> list[_native.Frame]:
-        """What a camera saw last."""
-        return [self.session.look(camera) for camera in cameras]
+        """What a camera saw last; in a turn in lock-step, what it sees."""
+        (camera,) = cameras
+        last, tick = self._frame, self.session.state().tick
+        if last is None or last.tick != tick or not self.session.peer.lock_step:
+            self._frame = last = self.session.look(camera)
+        return [last]
 
     def sense(self, bodies: list[int], slots: int, filling: str, frames: list[_native.Frame]) -> list[_native.Senses]:
         """What the body senses besides pictures."""
@@ -318,8 +323,8 @@ class Office:
 
 def _mask(senses: _native.Senses) -> ActionMask:
     """Which choices and which slots make sense, as ``MultiDiscrete.sample`` takes them."""
-    kinds = senses.afforded.any(axis=1).astype(np.int8)
-    slots = (senses.ids != 0).astype(np.int8)
+    kinds = np.asarray(senses.afforded.any(axis=1), np.int8)
+    slots = np.asarray(senses.ids != 0, np.int8)
     if not slots.any():
         # Something must be chosen, also by those that need nothing.
         slots[0] = 1

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Optional, Union
+from typing import Any, Optional, Union
 
 import gymnasium
 import numpy as np
@@ -13,19 +13,16 @@ from . import _native
 from .actions import Action
 from .office import MissionLike, Observation, Office, outcome_info
 
-if TYPE_CHECKING:
-    from pettingzoo import ParallelEnv as Base
-else:
-    try:
-        from pettingzoo import ParallelEnv as Base
-    except ImportError:  # It is only needed for its wrappers.
-        Base = object
+try:
+    from pettingzoo import ParallelEnv as Base  # type: ignore[import-untyped, unused-ignore]
+except ImportError:  # It is only needed for its wrappers.
+    Base = object
 
 Infos = dict[str, dict[str, Any]]
 Step = tuple[dict[str, Observation], dict[str, float], dict[str, bool], dict[str, bool], Infos]
 
 
-class ParallelEnv(Base):  # type: ignore[misc]
+class ParallelEnv(Base):  # type: ignore[misc, unused-ignore]
     """A mission with many bodies in lock-step: each is an agent, ``robot_0``, ``person_1`` and so on.
 
     Actions, observations and rewards are those of :class:`~cohabit.Env`; all agents are rewarded alike. A step lasts
@@ -80,7 +77,7 @@ class ParallelEnv(Base):  # type: ignore[misc]
         """What an agent chooses from."""
         return self.action_spaces[agent]
 
-    def state(self) -> _native.State:  # type: ignore[override]
+    def state(self) -> _native.State:
         """The whole world as it is, for those who may know it."""
         return self.office.world.state()
 
