@@ -110,9 +110,9 @@ impl Theatre {
             world.restore(&self.first).map_err(failed)?;
             world
         } else {
-            self.plan.seed = seed;
-            let world = self.plan.build().map_err(failed)?;
-            self.first = world.snapshot();
+            let plan = SessionPlan { seed, ..self.plan.clone() };
+            let world = plan.build().map_err(failed)?;
+            (self.plan, self.first) = (plan, world.snapshot());
             world
         };
         self.engine = None;

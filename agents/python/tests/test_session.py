@@ -9,6 +9,7 @@ import threading
 
 import numpy as np
 import pytest
+from conftest import playing
 
 import cohabit
 
@@ -92,6 +93,18 @@ def test_an_array_outlives_its_frame_and_its_session(session: str) -> None:
     for _ in range(6):
         other.look()
     assert (color == before).all()
+
+
+def test_an_array_outlives_the_processes_of_its_session() -> None:
+    with playing() as name:
+        joined = cohabit.join(name)
+        color = joined.look().color
+        before = color.copy()
+    assert (color == before).all()
+    joined.close()
+    del joined
+    gc.collect()
+    assert (color == before).all() and not color.flags.writeable
 
 
 def test_eight_frames_can_be_held_and_the_ninth_says_so(session: str) -> None:
