@@ -141,6 +141,7 @@ def test_a_body_has_one_commander(session: str) -> None:
         refused = other.do(cohabit.Rotate(0.1), timeout=60)
         assert refused.status == "InvalidCommand" and "python commands body 1" in refused.detail
         taker.close()
+        assert any("back to the python" in heard.text for heard in other.listen(10.0))
         assert other.do(cohabit.Rotate(0.1), timeout=60), "it went back"
 
 
@@ -150,7 +151,8 @@ def test_waiting_has_an_end(session: str) -> None:
         with pytest.raises(TimeoutError, match="no outcome after"):
             command.wait(0.01)
         assert command.wait(60).command == command.number
-        assert [heard.kind for heard in joined.listen(0.0)].count("outcome") == 1
+        kinds = [heard.kind for heard in joined.listen(0.0) if heard.body == 1]
+        assert kinds == ["commander", "outcome", "started", "outcome"], "of the claim and of the command"
 
 
 def test_what_one_says_others_hear(session: str) -> None:
