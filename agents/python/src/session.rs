@@ -36,6 +36,9 @@ const PEER: &str = "python";
 /// What was heard and not asked for: the oldest is forgotten beyond it.
 const MOST_HEARD: usize = 1024;
 
+/// The frames of one camera.
+type Frames = Arc<Mutex<Box<dyn Subscriber>>>;
+
 /// A session that this process takes part in.
 #[pyclass(frozen, module = "cohabit._native")]
 pub struct Session {
@@ -43,7 +46,7 @@ pub struct Session {
     name: String,
     mission: MissionMessage,
     state: Mutex<Latest>,
-    cameras: Mutex<BTreeMap<CameraId, Arc<Mutex<Box<dyn Subscriber>>>>>,
+    cameras: Mutex<BTreeMap<CameraId, Frames>>,
     talk: Arc<Mutex<Talk>>,
 }
 
@@ -265,7 +268,7 @@ impl Session {
         })
     }
 
-    fn camera(&self, name: &str) -> PyResult<(CameraId, Arc<Mutex<Box<dyn Subscriber>>>)> {
+    fn camera(&self, name: &str) -> PyResult<(CameraId, Frames)> {
         let known = || {
             let names = self.mission.cameras.iter().filter_map(|camera| camera.camera());
             names.map(|camera| camera.to_string()).collect::<Vec<_>>().join(", ")

@@ -53,6 +53,9 @@ struct Theatre {
     slots: Vec<Vec<ObjectId>>,
 }
 
+/// Tick, score, ending, and goals by their numbers, with whether they are met.
+type Progress = (u64, u32, &'static str, Vec<(i64, bool)>);
+
 /// What came of a command.
 type End = (u64, u32, Status, String);
 
@@ -306,7 +309,7 @@ impl Stage {
     }
 
     /// `(tick, score, ending, goals)`: the ending is `running`, `complete` or `failed`, and a goal `(number, met)`.
-    fn progress(&self, py: Python<'_>) -> PyResult<(u64, u32, &'static str, Vec<(i64, bool)>)> {
+    fn progress(&self, py: Python<'_>) -> PyResult<Progress> {
         self.with(py, |theatre| {
             let world = theatre.world();
             let ending = match world.finished() {
