@@ -79,7 +79,7 @@ impl Theatre {
         let events = bus.subscriber(Topic::Events).map_err(failed)?;
         let slots = vec![Vec::new(); world.bodies().len()];
         let first = world.snapshot();
-        let engine = Some(Engine::new(&plan, world, &cameras, &bus).map_err(failed)?.unrecorded());
+        let engine = Some(Engine::new(&plan, world, &cameras, &bus).map_err(failed)?.without_recorder());
         let mut theatre = Self {
             plan,
             bus,
@@ -119,7 +119,7 @@ impl Theatre {
             world
         };
         self.engine = None;
-        self.engine = Some(Engine::new(&self.plan, world, &self.cameras, &self.bus).map_err(failed)?.unrecorded());
+        self.engine = Some(Engine::new(&self.plan, world, &self.cameras, &self.bus).map_err(failed)?.without_recorder());
         // What the world before still had to tell.
         while self.events.receive().map_err(failed)?.is_some() {}
         self.pending.clear();
