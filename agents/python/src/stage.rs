@@ -119,7 +119,8 @@ impl Theatre {
             world
         };
         self.engine = None;
-        self.engine = Some(Engine::new(&self.plan, world, &self.cameras, &self.bus).map_err(failed)?.without_recorder());
+        self.engine =
+            Some(Engine::new(&self.plan, world, &self.cameras, &self.bus).map_err(failed)?.without_recorder());
         // What the world before still had to tell.
         while self.events.receive().map_err(failed)?.is_some() {}
         self.pending.clear();

@@ -89,9 +89,9 @@ pub struct Timing {
     /// they do
     #[arg(long, conflicts_with = "speed")]
     lock_step: bool,
-    /// In lock-step, the world begins when so many agents attend
-    #[arg(long, default_value_t = 1, requires = "lock_step")]
-    agents: usize,
+    /// In lock-step, the world begins when so many agents attend; if absent, one, or as many as `play` starts
+    #[arg(long, requires = "lock_step")]
+    agents: Option<usize>,
 }
 
 /// A speed that the clock takes.
@@ -106,7 +106,7 @@ impl Timing {
     pub fn arguments(self) -> Vec<OsString> {
         let mut arguments = Vec::new();
         if self.lock_step {
-            arguments.extend(["--lock-step".into(), "--agents".into(), self.agents.to_string().into()]);
+            arguments.extend(["--lock-step".into(), "--agents".into(), self.agents().to_string().into()]);
         } else {
             arguments.extend(["--speed".into(), self.speed.to_string().into()]);
         }
@@ -114,8 +114,17 @@ impl Timing {
         arguments
     }
 
+    /// The same; it begins with so many agents, if it was not said how many.
+    pub fn with_agents(self, agents: usize) -> Self {
+        Self { agents: self.agents.or(Some(agents)), ..self }
+    }
+
+    fn agents(self) -> usize {
+        self.agents.unwrap_or(1)
+    }
+
     fn of(self, plan: SessionPlan) -> SessionPlan {
-        if self.lock_step { plan.in_lock_step(self.agents) } else { plan }
+        if self.lock_step { plan.in_lock_step(self.agents()) } else { plan }
     }
 }
 

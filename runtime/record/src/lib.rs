@@ -11,6 +11,7 @@ mod carry_on;
 pub mod entry;
 mod log;
 mod recorder;
+mod turns;
 mod writer;
 
 pub use carry_on::Written;

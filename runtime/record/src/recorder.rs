@@ -16,6 +16,7 @@ use crate::{
     carry_on::Written,
     entry::{DialogEntry, EventEntry, SessionEntry, TickEntry},
     log::LogError,
+    turns::Turns,
     writer::LogWriter,
 };
 
@@ -50,6 +51,7 @@ pub struct Recorder {
     dialog: Inbox,
     listener: Box<dyn Listener>,
     heart: Heart,
+    turns: Turns,
 }
 
 /// What was published before a recorder took it down.
@@ -71,6 +73,7 @@ impl Recorder {
             dialog: Inbox::new(bus, Topic::Dialog)?,
             listener: bus.listener(Wake::State)?,
             heart: Heart::new(bus, "recorder", NONE)?,
+            turns: Turns::new(bus)?,
         })
     }
 
@@ -96,12 +99,19 @@ impl Recorder {
             found => found?,
         };
         let mut recording = Recording::new(self, process_of(began.run), log, written);
+        if began.mission.header.lock_step == 1 {
+            recording.recorder.turns.attend()?;
+        }
         let (opened, mut caught_up) = (Instant::now(), Some(caught_up));
         while !stop.load(Ordering::Relaxed) {
             recording.recorder.listener.wait(FLUSH_EVERY)?;
+            let is_waited_for = recording.recorder.turns.has_come()?;
             recording.take_down()?;
             // Tick by tick: what was published before this process is killed can be read after.
             recording.flush()?;
+            if is_waited_for {
+                recording.recorder.turns.end()?;
+            }
             if let Some(caught_up) = caught_up.take_if(|_| opened.elapsed() > GREETED_WITHIN) {
                 caught_up();
             }
