@@ -1,139 +1,90 @@
 //! People share the space: they drive avatars from the page, one each, and work beside the robot.
 
-use std::f64::consts::{PI, TAU};
+use std::f32::consts::{PI, TAU};
 
+use cohabit_bus::{Sample, Session, Shm, Subscriber, Topic, Transport as _, message::StateView};
 use cohabit_tests::{Browser, Page, Play, run};
 use serde_json::{Value, json};
 
 use crate::COHABIT;
 
-/// Places of the picture from above, the nearest to its middle, where the avatar is, first.
-fn places() -> Vec<[f64; 2]> {
-    let steps = |from: i32, to: i32| (from..=to).map(|step| f64::from(step) / 40.0);
-    let mut all: Vec<[f64; 2]> = steps(4, 36).flat_map(|x| steps(4, 36).map(move |y| [x, y])).collect();
-    let off = |[x, y]: &[f64; 2]| (x - 0.5).hypot(y - 0.5);
-    all.sort_by(|one, two| off(one).total_cmp(&off(two)));
-    all
-}
-
-/// A page at the controls of body 1.
+/// A page at the controls of body 1, and what is truly so.
 struct Avatar {
     page: Page,
-    /// What it was told last that is before it.
-    aim: Value,
+    states: Box<dyn Subscriber>,
+    newest: Option<Sample>,
 }
 
 impl Avatar {
-    fn new(mut page: Page) -> Self {
+    fn new(play: &Play) -> Self {
+        let bus = Shm::join(&Session::new(&play.session).unwrap()).unwrap();
+        let states = bus.subscriber(Topic::State).unwrap();
+        let mut page = Page::open(play.authority()).unwrap();
         page.send(&json!({ "type": "drive_body", "body": 1 })).unwrap();
         let told = page.wait("the body", |_, message| message["type"] == "driving").unwrap();
         assert_eq!(told["body"], 1, "{told}");
-        page.send(&json!({ "type": "view", "camera": "overhead/1" })).unwrap();
-        let frames = page.frames;
-        page.wait("a picture from above", |page, _| page.frames > frames + 2).unwrap();
-        Self { page, aim: Value::Null }
+        page.send(&json!({ "type": "view", "camera": "eyes/1" })).unwrap();
+        Self { page, states, newest: None }
     }
 
-    fn body(&self) -> &Value {
-        &self.page.state["others"][0]
+    /// The number of an object and how far it is, m, and to which side, rad, from the avatar.
+    fn find(&mut self, instance: &str) -> (u32, f32, f32) {
+        if let Some(sample) = self.states.latest().unwrap() {
+            self.newest = Some(sample);
+        }
+        let state = StateView::new(self.newest.as_ref().unwrap().payload()).unwrap();
+        let object = state.objects.iter().find(|object| object.instance.as_str() == instance).unwrap();
+        let body = &state.bodies[1];
+        let [dx, dy] = [0, 1].map(|axis| object.position_m[axis] - body.position_m[axis]);
+        let off = (dy.atan2(dx) - body.yaw_rad + PI).rem_euclid(TAU) - PI;
+        (object.object, dx.hypot(dy), off)
     }
 
-    fn number(&self, key: &str) -> f64 {
-        self.body()[key].as_f64().unwrap()
-    }
-
-    /// Sends something, and waits for the next state, so that no more is sent than a page may.
-    fn tell(&mut self, message: &Value) {
-        self.page.send(message).unwrap();
+    /// Keeps the keys held for a tenth of a second.
+    fn hold(&mut self, forward_m_s: f32, turn_rad_s: f32) {
+        let drive = json!({ "type": "drive", "forward_m_s": forward_m_s, "turn_rad_s": turn_rad_s, "pitch_rad_s": 0 });
+        self.page.send(&drive).unwrap();
         let tick = self.page.state["tick"].clone();
-        let mut aim = Value::Null;
-        self.page
-            .wait("the next state", |page, message| {
-                if message["type"] == "aim" {
-                    aim = message.clone();
-                }
-                page.state["tick"] != tick
-            })
-            .unwrap();
-        if !aim.is_null() {
-            self.aim = aim;
-        }
+        self.page.wait("the next state", |page, _| page.state["tick"] != tick).unwrap();
     }
 
-    /// What is at a place of the picture from above, with what can be done with it.
-    fn look(&mut self, [x, y]: [f64; 2]) -> Value {
-        self.aim = Value::Null;
-        self.tell(&json!({ "type": "point", "camera": "overhead/1", "tick": 0, "x": x, "y": y }));
-        self.aim.clone()
-    }
-
-    /// Walks on for a tenth of a second.
-    fn walk(&mut self, forward_m_s: f64, turn_rad_s: f64) {
-        self.tell(&json!({ "type": "drive", "forward_m_s": forward_m_s, "turn_rad_s": turn_rad_s, "pitch_rad_s": 0 }));
-    }
-
-    /// Turns to a direction of the picture from above, where north is up, and walks that way for a while.
-    fn walk_towards(&mut self, [x, y]: [f64; 2]) {
-        let heading = (0.5 - y).atan2((x - 0.5) * 16.0 / 9.0);
-        for _ in 0..60 {
-            let off = (heading - self.number("yaw") + PI).rem_euclid(TAU) - PI;
-            let forward = if off.abs() < 0.4 { 0.9 } else { 0.0 };
-            self.walk(forward, off * 2.0);
-            if forward > 0.0 {
-                break;
+    /// Walks up to an object.
+    fn walk_to(&mut self, instance: &str) {
+        for _ in 0..600 {
+            let (_, distance_m, off) = self.find(instance);
+            if distance_m < 1.3 {
+                return self.hold(0.0, 0.0);
             }
+            self.hold(if off.abs() < 0.5 { 0.9 } else { 0.0 }, off * 2.0);
         }
+        panic!("no way to {instance}: {:?}; {}", self.find(instance), self.page.state);
     }
 
-    /// Does something, and waits for what comes of it.
-    fn act(&mut self, deed: &str, object: &Value) -> (bool, String) {
+    /// Does something to an object, and waits for what comes of it.
+    fn act(&mut self, deed: &str, instance: &str) -> String {
+        let (object, ..) = self.find(instance);
         self.page.send(&json!({ "type": "act", "deed": deed, "object": object })).unwrap();
         let acted = self.page.wait("what came of it", |_, message| message["type"] == "acted").unwrap();
-        (acted["ok"] == true, acted["text"].as_str().unwrap().to_owned())
-    }
-
-    /// Looks around and walks about until something affords `deed` here, and does it.
-    fn find_and(&mut self, deed: &str) -> Result<String, String> {
-        let mut tried = Vec::new();
-        for round in 0..12 {
-            for place in places().into_iter().step_by(3) {
-                let aim = self.look(place);
-                let offers = aim["options"].as_array().is_some_and(|all| all.iter().any(|one| one["deed"] == deed));
-                if !offers || tried.contains(&aim["object"]) {
-                    continue;
-                }
-                let (ok, text) = self.act(deed, &aim["object"]);
-                if ok {
-                    return Ok(text);
-                }
-                tried.push(aim["object"].clone());
-            }
-            let angle = f64::from(round) * 2.4;
-            for _ in 0..12 {
-                self.walk_towards([0.5 + 0.3 * angle.cos(), 0.5 + 0.3 * angle.sin()]);
-            }
-        }
-        Err(format!("nothing affords {deed}; tried {tried:?}; state: {}", self.page.state))
+        assert_eq!(acted["ok"], true, "{deed} {instance}: {acted}");
+        acted["text"].as_str().unwrap().to_owned()
     }
 }
 
 #[test]
 fn a_person_works_beside_the_robot_and_it_replays_to_the_bit() {
     let play = Play::start(COHABIT, &["--body", "person@BreakRoom", "--seed", "5"]).unwrap();
-    let mut avatar = Avatar::new(Page::open(play.authority()).unwrap());
+    let mut avatar = Avatar::new(&play);
     avatar.page.say("go to the main office").unwrap();
-    let from = [avatar.number("x"), avatar.number("y")];
-    let took = avatar.find_and("pick_up").unwrap();
-    println!("{took}");
-    avatar.page.wait("it in the hand", |page, _| !page.state["others"][0]["holding"].is_null()).unwrap();
-    for _ in 0..15 {
-        avatar.walk(1.2, 0.6);
-    }
-    let put = avatar.find_and("place").unwrap();
-    println!("{put}");
+    avatar.walk_to("Bowl_01_1");
+    let told = avatar.act("pick_up", "Bowl_01_1");
+    assert_eq!(told, "You are holding the bowl");
+    avatar.page.wait("it in the hand", |page, _| page.state["others"][0]["holding"] == "Bowl").unwrap();
+    // The eyes are still on the table that it was taken from.
+    let offers = |message: &Value| message["options"][0]["deed"] == "place";
+    avatar.page.wait("an offer", |_, message| message["type"] == "aim" && offers(message)).unwrap();
+    avatar.hold(-0.5, 0.5);
+    avatar.act("place", "TableRound_02_1");
     avatar.page.wait("an empty hand", |page, _| page.state["others"][0]["holding"].is_null()).unwrap();
-    let to = [avatar.number("x"), avatar.number("y")];
-    assert!((to[0] - from[0]).hypot(to[1] - from[1]) > 0.2, "walked from {from:?} to {to:?}");
     avatar.page.wait("the robot", |page, _| page.state["robot"]["room"] == "MainOffice").unwrap();
 
     // One body, one commander; who closes the page gives it back.
