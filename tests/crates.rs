@@ -19,6 +19,7 @@ const LEVELS: &[(&str, u8, &[&str])] = &[
     ("cohabit-arena", 4, &[]),
     ("cohabit-dialog", 4, &["tokio", "axum"]),
     ("cohabit-eval", 5, &[]),
+    ("cohabit-python", 5, &["pyo3", "numpy"]),
     ("cohabit", 6, &["clap", "anyhow", "indicatif"]),
 ];
 

@@ -2,12 +2,12 @@
 
 use std::{
     fs,
-    io::{BufRead as _, BufReader},
+    io::{BufRead as _, BufReader, Read},
     path::{Path, PathBuf},
-    process::{Child, Command, Output, Stdio},
+    process::{Child, Command, ExitStatus, Output, Stdio},
     sync::{
         atomic::{AtomicU32, Ordering},
-        mpsc::{self, Receiver},
+        mpsc::{self, Receiver, Sender},
     },
     thread,
     time::{Duration, Instant},
@@ -39,6 +39,16 @@ impl Play {
     /// # Errors
     /// When it ends, or says nothing for too long.
     pub fn start(binary: &str, arguments: &[&str]) -> anyhow::Result<Self> {
+        let mut play = Self::spawn(binary, arguments)?;
+        play.wait_until_ready()?;
+        Ok(play)
+    }
+
+    /// Starts `binary play` with these arguments.
+    ///
+    /// # Errors
+    /// When it cannot be started.
+    pub fn spawn(binary: &str, arguments: &[&str]) -> anyhow::Result<Self> {
         static COUNT: AtomicU32 = AtomicU32::new(0);
         let session = format!("t{}-{}", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed));
         let folder = std::env::temp_dir().join(format!("cohabit-test-{session}"));
@@ -50,23 +60,25 @@ impl Play {
             .args(["--port", "0", "--session", &session, "--log"])
             .arg(&log)
             .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
             .stdin(Stdio::null())
             .spawn()
             .context("start cohabit play")?;
-        let out = child.stdout.take().context("its output")?;
         let (sender, lines) = mpsc::channel();
-        thread::spawn(move || {
-            for line in BufReader::new(out).lines().map_while(Result::ok) {
-                if sender.send(line).is_err() {
-                    break;
-                }
-            }
-        });
-        let mut play = Self { child, lines, session, address: String::new(), log, folder };
-        let line = play.wait_for_line("http://")?;
+        forward(child.stdout.take().context("its output")?, sender.clone());
+        forward(child.stderr.take().context("its errors")?, sender);
+        Ok(Self { child, lines, session, address: String::new(), log, folder })
+    }
+
+    /// Waits for its page.
+    ///
+    /// # Errors
+    /// When it ends, or says nothing for too long.
+    pub fn wait_until_ready(&mut self) -> anyhow::Result<()> {
+        let line = self.wait_for_line("http://")?;
         let start = line.find("http://").context("an address")?;
-        play.address = line[start..].split_whitespace().next().context("an address")?.to_owned();
-        Ok(play)
+        line[start..].split_whitespace().next().context("an address")?.clone_into(&mut self.address);
+        Ok(())
     }
 
     /// The `host:port` of the page.
@@ -81,12 +93,16 @@ impl Play {
     /// When it ends first, or no such line comes.
     pub fn wait_for_line(&mut self, part: &str) -> anyhow::Result<String> {
         let deadline = Instant::now() + WATCHDOG;
+        let mut heard = String::new();
         loop {
             let left = deadline.saturating_duration_since(Instant::now());
-            let line = self.lines.recv_timeout(left).with_context(|| format!("no line with `{part}`"))?;
+            let line = self.lines.recv_timeout(left);
+            let line = line.with_context(|| format!("no line with `{part}` from {}; but: {heard}", self.session))?;
             if line.contains(part) {
                 return Ok(line);
             }
+            heard += &line;
+            heard.push('\n');
         }
     }
 
@@ -98,18 +114,32 @@ impl Play {
     pub fn end(mut self) -> anyhow::Result<Self> {
         let pid = Pid::from_raw(i32::try_from(self.child.id())?).context("a process id")?;
         kill_process(pid, Signal::INT)?;
-        let deadline = Instant::now() + WATCHDOG;
-        let status = loop {
-            if let Some(status) = self.child.try_wait()? {
-                break status;
-            }
-            ensure!(Instant::now() < deadline, "it does not end");
-            thread::park_timeout(Duration::from_millis(5));
-        };
+        let status = self.wait_for_end()?;
         ensure!(status.success(), "it ended with {status}");
         let left = self.left_behind();
         ensure!(left.is_empty(), "left behind: {left:?}");
         Ok(self)
+    }
+
+    /// Waits for its end.
+    ///
+    /// # Errors
+    /// When it does not come.
+    pub fn wait_for_end(&mut self) -> anyhow::Result<ExitStatus> {
+        let deadline = Instant::now() + WATCHDOG;
+        loop {
+            if let Some(status) = self.child.try_wait()? {
+                return Ok(status);
+            }
+            ensure!(Instant::now() < deadline, "{} does not end", self.session);
+            thread::park_timeout(Duration::from_millis(5));
+        }
+    }
+
+    /// What it has said since it was last waited for a line.
+    #[must_use]
+    pub fn said(&self) -> String {
+        self.lines.try_iter().collect::<Vec<_>>().join("\n")
     }
 
     /// The supervisor's process id.
@@ -142,6 +172,17 @@ impl Drop for Play {
         let _ = self.child.wait();
         let _ = fs::remove_dir_all(&self.folder);
     }
+}
+
+/// Hands on what a process says, and prints it too.
+fn forward(out: impl Read + Send + 'static, lines: Sender<String>) {
+    thread::spawn(move || {
+        for line in BufReader::new(out).lines().map_while(Result::ok) {
+            eprintln!("{line}");
+            // Nobody listens any more, and the process may still speak.
+            let _ = lines.send(line);
+        }
+    });
 }
 
 /// Process ids and command lines (parts separated by zero bytes) that contain `part`; zombies have none.

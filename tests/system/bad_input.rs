@@ -78,6 +78,16 @@ fn a_camera_that_cannot_be_is_named() {
 }
 
 #[test]
+fn an_agent_that_cannot_be_is_named() {
+    check(&["--agent", "butler"], &["butler", "dialog, random, scripted, helper"]);
+    check(&["--agent", "helper@3"], &["`--agent helper@3`", "bodies 0 to 0", "--body"]);
+    check(&["--agent", "dialog", "--agent", "random"], &["`--agent random@0`", "`dialog@0`"]);
+    let script = file("steps.txt", "wait 1\njump\n");
+    let name = script.to_str().unwrap();
+    check(&["--agent", &format!("scripted={name}")], &[&format!("{name}:2: there is no `jump`")]);
+}
+
+#[test]
 fn a_file_that_is_no_log_is_not_replayed() {
     let path = file("no-log.mcap", "hello");
     let output = run(COHABIT, &["replay", path.to_str().unwrap()]).unwrap();

@@ -8,8 +8,11 @@ mod determinism;
 mod doctor;
 mod driving;
 mod eval;
+mod faults;
+mod lock_step;
 mod missions;
 mod sessions;
+mod soak;
 
 /// The binary under test.
 const COHABIT: &str = env!("CARGO_BIN_EXE_cohabit");

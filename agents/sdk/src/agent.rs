@@ -5,6 +5,9 @@ use cohabit_cdf::{Action, Status};
 
 use crate::eyes::Sight;
 
+/// Simulated time passes in ticks, so many a second.
+pub const TICKS_PER_SECOND: u64 = 60;
+
 /// A mind for one body.
 pub trait Agent {
     /// What it takes in besides what it is told.
@@ -73,6 +76,6 @@ pub enum Deed {
     },
     /// Tells the others.
     Tell(Box<DialogMessage>),
-    /// In lock-step: it need not be asked for so many ticks, or before an outcome of its body.
+    /// It need not be told how the world is for so many ticks, or before an outcome of its body.
     Rest(u64),
 }

@@ -18,9 +18,14 @@ pub struct Client {
     steps: Inbox,
     bell: Box<dyn Listener>,
     heart: Heart,
-    /// The numbers of its commands begin here.
+    /// The numbers of its claims begin here, and those of its acts too, unless it was there from the first tick.
     base: u64,
+    /// The numbers of its acts begin here: no matter of chance in lock-step, for they are part of the world's digest.
+    base_of_acts: u64,
     count: u64,
+    latest: u64,
+    /// When its latest turn was told: all that belongs to it was sent before.
+    turn_nanos: u64,
     /// The newest tick that it heard of.
     tick: u64,
     /// The newest tick whose world it has sensed, or at which it had its turn.
@@ -47,6 +52,7 @@ impl Client {
     /// # Errors
     /// [`BusError::Open`].
     pub fn join(bus: &dyn Transport, body: u32, peer: &str) -> Result<Self, BusError> {
+        let base = first_command();
         Ok(Self {
             body,
             peer: peer.to_owned(),
@@ -55,8 +61,11 @@ impl Client {
             steps: Inbox::new(bus, Topic::Steps)?,
             commands: bus.publisher(Topic::Commands)?,
             heart: Heart::new(bus, peer, body)?,
-            base: first_command(),
+            base,
+            base_of_acts: base,
             count: 0,
+            latest: 0,
+            turn_nanos: 0,
             tick: 0,
             sensed: 0,
             commands_body: false,
@@ -75,10 +84,21 @@ impl Client {
         self.commands_body
     }
 
-    /// The number of its latest command.
+    /// The number of its latest command; 0 before the first.
     #[must_use]
     pub const fn latest(&self) -> u64 {
-        self.base + self.count
+        self.latest
+    }
+
+    /// When its latest turn in lock-step was told, ns of the monotonic clock.
+    pub(crate) const fn turn_nanos(&self) -> u64 {
+        self.turn_nanos
+    }
+
+    /// The newest tick that it heard of.
+    #[must_use]
+    pub const fn tick(&self) -> u64 {
+        self.tick
     }
 
     /// Asks to command the body; whoever does now, if it is to be taken over. Gives the claim's number: its outcome
@@ -87,7 +107,7 @@ impl Client {
     /// # Errors
     /// [`BusError::Send`].
     pub fn claim(&mut self, take_over: bool) -> Result<u64, BusError> {
-        let command = self.next_command();
+        let command = self.next_after(self.base);
         let claim = CommandMessage::claim(command, self.body, &self.peer, take_over);
         self.send(&claim)?;
         Ok(command)
@@ -107,7 +127,7 @@ impl Client {
     /// # Errors
     /// [`BusError::Send`].
     pub fn act(&mut self, turn: u64, action: Action) -> Result<u64, BusError> {
-        let command = self.next_command();
+        let command = self.next_after(self.base_of_acts);
         self.send(&CommandMessage::act(command, turn, self.body, action))?;
         Ok(command)
     }
@@ -191,10 +211,15 @@ impl Client {
         while let Some((sample, is_due)) =
             self.steps.next(|sample| Ok(StepView::new(sample.payload())?.due.contains(&run)))?
         {
-            self.note_sensed(sample.envelope().tick);
+            let envelope = sample.envelope();
+            self.note_sensed(envelope.tick);
             if is_due {
-                turn = Some(sample.envelope().tick);
+                turn = Some(envelope.tick);
+                self.turn_nanos = envelope.sent_nanos;
             }
+        }
+        if turn == Some(0) {
+            self.base_of_acts = first_act(&self.peer, self.body);
         }
         Ok(turn)
     }
@@ -229,9 +254,10 @@ impl Client {
         self.sensed = self.sensed.max(tick);
     }
 
-    const fn next_command(&mut self) -> u64 {
+    const fn next_after(&mut self, base: u64) -> u64 {
         self.count += 1;
-        self.latest()
+        self.latest = base + self.count;
+        self.latest
     }
 
     fn send(&mut self, message: &CommandMessage) -> Result<(), BusError> {
@@ -261,4 +287,11 @@ pub fn outcome(envelope: &Envelope, event: &EventMessage) -> Option<Outcome> {
 fn first_command() -> u64 {
     let mixed = monotonic_nanos() ^ (u64::from(std::process::id()) << 7);
     (mixed & 0xf_ffff) << 32
+}
+
+/// The same in every run of a session, for a peer that is there from the first tick; apart for peers of different kinds
+/// at one body.
+fn first_act(peer: &str, body: u32) -> u64 {
+    let mixed = peer.bytes().fold(body, |hash, byte| (hash ^ u32::from(byte)).wrapping_mul(0x0100_0193));
+    u64::from(mixed & 0xf_ffff) << 32
 }

@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use cohabit_bus::{
     CameraId, Sample, Subscriber, Topic, Transport,
-    message::{FrameView, Malformed, ObjectRecord, StateView, Thing},
+    message::{BodyRecord, FrameView, Malformed, ObjectRecord, StateView, Thing},
 };
-use cohabit_cdf::{Catalog, ObjectId, SemanticClass};
+use cohabit_cdf::{BodyId, Catalog, ObjectId, SemanticClass};
 
 use crate::peer::PeerError;
 
@@ -55,6 +55,8 @@ pub struct InView<'a> {
     pub seen: SeenThing<'a>,
     /// What there is to know of it, if it is an object.
     pub object: Option<&'a ObjectRecord>,
+    /// The same, if it is somebody.
+    pub body: Option<&'a BodyRecord>,
 }
 
 impl<'a> Sight<'a> {
@@ -70,10 +72,11 @@ impl<'a> Sight<'a> {
 
     /// The things in view, by picture, then by id.
     pub fn things(&self) -> impl Iterator<Item = InView<'a>> + use<'a> {
-        let objects = self.state.objects;
+        let StateView { objects, bodies, .. } = self.state;
         self.glance.things().map(move |seen| {
-            let of_thing = |object: &&ObjectRecord| seen.thing == Thing::Object(ObjectId(object.object));
-            InView { seen, object: objects.iter().find(of_thing) }
+            let object = objects.iter().find(|object| seen.thing == Thing::Object(ObjectId(object.object)));
+            let body = bodies.iter().find(|body| seen.thing == Thing::Body(BodyId(body.body)));
+            InView { seen, object, body }
         })
     }
 }

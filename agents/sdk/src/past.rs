@@ -27,7 +27,13 @@ impl Past {
         self.outcomes.push((turn, status, detail.to_owned()));
     }
 
-    /// Has the agent hear it all again. Gives what it would do now; nothing, when the plan is at its end.
+    /// Whether something was done about that turn.
+    pub(crate) fn knows(&self, turn: u64) -> bool {
+        turn != 0 && self.outcomes.iter().any(|(of, ..)| *of == turn)
+    }
+
+    /// Has the agent hear it all again. Gives what it would do now; at the end of a plan it tells that once more, since the
+    /// one before may have died before it had.
     pub(crate) fn relive(&self, agent: &mut dyn Agent) -> Vec<Deed> {
         let mut deeds = Vec::new();
         let Some((turn, steps)) = &self.plan else { return deeds };
@@ -35,9 +41,6 @@ impl Past {
         for (_, status, detail) in self.outcomes.iter().filter(|(of, ..)| of == turn) {
             deeds.clear();
             agent.hear(&Heard::Outcome { status: *status, detail }, &mut deeds);
-        }
-        if !deeds.iter().any(|deed| matches!(deed, Deed::Act { .. })) {
-            deeds.clear();
         }
         deeds
     }

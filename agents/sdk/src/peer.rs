@@ -9,15 +9,15 @@ use std::{
 };
 
 use cohabit_bus::{
-    BusError, CameraId, Inbox, Publisher, Sample, Subscriber, Topic, Transport, Wake,
-    message::{BodyRecord, DialogKind, DialogView, EventKind, EventMessage, Malformed, MissionMessage, StateView},
+    BusError, CameraId, Envelope, Inbox, Publisher, Sample, Subscriber, Topic, Transport, Wake,
+    message::{DialogKind, DialogView, EventKind, EventMessage, Malformed, MissionMessage, StateView},
     monotonic_nanos,
 };
 use cohabit_cdf::Catalog;
 
 use crate::{
-    agent::{Agent, Deed, Heard, Now, Senses},
-    client::{Client, outcome},
+    agent::{Agent, Deed, Heard, Now, Senses, TICKS_PER_SECOND},
+    client::{Client, Outcome, outcome},
     eyes::{Eyes, Glance, Sight},
     past::Past,
 };
@@ -28,6 +28,10 @@ const SETTLE_NANOS: u64 = 600_000_000;
 /// How long an agent sleeps at most; one that senses the world looks up more often.
 const NAP: Duration = Duration::from_millis(100);
 const SENSING_NAP: Duration = Duration::from_millis(10);
+/// Nobody needs more than the newest plan; a turn's worth of them is kept. (A subscriber may hold eight samples.)
+const MOST_PLANS: usize = 4;
+/// An agent is asked again after so many ticks, however long it wants to rest: ten seconds.
+const MOST_REST: u64 = 10 * TICKS_PER_SECOND;
 /// In lock-step the world waits so long for an agent that may hang.
 const PATIENCE: Duration = Duration::from_secs(5);
 
@@ -52,8 +56,9 @@ pub enum PeerError {
 /// [`PeerError`].
 pub fn run(agent: &mut dyn Agent, body: u32, bus: &dyn Transport, stop: &AtomicBool) -> Result<(), PeerError> {
     let Some(mission) = wait_for_mission(bus, stop)? else { return Ok(()) };
-    let mut mind = Mind::join(agent, body, bus, mission.header.lock_step == 1)?;
-    mind.client.claim(false)?;
+    let Some(world) = World::look_at(bus, stop)? else { return Ok(()) };
+    let mut mind = Mind::join(agent, body, bus, mission.header.lock_step == 1, world)?;
+    mind.claim()?;
     while !stop.load(Ordering::Relaxed) {
         mind.live()?;
     }
@@ -76,6 +81,34 @@ pub fn wait_for_mission(bus: &dyn Transport, stop: &AtomicBool) -> Result<Option
     Ok(None)
 }
 
+/// The state of the world as it comes in.
+struct World {
+    states: Box<dyn Subscriber>,
+    newest: Sample,
+}
+
+impl World {
+    /// Subscribes to the state, and waits until it is there; `None` if `stop` comes first.
+    fn look_at(bus: &dyn Transport, stop: &AtomicBool) -> Result<Option<Self>, PeerError> {
+        let mut states = bus.subscriber(Topic::State)?;
+        let mut bell = bus.listener(Wake::State)?;
+        while !stop.load(Ordering::Relaxed) {
+            if let Some(newest) = states.latest()? {
+                return Ok(Some(Self { states, newest }));
+            }
+            bell.wait(Duration::from_millis(50))?;
+        }
+        Ok(None)
+    }
+
+    /// Takes in the newest state, and says whether it is new.
+    fn look(&mut self) -> Result<bool, PeerError> {
+        let Some(newest) = self.states.latest()? else { return Ok(false) };
+        self.newest = newest;
+        Ok(true)
+    }
+}
+
 /// An agent with its ends on the bus.
 struct Mind<'a> {
     agent: &'a mut dyn Agent,
@@ -83,80 +116,142 @@ struct Mind<'a> {
     dialog: Inbox,
     tells: Box<dyn Publisher>,
     senses: Senses,
-    world: Option<Box<dyn Subscriber>>,
-    state: Option<Sample>,
+    /// Absent for an agent that senses nothing: a state that nobody looks at is not made.
+    world: Option<World>,
     eyes: Option<Eyes>,
     glance: Option<Glance>,
     /// What was before it joined, until it has taken that in.
     past: Option<Past>,
+    /// The turn of the newest plan.
+    turn: u64,
     joined_nanos: u64,
     lock_step: bool,
     attends: bool,
+    /// An event and plans that came too late for the turn before.
+    later_event: Option<(Envelope, EventMessage)>,
+    later_plans: Vec<Sample>,
     /// Whether it has claimed its body and not heard that it is another's.
     hopes: bool,
+    /// The numbers of its latest claim, and of the act whose outcome it waits for.
+    claim: u64,
+    act: Option<u64>,
     rest: u64,
+    /// In real time: it senses nothing before that tick.
+    rests_until: u64,
     deeds: Vec<Deed>,
 }
 
 impl<'a> Mind<'a> {
-    fn join(agent: &'a mut dyn Agent, body: u32, bus: &dyn Transport, lock_step: bool) -> Result<Self, PeerError> {
+    fn join(
+        agent: &'a mut dyn Agent,
+        body: u32,
+        bus: &dyn Transport,
+        lock_step: bool,
+        world: World,
+    ) -> Result<Self, PeerError> {
         let senses = agent.senses();
         let camera = u8::try_from(body).map(CameraId::Egocentric).map_err(|_| PeerError::NoCamera(body))?;
         let catalog = || Arc::new(Catalog::builtin());
-        let world = (senses.sight || senses.state).then(|| bus.subscriber(Topic::State)).transpose()?;
+        // Before the first tick there is no past, and all that was said is new.
+        let is_first = lock_step && world.newest.envelope().tick == 0;
         Ok(Self {
             client: Client::join(bus, body, "agent")?,
             dialog: Inbox::new(bus, Topic::Dialog)?,
             tells: bus.publisher(Topic::Dialog)?,
-            world,
-            state: None,
+            world: (senses.sight || senses.state).then_some(world),
             eyes: senses.sight.then(|| Eyes::open(bus, camera, catalog())).transpose()?,
             glance: None,
-            past: Some(Past::default()),
-            joined_nanos: monotonic_nanos(),
+            past: (!is_first).then(Past::default),
+            turn: 0,
+            joined_nanos: if is_first { 0 } else { monotonic_nanos() },
             lock_step,
             attends: false,
+            later_event: None,
+            later_plans: Vec::new(),
             hopes: true,
+            claim: 0,
+            act: None,
             rest: 1,
+            rests_until: 0,
             deeds: Vec::new(),
             agent,
             senses,
         })
     }
 
+    fn claim(&mut self) -> Result<(), PeerError> {
+        self.claim = self.client.claim(false)?;
+        Ok(())
+    }
+
     /// Sleeps until something happens, and lives it.
     fn live(&mut self) -> Result<(), PeerError> {
-        let looks_up = !self.lock_step && (self.senses.sight || self.senses.state);
+        let looks_up = !self.lock_step && self.world.is_some();
         self.client.sleep(if looks_up { SENSING_NAP } else { NAP })?;
-        self.hear_events()?;
-        self.hear_dialog()?;
+        self.tells.update()?;
+        if self.attends {
+            return self.take_turn();
+        }
+        self.hear_events(None)?;
+        self.hear_dialog(None)?;
         self.settle()?;
-        if !self.attends {
-            if !self.lock_step && self.past.is_none() && self.sense()? {
-                self.hear_now(None)?;
+        if !self.lock_step && self.past.is_none() && self.sense()? {
+            let tick = self.world.as_ref().map_or(0, |world| world.newest.envelope().tick);
+            if tick >= self.rests_until {
+                self.hear_now(tick)?;
+                self.rests_until = tick + std::mem::replace(&mut self.rest, 1);
             }
-        } else if let Some(tick) = self.client.turn()? {
-            // What belongs to the tick was sent before the turn.
-            self.hear_events()?;
-            self.sense()?;
-            self.hear_now(Some(tick))?;
-            self.client.ready(std::mem::replace(&mut self.rest, 1))?;
         }
         Ok(())
     }
 
-    fn hear_events(&mut self) -> Result<(), PeerError> {
-        let body = self.client.body();
-        while let Some((envelope, event)) = self.client.event()? {
-            if event.body == body && event.kind() == Some(EventKind::Commander) {
-                self.hear_commander(&event)?;
+    /// In lock-step it hears and does things in its turn alone, and nothing that came after the turn was told: what it
+    /// does is no matter of how fast who is.
+    fn take_turn(&mut self) -> Result<(), PeerError> {
+        let Some(tick) = self.client.turn()? else { return Ok(()) };
+        self.hear_events(Some(self.client.turn_nanos()))?;
+        self.hear_dialog(Some(tick))?;
+        self.sense()?;
+        self.hear_now(tick)?;
+        self.client.ready(std::mem::replace(&mut self.rest, 1))?;
+        Ok(())
+    }
+
+    /// Hears what has happened; of what was sent after `until_nanos`, the rest later.
+    fn hear_events(&mut self, until_nanos: Option<u64>) -> Result<(), PeerError> {
+        while let Some((envelope, event)) = self.next_event()? {
+            if until_nanos.is_some_and(|until| envelope.sent_nanos > until) {
+                self.later_event = Some((envelope, event));
+                return Ok(());
             }
-            let Some(outcome) = outcome(&envelope, &event) else { continue };
-            if let Some(past) = self.past.as_mut().filter(|_| event.body == body) {
-                past.note_outcome(event.turn, outcome.status, &outcome.detail);
-            } else if outcome.command == self.client.latest() {
-                self.hear(&Heard::Outcome { status: outcome.status, detail: &outcome.detail })?;
+            if event.body == self.client.body() {
+                self.hear_event(&envelope, &event)?;
             }
+        }
+        Ok(())
+    }
+
+    fn next_event(&mut self) -> Result<Option<(Envelope, EventMessage)>, PeerError> {
+        match self.later_event.take() {
+            Some(later) => Ok(Some(later)),
+            None => Ok(self.client.event()?),
+        }
+    }
+
+    fn hear_event(&mut self, envelope: &Envelope, event: &EventMessage) -> Result<(), PeerError> {
+        if event.kind() == Some(EventKind::Commander) {
+            return self.hear_commander(event);
+        }
+        let Some(Outcome { command, status, detail, .. }) = outcome(envelope, event) else { return Ok(()) };
+        if let Some(past) = &mut self.past {
+            past.note_outcome(event.turn, status, &detail);
+        } else if self.act == Some(command) {
+            self.act = None;
+            // What came of an act is worth a look.
+            self.rests_until = 0;
+            self.hear(&Heard::Outcome { status, detail: &detail })?;
+        } else if command == self.claim && !status.is_success() && std::mem::replace(&mut self.hopes, false) {
+            self.hear(&Heard::Commands(false))?;
         }
         Ok(())
     }
@@ -165,7 +260,7 @@ impl<'a> Mind<'a> {
     fn hear_commander(&mut self, event: &EventMessage) -> Result<(), PeerError> {
         let commands = self.client.commands_body();
         if event.number == 0 {
-            self.client.claim(false)?;
+            self.claim()?;
         }
         if std::mem::replace(&mut self.hopes, commands) != commands {
             self.hear(&Heard::Commands(commands))?;
@@ -173,20 +268,46 @@ impl<'a> Mind<'a> {
         Ok(())
     }
 
-    fn hear_dialog(&mut self) -> Result<(), PeerError> {
-        while let Some((sample, ())) = self.dialog.next(|sample| DialogView::new(sample.payload()).map(drop))? {
-            let view = DialogView::new(sample.payload())?;
-            if view.header.kind() != Some(DialogKind::Plan) || view.header.body != self.client.body() {
-                continue;
+    /// Hears what is asked of its body; in a turn, what was said at earlier ticks.
+    fn hear_dialog(&mut self, turn: Option<u64>) -> Result<(), PeerError> {
+        let body = self.client.body();
+        while let Some((sample, is_mine)) = self.dialog.next(|sample| {
+            let DialogView { header, .. } = DialogView::new(sample.payload())?;
+            Ok(header.kind() == Some(DialogKind::Plan) && header.body == body)
+        })? {
+            if is_mine {
+                self.later_plans.push(sample);
+                self.later_plans.drain(..self.later_plans.len().saturating_sub(MOST_PLANS));
             }
-            let is_new = sample.envelope().sent_nanos >= self.joined_nanos;
-            match &mut self.past {
-                Some(past) if !is_new => past.note_plan(view.header.turn, view.steps),
-                None if !is_new => {}
-                _ => {
-                    self.past = None;
-                    self.hear(&Heard::Plan { turn: view.header.turn, steps: view.steps })?;
-                }
+        }
+        // Of several at one tick, the newest turn of the dialog counts, whoever was the fastest.
+        let mut plans = std::mem::take(&mut self.later_plans);
+        let dialog_turn = |sample: &Sample| DialogView::new(sample.payload()).map_or(0, |view| view.header.turn);
+        plans.sort_by_key(|sample| (sample.envelope().tick, dialog_turn(sample)));
+        for sample in plans {
+            if turn.is_some_and(|tick| sample.envelope().tick >= tick) {
+                self.later_plans.push(sample);
+            } else {
+                self.hear_plan(&sample)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn hear_plan(&mut self, sample: &Sample) -> Result<(), PeerError> {
+        let view = DialogView::new(sample.payload())?;
+        // A dialog service that takes a dead one's place tells the plan under way once more.
+        let turn = view.header.turn;
+        if std::mem::replace(&mut self.turn, turn) == turn && turn != 0 {
+            return Ok(());
+        }
+        let is_new = sample.envelope().sent_nanos >= self.joined_nanos;
+        match &mut self.past {
+            Some(past) if !is_new || past.knows(turn) => past.note_plan(turn, view.steps),
+            None if !is_new => {}
+            _ => {
+                self.past = None;
+                self.hear(&Heard::Plan { turn, steps: view.steps })?;
             }
         }
         Ok(())
@@ -209,30 +330,26 @@ impl<'a> Mind<'a> {
 
     /// Takes in the newest state and sight; says whether there is anything new.
     fn sense(&mut self) -> Result<bool, PeerError> {
-        let state = self.world.as_mut().map(|world| world.latest()).transpose()?.flatten();
-        let glance = self.eyes.as_mut().map(Eyes::look).transpose()?.flatten();
-        let is_new = if self.senses.sight { glance.is_some() } else { state.is_some() };
-        if let Some(sample) = &state {
-            self.client.note_sensed(sample.envelope().tick);
+        let is_new = self.world.as_mut().map_or(Ok(false), World::look)?;
+        if let Some(world) = &self.world {
+            self.client.note_sensed(world.newest.envelope().tick);
         }
-        self.state = state.or(self.state.take());
+        let Some(eyes) = &mut self.eyes else { return Ok(is_new) };
+        let glance = eyes.look()?;
+        let is_new = glance.is_some();
         self.glance = glance.or(self.glance.take());
         Ok(is_new)
     }
 
     /// Has the agent hear how the world is; at a turn of lock-step even if it senses nothing of it.
-    fn hear_now(&mut self, turn: Option<u64>) -> Result<(), PeerError> {
-        let (sample, glance) = (self.state.take(), self.glance.take());
-        let state = sample.as_ref().map(|sample| StateView::new(sample.payload())).transpose()?;
-        let tick = turn.or(sample.as_ref().map(|sample| sample.envelope().tick)).unwrap_or(0);
+    fn hear_now(&mut self, tick: u64) -> Result<(), PeerError> {
         let body = self.client.body();
-        let own: Option<&BodyRecord> = state.and_then(|state| state.bodies.iter().find(|record| record.body == body));
-        let sight = glance.as_ref().zip(state).map(|(glance, state)| Sight::new(glance, state));
+        let state = self.world.as_ref().map(|world| StateView::new(world.newest.payload())).transpose()?;
+        let own = state.and_then(|state| state.bodies.iter().find(|record| record.body == body));
+        let sight = self.glance.as_ref().zip(state).map(|(glance, state)| Sight::new(glance, state));
         let now = Now { tick, own, sight: sight.as_ref(), state: state.filter(|_| self.senses.state) };
         self.agent.hear(&Heard::Now(&now), &mut self.deeds);
-        self.carry_out()?;
-        (self.state, self.glance) = (sample, glance);
-        Ok(())
+        self.carry_out()
     }
 
     fn hear(&mut self, heard: &Heard<'_>) -> Result<(), PeerError> {
@@ -243,11 +360,11 @@ impl<'a> Mind<'a> {
     fn carry_out(&mut self) -> Result<(), PeerError> {
         for deed in self.deeds.drain(..) {
             match deed {
-                Deed::Act { turn, action } => drop(self.client.act(turn, action)?),
+                Deed::Act { turn, action } => self.act = Some(self.client.act(turn, action)?),
                 Deed::Tell(message) => {
-                    self.tells.send(0, message.bytes(), &mut |bytes| message.write(bytes))?;
+                    self.tells.send(self.client.tick(), message.bytes(), &mut |bytes| message.write(bytes))?;
                 }
-                Deed::Rest(ticks) => self.rest = ticks,
+                Deed::Rest(ticks) => self.rest = ticks.clamp(1, MOST_REST),
             }
         }
         Ok(())

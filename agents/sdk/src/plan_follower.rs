@@ -3,17 +3,22 @@
 use std::collections::VecDeque;
 
 use cohabit_bus::message::{DialogKind, DialogMessage};
-use cohabit_cdf::{Action, GoToTarget, ObjectId, Status};
+use cohabit_cdf::{Action, Status};
 
-use crate::agent::{Agent, Deed, Heard};
+use crate::{
+    agent::{Agent, Deed, Heard},
+    errand::{Errand, Progress},
+};
+
+/// In lock-step a plan waits for its turn, for so many ticks at most: a tenth of a second.
+const LISTENS_EVERY: u64 = 6;
 
 /// Follows plans. A step on an object that the body does not stand at is preceded by walking there.
 #[derive(Debug, Default)]
 pub struct PlanFollower {
     body: u32,
     plan: Option<Plan>,
-    stands_at: Option<ObjectId>,
-    holds: Option<ObjectId>,
+    errand: Errand,
 }
 
 #[derive(Debug)]
@@ -21,16 +26,6 @@ struct Plan {
     turn: u64,
     rest: VecDeque<Option<Action>>,
     step: u32,
-    doing: Option<Doing>,
-}
-
-/// What the body is at.
-#[derive(Clone, Copy, Debug)]
-enum Doing {
-    /// Walking to the object that the step acts on.
-    Approach { target: ObjectId, then: Action },
-    /// The step itself.
-    Step(Action),
 }
 
 impl PlanFollower {
@@ -48,24 +43,14 @@ impl PlanFollower {
             return;
         };
         deeds.push(tell(DialogKind::StepStarted, self.body, plan, Status::ActionSuccessful, ""));
-        let Some(action) = next else {
-            self.end_step(Status::IncorrectActionFormat, "that step is not well formed", deeds);
-            return;
-        };
-        let target = acts_on(action).filter(|target| self.stands_at != Some(*target) && self.holds != Some(*target));
-        let (doing, act) = match target {
-            Some(target) => {
-                (Doing::Approach { target, then: action }, Action::GoTo { target: GoToTarget::Object(target) })
-            }
-            None => (Doing::Step(action), action),
-        };
-        plan.doing = Some(doing);
-        deeds.push(Deed::Act { turn, action: act });
+        match next {
+            Some(action) => deeds.push(Deed::Act { turn, action: self.errand.begin(action) }),
+            None => self.end_step(Status::IncorrectActionFormat, "that step is not well formed", deeds),
+        }
     }
 
     fn end_step(&mut self, status: Status, detail: &str, deeds: &mut Vec<Deed>) {
         let Some(plan) = &mut self.plan else { return };
-        plan.doing = None;
         deeds.push(tell(DialogKind::StepEnded, self.body, plan, status, detail));
         if status.is_success() {
             plan.step += 1;
@@ -80,54 +65,25 @@ impl PlanFollower {
             deeds.push(tell(DialogKind::PlanEnded, self.body, &plan, status, detail));
         }
     }
-
-    fn learn(&mut self, action: Action, success: bool) {
-        match action {
-            Action::GoTo { target: GoToTarget::Object(object) } if success => self.stands_at = Some(object),
-            Action::GoTo { .. } | Action::Move { .. } | Action::Rotate { .. } => self.stands_at = None,
-            Action::PickUp { object } if success => self.holds = Some(object),
-            Action::Place { .. } if success => self.holds = None,
-            Action::Interact { verb: cohabit_cdf::Verb::Throw, .. } if success => self.holds = None,
-            _ => {}
-        }
-    }
 }
 
 impl Agent for PlanFollower {
     fn hear(&mut self, heard: &Heard<'_>, deeds: &mut Vec<Deed>) {
         match *heard {
             Heard::Plan { turn, steps } => {
-                if self.plan.as_ref().is_some_and(|plan| plan.doing.is_some()) {
-                    self.stands_at = None;
-                }
                 self.end_plan(Status::Interrupted, "", deeds);
                 let rest = steps.iter().map(|step| Action::try_from(step.action).ok()).collect();
-                self.plan = Some(Plan { turn, rest, step: 0, doing: None });
+                self.plan = Some(Plan { turn, rest, step: 0 });
                 self.begin_step(deeds);
             }
-            Heard::Outcome { status, detail } => {
-                let Some(plan) = &mut self.plan else { return };
-                match plan.doing.take() {
-                    Some(Doing::Approach { target, then }) if status.is_success() => {
-                        plan.doing = Some(Doing::Step(then));
-                        let turn = plan.turn;
-                        self.stands_at = Some(target);
-                        deeds.push(Deed::Act { turn, action: then });
-                    }
-                    Some(Doing::Approach { .. }) => {
-                        self.stands_at = None;
-                        self.end_step(status, detail, deeds);
-                    }
-                    Some(Doing::Step(action)) => {
-                        self.learn(action, status.is_success());
-                        self.end_step(status, detail, deeds);
-                    }
-                    None => {}
-                }
-            }
+            Heard::Outcome { status, detail } => match (self.errand.hear(status), &self.plan) {
+                (Some(Progress::Then(action)), Some(plan)) => deeds.push(Deed::Act { turn: plan.turn, action }),
+                (Some(Progress::Over), _) => self.end_step(status, detail, deeds),
+                _ => {}
+            },
             // Others may have moved the body meanwhile.
-            Heard::Commands(_) => self.stands_at = None,
-            Heard::Now(_) => {}
+            Heard::Commands(_) => self.errand.leave_place(),
+            Heard::Now(_) => deeds.push(Deed::Rest(LISTENS_EVERY)),
         }
     }
 }
@@ -137,19 +93,10 @@ fn tell(kind: DialogKind, body: u32, plan: &Plan, status: Status, detail: &str) 
     Deed::Tell(Box::new(DialogMessage::new(kind, body, plan.turn, detail).at_step(plan.step, status)))
 }
 
-/// The object that the body must stand at to do this.
-const fn acts_on(action: Action) -> Option<ObjectId> {
-    match action {
-        Action::PickUp { object } | Action::Interact { object, .. } => Some(object),
-        Action::Place { receptacle } => Some(receptacle),
-        _ => None,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use cohabit_bus::message::PlanStep;
-    use cohabit_cdf::Verb;
+    use cohabit_cdf::{GoToTarget, ObjectId, Verb};
 
     use super::*;
 

@@ -1,6 +1,7 @@
 //! Clauses: one verb with its objects, places, direction and amount.
 
 use cohabit_cdf::{Catalog, Fluid};
+use serde::{Deserialize, Serialize};
 
 use crate::{
     intent::Intent,
@@ -10,7 +11,7 @@ use crate::{
 };
 
 /// One request.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub(crate) struct Clause {
     pub(crate) intent: Intent,
     pub(crate) objects: Vec<Phrase>,
@@ -28,7 +29,7 @@ pub(crate) struct Clause {
 }
 
 /// How far, or how much.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub(crate) enum Amount {
     Meters(f32),
     Degrees(f32),

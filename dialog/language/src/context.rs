@@ -1,14 +1,15 @@
 //! What was said, meant and done before.
 
 use cohabit_cdf::{Action, GoToTarget, ObjectId, Status};
+use serde::{Deserialize, Serialize};
 
 use crate::{clause::Clause, known::Known, understanding::Step};
 
 /// How many objects a pronoun may reach back.
 const MEMORY: usize = 8;
 
-/// The conversation so far; [`Default`] is its beginning.
-#[derive(Clone, Debug, Default)]
+/// The conversation so far; [`Default`] is its beginning. It can be written down, and read again by the same build.
+#[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub struct Context {
     pub(crate) focus: Focus,
     pub(crate) pending: Option<Pending>,
@@ -21,7 +22,7 @@ pub struct Context {
 }
 
 /// A step that failed.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 pub(crate) struct Failure {
     pub(crate) step: Step,
     pub(crate) status: Status,
@@ -29,7 +30,7 @@ pub(crate) struct Failure {
 }
 
 /// What the conversation is about.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub(crate) struct Focus {
     /// The objects spoken of, the latest first.
     pub(crate) recent: Vec<ObjectId>,
@@ -44,7 +45,7 @@ pub(crate) struct Focus {
 }
 
 /// A question of the robot's that waits for its answer.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 pub(crate) enum Pending {
     /// Which object is meant; the request waits.
     Which { clauses: Vec<Clause>, slot: Slot, candidates: Vec<ObjectId>, may_put_down: bool },
@@ -57,14 +58,14 @@ pub(crate) enum Pending {
 }
 
 /// A phrase in a request.
-#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+#[derive(Clone, Copy, Debug, Deserialize, Eq, PartialEq, Serialize)]
 pub(crate) struct Slot {
     pub(crate) clause: usize,
     pub(crate) role: Role,
 }
 
 /// What part a phrase plays in its clause.
-#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+#[derive(Clone, Copy, Debug, Deserialize, Eq, PartialEq, Serialize)]
 pub(crate) enum Role {
     Object(usize),
     Place(usize),

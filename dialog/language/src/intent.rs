@@ -1,10 +1,10 @@
 //! What a clause asks for.
 
 use cohabit_cdf::catalog::Property;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 /// The kinds of requests, by the verbs that carry them.
-#[derive(Clone, Copy, Debug, Deserialize, Eq, Ord, PartialEq, PartialOrd)]
+#[derive(Clone, Copy, Debug, Deserialize, Eq, Ord, PartialEq, PartialOrd, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Intent {
     Stop,

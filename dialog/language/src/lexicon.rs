@@ -3,12 +3,12 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use cohabit_cdf::{Catalog, ClassId, Fluid, RoomId, state::StateFlag};
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use crate::{intent::Intent, question::QuestionKind, spelling::Vocabulary, table::PhraseTable, token};
 
 /// A class that a word may mean, and how much it means it: 1 for its name, less for words further down its list.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub(crate) struct Naming {
     pub(crate) class: ClassId,
     pub(crate) weight: f32,
@@ -18,14 +18,14 @@ pub(crate) struct Naming {
 const NAME_PART: f32 = 0.6;
 
 /// What an adjective demands of an object's state.
-#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+#[derive(Clone, Copy, Debug, Deserialize, Eq, PartialEq, Serialize)]
 pub(crate) enum StateWord {
     Flag(StateFlag, bool),
     Filled(bool),
 }
 
 /// What a preposition says about the phrase after it.
-#[derive(Clone, Copy, Debug, Deserialize, Eq, Ord, PartialEq, PartialOrd)]
+#[derive(Clone, Copy, Debug, Deserialize, Eq, Ord, PartialEq, PartialOrd, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Preposition {
     In,
@@ -39,7 +39,7 @@ pub(crate) enum Preposition {
 }
 
 /// Which of several, by where they are.
-#[derive(Clone, Copy, Debug, Deserialize, Eq, Ord, PartialEq, PartialOrd)]
+#[derive(Clone, Copy, Debug, Deserialize, Eq, Ord, PartialEq, PartialOrd, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Side {
     Left,
@@ -53,7 +53,7 @@ pub(crate) enum Side {
 }
 
 /// Which way.
-#[derive(Clone, Copy, Debug, Deserialize, Eq, Ord, PartialEq, PartialOrd)]
+#[derive(Clone, Copy, Debug, Deserialize, Eq, Ord, PartialEq, PartialOrd, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Direction {
     Forward,
@@ -66,7 +66,7 @@ pub(crate) enum Direction {
 }
 
 /// What a pronoun stands for.
-#[derive(Clone, Copy, Debug, Deserialize, Eq, Ord, PartialEq, PartialOrd)]
+#[derive(Clone, Copy, Debug, Deserialize, Eq, Ord, PartialEq, PartialOrd, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Pronoun {
     Thing,

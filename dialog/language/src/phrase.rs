@@ -1,6 +1,7 @@
 //! Referring expressions: `the red mug on the desk`, `it`, `the second one`.
 
 use cohabit_cdf::{ClassId, Fluid, ObjectId, RoomId};
+use serde::{Deserialize, Serialize};
 
 use crate::{
     lexicon::{Lexicon, Naming, Preposition, Pronoun, Side, StateWord},
@@ -8,7 +9,7 @@ use crate::{
 };
 
 /// What somebody said about an object.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]
 pub(crate) struct Phrase {
     /// Its words, as they were said.
     pub(crate) text: String,
@@ -33,14 +34,14 @@ pub(crate) struct Phrase {
 }
 
 /// How an object relates to another.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub(crate) struct Relation {
     pub(crate) kind: RelationKind,
     pub(crate) to: Phrase,
 }
 
 /// Kinds of relations.
-#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+#[derive(Clone, Copy, Debug, Deserialize, Eq, PartialEq, Serialize)]
 pub(crate) enum RelationKind {
     /// On or in it.
     Inside,
@@ -51,7 +52,7 @@ pub(crate) enum RelationKind {
 }
 
 /// What stands after a preposition.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub(crate) enum Place {
     Room(RoomId),
     Viewpoint(RoomId, u8),

@@ -1,6 +1,7 @@
 //! What came of an utterance.
 
 use cohabit_cdf::{Action, ObjectId};
+use serde::{Deserialize, Serialize};
 
 /// What the robot makes of what it was told.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,7 +50,7 @@ impl Understanding {
 }
 
 /// One action of a plan.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Step {
     /// What to do.
     pub action: Action,

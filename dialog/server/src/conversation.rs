@@ -10,6 +10,7 @@ use cohabit_bus::{
 };
 use cohabit_cdf::{Action, Catalog, ObjectId, Status};
 use cohabit_language::{Context, Known, Language, Step, Understanding};
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use crate::page::{self, Line, LineKind, Speaker};
@@ -49,6 +50,16 @@ pub enum TurnEnd {
     Interrupted,
 }
 
+impl Reaction {
+    /// The line of chat, if it is one.
+    pub const fn line(&self) -> Option<&Line> {
+        match self {
+            Self::Chat(line) => Some(line),
+            _ => None,
+        }
+    }
+}
+
 impl TurnEnd {
     /// In one word, for the page and for reports.
     #[must_use]
@@ -73,28 +84,64 @@ impl TurnEnd {
 /// A conversation with the robot of one body.
 pub struct Conversation {
     language: Language,
-    context: Context,
     body: u32,
-    turns: u64,
-    plans: BTreeMap<u64, Plan>,
+    memory: Memory,
 }
 
+#[derive(Clone, Debug, Deserialize, Serialize)]
 struct Plan {
     steps: Vec<Step>,
     told_end: bool,
 }
 
+/// What a conversation must know to go on where it was.
+#[derive(Clone, Debug, Default, Deserialize, Serialize)]
+pub struct Memory {
+    turns: u64,
+    context: Context,
+    plans: BTreeMap<u64, Plan>,
+}
+
+/// The most plans of which the end is waited for; an agent ends one when it begins the next.
+const MOST_PLANS: usize = 16;
+
 impl Conversation {
     /// A conversation in which nothing was said yet.
     pub fn new(catalog: Arc<Catalog>, body: u32) -> Self {
-        let language = Language::new(catalog);
-        Self { language, context: Context::default(), body, turns: 0, plans: BTreeMap::new() }
+        Self::after(Memory::default(), catalog, body)
+    }
+
+    /// A conversation that goes on.
+    pub fn after(memory: Memory, catalog: Arc<Catalog>, body: u32) -> Self {
+        Self { language: Language::new(catalog), body, memory }
+    }
+
+    /// What it must know to go on where it is.
+    pub const fn memory(&self) -> &Memory {
+        &self.memory
+    }
+
+    /// What the bus is told of a line of chat: nothing of what the game says.
+    pub fn message(&self, line: &Line) -> Option<DialogMessage> {
+        let kind = match (line.from, line.kind) {
+            (Speaker::Person, _) => DialogKind::Utterance,
+            (Speaker::Robot, LineKind::Question) => DialogKind::Question,
+            (Speaker::Robot, _) => DialogKind::Reply,
+            (Speaker::Game, _) => return None,
+        };
+        Some(DialogMessage::new(kind, self.body, line.turn, &line.text))
+    }
+
+    /// The newest plan, if its end was not told yet, once more.
+    pub fn plan_under_way(&self) -> Option<DialogMessage> {
+        let (turn, plan) = self.memory.plans.last_key_value()?;
+        Some(self.plan_message(*turn, &plan.steps))
     }
 
     /// Somebody said something. Gives the turn's number and what follows.
     pub fn hear(&mut self, text: &str, known: Option<&Known>) -> (u64, Vec<Reaction>) {
-        self.turns += 1;
-        let turn = self.turns;
+        self.memory.turns += 1;
+        let turn = self.memory.turns;
         let mut reactions = vec![
             self.bus(DialogKind::Utterance, turn, text),
             Reaction::Chat(Line::new(Speaker::Person, LineKind::Say, turn, text)),
@@ -104,7 +151,7 @@ impl Conversation {
             reactions.push(Reaction::TurnEnded { turn, end: TurnEnd::Refused });
             return (turn, reactions);
         };
-        match self.language.understand(text, known, &mut self.context) {
+        match self.language.understand(text, known, &mut self.memory.context) {
             Understanding::Plan { steps, reply } => {
                 self.say(turn, DialogKind::Reply, LineKind::Say, &reply, &mut reactions);
                 self.plan(turn, steps, &mut reactions);
@@ -134,7 +181,7 @@ impl Conversation {
     pub fn follow(&mut self, header: &DialogHeader, known: impl FnOnce() -> Option<Known>) -> Vec<Reaction> {
         let mut reactions = Vec::new();
         let turn = header.turn;
-        let (Some(kind), Some(plan)) = (header.kind(), self.plans.get_mut(&turn)) else { return reactions };
+        let (Some(kind), Some(plan)) = (header.kind(), self.memory.plans.get_mut(&turn)) else { return reactions };
         let count = plan.steps.len();
         let step = plan.steps.get(header.step as usize).cloned();
         match kind {
@@ -145,10 +192,11 @@ impl Conversation {
             }
             DialogKind::StepEnded => {
                 let (Some(step), Some(status)) = (step, header.status()) else { return reactions };
-                self.context.note_outcome(&step, status);
+                self.memory.context.note_outcome(&step, status);
                 let whole = status.is_success() && header.step as usize + 1 == count;
                 let failed = status.is_failure();
-                if (whole && worth_telling(step.action)) || failed {
+                let is_worth_telling = (whole && worth_telling(step.action)) || failed;
+                if is_worth_telling && !plan.told_end {
                     plan.told_end = true;
                     if let Some(known) = known() {
                         let text = self.language.report(&step, status, header.text.as_str(), &known);
@@ -159,7 +207,7 @@ impl Conversation {
             }
             DialogKind::PlanEnded => {
                 let told = plan.told_end;
-                self.plans.remove(&turn);
+                self.memory.plans.remove(&turn);
                 let status = header.status().unwrap_or(Status::ActionExecutionError);
                 if !told && status.is_failure() {
                     self.say(turn, DialogKind::Reply, LineKind::Problem, "That did not work.", &mut reactions);
@@ -177,11 +225,18 @@ impl Conversation {
     }
 
     fn plan(&mut self, turn: u64, steps: Vec<Step>, reactions: &mut Vec<Reaction>) {
+        reactions.push(Reaction::Bus(Box::new(self.plan_message(turn, &steps))));
+        self.memory.plans.insert(turn, Plan { steps, told_end: false });
+        while self.memory.plans.len() > MOST_PLANS {
+            self.memory.plans.pop_first();
+        }
+    }
+
+    fn plan_message(&self, turn: u64, steps: &[Step]) -> DialogMessage {
         let mut message = DialogMessage::new(DialogKind::Plan, self.body, turn, "");
         message.steps =
             steps.iter().map(|step| PlanStep { action: step.action.into(), says: Text::new(&step.says) }).collect();
-        reactions.push(Reaction::Bus(Box::new(message)));
-        self.plans.insert(turn, Plan { steps, told_end: false });
+        message
     }
 
     /// Has objects outlined, one after the other, without anything being said about it.

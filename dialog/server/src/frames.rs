@@ -3,7 +3,7 @@
 use std::{sync::Arc, time::Duration};
 
 use cohabit_bus::{
-    Sample, Topic, Transport, Wake,
+    Inbox, Sample, Topic, Transport, Wake,
     message::{FrameView, Plane},
 };
 use jpeg_encoder::{ColorType, Encoder, EncodingError};
@@ -34,10 +34,14 @@ pub fn relay(
             continue;
         }
         let mut listener = bus.listener(Wake::Frames(view.camera))?;
-        let mut frames = bus.subscriber(Topic::Frames(view.camera))?;
+        let mut frames = Inbox::new(bus, Topic::Frames(view.camera))?;
         while !over() && (view.is_wanted() || !had_one) {
             listener.wait(Duration::from_millis(50))?;
-            let Some(sample) = frames.latest()? else { continue };
+            let mut newest = None;
+            while let Some((sample, ())) = frames.next(|sample| FrameView::new(sample.payload()).map(drop))? {
+                newest = Some(sample);
+            }
+            let Some(sample) = newest else { continue };
             show(&sample, (index, view), talk)?;
             had_one = true;
         }

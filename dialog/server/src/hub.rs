@@ -14,7 +14,7 @@ use tokio::sync::broadcast;
 use crate::{page::Line, view::View};
 
 /// Lines of chat kept for a page that opens or reconnects.
-const LINES_KEPT: usize = 500;
+pub const LINES_KEPT: usize = 500;
 /// Messages kept for a page that is slow; then it is told to reload what it missed.
 const MESSAGES_KEPT: usize = 256;
 
@@ -42,6 +42,10 @@ impl Drop for Visit {
 
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+fn text(line: &Line) -> String {
+    serde_json::to_string(line).expect("invariant: a line is plain JSON")
 }
 
 impl Hub {
@@ -77,13 +81,18 @@ impl Hub {
 
     /// Tells all pages a line of chat, and keeps it.
     pub fn say(&self, line: &Line) {
-        let text = serde_json::to_string(line).expect("invariant: a line is plain JSON");
+        let text = text(line);
         let mut lines = lock(&self.lines);
         if lines.len() == LINES_KEPT {
             lines.pop_front();
         }
         lines.push_back(text.clone());
         let _ = self.messages.send(text.into());
+    }
+
+    /// What was said before this service began.
+    pub fn restore<'a>(&self, past: impl IntoIterator<Item = &'a Line>) {
+        lock(&self.lines).extend(past.into_iter().map(text));
     }
 
     /// Tells all pages something that need not be kept.

@@ -8,6 +8,7 @@ mod conversation;
 mod driving;
 mod frames;
 mod hub;
+mod journal;
 mod known;
 mod latency;
 mod limits;
@@ -19,7 +20,8 @@ mod visit;
 mod web;
 
 use std::{
-    net::SocketAddr,
+    net::{SocketAddr, TcpListener},
+    path::PathBuf,
     sync::{
         Arc,
         atomic::{AtomicBool, Ordering},
@@ -38,6 +40,7 @@ pub use known::known;
 use crate::{
     driving::Drivers,
     hub::Hub,
+    journal::{Journal, Place},
     talk::{Ears, Talk},
     view::View,
     web::Service,
@@ -49,6 +52,8 @@ pub struct DialogConfig {
     pub session: String,
     /// Where the page is served; port 0 takes any that is free.
     pub listen: SocketAddr,
+    /// Where what is said is written down, for the service that takes a dead one's place; nowhere, if absent.
+    pub journal: Option<PathBuf>,
     /// The session's cameras.
     pub cameras: Vec<CameraRecord>,
     /// Which bodies people may drive from the page.
@@ -101,12 +106,12 @@ pub fn serve(
     let hello = page::hello(&config.session, &mission, &layout, &catalog, &views, drivers.bodies());
     let views = views.into_iter().map(|view| View::new(view.camera)).collect();
     let hub = Arc::new(Hub::new(hello, views, config.on_first_frame));
-    let talk = Talk::new(&*bus, catalog, Arc::clone(&hub), Arc::clone(&drivers))?;
+    let journal = Journal::open(config.journal.as_deref());
+    let (listener, place) = listen(config.listen, journal.past().place.as_ref())?;
+    let talk = Talk::new(&*bus, catalog, Arc::clone(&hub), Arc::clone(&drivers), journal)?;
     let ears = Ears::new(&*bus)?;
-    let token = token::for_address(config.listen).map_err(DialogError::Serve)?;
-    let listener = std::net::TcpListener::bind(config.listen)
-        .map_err(|source| DialogError::Listen { address: config.listen, source })?;
-    let address = listener.local_addr().map_err(DialogError::Serve)?;
+    talk.serve_at(place.clone());
+    let Place { address, token } = place;
     let ended = AtomicBool::new(false);
     let over = || stop.load(Ordering::Relaxed) || ended.load(Ordering::Relaxed);
     thread::scope(|scope| {
@@ -127,6 +132,21 @@ pub fn serve(
             .map(|worker| worker.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
             .fold(served, Result::and)
     })
+}
+
+/// Listens where the service before this one did, as open pages know it; where there was none, at that address.
+fn listen(address: SocketAddr, before: Option<&Place>) -> Result<(TcpListener, Place), DialogError> {
+    let is_as_asked = |place: &&Place| address.port() == 0 || place.address.port() == address.port();
+    if let Some(place) = before.filter(|place| place.address.ip() == address.ip()).filter(is_as_asked) {
+        match TcpListener::bind(place.address) {
+            Ok(listener) => return Ok((listener, place.clone())),
+            Err(error) => tracing::warn!("serve the page on {} again: {error}", place.address),
+        }
+    }
+    let listener = TcpListener::bind(address).map_err(|source| DialogError::Listen { address, source })?;
+    let token = token::for_address(address).map_err(DialogError::Serve)?;
+    let address = listener.local_addr().map_err(DialogError::Serve)?;
+    Ok((listener, Place { address, token }))
 }
 
 /// Runs one of the service's loops; if it fails, all end.

@@ -5,13 +5,13 @@ use cohabit_bus::{
     message::{BodyRecord, CameraRecord, NONE, ObjectRecord, Plane, StateView, Thing},
 };
 use cohabit_cdf::{BodyKind, Catalog, ClassId, Layout, Mission, RoomId, layout::OpeningKind, model::Axis};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use crate::{affordances::Affordance, driving::DrivableBody, latency::Moments};
 
 /// Who says a line of chat.
-#[derive(Clone, Copy, Debug, Eq, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Deserialize, Eq, PartialEq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Speaker {
     /// Somebody at a page.
@@ -23,7 +23,7 @@ pub enum Speaker {
 }
 
 /// What kind of line it is.
-#[derive(Clone, Copy, Debug, Eq, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Deserialize, Eq, PartialEq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum LineKind {
     /// Something said.
@@ -41,10 +41,10 @@ pub enum LineKind {
 }
 
 /// One line of chat.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Line {
     /// Always `chat`.
-    #[serde(rename = "type")]
+    #[serde(rename = "type", skip_deserializing, default = "Line::message")]
     pub message: &'static str,
     /// Who.
     pub from: Speaker,
@@ -59,7 +59,11 @@ pub struct Line {
 impl Line {
     /// A line of chat.
     pub fn new(from: Speaker, kind: LineKind, turn: u64, text: impl Into<String>) -> Self {
-        Self { message: "chat", from, kind, turn, text: text.into() }
+        Self { message: Self::message(), from, kind, turn, text: text.into() }
+    }
+
+    const fn message() -> &'static str {
+        "chat"
     }
 }
 

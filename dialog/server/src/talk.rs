@@ -7,7 +7,7 @@ use std::{
 };
 
 use cohabit_bus::{
-    Listener, Publisher, Sample, Subscriber, Topic, Transport, Wake,
+    Envelope, Heart, Inbox, Listener, Publisher, Sample, Topic, Transport, Wake,
     message::{self, BodyRecord, DialogKind, DialogMessage, DialogView, EventKind, EventMessage, StateView, Thing},
     monotonic_nanos,
 };
@@ -21,6 +21,7 @@ use crate::{
     conversation::{Conversation, Reaction},
     driving::Drivers,
     hub::Hub,
+    journal::{Deed, Journal, Place},
     known,
     latency::{Latency, Moments},
     page::{self, Line, LineKind, Speaker},
@@ -39,27 +40,33 @@ pub struct Talk {
 
 struct Inner {
     conversation: Conversation,
+    journal: Journal,
     latency: Latency,
     dialog: Box<dyn Publisher>,
-    states: Box<dyn Subscriber>,
+    states: Inbox,
     newest: Option<Sample>,
 }
 
 impl Talk {
-    /// A conversation on `bus`, shown to the pages of `hub`.
+    /// A conversation on `bus`, shown to the pages of `hub`; it goes on where that of `journal` was.
     pub fn new(
         bus: &dyn Transport,
         catalog: Arc<Catalog>,
         hub: Arc<Hub>,
         drivers: Arc<Drivers>,
+        journal: Journal,
     ) -> Result<Arc<Self>, DialogError> {
-        let inner = Inner {
-            conversation: Conversation::new(Arc::clone(&catalog), BODY.0),
+        hub.restore(&journal.past().lines);
+        let memory = journal.past().conversation.clone();
+        let mut inner = Inner {
+            conversation: Conversation::after(memory, Arc::clone(&catalog), BODY.0),
+            journal,
             latency: Latency::default(),
             dialog: bus.publisher(Topic::Dialog)?,
-            states: bus.subscriber(Topic::State)?,
+            states: Inbox::new(bus, Topic::State)?,
             newest: None,
         };
+        inner.tell_again()?;
         Ok(Arc::new(Self { inner: Mutex::new(inner), hub, drivers, catalog }))
     }
 
@@ -73,50 +80,70 @@ impl Talk {
         let known = inner.known()?;
         let (turn, reactions) = inner.conversation.hear(text, known.as_ref());
         inner.latency.begin(turn, received_nanos, monotonic_nanos());
-        self.carry_out(&mut inner, reactions)
+        self.carry_out(&mut inner, None, reactions)
+    }
+
+    /// Notes where the page is served.
+    pub fn serve_at(&self, place: Place) {
+        self.lock().journal.serve_at(place);
     }
 
     /// An agent said something about a plan.
-    fn follow(&self, view: DialogView<'_>) -> Result<(), DialogError> {
+    fn follow(&self, envelope: &Envelope, view: DialogView<'_>) -> Result<(), DialogError> {
         let mut inner = self.lock();
+        if inner.journal.has_heard(envelope) {
+            return Ok(());
+        }
         inner.refresh()?;
         let Inner { conversation, newest, .. } = &mut *inner;
         let state = newest.as_ref().map(|sample| StateView::new(sample.payload())).transpose()?;
         let reactions = conversation.follow(view.header, || known::known(state?, BODY));
-        self.carry_out(&mut inner, reactions)
+        if reactions.is_empty() && view.header.kind() != Some(DialogKind::StepEnded) {
+            return Ok(());
+        }
+        self.carry_out(&mut inner, Some(envelope), reactions)
     }
 
-    /// Something happened in the world.
-    fn note_event(&self, event: &EventMessage, sent_nanos: u64) -> Result<(), DialogError> {
+    /// Something happened in the world, while this service was there or before.
+    fn note_event(&self, envelope: &Envelope, event: &EventMessage, is_new: bool) -> Result<(), DialogError> {
+        if is_new {
+            self.drivers.note(event);
+        }
+        let mut inner = self.lock();
+        if inner.journal.has_heard(envelope) {
+            return Ok(());
+        }
         let text = event.text.as_str();
-        self.drivers.note(event);
+        let mut game = |kind, text: &str| self.game(&mut inner, envelope, kind, text);
         match event.kind() {
-            Some(EventKind::Started) => {
-                let mut inner = self.lock();
-                if let Some(moments) = inner.latency.moved(event.turn, event.command, sent_nanos) {
+            Some(EventKind::Started) if is_new => {
+                if let Some(moments) = inner.latency.moved(event.turn, event.command, envelope.sent_nanos) {
                     self.hub.tell(&page::latency(&moments));
                 }
             }
-            Some(EventKind::GoalMet) => self.game(LineKind::Goal, text),
-            Some(EventKind::NoteRead) => self.game(LineKind::Note, text),
-            Some(EventKind::Message | EventKind::CameraMovement) => self.game(LineKind::Say, text),
-            Some(EventKind::GoalShown) => self.game(LineKind::Goal, &format!("New goal: {text}")),
-            Some(EventKind::MissionComplete) => self.game(LineKind::Ending, "Mission complete. Well done!"),
-            Some(EventKind::MissionFailed) => self.game(LineKind::Ending, &format!("Mission failed. {text}")),
-            Some(EventKind::Highlighted) => self.show_highlight(event.object)?,
+            Some(EventKind::GoalMet) => game(LineKind::Goal, text),
+            Some(EventKind::NoteRead) => game(LineKind::Note, text),
+            Some(EventKind::Message | EventKind::CameraMovement) => game(LineKind::Say, text),
+            Some(EventKind::GoalShown) => game(LineKind::Goal, &format!("New goal: {text}")),
+            Some(EventKind::MissionComplete) => game(LineKind::Ending, "Mission complete. Well done!"),
+            Some(EventKind::MissionFailed) => game(LineKind::Ending, &format!("Mission failed. {text}")),
+            Some(EventKind::Highlighted) if is_new => self.show_highlight(&mut inner, event.object)?,
             _ => {}
         }
         Ok(())
     }
 
-    fn game(&self, kind: LineKind, text: &str) {
+    fn game(&self, inner: &mut Inner, envelope: &Envelope, kind: LineKind, text: &str) {
         if !text.is_empty() {
-            self.hub.say(&Line::new(Speaker::Game, kind, 0, text));
+            let line = Line::new(Speaker::Game, kind, 0, text);
+            let heard = Some((envelope.run, envelope.sequence));
+            inner.journal.will_tell(Deed { heard, lines: vec![line.clone()], conversation: None });
+            self.hub.say(&line);
+            inner.journal.told();
         }
     }
 
-    fn show_highlight(&self, object: u32) -> Result<(), DialogError> {
-        let mut inner = self.lock();
+    fn show_highlight(&self, inner: &mut Inner, object: u32) -> Result<(), DialogError> {
         inner.refresh()?;
         let Some(sample) = &inner.newest else { return Ok(()) };
         let state = StateView::new(sample.payload())?;
@@ -163,7 +190,18 @@ impl Talk {
         Ok(())
     }
 
-    fn carry_out(&self, inner: &mut Inner, reactions: Vec<Reaction>) -> Result<(), DialogError> {
+    /// Does what follows from a message, `None` of a page's, once it is written down.
+    fn carry_out(
+        &self,
+        inner: &mut Inner,
+        heard: Option<&Envelope>,
+        reactions: Vec<Reaction>,
+    ) -> Result<(), DialogError> {
+        inner.journal.will_tell(Deed {
+            heard: heard.map(|envelope| (envelope.run, envelope.sequence)),
+            lines: reactions.iter().filter_map(Reaction::line).cloned().collect(),
+            conversation: Some(inner.conversation.memory().clone()),
+        });
         for reaction in reactions {
             match reaction {
                 Reaction::Bus(message) => inner.publish(&message)?,
@@ -175,13 +213,14 @@ impl Talk {
                 }
             }
         }
+        inner.journal.told();
         Ok(())
     }
 }
 
 impl Inner {
     fn refresh(&mut self) -> Result<(), DialogError> {
-        if let Some(sample) = self.states.latest()? {
+        while let Some((sample, ())) = self.states.next(|sample| StateView::new(sample.payload()).map(drop))? {
             self.newest = Some(sample);
         }
         Ok(())
@@ -191,6 +230,22 @@ impl Inner {
         self.refresh()?;
         let Some(sample) = &self.newest else { return Ok(None) };
         Ok(known::known(StateView::new(sample.payload())?, BODY))
+    }
+
+    /// Tells the bus what a service that was killed may not have told, and the plan under way: an agent that joins later
+    /// would not know of it.
+    fn tell_again(&mut self) -> Result<(), DialogError> {
+        let lines = self.journal.past().untold.clone();
+        for line in lines {
+            if let Some(message) = self.conversation.message(&line) {
+                self.publish(&message)?;
+            }
+        }
+        self.journal.told();
+        match self.conversation.plan_under_way() {
+            Some(plan) => self.publish(&plan),
+            None => Ok(()),
+        }
     }
 
     fn publish(&mut self, message: &DialogMessage) -> Result<(), DialogError> {
@@ -232,10 +287,10 @@ fn log_latency(moments: &Moments) {
 /// Waits until the world can be seen, or until `over`; gives the bodies in it.
 pub fn wait_for_world(bus: &dyn Transport, over: &dyn Fn() -> bool) -> Result<Vec<BodyRecord>, DialogError> {
     let mut listener = bus.listener(Wake::State)?;
-    let mut states = bus.subscriber(Topic::State)?;
+    let mut states = Inbox::new(bus, Topic::State)?;
     while !over() {
-        if let Some(sample) = states.latest()? {
-            return Ok(StateView::new(sample.payload())?.bodies.to_vec());
+        if let Some((_, bodies)) = states.next(|sample| Ok(StateView::new(sample.payload())?.bodies.to_vec()))? {
+            return Ok(bodies);
         }
         listener.wait(Duration::from_millis(20))?;
     }
@@ -246,38 +301,40 @@ pub fn wait_for_world(bus: &dyn Transport, over: &dyn Fn() -> bool) -> Result<Ve
 /// be missed.
 pub struct Ears {
     listener: Box<dyn Listener>,
-    dialog: Box<dyn Subscriber>,
-    events: Box<dyn Subscriber>,
+    dialog: Inbox,
+    events: Inbox,
+    heart: Heart,
     joined_nanos: u64,
 }
 
 impl Ears {
-    /// Hears all that is said from now on.
+    /// Hears all that is said from now on, and what is kept of what was said before.
     pub fn new(bus: &dyn Transport) -> Result<Self, DialogError> {
         Ok(Self {
             listener: bus.listener(Wake::Talk)?,
-            dialog: bus.subscriber(Topic::Dialog)?,
-            events: bus.subscriber(Topic::Events)?,
+            dialog: Inbox::new(bus, Topic::Dialog)?,
+            events: Inbox::new(bus, Topic::Events)?,
+            heart: Heart::new(bus, "dialog", BODY.0)?,
             joined_nanos: monotonic_nanos(),
         })
     }
 }
 
 /// Follows what others say on the bus, until `over`.
-pub fn listen(mut ears: Ears, talk: &Talk, over: &dyn Fn() -> bool) -> Result<(), DialogError> {
+pub fn listen(ears: Ears, talk: &Talk, over: &dyn Fn() -> bool) -> Result<(), DialogError> {
+    let Ears { mut listener, mut dialog, mut events, mut heart, joined_nanos } = ears;
+    let mut tick = 0;
     while !over() {
-        ears.listener.wait(Duration::from_millis(100))?;
-        while let Some(sample) = ears.events.receive()? {
-            let event: EventMessage = message::read(sample.payload())?;
-            if sample.envelope().sent_nanos >= ears.joined_nanos {
-                talk.note_event(&event, sample.envelope().sent_nanos)?;
-            }
+        listener.wait(Duration::from_millis(100))?;
+        while let Some((sample, event)) = events.next(|sample| message::read::<EventMessage>(sample.payload()))? {
+            let envelope = sample.envelope();
+            tick = tick.max(envelope.tick);
+            talk.note_event(envelope, &event, envelope.sent_nanos >= joined_nanos)?;
         }
-        while let Some(sample) = ears.dialog.receive()? {
-            if sample.envelope().sent_nanos >= ears.joined_nanos {
-                talk.follow(DialogView::new(sample.payload())?)?;
-            }
+        while let Some((sample, ())) = dialog.next(|sample| DialogView::new(sample.payload()).map(drop))? {
+            talk.follow(sample.envelope(), DialogView::new(sample.payload())?)?;
         }
+        heart.beat(tick, events.lost() + dialog.lost())?;
     }
     Ok(())
 }

@@ -10,6 +10,8 @@ use std::{
 
 use rustix::fs::{FlockOperation, flock};
 
+use crate::envelope::Envelope;
+
 /// A session's name and the places that belong to it alone.
 #[derive(Clone, Debug, Eq, PartialEq)]
 pub struct Session {
@@ -153,7 +155,18 @@ impl Session {
         let lock = self.lock()?.ok_or_else(|| SessionError::Busy(self.name.clone()))?;
         self.wipe();
         create_private(&self.folder())?;
+        let path = self.version_path();
+        fs::write(&path, Envelope::VERSION.to_string()).map_err(|source| SessionError::Folder { path, source })?;
         Ok(lock)
+    }
+
+    /// The version of the messages that its processes speak; `None` if nobody has written it down.
+    pub(crate) fn version(&self) -> Option<u32> {
+        fs::read_to_string(self.version_path()).ok()?.trim().parse().ok()
+    }
+
+    fn version_path(&self) -> PathBuf {
+        self.folder().join("version")
     }
 
     /// Writes a page of shared memory and takes it away again.

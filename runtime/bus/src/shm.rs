@@ -53,6 +53,13 @@ impl Shm {
                 "there is no such session here; start it with `cohabit play --session NAME`".to_owned(),
             ));
         }
+        if let Some(spoken) = session.version().filter(|spoken| *spoken != Envelope::VERSION) {
+            return Err(failed(format!(
+                "it speaks version {spoken} of the messages, this program version {}: use the build that started the \
+                 session (`cohabit doctor` tells which sessions run another)",
+                Envelope::VERSION
+            )));
+        }
         let mut config = Config::default();
         config.global.prefix = session.prefix().as_str().try_into().map_err(|e| failed(format!("{e:?}")))?;
         let root = folder.to_string_lossy();

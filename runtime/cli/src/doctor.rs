@@ -15,6 +15,8 @@ use crate::peers::Listening;
 use finding::{Finding, State};
 use machine::Machine;
 
+pub use memory::ensure_room;
+
 /// A look at one thing that a session needs or is better with.
 struct Check {
     name: &'static str,

@@ -6,6 +6,7 @@ mod doctor;
 mod eval;
 mod failure;
 mod gallery;
+mod minds;
 mod mission_file;
 mod peers;
 mod play;

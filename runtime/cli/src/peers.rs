@@ -10,18 +10,17 @@ use std::{
 };
 
 use anyhow::Context as _;
-use clap::ValueEnum;
-use cohabit_agent::PlanFollower;
 use cohabit_bus::{Session, Shm, message::Control};
 use cohabit_cdf::BodyRequest;
 use cohabit_dialog::{DialogConfig, Drivable};
 use cohabit_engine::{CameraPlan, SessionPlan, Simulator};
-use cohabit_record::Recorder;
+use cohabit_record::{LogError, RecordError, Recorder};
 use cohabit_render::MeshLibrary;
 
 use crate::{
     arena::{ArenaOptions, Games},
     failure::bad_input,
+    minds::MindKind,
     mission_file::MissionFile,
     rendering::Rendering,
     stop,
@@ -90,9 +89,9 @@ pub struct Timing {
     /// they do
     #[arg(long, conflicts_with = "speed")]
     lock_step: bool,
-    /// In lock-step, the world begins when so many agents attend
-    #[arg(long, default_value_t = 1, requires = "lock_step")]
-    agents: usize,
+    /// In lock-step, the world begins when so many agents attend; if absent, one, or as many as `play` starts
+    #[arg(long, requires = "lock_step")]
+    agents: Option<usize>,
 }
 
 /// A speed that the clock takes.
@@ -107,7 +106,7 @@ impl Timing {
     pub fn arguments(self) -> Vec<OsString> {
         let mut arguments = Vec::new();
         if self.lock_step {
-            arguments.extend(["--lock-step".into(), "--agents".into(), self.agents.to_string().into()]);
+            arguments.extend(["--lock-step".into(), "--agents".into(), self.agents().to_string().into()]);
         } else {
             arguments.extend(["--speed".into(), self.speed.to_string().into()]);
         }
@@ -115,8 +114,17 @@ impl Timing {
         arguments
     }
 
+    /// The same; it begins with so many agents, if it was not said how many.
+    pub fn with_agents(self, agents: usize) -> Self {
+        Self { agents: self.agents.or(Some(agents)), ..self }
+    }
+
+    fn agents(self) -> usize {
+        self.agents.unwrap_or(1)
+    }
+
     fn of(self, plan: SessionPlan) -> SessionPlan {
-        if self.lock_step { plan.in_lock_step(self.agents) } else { plan }
+        if self.lock_step { plan.in_lock_step(self.agents()) } else { plan }
     }
 }
 
@@ -144,34 +152,31 @@ impl Sim {
     }
 }
 
-/// Kinds of minds.
-#[derive(Clone, Copy, ValueEnum)]
-enum AgentKind {
-    /// Does what the dialog service plans
-    Dialog,
-}
-
 /// Runs a mind for one body.
 #[derive(clap::Args)]
 pub struct Agent {
     /// What kind of mind
     #[arg(value_enum, default_value = "dialog")]
-    kind: AgentKind,
+    kind: MindKind,
     #[command(flatten)]
     joining: Joining,
     /// The body it commands
     #[arg(long, default_value_t = 0)]
     body: u32,
+    /// The seed of all that is random in it
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    /// What a scripted one does: a file with an action a line
+    #[arg(long, value_name = "FILE", required_if_eq("kind", "scripted"))]
+    script: Option<PathBuf>,
 }
 
 impl Agent {
     /// Runs the agent.
     pub fn run(&self) -> anyhow::Result<()> {
+        let mut mind = self.kind.mind(self.body, self.seed, self.script.as_deref())?;
         let (bus, stop) = self.joining.join()?;
-        let mut agent = match self.kind {
-            AgentKind::Dialog => PlanFollower::new(self.body),
-        };
-        cohabit_agent::run(&mut agent, self.body, &bus, &stop)?;
+        cohabit_agent::run(&mut *mind, self.body, &bus, &stop)?;
         Ok(())
     }
 }
@@ -209,6 +214,7 @@ impl Dialog {
         let SessionPlan { catalog, layout, mission, .. } = file.plan(message.header.seed, &message.bodies)?;
         let config = DialogConfig {
             session: self.joining.session.clone(),
+            journal: Some(Session::new(&self.joining.session).map_err(bad_input)?.folder().join("dialog.journal")),
             cameras: message.cameras,
             listen: SocketAddr::new(self.listening.listen, self.listening.port),
             drivable: self.listening.drive,
@@ -230,7 +236,7 @@ fn tell_supervisor(line: &str) {
 pub struct Record {
     #[command(flatten)]
     joining: Joining,
-    /// The log file to write; it must not exist
+    /// The log file to write; one of the same session is carried on with
     #[arg(long)]
     log: PathBuf,
 }
@@ -239,7 +245,10 @@ impl Record {
     /// Runs the recorder.
     pub fn run(&self) -> anyhow::Result<()> {
         let (bus, stop) = self.joining.join()?;
-        Recorder::new(&bus)?.run(&self.joining.session, &self.log, &stop)?;
-        Ok(())
+        let caught_up = || tell_supervisor(&format!("recording {}", self.log.display()));
+        Recorder::new(&bus)?.run(&self.joining.session, &self.log, &stop, caught_up).map_err(|error| match error {
+            RecordError::Log(LogError::Write { .. }) | RecordError::Bus(_) | RecordError::Malformed(_) => error.into(),
+            RecordError::Log(_) | RecordError::NoMission => bad_input(error),
+        })
     }
 }

@@ -10,7 +10,9 @@ use cohabit_cdf::BodyRequest;
 use cohabit_engine::CameraPlan;
 
 use crate::{
+    doctor::ensure_room,
     failure::bad_input,
+    minds::MindRequest,
     mission_file::MissionFile,
     peers::{Listening, Timing},
     rendering::Rendering,
@@ -34,6 +36,10 @@ pub struct Play {
     /// A body beside the mission's own robot: `robot` or `person`, with a room if wanted; as often as needed
     #[arg(long = "body", value_name = "KIND[@ROOM]")]
     bodies: Vec<BodyRequest>,
+    /// A mind for a body: `dialog`, `random`, `scripted` or `helper`, with the number of its body if it is not 0, and a
+    /// script if it is scripted; as often as there are bodies
+    #[arg(long = "agent", value_name = "KIND[@BODY][=FILE]", default_value = "dialog")]
+    minds: Vec<MindRequest>,
     /// A camera beside those of the bodies, on the topic `frames/NAME`: KIND is `egocentric`, `panorama`,
     /// `third-person`, `fixed` (x=, y=, z= in metres, yaw=, pitch= in degrees) or `top-down` (span= in metres); all have
     /// size=WxH, rate=, planes=color+depth+normals+ids, and most body= and fov=; as often as needed
@@ -56,10 +62,12 @@ impl Play {
         let seed = self.seed.unwrap_or_else(clock_seed);
         let mission = MissionFile::find(self.mission.as_deref())?;
         let plan = mission.plan(seed, &self.bodies)?.with_cameras(self.cameras.clone()).map_err(bad_input)?;
+        MindRequest::check(&self.minds, &plan)?;
         self.rendering.check()?;
         for name in Session::wipe_dead() {
             println!("cleaned up after session {name}, which was not ended");
         }
+        ensure_room()?;
         let name = self.session.clone().unwrap_or_else(|| format!("play-{}", std::process::id()));
         let session = Session::new(&name).map_err(bad_input)?;
         let log = self.log_path(&name)?;
@@ -68,12 +76,11 @@ impl Play {
             other => bad_input(other),
         })?;
         println!("Playing \"{}\" ({})", plan.mission.goal_text, mission.name);
-        let roles = [
-            Role::sim(self.mission.as_deref(), seed, &self.bodies, &self.cameras, self.rendering, self.timing),
-            Role::record(&log),
-            Role::agent(),
-            Role::dialog(&self.listening),
-        ];
+        let timing = self.timing.with_agents(self.minds.len());
+        let sim = Role::sim(self.mission.as_deref(), seed, &self.bodies, &self.cameras, self.rendering, timing);
+        let minds = self.minds.iter().map(|agent| Role::agent(agent, seed));
+        let peers = [Role::record(&log), Role::dialog(&self.listening)];
+        let roles = std::iter::once(sim).chain(peers).chain(minds);
         let played = Supervisor::start(&name, roles, began).and_then(|supervisor| supervisor.run(&stop));
         session.end(lock);
         if log.is_file() {

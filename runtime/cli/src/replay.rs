@@ -26,6 +26,10 @@ impl Replay {
         if let Some(reason) = &log.cut {
             println!("{path} ends early ({reason}); what it holds is replayed");
         }
+        let missing = log.missing();
+        if missing > 0 {
+            println!("{path} misses {missing} events or dialog messages: its recorder was away for too long");
+        }
         let began = Instant::now();
         let replay = cohabit_engine::replay::replay(&log, Arc::new(Catalog::builtin())).map_err(bad_input)?;
         let simulated_s = replay.ticks as f64 * cohabit_engine::replay::TICK_S;

@@ -21,6 +21,7 @@ use rustix::process::{Pid, Signal, kill_process};
 
 use crate::{
     failure::BadInput,
+    minds::MindRequest,
     peers::{Listening, Timing},
     rendering::Rendering,
 };
@@ -29,8 +30,13 @@ use crate::{
 const GRACE: Duration = Duration::from_secs(3);
 /// How often the processes are looked after.
 const LOOK_EVERY: Duration = Duration::from_millis(20);
-/// A process that ends by itself more often than this within a session is not started again.
-const MOST_RESTARTS: u32 = 5;
+/// A process that ends by itself more often than this within a while is not started again.
+const MOST_RESTARTS: usize = 5;
+/// The while.
+const RESTARTS_COUNT_FOR: Duration = Duration::from_secs(60);
+/// This very program, also when its file was replaced or taken away since it was started: all processes of a session
+/// are of one build.
+const THIS_PROGRAM: &str = "/proc/self/exe";
 
 /// One process of a session.
 pub struct Role {
@@ -62,9 +68,9 @@ impl Role {
         Self { name: "record", arguments: vec!["--log".into(), log.into()] }
     }
 
-    /// The robot's mind.
-    pub fn agent() -> Self {
-        Self { name: "agent", arguments: vec!["dialog".into()] }
+    /// A mind.
+    pub fn agent(request: &MindRequest, seed: u64) -> Self {
+        Self { name: "agent", arguments: request.arguments(seed) }
     }
 
     /// The dialog service.
@@ -88,7 +94,18 @@ impl Role {
 struct Running {
     role: Role,
     child: Child,
-    restarts: u32,
+    /// When it was started again.
+    restarts: Vec<Instant>,
+    /// Whether it has said that it records.
+    records: Arc<AtomicBool>,
+}
+
+impl Running {
+    /// Whether it ends again and again.
+    fn is_hopeless(&mut self) -> bool {
+        self.restarts.retain(|at| at.elapsed() < RESTARTS_COUNT_FOR);
+        self.restarts.len() >= MOST_RESTARTS
+    }
 }
 
 /// The processes of one session.
@@ -103,15 +120,16 @@ impl Supervisor {
     pub fn start(session: &str, roles: impl IntoIterator<Item = Role>, began: Instant) -> anyhow::Result<Self> {
         let mut supervisor = Self { session: session.to_owned(), running: Vec::new(), began };
         for role in roles {
-            let child = supervisor.spawn(&role)?;
-            supervisor.running.push(Running { role, child, restarts: 0 });
+            let records = Arc::default();
+            let child = supervisor.spawn(&role, &records, true)?;
+            supervisor.running.push(Running { role, child, restarts: Vec::new(), records });
         }
         Ok(supervisor)
     }
 
-    fn spawn(&self, role: &Role) -> anyhow::Result<Child> {
-        let program = std::env::current_exe().context("find this program's own file")?;
-        let mut child = Command::new(program)
+    fn spawn(&self, role: &Role, records: &Arc<AtomicBool>, is_first: bool) -> anyhow::Result<Child> {
+        let mut child = Command::new(THIS_PROGRAM)
+            .arg0(std::env::args_os().next().unwrap_or_else(|| "cohabit".into()))
             .arg(role.name)
             .args(["--session", &self.session, "--supervisor", &std::process::id().to_string()])
             .args(&role.arguments)
@@ -122,8 +140,8 @@ impl Supervisor {
             .spawn()
             .with_context(|| format!("start {}", role.name))?;
         if let Some(out) = child.stdout.take() {
-            let began = self.began;
-            thread::spawn(move || relay(out, began));
+            let (began, records) = (is_first.then_some(self.began), Arc::clone(records));
+            thread::spawn(move || relay(out, began, &records));
         }
         Ok(child)
     }
@@ -147,21 +165,42 @@ impl Supervisor {
                 // It has said itself what is wrong with what it was given.
                 return Err(BadInput(String::new()).into());
             }
-            if name == "sim" || running.restarts >= MOST_RESTARTS {
+            if name == "sim" || running.is_hopeless() {
                 anyhow::bail!("the {name} process ended ({}); the session cannot go on without it", describe(status));
             }
             eprintln!("cohabit: the {name} process ended ({}); starting it again", describe(status));
-            let child = self.spawn(&self.running[index].role)?;
+            let records = Arc::default();
+            let child = self.spawn(&self.running[index].role, &records, false)?;
             let running = &mut self.running[index];
-            running.child = child;
-            running.restarts += 1;
+            (running.child, running.records) = (child, records);
+            running.restarts.push(Instant::now());
         }
         Ok(())
     }
 }
 
+impl Supervisor {
+    /// Waits for a recorder that was just started again: what it has missed can be had only while the others live.
+    fn let_recorder_catch_up(&mut self) {
+        let deadline = Instant::now() + GRACE;
+        let is_late = |running: &mut Running| {
+            let is_new = running.role.name == "record" && !running.restarts.is_empty();
+            is_new && !running.records.load(Ordering::Relaxed) && matches!(running.child.try_wait(), Ok(None))
+        };
+        let simulates =
+            |running: &mut Running| running.role.name == "sim" && matches!(running.child.try_wait(), Ok(None));
+        while self.running.iter_mut().any(simulates)
+            && self.running.iter_mut().any(is_late)
+            && Instant::now() < deadline
+        {
+            thread::sleep(LOOK_EVERY);
+        }
+    }
+}
+
 impl Drop for Supervisor {
     fn drop(&mut self) {
+        self.let_recorder_catch_up();
         self.running.sort_by_key(|running| running.role.ends());
         for running in &mut self.running {
             end(&mut running.child);
@@ -190,22 +229,28 @@ fn describe(status: ExitStatus) -> String {
     match (status.code(), status.signal()) {
         (Some(code), _) => format!("exit code {code}"),
         (None, Some(signal)) if signal == Signal::BUS.as_raw() => {
-            format!("signal {signal}: shared memory is full, `cohabit doctor` tells how much there is")
+            format!("signal {signal}: /dev/shm is full; free some, or give it more: mount -o remount,size=1g /dev/shm")
         }
         (None, Some(signal)) => format!("signal {signal}"),
         (None, None) => "for an unknown reason".to_owned(),
     }
 }
 
-/// Tells the user what a process tells its supervisor.
-fn relay(out: ChildStdout, began: Instant) {
+/// Tells the user what a process tells its supervisor; `began` is when the session was started, if the process was
+/// started with it. Notes whether it records.
+fn relay(out: ChildStdout, began: Option<Instant>, records: &AtomicBool) {
     for line in BufReader::new(out).lines().map_while(Result::ok) {
-        let seconds = began.elapsed().as_secs_f64();
-        match line.split_once(' ') {
-            Some(("page", address)) => {
+        let seconds = began.map(|began| began.elapsed().as_secs_f64());
+        match (line.split_once(' '), seconds) {
+            (Some(("page", address)), Some(seconds)) => {
                 println!("Open {address}  (ready after {seconds:.2} s; Ctrl-C ends the session)")
             }
-            _ if line == "shown" => println!("First frame on the page {seconds:.2} s after the start"),
+            (Some(("page", address)), None) => println!("The page is back at {address}"),
+            (Some(("recording", _)), _) => records.store(true, Ordering::Relaxed),
+            (None, Some(seconds)) if line == "shown" => {
+                println!("First frame on the page {seconds:.2} s after the start");
+            }
+            (None, None) if line == "shown" => {}
             _ => println!("{line}"),
         }
     }

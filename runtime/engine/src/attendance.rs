@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use cohabit_bus::is_alive;
+use cohabit_bus::{is_alive, message::NONE};
 
 /// Who lets its time run out so often in a row is not waited for any more, until it attends again.
 const MOST_TIMEOUTS: u32 = 10;
@@ -83,9 +83,9 @@ impl Attendance {
         .collect()
     }
 
-    /// How many attend.
+    /// How many attend for a body; a recorder attends for none.
     pub fn count(&self) -> usize {
-        self.attendees.len()
+        self.attendees.iter().filter(|attendee| attendee.body != NONE).count()
     }
 
     /// Whether somebody is waited for, or is still to be told that it is its turn.
@@ -99,8 +99,9 @@ impl Attendance {
         self.attendees.retain_mut(|attendee| {
             let Turn::Since(since) = attendee.turn else { return true };
             let Attendee { run, body, .. } = *attendee;
+            let who = if body == NONE { "the recorder".to_owned() } else { format!("the agent of body {body}") };
             if !is_alive(run) {
-                let sentence = format!("the process of body {body} is gone; it is not waited for any more");
+                let sentence = format!("{who} is gone; it is not waited for any more");
                 given_up.push(TimedOut { body, count: self.timeouts, sentence });
                 return false;
             }
@@ -112,7 +113,7 @@ impl Attendance {
             attendee.turn = Turn::Rests(tick + 1);
             let stays = attendee.timeouts_in_a_row < MOST_TIMEOUTS;
             let then = if stays { "it does nothing this turn" } else { "it is not waited for any more" };
-            let sentence = format!("the agent of body {body} took too long over tick {tick}: {then}");
+            let sentence = format!("{who} took too long over tick {tick}: {then}");
             given_up.push(TimedOut { body, count: self.timeouts, sentence });
             stays
         });

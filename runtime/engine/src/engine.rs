@@ -58,6 +58,8 @@ pub struct Engine {
     /// What the mission shows, one after the other, each until a tick.
     shown: Vec<(CameraTarget, u64)>,
     motion: Motion,
+    /// Whether ticks are told, for a recorder that is there or may join.
+    tells_ticks: bool,
 }
 
 impl Engine {
@@ -88,6 +90,7 @@ impl Engine {
             highlighted: Vec::new(),
             shown: Vec::new(),
             motion: Motion::default(),
+            tells_ticks: true,
         };
         let cameras = cameras.iter().map(CameraPlan::record).collect();
         let message = MissionMessage { cameras, ..plan.message() };
@@ -95,10 +98,22 @@ impl Engine {
         Ok(engine)
     }
 
+    /// The same when nobody will ever record it: no digests are worked out, which take longer than all else of a tick.
+    #[must_use]
+    pub fn without_recorder(self) -> Self {
+        Self { tells_ticks: false, ..self }
+    }
+
     /// The world as it is.
     #[must_use]
     pub const fn world(&self) -> &World {
         &self.world
+    }
+
+    /// The world, when nobody is to be told of it any more.
+    #[must_use]
+    pub fn into_world(self) -> World {
+        self.world
     }
 
     /// The latest command that has begun to move its body; 0 if none has.
@@ -154,7 +169,7 @@ impl Engine {
     /// The rest of a tick that was not recorded yet: its inputs, and the digest of what came of them, which takes longer
     /// than the tick. In lock-step, agents think meanwhile.
     pub(crate) fn record(&mut self) -> Result<(), EngineError> {
-        if let Some(tick) = self.unrecorded.take() {
+        if let Some(tick) = self.unrecorded.take().filter(|_| self.tells_ticks) {
             self.stopwatch.restart();
             self.publish_tick(tick)?;
             self.stopwatch.over(Stage::Record);

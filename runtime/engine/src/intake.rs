@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use cohabit_bus::{
     BusError, Inbox, Topic, Transport,
-    message::{self, CommandKind, CommandMessage, Control, ControlMessage, EventKind, EventMessage},
+    message::{self, CommandKind, CommandMessage, Control, ControlMessage, EventKind, EventMessage, NONE},
 };
 use cohabit_cdf::{Action, Status};
 
@@ -83,7 +83,8 @@ impl Intake {
     ) {
         let body = message.body;
         let outcome = |status, detail: &str| EventMessage::outcome(message.command, message.turn, body, status, detail);
-        if body as usize >= bodies {
+        let takes_turns = matches!(kind, CommandKind::Attend | CommandKind::Leave | CommandKind::Ready);
+        if body as usize >= bodies && !(takes_turns && body == NONE) {
             told.push(outcome(Status::InvalidCommand, &format!("there is no body {body}")));
             return;
         }

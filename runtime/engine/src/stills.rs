@@ -36,4 +36,12 @@ impl Stills {
     pub fn shoot(&mut self, engine: &Engine, camera: CameraId, lens: Option<Lens>) -> Result<(), BusError> {
         self.studio.shoot_now(&Moment::capture(engine, monotonic_nanos()), camera, lens)
     }
+
+    /// The same with many cameras of one moment, each with its own lens, which may cost less than one after another.
+    ///
+    /// # Errors
+    /// [`BusError::Send`].
+    pub fn shoot_all(&mut self, engine: &Engine, cameras: &[CameraId]) -> Result<(), BusError> {
+        self.studio.shoot_all_now(&Moment::capture(engine, monotonic_nanos()), cameras)
+    }
 }

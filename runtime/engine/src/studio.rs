@@ -205,6 +205,19 @@ impl Studio {
         shot
     }
 
+    /// Renders and sends a frame of each of these cameras, due or not.
+    ///
+    /// # Errors
+    /// [`BusError`].
+    pub fn shoot_all_now(&mut self, moment: &Moment, cameras: &[CameraId]) -> Result<(), BusError> {
+        let mut due = Vec::new();
+        for (index, post) in self.posts.iter_mut().enumerate().filter(|(_, post)| cameras.contains(&post.plan.id)) {
+            post.rig = CameraRig::default();
+            due.push((index, Duration::from_secs(1)));
+        }
+        self.expose(moment, due)
+    }
+
     /// Renders and sends the frames of these cameras, each given by its place and the time since its last frame.
     fn expose(&mut self, moment: &Moment, due: Vec<(usize, Duration)>) -> Result<(), BusError> {
         self.set_up(moment);

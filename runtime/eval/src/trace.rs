@@ -31,7 +31,7 @@ impl Trace {
 
     /// Something happened.
     pub fn event(&mut self, tick: u64, message: &EventMessage) -> Result<(), LogError> {
-        match EventEntry::new(tick, message) {
+        match EventEntry::new(&Envelope { tick, ..Envelope::default() }, message) {
             Some(entry) => self.log.event(&entry, wall_nanos()),
             None => Ok(()),
         }

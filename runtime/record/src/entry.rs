@@ -33,6 +33,9 @@ pub struct SessionEntry {
     /// Bodies beside those of the mission.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub bodies: Vec<BodyRequest>,
+    /// The simulator's run, unlike that of any other; 0 where there was none.
+    #[serde(default, with = "run", skip_serializing_if = "is_zero")]
+    pub run: u64,
 }
 
 impl SessionEntry {
@@ -50,13 +53,14 @@ impl SessionEntry {
             mission_text: mission.text.clone(),
             seed: mission.header.seed,
             bodies: mission.bodies.clone(),
+            run: 0,
         }
     }
 }
 
 impl Entry for SessionEntry {
     const TOPIC: &'static str = "/session";
-    const SCHEMA: &'static str = r#"{"title":"Session","type":"object","properties":{"format":{"type":"integer"},"program":{"type":"string"},"session":{"type":"string"},"mission_file":{"type":"string"},"mission_text":{"type":"string"},"seed":{"type":"integer"},"bodies":{"type":"array","items":{"type":"object"}}}}"#;
+    const SCHEMA: &'static str = r#"{"title":"Session","type":"object","properties":{"format":{"type":"integer"},"program":{"type":"string"},"session":{"type":"string"},"mission_file":{"type":"string"},"mission_text":{"type":"string"},"seed":{"type":"integer"},"bodies":{"type":"array","items":{"type":"object"}},"run":{"type":"string"}}}"#;
 }
 
 /// One tick: what went in, and the digest of what came out.
@@ -104,6 +108,26 @@ impl InputEntry {
     }
 }
 
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks so")]
+const fn is_zero(number: &u64) -> bool {
+    *number == 0
+}
+
+/// A run's number, in hexadecimal: it has more bits than numbers of JSON hold exactly.
+mod run {
+    use serde::{Deserialize as _, Deserializer, Serializer, de::Error as _};
+
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks so")]
+    pub fn serialize<S: Serializer>(run: &u64, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(&format_args!("{run:x}"))
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u64, D::Error> {
+        let text = std::borrow::Cow::<str>::deserialize(deserializer)?;
+        u64::from_str_radix(&text, 16).map_err(D::Error::custom)
+    }
+}
+
 /// A digest as a log writes it.
 #[must_use]
 pub fn hex(bytes: &[u8]) -> String {
@@ -147,19 +171,25 @@ pub struct EventEntry {
     /// A sentence for people.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub text: String,
+    /// Whose run sent it; 0 where none did.
+    #[serde(default, with = "run", skip_serializing_if = "is_zero")]
+    pub run: u64,
+    /// That run's count of events, from 0.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub sequence: u64,
 }
 
 impl EventEntry {
     /// The entry of an event as published; `None` if it is of no known kind.
     #[must_use]
-    pub fn new(tick: u64, message: &EventMessage) -> Option<Self> {
+    pub fn new(envelope: &Envelope, message: &EventMessage) -> Option<Self> {
         use cohabit_bus::message::{EventKind, NONE};
         let kind = message.kind()?;
         let goal = matches!(kind, EventKind::GoalMet | EventKind::GoalReset).then_some(message.number);
         let status = if kind == EventKind::Outcome { message.status() } else { None };
         let present = |value: u32| (value != NONE).then_some(value);
         Some(Self {
-            tick,
+            tick: envelope.tick,
             kind: format!("{kind:?}"),
             body: present(message.body),
             command: (message.command != 0).then_some(message.command),
@@ -168,13 +198,15 @@ impl EventEntry {
             object: present(message.object),
             status,
             text: message.text.as_str().to_owned(),
+            run: envelope.run,
+            sequence: envelope.sequence,
         })
     }
 }
 
 impl Entry for EventEntry {
     const TOPIC: &'static str = "/events";
-    const SCHEMA: &'static str = r#"{"title":"Event","type":"object","properties":{"tick":{"type":"integer"},"kind":{"type":"string"},"body":{"type":"integer"},"command":{"type":"integer"},"turn":{"type":"integer"},"goal":{"type":"integer"},"object":{"type":"integer"},"status":{"type":"string"},"text":{"type":"string"}}}"#;
+    const SCHEMA: &'static str = r#"{"title":"Event","type":"object","properties":{"tick":{"type":"integer"},"kind":{"type":"string"},"body":{"type":"integer"},"command":{"type":"integer"},"turn":{"type":"integer"},"goal":{"type":"integer"},"object":{"type":"integer"},"status":{"type":"string"},"text":{"type":"string"},"run":{"type":"string"},"sequence":{"type":"integer"}}}"#;
 }
 
 /// Something that was said, planned or done about a turn.
@@ -200,6 +232,12 @@ pub struct DialogEntry {
     /// A plan's steps.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub steps: Vec<Action>,
+    /// Whose run sent it; 0 where none did.
+    #[serde(default, with = "run", skip_serializing_if = "is_zero")]
+    pub run: u64,
+    /// That run's count of dialog messages, from 0.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub sequence: u64,
 }
 
 impl DialogEntry {
@@ -217,11 +255,13 @@ impl DialogEntry {
             stamps: view.header.stamps,
             text: view.header.text.as_str().to_owned(),
             steps: view.steps.iter().filter_map(|step| Action::try_from(step.action).ok()).collect(),
+            run: envelope.run,
+            sequence: envelope.sequence,
         })
     }
 }
 
 impl Entry for DialogEntry {
     const TOPIC: &'static str = "/dialog";
-    const SCHEMA: &'static str = r#"{"title":"Dialog","type":"object","properties":{"kind":{"type":"string"},"turn":{"type":"integer"},"body":{"type":"integer"},"step":{"type":"integer"},"status":{"type":"string"},"sent_nanos":{"type":"integer"},"stamps":{"type":"array","items":{"type":"integer"}},"text":{"type":"string"},"steps":{"type":"array","items":{"type":"object"}}}}"#;
+    const SCHEMA: &'static str = r#"{"title":"Dialog","type":"object","properties":{"kind":{"type":"string"},"turn":{"type":"integer"},"body":{"type":"integer"},"step":{"type":"integer"},"status":{"type":"string"},"sent_nanos":{"type":"integer"},"stamps":{"type":"array","items":{"type":"integer"}},"text":{"type":"string"},"steps":{"type":"array","items":{"type":"object"}},"run":{"type":"string"},"sequence":{"type":"integer"}}}"#;
 }

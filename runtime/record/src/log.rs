@@ -1,6 +1,7 @@
 //! Reads a log, also one that was cut off.
 
 use std::{
+    collections::BTreeMap,
     io,
     path::{Path, PathBuf},
 };
@@ -35,6 +36,20 @@ pub enum LogError {
         path: PathBuf,
         /// Why.
         source: io::Error,
+    },
+    /// Another process writes it.
+    #[error("{path} is being written by another recorder: choose another `--log`")]
+    Busy {
+        /// Which.
+        path: PathBuf,
+    },
+    /// It is the log of another session.
+    #[error("{path} holds session `{session}` already: choose another `--log`")]
+    OtherSession {
+        /// Which.
+        path: PathBuf,
+        /// The session's name.
+        session: String,
     },
     /// The log cannot be written.
     #[error("write {path}: {source}")]
@@ -125,6 +140,25 @@ impl Log {
     }
 }
 
+impl Log {
+    /// How many events and dialog messages are missing between the first and the last of their senders: nobody took
+    /// them down in time.
+    #[must_use]
+    pub fn missing(&self) -> u64 {
+        let events = self.events.iter().map(|entry| (entry.run, entry.sequence));
+        let dialog = self.dialog.iter().map(|entry| (entry.run, entry.sequence));
+        gaps(events) + gaps(dialog)
+    }
+}
+
+/// The numbers that are missing between the first and the last of each run's.
+fn gaps(numbers: impl Iterator<Item = (u64, u64)>) -> u64 {
+    let mut newest = BTreeMap::new();
+    // Where no run is told, none was counted.
+    let counted = numbers.filter(|(run, _)| *run != 0);
+    counted.map(|(run, number)| newest.insert(run, number).map_or(0, |before| number.saturating_sub(before + 1))).sum()
+}
+
 fn decode<T: DeserializeOwned>(data: &[u8]) -> Result<T, String> {
     serde_json::from_slice(data).map_err(|error| error.to_string())
 }
@@ -146,6 +180,7 @@ mod tests {
             mission_text: "{}".to_owned(),
             seed: u64::MAX,
             bodies: vec!["person@Lab1".parse().unwrap()],
+            run: u64::MAX,
         };
         let inputs = vec![InputEntry { command: 1 << 50, turn: 1, body: 0, action: Action::LookAround }];
         let ticks: Vec<_> = (0..50)

@@ -7,19 +7,24 @@ use std::{
 };
 
 use cohabit_bus::{
-    BusError, Listener, Sample, Subscriber, Topic, Transport, Wake,
-    message::{self, DialogView, EventMessage, Malformed, MissionMessage, TickView},
-    wall_nanos,
+    BusError, Heart, Inbox, Listener, Sample, Topic, Transport, Wake,
+    message::{self, DialogView, EventMessage, Malformed, MissionMessage, NONE, TickView},
+    process_of, wall_nanos,
 };
 
 use crate::{
+    carry_on::Written,
     entry::{DialogEntry, EventEntry, SessionEntry, TickEntry},
     log::LogError,
+    turns::Turns,
     writer::LogWriter,
 };
 
 /// The longest that an entry stays in this process alone.
 const FLUSH_EVERY: Duration = Duration::from_millis(100);
+
+/// All peers hand what they keep to late joiners within this time.
+const GREETED_WITHIN: Duration = Duration::from_millis(300);
 
 /// Why recording ended early.
 #[derive(Debug, thiserror::Error)]
@@ -40,12 +45,19 @@ pub enum RecordError {
 
 /// Records one session.
 pub struct Recorder {
-    mission: Box<dyn Subscriber>,
-    ticks: Box<dyn Subscriber>,
-    events: Box<dyn Subscriber>,
-    dialog: Box<dyn Subscriber>,
+    mission: Inbox,
+    ticks: Inbox,
+    events: Inbox,
+    dialog: Inbox,
     listener: Box<dyn Listener>,
-    lost: u64,
+    heart: Heart,
+    turns: Turns,
+}
+
+/// What was published before a recorder took it down.
+struct Began {
+    run: u64,
+    mission: MissionMessage,
 }
 
 impl Recorder {
@@ -55,25 +67,54 @@ impl Recorder {
     /// [`BusError`].
     pub fn new(bus: &dyn Transport) -> Result<Self, BusError> {
         Ok(Self {
-            mission: bus.subscriber(Topic::Mission)?,
-            ticks: bus.subscriber(Topic::Ticks)?,
-            events: bus.subscriber(Topic::Events)?,
-            dialog: bus.subscriber(Topic::Dialog)?,
+            mission: Inbox::new(bus, Topic::Mission)?,
+            ticks: Inbox::new(bus, Topic::Ticks)?,
+            events: Inbox::new(bus, Topic::Events)?,
+            dialog: Inbox::new(bus, Topic::Dialog)?,
             listener: bus.listener(Wake::State)?,
-            lost: 0,
+            heart: Heart::new(bus, "recorder", NONE)?,
+            turns: Turns::new(bus)?,
         })
     }
 
-    /// Records until `stop`, then ends the log. Writes nothing if no simulator ever came.
+    /// Records until `stop`, then ends the log. Writes nothing if no simulator ever came. Where the log is there already,
+    /// it carries on with it: an earlier recorder of the same session was killed. `caught_up` is called once, when all
+    /// that peers keep for who joins late has been taken down.
     ///
     /// # Errors
     /// [`RecordError`].
-    pub fn run(mut self, session: &str, path: &Path, stop: &AtomicBool) -> Result<(), RecordError> {
-        let Some(mission) = self.wait_for_mission(stop)? else { return Ok(()) };
-        let mut recording = self.open(session, path, &mission)?;
+    pub fn run(
+        mut self,
+        session: &str,
+        path: &Path,
+        stop: &AtomicBool,
+        caught_up: impl FnOnce(),
+    ) -> Result<(), RecordError> {
+        let Some(began) = self.wait_for_mission(stop)? else { return Ok(()) };
+        let (entry, now) = (began.entry(session), wall_nanos());
+        let (log, written) = match LogWriter::carry_on(path, &entry, now) {
+            Err(LogError::File { source, .. }) if source.kind() == std::io::ErrorKind::NotFound => {
+                (LogWriter::create(path, &entry, now)?, Written::default())
+            }
+            found => found?,
+        };
+        let mut recording = Recording::new(self, process_of(began.run), log, written);
+        if began.mission.header.lock_step == 1 {
+            recording.recorder.turns.attend()?;
+        }
+        let (opened, mut caught_up) = (Instant::now(), Some(caught_up));
         while !stop.load(Ordering::Relaxed) {
-            recording.recorder.listener.wait(FLUSH_EVERY / 2)?;
+            recording.recorder.listener.wait(FLUSH_EVERY)?;
+            let is_waited_for = recording.recorder.turns.has_come()?;
             recording.take_down()?;
+            // Tick by tick: what was published before this process is killed can be read after.
+            recording.flush()?;
+            if is_waited_for {
+                recording.recorder.turns.end()?;
+            }
+            if let Some(caught_up) = caught_up.take_if(|_| opened.elapsed() > GREETED_WITHIN) {
+                caught_up();
+            }
         }
         recording.finish()
     }
@@ -84,51 +125,33 @@ impl Recorder {
     /// # Errors
     /// [`RecordError`].
     pub fn begin(mut self, session: &str, path: &Path) -> Result<Recording, RecordError> {
-        let sample = self.mission.latest()?.ok_or(RecordError::NoMission)?;
-        let mission = MissionMessage::read(sample.payload())?;
-        self.open(session, path, &mission)
+        let began = self.mission()?.ok_or(RecordError::NoMission)?;
+        let log = LogWriter::create(path, &began.entry(session), wall_nanos())?;
+        Ok(Recording::new(self, process_of(began.run), log, Written::default()))
     }
 
-    fn open(self, session: &str, path: &Path, mission: &MissionMessage) -> Result<Recording, RecordError> {
-        let log = LogWriter::create(path, &SessionEntry::new(session, mission), wall_nanos())?;
-        Ok(Recording { recorder: self, log, flushed: Instant::now() })
-    }
-
-    fn wait_for_mission(&mut self, stop: &AtomicBool) -> Result<Option<MissionMessage>, RecordError> {
-        while !stop.load(Ordering::Relaxed) {
-            if let Some(sample) = self.mission.latest()? {
-                return Ok(Some(MissionMessage::read(sample.payload())?));
-            }
-            self.listener.wait(FLUSH_EVERY)?;
+    fn mission(&mut self) -> Result<Option<Began>, RecordError> {
+        let mut newest = None;
+        while let Some((sample, mission)) = self.mission.next(|sample| MissionMessage::read(sample.payload()))? {
+            newest = Some(Began { run: sample.envelope().run, mission });
         }
-        Ok(None)
+        Ok(newest)
     }
 
-    fn drain(&mut self, log: &mut LogWriter) -> Result<(), RecordError> {
-        let now = wall_nanos();
-        for_each(&mut *self.ticks, |sample| {
-            log.tick(&TickEntry::new(sample.envelope().tick, TickView::new(sample.payload())?))?;
-            Ok(())
-        })?;
-        for_each(&mut *self.events, |sample| {
-            let event: EventMessage = message::read(sample.payload())?;
-            if let Some(entry) = EventEntry::new(sample.envelope().tick, &event) {
-                log.event(&entry, now)?;
-            }
-            Ok(())
-        })?;
-        for_each(&mut *self.dialog, |sample| {
-            if let Some(entry) = DialogEntry::new(sample.envelope(), DialogView::new(sample.payload())?) {
-                log.dialog(&entry, now)?;
-            }
-            Ok(())
-        })?;
-        let lost = self.ticks.lost() + self.events.lost() + self.dialog.lost();
-        if lost > self.lost {
-            tracing::error!("the log misses {} messages: the disk is too slow", lost - self.lost);
-            self.lost = lost;
+    fn wait_for_mission(&mut self, stop: &AtomicBool) -> Result<Option<Began>, RecordError> {
+        loop {
+            match self.mission()? {
+                None if stop.load(Ordering::Relaxed) => return Ok(None),
+                None => self.listener.wait(FLUSH_EVERY)?,
+                began => return Ok(began),
+            };
         }
-        Ok(())
+    }
+}
+
+impl Began {
+    fn entry(&self, session: &str) -> SessionEntry {
+        SessionEntry { run: self.run, ..SessionEntry::new(session, &self.mission) }
     }
 }
 
@@ -136,17 +159,71 @@ impl Recorder {
 pub struct Recording {
     recorder: Recorder,
     log: LogWriter,
+    written: Written,
+    /// The process that publishes ticks and events.
+    simulator: u32,
+    missing: u64,
     flushed: Instant,
 }
 
 impl Recording {
+    fn new(recorder: Recorder, simulator: u32, log: LogWriter, written: Written) -> Self {
+        Self { recorder, log, written, simulator, missing: 0, flushed: Instant::now() }
+    }
+
     /// Takes down all that was published since the last time.
     ///
     /// # Errors
     /// [`RecordError`].
     pub fn take_down(&mut self) -> Result<(), RecordError> {
-        self.recorder.drain(&mut self.log)?;
+        self.drain()?;
         if self.flushed.elapsed() >= FLUSH_EVERY { self.flush() } else { Ok(()) }
+    }
+
+    fn drain(&mut self) -> Result<(), RecordError> {
+        let now = wall_nanos();
+        let Self { recorder, log, written, missing, simulator, .. } = self;
+        let is_simulator = |sample: &Sample| {
+            let whose = process_of(sample.envelope().run);
+            if whose == *simulator { Ok(()) } else { Err(Malformed("it is the simulator's to say")) }
+        };
+        let before = *missing;
+        while let Some((sample, ())) = recorder.ticks.next(|sample| {
+            is_simulator(sample)?;
+            TickView::new(sample.payload()).map(drop)
+        })? {
+            let tick = sample.envelope().tick;
+            let Some(gap) = written.tick(tick) else { continue };
+            *missing += gap;
+            log.tick(&TickEntry::new(tick, TickView::new(sample.payload())?))?;
+        }
+        while let Some((sample, event)) = recorder
+            .events
+            .next(|sample| is_simulator(sample).and_then(|()| message::read::<EventMessage>(sample.payload())))?
+        {
+            let envelope = sample.envelope();
+            let Some(gap) = written.event(envelope.run, envelope.sequence) else { continue };
+            *missing += gap;
+            if let Some(entry) = EventEntry::new(envelope, &event) {
+                log.event(&entry, now)?;
+            }
+        }
+        while let Some((sample, ())) = recorder.dialog.next(|sample| DialogView::new(sample.payload()).map(drop))? {
+            let envelope = sample.envelope();
+            let Some(gap) = written.dialog(envelope.run, envelope.sequence) else { continue };
+            *missing += gap;
+            if let Some(entry) = DialogEntry::new(envelope, DialogView::new(sample.payload())?) {
+                log.dialog(&entry, now)?;
+            }
+        }
+        recorder.heart.beat(written.tick, *missing)?;
+        if *missing > before {
+            tracing::error!(
+                "the log misses {} messages: its recorder was away, or its disk slow, for too long",
+                *missing - before
+            );
+        }
+        Ok(())
     }
 
     /// Hands all that was taken down to the operating system.
@@ -164,20 +241,10 @@ impl Recording {
     /// # Errors
     /// [`RecordError`].
     pub fn finish(mut self) -> Result<(), RecordError> {
-        self.recorder.drain(&mut self.log)?;
+        self.drain()?;
         self.log.finish()?;
         Ok(())
     }
-}
-
-fn for_each(
-    subscriber: &mut dyn Subscriber,
-    mut take: impl FnMut(&Sample) -> Result<(), RecordError>,
-) -> Result<(), RecordError> {
-    while let Some(sample) = subscriber.receive()? {
-        take(&sample)?;
-    }
-    Ok(())
 }
 
 #[cfg(test)]

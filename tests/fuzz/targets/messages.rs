@@ -2,9 +2,12 @@
 
 #![no_main]
 
-use cohabit_bus::message::{
-    CommandMessage, Control, ControlMessage, DialogView, EventMessage, FrameView, MissionMessage, Plane, PulseMessage,
-    StateView, StepView, Thing, TickView, read,
+use cohabit_bus::{
+    Envelope,
+    message::{
+        CommandMessage, Control, ControlMessage, DialogView, EventMessage, FrameView, MissionMessage, Plane, PulseMessage,
+        StateView, StepView, Thing, TickView, read,
+    },
 };
 use cohabit_cdf::Action;
 use cohabit_record::entry::{EventEntry, InputEntry};
@@ -36,7 +39,7 @@ fn look(kind: u8, payload: &[u8]) {
         1 => {
             let Ok(event) = read::<EventMessage>(payload) else { return };
             let _ = (event.kind(), event.status(), event.text.as_str().len());
-            if let Some(entry) = EventEntry::new(1, &event) {
+            if let Some(entry) = EventEntry::new(&Envelope::default(), &event) {
                 let _ = serde_json::to_string(&entry);
             }
         }

@@ -312,6 +312,8 @@ impl Talk {
 
     pub fn say(&mut self, utterance: &str) -> String {
         let understanding = self.language.understand(utterance, &self.scene, &mut self.context);
+        // What was written down and read again is the same conversation.
+        self.context = serde_json::from_str(&serde_json::to_string(&self.context).unwrap()).unwrap();
         text(&understanding, &self.scene)
     }
 }

@@ -40,7 +40,7 @@ pub struct CommandMessage {
     pub command: u64,
     /// The dialog turn it belongs to; 0 is none.
     pub turn: u64,
-    /// Which body.
+    /// Which body; `NONE` for who is waited for without one, such as a recorder.
     pub body: u32,
     /// `CommandKind`.
     kind: u32,

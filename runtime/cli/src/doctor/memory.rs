@@ -1,8 +1,10 @@
 //! Shared memory, and memory.
 
-use std::fs;
+use std::{fs, path::Path};
 
 use cohabit_bus::{Remains, Session};
+
+use crate::failure::bad_input;
 
 use super::{
     finding::{Finding, size},
@@ -48,16 +50,34 @@ pub fn shared_memory(machine: &Machine) -> Finding {
     judge(found, free, system.f_type == TMPFS)
 }
 
+/// Makes sure that a session has room before any of its processes starts: where shared memory is full, the kernel ends
+/// whoever writes to it.
+pub fn ensure_room() -> anyhow::Result<()> {
+    let folder = Path::new("/").join(FOLDER);
+    // Where it cannot be told, taking the session tells more.
+    let free = free_bytes(&folder).unwrap_or(SESSION_BYTES);
+    if free >= SESSION_BYTES {
+        return Ok(());
+    }
+    let (free, needed) = (size(free), size(SESSION_BYTES));
+    Err(bad_input(format!(
+        "{} has {free} free, a session takes up to {needed}: free some, or {MORE}",
+        folder.display()
+    )))
+}
+
+/// What gives it more room.
+const MORE: &str = "give it more: mount -o remount,size=1g /dev/shm (of a container: --shm-size=1g)";
+
 fn judge(found: String, free: u64, is_tmpfs: bool) -> Finding {
-    let more = "give it more: mount -o remount,size=1g /dev/shm (of a container: --shm-size=1g)";
     if free < SESSION_BYTES {
         let costs = format!("a session takes {}: its simulator would be ended by the kernel", size(SESSION_BYTES));
-        Finding::broken(found, costs, more)
+        Finding::broken(found, costs, MORE)
     } else if !is_tmpfs {
         Finding::costs(found + ", which is no tmpfs", "frames go to a disk", "mount -t tmpfs -o size=1g tmpfs /dev/shm")
     } else if free < LARGE_SESSION_BYTES {
         let costs = format!("one session of {} fits, but not many bodies or large cameras", size(SESSION_BYTES));
-        Finding::costs(found, costs, more)
+        Finding::costs(found, costs, MORE)
     } else {
         Finding::good(found)
     }

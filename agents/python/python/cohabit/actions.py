@@ -1,0 +1,149 @@
+"""What a body can be told to do.
+
+Objects are given by number, by instance id (``"Bowl_01_1"``) or by class (``"Bowl_01"``, ``"bowl"``): the nearest to the
+body that is not hidden.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Union
+
+from . import _native
+
+ObjectRef = Union[int, str, _native.Object, _native.Seen]
+"""An object: its number, a name, or what ``state`` or a frame gave for it."""
+
+
+def resolve(reference: ObjectRef, state: _native.State, body: int) -> int:
+    """The number of the object that is meant. Raises ``KeyError`` if there is none."""
+    if isinstance(reference, _native.Seen):
+        if reference.object is None:
+            raise KeyError(f"{reference!r} is no object")
+        return reference.object
+    if isinstance(reference, _native.Object):
+        return reference.id
+    if isinstance(reference, int):
+        return reference
+    return state.find(reference, near=body).id
+
+
+@dataclass(frozen=True)
+class Move:
+    """Move along the heading by so many metres; negative is backwards."""
+
+    distance_m: float
+
+    def plain(self, state: _native.State, body: int) -> _native.Action:
+        """The action with its objects as numbers."""
+        return _native.Action.move(self.distance_m)
+
+
+@dataclass(frozen=True)
+class Rotate:
+    """Turn by so many radians; positive is to the left."""
+
+    yaw_rad: float
+
+    def plain(self, state: _native.State, body: int) -> _native.Action:
+        """The action with its objects as numbers."""
+        return _native.Action.rotate(self.yaw_rad)
+
+
+@dataclass(frozen=True)
+class Look:
+    """Pitch the head by so many radians; positive is up."""
+
+    pitch_rad: float
+
+    def plain(self, state: _native.State, body: int) -> _native.Action:
+        """The action with its objects as numbers."""
+        return _native.Action.look(self.pitch_rad)
+
+
+@dataclass(frozen=True)
+class LookAround:
+    """Turn once around, looking."""
+
+    def plain(self, state: _native.State, body: int) -> _native.Action:
+        """The action with its objects as numbers."""
+        return _native.Action.look_around()
+
+
+@dataclass(frozen=True)
+class GoTo:
+    """Walk to an object, a room (``"Lab1"``), a room's viewpoint (``("Lab1", 3)``) or a point ``(x_m, y_m)``."""
+
+    target: Union[ObjectRef, tuple[str, int], tuple[float, float]]
+
+    def plain(self, state: _native.State, body: int) -> _native.Action:
+        """The action with its objects as numbers."""
+        target = self.target
+        if isinstance(target, tuple):
+            first, second = target
+            if isinstance(first, str):
+                return _native.Action.go_to_viewpoint(first, int(second))
+            return _native.Action.go_to_point(float(first), float(second))
+        if isinstance(target, str) and target.lower() in _ROOMS:
+            return _native.Action.go_to_room(target)
+        return _native.Action.go_to_object(resolve(target, state, body))
+
+
+@dataclass(frozen=True)
+class PickUp:
+    """Take an object into the empty hand."""
+
+    object: ObjectRef
+
+    def plain(self, state: _native.State, body: int) -> _native.Action:
+        """The action with its objects as numbers."""
+        return _native.Action.pick_up(resolve(self.object, state, body))
+
+
+@dataclass(frozen=True)
+class Place:
+    """Put what is held onto or into a receptacle."""
+
+    receptacle: ObjectRef
+
+    def plain(self, state: _native.State, body: int) -> _native.Action:
+        """The action with its objects as numbers."""
+        return _native.Action.place(resolve(self.receptacle, state, body))
+
+
+@dataclass(frozen=True)
+class Interact:
+    """Do one of ``VERBS`` to an object, with the hand or with what it holds."""
+
+    verb: str
+    object: ObjectRef
+
+    def plain(self, state: _native.State, body: int) -> _native.Action:
+        """The action with its objects as numbers."""
+        return _native.Action.interact(self.verb, resolve(self.object, state, body))
+
+
+@dataclass(frozen=True)
+class Highlight:
+    """Outline an object for the people who watch."""
+
+    object: ObjectRef
+
+    def plain(self, state: _native.State, body: int) -> _native.Action:
+        """The action with its objects as numbers."""
+        return _native.Action.highlight(resolve(self.object, state, body))
+
+
+@dataclass(frozen=True)
+class Stop:
+    """Let go of whatever it is doing, now."""
+
+    def plain(self, state: _native.State, body: int) -> _native.Action:
+        """The action with its objects as numbers."""
+        return _native.Action.stop()
+
+
+Action = Union[Move, Rotate, Look, LookAround, GoTo, PickUp, Place, Interact, Highlight, Stop]
+"""Any of them."""
+
+_ROOMS = {room.lower() for room in _native.ROOMS}

@@ -1,0 +1,120 @@
+//! The discrete actions of environments: what a policy chooses from, and what of it makes sense.
+
+use std::f32::consts::PI;
+
+use cohabit_cdf::{Action, GoToTarget, ObjectClass, ObjectId, Property, RoomId, Verb};
+use pyo3::prelude::*;
+
+use crate::{action::PyAction, error::bad_argument};
+
+/// One step ahead or back, m.
+const STRIDE_M: f32 = 0.5;
+/// One turn to a side, rad: 30 degrees.
+const TURN_RAD: f32 = PI / 6.0;
+/// One look up or down, rad: 15 degrees.
+const LOOK_RAD: f32 = PI / 12.0;
+
+/// A kind of action; those on an object take one of the slots.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum Choice {
+    Wait,
+    MoveAhead,
+    MoveBack,
+    TurnLeft,
+    TurnRight,
+    LookUp,
+    LookDown,
+    GoToRoom(RoomId),
+    GoTo,
+    PickUp,
+    Place,
+    Interact(Verb),
+}
+
+impl Choice {
+    /// All of them, in the order of their numbers.
+    pub fn all() -> impl Iterator<Item = Self> {
+        use Choice::{GoTo, LookDown, LookUp, MoveAhead, MoveBack, PickUp, Place, TurnLeft, TurnRight, Wait};
+        let moves = [Wait, MoveAhead, MoveBack, TurnLeft, TurnRight, LookUp, LookDown];
+        let acts = [GoTo, PickUp, Place].into_iter().chain(Verb::ALL.map(Self::Interact));
+        moves.into_iter().chain(RoomId::ALL.map(Self::GoToRoom)).chain(acts)
+    }
+
+    /// The choice of that number.
+    ///
+    /// # Errors
+    /// A `ValueError` if there is none.
+    pub fn numbered(number: usize) -> PyResult<Self> {
+        let last = Self::all().count() - 1;
+        Self::all().nth(number).ok_or_else(|| bad_argument(format!("there is no choice {number}: 0 to {last}")))
+    }
+
+    /// As documents call it.
+    pub fn name(self) -> String {
+        match self {
+            Self::Wait => "wait".to_owned(),
+            Self::MoveAhead => "move_ahead".to_owned(),
+            Self::MoveBack => "move_back".to_owned(),
+            Self::TurnLeft => "turn_left".to_owned(),
+            Self::TurnRight => "turn_right".to_owned(),
+            Self::LookUp => "look_up".to_owned(),
+            Self::LookDown => "look_down".to_owned(),
+            Self::GoToRoom(room) => format!("go_to_{}", room.id()),
+            Self::GoTo => "go_to".to_owned(),
+            Self::PickUp => "pick_up".to_owned(),
+            Self::Place => "place".to_owned(),
+            Self::Interact(verb) => format!("{verb:?}").to_lowercase(),
+        }
+    }
+
+    /// Whether it is done to an object.
+    pub const fn takes_slot(self) -> bool {
+        matches!(self, Self::GoTo | Self::PickUp | Self::Place | Self::Interact(_))
+    }
+
+    /// The command that it means, done to `object` if to one; none for waiting.
+    pub const fn action(self, object: ObjectId) -> Option<Action> {
+        Some(match self {
+            Self::Wait => return None,
+            Self::MoveAhead => Action::Move { distance_m: STRIDE_M },
+            Self::MoveBack => Action::Move { distance_m: -STRIDE_M },
+            Self::TurnLeft => Action::Rotate { yaw_rad: TURN_RAD },
+            Self::TurnRight => Action::Rotate { yaw_rad: -TURN_RAD },
+            Self::LookUp => Action::Look { pitch_rad: LOOK_RAD },
+            Self::LookDown => Action::Look { pitch_rad: -LOOK_RAD },
+            Self::GoToRoom(room) => Action::GoTo { target: GoToTarget::Room(room) },
+            Self::GoTo => Action::GoTo { target: GoToTarget::Object(object) },
+            Self::PickUp => Action::PickUp { object },
+            Self::Place => Action::Place { receptacle: object },
+            Self::Interact(verb) => Action::Interact { verb, object },
+        })
+    }
+
+    /// Whether things of that class afford it to somebody who holds `held`. The world may refuse it all the same: what is
+    /// locked affords opening.
+    pub fn is_afforded(self, class: &ObjectClass, held: Option<&ObjectClass>) -> bool {
+        match self {
+            Self::PickUp => held.is_none() && class.has(Property::Pickupable),
+            Self::Place => held.is_some() && class.has(Property::Receptacle),
+            Self::Interact(verb) => match verb {
+                Verb::Open | Verb::Close => class.has(Property::Openable),
+                Verb::Toggle => class.has(Property::Toggleable),
+                Verb::Break => held.is_some() && class.has(Property::Breakable),
+                Verb::Clean => class.has(Property::Dirtyable) || held.is_some_and(|held| held.has(Property::Dirtyable)),
+                Verb::Fill => held.is_some_and(|held| held.has(Property::Fillable)),
+                Verb::Pour | Verb::Throw => held.is_some(),
+                Verb::Scan | Verb::Examine => true,
+            },
+            _ => true,
+        }
+    }
+}
+
+/// The command that a choice means, done to an object if to one; none for waiting.
+///
+/// # Errors
+/// A `ValueError` if there is no such choice.
+#[pyfunction]
+pub fn choice_action(choice: usize, object: u32) -> PyResult<Option<PyAction>> {
+    Ok(Choice::numbered(choice)?.action(ObjectId(object)).map(PyAction))
+}

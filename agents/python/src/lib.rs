@@ -1,0 +1,56 @@
+//! The part of the Python package `cohabit` that is not Python: a world stepped in lock-step inside the interpreter's
+//! process, and a peer of a running session whose frames are read where the simulator wrote them.
+//!
+//! Whatever waits or computes lets other Python threads run meanwhile, and whatever waits ends at Ctrl-C. What is handed
+//! to Python as memory cannot be written to there. This crate never knows rules: it asks the world and the catalogue.
+
+mod action;
+mod choice;
+mod error;
+mod frame;
+mod library;
+mod memory;
+mod mission_file;
+mod outcome;
+mod senses;
+mod session;
+mod stage;
+mod state;
+
+/// What Python imports.
+#[pyo3::pymodule]
+mod _native {
+    #[pymodule_export]
+    use crate::{
+        action::PyAction,
+        choice::choice_action,
+        error::Error,
+        frame::{Frame, Seen},
+        library::{class_ids, class_names},
+        memory::Memory,
+        outcome::Outcome,
+        senses::Senses,
+        session::{Command, Heard, Session},
+        stage::Stage,
+        state::{Body, Goal, Object, State},
+    };
+
+    use pyo3::prelude::*;
+
+    #[pymodule_init]
+    fn tables(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        use cohabit_cdf::{BodyKind, Color, Fluid, RoomId, StateFlag, Status, Verb};
+
+        use crate::choice::Choice;
+
+        module.add("VERSION", env!("CARGO_PKG_VERSION"))?;
+        module.add("CHOICES", Choice::all().map(|choice| (choice.name(), choice.takes_slot())).collect::<Vec<_>>())?;
+        module.add("ROOMS", RoomId::ALL.map(RoomId::id).to_vec())?;
+        module.add("KINDS", BodyKind::ALL.map(BodyKind::name).to_vec())?;
+        module.add("COLORS", Color::ALL.map(Color::name).to_vec())?;
+        module.add("FLUIDS", Fluid::ALL.map(Fluid::name).to_vec())?;
+        module.add("FLAGS", StateFlag::ALL.map(|flag| format!("{flag:?}")).to_vec())?;
+        module.add("VERBS", Verb::ALL.map(|verb| format!("{verb:?}").to_lowercase()).to_vec())?;
+        module.add("STATUSES", Status::ALL.map(|status| format!("{status:?}")).to_vec())
+    }
+}

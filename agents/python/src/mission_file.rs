@@ -1,0 +1,60 @@
+//! Finds missions: a file, a built-in one, or a text that Python has.
+
+use std::{fs, path::Path};
+
+use cohabit_cdf::mission;
+
+/// The mission played when none is named.
+const DEFAULT: &str = "make_cereal";
+
+/// A mission's name and its text.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MissionFile {
+    pub name: String,
+    pub text: String,
+}
+
+/// Why there is no such mission.
+#[derive(Debug, thiserror::Error)]
+pub enum MissionFileError {
+    /// It cannot be read.
+    #[error("{path}: {source}")]
+    Read {
+        /// Which.
+        path: String,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// It is not there.
+    #[error("{name}: there is no such file, and no built-in mission of that name (there are {known})")]
+    Unknown {
+        /// What was asked for.
+        name: String,
+        /// The built-in ones.
+        known: String,
+    },
+}
+
+impl MissionFile {
+    /// The file at that path, or the built-in mission of that name; the default one for `None`.
+    ///
+    /// # Errors
+    /// [`MissionFileError`].
+    pub fn find(name: Option<&str>) -> Result<Self, MissionFileError> {
+        let name = name.unwrap_or(DEFAULT);
+        if Path::new(name).is_file() {
+            let read = fs::read_to_string(name);
+            let text = read.map_err(|source| MissionFileError::Read { path: name.to_owned(), source })?;
+            return Ok(Self { name: name.to_owned(), text });
+        }
+        let stem = |file: &'static str| file.trim_end_matches(".json");
+        let known = mission::builtin();
+        match known.iter().find(|(file, _)| stem(file) == name.trim_end_matches(".json")) {
+            Some((file, text)) => Ok(Self { name: (*file).to_owned(), text: (*text).to_owned() }),
+            None => {
+                let known: Vec<&str> = known.iter().map(|(file, _)| stem(file)).collect();
+                Err(MissionFileError::Unknown { name: name.to_owned(), known: known.join(", ") })
+            }
+        }
+    }
+}

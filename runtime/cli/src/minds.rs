@@ -1,0 +1,162 @@
+//! Kinds of minds, and how one is asked for.
+
+use std::{ffi::OsString, fmt, fs, path::Path, str::FromStr};
+
+use clap::ValueEnum;
+use cohabit_agent::{Agent, Helper, PlanFollower, Random, Script, Scripted};
+use cohabit_cdf::Catalog;
+use cohabit_engine::SessionPlan;
+
+use crate::failure::bad_input;
+
+/// Kinds of minds.
+#[derive(Clone, Copy, Debug, Eq, PartialEq, ValueEnum)]
+pub enum MindKind {
+    /// Does what the dialog service plans
+    Dialog,
+    /// Acts at random, the same for the same seed
+    Random,
+    /// Does what a script says, line by line
+    Scripted,
+    /// Keeps the office in order, by what its own camera shows
+    Helper,
+}
+
+impl MindKind {
+    fn name(self) -> String {
+        self.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
+    }
+
+    /// A mind of this kind for a body; what is random in it follows from `seed`.
+    pub fn mind(self, body: u32, seed: u64, script: Option<&Path>) -> anyhow::Result<Box<dyn Agent>> {
+        // Two at random in one world do not do the same.
+        let seed = seed.wrapping_add(u64::from(body));
+        Ok(match self {
+            Self::Dialog => Box::new(PlanFollower::new(body)),
+            Self::Random => Box::new(Random::new(seed)),
+            Self::Helper => Box::new(Helper::new(body, seed)),
+            Self::Scripted => Box::new(Scripted::new(body, read_script(script)?)),
+        })
+    }
+}
+
+fn read_script(file: Option<&Path>) -> anyhow::Result<Script> {
+    let file = file.ok_or_else(|| bad_input("a scripted agent needs a script: `--script FILE`, or in play `=FILE`"))?;
+    let name = file.display();
+    let text = fs::read_to_string(file).map_err(|error| bad_input(format!("{name}: {error}")))?;
+    Script::parse(&name.to_string(), &text, &Catalog::builtin()).map_err(bad_input)
+}
+
+/// A mind that a session starts with: its kind, perhaps its body, perhaps its script, such as `scripted@1=walk.txt`.
+#[derive(Clone, Debug, Eq, PartialEq)]
+pub struct MindRequest {
+    kind: MindKind,
+    body: u32,
+    script: Option<String>,
+}
+
+impl FromStr for MindRequest {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (who, script) = text.split_once('=').map_or((text, None), |(who, file)| (who, Some(file.to_owned())));
+        let (kind, body) = who.split_once('@').unwrap_or((who, "0"));
+        let kinds = || MindKind::value_variants().iter().map(|kind| kind.name()).collect::<Vec<_>>().join(", ");
+        let kind = MindKind::from_str(kind, false).map_err(|_| format!("there is no agent `{kind}`: {}", kinds()))?;
+        let body = body
+            .parse()
+            .map_err(|_| format!("`{body}` is no body: bodies count from 0, such as `{kind}@1`", kind = kind.name()))?;
+        match (kind, &script) {
+            (MindKind::Scripted, None) => Err(format!("a scripted agent needs a script: `scripted@{body}=FILE`")),
+            (MindKind::Scripted, Some(_)) | (_, None) => Ok(Self { kind, body, script }),
+            (_, Some(_)) => Err(format!("only a scripted agent takes a script: write `{}@{body}`", kind.name())),
+        }
+    }
+}
+
+impl fmt::Display for MindRequest {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}@{}", self.kind.name(), self.body)?;
+        self.script.as_ref().map_or(Ok(()), |file| write!(f, "={file}"))
+    }
+}
+
+impl MindRequest {
+    /// The arguments of the process that is such a mind.
+    pub fn arguments(&self, seed: u64) -> Vec<OsString> {
+        let body = self.body.to_string();
+        let mut arguments = vec![self.kind.name(), "--body".to_owned(), body, "--seed".to_owned(), seed.to_string()];
+        arguments.extend(self.script.iter().flat_map(|file| ["--script".to_owned(), file.clone()]));
+        arguments.into_iter().map(OsString::from).collect()
+    }
+
+    /// Says what is wrong with these minds for a session, before anything of it is started.
+    pub fn check(requests: &[Self], plan: &SessionPlan) -> anyhow::Result<()> {
+        let bodies = plan.mission.robots.len().max(1) + plan.bodies.len();
+        for (index, request) in requests.iter().enumerate() {
+            let body = request.body;
+            if body as usize >= bodies {
+                let last = bodies - 1;
+                let remedy = format!("the session has bodies 0 to {last}; `--body robot` adds one");
+                return Err(bad_input(format!("`--agent {request}`: there is no body {body}: {remedy}")));
+            }
+            if let Some(other) = requests[..index].iter().find(|other| other.body == body) {
+                let remedy = format!("give one of them another body, such as `@{}`", body + 1);
+                return Err(bad_input(format!("`--agent {request}`: body {body} is that of `{other}`: {remedy}")));
+            }
+            if let Some(file) = &request.script {
+                read_script(Some(Path::new(file)))?;
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use std::sync::Arc;
+
+    use cohabit_cdf::mission;
+
+    use super::*;
+
+    #[test]
+    fn requests_read_as_they_print() {
+        for (text, whole) in [
+            ("dialog", "dialog@0"),
+            ("helper@1", "helper@1"),
+            ("random@0", "random@0"),
+            ("scripted@2=a=b.txt", "scripted@2=a=b.txt"),
+        ] {
+            assert_eq!(text.parse::<MindRequest>().unwrap().to_string(), whole);
+        }
+        for (text, error) in [
+            ("butler", "there is no agent `butler`: dialog, random, scripted, helper"),
+            ("helper@one", "`one` is no body"),
+            ("scripted@1", "`scripted@1=FILE`"),
+            ("helper@1=a.txt", "write `helper@1`"),
+        ] {
+            let found = text.parse::<MindRequest>().unwrap_err();
+            assert!(found.contains(error), "{found}");
+        }
+    }
+
+    #[test]
+    fn two_minds_at_one_body_and_minds_without_one_are_refused() {
+        let (file, text) = mission::builtin()[0];
+        let plan = SessionPlan::new(file, text, Arc::new(Catalog::builtin()), 1).unwrap();
+        let plan = plan.with_bodies(vec!["robot".parse().unwrap()]);
+        let check = |texts: &[&str]| {
+            let requests: Vec<MindRequest> = texts.iter().map(|text| text.parse().unwrap()).collect();
+            MindRequest::check(&requests, &plan).map_err(|error| error.to_string())
+        };
+        assert_eq!(check(&["dialog", "helper@1"]), Ok(()));
+        let twice = check(&["dialog", "helper"]).unwrap_err();
+        assert!(twice.contains("`--agent helper@0`") && twice.contains("`dialog@0`"), "{twice}");
+        let absent = check(&["dialog@2"]).unwrap_err();
+        assert!(absent.contains("bodies 0 to 1"), "{absent}");
+        let unread = check(&["scripted@1=/nowhere.txt"]).unwrap_err();
+        assert!(unread.contains("/nowhere.txt"), "{unread}");
+    }
+}

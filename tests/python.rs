@@ -1,0 +1,92 @@
+//! The Python package: packed as a wheel around the native module of this very build, installed where nothing else is,
+//! and tried by its own tests, against sessions of this very binary.
+#![allow(clippy::unwrap_used)]
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::{Command, Output},
+};
+
+/// The binary under test.
+const COHABIT: &str = env!("CARGO_BIN_EXE_cohabit");
+/// The package's sources.
+const PACKAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../agents/python");
+/// Where all of it happens.
+const FOLDER: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/python");
+
+fn output(command: &mut Command) -> Result<Output, String> {
+    let output = command.output().map_err(|error| format!("{command:?}: {error}"))?;
+    let text = || [&output.stdout[..], &output.stderr[..]].map(String::from_utf8_lossy).concat();
+    if output.status.success() { Ok(output) } else { Err(format!("{command:?}: {}\n{}", output.status, text())) }
+}
+
+/// A Python with all that the tests need, or why there is none. It is kept for the next run.
+fn environment() -> Result<PathBuf, String> {
+    let requirements = Path::new(PACKAGE).join("requirements.txt");
+    let wanted = fs::read_to_string(&requirements).unwrap();
+    let (folder, done) = (Path::new(FOLDER).join("venv"), Path::new(FOLDER).join("installed.txt"));
+    let python = folder.join("bin/python");
+    if fs::read_to_string(&done).is_ok_and(|installed| installed == wanted) && python.exists() {
+        return Ok(python);
+    }
+    output(Command::new("python3").args(["-c", "import sys, venv; assert sys.version_info >= (3, 10), sys.version"]))?;
+    output(Command::new("python3").args(["-m", "venv", "--clear"]).arg(&folder))?;
+    let pip = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--only-binary", ":all:", "-r"];
+    output(Command::new(&python).args(pip).arg(requirements))?;
+    fs::write(done, wanted).unwrap();
+    Ok(python)
+}
+
+fn copy(from: &Path, to: &Path) {
+    fs::create_dir_all(to).unwrap();
+    for entry in fs::read_dir(from).unwrap().map(Result::unwrap) {
+        let (path, name) = (entry.path(), entry.file_name());
+        let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+        if ["py", "pyi", "typed"].contains(&ending) || name == "py.typed" {
+            fs::copy(&path, to.join(name)).unwrap();
+        }
+    }
+}
+
+/// The wheel, as maturin describes it, with the native module that cargo has built for these tests.
+fn pack(python: &Path) -> Result<PathBuf, String> {
+    let wheels = Path::new(FOLDER).join("wheels");
+    let tree = Path::new(FOLDER).join("tree");
+    for folder in [&wheels, &tree] {
+        let _ = fs::remove_dir_all(folder);
+        fs::create_dir_all(folder).unwrap();
+    }
+    let maturin = python.with_file_name("maturin");
+    let describe = ["pep517", "write-dist-info", "--compatibility", "linux", "--metadata-directory"];
+    output(Command::new(maturin).args(describe).arg(&tree).current_dir(PACKAGE))?;
+    copy(&Path::new(PACKAGE).join("python/cohabit"), &tree.join("cohabit"));
+    let native = Path::new(COHABIT).with_file_name("deps").join("lib_native.so");
+    fs::copy(native, tree.join("cohabit/_native.abi3.so")).map_err(|error| format!("the native module: {error}"))?;
+    output(Command::new(python).args(["-m", "wheel", "pack"]).arg(&tree).arg("--dest-dir").arg(&wheels))?;
+    let mut packed = fs::read_dir(&wheels).unwrap().map(|entry| entry.unwrap().path());
+    packed.next().ok_or_else(|| "no wheel was packed".to_owned())
+}
+
+#[test]
+fn the_package_passes_its_own_tests() {
+    fs::create_dir_all(FOLDER).unwrap();
+    let python = match environment() {
+        Ok(python) => python,
+        Err(why) => {
+            return eprintln!("skipped: the Python package is not tried, for want of Python or of its tools: {why}");
+        }
+    };
+    let wheel = pack(&python).unwrap();
+    let install = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-deps", "--force-reinstall"];
+    output(Command::new(&python).args(install).arg(wheel)).unwrap();
+    let examples = Path::new(PACKAGE).join("examples");
+    for example in fs::read_dir(examples).unwrap().map(|entry| entry.unwrap().path()) {
+        output(Command::new(&python).arg(example)).unwrap();
+    }
+    let tests = ["-m", "pytest", "--quiet", "-p", "no:cacheprovider", "tests"];
+    let tested = output(Command::new(&python).args(tests).current_dir(PACKAGE).env("COHABIT", COHABIT));
+    println!("{}", String::from_utf8_lossy(&tested.unwrap().stdout));
+    let types = ["-m", "mypy", "--no-incremental", "--cache-dir", "/dev/null", "-p", "cohabit"];
+    output(Command::new(&python).args(types).current_dir(FOLDER).arg("--strict")).unwrap();
+}

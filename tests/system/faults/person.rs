@@ -1,0 +1,82 @@
+//! Somebody who talks to the robot.
+
+use std::{
+    thread,
+    time::{Duration, Instant},
+};
+
+use anyhow::ensure;
+use cohabit_tests::Page;
+use serde_json::Value;
+
+/// What the robot is asked to do: some seconds of work of several kinds.
+pub const WORK: &str =
+    "turn left 90 degrees, turn right 90 degrees, pick up the soda can and put it on the round table";
+/// The longest that anything is waited for.
+const WATCHDOG: Duration = Duration::from_secs(60);
+
+/// A person at the page, who opens it again when it fails, and asks again what nobody heard.
+pub struct Person {
+    /// Where the page is.
+    pub authority: String,
+    /// The page.
+    pub page: Page,
+}
+
+impl Person {
+    /// A person who opens the page there.
+    pub fn at(authority: &str) -> anyhow::Result<Self> {
+        Ok(Self { authority: authority.to_owned(), page: Page::open(authority)? })
+    }
+
+    /// Waits until [`WORK`] is done, which was asked for.
+    pub fn have_done(&mut self) -> anyhow::Result<()> {
+        let is_done = |page: &Page| {
+            let met = page.goals().first().is_some_and(|(_, met)| *met);
+            let replies = page.chat.iter().filter(|(from, _)| from == "robot").count();
+            met && replies >= 2 && page.state["robot"]["holding"].is_null() && page.state["robot"]["busy"] == false
+        };
+        let deadline = Instant::now() + WATCHDOG;
+        loop {
+            match self.page.wait("the work to be done", |page, _| is_done(page)) {
+                Ok(_) => return Ok(()),
+                Err(error) if Instant::now() > deadline => return Err(error),
+                Err(_) => self.come_back()?,
+            }
+        }
+    }
+
+    /// Opens the page again, and asks again what nobody heard.
+    fn come_back(&mut self) -> anyhow::Result<()> {
+        self.page = self.open()?;
+        // The chat comes before the state.
+        if self.page.wait("the past", |page, _| page.state.is_object()).is_ok()
+            && !self.page.chat.iter().any(|(from, text)| from == "person" && text == WORK)
+        {
+            self.page.say(WORK)?;
+        }
+        Ok(())
+    }
+
+    /// Asks something, which must be turn number so and so.
+    pub fn ask(&mut self, text: &str, turn: u64) -> anyhow::Result<()> {
+        self.page.say(text)?;
+        let is_heard = |message: &Value| message["from"] == "person" && message["text"] == text;
+        let found = self.page.wait("what was asked", |_, message| is_heard(message))?;
+        ensure!(found["turn"] == turn, "turn {} instead of {turn}", found["turn"]);
+        self.page.wait("its end", |_, message| message["type"] == "turn" && message["turn"] == turn)?;
+        Ok(())
+    }
+
+    /// Opens the page as soon as it is served.
+    pub fn open(&self) -> anyhow::Result<Page> {
+        let deadline = Instant::now() + WATCHDOG;
+        loop {
+            match Page::open(&self.authority) {
+                Ok(page) => return Ok(page),
+                Err(error) if Instant::now() > deadline => return Err(error),
+                Err(_) => thread::park_timeout(Duration::from_millis(20)),
+            }
+        }
+    }
+}
