@@ -152,7 +152,8 @@ def test_waiting_has_an_end(session: str) -> None:
             command.wait(0.01)
         assert command.wait(60).command == command.number
         kinds = [heard.kind for heard in joined.listen(0.0) if heard.body == 1]
-        assert kinds == ["commander", "outcome", "started", "outcome"], "of the claim and of the command"
+        # Whoever had the body before may let go of it only now.
+        assert kinds[-4:] == ["commander", "outcome", "started", "outcome"], "of the claim and of the command"
 
 
 def test_what_one_says_others_hear(session: str) -> None:
@@ -163,6 +164,8 @@ def test_what_one_says_others_hear(session: str) -> None:
 
 
 def test_ctrl_c_ends_waiting_and_other_threads_run_meanwhile(session: str) -> None:
+    # Where tests run in the background, it may be ignored.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     with cohabit.join(session) as joined:
         counted = threading.Event()
         threading.Thread(target=counted.set).start()

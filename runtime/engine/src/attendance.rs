@@ -34,6 +34,15 @@ enum Turn {
     Rests(u64),
 }
 
+/// Those whose turn comes.
+#[derive(Debug, PartialEq)]
+pub(crate) struct Due {
+    /// Who they are.
+    pub runs: Vec<u64>,
+    /// Their bodies, in the same order.
+    pub bodies: Vec<u32>,
+}
+
 /// Somebody whose time ran out.
 pub(crate) struct TimedOut {
     pub body: u32,
@@ -72,15 +81,17 @@ impl Attendance {
     }
 
     /// Whose turn comes at this tick; they are waited for from now on.
-    pub fn ask(&mut self, tick: u64) -> Vec<u64> {
+    pub fn ask(&mut self, tick: u64) -> Due {
         let now = Instant::now();
         let comes = |turn| matches!(turn, Turn::Comes) || matches!(turn, Turn::Rests(until) if until <= tick);
         let due = self.attendees.iter_mut().filter(|attendee| comes(attendee.turn));
-        due.map(|attendee| {
-            attendee.turn = Turn::Since(now);
-            attendee.run
-        })
-        .collect()
+        let (runs, bodies) = due
+            .map(|attendee| {
+                attendee.turn = Turn::Since(now);
+                (attendee.run, attendee.body)
+            })
+            .unzip();
+        Due { runs, bodies }
     }
 
     /// How many attend for a body; a recorder attends for none.
@@ -134,13 +145,13 @@ mod tests {
         let mut all = Attendance::default();
         all.attend(run(2), 1, 0);
         all.attend(run(1), 0, 0);
-        assert_eq!(all.ask(0), [run(1), run(2)]);
-        assert!(all.ask(0).is_empty() && all.is_awaited());
+        assert_eq!(all.ask(0).runs, [run(1), run(2)]);
+        assert!(all.ask(0).runs.is_empty() && all.is_awaited());
         all.ready(run(1), 0, 1);
         assert!(all.is_awaited());
         all.ready(run(2), 0, 1);
         assert!(!all.is_awaited());
-        assert_eq!(all.ask(1), [run(1), run(2)]);
+        assert_eq!(all.ask(1).runs, [run(1), run(2)]);
         all.leave(run(2));
         all.ready(run(1), 1, 1);
         assert!(!all.is_awaited() && all.count() == 1);
@@ -152,13 +163,13 @@ mod tests {
         all.attend(run(1), 0, 0);
         all.ask(0);
         all.ready(run(1), 0, 10);
-        assert!((1..10).all(|tick| all.ask(tick).is_empty()));
-        assert_eq!(all.ask(10), [run(1)]);
+        assert!((1..10).all(|tick| all.ask(tick).runs.is_empty()));
+        assert_eq!(all.ask(10).runs, [run(1)]);
         all.ready(run(1), 10, 10);
         all.note_outcome(1);
-        assert!(all.ask(11).is_empty());
+        assert!(all.ask(11).runs.is_empty());
         all.note_outcome(0);
-        assert_eq!(all.ask(11), [run(1)]);
+        assert_eq!(all.ask(11).runs, [run(1)]);
     }
 
     #[test]
@@ -166,7 +177,7 @@ mod tests {
         let mut all = Attendance::default();
         all.attend(run(1), 0, 1);
         for tick in 0..u64::from(MOST_TIMEOUTS) {
-            assert_eq!(all.ask(tick), [run(1)]);
+            assert_eq!(all.ask(tick).runs, [run(1)]);
             std::thread::sleep(Duration::from_micros(1));
             let given_up = all.give_up(tick);
             assert_eq!((given_up.len(), given_up[0].count), (1, tick + 1));

@@ -13,6 +13,7 @@ use cohabit_cdf::{Action, BodyId, ObjectId};
 use cohabit_world::{CameraTarget, DT_NANOS, Event, Input, Report, World};
 
 use crate::{
+    attendance::Due,
     build::SessionPlan,
     camera_plan::CameraPlan,
     intake::Intake,
@@ -209,7 +210,7 @@ impl Engine {
     }
 
     /// Whose turn it is now.
-    pub(crate) fn ask(&mut self) -> Vec<u64> {
+    pub(crate) fn ask(&mut self) -> Due {
         self.intake.attendance.ask(self.world.tick())
     }
 

@@ -151,10 +151,10 @@ impl<G: Fn(u64) -> bool> Clock<'_, G> {
         let mut begun = false;
         while self.goes_on() {
             let due = self.engine.ask();
-            if !due.is_empty() {
+            if !due.runs.is_empty() {
                 self.engine.restart_stopwatch();
-                studio.shoot_watched(&|nanos| Moment::capture(&self.engine, nanos))?;
-                self.engine.publish_step(&due)?;
+                studio.shoot_watched(&due.bodies, &|nanos| Moment::capture(&self.engine, nanos))?;
+                self.engine.publish_step(&due.runs)?;
                 self.engine.note_stage(Stage::Show);
             }
             // Meanwhile they think.

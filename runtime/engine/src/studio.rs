@@ -176,15 +176,19 @@ impl Studio {
         if due.is_empty() { Ok(()) } else { self.expose(moment, due) }
     }
 
-    /// Renders and sends a frame of each camera that somebody subscribes to, due or not; the moment is captured if there
-    /// is any.
+    /// Renders and sends a frame of each camera that somebody subscribes to, but for the eyes of bodies whose turn it is
+    /// not; the moment is captured if there is any.
     ///
     /// # Errors
     /// [`BusError`].
-    pub fn shoot_watched(&mut self, capture: &dyn Fn(u64) -> Moment) -> Result<(), BusError> {
+    pub fn shoot_watched(&mut self, bodies: &[u32], capture: &dyn Fn(u64) -> Moment) -> Result<(), BusError> {
         /// What the world's own time brings between two frames is no matter to cameras for minds.
         const SINCE: Duration = Duration::from_millis(100);
-        let watched = self.posts.iter().enumerate().filter(|(_, post)| post.publisher.subscribers() > 0);
+        let looks = |post: &Post| match post.plan.id {
+            CameraId::Egocentric(body) => bodies.contains(&u32::from(body)),
+            _ => true,
+        };
+        let watched = self.posts.iter().enumerate().filter(|(_, post)| looks(post) && post.publisher.subscribers() > 0);
         let watched: Vec<_> = watched.map(|(index, _)| (index, SINCE)).collect();
         if watched.is_empty() { Ok(()) } else { self.expose(&capture(monotonic_nanos()), watched) }
     }
