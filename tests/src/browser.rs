@@ -5,6 +5,7 @@ use std::{
     net::TcpStream,
     path::PathBuf,
     process::{Child, Command, Stdio},
+    sync::atomic::{AtomicU32, Ordering},
     time::{Duration, Instant},
 };
 
@@ -39,7 +40,9 @@ impl Browser {
             eprintln!("skipped: there is no browser here ({})", NAMES.join(", "));
             return Ok(None);
         };
-        let profile = std::env::temp_dir().join(format!("cohabit-browser-{}", std::process::id()));
+        static COUNT: AtomicU32 = AtomicU32::new(0);
+        let number = COUNT.fetch_add(1, Ordering::Relaxed);
+        let profile = std::env::temp_dir().join(format!("cohabit-browser-{}-{number}", std::process::id()));
         let mut child = Command::new(program)
             .args([
                 "--headless",

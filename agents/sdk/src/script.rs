@@ -255,7 +255,7 @@ mod tests {
         let documented = include_str!("script.rs").split("```").nth(1).unwrap();
         let text: String = documented.lines().skip(1).map(|line| format!("{}\n", &line[3.min(line.len())..])).collect();
         let script = parse(&text).unwrap();
-        assert_eq!(script.lines.len(), 12);
+        assert_eq!(script.lines.len(), 11);
         assert!(script.loops && script.lines.iter().all(|line| line.goes_on));
     }
 

@@ -114,6 +114,7 @@ pub fn serve(
     let Place { address, token } = place;
     let ended = AtomicBool::new(false);
     let over = || stop.load(Ordering::Relaxed) || ended.load(Ordering::Relaxed);
+    talk.wait_until_it_sees(&*bus, &over)?;
     thread::scope(|scope| {
         let mut workers = vec![
             scope.spawn(|| until_ended(&ended, || talk::listen(ears, &talk, &over))),

@@ -70,6 +70,21 @@ impl Talk {
         Ok(Arc::new(Self { inner: Mutex::new(inner), hub, drivers, catalog }))
     }
 
+    /// Waits until this conversation sees the world, or until `over`: who is let in then is understood at once.
+    pub fn wait_until_it_sees(&self, bus: &dyn Transport, over: &dyn Fn() -> bool) -> Result<(), DialogError> {
+        let mut listener = bus.listener(Wake::State)?;
+        while !over() {
+            let mut inner = self.lock();
+            inner.refresh()?;
+            if inner.newest.is_some() {
+                break;
+            }
+            drop(inner);
+            listener.wait(Duration::from_millis(20))?;
+        }
+        Ok(())
+    }
+
     fn lock(&self) -> MutexGuard<'_, Inner> {
         self.inner.lock().unwrap_or_else(PoisonError::into_inner)
     }
