@@ -19,6 +19,8 @@ pub struct Page {
     pub chat: Vec<(String, String)>,
     /// The newest state.
     pub state: Value,
+    /// What the eyes of the body that it drives are on, and what can be done with it.
+    pub aim: Value,
     /// Frames seen.
     pub frames: u64,
 }
@@ -33,7 +35,7 @@ impl Page {
         if let MaybeTlsStream::Plain(stream) = socket.get_ref() {
             stream.set_read_timeout(Some(WATCHDOG))?;
         }
-        Ok(Self { socket, chat: Vec::new(), state: Value::Null, frames: 0 })
+        Ok(Self { socket, chat: Vec::new(), state: Value::Null, aim: Value::Null, frames: 0 })
     }
 
     /// Types a sentence.
@@ -74,6 +76,7 @@ impl Page {
     fn note(&mut self, message: &Value) {
         match message["type"].as_str() {
             Some("state") => self.state = message.clone(),
+            Some("aim") => self.aim = message.clone(),
             Some("chat") => {
                 let part = |key: &str| message[key].as_str().unwrap_or_default().to_owned();
                 self.chat.push((part("from"), part("text")));

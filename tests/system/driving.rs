@@ -4,7 +4,7 @@ use std::f32::consts::{PI, TAU};
 
 use cohabit_bus::{Sample, Session, Shm, Subscriber, Topic, Transport as _, message::StateView};
 use cohabit_tests::{Browser, Page, Play, run};
-use serde_json::{Value, json};
+use serde_json::json;
 
 use crate::COHABIT;
 
@@ -80,8 +80,7 @@ fn a_person_works_beside_the_robot_and_it_replays_to_the_bit() {
     assert_eq!(told, "You are holding the bowl");
     avatar.page.wait("it in the hand", |page, _| page.state["others"][0]["holding"] == "Bowl").unwrap();
     // The eyes are still on the table that it was taken from.
-    let offers = |message: &Value| message["options"][0]["deed"] == "place";
-    avatar.page.wait("an offer", |_, message| message["type"] == "aim" && offers(message)).unwrap();
+    avatar.page.wait("an offer", |page, _| page.aim["options"][0]["deed"] == "place").unwrap();
     avatar.hold(-0.5, 0.5);
     avatar.act("place", "TableRound_02_1");
     avatar.page.wait("an empty hand", |page, _| page.state["others"][0]["holding"].is_null()).unwrap();
