@@ -85,6 +85,11 @@ impl Talk {
         Ok(())
     }
 
+    /// The tick of the state that it knows.
+    fn newest_tick(&self) -> u64 {
+        self.lock().newest.as_ref().map_or(0, |sample| sample.envelope().tick)
+    }
+
     fn lock(&self) -> MutexGuard<'_, Inner> {
         self.inner.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -338,18 +343,16 @@ impl Ears {
 /// Follows what others say on the bus, until `over`.
 pub fn listen(ears: Ears, talk: &Talk, over: &dyn Fn() -> bool) -> Result<(), DialogError> {
     let Ears { mut listener, mut dialog, mut events, mut heart, joined_nanos } = ears;
-    let mut tick = 0;
     while !over() {
         listener.wait(Duration::from_millis(100))?;
         while let Some((sample, event)) = events.next(|sample| message::read::<EventMessage>(sample.payload()))? {
             let envelope = sample.envelope();
-            tick = tick.max(envelope.tick);
             talk.note_event(envelope, &event, envelope.sent_nanos >= joined_nanos)?;
         }
         while let Some((sample, ())) = dialog.next(|sample| DialogView::new(sample.payload()).map(drop))? {
             talk.follow(sample.envelope(), DialogView::new(sample.payload())?)?;
         }
-        heart.beat(tick, events.lost() + dialog.lost())?;
+        heart.beat(talk.newest_tick(), events.lost() + dialog.lost())?;
     }
     Ok(())
 }
