@@ -2,18 +2,18 @@
 
 use std::{
     io::{BufRead as _, BufReader},
-    net::TcpStream,
     path::PathBuf,
     process::{Child, Command, Stdio},
     sync::atomic::{AtomicU32, Ordering},
-    time::{Duration, Instant},
+    time::Instant,
 };
 
 use anyhow::{Context as _, bail, ensure};
 use serde_json::{Value, json};
-use tungstenite::{Message, WebSocket, stream::MaybeTlsStream};
+use tungstenite::Message;
 
-const WATCHDOG: Duration = Duration::from_secs(60);
+use crate::socket::{Socket, WATCHDOG};
+
 const NAMES: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
 
 /// A running browser. Dropping it kills it.
@@ -25,7 +25,7 @@ pub struct Browser {
 
 /// One open page of it.
 pub struct Tab {
-    socket: WebSocket<MaybeTlsStream<TcpStream>>,
+    socket: Socket,
     session: String,
     count: u64,
 }
@@ -74,10 +74,7 @@ impl Browser {
     /// # Errors
     /// When the browser does not answer.
     pub fn open(&self, address: &str, width: u32, height: u32) -> anyhow::Result<Tab> {
-        let (socket, _) = tungstenite::connect(&self.socket).context("reach the browser")?;
-        if let MaybeTlsStream::Plain(stream) = socket.get_ref() {
-            stream.set_read_timeout(Some(WATCHDOG))?;
-        }
+        let socket = Socket::open(&self.socket)?;
         let mut tab = Tab { socket, session: String::new(), count: 0 };
         let target = tab.call("Target.createTarget", &json!({ "url": "about:blank" }))?;
         let attach = json!({ "targetId": target["targetId"], "flatten": true });
@@ -110,7 +107,7 @@ impl Tab {
         if !self.session.is_empty() {
             request["sessionId"] = json!(self.session);
         }
-        self.socket.send(Message::text(request.to_string()))?;
+        self.socket.send(&request)?;
         loop {
             let Message::Text(text) = self.socket.read().with_context(|| format!("no answer to {method}"))? else {
                 continue;

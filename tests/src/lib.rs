@@ -7,6 +7,7 @@ mod browser;
 mod page;
 mod play;
 mod soak;
+mod socket;
 
 pub use browser::{Browser, Tab};
 pub use page::Page;

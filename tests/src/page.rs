@@ -1,20 +1,16 @@
 //! A client of a session's page: speaks its WebSocket, without a browser.
 
-use std::{
-    net::TcpStream,
-    time::{Duration, Instant},
-};
+use std::time::Instant;
 
-use anyhow::{Context as _, bail};
+use anyhow::bail;
 use serde_json::{Value, json};
-use tungstenite::{Message, WebSocket, stream::MaybeTlsStream};
+use tungstenite::Message;
 
-/// The longest that a message is waited for.
-const WATCHDOG: Duration = Duration::from_secs(120);
+use crate::socket::{Socket, WATCHDOG};
 
 /// An open page.
 pub struct Page {
-    socket: WebSocket<MaybeTlsStream<TcpStream>>,
+    socket: Socket,
     /// All chat so far: who, and what.
     pub chat: Vec<(String, String)>,
     /// The newest state.
@@ -31,10 +27,7 @@ impl Page {
     /// # Errors
     /// When it cannot be reached.
     pub fn open(authority: &str) -> anyhow::Result<Self> {
-        let (socket, _) = tungstenite::connect(format!("ws://{authority}/ws")).context("open the page's socket")?;
-        if let MaybeTlsStream::Plain(stream) = socket.get_ref() {
-            stream.set_read_timeout(Some(WATCHDOG))?;
-        }
+        let socket = Socket::open(&format!("ws://{authority}/ws"))?;
         Ok(Self { socket, chat: Vec::new(), state: Value::Null, aim: Value::Null, frames: 0 })
     }
 
@@ -51,7 +44,7 @@ impl Page {
     /// # Errors
     /// When the socket is gone.
     pub fn send(&mut self, message: &Value) -> anyhow::Result<()> {
-        self.socket.send(Message::text(message.to_string())).context("send to the page")
+        self.socket.send(message)
     }
 
     /// The next message that is not a frame.
@@ -60,7 +53,7 @@ impl Page {
     /// When the socket is gone or silent for too long.
     pub fn next_message(&mut self) -> anyhow::Result<Value> {
         loop {
-            match self.socket.read().context("read from the page")? {
+            match self.socket.read()? {
                 Message::Text(text) => {
                     let message: Value = serde_json::from_str(&text)?;
                     self.note(&message);

@@ -1,0 +1,41 @@
+//! A WebSocket on which a silent other side is an error, and nothing else is.
+
+use std::{io::ErrorKind, net::TcpStream, time::Duration};
+
+use anyhow::Context as _;
+use serde_json::Value;
+use tungstenite::{Error, Message, WebSocket, stream::MaybeTlsStream};
+
+/// The longest that anything is waited for.
+pub(crate) const WATCHDOG: Duration = Duration::from_secs(120);
+
+/// An open socket.
+pub(crate) struct Socket(WebSocket<MaybeTlsStream<TcpStream>>);
+
+impl Socket {
+    /// Connects to a `ws://` address.
+    pub fn open(address: &str) -> anyhow::Result<Self> {
+        let (socket, _) = tungstenite::connect(address).with_context(|| format!("open the socket {address}"))?;
+        if let MaybeTlsStream::Plain(stream) = socket.get_ref() {
+            stream.set_read_timeout(Some(WATCHDOG))?;
+        }
+        Ok(Self(socket))
+    }
+
+    /// Sends a message as text.
+    pub fn send(&mut self, message: &Value) -> anyhow::Result<()> {
+        self.0.send(Message::text(message.to_string())).context("send to the socket")
+    }
+
+    /// The next message.
+    ///
+    /// A machine that is halted and goes on ends each read that has a time limit, though nothing came: see signal(7).
+    pub fn read(&mut self) -> anyhow::Result<Message> {
+        loop {
+            match self.0.read() {
+                Err(Error::Io(error)) if error.kind() == ErrorKind::Interrupted => {}
+                read => return read.context("read from the socket"),
+            }
+        }
+    }
+}
