@@ -12,7 +12,7 @@ mod socket;
 pub use browser::{Browser, Tab};
 pub use page::Page;
 pub use play::{Play, reference_data, run};
-pub use soak::{Soaked, soak};
+pub use soak::{Resident, Soaked, soak};
 
 /// The processor and the number of cores, as benches print them.
 #[must_use]

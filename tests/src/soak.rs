@@ -56,13 +56,22 @@ pub struct Soaked {
     /// Ticks that were sent and not seen.
     pub lost: u64,
     /// Bytes that each role's processes hold, look by look.
-    pub resident: BTreeMap<&'static str, Vec<u64>>,
+    pub resident: BTreeMap<&'static str, Vec<Resident>>,
     /// Frames that came to each page.
     pub frames: [u64; 2],
     /// Turns that came to their end.
     pub turns: u64,
     /// What `replay` said of the log.
     pub replayed: String,
+}
+
+/// Bytes that processes hold.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Resident {
+    /// Of their own. What leaks is here.
+    pub own: u64,
+    /// Mapped from files or shared memory: grows until all of the topics' rings was once passed through.
+    pub shared: u64,
 }
 
 impl Soaked {
@@ -92,8 +101,12 @@ pub fn soak(binary: &str, lasting: Duration) -> anyhow::Result<Soaked> {
         while Instant::now() < until {
             thread::sleep(LOOK_EVERY.min(lasting));
             for role in ROLES {
-                let bytes = play.processes(role).into_iter().map(resident_bytes).sum();
-                soaked.resident.entry(role).or_default().push(bytes);
+                let looks = play.processes(role).into_iter().map(resident);
+                let all = looks.fold(Resident::default(), |all, one| Resident {
+                    own: all.own + one.own,
+                    shared: all.shared + one.shared,
+                });
+                soaked.resident.entry(role).or_default().push(all);
             }
         }
         over.store(true, Ordering::Relaxed);
@@ -152,9 +165,12 @@ fn watch(authority: &str, over: &AtomicBool) -> anyhow::Result<u64> {
     Ok(page.frames)
 }
 
-/// Memory that a process holds, its own and shared; 0 if it is gone.
-fn resident_bytes(pid: i32) -> u64 {
-    let statm = fs::read_to_string(format!("/proc/{pid}/statm")).unwrap_or_default();
-    let pages = statm.split(' ').nth(1).and_then(|pages| pages.parse::<u64>().ok());
-    pages.unwrap_or(0) * rustix::param::page_size() as u64
+/// Memory that a process holds; none if it is gone.
+fn resident(pid: i32) -> Resident {
+    let status = fs::read_to_string(format!("/proc/{pid}/status")).unwrap_or_default();
+    let kib = |name: &str| {
+        let line = status.lines().find_map(|line| line.strip_prefix(name));
+        line.and_then(|line| line.trim().strip_suffix(" kB")?.parse::<u64>().ok()).unwrap_or(0)
+    };
+    Resident { own: kib("RssAnon:") << 10, shared: (kib("RssFile:") + kib("RssShmem:")) << 10 }
 }

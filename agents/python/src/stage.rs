@@ -145,9 +145,7 @@ impl Theatre {
 
     fn send(&mut self, message: &CommandMessage) -> PyResult<()> {
         let tick = self.world().tick();
-        let write = &mut |bytes: &mut [u8]| bytes.copy_from_slice(bytemuck::bytes_of(message));
-        self.commands.send(tick, size_of::<CommandMessage>(), write).map_err(failed)?;
-        Ok(())
+        self.commands.send_record(tick, message).map(drop).map_err(failed)
     }
 
     fn tick(&mut self, ends: &mut Vec<End>) -> PyResult<()> {

@@ -261,10 +261,7 @@ impl Client {
     }
 
     fn send(&mut self, message: &CommandMessage) -> Result<(), BusError> {
-        self.commands.send(self.tick, size_of::<CommandMessage>(), &mut |bytes| {
-            bytes.copy_from_slice(bytemuck::bytes_of(message));
-        })?;
-        Ok(())
+        self.commands.send_record(self.tick, message).map(drop)
     }
 }
 

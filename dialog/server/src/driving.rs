@@ -336,10 +336,7 @@ impl Driver {
     }
 
     fn send(&mut self, message: &CommandMessage) -> Result<(), BusError> {
-        self.commands.send(0, size_of::<CommandMessage>(), &mut |bytes| {
-            bytes.copy_from_slice(bytemuck::bytes_of(message));
-        })?;
-        Ok(())
+        self.commands.send_record(0, message).map(drop)
     }
 }
 

@@ -3,7 +3,7 @@
 use std::{sync::Arc, time::Duration};
 
 use cohabit_bus::{
-    Inbox, Sample, Topic, Transport, Wake,
+    Inbox, Sample, Topic, Transport, Wake, give_way,
     message::{FrameView, Plane},
 };
 use jpeg_encoder::{ColorType, Encoder, EncodingError};
@@ -27,6 +27,7 @@ pub fn relay(
     talk: &Talk,
     over: &dyn Fn() -> bool,
 ) -> Result<(), DialogError> {
+    give_way();
     let mut had_one = index > 0;
     while !over() {
         if !view.is_wanted() && had_one {

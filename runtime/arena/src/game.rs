@@ -310,9 +310,7 @@ impl Game {
     }
 
     fn send(&mut self, message: &CommandMessage) -> Result<(), GameError> {
-        self.commands.send(self.engine.world().tick(), size_of::<CommandMessage>(), &mut |bytes| {
-            bytes.copy_from_slice(bytemuck::bytes_of(message));
-        })?;
+        self.commands.send_record(self.engine.world().tick(), message)?;
         Ok(())
     }
 

@@ -40,9 +40,6 @@ impl Heart {
         }
         self.next_nanos = now + EVERY_NANOS;
         let pulse = PulseMessage { tick, lost, ..self.pulse };
-        self.pulses.send(tick, size_of::<PulseMessage>(), &mut |bytes| {
-            bytes.copy_from_slice(bytemuck::bytes_of(&pulse));
-        })?;
-        Ok(())
+        self.pulses.send_record(tick, &pulse).map(drop)
     }
 }

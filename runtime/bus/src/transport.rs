@@ -2,6 +2,8 @@
 
 use std::time::Duration;
 
+use bytemuck::NoUninit;
+
 use crate::{
     envelope::{Block, Envelope, monotonic_nanos},
     error::BusError,
@@ -50,6 +52,17 @@ pub trait Publisher: Send {
     /// # Errors
     /// [`BusError::Send`].
     fn update(&mut self) -> Result<(), BusError>;
+}
+
+impl dyn Publisher + '_ {
+    /// Sends a message of fixed size. Gives the sample's sequence number.
+    ///
+    /// # Errors
+    /// As [`Self::send`].
+    pub fn send_record(&mut self, tick: u64, record: &impl NoUninit) -> Result<u64, BusError> {
+        let record = bytemuck::bytes_of(record);
+        self.send(tick, record.len(), &mut |bytes| bytes.copy_from_slice(record))
+    }
 }
 
 /// Receives samples of one topic: those of a publisher in the order in which they were sent. What a publisher has sent

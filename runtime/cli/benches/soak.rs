@@ -27,11 +27,13 @@ fn print(soaked: &Soaked, seconds: f64) {
     let [p50, p90, p99, p999, max] = late;
     println!("begun late by, ms: p50 {p50:.3}, p90 {p90:.3}, p99 {p99:.3}, p99.9 {p999:.3}, max {max:.3}");
     for (role, looks) in &soaked.resident {
-        let at = |share: f64| looks.get(((looks.len() - 1) as f64 * share) as usize).map_or(0.0, |b| *b as f64 / MIB);
-        let quarters = [0.1, 0.25, 0.5, 0.75, 1.0].map(at);
-        let [tenth, quarter, half, three, end] = quarters;
+        let at = |share: f64| looks[((looks.len() - 1) as f64 * share) as usize];
+        let [tenth, quarter, half, three, end] = [0.1, 0.25, 0.5, 0.75, 1.0].map(at);
+        let mib = |bytes: u64| format!("{:.1}", bytes as f64 / MIB);
+        let own = [tenth, quarter, half, three, end].map(|look| mib(look.own)).join(", ");
+        let (first, last) = (mib(tenth.shared), mib(end.shared));
         println!(
-            "{role:>7} resident, MiB: {tenth:.1} after a tenth, then {quarter:.1}, {half:.1}, {three:.1}, {end:.1} at the end"
+            "{role:>7} resident, MiB, at 10, 25, 50, 75, 100 % of the time: {own}; shared, first and last: {first}, {last}"
         );
     }
     let frames = soaked.frames.map(|frames| frames as f64 / seconds);

@@ -17,7 +17,7 @@ use std::{
 use anyhow::Context as _;
 use cohabit_cdf::BodyRequest;
 use cohabit_engine::CameraPlan;
-use rustix::process::{Pid, Signal, kill_process};
+use rustix::process::{Pid, Signal, kill_process, setpriority_process};
 
 use crate::{
     failure::BadInput,
@@ -34,6 +34,8 @@ const LOOK_EVERY: Duration = Duration::from_millis(20);
 const MOST_RESTARTS: usize = 5;
 /// The while.
 const RESTARTS_COUNT_FOR: Duration = Duration::from_secs(60);
+/// How much less urgent than the world its agents are, in steps of niceness.
+const AGENTS_GIVE_WAY: i32 = 5;
 /// This very program, also when its file was replaced or taken away since it was started: all processes of a session
 /// are of one build.
 const THIS_PROGRAM: &str = "/proc/self/exe";
@@ -139,6 +141,12 @@ impl Supervisor {
             .process_group(0)
             .spawn()
             .with_context(|| format!("start {}", role.name))?;
+        if role.name == "agent"
+            && let Some(pid) = i32::try_from(child.id()).ok().and_then(Pid::from_raw)
+        {
+            // However hard it thinks, the world goes on.
+            let _ = setpriority_process(Some(pid), AGENTS_GIVE_WAY);
+        }
         if let Some(out) = child.stdout.take() {
             let (began, records) = (is_first.then_some(self.began), Arc::clone(records));
             thread::spawn(move || relay(out, began, &records));

@@ -63,10 +63,7 @@ impl Time {
         let mut bell = bus.listener(Wake::Talk)?;
         let mut events = Inbox::new(&bus, Topic::Events)?;
         let asked_nanos = monotonic_nanos();
-        let message = ControlMessage::from(Control::from(self.change));
-        bus.publisher(Topic::Control)?.send(0, size_of::<ControlMessage>(), &mut |bytes| {
-            bytes.copy_from_slice(bytemuck::bytes_of(&message));
-        })?;
+        bus.publisher(Topic::Control)?.send_record(0, &ControlMessage::from(Control::from(self.change)))?;
         let deadline = Instant::now() + PATIENCE;
         while Instant::now() < deadline {
             while let Some((sample, event)) = events.next(|sample| message::read::<EventMessage>(sample.payload()))? {

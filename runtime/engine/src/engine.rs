@@ -339,9 +339,7 @@ impl Engine {
     }
 
     fn send_event(&mut self, message: &EventMessage) -> Result<(), EngineError> {
-        self.events.send(self.world.tick(), size_of::<EventMessage>(), &mut |bytes| {
-            bytes.copy_from_slice(bytemuck::bytes_of(message));
-        })?;
+        self.events.send_record(self.world.tick(), message)?;
         Ok(())
     }
 }

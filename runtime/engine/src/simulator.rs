@@ -9,7 +9,7 @@ use std::{
     time::Duration,
 };
 
-use cohabit_bus::{Listener, Transport, Wake, message::Stage, monotonic_nanos, wall_nanos};
+use cohabit_bus::{Listener, Transport, Wake, give_way, message::Stage, monotonic_nanos, wall_nanos};
 use cohabit_render::{CpuRenderer, MeshLibrary, Renderer};
 use cohabit_world::{DT_NANOS, World};
 
@@ -93,10 +93,16 @@ impl Simulator {
         let desk = Desk::default();
         let over = AtomicBool::new(false);
         thread::scope(|scope| {
-            let cameras = scope.spawn(|| studio.run(&desk));
+            let cameras = scope.spawn(|| {
+                give_way();
+                studio.run(&desk)
+            });
             let goes_on = |tick| {
                 if tick == BAKE_AT {
-                    scope.spawn(|| meshes.bake_all(&over));
+                    scope.spawn(|| {
+                        give_way();
+                        meshes.bake_all(&over);
+                    });
                 }
                 !stop.load(Ordering::Relaxed) && !cameras.is_finished()
             };

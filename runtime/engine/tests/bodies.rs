@@ -80,8 +80,7 @@ fn each_body_has_its_own_cameras_and_outcomes() {
             let command = u64::from(body) + 1;
             let claim = CommandMessage::claim(100 + command, body, "test", false);
             for message in [claim, CommandMessage::act(command, 0, body, action)] {
-                let bytes = bytemuck::bytes_of(&message);
-                commands.send(0, bytes.len(), &mut |sample| sample.copy_from_slice(bytes)).unwrap();
+                commands.send_record(0, &message).unwrap();
             }
         }
         let mut done: Vec<_> = (0..3)

@@ -68,10 +68,7 @@ fn event(sample: &Sample, kind: EventKind) -> Option<EventMessage> {
 }
 
 fn ask(bus: &Local, control: Control) {
-    let message = ControlMessage::from(control);
-    let bytes = bytemuck::bytes_of(&message);
-    let mut publisher = bus.publisher(Topic::Control).unwrap();
-    publisher.send(0, bytes.len(), &mut |sample| sample.copy_from_slice(bytes)).unwrap();
+    bus.publisher(Topic::Control).unwrap().send_record(0, &ControlMessage::from(control)).unwrap();
 }
 
 /// The tick of a state, if the world is `paused` in it as asked.

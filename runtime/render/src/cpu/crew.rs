@@ -11,13 +11,18 @@ pub(crate) struct Crew {
     others: Option<ThreadPool>,
 }
 
+/// Pictures can wait for whoever has a deadline, such as the tick of the world that they show.
+fn give_way() {
+    let _ = rustix::process::setpriority_process(None, 10);
+}
+
 impl Crew {
     /// So many threads, from 1 to 64; fewer, if the machine gives no more.
     pub(crate) fn new(threads: usize) -> Self {
         let threads = threads.clamp(1, 64);
         let others = (threads > 1).then(|| {
             let name = |index| format!("render-{index}");
-            ThreadPoolBuilder::new().num_threads(threads - 1).thread_name(name).build()
+            ThreadPoolBuilder::new().num_threads(threads - 1).thread_name(name).start_handler(|_| give_way()).build()
         });
         let others = others.and_then(Result::ok);
         Self { threads: if others.is_some() { threads } else { 1 }, others }
