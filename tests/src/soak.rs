@@ -9,7 +9,7 @@ use std::{
 };
 
 use anyhow::{Context as _, ensure};
-use cohabit_bus::{Inbox, Session, Shm, Topic, message::TickView};
+use cohabit_bus::{Inbox, Session, Shm, Topic, go_first, message::TickView, monotonic_nanos};
 use serde_json::json;
 
 use crate::{Page, Play, run};
@@ -51,6 +51,9 @@ const LOOK_EVERY: Duration = Duration::from_secs(2);
 pub struct Soaked {
     /// How late each tick began, ns, in rising order.
     pub late_nanos: Vec<u64>,
+    /// How late a thread beside it woke that does nothing but wake as often as the world ticks, ns, in rising order:
+    /// what the machine itself is good for.
+    pub control_nanos: Vec<u64>,
     /// Ticks that began a whole tick too late.
     pub missed: usize,
     /// Ticks that were sent and not seen.
@@ -78,9 +81,20 @@ impl Soaked {
     /// How late the given share of all ticks began at most, ms.
     #[must_use]
     pub fn late_ms(&self, share: f64) -> f64 {
-        let last = self.late_nanos.len().saturating_sub(1);
-        self.late_nanos.get((last as f64 * share).round() as usize).map_or(f64::NAN, |nanos| *nanos as f64 * 1e-6)
+        at(&self.late_nanos, share)
     }
+
+    /// How late the given share of all wake-ups of the thread beside it was at most, ms.
+    #[must_use]
+    pub fn control_ms(&self, share: f64) -> f64 {
+        at(&self.control_nanos, share)
+    }
+}
+
+/// What the given share of `nanos`, which rise, is at most, ms.
+fn at(nanos: &[u64], share: f64) -> f64 {
+    let last = nanos.len().saturating_sub(1);
+    nanos.get((last as f64 * share).round() as usize).map_or(f64::NAN, |nanos| *nanos as f64 * 1e-6)
 }
 
 /// Plays for so long with `binary`; then ends the session, and replays its log.
@@ -97,6 +111,7 @@ pub fn soak(binary: &str, lasting: Duration) -> anyhow::Result<Soaked> {
         let ticks = scope.spawn(move || watch_ticks(session, over));
         let speaks = scope.spawn(move || speak(authority, over));
         let watches = scope.spawn(move || watch(authority, over));
+        let control = scope.spawn(move || wake_and_sleep(over));
         let until = Instant::now() + lasting;
         while Instant::now() < until {
             thread::sleep(LOOK_EVERY.min(lasting));
@@ -112,11 +127,13 @@ pub fn soak(binary: &str, lasting: Duration) -> anyhow::Result<Soaked> {
         over.store(true, Ordering::Relaxed);
         let fell = "a thread of the test fell over";
         (soaked.late_nanos, soaked.lost) = ticks.join().ok().context(fell)??;
+        soaked.control_nanos = control.join().ok().context(fell)?;
         (soaked.frames[0], soaked.turns) = speaks.join().ok().context(fell)??;
         soaked.frames[1] = watches.join().ok().context(fell)??;
         Ok(())
     })?;
     soaked.late_nanos.sort_unstable();
+    soaked.control_nanos.sort_unstable();
     soaked.missed = soaked.late_nanos.iter().filter(|late| **late >= TICK_NANOS).count();
     let ended = play.end()?;
     let replayed = run(binary, &["replay", ended.log.to_str().context("a path")?])?;
@@ -137,6 +154,19 @@ fn watch_ticks(session: &str, over: &AtomicBool) -> anyhow::Result<(Vec<u64>, u6
         }
     }
     Ok((late, ticks.lost()))
+}
+
+/// Wakes as often as the world ticks; gives how late, ns.
+fn wake_and_sleep(over: &AtomicBool) -> Vec<u64> {
+    go_first();
+    let mut late = Vec::new();
+    let mut due_nanos = monotonic_nanos();
+    while !over.load(Ordering::Relaxed) {
+        due_nanos += TICK_NANOS;
+        thread::sleep(Duration::from_nanos(due_nanos.saturating_sub(monotonic_nanos())));
+        late.push(monotonic_nanos().saturating_sub(due_nanos));
+    }
+    late
 }
 
 /// A page at which somebody has the robot do one thing after the other; gives its frames, and the turns that ended.

@@ -89,6 +89,15 @@ impl PyAction {
     }
 
     #[staticmethod]
+    fn drive(forward_m_s: f32, turn_rad_s: f32, pitch_rad_s: f32) -> PyResult<Self> {
+        Ok(Self(Action::Drive {
+            forward_m_s: finite("forward_m_s", forward_m_s)?,
+            turn_rad_s: finite("turn_rad_s", turn_rad_s)?,
+            pitch_rad_s: finite("pitch_rad_s", pitch_rad_s)?,
+        }))
+    }
+
+    #[staticmethod]
     const fn stop() -> Self {
         Self(Action::Stop)
     }

@@ -145,6 +145,15 @@ def test_a_body_has_one_commander(session: str) -> None:
         assert other.do(cohabit.Rotate(0.1), timeout=60), "it went back"
 
 
+def test_a_body_is_driven_by_speeds(session: str) -> None:
+    with cohabit.join(session, body=1) as joined:
+        yaw = joined.state().bodies[1].yaw_rad
+        assert joined.do(cohabit.Drive(turn_rad_s=1.0), timeout=60)
+        assert joined.state().bodies[1].yaw_rad != yaw
+        with pytest.raises(ValueError, match="forward_m_s.*must be finite"):
+            joined.act(cohabit.Drive(forward_m_s=float("nan")))
+
+
 def test_waiting_has_an_end(session: str) -> None:
     with cohabit.join(session, body=1) as joined:
         command = joined.act(cohabit.LookAround())

@@ -19,13 +19,17 @@ fn main() {
     }
 }
 
+fn late(what: &str, [p50, p90, p99, p999, max]: [f64; 5]) {
+    println!("{what}, ms: p50 {p50:.3}, p90 {p90:.3}, p99 {p99:.3}, p99.9 {p999:.3}, max {max:.3}");
+}
+
 fn print(soaked: &Soaked, seconds: f64) {
     let ticks = soaked.late_nanos.len();
     let share = 100.0 * soaked.missed as f64 / ticks.max(1) as f64;
     println!("ticks: {ticks} seen, {} not seen; {} missed ({share:.3} %)", soaked.lost, soaked.missed);
-    let late = [0.5, 0.9, 0.99, 0.999, 1.0].map(|share| soaked.late_ms(share));
-    let [p50, p90, p99, p999, max] = late;
-    println!("begun late by, ms: p50 {p50:.3}, p90 {p90:.3}, p99 {p99:.3}, p99.9 {p999:.3}, max {max:.3}");
+    let shares = [0.5, 0.9, 0.99, 0.999, 1.0];
+    late("ticks begun late by", shares.map(|share| soaked.late_ms(share)));
+    late("a thread beside it that only wakes", shares.map(|share| soaked.control_ms(share)));
     for (role, looks) in &soaked.resident {
         let at = |share: f64| looks[((looks.len() - 1) as f64 * share) as usize];
         let [tenth, quarter, half, three, end] = [0.1, 0.25, 0.5, 0.75, 1.0].map(at);

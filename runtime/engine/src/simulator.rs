@@ -9,7 +9,7 @@ use std::{
     time::Duration,
 };
 
-use cohabit_bus::{Listener, Transport, Wake, give_way, message::Stage, monotonic_nanos, wall_nanos};
+use cohabit_bus::{Listener, Transport, Wake, give_way, go_first, message::Stage, monotonic_nanos, wall_nanos};
 use cohabit_render::{CpuRenderer, MeshLibrary, Renderer};
 use cohabit_world::{DT_NANOS, World};
 
@@ -106,6 +106,7 @@ impl Simulator {
                 }
                 !stop.load(Ordering::Relaxed) && !cameras.is_finished()
             };
+            go_first();
             let mut clock = Clock { engine, desk: &desk, bell, pace, goes_on, shown_nanos: 0 };
             let ran = match lock_step {
                 None => clock.run_in_real_time(),

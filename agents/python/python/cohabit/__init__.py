@@ -26,7 +26,7 @@ from ._native import (
     State,
 )
 from ._native import class_ids as _class_ids
-from .actions import Action, GoTo, Highlight, Interact, Look, LookAround, Move, PickUp, Place, Rotate, Stop
+from .actions import Action, Drive, GoTo, Highlight, Interact, Look, LookAround, Move, PickUp, Place, Rotate, Stop
 from .env import Env
 from .office import CHOICES, PLANES
 from .parallel import ParallelEnv
@@ -49,6 +49,7 @@ __all__ = [
     "Action",
     "Body",
     "Command",
+    "Drive",
     "Env",
     "Error",
     "Frame",

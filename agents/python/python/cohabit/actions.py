@@ -135,6 +135,22 @@ class Highlight:
 
 
 @dataclass(frozen=True)
+class Drive:
+    """Move at these speeds for half a simulated second, or until the next command; slides along what is in the way.
+
+    Who sends one after the other drives a body as people do by keyboard.
+    """
+
+    forward_m_s: float = 0.0
+    turn_rad_s: float = 0.0
+    pitch_rad_s: float = 0.0
+
+    def plain(self, state: _native.State, body: int) -> _native.Action:
+        """The action with its objects as numbers."""
+        return _native.Action.drive(self.forward_m_s, self.turn_rad_s, self.pitch_rad_s)
+
+
+@dataclass(frozen=True)
 class Stop:
     """Let go of whatever it is doing, now."""
 
@@ -143,7 +159,7 @@ class Stop:
         return _native.Action.stop()
 
 
-Action = Union[Move, Rotate, Look, LookAround, GoTo, PickUp, Place, Interact, Highlight, Stop]
+Action = Union[Move, Rotate, Look, LookAround, GoTo, PickUp, Place, Interact, Highlight, Drive, Stop]
 """Any of them."""
 
 _ROOMS = {room.lower() for room in _native.ROOMS}

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from . import _native
 from .actions import Action
-from .office import MissionLike, Observation, Office, outcome_info
+from .office import MissionLike, Observation, Office, check_steps, outcome_info
 from .session import Session
 
 
@@ -55,12 +55,9 @@ class Env(gymnasium.Env[Observation, npt.NDArray[np.int64]]):
         threads: int = 1,
         session: Optional[Session] = None,
     ) -> None:
-        if render_mode not in (None, "rgb_array"):
-            raise ValueError(f"there is no render_mode `{render_mode}`: rgb_array")
+        check_steps(render_mode, ticks_per_step)
         if session is not None and render_mode is not None:
             raise ValueError("a session is watched on its page: there is no render_mode then")
-        if ticks_per_step is not None and ticks_per_step < 1:
-            raise ValueError(f"{ticks_per_step} ticks a step: at least 1")
         self.render_mode = render_mode
         self.max_steps = max_steps
         self.ticks_per_step = ticks_per_step

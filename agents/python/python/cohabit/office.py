@@ -340,6 +340,14 @@ def _mission(mission: MissionLike) -> tuple[Optional[str], Optional[str]]:
     return os.fspath(mission), None
 
 
+def check_steps(render_mode: Optional[str], ticks_per_step: Optional[int]) -> None:
+    """Raises ``ValueError`` if an environment cannot be shown or stepped like that."""
+    if render_mode not in (None, "rgb_array"):
+        raise ValueError(f"there is no render_mode `{render_mode}`: rgb_array")
+    if ticks_per_step is not None and ticks_per_step < 1:
+        raise ValueError(f"{ticks_per_step} ticks a step: at least 1")
+
+
 def outcome_info(outcomes: Sequence[_native.Outcome], body: int) -> dict[str, Any]:
     """What came of a body's command, if it ended: ``status`` and ``detail``."""
     for outcome in outcomes:

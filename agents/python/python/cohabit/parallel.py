@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from . import _native
 from .actions import Action
-from .office import MissionLike, Observation, Office, outcome_info
+from .office import MissionLike, Observation, Office, check_steps, outcome_info
 
 try:
     from pettingzoo import ParallelEnv as Base  # type: ignore[import-untyped, unused-ignore]
@@ -49,10 +49,7 @@ class ParallelEnv(Base):  # type: ignore[misc, unused-ignore]
         render_size: tuple[int, int] = (640, 360),
         threads: int = 1,
     ) -> None:
-        if render_mode not in (None, "rgb_array"):
-            raise ValueError(f"there is no render_mode `{render_mode}`: rgb_array")
-        if ticks_per_step is not None and ticks_per_step < 1:
-            raise ValueError(f"{ticks_per_step} ticks a step: at least 1")
+        check_steps(render_mode, ticks_per_step)
         self.render_mode = render_mode
         self.max_steps = max_steps
         self.ticks_per_step = ticks_per_step
