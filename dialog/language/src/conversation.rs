@@ -67,7 +67,7 @@ impl Conversation<'_> {
                 return self.understand_words(lab::named(&words, at, room), context);
             }
             context.pending = Some(Pending::Lab { words, at });
-            return Understanding::Question { text: lab::QUESTION.to_owned(), candidates: Vec::new() };
+            return lab::question();
         }
         self.fresh(&words, parts, context)
     }
@@ -172,13 +172,9 @@ impl Conversation<'_> {
         match ground.one(phrase, &want) {
             Ok(object) => {
                 context.focus.mention(object);
-                let the = describe::full(self.catalog, self.scene, object);
-                Understanding::Question { text: format!("What shall I do with {the}?"), candidates: vec![object] }
+                reply::what_with(self.catalog, self.scene, object)
             }
-            Err(_) => Understanding::Question {
-                text: "What shall I do with it? Tell me, for example, \"pick up the mug\".".to_owned(),
-                candidates: Vec::new(),
-            },
+            Err(_) => reply::what(),
         }
     }
 
@@ -223,11 +219,10 @@ impl Conversation<'_> {
             Fault::HandFull { held, .. } => {
                 context.pending = Some(Pending::PutDown { clauses });
                 let held = describe::short(self.catalog, self.scene, held);
-                let text = format!("I am holding {held}. Shall I put it down first?");
-                Understanding::Question { text, candidates: Vec::new() }
+                Understanding::confirmation(format!("I am holding {held}. Shall I put it down first?"))
             }
-            Fault::Miss { slot: Some(slot), miss: Miss::Several(candidates), .. } => {
-                let question = reply::which(self.catalog, self.scene, &candidates);
+            Fault::Miss { slot: Some(slot), phrase, miss: Miss::Several(candidates), .. } => {
+                let question = reply::which(self.catalog, self.scene, Some(&phrase), &candidates);
                 context.pending = Some(Pending::Which { clauses, slot, candidates, may_put_down });
                 question
             }
@@ -238,7 +233,7 @@ impl Conversation<'_> {
                 let steps = vec![Step { action: cohabit_cdf::Action::LookAround, says: "looking around".to_owned() }];
                 context.pending = Some(Pending::Offer { steps });
                 let text = format!("{} Shall I look around?", reply::miss(&phrase, &Miss::Unseen, intent));
-                Understanding::Question { text, candidates: Vec::new() }
+                Understanding::confirmation(text)
             }
             Fault::Miss { phrase, miss, intent, .. } => Understanding::refusal(reply::miss(&phrase, &miss, intent)),
         }
@@ -268,7 +263,7 @@ impl Conversation<'_> {
         let said = crate::plan::said(phrase);
         let text = format!("I do not know of {said}. Do you mean {}?", describe::list(&names, "or"));
         context.pending = Some(Pending::Which { clauses, slot, candidates: candidates.clone(), may_put_down });
-        Understanding::Question { text, candidates }
+        reply::reference(Some(phrase), text, candidates, names)
     }
 
     /// The reply to what asks for nothing to be done.
@@ -358,12 +353,12 @@ impl Conversation<'_> {
                     [one] => Some(self.plan(chosen(clauses, slot, *one), may_put_down, context)),
                     [] if is_command || self.is_aside(words) => None,
                     [] => {
-                        context.pending =
-                            Some(Pending::Which { clauses, slot, candidates: candidates.clone(), may_put_down });
-                        Some(reply::which(self.catalog, self.scene, &candidates))
+                        let question = reply::which(self.catalog, self.scene, phrase(&clauses, slot), &candidates);
+                        context.pending = Some(Pending::Which { clauses, slot, candidates, may_put_down });
+                        Some(question)
                     }
                     several => {
-                        let question = reply::which(self.catalog, self.scene, several);
+                        let question = reply::which(self.catalog, self.scene, phrase(&clauses, slot), several);
                         let candidates = several.to_vec();
                         context.pending = Some(Pending::Which { clauses, slot, candidates, may_put_down });
                         Some(question)
@@ -429,6 +424,18 @@ impl Conversation<'_> {
 fn plain(words: &[String]) -> Vec<String> {
     let is_address = |word: &str| matches!(word, "robot" | "tam");
     words.iter().filter(|word| !token::is_punctuation(word) && !is_address(word)).cloned().collect()
+}
+
+/// The phrase at a place of a request.
+fn phrase(clauses: &[Clause], slot: Slot) -> Option<&Phrase> {
+    let clause = clauses.get(slot.clause)?;
+    match slot.role {
+        Role::Object(index) => clause.objects.get(index),
+        Role::Place(index) => match clause.places.get(index) {
+            Some((_, Place::Object(phrase))) => Some(phrase),
+            _ => None,
+        },
+    }
 }
 
 /// The clauses with one phrase settled.

@@ -2,13 +2,25 @@
 
 use cohabit_cdf::RoomId;
 
-use crate::lexicon::Lexicon;
+use crate::{
+    lexicon::Lexicon,
+    understanding::{Clarification, Understanding},
+};
 
 /// The two labs, as they are called in full.
 const LABS: [RoomId; 2] = [RoomId::Lab1, RoomId::Lab2];
 
-/// What is asked.
-pub(crate) const QUESTION: &str = "Which lab do you mean: the robotics lab or the quantum lab?";
+/// Asks which one is meant.
+pub(crate) fn question() -> Understanding {
+    let names = LABS.map(|room| format!("the {}", room.name()));
+    Understanding::Question {
+        kind: Clarification::Reference,
+        about: "lab".to_owned(),
+        text: format!("Which lab do you mean: {}?", names.join(" or ")),
+        candidates: Vec::new(),
+        options: names.to_vec(),
+    }
+}
 
 /// Where a bare `lab` stands, if one does: no part of `quantum lab`, `lab 2` or `lab table`.
 pub(crate) fn bare(lexicon: &Lexicon, words: &[String]) -> Option<usize> {

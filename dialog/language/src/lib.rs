@@ -53,7 +53,7 @@ use cohabit_cdf::{Catalog, Status};
 
 pub use context::Context;
 pub use known::{Known, KnownGoal, KnownObject, KnownRobot};
-pub use understanding::{Step, Understanding};
+pub use understanding::{Asking, Clarification, Step, Understanding};
 
 use crate::{context::Focus, conversation::Conversation, lexicon::Lexicon, process::Devices};
 

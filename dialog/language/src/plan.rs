@@ -412,13 +412,18 @@ impl Planner<'_> {
     }
 }
 
-/// What was said of an object, as something that is not there: `a mug`, `any milk`.
-pub(crate) fn said(phrase: &Phrase) -> String {
+/// What somebody called an object, without an article.
+pub(crate) fn noun(phrase: &Phrase) -> &str {
     let mut noun = phrase.text.as_str();
     for article in ["the ", "a ", "an ", "my ", "your ", "this ", "that ", "some ", "any "] {
         noun = noun.strip_prefix(article).unwrap_or(noun);
     }
-    let text = describe::indefinite(noun);
+    noun
+}
+
+/// What was said of an object, as something that is not there: `a mug`, `any milk`.
+pub(crate) fn said(phrase: &Phrase) -> String {
+    let text = describe::indefinite(noun(phrase));
     text.strip_prefix("some ").map_or_else(|| text.clone(), |noun| format!("any {noun}"))
 }
 

@@ -10,7 +10,7 @@ use crate::{
     known::Known,
     phrase::Phrase,
     plan,
-    understanding::{Step, Understanding},
+    understanding::{Clarification, Step, Understanding, YES_OR_NO},
 };
 
 /// How many steps are named before the rest is left to be seen.
@@ -36,11 +36,54 @@ pub(crate) fn plan_reply(steps: &[Step], notes: &[String]) -> String {
 }
 
 /// `Which one do you mean: the red mug on the desk or the yellow mug on the table?`
-pub(crate) fn which(catalog: &Catalog, scene: &Known, candidates: &[ObjectId]) -> Understanding {
+pub(crate) fn which(
+    catalog: &Catalog,
+    scene: &Known,
+    phrase: Option<&Phrase>,
+    candidates: &[ObjectId],
+) -> Understanding {
     let candidates = candidates[..candidates.len().min(ASKED)].to_vec();
     let names = describe::apart(catalog, scene, &candidates);
     let text = format!("Which one do you mean: {}?", describe::list(&names, "or"));
-    Understanding::Question { text, candidates }
+    reference(phrase, text, candidates, names)
+}
+
+/// A question which of `candidates` is meant, called so by `names`.
+pub(crate) fn reference(
+    phrase: Option<&Phrase>,
+    text: String,
+    candidates: Vec<ObjectId>,
+    mut names: Vec<String>,
+) -> Understanding {
+    // A single one is a guess: that it is not it must be as easy to say.
+    if candidates.len() == 1 {
+        names = YES_OR_NO.map(str::to_owned).to_vec();
+    }
+    Understanding::Question {
+        kind: if candidates.len() == 1 { Clarification::Confirmation } else { Clarification::Reference },
+        about: phrase.map(plan::noun).unwrap_or_default().to_owned(),
+        text,
+        candidates,
+        options: names,
+    }
+}
+
+/// What shall I do with this?
+pub(crate) fn what_with(catalog: &Catalog, scene: &Known, object: ObjectId) -> Understanding {
+    let text = format!("What shall I do with {}?", describe::full(catalog, scene, object));
+    let about = describe::bare(catalog, scene, object);
+    Understanding::Question { kind: Clarification::Request, about, text, candidates: vec![object], options: Vec::new() }
+}
+
+/// What shall I do with what you spoke of?
+pub(crate) fn what() -> Understanding {
+    Understanding::Question {
+        kind: Clarification::Request,
+        about: String::new(),
+        text: "What shall I do with it? Tell me, for example, \"pick up the mug\".".to_owned(),
+        candidates: Vec::new(),
+        options: Vec::new(),
+    }
 }
 
 /// What to say where a phrase found nothing; mismatches and several candidates are questions of their own.

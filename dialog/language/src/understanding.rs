@@ -3,6 +3,9 @@
 use cohabit_cdf::{Action, ObjectId};
 use serde::{Deserialize, Serialize};
 
+/// Answers that a confirmation offers.
+pub(crate) const YES_OR_NO: [&str; 2] = ["yes", "no"];
+
 /// What the robot makes of what it was told.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Understanding {
@@ -15,10 +18,16 @@ pub enum Understanding {
     },
     /// It must know something first.
     Question {
+        /// What kind of answer it needs.
+        kind: Clarification,
+        /// What it asks about, as people called it: `red mug`; empty where it asks about no object.
+        about: String,
         /// What it asks.
         text: String,
-        /// The objects that are in question, to be outlined; none when it asks for a yes.
+        /// The objects that are in question, to be outlined.
         candidates: Vec<ObjectId>,
+        /// Short answers that may be offered; of a reference, one for each candidate, in their order.
+        options: Vec<String>,
     },
     /// It was asked, and answers.
     Answer {
@@ -44,8 +53,100 @@ impl Understanding {
         Self::Refusal { text: text.into() }
     }
 
+    /// A question that is answered by yes or no.
+    pub(crate) fn confirmation(text: impl Into<String>) -> Self {
+        Self::Question {
+            kind: Clarification::Confirmation,
+            about: String::new(),
+            text: text.into(),
+            candidates: Vec::new(),
+            options: YES_OR_NO.map(str::to_owned).to_vec(),
+        }
+    }
+
     pub(crate) fn answer(text: impl Into<String>) -> Self {
         Self::Answer { text: text.into(), highlight: Vec::new() }
+    }
+}
+
+/// Kinds of questions the robot asks: the four of Alexa Arena (location, appearance, direction, reference), a
+/// confirmation, and what is to be done at all.
+#[derive(Clone, Copy, Debug, Deserialize, Eq, Hash, Ord, PartialEq, PartialOrd, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Clarification {
+    /// Where is it?
+    Location,
+    /// What does it look like?
+    Appearance,
+    /// Which direction?
+    Direction,
+    /// Which one, or which room, is meant?
+    Reference,
+    /// Shall it be done: what cannot be undone, what may help, what was only guessed?
+    Confirmation,
+    /// What shall be done?
+    Request,
+}
+
+impl Clarification {
+    /// All kinds.
+    pub const ALL: [Self; 6] =
+        [Self::Location, Self::Appearance, Self::Direction, Self::Reference, Self::Confirmation, Self::Request];
+
+    /// In one word, as in reports.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Location => "location",
+            Self::Appearance => "appearance",
+            Self::Direction => "direction",
+            Self::Reference => "reference",
+            Self::Confirmation => "confirmation",
+            Self::Request => "request",
+        }
+    }
+}
+
+/// When the robot asks: a setting of a session.
+#[derive(Clone, Copy, Debug, Default, Deserialize, Eq, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Asking {
+    /// It takes its best guess, and refuses where it has none.
+    Never,
+    /// Where a mistake is expected to cost more than a question.
+    #[default]
+    Unsure,
+    /// Whenever there is a choice, and before it does anything.
+    Always,
+}
+
+impl Asking {
+    /// All settings.
+    pub const ALL: [Self; 3] = [Self::Never, Self::Unsure, Self::Always];
+
+    /// The setting in one word.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Never => "never",
+            Self::Unsure => "unsure",
+            Self::Always => "always",
+        }
+    }
+}
+
+impl std::fmt::Display for Asking {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter.write_str(self.name())
+    }
+}
+
+impl std::str::FromStr for Asking {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let names = || Self::ALL.map(Self::name).join("`, `");
+        Self::ALL.into_iter().find(|one| one.name() == text).ok_or_else(|| format!("one of `{}`", names()))
     }
 }
 

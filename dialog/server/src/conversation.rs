@@ -156,7 +156,7 @@ impl Conversation {
                 self.say(turn, DialogKind::Reply, LineKind::Say, &reply, &mut reactions);
                 self.plan(turn, steps, &mut reactions);
             }
-            Understanding::Question { text, candidates } => {
+            Understanding::Question { text, candidates, .. } => {
                 self.say(turn, DialogKind::Question, LineKind::Question, &text, &mut reactions);
                 self.point_out(turn, &candidates, TurnEnd::Asked, &mut reactions);
             }
