@@ -188,6 +188,10 @@ impl Answerer<'_> {
 
     fn unseen(&self, phrase: &Phrase) -> Understanding {
         let said = crate::plan::said(phrase);
+        if self.scene.floor.is_some() && phrase.unknown.is_empty() {
+            let text = format!("I have not seen {said} yet. Shall I look for it?");
+            return Understanding::Question { text, candidates: Vec::new() };
+        }
         Understanding::answer(format!("I have not seen {said}. I can look around if you want."))
     }
 

@@ -1,6 +1,6 @@
 //! Plans with the hand: picking up, putting somewhere, pouring, throwing, breaking.
 
-use cohabit_cdf::{Action, ObjectId, Property, RoomId, Verb};
+use cohabit_cdf::{Action, ClassId, ObjectClass, ObjectId, Property, RoomId, Verb};
 
 use crate::{
     context::Role,
@@ -63,7 +63,8 @@ impl Planner<'_> {
     /// Puts what is held on the best surface near by.
     pub(crate) fn put_down(&mut self, beside: Option<ObjectId>) -> Result<(), Fault> {
         let Some(surface) = self.surface(beside) else {
-            return Err(Fault::Cannot("I see no place where I could put this down.".to_owned()));
+            let tables: Vec<ClassId> = self.classes(|class| is_table(self.catalog.class(class)));
+            return Err(self.need(&tables, "I see no place where I could put this down."));
         };
         self.place_on(surface);
         Ok(())
@@ -94,18 +95,15 @@ impl Planner<'_> {
 
     fn is_table(&self, object: &KnownObject) -> bool {
         let class = self.catalog.class(object.class);
-        let is_machine = [Property::Pickupable, Property::Toggleable, Property::Powerable, Property::Openable]
-            .into_iter()
-            .any(|property| class.has(property));
-        let Some(receptacle) = class.receptacle.as_ref().filter(|_| !is_machine && class.has(Property::Receptacle))
-        else {
-            return false;
-        };
-        let area: f32 = receptacle.surfaces.iter().map(|surface| surface.size_m[0] * surface.size_m[1]).sum();
-        let anchors: u32 = receptacle.surfaces.iter().map(|surface| surface.anchors[0] * surface.anchors[1]).sum();
+        let surfaces = class.receptacle.iter().flat_map(|receptacle| &receptacle.surfaces);
+        let anchors: u32 = surfaces.map(|surface| surface.anchors[0] * surface.anchors[1]).sum();
         let taken = self.scene.contents(object.id).count();
-        let is_free = u32::try_from(taken).is_ok_and(|taken| taken < anchors);
-        !receptacle.enclosed && receptacle.keys.is_empty() && is_free && area > TABLE_M2
+        is_table(class) && u32::try_from(taken).is_ok_and(|taken| taken < anchors)
+    }
+
+    /// The classes of the catalogue for which `fits` holds.
+    fn classes(&self, fits: impl Fn(ClassId) -> bool) -> Vec<ClassId> {
+        (0..).map(ClassId).take(self.catalog.classes().len()).filter(|class| fits(*class)).collect()
     }
 
     pub(crate) fn add_place(&mut self, settled: &Settled) -> Result<(), Fault> {
@@ -218,7 +216,7 @@ impl Planner<'_> {
     fn nearest_sink(&self) -> Result<ObjectId, Fault> {
         let sinks = self.devices.processes.iter().filter(|process| process.intent == Intent::Clean).flat_map(|p| &p.at);
         let classes: Vec<_> = sinks.copied().collect();
-        self.nearest(&classes).ok_or_else(|| Fault::Cannot("Tell me what to pour it into.".to_owned()))
+        self.nearest(&classes).ok_or_else(|| self.need(&classes, "Tell me what to pour it into."))
     }
 
     /// The nearest object of these classes: of the first class that is known at all in this room, then anywhere.
@@ -252,7 +250,7 @@ impl Planner<'_> {
     fn throw_away(&mut self, object: ObjectId) -> Result<(), Fault> {
         let bins: Vec<_> = ["TrashCan_01"].iter().filter_map(|id| self.catalog.find(id)).collect();
         let Some(bin) = self.nearest(&bins) else {
-            return Err(Fault::Cannot(format!("Tell me what to throw {} at.", self.the(object))));
+            return Err(self.need(&bins, format!("Tell me what to throw {} at.", self.the(object))));
         };
         self.hold(object)?;
         self.place_on(bin);
@@ -264,6 +262,9 @@ impl Planner<'_> {
         let tool = match &settled.tool {
             Some((phrase, role)) if phrase.pronoun != Some(Pronoun::Place) => {
                 Some(self.find_one(phrase, &Want::place(Intent::Use, &[], None), Some(*role))?)
+            }
+            _ if self.may_find(&self.devices.hammers) => {
+                return Err(self.need(&self.devices.hammers, "I need the hammer for that."));
             }
             _ => self.hammer(),
         };
@@ -283,4 +284,16 @@ impl Planner<'_> {
         let held = held.filter(|held| self.devices.hammers.contains(&held.class)).map(|held| held.id);
         held.or_else(|| self.nearest(&self.devices.hammers))
     }
+}
+
+/// A table, desk or counter: open, of some size, and no machine.
+fn is_table(class: &ObjectClass) -> bool {
+    let is_machine = [Property::Pickupable, Property::Toggleable, Property::Powerable, Property::Openable]
+        .into_iter()
+        .any(|property| class.has(property));
+    let Some(receptacle) = class.receptacle.as_ref().filter(|_| !is_machine && class.has(Property::Receptacle)) else {
+        return false;
+    };
+    let area: f32 = receptacle.surfaces.iter().map(|surface| surface.size_m[0] * surface.size_m[1]).sum();
+    !receptacle.enclosed && receptacle.keys.is_empty() && area > TABLE_M2
 }

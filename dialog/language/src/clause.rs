@@ -28,6 +28,24 @@ pub(crate) struct Clause {
     pub(crate) verb: String,
 }
 
+impl Clause {
+    /// The request to find an object.
+    pub(crate) fn find(phrase: Phrase) -> Self {
+        Self {
+            intent: Intent::Find,
+            objects: vec![phrase],
+            places: Vec::new(),
+            direction: None,
+            amount: None,
+            color: None,
+            fluid: None,
+            unknown: Vec::new(),
+            has_stray_noun: false,
+            verb: "find".to_owned(),
+        }
+    }
+}
+
 /// How far, or how much.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub(crate) enum Amount {

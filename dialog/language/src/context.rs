@@ -3,7 +3,7 @@
 use cohabit_cdf::{Action, GoToTarget, ObjectId, Status};
 use serde::{Deserialize, Serialize};
 
-use crate::{clause::Clause, known::Known, understanding::Step};
+use crate::{clause::Clause, known::Known, search::Search, understanding::Step};
 
 /// How many objects a pronoun may reach back.
 const MEMORY: usize = 8;
@@ -19,6 +19,8 @@ pub struct Context {
     pub(crate) last_plan: Vec<Step>,
     /// What failed last, with what was to follow it.
     pub(crate) failed: Option<Failure>,
+    /// The request that waits until what it names is found.
+    pub(crate) search: Option<Search>,
 }
 
 /// A step that failed.
@@ -53,6 +55,8 @@ pub(crate) enum Pending {
     Lab { words: Vec<String>, at: usize },
     /// Whether to put down what is held, to do what was asked.
     PutDown { clauses: Vec<Clause> },
+    /// Whether to look for what was asked about.
+    Search { clauses: Vec<Clause> },
     /// Whether to do this.
     Offer { steps: Vec<Step> },
 }
@@ -130,6 +134,11 @@ impl Context {
             return;
         }
         self.running.clear();
+        if let Some(search) = self.search.as_mut().filter(|search| search.is_under_way()) {
+            search.note_failure(step, status);
+            return;
+        }
+        self.search = None;
         self.failed = (status != Status::Interrupted).then(|| Failure { step: step.clone(), status, rest });
     }
 
@@ -139,5 +148,25 @@ impl Context {
         self.last_plan = steps.to_vec();
         self.pending = None;
         self.failed = None;
+        self.search = None;
+    }
+
+    /// Takes note of a part of a search that is about to be carried out.
+    pub(crate) fn begin_leg(&mut self, steps: &[Step]) {
+        self.running = steps.to_vec();
+        self.pending = None;
+        self.failed = None;
+    }
+
+    /// Whether there is more to do after the plan under way: [`crate::Language::carry_on`] knows what.
+    #[must_use]
+    pub const fn awaits_more(&self) -> bool {
+        self.search.is_some()
+    }
+
+    /// Whether the robot is looking for something: how the parts of that end is not worth telling.
+    #[must_use]
+    pub fn is_searching(&self) -> bool {
+        self.search.as_ref().is_some_and(Search::is_under_way)
     }
 }

@@ -8,6 +8,7 @@ use crate::{
     context::{Context, Focus, Pending, Role, Slot},
     describe,
     ground::{Ground, Miss},
+    habits::Habits,
     intent::Intent,
     known::Known,
     lab,
@@ -16,6 +17,7 @@ use crate::{
     plan::{Fault, Planner},
     process::Devices,
     question, remedy, reply,
+    search::Search,
     token::{self, MAX_CHARS},
     understanding::{Step, Understanding},
 };
@@ -28,6 +30,7 @@ pub(crate) struct Conversation<'a> {
     pub(crate) catalog: &'a Catalog,
     pub(crate) lexicon: &'a Lexicon,
     pub(crate) devices: &'a Devices,
+    pub(crate) habits: &'a Habits,
     pub(crate) scene: &'a Known,
 }
 
@@ -57,6 +60,7 @@ impl Conversation<'_> {
             context.pending = None;
             context.running.clear();
             context.failed = None;
+            context.search = None;
             return Understanding::Stop { reply: "OK, I stop.".to_owned() };
         }
         if let Some(understanding) = self.answer_to_pending(&words, &parts, context) {
@@ -87,6 +91,10 @@ impl Conversation<'_> {
                 failed: context.failed.as_ref(),
             };
             let answer = answerer.answer(&question);
+            // Only what it has not seen makes it ask back.
+            if let (Understanding::Question { .. }, Some(phrase)) = (&answer, &question.about) {
+                context.pending = Some(Pending::Search { clauses: vec![Clause::find(phrase.clone())] });
+            }
             if let Understanding::Answer { highlight, .. } = &answer
                 && let [one] = highlight.as_slice()
             {
@@ -139,6 +147,7 @@ impl Conversation<'_> {
     }
 
     fn request(&self, parts: Vec<Part>, context: &mut Context) -> Understanding {
+        context.search = None;
         let mut clauses = Vec::new();
         let mut unclear: Option<Vec<String>> = None;
         let mut fragment = None;
@@ -183,26 +192,25 @@ impl Conversation<'_> {
     }
 
     fn plan(&self, clauses: Vec<Clause>, may_put_down: bool, context: &mut Context) -> Understanding {
-        let mut planner = self.planner(context.focus.clone());
-        planner.may_put_down = may_put_down;
-        match planner.run(&clauses) {
-            Ok(()) => {
-                context.focus = planner.focus;
-                self.remember_start(&planner.steps, context);
-                let text = reply::plan_reply(&planner.steps, &planner.notes);
-                if planner.steps.is_empty() {
-                    context.pending = None;
-                    return Understanding::answer(text);
-                }
-                context.begin(&planner.steps);
-                Understanding::Plan { steps: planner.steps, reply: text }
-            }
-            Err(fault) => self.fault(fault, clauses, may_put_down, context),
+        self.proceed(Search::new(clauses, may_put_down), context)
+    }
+
+    /// What was planned is done; `found` is said first.
+    pub(crate) fn planned(&self, planner: Planner<'_>, found: Option<String>, context: &mut Context) -> Understanding {
+        context.focus = planner.focus;
+        self.remember_start(&planner.steps, context);
+        let notes: Vec<String> = found.into_iter().chain(planner.notes).collect();
+        let text = reply::plan_reply(&planner.steps, &notes);
+        if planner.steps.is_empty() {
+            (context.pending, context.search) = (None, None);
+            return Understanding::answer(text);
         }
+        context.begin(&planner.steps);
+        Understanding::Plan { steps: planner.steps, reply: text }
     }
 
     /// Where the robot stands, if it is about to leave.
-    fn remember_start(&self, steps: &[Step], context: &mut Context) {
+    pub(crate) fn remember_start(&self, steps: &[Step], context: &mut Context) {
         use cohabit_cdf::Action::{GoTo, Interact, PickUp, Place};
         let leaves = |step: &Step| matches!(step.action, GoTo { .. } | PickUp { .. } | Place { .. } | Interact { .. });
         if steps.iter().any(leaves) {
@@ -212,10 +220,16 @@ impl Conversation<'_> {
     }
 
     /// A question, where an answer would help; a refusal with its reason otherwise.
-    fn fault(&self, fault: Fault, clauses: Vec<Clause>, may_put_down: bool, context: &mut Context) -> Understanding {
-        context.pending = None;
+    pub(crate) fn fault(
+        &self,
+        fault: Fault,
+        clauses: Vec<Clause>,
+        may_put_down: bool,
+        context: &mut Context,
+    ) -> Understanding {
+        (context.pending, context.search) = (None, None);
         match fault {
-            Fault::Cannot(text) => Understanding::refusal(text),
+            Fault::Cannot(text) | Fault::Need { text, .. } => Understanding::refusal(text),
             Fault::HandFull { held, .. } => {
                 context.pending = Some(Pending::PutDown { clauses });
                 let held = describe::short(self.catalog, self.scene, held);
@@ -346,7 +360,8 @@ impl Conversation<'_> {
         match pending {
             Pending::PutDown { clauses } if is_yes && !is_command => Some(self.plan(clauses, true, context)),
             Pending::Offer { steps } if is_yes && !is_command => Some(self.go(steps, context)),
-            Pending::PutDown { .. } | Pending::Offer { .. } | Pending::Lab { .. } => None,
+            Pending::Search { clauses } if is_yes && !is_command => Some(self.plan(clauses, false, context)),
+            Pending::PutDown { .. } | Pending::Offer { .. } | Pending::Search { .. } | Pending::Lab { .. } => None,
             Pending::Which { clauses, slot, candidates, may_put_down } => {
                 let left = self.answered(words, &candidates, is_yes, context);
                 match left.as_slice() {

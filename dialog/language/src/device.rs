@@ -102,6 +102,9 @@ impl Planner<'_> {
         let Some(classes) = self.devices.workers(known.class) else { return Ok(object) };
         let mut workers: Vec<ObjectId> =
             self.scene.objects.iter().filter(|other| other.works == Some(object)).map(|other| other.id).collect();
+        if workers.is_empty() && self.may_find(classes) {
+            return Err(self.need(classes, format!("I do not know what works {}.", self.the(object))));
+        }
         if workers.is_empty() {
             let fits = |class: &&ClassId| self.scene.objects.iter().any(|other| other.class == **class);
             workers = classes.iter().filter(fits).filter_map(|class| self.nearest(&[*class])).collect();
@@ -161,7 +164,8 @@ impl Planner<'_> {
             }
             let object = self.process_object(&settled, index)?;
             if settled.intent == Intent::Fill && settled.fluid == Some(Fluid::Milk) {
-                let milk = self.milk().ok_or_else(|| Fault::Cannot("I do not know where any milk is.".to_owned()))?;
+                let cartons: Vec<ClassId> = self.catalog.find("MilkCarton_01").into_iter().collect();
+                let milk = self.milk().ok_or_else(|| self.need(&cartons, "I do not know where any milk is."))?;
                 self.pour(milk, object)?;
                 continue;
             }
@@ -215,7 +219,7 @@ impl Planner<'_> {
                 self.processes(Intent::Brew, None).flat_map(|process| process.object.clone()).collect();
             let held = self.scene.robot.held.filter(|held| self.has(*held, Property::Fillable));
             let cup = held.or_else(|| self.nearest(&cups));
-            return cup.ok_or_else(|| Fault::Cannot("I do not know where a mug is.".to_owned()));
+            return cup.ok_or_else(|| self.need(&cups, "I do not know where a mug is."));
         }
         if settled.intent == Intent::Print {
             return self.cartridge(phrase, role);
@@ -241,7 +245,7 @@ impl Planner<'_> {
         }
         self.nearest(&classes).ok_or_else(|| {
             let said = crate::plan::said(phrase);
-            Fault::Cannot(format!("I do not know how to make {said}: I have seen no cartridge for it."))
+            self.need(&classes, format!("I do not know how to make {said}: I have seen no cartridge for it."))
         })
     }
 
@@ -276,7 +280,11 @@ impl Planner<'_> {
         let cannot = || Fault::Cannot(format!("I cannot {verb} things with {}.", self.the(device)));
         let process = processes.into_iter().find(|process| process.is_done_at(class)).ok_or_else(cannot)?;
         let place = if process.at.contains(&class) { Some(device) } else { self.nearest(&process.at) };
-        place.map(|place| (process.clone(), place)).ok_or_else(cannot)
+        match (place, cannot()) {
+            (Some(place), _) => Ok((process.clone(), place)),
+            (None, Fault::Cannot(text)) => Err(self.need(&process.at, text)),
+            (None, fault) => Err(fault),
+        }
     }
 
     fn first_process(&self, settled: &Settled) -> Result<(Process, ObjectId), Fault> {
@@ -284,7 +292,9 @@ impl Planner<'_> {
             .processes(settled.intent, settled.fluid)
             .filter_map(|process| Some((process, self.nearest(&process.at)?)));
         known.next().map(|(process, place)| (process.clone(), place)).ok_or_else(|| {
-            Fault::Cannot(format!("I do not know of anything here to {} it with.", settled.intent.verb()))
+            let places = self.processes(settled.intent, settled.fluid).flat_map(|process| process.at.clone());
+            let classes: Vec<ClassId> = places.collect();
+            self.need(&classes, format!("I do not know of anything here to {} it with.", settled.intent.verb()))
         })
     }
 
@@ -342,12 +352,16 @@ impl Planner<'_> {
 
     fn start(&mut self, process: &Process, place: ObjectId, color: Option<&str>) -> Result<(), Fault> {
         if let Some(color) = color {
-            let button = self.devices.button(color).and_then(|class| self.nearest(&[class]));
-            let button = button.ok_or_else(|| {
-                Fault::Cannot(format!("I cannot make things {color}: the colour changer has red, green and blue."))
+            let class: Vec<ClassId> = self.devices.button(color).into_iter().collect();
+            let button = self.nearest(&class).ok_or_else(|| {
+                let text = format!("I cannot make things {color}: the colour changer has red, green and blue.");
+                self.need(&class, text)
             })?;
             self.interact(Verb::Toggle, button, "pressing");
             return Ok(());
+        }
+        if !process.start.is_empty() && self.may_find(&process.start) {
+            return Err(self.need(&process.start, format!("I do not know what works {}.", self.the(place))));
         }
         let starter = if process.start.is_empty() { Some(place) } else { self.nearest(&process.start) };
         self.interact(Verb::Toggle, starter.unwrap_or(place), "turning on");

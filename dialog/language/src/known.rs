@@ -4,6 +4,9 @@ use cohabit_cdf::{
     ClassId, Color, Fluid, ObjectId, RoomId,
     state::{StateFlag, StateFlags},
 };
+use serde::{Deserialize, Serialize};
+
+use crate::floor::Floor;
 
 /// The robot, the objects it knows of, and the goals.
 #[derive(Clone, Debug, PartialEq)]
@@ -14,6 +17,8 @@ pub struct Known {
     pub objects: Vec<KnownObject>,
     /// The goals that people may read, in their order.
     pub goals: Vec<KnownGoal>,
+    /// The floor, as far as what it does not know may be looked for; `None` for who knows everything.
+    pub floor: Option<Floor>,
 }
 
 /// Where the robot is and what it holds.
@@ -30,7 +35,7 @@ pub struct KnownRobot {
 }
 
 /// One object.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct KnownObject {
     /// Which.
     pub id: ObjectId,
@@ -42,6 +47,8 @@ pub struct KnownObject {
     pub room: RoomId,
     /// Its origin, m, in the world.
     pub position_m: [f32; 3],
+    /// The way its front faces, in the world.
+    pub yaw_rad: f32,
     /// Its states.
     pub flags: StateFlags,
     /// What it is filled with.
@@ -54,6 +61,8 @@ pub struct KnownObject {
     pub text: String,
     /// Whether the robot sees it now.
     pub visible: bool,
+    /// Whether nobody can see it: it is behind a closed door.
+    pub is_hidden: bool,
     /// The device that this monitor, button or lever works.
     pub works: Option<ObjectId>,
     /// Whether it is there for the sake of the mission, and not only part of the furnishings: people speak of it rather.

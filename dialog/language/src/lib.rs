@@ -14,7 +14,7 @@
 //!
 //! let language = Language::new(Arc::new(Catalog::parse(&[], &[])?));
 //! let robot = KnownRobot { position_m: [0.0; 3], yaw_rad: 0.0, room: RoomId::Lab1, held: None };
-//! let scene = Known { robot, objects: vec![], goals: vec![] };
+//! let scene = Known { robot, objects: vec![], goals: vec![], floor: None };
 //! let meant = language.understand("Could you go to the kitchen, please?", &scene, &mut Context::default());
 //! assert!(matches!(meant, Understanding::Plan { steps, .. } if steps.len() == 1));
 //! # Ok::<(), cohabit_cdf::CatalogError>(())
@@ -27,12 +27,15 @@ mod context;
 mod conversation;
 mod describe;
 mod device;
+mod floor;
 mod ground;
+mod habits;
 mod imagine;
 mod intent;
 mod known;
 mod lab;
 mod lexicon;
+mod memory;
 mod phrase;
 mod plan;
 mod process;
@@ -40,7 +43,9 @@ mod question;
 mod remedy;
 mod reply;
 mod report;
+mod search;
 mod settle;
+mod sight;
 mod spelling;
 mod table;
 mod token;
@@ -52,10 +57,13 @@ use std::sync::Arc;
 use cohabit_cdf::{Catalog, Status};
 
 pub use context::Context;
+pub use floor::{Floor, FloorPlan};
 pub use known::{Known, KnownGoal, KnownObject, KnownRobot};
+pub use memory::{Knows, Lessons, Memory};
+pub use sight::Gaze;
 pub use understanding::{Asking, Clarification, Step, Understanding};
 
-use crate::{context::Focus, conversation::Conversation, lexicon::Lexicon, process::Devices};
+use crate::{context::Focus, conversation::Conversation, habits::Habits, lexicon::Lexicon, process::Devices};
 
 /// The robot's language: its words, and what it knows of devices.
 #[derive(Debug)]
@@ -63,6 +71,7 @@ pub struct Language {
     catalog: Arc<Catalog>,
     lexicon: Lexicon,
     devices: Devices,
+    habits: Habits,
 }
 
 impl Language {
@@ -71,15 +80,27 @@ impl Language {
     pub fn new(catalog: Arc<Catalog>) -> Self {
         let lexicon = Lexicon::new(&catalog);
         let devices = Devices::new(&catalog);
-        Self { catalog, lexicon, devices }
+        let habits = Habits::new(&catalog);
+        Self { catalog, lexicon, devices, habits }
     }
 
     /// What `utterance` means in `scene`, given the conversation so far. Any text is taken; none panics.
     #[must_use]
     pub fn understand(&self, utterance: &str, scene: &Known, context: &mut Context) -> Understanding {
-        let conversation =
-            Conversation { catalog: &self.catalog, lexicon: &self.lexicon, devices: &self.devices, scene };
-        conversation.understand(utterance, context)
+        self.conversation(scene).understand(utterance, context)
+    }
+
+    /// What is left to do once a plan has ended, other than by being interrupted: a search goes on, and ends in the
+    /// request that it is for. Nothing, if no search is under way.
+    #[must_use]
+    pub fn carry_on(&self, scene: &Known, context: &mut Context) -> Option<Understanding> {
+        let search = context.search.take()?;
+        Some(self.conversation(scene).proceed(search, context))
+    }
+
+    fn conversation<'a>(&'a self, scene: &'a Known) -> Conversation<'a> {
+        let Self { catalog, lexicon, devices, habits } = self;
+        Conversation { catalog, lexicon, devices, habits, scene }
     }
 
     /// What the robot says after a whole plan has finished (`step` is its last) or after `step` failed; `detail` is

@@ -1,6 +1,6 @@
 //! From clauses to steps: each clause is grounded on the scene as the steps before it are expected to leave it.
 
-use cohabit_cdf::{Action, Catalog, GoToTarget, ObjectId, Property, Verb, state::StateFlag};
+use cohabit_cdf::{Action, Catalog, ClassId, GoToTarget, ObjectId, Property, Verb, state::StateFlag};
 
 use crate::{
     clause::{Amount, Clause},
@@ -33,6 +33,8 @@ pub(crate) enum Fault {
     Miss { slot: Option<Slot>, phrase: Box<Phrase>, miss: Miss, intent: Intent },
     /// Something else is in the hand.
     HandFull { held: ObjectId, wanted: ObjectId },
+    /// Something of these classes is needed, and none is known; `text` says so.
+    Need { classes: Vec<ClassId>, text: String },
     /// It cannot be done, for this reason.
     Cannot(String),
 }
@@ -49,6 +51,8 @@ pub(crate) struct Planner<'a> {
     /// Whether it may put down what it holds to take something else.
     pub(crate) may_put_down: bool,
     pub(crate) clause: usize,
+    /// The steps, and what was spoken of, when that clause was begun.
+    pub(crate) begun: (usize, Focus),
 }
 
 impl Planner<'_> {
@@ -56,6 +60,7 @@ impl Planner<'_> {
     pub(crate) fn run(&mut self, clauses: &[Clause]) -> Result<(), Fault> {
         for (index, clause) in clauses.iter().enumerate() {
             self.clause = index;
+            self.begun = (self.steps.len(), self.focus.clone());
             self.add(clause)?;
         }
         Ok(())
@@ -126,6 +131,16 @@ impl Planner<'_> {
     pub(crate) fn miss(&self, phrase: &Phrase, miss: Miss, intent: Intent, role: Option<Role>) -> Fault {
         let slot = role.map(|role| Slot { clause: self.clause, role });
         Fault::Miss { slot, phrase: Box::new(phrase.clone()), miss, intent }
+    }
+
+    /// That something of these classes is needed.
+    pub(crate) fn need(&self, classes: &[ClassId], text: impl Into<String>) -> Fault {
+        Fault::Need { classes: classes.to_vec(), text: text.into() }
+    }
+
+    /// Whether one of these classes is needed that may be found yet.
+    pub(crate) fn may_find(&self, classes: &[ClassId]) -> bool {
+        self.scene.floor.is_some() && !self.scene.objects.iter().any(|object| classes.contains(&object.class))
     }
 
     /// The objects of a clause: one each, or all of a kind.
@@ -305,7 +320,7 @@ impl Planner<'_> {
             let is_nameable = !phrase.namings.is_empty() || phrase.instance.is_some();
             match self.find_one(phrase, &want, Some(Role::Object(index))) {
                 Ok(object) => self.go_to_object(object),
-                Err(Fault::Miss { miss: Miss::Unseen, .. }) if is_nameable => {
+                Err(Fault::Miss { miss: Miss::Unseen, .. }) if is_nameable && self.scene.floor.is_none() => {
                     self.notes.push(format!("I have not seen {} yet, so I look around for it", said(phrase)));
                     phrase.room.into_iter().for_each(|room| self.go_to_room(room));
                     self.push(Action::LookAround, "looking around".to_owned());

@@ -51,6 +51,7 @@ pub(crate) fn planner<'a>(
         catalog,
         devices,
         scene: scene.clone(),
+        begun: (0, focus.clone()),
         focus,
         steps: Vec::new(),
         notes: Vec::new(),

@@ -18,7 +18,7 @@ fn known(catalog: &Catalog, layout: &Layout, mission: &Mission) -> Known {
         room: mission.start_room,
         held: None,
     };
-    let mut known = Known { robot, objects: Vec::new(), goals: Vec::new() };
+    let mut known = Known { robot, objects: Vec::new(), goals: Vec::new(), floor: None };
     for placement in &layout.placements {
         add(&mut known, catalog, &placement.instance, placement.room, layout.origin_in_world_m(placement));
     }
@@ -92,12 +92,14 @@ fn add(known: &mut Known, catalog: &Catalog, instance: &str, room: RoomId, posit
         class: catalog.class_of_instance(instance).unwrap(),
         room,
         position_m,
+        yaw_rad: 0.0,
         flags: StateFlags::default(),
         fluid: Fluid::None,
         color: Color::Original,
         parent: None,
         text: String::new(),
         visible: false,
+        is_hidden: false,
         works: None,
         in_mission: false,
     });

@@ -90,6 +90,8 @@ pub struct Conversation {
 
 #[derive(Clone, Debug, Deserialize, Serialize)]
 struct Plan {
+    /// The turn that it is for: a search goes on with plans of its own.
+    turn: u64,
     steps: Vec<Step>,
     told_end: bool,
 }
@@ -132,6 +134,13 @@ impl Conversation {
         Some(DialogMessage::new(kind, self.body, line.turn, &line.text))
     }
 
+    /// What the robot did, if this tells of a step that succeeded: to be noted before the conversation follows it.
+    pub fn deed(&self, header: &DialogHeader) -> Option<Action> {
+        let is_done = header.kind() == Some(DialogKind::StepEnded) && header.status().is_some_and(Status::is_success);
+        let plan = self.memory.plans.get(&header.turn).filter(|_| is_done)?;
+        plan.steps.get(header.step as usize).map(|step| step.action)
+    }
+
     /// The newest plan, if its end was not told yet, once more.
     pub fn plan_under_way(&self) -> Option<DialogMessage> {
         let (turn, plan) = self.memory.plans.last_key_value()?;
@@ -151,37 +160,44 @@ impl Conversation {
             reactions.push(Reaction::TurnEnded { turn, end: TurnEnd::Refused });
             return (turn, reactions);
         };
-        match self.language.understand(text, known, &mut self.memory.context) {
+        let understanding = self.language.understand(text, known, &mut self.memory.context);
+        self.react(turn, turn, understanding, &mut reactions);
+        (turn, reactions)
+    }
+
+    /// Says and does what was understood in `turn`; what is to be done is the plan of that number.
+    fn react(&mut self, turn: u64, number: u64, understanding: Understanding, reactions: &mut Vec<Reaction>) {
+        match understanding {
             Understanding::Plan { steps, reply } => {
-                self.say(turn, DialogKind::Reply, LineKind::Say, &reply, &mut reactions);
-                self.plan(turn, steps, &mut reactions);
+                self.say(turn, DialogKind::Reply, LineKind::Say, &reply, reactions);
+                self.plan(turn, number, steps, reactions);
             }
             Understanding::Question { text, candidates, .. } => {
-                self.say(turn, DialogKind::Question, LineKind::Question, &text, &mut reactions);
-                self.point_out(turn, &candidates, TurnEnd::Asked, &mut reactions);
+                self.say(turn, DialogKind::Question, LineKind::Question, &text, reactions);
+                self.point_out(turn, number, &candidates, TurnEnd::Asked, reactions);
             }
             Understanding::Answer { text, highlight } => {
-                self.say(turn, DialogKind::Reply, LineKind::Say, &text, &mut reactions);
-                self.point_out(turn, &highlight, TurnEnd::Answered, &mut reactions);
+                self.say(turn, DialogKind::Reply, LineKind::Say, &text, reactions);
+                self.point_out(turn, number, &highlight, TurnEnd::Answered, reactions);
             }
             Understanding::Refusal { text } => {
-                self.say(turn, DialogKind::Reply, LineKind::Problem, &text, &mut reactions);
+                self.say(turn, DialogKind::Reply, LineKind::Problem, &text, reactions);
                 reactions.push(Reaction::TurnEnded { turn, end: TurnEnd::Refused });
             }
             Understanding::Stop { reply } => {
-                self.say(turn, DialogKind::Reply, LineKind::Say, &reply, &mut reactions);
+                self.say(turn, DialogKind::Reply, LineKind::Say, &reply, reactions);
                 let stop = Step { action: Action::Stop, says: String::new() };
-                self.plan(turn, vec![stop], &mut reactions);
+                self.plan(turn, number, vec![stop], reactions);
             }
         }
-        (turn, reactions)
     }
 
     /// The agent told something about a plan. What the robot knows is asked for only where it is spoken of.
     pub fn follow(&mut self, header: &DialogHeader, known: impl FnOnce() -> Option<Known>) -> Vec<Reaction> {
         let mut reactions = Vec::new();
-        let turn = header.turn;
-        let (Some(kind), Some(plan)) = (header.kind(), self.memory.plans.get_mut(&turn)) else { return reactions };
+        let number = header.turn;
+        let (Some(kind), Some(plan)) = (header.kind(), self.memory.plans.get_mut(&number)) else { return reactions };
+        let turn = plan.turn;
         let count = plan.steps.len();
         let step = plan.steps.get(header.step as usize).cloned();
         match kind {
@@ -196,6 +212,7 @@ impl Conversation {
                 let whole = status.is_success() && header.step as usize + 1 == count;
                 let failed = status.is_failure();
                 let is_worth_telling = (whole && worth_telling(step.action)) || failed;
+                let is_worth_telling = is_worth_telling && !self.memory.context.is_searching();
                 if is_worth_telling && !plan.told_end {
                     plan.told_end = true;
                     if let Some(known) = known() {
@@ -207,8 +224,11 @@ impl Conversation {
             }
             DialogKind::PlanEnded => {
                 let told = plan.told_end;
-                self.memory.plans.remove(&turn);
+                self.memory.plans.remove(&number);
                 let status = header.status().unwrap_or(Status::ActionExecutionError);
+                if goes_on(status) && self.carry_on(turn, known, &mut reactions) {
+                    return reactions;
+                }
                 if !told && status.is_failure() {
                     self.say(turn, DialogKind::Reply, LineKind::Problem, "That did not work.", &mut reactions);
                 }
@@ -224,9 +244,23 @@ impl Conversation {
         reactions
     }
 
-    fn plan(&mut self, turn: u64, steps: Vec<Step>, reactions: &mut Vec<Reaction>) {
-        reactions.push(Reaction::Bus(Box::new(self.plan_message(turn, &steps))));
-        self.memory.plans.insert(turn, Plan { steps, told_end: false });
+    /// Goes on with a search after one of its plans; tells whether there was more to do.
+    fn carry_on(
+        &mut self,
+        turn: u64,
+        known: impl FnOnce() -> Option<Known>,
+        reactions: &mut Vec<Reaction>,
+    ) -> bool {
+        let Some(known) = known().filter(|_| self.memory.context.awaits_more()) else { return false };
+        let Some(understanding) = self.language.carry_on(&known, &mut self.memory.context) else { return false };
+        self.memory.turns += 1;
+        self.react(turn, self.memory.turns, understanding, reactions);
+        true
+    }
+
+    fn plan(&mut self, turn: u64, number: u64, steps: Vec<Step>, reactions: &mut Vec<Reaction>) {
+        reactions.push(Reaction::Bus(Box::new(self.plan_message(number, &steps))));
+        self.memory.plans.insert(number, Plan { turn, steps, told_end: false });
         while self.memory.plans.len() > MOST_PLANS {
             self.memory.plans.pop_first();
         }
@@ -240,13 +274,13 @@ impl Conversation {
     }
 
     /// Has objects outlined, one after the other, without anything being said about it.
-    fn point_out(&mut self, turn: u64, objects: &[ObjectId], end: TurnEnd, reactions: &mut Vec<Reaction>) {
+    fn point_out(&mut self, turn: u64, number: u64, objects: &[ObjectId], end: TurnEnd, reactions: &mut Vec<Reaction>) {
         if objects.is_empty() {
             reactions.push(Reaction::TurnEnded { turn, end });
             return;
         }
         let point = |object: &ObjectId| Step { action: Action::Highlight { object: *object }, says: String::new() };
-        self.plan(turn, objects.iter().map(point).collect(), reactions);
+        self.plan(turn, number, objects.iter().map(point).collect(), reactions);
     }
 
     fn say(&self, turn: u64, kind: DialogKind, line: LineKind, text: &str, reactions: &mut Vec<Reaction>) {
@@ -259,6 +293,11 @@ impl Conversation {
     fn bus(&self, kind: DialogKind, turn: u64, text: &str) -> Reaction {
         Reaction::Bus(Box::new(DialogMessage::new(kind, self.body, turn, text)))
     }
+}
+
+/// Whether a plan that ended so may be followed by more.
+const fn goes_on(status: Status) -> bool {
+    !matches!(status, Status::Interrupted | Status::KilledByHazard)
 }
 
 /// Whether the end of a plan whose last step is this is told; that it stopped or pointed was told before.

@@ -14,6 +14,7 @@ use std::{
 };
 
 use cohabit_bus::Envelope;
+use cohabit_language::Lessons;
 use serde::{Deserialize, Serialize};
 
 use crate::{conversation, hub::LINES_KEPT, page::Line};
@@ -55,6 +56,9 @@ pub struct Past {
     pub lines: VecDeque<Line>,
     /// The conversation.
     pub conversation: conversation::Memory,
+    /// What the robot knows, as far as it saw it.
+    #[serde(default)]
+    pub lessons: Lessons,
     /// What may not have been told.
     pub untold: Vec<Line>,
     /// How far the publishers were followed, by their runs.
@@ -69,6 +73,8 @@ enum Entry {
     Past(Past),
     Place(Place),
     Deed(Deed),
+    /// What was learnt.
+    Lessons(Lessons),
     /// The deed before was told.
     Told,
 }
@@ -86,6 +92,7 @@ impl Past {
         match entry {
             Entry::Past(past) => *self = past,
             Entry::Place(place) => self.place = Some(place),
+            Entry::Lessons(lessons) => self.lessons.add(lessons),
             Entry::Told => self.untold.clear(),
             Entry::Deed(Deed { heard, lines, conversation }) => {
                 self.lines.extend(lines.iter().cloned());
@@ -150,6 +157,11 @@ impl Journal {
     /// Writes down where the page is served.
     pub fn serve_at(&mut self, place: Place) {
         self.write(Entry::Place(place));
+    }
+
+    /// Writes down what the robot learnt.
+    pub fn note_lessons(&mut self, lessons: Lessons) {
+        self.write(Entry::Lessons(lessons));
     }
 
     /// Writes down what will be told.

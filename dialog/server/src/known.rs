@@ -1,15 +1,97 @@
-//! What the robot knows, from the state as the simulator publishes it.
+//! What the robot knows, from the states that the simulator publishes.
 
-use cohabit_bus::message::{NONE, ObjectRecord, StateView};
-use cohabit_cdf::{BodyId, ClassId, Color, Fluid, ObjectId, RoomId, state::StateFlags};
-use cohabit_language::{Known, KnownGoal, KnownObject, KnownRobot};
+use std::sync::Arc;
+
+use cohabit_bus::message::{BodyRecord, NONE, ObjectRecord, StateView};
+use cohabit_cdf::{Action, BodyId, Catalog, ClassId, Color, Fluid, Layout, ObjectId, RoomId, state::StateFlags};
+use cohabit_language::{FloorPlan, Gaze, Known, KnownGoal, KnownObject, KnownRobot, Knows, Lessons, Memory};
 
 /// Half the angle in which the robot sees what is in its room, rad.
 const HALF_VIEW_RAD: f32 = 0.9;
+/// A body that moves looks so often, in ticks, and one that stands still more seldom: other things may move.
+const LOOKS_EVERY: u64 = 6;
+const GLANCES_EVERY: u64 = 30;
 
-/// What `body` knows; `None` if there is no such body.
-pub fn known(state: StateView<'_>, body: BodyId) -> Option<Known> {
-    let record = state.bodies.iter().find(|record| record.body == body.0)?;
+/// The knowledge of one body.
+pub struct Knowledge {
+    knows: Knows,
+    catalog: Arc<Catalog>,
+    body: BodyId,
+    memory: Memory,
+    /// The world as it was when it was last looked at; nobody but the eyes and the hand may know more of it.
+    world: Option<Known>,
+    gaze: Option<Gaze>,
+    looked_at: u64,
+}
+
+impl Knowledge {
+    /// What a body knows that has seen nothing yet but the floor plan.
+    #[must_use]
+    pub fn new(knows: Knows, catalog: Arc<Catalog>, layout: &Layout, body: BodyId) -> Self {
+        let memory = Memory::new(Arc::new(FloorPlan::new(layout)));
+        Self { knows, catalog, body, memory, world: None, gaze: None, looked_at: 0 }
+    }
+
+    /// Whether it is time to look again, for a body that looks so now.
+    #[must_use]
+    pub fn is_due(&self, tick: u64, position_m: [f32; 3], yaw_rad: f32) -> bool {
+        let Some((world, gaze)) = self.world.as_ref().zip(self.gaze) else { return true };
+        let is_still = world.robot.position_m == position_m && gaze.yaw_rad == yaw_rad;
+        let every = if is_still { GLANCES_EVERY } else { LOOKS_EVERY };
+        self.knows == Knows::Seen && tick >= self.looked_at.saturating_add(every)
+    }
+
+    /// Looks at the world as it is at a tick.
+    pub fn look(&mut self, state: StateView<'_>, tick: u64) {
+        let Some(record) = state.bodies.iter().find(|record| record.body == self.body.0) else { return };
+        let Some(world) = everything(state, record) else { return };
+        let gaze = Gaze {
+            eye_m: record.eye_m,
+            room: world.robot.room,
+            yaw_rad: record.yaw_rad,
+            pitch_rad: record.head_pitch_rad,
+            is_around: false,
+        };
+        if self.knows == Knows::Seen {
+            self.memory.take_in(&self.catalog, &world, gaze);
+        }
+        (self.world, self.gaze, self.looked_at) = (Some(world), Some(gaze), tick);
+    }
+
+    /// Takes note of a deed of its own that succeeded, once its outcome was looked at.
+    pub fn note_deed(&mut self, action: &Action) {
+        let Some((world, gaze)) = self.world.as_ref().zip(self.gaze) else { return };
+        if self.knows == Knows::Everything {
+            return;
+        }
+        if matches!(action, Action::LookAround) {
+            self.memory.take_in(&self.catalog, world, Gaze { is_around: true, ..gaze });
+        }
+        self.memory.take_in_deed(action, world);
+    }
+
+    /// All that it knows; nothing before it looked.
+    #[must_use]
+    pub fn known(&self) -> Option<Known> {
+        match self.knows {
+            Knows::Everything => self.world.clone(),
+            Knows::Seen => self.memory.known(),
+        }
+    }
+
+    /// What was learnt since this was last asked.
+    pub fn take_lessons(&mut self) -> Option<Lessons> {
+        self.memory.take_lessons()
+    }
+
+    /// Learns again what one before it learnt.
+    pub fn study(&mut self, lessons: &Lessons) {
+        self.memory.study(lessons);
+    }
+}
+
+/// All there is, of which `record` is the robot.
+fn everything(state: StateView<'_>, record: &BodyRecord) -> Option<Known> {
     let robot = KnownRobot {
         position_m: record.position_m,
         yaw_rad: record.yaw_rad,
@@ -23,7 +105,7 @@ pub fn known(state: StateView<'_>, body: BodyId) -> Option<Known> {
         .filter(|goal| goal.hidden == 0)
         .map(|goal| KnownGoal { text: goal.description.as_str().to_owned(), met: goal.met == 1 })
         .collect();
-    Some(Known { robot, objects, goals })
+    Some(Known { robot, objects, goals, floor: None })
 }
 
 fn object_id(index: u32) -> Option<ObjectId> {
@@ -33,18 +115,21 @@ fn object_id(index: u32) -> Option<ObjectId> {
 fn known_object(state: StateView<'_>, robot: &KnownRobot, object: &ObjectRecord) -> Option<KnownObject> {
     let room = RoomId::from_index(u32::from(object.room))?;
     let note = state.notes.iter().find(|note| note.object == object.object);
+    let [x, y, z, w] = object.rotation;
     Some(KnownObject {
         id: ObjectId(object.object),
         instance: object.instance.as_str().to_owned(),
         class: ClassId(object.class),
         room,
         position_m: object.position_m,
+        yaw_rad: (2.0 * (w * z + x * y)).atan2(1.0 - 2.0 * (y * y + z * z)),
         flags: StateFlags(object.flags),
         fluid: Fluid::ALL.get(usize::from(object.fluid)).copied().unwrap_or_default(),
         color: Color::ALL.get(usize::from(object.color)).copied().unwrap_or_default(),
         parent: object_id(object.parent),
         text: note.map_or_else(String::new, |note| note.text.as_str().to_owned()),
         visible: object.hidden == 0 && room == robot.room && in_view(robot, object.position_m),
+        is_hidden: object.hidden != 0,
         works: object_id(object.works),
         in_mission: object.in_mission != 0,
     })

@@ -35,7 +35,8 @@ use cohabit_cdf::{Catalog, Layout, Mission};
 
 pub use conversation::{Conversation, Reaction, TurnEnd};
 pub use driving::{Drivable, NotDrivable};
-pub use known::known;
+pub use cohabit_language::Knows;
+pub use known::Knowledge;
 
 use crate::{
     driving::Drivers,
@@ -58,6 +59,8 @@ pub struct DialogConfig {
     pub cameras: Vec<CameraRecord>,
     /// Which bodies people may drive from the page.
     pub drivable: Drivable,
+    /// What the robot may know.
+    pub knows: Knows,
     /// Called once, when a page says that it has shown a frame.
     pub on_first_frame: Box<dyn Fn() + Send + Sync>,
 }
@@ -108,7 +111,8 @@ pub fn serve(
     let hub = Arc::new(Hub::new(hello, views, config.on_first_frame));
     let journal = Journal::open(config.journal.as_deref());
     let (listener, place) = listen(config.listen, journal.past().place.as_ref())?;
-    let talk = Talk::new(&*bus, catalog, Arc::clone(&hub), Arc::clone(&drivers), journal)?;
+    let knowledge = Knowledge::new(config.knows, Arc::clone(&catalog), &layout, talk::BODY);
+    let talk = Talk::new(&*bus, catalog, knowledge, Arc::clone(&hub), Arc::clone(&drivers), journal)?;
     let ears = Ears::new(&*bus)?;
     talk.serve_at(place.clone());
     let Place { address, token } = place;

@@ -12,7 +12,6 @@ use cohabit_bus::{
     monotonic_nanos,
 };
 use cohabit_cdf::{BodyId, Catalog, ObjectId};
-use cohabit_language::Known;
 use serde_json::Value;
 
 use crate::{
@@ -22,13 +21,13 @@ use crate::{
     driving::Drivers,
     hub::Hub,
     journal::{Deed, Journal, Place},
-    known,
+    known::Knowledge,
     latency::{Latency, Moments},
     page::{self, Line, LineKind, Speaker},
 };
 
 /// The body that people speak to.
-const BODY: BodyId = BodyId(0);
+pub const BODY: BodyId = BodyId(0);
 
 /// The conversation, with its ends on the bus and to the pages. One lock: who speaks first is heard first.
 pub struct Talk {
@@ -40,6 +39,7 @@ pub struct Talk {
 
 struct Inner {
     conversation: Conversation,
+    knowledge: Knowledge,
     journal: Journal,
     latency: Latency,
     dialog: Box<dyn Publisher>,
@@ -52,14 +52,17 @@ impl Talk {
     pub fn new(
         bus: &dyn Transport,
         catalog: Arc<Catalog>,
+        mut knowledge: Knowledge,
         hub: Arc<Hub>,
         drivers: Arc<Drivers>,
         journal: Journal,
     ) -> Result<Arc<Self>, DialogError> {
         hub.restore(&journal.past().lines);
         let memory = journal.past().conversation.clone();
+        knowledge.study(&journal.past().lessons);
         let mut inner = Inner {
             conversation: Conversation::after(memory, Arc::clone(&catalog), BODY.0),
+            knowledge,
             journal,
             latency: Latency::default(),
             dialog: bus.publisher(Topic::Dialog)?,
@@ -97,7 +100,8 @@ impl Talk {
     /// Somebody at a page said something, received at `received_nanos`.
     pub fn hear(&self, text: &str, received_nanos: u64) -> Result<(), DialogError> {
         let mut inner = self.lock();
-        let known = inner.known()?;
+        inner.look()?;
+        let known = inner.knowledge.known();
         let (turn, reactions) = inner.conversation.hear(text, known.as_ref());
         inner.latency.begin(turn, received_nanos, monotonic_nanos());
         self.carry_out(&mut inner, None, reactions)
@@ -114,10 +118,15 @@ impl Talk {
         if inner.journal.has_heard(envelope) {
             return Ok(());
         }
-        inner.refresh()?;
-        let Inner { conversation, newest, .. } = &mut *inner;
-        let state = newest.as_ref().map(|sample| StateView::new(sample.payload())).transpose()?;
-        let reactions = conversation.follow(view.header, || known::known(state?, BODY));
+        let deed = inner.conversation.deed(view.header);
+        if let Some(DialogKind::StepEnded | DialogKind::PlanEnded) = view.header.kind() {
+            inner.look()?;
+        }
+        if let Some(action) = deed {
+            inner.knowledge.note_deed(&action);
+        }
+        let Inner { conversation, knowledge, .. } = &mut *inner;
+        let reactions = conversation.follow(view.header, || knowledge.known());
         if reactions.is_empty() && view.header.kind() != Some(DialogKind::StepEnded) {
             return Ok(());
         }
@@ -246,10 +255,29 @@ impl Inner {
         Ok(())
     }
 
-    fn known(&mut self) -> Result<Option<Known>, DialogError> {
+    /// Has the robot look at the world as it is now.
+    fn look(&mut self) -> Result<(), DialogError> {
         self.refresh()?;
-        let Some(sample) = &self.newest else { return Ok(None) };
-        Ok(known::known(StateView::new(sample.payload())?, BODY))
+        let Self { newest, knowledge, journal, .. } = self;
+        if let Some(sample) = newest {
+            knowledge.look(StateView::new(sample.payload())?, sample.envelope().tick);
+        }
+        if let Some(lessons) = knowledge.take_lessons() {
+            journal.note_lessons(lessons);
+        }
+        Ok(())
+    }
+
+    /// The same, if it is time.
+    fn look_by_and_by(&mut self) -> Result<(), DialogError> {
+        let Some(sample) = &self.newest else { return Ok(()) };
+        let state = StateView::new(sample.payload())?;
+        let body = state.bodies.iter().find(|record| record.body == BODY.0);
+        let tick = sample.envelope().tick;
+        if body.is_some_and(|body| self.knowledge.is_due(tick, body.position_m, body.yaw_rad)) {
+            self.look()?;
+        }
+        Ok(())
     }
 
     /// Tells the bus what a service that was killed may not have told, and the plan under way: an agent that joins later
@@ -362,6 +390,7 @@ pub fn show_state(talk: &Talk, every: Duration, over: &dyn Fn() -> bool) -> Resu
     while !over() {
         let mut inner = talk.lock();
         talk.show_state(&mut inner)?;
+        inner.look_by_and_by()?;
         inner.dialog.update()?;
         drop(inner);
         thread::sleep(every);

@@ -10,6 +10,7 @@ use std::{
 };
 
 use cohabit_cdf::Catalog;
+use cohabit_dialog::Knows;
 use cohabit_eval::{Caps, Played, Report, Settings, Tally, Task, play, pool, read_tasks};
 use indicatif::{ProgressBar, ProgressStyle};
 
@@ -35,6 +36,9 @@ pub struct Eval {
     /// Where missions leave it to chance
     #[arg(long, default_value_t = 1)]
     seed: u64,
+    /// What the robot may know: `everything` there is, or what it has `seen` so far
+    #[arg(long, default_value_t)]
+    knows: Knows,
     /// Write a session log of each mission into this folder
     #[arg(long, value_name = "DIR")]
     record: Option<PathBuf>,
@@ -93,7 +97,7 @@ impl Eval {
     }
 
     fn settings(&self) -> Settings {
-        Settings { seed: self.seed, caps: self.caps.map(|caps| caps.0), record: self.record.clone() }
+        Settings { seed: self.seed, knows: self.knows, caps: self.caps.map(|caps| caps.0), record: self.record.clone() }
     }
 
     fn serve(&self) -> io::Result<()> {

@@ -12,7 +12,7 @@ use std::{
 use anyhow::Context as _;
 use cohabit_bus::{Session, Shm, message::Control};
 use cohabit_cdf::BodyRequest;
-use cohabit_dialog::{DialogConfig, Drivable};
+use cohabit_dialog::{DialogConfig, Drivable, Knows};
 use cohabit_engine::{CameraPlan, SessionPlan, Simulator};
 use cohabit_record::{LogError, RecordError, Recorder};
 use cohabit_render::MeshLibrary;
@@ -203,6 +203,9 @@ pub struct Listening {
     /// so long, or `none`
     #[arg(long, default_value_t)]
     pub drive: Drivable,
+    /// What the robot may know: `everything` there is, or what it has `seen` so far, beside the floor plan
+    #[arg(long, default_value_t)]
+    pub knows: Knows,
 }
 
 impl Dialog {
@@ -217,6 +220,7 @@ impl Dialog {
             journal: Some(Session::new(&self.joining.session).map_err(bad_input)?.folder().join("dialog.journal")),
             cameras: message.cameras,
             listen: SocketAddr::new(self.listening.listen, self.listening.port),
+            knows: self.listening.knows,
             drivable: self.listening.drive,
             on_first_frame: Box::new(|| tell_supervisor("shown")),
         };

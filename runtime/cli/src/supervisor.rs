@@ -78,7 +78,8 @@ impl Role {
     /// The dialog service.
     pub fn dialog(listening: &Listening) -> Self {
         let (listen, port) = (listening.listen.to_string(), listening.port.to_string());
-        let arguments = ["--listen", &listen, "--port", &port, "--drive", &listening.drive.to_string()];
+        let (drive, knows) = (listening.drive.to_string(), listening.knows.to_string());
+        let arguments = ["--listen", &listen, "--port", &port, "--drive", &drive, "--knows", &knows];
         Self { name: "dialog", arguments: arguments.map(OsString::from).to_vec() }
     }
 

@@ -5,9 +5,8 @@ use std::{collections::BTreeMap, path::Path};
 use cohabit_agent::{Agent, Deed, Heard, PlanFollower};
 use cohabit_bus::message::{DialogKind, DialogMessage, EventMessage, StateView};
 use cohabit_cdf::{Action, BodyId};
-use cohabit_dialog::{Conversation, Reaction, TurnEnd, known};
+use cohabit_dialog::{Conversation, Knowledge, Reaction, TurnEnd};
 use cohabit_engine::{SessionPlan, report};
-use cohabit_language::Known;
 use cohabit_record::{InputEntry, LogError};
 use cohabit_world::{Input, Outcome, World};
 
@@ -20,6 +19,7 @@ const BODY: BodyId = BodyId(0);
 pub struct LockStep {
     world: World,
     conversation: Conversation,
+    knowledge: Knowledge,
     agent: PlanFollower,
     commands: u64,
     waiting: Vec<InputEntry>,
@@ -42,10 +42,11 @@ pub struct Noted {
 impl LockStep {
     /// A session at its first tick, in which nothing was said yet.
     #[must_use]
-    pub fn new(world: World, conversation: Conversation) -> Self {
+    pub fn new(world: World, conversation: Conversation, knowledge: Knowledge) -> Self {
         Self {
             world,
             conversation,
+            knowledge,
             agent: PlanFollower::new(BODY.0),
             commands: 0,
             waiting: Vec::new(),
@@ -80,7 +81,8 @@ impl LockStep {
     /// # Errors
     /// [`LogError`].
     pub fn say(&mut self, text: &str) -> Result<u64, LogError> {
-        let known = known_in(&self.world);
+        self.look();
+        let known = self.knowledge.known();
         let (turn, reactions) = self.conversation.hear(text, known.as_ref());
         self.carry_on(reactions)?;
         Ok(turn)
@@ -113,10 +115,26 @@ impl LockStep {
                 trace.event(tick, &report::event(&self.world, event))?;
             }
         }
+        let tick = self.world.tick();
+        let body = self.world.body(BODY).map(|body| (body.position_m.to_array(), body.yaw_rad));
+        if body.is_some_and(|(position_m, yaw_rad)| self.knowledge.is_due(tick, position_m, yaw_rad)) {
+            self.look();
+        }
         for outcome in told.outcomes {
             self.end_command(outcome)?;
         }
         Ok(())
+    }
+
+    /// Has the robot look at the state as it would be published.
+    fn look(&mut self) {
+        let parts = report::state(&self.world);
+        let mut words = vec![0_u64; parts.bytes().div_ceil(size_of::<u64>())];
+        let bytes = &mut bytemuck::cast_slice_mut(&mut words)[..parts.bytes()];
+        parts.write(bytes);
+        if let Ok(state) = StateView::new(bytes) {
+            self.knowledge.look(state, self.world.tick());
+        }
     }
 
     /// Ends the log.
@@ -150,8 +168,14 @@ impl LockStep {
                 Deed::Rest(_) => {}
                 Deed::Tell(message) => {
                     self.write_down(&message)?;
-                    let Self { world, conversation, .. } = self;
-                    let reactions = conversation.follow(&message.header, || known_in(world));
+                    if matches!(message.header.kind(), Some(DialogKind::StepEnded | DialogKind::PlanEnded)) {
+                        self.look();
+                    }
+                    let Self { knowledge, conversation, .. } = self;
+                    if let Some(action) = conversation.deed(&message.header) {
+                        knowledge.note_deed(&action);
+                    }
+                    let reactions = conversation.follow(&message.header, || knowledge.known());
                     self.carry_on(reactions)?;
                 }
             }
@@ -196,13 +220,4 @@ impl LockStep {
         self.turn_by_command.insert(self.commands, turn);
         self.waiting.push(InputEntry { command: self.commands, turn, body: BODY.0, action });
     }
-}
-
-/// What the robot knows, from the state as it would be published.
-fn known_in(world: &World) -> Option<Known> {
-    let parts = report::state(world);
-    let mut words = vec![0_u64; parts.bytes().div_ceil(size_of::<u64>())];
-    let bytes = &mut bytemuck::cast_slice_mut(&mut words)[..parts.bytes()];
-    parts.write(bytes);
-    known(StateView::new(bytes).ok()?, BODY)
 }

@@ -3,9 +3,10 @@
 use std::{collections::BTreeMap, path::PathBuf, sync::Arc, time::Instant};
 
 use cohabit_bus::message::DialogKind;
-use cohabit_cdf::Catalog;
-use cohabit_dialog::Conversation;
+use cohabit_cdf::{BodyId, Catalog};
+use cohabit_dialog::{Conversation, Knowledge};
 use cohabit_engine::SessionPlan;
+use cohabit_language::Knows;
 use cohabit_record::LogError;
 use cohabit_world::{Outcome, World};
 use serde::{Deserialize, Serialize};
@@ -27,6 +28,8 @@ const PATIENCE_TICKS: u64 = 60 * 240;
 pub struct Settings {
     /// The seed where a mission leaves it to chance.
     pub seed: u64,
+    /// What the robot may know.
+    pub knows: Knows,
     /// When to give up.
     pub caps: Option<Caps>,
     /// The folder for session logs, if they are wanted.
@@ -120,7 +123,8 @@ pub fn play(task: &Task, settings: &Settings, catalog: &Arc<Catalog>) -> Result<
     };
     played.load_s = began.elapsed().as_secs_f64();
     played.family = family(&plan.mission);
-    let mut session = LockStep::new(world, Conversation::new(Arc::clone(catalog), 0));
+    let knowledge = Knowledge::new(settings.knows, Arc::clone(catalog), world.layout(), BodyId(0));
+    let mut session = LockStep::new(world, Conversation::new(Arc::clone(catalog), 0), knowledge);
     if let Some(folder) = &settings.record {
         let path = folder.join(format!("{}.mcap", file_name(&task.id)));
         session.record(&path, &task.id, &plan)?;

@@ -173,6 +173,7 @@ pub fn scene(catalog: &Catalog, marks: &[&str]) -> Known {
             KnownGoal { text: "Repair the bowl".to_owned(), met: true },
             KnownGoal { text: "Pour milk into the bowl".to_owned(), met: false },
         ],
+        floor: None,
     };
     for line in &lines {
         let mut position = line[2].split(' ').map(|number| number.parse().unwrap());
@@ -182,12 +183,14 @@ pub fn scene(catalog: &Catalog, marks: &[&str]) -> Known {
             class: catalog.class_of_instance(line[0]).unwrap(),
             room: RoomId::from_id(line[1]).unwrap(),
             position_m: [(); 3].map(|()| position.next().unwrap()),
+            yaw_rad: 0.0,
             flags: StateFlags::default(),
             fluid: Fluid::None,
             color: Color::Original,
             parent: (line[3] != "-").then(|| id(line[3])),
             text: String::new(),
             visible: line[1] == "BreakRoom",
+            is_hidden: false,
             works: None,
             in_mission: false,
         };

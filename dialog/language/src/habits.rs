@@ -1,0 +1,86 @@
+//! Where things usually are: counted in the built-in floor plans, so that a search begins where it is likely to end.
+
+use std::collections::BTreeMap;
+
+use cohabit_cdf::{Catalog, ClassId, Layout, ObjectClass, Property, RoomId};
+
+/// How much another class's place says, where it affords all the same: less than the class's own.
+const LIKENESS: f32 = 0.3;
+/// What every room has of any class, so that none is never looked at.
+const ANYWHERE: f32 = 0.02;
+/// The share of small things that are behind doors, where the plans say nothing.
+const ENCLOSED: f32 = 0.2;
+
+/// Counts of classes by room, and by what encloses them.
+#[derive(Debug)]
+pub(crate) struct Habits {
+    rooms: BTreeMap<ClassId, [f32; RoomId::ALL.len()]>,
+    enclosed: BTreeMap<(ClassId, ClassId), f32>,
+}
+
+impl Habits {
+    /// Counts in the built-in plans what the catalogue has.
+    pub(crate) fn new(catalog: &Catalog) -> Self {
+        let mut habits = Self { rooms: BTreeMap::new(), enclosed: BTreeMap::new() };
+        // Mirrored plans hold the same things in the same rooms.
+        let ids = Layout::builtin_ids().into_iter().filter(|id| !id.ends_with("_mirror"));
+        for layout in ids.filter_map(|id| Layout::builtin(&id).ok()) {
+            for placement in &layout.placements {
+                let Some(class) = catalog.class_of_instance(&placement.instance) else { continue };
+                habits.rooms.entry(class).or_default()[placement.room as usize] += 1.0;
+                let place = placement.on.as_deref().and_then(|on| catalog.class_of_instance(on));
+                let encloses =
+                    |place: &ClassId| catalog.class(*place).receptacle.as_ref().is_some_and(|kind| kind.enclosed);
+                if let Some(place) = place.filter(encloses) {
+                    *habits.enclosed.entry((class, place)).or_default() += 1.0;
+                }
+            }
+        }
+        habits
+    }
+
+    /// How likely a thing of one of these classes is in each room; the sum is 1.
+    pub(crate) fn by_room(&self, catalog: &Catalog, classes: &[ClassId]) -> [f32; RoomId::ALL.len()] {
+        let mut sums = [ANYWHERE; RoomId::ALL.len()];
+        for (class, counts) in &self.rooms {
+            let weight = weight(catalog, classes, *class);
+            let all: f32 = counts.iter().sum();
+            sums.iter_mut().zip(counts).for_each(|(sum, count)| *sum += weight * count / all);
+        }
+        let all: f32 = sums.iter().sum();
+        sums.map(|sum| sum / all)
+    }
+
+    /// How likely such a thing is in something of class `place` with a closed door, if one of those is where it is.
+    pub(crate) fn inside(&self, catalog: &Catalog, classes: &[ClassId], place: ClassId) -> f32 {
+        let sum = |counts: &mut dyn Iterator<Item = (ClassId, f32)>| -> f32 {
+            counts.map(|(class, count)| weight(catalog, classes, class) * count).sum()
+        };
+        let kept = self.enclosed.iter().filter(|((_, at), _)| *at == place);
+        let inside = sum(&mut kept.map(|((class, _), count)| (*class, *count)));
+        let all = sum(&mut self.rooms.iter().map(|(class, counts)| (*class, counts.iter().sum())));
+        if all <= 0.0 { ENCLOSED / 2.0 } else { (inside + ENCLOSED * ANYWHERE) / (all + ANYWHERE) }
+    }
+}
+
+/// How much the place of a thing of class `other` says about those classes.
+fn weight(catalog: &Catalog, classes: &[ClassId], other: ClassId) -> f32 {
+    if classes.contains(&other) {
+        return 1.0;
+    }
+    let other = catalog.class(other);
+    let likeness = |class: &ClassId| likeness(catalog.class(*class), other);
+    let best = classes.iter().map(likeness).fold(0.0, f32::max);
+    LIKENESS * best * best * best / 8.0
+}
+
+/// The share of what either affords that both afford.
+fn likeness(one: &ObjectClass, other: &ObjectClass) -> f32 {
+    let is_carried = |class: &ObjectClass| class.has(Property::Pickupable);
+    if is_carried(one) != is_carried(other) {
+        return 0.0;
+    }
+    let both = one.properties.iter().filter(|property| other.has(**property)).count() as f32;
+    let either = (one.properties.len() + other.properties.len()) as f32 - both;
+    if either > 0.0 { both / either } else { 0.0 }
+}

@@ -1,0 +1,436 @@
+//! Looking for what was named and is not known: where to look next, and when to give up.
+//!
+//! A search goes from leg to leg: look around, go to a viewpoint, open what may hold it. After each, the request is
+//! grounded again on what is known by then, and carried on as soon as that succeeds.
+
+use cohabit_cdf::{Action, ClassId, GoToTarget, ObjectClass, ObjectId, Property, RoomId, StateFlag, Status, Verb};
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    clause::Clause,
+    context::Context,
+    conversation::Conversation,
+    describe,
+    floor::Floor,
+    ground::{Ground, Miss, Want},
+    intent::Intent,
+    known::{Known, KnownObject, distance_m},
+    phrase::{Phrase, RelationKind},
+    plan::{self, Fault},
+    remedy, reply, sight,
+    understanding::{Step, Understanding},
+};
+
+/// The most legs of one request: an office has fewer viewpoints and doors.
+const MOST_LEGS: u16 = 150;
+/// How far off things are looked for, m: what is tiny is not looked for from a foot away, nor what is large from afar.
+const REACH_M: (f32, f32) = (1.5, 8.0);
+/// The share of a room that a look must add.
+const LEAST_GAIN: f32 = 0.03;
+/// The share of a room that must be looked at before doors are opened in it.
+const LOOKED_AT: f32 = 0.6;
+/// How much likelier things are where they are spoken of than elsewhere.
+const HERE: f32 = 4.0;
+/// The pace, and how long it takes to look around and to open a door, s.
+const PACE_M_S: f32 = 0.8;
+const LOOK_S: f32 = 4.0;
+const OPEN_S: f32 = 4.0;
+/// Two places that are closer are the same to look from, m.
+const SAME_SPOT_M: f32 = 0.5;
+
+/// A request that waits until what it names is found.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+pub(crate) struct Search {
+    clauses: Vec<Clause>,
+    may_put_down: bool,
+    /// What is looked for; nothing yet, while the beginning of the request is done first.
+    target: Option<Target>,
+    /// Where it looked all around, m.
+    looked_m: Vec<[f32; 2]>,
+    tried: Vec<Spot>,
+    unreachable: Vec<RoomId>,
+    /// What it opened in vain.
+    to_close: Option<ObjectId>,
+    legs: u16,
+}
+
+/// What is looked for.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub(crate) struct Target {
+    /// In words, such as `a red mug`.
+    said: String,
+    classes: Vec<ClassId>,
+    /// The rooms where it may be.
+    rooms: Vec<RoomId>,
+    /// How likely it is in each room, by their order.
+    likely: [f32; RoomId::ALL.len()],
+    /// What it was said to be in or on.
+    at: Option<ObjectId>,
+    /// Where the robot was when it was asked for.
+    from: RoomId,
+}
+
+/// Somewhere to look from, or into.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
+enum Spot {
+    Here([f32; 2]),
+    Viewpoint(RoomId, u8),
+    Thing(ObjectId),
+}
+
+/// A place to look, and what speaks for it.
+struct Leg {
+    spot: Spot,
+    room: RoomId,
+    /// The chance to find it there, and how long that takes, s.
+    chance: f32,
+    takes_s: f32,
+}
+
+impl Search {
+    pub(crate) fn new(clauses: Vec<Clause>, may_put_down: bool) -> Self {
+        Self {
+            clauses,
+            may_put_down,
+            target: None,
+            looked_m: Vec::new(),
+            tried: Vec::new(),
+            unreachable: Vec::new(),
+            to_close: None,
+            legs: 0,
+        }
+    }
+
+    /// Whether it is under way, and not waiting for the beginning of the request to be done.
+    pub(crate) const fn is_under_way(&self) -> bool {
+        self.target.is_some()
+    }
+
+    /// A leg could not be walked.
+    pub(crate) fn note_failure(&mut self, step: &Step, status: Status) {
+        if let (Action::GoTo { target: GoToTarget::Viewpoint(room, _) }, Status::UnsupportedNavigation) =
+            (step.action, status)
+        {
+            self.unreachable.push(room);
+        }
+        if let Action::Interact { .. } = step.action {
+            self.to_close = None;
+        }
+    }
+
+    fn look_for(&mut self, target: Target) -> bool {
+        let is_new = self.target.as_ref().is_none_or(|before| before.classes != target.classes);
+        if is_new {
+            self.looked_m.clear();
+            self.tried.clear();
+            self.target = Some(target);
+        } else if let Some(before) = &mut self.target {
+            before.at = target.at;
+        }
+        is_new
+    }
+}
+
+impl Conversation<'_> {
+    /// Goes on with a request: does it, as far as all it names is known, or looks for what is not.
+    pub(crate) fn proceed(&self, mut search: Search, context: &mut Context) -> Understanding {
+        let mut planner = remedy::planner(self.catalog, self.devices, self.scene, context.focus.clone());
+        planner.may_put_down = search.may_put_down;
+        let Err(fault) = planner.run(&search.clauses) else {
+            let found = search.target.as_ref().and_then(|target| self.found(target, &planner.steps));
+            return self.planned(planner, found, context);
+        };
+        let Some(target) = self.sought(&fault) else {
+            return self.fault(fault, search.clauses, search.may_put_down, context);
+        };
+        let (done, focus) = planner.begun;
+        if done > 0 && search.legs < MOST_LEGS {
+            // What comes before is done first: the search begins where that leads.
+            let steps = planner.steps[..done].to_vec();
+            search.clauses.drain(..planner.clause);
+            (search.target, search.legs) = (None, search.legs + 1);
+            context.focus = focus;
+            self.remember_start(&steps, context);
+            context.begin(&steps);
+            context.search = Some(search);
+            return Understanding::Plan { reply: reply::plan_reply(&steps, &[]), steps };
+        }
+        let is_new = search.look_for(target);
+        self.look_on(search, is_new, context)
+    }
+
+    /// The next leg, or the end of the search.
+    fn look_on(&self, mut search: Search, is_new: bool, context: &mut Context) -> Understanding {
+        let Some((floor, target)) = self.scene.floor.as_ref().zip(search.target.clone()) else {
+            return self.give_up(search, context);
+        };
+        let leg = if search.legs < MOST_LEGS { self.next_leg(floor, &search, &target) } else { None };
+        let closing = search.to_close.take().filter(|id| self.scene.object(*id).is_some());
+        let close = closing.map(|id| Step {
+            action: Action::Interact { verb: Verb::Close, object: id },
+            says: format!("closing {}", describe::short(self.catalog, self.scene, id)),
+        });
+        if leg.is_none() && close.is_none() {
+            return self.give_up(search, context);
+        }
+        let before = self.scene.robot.room;
+        let mut steps: Vec<Step> = close.into_iter().collect();
+        steps.extend(leg.as_ref().map(|leg| self.leg_step(leg, &target, &mut search)));
+        search.legs += 1;
+        let said = &target.said;
+        let reply = match &leg {
+            _ if is_new => format!("I have not seen {said} yet, so I look for it."),
+            Some(leg) if leg.room != before => {
+                format!("I do not see {said} here. I look in the {}.", leg.room.name())
+            }
+            _ => String::new(),
+        };
+        if is_new {
+            self.remember_start(&steps, context);
+        }
+        context.begin_leg(&steps);
+        context.search = Some(search);
+        Understanding::Plan { steps, reply }
+    }
+
+    /// Says that it was not found; what can be done without it is done.
+    fn give_up(&self, search: Search, context: &mut Context) -> Understanding {
+        context.search = None;
+        let scene = Known { floor: None, ..self.scene.clone() };
+        let here = Conversation { scene: &scene, ..*self };
+        let mut planner = remedy::planner(self.catalog, self.devices, &scene, context.focus.clone());
+        planner.may_put_down = search.may_put_down;
+        match (planner.run(&search.clauses), search.target) {
+            (Ok(()), _) => here.planned(planner, None, context),
+            (Err(Fault::Miss { miss: Miss::Unseen, .. }), Some(target)) => {
+                context.pending = None;
+                Understanding::refusal(match target.rooms.as_slice() {
+                    [room] => format!("I have looked all over the {}, and found no {}.", room.name(), bare(&target.said)),
+                    _ => format!("I have looked everywhere I could, and found no {}.", bare(&target.said)),
+                })
+            }
+            (Err(fault), _) => here.fault(fault, search.clauses, search.may_put_down, context),
+        }
+    }
+
+    /// Whether to search rather than ask: what to look for, where that may help.
+    fn sought(&self, fault: &Fault) -> Option<Target> {
+        self.scene.floor.as_ref()?;
+        match fault {
+            Fault::Miss { phrase, miss: Miss::Unseen, .. } => self.target_of(phrase),
+            // Another one is known: the rooms at hand are looked at, then the person is asked.
+            Fault::Miss { phrase, miss: Miss::Mismatch(others), .. } => {
+                let mut target = self.target_of(phrase)?;
+                let rooms = others.iter().filter_map(|id| self.scene.object(*id)).map(|object| object.room);
+                let rooms: Vec<RoomId> = rooms.chain([self.scene.robot.room]).collect();
+                if phrase.room.is_none() {
+                    target.rooms.retain(|room| rooms.contains(room));
+                }
+                Some(target)
+            }
+            Fault::Need { classes, .. } if !classes.is_empty() => {
+                let said = describe::indefinite(&describe::name(self.catalog, classes[0]));
+                Some(self.target(said, classes.clone(), None))
+            }
+            _ => None,
+        }
+    }
+
+    fn target_of(&self, phrase: &Phrase) -> Option<Target> {
+        let mut classes = classes_of(phrase);
+        if let Some(instance) = &phrase.instance {
+            classes.extend(self.class_called(instance));
+        }
+        if let Some(fluid) = phrase.fluid.filter(|_| classes.is_empty()) {
+            let is_part = |part: &str| part.eq_ignore_ascii_case(fluid.name());
+            let named = self.classes().filter(|(_, class)| class.name.split(' ').any(is_part));
+            classes.extend(named.map(|(id, _)| id));
+        }
+        if classes.is_empty() {
+            return None;
+        }
+        let room = phrase.room.or(phrase.is_here.then_some(self.scene.robot.room));
+        let mut target = self.target(plan::said(phrase), classes, room);
+        for relation in &phrase.relations {
+            let ground = Ground { catalog: self.catalog, scene: self.scene, focus: &crate::context::Focus::default() };
+            let other = ground.one(&relation.to, &Want::place(Intent::Find, &[], None)).ok();
+            if let Some(room) = other.and_then(|id| self.scene.object(id)).map(|object| object.room) {
+                target.likely[room as usize] *= 10.0;
+            } else {
+                let rooms = self.habits.by_room(self.catalog, &classes_of(&relation.to));
+                target.likely.iter_mut().zip(rooms).for_each(|(likely, share)| *likely *= share);
+            }
+            target.at = target.at.or(other.filter(|_| relation.kind == RelationKind::Inside));
+        }
+        Some(target)
+    }
+
+    fn classes(&self) -> impl Iterator<Item = (ClassId, &ObjectClass)> {
+        (0..).map(ClassId).zip(self.catalog.classes())
+    }
+
+    /// The class of an instance id in any case.
+    fn class_called(&self, instance: &str) -> Option<ClassId> {
+        let called = |class: &ObjectClass| {
+            let head = instance.get(..class.id.len()).is_some_and(|head| head.eq_ignore_ascii_case(&class.id));
+            head && instance[class.id.len()..].chars().all(|letter| letter == '_' || letter.is_ascii_digit())
+        };
+        self.classes().filter(|(_, class)| called(class)).max_by_key(|(_, class)| class.id.len()).map(|(id, _)| id)
+    }
+
+    fn target(&self, said: String, classes: Vec<ClassId>, room: Option<RoomId>) -> Target {
+        let likely = self.habits.by_room(self.catalog, &classes);
+        let rooms = room.map_or_else(|| RoomId::ALL.to_vec(), |room| vec![room]);
+        Target { said, classes, rooms, likely, at: None, from: self.scene.robot.room }
+    }
+
+    fn next_leg(&self, floor: &Floor, search: &Search, target: &Target) -> Option<Leg> {
+        let mut legs: Vec<Leg> = self.said_leg(floor, search, target).into_iter().collect();
+        if legs.is_empty() {
+            legs = self.looks(floor, search, target);
+            legs.extend(self.openings(floor, search, target, &legs));
+        }
+        let worth = |leg: &Leg| leg.chance / leg.takes_s;
+        legs.into_iter().reduce(|best, leg| if worth(&leg) > worth(&best) { leg } else { best })
+    }
+
+    /// What it was said to be in or on, if that is known.
+    fn said_leg(&self, floor: &Floor, search: &Search, target: &Target) -> Option<Leg> {
+        let place = self.scene.object(target.at?)?;
+        let spot = Spot::Thing(place.id);
+        let is_open_to = !search.tried.contains(&spot) && !search.unreachable.contains(&place.room);
+        is_open_to.then(|| Leg { spot, room: place.room, chance: 1.0, takes_s: self.way_s(floor, place) + OPEN_S })
+    }
+
+    /// A look around from here, and from every viewpoint.
+    fn looks(&self, floor: &Floor, search: &Search, target: &Target) -> Vec<Leg> {
+        let (room, here) = self.stands();
+        let reach_m = self.reach_m(target);
+        let plan = &floor.plan;
+        let leg = |spot, room: RoomId, at_m, takes_s: f32| {
+            let (mut new, all) = (0, plan.count(room));
+            new += plan.around(room, at_m, reach_m).filter(|cell| !floor.is_looked_at(*cell, reach_m)).count();
+            let gain = new as f32 / all.max(1) as f32;
+            let is_open_to = target.rooms.contains(&room) && !search.unreachable.contains(&room);
+            let chance = target.chance(room) * gain;
+            (is_open_to && gain >= LEAST_GAIN).then_some(Leg { spot, room, chance, takes_s: takes_s + LOOK_S })
+        };
+        let is_fresh = |at_m: [f32; 2]| search.looked_m.iter().all(|before| flat_m(*before, at_m) > SAME_SPOT_M);
+        let mut legs: Vec<Leg> = Vec::new();
+        legs.extend(is_fresh(here).then(|| leg(Spot::Here(here), room, here, 0.0)).flatten());
+        for viewpoint in &plan.viewpoints {
+            let spot = Spot::Viewpoint(viewpoint.room, viewpoint.number);
+            if search.tried.contains(&spot) || flat_m(viewpoint.at_m, here) < SAME_SPOT_M {
+                continue;
+            }
+            let way_s = plan.way_m((room, here), (viewpoint.room, viewpoint.at_m)) / PACE_M_S;
+            legs.extend(leg(spot, viewpoint.room, viewpoint.at_m, way_s));
+        }
+        legs
+    }
+
+    /// What is closed and may hold it, in rooms that were looked at.
+    fn openings(&self, floor: &Floor, search: &Search, target: &Target, looks: &[Leg]) -> Vec<Leg> {
+        let is_carried = |class: &ClassId| self.catalog.class(*class).has(Property::Pickupable);
+        if !target.classes.iter().any(is_carried) {
+            return Vec::new();
+        }
+        let reach_m = self.reach_m(target);
+        let is_looked_at = |room: RoomId| {
+            let cells = floor.plan.cells.iter().enumerate().filter(|(_, cell)| cell.room == room);
+            let seen = cells.filter(|(cell, _)| floor.is_looked_at(*cell, reach_m)).count();
+            seen as f32 >= LOOKED_AT * floor.plan.count(room) as f32 || !looks.iter().any(|leg| leg.room == room)
+        };
+        let may_hold = |object: &&KnownObject| {
+            let class = self.catalog.class(object.class);
+            let encloses = class.receptacle.as_ref().is_some_and(|kind| kind.enclosed && kind.keys.is_empty());
+            let is_shut = !object.has(StateFlag::Opened) && !object.has(StateFlag::Locked);
+            encloses
+                && is_shut
+                && class.has(Property::Openable)
+                && target.rooms.contains(&object.room)
+                && !search.unreachable.contains(&object.room)
+                && !search.tried.contains(&Spot::Thing(object.id))
+                && is_looked_at(object.room)
+        };
+        let leg = |object: &KnownObject| {
+            let same = self.scene.objects.iter().filter(|other| other.class == object.class).count();
+            let inside = self.habits.inside(self.catalog, &target.classes, object.class) / same.max(1) as f32;
+            let here = if object.room == target.from { HERE } else { 1.0 };
+            let takes_s = self.way_s(floor, object) + OPEN_S;
+            Leg { spot: Spot::Thing(object.id), room: object.room, chance: inside * here, takes_s }
+        };
+        self.scene.objects.iter().filter(may_hold).map(leg).collect()
+    }
+
+    fn leg_step(&self, leg: &Leg, target: &Target, search: &mut Search) -> Step {
+        search.tried.push(leg.spot);
+        let says = format!("looking for {}", target.said);
+        match leg.spot {
+            Spot::Here(at_m) => {
+                search.looked_m.push(at_m);
+                Step { action: Action::LookAround, says }
+            }
+            Spot::Viewpoint(room, number) => {
+                Step { action: Action::GoTo { target: GoToTarget::Viewpoint(room, number) }, says }
+            }
+            Spot::Thing(id) => {
+                let planner = remedy::planner(self.catalog, self.devices, self.scene, Default::default());
+                if planner.is_shut(id) {
+                    search.to_close = Some(id);
+                    let the = describe::short(self.catalog, self.scene, id);
+                    let says = format!("opening {the} to look for {}", target.said);
+                    return Step { action: Action::Interact { verb: Verb::Open, object: id }, says };
+                }
+                Step { action: Action::GoTo { target: GoToTarget::Object(id) }, says }
+            }
+        }
+    }
+
+    /// `the mug on the desk`, of what was looked for and is part of these steps.
+    fn found(&self, target: &Target, steps: &[Step]) -> Option<String> {
+        let objects = steps.iter().filter_map(|step| remedy::object_of(&step.action));
+        let is_it = |id: &ObjectId| self.scene.object(*id).is_some_and(|object| target.classes.contains(&object.class));
+        let id = objects.into_iter().find(is_it)?;
+        Some(format!("I found {}", describe::full(self.catalog, self.scene, id)))
+    }
+
+    fn stands(&self) -> (RoomId, [f32; 2]) {
+        let [x, y, _] = self.scene.robot.position_m;
+        (self.scene.robot.room, [x, y])
+    }
+
+    fn way_s(&self, floor: &Floor, object: &KnownObject) -> f32 {
+        let [x, y, _] = object.position_m;
+        floor.plan.way_m(self.stands(), (object.room, [x, y])) / PACE_M_S
+    }
+
+    /// From how far such a thing shows, m.
+    fn reach_m(&self, target: &Target) -> f32 {
+        let reach = target.classes.iter().map(|class| sight::reach_m(self.catalog.class(*class)));
+        reach.fold(f32::INFINITY, f32::min).clamp(REACH_M.0, REACH_M.1)
+    }
+}
+
+impl Target {
+    fn chance(&self, room: RoomId) -> f32 {
+        let here = if room == self.from { HERE } else { 1.0 };
+        self.likely[room as usize] * here
+    }
+}
+
+/// The classes that the words mean most.
+fn classes_of(phrase: &Phrase) -> Vec<ClassId> {
+    let best = phrase.namings.iter().map(|naming| naming.weight).fold(0.0, f32::max);
+    let is_best = |naming: &&crate::lexicon::Naming| naming.weight > best - 0.25;
+    phrase.namings.iter().filter(is_best).map(|naming| naming.class).collect()
+}
+
+/// `a mug` without its article.
+fn bare(said: &str) -> &str {
+    ["a ", "an ", "any "].iter().find_map(|article| said.strip_prefix(article)).unwrap_or(said)
+}
+
+fn flat_m(one: [f32; 2], other: [f32; 2]) -> f32 {
+    distance_m([one[0], one[1], 0.0], [other[0], other[1], 0.0])
+}

@@ -1,0 +1,385 @@
+//! What the robot remembers of what it saw, and how it looks for the rest, in the small office.
+
+#![allow(clippy::unwrap_used)]
+
+mod support;
+
+use std::sync::Arc;
+
+use cohabit_cdf::{
+    Action, Catalog, GoToTarget, Layout, ObjectId, RoomId, StateFlag, Status, Verb,
+    layout::{Finish, Opening, OpeningKind, Room, Viewpoint},
+    model::{Axis, Material},
+};
+use cohabit_language::{Context, FloorPlan, Gaze, Known, Language, Lessons, Memory, Step, Understanding};
+use support::{catalog, scene, step_text};
+
+const ROOMS: [(RoomId, [f32; 4]); 5] = [
+    (RoomId::BreakRoom, [-5.0, -4.0, 7.0, 4.0]),
+    (RoomId::MainOffice, [7.0, -4.0, 16.0, 4.0]),
+    (RoomId::Lab1, [3.0, 8.0, 14.0, 15.0]),
+    (RoomId::Lab2, [18.0, 8.0, 26.0, 15.0]),
+    (RoomId::Hallway, [7.0, 4.0, 26.0, 8.0]),
+];
+const GATES: [([RoomId; 2], [f32; 2]); 4] = [
+    ([RoomId::BreakRoom, RoomId::MainOffice], [7.0, 0.0]),
+    ([RoomId::MainOffice, RoomId::Hallway], [10.0, 4.0]),
+    ([RoomId::Hallway, RoomId::Lab1], [8.0, 8.0]),
+    ([RoomId::Hallway, RoomId::Lab2], [20.0, 8.0]),
+];
+
+fn plan() -> Arc<FloorPlan> {
+    let finish = || Finish { material: Material::Plain, color: "#ffffff".to_owned() };
+    let room = |(id, rect): (RoomId, [f32; 4])| Room {
+        id,
+        rects_m: vec![rect],
+        floor: finish(),
+        wall: finish(),
+        wainscot: None,
+        circuit: 0,
+    };
+    let gate = |(between, at_m)| Opening {
+        kind: OpeningKind::Passage,
+        door: None,
+        between,
+        at_m,
+        width_m: 1.0,
+        wall_runs: Axis::Y,
+    };
+    let viewpoints = ROOMS.iter().flat_map(|(room, [west, south, east, north])| {
+        let y = (south + north) / 2.0;
+        [(1, west + 1.0), (2, east - 1.0)].map(|(number, x)| Viewpoint {
+            room: *room,
+            number,
+            at_m: [x, y + 1.0],
+            yaw_deg: 0.0,
+        })
+    });
+    Arc::new(FloorPlan::new(&Layout {
+        id: "Small".to_owned(),
+        wall_height_m: 2.8,
+        rooms: ROOMS.map(room).to_vec(),
+        openings: GATES.map(gate).to_vec(),
+        placements: Vec::new(),
+        viewpoints: viewpoints.collect(),
+        note_places: Vec::new(),
+    }))
+}
+
+/// A robot that knows what it saw, in a world that does at once what it is told.
+struct Robot {
+    catalog: Arc<Catalog>,
+    language: Language,
+    world: Known,
+    memory: Memory,
+    context: Context,
+}
+
+impl Robot {
+    fn new(marks: &[&str]) -> Self {
+        let catalog = catalog();
+        let mut world = scene(&catalog, marks);
+        hide(&mut world, &catalog);
+        let language = Language::new(Arc::clone(&catalog));
+        let mut robot = Self { language, world, memory: Memory::new(plan()), context: Context::default(), catalog };
+        robot.look(false);
+        robot
+    }
+
+    fn look(&mut self, is_around: bool) {
+        let robot = &self.world.robot;
+        let [x, y, _] = robot.position_m;
+        let gaze = Gaze { eye_m: [x, y, 1.3], room: robot.room, yaw_rad: robot.yaw_rad, pitch_rad: -0.2, is_around };
+        self.memory.take_in(&self.catalog, &self.world, gaze);
+    }
+
+    fn id(&self, instance: &str) -> ObjectId {
+        self.world.objects.iter().find(|object| object.instance == instance).unwrap().id
+    }
+
+    fn knows(&self, instance: &str) -> bool {
+        self.memory.known().unwrap().objects.iter().any(|object| object.instance == instance)
+    }
+
+    /// Says something, and does what comes of it, `legs` plans at most. Gives what was done and said.
+    fn say(&mut self, utterance: &str, legs: usize) -> (Vec<String>, Vec<String>) {
+        let (mut done, mut said) = (Vec::new(), Vec::new());
+        let known = self.memory.known().unwrap();
+        let mut next = Some(self.language.understand(utterance, &known, &mut self.context));
+        for _ in 0..legs {
+            let steps = match next.take() {
+                Some(Understanding::Plan { steps, reply }) => {
+                    said.push(reply);
+                    steps
+                }
+                Some(other) => {
+                    said.push(support::text(&other, &known));
+                    break;
+                }
+                None => break,
+            };
+            for step in &steps {
+                done.push(step_text(step, &self.world));
+                self.carry_out(step);
+            }
+            // What was written down and read again is the same conversation.
+            self.context = serde_json::from_str(&serde_json::to_string(&self.context).unwrap()).unwrap();
+            next = self.language.carry_on(&self.memory.known().unwrap(), &mut self.context);
+        }
+        said.retain(|text| !text.is_empty());
+        (done, said)
+    }
+
+    fn carry_out(&mut self, step: &Step) {
+        match step.action {
+            Action::GoTo { target: GoToTarget::Viewpoint(room, number) } => {
+                let [west, south, east, north] = ROOMS.iter().find(|(id, _)| *id == room).unwrap().1;
+                let x = if number == 1 { west + 1.0 } else { east - 1.0 };
+                self.stand(room, [x, (south + north) / 2.0 + 1.0], 0.0);
+            }
+            Action::GoTo { target: GoToTarget::Room(room) } => {
+                let [west, south, east, north] = ROOMS.iter().find(|(id, _)| *id == room).unwrap().1;
+                self.stand(room, [(west + east) / 2.0, (south + north) / 2.0], 0.0);
+            }
+            Action::GoTo { target: GoToTarget::Object(id) } => self.go_to(id),
+            Action::PickUp { object } => {
+                self.go_to(object);
+                self.world.robot.held = Some(object);
+                self.object(object).parent = None;
+            }
+            Action::Place { receptacle } => {
+                self.go_to(receptacle);
+                let held = self.world.robot.held.take().unwrap();
+                let place = self.world.object(receptacle).unwrap().clone();
+                let object = self.object(held);
+                (object.parent, object.room, object.position_m) = (Some(receptacle), place.room, place.position_m);
+            }
+            Action::Interact { verb, object } => {
+                self.go_to(object);
+                match verb {
+                    Verb::Open => self.object(object).flags.set(StateFlag::Opened, true),
+                    Verb::Close => self.object(object).flags.set(StateFlag::Opened, false),
+                    _ => {}
+                }
+            }
+            _ => {}
+        }
+        hide(&mut self.world, &self.catalog);
+        self.context.note_outcome(step, Status::ActionSuccessful);
+        self.look(matches!(step.action, Action::LookAround));
+        self.memory.take_in_deed(&step.action, &self.world);
+    }
+
+    fn object(&mut self, id: ObjectId) -> &mut cohabit_language::KnownObject {
+        self.world.objects.iter_mut().find(|object| object.id == id).unwrap()
+    }
+
+    fn go_to(&mut self, id: ObjectId) {
+        let target = self.world.object(id).unwrap().clone();
+        let [x, y, _] = target.position_m;
+        self.stand(target.room, [x - 1.0, y], 0.0);
+    }
+
+    fn stand(&mut self, room: RoomId, [x, y]: [f32; 2], yaw_rad: f32) {
+        (self.world.robot.room, self.world.robot.position_m, self.world.robot.yaw_rad) = (room, [x, y, 0.0], yaw_rad);
+    }
+}
+
+/// Marks what is behind closed doors.
+fn hide(world: &mut Known, catalog: &Catalog) {
+    let shut: Vec<ObjectId> = world
+        .objects
+        .iter()
+        .filter(|object| {
+            let class = catalog.class(object.class);
+            class.receptacle.as_ref().is_some_and(|kind| kind.enclosed) && !object.flags.has(StateFlag::Opened)
+        })
+        .map(|object| object.id)
+        .collect();
+    for object in &mut world.objects {
+        let is_carried = catalog.class(object.class).has(cohabit_cdf::Property::Pickupable);
+        object.is_hidden = is_carried && object.parent.is_some_and(|parent| shut.contains(&parent));
+    }
+}
+
+#[test]
+fn it_knows_what_it_saw_and_nothing_else() {
+    let mut robot = Robot::new(&[]);
+    let ahead = ["TableRound_02_1", "CoffeeMug_Boss_1"];
+    let aside = ["CoffeeMaker_01_1", "KitchenCabinet_02_1", "YesterdayMachine_01_1"];
+    let elsewhere = ["Hammer_1", "Desk_01_1", "MilkCarton_01_1", "BreadSlice_01_1"];
+    for instance in ahead {
+        assert!(robot.knows(instance), "{instance}");
+    }
+    for instance in aside.iter().chain(&elsewhere) {
+        assert!(!robot.knows(instance), "{instance}");
+    }
+    robot.look(true);
+    for instance in aside {
+        assert!(robot.knows(instance), "{instance}");
+    }
+    for instance in elsewhere {
+        assert!(!robot.knows(instance), "{instance}");
+    }
+    // What stands on what is seen was seen on it.
+    let known = robot.memory.known().unwrap();
+    let mug = known.object(robot.id("CoffeeMug_Boss_1")).unwrap();
+    assert_eq!(mug.parent, Some(robot.id("TableRound_02_1")));
+}
+
+#[test]
+fn what_it_cannot_see_changes_nothing_of_what_it_knows() {
+    let mut robot = Robot::new(&[]);
+    robot.look(true);
+    let before = robot.memory.known().unwrap();
+    for instance in ["Hammer_1", "MilkCarton_01_1", "BreadSlice_01_1", "Desk_01_1"] {
+        let id = robot.id(instance);
+        let object = robot.object(id);
+        object.flags.set(StateFlag::Broken, true);
+        object.position_m[2] += 0.2;
+    }
+    robot.world.objects.retain(|object| object.instance != "Trophy01_1");
+    robot.look(true);
+    assert_eq!(robot.memory.known().unwrap(), before);
+}
+
+#[test]
+fn what_is_not_there_any_more_is_forgotten_once_that_is_seen() {
+    let mut robot = Robot::new(&["FridgeLower_02_1 open"]);
+    robot.look(true);
+    let (mug, milk, fridge) = (robot.id("CoffeeMug_Boss_1"), robot.id("MilkCarton_01_1"), robot.id("FridgeLower_02_1"));
+    assert!(robot.knows("CoffeeMug_Boss_1") && robot.knows("MilkCarton_01_1"));
+    // Somebody takes both away, and shuts the fridge.
+    robot.world.objects.retain(|object| object.id != mug && object.id != milk);
+    robot.object(fridge).flags.set(StateFlag::Opened, false);
+    let world = robot.world.clone();
+    assert!(robot.memory.is_mistaken(mug, &world));
+    robot.stand(RoomId::BreakRoom, [0.0, 0.0], 2.0);
+    robot.look(false);
+    assert!(robot.knows("CoffeeMug_Boss_1"), "it looked another way");
+    robot.look(true);
+    assert!(!robot.knows("CoffeeMug_Boss_1"));
+    assert!(robot.knows("MilkCarton_01_1"), "the fridge is shut: it may be there yet");
+    robot.object(fridge).flags.set(StateFlag::Opened, true);
+    robot.look(true);
+    assert!(!robot.knows("MilkCarton_01_1"));
+}
+
+#[test]
+fn it_knows_what_is_in_its_hand_and_what_it_did() {
+    let mut robot = Robot::new(&[]);
+    robot.say("pick up the red mug", 1);
+    robot.stand(RoomId::Lab2, [20.0, 9.0], 0.0);
+    robot.look(false);
+    let known = robot.memory.known().unwrap();
+    assert_eq!(known.robot.held, Some(robot.id("CoffeeMug_Boss_1")));
+    assert!(robot.knows("CoffeeMug_Boss_1"));
+    robot.stand(RoomId::BreakRoom, [0.0, 0.0], 0.0);
+    robot.look(true);
+    robot.say("open the fridge", 1);
+    let known = robot.memory.known().unwrap();
+    assert!(known.object(robot.id("FridgeLower_02_1")).unwrap().flags.has(StateFlag::Opened));
+}
+
+#[test]
+fn it_looks_for_what_it_does_not_know_and_goes_on() {
+    let mut robot = Robot::new(&[]);
+    let (done, said) = robot.say("pick up the hammer", 60);
+    assert_eq!(done.last().unwrap(), "take Hammer_1", "{done:?}");
+    assert_eq!(said[0], "I have not seen a hammer yet, so I look for it.");
+    let last = said.last().unwrap();
+    assert!(last.starts_with("I found the hammer on the blue desk."), "{last}");
+    assert_eq!(done[0], "look around", "{done:?}");
+    assert!(done.len() < 25, "{done:?}");
+}
+
+#[test]
+fn a_named_room_is_searched_and_no_other() {
+    let mut robot = Robot::new(&[]);
+    let (done, _) = robot.say("pick up the trophy in the main office", 60);
+    assert!(done[0].starts_with("go MainOffice"), "{done:?}");
+    assert_eq!(done.last().unwrap(), "take Trophy01_1");
+    let mut robot = Robot::new(&[]);
+    let (done, said) = robot.say("pick up the trophy in the quantum lab", 60);
+    let strays = done.iter().any(|step| !step.contains("Lab2") && step != "look around");
+    assert!(!strays, "{done:?}");
+    assert_eq!(said.last().unwrap(), "! I have looked all over the quantum lab, and found no trophy.", "{done:?}");
+}
+
+#[test]
+fn doors_are_opened_only_where_looking_did_not_find_it_and_closed_again() {
+    let mut robot = Robot::new(&[]);
+    let (done, _) = robot.say("take the milk", 80);
+    assert_eq!(done.last().unwrap(), "take MilkCarton_01_1", "{done:?}");
+    assert_eq!(done[0], "look around");
+    let opened: Vec<&String> = done.iter().filter(|step| step.starts_with("open ")).collect();
+    let closed = done.iter().filter(|step| step.starts_with("close ")).count();
+    assert_eq!((opened.last().unwrap().as_str(), closed), ("open FridgeLower_02_1", opened.len() - 1), "{done:?}");
+    let mut robot = Robot::new(&[]);
+    let (done, _) = robot.say("take the milk from the fridge", 80);
+    assert!(done.contains(&"open FridgeLower_02_1".to_owned()), "{done:?}");
+    let others = done.iter().filter(|step| step.starts_with("open ")).count();
+    assert_eq!(others, 1, "{done:?}");
+}
+
+#[test]
+fn the_beginning_of_a_request_is_done_before_its_rest_is_looked_for() {
+    let mut robot = Robot::new(&[]);
+    let (done, _) = robot.say("go to the main office, pick up the hammer and put it on the green desk", 60);
+    assert_eq!(done[0], "go MainOffice", "{done:?}");
+    assert_eq!(done[done.len() - 2..], ["take Hammer_1", "put AP_Prop_Desk_Green_1"], "{done:?}");
+}
+
+#[test]
+fn a_device_is_looked_for_too() {
+    let mut robot = Robot::new(&["Microwave_01_1 in KitchenCounterTop_02_1"]);
+    let (done, said) = robot.say("heat the red mug", 60);
+    assert!(done.contains(&"toggle Microwave_01_1".to_owned()), "{done:?} {said:?}");
+}
+
+#[test]
+fn a_search_stops_at_once_and_is_not_endless() {
+    let mut robot = Robot::new(&["without Hammer_1"]);
+    robot.say("find the hammer", 2);
+    let (done, said) = robot.say("stop", 10);
+    assert!(done.is_empty(), "{done:?}");
+    assert_eq!(said, ["stop!"]);
+    assert!(robot.language.carry_on(&robot.memory.known().unwrap(), &mut robot.context).is_none());
+    let (done, said) = robot.say("find the hammer", 1000);
+    assert!(done.len() < 100, "{}", done.len());
+    assert_eq!(said.last().unwrap(), "! I have looked everywhere I could, and found no hammer.");
+}
+
+#[test]
+fn a_question_is_answered_from_memory() {
+    let mut robot = Robot::new(&[]);
+    let (_, said) = robot.say("where is the red mug?", 1);
+    assert_eq!(said, ["= The red mug is on the round table."]);
+    let (_, said) = robot.say("where is the milk?", 1);
+    assert_eq!(said, ["? I have not seen any milk yet. Shall I look for it?"]);
+    let (done, _) = robot.say("yes", 80);
+    assert_eq!(done.last().unwrap(), "go MilkCarton_01_1", "{done:?}");
+}
+
+#[test]
+fn what_one_learnt_another_studies() {
+    let mut robot = Robot::new(&[]);
+    robot.look(true);
+    let mut past: Lessons = robot.memory.take_lessons().unwrap();
+    robot.say("pick up the red mug", 1);
+    robot.say("find the trophy", 60);
+    past.add(robot.memory.take_lessons().unwrap());
+    assert!(robot.memory.take_lessons().is_none());
+    let read: Lessons = serde_json::from_str(&serde_json::to_string(&past).unwrap()).unwrap();
+    let mut next = Memory::new(plan());
+    next.study(&read);
+    assert!(next.known().is_none(), "it has not looked yet");
+    let Known { objects, .. } = robot.memory.known().unwrap();
+    std::mem::swap(&mut robot.memory, &mut next);
+    robot.look(false);
+    let again = robot.memory.known().unwrap().objects;
+    let instances = |objects: &[cohabit_language::KnownObject]| -> Vec<String> {
+        objects.iter().map(|object| format!("{} {:?}", object.instance, object.parent)).collect()
+    };
+    assert_eq!(instances(&again), instances(&objects));
+}
