@@ -190,7 +190,7 @@ impl Answerer<'_> {
         let said = crate::plan::said(phrase);
         if self.scene.floor.is_some() && phrase.unknown.is_empty() {
             let text = format!("I have not seen {said} yet. Shall I look for it?");
-            return Understanding::Question { text, candidates: Vec::new() };
+            return Understanding::confirmation(text);
         }
         Understanding::answer(format!("I have not seen {said}. I can look around if you want."))
     }

@@ -100,9 +100,11 @@ impl FloorPlan {
         for _ in 0..self.gates.len() {
             let before = way.clone();
             for (index, (between, at)) in self.gates.iter().enumerate() {
-                let joined = self.gates.iter().zip(&before).filter(|((other, _), _)| {
-                    other.iter().any(|room| between.contains(room))
-                });
+                let joined = self
+                    .gates
+                    .iter()
+                    .zip(&before)
+                    .filter(|((other, _), _)| other.iter().any(|room| between.contains(room)));
                 let best = joined.map(|((_, other), so_far)| so_far + distance(*other, *at));
                 way[index] = best.fold(way[index], f32::min);
             }

@@ -36,6 +36,7 @@ mod known;
 mod lab;
 mod lexicon;
 mod memory;
+mod oracle;
 mod phrase;
 mod plan;
 mod process;
@@ -60,6 +61,7 @@ pub use context::Context;
 pub use floor::{Floor, FloorPlan};
 pub use known::{Known, KnownGoal, KnownObject, KnownRobot};
 pub use memory::{Knows, Lessons, Memory};
+pub use oracle::Oracle;
 pub use sight::Gaze;
 pub use understanding::{Asking, Clarification, Step, Understanding};
 

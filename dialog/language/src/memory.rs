@@ -127,10 +127,14 @@ impl Memory {
         self.see_doors(world);
         let plan = Arc::clone(&self.floor.plan);
         let sight = Sight::new(catalog, &plan, gaze, world);
-        let mut seen: BTreeSet<ObjectId> = world.objects.iter().filter_map(|object| {
-            let is_seen = !object.is_hidden && sight.sees(object, &ancestors(world, object.id));
-            is_seen.then_some(object.id)
-        }).collect();
+        let mut seen: BTreeSet<ObjectId> = world
+            .objects
+            .iter()
+            .filter_map(|object| {
+                let is_seen = !object.is_hidden && sight.sees(object, &ancestors(world, object.id));
+                is_seen.then_some(object.id)
+            })
+            .collect();
         add_felt(world, &mut seen, put_away);
         add_parts(catalog, world, &mut seen);
         self.things.values_mut().for_each(|thing| thing.visible = false);

@@ -205,7 +205,9 @@ impl Conversation<'_> {
             (Err(Fault::Miss { miss: Miss::Unseen, .. }), Some(target)) => {
                 context.pending = None;
                 Understanding::refusal(match target.rooms.as_slice() {
-                    [room] => format!("I have looked all over the {}, and found no {}.", room.name(), bare(&target.said)),
+                    [room] => {
+                        format!("I have looked all over the {}, and found no {}.", room.name(), bare(&target.said))
+                    }
                     _ => format!("I have looked everywhere I could, and found no {}.", bare(&target.said)),
                 })
             }

@@ -103,7 +103,8 @@ impl<'a> Sight<'a> {
         {
             return false;
         }
-        let is_own = |block: &Block| block.of == object.id || block.on == Some(object.id) || ancestors.contains(&block.of);
+        let is_own =
+            |block: &Block| block.of == object.id || block.on == Some(object.id) || ancestors.contains(&block.of);
         marks(object, class).into_iter().any(|point| {
             self.gaze.takes_in(point) && !self.blocks.iter().any(|block| !is_own(block) && block.hides(eye, point))
         })

@@ -9,7 +9,7 @@ use cohabit_bus::{
     message::{DialogHeader, DialogKind, DialogMessage, PlanStep},
 };
 use cohabit_cdf::{Action, Catalog, ObjectId, Status};
-use cohabit_language::{Context, Known, Language, Step, Understanding};
+use cohabit_language::{Clarification, Context, Known, Language, Step, Understanding};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -86,6 +86,16 @@ pub struct Conversation {
     language: Language,
     body: u32,
     memory: Memory,
+    asked: Option<Asked>,
+}
+
+/// What the robot asks.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Asked {
+    /// What kind of answer it needs.
+    pub kind: Clarification,
+    /// The objects in question.
+    pub candidates: Vec<ObjectId>,
 }
 
 #[derive(Clone, Debug, Deserialize, Serialize)]
@@ -115,7 +125,12 @@ impl Conversation {
 
     /// A conversation that goes on.
     pub fn after(memory: Memory, catalog: Arc<Catalog>, body: u32) -> Self {
-        Self { language: Language::new(catalog), body, memory }
+        Self { language: Language::new(catalog), body, memory, asked: None }
+    }
+
+    /// What it asks, if that is the last that it said.
+    pub const fn asked(&self) -> Option<&Asked> {
+        self.asked.as_ref()
     }
 
     /// What it must know to go on where it is.
@@ -167,12 +182,14 @@ impl Conversation {
 
     /// Says and does what was understood in `turn`; what is to be done is the plan of that number.
     fn react(&mut self, turn: u64, number: u64, understanding: Understanding, reactions: &mut Vec<Reaction>) {
+        self.asked = None;
         match understanding {
             Understanding::Plan { steps, reply } => {
                 self.say(turn, DialogKind::Reply, LineKind::Say, &reply, reactions);
                 self.plan(turn, number, steps, reactions);
             }
-            Understanding::Question { text, candidates, .. } => {
+            Understanding::Question { kind, text, candidates, .. } => {
+                self.asked = Some(Asked { kind, candidates: candidates.clone() });
                 self.say(turn, DialogKind::Question, LineKind::Question, &text, reactions);
                 self.point_out(turn, number, &candidates, TurnEnd::Asked, reactions);
             }
@@ -245,12 +262,7 @@ impl Conversation {
     }
 
     /// Goes on with a search after one of its plans; tells whether there was more to do.
-    fn carry_on(
-        &mut self,
-        turn: u64,
-        known: impl FnOnce() -> Option<Known>,
-        reactions: &mut Vec<Reaction>,
-    ) -> bool {
+    fn carry_on(&mut self, turn: u64, known: impl FnOnce() -> Option<Known>, reactions: &mut Vec<Reaction>) -> bool {
         let Some(known) = known().filter(|_| self.memory.context.awaits_more()) else { return false };
         let Some(understanding) = self.language.carry_on(&known, &mut self.memory.context) else { return false };
         self.memory.turns += 1;

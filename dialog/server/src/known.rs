@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use cohabit_bus::message::{BodyRecord, NONE, ObjectRecord, StateView};
+use cohabit_bus::message::{NONE, ObjectRecord, StateView};
 use cohabit_cdf::{Action, BodyId, Catalog, ClassId, Color, Fluid, Layout, ObjectId, RoomId, state::StateFlags};
 use cohabit_language::{FloorPlan, Gaze, Known, KnownGoal, KnownObject, KnownRobot, Knows, Lessons, Memory};
 
@@ -44,7 +44,7 @@ impl Knowledge {
     /// Looks at the world as it is at a tick.
     pub fn look(&mut self, state: StateView<'_>, tick: u64) {
         let Some(record) = state.bodies.iter().find(|record| record.body == self.body.0) else { return };
-        let Some(world) = everything(state, record) else { return };
+        let Some(world) = everything(state, self.body) else { return };
         let gaze = Gaze {
             eye_m: record.eye_m,
             room: world.robot.room,
@@ -90,8 +90,10 @@ impl Knowledge {
     }
 }
 
-/// All there is, of which `record` is the robot.
-fn everything(state: StateView<'_>, record: &BodyRecord) -> Option<Known> {
+/// All there is, of which `body` is the robot; nothing, if there is no such body.
+#[must_use]
+pub fn everything(state: StateView<'_>, body: BodyId) -> Option<Known> {
+    let record = state.bodies.iter().find(|record| record.body == body.0)?;
     let robot = KnownRobot {
         position_m: record.position_m,
         yaw_rad: record.yaw_rad,

@@ -9,7 +9,7 @@ mod driving;
 mod frames;
 mod hub;
 mod journal;
-mod known;
+pub mod known;
 mod latency;
 mod limits;
 mod page;
@@ -33,9 +33,9 @@ use std::{
 use cohabit_bus::{BusError, Transport, message::CameraRecord};
 use cohabit_cdf::{Catalog, Layout, Mission};
 
-pub use conversation::{Conversation, Reaction, TurnEnd};
+pub use cohabit_language::{Asking, Knows};
+pub use conversation::{Asked, Conversation, Reaction, TurnEnd};
 pub use driving::{Drivable, NotDrivable};
-pub use cohabit_language::Knows;
 pub use known::Knowledge;
 
 use crate::{

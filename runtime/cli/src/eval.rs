@@ -1,7 +1,7 @@
 //! `cohabit eval`: are missions solved by what is said in them?
 
 use std::{
-    io,
+    io::{self, Write as _},
     path::{Path, PathBuf},
     process::Command,
     str::FromStr,
@@ -10,8 +10,8 @@ use std::{
 };
 
 use cohabit_cdf::Catalog;
-use cohabit_dialog::Knows;
-use cohabit_eval::{Caps, Played, Report, Settings, Tally, Task, play, pool, read_tasks};
+use cohabit_dialog::{Asking, Knows};
+use cohabit_eval::{Caps, Played, Report, Settings, Style, Tally, Task, generate, play, pool, read_tasks};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::failure::bad_input;
@@ -20,7 +20,13 @@ use crate::failure::bad_input;
 #[derive(clap::Args)]
 pub struct Eval {
     /// A .jsonl of missions with utterances, a data set of sessions, a mission (CDF), or a folder of missions
-    file: PathBuf,
+    #[arg(required_unless_present = "user")]
+    file: Option<PathBuf>,
+    /// Plays missions made up at random instead, with somebody who says what they want in their own words
+    #[arg(long, value_name = "KIND", conflicts_with = "file")]
+    user: Option<UserKind>,
+    #[command(flatten)]
+    made_up: MadeUp,
     /// What to say and do in missions that have no .script beside them
     #[arg(long, value_name = "FILE")]
     script: Option<PathBuf>,
@@ -48,6 +54,38 @@ pub struct Eval {
     /// Play the missions that come in, write their results out
     #[arg(long, hide = true)]
     worker: bool,
+}
+
+/// Who speaks in missions that are made up.
+#[derive(Clone, Copy, clap::ValueEnum)]
+enum UserKind {
+    /// A program that speaks like people do.
+    Simulated,
+}
+
+/// Missions that are made up, and how their people speak.
+#[derive(clap::Args)]
+struct MadeUp {
+    /// How many missions are made up
+    #[arg(long, value_name = "N", default_value_t = 240, requires = "user")]
+    missions: usize,
+    /// The share of things that are named by their noun alone, though there are others of that name
+    #[arg(long, value_name = "SHARE", default_value_t = Style::default().vagueness, value_parser = share, requires = "user")]
+    vagueness: f64,
+    /// The share of words that are mistyped
+    #[arg(long, value_name = "SHARE", default_value_t = Style::default().typos, value_parser = share, requires = "user")]
+    typos: f64,
+    /// The share of descriptions that are wrong in one point
+    #[arg(long, value_name = "SHARE", default_value_t = Style::default().mistakes, value_parser = share, requires = "user")]
+    mistakes: f64,
+    /// Write the missions to this file, a line each, with the expert's words
+    #[arg(long, value_name = "FILE", requires = "user")]
+    save: Option<PathBuf>,
+}
+
+fn share(text: &str) -> Result<f64, String> {
+    let share = text.parse().ok().filter(|share| (0.0..=1.0).contains(share));
+    share.ok_or_else(|| "a number from 0 to 1".to_owned())
 }
 
 /// `50,10`.
@@ -86,18 +124,52 @@ impl Eval {
     }
 
     fn tasks(&self) -> anyhow::Result<Vec<Task>> {
-        let mut tasks = read_tasks(&self.file, self.script.as_deref()).map_err(bad_input)?;
+        let mut tasks = match &self.file {
+            Some(file) => read_tasks(file, self.script.as_deref()).map_err(bad_input)?,
+            None => self.make_up()?,
+        };
         if let Some(only) = &self.only {
             tasks.retain(|task| task.id.contains(only.as_str()));
             if tasks.is_empty() {
-                return Err(bad_input(format!("{}: no mission's name contains `{only}`", self.file.display())));
+                return Err(bad_input(format!("{}: no mission's name contains `{only}`", self.source())));
             }
         }
         Ok(tasks)
     }
 
+    /// Where the missions are from, in a report.
+    fn source(&self) -> String {
+        self.file.as_ref().map_or_else(|| "missions made up".to_owned(), |file| file.display().to_string())
+    }
+
+    fn make_up(&self) -> anyhow::Result<Vec<Task>> {
+        if self.made_up.missions == 0 {
+            return Err(bad_input("--missions 0: at least one"));
+        }
+        let tasks = generate(self.made_up.missions, self.seed, &Arc::new(Catalog::builtin())).map_err(bad_input)?;
+        if let Some(path) = &self.made_up.save {
+            let mut out = create(path)?;
+            tasks.iter().try_for_each(|task| writeln!(out, "{}", task.as_line()))?;
+            out.flush()?;
+        }
+        Ok(tasks)
+    }
+
+    /// How those speak who use their own words.
+    fn style(&self) -> Option<Style> {
+        let MadeUp { vagueness, typos, mistakes, .. } = self.made_up;
+        self.user.map(|UserKind::Simulated| Style { vagueness, typos, mistakes })
+    }
+
     fn settings(&self) -> Settings {
-        Settings { seed: self.seed, knows: self.knows, caps: self.caps.map(|caps| caps.0), record: self.record.clone() }
+        Settings {
+            seed: self.seed,
+            knows: self.knows,
+            asking: Asking::default(),
+            style: self.style(),
+            caps: self.caps.map(|caps| caps.0),
+            record: self.record.clone(),
+        }
     }
 
     fn serve(&self) -> io::Result<()> {
@@ -130,7 +202,7 @@ impl Eval {
         let missions =
             tasks.iter().zip(results).map(|(task, result)| result.unwrap_or_else(|why| lost(task, why))).collect();
         let caps = self.caps.map(|caps| caps.0);
-        Ok(Report::new(&self.file.to_string_lossy(), self.seed, caps, workers, wall_s, missions))
+        Ok(Report::new(&self.source(), self.seed, caps, workers, wall_s, missions))
     }
 }
 

@@ -49,7 +49,13 @@ pub fn read(text: &str) -> Result<Vec<Task>, serde_json::Error> {
     for (id, session) in sessions {
         let cdf = session.cdf.to_string();
         let mut add = |who: String, script: Vec<Line>| {
-            tasks.push(Task { id: format!("{id}#{who}"), cdf: cdf.clone(), preparation: Vec::new(), script });
+            tasks.push(Task {
+                id: format!("{id}#{who}"),
+                family: None,
+                cdf: cdf.clone(),
+                preparation: Vec::new(),
+                script,
+            });
         };
         for (number, annotation) in (1..).zip(session.human_annotations) {
             add(format!("human{number}"), annotation.lines());

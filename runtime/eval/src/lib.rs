@@ -6,21 +6,28 @@
 //!
 //! Nothing here is special to a mission, and nothing renders. Time is the world's own: nobody thinks while it runs.
 
+mod chance;
 mod dataset;
 mod family;
+mod generate;
 mod interval;
 mod lock_step;
+mod meaning;
 mod play;
 pub mod pool;
 mod report;
 mod script;
+mod simulated;
 mod source;
 mod task;
 mod trace;
 mod trajectory;
 
+pub use generate::{GenerateError, generate};
 pub use lock_step::LockStep;
+pub use meaning::Meaning;
 pub use play::{Caps, Played, Said, Settings, Trouble, play};
 pub use report::{Report, Tally};
+pub use simulated::Style;
 pub use source::{SourceError, read_tasks};
 pub use task::{Line, Task};

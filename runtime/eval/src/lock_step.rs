@@ -5,8 +5,9 @@ use std::{collections::BTreeMap, path::Path};
 use cohabit_agent::{Agent, Deed, Heard, PlanFollower};
 use cohabit_bus::message::{DialogKind, DialogMessage, EventMessage, StateView};
 use cohabit_cdf::{Action, BodyId};
-use cohabit_dialog::{Conversation, Knowledge, Reaction, TurnEnd};
+use cohabit_dialog::{Asked, Conversation, Knowledge, Reaction, TurnEnd, known};
 use cohabit_engine::{SessionPlan, report};
+use cohabit_language::Known;
 use cohabit_record::{InputEntry, LogError};
 use cohabit_world::{Input, Outcome, World};
 
@@ -128,13 +129,20 @@ impl LockStep {
 
     /// Has the robot look at the state as it would be published.
     fn look(&mut self) {
-        let parts = report::state(&self.world);
-        let mut words = vec![0_u64; parts.bytes().div_ceil(size_of::<u64>())];
-        let bytes = &mut bytemuck::cast_slice_mut(&mut words)[..parts.bytes()];
-        parts.write(bytes);
-        if let Ok(state) = StateView::new(bytes) {
-            self.knowledge.look(state, self.world.tick());
-        }
+        let Self { world, knowledge, .. } = self;
+        with_state(world, |state| knowledge.look(state, world.tick()));
+    }
+
+    /// All that is true, as somebody would know it who is everywhere.
+    #[must_use]
+    pub fn truth(&self) -> Option<Known> {
+        with_state(&self.world, |state| known::everything(state, BODY)).flatten()
+    }
+
+    /// What the robot asks, if it waits for an answer.
+    #[must_use]
+    pub const fn asked(&self) -> Option<&Asked> {
+        self.conversation.asked()
     }
 
     /// Ends the log.
@@ -220,4 +228,13 @@ impl LockStep {
         self.turn_by_command.insert(self.commands, turn);
         self.waiting.push(InputEntry { command: self.commands, turn, body: BODY.0, action });
     }
+}
+
+/// Looks at the state of the world as it would be published.
+fn with_state<T>(world: &World, look: impl FnOnce(StateView<'_>) -> T) -> Option<T> {
+    let parts = report::state(world);
+    let mut words = vec![0_u64; parts.bytes().div_ceil(size_of::<u64>())];
+    let bytes = &mut bytemuck::cast_slice_mut(&mut words)[..parts.bytes()];
+    parts.write(bytes);
+    StateView::new(bytes).ok().map(look)
 }

@@ -4,9 +4,9 @@ use std::{collections::BTreeMap, path::PathBuf, sync::Arc, time::Instant};
 
 use cohabit_bus::message::DialogKind;
 use cohabit_cdf::{BodyId, Catalog};
-use cohabit_dialog::{Conversation, Knowledge};
+use cohabit_dialog::{Conversation, Knowledge, TurnEnd};
 use cohabit_engine::SessionPlan;
-use cohabit_language::Knows;
+use cohabit_language::{Asking, Known, Knows};
 use cohabit_record::LogError;
 use cohabit_world::{Outcome, World};
 use serde::{Deserialize, Serialize};
@@ -14,6 +14,8 @@ use serde::{Deserialize, Serialize};
 use crate::{
     family::family,
     lock_step::{LockStep, Noted},
+    meaning::Meaning,
+    simulated::{Style, User, expert},
     task::{Answer, Line, Task},
     trajectory,
 };
@@ -23,6 +25,9 @@ const PAUSE_TICKS: u64 = 150;
 /// The longest that one line may take.
 const PATIENCE_TICKS: u64 = 60 * 240;
 
+/// The most times that people speak for the sake of one thing they want.
+const MOST_ROUNDS: u32 = 6;
+
 /// How tasks are played.
 #[derive(Clone, Debug, Default)]
 pub struct Settings {
@@ -30,10 +35,22 @@ pub struct Settings {
     pub seed: u64,
     /// What the robot may know.
     pub knows: Knows,
+    /// When the robot asks.
+    pub asking: Asking,
+    /// How those speak who say what they want in their own words; in the expert's words, if nothing is said.
+    pub style: Option<Style>,
     /// When to give up.
     pub caps: Option<Caps>,
     /// The folder for session logs, if they are wanted.
     pub record: Option<PathBuf>,
+}
+
+impl Settings {
+    /// How the expert plays, who knows everything and asks nothing.
+    #[must_use]
+    pub fn expert(seed: u64) -> Self {
+        Self { seed, knows: Knows::Everything, asking: Asking::Never, ..Self::default() }
+    }
 }
 
 /// The commands that a task may take; what prepares it is not counted.
@@ -122,7 +139,7 @@ pub fn play(task: &Task, settings: &Settings, catalog: &Arc<Catalog>) -> Result<
         }
     };
     played.load_s = began.elapsed().as_secs_f64();
-    played.family = family(&plan.mission);
+    played.family = task.family.clone().unwrap_or_else(|| family(&plan.mission));
     let knowledge = Knowledge::new(settings.knows, Arc::clone(catalog), world.layout(), BodyId(0));
     let mut session = LockStep::new(world, Conversation::new(Arc::clone(catalog), 0), knowledge);
     if let Some(folder) = &settings.record {
@@ -130,7 +147,9 @@ pub fn play(task: &Task, settings: &Settings, catalog: &Arc<Catalog>) -> Result<
         session.record(&path, &task.id, &plan)?;
         played.log = Some(path);
     }
-    let mut player = Player { session, played, caps: settings.caps, counts: false };
+    let user =
+        settings.style.map(|style| User::new(style, settings.seed, Arc::clone(catalog), Arc::clone(&plan.layout)));
+    let mut player = Player { session, played, user, caps: settings.caps, counts: false };
     player.run(task)?;
     player.session.finish()?;
     let mut played = player.judged();
@@ -150,6 +169,8 @@ type Replies = Vec<(DialogKind, String)>;
 struct Player {
     session: LockStep,
     played: Played,
+    /// Who says what is wanted in their own words.
+    user: Option<User>,
     caps: Option<Caps>,
     /// Whether the preparation is over.
     counts: bool,
@@ -182,6 +203,7 @@ impl Player {
     fn line(&mut self, line: &Line) -> Result<(), LogError> {
         let trouble = match line {
             Line::Utterance { text, answers } => self.utterance(text, answers)?,
+            Line::Meant(meaning) => self.meant(meaning)?,
             Line::Action(action) => self.action(action)?,
         };
         if let Some(why) = trouble {
@@ -211,6 +233,43 @@ impl Player {
                 return Ok(Some(format!("nobody answers: {question}")));
             };
             text = &answers.remove(best).text;
+        }
+    }
+
+    /// Says what is wanted, answers what is asked, and says it once more if it was not understood; gives why it was not
+    /// done.
+    fn meant(&mut self, meaning: &Meaning) -> Result<Option<String>, LogError> {
+        let mut text = self.in_words(meaning, User::say);
+        let mut left = MOST_ROUNDS;
+        let mut may_repeat = true;
+        loop {
+            let turn = self.session.say(&text)?;
+            let (end, said) =
+                self.until(|noted| noted.turns.iter().find(|(ended, _)| *ended == turn).map(|(_, end)| *end))?;
+            let replies = said.iter().map(|(_, text)| text.clone()).collect();
+            self.played.transcript.push(Said { line: text.clone(), replies });
+            let last = said.last().map_or("", |(_, text)| text);
+            left -= 1;
+            text = match (end, self.session.asked().cloned()) {
+                (None, _) => return Ok(Some("it did not come to an end".to_owned())),
+                (Some(TurnEnd::Asked), Some(asked)) if left > 0 => {
+                    self.played.questions += 1;
+                    self.in_words(meaning, |user, meaning, truth| user.answer(&asked, meaning, truth))
+                }
+                (Some(end), _) if end.is_success() => return Ok(None),
+                (Some(_), _) if may_repeat && left > 0 => {
+                    may_repeat = false;
+                    self.in_words(meaning, User::say_clearly)
+                }
+                (Some(end), _) => return Ok(Some(format!("{}: {last}", end.name()))),
+            };
+        }
+    }
+
+    fn in_words(&mut self, meaning: &Meaning, say: impl FnOnce(&mut User, &Meaning, &Known) -> String) -> String {
+        match (&mut self.user, self.session.truth()) {
+            (Some(user), Some(truth)) => say(user, meaning, &truth),
+            _ => expert(meaning),
         }
     }
 

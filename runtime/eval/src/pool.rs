@@ -134,7 +134,7 @@ mod tests {
     }
 
     fn task(id: usize) -> Task {
-        Task { id: id.to_string(), cdf: String::new(), preparation: Vec::new(), script: Vec::new() }
+        Task { id: id.to_string(), family: None, cdf: String::new(), preparation: Vec::new(), script: Vec::new() }
     }
 
     #[test]

@@ -115,6 +115,7 @@ fn lines(path: &Path, text: &str) -> Result<Vec<Task>, SourceError> {
             let said = |texts: &[String]| texts.iter().map(|text| Line::utterance(text)).collect();
             Ok(Task {
                 id: read.id,
+                family: None,
                 cdf: read.cdf.to_string(),
                 preparation: said(&read.preparation_utterances),
                 script: said(&read.utterances),
@@ -142,5 +143,5 @@ fn with_script(mission: &Path, script: Option<&Path>) -> Result<Task, SourceErro
     };
     let (preparation, script) = script::read(&read(&path)?).map_err(|(line, reason)| at_line(&path, line, &reason))?;
     let id = mission.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    Ok(Task { id, cdf: read(mission)?, preparation, script })
+    Ok(Task { id, family: None, cdf: read(mission)?, preparation, script })
 }
