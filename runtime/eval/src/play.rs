@@ -4,7 +4,7 @@ use std::{collections::BTreeMap, path::PathBuf, sync::Arc, time::Instant};
 
 use cohabit_bus::message::DialogKind;
 use cohabit_cdf::{BodyId, Catalog};
-use cohabit_dialog::{Conversation, Knowledge, TurnEnd};
+use cohabit_dialog::{Conversation, Knowledge};
 use cohabit_engine::SessionPlan;
 use cohabit_language::{Asking, Known, Knows};
 use cohabit_record::LogError;
@@ -147,14 +147,20 @@ pub fn play(task: &Task, settings: &Settings, catalog: &Arc<Catalog>) -> Result<
         session.record(&path, &task.id, &plan)?;
         played.log = Some(path);
     }
-    let user =
-        settings.style.map(|style| User::new(style, settings.seed, Arc::clone(catalog), Arc::clone(&plan.layout)));
+    let user = settings.style.map(|style| {
+        User::new(style, person_of(&task.id, settings.seed), Arc::clone(catalog), Arc::clone(&plan.layout))
+    });
     let mut player = Player { session, played, user, caps: settings.caps, counts: false };
     player.run(task)?;
     player.session.finish()?;
     let mut played = player.judged();
     played.wall_s = began.elapsed().as_secs_f64();
     Ok(played)
+}
+
+/// The seed of who speaks in a task: another person in each (FNV-1a).
+fn person_of(id: &str, seed: u64) -> u64 {
+    id.bytes().fold(0xcbf2_9ce4_8422_2325 ^ seed, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
 }
 
 /// A task's id as the name of a file.
@@ -252,7 +258,7 @@ impl Player {
             left -= 1;
             text = match (end, self.session.asked().cloned()) {
                 (None, _) => return Ok(Some("it did not come to an end".to_owned())),
-                (Some(TurnEnd::Asked), Some(asked)) if left > 0 => {
+                (Some(_), Some(asked)) if left > 0 => {
                     self.played.questions += 1;
                     self.in_words(meaning, |user, meaning, truth| user.answer(&asked, meaning, truth))
                 }

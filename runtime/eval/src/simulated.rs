@@ -84,10 +84,13 @@ impl User {
 
     fn refer(&mut self, instance: Option<&str>, truth: &Known, style: Style) -> String {
         let Some(object) = find(instance, truth) else { return "it".to_owned() };
-        let is_spoken_of = self.last == Some(object) || truth.robot.held == Some(object);
+        let is_held = truth.robot.held == Some(object);
+        let is_spoken_of = self.last == Some(object) || is_held;
         if is_spoken_of && style.vagueness > 0.0 && self.chance.is(0.5) {
             return "it".to_owned();
         }
+        // Of what it holds nobody says where it is.
+        let style = if is_held { Style { vagueness: 1.0, ..style } } else { style };
         refer::describe(object, truth, &self.catalog, style, &mut self.chance)
     }
 

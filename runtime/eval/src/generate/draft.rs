@@ -1,6 +1,6 @@
 //! A mission in the making: what stands where, what is wanted, and when it is done.
 
-use cohabit_cdf::{Catalog, Color, Layout, ObjectClass, Property, RoomId, catalog::Stands};
+use cohabit_cdf::{Catalog, Color, Layout, ObjectClass, Property, RoomId, catalog::Stands, layout::Placement};
 use serde_json::{Map, Value, json};
 
 use crate::{chance::Chance, generate::ROOMS, meaning::Meaning};
@@ -29,13 +29,18 @@ pub(super) struct Draft<'a> {
     goals: Vec<Value>,
     conditions: Vec<Value>,
     plan: Vec<Meaning>,
+    /// Where things were put: the room, and what the furniture is called and looks like.
+    taken: Vec<(RoomId, Looks)>,
 }
+
+/// A name and a colour.
+type Looks = (String, String);
 
 impl<'a> Draft<'a> {
     pub(super) fn new(catalog: &'a Catalog, layout: &'a Layout, chance: &'a mut Chance) -> Self {
         let start = ROOMS[chance.below(ROOMS.len())];
-        let (objects, goals, conditions, plan) = Default::default();
-        Self { chance, catalog, layout, start, at: start, objects, goals, conditions, plan }
+        let (objects, goals, conditions, plan, taken) = Default::default();
+        Self { chance, catalog, layout, start, at: start, objects, goals, conditions, plan, taken }
     }
 
     /// The class of something.
@@ -70,6 +75,12 @@ impl<'a> Draft<'a> {
 
     fn put_down(&mut self, class: &str, number: u32, state: &[(&str, &str)]) -> Option<Wanted> {
         let (place, room) = self.surface()?;
+        let looks = self.looks(&place)?;
+        if self.taken.contains(&(room, looks.clone())) {
+            // Nobody could say which of the two is meant.
+            return None;
+        }
+        self.taken.push((room, looks));
         let instance = format!("{class}_{number}");
         let mut states: Vec<Value> = state.iter().map(|(key, value)| json!({ *key: value })).collect();
         if number == 1 {
@@ -84,10 +95,20 @@ impl<'a> Draft<'a> {
         Some(Wanted { instance, room })
     }
 
-    /// A machine of the floor plan.
+    fn looks(&self, instance: &str) -> Option<Looks> {
+        let class = self.catalog.class(self.catalog.class_of_instance(instance)?);
+        Some((class.name.clone(), class.color.clone()))
+    }
+
+    /// Something of the floor plan that can be told from all else in its room.
     pub(super) fn device(&mut self, is_fit: impl Fn(&ObjectClass) -> bool) -> Option<Wanted> {
-        let fit: Vec<Wanted> = (self.layout.placements.iter())
+        let is_like = |one: &Placement, other: &Placement| {
+            one.room == other.room && self.looks(&one.instance) == self.looks(&other.instance)
+        };
+        let all = &self.layout.placements;
+        let fit: Vec<Wanted> = (all.iter())
             .filter(|placement| ROOMS.contains(&placement.room))
+            .filter(|placement| all.iter().filter(|other| is_like(placement, other)).count() == 1)
             .filter(|placement| {
                 self.catalog
                     .class_of_instance(&placement.instance)
