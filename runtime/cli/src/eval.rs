@@ -223,7 +223,7 @@ fn print(report: &Report) {
         println!("... and {} more; `--report FILE` has them all", unsolved.len() - MOST_PRINTED);
     }
     let width = report.families.keys().map(String::len).max().unwrap_or(0).max(8);
-    println!("{:width$}  missions  solved   rate  95 % interval  goals met  actions  failed", "family");
+    println!("{:width$}  missions  solved   rate  95 % interval  goals met  actions  failed  questions", "family");
     for (name, tally) in &report.families {
         row(if name.is_empty() { "not played" } else { name }, width, tally);
     }
@@ -241,7 +241,7 @@ fn print(report: &Report) {
 fn row(name: &str, width: usize, tally: &Tally) {
     let [low, high] = tally.interval_95;
     println!(
-        "{name:width$}  {:8}  {:6}  {:5.1}  {:5.1} – {:5.1}  {:9}  {:7.1}  {:6.1}",
+        "{name:width$}  {:8}  {:6}  {:5.1}  {:5.1} – {:5.1}  {:9}  {:7.1}  {:6.1}  {:9.1}",
         tally.missions,
         tally.solved,
         tally.success_rate * 100.0,
@@ -249,7 +249,8 @@ fn row(name: &str, width: usize, tally: &Tally) {
         high * 100.0,
         format!("{}/{}", tally.goals_met, tally.goals),
         tally.mean_actions,
-        tally.mean_failed_actions
+        tally.mean_failed_actions,
+        tally.mean_questions
     );
 }
 

@@ -51,6 +51,8 @@ pub struct Tally {
     pub mean_actions: f64,
     /// Commands a task that failed.
     pub mean_failed_actions: f64,
+    /// Questions that the robot asked, a task.
+    pub mean_questions: f64,
 }
 
 impl Tally {
@@ -70,6 +72,7 @@ impl Tally {
             goals: sum(|task| task.goals),
             mean_actions: mean(sum(|task| task.actions as usize)),
             mean_failed_actions: mean(sum(|task| task.failed_actions as usize)),
+            mean_questions: mean(sum(|task| task.questions as usize)),
         }
     }
 }
