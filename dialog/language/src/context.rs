@@ -19,6 +19,8 @@ pub struct Context {
     pub(crate) last_plan: Vec<Step>,
     /// What failed last, with what was to follow it.
     pub(crate) failed: Option<Failure>,
+    /// The request that the last plan is for.
+    pub(crate) request: Vec<Clause>,
     /// The request that waits until what it names is found.
     pub(crate) search: Option<Search>,
 }
@@ -146,6 +148,7 @@ impl Context {
     pub(crate) fn begin(&mut self, steps: &[Step]) {
         self.running = steps.to_vec();
         self.last_plan = steps.to_vec();
+        self.request.clear();
         self.pending = None;
         self.failed = None;
         self.search = None;
@@ -156,6 +159,13 @@ impl Context {
         self.running = steps.to_vec();
         self.pending = None;
         self.failed = None;
+    }
+
+    /// What a `yes` now means is the last request again: what it is about has to be looked for.
+    pub(crate) fn await_search(&mut self) {
+        self.search = None;
+        self.running.clear();
+        self.pending = Some(Pending::Search { clauses: self.request.clone() });
     }
 
     /// Whether there is more to do after the plan under way: [`crate::Language::carry_on`] knows what.

@@ -1,6 +1,6 @@
 //! Where things usually are: counted in the built-in floor plans, so that a search begins where it is likely to end.
 
-use std::collections::BTreeMap;
+use std::{collections::BTreeMap, sync::LazyLock};
 
 use cohabit_cdf::{Catalog, ClassId, Layout, ObjectClass, Property, RoomId};
 
@@ -10,6 +10,14 @@ const LIKENESS: f32 = 0.3;
 const ANYWHERE: f32 = 0.02;
 /// The share of small things that are behind doors, where the plans say nothing.
 const ENCLOSED: f32 = 0.2;
+
+/// What stands in the built-in plans: instance, room, and what it is on or in. Read once, for all languages.
+static PLACES: LazyLock<Vec<(String, RoomId, Option<String>)>> = LazyLock::new(|| {
+    // Mirrored plans hold the same things in the same rooms.
+    let ids = Layout::builtin_ids().into_iter().filter(|id| !id.ends_with("_mirror"));
+    let placements = ids.filter_map(|id| Layout::builtin(&id).ok()).flat_map(|layout| layout.placements);
+    placements.map(|placement| (placement.instance, placement.room, placement.on)).collect()
+});
 
 /// Counts of classes by room, and by what encloses them.
 #[derive(Debug)]
@@ -22,18 +30,14 @@ impl Habits {
     /// Counts in the built-in plans what the catalogue has.
     pub(crate) fn new(catalog: &Catalog) -> Self {
         let mut habits = Self { rooms: BTreeMap::new(), enclosed: BTreeMap::new() };
-        // Mirrored plans hold the same things in the same rooms.
-        let ids = Layout::builtin_ids().into_iter().filter(|id| !id.ends_with("_mirror"));
-        for layout in ids.filter_map(|id| Layout::builtin(&id).ok()) {
-            for placement in &layout.placements {
-                let Some(class) = catalog.class_of_instance(&placement.instance) else { continue };
-                habits.rooms.entry(class).or_default()[placement.room as usize] += 1.0;
-                let place = placement.on.as_deref().and_then(|on| catalog.class_of_instance(on));
-                let encloses =
-                    |place: &ClassId| catalog.class(*place).receptacle.as_ref().is_some_and(|kind| kind.enclosed);
-                if let Some(place) = place.filter(encloses) {
-                    *habits.enclosed.entry((class, place)).or_default() += 1.0;
-                }
+        for (instance, room, on) in PLACES.iter() {
+            let Some(class) = catalog.class_of_instance(instance) else { continue };
+            habits.rooms.entry(class).or_default()[*room as usize] += 1.0;
+            let place = on.as_deref().and_then(|on| catalog.class_of_instance(on));
+            let encloses =
+                |place: &ClassId| catalog.class(*place).receptacle.as_ref().is_some_and(|kind| kind.enclosed);
+            if let Some(place) = place.filter(encloses) {
+                *habits.enclosed.entry((class, place)).or_default() += 1.0;
             }
         }
         habits

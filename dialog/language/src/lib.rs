@@ -55,7 +55,7 @@ mod undo;
 
 use std::sync::Arc;
 
-use cohabit_cdf::{Catalog, Status};
+use cohabit_cdf::{Catalog, ObjectId, Status};
 
 pub use context::Context;
 pub use floor::{Floor, FloorPlan};
@@ -98,6 +98,15 @@ impl Language {
     pub fn carry_on(&self, scene: &Known, context: &mut Context) -> Option<Understanding> {
         let search = context.search.take()?;
         Some(self.conversation(scene).proceed(search, context))
+    }
+
+    /// What the robot asks that finds a thing gone from where it remembers it; `yes` then means to look for it, and to go
+    /// on with what was asked. The thing is to be forgotten next.
+    #[must_use]
+    pub fn report_missing(&self, id: ObjectId, scene: &Known, context: &mut Context) -> String {
+        let the = describe::short(&self.catalog, scene, id);
+        context.await_search();
+        format!("{} Shall I look for it?", describe::sentence(&format!("{the} is not there any more")))
     }
 
     fn conversation<'a>(&'a self, scene: &'a Known) -> Conversation<'a> {

@@ -166,13 +166,16 @@ impl Memory {
         Some(Known { robot, objects, goals: self.goals.clone(), floor: Some(self.floor.clone()) })
     }
 
-    /// Whether a thing is no longer where it is remembered, or as far from its parent.
+    /// Where what an action is about is remembered to be, m, if it is not there: others moved it while nobody looked.
     #[must_use]
-    pub fn is_mistaken(&self, id: ObjectId, world: &Known) -> bool {
-        let Some(thing) = self.things.get(&id) else { return false };
-        world.object(id).is_none_or(|truth| {
-            truth.parent != thing.parent || distance_m(truth.position_m, thing.position_m) > SAME_PLACE_M
-        })
+    pub fn mistaken_place(&self, action: &Action, world: &Known) -> Option<(ObjectId, [f32; 2])> {
+        let id = remedy::object_of(action).filter(|id| world.robot.held != Some(*id))?;
+        let thing = self.things.get(&id)?;
+        let is_there = world.object(id).is_some_and(|truth| {
+            truth.parent == thing.parent && distance_m(truth.position_m, thing.position_m) < SAME_PLACE_M
+        });
+        let [x, y, _] = thing.position_m;
+        (!is_there).then_some((id, [x, y]))
     }
 
     /// Forgets a thing that was not where it was remembered.

@@ -138,7 +138,9 @@ impl Conversation<'_> {
         planner.may_put_down = search.may_put_down;
         let Err(fault) = planner.run(&search.clauses) else {
             let found = search.target.as_ref().and_then(|target| self.found(target, &planner.steps));
-            return self.planned(planner, found, context);
+            let understanding = self.planned(planner, found, context);
+            context.request = search.clauses;
+            return understanding;
         };
         let Some(target) = self.sought(&fault) else {
             return self.fault(fault, search.clauses, search.may_put_down, context);
@@ -152,6 +154,7 @@ impl Conversation<'_> {
             context.focus = focus;
             self.remember_start(&steps, context);
             context.begin(&steps);
+            context.request.clone_from(&search.clauses);
             context.search = Some(search);
             return Understanding::Plan { reply: reply::plan_reply(&steps, &[]), steps };
         }

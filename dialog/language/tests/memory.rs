@@ -253,7 +253,9 @@ fn what_is_not_there_any_more_is_forgotten_once_that_is_seen() {
     robot.world.objects.retain(|object| object.id != mug && object.id != milk);
     robot.object(fridge).flags.set(StateFlag::Opened, false);
     let world = robot.world.clone();
-    assert!(robot.memory.is_mistaken(mug, &world));
+    let place = |id| robot.memory.mistaken_place(&Action::PickUp { object: id }, &world);
+    assert_eq!(place(mug), Some((mug, [3.0, 0.4])));
+    assert_eq!(place(robot.id("Banana_01_1")), None);
     robot.stand(RoomId::BreakRoom, [0.0, 0.0], 2.0);
     robot.look(false);
     assert!(robot.knows("CoffeeMug_Boss_1"), "it looked another way");

@@ -8,11 +8,12 @@ use cohabit_bus::{
     Text,
     message::{DialogHeader, DialogKind, DialogMessage, PlanStep},
 };
-use cohabit_cdf::{Action, Catalog, ObjectId, Status};
-use cohabit_language::{Clarification, Context, Known, Language, Step, Understanding};
+use cohabit_cdf::{Action, Catalog, GoToTarget, ObjectId, Status};
+use cohabit_language::{Clarification, Context, Language, Step, Understanding};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+use crate::known::Knowledge;
 use crate::page::{self, Line, LineKind, Speaker};
 
 /// What the conversation wants done.
@@ -104,6 +105,9 @@ struct Plan {
     turn: u64,
     steps: Vec<Step>,
     told_end: bool,
+    /// What the robot will find gone at its end.
+    #[serde(default)]
+    missing: Option<ObjectId>,
 }
 
 /// What a conversation must know to go on where it was.
@@ -163,30 +167,41 @@ impl Conversation {
     }
 
     /// Somebody said something. Gives the turn's number and what follows.
-    pub fn hear(&mut self, text: &str, known: Option<&Known>) -> (u64, Vec<Reaction>) {
+    pub fn hear(&mut self, text: &str, knowledge: &Knowledge) -> (u64, Vec<Reaction>) {
         self.memory.turns += 1;
         let turn = self.memory.turns;
         let mut reactions = vec![
             self.bus(DialogKind::Utterance, turn, text),
             Reaction::Chat(Line::new(Speaker::Person, LineKind::Say, turn, text)),
         ];
-        let Some(known) = known else {
+        let Some(known) = knowledge.known() else {
             self.say(turn, DialogKind::Reply, LineKind::Problem, "I am not there yet; one moment.", &mut reactions);
             reactions.push(Reaction::TurnEnded { turn, end: TurnEnd::Refused });
             return (turn, reactions);
         };
-        let understanding = self.language.understand(text, known, &mut self.memory.context);
-        self.react(turn, turn, understanding, &mut reactions);
+        let understanding = self.language.understand(text, &known, &mut self.memory.context);
+        self.react(turn, turn, understanding, knowledge, &mut reactions);
         (turn, reactions)
     }
 
     /// Says and does what was understood in `turn`; what is to be done is the plan of that number.
-    fn react(&mut self, turn: u64, number: u64, understanding: Understanding, reactions: &mut Vec<Reaction>) {
+    fn react(
+        &mut self,
+        turn: u64,
+        number: u64,
+        understanding: Understanding,
+        knowledge: &Knowledge,
+        reactions: &mut Vec<Reaction>,
+    ) {
         self.asked = None;
         match understanding {
             Understanding::Plan { steps, reply } => {
                 self.say(turn, DialogKind::Reply, LineKind::Say, &reply, reactions);
+                let (steps, missing) = to_where_it_was(steps, knowledge);
                 self.plan(turn, number, steps, reactions);
+                if let Some(plan) = self.memory.plans.get_mut(&number) {
+                    plan.missing = missing;
+                }
             }
             Understanding::Question { kind, text, candidates, .. } => {
                 self.asked = Some(Asked { kind, candidates: candidates.clone() });
@@ -209,8 +224,8 @@ impl Conversation {
         }
     }
 
-    /// The agent told something about a plan. What the robot knows is asked for only where it is spoken of.
-    pub fn follow(&mut self, header: &DialogHeader, known: impl FnOnce() -> Option<Known>) -> Vec<Reaction> {
+    /// The agent told something about a plan.
+    pub fn follow(&mut self, header: &DialogHeader, knowledge: &mut Knowledge) -> Vec<Reaction> {
         let mut reactions = Vec::new();
         let number = header.turn;
         let (Some(kind), Some(plan)) = (header.kind(), self.memory.plans.get_mut(&number)) else { return reactions };
@@ -229,10 +244,11 @@ impl Conversation {
                 let whole = status.is_success() && header.step as usize + 1 == count;
                 let failed = status.is_failure();
                 let is_worth_telling = (whole && worth_telling(step.action)) || failed;
-                let is_worth_telling = is_worth_telling && !self.memory.context.is_searching();
+                let is_worth_telling =
+                    is_worth_telling && plan.missing.is_none() && !self.memory.context.is_searching();
                 if is_worth_telling && !plan.told_end {
                     plan.told_end = true;
-                    if let Some(known) = known() {
+                    if let Some(known) = knowledge.known() {
                         let text = self.language.report(&step, status, header.text.as_str(), &known);
                         let line = if failed { LineKind::Problem } else { LineKind::Say };
                         self.say(turn, DialogKind::Reply, line, &text, &mut reactions);
@@ -240,10 +256,13 @@ impl Conversation {
                 }
             }
             DialogKind::PlanEnded => {
-                let told = plan.told_end;
+                let (told, missing) = (plan.told_end, plan.missing);
                 self.memory.plans.remove(&number);
                 let status = header.status().unwrap_or(Status::ActionExecutionError);
-                if goes_on(status) && self.carry_on(turn, known, &mut reactions) {
+                if status.is_success() && missing.is_some_and(|id| self.miss(turn, id, knowledge, &mut reactions)) {
+                    return reactions;
+                }
+                if goes_on(status) && self.carry_on(turn, knowledge, &mut reactions) {
                     return reactions;
                 }
                 if !told && status.is_failure() {
@@ -262,17 +281,30 @@ impl Conversation {
     }
 
     /// Goes on with a search after one of its plans; tells whether there was more to do.
-    fn carry_on(&mut self, turn: u64, known: impl FnOnce() -> Option<Known>, reactions: &mut Vec<Reaction>) -> bool {
-        let Some(known) = known().filter(|_| self.memory.context.awaits_more()) else { return false };
+    fn carry_on(&mut self, turn: u64, knowledge: &Knowledge, reactions: &mut Vec<Reaction>) -> bool {
+        if !self.memory.context.awaits_more() {
+            return false;
+        }
+        let Some(known) = knowledge.known() else { return false };
         let Some(understanding) = self.language.carry_on(&known, &mut self.memory.context) else { return false };
         self.memory.turns += 1;
-        self.react(turn, self.memory.turns, understanding, reactions);
+        self.react(turn, self.memory.turns, understanding, knowledge, reactions);
+        true
+    }
+
+    /// Says that a thing is not where it was, and forgets that it is there; asks whether to look for it.
+    fn miss(&mut self, turn: u64, id: ObjectId, knowledge: &mut Knowledge, reactions: &mut Vec<Reaction>) -> bool {
+        let Some(known) = knowledge.known() else { return false };
+        let question = self.language.report_missing(id, &known, &mut self.memory.context);
+        knowledge.forget(id);
+        self.say(turn, DialogKind::Question, LineKind::Question, &question, reactions);
+        reactions.push(Reaction::TurnEnded { turn, end: TurnEnd::Asked });
         true
     }
 
     fn plan(&mut self, turn: u64, number: u64, steps: Vec<Step>, reactions: &mut Vec<Reaction>) {
         reactions.push(Reaction::Bus(Box::new(self.plan_message(number, &steps))));
-        self.memory.plans.insert(number, Plan { turn, steps, told_end: false });
+        self.memory.plans.insert(number, Plan { turn, steps, told_end: false, missing: None });
         while self.memory.plans.len() > MOST_PLANS {
             self.memory.plans.pop_first();
         }
@@ -305,6 +337,19 @@ impl Conversation {
     fn bus(&self, kind: DialogKind, turn: u64, text: &str) -> Reaction {
         Reaction::Bus(Box::new(DialogMessage::new(kind, self.body, turn, text)))
     }
+}
+
+/// The steps up to the first whose object is not where the robot believes it to be; then to that place, where it finds
+/// that out. The world knows where things are, and would lead it there.
+fn to_where_it_was(mut steps: Vec<Step>, knowledge: &Knowledge) -> (Vec<Step>, Option<ObjectId>) {
+    let believed = |step: &Step| knowledge.mistaken_place(&step.action);
+    let Some((at, (id, place))) = steps.iter().enumerate().find_map(|(at, step)| Some((at, believed(step)?))) else {
+        return (steps, None);
+    };
+    let says = steps[at].says.clone();
+    steps.truncate(at);
+    steps.push(Step { action: Action::GoTo { target: GoToTarget::Point(place) }, says });
+    (steps, Some(id))
 }
 
 /// Whether a plan that ended so may be followed by more.

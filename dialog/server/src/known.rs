@@ -43,6 +43,9 @@ impl Knowledge {
 
     /// Looks at the world as it is at a tick.
     pub fn look(&mut self, state: StateView<'_>, tick: u64) {
+        if self.world.is_some() && self.looked_at == tick {
+            return;
+        }
         let Some(record) = state.bodies.iter().find(|record| record.body == self.body.0) else { return };
         let Some(world) = everything(state, self.body) else { return };
         let gaze = Gaze {
@@ -77,6 +80,17 @@ impl Knowledge {
             Knows::Everything => self.world.clone(),
             Knows::Seen => self.memory.known(),
         }
+    }
+
+    /// Where the robot believes what it would act on to be, m, if it is wrong: others moved it while it did not look.
+    pub(crate) fn mistaken_place(&self, action: &Action) -> Option<(ObjectId, [f32; 2])> {
+        let world = self.world.as_ref().filter(|_| self.knows == Knows::Seen)?;
+        self.memory.mistaken_place(action, world)
+    }
+
+    /// Forgets a thing that was not where it was believed to be.
+    pub(crate) fn forget(&mut self, id: ObjectId) {
+        self.memory.forget(id);
     }
 
     /// What was learnt since this was last asked.

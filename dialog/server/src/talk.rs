@@ -101,8 +101,8 @@ impl Talk {
     pub fn hear(&self, text: &str, received_nanos: u64) -> Result<(), DialogError> {
         let mut inner = self.lock();
         inner.look()?;
-        let known = inner.knowledge.known();
-        let (turn, reactions) = inner.conversation.hear(text, known.as_ref());
+        let Inner { conversation, knowledge, .. } = &mut *inner;
+        let (turn, reactions) = conversation.hear(text, knowledge);
         inner.latency.begin(turn, received_nanos, monotonic_nanos());
         self.carry_out(&mut inner, None, reactions)
     }
@@ -126,7 +126,7 @@ impl Talk {
             inner.knowledge.note_deed(&action);
         }
         let Inner { conversation, knowledge, .. } = &mut *inner;
-        let reactions = conversation.follow(view.header, || knowledge.known());
+        let reactions = conversation.follow(view.header, knowledge);
         if reactions.is_empty() && view.header.kind() != Some(DialogKind::StepEnded) {
             return Ok(());
         }

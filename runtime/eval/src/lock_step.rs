@@ -83,8 +83,7 @@ impl LockStep {
     /// [`LogError`].
     pub fn say(&mut self, text: &str) -> Result<u64, LogError> {
         self.look();
-        let known = self.knowledge.known();
-        let (turn, reactions) = self.conversation.hear(text, known.as_ref());
+        let (turn, reactions) = self.conversation.hear(text, &self.knowledge);
         self.carry_on(reactions)?;
         Ok(turn)
     }
@@ -183,7 +182,7 @@ impl LockStep {
                     if let Some(action) = conversation.deed(&message.header) {
                         knowledge.note_deed(&action);
                     }
-                    let reactions = conversation.follow(&message.header, || knowledge.known());
+                    let reactions = conversation.follow(&message.header, knowledge);
                     self.carry_on(reactions)?;
                 }
             }
