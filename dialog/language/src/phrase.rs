@@ -31,6 +31,9 @@ pub(crate) struct Phrase {
     pub(crate) unknown: Vec<String>,
     /// What it was found to mean when the robot asked.
     pub(crate) chosen: Option<ObjectId>,
+    /// What it was found not to mean.
+    #[serde(default)]
+    pub(crate) excluded: Vec<ObjectId>,
 }
 
 /// How an object relates to another.
