@@ -9,6 +9,7 @@ use crate::{
     describe,
     ground::{Ground, Miss, Want, has_state},
     intent::Intent,
+    judge::Judge,
     known::{Known, KnownObject},
     lexicon::{Lexicon, StateWord},
     phrase::{Phrase, RelationKind},
@@ -35,6 +36,7 @@ pub(crate) struct Answerer<'a> {
     pub(crate) lexicon: &'a Lexicon,
     pub(crate) scene: &'a Known,
     pub(crate) focus: &'a Focus,
+    pub(crate) judge: Judge<'a>,
     /// The steps under way.
     pub(crate) running: &'a [Step],
     /// What failed last.
@@ -76,7 +78,7 @@ impl Answerer<'_> {
     }
 
     fn ground(&self) -> Ground<'_> {
-        Ground { catalog: self.catalog, scene: self.scene, focus: self.focus }
+        Ground { catalog: self.catalog, scene: self.scene, focus: self.focus, judge: self.judge }
     }
 
     fn full(&self, id: ObjectId) -> String {
@@ -190,18 +192,14 @@ impl Answerer<'_> {
         let said = crate::plan::said(phrase);
         if self.scene.floor.is_some() && phrase.unknown.is_empty() {
             let text = format!("I have not seen {said} yet. Shall I look for it?");
-            return Understanding::confirmation(text);
+            return crate::ask::confirmation(text);
         }
         Understanding::answer(format!("I have not seen {said}. I can look around if you want."))
     }
 
     fn place_of(&self, phrase: &Phrase) -> Understanding {
         let want = Want::place(Intent::Find, &[], None);
-        let found = match self.ground().one(phrase, &want) {
-            Ok(id) => vec![id],
-            Err(Miss::Several(ids)) => ids,
-            Err(Miss::Mismatch(_) | Miss::Unseen | Miss::Unknown | Miss::NoReferent) => return self.unseen(phrase),
-        };
+        let Ok(found) = self.ground().plausible(phrase, &want) else { return self.unseen(phrase) };
         let places: Vec<String> = found.iter().take(LIST).map(|id| self.place_sentence(*id)).collect();
         Understanding::Answer { text: describe::sentence(&describe::list(&places, "and")), highlight: found }
     }

@@ -22,14 +22,23 @@ const TAKES: &[Property] = &[Property::Receptacle, Property::Fillable];
 impl Planner<'_> {
     pub(crate) fn add_pick_up(&mut self, settled: &Settled) -> Result<(), Fault> {
         if settled.objects.len() > 1 || settled.objects.iter().any(|phrase| phrase.is_all) {
-            return Err(Fault::Cannot(
-                "I can only carry one thing at a time. Which one shall I take first?".to_owned(),
-            ));
+            return Err(self.one_at_a_time(settled)?);
         }
         for object in self.find_objects(settled, &Want::object(settled.intent))? {
             self.pick_up(object, self.may_put_down)?;
         }
         Ok(())
+    }
+
+    /// There is but one hand: says so, and offers the first of them.
+    fn one_at_a_time(&mut self, settled: &Settled) -> Result<Fault, Fault> {
+        let found = self.find_objects(settled, &Want::object(settled.intent))?;
+        let Some(first) = found.into_iter().find(|id| self.scene.robot.held != Some(*id)) else {
+            return Ok(Fault::Cannot("I can only carry one thing at a time.".to_owned()));
+        };
+        let text = format!("I can only carry one thing at a time. Shall I begin with {}?", self.the(first));
+        self.pick_up(first, true)?;
+        Ok(Fault::Offer { text, steps: std::mem::take(&mut self.steps) })
     }
 
     /// Has the object in the hand; what is held is put down first if it may be.

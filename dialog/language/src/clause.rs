@@ -466,7 +466,12 @@ fn is_complete(clause: &Clause, catalog: &Catalog) -> bool {
         }
         Intent::Turn if clause.has_stray_noun => false,
         Intent::Turn => {
-            clause.direction.is_some() || matches!(clause.amount, Some(Amount::Degrees(_) | Amount::Bare(_)))
+            // A bare `turn` leaves open which way.
+            let is_bare = matches!(clause.verb.as_str(), "turn" | "rotate" | "spin" | "pivot" | "swivel")
+                && clause.amount.is_none()
+                && clause.places.is_empty()
+                && clause.unknown.is_empty();
+            is_bare || clause.direction.is_some() || matches!(clause.amount, Some(Amount::Degrees(_) | Amount::Bare(_)))
         }
         Intent::Look => clause.direction.is_some() && !clause.has_stray_noun,
         Intent::LookAround | Intent::Brew | Intent::Impossible => true,

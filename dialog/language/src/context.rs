@@ -52,7 +52,13 @@ pub(crate) struct Focus {
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub(crate) enum Pending {
     /// Which object is meant; the request waits.
-    Which { clauses: Vec<Clause>, slot: Slot, candidates: Vec<ObjectId>, may_put_down: bool },
+    Which { clauses: Vec<Clause>, slot: Slot, candidates: Vec<ObjectId>, consent: Consent },
+    /// Where the object is that nobody has seen.
+    Where { clauses: Vec<Clause>, slot: Slot, consent: Consent },
+    /// What the object looks like whose name means nothing.
+    Look { clauses: Vec<Clause>, slot: Slot, consent: Consent },
+    /// Which way to turn; the clause that turns.
+    Direction { clauses: Vec<Clause>, clause: usize },
     /// Which lab is meant; these words wait, the lab stands at `at`.
     Lab { words: Vec<String>, at: usize },
     /// Whether to put down what is held, to do what was asked.
@@ -61,6 +67,15 @@ pub(crate) enum Pending {
     Search { clauses: Vec<Clause> },
     /// Whether to do this.
     Offer { steps: Vec<Step> },
+}
+
+/// What a person has agreed to in answers to questions about a request.
+#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize)]
+pub(crate) struct Consent {
+    /// That what is held is put down first.
+    pub(crate) may_put_down: bool,
+    /// That it is done.
+    pub(crate) is_agreed: bool,
 }
 
 /// A phrase in a request.

@@ -1,37 +1,44 @@
-//! One turn of a conversation: answers to the robot's own questions first, then questions, then requests.
+//! One turn of a conversation: answers to the robot's own questions first (see [`crate::asked`]), then questions, then
+//! requests.
 
 use cohabit_cdf::{Catalog, ObjectId};
 
 use crate::{
     answer::{Answerer, HINT},
+    ask::{self, Ask},
+    asked::plain,
     clause::{self, Clause, Part},
-    context::{Context, Focus, Pending, Role, Slot},
+    confidence::Referents,
+    context::{Consent, Context, Focus, Pending},
     describe,
-    ground::{Ground, Miss},
+    ground::{Ground, Miss, Want},
     habits::Habits,
     intent::Intent,
+    judge::Judge,
     known::Known,
     lab,
-    lexicon::{Lexicon, Preposition, Small},
-    phrase::{Phrase, Place, Reader},
+    lexicon::{Lexicon, Small},
+    phrase::{Phrase, Place},
     plan::{Fault, Planner},
     process::Devices,
     question, remedy, reply,
     search::Search,
     token::{self, MAX_CHARS},
-    understanding::{Step, Understanding},
+    understanding::{Asking, Step, Understanding},
 };
 
 /// An answer to `which lab` has fewer words than this; more is another request.
 const LONGEST_LAB_ANSWER: usize = 6;
 
 /// All that stays the same during a turn.
+#[derive(Clone, Copy)]
 pub(crate) struct Conversation<'a> {
     pub(crate) catalog: &'a Catalog,
     pub(crate) lexicon: &'a Lexicon,
     pub(crate) devices: &'a Devices,
     pub(crate) habits: &'a Habits,
     pub(crate) scene: &'a Known,
+    pub(crate) judge: Judge<'a>,
 }
 
 impl Conversation<'_> {
@@ -39,7 +46,29 @@ impl Conversation<'_> {
         if utterance.chars().nth(MAX_CHARS).is_some() {
             return Understanding::refusal("That is too much for me at once. Please say it in a few short sentences.");
         }
-        let words = self.lexicon.normalise(utterance);
+        let (words, repairs) = self.lexicon.normalise(utterance);
+        Self { judge: Judge { repairs, ..self.judge }, ..*self }.understand_all(words, context)
+    }
+
+    /// The candidates for the first referring expression of an utterance.
+    pub(crate) fn referents(&self, utterance: &str, context: &Context) -> Option<Referents> {
+        let (words, repairs) = self.lexicon.normalise(utterance);
+        let judge = Judge { repairs, ..self.judge };
+        let ground = Ground { catalog: self.catalog, scene: self.scene, focus: &context.focus, judge };
+        clause::parts(self.lexicon, self.catalog, &words).iter().find_map(|part| {
+            let Part::Clause(clause) = part else { return None };
+            let place = clause.places.iter().find_map(|(_, place)| match place {
+                Place::Object(phrase) => Some(phrase),
+                _ => None,
+            });
+            let planner = remedy::planner(self.catalog, self.devices, judge, self.scene, context.focus.clone());
+            let settled = crate::settle::settle(&planner, clause);
+            let phrase = settled.objects.first().or(place)?;
+            ground.referents(phrase, &Want::object(clause.intent))
+        })
+    }
+
+    fn understand_all(&self, words: Vec<String>, context: &mut Context) -> Understanding {
         if words.iter().all(|word| token::is_punctuation(word)) {
             return Understanding::refusal(format!("I did not hear anything. {HINT}"));
         }
@@ -67,7 +96,8 @@ impl Conversation<'_> {
             return understanding;
         }
         if let Some(at) = lab::bare(self.lexicon, &words) {
-            if let Some(room) = lab::here(self.scene.robot.room) {
+            let guessed = || (self.judge.asking == Asking::Never).then(|| lab::guessed(self.scene));
+            if let Some(room) = lab::here(self.scene.robot.room).or_else(guessed) {
                 return self.understand_words(lab::named(&words, at, room), context);
             }
             context.pending = Some(Pending::Lab { words, at });
@@ -87,6 +117,7 @@ impl Conversation<'_> {
                 lexicon: self.lexicon,
                 scene: self.scene,
                 focus: &context.focus,
+                judge: self.judge,
                 running: &context.running,
                 failed: context.failed.as_ref(),
             };
@@ -171,35 +202,50 @@ impl Conversation<'_> {
         if let Some(words) = unclear.filter(|words| !words.is_empty()) {
             return reply::unclear(&words);
         }
-        self.plan(clause::joined(clauses), false, context)
+        self.plan(clause::joined(clauses), Consent::default(), context)
     }
 
     /// An object without a verb.
     fn fragment(&self, phrase: &Phrase, context: &mut Context) -> Understanding {
-        let ground = Ground { catalog: self.catalog, scene: self.scene, focus: &context.focus };
-        let want = crate::ground::Want::object(Intent::Find);
+        let ground = Ground { catalog: self.catalog, scene: self.scene, focus: &context.focus, judge: self.judge };
+        let want = Want::place(Intent::Find, &[], None);
         match ground.one(phrase, &want) {
             Ok(object) => {
                 context.focus.mention(object);
-                reply::what_with(self.catalog, self.scene, object)
+                self.ask().what_with(object)
             }
-            Err(_) => reply::what(),
+            Err(_) => ask::what(),
         }
     }
 
-    fn planner(&self, focus: Focus) -> Planner<'_> {
-        remedy::planner(self.catalog, self.devices, self.scene, focus)
+    pub(crate) fn ask(&self) -> Ask<'_> {
+        Ask { catalog: self.catalog, scene: self.scene }
     }
 
-    fn plan(&self, clauses: Vec<Clause>, may_put_down: bool, context: &mut Context) -> Understanding {
-        self.proceed(Search::new(clauses, may_put_down), context)
+    pub(crate) fn planner(&self, focus: Focus) -> Planner<'_> {
+        remedy::planner(self.catalog, self.devices, self.judge, self.scene, focus)
     }
 
-    /// What was planned is done; `found` is said first.
-    pub(crate) fn planned(&self, planner: Planner<'_>, found: Option<String>, context: &mut Context) -> Understanding {
+    pub(crate) fn plan(&self, clauses: Vec<Clause>, consent: Consent, context: &mut Context) -> Understanding {
+        self.proceed(Search::new(clauses, consent), context)
+    }
+
+    /// What was planned is done, or agreed upon first; `found` is said before.
+    pub(crate) fn planned(
+        &self,
+        planner: Planner<'_>,
+        consent: Consent,
+        found: Option<String>,
+        context: &mut Context,
+    ) -> Understanding {
+        let notes: Vec<String> = found.into_iter().chain(planner.notes).collect();
+        if self.judge.asking == Asking::Always && !consent.is_agreed && commits(&planner.steps) {
+            let question = ask::shall_i(&planner.steps, &notes);
+            context.pending = Some(Pending::Offer { steps: planner.steps });
+            return question;
+        }
         context.focus = planner.focus;
         self.remember_start(&planner.steps, context);
-        let notes: Vec<String> = found.into_iter().chain(planner.notes).collect();
         let text = reply::plan_reply(&planner.steps, &notes);
         if planner.steps.is_empty() {
             (context.pending, context.search) = (None, None);
@@ -211,9 +257,7 @@ impl Conversation<'_> {
 
     /// Where the robot stands, if it is about to leave.
     pub(crate) fn remember_start(&self, steps: &[Step], context: &mut Context) {
-        use cohabit_cdf::Action::{GoTo, Interact, PickUp, Place};
-        let leaves = |step: &Step| matches!(step.action, GoTo { .. } | PickUp { .. } | Place { .. } | Interact { .. });
-        if steps.iter().any(leaves) {
+        if commits(steps) {
             let [x, y, _] = self.scene.robot.position_m;
             context.focus.start_m = Some([x, y]);
         }
@@ -224,74 +268,89 @@ impl Conversation<'_> {
         &self,
         fault: Fault,
         clauses: Vec<Clause>,
-        may_put_down: bool,
+        consent: Consent,
         context: &mut Context,
     ) -> Understanding {
         (context.pending, context.search) = (None, None);
+        let asks = self.judge.asking != Asking::Never;
         match fault {
             Fault::Cannot(text) | Fault::Need { text, .. } => Understanding::refusal(text),
+            Fault::Offer { text, steps } if asks => {
+                context.pending = Some(Pending::Offer { steps });
+                ask::confirmation(text)
+            }
+            Fault::Offer { text, .. } => Understanding::refusal(text),
             Fault::HandFull { held, .. } => {
                 context.pending = Some(Pending::PutDown { clauses });
                 let held = describe::short(self.catalog, self.scene, held);
-                Understanding::confirmation(format!("I am holding {held}. Shall I put it down first?"))
+                ask::confirmation(format!("I am holding {held}. Shall I put it down first?"))
             }
-            Fault::Miss { slot: Some(slot), phrase, miss: Miss::Several(candidates), .. } => {
-                let question = reply::which(self.catalog, self.scene, Some(&phrase), &candidates);
-                context.pending = Some(Pending::Which { clauses, slot, candidates, may_put_down });
+            Fault::Direction => {
+                context.pending = Some(Pending::Direction { clauses, clause: 0 });
+                ask::direction()
+            }
+            Fault::Miss { slot: Some(slot), phrase, miss: Miss::Several(candidates), intent } => {
+                let question = self.which(&phrase, &candidates, intent);
+                context.pending = Some(Pending::Which { clauses, slot, candidates, consent });
                 question
             }
             Fault::Miss { slot: Some(slot), phrase, miss: Miss::Mismatch(others), .. } => {
-                self.ask_instead(&phrase, others, clauses, slot, may_put_down, context)
+                let candidates = self.look_different(others);
+                let question = self.ask().instead(&phrase, candidates.clone());
+                context.pending = Some(Pending::Which { clauses, slot, candidates, consent });
+                question
             }
-            Fault::Miss { phrase, miss: Miss::Unseen, intent, .. } if phrase.unknown.is_empty() => {
-                let steps = vec![Step { action: cohabit_cdf::Action::LookAround, says: "looking around".to_owned() }];
-                context.pending = Some(Pending::Offer { steps });
-                let text = format!("{} Shall I look around?", reply::miss(&phrase, &Miss::Unseen, intent));
-                Understanding::confirmation(text)
+            Fault::Miss { slot: Some(slot), phrase, miss: Miss::Unseen, .. } if asks && phrase.unknown.is_empty() => {
+                context.pending = Some(Pending::Where { clauses, slot, consent });
+                ask::location(&phrase)
+            }
+            Fault::Miss { slot: Some(slot), phrase, .. }
+                if asks && phrase.namings.is_empty() && !phrase.unknown.is_empty() =>
+            {
+                context.pending = Some(Pending::Look { clauses, slot, consent });
+                ask::appearance(&phrase)
             }
             Fault::Miss { phrase, miss, intent, .. } => Understanding::refusal(reply::miss(&phrase, &miss, intent)),
         }
     }
 
-    /// There is none as described: perhaps another one will do.
-    fn ask_instead(
-        &self,
-        phrase: &Phrase,
-        others: Vec<ObjectId>,
-        clauses: Vec<Clause>,
-        slot: Slot,
-        may_put_down: bool,
-        context: &mut Context,
-    ) -> Understanding {
-        let mut candidates: Vec<ObjectId> = Vec::new();
-        for other in others {
-            let looks_new = candidates.iter().all(|seen| match (self.scene.object(*seen), self.scene.object(other)) {
+    fn which(&self, phrase: &Phrase, candidates: &[ObjectId], intent: Intent) -> Understanding {
+        if let [one] = candidates
+            && let Some(object) = self.scene.object(*one)
+            && self.judge.is_for_good(intent, object.class)
+        {
+            return self.ask().for_good(Some(phrase), intent.verb(), *one);
+        }
+        self.ask().which(Some(phrase), candidates)
+    }
+
+    /// The first few of these that do not look alike.
+    fn look_different(&self, objects: Vec<ObjectId>) -> Vec<ObjectId> {
+        let mut different: Vec<ObjectId> = Vec::new();
+        for other in objects {
+            let looks_new = different.iter().all(|seen| match (self.scene.object(*seen), self.scene.object(other)) {
                 (Some(seen), Some(other)) => !describe::look_alike(self.catalog, seen, other),
                 _ => false,
             });
-            if looks_new && candidates.len() < reply::ASKED {
-                candidates.push(other);
+            if looks_new && different.len() < ask::ASKED {
+                different.push(other);
             }
         }
-        let names = describe::apart(self.catalog, self.scene, &candidates);
-        let said = crate::plan::said(phrase);
-        let text = format!("I do not know of {said}. Do you mean {}?", describe::list(&names, "or"));
-        context.pending = Some(Pending::Which { clauses, slot, candidates: candidates.clone(), may_put_down });
-        reply::reference(Some(phrase), text, candidates, names)
+        different
     }
 
     /// The reply to what asks for nothing to be done.
-    fn chat(&self, words: &[String]) -> Option<&str> {
+    pub(crate) fn chat(&self, words: &[String]) -> Option<&str> {
         self.lexicon.chat.exact(&plain(words)).map(String::as_str)
     }
 
-    fn small(&self, words: &[String]) -> Vec<Small> {
+    pub(crate) fn small(&self, words: &[String]) -> Vec<Small> {
         let exact = self.lexicon.small.exact(&plain(words));
         exact.map(|smalls| smalls.iter().copied().collect()).unwrap_or_default()
     }
 
     /// Whether the words are a yes or a no, alone or before something else: `yes, please open it`.
-    fn small_at_start(&self, words: &[String], small: Small) -> bool {
+    pub(crate) fn small_at_start(&self, words: &[String], small: Small) -> bool {
         let exact = self.small(words);
         if !exact.is_empty() {
             return exact.contains(&small);
@@ -342,132 +401,16 @@ impl Conversation<'_> {
         self.go(steps, context)
     }
 
-    fn go(&self, steps: Vec<Step>, context: &mut Context) -> Understanding {
+    pub(crate) fn go(&self, steps: Vec<Step>, context: &mut Context) -> Understanding {
+        self.remember_start(&steps, context);
         steps.iter().for_each(|step| context.focus.follow(&step.action));
         context.begin(&steps);
         Understanding::Plan { reply: reply::plan_reply(&steps, &[]), steps }
     }
-
-    /// What was said, as an answer to the robot's own question; `None` if it is something else.
-    fn answer_to_pending(&self, words: &[String], parts: &[Part], context: &mut Context) -> Option<Understanding> {
-        let pending = context.pending.take()?;
-        let is_command = parts.iter().any(|part| matches!(part, Part::Clause(_)));
-        let is_no = self.small_at_start(words, Small::No);
-        if is_no && !is_command && self.small(words).contains(&Small::No) {
-            return Some(Understanding::answer("All right, I leave it."));
-        }
-        let is_yes = self.small_at_start(words, Small::Yes);
-        match pending {
-            Pending::PutDown { clauses } if is_yes && !is_command => Some(self.plan(clauses, true, context)),
-            Pending::Offer { steps } if is_yes && !is_command => Some(self.go(steps, context)),
-            Pending::Search { clauses } if is_yes && !is_command => Some(self.plan(clauses, false, context)),
-            Pending::PutDown { .. } | Pending::Offer { .. } | Pending::Search { .. } | Pending::Lab { .. } => None,
-            Pending::Which { clauses, slot, candidates, may_put_down } => {
-                let left = self.answered(words, &candidates, is_yes, context);
-                match left.as_slice() {
-                    [one] => Some(self.plan(chosen(clauses, slot, *one), may_put_down, context)),
-                    [] if is_command || self.is_aside(words) => None,
-                    [] => {
-                        let question = reply::which(self.catalog, self.scene, phrase(&clauses, slot), &candidates);
-                        context.pending = Some(Pending::Which { clauses, slot, candidates, may_put_down });
-                        Some(question)
-                    }
-                    several => {
-                        let question = reply::which(self.catalog, self.scene, phrase(&clauses, slot), several);
-                        let candidates = several.to_vec();
-                        context.pending = Some(Pending::Which { clauses, slot, candidates, may_put_down });
-                        Some(question)
-                    }
-                }
-            }
-        }
-    }
-
-    /// Whether it is a question, a courtesy or such, and so no answer.
-    fn is_aside(&self, words: &[String]) -> bool {
-        let aside = [Small::Hello, Small::Thanks, Small::Undo];
-        question::read(self.lexicon, words).is_some()
-            || self.chat(words).is_some()
-            || self.small(words).iter().any(|small| aside.contains(small))
-    }
-
-    /// The candidates that an answer leaves.
-    fn answered(&self, words: &[String], candidates: &[ObjectId], is_yes: bool, context: &Context) -> Vec<ObjectId> {
-        let plain: Vec<String> = words.iter().filter(|word| !token::is_punctuation(word)).cloned().collect();
-        if is_yes && candidates.len() == 1 {
-            return candidates.to_vec();
-        }
-        if self.small(words).contains(&Small::Any) {
-            return candidates[..candidates.len().min(1)].to_vec();
-        }
-        let Some(phrase) = self.answer_phrase(&plain) else { return Vec::new() };
-        let ground = Ground { catalog: self.catalog, scene: self.scene, focus: &context.focus };
-        let left = ground.narrow(&phrase, candidates);
-        if left.len() < candidates.len() || phrase.pronoun.is_none() && candidates.len() == 1 {
-            left
-        } else {
-            Vec::new()
-        }
-    }
-
-    /// The phrase that an answer consists of, after `i mean` or `take`; `None` if there is more to it.
-    fn answer_phrase(&self, words: &[String]) -> Option<Phrase> {
-        let starts = 0..words.len().min(6);
-        starts.into_iter().find_map(|start| {
-            let is_lead = words[..start]
-                .iter()
-                .all(|word| self.lexicon.answer_lead.longest(std::slice::from_ref(word)).is_some());
-            if !is_lead {
-                return None;
-            }
-            let mut reader = Reader::new(self.lexicon, &words[start..]);
-            let mut phrase = reader.phrase_with_place().unwrap_or_default();
-            while let Some((preposition, place)) = reader.place() {
-                // `to the red one` belongs to `i am referring`.
-                if preposition == Preposition::To {
-                    return None;
-                }
-                phrase.attach(preposition, place);
-            }
-            reader.skip(|lexicon| &lexicon.trail);
-            (reader.is_done() && phrase.says_something() && phrase.unknown.is_empty()).then_some(phrase)
-        })
-    }
 }
 
-/// The words without punctuation and without the robot's name.
-fn plain(words: &[String]) -> Vec<String> {
-    let is_address = |word: &str| matches!(word, "robot" | "tam");
-    words.iter().filter(|word| !token::is_punctuation(word) && !is_address(word)).cloned().collect()
-}
-
-/// The phrase at a place of a request.
-fn phrase(clauses: &[Clause], slot: Slot) -> Option<&Phrase> {
-    let clause = clauses.get(slot.clause)?;
-    match slot.role {
-        Role::Object(index) => clause.objects.get(index),
-        Role::Place(index) => match clause.places.get(index) {
-            Some((_, Place::Object(phrase))) => Some(phrase),
-            _ => None,
-        },
-    }
-}
-
-/// The clauses with one phrase settled.
-fn chosen(mut clauses: Vec<Clause>, slot: Slot, object: ObjectId) -> Vec<Clause> {
-    if let Some(clause) = clauses.get_mut(slot.clause) {
-        match slot.role {
-            Role::Object(index) => {
-                if let Some(phrase) = clause.objects.get_mut(index) {
-                    phrase.chosen = Some(object);
-                }
-            }
-            Role::Place(index) => {
-                if let Some((_, Place::Object(phrase))) = clause.places.get_mut(index) {
-                    phrase.chosen = Some(object);
-                }
-            }
-        }
-    }
-    clauses
+/// Whether it does more than look and point.
+fn commits(steps: &[Step]) -> bool {
+    use cohabit_cdf::Action::{GoTo, Interact, PickUp, Place};
+    steps.iter().any(|step| matches!(step.action, GoTo { .. } | PickUp { .. } | Place { .. } | Interact { .. }))
 }

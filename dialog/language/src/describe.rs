@@ -114,6 +114,23 @@ pub(crate) fn location(catalog: &Catalog, scene: &Known, id: ObjectId) -> String
     parts.join(" ")
 }
 
+/// What it looks like, in a word or two: `broken red`.
+pub(crate) fn look(catalog: &Catalog, object: &KnownObject) -> String {
+    let states = TELLING.iter().take(3).filter(|(flag, ..)| object.has(*flag)).map(|(_, yes, _)| (*yes).to_owned());
+    let words: Vec<String> = states.chain([color(catalog, object)]).filter(|word| !word.is_empty()).collect();
+    words.join(" ")
+}
+
+/// Where it is, in a few words that hold wherever the robot stands: its room, or in this room what it is on.
+pub(crate) fn place(catalog: &Catalog, scene: &Known, id: ObjectId) -> String {
+    let Some(object) = scene.object(id) else { return String::new() };
+    if object.room == scene.robot.room {
+        location(catalog, scene, id)
+    } else {
+        format!("in the {}", object.room.name())
+    }
+}
+
 /// Whether things are in it or on it.
 pub(crate) fn inside(catalog: &Catalog, class: ClassId) -> &'static str {
     let class = catalog.class(class);

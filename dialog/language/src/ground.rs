@@ -1,36 +1,31 @@
-//! From a referring expression to an object: candidates are filtered by what was said, then scored.
+//! From a referring expression to an object: candidates are filtered by what was said, then ranked by how probable
+//! each is.
 
 use cohabit_cdf::{Catalog, ClassId, Color, Fluid, ObjectId, Property, state::StateFlag};
 
 use crate::{
+    confidence::{Doubt, Feature, Features, Referent, Referents},
     context::Focus,
     describe,
     intent::Intent,
+    judge::Judge,
     known::{self, Known, KnownObject},
     lexicon::{Pronoun, Side, StateWord},
     phrase::{Phrase, Relation, RelationKind},
+    understanding::Asking,
 };
 
-/// How much each feature counts. A metre of way counts `PER_METER`; the rest is in proportion to what it outweighs:
-/// being in the same room outweighs 8 m, having been spoken of outweighs 5 m.
-const NAME: f32 = 3.0;
-const SAME_ROOM: f32 = 2.0;
-const VISIBLE: f32 = 1.0;
-const HELD: f32 = 6.0;
-const FITTING_STATE: f32 = 1.5;
-const AT_PLACE: f32 = 1.5;
-const HIDDEN: f32 = 1.5;
-const RECENT: [f32; 3] = [1.2, 0.8, 0.4];
-const PER_METER: f32 = 0.25;
+/// How far away counts, at most, m, and the unit in which it is counted.
 const FARTHEST_M: f32 = 30.0;
-/// The share that nearness has in what is to be found.
-const FIND: f32 = 0.5;
-/// What the mission is about outweighs what stands around, also where its name fits a little less.
-const IN_MISSION: f32 = 6.0;
+const DISTANCE_UNIT_M: f32 = 10.0;
+/// How much what was spoken of counts, the latest first.
+const RECENCY: [f32; 3] = [1.0, 2.0 / 3.0, 1.0 / 3.0];
 
-/// Two candidates whose scores differ by less are a tie; the robot then asks, or guesses where little is at stake.
-const MARGIN: f32 = 0.5;
-const MARGIN_HARMLESS: f32 = 0.3;
+/// Candidates that are less probable than this part of the best are not asked about, nor named in an answer.
+const RIVAL: f32 = 0.1;
+const PLAUSIBLE: f32 = 0.3;
+/// Most candidates that a question is about.
+const MOST_RIVALS: usize = 32;
 
 /// What is named by less than this below the best is not offered instead.
 const WORSE_NAME: f32 = 0.2;
@@ -79,7 +74,7 @@ pub(crate) enum Miss {
     Unseen,
     /// There are such things, but none as described.
     Mismatch(Vec<ObjectId>),
-    /// Several, which look different.
+    /// Several, which can be told apart; or one that is too doubtful to act on.
     Several(Vec<ObjectId>),
     /// A pronoun, and nothing was spoken of.
     NoReferent,
@@ -93,6 +88,15 @@ pub(crate) struct Ground<'a> {
     pub(crate) catalog: &'a Catalog,
     pub(crate) scene: &'a Known,
     pub(crate) focus: &'a Focus,
+    pub(crate) judge: Judge<'a>,
+}
+
+/// The candidates for a referring expression, by whether all that was said of them holds.
+struct Described<'a> {
+    /// All of the kind that was named, and of use for what is wanted.
+    base: Vec<&'a KnownObject>,
+    /// Those that are as described.
+    left: Vec<&'a KnownObject>,
 }
 
 impl<'a> Ground<'a> {
@@ -108,16 +112,48 @@ impl<'a> Ground<'a> {
         if let Some(pronoun) = phrase.pronoun.filter(|pronoun| *pronoun != Pronoun::One) {
             return self.referent(pronoun, want).ok_or(Miss::NoReferent);
         }
-        let left = self.described(phrase, want)?;
-        if let Some(picked) = self.by_position(phrase, &left) {
+        let described = match self.described(phrase, want) {
+            Err(Miss::Mismatch(others)) if self.judge.asking == Asking::Never && !others.is_empty() => {
+                return Ok(others[0]);
+            }
+            described => described?,
+        };
+        if let Some(picked) = self.by_position(phrase, &described.left) {
             return Ok(picked);
         }
-        self.best(phrase, want, &left)
+        self.decide(phrase, want, &described)
+    }
+
+    /// All objects that may well be meant, the likeliest first: for answers about each of them.
+    pub(crate) fn plausible(&self, phrase: &Phrase, want: &Want<'_>) -> Result<Vec<ObjectId>, Miss> {
+        if phrase.chosen.is_some() || phrase.pronoun.is_some() {
+            return self.one(phrase, want).map(|one| vec![one]);
+        }
+        let described = self.described(phrase, want)?;
+        if let Some(picked) = self.by_position(phrase, &described.left) {
+            return Ok(vec![picked]);
+        }
+        let groups = self.told_apart(&self.ranked(phrase, want, &described));
+        Ok(rivals(&groups, PLAUSIBLE))
+    }
+
+    /// What may be meant, with its features and probabilities.
+    pub(crate) fn referents(&self, phrase: &Phrase, want: &Want<'_>) -> Option<Referents> {
+        let described = self.described(phrase, want).ok()?;
+        let features: Vec<Features> = described.base.iter().map(|object| self.features(phrase, want, object)).collect();
+        let doubt = self.doubt(phrase);
+        let (probabilities, none) = self.judge.weights.probabilities(&features, &doubt);
+        let mut candidates: Vec<Referent> = (described.base.iter().zip(features).zip(probabilities))
+            .map(|((object, features), probability)| Referent { object: object.id, features, probability })
+            .collect();
+        candidates
+            .sort_by(|one, other| other.probability.total_cmp(&one.probability).then(one.object.cmp(&other.object)));
+        Some(Referents { candidates, doubt, none })
     }
 
     /// All objects that are meant: those of the room, if there are any.
     pub(crate) fn all(&self, phrase: &Phrase, want: &Want<'_>) -> Result<Vec<ObjectId>, Miss> {
-        let mut left = self.described(phrase, want)?;
+        let Described { mut left, .. } = self.described(phrase, want)?;
         keep_if_any(&mut left, |object| object.room == self.scene.robot.room);
         left.sort_by(|one, other| {
             self.scene.distance_m(one).total_cmp(&self.scene.distance_m(other)).then(one.id.cmp(&other.id))
@@ -144,9 +180,13 @@ impl<'a> Ground<'a> {
         }
     }
 
-    fn described(&self, phrase: &Phrase, want: &Want<'_>) -> Result<Vec<&'a KnownObject>, Miss> {
-        let mut base: Vec<&KnownObject> =
-            self.scene.objects.iter().filter(|object| self.is_candidate(phrase, object)).collect();
+    fn described(&self, phrase: &Phrase, want: &Want<'_>) -> Result<Described<'a>, Miss> {
+        let mut base: Vec<&KnownObject> = self
+            .scene
+            .objects
+            .iter()
+            .filter(|object| self.is_candidate(phrase, object) && !phrase.excluded.contains(&object.id))
+            .collect();
         if base.is_empty() {
             return Err(if phrase.is_empty() && !phrase.says_something() { Miss::Unknown } else { Miss::Unseen });
         }
@@ -171,20 +211,26 @@ impl<'a> Ground<'a> {
         for state in &phrase.states {
             keep_if_any(&mut left, |object| has_state(object, *state));
         }
+        self.keep_at_side(phrase, &mut left);
+        self.keep_at_side(phrase, &mut base);
+        Ok(Described { base, left })
+    }
+
+    /// Keeps what is before the robot, behind it, or other than what was spoken of last, as was said.
+    fn keep_at_side(&self, phrase: &Phrase, objects: &mut Vec<&KnownObject>) {
         match phrase.side {
-            Some(Side::Front) => keep_if_any(&mut left, |object| {
+            Some(Side::Front) => keep_if_any(objects, |object| {
                 object.room == self.scene.robot.room && self.scene.bearing_rad(object).abs() < FRONT_RAD
             }),
-            Some(Side::Behind) => keep_if_any(&mut left, |object| {
+            Some(Side::Behind) => keep_if_any(objects, |object| {
                 object.room == self.scene.robot.room && self.scene.bearing_rad(object).abs() > FRONT_RAD
             }),
             Some(Side::Other) => {
-                let last = self.focus.recent.iter().find(|id| left.iter().any(|object| object.id == **id)).copied();
-                keep_if_any(&mut left, |object| Some(object.id) != last);
+                let last = self.focus.recent.iter().find(|id| objects.iter().any(|object| object.id == **id)).copied();
+                keep_if_any(objects, |object| Some(object.id) != last);
             }
             _ => {}
         }
-        Ok(left)
     }
 
     /// Keeps what the words mean most, the nearest first: a trophy is a cup only where there is no other.
@@ -367,23 +413,60 @@ impl<'a> Ground<'a> {
         picked.map(|object| object.id)
     }
 
-    fn best(&self, phrase: &Phrase, want: &Want<'_>, left: &[&KnownObject]) -> Result<ObjectId, Miss> {
-        let mut scored: Vec<(f32, &KnownObject)> =
-            left.iter().map(|object| (self.score(phrase, want, object), *object)).collect();
-        scored.sort_by(|(one, a), (other, b)| other.total_cmp(one).then(a.id.cmp(&b.id)));
-        let Some((top, best)) = scored.first().copied() else { return Err(Miss::Unseen) };
-        let margin = if want.intent.is_harmless() { MARGIN_HARMLESS } else { MARGIN };
-        let mut looks: Vec<&KnownObject> = vec![best];
-        for (score, object) in &scored[1..] {
-            let is_new = !looks.iter().any(|seen| describe::look_alike(self.catalog, seen, object));
-            if top - score < margin && is_new {
-                looks.push(object);
-            }
-        }
-        if looks.len() > 1 {
-            return Err(Miss::Several(looks.iter().map(|object| object.id).collect()));
+    /// The likeliest candidate, or all between which it would cost too much to guess.
+    fn decide(&self, phrase: &Phrase, want: &Want<'_>, described: &Described<'a>) -> Result<ObjectId, Miss> {
+        let ranked = self.ranked(phrase, want, described);
+        let Some((_, best)) = ranked.first().copied() else { return Err(Miss::Unseen) };
+        let groups = self.told_apart(&ranked);
+        let probability = groups.first().map_or(0.0, |(probability, _)| *probability);
+        let rival = groups.get(1).map_or(0.0, |(probability, _)| *probability);
+        if self.judge.asks(want.intent, best.class, probability, rival) {
+            return Err(Miss::Several(rivals(&groups, RIVAL)));
         }
         Ok(best.id)
+    }
+
+    /// Those that are as described, with the probability of each, the likeliest first.
+    fn ranked(&self, phrase: &Phrase, want: &Want<'_>, described: &Described<'a>) -> Vec<(f32, &'a KnownObject)> {
+        let features: Vec<Features> = described.base.iter().map(|object| self.features(phrase, want, object)).collect();
+        let (probabilities, _) = self.judge.weights.probabilities(&features, &self.doubt(phrase));
+        let is_left = |object: &KnownObject| described.left.iter().any(|left| left.id == object.id);
+        let mut ranked: Vec<(f32, &KnownObject)> =
+            probabilities.into_iter().zip(described.base.iter().copied()).filter(|(_, one)| is_left(one)).collect();
+        // What is called white because others of its kind are painted may be none of the base.
+        let others = described.left.iter().filter(|left| described.base.iter().all(|object| object.id != left.id));
+        ranked.extend(others.map(|object| (0.0, *object)));
+        ranked.sort_by(|(one, a), (other, b)| other.total_cmp(one).then(a.id.cmp(&b.id)));
+        ranked
+    }
+
+    /// One of each kind that can be told apart in words, with the probability that it is one of that kind.
+    fn told_apart(&self, ranked: &[(f32, &'a KnownObject)]) -> Vec<(f32, &'a KnownObject)> {
+        let mut groups: Vec<(f32, &KnownObject)> = Vec::new();
+        for (probability, object) in ranked {
+            match groups.iter().position(|(_, seen)| self.is_told_alike(seen, object)) {
+                Some(at) => groups[at].0 += probability,
+                None if groups.len() < MOST_RIVALS => groups.push((*probability, object)),
+                None => {}
+            }
+        }
+        groups
+    }
+
+    /// Whether the same words describe both: they look alike, and so does what they are on.
+    fn is_told_alike(&self, one: &KnownObject, other: &KnownObject) -> bool {
+        let parent = |object: &KnownObject| object.parent.and_then(|parent| self.scene.object(parent));
+        let is_same_place = one.room == other.room
+            && match (parent(one), parent(other)) {
+                (None, None) => true,
+                (Some(one), Some(other)) => one.id == other.id || describe::look_alike(self.catalog, one, other),
+                _ => false,
+            };
+        is_same_place && describe::look_alike(self.catalog, one, other)
+    }
+
+    fn doubt(&self, phrase: &Phrase) -> Doubt {
+        Doubt::new(self.judge.repairs, phrase.unknown.len())
     }
 
     /// Whether it is behind a closed door: people speak of what they see.
@@ -397,36 +480,42 @@ impl<'a> Ground<'a> {
             })
     }
 
-    fn score(&self, phrase: &Phrase, want: &Want<'_>, object: &KnownObject) -> f32 {
-        let mut score = NAME * phrase.naming(object.class).unwrap_or(1.0);
+    /// What speaks for a candidate, and against it.
+    fn features(&self, phrase: &Phrase, want: &Want<'_>, object: &KnownObject) -> Features {
         let is_held = self.scene.robot.held == Some(object.id);
-        // Who says `find` does not mean what is before them.
-        let nearness = if want.intent == Intent::Find { FIND } else { 1.0 };
-        if object.room == self.scene.robot.room {
-            score += SAME_ROOM * nearness;
-        }
-        if object.visible || is_held {
-            score += VISIBLE;
-        }
-        if is_held && want.held_first {
-            score += HELD;
-        }
-        if fitting_state(want.intent, object) == Some(true) {
-            score += FITTING_STATE;
-        }
-        if self.focus.place.is_some_and(|place| self.scene.ancestors(object.id).any(|parent| parent.id == place)) {
-            score += AT_PLACE;
-        }
-        if self.is_hidden(object) {
-            score -= HIDDEN;
-        }
-        if object.in_mission {
-            score += IN_MISSION;
-        }
+        let is_here = object.room == self.scene.robot.room;
+        let is_sought = want.intent == Intent::Find;
+        let distance = self.scene.distance_m(object).min(FARTHEST_M) / DISTANCE_UNIT_M;
+        let is_at = |place| self.scene.ancestors(object.id).any(|parent| parent.id == place);
         let recent = self.focus.recent.iter().position(|id| *id == object.id);
-        score += recent.and_then(|at| RECENT.get(at)).copied().unwrap_or_default();
-        score - PER_METER * nearness * self.scene.distance_m(object).min(FARTHEST_M)
+        let unrelated = phrase.relations.iter().filter(|relation| !self.is_related(object, relation)).count();
+        let is_elsewhere = phrase.room.is_some_and(|room| object.room != room) || phrase.is_here && !is_here;
+        let mut features = Features::default();
+        features.set(Feature::Name, phrase.naming(object.class).unwrap_or(1.0));
+        features
+            .set_if(Feature::ColorMismatch, phrase.color.as_ref().is_some_and(|color| !self.has_color(object, color)));
+        features.set_if(Feature::StateMismatch, phrase.states.iter().any(|state| !has_state(object, *state)));
+        features.set_if(Feature::RoomMismatch, is_elsewhere);
+        features.set(Feature::RelationMismatch, unrelated as f32);
+        features.set_if(Feature::SameRoom, is_here);
+        features.set_if(Feature::SameRoomSought, is_here && is_sought);
+        features.set_if(Feature::Visible, object.visible || is_held);
+        features.set_if(Feature::HeldFirst, is_held && want.held_first);
+        features.set_if(Feature::StateFits, fitting_state(want.intent, object) == Some(true));
+        features.set_if(Feature::AtPlace, self.focus.place.is_some_and(is_at));
+        features.set_if(Feature::Hidden, self.is_hidden(object));
+        features.set_if(Feature::InMission, object.in_mission);
+        features.set(Feature::Recency, recent.and_then(|at| RECENCY.get(at)).copied().unwrap_or_default());
+        features.set(Feature::Distance, distance);
+        features.set(Feature::DistanceSought, if is_sought { distance } else { 0.0 });
+        features
     }
+}
+
+/// Those whose probability is more than this part of the best's.
+fn rivals(groups: &[(f32, &KnownObject)], part: f32) -> Vec<ObjectId> {
+    let best = groups.first().map_or(0.0, |(probability, _)| *probability);
+    groups.iter().filter(|(probability, _)| *probability >= best * part).map(|(_, object)| object.id).collect()
 }
 
 fn keep_if_any<T>(list: &mut Vec<T>, keep: impl Fn(&T) -> bool) {

@@ -84,11 +84,6 @@ impl Intent {
         )
     }
 
-    /// Whether little is lost when the robot takes the wrong one of two: it then guesses rather than asks.
-    pub(crate) const fn is_harmless(self) -> bool {
-        matches!(self, Self::GoTo | Self::Find | Self::Travel | Self::Turn | Self::Highlight | Self::Examine)
-    }
-
     /// The plain form of the verb, for questions and refusals.
     pub(crate) const fn verb(self) -> &'static str {
         match self {

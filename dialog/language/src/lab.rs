@@ -2,24 +2,21 @@
 
 use cohabit_cdf::RoomId;
 
-use crate::{
-    lexicon::Lexicon,
-    understanding::{Clarification, Understanding},
-};
+use crate::{ask, known::Known, lexicon::Lexicon, understanding::Understanding};
 
 /// The two labs, as they are called in full.
 const LABS: [RoomId; 2] = [RoomId::Lab1, RoomId::Lab2];
 
 /// Asks which one is meant.
 pub(crate) fn question() -> Understanding {
-    let names = LABS.map(|room| format!("the {}", room.name()));
-    Understanding::Question {
-        kind: Clarification::Reference,
-        about: "lab".to_owned(),
-        text: format!("Which lab do you mean: {}?", names.join(" or ")),
-        candidates: Vec::new(),
-        options: names.to_vec(),
-    }
+    ask::which_lab(&LABS.map(|room| format!("the {}", room.name())))
+}
+
+/// The lab that is meant if nobody can be asked: the one with the nearest thing.
+pub(crate) fn guessed(scene: &Known) -> RoomId {
+    let in_labs = scene.objects.iter().filter(|object| LABS.contains(&object.room));
+    let nearest = in_labs.min_by(|one, other| scene.distance_m(one).total_cmp(&scene.distance_m(other)));
+    nearest.map_or(LABS[0], |object| object.room)
 }
 
 /// Where a bare `lab` stands, if one does: no part of `quantum lab`, `lab 2` or `lab table`.

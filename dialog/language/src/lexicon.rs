@@ -80,6 +80,8 @@ pub(crate) enum Pronoun {
 pub(crate) enum Small {
     Yes,
     No,
+    Neither,
+    Unsure,
     Any,
     Hello,
     Thanks,
@@ -163,6 +165,8 @@ struct WordFile {
     aliases: BTreeMap<String, Vec<String>>,
     yes: Words,
     no: Words,
+    neither: Words,
+    unsure: Words,
     any: Words,
     hello: Words,
     thanks: Words,
@@ -230,11 +234,18 @@ impl Lexicon {
         lexicon
     }
 
-    /// The words of an utterance: tokens, with spelling repaired and set phrases replaced.
-    pub(crate) fn normalise(&self, text: &str) -> Vec<String> {
+    /// The words of an utterance: tokens, with spelling repaired and set phrases replaced; and how many were misspelt.
+    pub(crate) fn normalise(&self, text: &str) -> (Vec<String>, usize) {
         let replaced = self.replaced(&token::words(text));
-        let corrected: Vec<String> = replaced.iter().flat_map(|word| self.vocabulary.correct(word)).collect();
-        self.replaced(&corrected)
+        let mut corrected = Vec::with_capacity(replaced.len());
+        let mut repairs = 0;
+        for word in &replaced {
+            let words = self.vocabulary.correct(word);
+            // A plural, or two words run together, is no slip.
+            repairs += usize::from(matches!(words.as_slice(), [one] if one != word && !word.starts_with(one.as_str())));
+            corrected.extend(words);
+        }
+        (self.replaced(&corrected), repairs)
     }
 
     fn replaced(&self, words: &[String]) -> Vec<String> {
@@ -304,6 +315,8 @@ impl Lexicon {
         let lists = [
             (Small::Yes, &file.yes),
             (Small::No, &file.no),
+            (Small::Neither, &file.neither),
+            (Small::Unsure, &file.unsure),
             (Small::Any, &file.any),
             (Small::Hello, &file.hello),
             (Small::Thanks, &file.thanks),

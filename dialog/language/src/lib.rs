@@ -21,8 +21,11 @@
 //! ```
 
 mod answer;
+mod ask;
+mod asked;
 mod carry;
 mod clause;
+mod confidence;
 mod context;
 mod conversation;
 mod describe;
@@ -32,6 +35,7 @@ mod ground;
 mod habits;
 mod imagine;
 mod intent;
+mod judge;
 mod known;
 mod lab;
 mod lexicon;
@@ -57,6 +61,7 @@ use std::sync::Arc;
 
 use cohabit_cdf::{Catalog, ObjectId, Status};
 
+pub use confidence::{Doubt, Features, Referent, Referents};
 pub use context::Context;
 pub use floor::{Floor, FloorPlan};
 pub use known::{Known, KnownGoal, KnownObject, KnownRobot};
@@ -65,25 +70,43 @@ pub use oracle::Oracle;
 pub use sight::Gaze;
 pub use understanding::{Asking, Clarification, Step, Understanding};
 
-use crate::{context::Focus, conversation::Conversation, habits::Habits, lexicon::Lexicon, process::Devices};
+use crate::{
+    confidence::Weights,
+    context::Focus,
+    conversation::Conversation,
+    habits::Habits,
+    judge::{Costs, Judge},
+    lexicon::Lexicon,
+    process::Devices,
+};
 
-/// The robot's language: its words, and what it knows of devices.
+/// The robot's language: its words, what it knows of devices, and when it asks.
 #[derive(Debug)]
 pub struct Language {
     catalog: Arc<Catalog>,
     lexicon: Lexicon,
     devices: Devices,
     habits: Habits,
+    weights: Weights,
+    costs: Costs,
+    asking: Asking,
 }
 
 impl Language {
-    /// The language of a world with these classes of objects.
+    /// The language of a world with these classes of objects. It asks where it is unsure.
     #[must_use]
     pub fn new(catalog: Arc<Catalog>) -> Self {
         let lexicon = Lexicon::new(&catalog);
         let devices = Devices::new(&catalog);
         let habits = Habits::new(&catalog);
-        Self { catalog, lexicon, devices, habits }
+        let costs = Costs::new(&catalog);
+        Self { catalog, lexicon, devices, habits, weights: Weights::builtin(), costs, asking: Asking::default() }
+    }
+
+    /// The same, asking at other times.
+    #[must_use]
+    pub fn asking(self, asking: Asking) -> Self {
+        Self { asking, ..self }
     }
 
     /// What `utterance` means in `scene`, given the conversation so far. Any text is taken; none panics.
@@ -109,9 +132,33 @@ impl Language {
         format!("{} Shall I look for it?", describe::sentence(&format!("{the} is not there any more")))
     }
 
+    /// What it means that somebody points at `object`: the answer to a question of the robot's, or what is spoken of
+    /// from now on.
+    #[must_use]
+    pub fn choose(&self, object: ObjectId, scene: &Known, context: &mut Context) -> Understanding {
+        self.conversation(scene).chosen(object, context)
+    }
+
+    /// What people would call `object` in `scene`: `the red mug on the desk`.
+    #[must_use]
+    pub fn name(&self, object: ObjectId, scene: &Known) -> String {
+        describe::full(&self.catalog, scene, object)
+    }
+
+    /// What the first referring expression of `utterance` may mean, with features and probabilities; `None` where it has
+    /// none, or names nothing that is known.
+    #[must_use]
+    pub fn referents(&self, utterance: &str, scene: &Known, context: &Context) -> Option<Referents> {
+        self.conversation(scene).referents(utterance, context)
+    }
+
     fn conversation<'a>(&'a self, scene: &'a Known) -> Conversation<'a> {
-        let Self { catalog, lexicon, devices, habits } = self;
-        Conversation { catalog, lexicon, devices, habits, scene }
+        let Self { catalog, lexicon, devices, habits, .. } = self;
+        Conversation { catalog, lexicon, devices, habits, scene, judge: self.judge() }
+    }
+
+    const fn judge(&self) -> Judge<'_> {
+        Judge { weights: &self.weights, costs: &self.costs, asking: self.asking, repairs: 0 }
     }
 
     /// What the robot says after a whole plan has finished (`step` is its last) or after `step` failed; `detail` is
@@ -122,7 +169,7 @@ impl Language {
         if status.is_success() {
             return report::success(&self.catalog, scene, step, status);
         }
-        let planner = remedy::planner(&self.catalog, &self.devices, scene, Focus::default());
+        let planner = remedy::planner(&self.catalog, &self.devices, self.judge(), scene, Focus::default());
         let remedy = remedy::remedy(planner, step, status);
         let offer = remedy.as_ref().map(|remedy| remedy.question.as_str());
         report::failure(&self.catalog, scene, step, status, detail, offer)

@@ -31,6 +31,9 @@ pub(crate) struct Phrase {
     pub(crate) unknown: Vec<String>,
     /// What it was found to mean when the robot asked.
     pub(crate) chosen: Option<ObjectId>,
+    /// What it was found not to mean.
+    #[serde(default)]
+    pub(crate) excluded: Vec<ObjectId>,
 }
 
 /// How an object relates to another.
@@ -53,6 +56,7 @@ pub(crate) enum RelationKind {
 
 /// What stands after a preposition.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+#[allow(clippy::large_enum_variant, reason = "a request has one or two")]
 pub(crate) enum Place {
     Room(RoomId),
     Viewpoint(RoomId, u8),

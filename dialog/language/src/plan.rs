@@ -9,12 +9,13 @@ use crate::{
     ground::{Ground, Miss, Want},
     imagine,
     intent::Intent,
+    judge::Judge,
     known::Known,
     lexicon::{Direction, Preposition, Side},
     phrase::{Phrase, Place},
     process::Devices,
     settle::{self, Settled},
-    understanding::Step,
+    understanding::{Asking, Step},
 };
 
 /// Where nothing is said: how far to walk, turn and tilt the head.
@@ -35,6 +36,10 @@ pub(crate) enum Fault {
     HandFull { held: ObjectId, wanted: ObjectId },
     /// Something of these classes is needed, and none is known; `text` says so.
     Need { classes: Vec<ClassId>, text: String },
+    /// Nobody said which way to turn.
+    Direction,
+    /// It cannot be done, but this could.
+    Offer { text: String, steps: Vec<Step> },
     /// It cannot be done, for this reason.
     Cannot(String),
 }
@@ -43,6 +48,7 @@ pub(crate) enum Fault {
 pub(crate) struct Planner<'a> {
     pub(crate) catalog: &'a Catalog,
     pub(crate) devices: &'a Devices,
+    pub(crate) judge: Judge<'a>,
     pub(crate) scene: Known,
     pub(crate) focus: Focus,
     pub(crate) steps: Vec<Step>,
@@ -120,7 +126,7 @@ impl Planner<'_> {
     }
 
     pub(crate) fn ground(&self) -> Ground<'_> {
-        Ground { catalog: self.catalog, scene: &self.scene, focus: &self.focus }
+        Ground { catalog: self.catalog, scene: &self.scene, focus: &self.focus, judge: self.judge }
     }
 
     /// Grounds a phrase, and says where it stands if that fails.
@@ -371,6 +377,14 @@ impl Planner<'_> {
         };
         if let Some(aim) = clause.places.iter().find(is_aim) {
             return self.go_to(&Clause { places: vec![aim.clone()], ..clause.clone() });
+        }
+        let is_open = match self.judge.asking {
+            Asking::Never => false,
+            Asking::Unsure => clause.amount.is_none(),
+            Asking::Always => true,
+        };
+        if clause.direction.is_none() && is_open {
+            return Err(Fault::Direction);
         }
         let around = clause.direction == Some(Direction::Around);
         let degrees = match clause.amount {

@@ -2,7 +2,7 @@
 
 use cohabit_cdf::{Action, ObjectId, Status, Verb};
 
-use crate::{context::Focus, describe, known::Known, plan::Planner, understanding::Step};
+use crate::{context::Focus, describe, judge::Judge, known::Known, plan::Planner, understanding::Step};
 
 /// An offer: the question, and the steps to take before trying again.
 pub(crate) struct Remedy {
@@ -44,12 +44,14 @@ pub(crate) fn remedy(planner: Planner<'_>, step: &Step, status: Status) -> Optio
 pub(crate) fn planner<'a>(
     catalog: &'a cohabit_cdf::Catalog,
     devices: &'a crate::process::Devices,
+    judge: Judge<'a>,
     scene: &Known,
     focus: Focus,
 ) -> Planner<'a> {
     Planner {
         catalog,
         devices,
+        judge,
         scene: scene.clone(),
         begun: (0, focus.clone()),
         focus,

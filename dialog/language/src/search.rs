@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     clause::Clause,
-    context::Context,
+    context::{Consent, Context},
     conversation::Conversation,
     describe,
     floor::Floor,
@@ -18,7 +18,7 @@ use crate::{
     phrase::{Phrase, RelationKind},
     plan::{self, Fault},
     remedy, reply, sight,
-    understanding::{Step, Understanding},
+    understanding::{Asking, Step, Understanding},
 };
 
 /// The most legs of one request: an office has fewer viewpoints and doors.
@@ -42,7 +42,7 @@ const SAME_SPOT_M: f32 = 0.5;
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub(crate) struct Search {
     clauses: Vec<Clause>,
-    may_put_down: bool,
+    consent: Consent,
     /// What is looked for; nothing yet, while the beginning of the request is done first.
     target: Option<Target>,
     /// Where it looked all around, m.
@@ -88,10 +88,10 @@ struct Leg {
 }
 
 impl Search {
-    pub(crate) fn new(clauses: Vec<Clause>, may_put_down: bool) -> Self {
+    pub(crate) fn new(clauses: Vec<Clause>, consent: Consent) -> Self {
         Self {
             clauses,
-            may_put_down,
+            consent,
             target: None,
             looked_m: Vec::new(),
             tried: Vec::new(),
@@ -134,16 +134,16 @@ impl Search {
 impl Conversation<'_> {
     /// Goes on with a request: does it, as far as all it names is known, or looks for what is not.
     pub(crate) fn proceed(&self, mut search: Search, context: &mut Context) -> Understanding {
-        let mut planner = remedy::planner(self.catalog, self.devices, self.scene, context.focus.clone());
-        planner.may_put_down = search.may_put_down;
+        let mut planner = self.planner(context.focus.clone());
+        planner.may_put_down = search.consent.may_put_down || self.judge.asking == Asking::Never;
         let Err(fault) = planner.run(&search.clauses) else {
             let found = search.target.as_ref().and_then(|target| self.found(target, &planner.steps));
-            let understanding = self.planned(planner, found, context);
+            let understanding = self.planned(planner, search.consent, found, context);
             context.request = search.clauses;
             return understanding;
         };
         let Some(target) = self.sought(&fault) else {
-            return self.fault(fault, search.clauses, search.may_put_down, context);
+            return self.fault(fault, search.clauses, search.consent, context);
         };
         let (done, focus) = planner.begun;
         if done > 0 && search.legs < MOST_LEGS {
@@ -201,10 +201,10 @@ impl Conversation<'_> {
         context.search = None;
         let scene = Known { floor: None, ..self.scene.clone() };
         let here = Conversation { scene: &scene, ..*self };
-        let mut planner = remedy::planner(self.catalog, self.devices, &scene, context.focus.clone());
-        planner.may_put_down = search.may_put_down;
+        let mut planner = here.planner(context.focus.clone());
+        planner.may_put_down = search.consent.may_put_down || self.judge.asking == Asking::Never;
         match (planner.run(&search.clauses), search.target) {
-            (Ok(()), _) => here.planned(planner, None, context),
+            (Ok(()), _) => here.planned(planner, search.consent, None, context),
             (Err(Fault::Miss { miss: Miss::Unseen, .. }), Some(target)) => {
                 context.pending = None;
                 Understanding::refusal(match target.rooms.as_slice() {
@@ -214,7 +214,7 @@ impl Conversation<'_> {
                     _ => format!("I have looked everywhere I could, and found no {}.", bare(&target.said)),
                 })
             }
-            (Err(fault), _) => here.fault(fault, search.clauses, search.may_put_down, context),
+            (Err(fault), _) => here.fault(fault, search.clauses, search.consent, context),
         }
     }
 
@@ -257,7 +257,12 @@ impl Conversation<'_> {
         let room = phrase.room.or(phrase.is_here.then_some(self.scene.robot.room));
         let mut target = self.target(plan::said(phrase), classes, room);
         for relation in &phrase.relations {
-            let ground = Ground { catalog: self.catalog, scene: self.scene, focus: &crate::context::Focus::default() };
+            let ground = Ground {
+                catalog: self.catalog,
+                scene: self.scene,
+                focus: &crate::context::Focus::default(),
+                judge: self.judge,
+            };
             let other = ground.one(&relation.to, &Want::place(Intent::Find, &[], None)).ok();
             if let Some(room) = other.and_then(|id| self.scene.object(id)).map(|object| object.room) {
                 target.likely[room as usize] *= 10.0;
@@ -380,7 +385,7 @@ impl Conversation<'_> {
                 Step { action: Action::GoTo { target: GoToTarget::Viewpoint(room, number) }, says }
             }
             Spot::Thing(id) => {
-                let planner = remedy::planner(self.catalog, self.devices, self.scene, Default::default());
+                let planner = self.planner(Default::default());
                 if planner.is_shut(id) {
                     search.to_close = Some(id);
                     let the = describe::short(self.catalog, self.scene, id);

@@ -3,9 +3,6 @@
 use cohabit_cdf::{Action, ObjectId};
 use serde::{Deserialize, Serialize};
 
-/// Answers that a confirmation offers.
-pub(crate) const YES_OR_NO: [&str; 2] = ["yes", "no"];
-
 /// What the robot makes of what it was told.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Understanding {
@@ -51,17 +48,6 @@ pub enum Understanding {
 impl Understanding {
     pub(crate) fn refusal(text: impl Into<String>) -> Self {
         Self::Refusal { text: text.into() }
-    }
-
-    /// A question that is answered by yes or no.
-    pub(crate) fn confirmation(text: impl Into<String>) -> Self {
-        Self::Question {
-            kind: Clarification::Confirmation,
-            about: String::new(),
-            text: text.into(),
-            candidates: Vec::new(),
-            options: YES_OR_NO.map(str::to_owned).to_vec(),
-        }
     }
 
     pub(crate) fn answer(text: impl Into<String>) -> Self {

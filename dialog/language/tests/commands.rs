@@ -132,7 +132,7 @@ fn picking_up() {
         pick up the hammer cartridge -> take Printer_Cartridge_Hammer_1
         pick up the mug -> ? Which one do you mean: the red mug on the round table or the yellow mug on the round table?
         pick up the fridge -> ! I cannot pick up the fridge.
-        pick up the knife and the bowl -> ! I can only carry one thing at a time…",
+        pick up the knife and the bowl -> ? I can only carry one thing at a time. Shall I begin with the knife?",
     );
 }
 

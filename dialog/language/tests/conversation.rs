@@ -67,7 +67,7 @@ fn another_may_do() {
     );
     check(
         &["without Hammer_1"],
-        "> pick up the hammer\n? I have not seen a hammer. Shall I look around?\n> yes please\nlook around",
+        "> pick up the hammer\n? I have not seen a hammer. Where is it, or shall I look around?\n> yes please\nlook around",
     );
     check(&["without Hammer_1"], "> find the hammer\nlook around");
 }

@@ -1,0 +1,326 @@
+//! What people say to a question of the robot's: yes and no, a description, a place, a click, or something else.
+
+use cohabit_cdf::{Action, ObjectId};
+
+use crate::{
+    ask,
+    clause::{Clause, Part},
+    context::{Consent, Context, Pending, Role, Slot},
+    conversation::Conversation,
+    ground::Ground,
+    intent::Intent,
+    lexicon::{Direction, Preposition, Side, Small},
+    phrase::{Phrase, Place, Reader, Relation},
+    plan::Fault,
+    question, token,
+    understanding::{Step, Understanding},
+};
+
+/// A request that waits for what one of its phrases means.
+struct Open {
+    clauses: Vec<Clause>,
+    slot: Slot,
+    consent: Consent,
+}
+
+impl Conversation<'_> {
+    /// What was said, as an answer to the robot's own question; `None` if it is something else.
+    pub(crate) fn answer_to_pending(
+        &self,
+        words: &[String],
+        parts: &[Part],
+        context: &mut Context,
+    ) -> Option<Understanding> {
+        let pending = context.pending.take()?;
+        let small = self.small(words);
+        let is = |kind| small.contains(&kind);
+        let is_command = parts.iter().any(|part| matches!(part, Part::Clause(_)));
+        let is_yes = self.small_at_start(words, Small::Yes) && !is_command;
+        let leaves = is(Small::No) || is(Small::Neither) && !matches!(pending, Pending::Which { .. });
+        if leaves && !is_command && !matches!(&pending, Pending::Which { candidates, .. } if candidates.len() == 1) {
+            return Some(Understanding::answer("All right, I leave it."));
+        }
+        match pending {
+            Pending::PutDown { clauses } if is_yes => {
+                let consent = Consent { may_put_down: true, is_agreed: true };
+                Some(self.plan(clauses, consent, context))
+            }
+            Pending::Offer { steps } if is_yes => Some(self.go(steps, context)),
+            Pending::Search { clauses } if is_yes => Some(self.plan(clauses, Consent::default(), context)),
+            Pending::PutDown { .. } | Pending::Offer { .. } | Pending::Search { .. } | Pending::Lab { .. } => None,
+            Pending::Direction { clauses, clause } => self.turned(words, clauses, clause, context),
+            Pending::Where { clauses, slot, .. } if is_yes || is(Small::Unsure) => {
+                Some(self.go(self.search(phrase(&clauses, slot)), context))
+            }
+            Pending::Where { clauses, slot, consent } => {
+                let open = Open { clauses, slot, consent };
+                if is_command { None } else { self.told_where(words, open, context) }
+            }
+            Pending::Look { .. } if is(Small::Unsure) => {
+                Some(Understanding::answer("All right. Tell me another name for it, or what else to do."))
+            }
+            Pending::Look { clauses, slot, consent } => {
+                let open = Open { clauses, slot, consent };
+                if is_command { None } else { self.told_look(words, open, context) }
+            }
+            Pending::Which { clauses, slot, candidates, consent } => {
+                let open = Open { clauses, slot, consent };
+                self.told_which(words, is_yes, is_command, &candidates, open, context)
+            }
+        }
+    }
+
+    /// Somebody points at an object: the answer to what was asked, or what is spoken of from now on.
+    pub(crate) fn chosen(&self, object: ObjectId, context: &mut Context) -> Understanding {
+        match context.pending.take() {
+            Some(
+                Pending::Which { clauses, slot, consent, .. }
+                | Pending::Where { clauses, slot, consent }
+                | Pending::Look { clauses, slot, consent },
+            ) => self.settle(Open { clauses, slot, consent }, object, context),
+            pending => {
+                context.pending = pending;
+                context.focus.mention(object);
+                self.ask().what_with(object)
+            }
+        }
+    }
+
+    /// Carries the request out with this object.
+    fn settle(&self, mut open: Open, object: ObjectId, context: &mut Context) -> Understanding {
+        if let Some(phrase) = phrase_mut(&mut open.clauses, open.slot) {
+            phrase.chosen = Some(object);
+        }
+        self.plan(open.clauses, Consent { is_agreed: true, ..open.consent }, context)
+    }
+
+    /// Carries the request out with any but these.
+    fn settle_without(&self, mut open: Open, objects: &[ObjectId], context: &mut Context) -> Understanding {
+        if let Some(phrase) = phrase_mut(&mut open.clauses, open.slot) {
+            phrase.excluded.extend_from_slice(objects);
+        }
+        self.plan(open.clauses, open.consent, context)
+    }
+
+    /// What a question which one is meant was answered with.
+    fn told_which(
+        &self,
+        words: &[String],
+        is_yes: bool,
+        is_command: bool,
+        candidates: &[ObjectId],
+        open: Open,
+        context: &mut Context,
+    ) -> Option<Understanding> {
+        let small = self.small(words);
+        let is = |kind| small.contains(&kind);
+        let is_one = candidates.len() == 1;
+        let rejects = is(Small::Neither) || is_one && (is(Small::No) || self.is_other(words));
+        if rejects && !is_command {
+            return Some(self.settle_without(open, candidates, context));
+        }
+        let is_any = is(Small::Any) || is(Small::Unsure) || is_yes && is_one;
+        if let Some(first) = candidates.first().filter(|_| is_any) {
+            return Some(self.settle(open, *first, context));
+        }
+        let left = self.answered(words, candidates, context);
+        match left.as_slice() {
+            [one] => Some(self.settle(open, *one, context)),
+            [] if is_command || self.is_aside(words) => None,
+            left => {
+                let candidates = if left.is_empty() { candidates } else { left };
+                Some(self.ask_which(open, candidates.to_vec(), context))
+            }
+        }
+    }
+
+    fn ask_which(&self, open: Open, candidates: Vec<ObjectId>, context: &mut Context) -> Understanding {
+        let Open { clauses, slot, consent } = open;
+        let question = self.ask().which(phrase(&clauses, slot), &candidates);
+        context.pending = Some(Pending::Which { clauses, slot, candidates, consent });
+        question
+    }
+
+    /// Where it is was said: it is found there, or looked for there.
+    fn told_where(&self, words: &[String], mut open: Open, context: &mut Context) -> Option<Understanding> {
+        let told = self.answer_phrase(&plain(words)).filter(says_where)?;
+        let said = phrase_mut(&mut open.clauses, open.slot)?;
+        describe_by(said, told);
+        let search = self.search(Some(said));
+        let consent = Consent { is_agreed: true, ..open.consent };
+        let mut planner = self.planner(context.focus.clone());
+        planner.may_put_down = consent.may_put_down;
+        match planner.run(&open.clauses) {
+            Err(Fault::Miss { .. }) => Some(self.go(search, context)),
+            _ => Some(self.plan(open.clauses, consent, context)),
+        }
+    }
+
+    /// What it looks like was said: a thing that looks so is meant.
+    fn told_look(&self, words: &[String], mut open: Open, context: &mut Context) -> Option<Understanding> {
+        let told = self.answer_phrase(&plain(words))?;
+        let said = phrase_mut(&mut open.clauses, open.slot)?;
+        said.unknown.clear();
+        describe_by(said, told);
+        Some(self.plan(open.clauses, open.consent, context))
+    }
+
+    /// Which way was said.
+    fn turned(
+        &self,
+        words: &[String],
+        mut clauses: Vec<Clause>,
+        clause: usize,
+        context: &mut Context,
+    ) -> Option<Understanding> {
+        let direction = (0..words.len()).find_map(|at| self.direction(&words[at..]))?;
+        clauses.get_mut(clause)?.direction = Some(direction);
+        Some(self.plan(clauses, Consent { is_agreed: true, ..Consent::default() }, context))
+    }
+
+    fn direction(&self, words: &[String]) -> Option<Direction> {
+        let turns = |direction: &Direction| {
+            matches!(direction, Direction::Left | Direction::Right | Direction::Around | Direction::Backward)
+        };
+        if let Some((_, direction)) = self.lexicon.directions.longest(words).filter(|(_, direction)| turns(direction)) {
+            return Some(*direction);
+        }
+        match self.lexicon.sides.longest(words)?.1 {
+            Side::Left => Some(Direction::Left),
+            Side::Right => Some(Direction::Right),
+            Side::Behind => Some(Direction::Around),
+            _ => None,
+        }
+    }
+
+    /// Looks for something: where it was said to be, if that was said, or here.
+    fn search(&self, phrase: Option<&Phrase>) -> Vec<Step> {
+        let mut planner = self.planner(crate::context::Focus::default());
+        if let Some(room) = phrase.and_then(|phrase| phrase.room) {
+            planner.go_to_room(room);
+        } else if let Some(near) = phrase.and_then(|phrase| phrase.relations.first()) {
+            let want = crate::ground::Want::place(Intent::Find, &[], None);
+            planner.ground().one(&near.to, &want).into_iter().for_each(|object| planner.go_to_object(object));
+        }
+        planner.push(Action::LookAround, "looking around".to_owned());
+        planner.steps
+    }
+
+    /// Whether it is a question, a courtesy or such, and so no answer.
+    fn is_aside(&self, words: &[String]) -> bool {
+        let aside = [Small::Hello, Small::Thanks, Small::Undo];
+        question::read(self.lexicon, words).is_some()
+            || self.chat(words).is_some()
+            || self.small(words).iter().any(|small| aside.contains(small))
+    }
+
+    /// Whether the other one is asked for.
+    fn is_other(&self, words: &[String]) -> bool {
+        self.answer_phrase(&plain(words)).is_some_and(|phrase| phrase.side == Some(Side::Other))
+    }
+
+    /// The candidates that an answer leaves.
+    fn answered(&self, words: &[String], candidates: &[ObjectId], context: &Context) -> Vec<ObjectId> {
+        let Some(phrase) = self.answer_phrase(&plain(words)) else { return Vec::new() };
+        if phrase.side == Some(Side::Other) {
+            // Other than what was spoken of last; if none was, than what was named first.
+            let last = context.focus.recent.iter().find(|id| candidates.contains(id)).or(candidates.first());
+            return candidates.iter().filter(|id| Some(*id) != last).copied().collect();
+        }
+        // People count what was named.
+        let named = if phrase.ordinal.is_some() { &candidates[..candidates.len().min(ask::ASKED)] } else { candidates };
+        let ground = Ground { catalog: self.catalog, scene: self.scene, focus: &context.focus, judge: self.judge };
+        let left = ground.narrow(&phrase, named);
+        if left.len() < candidates.len() || phrase.pronoun.is_none() && candidates.len() == 1 {
+            left
+        } else {
+            Vec::new()
+        }
+    }
+
+    /// The phrase that an answer consists of, after `i mean` or `take`; `None` if there is more to it.
+    fn answer_phrase(&self, words: &[String]) -> Option<Phrase> {
+        let starts = 0..words.len().min(6);
+        starts.into_iter().find_map(|start| {
+            let is_lead = words[..start]
+                .iter()
+                .all(|word| self.lexicon.answer_lead.longest(std::slice::from_ref(word)).is_some());
+            if !is_lead {
+                return None;
+            }
+            let mut reader = Reader::new(self.lexicon, &words[start..]);
+            let mut phrase = reader.phrase_with_place().unwrap_or_default();
+            self.skip_and(&mut reader);
+            while let Some((preposition, place)) = reader.place() {
+                // `to the red one` belongs to `i am referring`.
+                if preposition == Preposition::To {
+                    return None;
+                }
+                phrase.attach(preposition, place);
+                self.skip_and(&mut reader);
+            }
+            reader.skip(|lexicon| &lexicon.trail);
+            // `it is in the break room`: the place is what is said.
+            if phrase.pronoun.is_some_and(|pronoun| pronoun != crate::lexicon::Pronoun::One) && says_where(&phrase) {
+                phrase.pronoun = None;
+            }
+            (reader.is_done() && phrase.says_something() && phrase.unknown.is_empty()).then_some(phrase)
+        })
+    }
+
+    /// `red and in the kitchen`, `over there on the left`.
+    fn skip_and(&self, reader: &mut Reader<'_>) {
+        while reader.next_is("and") {
+            reader.at += 1;
+        }
+    }
+}
+
+/// The words without punctuation and without the robot's name.
+pub(crate) fn plain(words: &[String]) -> Vec<String> {
+    let is_address = |word: &str| matches!(word, "robot" | "tam");
+    words.iter().filter(|word| !token::is_punctuation(word) && !is_address(word)).cloned().collect()
+}
+
+fn says_where(phrase: &Phrase) -> bool {
+    phrase.room.is_some() || phrase.is_here || phrase.side.is_some() || !phrase.relations.is_empty()
+}
+
+/// Adds to what was said of an object what was said of it now.
+fn describe_by(said: &mut Phrase, told: Phrase) {
+    if said.namings.is_empty() && said.fluid.is_none() {
+        (said.namings, said.fluid, said.text) = (told.namings, told.fluid, told.text);
+    }
+    said.color = told.color.or(said.color.take());
+    said.room = told.room.or(said.room);
+    said.side = told.side.or(said.side);
+    said.ordinal = told.ordinal.or(said.ordinal);
+    said.is_here |= told.is_here;
+    said.states.extend(told.states);
+    let is_new = |relation: &Relation| !said.relations.contains(relation);
+    let new: Vec<Relation> = told.relations.into_iter().filter(is_new).collect();
+    said.relations.extend(new);
+}
+
+/// The phrase at a place of a request.
+pub(crate) fn phrase(clauses: &[Clause], slot: Slot) -> Option<&Phrase> {
+    let clause = clauses.get(slot.clause)?;
+    match slot.role {
+        Role::Object(index) => clause.objects.get(index),
+        Role::Place(index) => match clause.places.get(index) {
+            Some((_, Place::Object(phrase))) => Some(phrase),
+            _ => None,
+        },
+    }
+}
+
+fn phrase_mut(clauses: &mut [Clause], slot: Slot) -> Option<&mut Phrase> {
+    let clause = clauses.get_mut(slot.clause)?;
+    match slot.role {
+        Role::Object(index) => clause.objects.get_mut(index),
+        Role::Place(index) => match clause.places.get_mut(index) {
+            Some((_, Place::Object(phrase))) => Some(phrase),
+            _ => None,
+        },
+    }
+}
