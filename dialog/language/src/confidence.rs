@@ -1,10 +1,10 @@
 //! How probable it is that a candidate is the object meant.
 //!
-//! A conditional logit (McFadden 1974): each candidate has a utility, linear in its features, and so has the alternative
-//! that none of them is meant; probabilities are their softmax. Rivals thus lower each other's probability, as they
-//! should: a mug is less surely the one meant where there is another. The alternative carries doubt about the utterance
-//! itself, which is the same for all candidates. The weights are fitted to simulated sessions by `dialog/language/fit`,
-//! which also reports how well the probabilities hold.
+//! Two steps. That none of the candidates is meant, because a word was misheard, misspelt or wrong, is a logistic
+//! regression over what speaks for such a [`Doubt`]. Which of them is meant otherwise is a conditional logit (McFadden
+//! 1974): each has a utility, linear in its [`Features`], and their probabilities are the softmax of these. Rivals thus
+//! lower each other's probability, as they should: a mug is less surely the one meant where there is another. Both are
+//! fitted to simulated sessions by `dialog/language/fit`, which also says how well the probabilities hold.
 
 use std::collections::BTreeMap;
 
@@ -18,7 +18,7 @@ pub struct Features {
     pub values: [f32; Self::COUNT],
 }
 
-/// What is known of an utterance, whichever candidate is meant.
+/// What speaks for it that none of the candidates is meant.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Doubt {
     /// By [`Self::NAMES`], in their order.
@@ -78,6 +78,13 @@ impl Features {
         "distance_10m_sought",
     ];
 
+    const MISMATCHES: [Feature; 4] =
+        [Feature::ColorMismatch, Feature::StateMismatch, Feature::RoomMismatch, Feature::RelationMismatch];
+
+    fn get(&self, feature: Feature) -> f32 {
+        self.values[feature as usize]
+    }
+
     pub(crate) fn set(&mut self, feature: Feature, value: f32) {
         self.values[feature as usize] = value;
     }
@@ -89,7 +96,7 @@ impl Features {
 
 impl Doubt {
     /// How many there are.
-    pub const COUNT: usize = 3;
+    pub const COUNT: usize = 6;
 
     /// Their names.
     pub const NAMES: [&str; Self::COUNT] = [
@@ -99,11 +106,30 @@ impl Doubt {
         "repairs",
         // Words of the referring expression that mean nothing to the robot, 3 at most.
         "unknown_words",
+        // How much less than its name the words mean even the best candidate.
+        "loose_name",
+        // Whether every candidate is other than was said in colour, state, room or place.
+        "mismatch",
+        // Whether none is there for the sake of the mission, although other things are.
+        "outside_mission",
     ];
 
-    pub(crate) fn new(repairs: usize, unknown: usize) -> Self {
+    pub(crate) fn new(repairs: usize, unknown: usize, has_mission: bool, candidates: &[Features]) -> Self {
         let at_most_3 = |count: usize| count.min(3) as f32;
-        Self { values: [1.0, at_most_3(repairs), at_most_3(unknown)] }
+        let is = |holds: bool| f32::from(u8::from(holds));
+        let best_name = candidates.iter().map(|one| one.get(Feature::Name)).fold(0.0, f32::max);
+        let in_mission = candidates.iter().any(|one| one.get(Feature::InMission) > 0.0);
+        let fits = candidates.iter().any(|one| Features::MISMATCHES.iter().all(|feature| one.get(*feature) == 0.0));
+        Self {
+            values: [
+                1.0,
+                at_most_3(repairs),
+                at_most_3(unknown),
+                1.0 - best_name,
+                is(!fits),
+                is(has_mission && !in_mission),
+            ],
+        }
     }
 }
 
@@ -158,13 +184,12 @@ impl Weights {
 
     /// The probabilities of candidates with these features, and of none of them.
     pub(crate) fn probabilities(&self, candidates: &[Features], doubt: &Doubt) -> (Vec<f32>, f32) {
-        let none = product(&self.none, &doubt.values);
+        let none = if candidates.is_empty() { 1.0 } else { 1.0 / (1.0 + (-product(&self.none, &doubt.values)).exp()) };
         let utilities: Vec<f32> = candidates.iter().map(|one| product(&self.candidate, &one.values)).collect();
-        let highest = utilities.iter().copied().fold(none, f32::max);
+        let highest = utilities.iter().copied().fold(f32::NEG_INFINITY, f32::max);
         let parts: Vec<f32> = utilities.iter().map(|utility| (utility - highest).exp()).collect();
-        let part_none = (none - highest).exp();
-        let whole: f32 = parts.iter().sum::<f32>() + part_none;
-        (parts.iter().map(|part| part / whole).collect(), part_none / whole)
+        let whole = parts.iter().sum::<f32>() / (1.0 - none);
+        (parts.iter().map(|part| part / whole).collect(), none)
     }
 }
 
@@ -179,15 +204,15 @@ mod tests {
     #[test]
     fn probabilities_add_up_to_one_and_rivals_share() {
         let weights = Weights::builtin();
-        let doubt = Doubt::new(0, 0);
         let mut mug = Features::default();
         mug.set(Feature::Name, 1.0);
         mug.set(Feature::SameRoom, 1.0);
+        let doubt = Doubt::new(0, 0, false, &[mug]);
         let (alone, none) = weights.probabilities(&[mug], &doubt);
         assert!((alone[0] + none - 1.0).abs() < 1e-5);
         let (two, none) = weights.probabilities(&[mug, mug], &doubt);
         assert!((two[0] - two[1]).abs() < 1e-6 && two[0] < alone[0] && (two[0] + two[1] + none - 1.0).abs() < 1e-5);
-        let (misheard, _) = weights.probabilities(&[mug], &Doubt::new(3, 0));
+        let (misheard, _) = weights.probabilities(&[mug], &Doubt::new(3, 0, false, &[mug]));
         assert!(misheard[0] < alone[0], "a repaired word is a doubt");
         assert!(weights.probabilities(&[], &doubt).1 > 0.999);
     }

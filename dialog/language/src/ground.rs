@@ -141,7 +141,7 @@ impl<'a> Ground<'a> {
     pub(crate) fn referents(&self, phrase: &Phrase, want: &Want<'_>) -> Option<Referents> {
         let described = self.described(phrase, want).ok()?;
         let features: Vec<Features> = described.base.iter().map(|object| self.features(phrase, want, object)).collect();
-        let doubt = self.doubt(phrase);
+        let doubt = self.doubt(phrase, &features);
         let (probabilities, none) = self.judge.weights.probabilities(&features, &doubt);
         let mut candidates: Vec<Referent> = (described.base.iter().zip(features).zip(probabilities))
             .map(|((object, features), probability)| Referent { object: object.id, features, probability })
@@ -429,7 +429,7 @@ impl<'a> Ground<'a> {
     /// Those that are as described, with the probability of each, the likeliest first.
     fn ranked(&self, phrase: &Phrase, want: &Want<'_>, described: &Described<'a>) -> Vec<(f32, &'a KnownObject)> {
         let features: Vec<Features> = described.base.iter().map(|object| self.features(phrase, want, object)).collect();
-        let (probabilities, _) = self.judge.weights.probabilities(&features, &self.doubt(phrase));
+        let (probabilities, _) = self.judge.weights.probabilities(&features, &self.doubt(phrase, &features));
         let is_left = |object: &KnownObject| described.left.iter().any(|left| left.id == object.id);
         let mut ranked: Vec<(f32, &KnownObject)> =
             probabilities.into_iter().zip(described.base.iter().copied()).filter(|(_, one)| is_left(one)).collect();
@@ -465,8 +465,9 @@ impl<'a> Ground<'a> {
         is_same_place && describe::look_alike(self.catalog, one, other)
     }
 
-    fn doubt(&self, phrase: &Phrase) -> Doubt {
-        Doubt::new(self.judge.repairs, phrase.unknown.len())
+    fn doubt(&self, phrase: &Phrase, candidates: &[Features]) -> Doubt {
+        let has_mission = self.scene.objects.iter().any(|object| object.in_mission);
+        Doubt::new(self.judge.repairs, phrase.unknown.len(), has_mission, candidates)
     }
 
     /// Whether it is behind a closed door: people speak of what they see.

@@ -107,7 +107,7 @@ mod tests {
         assert!(!asks(Asking::Unsure, Intent::GoTo, 0.5));
         assert!(asks(Asking::Unsure, Intent::PickUp, 0.5));
         assert!(!asks(Asking::Unsure, Intent::PickUp, 0.7));
-        assert!(asks(Asking::Unsure, Intent::Break, 0.9));
+        assert!(asks(Asking::Unsure, Intent::Break, 0.9) && !asks(Asking::Unsure, Intent::PickUp, 0.9));
         assert!(!asks(Asking::Unsure, Intent::Break, 0.97));
         assert!(!asks(Asking::Never, Intent::Break, 0.3));
         assert!(asks(Asking::Always, Intent::GoTo, 0.9));
