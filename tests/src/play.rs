@@ -136,6 +136,15 @@ impl Play {
         }
     }
 
+    /// Sends a signal to the first process of the session that runs as `role`.
+    ///
+    /// # Errors
+    /// When there is none, or it is gone.
+    pub fn send(&self, role: &str, signal: Signal) -> anyhow::Result<()> {
+        let pid = self.processes(role).first().copied().and_then(Pid::from_raw).context("no such process")?;
+        Ok(kill_process(pid, signal)?)
+    }
+
     /// What it has said since it was last waited for a line.
     #[must_use]
     pub fn said(&self) -> String {

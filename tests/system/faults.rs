@@ -20,7 +20,7 @@ use cohabit_bus::{CameraId, Session, Shm, Topic, Transport as _};
 use cohabit_tests::{Page, Play, run};
 use person::{Person, WORK};
 use round::{Counts, Dice, Plan};
-use rustix::process::{Pid, Signal, kill_process};
+use rustix::process::Signal;
 use witness::Witness;
 
 use crate::COHABIT;
@@ -53,12 +53,6 @@ fn play(seed: u64, rounds: usize, at_once: usize) -> Counts {
     })
 }
 
-/// Sends a signal to the process of a session that runs as that role.
-fn send(play: &Play, role: &str, signal: Signal) {
-    let pid = play.processes(role)[0];
-    kill_process(Pid::from_raw(pid).unwrap(), signal).unwrap();
-}
-
 #[test]
 fn a_process_that_hangs_slows_nobody_and_carries_on_when_it_wakes() {
     for role in ["agent", "dialog", "record"] {
@@ -66,12 +60,12 @@ fn a_process_that_hangs_slows_nobody_and_carries_on_when_it_wakes() {
         let witness = Witness::new(&play.session).unwrap();
         let mut person = Person::at(play.authority()).unwrap();
         person.page.say(WORK).unwrap();
-        send(&play, role, Signal::STOP);
+        play.send(role, Signal::STOP).unwrap();
         // The world goes on: it is not asked how fast.
         witness.wait_for(witness.newest() + 120).unwrap();
-        send(&play, role, Signal::CONT);
+        play.send(role, Signal::CONT).unwrap();
         person.have_done().unwrap();
-        person.ask("what are you holding?", 2).unwrap();
+        person.ask("what are you holding?", 1).unwrap();
         let seen = witness.end().unwrap();
         let play = play.end().unwrap();
         let log = round::check_log(&play.log).unwrap();
@@ -87,10 +81,10 @@ fn a_question_outlives_who_asked_it() {
     person.page.do_and_wait("go to the lab").unwrap();
     let asked = person.page.chat.last().cloned().unwrap();
     assert!(asked.1.contains('?'), "{asked:?}");
-    send(&play, "dialog", Signal::KILL);
+    play.send("dialog", Signal::KILL).unwrap();
     while person.page.next_message().is_ok() {}
     person.page = person.open().unwrap();
-    person.ask("the robotics lab", 2).unwrap();
+    person.ask("the robotics lab", 1).unwrap();
     assert!(person.page.chat.contains(&asked), "{:?}", person.page.chat);
     let arrived = |page: &Page| page.state["robot"]["room"] == "Lab1";
     person.page.wait("the robot in the lab", |page, _| arrived(page)).unwrap();
@@ -104,7 +98,7 @@ fn who_hangs_for_ever_keeps_no_session_from_ending() {
     let deaf: Vec<_> = (0..3).map(|_| Page::open(play.authority()).unwrap()).collect();
     let mut page = Page::open(play.authority()).unwrap();
     page.do_and_wait("turn left 90 degrees").unwrap();
-    ["agent", "dialog"].iter().for_each(|role| send(&play, role, Signal::STOP));
+    ["agent", "dialog"].iter().for_each(|role| play.send(role, Signal::STOP).unwrap());
     play.end().unwrap();
     drop(deaf);
 }

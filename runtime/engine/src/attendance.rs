@@ -6,6 +6,8 @@ use cohabit_bus::{is_alive, message::NONE};
 
 /// Who lets its time run out so often in a row is not waited for any more, until it attends again.
 const MOST_TIMEOUTS: u32 = 10;
+/// The place of a recorder that dies is kept for so long: what its successor has not seen must not pass by on the bus.
+const SUCCEEDED_WITHIN: Duration = Duration::from_secs(10);
 
 /// All who are waited for.
 #[derive(Default)]
@@ -55,6 +57,9 @@ impl Attendance {
     /// Waits for somebody from now on.
     pub fn attend(&mut self, run: u64, body: u32, patience_nanos: u64) {
         self.leave(run);
+        if body == NONE {
+            self.attendees.retain(|attendee| attendee.body != NONE || is_alive(attendee.run));
+        }
         let patience = (patience_nanos > 0).then(|| Duration::from_nanos(patience_nanos));
         self.attendees.push(Attendee { run, body, patience, turn: Turn::Comes, timeouts_in_a_row: 0 });
         // Whoever came first: the order of turns is that of bodies.
@@ -112,6 +117,9 @@ impl Attendance {
             let Attendee { run, body, .. } = *attendee;
             let who = if body == NONE { "the recorder".to_owned() } else { format!("the agent of body {body}") };
             if !is_alive(run) {
+                if body == NONE && since.elapsed() < SUCCEEDED_WITHIN {
+                    return true;
+                }
                 let sentence = format!("{who} is gone; it is not waited for any more");
                 given_up.push(TimedOut { body, count: self.timeouts, sentence });
                 return false;
@@ -135,6 +143,9 @@ impl Attendance {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// No process has such a number.
+    const DEAD: u64 = 0xff_ffff << 40;
 
     fn run(number: u64) -> u64 {
         (u64::from(std::process::id()) << 40) + number
@@ -189,9 +200,21 @@ mod tests {
     #[test]
     fn the_dead_are_not_waited_for() {
         let mut all = Attendance::default();
-        all.attend(0xff_ffff << 40, 0, 0);
+        all.attend(DEAD, 0, 0);
         all.ask(0);
         assert_eq!(all.give_up(0).len(), 1);
         assert_eq!(all.count(), 0);
+    }
+
+    #[test]
+    fn a_dead_recorder_is_waited_for_until_another_takes_its_place() {
+        let mut all = Attendance::default();
+        all.attend(DEAD, NONE, 1);
+        all.ask(0);
+        assert!(all.give_up(0).is_empty() && all.is_awaited());
+        all.attend(run(1), NONE, 0);
+        assert_eq!(all.ask(0).runs, [run(1)]);
+        all.ready(run(1), 0, 1);
+        assert!(!all.is_awaited());
     }
 }

@@ -183,7 +183,7 @@ impl Plan {
         let mut person = Person { authority: play.authority().to_owned(), page };
         person.have_done()?;
         let done_after = Duration::from_nanos(wall_nanos() - killed);
-        person.ask("what are you holding?", 2)?;
+        person.ask("what are you holding?", 1)?;
         drop(person);
         let seen = witness.end()?;
         let play = play.end()?;
