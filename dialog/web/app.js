@@ -7,10 +7,10 @@ import { enlargeMap, floor } from "./floor.js";
 import { expandGoals, takeState } from "./goals.js";
 import { greeted, listen, watchSilence } from "./socket.js";
 import { clearChat, endDoing, input, say, takeLatency, takeLine, takeProgress, takeTurn } from "./talk.js";
-import { buildViews, nextView, showRate, takeFrame, takeSeen } from "./view.js";
+import { buildViews, nextView, showRate, takeFrame, takeMarks, takeSeen } from "./view.js";
 
 /** What tests and curious people may read. */
-window.cohabit = { frames: 0, state: null, latency: null, view: null, seen: null, driving: null, aim: null };
+window.cohabit = { frames: 0, state: null, latency: null, view: null, seen: null, driving: null, aim: null, marks: [] };
 
 function takeHello({ session, mission, map, views, drivable }) {
   greeted();
@@ -57,6 +57,7 @@ listen({
   turn: takeTurn,
   latency: takeLatency,
   seen: takeSeen,
+  marks: takeMarks,
   driving: takeDriving,
   aim: takeAim,
   acted: takeActed,

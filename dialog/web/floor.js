@@ -174,8 +174,10 @@ class Floor {
         drawn("rect", { x: -0.55, y: -0.55, width: 1.1, height: 1.1, rx: 0.14 }))));
   }
 
-  pointOut({ x, y, name }) {
+  /** Shows where a thing is; one with a number stays until the question it answers is past. */
+  pointOut({ x, y, name, number }) {
     if (!this.pulses) return;
+    if (number) this.mark(x, y, number);
     const label = drawn("text", { class: "map-name", y: -1.5 });
     label.textContent = name;
     const pulse = drawn("g", { class: "map-pulse", transform: `translate(${x} ${-y})` },
@@ -183,6 +185,18 @@ class Floor {
     this.pulses.append(pulse);
     this.keepInside(label, x);
     setTimeout(() => pulse.remove(), HIGHLIGHT_MS);
+  }
+
+  mark(x, y, number) {
+    for (const old of this.pulses.querySelectorAll(`.map-mark[data-number="${number}"]`)) old.remove();
+    const label = drawn("text", { y: 0.42 });
+    label.textContent = number;
+    this.pulses.append(drawn("g", { class: "map-mark", "data-number": number, transform: `translate(${x} ${-y})` },
+      drawn("circle", { r: 0.85 }), label));
+  }
+
+  forgetMarks() {
+    for (const mark of this.pulses?.querySelectorAll(".map-mark") ?? []) mark.remove();
   }
 
   /** Shifts a name sideways so that it stays on the plan. */

@@ -1,6 +1,7 @@
 // The conversation: what was said, what the robot is about, and what a person types.
 
 import { byId, capitalised, element, narrow, toast } from "./dom.js";
+import { floor } from "./floor.js";
 import { send } from "./socket.js";
 
 /** So near its end, the log follows what is said, px. */
@@ -22,6 +23,7 @@ export function clearChat() {
 export function takeLine(line) {
   const atEnd = log.scrollHeight - log.scrollTop - log.clientHeight < NEAR_END_PX;
   const replayed = log.hasAttribute("aria-busy");
+  if (line.from !== "game") closeQuestions();
   const bubble = lineOf(line);
   if (line.from === lastFrom) bubble.classList.add("follows");
   if (!replayed) bubble.classList.add("fresh");
@@ -39,7 +41,35 @@ export function takeLine(line) {
   }
 }
 
-function lineOf({ from, kind, text }) {
+/** The answers that a question offers, numbered if they are objects; clicking on one gives it. */
+function answersOf(answers) {
+  const list = element("div", "answers");
+  list.append(...answers.map(({ text, object }, index) => {
+    const button = element("button", "");
+    button.type = "button";
+    if (object !== undefined) button.append(element("b", "answer-number", String(index + 1)), " ");
+    button.append(text);
+    button.addEventListener("click", () => {
+      if (object === undefined) say(text);
+      else choose(object);
+      if (!narrow.matches) input.focus();
+    });
+    return button;
+  }));
+  return list;
+}
+
+function choose(object) {
+  if (!send({ type: "choose", object })) toast("There is no connection at the moment; please try again in a while.");
+}
+
+/** An answer is given once: what came before is past. */
+function closeQuestions() {
+  for (const button of log.querySelectorAll(".answers button:enabled")) button.disabled = true;
+  floor.forgetMarks();
+}
+
+function lineOf({ from, kind, text, answers = [] }) {
   const bubble = element("div", `line from-${from} kind-${kind}`);
   const speaker = { person: "You: ", robot: "Robot: ", game: "" }[from] ?? "";
   if (speaker) bubble.append(element("span", "unseen", speaker));
@@ -54,6 +84,7 @@ function lineOf({ from, kind, text }) {
     bubble.classList.toggle("failed", /fail/i.test(text));
   }
   bubble.append(element("span", "line-text", text));
+  if (answers.length) bubble.append(answersOf(answers));
   return bubble;
 }
 

@@ -112,6 +112,7 @@ export function lookThrough(view, chosen = true) {
   byId("views-more").value = listed;
   byId("views-more").classList.toggle("chosen", Boolean(listed));
   hideSeen();
+  byId("marks").replaceChildren();
   if (!first) {
     if (chosen) rememberView(view.camera);
     byId("seen").textContent = view.name;
@@ -165,10 +166,8 @@ view.addEventListener("click", (event) => {
 export function takeSeen({ name, x, y, at }) {
   window.cohabit.seen = name;
   const label = byId("seen");
-  const [frame, box] = [view.parentElement.getBoundingClientRect(), view.getBoundingClientRect()];
-  const scale = Math.min(box.width / view.width, box.height / view.height);
-  const left = box.left - frame.left + (box.width - view.width * scale) / 2 + x * view.width * scale;
-  const top = box.top - frame.top + (box.height - view.height * scale) / 2 + y * view.height * scale;
+  const frame = view.parentElement.getBoundingClientRect();
+  const [left, top] = onScreen(x, y);
   label.textContent = capitalised(name);
   label.classList.add("placed");
   const half = label.offsetWidth / 2 + 6;
@@ -177,6 +176,29 @@ export function takeSeen({ name, x, y, at }) {
   clearTimeout(seenTimer);
   seenTimer = setTimeout(hideSeen, SEEN_MS);
   if (at) floor.pointOut({ x: at[0], y: at[1], name });
+}
+
+/** Numbers over the things that the robot asks about, where they are in the picture. */
+export function takeMarks({ camera, marks }) {
+  window.cohabit.marks = marks;
+  const shown = camera === looking?.camera ? marks : [];
+  byId("marks").replaceChildren(...shown.map(({ number, x, y }) => {
+    const mark = element("span", "mark", String(number));
+    const [left, top] = onScreen(x, y);
+    mark.style.left = `${left}px`;
+    mark.style.top = `${Math.max(14, top)}px`;
+    return mark;
+  }));
+}
+
+/** Where a place of the picture, 0 to 1 from the left and from the top, is in the frame around it, px. */
+function onScreen(x, y) {
+  const [frame, box] = [view.parentElement.getBoundingClientRect(), view.getBoundingClientRect()];
+  const scale = Math.min(box.width / view.width, box.height / view.height);
+  return [
+    box.left - frame.left + (box.width - view.width * scale) / 2 + x * view.width * scale,
+    box.top - frame.top + (box.height - view.height * scale) / 2 + y * view.height * scale,
+  ];
 }
 
 export function hideSeen() {

@@ -112,6 +112,14 @@ impl Known {
         distance_m(self.robot.position_m, object.position_m)
     }
 
+    /// The direction of an object that is in the robot's room and not in its hand: positive to its left, within a half
+    /// turn, rad.
+    #[must_use]
+    pub fn bearing_in_room_rad(&self, id: ObjectId) -> Option<f32> {
+        let object = self.object(id).filter(|object| object.room == self.robot.room && self.robot.held != Some(id))?;
+        Some(self.bearing_rad(object))
+    }
+
     /// The direction of an object as the robot sees it: positive to its left, within a half turn.
     pub(crate) fn bearing_rad(&self, object: &KnownObject) -> f32 {
         let dx = object.position_m[0] - self.robot.position_m[0];

@@ -9,12 +9,12 @@ use cohabit_bus::{
     message::{DialogHeader, DialogKind, DialogMessage, PlanStep},
 };
 use cohabit_cdf::{Action, Catalog, GoToTarget, ObjectId, Status};
-use cohabit_language::{Clarification, Context, Language, Step, Understanding};
+use cohabit_language::{Asking, Clarification, Context, Language, Step, Understanding};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use crate::known::Knowledge;
-use crate::page::{self, Line, LineKind, Speaker};
+use crate::page::{self, Answer, Line, LineKind, Speaker};
 
 /// What the conversation wants done.
 #[derive(Clone, Debug, PartialEq)]
@@ -87,16 +87,35 @@ pub struct Conversation {
     language: Language,
     body: u32,
     memory: Memory,
-    asked: Option<Asked>,
 }
 
 /// What the robot asks.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Asked {
     /// What kind of answer it needs.
     pub kind: Clarification,
     /// The objects in question.
     pub candidates: Vec<ObjectId>,
+}
+
+impl Asked {
+    /// Whether pointing at an object answers it.
+    pub fn is_answered_by(&self, object: ObjectId) -> bool {
+        match self.kind {
+            Clarification::Reference | Clarification::Confirmation => self.candidates.contains(&object),
+            Clarification::Location | Clarification::Appearance => true,
+            Clarification::Direction | Clarification::Request => false,
+        }
+    }
+
+    /// The answers that a page offers: of a reference, its candidates.
+    fn answers(&self, options: Vec<String>) -> Vec<Answer> {
+        let object = |at: usize| {
+            let candidate = self.candidates.get(at).filter(|_| self.kind == Clarification::Reference)?;
+            Some(candidate.0)
+        };
+        options.into_iter().enumerate().map(|(at, text)| Answer { text, object: object(at) }).collect()
+    }
 }
 
 #[derive(Clone, Debug, Deserialize, Serialize)]
@@ -116,6 +135,19 @@ pub struct Memory {
     turns: u64,
     context: Context,
     plans: BTreeMap<u64, Plan>,
+    #[serde(default)]
+    asked: Option<Asked>,
+}
+
+/// The most objects that are shown one after the other.
+const MOST_SHOWN: usize = 6;
+/// What is further to the side than this is out of sight, rad.
+const HALF_VIEW_RAD: f32 = 0.7;
+
+fn within_half_turn(angle_rad: f32) -> f32 {
+    let turn = std::f32::consts::TAU;
+    let wrapped = angle_rad.rem_euclid(turn);
+    if wrapped > turn / 2.0 { wrapped - turn } else { wrapped }
 }
 
 /// The most plans of which the end is waited for; an agent ends one when it begins the next.
@@ -129,12 +161,18 @@ impl Conversation {
 
     /// A conversation that goes on.
     pub fn after(memory: Memory, catalog: Arc<Catalog>, body: u32) -> Self {
-        Self { language: Language::new(catalog), body, memory, asked: None }
+        Self { language: Language::new(catalog), body, memory }
+    }
+
+    /// The same, with a robot that asks at other times.
+    #[must_use]
+    pub fn asking(self, asking: Asking) -> Self {
+        Self { language: self.language.asking(asking), ..self }
     }
 
     /// What it asks, if that is the last that it said.
     pub const fn asked(&self) -> Option<&Asked> {
-        self.asked.as_ref()
+        self.memory.asked.as_ref()
     }
 
     /// What it must know to go on where it is.
@@ -184,6 +222,24 @@ impl Conversation {
         (turn, reactions)
     }
 
+    /// Somebody points at an object, as an answer or to speak of it. Gives the turn's number and what follows.
+    pub fn choose(&mut self, object: ObjectId, knowledge: &Knowledge) -> (u64, Vec<Reaction>) {
+        let known = knowledge.known();
+        let Some(known) = known.filter(|known| known.object(object).is_some()) else {
+            return self.hear("this one", knowledge);
+        };
+        self.memory.turns += 1;
+        let turn = self.memory.turns;
+        let text = self.language.name(object, &known);
+        let mut reactions = vec![
+            self.bus(DialogKind::Utterance, turn, &text),
+            Reaction::Chat(Line::new(Speaker::Person, LineKind::Say, turn, text)),
+        ];
+        let understanding = self.language.choose(object, &known, &mut self.memory.context);
+        self.react(turn, turn, understanding, knowledge, &mut reactions);
+        (turn, reactions)
+    }
+
     /// Says and does what was understood in `turn`; what is to be done is the plan of that number.
     fn react(
         &mut self,
@@ -193,7 +249,7 @@ impl Conversation {
         knowledge: &Knowledge,
         reactions: &mut Vec<Reaction>,
     ) {
-        self.asked = None;
+        self.memory.asked = None;
         match understanding {
             Understanding::Plan { steps, reply } => {
                 self.say(turn, DialogKind::Reply, LineKind::Say, &reply, reactions);
@@ -203,14 +259,18 @@ impl Conversation {
                     plan.missing = missing;
                 }
             }
-            Understanding::Question { kind, text, candidates, .. } => {
-                self.asked = Some(Asked { kind, candidates: candidates.clone() });
-                self.say(turn, DialogKind::Question, LineKind::Question, &text, reactions);
-                self.point_out(turn, number, &candidates, TurnEnd::Asked, reactions);
+            Understanding::Question { kind, text, candidates, options, .. } => {
+                let asked = Asked { kind, candidates: candidates.clone() };
+                let mut line = Line::new(Speaker::Robot, LineKind::Question, turn, text);
+                line.answers = asked.answers(options);
+                self.memory.asked = Some(asked);
+                reactions.push(self.bus(DialogKind::Question, turn, &line.text));
+                reactions.push(Reaction::Chat(line));
+                self.point_out(turn, number, &candidates, knowledge, TurnEnd::Asked, reactions);
             }
             Understanding::Answer { text, highlight } => {
                 self.say(turn, DialogKind::Reply, LineKind::Say, &text, reactions);
-                self.point_out(turn, number, &highlight, TurnEnd::Answered, reactions);
+                self.point_out(turn, number, &highlight, knowledge, TurnEnd::Answered, reactions);
             }
             Understanding::Refusal { text } => {
                 self.say(turn, DialogKind::Reply, LineKind::Problem, &text, reactions);
@@ -243,7 +303,7 @@ impl Conversation {
                 self.memory.context.note_outcome(&step, status);
                 let whole = status.is_success() && header.step as usize + 1 == count;
                 let failed = status.is_failure();
-                let is_worth_telling = (whole && worth_telling(step.action)) || failed;
+                let is_worth_telling = (whole && worth_telling(&step)) || failed;
                 let is_worth_telling =
                     is_worth_telling && plan.missing.is_none() && !self.memory.context.is_searching();
                 if is_worth_telling && !plan.told_end {
@@ -317,14 +377,41 @@ impl Conversation {
         message
     }
 
-    /// Has objects outlined, one after the other, without anything being said about it.
-    fn point_out(&mut self, turn: u64, number: u64, objects: &[ObjectId], end: TurnEnd, reactions: &mut Vec<Reaction>) {
-        if objects.is_empty() {
+    /// Has objects outlined, one after the other, without anything being said about it; the robot turns to those behind it
+    /// and back.
+    fn point_out(
+        &mut self,
+        turn: u64,
+        number: u64,
+        objects: &[ObjectId],
+        knowledge: &Knowledge,
+        end: TurnEnd,
+        reactions: &mut Vec<Reaction>,
+    ) {
+        let shown = &objects[..objects.len().min(MOST_SHOWN)];
+        if shown.is_empty() {
             reactions.push(Reaction::TurnEnded { turn, end });
             return;
         }
-        let point = |object: &ObjectId| Step { action: Action::Highlight { object: *object }, says: String::new() };
-        self.plan(turn, number, objects.iter().map(point).collect(), reactions);
+        let known = knowledge.known();
+        let silently = |action| Step { action, says: String::new() };
+        let mut steps = Vec::new();
+        let mut turned_rad = 0.0;
+        for object in shown {
+            if let Some(bearing) = known.as_ref().and_then(|known| known.bearing_in_room_rad(*object)) {
+                let turn_rad = within_half_turn(bearing - turned_rad);
+                if turn_rad.abs() > HALF_VIEW_RAD {
+                    steps.push(silently(Action::Rotate { yaw_rad: turn_rad }));
+                    turned_rad += turn_rad;
+                }
+            }
+            steps.push(silently(Action::Highlight { object: *object }));
+        }
+        let back_rad = within_half_turn(-turned_rad);
+        if back_rad.abs() > f32::EPSILON {
+            steps.push(silently(Action::Rotate { yaw_rad: back_rad }));
+        }
+        self.plan(turn, number, steps, reactions);
     }
 
     fn say(&self, turn: u64, kind: DialogKind, line: LineKind, text: &str, reactions: &mut Vec<Reaction>) {
@@ -358,6 +445,6 @@ const fn goes_on(status: Status) -> bool {
 }
 
 /// Whether the end of a plan whose last step is this is told; that it stopped or pointed was told before.
-const fn worth_telling(action: Action) -> bool {
-    !matches!(action, Action::Stop | Action::Highlight { .. })
+fn worth_telling(step: &Step) -> bool {
+    !matches!(step.action, Action::Stop | Action::Highlight { .. }) && !step.says.is_empty()
 }

@@ -8,6 +8,7 @@ use std::{
     },
 };
 
+use cohabit_cdf::ObjectId;
 use serde_json::Value;
 use tokio::sync::broadcast;
 
@@ -23,6 +24,8 @@ pub struct Hub {
     hello: String,
     lines: Mutex<VecDeque<String>>,
     state: Mutex<Option<String>>,
+    /// The objects that the robot asks about, in the order of their numbers.
+    marked: Mutex<Arc<[ObjectId]>>,
     messages: broadcast::Sender<Arc<str>>,
     /// The cameras that pages can look through, the usual one first.
     pub views: Vec<Arc<View>>,
@@ -55,6 +58,7 @@ impl Hub {
             hello: hello.to_string(),
             lines: Mutex::default(),
             state: Mutex::default(),
+            marked: Mutex::default(),
             messages: broadcast::Sender::new(MESSAGES_KEPT),
             views: views.into_iter().map(Arc::new).collect(),
             pages: AtomicUsize::new(0),
@@ -108,6 +112,19 @@ impl Hub {
             *kept = Some(text.clone());
             let _ = self.messages.send(text.into());
         }
+    }
+
+    /// Has these objects numbered in the pictures.
+    pub fn mark(&self, objects: &[ObjectId]) {
+        let mut marked = lock(&self.marked);
+        if **marked != *objects {
+            *marked = objects.into();
+        }
+    }
+
+    /// The objects that are numbered in the pictures, the first first.
+    pub fn marked(&self) -> Arc<[ObjectId]> {
+        Arc::clone(&lock(&self.marked))
     }
 
     /// A page has shown a frame.

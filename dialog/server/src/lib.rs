@@ -61,6 +61,8 @@ pub struct DialogConfig {
     pub drivable: Drivable,
     /// What the robot may know.
     pub knows: Knows,
+    /// When it asks.
+    pub asking: Asking,
     /// Called once, when a page says that it has shown a frame.
     pub on_first_frame: Box<dyn Fn() + Send + Sync>,
 }
@@ -112,7 +114,7 @@ pub fn serve(
     let journal = Journal::open(config.journal.as_deref());
     let (listener, place) = listen(config.listen, journal.past().place.as_ref())?;
     let knowledge = Knowledge::new(config.knows, Arc::clone(&catalog), &layout, talk::BODY);
-    let talk = Talk::new(&*bus, catalog, knowledge, Arc::clone(&hub), Arc::clone(&drivers), journal)?;
+    let talk = Talk::new(&*bus, catalog, knowledge, config.asking, Arc::clone(&hub), Arc::clone(&drivers), journal)?;
     let ears = Ears::new(&*bus)?;
     talk.serve_at(place.clone());
     let Place { address, token } = place;

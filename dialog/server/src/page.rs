@@ -54,12 +54,25 @@ pub struct Line {
     pub turn: u64,
     /// What.
     pub text: String,
+    /// Answers that a question offers.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub answers: Vec<Answer>,
+}
+
+/// An answer that a question offers.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub struct Answer {
+    /// What it says.
+    pub text: String,
+    /// The object it means; without one, it is said.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub object: Option<u32>,
 }
 
 impl Line {
     /// A line of chat.
     pub fn new(from: Speaker, kind: LineKind, turn: u64, text: impl Into<String>) -> Self {
-        Self { message: Self::message(), from, kind, turn, text: text.into() }
+        Self { message: Self::message(), from, kind, turn, text: text.into(), answers: Vec::new() }
     }
 
     const fn message() -> &'static str {
@@ -252,10 +265,17 @@ pub fn name<'a>(object: &ObjectRecord, catalog: &'a Catalog) -> &'a str {
     if known { &catalog.class(ClassId(object.class)).name } else { "something" }
 }
 
-/// An object is pointed out.
-pub fn highlight(object: &ObjectRecord, catalog: &Catalog) -> Value {
+/// An object is pointed out, with its number if it is one of several answers.
+pub fn highlight(object: &ObjectRecord, number: Option<usize>, catalog: &Catalog) -> Value {
     let [x, y, _] = object.position_m;
-    json!({ "type": "highlight", "x": x, "y": y, "name": name(object, catalog) })
+    json!({ "type": "highlight", "x": x, "y": y, "name": name(object, catalog), "number": number })
+}
+
+/// Where in the picture of a camera the numbered answers to the open question are: number, and how far from the left and
+/// from the top, 0 to 1.
+pub fn marks(camera: CameraId, marks: &[(usize, [f32; 2])]) -> Value {
+    let mark = |(number, [x, y]): &(usize, [f32; 2])| json!({ "number": number, "x": x, "y": y });
+    json!({ "type": "marks", "camera": camera.to_string(), "marks": marks.iter().map(mark).collect::<Vec<Value>>() })
 }
 
 /// A plan goes on.

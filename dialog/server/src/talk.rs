@@ -12,6 +12,7 @@ use cohabit_bus::{
     monotonic_nanos,
 };
 use cohabit_cdf::{BodyId, Catalog, ObjectId};
+use cohabit_language::Asking;
 use serde_json::Value;
 
 use crate::{
@@ -53,6 +54,7 @@ impl Talk {
         bus: &dyn Transport,
         catalog: Arc<Catalog>,
         mut knowledge: Knowledge,
+        asking: Asking,
         hub: Arc<Hub>,
         drivers: Arc<Drivers>,
         journal: Journal,
@@ -61,7 +63,7 @@ impl Talk {
         let memory = journal.past().conversation.clone();
         knowledge.study(&journal.past().lessons);
         let mut inner = Inner {
-            conversation: Conversation::after(memory, Arc::clone(&catalog), BODY.0),
+            conversation: Conversation::after(memory, Arc::clone(&catalog), BODY.0).asking(asking),
             knowledge,
             journal,
             latency: Latency::default(),
@@ -105,6 +107,21 @@ impl Talk {
         let (turn, reactions) = conversation.hear(text, knowledge);
         inner.latency.begin(turn, received_nanos, monotonic_nanos());
         self.carry_out(&mut inner, None, reactions)
+    }
+
+    /// Somebody at a page chose an object, received at `received_nanos`.
+    pub fn choose(&self, object: ObjectId, received_nanos: u64) -> Result<(), DialogError> {
+        let mut inner = self.lock();
+        inner.look()?;
+        let Inner { conversation, knowledge, .. } = &mut *inner;
+        let (turn, reactions) = conversation.choose(object, knowledge);
+        inner.latency.begin(turn, received_nanos, monotonic_nanos());
+        self.carry_out(&mut inner, None, reactions)
+    }
+
+    /// Whether pointing at an object answers what the robot asks.
+    pub fn is_answer(&self, object: ObjectId) -> bool {
+        self.lock().conversation.asked().is_some_and(|asked| asked.is_answered_by(object))
     }
 
     /// Notes where the page is served.
@@ -177,7 +194,9 @@ impl Talk {
         let Some(sample) = &inner.newest else { return Ok(()) };
         let state = StateView::new(sample.payload())?;
         if let Some(record) = state.objects.iter().find(|record| record.object == object) {
-            self.hub.tell(&page::highlight(record, &self.catalog));
+            let asked = inner.conversation.asked().filter(|asked| asked.candidates.len() > 1);
+            let at = asked.and_then(|asked| asked.candidates.iter().position(|one| one.0 == object));
+            self.hub.tell(&page::highlight(record, at.map(|at| at + 1), &self.catalog));
         }
         Ok(())
     }
@@ -242,6 +261,8 @@ impl Talk {
                 }
             }
         }
+        let asked = inner.conversation.asked().filter(|asked| asked.candidates.len() > 1);
+        self.hub.mark(asked.map(|asked| asked.candidates.as_slice()).unwrap_or_default());
         inner.journal.told();
         Ok(())
     }

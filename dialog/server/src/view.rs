@@ -9,7 +9,8 @@ use std::{
     time::Duration,
 };
 
-use cohabit_bus::CameraId;
+use cohabit_bus::{CameraId, message::Thing};
+use cohabit_cdf::ObjectId;
 use tokio::sync::watch;
 
 /// A frame as pages get it: JPEG behind a header of one kind byte (1), the view's index, six zero bytes, and the tick,
@@ -35,6 +36,28 @@ impl Ids {
             (run[0], end)
         });
         Self { tick, size, runs: runs.collect() }
+    }
+
+    /// Where each of these objects is, if it is seen: the middle of its pixels from the left, the first from the top.
+    fn places(&self, objects: &[ObjectId]) -> Vec<Option<[f32; 2]>> {
+        let mut sums = vec![(0_u64, 0_u64, u32::MAX); objects.len()];
+        let mut start = 0;
+        for (id, end) in &self.runs {
+            if let Some(at) = objects.iter().position(|object| Thing::of_id(*id) == Thing::Object(*object)) {
+                let (pixels, columns, top) = &mut sums[at];
+                // A run goes on in the next row; its middle is then taken for that of the whole width.
+                let [first, last] = [start, end - 1].map(|pixel| u64::from(pixel % self.size[0]));
+                let middle = if first <= last { (first + last) / 2 } else { u64::from(self.size[0] / 2) };
+                let count = u64::from(end - start);
+                (*pixels, *columns, *top) = (*pixels + count, *columns + count * middle, (*top).min(start / self.size[0]));
+            }
+            start = *end;
+        }
+        let [width, height] = self.size.map(|side| side.max(1) as f32);
+        let place = |(pixels, columns, top): (u64, u64, u32)| {
+            (pixels > 0).then(|| [(columns / pixels) as f32 / width, top as f32 / height])
+        };
+        sums.into_iter().map(place).collect()
     }
 
     /// The id at a place: 0 to 1 from the left and from the top.
@@ -138,6 +161,11 @@ const AIM_SPOKES: [[f32; 2]; 8] =
     [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0], [0.7, 0.7], [-0.7, 0.7], [-0.7, -0.7], [0.7, -0.7]];
 
 impl View {
+    /// Where each of these objects is in the newest frame, if it is seen there.
+    pub fn places(&self, objects: &[ObjectId]) -> Vec<Option<[f32; 2]>> {
+        lock(&self.ids).front().map_or_else(|| vec![None; objects.len()], |ids| ids.places(objects))
+    }
+
     /// What is in and around the middle of the newest frame, each thing once, the nearest first.
     pub fn ids_in_the_middle(&self) -> Vec<u32> {
         let kept = lock(&self.ids);
@@ -173,6 +201,15 @@ mod tests {
         assert_eq!(at(1, 0.9, 0.1), Some(3), "the oldest that is kept");
         view.forget();
         assert_eq!(at(6, 0.9, 0.1), None);
+    }
+
+    #[test]
+    fn things_are_found_where_they_are_seen() {
+        let view = View::new(CameraId::Spectator(0));
+        assert_eq!(view.places(&[ObjectId(6)]), [None]);
+        let ids = [1, 1, 1, 1, 1, 7, 7, 1, 1, 7, 7, 1];
+        view.show(Frame::default(), Some(Ids::new(1, [4, 3], &ids)));
+        assert_eq!(view.places(&[ObjectId(6), ObjectId(7)]), [Some([0.25, 1.0 / 3.0]), None]);
     }
 
     #[test]

@@ -19,10 +19,12 @@ use tokio::{
 };
 
 use crate::{
+    DialogError,
     affordances::Deed,
     driving::{Driver, News, Told},
     limits::{LONGEST_TEXT, Limits, MOST_PAGES},
     page,
+    talk::Talk,
     view::{Frame, View, Viewing},
     web::Service,
 };
@@ -46,6 +48,8 @@ enum FromPage {
     Shown,
     /// Somebody wants to look through another camera.
     View { camera: String },
+    /// Somebody chose one of the objects that a question offers.
+    Choose { object: u32 },
     /// Somebody points at something in the picture: how far from the left and from the top, 0 to 1.
     Point { camera: String, tick: u64, x: f32, y: f32 },
     /// Somebody wants to drive a body.
@@ -82,6 +86,8 @@ struct Visit {
     limits: Limits,
     driver: Option<Driver>,
     aim: Aim,
+    /// Where the numbered objects are, as the page was told.
+    marks: Vec<(usize, [f32; 2])>,
     /// Since when the page has been asked whether it is there, without a word from it.
     asked_at: Option<Instant>,
 }
@@ -103,7 +109,7 @@ impl Visit {
         let (mut frames, viewing) = view.join();
         frames.mark_changed();
         let aim = Aim { told: Value::Null, at: now, picked: None };
-        Self { service, view, frames, _viewing: viewing, limits: Limits::new(now), driver: None, aim, asked_at: None }
+        Self { service, view, frames, _viewing: viewing, limits: Limits::new(now), driver: None, aim, marks: Vec::new(), asked_at: None }
     }
 
     async fn run(mut self, mut socket: WebSocket, mut messages: broadcast::Receiver<Arc<str>>) {
@@ -155,7 +161,21 @@ impl Visit {
     fn show(&mut self) -> Vec<Message> {
         let frame = self.frames.borrow_and_update().clone();
         let frame = frame.map(|frame| Message::binary(frame.to_vec()));
-        frame.into_iter().chain(self.look(false)).collect()
+        frame.into_iter().chain(self.mark()).chain(self.look(false)).collect()
+    }
+
+    /// Where what the robot asks about is in the newest frame, if that is news.
+    fn mark(&mut self) -> Option<Message> {
+        let marked = self.service.hub.marked();
+        if marked.is_empty() && self.marks.is_empty() {
+            return None;
+        }
+        let places = (1..).zip(self.view.places(&marked));
+        let marks: Vec<(usize, [f32; 2])> = places.filter_map(|(number, place)| Some((number, place?))).collect();
+        (marks != self.marks).then(|| {
+            self.marks = marks;
+            tell(&page::marks(self.view.camera, &self.marks))
+        })
     }
 
     /// What is before the driven body, if that is news.
@@ -239,7 +259,9 @@ impl Visit {
         match message {
             FromPage::Shown => self.service.hub.note_shown(),
             FromPage::View { camera } => self.look_through(&camera)?,
-            FromPage::Point { camera, tick, x, y } => return self.point(&camera, tick, [x, y]),
+            FromPage::Point { camera, tick, x, y } => {
+                return self.point(&camera, tick, [x, y], received_nanos).await;
+            }
             FromPage::DriveBody { body } => {
                 self.driver = None;
                 self.driver = Some(Driver::claim(&self.service.drivers, body)?);
@@ -247,6 +269,7 @@ impl Visit {
             FromPage::Release => self.driver = None,
             FromPage::Act { deed, object } => return self.act(deed, ObjectId(object)),
             FromPage::Say { text } => self.say(&text, received_nanos).await?,
+            FromPage::Choose { object } => self.choose(ObjectId(object), received_nanos).await?,
             FromPage::Drive { .. } => {}
         }
         Ok(Vec::new())
@@ -282,12 +305,23 @@ impl Visit {
     }
 
     /// Says what somebody points at; who drives may then do something with it.
-    fn point(&mut self, camera: &str, tick: u64, place: [f32; 2]) -> Result<Vec<Message>, String> {
+    async fn point(
+        &mut self,
+        camera: &str,
+        tick: u64,
+        place: [f32; 2],
+        received_nanos: u64,
+    ) -> Result<Vec<Message>, String> {
         let Some(id) = self.view_of(camera)?.id_at(tick, place) else { return Ok(Vec::new()) };
         let thing = Thing::of_id(id);
         if let (Thing::Object(object), Some(_)) = (thing, &self.driver) {
             self.aim.picked = Some(object);
             return Ok(self.look(true).into_iter().collect());
+        }
+        if let Thing::Object(object) = thing
+            && self.service.talk.is_answer(object)
+        {
+            self.choose(object, received_nanos).await?;
         }
         let seen = self.service.talk.seen(thing, place).map_err(|error| error.to_string())?;
         Ok(seen.iter().map(tell).collect())
@@ -301,9 +335,19 @@ impl Visit {
         if text.len() > LONGEST_TEXT {
             return Err(format!("That is too long for me: {LONGEST_TEXT} characters at most, please."));
         }
+        self.tell_robot(move |talk| talk.hear(&text, received_nanos)).await
+    }
+
+    async fn choose(&mut self, object: ObjectId, received_nanos: u64) -> Result<(), String> {
+        self.tell_robot(move |talk| talk.choose(object, received_nanos)).await
+    }
+
+    async fn tell_robot(
+        &mut self,
+        tell: impl FnOnce(&Talk) -> Result<(), DialogError> + Send + 'static,
+    ) -> Result<(), String> {
         let talk = Arc::clone(&self.service.talk);
-        let heard = tokio::task::spawn_blocking(move || talk.hear(&text, received_nanos)).await;
-        if let Ok(Err(error)) = heard {
+        if let Ok(Err(error)) = tokio::task::spawn_blocking(move || tell(&talk)).await {
             tracing::error!("{error}");
             return Err("The robot cannot be reached.".to_owned());
         }

@@ -45,6 +45,9 @@ pub struct Eval {
     /// What the robot may know: `everything` there is, or what it has `seen` so far
     #[arg(long, default_value_t)]
     knows: Knows,
+    /// When the robot asks: `never`, when it is `unsure`, or `always`, and before it does anything
+    #[arg(long, value_name = "WHEN", default_value_t)]
+    ask: Asking,
     /// Write a session log of each mission into this folder
     #[arg(long, value_name = "DIR")]
     record: Option<PathBuf>,
@@ -165,7 +168,7 @@ impl Eval {
         Settings {
             seed: self.seed,
             knows: self.knows,
-            asking: Asking::default(),
+            asking: self.ask,
             style: self.style(),
             caps: self.caps.map(|caps| caps.0),
             record: self.record.clone(),

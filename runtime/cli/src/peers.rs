@@ -12,7 +12,7 @@ use std::{
 use anyhow::Context as _;
 use cohabit_bus::{Session, Shm, message::Control};
 use cohabit_cdf::BodyRequest;
-use cohabit_dialog::{DialogConfig, Drivable, Knows};
+use cohabit_dialog::{Asking, DialogConfig, Drivable, Knows};
 use cohabit_engine::{CameraPlan, SessionPlan, Simulator};
 use cohabit_record::{LogError, RecordError, Recorder};
 use cohabit_render::MeshLibrary;
@@ -206,6 +206,9 @@ pub struct Listening {
     /// What the robot may know: `everything` there is, or what it has `seen` so far, beside the floor plan
     #[arg(long, default_value_t)]
     pub knows: Knows,
+    /// When the robot asks: `never`, when it is `unsure`, or `always`, and before it does anything
+    #[arg(long, value_name = "WHEN", default_value_t)]
+    pub ask: Asking,
 }
 
 impl Dialog {
@@ -221,6 +224,7 @@ impl Dialog {
             cameras: message.cameras,
             listen: SocketAddr::new(self.listening.listen, self.listening.port),
             knows: self.listening.knows,
+            asking: self.listening.ask,
             drivable: self.listening.drive,
             on_first_frame: Box::new(|| tell_supervisor("shown")),
         };

@@ -79,7 +79,8 @@ impl Role {
     pub fn dialog(listening: &Listening) -> Self {
         let (listen, port) = (listening.listen.to_string(), listening.port.to_string());
         let (drive, knows) = (listening.drive.to_string(), listening.knows.to_string());
-        let arguments = ["--listen", &listen, "--port", &port, "--drive", &drive, "--knows", &knows];
+        let ask = listening.ask.name();
+        let arguments = ["--listen", &listen, "--port", &port, "--drive", &drive, "--knows", &knows, "--ask", ask];
         Self { name: "dialog", arguments: arguments.map(OsString::from).to_vec() }
     }
 
