@@ -188,7 +188,7 @@ impl Planner<'_> {
 
     /// Where to put it; `next to the lamp` is where the lamp stands.
     fn find_target(&self, phrase: &Phrase, goal: &Goal, object: ObjectId, intent: Intent) -> Result<ObjectId, Fault> {
-        let is_beside = goal.preposition == Preposition::Near;
+        let is_beside = matches!(goal.preposition, Preposition::Near | Preposition::LeftOf | Preposition::RightOf);
         let affordances: &[Property] = if is_beside { &[] } else { TAKES };
         let target = self.find_one(phrase, &Want::place(intent, affordances, Some(object)), Some(goal.role))?;
         let parent = self.scene.object(target).and_then(|target| target.parent);

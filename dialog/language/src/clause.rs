@@ -4,10 +4,11 @@ use cohabit_cdf::{Catalog, Fluid};
 use serde::{Deserialize, Serialize};
 
 use crate::{
+    chatter,
     intent::Intent,
     lexicon::{Direction, Lexicon, Preposition, Pronoun},
     phrase::{Phrase, Place, Reader},
-    token,
+    token, wish,
 };
 
 /// One request.
@@ -31,8 +32,17 @@ pub(crate) struct Clause {
 impl Clause {
     /// The request to find an object.
     pub(crate) fn find(phrase: Phrase) -> Self {
+        Self::about(Intent::Find, "find", phrase)
+    }
+
+    /// No request, but what is spoken of from here on.
+    pub(crate) fn mention(phrase: Phrase) -> Self {
+        Self::about(Intent::Mention, "", phrase)
+    }
+
+    fn about(intent: Intent, verb: &str, phrase: Phrase) -> Self {
         Self {
-            intent: Intent::Find,
+            intent,
             objects: vec![phrase],
             places: Vec::new(),
             direction: None,
@@ -41,7 +51,7 @@ impl Clause {
             fluid: None,
             unknown: Vec::new(),
             has_stray_noun: false,
-            verb: "find".to_owned(),
+            verb: verb.to_owned(),
         }
     }
 }
@@ -62,7 +72,11 @@ pub(crate) enum Part {
     Forbidden,
     /// An object without a verb.
     Fragment(Phrase),
-    /// Nothing it understands; the words it does not know.
+    /// Something spoken of in passing.
+    Mention(Phrase),
+    /// Talk that asks for nothing; the words it does not know.
+    Aside(Vec<String>),
+    /// What is asked for, but not understood; the words it does not know.
     Unclear(Vec<String>),
 }
 
@@ -96,11 +110,13 @@ pub(crate) fn segments<'a>(lexicon: &Lexicon, words: &'a [String]) -> Vec<&'a [S
     let mut start = 0;
     for at in 0..words.len() {
         let is_end = token::ends_sentence(&words[at]) || words[at] == "then";
-        let is_joint = matches!(words[at].as_str(), "," | "and") && {
+        let is_joint = matches!(words[at].as_str(), "," | "and" | "but" | "so") && {
             let mut reader = Reader::new(lexicon, words);
             reader.at = at + 1;
             reader.skip(|lexicon| &lexicon.lead);
-            reader.at_verb() || lexicon.negation.longest(reader.rest()).is_some()
+            reader.at_verb()
+                || lexicon.negation.longest(reader.rest()).is_some()
+                || implied_motion(lexicon, chatter::chunk(reader.rest())).is_some()
         };
         if is_end || is_joint {
             segments.push(&words[start..at]);
@@ -133,8 +149,10 @@ pub(crate) fn leading(lexicon: &Lexicon, words: &[String]) -> usize {
         let rest = &words[at..];
         let is_joint = rest.first().is_some_and(|word| token::is_punctuation(word));
         let verb = lexicon.verbs.longest(rest).map_or(0, |(length, _)| length);
-        match lexicon.lead.longest(rest) {
-            Some((length, ())) if length >= verb && lexicon.negation.longest(rest).is_none() => at += length,
+        let lead = lexicon.lead.longest(rest).map_or(0, |(length, ())| length);
+        let talk = lexicon.talk.longest(rest).map_or(0, |(length, ())| length);
+        match lead.max(talk) {
+            length @ 1.. if length >= verb && (talk > 0 || lexicon.negation.longest(rest).is_none()) => at += length,
             _ if is_joint => at += 1,
             _ => return at,
         }
@@ -144,6 +162,11 @@ pub(crate) fn leading(lexicon: &Lexicon, words: &[String]) -> usize {
 fn read_part(lexicon: &Lexicon, catalog: &Catalog, words: &[String], before: &[Part]) -> (Part, usize) {
     if lexicon.negation.longest(words).is_some() && lexicon.verbs.longest(words).is_none() {
         return (Part::Forbidden, words.len());
+    }
+    if let Some((request, used)) = wish::request(lexicon, words)
+        && let Some((clause, _)) = read(lexicon, catalog, &request)
+    {
+        return (Part::Clause(clause), used);
     }
     if let Some((clause, used)) = with_tool_first(lexicon, catalog, words).or_else(|| read(lexicon, catalog, words)) {
         return (Part::Clause(clause), used);
@@ -159,10 +182,29 @@ fn read_part(lexicon: &Lexicon, catalog: &Catalog, words: &[String], before: &[P
     {
         return (Part::Clause(clause), used);
     }
-    match reader.phrase_with_place() {
-        Some(phrase) if !phrase.is_empty() && phrase.unknown.is_empty() => (Part::Fragment(phrase), reader.at),
-        _ => (Part::Unclear(unknown_words(lexicon, words)), words.len()),
+    if let Some(phrase) = reader.phrase_with_place().filter(|phrase| !phrase.is_empty() && phrase.unknown.is_empty()) {
+        reader.skip(|lexicon| &lexicon.trail);
+        let is_whole = reader.rest().first().is_none_or(|word| token::is_punctuation(word));
+        if is_whole {
+            return (Part::Fragment(phrase), reader.at);
+        }
     }
+    if let Some((clause, used)) = gap(lexicon, catalog, words, before) {
+        return (Part::Clause(clause), used);
+    }
+    chatter::read(lexicon, catalog, words)
+}
+
+/// `a hammer that I would like you to pick up`: what the verb at the end is about was said before.
+fn gap(lexicon: &Lexicon, catalog: &Catalog, words: &[String], before: &[Part]) -> Option<(Clause, usize)> {
+    let (length, _) = lexicon.verbs.longest(words)?;
+    let is_last = words[length..].iter().all(|word| token::is_punctuation(word));
+    if before.is_empty() || !is_last {
+        return None;
+    }
+    let mut whole = words[..length].to_vec();
+    whole.push("it".to_owned());
+    read(lexicon, catalog, &whole).map(|(clause, _)| (clause, words.len()))
 }
 
 /// The words that are not in the vocabulary.
@@ -193,7 +235,7 @@ fn with_tool_first(lexicon: &Lexicon, catalog: &Catalog, words: &[String]) -> Op
 }
 
 /// The best reading of a clause that begins with a verb, and how many words it took.
-fn read(lexicon: &Lexicon, catalog: &Catalog, words: &[String]) -> Option<(Clause, usize)> {
+pub(crate) fn read(lexicon: &Lexicon, catalog: &Catalog, words: &[String]) -> Option<(Clause, usize)> {
     let (longest, _) = lexicon.verbs.longest(words).unwrap_or((0, &Vec::new()));
     let fixed = (1..=longest).rev().flat_map(|length| {
         let intents = lexicon.verbs.exact(&words[..length]).map_or(&[][..], Vec::as_slice);
@@ -284,7 +326,13 @@ fn read_motion(reader: &mut Reader<'_>, clause: &mut Clause) {
             }
             // `turn right around`: the last word wins only over nothing.
             clause.direction = Some(clause.direction.unwrap_or(*direction));
-        } else if matches!(reader.rest().first().map(String::as_str), Some("your" | "head" | "a" | "for" | "by")) {
+        } else if let Some(length) = a_bit(reader.rest()) {
+            reader.at += length;
+            clause.amount = clause.amount.or(Some(little(clause.intent)));
+        } else if matches!(
+            reader.rest().first().map(String::as_str),
+            Some("your" | "head" | "a" | "for" | "by" | "of" | "an" | "about" | "only" | "just" | "exactly" | "approximately" | "another" | "once" | "more" | "further")
+        ) {
             reader.at += 1;
         } else {
             break;
@@ -301,6 +349,26 @@ fn read_motion(reader: &mut Reader<'_>, clause: &mut Clause) {
             *reader = place;
             clause.places.push((Preposition::To, destination));
         }
+    }
+}
+
+/// `a bit`, `slightly`: how many words say so.
+fn a_bit(words: &[String]) -> Option<usize> {
+    let skipped = words.iter().take_while(|word| matches!(word.as_str(), "a" | "just" | "very" | "tiny" | "little" | "small" | "wee")).count();
+    let is_bit = |word: &String| matches!(word.as_str(), "bit" | "tad" | "touch" | "smidge" | "slightly" | "fraction");
+    match words.get(skipped) {
+        Some(word) if is_bit(word) => Some(skipped + 1 + usize::from(words.get(skipped + 1).is_some_and(|word| word == "more"))),
+        _ if skipped > 1 && words[skipped - 1] == "little" => Some(skipped),
+        _ => None,
+    }
+}
+
+/// How far or how much a bit is.
+const fn little(intent: Intent) -> Amount {
+    match intent {
+        Intent::Travel => Amount::Meters(0.5),
+        Intent::Look => Amount::Degrees(15.0),
+        _ => Amount::Degrees(30.0),
     }
 }
 
@@ -321,7 +389,7 @@ fn read_amount(reader: &mut Reader<'_>) -> Option<Amount> {
     } else if let Some((length, unit)) = lexicon.units.longest(rest) {
         after.at += length;
         Amount::Meters(value * unit)
-    } else if token::digits(&reader.words[reader.at]).is_some() {
+    } else if token::digits(&reader.words[reader.at]).is_some() || lexicon.directions.longest(rest).is_some() {
         Amount::Bare(value)
     } else {
         return None;
@@ -383,6 +451,10 @@ fn read_tail(reader: &mut Reader<'_>, clause: &mut Clause) {
         }
         if reader.at_verb() {
             break;
+        }
+        if chatter::is_subordinator(&reader.words[reader.at]) {
+            reader.at += chatter::chunk(reader.rest()).len();
+            continue;
         }
         let word = &reader.words[reader.at];
         if !reader.lexicon.vocabulary.has(word) {

@@ -13,6 +13,7 @@ use crate::{
     describe,
     ground::{Ground, Miss, Want},
     habits::Habits,
+    hearing,
     intent::Intent,
     judge::Judge,
     known::Known,
@@ -24,7 +25,7 @@ use crate::{
     question, remedy, reply,
     search::Search,
     token::{self, MAX_CHARS},
-    understanding::{Asking, Step, Understanding},
+    understanding::{Asking, Clarification, Step, Understanding},
 };
 
 /// An answer to `which lab` has fewer words than this; more is another request.
@@ -47,7 +48,28 @@ impl Conversation<'_> {
             return Understanding::refusal("That is too much for me at once. Please say it in a few short sentences.");
         }
         let (words, repairs) = self.lexicon.normalise(utterance);
-        Self { judge: Judge { repairs, ..self.judge }, ..*self }.understand_all(words, context)
+        Self { judge: Judge { repairs, ..self.judge }, ..*self }.understand_heard(words, context)
+    }
+
+    /// What was heard, or else what may have been said instead: what sounds like it, and can be done.
+    fn understand_heard(&self, words: Vec<String>, context: &mut Context) -> Understanding {
+        if !hearing::is_puzzled(&clause::parts(self.lexicon, self.catalog, &words)) {
+            return self.understand_all(words, context);
+        }
+        let before = context.clone();
+        let heard = self.understand_all(words.clone(), context);
+        if !is_lost(&heard) {
+            return heard;
+        }
+        for reading in hearing::readings(self.lexicon, self.catalog, &words) {
+            let mut then = before.clone();
+            let understanding = self.understand_all(reading, &mut then);
+            if !is_lost(&understanding) {
+                *context = then;
+                return understanding;
+            }
+        }
+        heard
     }
 
     /// The candidates for the first referring expression of an utterance.
@@ -181,21 +203,28 @@ impl Conversation<'_> {
         context.search = None;
         let mut clauses = Vec::new();
         let mut unclear: Option<Vec<String>> = None;
-        let mut fragment = None;
+        let (mut fragment, mut aside) = (None, Vec::new());
         let mut is_forbidden = false;
         for part in parts {
             match part {
                 Part::Clause(clause) => clauses.push(clause),
                 Part::Forbidden => is_forbidden = true,
-                Part::Fragment(phrase) => fragment = fragment.or(Some(phrase)),
+                Part::Mention(phrase) => clauses.push(Clause::mention(phrase)),
+                Part::Fragment(phrase) => {
+                    clauses.push(Clause::mention(phrase.clone()));
+                    fragment = fragment.or(Some(phrase));
+                }
+                Part::Aside(words) => aside.extend(words),
                 Part::Unclear(words) => unclear = unclear.or(Some(words)),
             }
         }
-        if clauses.is_empty() {
-            return match (fragment, unclear) {
+        if clauses.iter().all(|clause| clause.intent == Intent::Mention) {
+            let mentioned = clauses.into_iter().flat_map(|clause| clause.objects).next();
+            return match (fragment.or(mentioned), unclear) {
                 _ if is_forbidden => Understanding::answer("All right, I will not do that."),
+                (_, Some(words)) if !words.is_empty() => reply::unclear(&words),
                 (Some(phrase), _) => self.fragment(&phrase, context),
-                (None, unclear) => reply::unclear(&unclear.unwrap_or_default()),
+                (None, _) => reply::unclear(&aside),
             };
         }
         // A part with unknown words could change all the rest: better to ask than to do half of it.
@@ -413,4 +442,15 @@ impl Conversation<'_> {
 fn commits(steps: &[Step]) -> bool {
     use cohabit_cdf::Action::{GoTo, Interact, PickUp, Place};
     steps.iter().any(|step| matches!(step.action, GoTo { .. } | PickUp { .. } | Place { .. } | Interact { .. }))
+}
+
+/// Whether little came of an utterance.
+const fn is_lost(understanding: &Understanding) -> bool {
+    match understanding {
+        Understanding::Refusal { .. } => true,
+        Understanding::Question { kind, .. } => {
+            matches!(kind, Clarification::Appearance | Clarification::Location | Clarification::Request)
+        }
+        _ => false,
+    }
 }

@@ -33,6 +33,9 @@ const WORSE_NAME: f32 = 0.2;
 /// How near `next to` is, m.
 const NEAR_M: f32 = 1.5;
 
+/// How far `left of` reaches, m.
+const BESIDE_M: f32 = 2.0;
+
 /// How near a fixed thing such as a button is to the machine it is `on`, m.
 const PART_M: f32 = 0.8;
 
@@ -106,7 +109,7 @@ impl<'a> Ground<'a> {
             return Ok(chosen);
         }
         // `the thing on the table` is described, `it` is not.
-        if phrase.pronoun == Some(Pronoun::Thing) && !phrase.relations.is_empty() {
+        if phrase.pronoun == Some(Pronoun::Thing) && phrase.is_described() {
             return self.one(&Phrase { pronoun: None, ..phrase.clone() }, want);
         }
         if let Some(pronoun) = phrase.pronoun.filter(|pronoun| *pronoun != Pronoun::One) {
@@ -288,6 +291,7 @@ impl<'a> Ground<'a> {
             && phrase.room.is_none_or(|room| object.room == room)
             && (!phrase.is_here || object.room == self.scene.robot.room)
             && phrase.relations.iter().all(|relation| self.is_related(object, relation))
+            && !phrase.not.iter().any(|other| self.is_loosely(other, object))
     }
 
     fn has_color(&self, object: &KnownObject, color: &str) -> bool {
@@ -338,6 +342,13 @@ impl<'a> Ground<'a> {
                     || is_fixed && self.scene.objects.iter().any(is_part)
             }
             RelationKind::Has => self.scene.contents(object.id).any(fits),
+            RelationKind::LeftOf | RelationKind::RightOf => self.scene.objects.iter().any(|other| {
+                let is_left = self.scene.bearing_rad(object) > self.scene.bearing_rad(other);
+                fits(other)
+                    && other.room == object.room
+                    && known::distance_m(other.position_m, object.position_m) < BESIDE_M
+                    && is_left == (relation.kind == RelationKind::LeftOf)
+            }),
             RelationKind::Near => self.scene.objects.iter().any(|other| {
                 fits(other)
                     && other.room == object.room
@@ -376,8 +387,13 @@ impl<'a> Ground<'a> {
             let is_held = self.scene.robot.held == Some(*id) && matches!(want.intent, Intent::PickUp | Intent::GoTo);
             Some(*id) != want.exclude && !is_held
         };
-        let place = self.focus.place.into_iter().filter(|_| pronoun == Pronoun::Place);
-        let spoken: Vec<ObjectId> = place.chain(self.focus.recent.iter().copied()).filter(is_free).collect();
+        let place = self.focus.place.into_iter();
+        let mut spoken: Vec<ObjectId> = self.focus.recent.iter().copied().collect();
+        spoken.retain(|id| pronoun != Pronoun::Place || Some(*id) != self.focus.place);
+        let at = if pronoun == Pronoun::Place { 0 } else { spoken.len() };
+        // `put the bread in the toaster and turn it on`: the place is meant where nothing else spoken of fits.
+        spoken.splice(at..at, place);
+        spoken.retain(is_free);
         let fits = spoken.iter().find(|id| affords(id) && self.suits(want.intent, **id));
         let fitting = fits.or_else(|| spoken.iter().find(|id| affords(id))).copied();
         fitting.or_else(|| held.filter(|held| affords(held))).or_else(|| spoken.first().copied()).or(held)

@@ -42,6 +42,8 @@ pub(crate) enum Intent {
     Brew,
     Use,
     Impossible,
+    /// Nothing is asked for, but something is spoken of.
+    Mention,
 }
 
 impl Intent {
@@ -121,6 +123,7 @@ impl Intent {
             Self::Brew => "make coffee in",
             Self::Use => "use",
             Self::Impossible => "do that to",
+            Self::Mention => "mention",
         }
     }
 }

@@ -2,10 +2,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use cohabit_cdf::{Catalog, ClassId, Fluid, RoomId, state::StateFlag};
+use cohabit_cdf::{Catalog, ClassId, Fluid, Property, RoomId, state::StateFlag};
 use serde::{Deserialize, Serialize};
 
-use crate::{intent::Intent, question::QuestionKind, spelling::Vocabulary, table::PhraseTable, token};
+use crate::{inflect, intent::Intent, question::QuestionKind, sound, spelling::Vocabulary, table::PhraseTable, token};
 
 /// A class that a word may mean, and how much it means it: 1 for its name, less for words further down its list.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
@@ -16,6 +16,9 @@ pub(crate) struct Naming {
 
 /// How much one word of a name of several means its class.
 const NAME_PART: f32 = 0.6;
+
+/// How much the word for a kind of things means a class of that kind.
+const KIND: f32 = 0.5;
 
 /// What an adjective demands of an object's state.
 #[derive(Clone, Copy, Debug, Deserialize, Eq, PartialEq, Serialize)]
@@ -36,6 +39,8 @@ pub(crate) enum Preposition {
     Near,
     With,
     For,
+    LeftOf,
+    RightOf,
 }
 
 /// Which of several, by where they are.
@@ -103,6 +108,8 @@ pub(crate) struct Lexicon {
     pub(crate) degrees: PhraseTable<()>,
     pub(crate) viewpoints: PhraseTable<()>,
     pub(crate) negation: PhraseTable<()>,
+    /// Openers, fillers and oaths.
+    pub(crate) talk: PhraseTable<()>,
     pub(crate) answer_lead: PhraseTable<()>,
     pub(crate) pronouns: PhraseTable<Pronoun>,
     pub(crate) prepositions: PhraseTable<Preposition>,
@@ -113,10 +120,14 @@ pub(crate) struct Lexicon {
     pub(crate) numbers: PhraseTable<f32>,
     pub(crate) colors: PhraseTable<String>,
     pub(crate) states: PhraseTable<StateWord>,
+    /// Words for a state, and the verb that brings it about.
+    pub(crate) brings_about: PhraseTable<Vec<String>>,
     pub(crate) fluids: PhraseTable<Fluid>,
     pub(crate) rooms: PhraseTable<RoomId>,
     pub(crate) small: PhraseTable<BTreeSet<Small>>,
     pub(crate) verbs: PhraseTable<Vec<Intent>>,
+    /// The first words of all verbs.
+    pub(crate) verb_heads: BTreeSet<String>,
     /// First words of a verb whose last word may stand after the object; that word; the intent.
     pub(crate) separable: Vec<(Vec<String>, String, Intent)>,
     pub(crate) questions: PhraseTable<QuestionKind>,
@@ -125,9 +136,13 @@ pub(crate) struct Lexicon {
     pub(crate) classes: PhraseTable<Vec<Naming>>,
     /// Single words of names of several words: `trash` for the trash can.
     pub(crate) name_parts: PhraseTable<Vec<Naming>>,
+    /// Words for kinds of things.
+    pub(crate) kinds: BTreeSet<String>,
     /// All words that name a class, by its index.
     pub(crate) class_words: Vec<BTreeSet<String>>,
     pub(crate) vocabulary: Vocabulary,
+    /// How the words sound that may be taken for others.
+    pub(crate) sounds: Vec<(String, Vec<char>)>,
 }
 
 #[derive(Deserialize)]
@@ -149,6 +164,9 @@ struct WordFile {
     degrees: Words,
     viewpoints: Words,
     negation: Words,
+    talk: Words,
+    brings_about: BTreeMap<String, Vec<String>>,
+    kinds: BTreeMap<String, Property>,
     answer_lead: Words,
     pronouns: BTreeMap<Pronoun, Vec<String>>,
     prepositions: BTreeMap<Preposition, Vec<String>>,
@@ -230,16 +248,31 @@ impl Lexicon {
         lexicon.add_smalls(&file);
         lexicon.add_verbs();
         lexicon.add_classes(catalog, &file.aliases);
+        lexicon.add_kinds(catalog, &file.kinds);
         lexicon.build_vocabulary();
+        lexicon.build_sounds();
         lexicon
+    }
+
+    /// Whether it only joins other words, and nobody mistakes it.
+    pub(crate) fn is_small_word(&self, word: &str) -> bool {
+        let word = [word.to_owned()];
+        self.articles.exact(&word).is_some()
+            || self.pronouns.exact(&word).is_some()
+            || matches!(word[0].as_str(), "and" | "to" | "in" | "on" | "at" | "of" | "i" | "you" | "please" | "with" | "then")
     }
 
     /// The words of an utterance: tokens, with spelling repaired and set phrases replaced; and how many were misspelt.
     pub(crate) fn normalise(&self, text: &str) -> (Vec<String>, usize) {
         let replaced = self.replaced(&token::words(text));
-        let mut corrected = Vec::with_capacity(replaced.len());
+        let replaced = self.vocabulary.respaced(replaced);
+        let mut corrected: Vec<String> = Vec::with_capacity(replaced.len());
         let mut repairs = 0;
         for word in &replaced {
+            if let Some(verb) = self.as_request(&corrected, word) {
+                corrected.push(verb);
+                continue;
+            }
             let words = self.vocabulary.correct(word);
             // A plural, or two words run together, is no slip.
             repairs += usize::from(matches!(words.as_slice(), [one] if one != word && !word.starts_with(one.as_str())));
@@ -248,7 +281,20 @@ impl Lexicon {
         (self.replaced(&corrected), repairs)
     }
 
-    fn replaced(&self, words: &[String]) -> Vec<String> {
+    /// `opening` after `would you mind`, as the verb; and `makes` after what makes, as no verb.
+    fn as_request(&self, before: &[String], word: &str) -> Option<String> {
+        let last = before.last().map(String::as_str);
+        let is_asked = matches!(last, None | Some("mind" | "about" | "by" | "try" | "start" | "begin" | "please" | "meant" | "mean" | "to"));
+        if is_asked && word.ends_with("ing") && !self.vocabulary.has(word) {
+            return inflect::stem(self, word);
+        }
+        let verb = word.strip_suffix('s').filter(|verb| self.verb_heads.contains(*verb))?;
+        let is_noun = self.classes.words().any(|known| known == verb || known == word);
+        let is_told = last.is_some_and(|last| last.chars().all(char::is_alphabetic) && !self.lead.words().any(|lead| lead == last));
+        (is_told && !is_noun && !self.vocabulary.has(word)).then(|| word.to_owned())
+    }
+
+    pub(crate) fn replaced(&self, words: &[String]) -> Vec<String> {
         let mut result = Vec::with_capacity(words.len());
         let mut at = 0;
         while at < words.len() {
@@ -278,6 +324,7 @@ impl Lexicon {
             (&mut self.degrees, &file.degrees),
             (&mut self.viewpoints, &file.viewpoints),
             (&mut self.negation, &file.negation),
+            (&mut self.talk, &file.talk),
             (&mut self.answer_lead, &file.answer_lead),
         ];
         for (table, entry) in plain {
@@ -297,6 +344,9 @@ impl Lexicon {
             let state = words.first().and_then(|flag| state_word(flag));
             let state = state.expect("invariant: each list of state words begins with a flag");
             words.iter().skip(1).for_each(|word| self.states.insert(word, state));
+        }
+        for (verb, words) in &file.brings_about {
+            words.iter().for_each(|word| self.brings_about.insert(word, token::words(verb)));
         }
         file.fill_words.full.iter().for_each(|word| self.states.insert(word, StateWord::Filled(true)));
         file.fill_words.empty.iter().for_each(|word| self.states.insert(word, StateWord::Filled(false)));
@@ -334,6 +384,7 @@ impl Lexicon {
         let file: VerbFile = parse(include_str!("../data/verbs.toml"));
         for entry in file.verbs {
             for word in entry.words.iter().chain(&entry.split) {
+                self.verb_heads.extend(token::words(word).into_iter().next());
                 let intents = self.verbs.entry(word);
                 if !intents.contains(&entry.intent) {
                     intents.push(entry.intent);
@@ -382,6 +433,19 @@ impl Lexicon {
         }
     }
 
+    /// `machine`, `food`: all classes that are such, where the word is no part of a name that was meant.
+    fn add_kinds(&mut self, catalog: &Catalog, kinds: &BTreeMap<String, Property>) {
+        for (word, property) in kinds {
+            let namings = self.name_parts.entry(word);
+            for (index, _) in (0_u16..).zip(catalog.classes()).filter(|(_, class)| class.has(*property)) {
+                if namings.iter().all(|known| known.class != ClassId(index)) {
+                    namings.push(Naming { class: ClassId(index), weight: KIND });
+                }
+            }
+            self.kinds.insert(word.clone());
+        }
+    }
+
     fn name_class(&mut self, phrase: &str, class: ClassId, weight: f32) {
         // The same replacements as in utterances, so that `breakroom sign` is found again.
         let phrase = self.replaced(&token::words(phrase)).join(" ");
@@ -400,6 +464,24 @@ impl Lexicon {
         }
     }
 
+    fn build_sounds(&mut self) {
+        let tables = [
+            self.classes.words().collect::<Vec<_>>(),
+            self.verbs.words().collect(),
+            self.rooms.words().collect(),
+            self.directions.words().collect(),
+            self.colors.words().collect(),
+            self.sides.words().collect(),
+            self.states.words().collect(),
+            self.ordinals.words().collect(),
+            self.units.words().collect(),
+            self.prepositions.words().collect(),
+        ];
+        let spoken = |word: &&&String| word.len() > 1 && word.chars().all(|letter| letter.is_ascii_alphabetic());
+        let words: BTreeSet<&String> = tables.iter().flatten().filter(spoken).copied().collect();
+        self.sounds = words.into_iter().map(|word| (word.clone(), sound::sounds(word))).collect();
+    }
+
     fn build_vocabulary(&mut self) {
         let mut vocabulary = Vocabulary::default();
         let mut learn = |word: &String| vocabulary.learn(word);
@@ -414,6 +496,7 @@ impl Lexicon {
             &self.degrees,
             &self.viewpoints,
             &self.negation,
+            &self.talk,
             &self.answer_lead,
         ] {
             table.words().for_each(&mut learn);
@@ -434,6 +517,8 @@ impl Lexicon {
         self.verbs.words().for_each(&mut learn);
         self.questions.words().for_each(&mut learn);
         self.classes.words().for_each(&mut learn);
+        self.brings_about.words().for_each(&mut learn);
+        self.kinds.iter().for_each(&mut learn);
         self.chat.words().for_each(|word| vocabulary.learn_plain(word));
         include_str!("../data/common.txt").split_whitespace().for_each(|word| vocabulary.learn_plain(word));
         self.vocabulary = vocabulary;

@@ -27,6 +27,9 @@ pub(crate) struct Phrase {
     pub(crate) is_all: bool,
     /// Where it is, in terms of other objects.
     pub(crate) relations: Vec<Relation>,
+    /// What it is not: `the mug that is not yellow`.
+    #[serde(default)]
+    pub(crate) not: Vec<Phrase>,
     /// Words in it that mean nothing to the robot.
     pub(crate) unknown: Vec<String>,
     /// What it was found to mean when the robot asked.
@@ -52,6 +55,10 @@ pub(crate) enum RelationKind {
     Near,
     /// Has it on or in itself.
     Has,
+    /// Beside it, and farther left as the robot looks at it.
+    LeftOf,
+    /// Beside it, and farther right as the robot looks at it.
+    RightOf,
 }
 
 /// What stands after a preposition.
@@ -86,6 +93,12 @@ impl Phrase {
             || self.room.is_some()
             || self.is_here
             || !self.relations.is_empty()
+            || !self.not.is_empty()
+    }
+
+    /// Whether more is said of it than what it is called.
+    pub(crate) fn is_described(&self) -> bool {
+        !self.relations.is_empty() || self.room.is_some() || self.color.is_some() || self.is_here || !self.not.is_empty()
     }
 
     /// How much it means this class; nothing, if it does not.
@@ -108,6 +121,8 @@ impl Place {
                     Preposition::Near | Preposition::At => "near",
                     Preposition::With => "with",
                     Preposition::From => "from",
+                    Preposition::LeftOf => "left of",
+                    Preposition::RightOf => "right of",
                     _ => "on",
                 };
                 format!("{word} {}", phrase.text)
@@ -154,12 +169,16 @@ impl<'a> Reader<'a> {
         let mut phrase = self.phrase()?;
         let said = phrase.text.clone();
         let start = self.at;
-        while let Some((preposition, place)) = self.place() {
-            let is_with = preposition == Preposition::With;
-            phrase.attach(preposition, place);
-            // `the desk with the computer on it`
-            if is_with && let Some((length, Pronoun::Place)) = self.lexicon.pronouns.longest(self.rest()) {
-                self.at += length;
+        loop {
+            if let Some((preposition, place)) = self.place() {
+                let is_with = preposition == Preposition::With;
+                phrase.attach(preposition, place);
+                // `the desk with the computer on it`
+                if is_with && let Some((length, Pronoun::Place)) = self.lexicon.pronouns.longest(self.rest()) {
+                    self.at += length;
+                }
+            } else if !self.after_noun(&mut phrase) {
+                break;
             }
         }
         if self.at > start {
@@ -178,14 +197,62 @@ impl<'a> Reader<'a> {
             return Some(Phrase { text, pronoun: Some(pronoun), ..Phrase::default() });
         }
         let mut phrase = Phrase::default();
-        while !reader.is_done() && reader.modifier(&mut phrase) {}
-        reader.head(&mut phrase);
+        if reader.next_is("not") {
+            phrase.pronoun = Some(Pronoun::One);
+        } else {
+            while !reader.is_done() && reader.modifier(&mut phrase) {}
+            reader.head(&mut phrase);
+        }
+        while reader.after_noun(&mut phrase) {}
         if !phrase.says_something() && phrase.unknown.is_empty() {
             return None;
         }
         phrase.text = reader.words[start..reader.at].join(" ");
         *self = reader;
         Some(phrase)
+    }
+
+    /// What describes a thing after its noun: `not the red one`, `furthest away`, `that is red`.
+    fn after_noun(&mut self, phrase: &mut Phrase) -> bool {
+        let mut reader = *self;
+        while reader.next_is(",") || reader.next_is("but") {
+            reader.at += 1;
+        }
+        if reader.next_is("not") {
+            reader.at += 1;
+            let Some(other) = reader.phrase().filter(|other| other.unknown.is_empty()) else { return false };
+            phrase.not.push(other);
+            *self = reader;
+            return true;
+        }
+        let mut reader = *self;
+        if phrase.side.is_none()
+            && let Some((length, side @ (Side::Nearest | Side::Farthest))) = reader.lexicon.sides.longest(reader.rest())
+            && length > 1
+        {
+            phrase.side = Some(*side);
+            self.at += length;
+            return true;
+        }
+        let is_linked = ["that", "which"].into_iter().any(|word| reader.next_is(word))
+            && reader.rest().get(1).is_some_and(|word| matches!(word.as_str(), "is" | "are"));
+        if !is_linked {
+            return false;
+        }
+        reader.at += 2;
+        let rest = reader.rest();
+        let noun = reader.lexicon.classes.longest(rest).map_or(0, |(length, _)| length);
+        if let Some((length, color)) = reader.lexicon.colors.longest(rest).filter(|(length, _)| *length > noun) {
+            phrase.color = Some(color.clone());
+            self.at += 2 + length;
+            return true;
+        }
+        if let Some((length, state)) = reader.lexicon.states.longest(rest).filter(|(length, _)| *length > noun) {
+            phrase.states.push(*state);
+            self.at += 2 + length;
+            return true;
+        }
+        false
     }
 
     fn pronoun(&mut self) -> Option<Pronoun> {
@@ -486,9 +553,14 @@ impl<'a> Reader<'a> {
         if reader.next_is("hundred") {
             value *= 100.0;
             reader.at += 1;
+            reader.at += usize::from(reader.next_is("and"));
             if let Some((length, more)) = reader.lexicon.numbers.longest(reader.rest()) {
                 value += more;
                 reader.at += length;
+                if let Some((length, unit)) = reader.lexicon.numbers.longest(reader.rest()).filter(|(_, unit)| **unit < 10.0) {
+                    value += unit;
+                    reader.at += length;
+                }
             }
         }
         let half = ["and", "a", "half"];
@@ -526,6 +598,8 @@ impl Phrase {
                 let kind = match preposition {
                     Preposition::Near | Preposition::At => RelationKind::Near,
                     Preposition::With => RelationKind::Has,
+                    Preposition::LeftOf => RelationKind::LeftOf,
+                    Preposition::RightOf => RelationKind::RightOf,
                     _ => RelationKind::Inside,
                 };
                 self.relations.push(Relation { kind, to });

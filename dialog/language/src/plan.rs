@@ -81,6 +81,7 @@ impl Planner<'_> {
             Intent::Travel => return self.travel(clause),
             Intent::Turn => return self.turn(clause),
             Intent::Look => self.look(clause),
+            Intent::Mention => self.mention(clause),
             Intent::Impossible => {
                 let things = if clause.objects.is_empty() { "" } else { " things" };
                 return Err(Fault::Cannot(format!("I cannot {}{things}, I am afraid.", clause.verb)));
@@ -105,6 +106,17 @@ impl Planner<'_> {
             Intent::Examine => self.add_simple(&settled, Verb::Examine, "looking at"),
             Intent::Highlight => self.add_highlight(&settled),
             _ => self.add_process(&settled),
+        }
+    }
+
+    /// What was spoken of in passing is what `it` and `there` may stand for.
+    fn mention(&mut self, clause: &Clause) {
+        let want = Want::place(Intent::Find, &[], None);
+        let found = clause.objects.first().and_then(|phrase| self.ground().one(phrase, &want).ok());
+        let Some(object) = found else { return };
+        self.focus.mention(object);
+        if !self.has(object, Property::Pickupable) {
+            self.focus.place = Some(object);
         }
     }
 

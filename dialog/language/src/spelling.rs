@@ -37,8 +37,12 @@ impl Vocabulary {
         if self.plain.contains(word) {
             return keep();
         }
-        if let Some(parts) = self.parts(word) {
+        if let Some(parts) = self.parts(word).or_else(|| self.run_together(word)) {
             return parts;
+        }
+        let drawn = drawn_out(word);
+        if drawn != word {
+            return self.correct(&drawn);
         }
         self.nearest(word).map_or_else(keep, |found| vec![found.clone()])
     }
@@ -58,9 +62,69 @@ impl Vocabulary {
         })
     }
 
+    /// `grabtheknife`: several words, the fewest and longest that there are.
+    fn run_together(&self, word: &str) -> Option<Vec<String>> {
+        if word.len() < 5 || word.len() > 40 {
+            return None;
+        }
+        // The fewest words up to each letter, and where the last of them begins.
+        let mut best: Vec<Option<(usize, usize)>> = vec![None; word.len() + 1];
+        best[0] = Some((0, 0));
+        for end in 1..=word.len() {
+            for start in 0..end {
+                let Some((count, _)) = best[start] else { continue };
+                let part = &word[start..end];
+                let is_part = if part.len() < 3 { SHORT.contains(&part) } else { self.has(part) };
+                if is_part && best[end].is_none_or(|(least, _)| count + 1 < least) {
+                    best[end] = Some((count + 1, start));
+                }
+            }
+        }
+        let (count, _) = best[word.len()].filter(|(count, _)| *count > 1 && word.len() >= 3 * count)?;
+        let mut parts = Vec::with_capacity(count);
+        let mut end = word.len();
+        while end > 0 {
+            let (_, start) = best[end]?;
+            parts.push(word[start..end].to_owned());
+            end = start;
+        }
+        parts.reverse();
+        Some(parts)
+    }
+
+    /// `tot he`, `pic kup`: a letter on the wrong side of the space, or a space too many.
+    pub(crate) fn respaced(&self, words: Vec<String>) -> Vec<String> {
+        let mut result: Vec<String> = Vec::with_capacity(words.len());
+        for word in words {
+            let is_known = |word: &str| self.has(word) || self.plain.contains(word) || self.singular(word).is_some();
+            let is_spelt = |word: &str| word.chars().all(|letter| letter.is_ascii_alphabetic());
+            let pair = result.last().filter(|last| is_spelt(last) && is_spelt(&word) && !(is_known(last) && is_known(&word)));
+            match pair.and_then(|last| self.moved(last, &word)) {
+                Some(moved) => {
+                    result.pop();
+                    result.extend(moved);
+                }
+                None => result.push(word),
+            }
+        }
+        result
+    }
+
+    fn moved(&self, one: &str, other: &str) -> Option<Vec<String>> {
+        let whole = format!("{one}{other}");
+        if self.has(&whole) && whole.len() > 3 {
+            return Some(vec![whole]);
+        }
+        [one.len().checked_sub(1)?, one.len() + 1].into_iter().filter(|at| *at > 1 && *at + 1 < whole.len()).find_map(|at| {
+            let (first, second) = whole.split_at(at);
+            (self.has(first) && self.has(second)).then(|| vec![first.to_owned(), second.to_owned()])
+        })
+    }
+
     fn nearest(&self, word: &str) -> Option<&String> {
         let limit = match word.len() {
-            0..=3 => return None,
+            0..=2 => return None,
+            3 => return self.meaningful.iter().find(|known| known.len() == 3 && is_swapped(word, known)),
             4..=6 => 1,
             _ => 2,
         };
@@ -69,9 +133,35 @@ impl Vocabulary {
             .filter(|known| known.len() > 2 && known.len().abs_diff(word.len()) <= limit)
             .map(|known| (distance(word.as_bytes(), known.as_bytes()), known))
             .filter(|(distance, _)| *distance <= limit)
-            .min_by_key(|(distance, known)| (*distance, word.as_bytes().first() != known.as_bytes().first(), *known))
+            .min_by_key(|(distance, known)| {
+                (*distance, !is_swapped(word, known), word.as_bytes().first() != known.as_bytes().first(), *known)
+            })
             .map(|(_, known)| known)
     }
+}
+
+/// Words of one or two letters that people run together with others.
+const SHORT: &[&str] = &["a", "go", "to", "up", "on", "in", "it", "at", "of", "my", "me", "is"];
+
+/// Whether it has the same letters in another order.
+fn is_swapped(one: &str, other: &str) -> bool {
+    let sorted = |word: &str| {
+        let mut letters = word.as_bytes().to_vec();
+        letters.sort_unstable();
+        letters
+    };
+    one.len() == other.len() && sorted(one) == sorted(other)
+}
+
+/// `pleeease`, `noooo`: three of the same letter are one or two.
+fn drawn_out(word: &str) -> String {
+    let letters: Vec<char> = word.chars().collect();
+    let is_third = |at: usize| at > 1 && letters[at] == letters[at - 1] && letters[at] == letters[at - 2];
+    if !(0..letters.len()).any(is_third) {
+        return word.to_owned();
+    }
+    let is_second = |at: usize| at > 0 && letters[at] == letters[at - 1];
+    letters.iter().enumerate().filter(|(at, _)| !is_second(*at)).map(|(_, letter)| *letter).collect()
 }
 
 /// Edits (insertion, deletion, change, swap of neighbours) from one word to the other: optimal string alignment.

@@ -1,7 +1,10 @@
 //! A small office: a catalogue of two dozen classes, and a robot in the break room that knows it all.
 #![allow(dead_code, missing_docs, clippy::unwrap_used)]
 
-use std::{fmt::Write as _, sync::Arc};
+use std::{
+    fmt::Write as _,
+    sync::{Arc, OnceLock},
+};
 
 use cohabit_cdf::{
     Action, Catalog, Color, Fluid, GoToTarget, ObjectId, RoomId,
@@ -301,16 +304,20 @@ pub fn text(understanding: &Understanding, scene: &Known) -> String {
 
 /// A conversation in the office.
 pub struct Talk {
-    pub language: Language,
+    pub language: &'static Language,
     pub scene: Known,
     pub context: Context,
 }
 
 impl Talk {
     pub fn new(marks: &[&str]) -> Self {
-        let catalog = catalog();
-        let scene = scene(&catalog, marks);
-        Self { language: Language::new(catalog), scene, context: Context::default() }
+        static OFFICE: OnceLock<(Arc<Catalog>, Language)> = OnceLock::new();
+        let (catalog, language) = OFFICE.get_or_init(|| {
+            let catalog = catalog();
+            (catalog.clone(), Language::new(catalog))
+        });
+        let scene = scene(catalog, marks);
+        Self { language, scene, context: Context::default() }
     }
 
     pub fn say(&mut self, utterance: &str) -> String {

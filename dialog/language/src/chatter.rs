@@ -1,0 +1,103 @@
+//! Talk around requests: openers, reasons, asides. Finds where the next request begins, and what is spoken of before it.
+
+use cohabit_cdf::Catalog;
+
+use crate::{
+    clause::{self, Clause, Part},
+    intent::Intent,
+    lexicon::Lexicon,
+    phrase::{Phrase, Place, Reader},
+    token,
+};
+
+/// Words that begin a clause which says when, why or about what, and asks for nothing.
+const SUBORDINATORS: &[&str] = &[
+    "because", "since", "as", "while", "when", "whenever", "if", "although", "though", "unless", "until", "whether", "who",
+    "whose", "whom", "where", "wherever", "which", "so that", "without", "cause", "coz",
+];
+
+/// Words after which a verb may be a request although others stand before it.
+const BEFORE_REQUESTS: &[&str] = &[
+    "and", "but", "so", "then", "or", "to", "please", "just", "you", "now", "first", "next", "also", "kindly", "instead",
+    "rather", "quickly", "simply", "maybe", "perhaps", "finally", "again", "there", "robot", "tam", "must", "should",
+];
+
+/// Whether the word begins a clause that asks for nothing.
+pub(crate) fn is_subordinator(word: &str) -> bool {
+    SUBORDINATORS.contains(&word)
+}
+
+/// The words up to the next punctuation.
+pub(crate) fn chunk(words: &[String]) -> &[String] {
+    let end = words.iter().position(|word| token::is_punctuation(word)).unwrap_or(words.len());
+    &words[..end]
+}
+
+/// Reads talk at the start of `words`: up to the next request, or all of them.
+pub(crate) fn read(lexicon: &Lexicon, catalog: &Catalog, words: &[String]) -> (Part, usize) {
+    let end = (1..words.len()).find(|at| is_request(lexicon, catalog, words, *at)).unwrap_or(words.len());
+    let (talk, first) = (&words[..end], chunk(words));
+    if is_unknown_order(lexicon, first) || end == words.len() && asks_unclearly(lexicon, words) {
+        return (Part::Unclear(clause::unknown_words(lexicon, words)), words.len());
+    }
+    if is_forbidden(lexicon, talk) && end < words.len() {
+        return (Part::Forbidden, end + chunk(&words[end..]).len());
+    }
+    match mention(lexicon, talk) {
+        Some((phrase, used)) => (Part::Mention(phrase), used),
+        None => (Part::Aside(clause::unknown_words(lexicon, talk)), end),
+    }
+}
+
+/// Whether a request begins at `at`: a verb where one may ask for something, with all that it needs.
+fn is_request(lexicon: &Lexicon, catalog: &Catalog, words: &[String], at: usize) -> bool {
+    let before = &words[at - 1];
+    let is_allowed = token::is_punctuation(before) || BEFORE_REQUESTS.contains(&before.as_str());
+    is_allowed && {
+        let rest = &words[at..];
+        crate::wish::request(lexicon, rest).is_some()
+            || lexicon.verbs.longest(rest).is_some()
+                && clause::read(lexicon, catalog, rest).is_some_and(|(clause, _)| is_clear(&clause))
+            || token::is_punctuation(before) && lexicon.negation.longest(rest).is_some()
+    }
+}
+
+/// Whether all that a request names means something.
+pub(crate) fn is_clear(clause: &Clause) -> bool {
+    let is_known = |phrase: &Phrase| phrase.unknown.is_empty();
+    clause.intent != Intent::Impossible
+        && clause.objects.iter().all(is_known)
+        && clause.places.iter().all(|(_, place)| !matches!(place, Place::Object(phrase) if !is_known(phrase)))
+}
+
+/// `frobnicate the mug`: a verb that nobody taught it, not to be passed over.
+fn is_unknown_order(lexicon: &Lexicon, words: &[String]) -> bool {
+    let [first, rest @ ..] = words else { return false };
+    let is_talk = lexicon.vocabulary.has(first) || is_subordinator(first) || lexicon.talk.longest(words).is_some();
+    let has_object = lexicon.articles.longest(rest).is_some()
+        || lexicon.pronouns.longest(rest).is_some()
+        || lexicon.classes.longest(rest).is_some();
+    !is_talk && has_object
+}
+
+/// Whether talk without a request has a verb where a request would have one: it was meant to be one.
+fn asks_unclearly(lexicon: &Lexicon, words: &[String]) -> bool {
+    lexicon.verbs.longest(words).is_some()
+}
+
+/// Whether the talk just before a request says not to do it.
+fn is_forbidden(lexicon: &Lexicon, talk: &[String]) -> bool {
+    let start = talk.iter().rposition(|word| token::is_punctuation(word)).map_or(0, |at| at + 1);
+    (start..talk.len()).any(|at| lexicon.negation.longest(&talk[at..]).is_some())
+}
+
+/// The first thing that the talk is about, and how many words that takes.
+fn mention(lexicon: &Lexicon, talk: &[String]) -> Option<(Phrase, usize)> {
+    (0..talk.len()).find_map(|at| {
+        let mut reader = Reader::new(lexicon, talk);
+        reader.at = at;
+        let is_name = !reader.at_verb();
+        let phrase = reader.phrase_with_place().filter(|phrase| is_name && !phrase.namings.is_empty())?;
+        phrase.unknown.is_empty().then_some((phrase, reader.at))
+    })
+}

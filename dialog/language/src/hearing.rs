@@ -1,0 +1,125 @@
+//! What may have been said instead of what was heard: words that make no sense where they stand, and words that sound
+//! like them and do.
+
+use cohabit_cdf::Catalog;
+
+use crate::{
+    chatter,
+    clause::{self, Part},
+    lexicon::Lexicon,
+    sound,
+};
+
+/// At most so many readings are tried, and so many words in place of one.
+const MOST_READINGS: usize = 24;
+const MOST_WORDS: usize = 8;
+/// Longer utterances are not guessed at.
+const LONGEST: usize = 24;
+
+/// Other words that may stand at a place: how many they replace, which, and how different they sound.
+struct Guess {
+    at: usize,
+    length: usize,
+    word: String,
+    cost: f32,
+}
+
+/// Whether something in the words made no sense.
+pub(crate) fn is_puzzled(parts: &[Part]) -> bool {
+    parts.iter().any(|part| match part {
+        Part::Clause(clause) => !chatter::is_clear(clause) || clause.has_stray_noun || !clause.unknown.is_empty(),
+        Part::Unclear(_) => true,
+        Part::Aside(_) => !parts.iter().any(|part| matches!(part, Part::Clause(_))),
+        Part::Fragment(phrase) | Part::Mention(phrase) => !phrase.unknown.is_empty(),
+        Part::Forbidden => false,
+    })
+}
+
+/// What may have been said, the likeliest first; each makes sense as it stands.
+pub(crate) fn readings(lexicon: &Lexicon, catalog: &Catalog, words: &[String]) -> Vec<Vec<String>> {
+    if words.len() > LONGEST {
+        return Vec::new();
+    }
+    let mut guesses = guesses(lexicon, words);
+    guesses.sort_by(|one, other| one.cost.total_cmp(&other.cost).then(one.at.cmp(&other.at)).then(one.word.cmp(&other.word)));
+    let mut readings: Vec<(f32, Vec<String>)> =
+        guesses.iter().map(|guess| (guess.cost, with(words, &[guess]))).collect();
+    for (index, one) in guesses.iter().enumerate().take(MOST_READINGS) {
+        for other in guesses[index + 1..].iter().take(MOST_READINGS) {
+            let is_apart = one.at + one.length <= other.at || other.at + other.length <= one.at;
+            if is_apart {
+                readings.push((one.cost + other.cost + PAIR, with(words, &[one, other])));
+            }
+        }
+    }
+    readings.sort_by(|(one, a), (other, b)| one.total_cmp(other).then_with(|| a.cmp(b)));
+    let mut sensible: Vec<Vec<String>> = Vec::new();
+    for (_, reading) in readings.into_iter().take(MOST_TRIED) {
+        let reading = lexicon.replaced(&reading);
+        if !is_puzzled(&clause::parts(lexicon, catalog, &reading)) && !sensible.contains(&reading) {
+            sensible.push(reading);
+        }
+        if sensible.len() == MOST_READINGS / 4 {
+            break;
+        }
+    }
+    sensible
+}
+
+/// What two slips at once cost more than each.
+const PAIR: f32 = 0.5;
+/// So many readings are looked at.
+const MOST_TRIED: usize = 60;
+
+fn guesses(lexicon: &Lexicon, words: &[String]) -> Vec<Guess> {
+    let mut guesses = Vec::new();
+    for at in 0..words.len() {
+        let word = &words[at];
+        if is_spoken(word) && !lexicon.is_small_word(word) {
+            let heard = sound::sounds(word);
+            guesses.extend(alike(lexicon, &heard, word).into_iter().map(|(cost, word)| Guess { at, length: 1, word, cost }));
+        }
+        // `where house`: heard as two words.
+        if let Some(next) = words.get(at + 1).filter(|next| is_spoken(word) && is_spoken(next)) {
+            let whole = format!("{word}{next}");
+            let heard = sound::sounds(&whole);
+            let found = alike(lexicon, &heard, &whole).into_iter().filter(|(_, meant)| meant.len() > 4).take(2);
+            guesses.extend(found.map(|(cost, word)| Guess { at, length: 2, word, cost }));
+        }
+    }
+    guesses
+}
+
+/// The words that sound like what was heard, the likest first.
+fn alike(lexicon: &Lexicon, heard: &Vec<char>, word: &str) -> Vec<(f32, String)> {
+    let mut found: Vec<(f32, &String)> = lexicon
+        .sounds
+        .iter()
+        .filter(|(known, _)| known.as_str() != word)
+        .filter_map(|(known, sounds)| sound::difference(heard, sounds).map(|cost| (cost, known)))
+        .collect();
+    found.sort_by(|(one, a), (other, b)| one.total_cmp(other).then(a.cmp(b)));
+    found.into_iter().take(MOST_WORDS).map(|(cost, word)| (cost, word.clone())).collect()
+}
+
+fn is_spoken(word: &str) -> bool {
+    word.chars().all(|character| character.is_ascii_alphabetic())
+}
+
+fn with(words: &[String], guesses: &[&Guess]) -> Vec<String> {
+    let mut result = Vec::with_capacity(words.len());
+    let mut at = 0;
+    while at < words.len() {
+        match guesses.iter().find(|guess| guess.at == at) {
+            Some(guess) => {
+                result.push(guess.word.clone());
+                at += guess.length;
+            }
+            None => {
+                result.push(words[at].clone());
+                at += 1;
+            }
+        }
+    }
+    result
+}
