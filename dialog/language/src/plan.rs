@@ -14,6 +14,7 @@ use crate::{
     lexicon::{Direction, Preposition, Side},
     phrase::{Phrase, Place},
     process::Devices,
+    search,
     settle::{self, Settled},
     understanding::{Asking, Step},
 };
@@ -22,6 +23,10 @@ use crate::{
 const DEFAULT_MOVE_M: f32 = 1.0;
 const DEFAULT_TURN_DEG: f32 = 90.0;
 const DEFAULT_LOOK_DEG: f32 = 30.0;
+/// How near what is seen is taken without another look, m.
+const AT_HAND_M: f32 = 2.0;
+/// The share of a room that was looked at by who has looked around in it.
+const LOOKED_AT: f32 = 0.6;
 /// Limits of one motion, beyond which somebody mistyped.
 const LONGEST_MOVE_M: f32 = 30.0;
 const LARGEST_TURN_DEG: f32 = 720.0;
@@ -56,6 +61,8 @@ pub(crate) struct Planner<'a> {
     pub(crate) notes: Vec<String>,
     /// Whether it may put down what it holds to take something else.
     pub(crate) may_put_down: bool,
+    /// Whether it has looked around for this request.
+    pub(crate) has_looked: bool,
     pub(crate) clause: usize,
     /// The steps, and what was spoken of, when that clause was begun.
     pub(crate) begun: (usize, Focus),
@@ -131,7 +138,24 @@ impl Planner<'_> {
 
     /// Grounds a phrase, and says where it stands if that fails.
     pub(crate) fn find_one(&self, phrase: &Phrase, want: &Want<'_>, role: Option<Role>) -> Result<ObjectId, Fault> {
-        self.ground().one(phrase, want).map_err(|miss| self.miss(phrase, miss, want.intent, role))
+        let found = self.ground().one(phrase, want);
+        let found = found.and_then(|id| if self.is_hasty(phrase, id, want.intent) { Err(Miss::Hasty) } else { Ok(id) });
+        found.map_err(|miss| self.miss(phrase, miss, want.intent, role))
+    }
+
+    /// Whether to look around before this is taken for what was meant: it is nothing that the mission is about, it is
+    /// not at hand, and most of the room was not looked at yet.
+    fn is_hasty(&self, phrase: &Phrase, id: ObjectId, intent: Intent) -> bool {
+        let Some((floor, object)) = self.scene.floor.as_ref().zip(self.scene.object(id)) else { return false };
+        let class = self.catalog.class(object.class);
+        let room = self.scene.robot.room;
+        let is_told = phrase.chosen.is_some() || phrase.pronoun.is_some() || phrase.instance.is_some();
+        let is_at_hand = self.scene.robot.held == Some(id)
+            || object.visible && self.scene.distance_m(object) < AT_HAND_M
+            || self.focus.recent.contains(&id);
+        let is_spoken_of = is_told || is_at_hand || object.in_mission || phrase.room.is_some_and(|named| named != room);
+        let is_searched = class.has(Property::Pickupable) || intent == Intent::Find;
+        !self.has_looked && !is_spoken_of && is_searched && floor.share_looked_at(room, search::reach_of(class)) < LOOKED_AT
     }
 
     pub(crate) fn miss(&self, phrase: &Phrase, miss: Miss, intent: Intent, role: Option<Role>) -> Fault {
