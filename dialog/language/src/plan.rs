@@ -155,7 +155,10 @@ impl Planner<'_> {
             || self.focus.recent.contains(&id);
         let is_spoken_of = is_told || is_at_hand || object.in_mission || phrase.room.is_some_and(|named| named != room);
         let is_searched = class.has(Property::Pickupable) || intent == Intent::Find;
-        !self.has_looked && !is_spoken_of && is_searched && floor.share_looked_at(room, search::reach_of(class)) < LOOKED_AT
+        !self.has_looked
+            && !is_spoken_of
+            && is_searched
+            && floor.share_looked_at(room, search::reach_of(class)) < LOOKED_AT
     }
 
     pub(crate) fn miss(&self, phrase: &Phrase, miss: Miss, intent: Intent, role: Option<Role>) -> Fault {
@@ -166,6 +169,11 @@ impl Planner<'_> {
     /// That something of these classes is needed.
     pub(crate) fn need(&self, classes: &[ClassId], text: impl Into<String>) -> Fault {
         Fault::Need { classes: classes.to_vec(), text: text.into() }
+    }
+
+    /// Whether all that it can do about what it has not seen is to look around.
+    fn looks_about(&self) -> bool {
+        self.scene.floor.is_none() && !self.has_looked
     }
 
     /// Whether one of these classes is needed that may be found yet.
@@ -350,7 +358,7 @@ impl Planner<'_> {
             let is_nameable = !phrase.namings.is_empty() || phrase.instance.is_some();
             match self.find_one(phrase, &want, Some(Role::Object(index))) {
                 Ok(object) => self.go_to_object(object),
-                Err(Fault::Miss { miss: Miss::Unseen, .. }) if is_nameable && self.scene.floor.is_none() => {
+                Err(Fault::Miss { miss: Miss::Unseen, .. }) if is_nameable && self.looks_about() => {
                     self.notes.push(format!("I have not seen {} yet, so I look around for it", said(phrase)));
                     phrase.room.into_iter().for_each(|room| self.go_to_room(room));
                     self.push(Action::LookAround, "looking around".to_owned());

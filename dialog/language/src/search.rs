@@ -143,7 +143,11 @@ impl Conversation<'_> {
         planner.may_put_down = search.consent.may_put_down || self.judge.asking == Asking::Never;
         planner.has_looked = !search.looked_m.is_empty();
         let Err(fault) = planner.run(&search.clauses) else {
-            let found = search.target.as_ref().filter(|target| !target.is_hasty).and_then(|target| self.found(target, &planner.steps));
+            let found = search
+                .target
+                .as_ref()
+                .filter(|target| !target.is_hasty)
+                .and_then(|target| self.found(target, &planner.steps));
             let understanding = self.planned(planner, search.consent, found, context);
             context.request = search.clauses;
             return understanding;
@@ -210,16 +214,13 @@ impl Conversation<'_> {
         let here = Conversation { scene: &scene, ..*self };
         let mut planner = here.planner(context.focus.clone());
         planner.may_put_down = search.consent.may_put_down || self.judge.asking == Asking::Never;
+        planner.has_looked = true;
         match (planner.run(&search.clauses), search.target) {
             (Ok(()), _) => here.planned(planner, search.consent, None, context),
             (Err(Fault::Miss { miss: Miss::Unseen, .. }), Some(target)) => {
                 context.pending = None;
-                Understanding::refusal(match target.rooms.as_slice() {
-                    [room] => {
-                        format!("I have looked all over the {}, and found no {}.", room.name(), bare(&target.said))
-                    }
-                    _ => format!("I have looked everywhere I could, and found no {}.", bare(&target.said)),
-                })
+                let found = format!("I have looked everywhere I could, and found no {}.", bare(&target.said));
+                Understanding::refusal(found)
             }
             (Err(fault), _) => here.fault(fault, search.clauses, search.consent, context),
         }
@@ -229,7 +230,10 @@ impl Conversation<'_> {
     fn sought(&self, fault: &Fault) -> Option<Target> {
         self.scene.floor.as_ref()?;
         match fault {
-            Fault::Miss { phrase, miss: Miss::Unseen, .. } => self.target_of(phrase),
+            // Where nothing of that name affords what is asked for, something else is meant: the person knows what.
+            Fault::Miss { phrase, miss: Miss::Unseen, intent, .. } => {
+                self.target_of(phrase).filter(|target| self.affords_any(&target.classes, *intent))
+            }
             // Another one is known: the rooms at hand are looked at, then the person is asked.
             Fault::Miss { phrase, miss: Miss::Mismatch(others), .. } => {
                 let mut target = self.target_of(phrase)?;
@@ -250,6 +254,12 @@ impl Conversation<'_> {
             }
             _ => None,
         }
+    }
+
+    fn affords_any(&self, classes: &[ClassId], intent: Intent) -> bool {
+        let wanted = intent.affordances();
+        let affords = |class: &ClassId| wanted.iter().any(|property| self.catalog.class(*class).has(*property));
+        wanted.is_empty() || classes.iter().any(affords)
     }
 
     fn target_of(&self, phrase: &Phrase) -> Option<Target> {
