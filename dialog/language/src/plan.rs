@@ -138,27 +138,33 @@ impl Planner<'_> {
 
     /// Grounds a phrase, and says where it stands if that fails.
     pub(crate) fn find_one(&self, phrase: &Phrase, want: &Want<'_>, role: Option<Role>) -> Result<ObjectId, Fault> {
-        let found = self.ground().one(phrase, want);
-        let found = found.and_then(|id| if self.is_hasty(phrase, id, want.intent) { Err(Miss::Hasty) } else { Ok(id) });
+        let found = match self.ground().one(phrase, want) {
+            Ok(id) if self.is_hasty(phrase, id, want.intent) => Err(Miss::Hasty),
+            // One that is too doubtful to act on: perhaps the one that is meant is behind its back.
+            Err(Miss::Several(ids)) if matches!(ids[..], [id] if self.has_yet_to_look(id)) => Err(Miss::Hasty),
+            found => found,
+        };
         found.map_err(|miss| self.miss(phrase, miss, want.intent, role))
     }
 
     /// Whether to look around before this is taken for what was meant: it is nothing that the mission is about, it is
     /// not at hand, and most of the room was not looked at yet.
     fn is_hasty(&self, phrase: &Phrase, id: ObjectId, intent: Intent) -> bool {
-        let Some((floor, object)) = self.scene.floor.as_ref().zip(self.scene.object(id)) else { return false };
-        let class = self.catalog.class(object.class);
-        let room = self.scene.robot.room;
+        let Some(object) = self.scene.object(id) else { return false };
         let is_told = phrase.chosen.is_some() || phrase.pronoun.is_some() || phrase.instance.is_some();
         let is_at_hand = self.scene.robot.held == Some(id)
             || object.visible && self.scene.distance_m(object) < AT_HAND_M
             || self.focus.recent.contains(&id);
-        let is_spoken_of = is_told || is_at_hand || object.in_mission || phrase.room.is_some_and(|named| named != room);
-        let is_searched = class.has(Property::Pickupable) || intent == Intent::Find;
-        !self.has_looked
-            && !is_spoken_of
-            && is_searched
-            && floor.share_looked_at(room, search::reach_of(class)) < LOOKED_AT
+        let is_elsewhere = phrase.room.is_some_and(|named| named != self.scene.robot.room);
+        let is_searched = self.has(id, Property::Pickupable) || intent == Intent::Find;
+        !is_told && !is_at_hand && !object.in_mission && !is_elsewhere && is_searched && self.has_yet_to_look(id)
+    }
+
+    /// Whether such things may be in this room without its having seen them, and it has not looked around.
+    fn has_yet_to_look(&self, id: ObjectId) -> bool {
+        let Some((floor, object)) = self.scene.floor.as_ref().zip(self.scene.object(id)) else { return false };
+        let reach_m = search::reach_of(self.catalog.class(object.class));
+        !self.has_looked && floor.share_looked_at(self.scene.robot.room, reach_m) < LOOKED_AT
     }
 
     pub(crate) fn miss(&self, phrase: &Phrase, miss: Miss, intent: Intent, role: Option<Role>) -> Fault {
