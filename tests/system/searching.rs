@@ -29,10 +29,11 @@ fn a_search_stops_when_told_to() {
     let mut page = Page::open(play.authority()).unwrap();
     page.say("find the hammer").unwrap();
     page.wait("the search", |page, _| robot_says(page, "so I look for it")).unwrap();
-    page.do_and_wait("stop").unwrap();
+    page.say("stop").unwrap();
+    page.wait("the end of it", |page, _| robot_says(page, "OK, I stop.")).unwrap();
     page.wait("the robot at rest", |page, _| page.state["robot"]["busy"] == false).unwrap();
-    page.do_and_wait("what are you doing?").unwrap();
-    assert!(robot_says(&page, "I am waiting for you"), "{:?}", page.chat);
+    page.say("what are you doing?").unwrap();
+    page.wait("nothing to do", |page, _| robot_says(page, "I am waiting for you")).unwrap();
     play.end().unwrap();
 }
 

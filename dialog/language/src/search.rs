@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     clause::Clause,
-    context::{Consent, Context},
+    context::{Consent, Context, Role},
     conversation::Conversation,
     describe,
     floor::Floor,
@@ -231,8 +231,9 @@ impl Conversation<'_> {
         self.scene.floor.as_ref()?;
         match fault {
             // Where nothing of that name affords what is asked for, something else is meant: the person knows what.
-            Fault::Miss { phrase, miss: Miss::Unseen, intent, .. } => {
-                self.target_of(phrase).filter(|target| self.affords_any(&target.classes, *intent))
+            Fault::Miss { phrase, miss: Miss::Unseen, intent, slot } => {
+                let is_place = slot.is_some_and(|slot| matches!(slot.role, Role::Place(_)));
+                self.target_of(phrase).filter(|target| is_place || self.affords_any(&target.classes, *intent))
             }
             // Another one is known: the rooms at hand are looked at, then the person is asked.
             Fault::Miss { phrase, miss: Miss::Mismatch(others), .. } => {
