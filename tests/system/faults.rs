@@ -92,6 +92,24 @@ fn a_question_outlives_who_asked_it() {
 }
 
 #[test]
+fn what_was_seen_outlives_who_remembers_it() {
+    let play = Play::start(COHABIT, &["make_cereal"]).unwrap();
+    let mut person = Person::at(play.authority()).unwrap();
+    for sentence in ["look around", "go to the hallway", "where is the time machine?"] {
+        person.page.do_and_wait(sentence).unwrap();
+    }
+    let answered = |page: &Page| page.chat.iter().filter(|(_, text)| text.contains("is in the break room")).count();
+    assert_eq!(answered(&person.page), 1, "{:?}", person.page.chat);
+    send(&play, "dialog", Signal::KILL);
+    while person.page.next_message().is_ok() {}
+    person.page = person.open().unwrap();
+    person.page.wait("the past", |page, _| page.state.is_object()).unwrap();
+    person.page.say("where is the time machine?").unwrap();
+    person.page.wait("the same answer", |page, _| answered(page) == 2).unwrap();
+    play.end().unwrap();
+}
+
+#[test]
 fn who_hangs_for_ever_keeps_no_session_from_ending() {
     let play = Play::start(COHABIT, &[]).unwrap();
     // Pages that are never read.

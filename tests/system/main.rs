@@ -11,6 +11,7 @@ mod eval;
 mod faults;
 mod lock_step;
 mod missions;
+mod searching;
 mod sessions;
 mod soak;
 

@@ -136,6 +136,13 @@ impl Floor {
         Self { plan, nearest_m }
     }
 
+    /// The share of a room that was looked at from near enough for things that show up to `reach_m`.
+    pub(crate) fn share_looked_at(&self, room: RoomId, reach_m: f32) -> f32 {
+        let cells = self.plan.cells.iter().enumerate().filter(|(_, cell)| cell.room == room);
+        let seen = cells.filter(|(cell, _)| self.is_looked_at(*cell, reach_m)).count();
+        seen as f32 / self.plan.count(room).max(1) as f32
+    }
+
     /// Whether a cell was looked at from near enough for things that show up to `reach_m`.
     pub(crate) fn is_looked_at(&self, cell: usize, reach_m: f32) -> bool {
         self.nearest_m.get(cell).is_some_and(|nearest| *nearest <= reach_m)

@@ -83,6 +83,8 @@ pub(crate) enum Miss {
     NoReferent,
     /// The words are not known.
     Unknown,
+    /// There is one, but the robot has hardly looked about the room that it is in: people may mean another.
+    Hasty,
 }
 
 /// Grounds phrases in a scene.

@@ -7,7 +7,7 @@ use std::{
     sync::Arc,
 };
 
-use cohabit_cdf::{Action, Catalog, ObjectId, Property, StateFlag};
+use cohabit_cdf::{Action, Catalog, ObjectId, Property, StateFlag, Verb};
 use serde::{Deserialize, Serialize};
 
 use crate::{
@@ -152,6 +152,10 @@ impl Memory {
             return;
         };
         self.learn(target, false);
+        // Who opens a thing looks into it, wherever the handle is.
+        if let Action::Interact { verb: Verb::Open, .. } = action {
+            world.contents(target.id).for_each(|inside| self.learn(inside, true));
+        }
         let worked = target.works.filter(|worked| self.things.contains_key(worked));
         if let Some(worked) = worked.and_then(|worked| world.object(worked)) {
             self.learn(worked, false);

@@ -14,6 +14,7 @@ use crate::{
     lexicon::{Direction, Preposition, Side},
     phrase::{Phrase, Place},
     process::Devices,
+    search,
     settle::{self, Settled},
     understanding::{Asking, Step},
 };
@@ -22,6 +23,10 @@ use crate::{
 const DEFAULT_MOVE_M: f32 = 1.0;
 const DEFAULT_TURN_DEG: f32 = 90.0;
 const DEFAULT_LOOK_DEG: f32 = 30.0;
+/// How near what is seen is taken without another look, m.
+const AT_HAND_M: f32 = 2.0;
+/// The share of a room that was looked at by who has looked around in it.
+const LOOKED_AT: f32 = 0.6;
 /// Limits of one motion, beyond which somebody mistyped.
 const LONGEST_MOVE_M: f32 = 30.0;
 const LARGEST_TURN_DEG: f32 = 720.0;
@@ -56,6 +61,8 @@ pub(crate) struct Planner<'a> {
     pub(crate) notes: Vec<String>,
     /// Whether it may put down what it holds to take something else.
     pub(crate) may_put_down: bool,
+    /// Whether it has looked around for this request.
+    pub(crate) has_looked: bool,
     pub(crate) clause: usize,
     /// The steps, and what was spoken of, when that clause was begun.
     pub(crate) begun: (usize, Focus),
@@ -143,7 +150,33 @@ impl Planner<'_> {
 
     /// Grounds a phrase, and says where it stands if that fails.
     pub(crate) fn find_one(&self, phrase: &Phrase, want: &Want<'_>, role: Option<Role>) -> Result<ObjectId, Fault> {
-        self.ground().one(phrase, want).map_err(|miss| self.miss(phrase, miss, want.intent, role))
+        let found = match self.ground().one(phrase, want) {
+            Ok(id) if self.is_hasty(phrase, id, want.intent) => Err(Miss::Hasty),
+            // One that is too doubtful to act on: perhaps the one that is meant is behind its back.
+            Err(Miss::Several(ids)) if matches!(ids[..], [id] if self.has_yet_to_look(id)) => Err(Miss::Hasty),
+            found => found,
+        };
+        found.map_err(|miss| self.miss(phrase, miss, want.intent, role))
+    }
+
+    /// Whether to look around before this is taken for what was meant: it is nothing that the mission is about, it is
+    /// not at hand, and most of the room was not looked at yet.
+    fn is_hasty(&self, phrase: &Phrase, id: ObjectId, intent: Intent) -> bool {
+        let Some(object) = self.scene.object(id) else { return false };
+        let is_told = phrase.chosen.is_some() || phrase.pronoun.is_some() || phrase.instance.is_some();
+        let is_at_hand = self.scene.robot.held == Some(id)
+            || object.visible && self.scene.distance_m(object) < AT_HAND_M
+            || self.focus.recent.contains(&id);
+        let is_elsewhere = phrase.room.is_some_and(|named| named != self.scene.robot.room);
+        let is_searched = self.has(id, Property::Pickupable) || intent == Intent::Find;
+        !is_told && !is_at_hand && !object.in_mission && !is_elsewhere && is_searched && self.has_yet_to_look(id)
+    }
+
+    /// Whether such things may be in this room without its having seen them, and it has not looked around.
+    fn has_yet_to_look(&self, id: ObjectId) -> bool {
+        let Some((floor, object)) = self.scene.floor.as_ref().zip(self.scene.object(id)) else { return false };
+        let reach_m = search::reach_of(self.catalog.class(object.class));
+        !self.has_looked && floor.share_looked_at(self.scene.robot.room, reach_m) < LOOKED_AT
     }
 
     pub(crate) fn miss(&self, phrase: &Phrase, miss: Miss, intent: Intent, role: Option<Role>) -> Fault {
@@ -154,6 +187,11 @@ impl Planner<'_> {
     /// That something of these classes is needed.
     pub(crate) fn need(&self, classes: &[ClassId], text: impl Into<String>) -> Fault {
         Fault::Need { classes: classes.to_vec(), text: text.into() }
+    }
+
+    /// Whether all that it can do about what it has not seen is to look around.
+    fn looks_about(&self) -> bool {
+        self.scene.floor.is_none() && !self.has_looked
     }
 
     /// Whether one of these classes is needed that may be found yet.
@@ -338,7 +376,7 @@ impl Planner<'_> {
             let is_nameable = !phrase.namings.is_empty() || phrase.instance.is_some();
             match self.find_one(phrase, &want, Some(Role::Object(index))) {
                 Ok(object) => self.go_to_object(object),
-                Err(Fault::Miss { miss: Miss::Unseen, .. }) if is_nameable && self.scene.floor.is_none() => {
+                Err(Fault::Miss { miss: Miss::Unseen, .. }) if is_nameable && self.looks_about() => {
                     self.notes.push(format!("I have not seen {} yet, so I look around for it", said(phrase)));
                     phrase.room.into_iter().for_each(|room| self.go_to_room(room));
                     self.push(Action::LookAround, "looking around".to_owned());

@@ -58,6 +58,7 @@ pub(crate) fn planner<'a>(
         steps: Vec::new(),
         notes: Vec::new(),
         may_put_down: false,
+        has_looked: false,
         clause: 0,
     }
 }

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     clause::Clause,
-    context::{Consent, Context},
+    context::{Consent, Context, Role},
     conversation::Conversation,
     describe,
     floor::Floor,
@@ -31,6 +31,8 @@ const LEAST_GAIN: f32 = 0.03;
 const LOOKED_AT: f32 = 0.6;
 /// How much likelier things are where they are spoken of than elsewhere.
 const HERE: f32 = 4.0;
+/// How much better it is to stay in a room until it is looked at than to come back.
+const STAY: f32 = 3.0;
 /// The pace, and how long it takes to look around and to open a door, s.
 const PACE_M_S: f32 = 0.8;
 const LOOK_S: f32 = 4.0;
@@ -66,6 +68,8 @@ pub(crate) struct Target {
     likely: [f32; RoomId::ALL.len()],
     /// What it was said to be in or on.
     at: Option<ObjectId>,
+    /// Whether one is known already, and a look around is all that is wanted.
+    is_hasty: bool,
     /// Where the robot was when it was asked for.
     from: RoomId,
 }
@@ -119,7 +123,8 @@ impl Search {
     }
 
     fn look_for(&mut self, target: Target) -> bool {
-        let is_new = self.target.as_ref().is_none_or(|before| before.classes != target.classes);
+        let is_same = |before: &Target| before.classes == target.classes && before.is_hasty == target.is_hasty;
+        let is_new = !self.target.as_ref().is_some_and(is_same);
         if is_new {
             self.looked_m.clear();
             self.tried.clear();
@@ -136,8 +141,13 @@ impl Conversation<'_> {
     pub(crate) fn proceed(&self, mut search: Search, context: &mut Context) -> Understanding {
         let mut planner = self.planner(context.focus.clone());
         planner.may_put_down = search.consent.may_put_down || self.judge.asking == Asking::Never;
+        planner.has_looked = !search.looked_m.is_empty();
         let Err(fault) = planner.run(&search.clauses) else {
-            let found = search.target.as_ref().and_then(|target| self.found(target, &planner.steps));
+            let found = search
+                .target
+                .as_ref()
+                .filter(|target| !target.is_hasty)
+                .and_then(|target| self.found(target, &planner.steps));
             let understanding = self.planned(planner, search.consent, found, context);
             context.request = search.clauses;
             return understanding;
@@ -182,6 +192,7 @@ impl Conversation<'_> {
         search.legs += 1;
         let said = &target.said;
         let reply = match &leg {
+            _ if target.is_hasty => "I look around first.".to_owned(),
             _ if is_new => format!("I have not seen {said} yet, so I look for it."),
             Some(leg) if leg.room != before => {
                 format!("I do not see {said} here. I look in the {}.", leg.room.name())
@@ -203,16 +214,13 @@ impl Conversation<'_> {
         let here = Conversation { scene: &scene, ..*self };
         let mut planner = here.planner(context.focus.clone());
         planner.may_put_down = search.consent.may_put_down || self.judge.asking == Asking::Never;
+        planner.has_looked = true;
         match (planner.run(&search.clauses), search.target) {
             (Ok(()), _) => here.planned(planner, search.consent, None, context),
             (Err(Fault::Miss { miss: Miss::Unseen, .. }), Some(target)) => {
                 context.pending = None;
-                Understanding::refusal(match target.rooms.as_slice() {
-                    [room] => {
-                        format!("I have looked all over the {}, and found no {}.", room.name(), bare(&target.said))
-                    }
-                    _ => format!("I have looked everywhere I could, and found no {}.", bare(&target.said)),
-                })
+                let found = format!("I have looked everywhere I could, and found no {}.", bare(&target.said));
+                Understanding::refusal(found)
             }
             (Err(fault), _) => here.fault(fault, search.clauses, search.consent, context),
         }
@@ -222,7 +230,11 @@ impl Conversation<'_> {
     fn sought(&self, fault: &Fault) -> Option<Target> {
         self.scene.floor.as_ref()?;
         match fault {
-            Fault::Miss { phrase, miss: Miss::Unseen, .. } => self.target_of(phrase),
+            // Where nothing of that name affords what is asked for, something else is meant: the person knows what.
+            Fault::Miss { phrase, miss: Miss::Unseen, intent, slot } => {
+                let is_place = slot.is_some_and(|slot| matches!(slot.role, Role::Place(_)));
+                self.target_of(phrase).filter(|target| is_place || self.affords_any(&target.classes, *intent))
+            }
             // Another one is known: the rooms at hand are looked at, then the person is asked.
             Fault::Miss { phrase, miss: Miss::Mismatch(others), .. } => {
                 let mut target = self.target_of(phrase)?;
@@ -233,12 +245,22 @@ impl Conversation<'_> {
                 }
                 Some(target)
             }
+            Fault::Miss { phrase, miss: Miss::Hasty, .. } => {
+                let target = self.target_of(phrase)?;
+                Some(Target { rooms: vec![self.scene.robot.room], is_hasty: true, ..target })
+            }
             Fault::Need { classes, .. } if !classes.is_empty() => {
                 let said = describe::indefinite(&describe::name(self.catalog, classes[0]));
                 Some(self.target(said, classes.clone(), None))
             }
             _ => None,
         }
+    }
+
+    fn affords_any(&self, classes: &[ClassId], intent: Intent) -> bool {
+        let wanted = intent.affordances();
+        let affords = |class: &ClassId| wanted.iter().any(|property| self.catalog.class(*class).has(*property));
+        wanted.is_empty() || classes.iter().any(affords)
     }
 
     fn target_of(&self, phrase: &Phrase) -> Option<Target> {
@@ -291,16 +313,22 @@ impl Conversation<'_> {
     fn target(&self, said: String, classes: Vec<ClassId>, room: Option<RoomId>) -> Target {
         let likely = self.habits.by_room(self.catalog, &classes);
         let rooms = room.map_or_else(|| RoomId::ALL.to_vec(), |room| vec![room]);
-        Target { said, classes, rooms, likely, at: None, from: self.scene.robot.room }
+        Target { said, classes, rooms, likely, at: None, is_hasty: false, from: self.scene.robot.room }
     }
 
     fn next_leg(&self, floor: &Floor, search: &Search, target: &Target) -> Option<Leg> {
+        if target.is_hasty {
+            return self.looks(floor, search, target).into_iter().find(|leg| matches!(leg.spot, Spot::Here(_)));
+        }
         let mut legs: Vec<Leg> = self.said_leg(floor, search, target).into_iter().collect();
         if legs.is_empty() {
             legs = self.looks(floor, search, target);
             legs.extend(self.openings(floor, search, target, &legs));
         }
-        let worth = |leg: &Leg| leg.chance / leg.takes_s;
+        let worth = |leg: &Leg| {
+            let stay = if leg.room == self.scene.robot.room { STAY } else { 1.0 };
+            stay * leg.chance / leg.takes_s
+        };
         legs.into_iter().reduce(|best, leg| if worth(&leg) > worth(&best) { leg } else { best })
     }
 
@@ -347,9 +375,7 @@ impl Conversation<'_> {
         }
         let reach_m = self.reach_m(target);
         let is_looked_at = |room: RoomId| {
-            let cells = floor.plan.cells.iter().enumerate().filter(|(_, cell)| cell.room == room);
-            let seen = cells.filter(|(cell, _)| floor.is_looked_at(*cell, reach_m)).count();
-            seen as f32 >= LOOKED_AT * floor.plan.count(room) as f32 || !looks.iter().any(|leg| leg.room == room)
+            floor.share_looked_at(room, reach_m) >= LOOKED_AT || !looks.iter().any(|leg| leg.room == room)
         };
         let may_hold = |object: &&KnownObject| {
             let class = self.catalog.class(object.class);
@@ -417,8 +443,8 @@ impl Conversation<'_> {
 
     /// From how far such a thing shows, m.
     fn reach_m(&self, target: &Target) -> f32 {
-        let reach = target.classes.iter().map(|class| sight::reach_m(self.catalog.class(*class)));
-        reach.fold(f32::INFINITY, f32::min).clamp(REACH_M.0, REACH_M.1)
+        let reach = target.classes.iter().map(|class| reach_of(self.catalog.class(*class)));
+        reach.fold(REACH_M.1, f32::min)
     }
 }
 
@@ -427,6 +453,11 @@ impl Target {
         let here = if room == self.from { HERE } else { 1.0 };
         self.likely[room as usize] * here
     }
+}
+
+/// From how far a thing of a class is looked for, m.
+pub(crate) fn reach_of(class: &ObjectClass) -> f32 {
+    sight::reach_m(class).clamp(REACH_M.0, REACH_M.1)
 }
 
 /// The classes that the words mean most.

@@ -1,6 +1,6 @@
 //! What an eye takes in: its field of view, how small a thing still shows, and what stands in between.
 
-use cohabit_cdf::{Catalog, ObjectClass, ObjectId, Property, RoomId};
+use cohabit_cdf::{Catalog, ObjectClass, ObjectId, Property, RoomId, catalog::Stands};
 
 use crate::{
     floor::FloorPlan,
@@ -17,6 +17,8 @@ const LEAST_PIXELS: f32 = 12.0;
 const BOARD_M: f32 = 0.04;
 /// What is smaller than this hides nothing worth the name, m.
 const SMALL_M: f32 = 0.25;
+/// The share of its box that a thing on a table fills: computers are mostly air.
+const FILLED: f32 = 0.7;
 /// The height at which one looks at a piece of floor: that of tables, m.
 const TABLE_M: f32 = 0.8;
 
@@ -156,8 +158,9 @@ fn blocks(catalog: &Catalog, object: &KnownObject) -> Vec<Block> {
             kind.surfaces.iter().map(|surface| board(surface.center_m, surface.size_m)).collect()
         }
         _ => {
-            let half = class.size_m.map(|side| side / 2.0);
-            vec![block([0.0, 0.0, half[2]], half)]
+            let share = if class.stands == Stands::OnSurface { FILLED } else { 1.0 };
+            let [x, y, z] = class.size_m.map(|side| side / 2.0);
+            vec![block([0.0, 0.0, z], [x * share, y * share, z])]
         }
     }
 }
@@ -179,6 +182,10 @@ impl Block {
     /// Whether the straight line from `eye` to `point` goes through it.
     fn hides(&self, eye: [f32; 3], point: [f32; 3]) -> bool {
         let (from, to) = (self.local(eye), self.local(point));
+        // What is within the box of another thing is where that has a gap.
+        if (0..3).all(|axis| to[axis].abs() <= self.half_m[axis]) {
+            return false;
+        }
         let (mut enter, mut leave) = (0.0_f32, 1.0_f32);
         for axis in 0..3 {
             let along = to[axis] - from[axis];

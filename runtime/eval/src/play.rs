@@ -22,8 +22,8 @@ use crate::{
 
 /// What people wait after a turn before they speak again: machines that are on for a moment are done by then.
 const PAUSE_TICKS: u64 = 150;
-/// The longest that one line may take.
-const PATIENCE_TICKS: u64 = 60 * 240;
+/// The longest that one line may take: a search through all of an office, and back.
+const PATIENCE_TICKS: u64 = 60 * 900;
 
 /// The most times that people speak for the sake of one thing they want.
 const MOST_ROUNDS: u32 = 6;
