@@ -331,7 +331,24 @@ fn read_motion(reader: &mut Reader<'_>, clause: &mut Clause) {
             clause.amount = clause.amount.or(Some(little(clause.intent)));
         } else if matches!(
             reader.rest().first().map(String::as_str),
-            Some("your" | "head" | "a" | "for" | "by" | "of" | "an" | "about" | "only" | "just" | "exactly" | "approximately" | "another" | "once" | "more" | "further")
+            Some(
+                "your"
+                    | "head"
+                    | "a"
+                    | "for"
+                    | "by"
+                    | "of"
+                    | "an"
+                    | "about"
+                    | "only"
+                    | "just"
+                    | "exactly"
+                    | "approximately"
+                    | "another"
+                    | "once"
+                    | "more"
+                    | "further"
+            )
         ) {
             reader.at += 1;
         } else {
@@ -354,10 +371,15 @@ fn read_motion(reader: &mut Reader<'_>, clause: &mut Clause) {
 
 /// `a bit`, `slightly`: how many words say so.
 fn a_bit(words: &[String]) -> Option<usize> {
-    let skipped = words.iter().take_while(|word| matches!(word.as_str(), "a" | "just" | "very" | "tiny" | "little" | "small" | "wee")).count();
+    let skipped = words
+        .iter()
+        .take_while(|word| matches!(word.as_str(), "a" | "just" | "very" | "tiny" | "little" | "small" | "wee"))
+        .count();
     let is_bit = |word: &String| matches!(word.as_str(), "bit" | "tad" | "touch" | "smidge" | "slightly" | "fraction");
     match words.get(skipped) {
-        Some(word) if is_bit(word) => Some(skipped + 1 + usize::from(words.get(skipped + 1).is_some_and(|word| word == "more"))),
+        Some(word) if is_bit(word) => {
+            Some(skipped + 1 + usize::from(words.get(skipped + 1).is_some_and(|word| word == "more")))
+        }
         _ if skipped > 1 && words[skipped - 1] == "little" => Some(skipped),
         _ => None,
     }

@@ -390,7 +390,7 @@ impl<'a> Ground<'a> {
             Some(*id) != want.exclude && !is_held
         };
         let place = self.focus.place.into_iter();
-        let mut spoken: Vec<ObjectId> = self.focus.recent.iter().copied().collect();
+        let mut spoken = self.focus.recent.clone();
         spoken.retain(|id| pronoun != Pronoun::Place || Some(*id) != self.focus.place);
         let at = if pronoun == Pronoun::Place { 0 } else { spoken.len() };
         // `put the bread in the toaster and turn it on`: the place is meant where nothing else spoken of fits.

@@ -41,7 +41,9 @@ pub(crate) fn readings(lexicon: &Lexicon, catalog: &Catalog, words: &[String]) -
         return Vec::new();
     }
     let mut guesses = guesses(lexicon, words);
-    guesses.sort_by(|one, other| one.cost.total_cmp(&other.cost).then(one.at.cmp(&other.at)).then(one.word.cmp(&other.word)));
+    guesses.sort_by(|one, other| {
+        one.cost.total_cmp(&other.cost).then(one.at.cmp(&other.at)).then(one.word.cmp(&other.word))
+    });
     let mut readings: Vec<(f32, Vec<String>)> =
         guesses.iter().map(|guess| (guess.cost, with(words, &[guess]))).collect();
     for (index, one) in guesses.iter().enumerate().take(MOST_READINGS) {
@@ -77,7 +79,12 @@ fn guesses(lexicon: &Lexicon, words: &[String]) -> Vec<Guess> {
         let word = &words[at];
         if is_spoken(word) && !lexicon.is_small_word(word) {
             let heard = sound::sounds(word);
-            guesses.extend(alike(lexicon, &heard, word).into_iter().map(|(cost, word)| Guess { at, length: 1, word, cost }));
+            guesses.extend(alike(lexicon, &heard, word).into_iter().map(|(cost, word)| Guess {
+                at,
+                length: 1,
+                word,
+                cost,
+            }));
         }
         // `where house`: heard as two words.
         if let Some(next) = words.get(at + 1).filter(|next| is_spoken(word) && is_spoken(next)) {

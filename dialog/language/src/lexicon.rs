@@ -259,7 +259,10 @@ impl Lexicon {
         let word = [word.to_owned()];
         self.articles.exact(&word).is_some()
             || self.pronouns.exact(&word).is_some()
-            || matches!(word[0].as_str(), "and" | "to" | "in" | "on" | "at" | "of" | "i" | "you" | "please" | "with" | "then")
+            || matches!(
+                word[0].as_str(),
+                "and" | "to" | "in" | "on" | "at" | "of" | "i" | "you" | "please" | "with" | "then"
+            )
     }
 
     /// The words of an utterance: tokens, with spelling repaired and set phrases replaced; and how many were misspelt.
@@ -284,13 +287,17 @@ impl Lexicon {
     /// `opening` after `would you mind`, as the verb; and `makes` after what makes, as no verb.
     fn as_request(&self, before: &[String], word: &str) -> Option<String> {
         let last = before.last().map(String::as_str);
-        let is_asked = matches!(last, None | Some("mind" | "about" | "by" | "try" | "start" | "begin" | "please" | "meant" | "mean" | "to"));
+        let is_asked = matches!(
+            last,
+            None | Some("mind" | "about" | "by" | "try" | "start" | "begin" | "please" | "meant" | "mean" | "to")
+        );
         if is_asked && word.ends_with("ing") && !self.vocabulary.has(word) {
             return inflect::stem(self, word);
         }
         let verb = word.strip_suffix('s').filter(|verb| self.verb_heads.contains(*verb))?;
         let is_noun = self.classes.words().any(|known| known == verb || known == word);
-        let is_told = last.is_some_and(|last| last.chars().all(char::is_alphabetic) && !self.lead.words().any(|lead| lead == last));
+        let is_told = last
+            .is_some_and(|last| last.chars().all(char::is_alphabetic) && !self.lead.words().any(|lead| lead == last));
         (is_told && !is_noun && !self.vocabulary.has(word)).then(|| word.to_owned())
     }
 

@@ -98,7 +98,11 @@ impl Phrase {
 
     /// Whether more is said of it than what it is called.
     pub(crate) fn is_described(&self) -> bool {
-        !self.relations.is_empty() || self.room.is_some() || self.color.is_some() || self.is_here || !self.not.is_empty()
+        !self.relations.is_empty()
+            || self.room.is_some()
+            || self.color.is_some()
+            || self.is_here
+            || !self.not.is_empty()
     }
 
     /// How much it means this class; nothing, if it does not.
@@ -557,7 +561,9 @@ impl<'a> Reader<'a> {
             if let Some((length, more)) = reader.lexicon.numbers.longest(reader.rest()) {
                 value += more;
                 reader.at += length;
-                if let Some((length, unit)) = reader.lexicon.numbers.longest(reader.rest()).filter(|(_, unit)| **unit < 10.0) {
+                if let Some((length, unit)) =
+                    reader.lexicon.numbers.longest(reader.rest()).filter(|(_, unit)| **unit < 10.0)
+                {
                     value += unit;
                     reader.at += length;
                 }
