@@ -49,7 +49,8 @@ impl Ids {
                 let [first, last] = [start, end - 1].map(|pixel| u64::from(pixel % self.size[0]));
                 let middle = if first <= last { (first + last) / 2 } else { u64::from(self.size[0] / 2) };
                 let count = u64::from(end - start);
-                (*pixels, *columns, *top) = (*pixels + count, *columns + count * middle, (*top).min(start / self.size[0]));
+                (*pixels, *columns, *top) =
+                    (*pixels + count, *columns + count * middle, (*top).min(start / self.size[0]));
             }
             start = *end;
         }

@@ -109,7 +109,17 @@ impl Visit {
         let (mut frames, viewing) = view.join();
         frames.mark_changed();
         let aim = Aim { told: Value::Null, at: now, picked: None };
-        Self { service, view, frames, _viewing: viewing, limits: Limits::new(now), driver: None, aim, marks: Vec::new(), asked_at: None }
+        Self {
+            service,
+            view,
+            frames,
+            _viewing: viewing,
+            limits: Limits::new(now),
+            driver: None,
+            aim,
+            marks: Vec::new(),
+            asked_at: None,
+        }
     }
 
     async fn run(mut self, mut socket: WebSocket, mut messages: broadcast::Receiver<Arc<str>>) {

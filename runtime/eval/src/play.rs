@@ -141,7 +141,8 @@ pub fn play(task: &Task, settings: &Settings, catalog: &Arc<Catalog>) -> Result<
     played.load_s = began.elapsed().as_secs_f64();
     played.family = task.family.clone().unwrap_or_else(|| family(&plan.mission));
     let knowledge = Knowledge::new(settings.knows, Arc::clone(catalog), world.layout(), BodyId(0));
-    let mut session = LockStep::new(world, Conversation::new(Arc::clone(catalog), 0).asking(settings.asking), knowledge);
+    let mut session =
+        LockStep::new(world, Conversation::new(Arc::clone(catalog), 0).asking(settings.asking), knowledge);
     if let Some(folder) = &settings.record {
         let path = folder.join(format!("{}.mcap", file_name(&task.id)));
         session.record(&path, &task.id, &plan)?;
