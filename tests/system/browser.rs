@@ -59,3 +59,20 @@ fn a_person_opens_the_page_types_and_sees_the_robot_move() {
     drop((tab, phone, browser));
     play.end().unwrap();
 }
+
+#[test]
+fn a_person_answers_a_question_with_a_click() {
+    let Some(browser) = Browser::start().unwrap() else { return };
+    let mut play = Play::start(COHABIT, &["--ask", "always", "--knows", "everything"]).unwrap();
+    let mut tab = browser.open(&play.address, 1280, 720).unwrap();
+    tab.wait_until("document.querySelector('#chat-input') !== null && window.cohabit?.frames > 0").unwrap();
+    let answers = "document.querySelectorAll('.answers button:enabled')";
+    tab.evaluate("document.querySelector('#chat-input').focus()").unwrap();
+    tab.type_and_enter("go to the main office").unwrap();
+    tab.wait_until(&format!("{answers}.length === 2")).unwrap();
+    tab.evaluate(&format!("{answers}[0].click()")).unwrap();
+    tab.wait_until("window.cohabit.state.robot.room === 'MainOffice'").unwrap();
+    assert_eq!(tab.evaluate(&format!("{answers}.length")).unwrap(), json!(0), "an answer is given once");
+    drop((tab, browser));
+    play.end().unwrap();
+}

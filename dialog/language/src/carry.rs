@@ -162,6 +162,10 @@ impl Planner<'_> {
         match &goal.place {
             Place::Object(phrase) => {
                 let target = self.find_target(phrase, goal, object, settled.intent)?;
+                let is_there = self.scene.object(object).is_some_and(|known| known.parent == Some(target));
+                if is_there && settled.objects.iter().any(|phrase| phrase.is_all) {
+                    return Ok(());
+                }
                 if target == object {
                     return Err(Fault::Cannot(format!("I cannot put {} on itself.", self.the(object))));
                 }

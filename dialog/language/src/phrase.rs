@@ -92,6 +92,7 @@ impl Phrase {
             || self.ordinal.is_some()
             || self.room.is_some()
             || self.is_here
+            || self.is_all
             || !self.relations.is_empty()
             || !self.not.is_empty()
     }

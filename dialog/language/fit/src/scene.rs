@@ -41,7 +41,7 @@ pub fn draw(catalog: &Catalog, layout: &Layout, chance: &mut Chance) -> Known {
         let bearing = (dy.atan2(dx) - robot.yaw_rad).rem_euclid(std::f32::consts::TAU);
         object.visible = object.room == robot.room && bearing.min(std::f32::consts::TAU - bearing) < HALF_VIEW_RAD;
     }
-    Known { robot, objects, goals: Vec::new() }
+    Known { robot, objects, goals: Vec::new(), floor: None }
 }
 
 fn is_carried(catalog: &Catalog, object: &KnownObject) -> bool {
@@ -69,6 +69,8 @@ fn furniture(catalog: &Catalog, layout: &Layout) -> Vec<KnownObject> {
                 text: String::new(),
                 visible: false,
                 works: placement.works.as_deref().and_then(index),
+                is_hidden: false,
+                yaw_rad: 0.0,
                 in_mission: false,
             })
         })
@@ -107,6 +109,8 @@ fn add_mission(catalog: &Catalog, objects: &mut Vec<KnownObject>, chance: &mut C
                 text: String::new(),
                 visible: false,
                 works: None,
+                is_hidden: false,
+                yaw_rad: 0.0,
                 in_mission: true,
             });
         }

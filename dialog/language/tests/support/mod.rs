@@ -10,7 +10,7 @@ use cohabit_cdf::{
     Action, Catalog, Color, Fluid, GoToTarget, ObjectId, RoomId,
     state::{StateFlag, StateFlags},
 };
-use cohabit_language::{Context, Known, KnownGoal, KnownObject, KnownRobot, Language, Step, Understanding};
+use cohabit_language::{Asking, Context, Known, KnownGoal, KnownObject, KnownRobot, Language, Step, Understanding};
 
 /// `id | name | words | properties | colour | receptacle`: `-` none, `on`, `in` (enclosed), `key:CLASS`.
 const CLASSES: &str = "
@@ -318,6 +318,18 @@ impl Talk {
         });
         let scene = scene(catalog, marks);
         Self { language, scene, context: Context::default() }
+    }
+
+    /// The same, with a robot that asks at other times.
+    pub fn asking(marks: &[&str], asking: Asking) -> Self {
+        let Self { language, scene, context } = Self::new(marks);
+        Self { language: language.asking(asking), scene, context }
+    }
+
+    /// Somebody points at an object.
+    pub fn choose(&mut self, instance: &str) -> String {
+        let object = self.scene.objects.iter().find(|object| object.instance == instance).unwrap().id;
+        text(&self.language.choose(object, &self.scene, &mut self.context), &self.scene)
     }
 
     pub fn say(&mut self, utterance: &str) -> String {

@@ -1,0 +1,117 @@
+//! When the robot asks, what it asks, and what it makes of the answers.
+
+#![allow(clippy::unwrap_used)]
+
+mod support;
+
+use cohabit_language::{Asking, Clarification, Context, Understanding};
+use support::Talk;
+
+/// Lines `> utterance` and `@ instance pointed at`, each followed by what is understood; `…` ends a prefix.
+fn check(asking: Asking, marks: &[&str], script: &str) {
+    let mut talk = Talk::asking(marks, asking);
+    let mut lines = script.lines().map(str::trim).filter(|line| !line.is_empty());
+    while let Some(line) = lines.next() {
+        let expected = lines.next().unwrap();
+        let found = match line.split_once(' ') {
+            Some(("@", instance)) => talk.choose(instance),
+            Some((_, utterance)) => talk.say(utterance),
+            None => panic!("{line}"),
+        };
+        let is_right = expected.strip_suffix('…').map_or(found == expected, |start| found.starts_with(start));
+        assert!(is_right, "{line}\n    wanted {expected}\n    found  {found}\nin {script}");
+    }
+}
+
+/// The kind of question that an utterance is answered with, and the answers that it offers.
+fn asked(marks: &[&str], utterance: &str) -> (Clarification, Vec<String>) {
+    let talk = Talk::new(marks);
+    match talk.language.understand(utterance, &talk.scene, &mut Context::default()) {
+        Understanding::Question { kind, options, .. } => (kind, options),
+        other => panic!("no question: {other:?}"),
+    }
+}
+
+#[test]
+fn each_kind_of_question_has_its_occasion() {
+    let check = |marks: &[&str], utterance: &str, kind: Clarification| {
+        assert_eq!(asked(marks, utterance).0, kind, "{utterance}");
+    };
+    check(&[], "pick up the mug", Clarification::Reference);
+    check(&[], "go to the lab", Clarification::Reference);
+    check(&["without Hammer_1"], "pick up the hammer", Clarification::Location);
+    check(&[], "pick up the flurbl", Clarification::Appearance);
+    check(&[], "turn", Clarification::Direction);
+    check(&["held Bowl_01_1"], "pick up the banana", Clarification::Confirmation);
+    check(&[], "the microwave", Clarification::Request);
+    let mugs = ["the red mug on the round table", "the yellow mug on the round table"];
+    assert_eq!(asked(&[], "pick up the mug").1, mugs);
+    assert_eq!(asked(&[], "turn").1, ["left", "right", "around"]);
+}
+
+#[test]
+fn never_takes_the_best_guess_or_refuses() {
+    let check = |marks: &[&str], script: &str| check(Asking::Never, marks, script);
+    check(&[], "> pick up the mug\ntake CoffeeMug_…");
+    check(&[], "> pick up the blue apple\ntake Apple_…");
+    check(&["held Bowl_01_1"], "> pick up the banana\nput TableRound_02_1, take Banana_01_1");
+    check(&["without Hammer_1"], "> pick up the hammer\n! I have not seen a hammer…");
+    check(&[], "> go to the lab\ngo Lab1");
+    check(&[], "> turn\nturn -90");
+}
+
+#[test]
+fn always_asks_before_it_commits_itself() {
+    let check = |script: &str| check(Asking::Always, &[], script);
+    check("> go to the kitchen\n? I understand: going to the break room. Shall I?\n> yes\ngo BreakRoom");
+    check("> go to the kitchen\n? I understand…\n> no\n= All right, I leave it.");
+    check("> go to the kitchen\n? I understand…\n> go to the main office\n? I understand: going to the main office…");
+    check("> pick up the mug\n? Which…\n> the red one\ntake CoffeeMug_Boss_1");
+    check("> look up\nlook 30");
+}
+
+#[test]
+fn answers_come_in_any_form() {
+    let check = |script: &str| check(Asking::Unsure, &[], &format!("> pick up the mug\n? Which…\n{script}"));
+    check("> the other one\ntake CoffeeMug_Yellow_1");
+    check("> no the other one\ntake CoffeeMug_Yellow_1");
+    check("> I don't know\ntake CoffeeMug_Boss_1");
+    check("> no idea\ntake CoffeeMug_Boss_1");
+    check("> neither\n? I have not seen a mug. Where is it…\n> never mind\n= All right, I leave it.");
+    check("> it is on the left\ntake CoffeeMug_Boss_1");
+    check("> over there to the right\ntake CoffeeMug_Yellow_1");
+    check("@ CoffeeMug_Yellow_1\ntake CoffeeMug_Yellow_1");
+    check("> yes\n? Which…\n> the yellow one\ntake CoffeeMug_Yellow_1");
+    check("> where is the milk?\n= The milk…");
+}
+
+#[test]
+fn which_way_and_what_it_looks_like_are_answered() {
+    let check = |marks: &[&str], script: &str| check(Asking::Unsure, marks, script);
+    check(&[], "> turn\n? Which direction should I turn to?\n> to the left\nturn 90");
+    check(&[], "> turn\n? Which…\n> over there on your right\nturn -90");
+    check(&[], "> turn\n? Which…\n> around\nturn -180");
+    check(
+        &[],
+        "> pick up the flurbl\n? I do not know what \"flurbl\" is…\n> it is a yellow mug\ntake CoffeeMug_Yellow_1",
+    );
+    check(
+        &[],
+        "@ Microwave_01_1\n? What shall I do with the microwave on the counter top?\n> open it\nopen Microwave_01_1",
+    );
+}
+
+#[test]
+fn all_of_a_kind_are_carried_one_by_one() {
+    let check = |marks: &[&str], script: &str| check(Asking::Unsure, marks, script);
+    check(
+        &[],
+        "> put all the mugs on the counter
+        take CoffeeMug_Boss_1, put KitchenCounterTop_02_1, take CoffeeMug_Yellow_1, put KitchenCounterTop_02_1",
+    );
+    check(
+        &[],
+        "> pick up all the mugs\n? I can only carry one thing at a time. Shall I begin with the red mug?\n> yes\ntake CoffeeMug_Boss_1",
+    );
+    check(&[], "> pick everything up\n? I can only carry one thing at a time…");
+}
