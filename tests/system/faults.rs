@@ -100,7 +100,7 @@ fn what_was_seen_outlives_who_remembers_it() {
     }
     let answered = |page: &Page| page.chat.iter().filter(|(_, text)| text.contains("is in the break room")).count();
     assert_eq!(answered(&person.page), 1, "{:?}", person.page.chat);
-    send(&play, "dialog", Signal::KILL);
+    play.send("dialog", Signal::KILL).unwrap();
     while person.page.next_message().is_ok() {}
     person.page = person.open().unwrap();
     person.page.wait("the past", |page, _| page.state.is_object()).unwrap();

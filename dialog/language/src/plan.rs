@@ -10,7 +10,7 @@ use crate::{
     imagine,
     intent::Intent,
     judge::Judge,
-    known::Known,
+    known::{Known, KnownObject},
     lexicon::{Direction, Preposition, Side},
     phrase::{Phrase, Place},
     process::Devices,
@@ -154,9 +154,20 @@ impl Planner<'_> {
             Ok(id) if self.is_hasty(phrase, id, want.intent) => Err(Miss::Hasty),
             // One that is too doubtful to act on: perhaps the one that is meant is behind its back.
             Err(Miss::Several(ids)) if matches!(ids[..], [id] if self.has_yet_to_look(id)) => Err(Miss::Hasty),
+            // It has looked, and there is no other: to ask would not help.
+            Err(Miss::Several(ids)) => match ids[..] {
+                [id] if self.is_settled(id, want.intent) => Ok(id),
+                _ => Err(Miss::Several(ids)),
+            },
             found => found,
         };
         found.map_err(|miss| self.miss(phrase, miss, want.intent, role))
+    }
+
+    /// Whether a look around has settled that this one is meant, where a mistake could be undone.
+    fn is_settled(&self, id: ObjectId, intent: Intent) -> bool {
+        let is_for_good = |object: &KnownObject| self.judge.is_for_good(intent, object.class);
+        self.has_looked && !self.scene.object(id).is_none_or(is_for_good)
     }
 
     /// Whether to look around before this is taken for what was meant: it is nothing that the mission is about, it is
