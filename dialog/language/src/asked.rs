@@ -34,7 +34,7 @@ impl Conversation<'_> {
         let pending = context.pending.take()?;
         let small = self.small(words);
         let is = |kind| small.contains(&kind);
-        let is_command = parts.iter().any(|part| matches!(part, Part::Clause(_)));
+        let is_command = small.is_empty() && parts.iter().any(|part| matches!(part, Part::Clause(_)));
         let is_yes = self.small_at_start(words, Small::Yes) && !is_command;
         let leaves = is(Small::No) || is(Small::Neither) && !matches!(pending, Pending::Which { .. });
         if leaves && !is_command && !matches!(&pending, Pending::Which { candidates, .. } if candidates.len() == 1) {
@@ -122,6 +122,13 @@ impl Conversation<'_> {
         let is_any = is(Small::Any) || is(Small::Unsure) || is_yes && is_one;
         if let Some(first) = candidates.first().filter(|_| is_any) {
             return Some(self.settle(open, *first, context));
+        }
+        if self.is_all(words) {
+            let mut open = open;
+            if let Some(phrase) = phrase_mut(&mut open.clauses, open.slot) {
+                phrase.is_all = true;
+            }
+            return Some(self.plan(open.clauses, open.consent, context));
         }
         let left = self.answered(words, candidates, context);
         match left.as_slice() {
@@ -212,6 +219,22 @@ impl Conversation<'_> {
         question::read(self.lexicon, words).is_some()
             || self.chat(words).is_some()
             || self.small(words).iter().any(|small| aside.contains(small))
+    }
+
+    /// Whether all of them are meant: `both`, `all of them please`.
+    fn is_all(&self, words: &[String]) -> bool {
+        let words = plain(words);
+        let Some((length, ())) = self.lexicon.all.longest(&words) else { return false };
+        let mut reader = Reader::new(self.lexicon, &words);
+        reader.at = length;
+        while matches!(
+            reader.rest().first().map(String::as_str),
+            Some("them" | "those" | "these" | "of" | "ones" | "one")
+        ) {
+            reader.at += 1;
+        }
+        reader.skip(|lexicon| &lexicon.trail);
+        reader.is_done()
     }
 
     /// Whether the other one is asked for.

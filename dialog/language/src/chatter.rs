@@ -23,6 +23,9 @@ const BEFORE_REQUESTS: &[&str] = &[
     "should",
 ];
 
+/// Most words of an opener.
+const LONGEST_TALK: usize = 10;
+
 /// Whether the word begins a clause that asks for nothing.
 pub(crate) fn is_subordinator(word: &str) -> bool {
     SUBORDINATORS.contains(&word)
@@ -53,7 +56,13 @@ pub(crate) fn read(lexicon: &Lexicon, catalog: &Catalog, words: &[String]) -> (P
 /// Whether a request begins at `at`: a verb where one may ask for something, with all that it needs.
 fn is_request(lexicon: &Lexicon, catalog: &Catalog, words: &[String], at: usize) -> bool {
     let before = &words[at - 1];
-    let is_allowed = token::is_punctuation(before) || BEFORE_REQUESTS.contains(&before.as_str());
+    let ends_talk = |length: usize| {
+        let talk = &words[at - length..at];
+        lexicon.talk.exact(talk).is_some() || lexicon.lead.exact(talk).is_some()
+    };
+    let is_allowed = token::is_punctuation(before)
+        || BEFORE_REQUESTS.contains(&before.as_str())
+        || (1..=at.min(LONGEST_TALK)).any(ends_talk);
     is_allowed && {
         let rest = &words[at..];
         crate::wish::request(lexicon, rest).is_some()

@@ -40,6 +40,18 @@ impl Clause {
         Self::about(Intent::Mention, "", phrase)
     }
 
+    /// The thing that was named last.
+    fn last_phrase(&mut self) -> Option<&mut Phrase> {
+        let place = self.places.iter_mut().rev().find_map(|(_, place)| match place {
+            Place::Object(phrase) => Some(phrase),
+            _ => None,
+        });
+        match self.intent {
+            Intent::GoTo | Intent::Place | Intent::Bring => place.or(self.objects.last_mut()),
+            _ => self.objects.last_mut().or(place),
+        }
+    }
+
     fn about(intent: Intent, verb: &str, phrase: Phrase) -> Self {
         Self {
             intent,
@@ -89,6 +101,30 @@ pub(crate) fn parts(lexicon: &Lexicon, catalog: &Catalog, words: &[String]) -> V
     parts
 }
 
+/// Whether the word at `at` is in a part of the utterance that is not to be done.
+pub(crate) fn is_forbidden(lexicon: &Lexicon, words: &[String], at: usize) -> bool {
+    let mut end = 0;
+    segments(lexicon, words).into_iter().any(|segment| {
+        let start =
+            words[end..].windows(segment.len()).position(|window| window == segment).map_or(end, |skip| end + skip);
+        end = start + segment.len();
+        (start..end).contains(&at)
+            && lexicon.negation.longest(&segment[leading(lexicon, segment).min(segment.len() - 1)..]).is_some()
+    })
+}
+
+/// `main office`: whoever names a room wants the robot there.
+pub(crate) fn to_room(lexicon: &Lexicon, words: &[String]) -> Option<Clause> {
+    let mut reader = Reader::new(lexicon, words);
+    reader.at = leading(lexicon, words);
+    reader.skip(|lexicon| &lexicon.articles);
+    let place = reader.destination().filter(|place| matches!(place, Place::Room(_)))?;
+    reader.skip(|lexicon| &lexicon.trail);
+    let is_whole = reader.rest().iter().all(|word| token::is_punctuation(word));
+    let clause = Clause::about(Intent::GoTo, "go to", Phrase::default());
+    is_whole.then(|| Clause { objects: Vec::new(), places: vec![(Preposition::To, place)], ..clause })
+}
+
 /// `pick up the mug and the bowl and put them on the desk` is one errand: each is carried there in its turn.
 pub(crate) fn joined(clauses: Vec<Clause>) -> Vec<Clause> {
     let mut joined: Vec<Clause> = Vec::with_capacity(clauses.len());
@@ -98,6 +134,13 @@ pub(crate) fn joined(clauses: Vec<Clause>) -> Vec<Clause> {
         let gathers = |before: &mut Clause| before.intent == Intent::PickUp && before.objects.len() > 1;
         if is_errand && let Some(before) = joined.pop_if(gathers) {
             clause.objects = before.objects;
+        }
+        // `left, turn left!` is one turn.
+        let is_same = |before: &mut Clause| {
+            before.verb.is_empty() && before.intent == clause.intent && before.direction == clause.direction
+        };
+        if clause.intent == Intent::Turn {
+            joined.pop_if(is_same);
         }
         joined.push(clause);
     }
@@ -116,7 +159,9 @@ pub(crate) fn segments<'a>(lexicon: &Lexicon, words: &'a [String]) -> Vec<&'a [S
             reader.skip(|lexicon| &lexicon.lead);
             reader.at_verb()
                 || lexicon.negation.longest(reader.rest()).is_some()
-                || implied_motion(lexicon, chatter::chunk(reader.rest())).is_some()
+                || at > 0
+                    && lexicon.numbers.longest(&words[at - 1..at]).is_none()
+                    && implied_motion(lexicon, chatter::chunk(reader.rest())).is_some()
         };
         if is_end || is_joint {
             segments.push(&words[start..at]);
@@ -178,7 +223,7 @@ fn read_part(lexicon: &Lexicon, catalog: &Catalog, words: &[String], before: &[P
     if let Some(Part::Clause(previous)) = before.last()
         && takes_objects(previous.intent)
         && let Some((clause, used)) = read_as(lexicon, previous.intent, &previous.verb, words, 0)
-            .filter(|(clause, _)| is_complete(clause, catalog))
+            .filter(|(clause, _)| is_complete(clause, catalog) && !is_gloss(clause))
     {
         return (Part::Clause(clause), used);
     }
@@ -193,6 +238,12 @@ fn read_part(lexicon: &Lexicon, catalog: &Catalog, words: &[String], before: &[P
         return (Part::Clause(clause), used);
     }
     chatter::read(lexicon, catalog, words)
+}
+
+/// `go to the office, the one with the desks`: says of what was named which one it is.
+fn is_gloss(clause: &Clause) -> bool {
+    let is_one = |place: &Place| matches!(place, Place::Object(phrase) if phrase.pronoun == Some(Pronoun::One));
+    clause.intent == Intent::GoTo && clause.places.iter().any(|(_, place)| is_one(place))
 }
 
 /// `a hammer that I would like you to pick up`: what the verb at the end is about was said before.
@@ -474,6 +525,11 @@ fn read_tail(reader: &mut Reader<'_>, clause: &mut Clause) {
         if reader.at_verb() {
             break;
         }
+        if let Some(phrase) = clause.last_phrase()
+            && reader.after_noun(phrase)
+        {
+            continue;
+        }
         if chatter::is_subordinator(&reader.words[reader.at]) {
             reader.at += chatter::chunk(reader.rest()).len();
             continue;
@@ -533,7 +589,8 @@ fn implied_motion(lexicon: &Lexicon, words: &[String]) -> Option<(Clause, usize)
         Direction::Left | Direction::Right | Direction::Around => Intent::Turn,
         Direction::Up | Direction::Down => Intent::Look,
     };
-    let (clause, used) = read_as(lexicon, intent, intent.verb(), words, 0)?;
+    let (mut clause, used) = read_as(lexicon, intent, intent.verb(), words, 0)?;
+    clause.verb.clear();
     (clause.direction.is_some() && used == words.len() && clause.places.is_empty()).then_some((clause, used))
 }
 
@@ -554,6 +611,9 @@ fn is_complete(clause: &Clause, catalog: &Catalog) -> bool {
     match clause.intent {
         Intent::Stop => !has_object,
         Intent::GoTo => !clause.places.is_empty(),
+        Intent::Travel if clause.verb == "take" => {
+            !clause.has_stray_noun && (clause.direction.is_some() || clause.amount.is_some())
+        }
         Intent::Travel => {
             !clause.has_stray_noun
                 && (clause.direction.is_some() || clause.amount.is_some() || !clause.places.is_empty())
@@ -595,4 +655,9 @@ impl Reader<'_> {
     fn at_long_verb(&self) -> bool {
         self.at_verb() && self.lexicon.verbs.longest(self.rest()).is_some_and(|(length, _)| length > 1)
     }
+}
+
+/// Whether the words forbid something.
+pub(crate) fn is_negation(lexicon: &Lexicon, words: &[String]) -> bool {
+    (0..words.len()).any(|at| lexicon.negation.longest(&words[at..]).is_some())
 }

@@ -4,6 +4,7 @@
 use cohabit_cdf::{Catalog, ObjectId};
 
 use crate::{
+    amend,
     answer::{Answerer, HINT},
     ask::{self, Ask},
     asked::plain,
@@ -48,6 +49,7 @@ impl Conversation<'_> {
             return Understanding::refusal("That is too much for me at once. Please say it in a few short sentences.");
         }
         let (words, repairs) = self.lexicon.normalise(utterance);
+        let words = amend::without_slips(self.lexicon, &words);
         Self { judge: Judge { repairs, ..self.judge }, ..*self }.understand_heard(words, context)
     }
 
@@ -58,18 +60,27 @@ impl Conversation<'_> {
         }
         let before = context.clone();
         let heard = self.understand_all(words.clone(), context);
-        if !is_lost(&heard) {
+        if !is_lost(&heard) || question::read(self.lexicon, &words).is_some() {
             return heard;
         }
+        let mut asked = None;
         for reading in hearing::readings(self.lexicon, self.catalog, &words) {
             let mut then = before.clone();
             let understanding = self.understand_all(reading, &mut then);
-            if !is_lost(&understanding) {
-                *context = then;
-                return understanding;
+            match understanding {
+                Understanding::Plan { .. } | Understanding::Answer { .. } => {
+                    *context = then;
+                    return understanding;
+                }
+                Understanding::Question { .. } if !is_lost(&understanding) => {
+                    asked = asked.or(Some((understanding, then)));
+                }
+                _ => {}
             }
         }
-        heard
+        let Some((question, then)) = asked else { return heard };
+        *context = then;
+        question
     }
 
     /// The candidates for the first referring expression of an utterance.
@@ -117,7 +128,8 @@ impl Conversation<'_> {
         if let Some(understanding) = self.answer_to_pending(&words, &parts, context) {
             return understanding;
         }
-        if let Some(at) = lab::bare(self.lexicon, &words) {
+        if let Some(at) = lab::bare(self.lexicon, &words).filter(|at| !clause::is_forbidden(self.lexicon, &words, *at))
+        {
             let guessed = || (self.judge.asking == Asking::Never).then(|| lab::guessed(self.scene));
             if let Some(room) = lab::here(self.scene.robot.room).or_else(guessed) {
                 return self.understand_words(lab::named(&words, at, room), context);
@@ -159,7 +171,10 @@ impl Conversation<'_> {
         if self.is_foreign(words) {
             return reply::unclear(&clause::unknown_words(self.lexicon, words));
         }
-        self.request(parts, context)
+        if let Some(clauses) = amend::amended(self.lexicon, words, &parts, &context.request) {
+            return self.plan(clauses, Consent::default(), context);
+        }
+        self.request(words, parts, context)
     }
 
     /// `go there`, `put it there`, after an answer about `id`: itself, or what carries it.
@@ -199,7 +214,7 @@ impl Conversation<'_> {
         clause::unknown_words(self.lexicon, words).iter().filter(|word| !word.contains('_')).count() * 2 > said
     }
 
-    fn request(&self, parts: Vec<Part>, context: &mut Context) -> Understanding {
+    fn request(&self, words: &[String], parts: Vec<Part>, context: &mut Context) -> Understanding {
         context.search = None;
         let mut clauses = Vec::new();
         let mut unclear: Option<Vec<String>> = None;
@@ -219,6 +234,9 @@ impl Conversation<'_> {
             }
         }
         if clauses.iter().all(|clause| clause.intent == Intent::Mention) {
+            if let Some(clause) = clause::to_room(self.lexicon, words) {
+                return self.plan(vec![clause], Consent::default(), context);
+            }
             let mentioned = clauses.into_iter().flat_map(|clause| clause.objects).next();
             return match (fragment.or(mentioned), unclear) {
                 _ if is_forbidden => Understanding::answer("All right, I will not do that."),
@@ -374,8 +392,30 @@ impl Conversation<'_> {
     }
 
     pub(crate) fn small(&self, words: &[String]) -> Vec<Small> {
-        let exact = self.lexicon.small.exact(&plain(words));
-        exact.map(|smalls| smalls.iter().copied().collect()).unwrap_or_default()
+        let words = plain(words);
+        let known = |words: &[String]| self.lexicon.small.exact(words).map(|smalls| smalls.iter().copied().collect());
+        known(&words).or_else(|| self.several_smalls(&words).and_then(known)).unwrap_or_default()
+    }
+
+    /// `neither, leave it`, `ok, once more please`: the first of several that make up all of it.
+    fn several_smalls<'w>(&self, words: &'w [String]) -> Option<&'w [String]> {
+        let (mut at, mut first) = (0, None);
+        while at < words.len() {
+            let rest = &words[at..];
+            let small = self.lexicon.small.longest(rest).map_or(0, |(length, _)| length);
+            let polite = matches!(
+                rest[0].as_str(),
+                "please" | "ok" | "okay" | "well" | "hmm" | "oh" | "then" | "and" | "so" | "which"
+            );
+            if small == 0 && !polite {
+                return None;
+            }
+            if small > 0 && !(polite && small == 1) {
+                first = first.or(Some(&rest[..small]));
+            }
+            at += small.max(1);
+        }
+        first
     }
 
     /// Whether the words are a yes or a no, alone or before something else: `yes, please open it`.

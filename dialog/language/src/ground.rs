@@ -192,6 +192,10 @@ impl<'a> Ground<'a> {
             .iter()
             .filter(|object| self.is_candidate(phrase, object) && !phrase.excluded.contains(&object.id))
             .collect();
+        // A noun that means nothing may be anything, whatever its colour.
+        if phrase.is_empty() && !phrase.unknown.is_empty() {
+            return Err(Miss::Unknown);
+        }
         if base.is_empty() {
             return Err(if phrase.is_empty() && !phrase.says_something() { Miss::Unknown } else { Miss::Unseen });
         }
@@ -438,7 +442,7 @@ impl<'a> Ground<'a> {
         let groups = self.told_apart(&ranked);
         let probability = groups.first().map_or(0.0, |(probability, _)| *probability);
         let rival = groups.get(1).map_or(0.0, |(probability, _)| *probability);
-        if self.judge.asks(want.intent, best.class, probability, rival) {
+        if !phrase.is_any && self.judge.asks(want.intent, best.class, probability, rival) {
             return Err(Miss::Several(rivals(&groups, RIVAL)));
         }
         Ok(best.id)

@@ -6,6 +6,7 @@ use cohabit_cdf::Catalog;
 use crate::{
     chatter,
     clause::{self, Part},
+    intent::Intent,
     lexicon::Lexicon,
     sound,
 };
@@ -27,6 +28,7 @@ struct Guess {
 /// Whether something in the words made no sense.
 pub(crate) fn is_puzzled(parts: &[Part]) -> bool {
     parts.iter().any(|part| match part {
+        Part::Clause(clause) if clause.intent == Intent::Impossible => false,
         Part::Clause(clause) => !chatter::is_clear(clause) || clause.has_stray_noun || !clause.unknown.is_empty(),
         Part::Unclear(_) => true,
         Part::Aside(_) => !parts.iter().any(|part| matches!(part, Part::Clause(_))),
@@ -58,7 +60,10 @@ pub(crate) fn readings(lexicon: &Lexicon, catalog: &Catalog, words: &[String]) -
     let mut sensible: Vec<Vec<String>> = Vec::new();
     for (_, reading) in readings.into_iter().take(MOST_TRIED) {
         let reading = lexicon.replaced(&reading);
-        if !is_puzzled(&clause::parts(lexicon, catalog, &reading)) && !sensible.contains(&reading) {
+        let parts = clause::parts(lexicon, catalog, &reading);
+        let stops = |part: &Part| matches!(part, Part::Clause(clause) if clause.intent == Intent::Stop);
+        let asks = parts.iter().any(|part| matches!(part, Part::Clause(_)));
+        if asks && !is_puzzled(&parts) && !parts.iter().any(stops) && !sensible.contains(&reading) {
             sensible.push(reading);
         }
         if sensible.len() == MOST_READINGS / 4 {
@@ -68,6 +73,8 @@ pub(crate) fn readings(lexicon: &Lexicon, catalog: &Catalog, words: &[String]) -
     sensible
 }
 
+/// What sounds all but the same.
+const SAME: f32 = 0.3;
 /// What two slips at once cost more than each.
 const PAIR: f32 = 0.5;
 /// So many readings are looked at.
@@ -75,16 +82,16 @@ const MOST_TRIED: usize = 60;
 
 fn guesses(lexicon: &Lexicon, words: &[String]) -> Vec<Guess> {
     let mut guesses = Vec::new();
+    let is_strange = |word: &String| is_spoken(word) && !lexicon.vocabulary.has(word);
+    let has_strange = words.iter().any(is_strange);
     for at in 0..words.len() {
         let word = &words[at];
+        // Where a word is not known it is the one that was misheard; the others are, if they sound all but the same.
+        let limit = if !has_strange || is_strange(word) { f32::INFINITY } else { SAME };
         if is_spoken(word) && !lexicon.is_small_word(word) {
             let heard = sound::sounds(word);
-            guesses.extend(alike(lexicon, &heard, word).into_iter().map(|(cost, word)| Guess {
-                at,
-                length: 1,
-                word,
-                cost,
-            }));
+            let found = alike(lexicon, &heard, word).into_iter().filter(|(cost, _)| *cost <= limit);
+            guesses.extend(found.map(|(cost, word)| Guess { at, length: 1, word, cost }));
         }
         // `where house`: heard as two words.
         if let Some(next) = words.get(at + 1).filter(|next| is_spoken(word) && is_spoken(next)) {

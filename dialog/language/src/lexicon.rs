@@ -18,7 +18,7 @@ pub(crate) struct Naming {
 const NAME_PART: f32 = 0.6;
 
 /// How much the word for a kind of things means a class of that kind.
-const KIND: f32 = 0.5;
+const KIND: f32 = 0.3;
 
 /// What an adjective demands of an object's state.
 #[derive(Clone, Copy, Debug, Deserialize, Eq, PartialEq, Serialize)]
@@ -103,6 +103,8 @@ pub(crate) struct Lexicon {
     pub(crate) articles: PhraseTable<()>,
     pub(crate) adjectives: PhraseTable<()>,
     pub(crate) all: PhraseTable<()>,
+    /// Any one of several.
+    pub(crate) one_of: PhraseTable<()>,
     pub(crate) link: PhraseTable<()>,
     pub(crate) here: PhraseTable<()>,
     pub(crate) degrees: PhraseTable<()>,
@@ -159,6 +161,7 @@ struct WordFile {
     articles: Words,
     adjectives: Words,
     all: Words,
+    one_of: Words,
     link: Words,
     here: Words,
     degrees: Words,
@@ -291,7 +294,7 @@ impl Lexicon {
             last,
             None | Some("mind" | "about" | "by" | "try" | "start" | "begin" | "please" | "meant" | "mean" | "to")
         );
-        if is_asked && word.ends_with("ing") && !self.vocabulary.has(word) {
+        if is_asked && word.ends_with("ing") && !self.classes.words().any(|known| known == word) {
             return inflect::stem(self, word);
         }
         let verb = word.strip_suffix('s').filter(|verb| self.verb_heads.contains(*verb))?;
@@ -326,6 +329,7 @@ impl Lexicon {
             (&mut self.articles, &file.articles),
             (&mut self.adjectives, &file.adjectives),
             (&mut self.all, &file.all),
+            (&mut self.one_of, &file.one_of),
             (&mut self.link, &file.link),
             (&mut self.here, &file.here),
             (&mut self.degrees, &file.degrees),
@@ -498,6 +502,7 @@ impl Lexicon {
             &self.articles,
             &self.adjectives,
             &self.all,
+            &self.one_of,
             &self.link,
             &self.here,
             &self.degrees,

@@ -20,6 +20,7 @@
 //! # Ok::<(), cohabit_cdf::CatalogError>(())
 //! ```
 
+mod amend;
 mod answer;
 mod ask;
 mod asked;

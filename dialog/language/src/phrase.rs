@@ -25,6 +25,9 @@ pub(crate) struct Phrase {
     pub(crate) room: Option<RoomId>,
     pub(crate) is_here: bool,
     pub(crate) is_all: bool,
+    /// Whether any of them will do.
+    #[serde(default)]
+    pub(crate) is_any: bool,
     /// Where it is, in terms of other objects.
     pub(crate) relations: Vec<Relation>,
     /// What it is not: `the mug that is not yellow`.
@@ -218,10 +221,16 @@ impl<'a> Reader<'a> {
     }
 
     /// What describes a thing after its noun: `not the red one`, `furthest away`, `that is red`.
-    fn after_noun(&mut self, phrase: &mut Phrase) -> bool {
+    pub(crate) fn after_noun(&mut self, phrase: &mut Phrase) -> bool {
         let mut reader = *self;
         while reader.next_is(",") || reader.next_is("but") {
             reader.at += 1;
+        }
+        let is_linked = ["that", "which", "who"].into_iter().any(|word| reader.next_is(word))
+            && reader.rest().get(1).is_some_and(|word| matches!(word.as_str(), "is" | "are"))
+            && reader.rest().get(2).is_some_and(|word| word == "not");
+        if is_linked {
+            reader.at += 2;
         }
         if reader.next_is("not") {
             reader.at += 1;
@@ -296,6 +305,21 @@ impl<'a> Reader<'a> {
             reader.at += length;
             true
         };
+        if let Some((length, ())) = lexicon.one_of.longest(rest).filter(|(length, ())| rest.len() > *length) {
+            phrase.is_any = true;
+            return step(self, length);
+        }
+        // `the two apples`
+        if let Some((length, value)) = lexicon.numbers.longest(rest)
+            && *value >= 2.0
+            && lexicon.classes.longest(rest).is_none()
+            && lexicon.units.longest(&rest[length..]).is_none()
+            && rest.len() > length
+            && (lexicon.classes.longest(&rest[length..]).is_some() || lexicon.colors.longest(&rest[length..]).is_some())
+        {
+            phrase.is_all = true;
+            return step(self, length);
+        }
         if let Some((length, ())) = lexicon.all.longest(rest) {
             phrase.is_all = true;
             return step(self, length);
@@ -432,7 +456,10 @@ impl<'a> Reader<'a> {
     /// A preposition and what stands after it.
     pub(crate) fn place(&mut self) -> Option<(Preposition, Place)> {
         let mut reader = *self;
-        reader.skip(|lexicon| &lexicon.link);
+        // `that has` is a preposition here, `that` a link.
+        if self.lexicon.prepositions.longest(self.rest()).is_none_or(|(length, _)| length < 2) {
+            reader.skip(|lexicon| &lexicon.link);
+        }
         if let Some(side) = reader.side_place() {
             *self = reader;
             return Some((Preposition::At, Place::Side(side)));
@@ -495,6 +522,13 @@ impl<'a> Reader<'a> {
         // Saturates: a viewpoint beyond 255 does not exist, and the world says so.
         let number = number as u8;
         let mut tail = reader;
+        if tail.next_is("of") {
+            tail.at += 1;
+            if let Some(Place::Room(room)) = tail.destination() {
+                *self = tail;
+                return Some(Place::Viewpoint(room, number));
+            }
+        }
         if let Some((_, Place::Room(room))) = tail.place() {
             *self = tail;
             return Some(Place::Viewpoint(room, number));

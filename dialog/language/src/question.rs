@@ -52,6 +52,12 @@ pub(crate) fn read(lexicon: &Lexicon, words: &[String]) -> Option<Question> {
     if kind == QuestionKind::Abilities && rest.len() > 2 {
         return None;
     }
+    // `show me where is the mug`
+    if kind == QuestionKind::Where {
+        let skipped =
+            rest.iter().take_while(|word| matches!(word.as_str(), "is" | "are" | "it" | "was" | "exactly")).count();
+        rest.drain(..skipped.min(rest.len().saturating_sub(1)));
+    }
     let about = Reader::new(lexicon, &rest).phrase_with_place();
     Some(Question { kind, about, rest })
 }
@@ -61,15 +67,24 @@ fn start(lexicon: &Lexicon, words: &[String]) -> Option<(QuestionKind, usize)> {
     let mut at = 0;
     loop {
         let rest = &words[at..];
+        let lead = lexicon.lead.longest(rest).map_or(0, |(length, ())| length);
+        let talk = lexicon.talk.longest(rest).map_or(0, |(length, ())| length);
+        let polite = if talk == rest.len() { lead } else { lead.max(talk) };
         if let Some((length, kind)) = lexicon.questions.longest(rest)
-            && lexicon.lead.longest(rest).is_none_or(|(lead, ())| lead < length)
+            && polite < length
         {
-            return Some((*kind, at + length));
+            return (!is_statement(&words[..at], &rest[0])).then_some((*kind, at + length));
         }
-        match lexicon.lead.longest(rest) {
-            Some((length, ())) => at += length,
-            None if rest.first().is_some_and(|word| token::is_punctuation(word)) => at += 1,
-            None => return None,
+        match polite {
+            1.. => at += polite,
+            0 if rest.first().is_some_and(|word| token::is_punctuation(word)) => at += 1,
+            0 => return None,
         }
     }
+}
+
+/// `you are driving me mad`: who speaks so says, and does not ask.
+fn is_statement(before: &[String], first: &str) -> bool {
+    let is_subject = before.last().is_some_and(|word| matches!(word.as_str(), "you" | "i" | "we" | "that" | "there"));
+    is_subject && matches!(first, "are" | "am" | "is" | "was" | "were" | "do" | "did" | "have" | "has")
 }

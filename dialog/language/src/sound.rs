@@ -4,15 +4,15 @@
 type Sounds = Vec<char>;
 
 /// The most by which what was heard may differ from what was said, and the most for each of its sounds.
-const LIMIT: f32 = 1.3;
-const LIMIT_EACH: f32 = 0.3;
+const LIMIT: f32 = 1.1;
+const LIMIT_EACH: f32 = 0.25;
 
 /// Costs: one vowel for another, a vowel more or less, a consonant for one made nearly alike, a weak one more or less,
 /// any more or less, any for another.
-const VOWEL: f32 = 0.25;
+const VOWEL: f32 = 0.2;
 const EXTRA_VOWEL: f32 = 0.35;
 const ALIKE: f32 = 0.35;
-const WEAK: f32 = 0.6;
+const WEAK: f32 = 0.5;
 const EXTRA: f32 = 0.9;
 const OTHER: f32 = 1.0;
 
@@ -75,7 +75,7 @@ fn is_vowel(sound: char) -> bool {
 fn extra(sound: char) -> f32 {
     match sound {
         _ if is_vowel(sound) => EXTRA_VOWEL,
-        't' | 'd' | 'n' | 'r' | 'l' | 's' | 'z' => WEAK,
+        't' | 'd' | 'n' | 'r' | 'l' | 's' | 'z' | 'h' => WEAK,
         _ => EXTRA,
     }
 }
