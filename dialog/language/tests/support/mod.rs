@@ -322,8 +322,8 @@ impl Talk {
 
     /// The same, with a robot that asks at other times.
     pub fn asking(marks: &[&str], asking: Asking) -> Self {
-        let Self { language, scene, context } = Self::new(marks);
-        Self { language: language.asking(asking), scene, context }
+        let language = Box::leak(Box::new(Language::new(catalog()).asking(asking)));
+        Self { language, ..Self::new(marks) }
     }
 
     /// Somebody points at an object.
