@@ -63,7 +63,7 @@ fn a_person_opens_the_page_types_and_sees_the_robot_move() {
 #[test]
 fn a_person_answers_a_question_with_a_click() {
     let Some(browser) = Browser::start().unwrap() else { return };
-    let mut play = Play::start(COHABIT, &["--ask", "always", "--knows", "everything"]).unwrap();
+    let play = Play::start(COHABIT, &["--ask", "always", "--knows", "everything"]).unwrap();
     let mut tab = browser.open(&play.address, 1280, 720).unwrap();
     tab.wait_until("document.querySelector('#chat-input') !== null && window.cohabit?.frames > 0").unwrap();
     let answers = "document.querySelectorAll('.answers button:enabled')";

@@ -60,6 +60,7 @@ fn known(catalog: &Catalog, layout: &Layout, mission: &Mission) -> Known {
         let place = inside.and_then(|id| known.object(id)).map(|parent| (parent.room, parent.position_m));
         let object = object(&mut known, id).unwrap();
         request.flags.iter().for_each(|(flag, value)| object.flags.set(*flag, *value));
+        object.in_mission = true;
         object.color = request.color.unwrap_or_default();
         object.fluid = request.fluid.unwrap_or_default();
         if let Some((room, position_m)) = place {
