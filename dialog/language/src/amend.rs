@@ -149,7 +149,17 @@ pub(crate) fn without_slips(lexicon: &Lexicon, words: &[String]) -> Vec<String> 
     let has_phrase = if is_place { first.place().is_some() } else { first.phrase().is_some() };
     let verb = lexicon.verbs.longest(after).is_some();
     match (0..before.len()).find(|at| spans(*at)).filter(|_| has_phrase && !verb) {
-        Some(at) => before[..at].iter().chain(after).cloned().collect(),
+        Some(at) => {
+            let mut words: Vec<String> = before[..at].iter().chain(after).cloned().collect();
+            // `the red mug, I mean the yellow one`: a mug still.
+            let noun = (at..before.len()).find(|at| lexicon.classes.exact(&before[*at..]).is_some());
+            if let Some(noun) = noun
+                && let Some(one) = words.iter().skip(at).position(|word| word == "one").map(|skip| at + skip)
+            {
+                words.splice(one..=one, before[noun..].iter().cloned());
+            }
+            words
+        }
         None => words.to_vec(),
     }
 }

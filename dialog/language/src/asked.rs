@@ -7,7 +7,7 @@ use crate::{
     clause::{Clause, Part},
     context::{Consent, Context, Pending, Role, Slot},
     conversation::Conversation,
-    ground::Ground,
+    ground::{Ground, Want},
     intent::Intent,
     lexicon::{Direction, Preposition, Side, Small},
     phrase::{Phrase, Place, Reader, Relation},
@@ -150,7 +150,13 @@ impl Conversation<'_> {
 
     /// Where it is was said: it is found there, or looked for there.
     fn told_where(&self, words: &[String], mut open: Open, context: &mut Context) -> Option<Understanding> {
-        let told = self.answer_phrase(&plain(words)).filter(says_where)?;
+        let told = self.answer_phrase(&plain(words))?;
+        if !says_where(&told) {
+            // Another name for it.
+            let ground = Ground { catalog: self.catalog, scene: self.scene, focus: &context.focus, judge: self.judge };
+            let meant = ground.one(&told, &Want::place(Intent::Find, &[], None)).ok()?;
+            return Some(self.settle(open, meant, context));
+        }
         let said = phrase_mut(&mut open.clauses, open.slot)?;
         describe_by(said, told);
         let search = self.search(Some(said));

@@ -166,6 +166,10 @@ impl Planner<'_> {
                 if is_there && settled.objects.iter().any(|phrase| phrase.is_all) {
                     return Ok(());
                 }
+                if target == object && self.scene.robot.held == Some(object) {
+                    // `place on plate`, of the plate: where it is to go was left out.
+                    return self.put_down(None);
+                }
                 if target == object {
                     return Err(Fault::Cannot(format!("I cannot put {} on itself.", self.the(object))));
                 }

@@ -196,6 +196,9 @@ pub(crate) fn leading(lexicon: &Lexicon, words: &[String]) -> usize {
         let verb = lexicon.verbs.longest(rest).map_or(0, |(length, _)| length);
         let lead = lexicon.lead.longest(rest).map_or(0, |(length, ())| length);
         let talk = lexicon.talk.longest(rest).map_or(0, |(length, ())| length);
+        // `cool the banana` is no `cool!`.
+        let is_verb = verb > 0 && talk == verb && rest.get(talk).is_some_and(|word| !token::is_punctuation(word));
+        let talk = if is_verb { 0 } else { talk };
         match lead.max(talk) {
             length @ 1.. if length >= verb && (talk > 0 || lexicon.negation.longest(rest).is_none()) => at += length,
             _ if is_joint => at += 1,

@@ -8,6 +8,7 @@ use crate::{
     answer::{Answerer, HINT},
     ask::{self, Ask},
     asked::plain,
+    chatter,
     clause::{self, Clause, Part},
     confidence::Referents,
     context::{Consent, Context, Focus, Pending},
@@ -55,7 +56,7 @@ impl Conversation<'_> {
 
     /// What was heard, or else what may have been said instead: what sounds like it, and can be done.
     fn understand_heard(&self, words: Vec<String>, context: &mut Context) -> Understanding {
-        if !hearing::is_puzzled(&clause::parts(self.lexicon, self.catalog, &words)) {
+        if !hearing::is_puzzled(&clause::parts(self.lexicon, self.catalog, &words), &words) {
             return self.understand_all(words, context);
         }
         let before = context.clone();
@@ -145,7 +146,13 @@ impl Conversation<'_> {
         if let Some(understanding) = self.small_talk(words, context) {
             return understanding;
         }
-        if let Some(question) = question::read(self.lexicon, words) {
+        // `when you get a minute, bring me the knife` asks for no time.
+        let is_asked_to = |question: &question::Question| {
+            let is_when = words.iter().find(|word| !token::is_punctuation(word)).is_some_and(|word| word == "when" || word == "what");
+            let asks = |part: &Part| matches!(part, Part::Clause(clause) if chatter::is_clear(clause));
+            question.kind == question::QuestionKind::Unknown && is_when && words.iter().any(|word| word == ",") && parts.iter().any(asks)
+        };
+        if let Some(question) = question::read(self.lexicon, words).filter(|question| !is_asked_to(question)) {
             let answerer = Answerer {
                 catalog: self.catalog,
                 lexicon: self.lexicon,
@@ -489,7 +496,13 @@ const fn is_lost(understanding: &Understanding) -> bool {
     match understanding {
         Understanding::Refusal { .. } => true,
         Understanding::Question { kind, .. } => {
-            matches!(kind, Clarification::Appearance | Clarification::Location | Clarification::Request)
+            matches!(
+                kind,
+                Clarification::Appearance
+                    | Clarification::Location
+                    | Clarification::Request
+                    | Clarification::Direction
+            )
         }
         _ => false,
     }

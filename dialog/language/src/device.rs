@@ -169,6 +169,13 @@ impl Planner<'_> {
                 self.pour(milk, object)?;
                 continue;
             }
+            if settled.intent == Intent::Fill
+                && !self.has(object, Property::Fillable)
+                && self.has(object, Property::Dirtyable)
+            {
+                // Water over a plate: it is to be washed.
+                settled.intent = Intent::Clean;
+            }
             let (process, place) = self.choose_process(&settled)?;
             self.carry_out(&process, object, place, settled.color.as_deref())?;
         }

@@ -439,6 +439,11 @@ impl<'a> Ground<'a> {
     fn decide(&self, phrase: &Phrase, want: &Want<'_>, described: &Described<'a>) -> Result<ObjectId, Miss> {
         let ranked = self.ranked(phrase, want, described);
         let Some((_, best)) = ranked.first().copied() else { return Err(Miss::Unseen) };
+        // The only one that is as described.
+        let is_sole = described.left.len() == 1 && phrase.is_described() && phrase.unknown.is_empty();
+        if is_sole && self.judge.repairs == 0 && self.judge.asking == Asking::Unsure && !self.judge.is_for_good(want.intent, best.class) {
+            return Ok(best.id);
+        }
         let groups = self.told_apart(&ranked);
         let probability = groups.first().map_or(0.0, |(probability, _)| *probability);
         let rival = groups.get(1).map_or(0.0, |(probability, _)| *probability);

@@ -26,8 +26,12 @@ struct Guess {
 }
 
 /// Whether something in the words made no sense.
-pub(crate) fn is_puzzled(parts: &[Part]) -> bool {
+pub(crate) fn is_puzzled(parts: &[Part], words: &[String]) -> bool {
     parts.iter().any(|part| match part {
+        // `turn write`: a turn that nobody said the way of.
+        Part::Clause(clause) if clause.intent == Intent::Turn && clause.direction.is_none() && clause.amount.is_none() => {
+            clause.places.is_empty() && words.len() > 1
+        }
         Part::Clause(clause) if clause.intent == Intent::Impossible => false,
         Part::Clause(clause) => !chatter::is_clear(clause) || clause.has_stray_noun || !clause.unknown.is_empty(),
         Part::Unclear(_) => true,
@@ -63,7 +67,7 @@ pub(crate) fn readings(lexicon: &Lexicon, catalog: &Catalog, words: &[String]) -
         let parts = clause::parts(lexicon, catalog, &reading);
         let stops = |part: &Part| matches!(part, Part::Clause(clause) if clause.intent == Intent::Stop);
         let asks = parts.iter().any(|part| matches!(part, Part::Clause(_)));
-        if asks && !is_puzzled(&parts) && !parts.iter().any(stops) && !sensible.contains(&reading) {
+        if asks && !is_puzzled(&parts, &reading) && !parts.iter().any(stops) && !sensible.contains(&reading) {
             sensible.push(reading);
         }
         if sensible.len() == MOST_READINGS / 4 {
@@ -75,6 +79,8 @@ pub(crate) fn readings(lexicon: &Lexicon, catalog: &Catalog, words: &[String]) -
 
 /// What sounds all but the same.
 const SAME: f32 = 0.3;
+/// What an ordinary word, which people say as well, may differ by.
+const NEARLY: f32 = 0.5;
 /// What two slips at once cost more than each.
 const PAIR: f32 = 0.5;
 /// So many readings are looked at.
@@ -87,10 +93,18 @@ fn guesses(lexicon: &Lexicon, words: &[String]) -> Vec<Guess> {
     for at in 0..words.len() {
         let word = &words[at];
         // Where a word is not known it is the one that was misheard; the others are, if they sound all but the same.
-        let limit = if !has_strange || is_strange(word) { f32::INFINITY } else { SAME };
+        let limit = match (has_strange, is_strange(word), lexicon.vocabulary.is_plain(word)) {
+            (true, true, false) => f32::INFINITY,
+            (true, true, true) => NEARLY,
+            _ => SAME,
+        };
         if is_spoken(word) && !lexicon.is_small_word(word) {
             let heard = sound::sounds(word);
-            let found = alike(lexicon, &heard, word).into_iter().filter(|(cost, _)| *cost <= limit);
+            // A verb is misheard where a request begins, not within talk.
+            let begins = at == 0 || matches!(words[at - 1].as_str(), "," | "." | "and" | "then" | "please" | "you" | "to");
+            let found = alike(lexicon, &heard, word)
+                .into_iter()
+                .filter(|(cost, meant)| *cost <= limit && (begins || !lexicon.verb_heads.contains(meant)));
             guesses.extend(found.map(|(cost, word)| Guess { at, length: 1, word, cost }));
         }
         // `where house`: heard as two words.

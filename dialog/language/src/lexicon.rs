@@ -20,6 +20,14 @@ const NAME_PART: f32 = 0.6;
 /// How much the word for a kind of things means a class of that kind.
 const KIND: f32 = 0.3;
 
+/// Words that join others or carry no meaning of their own: nobody takes them for others.
+const SMALL_WORDS: &[&str] = &[
+    "and", "to", "in", "on", "at", "of", "i", "you", "please", "with", "then", "can", "could", "would", "will", "should", "must",
+    "may", "might", "be", "is", "are", "was", "has", "have", "had", "do", "does", "did", "not", "no", "me", "us", "there", "here",
+    "what", "which", "who", "where", "when", "why", "how", "if", "as", "so", "but", "or", "for", "from", "off", "out", "by", "now",
+    "just", "also", "again", "all", "both", "either", "neither", "go", "put", "take", "get", "we", "he", "she", "up", "down",
+];
+
 /// What an adjective demands of an object's state.
 #[derive(Clone, Copy, Debug, Deserialize, Eq, PartialEq, Serialize)]
 pub(crate) enum StateWord {
@@ -262,10 +270,14 @@ impl Lexicon {
         let word = [word.to_owned()];
         self.articles.exact(&word).is_some()
             || self.pronouns.exact(&word).is_some()
+<<<<<<< HEAD
             || matches!(
                 word[0].as_str(),
                 "and" | "to" | "in" | "on" | "at" | "of" | "i" | "you" | "please" | "with" | "then"
             )
+=======
+            || SMALL_WORDS.contains(&word[0].as_str())
+>>>>>>> h-P
     }
 
     /// The words of an utterance: tokens, with spelling repaired and set phrases replaced; and how many were misspelt.
@@ -482,13 +494,13 @@ impl Lexicon {
             self.rooms.words().collect(),
             self.directions.words().collect(),
             self.colors.words().collect(),
-            self.sides.words().collect(),
             self.states.words().collect(),
             self.ordinals.words().collect(),
             self.units.words().collect(),
             self.prepositions.words().collect(),
         ];
-        let spoken = |word: &&&String| word.len() > 1 && word.chars().all(|letter| letter.is_ascii_alphabetic());
+        let is_vague = |word: &str| matches!(word, "front" | "back" | "about" | "behind" | "up" | "down" | "other" | "way" | "of" | "the" | "a");
+        let spoken = |word: &&&String| word.len() > 1 && !is_vague(word) && word.chars().all(|letter| letter.is_ascii_alphabetic());
         let words: BTreeSet<&String> = tables.iter().flatten().filter(spoken).copied().collect();
         self.sounds = words.into_iter().map(|word| (word.clone(), sound::sounds(word))).collect();
     }
@@ -508,7 +520,6 @@ impl Lexicon {
             &self.degrees,
             &self.viewpoints,
             &self.negation,
-            &self.talk,
             &self.answer_lead,
         ] {
             table.words().for_each(&mut learn);
@@ -531,6 +542,7 @@ impl Lexicon {
         self.classes.words().for_each(&mut learn);
         self.brings_about.words().for_each(&mut learn);
         self.kinds.iter().for_each(&mut learn);
+        self.talk.words().for_each(|word| vocabulary.learn_talk(word));
         self.chat.words().for_each(|word| vocabulary.learn_plain(word));
         include_str!("../data/common.txt").split_whitespace().for_each(|word| vocabulary.learn_plain(word));
         self.vocabulary = vocabulary;

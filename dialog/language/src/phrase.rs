@@ -522,13 +522,12 @@ impl<'a> Reader<'a> {
         // Saturates: a viewpoint beyond 255 does not exist, and the world says so.
         let number = number as u8;
         let mut tail = reader;
-        if tail.next_is("of") {
-            tail.at += 1;
-            if let Some(Place::Room(room)) = tail.destination() {
-                *self = tail;
-                return Some(Place::Viewpoint(room, number));
-            }
+        // `viewpoint 5 of the lab`: the number took the `of`.
+        if let Some(Place::Room(room)) = tail.destination() {
+            *self = tail;
+            return Some(Place::Viewpoint(room, number));
         }
+        let mut tail = reader;
         if let Some((_, Place::Room(room))) = tail.place() {
             *self = tail;
             return Some(Place::Viewpoint(room, number));

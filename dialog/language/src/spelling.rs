@@ -7,12 +7,20 @@ use std::collections::BTreeSet;
 pub(crate) struct Vocabulary {
     meaningful: BTreeSet<String>,
     plain: BTreeSet<String>,
+    talk: BTreeSet<String>,
 }
 
 impl Vocabulary {
     /// Adds a word that the robot understands.
     pub(crate) fn learn(&mut self, word: &str) {
         self.meaningful.insert(word.to_owned());
+    }
+
+    /// Adds a word that is said around requests: it is known, but nobody is taken to have meant it by another.
+    pub(crate) fn learn_talk(&mut self, word: &str) {
+        if self.meaningful.insert(word.to_owned()) {
+            self.talk.insert(word.to_owned());
+        }
     }
 
     /// Adds an ordinary word that it does not, so that nobody takes it for a slip.
@@ -23,6 +31,11 @@ impl Vocabulary {
     /// Whether the robot understands the word.
     pub(crate) fn has(&self, word: &str) -> bool {
         self.meaningful.contains(word)
+    }
+
+    /// Whether it is an ordinary word that means nothing here.
+    pub(crate) fn is_plain(&self, word: &str) -> bool {
+        self.plain.contains(word)
     }
 
     /// The words meant by one that is perhaps misspelt: itself, its singular, two words run together, or the nearest word.
@@ -127,13 +140,13 @@ impl Vocabulary {
     fn nearest(&self, word: &str) -> Option<&String> {
         let limit = match word.len() {
             0..=2 => return None,
-            3 => return self.meaningful.iter().find(|known| known.len() == 3 && is_swapped(word, known)),
+            3 => return self.meaningful.iter().find(|known| known.len() == 3 && !self.talk.contains(*known) && is_swapped(word, known)),
             4..=6 => 1,
             _ => 2,
         };
         self.meaningful
             .iter()
-            .filter(|known| known.len() > 2 && known.len().abs_diff(word.len()) <= limit)
+            .filter(|known| !self.talk.contains(*known) && known.len() > 2 && known.len().abs_diff(word.len()) <= limit)
             .map(|known| (distance(word.as_bytes(), known.as_bytes()), known))
             .filter(|(distance, _)| *distance <= limit)
             .min_by_key(|(distance, known)| {

@@ -42,6 +42,7 @@ const WISHES: &[&str] =
 
 /// Words that say that something must be so.
 const MUSTS: &[&[&str]] = &[
+<<<<<<< HEAD
     &["needs", "to"],
     &["need", "to"],
     &["needs"],
@@ -62,6 +63,11 @@ const MUSTS: &[&[&str]] = &[
     &["requires"],
     &["better"],
     &["shall"],
+=======
+    &["needs", "to"], &["need", "to"], &["needs"], &["need"], &["should"], &["must"], &["has", "to"], &["have", "to"],
+    &["ought", "to"], &["is", "to"], &["are", "to"], &["wants", "to"], &["is", "supposed", "to"], &["could", "use"],
+    &["belongs"], &["belong"], &["goes"], &["go"], &["gets"], &["requires"], &["better"], &["shall"],
+>>>>>>> h-P
 ];
 
 /// Verbs that make something be so.
@@ -116,6 +122,7 @@ pub(crate) fn request(lexicon: &Lexicon, words: &[String]) -> Option<(Vec<String
         .or_else(|| ordered(lexicon, chunk))
         .or_else(|| made(lexicon, chunk))
         .or_else(|| given(lexicon, chunk))
+        .or_else(|| asked(lexicon, chunk))
         .or_else(|| required(lexicon, chunk))?;
     Some((wished, chunk.len()))
 }
@@ -164,7 +171,8 @@ fn ordered(lexicon: &Lexicon, words: &[String]) -> Option<Vec<String>> {
         rest.iter().take(3).any(|word| matches!(word.as_str(), "glass" | "cup" | "mug" | "drop" | "splash" | "pot"));
     let is_made = matches!(first.as_str(), "make" | "brew" | "do" | "prepare" | "have" | "cook" | "fix" | "produce");
     let is_coffee = rest.iter().take(3).any(|word| word == "coffee") && rest.first().is_some_and(|word| word != "the");
-    (is_made || has_measure || is_coffee).then(|| drink(lexicon, rest)).flatten()
+    let is_some = rest.first().is_some_and(|word| word == "some") && rest.get(1).is_some_and(|word| word == "water");
+    (is_made || has_measure || is_coffee || is_some).then(|| drink(lexicon, rest)).flatten()
 }
 
 /// Something to drink or to eat that has to be made.
@@ -231,6 +239,15 @@ fn given(lexicon: &Lexicon, words: &[String]) -> Option<Vec<String>> {
     Some(joined(&[&[verb], &texts(thing), &texts(&after[skipped + 1..])]))
 }
 
+/// `can the mug be heated`.
+fn asked(lexicon: &Lexicon, words: &[String]) -> Option<Vec<String>> {
+    let (first, rest) = words.split_first()?;
+    let may = matches!(first.as_str(), "can" | "could" | "would" | "will" | "should" | "may" | "might" | "shall");
+    let (thing, after) = thing(lexicon, rest).filter(|_| may)?;
+    let is_passive = after.first().is_some_and(|word| matches!(word.as_str(), "be" | "get" | "go"));
+    is_passive.then(|| become_so(lexicon, thing, after)).flatten()
+}
+
 /// `the plate needs to be cleaned`, `the trophy belongs on the blue desk`.
 fn required(lexicon: &Lexicon, words: &[String]) -> Option<Vec<String>> {
     let (thing, after) = thing(lexicon, words)?;
@@ -277,7 +294,9 @@ fn become_so(lexicon: &Lexicon, thing: &[String], after: &[String]) -> Option<Ve
 /// The verb that brings a state about: its words, and what follows.
 fn state<'a>(lexicon: &Lexicon, words: &'a [String]) -> Option<(Vec<String>, &'a [String])> {
     let (length, verb) = lexicon.brings_about.longest(words)?;
-    Some((verb.clone(), &words[length..]))
+    let left = &words[length..];
+    let is_end = left.iter().all(|word| AFTER.contains(&word.as_str())) || lexicon.prepositions.longest(left).is_some();
+    is_end.then(|| (verb.clone(), left))
 }
 
 /// `cleaned`, `picked up`, `filled` as the verb they come from.
