@@ -148,9 +148,15 @@ impl Conversation<'_> {
         }
         // `when you get a minute, bring me the knife` asks for no time.
         let is_asked_to = |question: &question::Question| {
-            let is_when = words.iter().find(|word| !token::is_punctuation(word)).is_some_and(|word| word == "when" || word == "what");
+            let is_when = words
+                .iter()
+                .find(|word| !token::is_punctuation(word))
+                .is_some_and(|word| word == "when" || word == "what");
             let asks = |part: &Part| matches!(part, Part::Clause(clause) if chatter::is_clear(clause));
-            question.kind == question::QuestionKind::Unknown && is_when && words.iter().any(|word| word == ",") && parts.iter().any(asks)
+            question.kind == question::QuestionKind::Unknown
+                && is_when
+                && words.iter().any(|word| word == ",")
+                && parts.iter().any(asks)
         };
         if let Some(question) = question::read(self.lexicon, words).filter(|question| !is_asked_to(question)) {
             let answerer = Answerer {
@@ -498,10 +504,7 @@ const fn is_lost(understanding: &Understanding) -> bool {
         Understanding::Question { kind, .. } => {
             matches!(
                 kind,
-                Clarification::Appearance
-                    | Clarification::Location
-                    | Clarification::Request
-                    | Clarification::Direction
+                Clarification::Appearance | Clarification::Location | Clarification::Request | Clarification::Direction
             )
         }
         _ => false,

@@ -29,7 +29,9 @@ struct Guess {
 pub(crate) fn is_puzzled(parts: &[Part], words: &[String]) -> bool {
     parts.iter().any(|part| match part {
         // `turn write`: a turn that nobody said the way of.
-        Part::Clause(clause) if clause.intent == Intent::Turn && clause.direction.is_none() && clause.amount.is_none() => {
+        Part::Clause(clause)
+            if clause.intent == Intent::Turn && clause.direction.is_none() && clause.amount.is_none() =>
+        {
             clause.places.is_empty() && words.len() > 1
         }
         Part::Clause(clause) if clause.intent == Intent::Impossible => false,
@@ -101,7 +103,8 @@ fn guesses(lexicon: &Lexicon, words: &[String]) -> Vec<Guess> {
         if is_spoken(word) && !lexicon.is_small_word(word) {
             let heard = sound::sounds(word);
             // A verb is misheard where a request begins, not within talk.
-            let begins = at == 0 || matches!(words[at - 1].as_str(), "," | "." | "and" | "then" | "please" | "you" | "to");
+            let begins =
+                at == 0 || matches!(words[at - 1].as_str(), "," | "." | "and" | "then" | "please" | "you" | "to");
             let found = alike(lexicon, &heard, word)
                 .into_iter()
                 .filter(|(cost, meant)| *cost <= limit && (begins || !lexicon.verb_heads.contains(meant)));

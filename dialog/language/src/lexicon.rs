@@ -22,10 +22,11 @@ const KIND: f32 = 0.3;
 
 /// Words that join others or carry no meaning of their own: nobody takes them for others.
 const SMALL_WORDS: &[&str] = &[
-    "and", "to", "in", "on", "at", "of", "i", "you", "please", "with", "then", "can", "could", "would", "will", "should", "must",
-    "may", "might", "be", "is", "are", "was", "has", "have", "had", "do", "does", "did", "not", "no", "me", "us", "there", "here",
-    "what", "which", "who", "where", "when", "why", "how", "if", "as", "so", "but", "or", "for", "from", "off", "out", "by", "now",
-    "just", "also", "again", "all", "both", "either", "neither", "go", "put", "take", "get", "we", "he", "she", "up", "down",
+    "and", "to", "in", "on", "at", "of", "i", "you", "please", "with", "then", "can", "could", "would", "will",
+    "should", "must", "may", "might", "be", "is", "are", "was", "has", "have", "had", "do", "does", "did", "not", "no",
+    "me", "us", "there", "here", "what", "which", "who", "where", "when", "why", "how", "if", "as", "so", "but", "or",
+    "for", "from", "off", "out", "by", "now", "just", "also", "again", "all", "both", "either", "neither", "go", "put",
+    "take", "get", "we", "he", "she", "up", "down",
 ];
 
 /// What an adjective demands of an object's state.
@@ -270,14 +271,7 @@ impl Lexicon {
         let word = [word.to_owned()];
         self.articles.exact(&word).is_some()
             || self.pronouns.exact(&word).is_some()
-<<<<<<< HEAD
-            || matches!(
-                word[0].as_str(),
-                "and" | "to" | "in" | "on" | "at" | "of" | "i" | "you" | "please" | "with" | "then"
-            )
-=======
             || SMALL_WORDS.contains(&word[0].as_str())
->>>>>>> h-P
     }
 
     /// The words of an utterance: tokens, with spelling repaired and set phrases replaced; and how many were misspelt.
@@ -499,8 +493,12 @@ impl Lexicon {
             self.units.words().collect(),
             self.prepositions.words().collect(),
         ];
-        let is_vague = |word: &str| matches!(word, "front" | "back" | "about" | "behind" | "up" | "down" | "other" | "way" | "of" | "the" | "a");
-        let spoken = |word: &&&String| word.len() > 1 && !is_vague(word) && word.chars().all(|letter| letter.is_ascii_alphabetic());
+        let is_vague = |word: &str| {
+            matches!(word, "front" | "back" | "about" | "behind" | "up" | "down" | "other" | "way" | "of" | "the" | "a")
+        };
+        let spoken = |word: &&&String| {
+            word.len() > 1 && !is_vague(word) && word.chars().all(|letter| letter.is_ascii_alphabetic())
+        };
         let words: BTreeSet<&String> = tables.iter().flatten().filter(spoken).copied().collect();
         self.sounds = words.into_iter().map(|word| (word.clone(), sound::sounds(word))).collect();
     }

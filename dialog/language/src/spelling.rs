@@ -140,7 +140,12 @@ impl Vocabulary {
     fn nearest(&self, word: &str) -> Option<&String> {
         let limit = match word.len() {
             0..=2 => return None,
-            3 => return self.meaningful.iter().find(|known| known.len() == 3 && !self.talk.contains(*known) && is_swapped(word, known)),
+            3 => {
+                return self
+                    .meaningful
+                    .iter()
+                    .find(|known| known.len() == 3 && !self.talk.contains(*known) && is_swapped(word, known));
+            }
             4..=6 => 1,
             _ => 2,
         };

@@ -42,7 +42,6 @@ const WISHES: &[&str] =
 
 /// Words that say that something must be so.
 const MUSTS: &[&[&str]] = &[
-<<<<<<< HEAD
     &["needs", "to"],
     &["need", "to"],
     &["needs"],
@@ -60,14 +59,11 @@ const MUSTS: &[&[&str]] = &[
     &["belongs"],
     &["belong"],
     &["goes"],
+    &["go"],
+    &["gets"],
     &["requires"],
     &["better"],
     &["shall"],
-=======
-    &["needs", "to"], &["need", "to"], &["needs"], &["need"], &["should"], &["must"], &["has", "to"], &["have", "to"],
-    &["ought", "to"], &["is", "to"], &["are", "to"], &["wants", "to"], &["is", "supposed", "to"], &["could", "use"],
-    &["belongs"], &["belong"], &["goes"], &["go"], &["gets"], &["requires"], &["better"], &["shall"],
->>>>>>> h-P
 ];
 
 /// Verbs that make something be so.
