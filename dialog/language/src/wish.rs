@@ -119,8 +119,71 @@ pub(crate) fn request(lexicon: &Lexicon, words: &[String]) -> Option<(Vec<String
         .or_else(|| made(lexicon, chunk))
         .or_else(|| given(lexicon, chunk))
         .or_else(|| asked(lexicon, chunk))
-        .or_else(|| required(lexicon, chunk))?;
+        .or_else(|| required(lexicon, chunk))
+        .or_else(|| rid_of_dirt(chunk))?;
     Some((wished, chunk.len()))
+}
+
+/// What is on a dirty plate; nothing that is there as a thing of its own.
+const DIRT: &[&str] = &[
+    "waste",
+    "dirt",
+    "leftovers",
+    "leftover",
+    "scraps",
+    "crumbs",
+    "grime",
+    "grease",
+    "mess",
+    "stain",
+    "stains",
+    "remains",
+    "residue",
+    "filth",
+];
+const REMOVERS: &[&[&str]] = &[
+    &["drop"],
+    &["dump"],
+    &["remove"],
+    &["scrape"],
+    &["throw"],
+    &["throw", "away"],
+    &["throw", "out"],
+    &["empty"],
+    &["wash"],
+    &["wash", "off"],
+    &["wash", "away"],
+    &["wipe"],
+    &["wipe", "off"],
+    &["rinse"],
+    &["rinse", "off"],
+    &["clean"],
+    &["clean", "off"],
+    &["get", "rid", "of"],
+    &["put"],
+    &["take"],
+];
+
+/// `drop the waste into the bin`, `scrape the leftovers off the plate`: whatever it is on is to be clean.
+fn rid_of_dirt(words: &[String]) -> Option<Vec<String>> {
+    let begins = |start: &&&[&str]| words.len() > start.len() && start.iter().zip(words).all(|(one, word)| one == word);
+    let mut rest = &words[REMOVERS.iter().filter(begins).map(|start| start.len()).max()?..];
+    while rest.first().is_some_and(|word| matches!(word.as_str(), "the" | "all" | "any" | "that" | "this" | "of")) {
+        rest = &rest[1..];
+    }
+    let (dirt, rest) = rest.split_first()?;
+    if !DIRT.contains(&dirt.as_str()) {
+        return None;
+    }
+    let of = rest.iter().position(|word| matches!(word.as_str(), "from" | "off" | "on"));
+    let thing = of.map_or(&[][..], |at| &rest[at + 1..]);
+    let end = thing.iter().position(|word| matches!(word.as_str(), "to" | "in" | "into")).unwrap_or(thing.len());
+    let mut request = vec!["clean".to_owned()];
+    request.extend_from_slice(if end == 0 { &[] } else { &thing[..end] });
+    if end == 0 {
+        request.push("it".to_owned());
+    }
+    Some(request)
 }
 
 /// The words up to `and`, `so` or `but` before a request of its own.
