@@ -227,7 +227,10 @@ impl Conversation<'_> {
         let Some((length, ())) = self.lexicon.all.longest(&words) else { return false };
         let mut reader = Reader::new(self.lexicon, &words);
         reader.at = length;
-        while matches!(reader.rest().first().map(String::as_str), Some("them" | "those" | "these" | "of" | "ones" | "one")) {
+        while matches!(
+            reader.rest().first().map(String::as_str),
+            Some("them" | "those" | "these" | "of" | "ones" | "one")
+        ) {
             reader.at += 1;
         }
         reader.skip(|lexicon| &lexicon.trail);

@@ -12,14 +12,15 @@ use crate::{
 
 /// Words that begin a clause which says when, why or about what, and asks for nothing.
 const SUBORDINATORS: &[&str] = &[
-    "because", "since", "as", "while", "when", "whenever", "if", "although", "though", "unless", "until", "whether", "who",
-    "whose", "whom", "where", "wherever", "which", "so that", "without", "cause", "coz",
+    "because", "since", "as", "while", "when", "whenever", "if", "although", "though", "unless", "until", "whether",
+    "who", "whose", "whom", "where", "wherever", "which", "so that", "without", "cause", "coz",
 ];
 
 /// Words after which a verb may be a request although others stand before it.
 const BEFORE_REQUESTS: &[&str] = &[
-    "and", "but", "so", "then", "or", "to", "please", "just", "you", "now", "first", "next", "also", "kindly", "instead",
-    "rather", "quickly", "simply", "maybe", "perhaps", "finally", "again", "there", "robot", "tam", "must", "should",
+    "and", "but", "so", "then", "or", "to", "please", "just", "you", "now", "first", "next", "also", "kindly",
+    "instead", "rather", "quickly", "simply", "maybe", "perhaps", "finally", "again", "there", "robot", "tam", "must",
+    "should",
 ];
 
 /// Most words of an opener.

@@ -105,9 +105,11 @@ pub(crate) fn parts(lexicon: &Lexicon, catalog: &Catalog, words: &[String]) -> V
 pub(crate) fn is_forbidden(lexicon: &Lexicon, words: &[String], at: usize) -> bool {
     let mut end = 0;
     segments(lexicon, words).into_iter().any(|segment| {
-        let start = words[end..].windows(segment.len()).position(|window| window == segment).map_or(end, |skip| end + skip);
+        let start =
+            words[end..].windows(segment.len()).position(|window| window == segment).map_or(end, |skip| end + skip);
         end = start + segment.len();
-        (start..end).contains(&at) && lexicon.negation.longest(&segment[leading(lexicon, segment).min(segment.len() - 1)..]).is_some()
+        (start..end).contains(&at)
+            && lexicon.negation.longest(&segment[leading(lexicon, segment).min(segment.len() - 1)..]).is_some()
     })
 }
 
@@ -383,7 +385,24 @@ fn read_motion(reader: &mut Reader<'_>, clause: &mut Clause) {
             clause.amount = clause.amount.or(Some(little(clause.intent)));
         } else if matches!(
             reader.rest().first().map(String::as_str),
-            Some("your" | "head" | "a" | "for" | "by" | "of" | "an" | "about" | "only" | "just" | "exactly" | "approximately" | "another" | "once" | "more" | "further")
+            Some(
+                "your"
+                    | "head"
+                    | "a"
+                    | "for"
+                    | "by"
+                    | "of"
+                    | "an"
+                    | "about"
+                    | "only"
+                    | "just"
+                    | "exactly"
+                    | "approximately"
+                    | "another"
+                    | "once"
+                    | "more"
+                    | "further"
+            )
         ) {
             reader.at += 1;
         } else {
@@ -406,10 +425,15 @@ fn read_motion(reader: &mut Reader<'_>, clause: &mut Clause) {
 
 /// `a bit`, `slightly`: how many words say so.
 fn a_bit(words: &[String]) -> Option<usize> {
-    let skipped = words.iter().take_while(|word| matches!(word.as_str(), "a" | "just" | "very" | "tiny" | "little" | "small" | "wee")).count();
+    let skipped = words
+        .iter()
+        .take_while(|word| matches!(word.as_str(), "a" | "just" | "very" | "tiny" | "little" | "small" | "wee"))
+        .count();
     let is_bit = |word: &String| matches!(word.as_str(), "bit" | "tad" | "touch" | "smidge" | "slightly" | "fraction");
     match words.get(skipped) {
-        Some(word) if is_bit(word) => Some(skipped + 1 + usize::from(words.get(skipped + 1).is_some_and(|word| word == "more"))),
+        Some(word) if is_bit(word) => {
+            Some(skipped + 1 + usize::from(words.get(skipped + 1).is_some_and(|word| word == "more")))
+        }
         _ if skipped > 1 && words[skipped - 1] == "little" => Some(skipped),
         _ => None,
     }
@@ -434,6 +458,11 @@ fn read_amount(reader: &mut Reader<'_>) -> Option<Amount> {
         return Some(Amount::Meters(*unit));
     }
     let value = after.number()?;
+    // `three more steps`
+    let is_size = |word: &String| {
+        matches!(word.as_str(), "more" | "big" | "small" | "little" | "further" | "additional" | "full" | "extra")
+    };
+    after.at += after.rest().iter().take_while(|word| is_size(word)).count();
     let (lexicon, rest) = (after.lexicon, after.rest());
     let amount = if let Some((length, ())) = lexicon.degrees.longest(rest) {
         after.at += length;

@@ -50,7 +50,7 @@ impl Conversation<'_> {
             return Understanding::refusal("That is too much for me at once. Please say it in a few short sentences.");
         }
         let (words, repairs) = self.lexicon.normalise(utterance);
-        let words = amend::without_slips(self.lexicon, &words);
+        let words = amend::without_where(self.lexicon, amend::without_slips(self.lexicon, &words));
         Self { judge: Judge { repairs, ..self.judge }, ..*self }.understand_heard(words, context)
     }
 
@@ -129,7 +129,8 @@ impl Conversation<'_> {
         if let Some(understanding) = self.answer_to_pending(&words, &parts, context) {
             return understanding;
         }
-        if let Some(at) = lab::bare(self.lexicon, &words).filter(|at| !clause::is_forbidden(self.lexicon, &words, *at)) {
+        if let Some(at) = lab::bare(self.lexicon, &words).filter(|at| !clause::is_forbidden(self.lexicon, &words, *at))
+        {
             let guessed = || (self.judge.asking == Asking::Never).then(|| lab::guessed(self.scene));
             if let Some(room) = lab::here(self.scene.robot.room).or_else(guessed) {
                 return self.understand_words(lab::named(&words, at, room), context);
@@ -147,9 +148,15 @@ impl Conversation<'_> {
         }
         // `when you get a minute, bring me the knife` asks for no time.
         let is_asked_to = |question: &question::Question| {
-            let is_when = words.iter().find(|word| !token::is_punctuation(word)).is_some_and(|word| word == "when" || word == "what");
+            let is_when = words
+                .iter()
+                .find(|word| !token::is_punctuation(word))
+                .is_some_and(|word| word == "when" || word == "what");
             let asks = |part: &Part| matches!(part, Part::Clause(clause) if chatter::is_clear(clause));
-            question.kind == question::QuestionKind::Unknown && is_when && words.iter().any(|word| word == ",") && parts.iter().any(asks)
+            question.kind == question::QuestionKind::Unknown
+                && is_when
+                && words.iter().any(|word| word == ",")
+                && parts.iter().any(asks)
         };
         if let Some(question) = question::read(self.lexicon, words).filter(|question| !is_asked_to(question)) {
             let answerer = Answerer {
@@ -409,7 +416,10 @@ impl Conversation<'_> {
         while at < words.len() {
             let rest = &words[at..];
             let small = self.lexicon.small.longest(rest).map_or(0, |(length, _)| length);
-            let polite = matches!(rest[0].as_str(), "please" | "ok" | "okay" | "well" | "hmm" | "oh" | "then" | "and" | "so" | "which");
+            let polite = matches!(
+                rest[0].as_str(),
+                "please" | "ok" | "okay" | "well" | "hmm" | "oh" | "then" | "and" | "so" | "which"
+            );
             if small == 0 && !polite {
                 return None;
             }
@@ -494,10 +504,7 @@ const fn is_lost(understanding: &Understanding) -> bool {
         Understanding::Question { kind, .. } => {
             matches!(
                 kind,
-                Clarification::Appearance
-                    | Clarification::Location
-                    | Clarification::Request
-                    | Clarification::Direction
+                Clarification::Appearance | Clarification::Location | Clarification::Request | Clarification::Direction
             )
         }
         _ => false,

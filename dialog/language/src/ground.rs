@@ -441,7 +441,11 @@ impl<'a> Ground<'a> {
         let Some((_, best)) = ranked.first().copied() else { return Err(Miss::Unseen) };
         // The only one that is as described.
         let is_sole = described.left.len() == 1 && phrase.is_described() && phrase.unknown.is_empty();
-        if is_sole && self.judge.repairs == 0 && self.judge.asking == Asking::Unsure && !self.judge.is_for_good(want.intent, best.class) {
+        if is_sole
+            && self.judge.repairs == 0
+            && self.judge.asking == Asking::Unsure
+            && !self.judge.is_for_good(want.intent, best.class)
+        {
             return Ok(best.id);
         }
         let groups = self.told_apart(&ranked);

@@ -29,7 +29,9 @@ struct Guess {
 pub(crate) fn is_puzzled(parts: &[Part], words: &[String]) -> bool {
     parts.iter().any(|part| match part {
         // `turn write`: a turn that nobody said the way of.
-        Part::Clause(clause) if clause.intent == Intent::Turn && clause.direction.is_none() && clause.amount.is_none() => {
+        Part::Clause(clause)
+            if clause.intent == Intent::Turn && clause.direction.is_none() && clause.amount.is_none() =>
+        {
             clause.places.is_empty() && words.len() > 1
         }
         Part::Clause(clause) if clause.intent == Intent::Impossible => false,
@@ -47,7 +49,9 @@ pub(crate) fn readings(lexicon: &Lexicon, catalog: &Catalog, words: &[String]) -
         return Vec::new();
     }
     let mut guesses = guesses(lexicon, words);
-    guesses.sort_by(|one, other| one.cost.total_cmp(&other.cost).then(one.at.cmp(&other.at)).then(one.word.cmp(&other.word)));
+    guesses.sort_by(|one, other| {
+        one.cost.total_cmp(&other.cost).then(one.at.cmp(&other.at)).then(one.word.cmp(&other.word))
+    });
     let mut readings: Vec<(f32, Vec<String>)> =
         guesses.iter().map(|guess| (guess.cost, with(words, &[guess]))).collect();
     for (index, one) in guesses.iter().enumerate().take(MOST_READINGS) {
@@ -76,7 +80,7 @@ pub(crate) fn readings(lexicon: &Lexicon, catalog: &Catalog, words: &[String]) -
 }
 
 /// What sounds all but the same.
-const SAME: f32 = 0.3;
+const SAME: f32 = 0.36;
 /// What an ordinary word, which people say as well, may differ by.
 const NEARLY: f32 = 0.5;
 /// What two slips at once cost more than each.
@@ -99,7 +103,8 @@ fn guesses(lexicon: &Lexicon, words: &[String]) -> Vec<Guess> {
         if is_spoken(word) && !lexicon.is_small_word(word) {
             let heard = sound::sounds(word);
             // A verb is misheard where a request begins, not within talk.
-            let begins = at == 0 || matches!(words[at - 1].as_str(), "," | "." | "and" | "then" | "please" | "you" | "to");
+            let begins =
+                at == 0 || matches!(words[at - 1].as_str(), "," | "." | "and" | "then" | "please" | "you" | "to");
             let found = alike(lexicon, &heard, word)
                 .into_iter()
                 .filter(|(cost, meant)| *cost <= limit && (begins || !lexicon.verb_heads.contains(meant)));
@@ -109,7 +114,11 @@ fn guesses(lexicon: &Lexicon, words: &[String]) -> Vec<Guess> {
         if let Some(next) = words.get(at + 1).filter(|next| is_spoken(word) && is_spoken(next)) {
             let whole = format!("{word}{next}");
             let heard = sound::sounds(&whole);
-            let found = alike(lexicon, &heard, &whole).into_iter().filter(|(_, meant)| meant.len() > 4).take(2);
+            let limit = if is_strange(word) || is_strange(next) { f32::INFINITY } else { SAME };
+            let fits = |(cost, meant): &(f32, String)| {
+                meant.len() > 4 && *cost <= limit && !lexicon.is_small_word(word) && !lexicon.verb_heads.contains(meant)
+            };
+            let found = alike(lexicon, &heard, &whole).into_iter().filter(fits).take(2);
             guesses.extend(found.map(|(cost, word)| Guess { at, length: 2, word, cost }));
         }
     }

@@ -4,10 +4,32 @@ use crate::lexicon::Lexicon;
 
 /// Participles that no rule makes.
 const IRREGULAR: &[(&str, &str)] = &[
-    ("taken", "take"), ("took", "take"), ("brought", "bring"), ("broken", "break"), ("broke", "break"), ("thrown", "throw"), ("threw", "throw"),
-    ("left", "leave"), ("frozen", "freeze"), ("hung", "hang"), ("given", "give"), ("held", "hold"), ("gotten", "get"),
-    ("got", "get"), ("made", "make"), ("gone", "go"), ("went", "go"), ("brewn", "brew"), ("stuck", "stick"), ("laid", "lay"),
-    ("shown", "show"), ("spun", "spin"), ("found", "find"), ("lit", "light"), ("shot", "shoot"), ("ran", "run"),
+    ("taken", "take"),
+    ("took", "take"),
+    ("brought", "bring"),
+    ("broken", "break"),
+    ("broke", "break"),
+    ("thrown", "throw"),
+    ("threw", "throw"),
+    ("left", "leave"),
+    ("frozen", "freeze"),
+    ("hung", "hang"),
+    ("given", "give"),
+    ("held", "hold"),
+    ("gotten", "get"),
+    ("got", "get"),
+    ("made", "make"),
+    ("gone", "go"),
+    ("went", "go"),
+    ("brewn", "brew"),
+    ("stuck", "stick"),
+    ("laid", "lay"),
+    ("shown", "show"),
+    ("spun", "spin"),
+    ("found", "find"),
+    ("lit", "light"),
+    ("shot", "shoot"),
+    ("ran", "run"),
 ];
 
 /// Whether the word is a verb of the tables by itself, or begins one of them.

@@ -22,10 +22,11 @@ const KIND: f32 = 0.3;
 
 /// Words that join others or carry no meaning of their own: nobody takes them for others.
 const SMALL_WORDS: &[&str] = &[
-    "and", "to", "in", "on", "at", "of", "i", "you", "please", "with", "then", "can", "could", "would", "will", "should", "must",
-    "may", "might", "be", "is", "are", "was", "has", "have", "had", "do", "does", "did", "not", "no", "me", "us", "there", "here",
-    "what", "which", "who", "where", "when", "why", "how", "if", "as", "so", "but", "or", "for", "from", "off", "out", "by", "now",
-    "just", "also", "again", "all", "both", "either", "neither", "go", "put", "take", "get", "we", "he", "she", "up", "down",
+    "and", "to", "in", "on", "at", "of", "i", "you", "please", "with", "then", "can", "could", "would", "will",
+    "should", "must", "may", "might", "be", "is", "are", "was", "has", "have", "had", "do", "does", "did", "not", "no",
+    "me", "us", "there", "here", "what", "which", "who", "where", "when", "why", "how", "if", "as", "so", "but", "or",
+    "for", "from", "off", "out", "by", "now", "just", "also", "again", "all", "both", "either", "neither", "go", "put",
+    "take", "get", "we", "he", "she", "up", "down",
 ];
 
 /// What an adjective demands of an object's state.
@@ -295,13 +296,17 @@ impl Lexicon {
     /// `opening` after `would you mind`, as the verb; and `makes` after what makes, as no verb.
     fn as_request(&self, before: &[String], word: &str) -> Option<String> {
         let last = before.last().map(String::as_str);
-        let is_asked = matches!(last, None | Some("mind" | "about" | "by" | "try" | "start" | "begin" | "please" | "meant" | "mean" | "to"));
+        let is_asked = matches!(
+            last,
+            None | Some("mind" | "about" | "by" | "try" | "start" | "begin" | "please" | "meant" | "mean" | "to")
+        );
         if is_asked && word.ends_with("ing") && !self.classes.words().any(|known| known == word) {
             return inflect::stem(self, word);
         }
         let verb = word.strip_suffix('s').filter(|verb| self.verb_heads.contains(*verb))?;
         let is_noun = self.classes.words().any(|known| known == verb || known == word);
-        let is_told = last.is_some_and(|last| last.chars().all(char::is_alphabetic) && !self.lead.words().any(|lead| lead == last));
+        let is_told = last
+            .is_some_and(|last| last.chars().all(char::is_alphabetic) && !self.lead.words().any(|lead| lead == last));
         (is_told && !is_noun && !self.vocabulary.has(word)).then(|| word.to_owned())
     }
 
@@ -488,8 +493,12 @@ impl Lexicon {
             self.units.words().collect(),
             self.prepositions.words().collect(),
         ];
-        let is_vague = |word: &str| matches!(word, "front" | "back" | "about" | "behind" | "up" | "down" | "other" | "way" | "of" | "the" | "a");
-        let spoken = |word: &&&String| word.len() > 1 && !is_vague(word) && word.chars().all(|letter| letter.is_ascii_alphabetic());
+        let is_vague = |word: &str| {
+            matches!(word, "front" | "back" | "about" | "behind" | "up" | "down" | "other" | "way" | "of" | "the" | "a")
+        };
+        let spoken = |word: &&&String| {
+            word.len() > 1 && !is_vague(word) && word.chars().all(|letter| letter.is_ascii_alphabetic())
+        };
         let words: BTreeSet<&String> = tables.iter().flatten().filter(spoken).copied().collect();
         self.sounds = words.into_iter().map(|word| (word.clone(), sound::sounds(word))).collect();
     }

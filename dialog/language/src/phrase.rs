@@ -101,7 +101,11 @@ impl Phrase {
 
     /// Whether more is said of it than what it is called.
     pub(crate) fn is_described(&self) -> bool {
-        !self.relations.is_empty() || self.room.is_some() || self.color.is_some() || self.is_here || !self.not.is_empty()
+        !self.relations.is_empty()
+            || self.room.is_some()
+            || self.color.is_some()
+            || self.is_here
+            || !self.not.is_empty()
     }
 
     /// How much it means this class; nothing, if it does not.
@@ -364,7 +368,8 @@ impl<'a> Reader<'a> {
         let is_one = self.lexicon.pronouns.longest(rest).is_some_and(|(_, pronoun)| *pronoun == Pronoun::One);
         let mut after = *self;
         after.at += 1;
-        is_one && !after.starts_noun()
+        let is_described = ["that", "which", "who", "not"].into_iter().any(|word| after.next_is(word));
+        is_one && (is_described || !after.starts_noun())
     }
 
     /// `break room` in `the break room table`.
@@ -590,7 +595,9 @@ impl<'a> Reader<'a> {
             if let Some((length, more)) = reader.lexicon.numbers.longest(reader.rest()) {
                 value += more;
                 reader.at += length;
-                if let Some((length, unit)) = reader.lexicon.numbers.longest(reader.rest()).filter(|(_, unit)| **unit < 10.0) {
+                if let Some((length, unit)) =
+                    reader.lexicon.numbers.longest(reader.rest()).filter(|(_, unit)| **unit < 10.0)
+                {
                     value += unit;
                     reader.at += length;
                 }

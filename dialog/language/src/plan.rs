@@ -403,7 +403,9 @@ impl Planner<'_> {
                 self.walk(distance)
             }
             Some(Direction::Backward) if !is_measured && clause.verb == "come" => self.go_back(),
-            Some(Direction::Backward) if !is_measured && clause.verb == "go" && self.focus.start_m.is_some() => self.go_back(),
+            Some(Direction::Backward) if !is_measured && clause.verb == "go" && self.focus.start_m.is_some() => {
+                self.go_back()
+            }
             Some(Direction::Backward) => self.walk(-distance),
             Some(Direction::Up | Direction::Down) => Err(Fault::Cannot("I can only move over the floor.".to_owned())),
             Some(Direction::Forward) | None if clause.places.is_empty() || is_measured => self.walk(distance),

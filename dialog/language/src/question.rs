@@ -54,7 +54,8 @@ pub(crate) fn read(lexicon: &Lexicon, words: &[String]) -> Option<Question> {
     }
     // `show me where is the mug`
     if kind == QuestionKind::Where {
-        let skipped = rest.iter().take_while(|word| matches!(word.as_str(), "is" | "are" | "it" | "was" | "exactly")).count();
+        let skipped =
+            rest.iter().take_while(|word| matches!(word.as_str(), "is" | "are" | "it" | "was" | "exactly")).count();
         rest.drain(..skipped.min(rest.len().saturating_sub(1)));
     }
     let about = Reader::new(lexicon, &rest).phrase_with_place();

@@ -111,7 +111,8 @@ impl Vocabulary {
         for word in words {
             let is_known = |word: &str| self.has(word) || self.plain.contains(word) || self.singular(word).is_some();
             let is_spelt = |word: &str| word.chars().all(|letter| letter.is_ascii_alphabetic());
-            let pair = result.last().filter(|last| is_spelt(last) && is_spelt(&word) && !(is_known(last) && is_known(&word)));
+            let pair =
+                result.last().filter(|last| is_spelt(last) && is_spelt(&word) && !(is_known(last) && is_known(&word)));
             match pair.and_then(|last| self.moved(last, &word)) {
                 Some(moved) => {
                     result.pop();
@@ -128,16 +129,23 @@ impl Vocabulary {
         if self.has(&whole) && whole.len() > 3 {
             return Some(vec![whole]);
         }
-        [one.len().checked_sub(1)?, one.len() + 1].into_iter().filter(|at| *at > 1 && *at + 1 < whole.len()).find_map(|at| {
-            let (first, second) = whole.split_at(at);
-            (self.has(first) && self.has(second)).then(|| vec![first.to_owned(), second.to_owned()])
-        })
+        [one.len().checked_sub(1)?, one.len() + 1].into_iter().filter(|at| *at > 1 && *at + 1 < whole.len()).find_map(
+            |at| {
+                let (first, second) = whole.split_at(at);
+                (self.has(first) && self.has(second)).then(|| vec![first.to_owned(), second.to_owned()])
+            },
+        )
     }
 
     fn nearest(&self, word: &str) -> Option<&String> {
         let limit = match word.len() {
             0..=2 => return None,
-            3 => return self.meaningful.iter().find(|known| known.len() == 3 && !self.talk.contains(*known) && is_swapped(word, known)),
+            3 => {
+                return self
+                    .meaningful
+                    .iter()
+                    .find(|known| known.len() == 3 && !self.talk.contains(*known) && is_swapped(word, known));
+            }
             4..=6 => 1,
             _ => 2,
         };

@@ -10,32 +10,103 @@ use crate::{
 
 /// Words that may stand before a verb of wishing: who wishes, and how much.
 const WISHERS: &[&str] = &[
-    "i", "we", "he", "she", "they", "you", "my", "the", "boss", "manager", "would", "really", "just", "do", "also", "still",
-    "will", "might", "now", "am", "in", "everybody", "everyone", "somebody", "someone", "could",
+    "i",
+    "we",
+    "he",
+    "she",
+    "they",
+    "you",
+    "my",
+    "the",
+    "boss",
+    "manager",
+    "would",
+    "really",
+    "just",
+    "do",
+    "also",
+    "still",
+    "will",
+    "might",
+    "now",
+    "am",
+    "in",
+    "everybody",
+    "everyone",
+    "somebody",
+    "someone",
+    "could",
 ];
-const WISHES: &[&str] = &["want", "wants", "need", "needs", "like", "love", "prefer", "require", "requires", "desire", "use"];
+const WISHES: &[&str] =
+    &["want", "wants", "need", "needs", "like", "love", "prefer", "require", "requires", "desire", "use"];
 
 /// Words that say that something must be so.
 const MUSTS: &[&[&str]] = &[
-    &["needs", "to"], &["need", "to"], &["needs"], &["need"], &["should"], &["must"], &["has", "to"], &["have", "to"],
-    &["ought", "to"], &["is", "to"], &["are", "to"], &["wants", "to"], &["is", "supposed", "to"], &["could", "use"],
-    &["belongs"], &["belong"], &["goes"], &["go"], &["gets"], &["requires"], &["better"], &["shall"],
+    &["needs", "to"],
+    &["need", "to"],
+    &["needs"],
+    &["need"],
+    &["should"],
+    &["must"],
+    &["has", "to"],
+    &["have", "to"],
+    &["ought", "to"],
+    &["is", "to"],
+    &["are", "to"],
+    &["wants", "to"],
+    &["is", "supposed", "to"],
+    &["could", "use"],
+    &["belongs"],
+    &["belong"],
+    &["goes"],
+    &["go"],
+    &["gets"],
+    &["requires"],
+    &["better"],
+    &["shall"],
 ];
 
 /// Verbs that make something be so.
 const MAKERS: &[&str] = &["make", "get", "keep", "have", "turn", "let", "render", "bring"];
 /// Verbs by which people order something to drink or to eat.
-const ORDERS: &[&str] =
-    &["make", "brew", "do", "prepare", "get", "give", "bring", "have", "fetch", "fix", "pour", "serve", "cook", "produce", "hand"];
+const ORDERS: &[&str] = &[
+    "make", "brew", "do", "prepare", "get", "give", "bring", "have", "fetch", "fix", "pour", "serve", "cook",
+    "produce", "hand",
+];
 /// What a drink comes in, and how much of it.
 const MEASURES: &[&str] = &[
-    "cup", "mug", "glass", "pot", "bit", "drop", "splash", "some", "a", "an", "of", "nice", "hot", "fresh", "little", "cold",
-    "good", "more", "quick", "big", "bowl",
+    "cup", "mug", "glass", "pot", "bit", "drop", "splash", "some", "a", "an", "of", "nice", "hot", "fresh", "little",
+    "cold", "good", "more", "quick", "big", "bowl",
 ];
 /// Words between a thing and what it is to be.
 const BETWEEN: &[&str] = &[
-    "to", "be", "get", "become", "go", "being", "really", "very", "nice", "and", "all", "completely", "again", "nicely", "as",
-    "so", "properly", "a", "bit", "quite", "just", "super", "stay", "look", "fully", "totally", "go",
+    "to",
+    "be",
+    "get",
+    "become",
+    "go",
+    "being",
+    "really",
+    "very",
+    "nice",
+    "and",
+    "all",
+    "completely",
+    "again",
+    "nicely",
+    "as",
+    "so",
+    "properly",
+    "a",
+    "bit",
+    "quite",
+    "just",
+    "super",
+    "stay",
+    "look",
+    "fully",
+    "totally",
+    "go",
 ];
 /// What follows a thing that is to be so, at most.
 const AFTER: &[&str] = &["again", "please", "for", "now", "me", "us", "first", "then", "too", "robot", "today", "asap"];
@@ -92,7 +163,8 @@ fn ordered(lexicon: &Lexicon, words: &[String]) -> Option<Vec<String>> {
     }
     let skipped = rest.iter().take_while(|word| matches!(word.as_str(), "me" | "us" | "him" | "her" | "up")).count();
     let rest = &rest[skipped..];
-    let has_measure = rest.iter().take(3).any(|word| matches!(word.as_str(), "glass" | "cup" | "mug" | "drop" | "splash" | "pot"));
+    let has_measure =
+        rest.iter().take(3).any(|word| matches!(word.as_str(), "glass" | "cup" | "mug" | "drop" | "splash" | "pot"));
     let is_made = matches!(first.as_str(), "make" | "brew" | "do" | "prepare" | "have" | "cook" | "fix" | "produce");
     let is_coffee = rest.iter().take(3).any(|word| word == "coffee") && rest.first().is_some_and(|word| word != "the");
     let is_some = rest.first().is_some_and(|word| word == "some") && rest.get(1).is_some_and(|word| word == "water");
@@ -145,7 +217,15 @@ fn given(lexicon: &Lexicon, words: &[String]) -> Option<Vec<String>> {
         return None;
     }
     let (thing, after) = thing(lexicon, rest)?;
-    let skipped = after.iter().take_while(|word| matches!(word.as_str(), "a" | "an" | "another" | "good" | "quick" | "nice" | "little" | "proper" | "thorough")).count();
+    let skipped = after
+        .iter()
+        .take_while(|word| {
+            matches!(
+                word.as_str(),
+                "a" | "an" | "another" | "good" | "quick" | "nice" | "little" | "proper" | "thorough"
+            )
+        })
+        .count();
     let verb = after.get(skipped).filter(|_| skipped > 0)?;
     let verb = match verb.as_str() {
         "bath" | "shower" | "cleaning" | "washing" => "wash",
@@ -167,7 +247,8 @@ fn asked(lexicon: &Lexicon, words: &[String]) -> Option<Vec<String>> {
 /// `the plate needs to be cleaned`, `the trophy belongs on the blue desk`.
 fn required(lexicon: &Lexicon, words: &[String]) -> Option<Vec<String>> {
     let (thing, after) = thing(lexicon, words)?;
-    let must = MUSTS.iter().find(|must| after.len() > must.len() && after.iter().zip(must.iter()).all(|(a, b)| a == b))?;
+    let must =
+        MUSTS.iter().find(|must| after.len() > must.len() && after.iter().zip(must.iter()).all(|(a, b)| a == b))?;
     let after = &after[must.len()..];
     if let Some(request) = become_so(lexicon, thing, after) {
         return Some(request);
