@@ -49,6 +49,17 @@ const AROUND: &[&str] = &[
 
 /// The last request as it is meant now, if the words amend it.
 pub(crate) fn amended(lexicon: &Lexicon, words: &[String], parts: &[Part], request: &[Clause]) -> Option<Vec<Clause>> {
+    // `both`, `all of them`
+    if lexicon.all.longest(words).is_some_and(|(length, ())| {
+        words[length..].iter().all(|word| is_around(lexicon, word) || word == "them" || token::is_punctuation(word))
+    }) {
+        let mut clause = request.iter().rfind(|clause| clause.intent != Intent::Mention)?.clone();
+        clause.objects.last_mut().map(|phrase| {
+            phrase.is_all = true;
+            phrase.chosen = None;
+        })?;
+        return Some(vec![clause]);
+    }
     let is_new = parts.iter().any(|part| matches!(part, Part::Clause(clause) if !clause.verb.is_empty()));
     let is_marked = words.iter().any(|word| MARKERS.contains(&word.as_str()));
     if is_new || !is_marked || words.len() > LONGEST {
@@ -132,6 +143,41 @@ fn replace(clause: &mut Clause, phrase: Phrase) -> Option<()> {
     }
     Some(())
 }
+
+/// `go where the hammer is`: to the hammer.
+pub(crate) fn without_where(lexicon: &Lexicon, words: Vec<String>) -> Vec<String> {
+    let start = clause::leading(lexicon, &words);
+    let goes = words.get(start).is_some_and(|word| GOES.contains(&word.as_str()));
+    let Some(at) = words.iter().position(|word| word == "where").filter(|at| goes && *at > start) else { return words };
+    let end = words[at..]
+        .iter()
+        .position(|word| token::is_punctuation(word) || word == "and")
+        .map_or(words.len(), |skip| at + skip);
+    let is_spare = |word: &&String| !PLACES.contains(&word.as_str());
+    let head = words[..at].iter().rposition(|word| is_spare(&word)).map_or(0, |last| last + 1);
+    let thing = &words[at + 1..end];
+    let from = thing.iter().take_while(|word| KEEPERS.contains(&word.as_str())).count();
+    let to = thing.iter().rposition(|word| !STANDS.contains(&word.as_str())).map_or(from, |last| last + 1);
+    if from >= to {
+        return words;
+    }
+    let to_there = ["to".to_owned()];
+    words[..head].iter().chain(&to_there).chain(&thing[from..to]).chain(&words[end..]).cloned().collect()
+}
+
+/// Verbs of going, words for a place, who keeps things there, and that they are there.
+const GOES: &[&str] = &[
+    "go", "walk", "head", "move", "run", "drive", "come", "take", "bring", "return", "proceed", "get", "lead", "guide",
+    "step",
+];
+const PLACES: &[&str] =
+    &["to", "the", "place", "room", "spot", "over", "location", "point", "position", "area", "into", "there", "back"];
+const KEEPERS: &[&str] =
+    &["they", "we", "you", "people", "keep", "have", "store", "put", "got", "i", "one", "can", "find", "is", "are"];
+const STANDS: &[&str] = &[
+    "is", "are", "was", "stands", "stand", "sits", "lies", "lie", "located", "kept", "stored", "lives", "at", "in",
+    "made", "stay", "being", "usually", "located",
+];
 
 /// `pick up the red, no, the yellow mug`: what was taken back in the same breath, left out.
 pub(crate) fn without_slips(lexicon: &Lexicon, words: &[String]) -> Vec<String> {

@@ -249,6 +249,11 @@ impl Planner<'_> {
     }
 
     pub(crate) fn add_throw(&mut self, settled: &Settled) -> Result<(), Fault> {
+        if settled.goal.is_none() && (settled.objects.len() > 1 || settled.objects.iter().any(|phrase| phrase.is_all)) {
+            let want = Want { held_first: false, ..Want::object(settled.intent) };
+            let objects = self.find_objects(settled, &want)?;
+            return objects.into_iter().try_for_each(|object| self.throw_away(object));
+        }
         let object = self.what_to_place(settled)?;
         let Some(goal) = &settled.goal else {
             return self.throw_away(object);

@@ -458,6 +458,11 @@ fn read_amount(reader: &mut Reader<'_>) -> Option<Amount> {
         return Some(Amount::Meters(*unit));
     }
     let value = after.number()?;
+    // `three more steps`
+    let is_size = |word: &String| {
+        matches!(word.as_str(), "more" | "big" | "small" | "little" | "further" | "additional" | "full" | "extra")
+    };
+    after.at += after.rest().iter().take_while(|word| is_size(word)).count();
     let (lexicon, rest) = (after.lexicon, after.rest());
     let amount = if let Some((length, ())) = lexicon.degrees.longest(rest) {
         after.at += length;

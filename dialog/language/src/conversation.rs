@@ -50,7 +50,7 @@ impl Conversation<'_> {
             return Understanding::refusal("That is too much for me at once. Please say it in a few short sentences.");
         }
         let (words, repairs) = self.lexicon.normalise(utterance);
-        let words = amend::without_slips(self.lexicon, &words);
+        let words = amend::without_where(self.lexicon, amend::without_slips(self.lexicon, &words));
         Self { judge: Judge { repairs, ..self.judge }, ..*self }.understand_heard(words, context)
     }
 

@@ -80,7 +80,7 @@ pub(crate) fn readings(lexicon: &Lexicon, catalog: &Catalog, words: &[String]) -
 }
 
 /// What sounds all but the same.
-const SAME: f32 = 0.3;
+const SAME: f32 = 0.36;
 /// What an ordinary word, which people say as well, may differ by.
 const NEARLY: f32 = 0.5;
 /// What two slips at once cost more than each.
@@ -114,7 +114,11 @@ fn guesses(lexicon: &Lexicon, words: &[String]) -> Vec<Guess> {
         if let Some(next) = words.get(at + 1).filter(|next| is_spoken(word) && is_spoken(next)) {
             let whole = format!("{word}{next}");
             let heard = sound::sounds(&whole);
-            let found = alike(lexicon, &heard, &whole).into_iter().filter(|(_, meant)| meant.len() > 4).take(2);
+            let limit = if is_strange(word) || is_strange(next) { f32::INFINITY } else { SAME };
+            let fits = |(cost, meant): &(f32, String)| {
+                meant.len() > 4 && *cost <= limit && !lexicon.is_small_word(word) && !lexicon.verb_heads.contains(meant)
+            };
+            let found = alike(lexicon, &heard, &whole).into_iter().filter(fits).take(2);
             guesses.extend(found.map(|(cost, word)| Guess { at, length: 2, word, cost }));
         }
     }

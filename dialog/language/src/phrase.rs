@@ -369,7 +369,8 @@ impl<'a> Reader<'a> {
         let is_one = self.lexicon.pronouns.longest(rest).is_some_and(|(_, pronoun)| *pronoun == Pronoun::One);
         let mut after = *self;
         after.at += 1;
-        is_one && !after.starts_noun()
+        let is_described = ["that", "which", "who", "not"].into_iter().any(|word| after.next_is(word));
+        is_one && (is_described || !after.starts_noun())
     }
 
     /// `break room` in `the break room table`.

@@ -93,7 +93,7 @@ fn change(one: char, other: char) -> f32 {
 
 /// Letters that stand for one sound, the longest first; `` is silent. At the start, anywhere, at the end.
 const START: &[(&str, &str)] =
-    &[("kn", "n"), ("wr", "r"), ("gn", "n"), ("ps", "s"), ("wh", "w"), ("who", "hu"), ("x", "z")];
+    &[("kn", "n"), ("two", "to"), ("wr", "r"), ("gn", "n"), ("ps", "s"), ("wh", "w"), ("who", "hu"), ("x", "z")];
 const ANYWHERE: &[(&str, &str)] = &[
     ("thes", "s"),
     ("tch", "c"),
