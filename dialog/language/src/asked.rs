@@ -134,11 +134,30 @@ impl Conversation<'_> {
         match left.as_slice() {
             [one] => Some(self.settle(open, *one, context)),
             [] if is_command || self.is_aside(words) => None,
+            [] if self.names_another(words) => self.told_another(words, candidates, open, context),
             left => {
                 let candidates = if left.is_empty() { candidates } else { left };
                 Some(self.ask_which(open, candidates.to_vec(), context))
             }
         }
+    }
+
+    /// Whether it says where something is, or what: `the purple one` alone is no help.
+    fn names_another(&self, words: &[String]) -> bool {
+        self.answer_phrase(&plain(words)).is_some_and(|told| says_where(&told) || !told.namings.is_empty())
+    }
+
+    /// None of those that were asked about was described: it is looked for.
+    fn told_another(
+        &self,
+        words: &[String],
+        candidates: &[ObjectId],
+        mut open: Open,
+        context: &mut Context,
+    ) -> Option<Understanding> {
+        let told = self.answer_phrase(&plain(words))?;
+        describe_by(phrase_mut(&mut open.clauses, open.slot)?, told);
+        Some(self.settle_without(open, candidates, context))
     }
 
     fn ask_which(&self, open: Open, candidates: Vec<ObjectId>, context: &mut Context) -> Understanding {
@@ -269,6 +288,10 @@ impl Conversation<'_> {
 
     /// The phrase that an answer consists of, after `i mean` or `take`; `None` if there is more to it.
     fn answer_phrase(&self, words: &[String]) -> Option<Phrase> {
+        self.phrase_of(words).or_else(|| self.phrase_of(&as_description(words)?))
+    }
+
+    fn phrase_of(&self, words: &[String]) -> Option<Phrase> {
         let starts = 0..words.len().min(6);
         starts.into_iter().find_map(|start| {
             let is_lead = words[..start]
@@ -329,6 +352,45 @@ fn describe_by(said: &mut Phrase, told: Phrase) {
     let is_new = |relation: &Relation| !said.relations.contains(relation);
     let new: Vec<Relation> = told.relations.into_iter().filter(is_new).collect();
     said.relations.extend(new);
+}
+
+/// What is said of where somebody stands, and of what things are made: it tells nothing apart.
+const ASIDES: &[&[&str]] = &[
+    &["to", "your", "left"],
+    &["to", "your", "right"],
+    &["on", "your", "left"],
+    &["on", "your", "right"],
+    &["in", "front", "of", "you"],
+    &["behind", "you"],
+];
+const ENDINGS: &[&[&str]] = &[&["it", "is", "made"], &["made", "of"], &["made", "from"], &["it", "is", "closest"]];
+
+/// `the desk is square and blue it is made of wood` → `square blue the desk`, `the mug is on the desk` → `the mug on the
+/// desk`; `None` where nothing is said to be anything.
+fn as_description(words: &[String]) -> Option<Vec<String>> {
+    let starts =
+        |rest: &[String], with: &&[&str]| rest.len() >= with.len() && with.iter().zip(rest).all(|(a, b)| a == b);
+    let end = (1..words.len()).find(|at| ENDINGS.iter().any(|ending| starts(&words[*at..], ending)));
+    let mut words = words[..end.unwrap_or(words.len())].to_vec();
+    while let Some((at, aside)) = (0..words.len())
+        .find_map(|at| ASIDES.iter().find(|aside| starts(&words[at..], aside)).map(|aside| (at, aside.len())))
+    {
+        words.drain(at..at + aside);
+    }
+    let verb = words.iter().position(|word| matches!(word.as_str(), "is" | "are"))?;
+    let (thing, said) = (&words[..verb], &words[verb + 1..]);
+    if said.is_empty() {
+        return None;
+    }
+    let is_placed =
+        matches!(said[0].as_str(), "in" | "on" | "at" | "next" | "near" | "under" | "inside" | "by" | "behind");
+    let is_joint = |word: &&String| !matches!(word.as_str(), "and" | "of" | "a" | "an" | "the");
+    Some(if is_placed {
+        thing.iter().chain(said).cloned().collect()
+    } else {
+        let thing = thing.iter().filter(is_joint);
+        said.iter().filter(is_joint).chain(thing).cloned().collect()
+    })
 }
 
 /// The phrase at a place of a request.

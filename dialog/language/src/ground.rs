@@ -206,7 +206,7 @@ impl<'a> Ground<'a> {
         if let Some(color) = &phrase.color {
             // What was given that colour, then what has it by nature, then what is only called so.
             let is_plain = |object: &KnownObject| color == "white" && self.is_plain_twin(object);
-            let by_nature = |object: &KnownObject| describe::color(self.catalog, object) == *color;
+            let by_nature = |object: &KnownObject| shade_of(&describe::color(self.catalog, object)) == color;
             keep_if_any(&mut left, |object| by_nature(object) || is_plain(object));
             keep_if_any(&mut left, |object| object.color.name().eq_ignore_ascii_case(color));
         }
@@ -305,7 +305,7 @@ impl<'a> Ground<'a> {
         if color == "white" && self.is_plain_twin(object) {
             return true;
         }
-        if color_of == color || color_of.split_whitespace().any(|word| word == color) {
+        if color_of == color || color_of.split_whitespace().any(|word| shade_of(word) == color) {
             return true;
         }
         // Names and words may say the colour too, as in `red computer`.
@@ -548,6 +548,15 @@ impl<'a> Ground<'a> {
 fn rivals(groups: &[(f32, &KnownObject)], part: f32) -> Vec<ObjectId> {
     let best = groups.first().map_or(0.0, |(probability, _)| *probability);
     groups.iter().filter(|(probability, _)| *probability >= best * part).map(|(_, object)| object.id).collect()
+}
+
+/// The colour that people's words for it come to: the catalogue tells silver from grey.
+fn shade_of(color: &str) -> &str {
+    match color {
+        "grey" | "silver" => "gray",
+        "beige" | "copper" => "brown",
+        color => color,
+    }
 }
 
 fn keep_if_any<T>(list: &mut Vec<T>, keep: impl Fn(&T) -> bool) {

@@ -115,3 +115,21 @@ fn all_of_a_kind_are_carried_one_by_one() {
     );
     check(&[], "> pick everything up\n? I can only carry one thing at a time…");
 }
+
+#[test]
+fn the_oracle_of_the_paper_is_understood() {
+    let check = |marks: &[&str], script: &str| check(Asking::Unsure, marks, script);
+    check(
+        &[],
+        "> pick up the mug\n? Which…\n> The mug is round and yellow. It is made of ceramic.\ntake CoffeeMug_Yellow_1",
+    );
+    check(&[], "> pick up the mug\n? Which…\n> The red mug on the table in the break room.\ntake CoffeeMug_Boss_1");
+    check(
+        &["held Bowl_01_1", "at MainOffice 11 2"],
+        "> put it on the desk\n? Which…\n> The desk is rectangular and red. It is made of plastic.\nput AP_Prop_Desk_Red_1",
+    );
+    check(
+        &["without CoffeeMug_Yellow_1", "CoffeeMug_Boss_1 in AP_Prop_Desk_Green_1"],
+        "> pick up the blue mug\n? …\n> The mug is to your left on the green desk in the main office. It is closest to viewpoint 3.\ntake CoffeeMug_Boss_1",
+    );
+}

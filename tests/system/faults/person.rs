@@ -5,7 +5,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use anyhow::ensure;
+use anyhow::{Context as _, ensure};
 use cohabit_tests::Page;
 use serde_json::Value;
 
@@ -60,13 +60,25 @@ impl Person {
 
     /// Asks something, which must be a turn after that one: none is forgotten.
     pub fn ask(&mut self, text: &str, after: u64) -> anyhow::Result<()> {
+        let turn = match self.say(text) {
+            Ok(turn) => turn,
+            // Who served the page was killed after all that it was waited for.
+            Err(_) => {
+                self.come_back()?;
+                self.say(text)?
+            }
+        };
+        ensure!(turn > after, "turn {turn} is not after turn {after}");
+        self.page.wait("its end", |_, message| message["type"] == "turn" && message["turn"] == turn)?;
+        Ok(())
+    }
+
+    /// Says something; gives the number of its turn.
+    fn say(&mut self, text: &str) -> anyhow::Result<u64> {
         self.page.say(text)?;
         let is_heard = |message: &Value| message["from"] == "person" && message["text"] == text;
-        let found = self.page.wait("what was asked", |_, message| is_heard(message))?;
-        let turn = &found["turn"];
-        ensure!(turn.as_u64().is_some_and(|turn| turn > after), "turn {turn} is not after turn {after}");
-        self.page.wait("its end", |_, message| message["type"] == "turn" && message["turn"] == *turn)?;
-        Ok(())
+        let found = self.page.wait("what was said", |_, message| is_heard(message))?;
+        found["turn"].as_u64().context("a turn")
     }
 
     /// Opens the page as soon as it is served.
