@@ -115,7 +115,7 @@ mod tests {
             judge(Asking::Unsure).is_for_good(Intent::Break, mug)
                 && !judge(Asking::Unsure).is_for_good(Intent::PickUp, mug)
         );
-        let laser = catalog.find("Laser").unwrap_or_default();
-        assert!(judge(Asking::Unsure).is_for_good(Intent::TurnOn, laser));
+        let machine = catalog.find("EAC_Machine").unwrap_or_default();
+        assert!(judge(Asking::Unsure).is_for_good(Intent::TurnOn, machine));
     }
 }

@@ -58,7 +58,7 @@ impl dyn Publisher + '_ {
     /// Sends a message of fixed size. Gives the sample's sequence number.
     ///
     /// # Errors
-    /// As [`Self::send`].
+    /// As [`Publisher::send`].
     pub fn send_record(&mut self, tick: u64, record: &impl NoUninit) -> Result<u64, BusError> {
         let record = bytemuck::bytes_of(record);
         self.send(tick, record.len(), &mut |bytes| bytes.copy_from_slice(record))
