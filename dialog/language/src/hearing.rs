@@ -86,7 +86,7 @@ const NEARLY: f32 = 0.5;
 /// What two slips at once cost more than each.
 const PAIR: f32 = 0.5;
 /// So many readings are looked at.
-const MOST_TRIED: usize = 60;
+const MOST_TRIED: usize = 40;
 
 fn guesses(lexicon: &Lexicon, words: &[String]) -> Vec<Guess> {
     let mut guesses = Vec::new();

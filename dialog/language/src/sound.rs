@@ -43,11 +43,12 @@ pub(crate) fn difference(heard: &Sounds, meant: &Sounds) -> Option<f32> {
     if heard.is_empty() || meant.is_empty() || heard.len().abs_diff(meant.len()) > 2 {
         return None;
     }
-    let cost = distance(heard, meant);
-    (cost <= LIMIT.min(LIMIT_EACH * longest as f32)).then_some(cost)
+    let limit = LIMIT.min(LIMIT_EACH * longest as f32);
+    distance(heard, meant, limit).filter(|cost| *cost <= limit)
 }
 
-fn distance(one: &[char], other: &[char]) -> f32 {
+/// The least that it costs to make one of the other; nothing, if that is more than `limit` on the way already.
+fn distance(one: &[char], other: &[char], limit: f32) -> Option<f32> {
     let mut row: Vec<f32> =
         std::iter::once(0.0).chain(other.iter().scan(0.0, |sum, sound| Some(more(sum, *sound)))).collect();
     for sound in one {
@@ -58,8 +59,11 @@ fn distance(one: &[char], other: &[char]) -> f32 {
             corner = row[at + 1];
             row[at + 1] = changed.min(row[at] + extra(*against)).min(corner + extra(*sound));
         }
+        if row.iter().all(|cost| *cost > limit) {
+            return None;
+        }
     }
-    row[other.len()]
+    row.last().copied()
 }
 
 fn more(sum: &mut f32, sound: char) -> f32 {
