@@ -2,14 +2,14 @@
 //!
 //! Pure: the newest knowledge comes in with every call, and what is to be sent comes out.
 
-use std::{collections::BTreeMap, sync::Arc};
+use std::collections::BTreeMap;
 
 use cohabit_bus::{
     Text,
     message::{DialogHeader, DialogKind, DialogMessage, PlanStep},
 };
-use cohabit_cdf::{Action, Catalog, GoToTarget, ObjectId, Status};
-use cohabit_language::{Asking, Clarification, Context, Language, Step, Understanding};
+use cohabit_cdf::{Action, GoToTarget, ObjectId, Status};
+use cohabit_language::{Clarification, Context, Language, Step, Understanding};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -155,19 +155,13 @@ const MOST_PLANS: usize = 16;
 
 impl Conversation {
     /// A conversation in which nothing was said yet.
-    pub fn new(catalog: Arc<Catalog>, body: u32) -> Self {
-        Self::after(Memory::default(), catalog, body)
+    pub fn new(language: Language, body: u32) -> Self {
+        Self::after(Memory::default(), language, body)
     }
 
     /// A conversation that goes on.
-    pub fn after(memory: Memory, catalog: Arc<Catalog>, body: u32) -> Self {
-        Self { language: Language::new(catalog), body, memory }
-    }
-
-    /// The same, with a robot that asks at other times.
-    #[must_use]
-    pub fn asking(self, asking: Asking) -> Self {
-        Self { language: self.language.asking(asking), ..self }
+    pub const fn after(memory: Memory, language: Language, body: u32) -> Self {
+        Self { language, body, memory }
     }
 
     /// What it asks, if that is the last that it said.

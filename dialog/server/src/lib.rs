@@ -33,7 +33,7 @@ use std::{
 use cohabit_bus::{BusError, Transport, message::CameraRecord};
 use cohabit_cdf::{Catalog, Layout, Mission};
 
-pub use cohabit_language::{Asking, Knows};
+pub use cohabit_language::{Asking, Knows, Language};
 pub use conversation::{Asked, Conversation, Reaction, TurnEnd};
 pub use driving::{Drivable, NotDrivable};
 pub use known::Knowledge;
@@ -114,7 +114,8 @@ pub fn serve(
     let journal = Journal::open(config.journal.as_deref());
     let (listener, place) = listen(config.listen, journal.past().place.as_ref())?;
     let knowledge = Knowledge::new(config.knows, Arc::clone(&catalog), &layout, talk::BODY);
-    let talk = Talk::new(&*bus, catalog, knowledge, config.asking, Arc::clone(&hub), Arc::clone(&drivers), journal)?;
+    let language = Language::new(catalog).asking(config.asking);
+    let talk = Talk::new(&*bus, language, knowledge, Arc::clone(&hub), Arc::clone(&drivers), journal)?;
     let ears = Ears::new(&*bus)?;
     talk.serve_at(place.clone());
     let Place { address, token } = place;

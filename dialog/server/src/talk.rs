@@ -12,7 +12,7 @@ use cohabit_bus::{
     monotonic_nanos,
 };
 use cohabit_cdf::{BodyId, Catalog, ObjectId};
-use cohabit_language::Asking;
+use cohabit_language::Language;
 use serde_json::Value;
 
 use crate::{
@@ -52,9 +52,8 @@ impl Talk {
     /// A conversation on `bus`, shown to the pages of `hub`; it goes on where that of `journal` was.
     pub fn new(
         bus: &dyn Transport,
-        catalog: Arc<Catalog>,
+        language: Language,
         mut knowledge: Knowledge,
-        asking: Asking,
         hub: Arc<Hub>,
         drivers: Arc<Drivers>,
         journal: Journal,
@@ -62,8 +61,9 @@ impl Talk {
         hub.restore(&journal.past().lines);
         let memory = journal.past().conversation.clone();
         knowledge.study(&journal.past().lessons);
+        let catalog = Arc::clone(language.catalog());
         let mut inner = Inner {
-            conversation: Conversation::after(memory, Arc::clone(&catalog), BODY.0).asking(asking),
+            conversation: Conversation::after(memory, language, BODY.0),
             knowledge,
             journal,
             latency: Latency::default(),

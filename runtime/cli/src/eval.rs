@@ -10,7 +10,7 @@ use std::{
 };
 
 use cohabit_cdf::Catalog;
-use cohabit_dialog::{Asking, Knows};
+use cohabit_dialog::{Asking, Knows, Language};
 use cohabit_eval::{Caps, Played, Report, Settings, Style, Tally, Task, generate, play, pool, read_tasks};
 use indicatif::{ProgressBar, ProgressStyle};
 
@@ -149,7 +149,7 @@ impl Eval {
         if self.made_up.missions == 0 {
             return Err(bad_input("--missions 0: at least one"));
         }
-        let tasks = generate(self.made_up.missions, self.seed, &Arc::new(Catalog::builtin())).map_err(bad_input)?;
+        let tasks = generate(self.made_up.missions, self.seed, &language()).map_err(bad_input)?;
         if let Some(path) = &self.made_up.save {
             let mut out = create(path)?;
             tasks.iter().try_for_each(|task| writeln!(out, "{}", task.as_line()))?;
@@ -176,9 +176,9 @@ impl Eval {
     }
 
     fn serve(&self) -> io::Result<()> {
-        let (settings, catalog) = (self.settings(), Arc::new(Catalog::builtin()));
+        let (settings, language) = (self.settings(), language());
         pool::serve(io::stdin().lock(), io::stdout().lock(), |task| {
-            play(task, &settings, &catalog).map_err(io::Error::other)
+            play(task, &settings, &language).map_err(io::Error::other)
         })
     }
 
@@ -207,6 +207,11 @@ impl Eval {
         let caps = self.caps.map(|caps| caps.0);
         Ok(Report::new(&self.source(), self.seed, caps, workers, wall_s, missions))
     }
+}
+
+/// The robot's language, of the built-in catalogue.
+fn language() -> Language {
+    Language::new(Arc::new(Catalog::builtin()))
 }
 
 fn create(path: &Path) -> anyhow::Result<io::BufWriter<std::fs::File>> {

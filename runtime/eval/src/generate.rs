@@ -3,9 +3,8 @@
 
 mod draft;
 
-use std::sync::Arc;
-
-use cohabit_cdf::{Catalog, Color, Layout, LayoutError, Property, RoomId};
+use cohabit_cdf::{Color, Layout, LayoutError, Property, RoomId};
+use cohabit_language::Language;
 
 use crate::{
     chance::Chance,
@@ -56,17 +55,17 @@ pub enum GenerateError {
 ///
 /// # Errors
 /// [`GenerateError`].
-pub fn generate(count: usize, seed: u64, catalog: &Arc<Catalog>) -> Result<Vec<Task>, GenerateError> {
+pub fn generate(count: usize, seed: u64, language: &Language) -> Result<Vec<Task>, GenerateError> {
     let layouts = Layout::builtin_ids().iter().map(|id| Layout::builtin(id)).collect::<Result<Vec<_>, _>>()?;
-    (0..count).map(|number| one(number, seed, &layouts, catalog)).collect()
+    (0..count).map(|number| one(number, seed, &layouts, language)).collect()
 }
 
-fn one(number: usize, seed: u64, layouts: &[Layout], catalog: &Arc<Catalog>) -> Result<Task, GenerateError> {
+fn one(number: usize, seed: u64, layouts: &[Layout], language: &Language) -> Result<Task, GenerateError> {
     let (name, drafting) = TYPES[number % TYPES.len()];
     let mut chance = Chance::new(seed.wrapping_mul(1_000_003).wrapping_add(number as u64));
     for _ in 0..MOST_DRAFTS {
         let layout = &layouts[chance.below(layouts.len())];
-        let mut draft = Draft::new(catalog, layout, &mut chance);
+        let mut draft = Draft::new(language.catalog(), layout, &mut chance);
         if drafting(&mut draft).is_none() {
             continue;
         }
@@ -79,7 +78,7 @@ fn one(number: usize, seed: u64, layouts: &[Layout], catalog: &Arc<Catalog>) -> 
             script,
         };
         let exact = plan.iter().map(|meaning| Line::utterance(&expert(meaning))).collect();
-        if play(&task(exact), &Settings::expert(seed), catalog)?.success {
+        if play(&task(exact), &Settings::expert(seed), language)?.success {
             return Ok(task(plan.into_iter().map(Line::Meant).collect()));
         }
     }

@@ -3,10 +3,10 @@
 use std::{collections::BTreeMap, path::PathBuf, sync::Arc, time::Instant};
 
 use cohabit_bus::message::DialogKind;
-use cohabit_cdf::{BodyId, Catalog};
-use cohabit_dialog::{Conversation, Knowledge};
+use cohabit_cdf::BodyId;
+use cohabit_dialog::{Conversation, Knowledge, TurnEnd};
 use cohabit_engine::SessionPlan;
-use cohabit_language::{Asking, Known, Knows};
+use cohabit_language::{Asking, Known, Knows, Language};
 use cohabit_record::LogError;
 use cohabit_world::{Outcome, World};
 use serde::{Deserialize, Serialize};
@@ -121,12 +121,12 @@ pub struct Said {
     pub replies: Vec<String>,
 }
 
-/// Plays a task. That it cannot be played is a result too.
+/// Plays a task with a robot that speaks this language, asking as the settings say. That it cannot be played is a result too.
 ///
 /// # Errors
 /// [`LogError`], when its log cannot be written.
-pub fn play(task: &Task, settings: &Settings, catalog: &Arc<Catalog>) -> Result<Played, LogError> {
-    let began = Instant::now();
+pub fn play(task: &Task, settings: &Settings, language: &Language) -> Result<Played, LogError> {
+    let (began, catalog) = (Instant::now(), language.catalog());
     let mut played = Played { id: task.id.clone(), ..Played::default() };
     let built = SessionPlan::new(&task.id, &task.cdf, Arc::clone(catalog), settings.seed)
         .and_then(|plan| plan.build().map(|world| (plan, world)));
@@ -141,8 +141,8 @@ pub fn play(task: &Task, settings: &Settings, catalog: &Arc<Catalog>) -> Result<
     played.load_s = began.elapsed().as_secs_f64();
     played.family = task.family.clone().unwrap_or_else(|| family(&plan.mission));
     let knowledge = Knowledge::new(settings.knows, Arc::clone(catalog), world.layout(), BodyId(0));
-    let mut session =
-        LockStep::new(world, Conversation::new(Arc::clone(catalog), 0).asking(settings.asking), knowledge);
+    let conversation = Conversation::new(language.clone().asking(settings.asking), 0);
+    let mut session = LockStep::new(world, conversation, knowledge);
     if let Some(folder) = &settings.record {
         let path = folder.join(format!("{}.mcap", file_name(&task.id)));
         session.record(&path, &task.id, &plan)?;
@@ -219,16 +219,22 @@ impl Player {
         self.wait(PAUSE_TICKS)
     }
 
+    /// Says something; gives how the turn ended, if it did, and what the robot said.
+    fn exchange(&mut self, text: &str) -> Result<(Option<TurnEnd>, Replies), LogError> {
+        let turn = self.session.say(text)?;
+        let (end, said) =
+            self.until(|noted| noted.turns.iter().find(|(ended, _)| *ended == turn).map(|(_, end)| *end))?;
+        let replies = said.iter().map(|(_, text)| text.clone()).collect();
+        self.played.transcript.push(Said { line: text.to_owned(), replies });
+        Ok((end, said))
+    }
+
     /// Says something and answers the questions that come back; gives why it did not do what it says.
     fn utterance(&mut self, text: &str, answers: &[Answer]) -> Result<Option<String>, LogError> {
         let mut answers: Vec<&Answer> = answers.iter().collect();
         let mut text = text;
         loop {
-            let turn = self.session.say(text)?;
-            let (end, said) =
-                self.until(|noted| noted.turns.iter().find(|(ended, _)| *ended == turn).map(|(_, end)| *end))?;
-            let replies = said.iter().map(|(_, text)| text.clone()).collect();
-            self.played.transcript.push(Said { line: text.to_owned(), replies });
+            let (end, said) = self.exchange(text)?;
             let Some(end) = end else { return Ok(Some("it did not come to an end".to_owned())) };
             let asked = said.iter().rev().find(|(kind, _)| *kind == DialogKind::Question);
             let Some((_, question)) = asked else {
@@ -250,11 +256,7 @@ impl Player {
         let mut left = MOST_ROUNDS;
         let mut may_repeat = true;
         loop {
-            let turn = self.session.say(&text)?;
-            let (end, said) =
-                self.until(|noted| noted.turns.iter().find(|(ended, _)| *ended == turn).map(|(_, end)| *end))?;
-            let replies = said.iter().map(|(_, text)| text.clone()).collect();
-            self.played.transcript.push(Said { line: text.clone(), replies });
+            let (end, said) = self.exchange(&text)?;
             let last = said.last().map_or("", |(_, text)| text);
             left -= 1;
             text = match (end, self.session.asked().cloned()) {
