@@ -53,9 +53,13 @@ impl Clause {
     }
 
     fn about(intent: Intent, verb: &str, phrase: Phrase) -> Self {
+        Self { objects: vec![phrase], ..Self::new(intent, verb) }
+    }
+
+    fn new(intent: Intent, verb: &str) -> Self {
         Self {
             intent,
-            objects: vec![phrase],
+            objects: Vec::new(),
             places: Vec::new(),
             direction: None,
             amount: None,
@@ -343,18 +347,7 @@ fn read_as(
     words: &[String],
     verb_length: usize,
 ) -> Option<(Clause, usize)> {
-    let mut clause = Clause {
-        intent,
-        objects: Vec::new(),
-        places: Vec::new(),
-        direction: None,
-        amount: None,
-        color: None,
-        fluid: None,
-        unknown: Vec::new(),
-        has_stray_noun: false,
-        verb: verb.to_owned(),
-    };
+    let mut clause = Clause::new(intent, verb);
     let mut reader = Reader::new(lexicon, words);
     reader.at = verb_length;
     match intent {

@@ -124,11 +124,16 @@ impl Known {
     pub(crate) fn bearing_rad(&self, object: &KnownObject) -> f32 {
         let dx = object.position_m[0] - self.robot.position_m[0];
         let dy = object.position_m[1] - self.robot.position_m[1];
-        let bearing = dy.atan2(dx) - self.robot.yaw_rad;
-        let turn = std::f32::consts::TAU;
-        let wrapped = bearing.rem_euclid(turn);
-        if wrapped > turn / 2.0 { wrapped - turn } else { wrapped }
+        within_half_turn(dy.atan2(dx) - self.robot.yaw_rad)
     }
+}
+
+/// The same angle within a half turn either way, rad.
+#[must_use]
+pub fn within_half_turn(angle_rad: f32) -> f32 {
+    let turn = std::f32::consts::TAU;
+    let wrapped = angle_rad.rem_euclid(turn);
+    if wrapped > turn / 2.0 { wrapped - turn } else { wrapped }
 }
 
 impl KnownObject {

@@ -70,7 +70,7 @@ use cohabit_cdf::{Catalog, ObjectId, Status};
 pub use confidence::{Doubt, Features, Referent, Referents};
 pub use context::Context;
 pub use floor::{Floor, FloorPlan};
-pub use known::{Known, KnownGoal, KnownObject, KnownRobot};
+pub use known::{Known, KnownGoal, KnownObject, KnownRobot, within_half_turn};
 pub use memory::{Knows, Lessons, Memory};
 pub use oracle::Oracle;
 pub use sight::Gaze;

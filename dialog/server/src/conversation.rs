@@ -9,7 +9,7 @@ use cohabit_bus::{
     message::{DialogHeader, DialogKind, DialogMessage, PlanStep},
 };
 use cohabit_cdf::{Action, GoToTarget, ObjectId, Status};
-use cohabit_language::{Clarification, Context, Language, Step, Understanding};
+use cohabit_language::{Clarification, Context, Language, Step, Understanding, within_half_turn};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -129,6 +129,12 @@ struct Plan {
     missing: Option<ObjectId>,
 }
 
+impl Plan {
+    fn new(turn: u64, steps: Vec<Step>) -> Self {
+        Self { turn, steps, told_end: false, missing: None }
+    }
+}
+
 /// What a conversation must know to go on where it was.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub struct Memory {
@@ -143,12 +149,6 @@ pub struct Memory {
 const MOST_SHOWN: usize = 6;
 /// What is further to the side than this is out of sight, rad.
 const HALF_VIEW_RAD: f32 = 0.7;
-
-fn within_half_turn(angle_rad: f32) -> f32 {
-    let turn = std::f32::consts::TAU;
-    let wrapped = angle_rad.rem_euclid(turn);
-    if wrapped > turn / 2.0 { wrapped - turn } else { wrapped }
-}
 
 /// The most plans of which the end is waited for; an agent ends one when it begins the next.
 const MOST_PLANS: usize = 16;
@@ -248,10 +248,7 @@ impl Conversation {
             Understanding::Plan { steps, reply } => {
                 self.say(turn, DialogKind::Reply, LineKind::Say, &reply, reactions);
                 let (steps, missing) = to_where_it_was(steps, knowledge);
-                self.plan(turn, number, steps, reactions);
-                if let Some(plan) = self.memory.plans.get_mut(&number) {
-                    plan.missing = missing;
-                }
+                self.plan(number, Plan { missing, ..Plan::new(turn, steps) }, reactions);
             }
             Understanding::Question { kind, text, candidates, options, .. } => {
                 let asked = Asked { kind, candidates: candidates.clone() };
@@ -273,7 +270,7 @@ impl Conversation {
             Understanding::Stop { reply } => {
                 self.say(turn, DialogKind::Reply, LineKind::Say, &reply, reactions);
                 let stop = Step { action: Action::Stop, says: String::new() };
-                self.plan(turn, number, vec![stop], reactions);
+                self.plan(number, Plan::new(turn, vec![stop]), reactions);
             }
         }
     }
@@ -356,9 +353,9 @@ impl Conversation {
         true
     }
 
-    fn plan(&mut self, turn: u64, number: u64, steps: Vec<Step>, reactions: &mut Vec<Reaction>) {
-        reactions.push(Reaction::Bus(Box::new(self.plan_message(number, &steps))));
-        self.memory.plans.insert(number, Plan { turn, steps, told_end: false, missing: None });
+    fn plan(&mut self, number: u64, plan: Plan, reactions: &mut Vec<Reaction>) {
+        reactions.push(Reaction::Bus(Box::new(self.plan_message(number, &plan.steps))));
+        self.memory.plans.insert(number, plan);
         while self.memory.plans.len() > MOST_PLANS {
             self.memory.plans.pop_first();
         }
@@ -405,7 +402,7 @@ impl Conversation {
         if back_rad.abs() > f32::EPSILON {
             steps.push(silently(Action::Rotate { yaw_rad: back_rad }));
         }
-        self.plan(turn, number, steps, reactions);
+        self.plan(number, Plan::new(turn, steps), reactions);
     }
 
     fn say(&self, turn: u64, kind: DialogKind, line: LineKind, text: &str, reactions: &mut Vec<Reaction>) {

@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use cohabit_bus::message::{NONE, ObjectRecord, StateView};
 use cohabit_cdf::{Action, BodyId, Catalog, ClassId, Color, Fluid, Layout, ObjectId, RoomId, state::StateFlags};
-use cohabit_language::{FloorPlan, Gaze, Known, KnownGoal, KnownObject, KnownRobot, Knows, Lessons, Memory};
+use cohabit_language::{
+    FloorPlan, Gaze, Known, KnownGoal, KnownObject, KnownRobot, Knows, Lessons, Memory, within_half_turn,
+};
 
 /// Half the angle in which the robot sees what is in its room, rad.
 const HALF_VIEW_RAD: f32 = 0.9;
@@ -153,6 +155,5 @@ fn known_object(state: StateView<'_>, robot: &KnownRobot, object: &ObjectRecord)
 
 fn in_view(robot: &KnownRobot, position_m: [f32; 3]) -> bool {
     let [dx, dy] = [position_m[0] - robot.position_m[0], position_m[1] - robot.position_m[1]];
-    let bearing = (dy.atan2(dx) - robot.yaw_rad).rem_euclid(std::f32::consts::TAU);
-    bearing.min(std::f32::consts::TAU - bearing) < HALF_VIEW_RAD
+    within_half_turn(dy.atan2(dx) - robot.yaw_rad).abs() < HALF_VIEW_RAD
 }

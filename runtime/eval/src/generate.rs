@@ -98,10 +98,7 @@ fn break_object(draft: &mut Draft<'_>) -> Option<()> {
 
 fn clean(draft: &mut Draft<'_>) -> Option<()> {
     let object = draft.thing(Property::Dirtyable, &[("isDirty", "true")])?;
-    draft.take(&object);
-    draft.want(Meaning::Clean { object: object.instance.clone() });
-    draft.goal(&object.instance, "isDirty=false");
-    draft.deliver(&object)
+    draft.treat(&object, Meaning::Clean { object: object.instance.clone() }, "isDirty=false")
 }
 
 fn color(draft: &mut Draft<'_>) -> Option<()> {
@@ -115,26 +112,17 @@ fn color(draft: &mut Draft<'_>) -> Option<()> {
 
 fn fill(draft: &mut Draft<'_>) -> Option<()> {
     let object = draft.one_of(&["Bowl_01", "CoffeeMug_Boss", "CoffeeMug_Yellow", "CoffeePot_01"])?;
-    draft.take(&object);
-    draft.want(Meaning::Fill { object: object.instance.clone() });
-    draft.goal(&object.instance, "isFilled=Water");
-    draft.deliver(&object)
+    draft.treat(&object, Meaning::Fill { object: object.instance.clone() }, "isFilled=Water")
 }
 
 fn freeze(draft: &mut Draft<'_>) -> Option<()> {
     let object = draft.thing(Property::Chillable, &[])?;
-    draft.take(&object);
-    draft.want(Meaning::Cool { object: object.instance.clone() });
-    draft.goal(&object.instance, "isCold=true");
-    draft.deliver(&object)
+    draft.treat(&object, Meaning::Cool { object: object.instance.clone() }, "isCold=true")
 }
 
 fn heat(draft: &mut Draft<'_>) -> Option<()> {
     let object = draft.thing(Property::Heatable, &[])?;
-    draft.take(&object);
-    draft.want(Meaning::Heat { object: object.instance.clone() });
-    draft.goal(&object.instance, "isHot=true");
-    draft.deliver(&object)
+    draft.treat(&object, Meaning::Heat { object: object.instance.clone() }, "isHot=true")
 }
 
 fn insert(draft: &mut Draft<'_>) -> Option<()> {
@@ -170,10 +158,7 @@ fn pour(draft: &mut Draft<'_>) -> Option<()> {
 
 fn repair(draft: &mut Draft<'_>) -> Option<()> {
     let object = draft.thing(Property::Breakable, &[("isBroken", "true")])?;
-    draft.take(&object);
-    draft.want(Meaning::Repair { object: object.instance.clone() });
-    draft.goal(&object.instance, "isBroken=false");
-    draft.deliver(&object)
+    draft.treat(&object, Meaning::Repair { object: object.instance.clone() }, "isBroken=false")
 }
 
 fn scan(draft: &mut Draft<'_>) -> Option<()> {

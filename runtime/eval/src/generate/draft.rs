@@ -69,6 +69,9 @@ impl<'a> Draft<'a> {
         let wanted = self.put_down(class, 1, state)?;
         if self.chance.is(DOUBLES) {
             self.put_down(class, 2, state)?;
+        } else if let Some(Value::Array(states)) = self.objects.last_mut().and_then(|object| object.get_mut("state")) {
+            // What the floor plan has of it would be meant as well.
+            states.push(json!({ "Unique": "true" }));
         }
         Some(wanted)
     }
@@ -82,13 +85,7 @@ impl<'a> Draft<'a> {
         }
         self.taken.push((room, looks));
         let instance = format!("{class}_{number}");
-        let mut states: Vec<Value> = state.iter().map(|(key, value)| json!({ *key: value })).collect();
-        if number == 1 {
-            // What the floor plan has of it would be meant as well.
-            states.push(json!({ "Unique": "true" }));
-        } else if let Some(Value::Array(first)) = self.objects.last_mut().and_then(|object| object.get_mut("state")) {
-            first.retain(|state| state.get("Unique").is_none());
-        }
+        let states: Vec<Value> = state.iter().map(|(key, value)| json!({ *key: value })).collect();
         self.objects.push(json!({
             "name": instance, "state": states, "location": [{ place: "on" }], "roomLocation": [room.id()],
         }));
@@ -146,6 +143,14 @@ impl<'a> Draft<'a> {
     pub(super) fn take(&mut self, object: &Wanted) {
         self.go(object);
         self.want(Meaning::PickUp { object: object.instance.clone() });
+    }
+
+    /// Has it taken to be treated, and then delivered.
+    pub(super) fn treat(&mut self, object: &Wanted, meaning: Meaning, goal: &str) -> Option<()> {
+        self.take(object);
+        self.want(meaning);
+        self.goal(&object.instance, goal);
+        self.deliver(object)
     }
 
     /// Has it brought to some furniture.
