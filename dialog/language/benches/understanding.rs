@@ -6,7 +6,7 @@
 
 use std::{sync::Arc, time::Instant};
 
-use cohabit_cdf::{Catalog, Color, Fluid, Layout, ObjectId, state::StateFlags};
+use cohabit_cdf::{Catalog, Layout};
 use cohabit_language::{Context, Known, KnownObject, KnownRobot, Language};
 
 const PLAN: &str = "OfficeLayout1";
@@ -54,28 +54,7 @@ fn office(catalog: &Catalog, layout: &Layout) -> Known {
         room: viewpoint.room,
         held: None,
     };
-    let id = |instance: &str| {
-        let at = layout.placements.iter().position(|placement| placement.instance == instance)?;
-        Some(ObjectId(at as u32))
-    };
-    let objects = layout.placements.iter().filter_map(|placement| {
-        Some(KnownObject {
-            id: id(&placement.instance)?,
-            instance: placement.instance.clone(),
-            class: catalog.class_of_instance(&placement.instance)?,
-            room: placement.room,
-            position_m: layout.origin_in_world_m(placement),
-            flags: StateFlags::default(),
-            fluid: Fluid::None,
-            color: Color::Original,
-            parent: placement.on.as_deref().and_then(id),
-            text: String::new(),
-            visible: placement.room == viewpoint.room,
-            works: placement.works.as_deref().and_then(id),
-            is_hidden: false,
-            yaw_rad: 0.0,
-            in_mission: false,
-        })
-    });
-    Known { robot, objects: objects.collect(), goals: Vec::new(), floor: None }
+    let mut objects = KnownObject::furniture(catalog, layout);
+    objects.iter_mut().for_each(|object| object.visible = object.room == robot.room);
+    Known { robot, objects, goals: Vec::new(), floor: None }
 }

@@ -1,7 +1,8 @@
 //! What the robot knows of its world: the only facts language is grounded on.
 
 use cohabit_cdf::{
-    ClassId, Color, Fluid, ObjectId, RoomId,
+    Catalog, ClassId, Color, Fluid, Layout, ObjectId, RoomId,
+    layout::Placement,
     state::{StateFlag, StateFlags},
 };
 use serde::{Deserialize, Serialize};
@@ -137,6 +138,36 @@ pub fn within_half_turn(angle_rad: f32) -> f32 {
 }
 
 impl KnownObject {
+    /// All that a floor plan has, as it is known to who has seen it once and sees none of it now; the number of each is
+    /// its place in the plan.
+    #[must_use]
+    pub fn furniture(catalog: &Catalog, layout: &Layout) -> Vec<Self> {
+        let number = |instance: &str| {
+            let at = layout.placements.iter().position(|placement| placement.instance == instance)?;
+            Some(ObjectId(at as u32))
+        };
+        let known = |placement: &Placement| {
+            Some(Self {
+                id: number(&placement.instance)?,
+                instance: placement.instance.clone(),
+                class: catalog.class_of_instance(&placement.instance)?,
+                room: placement.room,
+                position_m: layout.origin_in_world_m(placement),
+                yaw_rad: 0.0,
+                flags: StateFlags::default(),
+                fluid: Fluid::None,
+                color: Color::Original,
+                parent: placement.on.as_deref().and_then(number),
+                text: String::new(),
+                visible: false,
+                is_hidden: false,
+                works: placement.works.as_deref().and_then(number),
+                in_mission: false,
+            })
+        };
+        layout.placements.iter().filter_map(known).collect()
+    }
+
     pub(crate) fn has(&self, flag: StateFlag) -> bool {
         self.flags.has(flag)
     }

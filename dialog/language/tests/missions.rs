@@ -18,16 +18,8 @@ fn known(catalog: &Catalog, layout: &Layout, mission: &Mission) -> Known {
         room: mission.start_room,
         held: None,
     };
-    let mut known = Known { robot, objects: Vec::new(), goals: Vec::new(), floor: None };
-    for placement in &layout.placements {
-        add(&mut known, catalog, &placement.instance, placement.room, layout.origin_in_world_m(placement));
-    }
-    for placement in &layout.placements {
-        let (on, works) = (find(&known, placement.on.as_deref()), find(&known, placement.works.as_deref()));
-        if let Some(object) = find(&known, Some(&placement.instance)).and_then(|id| object(&mut known, id)) {
-            (object.parent, object.works) = (on, works);
-        }
-    }
+    let objects = KnownObject::furniture(catalog, layout);
+    let mut known = Known { robot, objects, goals: Vec::new(), floor: None };
     for request in mission.objects.iter().filter(|request| request.remove_initial_contents) {
         let class = catalog.class_of_instance(&request.instance);
         let emptied: Vec<ObjectId> =

@@ -4,7 +4,7 @@ use cohabit_cdf::{
     Catalog, Color, Fluid, Layout, ObjectId, Property, RoomId,
     state::{StateFlag, StateFlags},
 };
-use cohabit_language::{Known, KnownObject, KnownRobot};
+use cohabit_language::{Known, KnownObject, KnownRobot, within_half_turn};
 
 use crate::chance::Chance;
 
@@ -15,7 +15,7 @@ const HALF_VIEW_RAD: f32 = 0.9;
 
 /// Draws a scene on the floor plan `layout`.
 pub fn draw(catalog: &Catalog, layout: &Layout, chance: &mut Chance) -> Known {
-    let mut objects = furniture(catalog, layout);
+    let mut objects = KnownObject::furniture(catalog, layout);
     add_mission(catalog, &mut objects, chance);
     for object in &mut objects {
         draw_states(catalog, object, chance);
@@ -38,43 +38,14 @@ pub fn draw(catalog: &Catalog, layout: &Layout, chance: &mut Chance) -> Known {
     }
     for object in &mut objects {
         let [dx, dy] = [object.position_m[0] - robot.position_m[0], object.position_m[1] - robot.position_m[1]];
-        let bearing = (dy.atan2(dx) - robot.yaw_rad).rem_euclid(std::f32::consts::TAU);
-        object.visible = object.room == robot.room && bearing.min(std::f32::consts::TAU - bearing) < HALF_VIEW_RAD;
+        let bearing_rad = within_half_turn(dy.atan2(dx) - robot.yaw_rad);
+        object.visible = object.room == robot.room && bearing_rad.abs() < HALF_VIEW_RAD;
     }
     Known { robot, objects, goals: Vec::new(), floor: None }
 }
 
 fn is_carried(catalog: &Catalog, object: &KnownObject) -> bool {
     catalog.class(object.class).has(Property::Pickupable)
-}
-
-fn furniture(catalog: &Catalog, layout: &Layout) -> Vec<KnownObject> {
-    let index = |instance: &str| {
-        let at = layout.placements.iter().position(|placement| placement.instance == instance)?;
-        Some(ObjectId(at as u32))
-    };
-    let placements = layout.placements.iter().enumerate();
-    placements
-        .filter_map(|(at, placement)| {
-            Some(KnownObject {
-                id: ObjectId(at as u32),
-                instance: placement.instance.clone(),
-                class: catalog.class_of_instance(&placement.instance)?,
-                room: placement.room,
-                position_m: layout.origin_in_world_m(placement),
-                flags: StateFlags::default(),
-                fluid: Fluid::None,
-                color: Color::Original,
-                parent: placement.on.as_deref().and_then(index),
-                text: String::new(),
-                visible: false,
-                works: placement.works.as_deref().and_then(index),
-                is_hidden: false,
-                yaw_rad: 0.0,
-                in_mission: false,
-            })
-        })
-        .collect()
 }
 
 /// Puts things on and into the furniture, some of them twice, some painted; some furniture is the mission's own too.
