@@ -144,10 +144,11 @@ impl Language {
     /// What the robot asks that finds a thing gone from where it remembers it; `yes` then means to look for it, and to go
     /// on with what was asked. The thing is to be forgotten next.
     #[must_use]
-    pub fn report_missing(&self, id: ObjectId, scene: &Known, context: &mut Context) -> String {
+    pub fn report_missing(&self, id: ObjectId, scene: &Known, context: &mut Context) -> Understanding {
         let the = describe::short(&self.catalog, scene, id);
         context.await_search();
-        format!("{} Shall I look for it?", describe::sentence(&format!("{the} is not there any more")))
+        let gone = describe::sentence(&format!("{the} is not there any more"));
+        ask::confirmation(format!("{gone} Shall I look for it?"))
     }
 
     /// What it means that somebody points at `object`: the answer to a question of the robot's, or what is spoken of

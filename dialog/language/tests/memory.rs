@@ -11,7 +11,9 @@ use cohabit_cdf::{
     layout::{Finish, Opening, OpeningKind, Room, Viewpoint},
     model::{Axis, Material},
 };
-use cohabit_language::{Context, FloorPlan, Gaze, Known, Language, Lessons, Memory, Step, Understanding};
+use cohabit_language::{
+    Clarification, Context, FloorPlan, Gaze, Known, Language, Lessons, Memory, Step, Understanding,
+};
 use support::{catalog, scene, step_text};
 
 const ROOMS: [(RoomId, [f32; 4]); 5] = [
@@ -365,6 +367,23 @@ fn a_question_is_answered_from_memory() {
     assert_eq!(said, ["? I have not seen any milk yet. Shall I look for it?"]);
     let (done, _) = robot.say("yes", 80);
     assert_eq!(done.last().unwrap(), "go MilkCarton_01_1", "{done:?}");
+}
+
+#[test]
+fn what_is_gone_is_asked_about_and_looked_for() {
+    let mut robot = Robot::new(&[]);
+    robot.say("pick up the red mug", 1);
+    let known = robot.memory.known().unwrap();
+    let id = robot.id("CoffeeMug_Boss_1");
+    let asked = robot.language.report_missing(id, &known, &mut robot.context);
+    let Understanding::Question { kind: Clarification::Confirmation, text, options, .. } = asked else {
+        panic!("{asked:?}");
+    };
+    assert_eq!(text, "The red mug is not there any more. Shall I look for it?");
+    assert_eq!(options, ["yes", "no"]);
+    robot.memory.forget(id);
+    let (done, said) = robot.say("yes", 60);
+    assert!(done.len() > 1 && said[0].starts_with("I have not seen a red mug yet"), "{done:?} {said:?}");
 }
 
 #[test]

@@ -348,8 +348,7 @@ impl Conversation {
         let Some(known) = knowledge.known() else { return false };
         let question = self.language.report_missing(id, &known, &mut self.memory.context);
         knowledge.forget(id);
-        self.say(turn, DialogKind::Question, LineKind::Question, &question, reactions);
-        reactions.push(Reaction::TurnEnded { turn, end: TurnEnd::Asked });
+        self.react(turn, turn, question, knowledge, reactions);
         true
     }
 
