@@ -1,0 +1,232 @@
+//! One session as its log tells it: who said what, what was done about it, and which goals were met.
+
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+};
+
+use cohabit_cdf::{Action, Catalog, Mission, Status, mission};
+use cohabit_record::{DialogEntry, EventEntry, Log, LogError};
+use cohabit_world::DT_NANOS;
+
+/// The body that is spoken to.
+pub(crate) const ROBOT: u32 = 0;
+
+/// A session that was played.
+#[derive(Clone, Debug)]
+pub struct Played {
+    /// What its rows are found by: the name of the log's file, without its ending.
+    pub name: String,
+    pub(crate) log: Log,
+    pub(crate) mission: Mission,
+    pub(crate) turns: Vec<Turn>,
+    pub(crate) actions: Vec<Deed>,
+    pub(crate) goals: Vec<Reached>,
+}
+
+/// Why a log has no tables.
+#[derive(Debug, thiserror::Error)]
+pub enum PlayedError {
+    /// It cannot be read.
+    #[error(transparent)]
+    Log(#[from] LogError),
+    /// This program does not know its mission.
+    #[error("{name}: its mission cannot be read: {problems}")]
+    Mission {
+        /// The log.
+        name: String,
+        /// What is wrong.
+        problems: mission::Problems,
+    },
+}
+
+/// Something that a person said, and what came of it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Turn {
+    pub number: u64,
+    pub body: u32,
+    pub tick: u64,
+    pub said: String,
+    pub replies: Vec<String>,
+    pub questions: Vec<String>,
+    pub steps: usize,
+    /// How the last of its plans ended.
+    pub ended: Option<Status>,
+    /// Received, understood, first motion, first changed frame, shown by a page: ns of one clock, 0 where it did not happen.
+    pub stamps: [u64; 5],
+    /// When it was told, and when it was first answered, ns of the same clock.
+    told: (u64, Option<u64>),
+}
+
+/// A command.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Deed {
+    pub number: u64,
+    /// The turn it belongs to; 0 is none.
+    pub turn: u64,
+    pub body: u32,
+    pub action: Action,
+    pub began: u64,
+    /// When it ended, how, and what was said of that.
+    pub outcome: Option<(u64, Status, String)>,
+}
+
+/// A goal, and what came of it.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Reached {
+    pub number: i64,
+    pub description: String,
+    pub met: bool,
+    pub first_met: Option<u64>,
+    pub resets: usize,
+}
+
+/// Simulated time of a tick, s.
+pub(crate) fn seconds(tick: u64) -> f64 {
+    tick as f64 * (DT_NANOS as f64 * 1e-9)
+}
+
+impl Played {
+    /// Reads a log.
+    ///
+    /// # Errors
+    /// [`PlayedError`].
+    pub fn open(path: &Path, catalog: &Catalog) -> Result<Self, PlayedError> {
+        let name = path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy();
+        Self::new(&name, Log::open(path)?, catalog)
+    }
+
+    /// Reads several logs. Where files of several folders have one name, sessions are called by folder and file.
+    ///
+    /// # Errors
+    /// [`PlayedError`].
+    pub fn open_all(paths: &[PathBuf], catalog: &Catalog) -> Result<Vec<Self>, PlayedError> {
+        let mut all = paths.iter().map(|path| Self::open(path, catalog)).collect::<Result<Vec<_>, _>>()?;
+        let mut count = BTreeMap::<String, usize>::new();
+        for played in &all {
+            *count.entry(played.name.clone()).or_default() += 1;
+        }
+        for (played, path) in all.iter_mut().zip(paths).filter(|(played, _)| count[&played.name] > 1) {
+            let folder = path.parent().and_then(Path::file_name).unwrap_or_default();
+            played.name = format!("{}/{}", folder.to_string_lossy(), played.name);
+        }
+        Ok(all)
+    }
+
+    /// The session of a log that goes by that name.
+    ///
+    /// # Errors
+    /// [`PlayedError::Mission`].
+    pub fn new(name: &str, log: Log, catalog: &Catalog) -> Result<Self, PlayedError> {
+        let (file, text) = (&log.session.mission_file, &log.session.mission_text);
+        let read = mission::read_mission(file, text, catalog);
+        let mission = read.map_err(|problems| PlayedError::Mission { name: name.to_owned(), problems })?.mission;
+        let (turns, turn_of) = turns(&log.dialog);
+        let (actions, goals) = (actions(&log, &turn_of), goals(&mission, &log.events));
+        Ok(Self { name: name.to_owned(), log, mission, turns, actions, goals })
+    }
+
+    /// Its ticks.
+    pub(crate) fn ticks(&self) -> u64 {
+        self.log.ticks.last().map_or(0, |entry| entry.tick)
+    }
+
+    /// Whether every goal was met in the end; `None` of a mission without goals.
+    pub(crate) fn success(&self) -> Option<bool> {
+        let complete = self.log.events.iter().any(|event| event.kind == "MissionComplete");
+        (!self.goals.is_empty()).then(|| complete || self.goals.iter().all(|goal| goal.met))
+    }
+
+    /// What the robot was told to do.
+    pub(crate) fn robots_actions(&self) -> impl Iterator<Item = &Deed> {
+        self.actions.iter().filter(|deed| deed.body == ROBOT)
+    }
+}
+
+impl Turn {
+    /// Milliseconds from the words to: understood, first motion, first changed frame, shown by a page.
+    pub fn latencies_ms(&self) -> [Option<f64>; 4] {
+        let [received, later @ ..] = self.stamps;
+        later.map(|stamp| (received != 0 && stamp != 0).then(|| stamp.saturating_sub(received) as f64 * 1e-6))
+    }
+
+    /// Milliseconds from the words to the first answer or question.
+    pub fn answered_ms(&self) -> Option<f64> {
+        let (told, answered) = self.told;
+        answered.map(|answered| answered.saturating_sub(told) as f64 * 1e-6)
+    }
+}
+
+/// Turns, and the turn that each plan's number belongs to: those of a search count on in the series of turns.
+fn turns(dialog: &[DialogEntry]) -> (Vec<Turn>, BTreeMap<u64, u64>) {
+    let (mut turns, mut turn_of) = (Vec::<Turn>::new(), BTreeMap::new());
+    for entry in dialog {
+        if entry.kind == "Utterance" {
+            let (number, body, tick, said) = (entry.turn, entry.body, entry.tick, entry.text.clone());
+            turns.push(Turn { number, body, tick, said, told: (entry.sent_nanos, None), ..Turn::default() });
+            turn_of.insert(number, number);
+            continue;
+        }
+        let newest = turns.last().map(|turn| turn.number);
+        let Some(number) = turn_of.get(&entry.turn).copied().or(newest) else { continue };
+        turn_of.entry(entry.turn).or_insert(number);
+        if let Some(turn) = turns.iter_mut().rfind(|turn| turn.number == number) {
+            note(turn, entry);
+        }
+    }
+    (turns, turn_of)
+}
+
+fn note(turn: &mut Turn, entry: &DialogEntry) {
+    match entry.kind.as_str() {
+        "Reply" | "Question" => {
+            turn.told.1.get_or_insert(entry.sent_nanos);
+            let lines = if entry.kind == "Reply" { &mut turn.replies } else { &mut turn.questions };
+            lines.push(entry.text.clone());
+        }
+        "Plan" => turn.steps += entry.steps.len(),
+        "PlanEnded" => turn.ended = entry.status,
+        "Latency" => {
+            for (known, stamp) in turn.stamps.iter_mut().zip(entry.stamps) {
+                *known = if stamp == 0 { *known } else { stamp };
+            }
+        }
+        _ => {}
+    }
+}
+
+/// All commands but those of held keys, which are told anew nine times a second.
+fn actions(log: &Log, turn_of: &BTreeMap<u64, u64>) -> Vec<Deed> {
+    let outcomes = log.events.iter().filter(|event| event.kind == "Outcome");
+    let mut outcomes: BTreeMap<u64, &EventEntry> = outcomes.filter_map(|event| Some((event.command?, event))).collect();
+    let inputs = log.ticks.iter().flat_map(|tick| tick.inputs.iter().map(|input| (tick.tick, input)));
+    let told = inputs.filter(|(_, input)| !matches!(input.action, Action::Drive { .. }));
+    told.map(|(began, input)| {
+        let outcome = outcomes.remove(&input.command);
+        Deed {
+            number: input.command,
+            turn: turn_of.get(&input.turn).copied().unwrap_or(input.turn),
+            body: input.body,
+            action: input.action,
+            began,
+            outcome: outcome.and_then(|event| Some((event.tick, event.status?, event.text.clone()))),
+        }
+    })
+    .collect()
+}
+
+fn goals(mission: &Mission, events: &[EventEntry]) -> Vec<Reached> {
+    let reached = |goal: &cohabit_cdf::goal::Goal| {
+        let of_goal =
+            |kind: &'static str| events.iter().filter(move |event| event.goal == Some(goal.id) && event.kind == kind);
+        let (met, resets) = (of_goal("GoalMet").count(), of_goal("GoalReset").count());
+        Reached {
+            number: goal.id,
+            description: goal.description.clone(),
+            met: met > resets,
+            first_met: of_goal("GoalMet").next().map(|event| event.tick),
+            resets,
+        }
+    };
+    mission.goals.iter().map(reached).collect()
+}

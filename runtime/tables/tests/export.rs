@@ -1,0 +1,120 @@
+//! Tables and summaries of sessions that are played here, against what those who played them counted.
+#![allow(clippy::unwrap_used)]
+
+use std::{fs, path::Path, sync::Arc};
+
+use cohabit_cdf::Catalog;
+use cohabit_eval::{Settings, play, read_tasks};
+use cohabit_language::{Asking, Language};
+use cohabit_tables::{Cell, Played, Summary, Table, codebook, tables, write_csv};
+
+const MISSIONS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../cdf/missions");
+const FOLDER: &str = env!("CARGO_TARGET_TMPDIR");
+
+/// The built-in missions by their scripts, of robots that ask like this; and what was counted while they were played.
+fn sessions(asking: Asking) -> Vec<(Played, cohabit_eval::Played)> {
+    let folder = Path::new(FOLDER).join(format!("export-{}", asking.name()));
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).unwrap();
+    let language = Language::new(Arc::new(Catalog::builtin()));
+    let settings = Settings { asking, record: Some(folder), ..Settings::expert(1) };
+    let tasks = read_tasks(Path::new(MISSIONS), None).unwrap();
+    let played = tasks.iter().filter(|task| !task.id.contains("cereal")).map(|task| {
+        let counted = play(task, &settings, &language).unwrap();
+        let mut session = Played::open(counted.log.as_ref().unwrap(), language.catalog()).unwrap();
+        session.name = format!("{}-{}", session.name, asking.name());
+        (session, counted)
+    });
+    played.collect()
+}
+
+fn table<'a>(tables: &'a [Table], name: &str) -> &'a Table {
+    tables.iter().find(|table| table.name == name).unwrap()
+}
+
+fn whole(cell: &Cell) -> i64 {
+    match cell {
+        Cell::Whole(number) => *number,
+        other => panic!("{other:?} is no whole number"),
+    }
+}
+
+#[test]
+fn tables_hold_what_was_counted_while_sessions_were_played() {
+    let (played, counted): (Vec<_>, Vec<_>) = sessions(Asking::Always).into_iter().unzip();
+    let tables = tables(&played);
+    let sessions = table(&tables, "sessions");
+    let column = |name: &str| sessions.column(name).map(whole).collect::<Vec<_>>();
+    assert_eq!(column("questions"), counted.iter().map(|one| i64::from(one.questions)).collect::<Vec<_>>());
+    assert!(column("questions").iter().all(|questions| *questions > 0), "a robot that always asks asks");
+    assert_eq!(column("goals_met"), counted.iter().map(|one| one.goals_met as i64).collect::<Vec<_>>());
+    assert_eq!(column("failed_actions"), counted.iter().map(|one| i64::from(one.failed_actions)).collect::<Vec<_>>());
+    let success: Vec<_> = sessions.column("success").cloned().collect();
+    assert_eq!(success, counted.iter().map(|one| Cell::Flag(one.success)).collect::<Vec<_>>());
+    assert!(sessions.column("setting_ask").all(|cell| *cell == Cell::Text("always".to_owned())));
+    let turns = table(&tables, "turns");
+    let asked: i64 = turns.column("question_count").map(whole).sum();
+    assert_eq!(asked, column("questions").iter().sum::<i64>(), "each question belongs to a turn");
+    let done: i64 = turns.column("actions").map(whole).sum();
+    assert_eq!(done, column("actions").iter().sum::<i64>(), "and so does each action");
+    assert_eq!(table(&tables, "actions").rows.len() as i64, done);
+    assert_eq!(table(&tables, "goals").rows.len() as i64, column("goals").iter().sum::<i64>());
+    let described = codebook(&tables);
+    let fields: usize = tables.iter().map(|table| table.fields.len()).sum();
+    assert_eq!(described.rows.len(), fields + tables.len());
+    for table in tables.iter().chain([&described]) {
+        check_file(table);
+    }
+}
+
+/// What is written as CSV is read back cell by cell.
+fn check_file(table: &Table) {
+    let path = write_csv(table, Path::new(FOLDER)).unwrap();
+    let mut reader = csv::Reader::from_path(path).unwrap();
+    let head: Vec<String> = reader.headers().unwrap().iter().map(str::to_owned).collect();
+    assert_eq!(head, table.fields.iter().map(|field| field.name.to_string()).collect::<Vec<_>>());
+    let mut rows = 0;
+    for (record, row) in reader.records().zip(&table.rows) {
+        rows += 1;
+        for (text, cell) in record.unwrap().iter().zip(row) {
+            let same = match cell {
+                Cell::Nothing => text.is_empty(),
+                Cell::Text(own) => text == own,
+                Cell::Whole(own) => text.parse() == Ok(*own),
+                Cell::Real(own) => text.parse() == Ok(*own),
+                Cell::Flag(own) => text.parse() == Ok(*own),
+            };
+            assert!(same, "{text} was {cell:?}");
+        }
+    }
+    assert_eq!(rows, table.rows.len());
+}
+
+#[test]
+fn conditions_are_compared_and_fitted() {
+    let never = sessions(Asking::Never);
+    let always = sessions(Asking::Always);
+    let mean = |all: &[(Played, cohabit_eval::Played)]| {
+        all.iter().map(|(_, counted)| f64::from(counted.questions)).sum::<f64>() / all.len() as f64
+    };
+    let (less, more) = (mean(&never), mean(&always));
+    let played: Vec<Played> = never.into_iter().chain(always).map(|(played, _)| played).collect();
+    let summary = Summary::new(&played, &[]).unwrap();
+    assert_eq!(summary.conditions, ["ask"], "the only setting in which they differ");
+    let sizes: Vec<usize> = summary.groups.iter().map(|group| group.sessions).collect();
+    assert_eq!(sizes, [6, 3, 3]);
+    let questions = summary.fits.iter().find(|fit| fit.outcome == "questions").unwrap();
+    let estimates: Vec<f64> = questions.terms.iter().map(|term| term.estimate).collect();
+    // As many sessions of each: the first value is the reference.
+    assert!((estimates[0] - more).abs() < 1e-9 && (estimates[1] - (less - more)).abs() < 1e-9, "{estimates:?}");
+    let text = summary.to_string();
+    for part in ["6 sessions", "ask always", "ask never", "least squares, each outcome on ask", "questions: 6 sessions"]
+    {
+        assert!(text.contains(part), "`{part}` is not in\n{text}");
+    }
+    let json = serde_json::to_value(&summary).unwrap();
+    assert_eq!(json["groups"][1]["conditions"]["ask"], "always");
+    assert_eq!(json["groups"][0]["measures"][0]["outcome"], "success");
+    let unknown = Summary::new(&played, &["moon".to_owned()]).unwrap_err().to_string();
+    assert!(unknown.contains("no session notes `moon`") && unknown.contains("ask, knows, mission"), "{unknown}");
+}
