@@ -11,22 +11,26 @@ const LEVELS: &[(&str, u8, &[&str])] = &[
     ("cohabit-world", 1, &["rapier3d", "polyanya"]),
     ("cohabit-bus", 1, &["iceoryx2"]),
     ("cohabit-render", 2, &[]),
-    ("cohabit-record", 2, &["mcap"]),
+    ("cohabit-record", 2, &["mcap", "crc32fast", "flate2"]),
     ("cohabit-agent", 2, &[]),
     ("cohabit-language", 2, &[]),
     ("cohabit-gpu", 3, &["wgpu"]),
     ("cohabit-engine", 3, &[]),
+    ("cohabit-tables", 3, &["csv", "faer", "statrs"]),
     ("cohabit-arena", 4, &[]),
+    ("cohabit-rerun", 4, &["re_sdk", "re_sdk_types", "arrow", "parquet"]),
     ("cohabit-dialog", 4, &["tokio", "axum"]),
     ("cohabit-eval", 5, &[]),
     ("cohabit-python", 5, &["pyo3", "numpy"]),
     ("cohabit", 6, &["clap", "anyhow", "indicatif"]),
 ];
 
-/// Dependencies that others may name too: the log, the page and existing clients speak JSON, tests report errors of all kinds.
+/// Dependencies that others may name too: the log, the page and existing clients speak JSON, tests report errors of all
+/// kinds, and there are two programs.
 const SHARED: &[(&str, &[&str])] = &[
     ("serde_json", &["cohabit-record", "cohabit-arena", "cohabit-dialog", "cohabit-eval", "cohabit", "cohabit-tests"]),
-    ("anyhow", &["cohabit-tests"]),
+    ("anyhow", &["cohabit-rerun", "cohabit-tests"]),
+    ("clap", &["cohabit-rerun"]),
 ];
 
 fn metadata() -> Value {

@@ -5,8 +5,10 @@
 use std::{
     fs,
     path::{Path, PathBuf},
-    process::{Command, Output},
+    process::Command,
 };
+
+use cohabit_tests::{output, python_with};
 
 /// The binary under test.
 const COHABIT: &str = env!("CARGO_BIN_EXE_cohabit");
@@ -14,29 +16,6 @@ const COHABIT: &str = env!("CARGO_BIN_EXE_cohabit");
 const PACKAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../agents/python");
 /// Where all of it happens.
 const FOLDER: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/python");
-
-fn output(command: &mut Command) -> Result<Output, String> {
-    let output = command.output().map_err(|error| format!("{command:?}: {error}"))?;
-    let text = || [&output.stdout[..], &output.stderr[..]].map(String::from_utf8_lossy).concat();
-    if output.status.success() { Ok(output) } else { Err(format!("{command:?}: {}\n{}", output.status, text())) }
-}
-
-/// A Python with all that the tests need, or why there is none. It is kept for the next run.
-fn environment() -> Result<PathBuf, String> {
-    let requirements = Path::new(PACKAGE).join("requirements.txt");
-    let wanted = fs::read_to_string(&requirements).unwrap();
-    let (folder, done) = (Path::new(FOLDER).join("venv"), Path::new(FOLDER).join("installed.txt"));
-    let python = folder.join("bin/python");
-    if fs::read_to_string(&done).is_ok_and(|installed| installed == wanted) && python.exists() {
-        return Ok(python);
-    }
-    output(Command::new("python3").args(["-c", "import sys, venv; assert sys.version_info >= (3, 10), sys.version"]))?;
-    output(Command::new("python3").args(["-m", "venv", "--clear"]).arg(&folder))?;
-    let pip = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--only-binary", ":all:", "-r"];
-    output(Command::new(&python).args(pip).arg(requirements))?;
-    fs::write(done, wanted).unwrap();
-    Ok(python)
-}
 
 fn copy(from: &Path, to: &Path) {
     fs::create_dir_all(to).unwrap();
@@ -70,8 +49,7 @@ fn pack(python: &Path) -> Result<PathBuf, String> {
 
 #[test]
 fn the_package_passes_its_own_tests() {
-    fs::create_dir_all(FOLDER).unwrap();
-    let python = match environment() {
+    let python = match python_with(&Path::new(PACKAGE).join("requirements.txt"), Path::new(FOLDER)) {
         Ok(python) => python,
         Err(why) => {
             return eprintln!("skipped: the Python package is not tried, for want of Python or of its tools: {why}");

@@ -5,24 +5,27 @@ import { byId, narrow, toast } from "./dom.js";
 import { buildDriving, showHeld, takeActed, takeAim, takeDriving, takeKey } from "./driving.js";
 import { enlargeMap, floor } from "./floor.js";
 import { expandGoals, takeState } from "./goals.js";
+import { buildReplay, takePlayer, takeReplayKey, takeRewind } from "./replay.js";
 import { greeted, listen, watchSilence } from "./socket.js";
-import { clearChat, endDoing, input, say, takeLatency, takeLine, takeProgress, takeTurn } from "./talk.js";
-import { buildViews, nextView, showRate, takeFrame, takeMarks, takeSeen } from "./view.js";
+import { clearChat, endDoing, input, say, takeLatency, meet, takeLine, takeProgress, takeTurn, takeYou } from "./talk.js";
+import { awaitFrame, buildViews, nextView, showRate, takeFrame, takeMarks, takeSeen } from "./view.js";
 
 /** What tests and curious people may read. */
 window.cohabit = { frames: 0, state: null, latency: null, view: null, seen: null, driving: null, aim: null, marks: [] };
 
-function takeHello({ session, mission, map, views, drivable }) {
+function takeHello({ session, mission, map, views, drivable, robots, replay }) {
   greeted();
-  byId("session").textContent = session;
+  byId("session").textContent = replay ? `${session} · recorded` : session;
   document.title = mission.title ? `${mission.title} · Cohabit` : "Cohabit";
   byId("goals-title").textContent = mission.title || "Mission";
   byId("goals-about").textContent = mission.description === mission.title ? "" : mission.description;
   floor.build(map);
   buildViews(views);
   buildDriving(drivable);
+  meet(robots);
   clearChat();
   endDoing();
+  buildReplay(replay);
 }
 
 /** Whatever has the focus, if no body is driven: Escape stops the robot, Alt+C changes the view, and a letter or a slash begins a sentence. */
@@ -31,7 +34,7 @@ document.addEventListener("keydown", (event) => {
     event.preventDefault();
     nextView();
   }
-  if (event.isComposing || takeKey(event) || event.ctrlKey || event.metaKey || event.altKey) return;
+  if (event.isComposing || takeReplayKey(event) || takeKey(event) || event.ctrlKey || event.metaKey || event.altKey) return;
   if (event.key === "Escape" && !event.repeat) {
     enlargeMap(false);
     say("stop");
@@ -47,20 +50,26 @@ setInterval(() => {
   watchSilence();
 }, 500);
 listen({
+  you: takeYou,
   hello: takeHello,
   state: (state) => {
     takeState(state);
+    takePlayer(state);
     showHeld(state);
   },
   chat: takeLine,
   progress: takeProgress,
   turn: takeTurn,
-  latency: takeLatency,
+  latency: (latency) => {
+    takeLatency(latency);
+    awaitFrame(latency);
+  },
   seen: takeSeen,
   marks: takeMarks,
   driving: takeDriving,
   aim: takeAim,
   acted: takeActed,
+  rewind: takeRewind,
   highlight: (message) => floor.pointOut(message),
   error: (message) => toast(message.text),
   frame: takeFrame,

@@ -12,10 +12,15 @@ let socket = null;
 let pauseMs = FIRST_PAUSE_MS;
 let heardAt = 0;
 
+/** By which the session knows this page when it connects again. */
+const KEY = sessionStorage.getItem("visitor") ?? String(crypto.getRandomValues(new Uint32Array(1))[0]);
+sessionStorage.setItem("visitor", KEY);
+
 function socketAddress() {
   const token = new URLSearchParams(location.search).get("token");
   const scheme = location.protocol === "https:" ? "wss" : "ws";
-  return `${scheme}://${location.host}/ws${token === null ? "" : `?token=${encodeURIComponent(token)}`}`;
+  const parameters = new URLSearchParams({ visitor: KEY, ...(token !== null && { token }) });
+  return `${scheme}://${location.host}/ws?${parameters}`;
 }
 
 /** What to call for each type of message, for a `frame`, and when the connection is `lost`. */

@@ -10,13 +10,35 @@ const NEW_GOAL = /^New goal:\s*/;
 
 const log = byId("chat");
 export const input = byId("chat-input");
-let lastFrom = "";
+let lastSpeaker = "";
 let unseenLines = false;
+/** The number of this page among all. */
+let visitor = 0;
+/** What the robots are called, by their bodies; empty where there is but one. */
+let robotNames = new Map();
+
+export function takeYou(you) {
+  ({ visitor } = you);
+}
+
+/** Who can be spoken to. */
+export function meet(robots) {
+  robotNames = new Map(robots.length > 1 ? robots.map(({ body, name }) => [body, capitalised(name)]) : []);
+  const named = [...robotNames.values()];
+  byId("called").textContent = named.length ? `Begin with a name to say whom you mean: ${named.join(", ")}` : "";
+}
+
+/** Who says a line: a name where it is neither this person nor the one robot. */
+function speakerOf({ from, body, visitor: by }) {
+  if (from === "person") return by === undefined || by === visitor ? "" : `Person ${by}`;
+  if (from === "robot" && body !== undefined) return robotNames.get(body) ?? `Body ${body}`;
+  return "";
+}
 
 export function clearChat() {
   log.setAttribute("aria-busy", "true");
   log.replaceChildren();
-  lastFrom = "";
+  lastSpeaker = "";
   byId("chips").hidden = false;
 }
 
@@ -25,20 +47,25 @@ export function takeLine(line) {
   const replayed = log.hasAttribute("aria-busy");
   if (line.from !== "game") closeQuestions();
   const bubble = lineOf(line);
-  if (line.from === lastFrom) bubble.classList.add("follows");
+  const speaker = line.from + speakerOf(line);
+  if (speaker === lastSpeaker) bubble.classList.add("follows");
   if (!replayed) bubble.classList.add("fresh");
-  lastFrom = line.from;
+  lastSpeaker = speaker;
   log.append(bubble);
   if (line.from !== "game") input.placeholder = line.kind === "question" ? "Answer the robot" : "Tell the robot what to do";
-  if (line.from === "person") {
+  if (isMine(line)) {
     remember(line.text);
     byId("chips").hidden = true;
   }
-  if (atEnd || replayed || line.from === "person") toNewest();
+  if (atEnd || replayed || isMine(line)) toNewest();
   else {
     unseenLines = true;
     showToNewest();
   }
+}
+
+function isMine(line) {
+  return line.from === "person" && !speakerOf(line);
 }
 
 /** The answers that a question offers, numbered if they are objects; clicking on one gives it. */
@@ -69,10 +96,15 @@ function closeQuestions() {
   floor.forgetMarks();
 }
 
-function lineOf({ from, kind, text, answers = [] }) {
+function lineOf(line) {
+  const { from, kind, answers = [] } = line;
+  let { text } = line;
   const bubble = element("div", `line from-${from} kind-${kind}`);
-  const speaker = { person: "You: ", robot: "Robot: ", game: "" }[from] ?? "";
-  if (speaker) bubble.append(element("span", "unseen", speaker));
+  const name = speakerOf(line);
+  const unnamed = { person: "You: ", robot: "Robot: ", game: "" }[from] ?? "";
+  if (name) bubble.append(element("b", "line-speaker", name), element("span", "unseen", ": "));
+  else if (unnamed) bubble.append(element("span", "unseen", unnamed));
+  bubble.classList.toggle("from-other", from === "person" && name !== "");
   if (from === "game" && kind === "goal") {
     const added = NEW_GOAL.test(text);
     bubble.classList.toggle("new-goal", added);
@@ -113,25 +145,36 @@ new ResizeObserver(() => {
 /** More steps than these are not drawn one by one. */
 const MOST_STEPS = 24;
 
-let doingTurn = 0;
+/** What each robot is about, by its body, the latest last. */
+const doing = new Map();
 
-export function takeProgress({ turn, step, steps, text }) {
-  doingTurn = turn;
+export function takeProgress(progress) {
+  doing.delete(progress.body);
+  doing.set(progress.body, progress);
+  showDoing(progress);
+}
+
+function showDoing({ body, step, steps, text }) {
   const several = steps > 1;
   byId("doing").classList.remove("idle");
-  byId("doing-text").textContent = capitalised(text);
+  const name = robotNames.get(body);
+  byId("doing-text").textContent = name ? `${name}: ${text}` : capitalised(text);
   byId("doing-count").textContent = several ? `${step} of ${steps}` : "";
   const marks = Array.from({ length: several && steps <= MOST_STEPS ? steps : 0 }, (_, index) =>
     element("i", index + 1 < step ? "past" : index + 1 === step ? "now" : ""));
   byId("doing-steps").replaceChildren(...marks);
 }
 
-export function takeTurn({ turn, ended }) {
-  if (ended && turn >= doingTurn) endDoing();
+export function takeTurn({ body, turn, ended }) {
+  if (!ended || turn < (doing.get(body)?.turn ?? 0)) return;
+  doing.delete(body);
+  const other = [...doing.values()].at(-1);
+  if (other) showDoing(other);
+  else endDoing();
 }
 
 export function endDoing() {
-  doingTurn = 0;
+  doing.clear();
   byId("doing").classList.add("idle");
   const idle = { running: "Ready", complete: "All done", failed: "The mission is over" };
   byId("doing-text").textContent = document.body.classList.contains("lost") ? "Waiting for the session" : idle[window.cohabit.state?.ending ?? "running"];

@@ -51,12 +51,26 @@ function draw(bitmap, tick) {
   shown = { camera: looking.camera, tick };
   window.cohabit.view = looking.camera;
   drawnAt.push(performance.now());
+  tellDrawn();
   window.cohabit.frames += 1;
   if (!told) {
     told = send({ type: "shown" });
     document.body.classList.add("seeing");
     showLink("open");
   }
+}
+
+/** The first changed frame of a turn is awaited; the session is told when it, or a later one, is on the screen. */
+export function awaitFrame({ turn, frame }) {
+  if (typeof frame !== "number") return;
+  awaited = { turn, frame };
+  tellDrawn();
+}
+
+function tellDrawn() {
+  if (!awaited || !shown || shown.tick < awaited.frame) return;
+  send({ type: "drawn", turn: awaited.turn });
+  awaited = null;
 }
 
 const REMEMBERED = "cohabit-view";
@@ -72,6 +86,7 @@ let views = [];
 let looking = null;
 /** The picture on the screen: its camera and tick. */
 let shown = null;
+let awaited = null;
 let seenTimer = 0;
 
 export function buildViews(all) {

@@ -6,12 +6,14 @@
 mod browser;
 mod page;
 mod play;
+mod python;
 mod soak;
 mod socket;
 
 pub use browser::{Browser, Tab};
 pub use page::Page;
 pub use play::{Play, reference_data, run};
+pub use python::{output, python_with};
 pub use soak::{Resident, Soaked, soak};
 
 /// The processor and the number of cores, as benches print them.

@@ -39,7 +39,15 @@ impl Play {
     /// # Errors
     /// When it ends, or says nothing for too long.
     pub fn start(binary: &str, arguments: &[&str]) -> anyhow::Result<Self> {
-        let mut play = Self::spawn(binary, arguments)?;
+        Self::start_in(binary, arguments, &[])
+    }
+
+    /// The same, with these variables set.
+    ///
+    /// # Errors
+    /// When it ends, or says nothing for too long.
+    pub fn start_in(binary: &str, arguments: &[&str], environment: &[(&str, &str)]) -> anyhow::Result<Self> {
+        let mut play = Self::spawn_in(binary, arguments, environment)?;
         play.wait_until_ready()?;
         Ok(play)
     }
@@ -49,6 +57,10 @@ impl Play {
     /// # Errors
     /// When it cannot be started.
     pub fn spawn(binary: &str, arguments: &[&str]) -> anyhow::Result<Self> {
+        Self::spawn_in(binary, arguments, &[])
+    }
+
+    fn spawn_in(binary: &str, arguments: &[&str], environment: &[(&str, &str)]) -> anyhow::Result<Self> {
         static COUNT: AtomicU32 = AtomicU32::new(0);
         let session = format!("t{}-{}", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed));
         let folder = std::env::temp_dir().join(format!("cohabit-test-{session}"));
@@ -59,6 +71,7 @@ impl Play {
             .args(arguments)
             .args(["--port", "0", "--session", &session, "--log"])
             .arg(&log)
+            .envs(environment.iter().copied())
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
             .stdin(Stdio::null())

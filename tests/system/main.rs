@@ -8,11 +8,15 @@ mod determinism;
 mod doctor;
 mod driving;
 mod eval;
+mod export;
 mod faults;
+mod interpreter;
 mod lock_step;
 mod missions;
+mod recording;
 mod searching;
 mod sessions;
+mod several;
 mod soak;
 
 /// The binary under test.

@@ -198,7 +198,7 @@ impl Theatre {
         let (Some(stills), Some(engine)) = (&mut self.stills, &self.engine) else {
             return Err(bad_argument("there are no cameras here"));
         };
-        stills.shoot_all(engine, names).map_err(failed)?;
+        stills.shoot_all(engine.visible(), names).map_err(failed)?;
         let frame = |camera: &CameraId| {
             // A new subscriber is handed the latest frame; one that stayed could only hold so many of them.
             let mut frames = self.bus.subscriber(Topic::Frames(*camera)).map_err(failed)?;

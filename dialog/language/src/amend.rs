@@ -1,51 +1,36 @@
 //! Second thoughts: `no, I meant the freezer`, `on the counter, sorry`, `the other one too`. The last request again, with
 //! what was said now in the place of what was said then.
 
+use std::collections::BTreeSet;
+
+use serde::Deserialize;
+
 use crate::{
     clause::{self, Clause, Part},
     intent::Intent,
     lexicon::{Direction, Lexicon, Preposition, Pronoun, Side},
     phrase::{Phrase, Place, Reader},
+    table::PhraseTable,
     token,
 };
 
-/// Words by which people take back or go on from what they said.
-const MARKERS: &[&str] = &[
-    "no",
-    "nope",
-    "not",
-    "sorry",
-    "mean",
-    "meant",
-    "instead",
-    "rather",
-    "actually",
-    "wait",
-    "oops",
-    "wrong",
-    "too",
-    "also",
-    "well",
-    "and",
-    "now",
-    "other",
-    "said",
-    "same",
-    "again",
-    "nah",
-    "ah",
-    "oh",
-    "then",
-    "correction",
-    "but",
-];
-
-/// Words around what was said now.
-const AROUND: &[&str] = &[
-    "i", "meant", "mean", "said", "want", "wanted", "was", "is", "it", "that", "please", "instead", "rather", "too",
-    "also", "as", "well", "sorry", "oops", "actually", "then", "wait", "do", "same", "with", "for", "the", "now",
-    "one", "of", "course", "not", "wrong", "again", "no", "and", "to", "talking", "about",
-];
+/// The words of second thoughts: `data/amends.toml` says what each list is.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Amends {
+    markers: BTreeSet<String>,
+    around: BTreeSet<String>,
+    goes: BTreeSet<String>,
+    places: BTreeSet<String>,
+    keepers: BTreeSet<String>,
+    stands: BTreeSet<String>,
+    slips: PhraseTable<()>,
+    fillers: BTreeSet<String>,
+    pub(crate) hesitations: BTreeSet<String>,
+    pub(crate) numbered: BTreeSet<String>,
+    pub(crate) pauses: PhraseTable<()>,
+    pub(crate) adverbs: BTreeSet<String>,
+}
 
 /// The last request as it is meant now, if the words amend it.
 pub(crate) fn amended(lexicon: &Lexicon, words: &[String], parts: &[Part], request: &[Clause]) -> Option<Vec<Clause>> {
@@ -61,7 +46,9 @@ pub(crate) fn amended(lexicon: &Lexicon, words: &[String], parts: &[Part], reque
         return Some(vec![clause]);
     }
     let is_new = parts.iter().any(|part| matches!(part, Part::Clause(clause) if !clause.verb.is_empty()));
-    let is_marked = words.iter().any(|word| MARKERS.contains(&word.as_str()));
+    // `the one with the hammer`, of what was gone to already.
+    let is_one = |part: &Part| matches!(part, Part::Fragment(phrase) if phrase.pronoun == Some(Pronoun::One));
+    let is_marked = words.iter().any(|word| lexicon.amends.markers.contains(word)) || parts.iter().any(is_one);
     if is_new || !is_marked || words.len() > LONGEST {
         return None;
     }
@@ -76,7 +63,7 @@ const LONGEST: usize = 14;
 
 fn is_around(lexicon: &Lexicon, word: &String) -> bool {
     let word = std::slice::from_ref(word);
-    AROUND.contains(&word[0].as_str()) || lexicon.talk.exact(word).is_some() || lexicon.lead.exact(word).is_some()
+    lexicon.amends.around.contains(&word[0]) || lexicon.talk.exact(word).is_some() || lexicon.lead.exact(word).is_some()
 }
 
 /// `last` with what the words say, if they say nothing else.
@@ -100,7 +87,13 @@ fn amend(lexicon: &Lexicon, words: &[String], last: &Clause) -> Option<Clause> {
         }
     } else {
         match reader.destination()? {
-            Place::Object(phrase) => replace(&mut clause, phrase)?,
+            Place::Object(mut phrase) => {
+                // `the one that has the hammer`
+                while let Some((preposition, place)) = reader.place() {
+                    phrase.attach(preposition, place);
+                }
+                replace(lexicon, &mut clause, phrase)?;
+            }
             place => match clause.places.last_mut()? {
                 (_, slot) if matches!(slot, Place::Room(_) | Place::Object(_) | Place::Viewpoint(..)) => *slot = place,
                 _ => return None,
@@ -116,7 +109,7 @@ fn amend(lexicon: &Lexicon, words: &[String], last: &Clause) -> Option<Clause> {
 }
 
 /// Puts a phrase where the last one of its kind stood; an adjective alone says more of what was named then.
-fn replace(clause: &mut Clause, phrase: Phrase) -> Option<()> {
+fn replace(lexicon: &Lexicon, clause: &mut Clause, phrase: Phrase) -> Option<()> {
     let is_vague = phrase.pronoun.is_some_and(|pronoun| pronoun != Pronoun::One);
     if is_vague || !phrase.unknown.is_empty() || !phrase.says_something() {
         return None;
@@ -127,6 +120,8 @@ fn replace(clause: &mut Clause, phrase: Phrase) -> Option<()> {
             *place = Place::Object(phrase);
             return Some(());
         }
+        // `and now the machine`, after something was picked up: not that too.
+        (Intent::PickUp, [.., _], _) if is_fixed(lexicon, &phrase) => return None,
         (_, [.., slot], _) => slot,
         (_, [], [.., (preposition, Place::Object(slot))]) if *preposition != Preposition::With => slot,
         _ => return None,
@@ -144,111 +139,126 @@ fn replace(clause: &mut Clause, phrase: Phrase) -> Option<()> {
     Some(())
 }
 
+/// Whether all that it may name stays where it is.
+fn is_fixed(lexicon: &Lexicon, phrase: &Phrase) -> bool {
+    !phrase.namings.is_empty() && phrase.namings.iter().all(|naming| !lexicon.carried.contains(&naming.class))
+}
+
 /// `go where the hammer is`: to the hammer.
 pub(crate) fn without_where(lexicon: &Lexicon, words: Vec<String>) -> Vec<String> {
     let start = clause::leading(lexicon, &words);
-    let goes = words.get(start).is_some_and(|word| GOES.contains(&word.as_str()));
+    let goes = words.get(start).is_some_and(|word| lexicon.amends.goes.contains(word));
     let Some(at) = words.iter().position(|word| word == "where").filter(|at| goes && *at > start) else { return words };
     let end = words[at..]
         .iter()
         .position(|word| token::is_punctuation(word) || word == "and")
         .map_or(words.len(), |skip| at + skip);
-    let is_spare = |word: &&String| !PLACES.contains(&word.as_str());
+    let is_spare = |word: &&String| !lexicon.amends.places.contains(*word);
     let head = words[..at].iter().rposition(|word| is_spare(&word)).map_or(0, |last| last + 1);
     let thing = &words[at + 1..end];
-    let from = thing.iter().take_while(|word| KEEPERS.contains(&word.as_str())).count();
-    let to = thing.iter().rposition(|word| !STANDS.contains(&word.as_str())).map_or(from, |last| last + 1);
-    if from >= to {
+    let from = thing.iter().take_while(|word| lexicon.amends.keepers.contains(*word)).count();
+    let to = thing.iter().rposition(|word| !lexicon.amends.stands.contains(word)).map_or(from, |last| last + 1);
+    let is_thing = Reader { at: from, ..Reader::new(lexicon, thing) }.phrase().is_some_and(|phrase| !phrase.is_empty());
+    if from >= to || !is_thing {
         return words;
     }
     let to_there = ["to".to_owned()];
     words[..head].iter().chain(&to_there).chain(&thing[from..to]).chain(&words[end..]).cloned().collect()
 }
 
-/// Verbs of going, words for a place, who keeps things there, and that they are there.
-const GOES: &[&str] = &[
-    "go", "walk", "head", "move", "run", "drive", "come", "take", "bring", "return", "proceed", "get", "lead", "guide",
-    "step",
-];
-const PLACES: &[&str] =
-    &["to", "the", "place", "room", "spot", "over", "location", "point", "position", "area", "into", "there", "back"];
-const KEEPERS: &[&str] =
-    &["they", "we", "you", "people", "keep", "have", "store", "put", "got", "i", "one", "can", "find", "is", "are"];
-const STANDS: &[&str] = &[
-    "is", "are", "was", "stands", "stand", "sits", "lies", "lie", "located", "kept", "stored", "lives", "at", "in",
-    "made", "stay", "being", "usually", "located",
-];
+/// Most slips of one utterance that are made good.
+const MOST_SLIPS: usize = 3;
 
 /// `pick up the red, no, the yellow mug`: what was taken back in the same breath, left out.
 pub(crate) fn without_slips(lexicon: &Lexicon, words: &[String]) -> Vec<String> {
-    let Some((start, end)) = slip(lexicon, words) else { return words.to_vec() };
-    let (before, after) = (&words[..start], &words[end..]);
-    let mut first = Reader::new(lexicon, after);
-    // `on the table, no, on the counter`: from the preposition on; `the red, no, the yellow`: from the phrase on.
-    let is_place = lexicon.prepositions.longest(after).is_some();
-    let spans = |at: usize| {
-        let mut reader = Reader::new(lexicon, before);
-        reader.at = at;
-        let is_one = if is_place { reader.place().is_some() } else { reader.phrase().is_some() };
-        is_one && reader.is_done() && !Reader { at, ..reader }.at_verb()
-    };
-    let has_phrase = if is_place { first.place().is_some() } else { first.phrase().is_some() };
-    let verb = lexicon.verbs.longest(after).is_some();
-    match (0..before.len()).find(|at| spans(*at)).filter(|_| has_phrase && !verb) {
-        Some(at) => {
-            let mut words: Vec<String> = before[..at].iter().chain(after).cloned().collect();
-            // `the red mug, I mean the yellow one`: a mug still.
-            let noun = (at..before.len()).find(|at| lexicon.classes.exact(&before[*at..]).is_some());
-            if let Some(noun) = noun
-                && let Some(one) = words.iter().skip(at).position(|word| word == "one").map(|skip| at + skip)
-            {
-                words.splice(one..=one, before[noun..].iter().cloned());
-            }
-            words
+    let mut words = words.to_vec();
+    for _ in 0..MOST_SLIPS {
+        let Some((before, after)) = slip(lexicon, &words) else { break };
+        let (before, after) = (&words[..before], &words[after..]);
+        match told_anew(lexicon, before, after).or_else(|| named_anew(lexicon, before, after)) {
+            Some(meant) => words = meant,
+            None => break,
         }
-        None => words.to_vec(),
     }
+    words
 }
 
-/// Where somebody takes back what was just said: from there, to what is said instead.
+/// `open the fridge, no, scratch that, open the freezer`: the last request goes, unless the new one speaks of it.
+fn told_anew(lexicon: &Lexicon, before: &[String], after: &[String]) -> Option<Vec<String>> {
+    let at_request = |words: &[String], at: usize| {
+        let mut reader = Reader::new(lexicon, words);
+        reader.at = at;
+        reader.skip(|lexicon| &lexicon.lead);
+        reader.at_verb().then_some(reader.at)
+    };
+    let begun = at_request(after, 0)?;
+    let stops = lexicon.verbs.longest(&after[begun..]).is_some_and(|(_, intents)| intents.contains(&Intent::Stop));
+    let clause = crate::chatter::chunk(&after[begun..]);
+    let speaks_of_it = clause.iter().any(|word| lexicon.pronouns.exact(std::slice::from_ref(word)).is_some());
+    if stops || speaks_of_it {
+        return None;
+    }
+    let begins = |at: &usize| {
+        let is_joint = |word: &String| token::is_punctuation(word) || matches!(word.as_str(), "and" | "then");
+        (*at == 0 || is_joint(&before[*at - 1])) && at_request(before, *at).is_some()
+    };
+    let start = (0..before.len()).rev().find(begins)?;
+    Some(before[..start].iter().chain(after).cloned().collect())
+}
+
+/// `on the table, no, on the counter`: from the preposition on; `the red, no, the yellow`: from the phrase on.
+fn named_anew(lexicon: &Lexicon, before: &[String], after: &[String]) -> Option<Vec<String>> {
+    let mut first = Reader::new(lexicon, after);
+    let is_place = lexicon.prepositions.longest(after).is_some();
+    let spans = |at: &usize| {
+        let mut reader = Reader::new(lexicon, before);
+        reader.at = *at;
+        let is_one = if is_place { reader.place().is_some() } else { reader.phrase().is_some() };
+        is_one && reader.is_done() && !Reader { at: *at, ..reader }.at_verb()
+    };
+    let has_phrase = if is_place { first.place().is_some() } else { first.phrase().is_some() };
+    let has_verb = lexicon.verbs.longest(after).is_some();
+    let at = (0..before.len()).find(spans).filter(|_| has_phrase && !has_verb)?;
+    let mut words: Vec<String> = before[..at].iter().chain(after).cloned().collect();
+    // `the red mug, I mean the yellow one`: a mug still.
+    let noun = (at..before.len()).find(|at| lexicon.classes.exact(&before[*at..]).is_some());
+    if let Some(noun) = noun
+        && let Some(one) = words.iter().skip(at).position(|word| word == "one").map(|skip| at + skip)
+    {
+        words.splice(one..=one, before[noun..].iter().cloned());
+    }
+    Some(words)
+}
+
+/// Where somebody takes back what was just said: where that ends, and where what is said instead begins.
 fn slip(lexicon: &Lexicon, words: &[String]) -> Option<(usize, usize)> {
+    let is_filler = |word: &String| word == "," || lexicon.amends.fillers.contains(word);
     let start = (1..words.len()).find(|at| {
-        let is_marker = matches!(
-            words[*at].as_str(),
-            "no" | "sorry" | "rather" | "actually" | "wait" | "correction" | "oops" | "mean" | "nope" | "meant"
-        ) || words[*at] == "i"
-            && words.get(at + 1).is_some_and(|word| matches!(word.as_str(), "mean" | "meant"));
-        let before = words[at - 1].as_str();
-        is_marker
-            && (matches!(before, "," | "or" | "uh" | "er" | "um" | "erm" | ".")
-                || words[*at] == "i"
-                || words[*at] == "no")
+        let before = &words[at - 1];
+        let is_own = matches!(words[*at].as_str(), "i" | "no" | "scratch" | "strike");
+        lexicon.amends.slips.longest(&words[*at..]).is_some() && (is_own || before == "." || is_filler(before))
     })?;
-    let skipped = words[start..].iter().take_while(|word| {
-        *word == ","
-            || matches!(
-                word.as_str(),
-                "no" | "i"
-                    | "mean"
-                    | "meant"
-                    | "sorry"
-                    | "rather"
-                    | "actually"
-                    | "wait"
-                    | "correction"
-                    | "oops"
-                    | "nope"
-                    | "not"
-                    | "that"
-                    | "or"
-                    | "uh"
-                    | "er"
-                    | "um"
-                    | "erm"
-            )
-    });
-    let end = start + skipped.count();
-    let is_spare = |word: &str| word == "," || matches!(word, "or" | "uh" | "er" | "um" | "erm");
+    let mut end = start;
+    while end < words.len() {
+        let rest = &words[end..];
+        let length = lexicon.amends.slips.longest(rest).map_or(0, |(length, ())| length);
+        match length.max(usize::from(is_filler(&rest[0]))).max(denied(lexicon, rest)) {
+            0 => break,
+            length => end += length,
+        }
+    }
+    let is_spare = |word: &String| is_filler(word) || matches!(word.as_str(), "and" | "but" | "well");
     let cut = words[..start].iter().rposition(|word| !is_spare(word)).map_or(0, |at| at + 1);
-    (end < words.len() && cut > 0 && !clause::is_negation(lexicon, &words[start..end])).then_some((cut, end))
+    (end < words.len() && cut > 0).then_some((cut, end))
+}
+
+/// `not that`, `not the knife,`: how many words say what was not meant, before what was.
+fn denied(lexicon: &Lexicon, words: &[String]) -> usize {
+    if words[0] != "not" {
+        return usize::from(words[0] == "that" && words.get(1).is_some_and(|next| token::is_punctuation(next)));
+    }
+    let mut reader = Reader::new(lexicon, words);
+    reader.at = 1;
+    let is_named = reader.phrase().is_some() && (reader.next_is(",") || reader.next_is("but"));
+    if is_named { reader.at + 1 } else { 1 }
 }

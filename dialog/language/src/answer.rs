@@ -11,10 +11,10 @@ use crate::{
     intent::Intent,
     judge::Judge,
     known::{Known, KnownObject},
-    lexicon::{Lexicon, StateWord},
+    lexicon::{Lexicon, Pronoun, StateWord},
     phrase::{Phrase, RelationKind},
     question::{Question, QuestionKind},
-    report,
+    reply, report,
     understanding::{Step, Understanding},
 };
 
@@ -41,6 +41,10 @@ pub(crate) struct Answerer<'a> {
     pub(crate) running: &'a [Step],
     /// What failed last.
     pub(crate) failed: Option<&'a Failure>,
+    /// The last plan, whole.
+    pub(crate) last_plan: &'a [Step],
+    /// What was said that asked for it.
+    pub(crate) asked: &'a str,
 }
 
 impl Answerer<'_> {
@@ -60,8 +64,17 @@ impl Answerer<'_> {
                 let wish = question.rest.join(" ");
                 Understanding::answer(format!("Tell me \"{wish}\", and I will try."))
             }
-            (QuestionKind::Why, _) => self.why(),
+            (QuestionKind::Why, about) => self.why(about),
             (QuestionKind::Seeing, _) => self.seeing(),
+            (QuestionKind::Contents, None) if self.focus.place.is_some() => {
+                self.focus.place.map_or_else(|| Understanding::refusal(HINT), |place| self.contents(place))
+            }
+            (QuestionKind::State, Some(phrase)) if phrase.pronoun == Some(Pronoun::Thing) && phrase.is_any => {
+                match phrase.relations.first() {
+                    Some(relation) => self.with_object(&relation.to, |id| self.contents(id)),
+                    None => self.seeing(),
+                }
+            }
             (QuestionKind::Contents, Some(phrase)) => self.with_object(phrase, |id| self.contents(id)),
             (QuestionKind::Text, phrase) => self.text(phrase),
             (QuestionKind::Color, Some(phrase)) => self.with_object(phrase, |id| self.color(id)),
@@ -71,9 +84,9 @@ impl Answerer<'_> {
                 self.place_of(phrase)
             }
             (QuestionKind::Where, _) if !question.rest.is_empty() => {
-                Understanding::refusal(format!("I do not know what \"{}\" is.", question.rest.join(" ")))
+                Understanding::lost(format!("I do not know what \"{}\" is.", question.rest.join(" ")))
             }
-            _ => Understanding::refusal(format!("I do not know how to answer that. {HINT}")),
+            _ => Understanding::lost(format!("I do not know how to answer that. {HINT}")),
         }
     }
 
@@ -143,14 +156,28 @@ impl Answerer<'_> {
         })
     }
 
-    /// Why the last step failed, if it did.
-    fn why(&self) -> Understanding {
-        Understanding::answer(match self.failed {
-            Some(failure) if failure.step.says.is_empty() => describe::sentence(report::cause(failure.status)),
-            Some(failure) => {
-                format!("I did not finish {}: {}.", failure.step.says, report::cause(failure.status))
-            }
-            None => "Nothing went wrong that I know of. What shall I do?".to_owned(),
+    /// Why the last step failed, if it did; or else what the last plan, or what of it was done to an object, was for.
+    fn why(&self, about: Option<&Phrase>) -> Understanding {
+        if let Some(failure) = self.failed {
+            let cause = report::cause(failure.status);
+            return Understanding::answer(match failure.step.says.as_str() {
+                "" => describe::sentence(cause),
+                says => format!("I did not finish {says}: {cause}."),
+            });
+        }
+        let Some(last) = self.last_plan.last().filter(|_| !self.asked.is_empty()) else {
+            return Understanding::answer(match self.asked {
+                "" => "Nothing went wrong that I know of. What shall I do?".to_owned(),
+                asked => format!("Because you said \"{asked}\"."),
+            });
+        };
+        let want = Want::place(Intent::Find, &[], None);
+        let object = about.and_then(|phrase| self.ground().one(phrase, &want).ok());
+        let step = object.and_then(|id| self.last_plan.iter().find(|step| step.object() == Some(id)));
+        let asked = self.asked;
+        Understanding::answer(match step.filter(|step| *step != last) {
+            Some(step) => format!("You said \"{asked}\", and {} was needed for {}.", step.says, last.says),
+            None => format!("You said \"{asked}\", so my plan was {}.", reply::plan_in_words(self.last_plan)),
         })
     }
 
@@ -199,9 +226,23 @@ impl Answerer<'_> {
 
     fn place_of(&self, phrase: &Phrase) -> Understanding {
         let want = Want::place(Intent::Find, &[], None);
-        let Ok(found) = self.ground().plausible(phrase, &want) else { return self.unseen(phrase) };
+        let Ok(found) = self.ground().plausible(phrase, &want) else { return self.elsewhere(phrase) };
         let places: Vec<String> = found.iter().take(LIST).map(|id| self.place_sentence(*id)).collect();
         Understanding::Answer { text: describe::sentence(&describe::list(&places, "and")), highlight: found }
+    }
+
+    /// What is not where it was asked for may be known to be somewhere else.
+    fn elsewhere(&self, phrase: &Phrase) -> Understanding {
+        let bare = Phrase { room: None, is_here: false, relations: Vec::new(), ..phrase.clone() };
+        let want = Want::place(Intent::Find, &[], None);
+        match self.ground().plausible(&bare, &want) {
+            Ok(found) if bare != *phrase && !found.is_empty() => {
+                let places: Vec<String> = found.iter().take(LIST).map(|id| self.place_sentence(*id)).collect();
+                let text = format!("No, but {}.", describe::list(&places, "and"));
+                Understanding::Answer { text, highlight: found }
+            }
+            _ => self.unseen(phrase),
+        }
     }
 
     fn place_sentence(&self, id: ObjectId) -> String {
@@ -305,7 +346,7 @@ impl Answerer<'_> {
             phrase.relations.iter().any(|relation| relation.kind != RelationKind::Has) || phrase.room.is_some();
         let bare = Phrase { relations: Vec::new(), room: None, ..phrase.clone() };
         if bare.is_empty() {
-            return Understanding::refusal("I do not know what you mean.");
+            return Understanding::lost("I do not know what you mean.");
         }
         match asked {
             Some(state) => self.with_object(&bare, |id| {

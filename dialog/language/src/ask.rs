@@ -152,6 +152,11 @@ pub(crate) fn appearance(phrase: &Phrase) -> Understanding {
     of_kind(Clarification::Appearance, &word, text, &[])
 }
 
+/// What does `it` stand for?
+pub(crate) fn referent(text: String) -> Understanding {
+    of_kind(Clarification::Request, "", text, &[])
+}
+
 /// Which way?
 pub(crate) fn direction() -> Understanding {
     let text = "Which direction should I turn to?".to_owned();

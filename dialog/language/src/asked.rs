@@ -8,11 +8,13 @@ use crate::{
     context::{Consent, Context, Pending, Role, Slot},
     conversation::Conversation,
     ground::{Ground, Want},
+    hearing,
     intent::Intent,
-    lexicon::{Direction, Preposition, Side, Small},
+    lexicon::{Direction, Preposition, Pronoun, Side, Small},
     phrase::{Phrase, Place, Reader, Relation},
     plan::Fault,
-    question, token,
+    question::{self, QuestionKind},
+    token,
     understanding::{Step, Understanding},
 };
 
@@ -41,7 +43,7 @@ impl Conversation<'_> {
             return Some(Understanding::answer("All right, I leave it."));
         }
         match pending {
-            Pending::PutDown { clauses } if is_yes => {
+            Pending::PutDown { clauses } if is_yes || self.agrees_to_put_down(words, parts) => {
                 let consent = Consent { may_put_down: true, is_agreed: true };
                 Some(self.plan(clauses, consent, context))
             }
@@ -68,6 +70,19 @@ impl Conversation<'_> {
                 self.told_which(words, is_yes, is_command, &candidates, open, context)
             }
         }
+    }
+
+    /// `yes, do put it down first`.
+    fn agrees_to_put_down(&self, words: &[String], parts: &[Part]) -> bool {
+        let puts_it = |part: &Part| match part {
+            Part::Clause(clause) => {
+                let is_it = clause.objects.iter().all(|phrase| phrase.pronoun.is_some());
+                matches!(clause.intent, Intent::Drop | Intent::Place) && is_it && clause.places.is_empty()
+            }
+            _ => true,
+        };
+        let yes = words.iter().take(3).any(|word| self.small_at_start(std::slice::from_ref(word), Small::Yes));
+        yes && parts.iter().all(puts_it)
     }
 
     /// Somebody points at an object: the answer to what was asked, or what is spoken of from now on.
@@ -130,7 +145,21 @@ impl Conversation<'_> {
             }
             return Some(self.plan(open.clauses, open.consent, context));
         }
-        let left = self.answered(words, candidates, context);
+        let mut left = self.answered(words, candidates, context);
+        let points = self.answer_phrase(&plain(words)).is_some_and(|phrase| phrase.pronoun == Some(Pronoun::Thing));
+        if left.is_empty() && points {
+            left.extend(context.focus.recent.first().filter(|id| candidates.contains(id)));
+        }
+        if left.is_empty() && !is_command && !self.is_aside(words) {
+            left.extend(self.told_at_last(words, candidates, context));
+        }
+        if left.is_empty() && !is_command && !self.is_aside(words) {
+            let heard = hearing::variants(self.lexicon, words).into_iter();
+            left = heard
+                .map(|words| self.answered(&words, candidates, context))
+                .find(|left| left.len() == 1)
+                .unwrap_or_default();
+        }
         match left.as_slice() {
             [one] => Some(self.settle(open, *one, context)),
             [] if is_command || self.is_aside(words) => None,
@@ -205,8 +234,17 @@ impl Conversation<'_> {
         clause: usize,
         context: &mut Context,
     ) -> Option<Understanding> {
-        let direction = (0..words.len()).find_map(|at| self.direction(&words[at..]))?;
-        clauses.get_mut(clause)?.direction = Some(direction);
+        // `a hundred and eighty degrees` are the same either way.
+        let half = |amount: crate::clause::Amount| amount == crate::clause::Amount::Degrees(180.0);
+        let amount = crate::reading::amount(self.lexicon, words);
+        let direction = (0..words.len()).find_map(|at| self.direction(&words[at..]));
+        let direction = direction.or(amount.filter(|amount| half(*amount)).map(|_| Direction::Around))?;
+        let told = crate::clause::parts(self.lexicon, self.catalog, words).into_iter().find_map(|part| match part {
+            Part::Clause(told) if told.intent == Intent::Turn => told.amount,
+            _ => None,
+        });
+        let turn = clauses.get_mut(clause)?;
+        (turn.direction, turn.amount) = (Some(direction), told.or(turn.amount));
         Some(self.plan(clauses, Consent { is_agreed: true, ..Consent::default() }, context))
     }
 
@@ -241,7 +279,8 @@ impl Conversation<'_> {
     /// Whether it is a question, a courtesy or such, and so no answer.
     fn is_aside(&self, words: &[String]) -> bool {
         let aside = [Small::Hello, Small::Thanks, Small::Undo];
-        question::read(self.lexicon, words).is_some()
+        let is_asked = words.iter().any(|word| word == "?");
+        question::read(self.lexicon, words).is_some_and(|question| is_asked || question.kind != QuestionKind::Unknown)
             || self.chat(words).is_some()
             || self.small(words).iter().any(|small| aside.contains(small))
     }
@@ -269,6 +308,9 @@ impl Conversation<'_> {
 
     /// The candidates that an answer leaves.
     fn answered(&self, words: &[String], candidates: &[ObjectId], context: &Context) -> Vec<ObjectId> {
+        if let Some(number) = self.option(&plain(words)) {
+            return candidates.get(number - 1).copied().into_iter().collect();
+        }
         let Some(phrase) = self.answer_phrase(&plain(words)) else { return Vec::new() };
         if phrase.side == Some(Side::Other) {
             // Other than what was spoken of last; if none was, than what was named first.
@@ -284,6 +326,47 @@ impl Conversation<'_> {
         } else {
             Vec::new()
         }
+    }
+
+    /// `2`, `option two`, `number 1 please`: which of those that were named.
+    fn option(&self, words: &[String]) -> Option<usize> {
+        let mut reader = Reader::new(self.lexicon, words);
+        reader.at += usize::from(reader.next_is("the"));
+        let title = self.lexicon.titles.longest(reader.rest()).map_or(0, |(length, ())| length);
+        let is_titled = title > 0;
+        reader.at += title;
+        let is_digit = reader.rest().first().is_some_and(|word| token::digits(word).is_some());
+        let number = reader.number().filter(|number| (is_titled || is_digit) && *number >= 1.0)?;
+        reader.skip(|lexicon| &lexicon.trail);
+        (reader.is_done() && number.fract() == 0.0).then_some(number as usize)
+    }
+
+    /// Of a long answer, the candidate that it comes to: the last one that is told from the others in it.
+    fn told_at_last(&self, words: &[String], candidates: &[ObjectId], context: &Context) -> Option<ObjectId> {
+        let ground = Ground { catalog: self.catalog, scene: self.scene, focus: &context.focus, judge: self.judge };
+        let (mut told, mut at) = (None, 0);
+        while at < words.len() {
+            let mut reader = Reader::new(self.lexicon, words);
+            reader.at = at;
+            let is_denied = reader.next_is("not");
+            reader.at += usize::from(is_denied);
+            let Some(phrase) = reader.phrase().filter(|phrase| phrase.unknown.is_empty()) else {
+                at += 1;
+                continue;
+            };
+            at = reader.at;
+            let others = || candidates.iter().copied().filter(|id| Some(*id) != told);
+            let left: Vec<ObjectId> = if phrase.side == Some(Side::Other) {
+                others().collect()
+            } else {
+                let meant = ground.narrow(&phrase, candidates);
+                candidates.iter().copied().filter(|id| meant.contains(id) != is_denied).collect()
+            };
+            if let [one] = left[..] {
+                told = Some(one);
+            }
+        }
+        told
     }
 
     /// The phrase that an answer consists of, after `i mean` or `take`; `None` if there is more to it.
@@ -341,6 +424,9 @@ fn says_where(phrase: &Phrase) -> bool {
 /// Adds to what was said of an object what was said of it now.
 fn describe_by(said: &mut Phrase, told: Phrase) {
     if said.namings.is_empty() && said.fluid.is_none() {
+        if !told.namings.is_empty() {
+            said.pronoun = told.pronoun;
+        }
         (said.namings, said.fluid, said.text) = (told.namings, told.fluid, told.text);
     }
     said.color = told.color.or(said.color.take());

@@ -7,7 +7,7 @@ use crate::{
     ground::Want,
     intent::Intent,
     known::KnownObject,
-    lexicon::{Preposition, Pronoun},
+    lexicon::{Naming, Preposition, Pronoun},
     phrase::{Phrase, Place},
     plan::{Fault, Planner},
     settle::{Goal, Settled},
@@ -21,13 +21,27 @@ const TAKES: &[Property] = &[Property::Receptacle, Property::Fillable];
 
 impl Planner<'_> {
     pub(crate) fn add_pick_up(&mut self, settled: &Settled) -> Result<(), Fault> {
-        if settled.objects.len() > 1 || settled.objects.iter().any(|phrase| phrase.is_all) {
+        if self.is_several(settled) {
             return Err(self.one_at_a_time(settled)?);
         }
         for object in self.find_objects(settled, &Want::object(settled.intent))? {
+            // `I want some light`
+            if settled.is_wish && !self.has(object, Property::Pickupable) && self.has(object, Property::Toggleable) {
+                self.switch(object, Intent::TurnOn)?;
+                continue;
+            }
             self.pick_up(object, self.may_put_down)?;
         }
         Ok(())
+    }
+
+    /// The kind of what the thing in the hand was taken from.
+    pub(crate) fn origin_kind(&self) -> Vec<Naming> {
+        let origin = self.focus.origins.first().and_then(|(_, origin)| self.scene.object(*origin));
+        let Some(origin) = origin else { return Vec::new() };
+        let name = &self.catalog.class(origin.class).name;
+        let same = self.classes(|class| self.catalog.class(class).name == *name);
+        same.into_iter().map(|class| Naming { class, weight: 1.0 }).collect()
     }
 
     /// There is but one hand: says so, and offers the first of them.
@@ -116,8 +130,17 @@ impl Planner<'_> {
     }
 
     pub(crate) fn add_place(&mut self, settled: &Settled) -> Result<(), Fault> {
-        if settled.objects.len() > 1 || settled.objects.iter().any(|phrase| phrase.is_all) {
+        if self.is_several(settled) {
             return self.add_places(settled);
+        }
+        // `leave the apple`
+        if settled.is_left && settled.goal.is_none() && !settled.objects.is_empty() && self.scene.robot.held.is_none() {
+            self.notes.push("I leave that as it is".to_owned());
+            return Ok(());
+        }
+        let is_it = |phrase: &Phrase| phrase.pronoun.is_some();
+        if settled.intent == Intent::Drop && self.scene.robot.held.is_none() && settled.objects.iter().all(is_it) {
+            return Err(Fault::Cannot("I am not holding anything.".to_owned()));
         }
         let object = self.what_to_place(settled)?;
         // Taken before the goal is grounded: `put it on the table` means a table near where it is.
@@ -125,6 +148,8 @@ impl Planner<'_> {
             None if settled.is_back => self.put_back(object),
             None if settled.intent == Intent::Bring => {
                 self.pick_up(object, self.may_put_down)?;
+                let says = format!("bringing you {}", self.the(object));
+                self.go_to_person(&says);
                 Ok(())
             }
             None if self.scene.robot.held != Some(object) && settled.intent == Intent::Drop => {
@@ -155,7 +180,10 @@ impl Planner<'_> {
         if let Some(phrase) = settled.objects.first() {
             return self.find_one(phrase, &Want::object(settled.intent), Some(Role::Object(0)));
         }
-        self.scene.robot.held.ok_or_else(|| Fault::Cannot("I am not holding anything.".to_owned()))
+        // `the milk, put on the counter`
+        let spoken = self.focus.recent.first().copied().filter(|id| self.has(*id, Property::Pickupable));
+        let meant = self.scene.robot.held.or(spoken);
+        meant.ok_or_else(|| Fault::Cannot("I am not holding anything.".to_owned()))
     }
 
     fn place_at(&mut self, object: ObjectId, goal: &Goal, settled: &Settled) -> Result<(), Fault> {
@@ -205,6 +233,19 @@ impl Planner<'_> {
 
     pub(crate) fn add_pour(&mut self, settled: &Settled) -> Result<(), Fault> {
         let held = self.scene.robot.held;
+        // `pour in the bowl`, of the milk in the hand
+        let full =
+            held.filter(|held| self.scene.object(*held).is_some_and(|held| held.fluid != cohabit_cdf::Fluid::None));
+        if let (Some(full), [phrase], None) = (full, settled.objects.as_slice(), &settled.goal)
+            && phrase.pronoun.is_none()
+            && phrase.fluid.is_none()
+        {
+            let want = Want::place(Intent::Use, &TAKES[1..], None);
+            let target = self.find_one(phrase, &want, Some(Role::Object(0)))?;
+            if target != full {
+                return self.pour(full, target);
+            }
+        }
         let source = match settled.objects.first() {
             // `pour it`, `pour the milk`, `pour`: what is held, if it is that.
             Some(phrase) => self.find_one(phrase, &Want::object(Intent::Pour), Some(Role::Object(0)))?,
@@ -215,7 +256,9 @@ impl Planner<'_> {
         }
         let target = match &settled.goal {
             Some(Goal { place: Place::Object(phrase), role, .. }) => {
-                self.find_one(phrase, &Want::place(Intent::Use, TAKES, Some(source)), Some(*role))?
+                // `pour it in there`: into what holds it, of all that was spoken of.
+                let takes = if phrase.pronoun.is_some() { &TAKES[1..] } else { TAKES };
+                self.find_one(phrase, &Want::place(Intent::Use, takes, Some(source)), Some(*role))?
             }
             _ => self.nearest_sink()?,
         };
@@ -249,7 +292,7 @@ impl Planner<'_> {
     }
 
     pub(crate) fn add_throw(&mut self, settled: &Settled) -> Result<(), Fault> {
-        if settled.goal.is_none() && (settled.objects.len() > 1 || settled.objects.iter().any(|phrase| phrase.is_all)) {
+        if settled.goal.is_none() && self.is_several(settled) {
             let want = Want { held_first: false, ..Want::object(settled.intent) };
             let objects = self.find_objects(settled, &want)?;
             return objects.into_iter().try_for_each(|object| self.throw_away(object));

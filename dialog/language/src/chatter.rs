@@ -1,34 +1,33 @@
 //! Talk around requests: openers, reasons, asides. Finds where the next request begins, and what is spoken of before it.
 
+use std::collections::BTreeSet;
+
 use cohabit_cdf::Catalog;
+use serde::Deserialize;
 
 use crate::{
     clause::{self, Clause, Part},
     intent::Intent,
     lexicon::Lexicon,
     phrase::{Phrase, Place, Reader},
-    token,
+    reading, token,
 };
 
-/// Words that begin a clause which says when, why or about what, and asks for nothing.
-const SUBORDINATORS: &[&str] = &[
-    "because", "since", "as", "while", "when", "whenever", "if", "although", "though", "unless", "until", "whether",
-    "who", "whose", "whom", "where", "wherever", "which", "so that", "without", "cause", "coz",
-];
-
-/// Words after which a verb may be a request although others stand before it.
-const BEFORE_REQUESTS: &[&str] = &[
-    "and", "but", "so", "then", "or", "to", "please", "just", "you", "now", "first", "next", "also", "kindly",
-    "instead", "rather", "quickly", "simply", "maybe", "perhaps", "finally", "again", "there", "robot", "tam", "must",
-    "should",
-];
+/// The words of talk: `data/chatter.toml` says what each list is.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Chatter {
+    subordinators: BTreeSet<String>,
+    pub(crate) before_requests: BTreeSet<String>,
+    reports: BTreeSet<String>,
+}
 
 /// Most words of an opener.
 const LONGEST_TALK: usize = 10;
 
 /// Whether the word begins a clause that asks for nothing.
-pub(crate) fn is_subordinator(word: &str) -> bool {
-    SUBORDINATORS.contains(&word)
+pub(crate) fn is_subordinator(lexicon: &Lexicon, word: &str) -> bool {
+    lexicon.chatter.subordinators.contains(word)
 }
 
 /// The words up to the next punctuation.
@@ -45,7 +44,8 @@ pub(crate) fn read(lexicon: &Lexicon, catalog: &Catalog, words: &[String]) -> (P
         return (Part::Unclear(clause::unknown_words(lexicon, words)), words.len());
     }
     if is_forbidden(lexicon, talk) && end < words.len() {
-        return (Part::Forbidden, end + chunk(&words[end..]).len());
+        let about = mention(lexicon, &words[end..end + chunk(&words[end..]).len()]).map(|(phrase, _)| phrase);
+        return (Part::Forbidden(about), end + chunk(&words[end..]).len());
     }
     match mention(lexicon, talk) {
         Some((phrase, used)) => (Part::Mention(phrase), used),
@@ -61,15 +61,22 @@ fn is_request(lexicon: &Lexicon, catalog: &Catalog, words: &[String], at: usize)
         lexicon.talk.exact(talk).is_some() || lexicon.lead.exact(talk).is_some()
     };
     let is_allowed = token::is_punctuation(before)
-        || BEFORE_REQUESTS.contains(&before.as_str())
+        || lexicon.chatter.before_requests.contains(before)
         || (1..=at.min(LONGEST_TALK)).any(ends_talk);
-    is_allowed && {
+    is_allowed && !is_reported(lexicon, &words[..at]) && {
         let rest = &words[at..];
-        crate::wish::request(lexicon, rest).is_some()
+        crate::wish::is_said(lexicon, rest)
             || lexicon.verbs.longest(rest).is_some()
-                && clause::read(lexicon, catalog, rest).is_some_and(|(clause, _)| is_clear(&clause))
+                && reading::read(lexicon, catalog, rest).is_some_and(|(clause, _)| is_clear(&clause))
             || token::is_punctuation(before) && lexicon.negation.longest(rest).is_some()
     }
+}
+
+/// Whether the words before tell of something: `somebody told me that you can …`.
+fn is_reported(lexicon: &Lexicon, before: &[String]) -> bool {
+    let is_cut = |word: &String| token::is_punctuation(word) || matches!(word.as_str(), "so" | "but" | "and" | "then");
+    let start = before.iter().rposition(is_cut).map_or(0, |at| at + 1);
+    before[start..].iter().any(|word| lexicon.chatter.reports.contains(word))
 }
 
 /// Whether all that a request names means something.
@@ -83,7 +90,8 @@ pub(crate) fn is_clear(clause: &Clause) -> bool {
 /// `frobnicate the mug`: a verb that nobody taught it, not to be passed over.
 fn is_unknown_order(lexicon: &Lexicon, words: &[String]) -> bool {
     let [first, rest @ ..] = words else { return false };
-    let is_talk = lexicon.vocabulary.has(first) || is_subordinator(first) || lexicon.talk.longest(words).is_some();
+    let is_talk =
+        lexicon.vocabulary.has(first) || is_subordinator(lexicon, first) || lexicon.talk.longest(words).is_some();
     let has_object = lexicon.articles.longest(rest).is_some()
         || lexicon.pronouns.longest(rest).is_some()
         || lexicon.classes.longest(rest).is_some();
@@ -101,13 +109,21 @@ fn is_forbidden(lexicon: &Lexicon, talk: &[String]) -> bool {
     (start..talk.len()).any(|at| lexicon.negation.longest(&talk[at..]).is_some())
 }
 
-/// The first thing that the talk is about, and how many words that takes.
-fn mention(lexicon: &Lexicon, talk: &[String]) -> Option<(Phrase, usize)> {
+/// The first thing that the talk is about, or else the first room, and how many words that takes.
+pub(crate) fn mention(lexicon: &Lexicon, talk: &[String]) -> Option<(Phrase, usize)> {
+    named(lexicon, talk).or_else(|| {
+        let (at, (length, room)) = (0..talk.len()).find_map(|at| Some((at, lexicon.rooms.longest(&talk[at..])?)))?;
+        Some((Phrase { room: Some(*room), ..Phrase::default() }, at + length))
+    })
+}
+
+fn named(lexicon: &Lexicon, talk: &[String]) -> Option<(Phrase, usize)> {
     (0..talk.len()).find_map(|at| {
         let mut reader = Reader::new(lexicon, talk);
         reader.at = at;
         let is_name = !reader.at_verb();
-        let phrase = reader.phrase_with_place().filter(|phrase| is_name && !phrase.namings.is_empty())?;
+        let is_told = |phrase: &Phrase| !phrase.namings.is_empty() || phrase.pronoun.is_some() && phrase.is_described();
+        let phrase = reader.phrase_with_place().filter(|phrase| is_name && is_told(phrase))?;
         phrase.unknown.is_empty().then_some((phrase, reader.at))
     })
 }

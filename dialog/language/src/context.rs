@@ -1,9 +1,9 @@
 //! What was said, meant and done before.
 
-use cohabit_cdf::{Action, GoToTarget, ObjectId, Status};
+use cohabit_cdf::{Action, GoToTarget, ObjectId, RoomId, Status};
 use serde::{Deserialize, Serialize};
 
-use crate::{clause::Clause, known::Known, search::Search, understanding::Step};
+use crate::{clause::Clause, known::Known, question::QuestionKind, search::Search, understanding::Step};
 
 /// How many objects a pronoun may reach back.
 const MEMORY: usize = 8;
@@ -19,8 +19,14 @@ pub struct Context {
     pub(crate) last_plan: Vec<Step>,
     /// What failed last, with what was to follow it.
     pub(crate) failed: Option<Failure>,
+    /// What was said that asked for something last, in plain words.
+    #[serde(default)]
+    pub(crate) asked: String,
     /// The request that the last plan is for.
     pub(crate) request: Vec<Clause>,
+    /// What was asked last, if nothing was asked for since.
+    #[serde(default)]
+    pub(crate) question: Option<QuestionKind>,
     /// The request that waits until what it names is found.
     pub(crate) search: Option<Search>,
 }
@@ -38,8 +44,14 @@ pub(crate) struct Failure {
 pub(crate) struct Focus {
     /// The objects spoken of, the latest first.
     pub(crate) recent: Vec<ObjectId>,
+    /// Several that were spoken of together.
+    #[serde(default)]
+    pub(crate) group: Vec<ObjectId>,
     /// The last thing gone to, opened or put things into.
     pub(crate) place: Option<ObjectId>,
+    /// The room spoken of last, if it was spoken of after that.
+    #[serde(default)]
+    pub(crate) room: Option<RoomId>,
     /// What was taken, and from where, the latest first.
     pub(crate) origins: Vec<(ObjectId, ObjectId)>,
     /// What was put somewhere last.
@@ -119,11 +131,17 @@ impl Focus {
         match *action {
             Action::GoTo { target: GoToTarget::Object(object) } => {
                 self.mention(object);
-                self.place = Some(object);
+                (self.place, self.room) = (Some(object), None);
             }
-            Action::GoTo { .. } => self.place = None,
-            Action::Place { receptacle } => self.place = Some(receptacle),
-            Action::PickUp { object } | Action::Highlight { object } => self.mention(object),
+            Action::GoTo { target: GoToTarget::Room(room) } => (self.place, self.room) = (None, Some(room)),
+            Action::GoTo { .. } => (self.place, self.room) = (None, None),
+            Action::Place { receptacle } => (self.place, self.room) = (Some(receptacle), None),
+            Action::PickUp { object } | Action::Highlight { object } => {
+                if !self.group.contains(&object) {
+                    self.group.clear();
+                }
+                self.mention(object);
+            }
             Action::Interact { verb, object } => {
                 self.mention(object);
                 if matches!(verb, cohabit_cdf::Verb::Open) {
@@ -161,6 +179,7 @@ impl Context {
 
     /// Takes note of a plan that is about to be carried out.
     pub(crate) fn begin(&mut self, steps: &[Step]) {
+        self.question = None;
         self.running = steps.to_vec();
         self.last_plan = steps.to_vec();
         self.request.clear();

@@ -5,7 +5,7 @@ use cohabit_cdf::{Catalog, ObjectId};
 
 use crate::{
     amend,
-    answer::{Answerer, HINT},
+    answer::HINT,
     ask::{self, Ask},
     asked::plain,
     chatter,
@@ -15,7 +15,7 @@ use crate::{
     describe,
     ground::{Ground, Miss, Want},
     habits::Habits,
-    hearing,
+    inquiry,
     intent::Intent,
     judge::Judge,
     known::Known,
@@ -24,14 +24,13 @@ use crate::{
     phrase::{Phrase, Place},
     plan::{Fault, Planner},
     process::Devices,
-    question, remedy, reply,
+    question::{self, QuestionKind},
+    remedy, reply,
     search::Search,
+    tidy,
     token::{self, MAX_CHARS},
-    understanding::{Asking, Clarification, Step, Understanding},
+    understanding::{Asking, Step, Understanding},
 };
-
-/// An answer to `which lab` has fewer words than this; more is another request.
-const LONGEST_LAB_ANSWER: usize = 6;
 
 /// All that stays the same during a turn.
 #[derive(Clone, Copy)]
@@ -50,38 +49,12 @@ impl Conversation<'_> {
             return Understanding::refusal("That is too much for me at once. Please say it in a few short sentences.");
         }
         let (words, repairs) = self.lexicon.normalise(utterance);
-        let words = amend::without_where(self.lexicon, amend::without_slips(self.lexicon, &words));
-        Self { judge: Judge { repairs, ..self.judge }, ..*self }.understand_heard(words, context)
-    }
-
-    /// What was heard, or else what may have been said instead: what sounds like it, and can be done.
-    fn understand_heard(&self, words: Vec<String>, context: &mut Context) -> Understanding {
-        if !hearing::is_puzzled(&clause::parts(self.lexicon, self.catalog, &words), &words) {
-            return self.understand_all(words, context);
-        }
-        let before = context.clone();
-        let heard = self.understand_all(words.clone(), context);
-        if !is_lost(&heard) || question::read(self.lexicon, &words).is_some() {
-            return heard;
-        }
-        let mut asked = None;
-        for reading in hearing::readings(self.lexicon, self.catalog, &words) {
-            let mut then = before.clone();
-            let understanding = self.understand_all(reading, &mut then);
-            match understanding {
-                Understanding::Plan { .. } | Understanding::Answer { .. } => {
-                    *context = then;
-                    return understanding;
-                }
-                Understanding::Question { .. } if !is_lost(&understanding) => {
-                    asked = asked.or(Some((understanding, then)));
-                }
-                _ => {}
-            }
-        }
-        let Some((question, then)) = asked else { return heard };
-        *context = then;
-        question
+        let words = tidy::tidied(self.lexicon, &words);
+        let this = Self { judge: Judge { repairs, ..self.judge }, ..*self };
+        // What a recogniser took for other words is best told from those words, not from repaired ones.
+        let as_said = tidy::tidied(self.lexicon, &self.lexicon.as_said(utterance));
+        let others = (as_said != words).then_some(as_said);
+        this.understand_heard(words, others, context)
     }
 
     /// The candidates for the first referring expression of an utterance.
@@ -102,13 +75,15 @@ impl Conversation<'_> {
         })
     }
 
-    fn understand_all(&self, words: Vec<String>, context: &mut Context) -> Understanding {
+    pub(crate) fn understand_all(&self, words: Vec<String>, context: &mut Context) -> Understanding {
         if words.iter().all(|word| token::is_punctuation(word)) {
             return Understanding::refusal(format!("I did not hear anything. {HINT}"));
         }
+        // `wait, how many are there?`, in answer to a question
+        let words = if context.pending.is_some() { self.without_pause(words) } else { words };
         if let Some(Pending::Lab { words: before, at }) = &context.pending
-            && let Some(room) = lab::answered(self.lexicon, &words)
-            && words.len() < LONGEST_LAB_ANSWER
+            && !self.asks_for_more(&words)
+            && let Some(room) = lab::answered(self.lexicon, self.scene, &words)
         {
             let words = lab::named(before, *at, room);
             context.pending = None;
@@ -119,18 +94,22 @@ impl Conversation<'_> {
 
     fn understand_words(&self, words: Vec<String>, context: &mut Context) -> Understanding {
         let parts = clause::parts(self.lexicon, self.catalog, &words);
-        if parts.iter().any(|part| matches!(part, Part::Clause(clause) if clause.intent == Intent::Stop)) {
+        if stops(&parts) {
             context.pending = None;
             context.running.clear();
             context.failed = None;
             context.search = None;
             return Understanding::Stop { reply: "OK, I stop.".to_owned() };
         }
+        let open = context.pending.clone();
         if let Some(understanding) = self.answer_to_pending(&words, &parts, context) {
             return understanding;
         }
         if let Some(at) = lab::bare(self.lexicon, &words).filter(|at| !clause::is_forbidden(self.lexicon, &words, *at))
         {
+            if let Some(room) = lab::described(self.lexicon, self.scene, &words[at + 1..]) {
+                return self.understand_words(lab::named(&words, at, room), context);
+            }
             let guessed = || (self.judge.asking == Asking::Never).then(|| lab::guessed(self.scene));
             if let Some(room) = lab::here(self.scene.robot.room).or_else(guessed) {
                 return self.understand_words(lab::named(&words, at, room), context);
@@ -138,7 +117,12 @@ impl Conversation<'_> {
             context.pending = Some(Pending::Lab { words, at });
             return lab::question();
         }
-        self.fresh(&words, parts, context)
+        let understanding = self.fresh(&words, parts, context);
+        // What was said in between leaves the robot's own question open.
+        if matches!(understanding, Understanding::Answer { .. } | Understanding::Refusal { .. }) {
+            context.pending = context.pending.take().or(open);
+        }
+        understanding
     }
 
     /// What was said, if it is no answer to a question of the robot's.
@@ -153,33 +137,36 @@ impl Conversation<'_> {
                 .find(|word| !token::is_punctuation(word))
                 .is_some_and(|word| word == "when" || word == "what");
             let asks = |part: &Part| matches!(part, Part::Clause(clause) if chatter::is_clear(clause));
-            question.kind == question::QuestionKind::Unknown
+            question.kind == QuestionKind::Unknown
                 && is_when
                 && words.iter().any(|word| word == ",")
                 && parts.iter().any(asks)
         };
         if let Some(question) = question::read(self.lexicon, words).filter(|question| !is_asked_to(question)) {
-            let answerer = Answerer {
-                catalog: self.catalog,
-                lexicon: self.lexicon,
-                scene: self.scene,
-                focus: &context.focus,
-                judge: self.judge,
-                running: &context.running,
-                failed: context.failed.as_ref(),
-            };
-            let answer = answerer.answer(&question);
-            // Only what it has not seen makes it ask back.
-            if let (Understanding::Question { .. }, Some(phrase)) = (&answer, &question.about) {
-                context.pending = Some(Pending::Search { clauses: vec![Clause::find(phrase.clone())] });
+            // `who left the mug here? bring it to the kitchen`
+            let later = inquiry::later_sentences(words);
+            // `what a lovely bowl! is it broken?`
+            if let Some(next) = question::read(self.lexicon, later).filter(|_| inquiry::is_exclaimed(words)) {
+                question.about.into_iter().for_each(|phrase| self.mention(&Part::Mention(phrase), context));
+                return self.answer(&next, context);
             }
-            if let Understanding::Answer { highlight, .. } = &answer
-                && let [one] = highlight.as_slice()
-            {
-                context.focus.mention(*one);
-                context.focus.place = self.place_spoken_of(*one);
+            let asked = clause::parts(self.lexicon, self.catalog, later);
+            if !asked.iter().any(|part| matches!(part, Part::Clause(clause) if chatter::is_clear(clause))) {
+                return self.answer(&question, context);
             }
-            return answer;
+            let about = question.about.clone().filter(|phrase| !phrase.is_empty() && phrase.unknown.is_empty());
+            // `what is on the desk? get it`: what the answer would be about.
+            if question.kind == QuestionKind::Contents {
+                let _ = self.answer(&question, context);
+                context.pending = None;
+                return self.request(later, asked, context);
+            }
+            let parts = about.map(Part::Mention).into_iter().chain(asked).collect();
+            return self.request(later, parts, context);
+        }
+        if let Some(question) = self.asked_after_talk(words, &parts) {
+            parts.iter().for_each(|part| self.mention(part, context));
+            return self.answer(&question, context);
         }
         if self.is_foreign(words) {
             return reply::unclear(&clause::unknown_words(self.lexicon, words));
@@ -191,7 +178,7 @@ impl Conversation<'_> {
     }
 
     /// `go there`, `put it there`, after an answer about `id`: itself, or what carries it.
-    fn place_spoken_of(&self, id: ObjectId) -> Option<ObjectId> {
+    pub(crate) fn place_spoken_of(&self, id: ObjectId) -> Option<ObjectId> {
         let object = self.scene.object(id)?;
         let is_carried = self.catalog.class(object.class).has(cohabit_cdf::Property::Pickupable);
         if is_carried { object.parent } else { Some(id) }
@@ -229,15 +216,23 @@ impl Conversation<'_> {
 
     fn request(&self, words: &[String], parts: Vec<Part>, context: &mut Context) -> Understanding {
         context.search = None;
+        context.asked = token::sentence(words);
         let mut clauses = Vec::new();
         let mut unclear: Option<Vec<String>> = None;
         let (mut fragment, mut aside) = (None, Vec::new());
         let mut is_forbidden = false;
         for part in parts {
             match part {
+                Part::Clause(clause) if clause.intent == Intent::Stop => {}
                 Part::Clause(clause) => clauses.push(clause),
-                Part::Forbidden => is_forbidden = true,
-                Part::Mention(phrase) => clauses.push(Clause::mention(phrase)),
+                Part::Forbidden(about) => {
+                    is_forbidden = true;
+                    clauses.extend(about.map(Clause::mention));
+                }
+                Part::Mention(phrase) | Part::Gloss(phrase) | Part::Where(_, Place::Object(phrase)) => {
+                    clauses.push(Clause::mention(phrase))
+                }
+                Part::Where(..) => {}
                 Part::Fragment(phrase) => {
                     clauses.push(Clause::mention(phrase.clone()));
                     fragment = fragment.or(Some(phrase));
@@ -250,10 +245,17 @@ impl Conversation<'_> {
             if let Some(clause) = clause::to_room(self.lexicon, words) {
                 return self.plan(vec![clause], Consent::default(), context);
             }
+            // `and the trophy`, after `where is the knife`
+            let goes_on = context.question.is_some() && matches!(words[0].as_str(), "and" | "or" | "how" | "what");
             let mentioned = clauses.into_iter().flat_map(|clause| clause.objects).next();
             return match (fragment.or(mentioned), unclear) {
                 _ if is_forbidden => Understanding::answer("All right, I will not do that."),
                 (_, Some(words)) if !words.is_empty() => reply::unclear(&words),
+                (Some(phrase), _) if words.last().is_some_and(|word| word == "?") || goes_on => {
+                    let kind = context.question.filter(|_| goes_on).unwrap_or(QuestionKind::Where);
+                    let question = question::Question { kind, rest: words.to_vec(), about: Some(phrase) };
+                    self.answer(&question, context)
+                }
                 (Some(phrase), _) => self.fragment(&phrase, context),
                 (None, _) => reply::unclear(&aside),
             };
@@ -364,13 +366,22 @@ impl Conversation<'_> {
                 context.pending = Some(Pending::Where { clauses, slot, consent });
                 ask::location(&phrase)
             }
+            Fault::Miss { slot: Some(slot), phrase, miss: miss @ (Miss::NoReferent | Miss::Unknown), intent }
+                if asks && phrase.unknown.is_empty() =>
+            {
+                context.pending = Some(Pending::Look { clauses, slot, consent });
+                ask::referent(reply::miss(&phrase, &miss, intent))
+            }
             Fault::Miss { slot: Some(slot), phrase, .. }
                 if asks && phrase.namings.is_empty() && !phrase.unknown.is_empty() =>
             {
                 context.pending = Some(Pending::Look { clauses, slot, consent });
                 ask::appearance(&phrase)
             }
-            Fault::Miss { phrase, miss, intent, .. } => Understanding::refusal(reply::miss(&phrase, &miss, intent)),
+            Fault::Miss { phrase, miss, intent, .. } => {
+                let text = reply::miss(&phrase, &miss, intent);
+                if phrase.unknown.is_empty() { Understanding::refusal(text) } else { Understanding::lost(text) }
+            }
         }
     }
 
@@ -407,7 +418,11 @@ impl Conversation<'_> {
     pub(crate) fn small(&self, words: &[String]) -> Vec<Small> {
         let words = plain(words);
         let known = |words: &[String]| self.lexicon.small.exact(words).map(|smalls| smalls.iter().copied().collect());
-        known(&words).or_else(|| self.several_smalls(&words).and_then(known)).unwrap_or_default()
+        let plainly = || -> Vec<String> {
+            words.iter().filter(|word| !self.lexicon.amends.adverbs.contains(*word)).cloned().collect()
+        };
+        let several = || self.several_smalls(&words).and_then(known);
+        known(&words).or_else(several).or_else(|| known(&plainly())).unwrap_or_default()
     }
 
     /// `neither, leave it`, `ok, once more please`: the first of several that make up all of it.
@@ -462,7 +477,7 @@ impl Conversation<'_> {
                 _ => Understanding::answer("All right."),
             });
         }
-        if is(Small::Undo) {
+        if is(Small::Undo) || self.is_undo(words) {
             return Some(self.undo(context));
         }
         if is(Small::Thanks) {
@@ -472,6 +487,14 @@ impl Conversation<'_> {
             return Some(Understanding::answer("Hello! What can I do for you?"));
         }
         self.chat(words).map(Understanding::answer)
+    }
+
+    /// `undo the previous command`.
+    fn is_undo(&self, words: &[String]) -> bool {
+        let words = plain(words);
+        let spare = |word: &String| self.lexicon.undone.exact(std::slice::from_ref(word)).is_some();
+        let (verb, rest) = words.split_first().map_or(("", &[][..]), |(verb, rest)| (verb.as_str(), rest));
+        matches!(verb, "undo" | "revert" | "reverse") && !rest.is_empty() && rest.iter().all(spare)
     }
 
     /// The remedy that was offered after a failure, then the failed step again, then the rest.
@@ -491,22 +514,17 @@ impl Conversation<'_> {
     }
 }
 
+/// Whether it is to stop: not by waiting where it was told to go.
+fn stops(parts: &[Part]) -> bool {
+    let asked: Vec<&Clause> =
+        parts.iter().filter_map(|part| if let Part::Clause(clause) = part { Some(clause) } else { None }).collect();
+    let waits = |clause: &Clause| clause.verb.starts_with("wait") || clause.verb.starts_with("stay");
+    let begins = asked.first().is_some_and(|first| first.intent == Intent::Stop);
+    asked.iter().any(|clause| clause.intent == Intent::Stop && (begins || !waits(clause)))
+}
+
 /// Whether it does more than look and point.
 fn commits(steps: &[Step]) -> bool {
     use cohabit_cdf::Action::{GoTo, Interact, PickUp, Place};
     steps.iter().any(|step| matches!(step.action, GoTo { .. } | PickUp { .. } | Place { .. } | Interact { .. }))
-}
-
-/// Whether little came of an utterance.
-const fn is_lost(understanding: &Understanding) -> bool {
-    match understanding {
-        Understanding::Refusal { .. } => true,
-        Understanding::Question { kind, .. } => {
-            matches!(
-                kind,
-                Clarification::Appearance | Clarification::Location | Clarification::Request | Clarification::Direction
-            )
-        }
-        _ => false,
-    }
 }

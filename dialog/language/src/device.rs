@@ -47,8 +47,11 @@ impl Planner<'_> {
     }
 
     /// Switches a machine by whatever works it.
-    fn switch(&mut self, object: ObjectId, intent: Intent) -> Result<(), Fault> {
+    pub(crate) fn switch(&mut self, object: ObjectId, intent: Intent) -> Result<(), Fault> {
         let worker = self.worker(object)?;
+        if worker == object && !self.has(object, Property::Toggleable) {
+            return Err(Fault::Cannot(format!("I cannot switch {}.", self.the(object))));
+        }
         let is_on = [object, worker]
             .into_iter()
             .filter_map(|id| self.scene.object(id))

@@ -30,8 +30,14 @@ const MOST_RIVALS: usize = 32;
 /// What is named by less than this below the best is not offered instead.
 const WORSE_NAME: f32 = 0.2;
 
+/// What is named by no more than this is named by a word for many things.
+const VAGUE_NAME: f32 = 0.6;
+
 /// How near `next to` is, m.
 const NEAR_M: f32 = 1.5;
+
+/// What is nearer to something than others by more than this is the one that is next to it, m.
+const NEARER_M: f32 = 0.15;
 
 /// How far `left of` reaches, m.
 const BESIDE_M: f32 = 2.0;
@@ -158,12 +164,16 @@ impl<'a> Ground<'a> {
 
     /// All objects that are meant: those of the room, if there are any.
     pub(crate) fn all(&self, phrase: &Phrase, want: &Want<'_>) -> Result<Vec<ObjectId>, Miss> {
+        if phrase.pronoun == Some(Pronoun::Thing) && !phrase.is_described() && !phrase.is_all {
+            return Err(Miss::Unknown);
+        }
         let Described { mut left, .. } = self.described(phrase, want)?;
         keep_if_any(&mut left, |object| object.room == self.scene.robot.room);
         left.sort_by(|one, other| {
             self.scene.distance_m(one).total_cmp(&self.scene.distance_m(other)).then(one.id.cmp(&other.id))
         });
-        Ok(left.iter().map(|object| object.id).collect())
+        let most = phrase.count.map_or(left.len(), usize::from);
+        Ok(left.iter().take(most).map(|object| object.id).collect())
     }
 
     /// Those of `candidates` that an answer such as `the red one` or `on the desk` means.
@@ -179,6 +189,7 @@ impl<'a> Ground<'a> {
             .filter(|object| self.is_named(phrase, object) && self.is_as_said(phrase, object))
             .collect();
         left.retain(|object| phrase.states.iter().all(|state| has_state(object, *state)));
+        self.keep_nearest(phrase, &mut left);
         match self.by_position(phrase, &left) {
             Some(one) => vec![one],
             None => left.iter().map(|object| object.id).collect(),
@@ -213,6 +224,13 @@ impl<'a> Ground<'a> {
         if left.is_empty() {
             left = self.plain_ones(phrase, &base);
         }
+        // `the banana over there` points, where nothing was spoken of that it is on.
+        let points = |relation: &Relation| relation.to.pronoun == Some(Pronoun::Place);
+        if left.is_empty() && phrase.relations.iter().any(points) {
+            let mut bare = phrase.clone();
+            bare.relations.retain(|relation| !points(relation));
+            return self.described(&bare, want);
+        }
         if left.is_empty() {
             self.keep_best_named(phrase, &mut base);
             return Err(Miss::Mismatch(base.iter().map(|object| object.id).collect()));
@@ -220,9 +238,23 @@ impl<'a> Ground<'a> {
         for state in &phrase.states {
             keep_if_any(&mut left, |object| has_state(object, *state));
         }
+        self.keep_nearest(phrase, &mut left);
         self.keep_at_side(phrase, &mut left);
         self.keep_at_side(phrase, &mut base);
         Ok(Described { base, left })
+    }
+
+    /// `the mug next to the apple`: of several, the one that is nearest to it.
+    fn keep_nearest(&self, phrase: &Phrase, objects: &mut Vec<&KnownObject>) {
+        let Some(near) = phrase.relations.iter().find(|relation| relation.kind == RelationKind::Near) else { return };
+        let others: Vec<&KnownObject> =
+            self.scene.objects.iter().filter(|other| self.is_loosely(&near.to, other)).collect();
+        let apart_m = |object: &KnownObject| {
+            let others = others.iter().filter(|other| other.id != object.id && other.room == object.room);
+            others.map(|other| known::distance_m(other.position_m, object.position_m)).fold(f32::INFINITY, f32::min)
+        };
+        let least_m = objects.iter().map(|object| apart_m(object)).fold(f32::INFINITY, f32::min);
+        keep_if_any(objects, |object| apart_m(object) <= least_m + NEARER_M);
     }
 
     /// Keeps what is before the robot, behind it, or other than what was spoken of last, as was said.
@@ -335,6 +367,9 @@ impl<'a> Ground<'a> {
     }
 
     fn is_related(&self, object: &KnownObject, relation: &Relation) -> bool {
+        if relation.to.pronoun == Some(Pronoun::Place) && self.focus.place.is_none() {
+            return self.focus.room.is_none_or(|room| object.room == room);
+        }
         let fits = |other: &KnownObject| other.id != object.id && self.is_loosely(&relation.to, other);
         match relation.kind {
             RelationKind::Inside => {
@@ -371,6 +406,7 @@ impl<'a> Ground<'a> {
         match phrase.pronoun {
             Some(Pronoun::One) | None => {}
             Some(Pronoun::Place) => return self.focus.place == Some(object.id),
+            Some(Pronoun::Thing) if phrase.is_described() => {}
             Some(_) => return self.focus.recent.first() == Some(&object.id) || self.focus.place == Some(object.id),
         }
         let is_meant =
@@ -448,6 +484,9 @@ impl<'a> Ground<'a> {
         {
             return Ok(best.id);
         }
+        if let Some(spoken) = self.spoken_of_kind(phrase, &described.left) {
+            return Ok(spoken);
+        }
         let groups = self.told_apart(&ranked);
         let probability = groups.first().map_or(0.0, |(probability, _)| *probability);
         let rival = groups.get(1).map_or(0.0, |(probability, _)| *probability);
@@ -455,6 +494,13 @@ impl<'a> Ground<'a> {
             return Err(Miss::Several(rivals(&groups, RIVAL)));
         }
         Ok(best.id)
+    }
+
+    /// `the machine`, after the coffee machine was spoken of: a word for many things means the one at hand.
+    fn spoken_of_kind(&self, phrase: &Phrase, left: &[&KnownObject]) -> Option<ObjectId> {
+        let is_kind = !phrase.namings.is_empty() && phrase.namings.iter().all(|naming| naming.weight <= VAGUE_NAME);
+        let mut spoken = self.focus.place.iter().chain(&self.focus.recent);
+        spoken.find(|id| is_kind && !phrase.is_all && left.iter().any(|object| object.id == **id)).copied()
     }
 
     /// Those that are as described, with the probability of each, the likeliest first.

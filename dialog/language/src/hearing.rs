@@ -1,6 +1,8 @@
 //! What may have been said instead of what was heard: words that make no sense where they stand, and words that sound
 //! like them and do.
 
+use std::collections::BTreeSet;
+
 use cohabit_cdf::Catalog;
 
 use crate::{
@@ -8,14 +10,20 @@ use crate::{
     clause::{self, Part},
     intent::Intent,
     lexicon::Lexicon,
+    question::{self, QuestionKind},
     sound,
+    token::is_punctuation,
 };
 
 /// At most so many readings are tried, and so many words in place of one.
 const MOST_READINGS: usize = 24;
 const MOST_WORDS: usize = 8;
-/// Longer utterances are not guessed at.
+/// At most so many words were heard for one, which has more letters than this.
+const MOST_JOINED: usize = 3;
+const SHORTEST_JOINED: usize = 4;
+/// Longer utterances are not guessed at, nor what has more strange words than this.
 const LONGEST: usize = 24;
+const MOST_STRANGE: usize = 4;
 
 /// Other words that may stand at a place: how many they replace, which, and how different they sound.
 struct Guess {
@@ -39,13 +47,14 @@ pub(crate) fn is_puzzled(parts: &[Part], words: &[String]) -> bool {
         Part::Unclear(_) => true,
         Part::Aside(_) => !parts.iter().any(|part| matches!(part, Part::Clause(_))),
         Part::Fragment(phrase) | Part::Mention(phrase) => !phrase.unknown.is_empty(),
-        Part::Forbidden => false,
+        Part::Forbidden(_) | Part::Gloss(_) | Part::Where(..) => false,
     })
 }
 
 /// What may have been said, the likeliest first; each makes sense as it stands.
 pub(crate) fn readings(lexicon: &Lexicon, catalog: &Catalog, words: &[String]) -> Vec<Vec<String>> {
-    if words.len() > LONGEST {
+    let strange = words.iter().filter(|word| is_strange(lexicon, word)).count();
+    if words.len() > LONGEST || strange > MOST_STRANGE {
         return Vec::new();
     }
     let mut guesses = guesses(lexicon, words);
@@ -64,12 +73,10 @@ pub(crate) fn readings(lexicon: &Lexicon, catalog: &Catalog, words: &[String]) -
     }
     readings.sort_by(|(one, a), (other, b)| one.total_cmp(other).then_with(|| a.cmp(b)));
     let mut sensible: Vec<Vec<String>> = Vec::new();
-    for (_, reading) in readings.into_iter().take(MOST_TRIED) {
+    for (cost, reading) in readings.into_iter().take(MOST_TRIED) {
         let reading = lexicon.replaced(&reading);
-        let parts = clause::parts(lexicon, catalog, &reading);
-        let stops = |part: &Part| matches!(part, Part::Clause(clause) if clause.intent == Intent::Stop);
-        let asks = parts.iter().any(|part| matches!(part, Part::Clause(_)));
-        if asks && !is_puzzled(&parts, &reading) && !parts.iter().any(stops) && !sensible.contains(&reading) {
+        let makes_sense = asks(lexicon, catalog, &reading) || cost <= NEARLY && is_question(lexicon, &reading);
+        if makes_sense && !sensible.contains(&reading) {
             sensible.push(reading);
         }
         if sensible.len() == MOST_READINGS / 4 {
@@ -79,10 +86,38 @@ pub(crate) fn readings(lexicon: &Lexicon, catalog: &Catalog, words: &[String]) -
     sensible
 }
 
+/// Whether it is a request, and makes sense.
+fn asks(lexicon: &Lexicon, catalog: &Catalog, words: &[String]) -> bool {
+    let parts = clause::parts(lexicon, catalog, words);
+    let stops = |part: &Part| matches!(part, Part::Clause(clause) if clause.intent == Intent::Stop);
+    let asks = parts.iter().any(|part| matches!(part, Part::Clause(_)));
+    // `hit the road` is no `hit the red`.
+    let names = |part: &Part| match part {
+        Part::Clause(clause) => clause.objects.iter().all(|phrase| !phrase.is_empty()),
+        _ => true,
+    };
+    asks && !is_puzzled(&parts, words) && !parts.iter().any(stops) && parts.iter().all(names)
+}
+
+/// What may have been said instead, of words that make no request: the likeliest first.
+pub(crate) fn variants(lexicon: &Lexicon, words: &[String]) -> Vec<Vec<String>> {
+    let mut guesses = guesses(lexicon, words);
+    guesses.sort_by(|one, other| {
+        one.cost.total_cmp(&other.cost).then(one.at.cmp(&other.at)).then(one.word.cmp(&other.word))
+    });
+    guesses.iter().take(MOST_WORDS).map(|guess| with(words, &[guess])).collect()
+}
+
+fn is_question(lexicon: &Lexicon, words: &[String]) -> bool {
+    question::read(lexicon, words).is_some_and(|question| question.kind != QuestionKind::Unknown)
+}
+
 /// What sounds all but the same.
 const SAME: f32 = 0.36;
 /// What an ordinary word, which people say as well, may differ by.
 const NEARLY: f32 = 0.5;
+/// What an ordinary word may differ by, for each of its sounds.
+const ORDINARY_EACH: f32 = 0.14;
 /// What two slips at once cost more than each.
 const PAIR: f32 = 0.5;
 /// So many readings are looked at.
@@ -90,51 +125,79 @@ const MOST_TRIED: usize = 40;
 
 fn guesses(lexicon: &Lexicon, words: &[String]) -> Vec<Guess> {
     let mut guesses = Vec::new();
-    let is_strange = |word: &String| is_spoken(word) && !lexicon.vocabulary.has(word);
-    let has_strange = words.iter().any(is_strange);
+    let has_strange = words.iter().any(|word| is_strange(lexicon, word));
     for at in 0..words.len() {
-        let word = &words[at];
-        // Where a word is not known it is the one that was misheard; the others are, if they sound all but the same.
-        let limit = match (has_strange, is_strange(word), lexicon.vocabulary.is_plain(word)) {
-            (true, true, false) => f32::INFINITY,
-            (true, true, true) => NEARLY,
-            _ => SAME,
-        };
-        if is_spoken(word) && !lexicon.is_small_word(word) {
-            let heard = sound::sounds(word);
-            // A verb is misheard where a request begins, not within talk.
-            let begins =
-                at == 0 || matches!(words[at - 1].as_str(), "," | "." | "and" | "then" | "please" | "you" | "to");
-            let found = alike(lexicon, &heard, word)
-                .into_iter()
-                .filter(|(cost, meant)| *cost <= limit && (begins || !lexicon.verb_heads.contains(meant)));
-            guesses.extend(found.map(|(cost, word)| Guess { at, length: 1, word, cost }));
-        }
-        // `where house`: heard as two words.
-        if let Some(next) = words.get(at + 1).filter(|next| is_spoken(word) && is_spoken(next)) {
-            let whole = format!("{word}{next}");
-            let heard = sound::sounds(&whole);
-            let limit = if is_strange(word) || is_strange(next) { f32::INFINITY } else { SAME };
-            let fits = |(cost, meant): &(f32, String)| {
-                meant.len() > 4 && *cost <= limit && !lexicon.is_small_word(word) && !lexicon.verb_heads.contains(meant)
+        // A verb is misheard where a request begins, not within talk.
+        let begins =
+            at == 0 || lexicon.chatter.before_requests.contains(&words[at - 1]) || is_punctuation(&words[at - 1]);
+        for length in 1..=MOST_JOINED.min(words.len() - at) {
+            let heard = &words[at..at + length];
+            if !is_spoken(&heard[length - 1]) {
+                break;
+            }
+            let limit =
+                if length == 1 { limit_of(lexicon, &heard[0], has_strange) } else { joined_limit(lexicon, heard) };
+            if limit == 0.0 {
+                continue;
+            }
+            let fits = |(cost, meant): &(f32, &str)| {
+                *cost <= limit
+                    && !heard.iter().any(|word| word == meant)
+                    && (length == 1 && begins || !lexicon.verb_heads.contains(*meant) || lexicon.is_noun(meant))
+                    && (length == 1 || meant.len() > SHORTEST_JOINED)
             };
-            let found = alike(lexicon, &heard, &whole).into_iter().filter(fits).take(2);
-            guesses.extend(found.map(|(cost, word)| Guess { at, length: 2, word, cost }));
+            let found = alike(lexicon, heard).into_iter().filter(fits).take(if length == 1 { MOST_WORDS } else { 2 });
+            guesses.extend(found.map(|(cost, word)| Guess { at, length, word: word.to_owned(), cost }));
         }
     }
     guesses
 }
 
+/// How differently what was meant may sound. Where a word is not known it is the one that was misheard; the others are,
+/// if they sound all but the same.
+fn limit_of(lexicon: &Lexicon, word: &str, has_strange: bool) -> f32 {
+    match (has_strange, is_strange(lexicon, word), lexicon.vocabulary.is_plain(word)) {
+        _ if lexicon.is_small_word(word) => 0.0,
+        _ if lexicon.vocabulary.is_ordinary(word) => ordinary_limit(&[word.to_owned()]),
+        (true, true, false) => f32::INFINITY,
+        (true, true, true) => NEARLY,
+        _ => SAME,
+    }
+}
+
+/// The same of what was heard as several words: `where house`, `fridge rater`, `Mike row wave`.
+fn joined_limit(lexicon: &Lexicon, heard: &[String]) -> f32 {
+    let is_odd = |word: &String| is_strange(lexicon, word) && !lexicon.vocabulary.is_ordinary(word);
+    match heard.iter().any(is_odd) {
+        _ if heard.iter().all(|word| lexicon.is_small_word(word)) => 0.0,
+        true => f32::INFINITY,
+        false if heard.iter().any(|word| is_strange(lexicon, word)) => ordinary_limit(heard),
+        false => SAME,
+    }
+}
+
+/// What a recogniser takes for ordinary words sounds much like them: else they were said, and mean nothing here.
+fn ordinary_limit(heard: &[String]) -> f32 {
+    ORDINARY_EACH * heard.iter().map(|word| sound::sounds(word).len()).sum::<usize>() as f32
+}
+
+fn is_strange(lexicon: &Lexicon, word: &str) -> bool {
+    is_spoken(word) && !lexicon.vocabulary.has(word)
+}
+
 /// The words that sound like what was heard, the likest first.
-fn alike(lexicon: &Lexicon, heard: &Vec<char>, word: &str) -> Vec<(f32, String)> {
-    let mut found: Vec<(f32, &String)> = lexicon
-        .sounds
-        .iter()
-        .filter(|(known, _)| known.as_str() != word)
-        .filter_map(|(known, sounds)| sound::difference(heard, sounds).map(|cost| (cost, known)))
-        .collect();
+fn alike<'a>(lexicon: &'a Lexicon, heard: &[String]) -> Vec<(f32, &'a str)> {
+    let mut apart: Vec<char> = heard.iter().flat_map(|word| sound::sounds(word)).collect();
+    apart.dedup();
+    let together = sound::sounds(&heard.concat());
+    let mut found = lexicon.sounds.alike(&apart);
+    if together != apart {
+        found.extend(lexicon.sounds.alike(&together));
+    }
     found.sort_by(|(one, a), (other, b)| one.total_cmp(other).then(a.cmp(b)));
-    found.into_iter().take(MOST_WORDS).map(|(cost, word)| (cost, word.clone())).collect()
+    let mut known = BTreeSet::new();
+    found.retain(|(_, word)| known.insert(*word));
+    found
 }
 
 fn is_spoken(word: &str) -> bool {

@@ -64,6 +64,30 @@ impl Intent {
         }
     }
 
+    /// Whether it means nothing without an object.
+    pub(crate) const fn needs_object(self) -> bool {
+        matches!(
+            self,
+            Self::PickUp
+                | Self::Bring
+                | Self::Open
+                | Self::Close
+                | Self::Break
+                | Self::Scan
+                | Self::Toggle
+                | Self::TurnOn
+                | Self::TurnOff
+                | Self::Fill
+                | Self::Clean
+                | Self::Examine
+                | Self::Find
+                | Self::Highlight
+                | Self::Heat
+                | Self::Cool
+                | Self::Repair
+        )
+    }
+
     /// Whether it is carried out with the object in the hand, so that what is held is meant first.
     pub(crate) const fn is_about_held(self) -> bool {
         matches!(

@@ -20,6 +20,19 @@ pub struct Known {
     pub goals: Vec<KnownGoal>,
     /// The floor, as far as what it does not know may be looked for; `None` for who knows everything.
     pub floor: Option<Floor>,
+    /// Who speaks to it, if they are there themselves.
+    pub person: Option<KnownPerson>,
+}
+
+/// A person who speaks to the robot, as the body that they walk about in.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct KnownPerson {
+    /// Where they stand, m, in the world.
+    pub position_m: [f32; 3],
+    /// Where they look, in the world.
+    pub yaw_rad: f32,
+    /// Their room.
+    pub room: RoomId,
 }
 
 /// Where the robot is and what it holds.

@@ -1,8 +1,16 @@
 //! `the lab`: there are two, and only the room the robot is in or an answer tells which.
 
+use std::collections::BTreeSet;
+
 use cohabit_cdf::RoomId;
 
-use crate::{ask, known::Known, lexicon::Lexicon, understanding::Understanding};
+use crate::{
+    ask,
+    known::{Known, KnownObject},
+    lexicon::Lexicon,
+    token,
+    understanding::Understanding,
+};
 
 /// The two labs, as they are called in full.
 const LABS: [RoomId; 2] = [RoomId::Lab1, RoomId::Lab2];
@@ -47,10 +55,57 @@ pub(crate) fn here(room: RoomId) -> Option<RoomId> {
     LABS.contains(&room).then_some(room)
 }
 
-/// The lab that an answer names.
-pub(crate) fn answered(lexicon: &Lexicon, words: &[String]) -> Option<RoomId> {
+/// The lab that an answer names, counts, or describes by what only one of the two is known to have.
+pub(crate) fn answered(lexicon: &Lexicon, scene: &Known, words: &[String]) -> Option<RoomId> {
+    let named = (0..words.len()).find_map(|at| lexicon.rooms.longest(&words[at..]).map(|(_, room)| *room));
+    // Or it was no lab that was meant.
+    if named.is_some() {
+        return named;
+    }
+    let counted = (0..words.len()).find_map(|at| {
+        let rest = &words[at..];
+        let ordinal = lexicon.ordinals.longest(rest).map(|(_, ordinal)| *ordinal);
+        let is_titled = at > 0 && lexicon.titles.exact(&words[at - 1..at]).is_some();
+        let number = rest.first().and_then(|word| token::digits(word)).or_else(|| {
+            let (_, number) = lexicon.numbers.longest(rest)?;
+            (is_titled || words.len() == 1).then_some(*number)
+        });
+        ordinal.or(number.map(|number| number as i32))
+    });
+    match counted {
+        Some(1) => Some(LABS[0]),
+        Some(2 | -1) => Some(LABS[1]),
+        _ => told_by_things(lexicon, scene, words).or_else(|| told_by_word(lexicon, words)),
+    }
+}
+
+/// `the physics one`: a word that only one lab is called by.
+fn told_by_word(lexicon: &Lexicon, words: &[String]) -> Option<RoomId> {
+    words.iter().filter(|word| !lexicon.is_small_word(word)).find_map(|word| {
+        let rooms: BTreeSet<RoomId> = lexicon.rooms.with_word(word).copied().collect();
+        rooms.first().copied().filter(|room| rooms.len() == 1 && here(*room).is_some())
+    })
+}
+
+/// The lab that what follows its name describes: `lab with the laser in it`.
+pub(crate) fn described(lexicon: &Lexicon, scene: &Known, after: &[String]) -> Option<RoomId> {
+    let (first, rest) = after.split_first()?;
+    let end = rest.iter().position(|word| token::is_punctuation(word) || word == "and").unwrap_or(rest.len());
+    let is_description = matches!(first.as_str(), "with" | "where" | "that" | "which" | "having" | "containing");
+    is_description.then(|| told_by_things(lexicon, scene, &rest[..end])).flatten()
+}
+
+fn told_by_things(lexicon: &Lexicon, scene: &Known, words: &[String]) -> Option<RoomId> {
     (0..words.len()).find_map(|at| {
-        let (_, room) = lexicon.rooms.longest(&words[at..])?;
-        here(*room)
+        let (_, namings) = lexicon.classes.longest(&words[at..])?;
+        let is_named = |object: &&KnownObject| namings.iter().any(|naming| naming.class == object.class);
+        let rooms: BTreeSet<RoomId> = scene
+            .objects
+            .iter()
+            .filter(is_named)
+            .map(|object| object.room)
+            .filter(|room| here(*room).is_some())
+            .collect();
+        rooms.first().copied().filter(|_| rooms.len() == 1)
     })
 }

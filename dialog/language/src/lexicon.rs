@@ -5,7 +5,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use cohabit_cdf::{Catalog, ClassId, Fluid, Property, RoomId, state::StateFlag};
 use serde::{Deserialize, Serialize};
 
-use crate::{inflect, intent::Intent, question::QuestionKind, sound, spelling::Vocabulary, table::PhraseTable, token};
+use crate::{
+    amend::Amends, chatter::Chatter, inflect, intent::Intent, question::QuestionKind, sound::Sounding,
+    spelling::Vocabulary, table::PhraseTable, token, wish::Wishes,
+};
 
 /// A class that a word may mean, and how much it means it: 1 for its name, less for words further down its list.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
@@ -16,6 +19,9 @@ pub(crate) struct Naming {
 
 /// How much one word of a name of several means its class.
 const NAME_PART: f32 = 0.6;
+
+/// The same of its other names.
+const WORD_PART: f32 = 0.5;
 
 /// How much the word for a kind of things means a class of that kind.
 const KIND: f32 = 0.3;
@@ -122,12 +128,24 @@ pub(crate) struct Lexicon {
     /// Openers, fillers and oaths.
     pub(crate) talk: PhraseTable<()>,
     pub(crate) answer_lead: PhraseTable<()>,
+    /// Nouns for anything.
+    pub(crate) generic: PhraseTable<()>,
+    pub(crate) people: PhraseTable<()>,
+    pub(crate) goal_words: PhraseTable<()>,
+    pub(crate) text_words: PhraseTable<()>,
+    pub(crate) hand_words: PhraseTable<()>,
+    pub(crate) motion_spare: PhraseTable<()>,
+    pub(crate) reports: PhraseTable<()>,
+    pub(crate) undone: PhraseTable<()>,
+    pub(crate) titles: PhraseTable<()>,
     pub(crate) pronouns: PhraseTable<Pronoun>,
     pub(crate) prepositions: PhraseTable<Preposition>,
     pub(crate) sides: PhraseTable<Side>,
     pub(crate) ordinals: PhraseTable<i32>,
     pub(crate) directions: PhraseTable<Direction>,
     pub(crate) units: PhraseTable<f32>,
+    /// Parts of a turn, in degrees.
+    pub(crate) turns: PhraseTable<f32>,
     pub(crate) numbers: PhraseTable<f32>,
     pub(crate) colors: PhraseTable<String>,
     pub(crate) states: PhraseTable<StateWord>,
@@ -149,11 +167,16 @@ pub(crate) struct Lexicon {
     pub(crate) name_parts: PhraseTable<Vec<Naming>>,
     /// Words for kinds of things.
     pub(crate) kinds: BTreeSet<String>,
+    /// What can be picked up.
+    pub(crate) carried: BTreeSet<ClassId>,
     /// All words that name a class, by its index.
     pub(crate) class_words: Vec<BTreeSet<String>>,
     pub(crate) vocabulary: Vocabulary,
+    pub(crate) wishes: Wishes,
+    pub(crate) amends: Amends,
+    pub(crate) chatter: Chatter,
     /// How the words sound that may be taken for others.
-    pub(crate) sounds: Vec<(String, Vec<char>)>,
+    pub(crate) sounds: Sounding,
 }
 
 #[derive(Deserialize)]
@@ -180,12 +203,22 @@ struct WordFile {
     brings_about: BTreeMap<String, Vec<String>>,
     kinds: BTreeMap<String, Property>,
     answer_lead: Words,
+    generic: Words,
+    people: Words,
+    goal_words: Words,
+    text_words: Words,
+    hand_words: Words,
+    motion_spare: Words,
+    reports: Words,
+    undone: Words,
+    titles: Words,
     pronouns: BTreeMap<Pronoun, Vec<String>>,
     prepositions: BTreeMap<Preposition, Vec<String>>,
     sides: BTreeMap<Side, Vec<String>>,
     ordinals: BTreeMap<String, i32>,
     directions: BTreeMap<Direction, Vec<String>>,
     units: BTreeMap<String, f32>,
+    turns: BTreeMap<String, f32>,
     numbers: BTreeMap<String, f32>,
     colors: BTreeMap<String, Vec<String>>,
     states: BTreeMap<String, Vec<String>>,
@@ -255,11 +288,17 @@ impl Lexicon {
     /// The built-in tables, and the names of the catalogue's classes.
     pub(crate) fn new(catalog: &Catalog) -> Self {
         let file: WordFile = parse(include_str!("../data/words.toml"));
-        let mut lexicon = Self::default();
+        let mut lexicon = Self {
+            wishes: parse(include_str!("../data/wishes.toml")),
+            amends: parse(include_str!("../data/amends.toml")),
+            chatter: parse(include_str!("../data/chatter.toml")),
+            ..Self::default()
+        };
         lexicon.add_words(&file);
         lexicon.add_smalls(&file);
         lexicon.add_verbs();
         lexicon.add_classes(catalog, &file.aliases);
+        lexicon.add_word_parts(catalog);
         lexicon.add_kinds(catalog, &file.kinds);
         lexicon.build_vocabulary();
         lexicon.build_sounds();
@@ -274,6 +313,12 @@ impl Lexicon {
             || SMALL_WORDS.contains(&word[0].as_str())
     }
 
+    /// Whether it is a word of the name of a thing.
+    pub(crate) fn is_noun(&self, word: &str) -> bool {
+        let word = [word.to_owned()];
+        self.classes.exact(&word).is_some() || self.name_parts.exact(&word).is_some()
+    }
+
     /// The words of an utterance: tokens, with spelling repaired and set phrases replaced; and how many were misspelt.
     pub(crate) fn normalise(&self, text: &str) -> (Vec<String>, usize) {
         let replaced = self.replaced(&token::words(text));
@@ -286,6 +331,17 @@ impl Lexicon {
                 continue;
             }
             let words = self.vocabulary.correct(word);
+            // `the mugs`: all of them.
+            let is_plural = !self.vocabulary.has(word) && words.len() == 1 && self.classes.exact(&words).is_some();
+            if is_plural && self.vocabulary.singular(word).as_ref() == words.first() {
+                let article = corrected.len().saturating_sub(1);
+                let says_which =
+                    corrected.last().is_some_and(|last| matches!(last.as_str(), "the" | "these" | "those"));
+                let is_all = article > 0 && self.all.exact(&corrected[article - 1..article]).is_some();
+                if says_which && !is_all && article > 0 && corrected[article - 1] != "of" {
+                    corrected.insert(article, "all".to_owned());
+                }
+            }
             // A plural, or two words run together, is no slip.
             repairs += usize::from(matches!(words.as_slice(), [one] if one != word && !word.starts_with(one.as_str())));
             corrected.extend(words);
@@ -293,14 +349,38 @@ impl Lexicon {
         (self.replaced(&corrected), repairs)
     }
 
+    /// The words of an utterance as they were said: set phrases replaced, and no spelling repaired.
+    pub(crate) fn as_said(&self, text: &str) -> Vec<String> {
+        let words = self.replaced(&token::words(text));
+        words
+            .into_iter()
+            .map(|word| self.vocabulary.singular(&word).filter(|_| !self.vocabulary.has(&word)).unwrap_or(word))
+            .collect()
+    }
+
     /// `opening` after `would you mind`, as the verb; and `makes` after what makes, as no verb.
     fn as_request(&self, before: &[String], word: &str) -> Option<String> {
         let last = before.last().map(String::as_str);
         let is_asked = matches!(
             last,
-            None | Some("mind" | "about" | "by" | "try" | "start" | "begin" | "please" | "meant" | "mean" | "to")
+            None | Some(
+                "mind"
+                    | "awfully"
+                    | "terribly"
+                    | "kindly"
+                    | "about"
+                    | "by"
+                    | "try"
+                    | "start"
+                    | "begin"
+                    | "please"
+                    | "meant"
+                    | "mean"
+                    | "to"
+            )
         );
-        if is_asked && word.ends_with("ing") && !self.classes.words().any(|known| known == word) {
+        let is_form = word.ends_with("ing") || last == Some("to") && word.ends_with("ed");
+        if is_asked && is_form && !self.classes.words().any(|known| known == word) {
             return inflect::stem(self, word);
         }
         let verb = word.strip_suffix('s').filter(|verb| self.verb_heads.contains(*verb))?;
@@ -343,6 +423,15 @@ impl Lexicon {
             (&mut self.negation, &file.negation),
             (&mut self.talk, &file.talk),
             (&mut self.answer_lead, &file.answer_lead),
+            (&mut self.generic, &file.generic),
+            (&mut self.people, &file.people),
+            (&mut self.goal_words, &file.goal_words),
+            (&mut self.text_words, &file.text_words),
+            (&mut self.hand_words, &file.hand_words),
+            (&mut self.motion_spare, &file.motion_spare),
+            (&mut self.reports, &file.reports),
+            (&mut self.undone, &file.undone),
+            (&mut self.titles, &file.titles),
         ];
         for (table, entry) in plain {
             entry.words.iter().for_each(|word| table.insert(word, ()));
@@ -353,6 +442,7 @@ impl Lexicon {
         add_all(&mut self.directions, &file.directions);
         file.ordinals.iter().for_each(|(word, value)| self.ordinals.insert(word, *value));
         file.units.iter().for_each(|(word, value)| self.units.insert(word, *value));
+        file.turns.iter().for_each(|(word, value)| self.turns.insert(word, *value));
         file.numbers.iter().for_each(|(word, value)| self.numbers.insert(word, *value));
         for (color, words) in &file.colors {
             words.iter().for_each(|word| self.colors.insert(word, color.clone()));
@@ -427,6 +517,9 @@ impl Lexicon {
     fn add_classes(&mut self, catalog: &Catalog, aliases: &BTreeMap<String, Vec<String>>) {
         for (index, class) in (0_u16..).zip(catalog.classes()) {
             let id = ClassId(index);
+            if class.has(Property::Pickupable) {
+                self.carried.insert(id);
+            }
             self.name_class(&class.name, id, 1.0);
             self.name_class(&class.id, id, 1.0);
             self.add_name_parts(&class.name, id);
@@ -444,9 +537,37 @@ impl Lexicon {
     fn add_name_parts(&mut self, name: &str, class: ClassId) {
         let words = self.replaced(&token::words(name));
         let is_room = |word: &String| self.rooms.words().any(|known| known == word);
-        let parts: Vec<String> = words.iter().filter(|word| word.len() > 3 && !is_room(word)).cloned().collect();
+        let parts: Vec<String> = words.iter().filter(|word| word.len() > 2 && !is_room(word)).cloned().collect();
         for word in parts.iter().filter(|_| words.len() > 1) {
             self.name_parts.entry(word).push(Naming { class, weight: NAME_PART });
+        }
+    }
+
+    /// `garbage` for the garbage can: parts of other names than the first, where the word means nothing else.
+    fn add_word_parts(&mut self, catalog: &Catalog) {
+        for (index, class) in (0_u16..).zip(catalog.classes()).filter(|(_, class)| !class.has(Property::Decor)) {
+            for name in class.words.iter().map(|name| token::words(name)).filter(|name| name.len() == 2) {
+                let word = &name[..1];
+                let is_free = word[0].len() > 3
+                    && !self.is_small_word(&word[0])
+                    && self.classes.exact(word).is_none()
+                    && self.name_parts.exact(word).is_none_or(|known| known.iter().all(|one| one.weight < NAME_PART))
+                    && [
+                        self.colors.exact(word).is_some(),
+                        self.fluids.exact(word).is_some(),
+                        self.states.exact(word).is_some(),
+                    ] == [false; 3]
+                    && !self
+                        .adjectives
+                        .words()
+                        .chain(self.rooms.words())
+                        .chain(self.verbs.words())
+                        .any(|known| *known == word[0]);
+                let namings = is_free.then(|| self.name_parts.entry(&word[0]));
+                if let Some(namings) = namings.filter(|known| known.iter().all(|one| one.class != ClassId(index))) {
+                    namings.push(Naming { class: ClassId(index), weight: WORD_PART });
+                }
+            }
         }
     }
 
@@ -491,6 +612,7 @@ impl Lexicon {
             self.states.words().collect(),
             self.ordinals.words().collect(),
             self.units.words().collect(),
+            self.numbers.words().collect(),
             self.prepositions.words().collect(),
         ];
         let is_vague = |word: &str| {
@@ -500,7 +622,7 @@ impl Lexicon {
             word.len() > 1 && !is_vague(word) && word.chars().all(|letter| letter.is_ascii_alphabetic())
         };
         let words: BTreeSet<&String> = tables.iter().flatten().filter(spoken).copied().collect();
-        self.sounds = words.into_iter().map(|word| (word.clone(), sound::sounds(word))).collect();
+        self.sounds = Sounding::new(words.into_iter());
     }
 
     fn build_vocabulary(&mut self) {
@@ -519,6 +641,14 @@ impl Lexicon {
             &self.viewpoints,
             &self.negation,
             &self.answer_lead,
+            &self.generic,
+            &self.goal_words,
+            &self.text_words,
+            &self.hand_words,
+            &self.motion_spare,
+            &self.reports,
+            &self.undone,
+            &self.titles,
         ] {
             table.words().for_each(&mut learn);
         }
@@ -529,6 +659,7 @@ impl Lexicon {
         self.ordinals.words().for_each(&mut learn);
         self.directions.words().for_each(&mut learn);
         self.units.words().for_each(&mut learn);
+        self.turns.words().for_each(&mut learn);
         self.numbers.words().for_each(&mut learn);
         self.colors.words().for_each(&mut learn);
         self.states.words().for_each(&mut learn);
@@ -540,9 +671,10 @@ impl Lexicon {
         self.classes.words().for_each(&mut learn);
         self.brings_about.words().for_each(&mut learn);
         self.kinds.iter().for_each(&mut learn);
-        self.talk.words().for_each(|word| vocabulary.learn_talk(word));
+        self.talk.words().chain(self.people.words()).for_each(|word| vocabulary.learn_talk(word));
         self.chat.words().for_each(|word| vocabulary.learn_plain(word));
         include_str!("../data/common.txt").split_whitespace().for_each(|word| vocabulary.learn_plain(word));
+        include_str!("../data/ordinary.txt").split_whitespace().for_each(|word| vocabulary.learn_ordinary(word));
         self.vocabulary = vocabulary;
     }
 }

@@ -14,12 +14,13 @@
 //!
 //! let language = Language::new(Arc::new(Catalog::parse(&[], &[])?));
 //! let robot = KnownRobot { position_m: [0.0; 3], yaw_rad: 0.0, room: RoomId::Lab1, held: None };
-//! let scene = Known { robot, objects: vec![], goals: vec![], floor: None };
+//! let scene = Known { robot, objects: vec![], goals: vec![], floor: None, person: None };
 //! let meant = language.understand("Could you go to the kitchen, please?", &scene, &mut Context::default());
 //! assert!(matches!(meant, Understanding::Plan { steps, .. } if steps.len() == 1));
 //! # Ok::<(), cohabit_cdf::CatalogError>(())
 //! ```
 
+mod address;
 mod amend;
 mod answer;
 mod ask;
@@ -35,20 +36,26 @@ mod device;
 mod floor;
 mod ground;
 mod habits;
+mod heard;
 mod hearing;
 mod imagine;
 mod inflect;
+mod inquiry;
 mod intent;
+mod interpret;
 mod judge;
 mod known;
 mod lab;
 mod lexicon;
 mod memory;
+mod noun;
 mod oracle;
+mod order;
 mod phrase;
 mod plan;
 mod process;
 mod question;
+mod reading;
 mod remedy;
 mod reply;
 mod report;
@@ -58,19 +65,24 @@ mod sight;
 mod sound;
 mod spelling;
 mod table;
+mod tail;
+mod tidy;
 mod token;
 mod understanding;
 mod undo;
+mod verbless;
 mod wish;
 
 use std::sync::Arc;
 
 use cohabit_cdf::{Catalog, ObjectId, Status};
 
+pub use address::{Addressed, Roster};
 pub use confidence::{Doubt, Features, Referent, Referents};
 pub use context::Context;
 pub use floor::{Floor, FloorPlan};
-pub use known::{Known, KnownGoal, KnownObject, KnownRobot, within_half_turn};
+pub use interpret::{Interpreter, Unclear};
+pub use known::{Known, KnownGoal, KnownObject, KnownPerson, KnownRobot, within_half_turn};
 pub use memory::{Knows, Lessons, Memory};
 pub use oracle::Oracle;
 pub use sight::Gaze;

@@ -25,6 +25,9 @@ pub(crate) struct Phrase {
     pub(crate) room: Option<RoomId>,
     pub(crate) is_here: bool,
     pub(crate) is_all: bool,
+    /// Of all of them, so many: `two of the mugs`.
+    #[serde(default)]
+    pub(crate) count: Option<u8>,
     /// Whether any of them will do.
     #[serde(default)]
     pub(crate) is_any: bool,
@@ -107,6 +110,7 @@ impl Phrase {
             || self.color.is_some()
             || self.is_here
             || !self.not.is_empty()
+            || self.pronoun == Some(Pronoun::Thing) && !self.states.is_empty()
     }
 
     /// How much it means this class; nothing, if it does not.
@@ -220,58 +224,15 @@ impl<'a> Reader<'a> {
         Some(phrase)
     }
 
-    /// What describes a thing after its noun: `not the red one`, `furthest away`, `that is red`.
-    pub(crate) fn after_noun(&mut self, phrase: &mut Phrase) -> bool {
-        let mut reader = *self;
-        while reader.next_is(",") || reader.next_is("but") {
-            reader.at += 1;
-        }
-        let is_linked = ["that", "which", "who"].into_iter().any(|word| reader.next_is(word))
-            && reader.rest().get(1).is_some_and(|word| matches!(word.as_str(), "is" | "are"))
-            && reader.rest().get(2).is_some_and(|word| word == "not");
-        if is_linked {
-            reader.at += 2;
-        }
-        if reader.next_is("not") {
-            reader.at += 1;
-            let Some(other) = reader.phrase().filter(|other| other.unknown.is_empty()) else { return false };
-            phrase.not.push(other);
-            *self = reader;
-            return true;
-        }
-        let mut reader = *self;
-        if phrase.side.is_none()
-            && let Some((length, side @ (Side::Nearest | Side::Farthest))) = reader.lexicon.sides.longest(reader.rest())
-            && length > 1
-        {
-            phrase.side = Some(*side);
-            self.at += length;
-            return true;
-        }
-        let is_linked = ["that", "which"].into_iter().any(|word| reader.next_is(word))
-            && reader.rest().get(1).is_some_and(|word| matches!(word.as_str(), "is" | "are"));
-        if !is_linked {
-            return false;
-        }
-        reader.at += 2;
-        let rest = reader.rest();
-        let noun = reader.lexicon.classes.longest(rest).map_or(0, |(length, _)| length);
-        if let Some((length, color)) = reader.lexicon.colors.longest(rest).filter(|(length, _)| *length > noun) {
-            phrase.color = Some(color.clone());
-            self.at += 2 + length;
-            return true;
-        }
-        if let Some((length, state)) = reader.lexicon.states.longest(rest).filter(|(length, _)| *length > noun) {
-            phrase.states.push(*state);
-            self.at += 2 + length;
-            return true;
-        }
-        false
-    }
-
     fn pronoun(&mut self) -> Option<Pronoun> {
         let rest = self.rest();
         let (length, pronoun) = self.lexicon.pronouns.longest(rest)?;
+        // `the tool board` is no tool.
+        let is_named =
+            |at: usize| self.lexicon.classes.longest(&rest[at..]).is_some_and(|(noun, _)| at + noun > length);
+        if length > 1 && self.lexicon.articles.exact(&rest[..1]).is_some() && is_named(1) {
+            return None;
+        }
         // `that mug`, `this one red mug`: an article, unless nothing follows that could be a noun phrase.
         let mut after = *self;
         after.at += length;
@@ -286,7 +247,7 @@ impl<'a> Reader<'a> {
         Some(*pronoun)
     }
 
-    fn starts_noun(&self) -> bool {
+    pub(crate) fn starts_noun(&self) -> bool {
         let rest = self.rest();
         let lexicon = self.lexicon;
         lexicon.classes.longest(rest).is_some()
@@ -295,163 +256,6 @@ impl<'a> Reader<'a> {
             || lexicon.sides.longest(rest).is_some_and(|(_, side)| !matches!(side, Side::Front | Side::Behind))
             || lexicon.ordinals.longest(rest).is_some()
             || lexicon.articles.longest(rest).is_some_and(|(length, _)| rest.len() > length && !self.at_verb())
-    }
-
-    /// One word or phrase before the noun.
-    fn modifier(&mut self, phrase: &mut Phrase) -> bool {
-        let (rest, lexicon) = (self.rest(), self.lexicon);
-        let noun = lexicon.classes.longest(rest).map_or(0, |(length, _)| length);
-        let step = |reader: &mut Self, length: usize| {
-            reader.at += length;
-            true
-        };
-        if let Some((length, ())) = lexicon.one_of.longest(rest).filter(|(length, ())| rest.len() > *length) {
-            phrase.is_any = true;
-            return step(self, length);
-        }
-        // `the two apples`
-        if let Some((length, value)) = lexicon.numbers.longest(rest)
-            && *value >= 2.0
-            && lexicon.classes.longest(rest).is_none()
-            && lexicon.units.longest(&rest[length..]).is_none()
-            && rest.len() > length
-            && (lexicon.classes.longest(&rest[length..]).is_some() || lexicon.colors.longest(&rest[length..]).is_some())
-        {
-            phrase.is_all = true;
-            return step(self, length);
-        }
-        if let Some((length, ())) = lexicon.all.longest(rest) {
-            phrase.is_all = true;
-            return step(self, length);
-        }
-        if let Some((length, room)) = self.room_before_noun() {
-            phrase.room = Some(room);
-            return step(self, length);
-        }
-        if let Some((length, color)) = lexicon.colors.longest(rest)
-            && length > noun
-        {
-            phrase.color = Some(color.clone());
-            return step(self, length);
-        }
-        if let Some((length, state)) = lexicon.states.longest(rest)
-            && length > noun
-        {
-            phrase.states.push(*state);
-            return step(self, length);
-        }
-        if let Some((length, side)) = lexicon.sides.longest(rest)
-            && length > noun
-        {
-            phrase.side = Some(*side);
-            return step(self, length);
-        }
-        if let Some((length, ordinal)) = lexicon.ordinals.longest(rest)
-            && length > noun
-        {
-            phrase.ordinal = Some(*ordinal);
-            return step(self, length);
-        }
-        let filler = lexicon.articles.longest(rest).or_else(|| lexicon.adjectives.longest(rest));
-        if let Some((length, ())) = filler
-            && length > noun
-            && rest.len() > length
-            && !self.is_one_head()
-        {
-            return step(self, length);
-        }
-        false
-    }
-
-    /// `one` as the noun itself, as in `the red one`.
-    fn is_one_head(&self) -> bool {
-        let rest = self.rest();
-        let is_one = self.lexicon.pronouns.longest(rest).is_some_and(|(_, pronoun)| *pronoun == Pronoun::One);
-        let mut after = *self;
-        after.at += 1;
-        let is_described = ["that", "which", "who", "not"].into_iter().any(|word| after.next_is(word));
-        is_one && (is_described || !after.starts_noun())
-    }
-
-    /// `break room` in `the break room table`.
-    fn room_before_noun(&self) -> Option<(usize, RoomId)> {
-        let (length, room) = self.lexicon.rooms.longest(self.rest())?;
-        let noun = self.lexicon.classes.longest(self.rest()).map_or(0, |(length, _)| length);
-        let after = &self.rest()[length..];
-        (noun <= length && self.lexicon.classes.longest(after).is_some()).then_some((length, *room))
-    }
-
-    fn head(&mut self, phrase: &mut Phrase) {
-        let (rest, lexicon) = (self.rest(), self.lexicon);
-        if let Some((length, namings)) = lexicon.classes.longest(rest) {
-            phrase.namings = namings.clone();
-            phrase.fluid = lexicon.fluids.exact(&rest[..length]).copied();
-            // `red apple` may be a name in the catalogue; that it is to be red holds all the same.
-            if let Some((_, color)) = lexicon.colors.longest(rest).filter(|(color, _)| *color < length) {
-                phrase.color = phrase.color.take().or_else(|| Some(color.clone()));
-            }
-            self.at += length;
-            self.compound(&rest[..length], phrase);
-            return;
-        }
-        let Some(word) = rest.first() else { return };
-        if self.is_one_head() {
-            phrase.pronoun = Some(Pronoun::One);
-            self.at += 1;
-        } else if word.contains('_') {
-            phrase.instance = Some(word.clone());
-            self.at += 1;
-        } else if let Some((length, fluid)) = lexicon.fluids.longest(rest) {
-            phrase.fluid = Some(*fluid);
-            self.at += length;
-        } else if let Some((length, namings)) = lexicon.name_parts.longest(rest).filter(|_| self.is_free_noun()) {
-            phrase.namings = namings.clone();
-            self.at += length;
-        } else if !lexicon.vocabulary.has(word) && !token::is_punctuation(word) {
-            self.unknown_head(phrase);
-        }
-    }
-
-    /// Whether the next word is no verb and no form of address.
-    fn is_free_noun(&self) -> bool {
-        !self.at_verb() && self.lexicon.trail.longest(self.rest()).is_none()
-    }
-
-    /// `hammer cartridge`: the second noun is meant, and the first says which; `fridge door` stays the fridge.
-    fn compound(&mut self, first: &[String], phrase: &mut Phrase) {
-        if self.at_verb() {
-            return;
-        }
-        let lexicon = self.lexicon;
-        let Some((length, namings)) = lexicon.classes.longest(self.rest()) else { return };
-        let is_said = |naming: &&Naming| {
-            let words = lexicon.class_words.get(usize::from(naming.class.0));
-            words.is_some_and(|words| first.iter().all(|word| words.contains(word)))
-        };
-        let meant: Vec<Naming> = namings.iter().filter(is_said).copied().collect();
-        self.at += length;
-        if !meant.is_empty() {
-            phrase.namings = meant;
-            phrase.fluid = None;
-        }
-    }
-
-    /// Words nobody taught it: they may be adjectives before a noun it knows, or the noun.
-    fn unknown_head(&mut self, phrase: &mut Phrase) {
-        let mut reader = *self;
-        while let Some(word) = reader.rest().first()
-            && !reader.lexicon.vocabulary.has(word)
-            && !token::is_punctuation(word)
-        {
-            phrase.unknown.push(word.clone());
-            reader.at += 1;
-        }
-        while !reader.is_done() && reader.modifier(phrase) {}
-        if let Some((length, namings)) = reader.lexicon.classes.longest(reader.rest()) {
-            phrase.namings = namings.clone();
-            reader.at += length;
-        }
-        *self = reader;
     }
 
     /// A preposition and what stands after it.
@@ -464,6 +268,10 @@ impl<'a> Reader<'a> {
         if let Some(side) = reader.side_place() {
             *self = reader;
             return Some((Preposition::At, Place::Side(side)));
+        }
+        if let Some(phrase) = reader.on_which() {
+            *self = reader;
+            return Some((Preposition::With, Place::Object(phrase)));
         }
         if let Some((length, ())) = reader.lexicon.here.longest(reader.rest()) {
             reader.at += length;
@@ -485,6 +293,12 @@ impl<'a> Reader<'a> {
         let mut reader = *self;
         if let Some((length, ())) = reader.lexicon.here.longest(reader.rest()) {
             self.at += length;
+            // `the room with the laser`
+            let mut what = *self;
+            if let Some((Preposition::With, place @ Place::Object(_))) = what.place() {
+                *self = what;
+                return Some(place);
+            }
             return Some(Place::Here);
         }
         if let Some(place) = reader.viewpoint() {
@@ -535,6 +349,26 @@ impl<'a> Reader<'a> {
         }
         *self = reader;
         Some(Place::Viewpoints(number))
+    }
+
+    /// `on which the record is lying`, `where the hammer is`: with that on it.
+    fn on_which(&mut self) -> Option<Phrase> {
+        let mut reader = *self;
+        let is_placed = ["on", "in", "at"].iter().any(|word| reader.next_is(word));
+        reader.at += usize::from(is_placed);
+        if !(is_placed && reader.next_is("which") || !is_placed && reader.next_is("where")) {
+            return None;
+        }
+        reader.at += 1;
+        let phrase = reader.phrase().filter(|phrase| !phrase.is_empty() && phrase.unknown.is_empty())?;
+        let start = reader.at;
+        reader.skip(|lexicon| &lexicon.link);
+        let is_said = reader.at > start || reader.next_is("are");
+        reader.at += usize::from(reader.next_is("are"));
+        is_said.then(|| {
+            *self = reader;
+            phrase
+        })
     }
 
     /// `on the left`, `in front of you`.
@@ -604,6 +438,17 @@ impl<'a> Reader<'a> {
                 }
             }
         }
+        // `a hundred and eighty`
+        let mut more = reader;
+        more.at += usize::from(more.next_is("and"));
+        if value >= 100.0
+            && let Some((length, rest)) = more.lexicon.numbers.longest(more.rest()).filter(|(_, rest)| **rest < 100.0)
+            && *rest >= 1.0
+        {
+            value += rest;
+            more.at += length;
+            reader = more;
+        }
         let half = ["and", "a", "half"];
         if reader.rest().iter().map(String::as_str).take(3).eq(half) {
             value += 0.5;
@@ -635,7 +480,14 @@ impl Phrase {
             Place::Here => self.is_here = true,
             Place::Side(side) => self.side = Some(side),
             Place::Viewpoints(_) => {}
-            Place::Object(to) => {
+            Place::Object(mut to) => {
+                // `the thing next to the computer that is not the cartridge`: no cartridge is a computer.
+                let nots = std::mem::take(&mut to.not);
+                let is_same = |not: &Self| not.namings.iter().any(|naming| to.naming(naming.class).is_some());
+                let (inner, outer): (Vec<Self>, Vec<Self>) =
+                    nots.into_iter().partition(|not| not.namings.is_empty() || is_same(not));
+                to.not = inner;
+                self.not.extend(outer);
                 let kind = match preposition {
                     Preposition::Near | Preposition::At => RelationKind::Near,
                     Preposition::With => RelationKind::Has,
@@ -643,7 +495,12 @@ impl Phrase {
                     Preposition::RightOf => RelationKind::RightOf,
                     _ => RelationKind::Inside,
                 };
-                self.relations.push(Relation { kind, to });
+                // `all that is on the desk with the trophy`
+                let inner = self.relations.last_mut().filter(|_| kind == RelationKind::Has && self.is_all);
+                match inner {
+                    Some(inner) => inner.to.relations.push(Relation { kind, to }),
+                    None => self.relations.push(Relation { kind, to }),
+                }
             }
         }
     }

@@ -11,7 +11,7 @@ use crate::{
     intent::Intent,
     judge::Judge,
     known::{Known, KnownObject},
-    lexicon::{Direction, Preposition, Side},
+    lexicon::{Direction, Preposition, Pronoun, Side},
     phrase::{Phrase, Place},
     process::Devices,
     search,
@@ -19,6 +19,8 @@ use crate::{
     understanding::{Asking, Step},
 };
 
+/// How far from a person it stops that it comes to, m.
+const BESIDE_M: f32 = 0.9;
 /// Where nothing is said: how far to walk, turn and tilt the head.
 const DEFAULT_MOVE_M: f32 = 1.0;
 const DEFAULT_TURN_DEG: f32 = 90.0;
@@ -74,7 +76,11 @@ impl Planner<'_> {
         for (index, clause) in clauses.iter().enumerate() {
             self.clause = index;
             self.begun = (self.steps.len(), self.focus.clone());
-            self.add(clause)?;
+            match (self.add(clause), clauses.get(index + 1)) {
+                // `take it, take the knife`: what was meant was said at once.
+                (Err(Fault::Miss { miss: Miss::NoReferent, .. }), Some(next)) if next.intent == clause.intent => {}
+                (result, _) => result?,
+            }
         }
         Ok(())
     }
@@ -119,6 +125,9 @@ impl Planner<'_> {
     /// What was spoken of in passing is what `it` and `there` may stand for.
     fn mention(&mut self, clause: &Clause) {
         let want = Want::place(Intent::Find, &[], None);
+        if let Some(Phrase { room: Some(room), .. }) = clause.objects.first().filter(|phrase| phrase.is_empty()) {
+            (self.focus.room, self.focus.place) = (Some(*room), None);
+        }
         let found = clause.objects.first().and_then(|phrase| self.ground().one(phrase, &want).ok());
         let Some(object) = found else { return };
         self.focus.mention(object);
@@ -211,19 +220,35 @@ impl Planner<'_> {
     }
 
     /// The objects of a clause: one each, or all of a kind.
-    pub(crate) fn find_objects(&self, settled: &Settled, want: &Want<'_>) -> Result<Vec<ObjectId>, Fault> {
+    pub(crate) fn find_objects(&mut self, settled: &Settled, want: &Want<'_>) -> Result<Vec<ObjectId>, Fault> {
         let mut found = Vec::new();
         for (index, phrase) in settled.objects.iter().enumerate() {
-            let role = Some(Role::Object(index));
-            if phrase.is_all {
-                found.extend(
-                    self.ground().all(phrase, want).map_err(|miss| self.miss(phrase, miss, want.intent, role))?,
-                );
-            } else {
-                found.push(self.find_one(phrase, want, role)?);
-            }
+            found.extend(self.find_each(phrase, want, Some(Role::Object(index)))?);
+        }
+        if found.len() > 1 {
+            self.focus.group.clone_from(&found);
         }
         Ok(found)
+    }
+
+    fn find_each(&self, phrase: &Phrase, want: &Want<'_>, role: Option<Role>) -> Result<Vec<ObjectId>, Fault> {
+        if self.is_group(phrase) {
+            return Ok(self.focus.group.clone());
+        }
+        if phrase.is_all {
+            return self.ground().all(phrase, want).map_err(|miss| self.miss(phrase, miss, want.intent, role));
+        }
+        Ok(vec![self.find_one(phrase, want, role)?])
+    }
+
+    /// `them`, of several that were spoken of together.
+    fn is_group(&self, phrase: &Phrase) -> bool {
+        phrase.pronoun == Some(Pronoun::Things) && phrase.chosen.is_none() && self.focus.group.len() > 1
+    }
+
+    /// Whether a clause is about more than one object.
+    pub(crate) fn is_several(&self, settled: &Settled) -> bool {
+        settled.objects.len() > 1 || settled.objects.iter().any(|phrase| phrase.is_all || self.is_group(phrase))
     }
 
     pub(crate) fn has(&self, object: ObjectId, property: Property) -> bool {
@@ -339,6 +364,9 @@ impl Planner<'_> {
             Place::Viewpoints(number) => self.go_to_viewpoint(self.scene.robot.room, number),
             Place::Here => self.notes.push("I am here already".to_owned()),
             Place::Side(side) => self.turn_to_side(side),
+            Place::Object(Phrase { pronoun: Some(Pronoun::Place), .. }) if self.spoken_room().is_some() => {
+                self.spoken_room().into_iter().for_each(|room| self.go_to_room(room));
+            }
             Place::Object(phrase) if phrase.is_empty() && phrase.room.is_none() && phrase.side.is_some() => {
                 phrase.side.into_iter().for_each(|side| self.turn_to_side(side));
             }
@@ -349,6 +377,11 @@ impl Planner<'_> {
             }
         }
         Ok(())
+    }
+
+    /// The room that `there` is, if it is none of the things spoken of.
+    fn spoken_room(&self) -> Option<cohabit_cdf::RoomId> {
+        self.focus.room.filter(|_| self.focus.place.is_none())
     }
 
     /// `the desk with the hammer on it`: the hammer was spoken of too.
@@ -404,8 +437,16 @@ impl Planner<'_> {
             Some(Amount::Degrees(_)) => return self.turn(clause),
             None => DEFAULT_MOVE_M,
         };
+        // `step away from the table`
+        let is_away = clause.places.iter().any(|(preposition, _)| *preposition == Preposition::From);
+        if is_away && clause.direction.is_none() {
+            return self.walk(-distance);
+        }
         let has_target = clause.places.iter().any(|(_, place)| !matches!(place, Place::Side(_)));
         let is_measured = clause.amount.is_some();
+        if clause.verb == "come" && !is_measured && self.comes_to_person(clause) {
+            return Ok(());
+        }
         match clause.direction {
             _ if has_target && !is_measured => self.go_to(clause),
             Some(Direction::Left | Direction::Right | Direction::Around) if !is_measured => self.turn(clause),
@@ -422,6 +463,28 @@ impl Planner<'_> {
             Some(Direction::Forward) | None if clause.places.is_empty() || is_measured => self.walk(distance),
             Some(Direction::Forward) | None => self.go_to(clause),
         }
+    }
+
+    /// `come here`: to who says so, if they are there.
+    fn comes_to_person(&mut self, clause: &Clause) -> bool {
+        let is_meant = matches!(clause.direction, None | Some(Direction::Backward));
+        let is_here = clause.places.iter().all(|(_, place)| matches!(place, Place::Here));
+        is_meant && is_here && self.go_to_person("coming to you")
+    }
+
+    /// Goes to who speaks, if they are there: before their eyes, or to their side if they are in one room already.
+    pub(crate) fn go_to_person(&mut self, says: &str) -> bool {
+        let Some(person) = self.scene.person else { return false };
+        let ([x, y, _], [from_x, from_y, _]) = (person.position_m, self.scene.robot.position_m);
+        let is_here = person.room == self.scene.robot.room;
+        let way_rad = if is_here { (from_y - y).atan2(from_x - x) } else { person.yaw_rad };
+        if is_here && (from_x - x).hypot(from_y - y) < BESIDE_M + 0.3 {
+            self.notes.push("I am with you already".to_owned());
+            return true;
+        }
+        let target = GoToTarget::Point([x + BESIDE_M * way_rad.cos(), y + BESIDE_M * way_rad.sin()]);
+        self.push(Action::GoTo { target }, says.to_owned());
+        true
     }
 
     pub(crate) fn walk(&mut self, distance_m: f32) -> Result<(), Fault> {
@@ -452,6 +515,8 @@ impl Planner<'_> {
         }
         let around = clause.direction == Some(Direction::Around);
         let degrees = match clause.amount {
+            // `turn a quarter to the right`
+            Some(Amount::Bare(part)) if part > 0.0 && part < 1.0 => part * 360.0,
             Some(Amount::Degrees(degrees) | Amount::Bare(degrees)) => degrees,
             _ if around => 180.0,
             _ => DEFAULT_TURN_DEG,

@@ -53,8 +53,8 @@ pub(crate) fn miss(phrase: &Phrase, miss: &Miss, intent: Intent) -> String {
 pub(crate) fn unclear(unknown: &[String]) -> Understanding {
     let quoted: Vec<String> = unknown.iter().take(3).map(|word| format!("\"{word}\"")).collect();
     if quoted.is_empty() {
-        return Understanding::refusal(format!("I did not understand that. {HINT}"));
+        return Understanding::lost(format!("I did not understand that. {HINT}"));
     }
     let noun = if quoted.len() == 1 { "the word" } else { "the words" };
-    Understanding::refusal(format!("I do not know {noun} {}. {HINT}", describe::list(&quoted, "and")))
+    Understanding::lost(format!("I do not know {noun} {}. {HINT}", describe::list(&quoted, "and")))
 }

@@ -17,7 +17,11 @@ pub(crate) fn success(catalog: &Catalog, scene: &Known, step: &Step, status: Sta
             None => "done".to_owned(),
         },
         Action::GoTo { target: GoToTarget::Room(room) } => format!("I am in the {}", room.name()),
-        Action::GoTo { target: GoToTarget::Point(_) } => "I am back".to_owned(),
+        Action::GoTo { target: GoToTarget::Point(_) } => match step.says.strip_prefix("bringing you ") {
+            Some(what) => format!("here is {what}"),
+            None if step.says == "coming to you" => "here I am".to_owned(),
+            None => "I am back".to_owned(),
+        },
         Action::GoTo { target: GoToTarget::Object(object) } => format!("I am at {}", the(object)),
         Action::GoTo { .. } => "I am there".to_owned(),
         Action::Interact { verb, object } => interaction(&the(object), scene, step, verb, object),

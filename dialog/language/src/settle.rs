@@ -6,7 +6,7 @@ use crate::{
     context::Role,
     ground::{Miss, Want},
     intent::Intent,
-    lexicon::Preposition,
+    lexicon::{Preposition, Pronoun},
     phrase::{Phrase, Place},
     plan::Planner,
 };
@@ -22,6 +22,10 @@ pub(crate) struct Settled {
     pub(crate) fluid: Option<cohabit_cdf::Fluid>,
     /// Whether it is to go back to where it was taken from.
     pub(crate) is_back: bool,
+    /// Whether it is to be left, somewhere or as it is.
+    pub(crate) is_left: bool,
+    /// Whether it was wished for.
+    pub(crate) is_wish: bool,
 }
 
 /// Where the object is to go, or where it is to be done.
@@ -54,6 +58,8 @@ pub(crate) fn settle(planner: &Planner<'_>, clause: &Clause) -> Settled {
         tool: None,
         color: clause.color.clone(),
         fluid: clause.fluid,
+        is_wish: clause.is_wish,
+        is_left: clause.verb == "leave",
         is_back: clause.verb.ends_with(" back") || clause.verb == "return",
     };
     for (index, (preposition, place)) in clause.places.iter().enumerate() {
@@ -62,15 +68,42 @@ pub(crate) fn settle(planner: &Planner<'_>, clause: &Clause) -> Settled {
             (Preposition::With, Place::Object(phrase)) if has_tool(clause.intent) => {
                 settled.tool = Some((phrase.clone(), role));
             }
+            // `fill it from the tap`
+            (Preposition::From, Place::Object(_)) if clause.intent == Intent::Fill => {
+                settled.take_place(planner, Preposition::At, place, role);
+            }
             (Preposition::From, _) => settled.describe_object(Preposition::From, place),
             _ if has_goal(clause.intent) => settled.take_place(planner, *preposition, place, role),
             _ => settled.describe_object(*preposition, place),
         }
     }
+    settled.name_goal(planner);
     settled
 }
 
 impl Settled {
+    /// `from the green desk to the red one`, `the red apple next to the green one`: one of those named before it.
+    fn name_goal(&mut self, planner: &Planner<'_>) {
+        let Some(object) = self.objects.last() else { return };
+        let mut before = object.relations.last().map_or(&object.namings, |relation| &relation.to.namings).clone();
+        // `take it off the green desk and put it on the blue one`
+        if before.is_empty() {
+            before = planner.origin_kind();
+        }
+        if let Some(Goal { place: Place::Object(phrase), .. }) = &mut self.goal
+            && phrase.pronoun == Some(Pronoun::One)
+            && phrase.namings.is_empty()
+            && !before.is_empty()
+        {
+            phrase.namings = before;
+        }
+    }
+
+    fn is_generic(&self) -> bool {
+        let is_thing = |phrase: &Phrase| phrase.pronoun == Some(Pronoun::Thing) && phrase.text.starts_with("the ");
+        self.objects.last().is_some_and(is_thing)
+    }
+
     fn describe_object(&mut self, preposition: Preposition, place: &Place) {
         if let Some(object) = self.objects.last_mut() {
             object.attach(preposition, place.clone());
@@ -79,6 +112,7 @@ impl Settled {
 
     fn take_place(&mut self, planner: &Planner<'_>, preposition: Preposition, place: &Place, role: Role) {
         let goal = || Some(Goal { preposition, place: place.clone(), role });
+        let is_generic = self.intent == Intent::Bring && self.is_generic();
         match (&mut self.goal, place) {
             // `put it in the kitchen on the table`
             (Some(Goal { place: Place::Room(room), .. }), Place::Object(phrase)) => {
@@ -104,13 +138,19 @@ impl Settled {
             (None, Place::Room(_)) if !matches!(self.intent, Intent::Place | Intent::Bring | Intent::Drop) => {
                 self.describe_object(preposition, place);
             }
+            // `bring me the thing on the desk`
+            (None, _) if is_generic && preposition != Preposition::To => {
+                self.describe_object(preposition, place);
+            }
             (None, _) => self.goal = goal(),
         }
     }
 
     /// Whether the object is known to be on or in what `place` means.
     fn stands_there(&self, planner: &Planner<'_>, place: &Phrase) -> bool {
-        let Some(object) = self.objects.last().filter(|object| object.pronoun.is_none()) else { return false };
+        let Some(object) = self.objects.last().filter(|object| object.pronoun.is_none() || object.is_all) else {
+            return false;
+        };
         let mut there = object.clone();
         there.attach(Preposition::On, Place::Object(place.clone()));
         matches!(planner.ground().one(&there, &Want::object(self.intent)), Ok(_) | Err(Miss::Several(_)))

@@ -6,13 +6,16 @@ type Sounds = Vec<char>;
 /// The most by which what was heard may differ from what was said, and the most for each of its sounds.
 const LIMIT: f32 = 1.1;
 const LIMIT_EACH: f32 = 0.25;
+/// So many sounds may be more or fewer.
+const MOST_MORE: usize = 2;
 
-/// Costs: one vowel for another, a vowel more or less, a consonant for one made nearly alike, a weak one more or less,
+/// Costs: one vowel for another, a vowel more or less, a consonant for one made nearly alike, a weak one more or less, an `h`,
 /// any more or less, any for another.
 const VOWEL: f32 = 0.2;
 const EXTRA_VOWEL: f32 = 0.35;
 const ALIKE: f32 = 0.35;
 const WEAK: f32 = 0.5;
+const BREATH: f32 = 0.25;
 const EXTRA: f32 = 0.9;
 const OTHER: f32 = 1.0;
 
@@ -37,38 +40,82 @@ const PAIRS: &[(char, char)] = &[
     ('c', 't'),
 ];
 
-/// How differently two words sound: 0 if they sound the same; nothing, if nobody would take one for the other.
-pub(crate) fn difference(heard: &Sounds, meant: &Sounds) -> Option<f32> {
-    let longest = heard.len().max(meant.len());
-    if heard.is_empty() || meant.is_empty() || heard.len().abs_diff(meant.len()) > 2 {
-        return None;
-    }
-    let limit = LIMIT.min(LIMIT_EACH * longest as f32);
-    distance(heard, meant, limit).filter(|cost| *cost <= limit)
+/// Words by how they sound, for finding all that sound like one.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Sounding {
+    /// In the order of their sounds, so that what many begin with is compared once.
+    words: Vec<(Sounds, String)>,
 }
 
-/// The least that it costs to make one of the other; nothing, if that is more than `limit` on the way already.
-fn distance(one: &[char], other: &[char], limit: f32) -> Option<f32> {
-    let mut row: Vec<f32> =
-        std::iter::once(0.0).chain(other.iter().scan(0.0, |sum, sound| Some(more(sum, *sound)))).collect();
-    for sound in one {
-        let mut corner = row[0];
-        row[0] += extra(*sound);
-        for (at, against) in other.iter().enumerate() {
-            let changed = corner + change(*sound, *against);
-            corner = row[at + 1];
-            row[at + 1] = changed.min(row[at] + extra(*against)).min(corner + extra(*sound));
-        }
-        if row.iter().all(|cost| *cost > limit) {
-            return None;
-        }
+impl Sounding {
+    pub(crate) fn new<'a>(words: impl Iterator<Item = &'a String>) -> Self {
+        let mut words: Vec<(Sounds, String)> = words.map(|word| (sounds(word), word.clone())).collect();
+        words.sort();
+        Self { words }
     }
-    row.last().copied()
+
+    /// The words that may be taken for one with these sounds, and how differently they sound: 0 if they sound the same.
+    pub(crate) fn alike(&self, heard: &[char]) -> Vec<(f32, &str)> {
+        let mut table = Table::new(heard);
+        let is_near = |meant: &Sounds| !meant.is_empty() && meant.len().abs_diff(heard.len()) <= MOST_MORE;
+        let near = self.words.iter().filter(|(meant, _)| is_near(meant));
+        near.filter_map(|(meant, word)| {
+            let limit = LIMIT.min(LIMIT_EACH * meant.len().max(heard.len()) as f32);
+            let cost = table.distance(meant).filter(|cost| *cost <= limit)?;
+            Some((cost, word.as_str()))
+        })
+        .collect()
+    }
 }
 
-fn more(sum: &mut f32, sound: char) -> f32 {
-    *sum += extra(sound);
-    *sum
+/// What it costs to make the beginnings of `heard` of those of another word: a row for each sound of that.
+struct Table<'a> {
+    heard: &'a [char],
+    against: Vec<char>,
+    rows: Vec<Vec<f32>>,
+}
+
+impl<'a> Table<'a> {
+    fn new(heard: &'a [char]) -> Self {
+        let mut sum = 0.0;
+        let rest = heard.iter().map(|sound| {
+            sum += extra(*sound);
+            sum
+        });
+        Self { heard, against: Vec::new(), rows: vec![std::iter::once(0.0).chain(rest).collect()] }
+    }
+
+    /// The least that it costs to make one of the other; nothing, if that is more than is allowed on the way already.
+    fn distance(&mut self, meant: &[char]) -> Option<f32> {
+        let shared = self.against.iter().zip(meant).take_while(|(one, other)| one == other).count();
+        self.against.truncate(shared);
+        self.rows.truncate(shared + 1);
+        for sound in &meant[shared..] {
+            if self.is_hopeless() {
+                return None;
+            }
+            self.add(*sound);
+        }
+        self.rows.last().and_then(|row| row.last()).copied()
+    }
+
+    fn is_hopeless(&self) -> bool {
+        self.rows.last().is_some_and(|row| row.iter().all(|cost| *cost > LIMIT))
+    }
+
+    fn add(&mut self, sound: char) {
+        let Some(above) = self.rows.last() else { return };
+        let mut row = Vec::with_capacity(above.len());
+        let mut left = above[0] + extra(sound);
+        row.push(left);
+        for (at, heard) in self.heard.iter().enumerate() {
+            let changed = above[at] + change(*heard, sound);
+            left = changed.min(left + extra(*heard)).min(above[at + 1] + extra(sound));
+            row.push(left);
+        }
+        self.against.push(sound);
+        self.rows.push(row);
+    }
 }
 
 fn is_vowel(sound: char) -> bool {
@@ -78,7 +125,8 @@ fn is_vowel(sound: char) -> bool {
 fn extra(sound: char) -> f32 {
     match sound {
         _ if is_vowel(sound) => EXTRA_VOWEL,
-        't' | 'd' | 'n' | 'r' | 'l' | 's' | 'z' | 'h' => WEAK,
+        'h' => BREATH,
+        't' | 'd' | 'n' | 'r' | 'l' | 's' | 'z' => WEAK,
         _ => EXTRA,
     }
 }
@@ -183,8 +231,10 @@ mod tests {
     #[test]
     fn what_sounds_alike_is_near() {
         let check = |heard: &str, meant: &str, is_alike: bool| {
-            let found = difference(&sounds(heard), &sounds(meant));
-            assert_eq!(found.is_some(), is_alike, "{heard} {meant}: {:?} {:?} {found:?}", sounds(heard), sounds(meant));
+            let words = ["mug", "tableau", meant, "zoo"].map(str::to_owned);
+            let sounding = Sounding::new(words.iter());
+            let found = sounding.alike(&sounds(heard)).iter().any(|(_, word)| *word == meant);
+            assert_eq!(found, is_alike, "{heard} {meant}: {:?} {:?}", sounds(heard), sounds(meant));
         };
         for (heard, meant) in [
             ("write", "right"),

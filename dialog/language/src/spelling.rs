@@ -7,6 +7,7 @@ use std::collections::BTreeSet;
 pub(crate) struct Vocabulary {
     meaningful: BTreeSet<String>,
     plain: BTreeSet<String>,
+    ordinary: BTreeSet<String>,
     talk: BTreeSet<String>,
 }
 
@@ -28,9 +29,19 @@ impl Vocabulary {
         self.plain.insert(word.to_owned());
     }
 
+    /// Adds an ordinary word that nobody misspells for another, but a recogniser of speech may hear for one.
+    pub(crate) fn learn_ordinary(&mut self, word: &str) {
+        self.ordinary.insert(word.to_owned());
+    }
+
     /// Whether the robot understands the word.
     pub(crate) fn has(&self, word: &str) -> bool {
         self.meaningful.contains(word)
+    }
+
+    /// Whether it is one of those.
+    pub(crate) fn is_ordinary(&self, word: &str) -> bool {
+        self.ordinary.contains(word)
     }
 
     /// Whether it is an ordinary word that means nothing here.
@@ -47,7 +58,7 @@ impl Vocabulary {
         if let Some(singular) = self.singular(word) {
             return vec![singular];
         }
-        if self.plain.contains(word) {
+        if self.plain.contains(word) || self.ordinary.contains(word) {
             return keep();
         }
         if let Some(parts) = self.parts(word).or_else(|| self.run_together(word)) {
@@ -57,10 +68,17 @@ impl Vocabulary {
         if drawn != word {
             return self.correct(&drawn);
         }
+        let mut single: Vec<char> = word.chars().collect();
+        single.dedup();
+        let single: String = single.into_iter().collect();
+        if word.len() == 3 && self.has(&single) {
+            return vec![single];
+        }
         self.nearest(word).map_or_else(keep, |found| vec![found.clone()])
     }
 
-    fn singular(&self, word: &str) -> Option<String> {
+    /// The word of which it is the plural.
+    pub(crate) fn singular(&self, word: &str) -> Option<String> {
         ["ies", "es", "s"].into_iter().find_map(|ending| {
             let stem = word.strip_suffix(ending)?;
             let singular = if ending == "ies" { format!("{stem}y") } else { stem.to_owned() };
@@ -109,7 +127,12 @@ impl Vocabulary {
     pub(crate) fn respaced(&self, words: Vec<String>) -> Vec<String> {
         let mut result: Vec<String> = Vec::with_capacity(words.len());
         for word in words {
-            let is_known = |word: &str| self.has(word) || self.plain.contains(word) || self.singular(word).is_some();
+            let is_known = |word: &str| {
+                self.has(word)
+                    || self.plain.contains(word)
+                    || self.ordinary.contains(word)
+                    || self.singular(word).is_some()
+            };
             let is_spelt = |word: &str| word.chars().all(|letter| letter.is_ascii_alphabetic());
             let pair =
                 result.last().filter(|last| is_spelt(last) && is_spelt(&word) && !(is_known(last) && is_known(&word)));
@@ -186,7 +209,7 @@ fn drawn_out(word: &str) -> String {
 }
 
 /// Edits (insertion, deletion, change, swap of neighbours) from one word to the other: optimal string alignment.
-fn distance(one: &[u8], other: &[u8]) -> usize {
+pub(crate) fn distance(one: &[u8], other: &[u8]) -> usize {
     let width = other.len() + 1;
     let mut table = vec![0; (one.len() + 1) * width];
     for row in 0..=one.len() {

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use serde::{Deserialize, Deserializer};
+
 use crate::token;
 
 /// Phrases and what each means.
@@ -14,6 +16,15 @@ pub(crate) struct PhraseTable<T> {
 impl<T> Default for PhraseTable<T> {
     fn default() -> Self {
         Self { meanings: BTreeMap::new(), longest: 0 }
+    }
+}
+
+impl<'de> Deserialize<'de> for PhraseTable<()> {
+    /// From a list of phrases.
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let mut table = Self::default();
+        Vec::<String>::deserialize(deserializer)?.iter().for_each(|phrase| table.insert(phrase, ()));
+        Ok(table)
     }
 }
 
@@ -47,6 +58,11 @@ impl<T> PhraseTable<T> {
     /// The meaning of exactly these words.
     pub(crate) fn exact(&self, words: &[String]) -> Option<&T> {
         self.meanings.get(words)
+    }
+
+    /// The meanings of all phrases that have this word.
+    pub(crate) fn with_word(&self, word: &String) -> impl Iterator<Item = &T> {
+        self.meanings.iter().filter(move |(words, _)| words.contains(word)).map(|(_, meaning)| meaning)
     }
 
     /// All words of all phrases.

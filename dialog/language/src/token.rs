@@ -65,6 +65,18 @@ fn finish(word: &mut String, words: &mut Vec<String>) {
     }
 }
 
+/// The words as a sentence: `go to the lab, then stop`.
+pub(crate) fn sentence(words: &[String]) -> String {
+    let mut sentence = String::new();
+    for word in words {
+        if !sentence.is_empty() && !is_punctuation(word) {
+            sentence.push(' ');
+        }
+        sentence.push_str(word);
+    }
+    sentence.trim_end_matches(|end: char| !end.is_alphanumeric()).to_owned()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,6 +1,6 @@
 //! What came of an utterance.
 
-use cohabit_cdf::{Action, ObjectId};
+use cohabit_cdf::{Action, GoToTarget, ObjectId};
 use serde::{Deserialize, Serialize};
 
 /// What the robot makes of what it was told.
@@ -37,6 +37,8 @@ pub enum Understanding {
     Refusal {
         /// What it says.
         text: String,
+        /// Whether it did not understand: in other words it might.
+        is_lost: bool,
     },
     /// It stops at once.
     Stop {
@@ -47,7 +49,11 @@ pub enum Understanding {
 
 impl Understanding {
     pub(crate) fn refusal(text: impl Into<String>) -> Self {
-        Self::Refusal { text: text.into() }
+        Self::Refusal { text: text.into(), is_lost: false }
+    }
+
+    pub(crate) fn lost(text: impl Into<String>) -> Self {
+        Self::Refusal { text: text.into(), is_lost: true }
     }
 
     pub(crate) fn answer(text: impl Into<String>) -> Self {
@@ -133,6 +139,20 @@ impl std::str::FromStr for Asking {
     fn from_str(text: &str) -> Result<Self, Self::Err> {
         let names = || Self::ALL.map(Self::name).join("`, `");
         Self::ALL.into_iter().find(|one| one.name() == text).ok_or_else(|| format!("one of `{}`", names()))
+    }
+}
+
+impl Step {
+    /// The object that it is about.
+    pub(crate) const fn object(&self) -> Option<ObjectId> {
+        match self.action {
+            Action::PickUp { object }
+            | Action::Place { receptacle: object }
+            | Action::Interact { object, .. }
+            | Action::Highlight { object }
+            | Action::GoTo { target: GoToTarget::Object(object) } => Some(object),
+            _ => None,
+        }
     }
 }
 

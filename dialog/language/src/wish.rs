@@ -1,178 +1,86 @@
 //! Goals instead of steps: what is wished for, said as the request that brings it about.
 //! `i want the mug to be hot` → `heat the mug`; `the green desk needs the hammer on it` → `put the hammer on the green desk`.
 
+use std::collections::{BTreeMap, BTreeSet};
+
+use serde::Deserialize;
+
 use crate::{
     chatter,
     inflect::{self, stem},
     lexicon::{Lexicon, Preposition},
     phrase::Reader,
+    reading,
+    table::PhraseTable,
 };
 
-/// Words that may stand before a verb of wishing: who wishes, and how much.
-const WISHERS: &[&str] = &[
-    "i",
-    "we",
-    "he",
-    "she",
-    "they",
-    "you",
-    "my",
-    "the",
-    "boss",
-    "manager",
-    "would",
-    "really",
-    "just",
-    "do",
-    "also",
-    "still",
-    "will",
-    "might",
-    "now",
-    "am",
-    "in",
-    "everybody",
-    "everyone",
-    "somebody",
-    "someone",
-    "could",
-];
-const WISHES: &[&str] =
-    &["want", "wants", "need", "needs", "like", "love", "prefer", "require", "requires", "desire", "use"];
-
-/// Words that say that something must be so.
-const MUSTS: &[&[&str]] = &[
-    &["needs", "to"],
-    &["need", "to"],
-    &["needs"],
-    &["need"],
-    &["should"],
-    &["must"],
-    &["has", "to"],
-    &["have", "to"],
-    &["ought", "to"],
-    &["is", "to"],
-    &["are", "to"],
-    &["wants", "to"],
-    &["is", "supposed", "to"],
-    &["could", "use"],
-    &["belongs"],
-    &["belong"],
-    &["goes"],
-    &["go"],
-    &["gets"],
-    &["requires"],
-    &["better"],
-    &["shall"],
-];
-
-/// Verbs that make something be so.
-const MAKERS: &[&str] = &["make", "get", "keep", "have", "turn", "let", "render", "bring"];
-/// Verbs by which people order something to drink or to eat.
-const ORDERS: &[&str] = &[
-    "make", "brew", "do", "prepare", "get", "give", "bring", "have", "fetch", "fix", "pour", "serve", "cook",
-    "produce", "hand",
-];
-/// What a drink comes in, and how much of it.
-const MEASURES: &[&str] = &[
-    "cup", "mug", "glass", "pot", "bit", "drop", "splash", "some", "a", "an", "of", "nice", "hot", "fresh", "little",
-    "cold", "good", "more", "quick", "big", "bowl",
-];
-/// Words between a thing and what it is to be.
-const BETWEEN: &[&str] = &[
-    "to",
-    "be",
-    "get",
-    "become",
-    "go",
-    "being",
-    "really",
-    "very",
-    "nice",
-    "and",
-    "all",
-    "completely",
-    "again",
-    "nicely",
-    "as",
-    "so",
-    "properly",
-    "a",
-    "bit",
-    "quite",
-    "just",
-    "super",
-    "stay",
-    "look",
-    "fully",
-    "totally",
-    "go",
-];
-/// What follows a thing that is to be so, at most.
-const AFTER: &[&str] = &["again", "please", "for", "now", "me", "us", "first", "then", "too", "robot", "today", "asap"];
+/// The words of wishing: `data/wishes.toml` says what each list is.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Wishes {
+    wishers: BTreeSet<String>,
+    wishes: BTreeSet<String>,
+    musts: PhraseTable<()>,
+    makers: BTreeSet<String>,
+    orders: BTreeSet<String>,
+    measures: BTreeSet<String>,
+    between: BTreeSet<String>,
+    after: BTreeSet<String>,
+    dirt: BTreeSet<String>,
+    removers: PhraseTable<()>,
+    ensurers: PhraseTable<()>,
+    performers: PhraseTable<()>,
+    undoes: BTreeMap<String, String>,
+}
 
 /// The request that a wish at the start of `words` comes to, and how many words the wish took.
 pub(crate) fn request(lexicon: &Lexicon, words: &[String]) -> Option<(Vec<String>, usize)> {
-    let chunk = until_next(lexicon, chatter::chunk(words));
-    let wished = wanted(lexicon, chunk)
+    let chunk = chunk(lexicon, words);
+    let wished = spoken(lexicon, chunk).or_else(|| stated(lexicon, chunk))?;
+    Some((wished, chunk.len()))
+}
+
+/// Whether a wish with words of its own begins there.
+pub(crate) fn is_said(lexicon: &Lexicon, words: &[String]) -> bool {
+    spoken(lexicon, chunk(lexicon, words)).is_some()
+}
+
+/// The words up to the next request, and to what is not wished for: `… than on the table`.
+fn chunk<'a>(lexicon: &Lexicon, words: &'a [String]) -> &'a [String] {
+    until_next(lexicon, chatter::chunk(words))
+}
+
+fn spoken(lexicon: &Lexicon, chunk: &[String]) -> Option<Vec<String>> {
+    let chunk = &chunk[..chunk.iter().position(|word| word == "than").unwrap_or(chunk.len())];
+    wanted(lexicon, chunk)
         .or_else(|| ordered(lexicon, chunk))
         .or_else(|| made(lexicon, chunk))
         .or_else(|| given(lexicon, chunk))
         .or_else(|| asked(lexicon, chunk))
         .or_else(|| required(lexicon, chunk))
-        .or_else(|| rid_of_dirt(chunk))?;
-    Some((wished, chunk.len()))
+        .or_else(|| rid_of_dirt(lexicon, chunk))
+        .or_else(|| ensured(lexicon, chunk))
+        .or_else(|| performed(lexicon, chunk))
+        .or_else(|| left_so(lexicon, chunk))
 }
 
-/// What is on a dirty plate; nothing that is there as a thing of its own.
-const DIRT: &[&str] = &[
-    "waste",
-    "dirt",
-    "leftovers",
-    "leftover",
-    "scraps",
-    "crumbs",
-    "grime",
-    "grease",
-    "mess",
-    "stain",
-    "stains",
-    "remains",
-    "residue",
-    "filth",
-];
-const REMOVERS: &[&[&str]] = &[
-    &["drop"],
-    &["dump"],
-    &["remove"],
-    &["scrape"],
-    &["throw"],
-    &["throw", "away"],
-    &["throw", "out"],
-    &["empty"],
-    &["wash"],
-    &["wash", "off"],
-    &["wash", "away"],
-    &["wipe"],
-    &["wipe", "off"],
-    &["rinse"],
-    &["rinse", "off"],
-    &["clean"],
-    &["clean", "off"],
-    &["get", "rid", "of"],
-    &["put"],
-    &["take"],
-];
+/// `you left the microwave open`: it is to be as it was.
+fn left_so(lexicon: &Lexicon, words: &[String]) -> Option<Vec<String>> {
+    let (_, rest) = words.split_first().filter(|(left, _)| *left == "left")?;
+    let (thing, after) = thing(lexicon, rest)?;
+    let (verb, left) = state(lexicon, after)?;
+    let undone = lexicon.wishes.undoes.get(&verb.join(" "))?;
+    finish(lexicon, undone.split(' ').map(str::to_owned).collect(), thing, left)
+}
 
 /// `drop the waste into the bin`, `scrape the leftovers off the plate`: whatever it is on is to be clean.
-fn rid_of_dirt(words: &[String]) -> Option<Vec<String>> {
-    let begins = |start: &&&[&str]| words.len() > start.len() && start.iter().zip(words).all(|(one, word)| one == word);
-    let mut rest = &words[REMOVERS.iter().filter(begins).map(|start| start.len()).max()?..];
+fn rid_of_dirt(lexicon: &Lexicon, words: &[String]) -> Option<Vec<String>> {
+    let mut rest = &words[lexicon.wishes.removers.longest(words)?.0..];
     while rest.first().is_some_and(|word| matches!(word.as_str(), "the" | "all" | "any" | "that" | "this" | "of")) {
         rest = &rest[1..];
     }
     let (dirt, rest) = rest.split_first()?;
-    if !DIRT.contains(&dirt.as_str()) {
+    if !lexicon.wishes.dirt.contains(dirt) {
         return None;
     }
     let of = rest.iter().position(|word| matches!(word.as_str(), "from" | "off" | "on"));
@@ -200,8 +108,8 @@ fn until_next<'a>(lexicon: &Lexicon, words: &'a [String]) -> &'a [String] {
 
 /// `i want …`, `my boss would like …`.
 fn wanted(lexicon: &Lexicon, words: &[String]) -> Option<Vec<String>> {
-    let at = words.iter().position(|word| !WISHERS.contains(&word.as_str()))?;
-    let is_wish = WISHES.contains(&words[at].as_str())
+    let at = words.iter().position(|word| !lexicon.wishes.wishers.contains(word))?;
+    let is_wish = lexicon.wishes.wishes.contains(&words[at])
         && (!matches!(words[at].as_str(), "like" | "love" | "use")
             || at > 0 && matches!(words[at - 1].as_str(), "would" | "really" | "could" | "will"));
     if !is_wish || at == 0 && !words[0].ends_with('s') && words[0] != "need" && words[0] != "want" {
@@ -211,9 +119,22 @@ fn wanted(lexicon: &Lexicon, words: &[String]) -> Option<Vec<String>> {
     if let Some(drink) = drink(lexicon, rest) {
         return Some(drink);
     }
+    // `i need you over at the sink`
+    if let [you, rest @ ..] = rest
+        && you == "you"
+    {
+        let skipped = rest.iter().take_while(|word| matches!(word.as_str(), "over" | "back" | "right" | "up")).count();
+        let is_place = lexicon.prepositions.longest(&rest[skipped..]).is_some();
+        let place = Reader::new(lexicon, &rest[skipped..]).place().filter(|_| is_place);
+        return place.map(|_| joined(&[&["go", "to"], &texts(inner(lexicon, &rest[skipped + 1..]))]));
+    }
+    // `i would want to have the bowl cold`
+    if rest.first().is_some_and(|word| word == "to") {
+        return made(lexicon, &rest[1..]);
+    }
     let (thing, after) = thing(lexicon, rest)?;
     become_so(lexicon, thing, after).or_else(|| {
-        let is_end = after.iter().all(|word| AFTER.contains(&word.as_str()));
+        let is_end = is_after(lexicon, after);
         is_end.then(|| joined(&[&["get"], &texts(thing)]))
     })
 }
@@ -221,7 +142,7 @@ fn wanted(lexicon: &Lexicon, words: &[String]) -> Option<Vec<String>> {
 /// `make me a cup of coffee`, `let us have toast`.
 fn ordered(lexicon: &Lexicon, words: &[String]) -> Option<Vec<String>> {
     let (first, rest) = words.split_first()?;
-    if !ORDERS.contains(&first.as_str()) {
+    if !lexicon.wishes.orders.contains(first) {
         return None;
     }
     let skipped = rest.iter().take_while(|word| matches!(word.as_str(), "me" | "us" | "him" | "her" | "up")).count();
@@ -231,12 +152,15 @@ fn ordered(lexicon: &Lexicon, words: &[String]) -> Option<Vec<String>> {
     let is_made = matches!(first.as_str(), "make" | "brew" | "do" | "prepare" | "have" | "cook" | "fix" | "produce");
     let is_coffee = rest.iter().take(3).any(|word| word == "coffee") && rest.first().is_some_and(|word| word != "the");
     let is_some = rest.first().is_some_and(|word| word == "some") && rest.get(1).is_some_and(|word| word == "water");
-    (is_made || has_measure || is_coffee || is_some).then(|| drink(lexicon, rest)).flatten()
+    // `put water in the cup`
+    let is_put = matches!(first.as_str(), "put" | "add")
+        && rest.iter().take(3).any(|word| matches!(word.as_str(), "in" | "into" | "to"));
+    (is_made || has_measure || is_coffee || is_some || is_put).then(|| drink(lexicon, rest)).flatten()
 }
 
 /// Something to drink or to eat that has to be made.
 fn drink(lexicon: &Lexicon, words: &[String]) -> Option<Vec<String>> {
-    let measured = words.iter().take_while(|word| MEASURES.contains(&word.as_str())).count();
+    let measured = words.iter().take_while(|word| lexicon.wishes.measures.contains(*word)).count();
     let rest = &words[measured..];
     let (length, after) = match rest.first()?.as_str() {
         "toast" => (1, &rest[1..]),
@@ -248,7 +172,7 @@ fn drink(lexicon: &Lexicon, words: &[String]) -> Option<Vec<String>> {
     };
     let what = rest[..length].join(" ");
     let into = after.first().is_some_and(|word| matches!(word.as_str(), "in" | "into" | "to")) && after.len() > 1;
-    if !into && !after.iter().all(|word| AFTER.contains(&word.as_str())) {
+    if !into && !is_after(lexicon, after) {
         return None;
     }
     let place: Vec<&str> = if into { texts(&after[1..]) } else { vec!["a", "mug"] };
@@ -264,13 +188,49 @@ fn drink(lexicon: &Lexicon, words: &[String]) -> Option<Vec<String>> {
 /// `make it whole again`, `get the bowl really cold`.
 fn made(lexicon: &Lexicon, words: &[String]) -> Option<Vec<String>> {
     let (first, rest) = words.split_first()?;
-    if !MAKERS.contains(&first.as_str()) {
+    if !lexicon.wishes.makers.contains(first) {
         return None;
     }
+    // `put on the light` is a verb of its own, and may be something else.
+    if lexicon.verbs.longest(words).is_none_or(|(length, _)| length < 2)
+        && let Some(request) = made_first(lexicon, rest)
+    {
+        return Some(request);
+    }
     let (thing, after) = thing(lexicon, rest)?;
-    let skipped = after.iter().take_while(|word| BETWEEN.contains(&word.as_str())).count();
-    let (request, left) = state(lexicon, &after[skipped..])?;
-    finish(request, thing, left)
+    let skipped = after.iter().take_while(|word| lexicon.wishes.between.contains(*word)).count();
+    let done = || participle(lexicon, &after[skipped..]).filter(|_| matches!(first.as_str(), "have" | "get"));
+    let (request, left) = state(lexicon, &after[skipped..]).or_else(done)?;
+    finish(lexicon, request, thing, left)
+}
+
+/// `make clean the plate`.
+fn made_first(lexicon: &Lexicon, words: &[String]) -> Option<Vec<String>> {
+    let (length, verb) = lexicon.brings_about.longest(words)?;
+    let (thing, left) = thing(lexicon, &words[length..])?;
+    // `make hot coffee`: that is made.
+    let has_article = lexicon.articles.exact(&thing[..1]).is_some();
+    has_article.then(|| finish(lexicon, verb.clone(), thing, left)).flatten()
+}
+
+/// `make sure the freezer is open`.
+fn ensured(lexicon: &Lexicon, words: &[String]) -> Option<Vec<String>> {
+    let (length, ()) = lexicon.wishes.ensurers.longest(words)?;
+    let (thing, after) = thing(lexicon, &words[length..])?;
+    become_so(lexicon, thing, after)
+}
+
+/// `perform a quick scan of the hammer`.
+fn performed(lexicon: &Lexicon, words: &[String]) -> Option<Vec<String>> {
+    let (length, ()) = lexicon.wishes.performers.longest(words)?;
+    let (article, rest) = words[length..].split_first()?;
+    if !matches!(article.as_str(), "a" | "an" | "the" | "another") {
+        return None;
+    }
+    let of = rest.iter().position(|word| matches!(word.as_str(), "of" | "on"))?;
+    let (verb, thing) = (rest[..of].last()?, &rest[of + 1..]);
+    lexicon.verbs.exact(std::slice::from_ref(verb))?;
+    Some(joined(&[&[verb], &texts(thing)]))
 }
 
 /// `give it a wash`.
@@ -310,9 +270,8 @@ fn asked(lexicon: &Lexicon, words: &[String]) -> Option<Vec<String>> {
 /// `the plate needs to be cleaned`, `the trophy belongs on the blue desk`.
 fn required(lexicon: &Lexicon, words: &[String]) -> Option<Vec<String>> {
     let (thing, after) = thing(lexicon, words)?;
-    let must =
-        MUSTS.iter().find(|must| after.len() > must.len() && after.iter().zip(must.iter()).all(|(a, b)| a == b))?;
-    let after = &after[must.len()..];
+    let (must, ()) = lexicon.wishes.musts.longest(after)?;
+    let after = &after[must..];
     if let Some(request) = become_so(lexicon, thing, after) {
         return Some(request);
     }
@@ -332,12 +291,24 @@ fn required(lexicon: &Lexicon, words: &[String]) -> Option<Vec<String>> {
     }
 }
 
+/// `sink on`, `the blue computer off please`: no more than the thing, and what it is to be.
+fn stated(lexicon: &Lexicon, words: &[String]) -> Option<Vec<String>> {
+    let (thing, after) = thing(lexicon, words)?;
+    let names = |word: &String| lexicon.generic.exact(std::slice::from_ref(word)).is_none();
+    let (verb, left) = state(lexicon, after).filter(|_| thing.iter().all(names))?;
+    // Who says no more than that something is broken reports it.
+    if verb[0] == "break" { None } else { finish(lexicon, verb, thing, left) }
+}
+
 /// What is to be done for `thing` to become what `after` says.
 fn become_so(lexicon: &Lexicon, thing: &[String], after: &[String]) -> Option<Vec<String>> {
-    let skipped = after.iter().take_while(|word| BETWEEN.contains(&word.as_str())).count();
+    let skipped = after.iter().take_while(|word| lexicon.wishes.between.contains(*word)).count();
     let rest = &after[skipped..];
     if let Some((request, left)) = state(lexicon, rest).or_else(|| participle(lexicon, rest)) {
-        return finish(request, thing, left);
+        return finish(lexicon, request, thing, left);
+    }
+    if let Some((_, color)) = lexicon.colors.longest(rest).filter(|(length, _)| is_end(lexicon, &rest[*length..])) {
+        return Some(joined(&[&["paint"], &texts(thing), &[color]]));
     }
     let mut reader = Reader::new(lexicon, rest);
     match reader.place()? {
@@ -354,7 +325,7 @@ fn become_so(lexicon: &Lexicon, thing: &[String], after: &[String]) -> Option<Ve
 fn state<'a>(lexicon: &Lexicon, words: &'a [String]) -> Option<(Vec<String>, &'a [String])> {
     let (length, verb) = lexicon.brings_about.longest(words)?;
     let left = &words[length..];
-    let is_end = left.iter().all(|word| AFTER.contains(&word.as_str())) || lexicon.prepositions.longest(left).is_some();
+    let is_end = is_end(lexicon, left) || lexicon.prepositions.longest(left).is_some();
     is_end.then(|| (verb.clone(), left))
 }
 
@@ -372,16 +343,33 @@ fn participle<'a>(lexicon: &Lexicon, words: &'a [String]) -> Option<(Vec<String>
 }
 
 /// The verb, the thing, and what follows it.
-fn finish(verb: Vec<String>, thing: &[String], left: &[String]) -> Option<Vec<String>> {
-    let left = if left.iter().all(|word| AFTER.contains(&word.as_str())) { &[][..] } else { left };
+fn finish(lexicon: &Lexicon, verb: Vec<String>, thing: &[String], left: &[String]) -> Option<Vec<String>> {
+    let left = if is_after(lexicon, left) { &[][..] } else { left };
     Some(joined(&[&texts(&verb), &texts(thing), &texts(left)]))
+}
+
+/// Whether all that follows says no more than for whom and when.
+fn is_after(lexicon: &Lexicon, words: &[String]) -> bool {
+    words.iter().all(|word| lexicon.wishes.after.contains(word))
+}
+
+/// Whether what follows is no noun: talk, a comparison, or nothing.
+fn is_end(lexicon: &Lexicon, words: &[String]) -> bool {
+    is_after(lexicon, words) || words.first().is_some_and(|word| matches!(word.as_str(), "like" | "as" | "please"))
 }
 
 /// The noun phrase at the start, with what describes it by `that is`, and what follows.
 fn thing<'a>(lexicon: &Lexicon, words: &'a [String]) -> Option<(&'a [String], &'a [String])> {
     let mut reader = Reader::new(lexicon, words);
     let phrase = reader.phrase().filter(|phrase| !phrase.is_empty() && phrase.unknown.is_empty())?;
-    let _ = phrase;
+    // `the mug red`: what it is to be.
+    let is_last = is_end(lexicon, reader.rest());
+    if phrase.pronoun.is_none() && is_last && reading::ends_in_color(lexicon, &phrase.text) && reader.at > 1 {
+        reader.at -= 1;
+        return Some(words.split_at(reader.at));
+    }
+    // `the cup that is on the desk`
+    while reader.is_linked() && reader.place().is_some() {}
     Some(words.split_at(reader.at))
 }
 

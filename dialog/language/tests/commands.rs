@@ -175,7 +175,7 @@ fn placing() {
         put the banana and the bowl on the counter -> take Banana_01_1, put KitchenCounterTop_02_1, take Bowl_01_1, put KitchenCounterTop_02_1
         put the cartridge into the printer -> take Printer_Cartridge_Hammer_1, put Printer_3D_1
         put the milk in the bowl -> open FridgeLower_02_1, take MilkCarton_01_1, pour Bowl_01_1
-        drop it -> ! …",
+        drop it -> ! I am not holding anything…",
     );
 }
 
@@ -364,7 +364,7 @@ fn what_is_not_understood_is_said() {
         make a bowl of cereal -> ! I do not know how to make a bowl…
         I think the milk is in the fridge -> ? What shall I do with the milk in the fridge?
         dance -> ! I cannot dance…
-        pick it up -> ! What shall I pick up…
+        pick it up -> ? What shall I pick up…
         please -> …",
     );
 }

@@ -2,14 +2,14 @@
 //!
 //! Pure: the newest knowledge comes in with every call, and what is to be sent comes out.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
 
 use cohabit_bus::{
     Text,
     message::{DialogHeader, DialogKind, DialogMessage, PlanStep},
 };
 use cohabit_cdf::{Action, GoToTarget, ObjectId, Status};
-use cohabit_language::{Clarification, Context, Language, Step, Understanding, within_half_turn};
+use cohabit_language::{Clarification, Context, Language, Step, Unclear, Understanding, within_half_turn};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -25,6 +25,8 @@ pub enum Reaction {
     Chat(Line),
     /// To all pages, not kept.
     Page(Value),
+    /// To an interpreter: what is not understood in this turn.
+    Interpret(u64, Box<Unclear>),
     /// The turn is over: show the state as it is, then say so.
     TurnEnded {
         /// Which.
@@ -59,6 +61,13 @@ impl Reaction {
             _ => None,
         }
     }
+
+    pub(crate) const fn line_mut(&mut self) -> Option<&mut Line> {
+        match self {
+            Self::Chat(line) => Some(line),
+            _ => None,
+        }
+    }
 }
 
 impl TurnEnd {
@@ -87,6 +96,8 @@ pub struct Conversation {
     language: Language,
     body: u32,
     memory: Memory,
+    /// Whether there is an interpreter.
+    interprets: bool,
 }
 
 /// What the robot asks.
@@ -137,13 +148,28 @@ impl Plan {
 
 /// What a conversation must know to go on where it was.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
+#[serde(default)]
 pub struct Memory {
     turns: u64,
     context: Context,
     plans: BTreeMap<u64, Plan>,
-    #[serde(default)]
     asked: Option<Asked>,
+    /// What was said, the latest last: whether by the robot, and what.
+    said: VecDeque<(bool, String)>,
+    /// What an interpreter was asked about.
+    puzzle: Option<Puzzle>,
 }
+
+/// Words that an interpreter may make something of.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+struct Puzzle {
+    turn: u64,
+    /// What the robot says if it does not.
+    refusal: String,
+}
+
+/// So many lines tell an interpreter what it is about.
+const LINES_BEFORE: usize = 6;
 
 /// The most objects that are shown one after the other.
 const MOST_SHOWN: usize = 6;
@@ -156,12 +182,12 @@ const MOST_PLANS: usize = 16;
 impl Conversation {
     /// A conversation in which nothing was said yet.
     pub fn new(language: Language, body: u32) -> Self {
-        Self::after(Memory::default(), language, body)
+        Self { language, body, memory: Memory::default(), interprets: false }
     }
 
-    /// A conversation that goes on.
-    pub const fn after(memory: Memory, language: Language, body: u32) -> Self {
-        Self { language, body, memory }
+    /// The same, with an interpreter for what it does not understand: [`Reaction::Interpret`] asks it.
+    pub(crate) fn with_interpreter(self) -> Self {
+        Self { interprets: true, ..self }
     }
 
     /// What it asks, if that is the last that it said.
@@ -169,15 +195,31 @@ impl Conversation {
         self.memory.asked.as_ref()
     }
 
+    /// Goes on where this one was.
+    pub(crate) fn restore(&mut self, memory: Memory) {
+        self.memory = memory;
+    }
+
+    /// How many turns there were.
+    pub(crate) const fn turns(&self) -> u64 {
+        self.memory.turns
+    }
+
+    /// Its next turn comes after those so far, which may have been of others.
+    pub(crate) fn count_from(&mut self, turns: u64) {
+        self.memory.turns = self.memory.turns.max(turns);
+    }
+
     /// What it must know to go on where it is.
     pub const fn memory(&self) -> &Memory {
         &self.memory
     }
 
-    /// What the bus is told of a line of chat: nothing of what the game says.
+    /// What the bus is told of a line of chat: nothing of what the game says, or a mind of its own accord.
     pub fn message(&self, line: &Line) -> Option<DialogMessage> {
         let kind = match (line.from, line.kind) {
             (Speaker::Person, _) => DialogKind::Utterance,
+            (Speaker::Robot, _) if line.turn == 0 => return None,
             (Speaker::Robot, LineKind::Question) => DialogKind::Question,
             (Speaker::Robot, _) => DialogKind::Reply,
             (Speaker::Game, _) => return None,
@@ -200,20 +242,77 @@ impl Conversation {
 
     /// Somebody said something. Gives the turn's number and what follows.
     pub fn hear(&mut self, text: &str, knowledge: &Knowledge) -> (u64, Vec<Reaction>) {
+        self.hear_called(text, text, knowledge)
+    }
+
+    /// The same, of which `text` is said to this robot: all but its name.
+    pub(crate) fn hear_called(&mut self, said: &str, text: &str, knowledge: &Knowledge) -> (u64, Vec<Reaction>) {
         self.memory.turns += 1;
         let turn = self.memory.turns;
         let mut reactions = vec![
-            self.bus(DialogKind::Utterance, turn, text),
-            Reaction::Chat(Line::new(Speaker::Person, LineKind::Say, turn, text)),
+            self.bus(DialogKind::Utterance, turn, said),
+            Reaction::Chat(Line::new(Speaker::Person, LineKind::Say, turn, said)),
         ];
         let Some(known) = knowledge.known() else {
             self.say(turn, DialogKind::Reply, LineKind::Problem, "I am not there yet; one moment.", &mut reactions);
             reactions.push(Reaction::TurnEnded { turn, end: TurnEnd::Refused });
             return (turn, reactions);
         };
-        let understanding = self.language.understand(text, &known, &mut self.memory.context);
-        self.react(turn, turn, understanding, knowledge, &mut reactions);
+        self.leave_puzzle(&mut reactions);
+        let before = self.memory.said.iter().cloned().collect();
+        self.note_line(false, text);
+        match self.language.understand(text, &known, &mut self.memory.context) {
+            Understanding::Refusal { is_lost: true, text: refusal } if self.interprets => {
+                let unclear = self.language.unclear(text, &known, before);
+                self.memory.puzzle = Some(Puzzle { turn, refusal });
+                self.say(turn, DialogKind::Reply, LineKind::Say, "One moment, let me think.", &mut reactions);
+                reactions.push(Reaction::Interpret(turn, Box::new(unclear)));
+            }
+            understanding => self.react(turn, turn, understanding, knowledge, &mut reactions),
+        }
         (turn, reactions)
+    }
+
+    /// An interpreter made these requests of what was said in a turn, or nothing.
+    pub(crate) fn interpreted(&mut self, turn: u64, requests: &[String], knowledge: &Knowledge) -> Vec<Reaction> {
+        let mut reactions = Vec::new();
+        let Some(Puzzle { refusal, .. }) = self.memory.puzzle.take_if(|puzzle| puzzle.turn == turn) else {
+            return reactions;
+        };
+        let known = knowledge.known();
+        let understanding =
+            known.and_then(|known| self.language.understand_interpreted(requests, &known, &mut self.memory.context));
+        match understanding {
+            Some(understanding) => {
+                let taken = format!("I take that as: \"{}\".", requests.join(", then "));
+                self.say(turn, DialogKind::Reply, LineKind::Say, &taken, &mut reactions);
+                self.react(turn, turn, understanding, knowledge, &mut reactions);
+            }
+            None => {
+                self.say(turn, DialogKind::Reply, LineKind::Problem, &refusal, &mut reactions);
+                reactions.push(Reaction::TurnEnded { turn, end: TurnEnd::Refused });
+            }
+        }
+        reactions
+    }
+
+    /// The turn that an interpreter was asked about and has not answered yet.
+    pub(crate) fn puzzled(&self) -> Option<u64> {
+        self.memory.puzzle.as_ref().map(|puzzle| puzzle.turn)
+    }
+
+    /// Something else is said meanwhile.
+    fn leave_puzzle(&mut self, reactions: &mut Vec<Reaction>) {
+        if let Some(Puzzle { turn, .. }) = self.memory.puzzle.take() {
+            reactions.push(Reaction::TurnEnded { turn, end: TurnEnd::Interrupted });
+        }
+    }
+
+    fn note_line(&mut self, is_robot: bool, text: &str) {
+        self.memory.said.push_back((is_robot, text.to_owned()));
+        while self.memory.said.len() > LINES_BEFORE {
+            self.memory.said.pop_front();
+        }
     }
 
     /// Somebody points at an object, as an answer or to speak of it. Gives the turn's number and what follows.
@@ -252,6 +351,7 @@ impl Conversation {
             }
             Understanding::Question { kind, text, candidates, options, .. } => {
                 let asked = Asked { kind, candidates: candidates.clone() };
+                self.note_line(true, &text);
                 let mut line = Line::new(Speaker::Robot, LineKind::Question, turn, text);
                 line.answers = asked.answers(options);
                 self.memory.asked = Some(asked);
@@ -263,7 +363,7 @@ impl Conversation {
                 self.say(turn, DialogKind::Reply, LineKind::Say, &text, reactions);
                 self.point_out(turn, number, &highlight, knowledge, TurnEnd::Answered, reactions);
             }
-            Understanding::Refusal { text } => {
+            Understanding::Refusal { text, .. } => {
                 self.say(turn, DialogKind::Reply, LineKind::Problem, &text, reactions);
                 reactions.push(Reaction::TurnEnded { turn, end: TurnEnd::Refused });
             }
@@ -286,7 +386,7 @@ impl Conversation {
         match kind {
             DialogKind::StepStarted => {
                 if let Some(step) = step.filter(|step| !step.says.is_empty()) {
-                    reactions.push(Reaction::Page(page::progress(turn, header.step, count, &step.says)));
+                    reactions.push(Reaction::Page(page::progress(self.body, turn, header.step, count, &step.says)));
                 }
             }
             DialogKind::StepEnded => {
@@ -404,8 +504,9 @@ impl Conversation {
         self.plan(number, Plan::new(turn, steps), reactions);
     }
 
-    fn say(&self, turn: u64, kind: DialogKind, line: LineKind, text: &str, reactions: &mut Vec<Reaction>) {
+    fn say(&mut self, turn: u64, kind: DialogKind, line: LineKind, text: &str, reactions: &mut Vec<Reaction>) {
         if !text.is_empty() {
+            self.note_line(true, text);
             reactions.push(self.bus(kind, turn, text));
             reactions.push(Reaction::Chat(Line::new(Speaker::Robot, line, turn, text)));
         }

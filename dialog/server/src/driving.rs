@@ -117,13 +117,12 @@ pub struct Drivers {
 
 impl Drivers {
     /// Nobody drives yet any of `bodies`, of which those may be driven that `drivable` includes.
-    pub fn new(bus: Arc<dyn Transport>, drivable: Drivable, bodies: &[BodyRecord]) -> Self {
-        let names = crate::page::body_names(bodies);
+    pub fn new(bus: Arc<dyn Transport>, drivable: Drivable, bodies: &[BodyRecord], names: &[String]) -> Self {
         let may =
             |record: &BodyRecord| BodyKind::ALL.get(record.kind as usize).is_some_and(|kind| drivable.includes(*kind));
         let bodies = bodies.iter().zip(names).filter(|(record, _)| may(record)).filter_map(|(record, name)| {
             let camera = CameraId::Eyes(u8::try_from(record.body).ok()?);
-            Some(DrivableBody { body: record.body, name, camera })
+            Some(DrivableBody { body: record.body, name: name.clone(), camera })
         });
         Self {
             bodies: bodies.collect(),
@@ -361,7 +360,9 @@ mod tests {
         let kinds = [BodyKind::Robot, BodyKind::Person, BodyKind::Person];
         let bodies =
             (0..).zip(kinds).map(|(body, kind)| BodyRecord { body, kind: kind as u32, ..BodyRecord::default() });
-        (Arc::new(Drivers::new(bus, drivable, &bodies.collect::<Vec<_>>())), heard)
+        let bodies: Vec<BodyRecord> = bodies.collect();
+        let names = crate::page::body_names(&bodies, &std::collections::BTreeMap::new());
+        (Arc::new(Drivers::new(bus, drivable, &bodies, &names)), heard)
     }
 
     fn hear(heard: &mut dyn Subscriber) -> Option<CommandMessage> {

@@ -10,7 +10,6 @@ use jpeg_encoder::{ColorType, Encoder, EncodingError};
 
 use crate::{
     DialogError,
-    talk::Talk,
     view::{Ids, View},
 };
 
@@ -19,12 +18,23 @@ const QUALITY: u8 = 82;
 /// How long a relay that nobody needs sleeps before it looks whether the session is over.
 const DOZE: Duration = Duration::from_millis(100);
 
+/// A frame that pages get.
+#[derive(Clone, Copy, Debug)]
+pub struct Shown {
+    /// The latest command that had begun to move its body.
+    pub command: u64,
+    /// When it was seen.
+    pub tick: u64,
+    /// When it was sent.
+    pub sent_nanos: u64,
+}
+
 /// Relays frames to the pages that look through the view with this index until `over`. Subscribes, and so has frames
-/// rendered, only while there are any; of the first view at the start too, until one was had.
+/// rendered, only while there are any; of the first view at the start too, until one was had. `shown` hears of each.
 pub fn relay(
     bus: &dyn Transport,
     (index, view): (u8, &Arc<View>),
-    talk: &Talk,
+    shown: &dyn Fn(Shown) -> Result<(), DialogError>,
     over: &dyn Fn() -> bool,
 ) -> Result<(), DialogError> {
     give_way();
@@ -43,7 +53,7 @@ pub fn relay(
                 newest = Some(sample);
             }
             let Some(sample) = newest else { continue };
-            show(&sample, (index, view), talk)?;
+            shown(show(&sample, (index, view))?)?;
             had_one = true;
         }
         if index > 0 {
@@ -53,17 +63,18 @@ pub fn relay(
     Ok(())
 }
 
-fn show(sample: &Sample, (index, view): (u8, &Arc<View>), talk: &Talk) -> Result<(), DialogError> {
+fn show(sample: &Sample, (index, view): (u8, &Arc<View>)) -> Result<Shown, DialogError> {
     let frame = FrameView::new(sample.payload())?;
-    let Some(color) = frame.plane(Plane::Color) else { return Ok(()) };
     let tick = sample.envelope().tick;
+    let shown = Shown { command: frame.header.command, tick, sent_nanos: sample.envelope().sent_nanos };
+    let Some(color) = frame.plane(Plane::Color) else { return Ok(shown) };
     // The pictures of a panorama stand one above the other.
     let size = [frame.header.width, frame.header.height * frame.header.views];
     match encode(index, tick, size, color) {
         Ok(bytes) => view.show(Arc::new(bytes), frame.ids().map(|ids| Ids::new(tick, size, ids))),
         Err(error) => tracing::warn!("a frame could not be encoded: {error}"),
     }
-    talk.note_frame(frame.header.command, sample.envelope().sent_nanos)
+    Ok(shown)
 }
 
 fn encode(index: u8, tick: u64, [width, height]: [u32; 2], rgba: &[u8]) -> Result<Vec<u8>, EncodingError> {

@@ -9,7 +9,7 @@ use std::{
 };
 
 use cohabit_cdf::ObjectId;
-use serde_json::Value;
+use serde_json::{Value, json};
 use tokio::sync::broadcast;
 
 use crate::{page::Line, view::View};
@@ -97,6 +97,14 @@ impl Hub {
     /// What was said before this service began.
     pub fn restore<'a>(&self, past: impl IntoIterator<Item = &'a Line>) {
         lock(&self.lines).extend(past.into_iter().map(text));
+    }
+
+    /// Has all pages forget what was said, and know these lines instead.
+    pub fn rewind(&self, past: &[Line]) {
+        let past = &past[past.len().saturating_sub(LINES_KEPT)..];
+        let mut lines = lock(&self.lines);
+        *lines = past.iter().map(text).collect();
+        let _ = self.messages.send(json!({ "type": "rewind", "lines": past }).to_string().into());
     }
 
     /// Tells all pages something that need not be kept.

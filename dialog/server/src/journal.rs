@@ -21,6 +21,8 @@ use crate::{conversation, hub::LINES_KEPT, page::Line};
 
 /// The file is written anew when it has grown by so much.
 const MOST_GROWTH: u64 = 4 << 20;
+/// The most pages that are told apart.
+const MOST_VISITORS: usize = 1000;
 /// The most publishers' runs of which is known how far they were followed.
 const MOST_RUNS: usize = 256;
 
@@ -42,9 +44,9 @@ pub struct Deed {
     /// What is said.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub lines: Vec<Line>,
-    /// The conversation then, if it changed.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub conversation: Option<conversation::Memory>,
+    /// The conversations that changed, each of one body, as they are then.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub conversations: BTreeMap<u32, conversation::Memory>,
 }
 
 /// All that is known of the past.
@@ -54,11 +56,12 @@ pub struct Past {
     pub place: Option<Place>,
     /// The chat, of which so many lines are kept as pages are shown.
     pub lines: VecDeque<Line>,
-    /// The conversation.
-    pub conversation: conversation::Memory,
-    /// What the robot knows, as far as it saw it.
-    #[serde(default)]
-    pub lessons: Lessons,
+    /// The conversations, each of one body.
+    pub conversations: BTreeMap<u32, conversation::Memory>,
+    /// What each robot knows, as far as it saw it.
+    pub lessons: BTreeMap<u32, Lessons>,
+    /// The keys of the pages, in the order in which they came.
+    pub visitors: Vec<u64>,
     /// What may not have been told.
     pub untold: Vec<Line>,
     /// How far the publishers were followed, by their runs.
@@ -73,8 +76,10 @@ enum Entry {
     Past(Past),
     Place(Place),
     Deed(Deed),
-    /// What was learnt.
-    Lessons(Lessons),
+    /// What a body's robot learnt.
+    Lessons(u32, Lessons),
+    /// A page that was not there before.
+    Visitor(u64),
     /// The deed before was told.
     Told,
 }
@@ -92,9 +97,10 @@ impl Past {
         match entry {
             Entry::Past(past) => *self = past,
             Entry::Place(place) => self.place = Some(place),
-            Entry::Lessons(lessons) => self.lessons.add(lessons),
+            Entry::Lessons(body, lessons) => self.lessons.entry(body).or_default().add(lessons),
+            Entry::Visitor(key) => self.visitors.push(key),
             Entry::Told => self.untold.clear(),
-            Entry::Deed(Deed { heard, lines, conversation }) => {
+            Entry::Deed(Deed { heard, lines, conversations }) => {
                 self.lines.extend(lines.iter().cloned());
                 self.lines.drain(..self.lines.len().saturating_sub(LINES_KEPT));
                 self.untold = lines;
@@ -102,9 +108,7 @@ impl Past {
                 while self.heard.len() > MOST_RUNS {
                     self.heard.pop_first();
                 }
-                if let Some(conversation) = conversation {
-                    self.conversation = conversation;
-                }
+                self.conversations.extend(conversations);
             }
         }
     }
@@ -159,9 +163,23 @@ impl Journal {
         self.write(Entry::Place(place));
     }
 
-    /// Writes down what the robot learnt.
-    pub fn note_lessons(&mut self, lessons: Lessons) {
-        self.write(Entry::Lessons(lessons));
+    /// Writes down what a body's robot learnt.
+    pub fn note_lessons(&mut self, body: u32, lessons: Lessons) {
+        self.write(Entry::Lessons(body, lessons));
+    }
+
+    /// The number of the page of this key: pages are numbered as they come, from 1, and keep their numbers. 0 is that of
+    /// all beyond the most that are told apart.
+    pub fn visitor(&mut self, key: u64) -> u32 {
+        let visitors = &self.past.visitors;
+        let at = visitors.iter().position(|known| *known == key).unwrap_or(visitors.len());
+        if at >= MOST_VISITORS {
+            return 0;
+        }
+        if at == visitors.len() {
+            self.write(Entry::Visitor(key));
+        }
+        at as u32 + 1
     }
 
     /// Writes down what will be told.
@@ -241,7 +259,11 @@ mod tests {
 
     fn deed(number: u64, text: &str) -> Deed {
         let lines = vec![Line::new(Speaker::Robot, LineKind::Say, number, text)];
-        Deed { heard: Some((1 << 60, number)), lines, conversation: Some(conversation::Memory::default()) }
+        Deed {
+            heard: Some((1 << 60, number)),
+            lines,
+            conversations: BTreeMap::from([(0, conversation::Memory::default())]),
+        }
     }
 
     fn texts(journal: &Journal) -> Vec<&str> {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use cohabit_bus::message::{NONE, ObjectRecord, StateView};
 use cohabit_cdf::{Action, BodyId, Catalog, ClassId, Color, Fluid, Layout, ObjectId, RoomId, state::StateFlags};
 use cohabit_language::{
-    FloorPlan, Gaze, Known, KnownGoal, KnownObject, KnownRobot, Knows, Lessons, Memory, within_half_turn,
+    FloorPlan, Gaze, Known, KnownGoal, KnownObject, KnownPerson, KnownRobot, Knows, Lessons, Memory, within_half_turn,
 };
 
 /// Half the angle in which the robot sees what is in its room, rad.
@@ -24,6 +24,9 @@ pub struct Knowledge {
     world: Option<Known>,
     gaze: Option<Gaze>,
     looked_at: u64,
+    /// The body of who spoke last, and where that is.
+    speaker: Option<BodyId>,
+    person: Option<KnownPerson>,
 }
 
 impl Knowledge {
@@ -31,7 +34,7 @@ impl Knowledge {
     #[must_use]
     pub fn new(knows: Knows, catalog: Arc<Catalog>, layout: &Layout, body: BodyId) -> Self {
         let memory = Memory::new(Arc::new(FloorPlan::new(layout)));
-        Self { knows, catalog, body, memory, world: None, gaze: None, looked_at: 0 }
+        Self { knows, catalog, body, memory, world: None, gaze: None, looked_at: 0, speaker: None, person: None }
     }
 
     /// Whether it is time to look again, for a body that looks so now.
@@ -43,8 +46,15 @@ impl Knowledge {
         self.knows == Knows::Seen && tick >= self.looked_at.saturating_add(every)
     }
 
+    /// Notes who speaks to it: whoever walks about in this body, if in any.
+    pub fn note_speaker(&mut self, body: Option<BodyId>, state: StateView<'_>) {
+        self.speaker = body.filter(|body| *body != self.body);
+        self.person = self.speaker.and_then(|body| person(state, body));
+    }
+
     /// Looks at the world as it is at a tick.
     pub fn look(&mut self, state: StateView<'_>, tick: u64) {
+        self.person = self.speaker.and_then(|body| person(state, body));
         if self.world.is_some() && self.looked_at == tick {
             return;
         }
@@ -78,10 +88,11 @@ impl Knowledge {
     /// All that it knows; nothing before it looked.
     #[must_use]
     pub fn known(&self) -> Option<Known> {
-        match self.knows {
+        let known = match self.knows {
             Knows::Everything => self.world.clone(),
             Knows::Seen => self.memory.known(),
-        }
+        };
+        known.map(|known| Known { person: self.person, ..known })
     }
 
     /// Where the robot believes what it would act on to be, m, if it is wrong: others moved it while it did not look.
@@ -123,7 +134,13 @@ pub fn everything(state: StateView<'_>, body: BodyId) -> Option<Known> {
         .filter(|goal| goal.hidden == 0)
         .map(|goal| KnownGoal { text: goal.description.as_str().to_owned(), met: goal.met == 1 })
         .collect();
-    Some(Known { robot, objects, goals, floor: None })
+    Some(Known { robot, objects, goals, floor: None, person: None })
+}
+
+fn person(state: StateView<'_>, body: BodyId) -> Option<KnownPerson> {
+    let record = state.bodies.iter().find(|record| record.body == body.0)?;
+    let room = RoomId::from_index(record.room)?;
+    Some(KnownPerson { position_m: record.position_m, yaw_rad: record.yaw_rad, room })
 }
 
 fn object_id(index: u32) -> Option<ObjectId> {

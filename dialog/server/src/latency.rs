@@ -1,6 +1,6 @@
-//! How long a turn takes: received, understood, first motion, first changed frame.
+//! How long a turn takes: received, understood, first motion, first changed frame, shown by a page.
 
-/// The four moments of a turn, ns of the monotonic clock; 0 where it has not happened.
+/// The five moments of a turn, ns of the monotonic clock; 0 where it has not happened.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Moments {
     /// The turn.
@@ -13,6 +13,8 @@ pub struct Moments {
     pub moved: u64,
     /// First frame in which that shows.
     pub shown: u64,
+    /// That frame, or a later one, shown by a page.
+    pub drawn: u64,
 }
 
 impl Moments {
@@ -23,8 +25,8 @@ impl Moments {
     }
 
     /// As in a dialog message.
-    pub const fn stamps(&self) -> [u64; 4] {
-        [self.received, self.understood, self.moved, self.shown]
+    pub const fn stamps(&self) -> [u64; 5] {
+        [self.received, self.understood, self.moved, self.shown, self.drawn]
     }
 }
 
@@ -62,6 +64,16 @@ impl Latency {
         self.now.shown = nanos;
         Some(self.now)
     }
+
+    /// A page has shown the first changed frame of `turn`. Gives the moments if that is news.
+    pub fn drawn(&mut self, turn: u64, nanos: u64) -> Option<Moments> {
+        let first = turn == self.now.turn && self.now.shown != 0 && self.now.drawn == 0;
+        if !first {
+            return None;
+        }
+        self.now.drawn = nanos;
+        Some(self.now)
+    }
 }
 
 #[cfg(test)]
@@ -80,5 +92,11 @@ mod tests {
         let moments = latency.shown(7, 5_000_000).unwrap();
         assert_eq!(moments.milliseconds(), [Some(1.0), Some(2.0), Some(4.0)]);
         assert_eq!(latency.shown(7, 6_000_000), None);
+        assert_eq!(latency.drawn(2, 6_000_000), None, "another turn");
+        assert_eq!(
+            latency.drawn(3, 6_000_000).unwrap().stamps(),
+            [1_000_000, 2_000_000, 3_000_000, 5_000_000, 6_000_000]
+        );
+        assert_eq!(latency.drawn(3, 7_000_000), None);
     }
 }

@@ -8,18 +8,24 @@ mod conversation;
 mod driving;
 mod frames;
 mod hub;
+mod interpreter;
 mod journal;
 pub mod known;
 mod latency;
 mod limits;
 mod page;
+mod recorded;
+mod robots;
+mod screening;
 mod talk;
 mod token;
 mod view;
+mod viewer;
 mod visit;
 mod web;
 
 use std::{
+    collections::BTreeMap,
     net::{SocketAddr, TcpListener},
     path::PathBuf,
     sync::{
@@ -33,18 +39,21 @@ use std::{
 use cohabit_bus::{BusError, Transport, message::CameraRecord};
 use cohabit_cdf::{Catalog, Layout, Mission};
 
-pub use cohabit_language::{Asking, Knows, Language};
+pub use cohabit_language::{Asking, Interpreter, Knows, Language};
 pub use conversation::{Asked, Conversation, Reaction, TurnEnd};
 pub use driving::{Drivable, NotDrivable};
+pub use interpreter::{Endpoint, EndpointError};
 pub use known::Knowledge;
+pub use screening::{ScreeningConfig, screen};
 
 use crate::{
     driving::Drivers,
     hub::Hub,
     journal::{Journal, Place},
+    robots::{BodyNames, RobotName, Robots},
     talk::{Ears, Talk},
     view::View,
-    web::Service,
+    web::{Host, Live, Service},
 };
 
 /// Settings of a dialog service.
@@ -63,6 +72,12 @@ pub struct DialogConfig {
     pub knows: Knows,
     /// When it asks.
     pub asking: Asking,
+    /// Who makes something of what the robot does not understand, if anybody.
+    pub interpreter: Option<Box<dyn Interpreter>>,
+    /// The bodies that people speak to.
+    pub robots: Vec<u32>,
+    /// What bodies are called, if not by what they are.
+    pub names: BTreeMap<u32, String>,
     /// Called once, when a page says that it has shown a frame.
     pub on_first_frame: Box<dyn Fn() + Send + Sync>,
 }
@@ -106,34 +121,47 @@ pub fn serve(
     ready: impl FnOnce(&str),
 ) -> Result<(), DialogError> {
     let bodies = talk::wait_for_world(&*bus, &|| stop.load(Ordering::Relaxed))?;
-    let drivers = Arc::new(Drivers::new(Arc::clone(&bus), config.drivable, &bodies));
-    let views = page::views(&config.cameras, &bodies);
-    let hello = page::hello(&config.session, &mission, &layout, &catalog, &views, drivers.bodies());
+    let told = BodyNames::new(&bodies, &config.names);
+    let names = page::body_names(&bodies, &config.names);
+    let drivers = Arc::new(Drivers::new(Arc::clone(&bus), config.drivable, &bodies, &names));
+    let views = page::views(&config.cameras, &names, config.robots.len());
+    let robots: Vec<RobotName> = robots::named(&config.robots, &names);
+    let hello = page::hello(&config.session, &mission, &layout, &catalog, &views, drivers.bodies(), &robots);
     let views = views.into_iter().map(|view| View::new(view.camera)).collect();
     let hub = Arc::new(Hub::new(hello, views, config.on_first_frame));
     let journal = Journal::open(config.journal.as_deref());
     let (listener, place) = listen(config.listen, journal.past().place.as_ref())?;
-    let knowledge = Knowledge::new(config.knows, Arc::clone(&catalog), &layout, talk::BODY);
-    let language = Language::new(catalog).asking(config.asking);
-    let talk = Talk::new(&*bus, language, knowledge, Arc::clone(&hub), Arc::clone(&drivers), journal)?;
+    let language = Language::new(Arc::clone(&catalog)).asking(config.asking);
+    let interprets = config.interpreter.is_some();
+    let robots = Robots::new(&robots, config.knows, &language, &catalog, &layout, told, interprets);
+    let (puzzles, asked) = interprets.then(interpreter::puzzles).unzip();
+    let talk = Talk::new(&*bus, catalog, robots, puzzles, Arc::clone(&hub), Arc::clone(&drivers), journal)?;
     let ears = Ears::new(&*bus)?;
     talk.serve_at(place.clone());
     let Place { address, token } = place;
     let ended = AtomicBool::new(false);
     let over = || stop.load(Ordering::Relaxed) || ended.load(Ordering::Relaxed);
     talk.wait_until_it_sees(&*bus, &over)?;
+    talk.leave_puzzles()?;
     thread::scope(|scope| {
+        if let (Some(interpreter), Some(asked)) = (config.interpreter, asked) {
+            // It may take long to answer; nobody waits for it at the end.
+            let talk = Arc::downgrade(&talk);
+            thread::spawn(move || interpreter::answer(&*interpreter, &asked, &talk));
+        }
         let mut workers = vec![
             scope.spawn(|| until_ended(&ended, || talk::listen(ears, &talk, &over))),
             scope.spawn(|| until_ended(&ended, || talk::show_state(&talk, STATE_EVERY, &over))),
         ];
         for view in (0..=u8::MAX).zip(&hub.views) {
             let (bus, talk, over, ended) = (&*bus, &talk, &over, &ended);
-            workers.push(scope.spawn(move || until_ended(ended, || frames::relay(bus, view, talk, over))));
+            let shown = move |shown| talk.note_frame(shown);
+            workers.push(scope.spawn(move || until_ended(ended, || frames::relay(bus, view, &shown, over))));
         }
         ready(&token::page_address(address, token.as_deref()));
-        let (hub, talk, token) = (Arc::clone(&hub), Arc::clone(&talk), token.map(Arc::from));
-        let served = web::serve(listener, Service { hub, talk, drivers, token }, &over).map_err(DialogError::Serve);
+        let (hub, token) = (Arc::clone(&hub), token.map(Arc::from));
+        let host = Host::Live(Live { talk: Arc::clone(&talk), drivers });
+        let served = web::serve(listener, Service { hub, host, token }, &over).map_err(DialogError::Serve);
         ended.store(true, Ordering::Relaxed);
         workers
             .into_iter()

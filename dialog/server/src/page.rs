@@ -1,5 +1,7 @@
 //! What the page is told, as JSON.
 
+use std::collections::BTreeMap;
+
 use cohabit_bus::{
     CameraId,
     message::{BodyRecord, CameraRecord, NONE, ObjectRecord, Plane, StateView, Thing},
@@ -8,7 +10,7 @@ use cohabit_cdf::{BodyKind, Catalog, ClassId, Layout, Mission, RoomId, layout::O
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use crate::{affordances::Affordance, driving::DrivableBody, latency::Moments};
+use crate::{affordances::Affordance, driving::DrivableBody, latency::Moments, robots::RobotName};
 
 /// Who says a line of chat.
 #[derive(Clone, Copy, Debug, Deserialize, Eq, PartialEq, Serialize)]
@@ -40,6 +42,19 @@ pub enum LineKind {
     Ending,
 }
 
+/// What the game says when all goals are met.
+pub const COMPLETE: &str = "Mission complete. Well done!";
+
+/// What the game says when a hazard has ended the mission.
+pub fn failed(why: &str) -> String {
+    format!("Mission failed. {why}")
+}
+
+/// What the game says when a goal is discovered.
+pub fn new_goal(goal: &str) -> String {
+    format!("New goal: {goal}")
+}
+
 /// One line of chat.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Line {
@@ -54,6 +69,12 @@ pub struct Line {
     pub turn: u64,
     /// What.
     pub text: String,
+    /// Which body speaks or is spoken to, where there are several robots.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub body: Option<u32>,
+    /// The page at which a person said it: pages are numbered as they come, from 1.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub visitor: Option<u32>,
     /// Answers that a question offers.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub answers: Vec<Answer>,
@@ -72,7 +93,16 @@ pub struct Answer {
 impl Line {
     /// A line of chat.
     pub fn new(from: Speaker, kind: LineKind, turn: u64, text: impl Into<String>) -> Self {
-        Self { message: Self::message(), from, kind, turn, text: text.into(), answers: Vec::new() }
+        Self {
+            message: Self::message(),
+            from,
+            kind,
+            turn,
+            text: text.into(),
+            body: None,
+            visitor: None,
+            answers: Vec::new(),
+        }
     }
 
     const fn message() -> &'static str {
@@ -88,11 +118,14 @@ pub struct ViewName {
     pub name: String,
 }
 
-/// What people call bodies: `robot`, `person`, with a number where there are several of a kind.
-pub fn body_names(bodies: &[BodyRecord]) -> Vec<String> {
+/// What people call bodies: as they were named, or else `robot`, `person`, with a number where there are several of a kind.
+pub fn body_names(bodies: &[BodyRecord], named: &BTreeMap<u32, String>) -> Vec<String> {
     let kind = |record: &BodyRecord| body_kind(record);
     (0..bodies.len())
         .map(|index| {
+            if let Some(name) = named.get(&bodies[index].body) {
+                return name.clone();
+            }
             let kin = |records: &[BodyRecord]| records.iter().filter(|one| kind(one) == kind(&bodies[index])).count();
             let name = kind(&bodies[index]);
             if kin(bodies) > 1 { format!("{name} {}", kin(&bodies[..=index])) } else { name.to_owned() }
@@ -101,19 +134,19 @@ pub fn body_names(bodies: &[BodyRecord]) -> Vec<String> {
 }
 
 /// The cameras that people can look through, the one behind the first body first.
-pub fn views(cameras: &[CameraRecord], bodies: &[BodyRecord]) -> Vec<ViewName> {
-    let names = body_names(bodies);
+pub fn views(cameras: &[CameraRecord], names: &[String], robots: usize) -> Vec<ViewName> {
     let name_of = |body: u8| names.get(usize::from(body)).map_or("somebody", String::as_str);
+    let one = robots < 2;
     let mut views: Vec<ViewName> = (cameras.iter().filter(|camera| camera.has(Plane::Color)))
         .filter_map(|record| {
             let camera = record.camera()?;
             let name = match camera {
-                CameraId::Spectator(0) => "Third person".to_owned(),
-                CameraId::Spectator(body) => format!("Behind the {}", name_of(body)),
-                CameraId::Eyes(0) => "Robot's eyes".to_owned(),
-                CameraId::Eyes(body) => format!("Eyes of the {}", name_of(body)),
-                CameraId::Overhead(0) => "From above".to_owned(),
-                CameraId::Overhead(body) => format!("Above the {}", name_of(body)),
+                CameraId::Spectator(0) if one => "Third person".to_owned(),
+                CameraId::Spectator(body) => format!("Behind {}", the(name_of(body))),
+                CameraId::Eyes(0) if one => "Robot's eyes".to_owned(),
+                CameraId::Eyes(body) => format!("Eyes of {}", the(name_of(body))),
+                CameraId::Overhead(0) if one => "From above".to_owned(),
+                CameraId::Overhead(body) => format!("Above {}", the(name_of(body))),
                 CameraId::Named(name) => name.to_string(),
                 // People have the same, larger, by `Eyes`.
                 CameraId::Egocentric(_) => return None,
@@ -133,6 +166,17 @@ pub fn views(cameras: &[CameraRecord], bodies: &[BodyRecord]) -> Vec<ViewName> {
     views
 }
 
+/// Which number a page has among all.
+pub fn you(visitor: u32) -> Value {
+    json!({ "type": "you", "visitor": visitor })
+}
+
+/// A name that somebody was given stands alone.
+fn the(name: &str) -> String {
+    let is_kind = BodyKind::ALL.iter().any(|kind| name.starts_with(kind.name()));
+    if is_kind { format!("the {name}") } else { name.to_owned() }
+}
+
 /// What a page learns first: the mission, the floor plan and the views.
 pub fn hello(
     session: &str,
@@ -141,6 +185,7 @@ pub fn hello(
     catalog: &Catalog,
     views: &[ViewName],
     drivable: &[DrivableBody],
+    robots: &[RobotName],
 ) -> Value {
     let rooms: Vec<Value> = layout
         .rooms
@@ -169,6 +214,7 @@ pub fn hello(
         "map": { "rooms": rooms, "openings": openings, "furniture": layout.furniture_outlines_m(catalog) },
         "views": views,
         "drivable": drivable,
+        "robots": robots.iter().map(|one| json!({ "body": one.body.0, "name": one.name })).collect::<Vec<Value>>(),
     })
 }
 
@@ -279,19 +325,20 @@ pub fn marks(camera: CameraId, marks: &[(usize, [f32; 2])]) -> Value {
 }
 
 /// A plan goes on.
-pub fn progress(turn: u64, step: u32, steps: usize, says: &str) -> Value {
-    json!({ "type": "progress", "turn": turn, "step": step + 1, "steps": steps, "text": says })
+pub fn progress(body: u32, turn: u64, step: u32, steps: usize, says: &str) -> Value {
+    json!({ "type": "progress", "body": body, "turn": turn, "step": step + 1, "steps": steps, "text": says })
 }
 
 /// A turn is over.
-pub fn turn_ended(turn: u64, status: &str) -> Value {
-    json!({ "type": "turn", "turn": turn, "ended": true, "status": status })
+pub fn turn_ended(body: u32, turn: u64, status: &str) -> Value {
+    json!({ "type": "turn", "body": body, "turn": turn, "ended": true, "status": status })
 }
 
-/// How long a turn took so far.
-pub fn latency(moments: &Moments) -> Value {
+/// How long a turn took so far; of its first changed frame the tick, which a page tells when it has shown it.
+pub fn latency(moments: &Moments, frame: Option<u64>) -> Value {
     let [understood, moved, shown] = moments.milliseconds();
-    json!({ "type": "latency", "turn": moments.turn, "understood_ms": understood, "moved_ms": moved, "shown_ms": shown })
+    json!({ "type": "latency", "turn": moments.turn, "frame": frame,
+            "understood_ms": understood, "moved_ms": moved, "shown_ms": shown })
 }
 
 /// The page drives a body from now on, or none any more; why, if it did not ask for that.

@@ -1,6 +1,7 @@
 //! The conversation on the bus: what pages say goes in, what agents and the world tell comes back.
 
 use std::{
+    collections::BTreeMap,
     sync::{Arc, Mutex, MutexGuard, PoisonError},
     thread,
     time::Duration,
@@ -8,71 +9,86 @@ use std::{
 
 use cohabit_bus::{
     Envelope, Heart, Inbox, Listener, Publisher, Sample, Topic, Transport, Wake,
-    message::{self, BodyRecord, DialogKind, DialogMessage, DialogView, EventKind, EventMessage, StateView, Thing},
+    message::{
+        self, BodyRecord, DialogHeader, DialogKind, DialogMessage, DialogView, EventKind, EventMessage, StateView,
+        Thing,
+    },
     monotonic_nanos,
 };
 use cohabit_cdf::{BodyId, Catalog, ObjectId};
-use cohabit_language::Language;
 use serde_json::Value;
 
 use crate::{
     DialogError,
     affordances::{self, Affordance},
-    conversation::{Conversation, Reaction},
+    conversation::{self, Reaction},
     driving::Drivers,
+    frames::Shown,
     hub::Hub,
+    interpreter::{Asked, Puzzles},
     journal::{Deed, Journal, Place},
-    known::Knowledge,
     latency::{Latency, Moments},
     page::{self, Line, LineKind, Speaker},
+    robots::{Robot, Robots, Visitor},
 };
 
-/// The body that people speak to.
-pub const BODY: BodyId = BodyId(0);
-
-/// The conversation, with its ends on the bus and to the pages. One lock: who speaks first is heard first.
+/// The conversations, with their ends on the bus and to the pages. One lock: who speaks first is heard first.
 pub struct Talk {
     inner: Mutex<Inner>,
     hub: Arc<Hub>,
     drivers: Arc<Drivers>,
     catalog: Arc<Catalog>,
+    /// Who makes something of what is not understood, if anybody.
+    interpreter: Option<Puzzles>,
 }
 
 struct Inner {
-    conversation: Conversation,
-    knowledge: Knowledge,
+    robots: Robots,
     journal: Journal,
     latency: Latency,
     dialog: Box<dyn Publisher>,
     states: Inbox,
     newest: Option<Sample>,
+    /// The body that was spoken to last.
+    spoken_to: BodyId,
+}
+
+/// What something follows from.
+#[derive(Clone, Copy)]
+enum Heard<'a> {
+    /// What somebody said at a page.
+    AtPage(Visitor),
+    /// A message on the bus.
+    OnBus(&'a Envelope),
+    /// What was heard before.
+    Nothing,
 }
 
 impl Talk {
     /// A conversation on `bus`, shown to the pages of `hub`; it goes on where that of `journal` was.
     pub fn new(
         bus: &dyn Transport,
-        language: Language,
-        mut knowledge: Knowledge,
+        catalog: Arc<Catalog>,
+        mut robots: Robots,
+        interpreter: Option<Puzzles>,
         hub: Arc<Hub>,
         drivers: Arc<Drivers>,
         journal: Journal,
     ) -> Result<Arc<Self>, DialogError> {
-        hub.restore(&journal.past().lines);
-        let memory = journal.past().conversation.clone();
-        knowledge.study(&journal.past().lessons);
-        let catalog = Arc::clone(language.catalog());
+        let past = journal.past();
+        hub.restore(&past.lines);
+        robots.restore(&past.conversations, &past.lessons);
         let mut inner = Inner {
-            conversation: Conversation::after(memory, language, BODY.0),
-            knowledge,
+            robots,
             journal,
             latency: Latency::default(),
             dialog: bus.publisher(Topic::Dialog)?,
             states: Inbox::new(bus, Topic::State)?,
             newest: None,
+            spoken_to: BodyId(0),
         };
         inner.tell_again()?;
-        Ok(Arc::new(Self { inner: Mutex::new(inner), hub, drivers, catalog }))
+        Ok(Arc::new(Self { inner: Mutex::new(inner), hub, drivers, catalog, interpreter }))
     }
 
     /// Waits until this conversation sees the world, or until `over`: who is let in then is understood at once.
@@ -99,29 +115,70 @@ impl Talk {
         self.inner.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
+    /// The number of the page of this key.
+    pub fn visitor(&self, key: u64) -> u32 {
+        self.lock().journal.visitor(key)
+    }
+
     /// Somebody at a page said something, received at `received_nanos`.
-    pub fn hear(&self, text: &str, received_nanos: u64) -> Result<(), DialogError> {
+    pub fn hear(&self, said: &str, visitor: Visitor, received_nanos: u64) -> Result<(), DialogError> {
         let mut inner = self.lock();
-        inner.look()?;
-        let Inner { conversation, knowledge, .. } = &mut *inner;
-        let (turn, reactions) = conversation.hear(text, knowledge);
-        inner.latency.begin(turn, received_nanos, monotonic_nanos());
-        self.carry_out(&mut inner, None, reactions)
+        let (bodies, text) = inner.addressed(said, visitor, received_nanos)?;
+        for (nth, body) in bodies.into_iter().enumerate() {
+            inner.listen_to(visitor, body)?;
+            let Some(robot) = inner.robots.of_body(body) else { continue };
+            let (turn, mut reactions) = robot.conversation.hear_called(said, &text, &robot.knowledge);
+            // All that were called hear it, and it is shown once.
+            let is_shown = |reaction: &Reaction| reaction.line().is_none_or(|line| line.from != Speaker::Person);
+            reactions.retain(|reaction| nth == 0 || is_shown(reaction));
+            inner.latency.begin(turn, received_nanos, monotonic_nanos());
+            self.carry_out(&mut inner, body, Heard::AtPage(visitor), reactions)?;
+        }
+        Ok(())
     }
 
     /// Somebody at a page chose an object, received at `received_nanos`.
-    pub fn choose(&self, object: ObjectId, received_nanos: u64) -> Result<(), DialogError> {
+    pub fn choose(&self, object: ObjectId, visitor: Visitor, received_nanos: u64) -> Result<(), DialogError> {
         let mut inner = self.lock();
-        inner.look()?;
-        let Inner { conversation, knowledge, .. } = &mut *inner;
-        let (turn, reactions) = conversation.choose(object, knowledge);
+        let answered = inner.robots.answered_by(object);
+        let body = match answered {
+            Some(body) => body,
+            None => match inner.addressed("", visitor, received_nanos)?.0.first() {
+                Some(body) => *body,
+                None => return Ok(()),
+            },
+        };
+        inner.listen_to(visitor, body)?;
+        let Some(robot) = inner.robots.of_body(body) else { return Ok(()) };
+        let (turn, reactions) = robot.conversation.choose(object, &robot.knowledge);
         inner.latency.begin(turn, received_nanos, monotonic_nanos());
-        self.carry_out(&mut inner, None, reactions)
+        self.carry_out(&mut inner, body, Heard::AtPage(visitor), reactions)
     }
 
-    /// Whether pointing at an object answers what the robot asks.
+    /// What an interpreter made of what the robot of a body did not understand in a turn.
+    pub fn note_interpretation(&self, body: BodyId, turn: u64, requests: &[String]) -> Result<(), DialogError> {
+        let mut inner = self.lock();
+        inner.look()?;
+        self.interpreted(&mut inner, body, turn, requests)
+    }
+
+    fn interpreted(&self, inner: &mut Inner, body: BodyId, turn: u64, requests: &[String]) -> Result<(), DialogError> {
+        let Some(robot) = inner.robots.of_body(body) else { return Ok(()) };
+        let reactions = robot.conversation.interpreted(turn, requests, &robot.knowledge);
+        if reactions.is_empty() { Ok(()) } else { self.carry_out(inner, body, Heard::Nothing, reactions) }
+    }
+
+    /// Gives up on what a service before this one asked an interpreter.
+    pub fn leave_puzzles(&self) -> Result<(), DialogError> {
+        let mut inner = self.lock();
+        let puzzled: Vec<_> =
+            inner.robots.iter().filter_map(|one| Some((one.body, one.conversation.puzzled()?))).collect();
+        puzzled.into_iter().try_for_each(|(body, turn)| self.interpreted(&mut inner, body, turn, &[]))
+    }
+
+    /// Whether pointing at an object answers what a robot asks.
     pub fn is_answer(&self, object: ObjectId) -> bool {
-        self.lock().conversation.asked().is_some_and(|asked| asked.is_answered_by(object))
+        self.lock().robots.answered_by(object).is_some()
     }
 
     /// Notes where the page is served.
@@ -129,25 +186,40 @@ impl Talk {
         self.lock().journal.serve_at(place);
     }
 
-    /// An agent said something about a plan.
+    /// An agent said something, about a plan or of its own accord.
     fn follow(&self, envelope: &Envelope, view: DialogView<'_>) -> Result<(), DialogError> {
         let mut inner = self.lock();
         if inner.journal.has_heard(envelope) {
             return Ok(());
         }
-        let deed = inner.conversation.deed(view.header);
-        if let Some(DialogKind::StepEnded | DialogKind::PlanEnded) = view.header.kind() {
+        let (kind, body) = (view.header.kind(), BodyId(view.header.body));
+        if let (Some(DialogKind::Reply | DialogKind::Question), 0) = (kind, view.header.turn) {
+            return self.pass_on(&mut inner, envelope, view.header);
+        }
+        if let Some(DialogKind::StepEnded | DialogKind::PlanEnded) = kind {
             inner.look()?;
         }
-        if let Some(action) = deed {
-            inner.knowledge.note_deed(&action);
+        let told = inner.robots.names.told(&view.header.text);
+        let Some(Robot { conversation, knowledge, .. }) = inner.robots.of_body(body) else { return Ok(()) };
+        if let Some(action) = conversation.deed(view.header) {
+            knowledge.note_deed(&action);
         }
-        let Inner { conversation, knowledge, .. } = &mut *inner;
-        let reactions = conversation.follow(view.header, knowledge);
-        if reactions.is_empty() && view.header.kind() != Some(DialogKind::StepEnded) {
+        let mut header = *view.header;
+        header.text = told;
+        let reactions = conversation.follow(&header, knowledge);
+        if reactions.is_empty() && kind != Some(DialogKind::StepEnded) {
             return Ok(());
         }
-        self.carry_out(&mut inner, Some(envelope), reactions)
+        self.carry_out(&mut inner, body, Heard::OnBus(envelope), reactions)
+    }
+
+    /// Shows what a mind says of its own accord.
+    fn pass_on(&self, inner: &mut Inner, envelope: &Envelope, header: &DialogHeader) -> Result<(), DialogError> {
+        let kind = if header.kind() == Some(DialogKind::Question) { LineKind::Question } else { LineKind::Say };
+        let mut line = Line::new(Speaker::Robot, kind, 0, header.text.as_str());
+        line.body = Some(header.body);
+        self.tell(inner, envelope, line);
+        Ok(())
     }
 
     /// Something happened in the world, while this service was there or before.
@@ -164,15 +236,15 @@ impl Talk {
         match event.kind() {
             Some(EventKind::Started) if is_new => {
                 if let Some(moments) = inner.latency.moved(event.turn, event.command, envelope.sent_nanos) {
-                    self.hub.tell(&page::latency(&moments));
+                    self.hub.tell(&page::latency(&moments, None));
                 }
             }
             Some(EventKind::GoalMet) => game(LineKind::Goal, text),
             Some(EventKind::NoteRead) => game(LineKind::Note, text),
             Some(EventKind::Message | EventKind::CameraMovement) => game(LineKind::Say, text),
-            Some(EventKind::GoalShown) => game(LineKind::Goal, &format!("New goal: {text}")),
-            Some(EventKind::MissionComplete) => game(LineKind::Ending, "Mission complete. Well done!"),
-            Some(EventKind::MissionFailed) => game(LineKind::Ending, &format!("Mission failed. {text}")),
+            Some(EventKind::GoalShown) => game(LineKind::Goal, &page::new_goal(text)),
+            Some(EventKind::MissionComplete) => game(LineKind::Ending, page::COMPLETE),
+            Some(EventKind::MissionFailed) => game(LineKind::Ending, &page::failed(text)),
             Some(EventKind::Highlighted) if is_new => self.show_highlight(&mut inner, event.object)?,
             _ => {}
         }
@@ -181,12 +253,16 @@ impl Talk {
 
     fn game(&self, inner: &mut Inner, envelope: &Envelope, kind: LineKind, text: &str) {
         if !text.is_empty() {
-            let line = Line::new(Speaker::Game, kind, 0, text);
-            let heard = Some((envelope.run, envelope.sequence));
-            inner.journal.will_tell(Deed { heard, lines: vec![line.clone()], conversation: None });
-            self.hub.say(&line);
-            inner.journal.told();
+            self.tell(inner, envelope, Line::new(Speaker::Game, kind, 0, text));
         }
+    }
+
+    /// Tells the pages a line that follows from a message on the bus, once it is written down.
+    fn tell(&self, inner: &mut Inner, envelope: &Envelope, line: Line) {
+        let heard = Some((envelope.run, envelope.sequence));
+        inner.journal.will_tell(Deed { heard, lines: vec![line.clone()], ..Deed::default() });
+        self.hub.say(&line);
+        inner.journal.told();
     }
 
     fn show_highlight(&self, inner: &mut Inner, object: u32) -> Result<(), DialogError> {
@@ -194,8 +270,7 @@ impl Talk {
         let Some(sample) = &inner.newest else { return Ok(()) };
         let state = StateView::new(sample.payload())?;
         if let Some(record) = state.objects.iter().find(|record| record.object == object) {
-            let asked = inner.conversation.asked().filter(|asked| asked.candidates.len() > 1);
-            let at = asked.and_then(|asked| asked.candidates.iter().position(|one| one.0 == object));
+            let at = inner.numbered().and_then(|asked| asked.candidates.iter().position(|one| one.0 == object));
             self.hub.tell(&page::highlight(record, at.map(|at| at + 1), &self.catalog));
         }
         Ok(())
@@ -218,15 +293,22 @@ impl Talk {
         Ok(aimed(things, body, state, &self.catalog))
     }
 
-    /// A frame was shown that was seen after `command` began.
-    pub fn note_frame(&self, command: u64, sent_nanos: u64) -> Result<(), DialogError> {
+    /// A frame was shown.
+    pub fn note_frame(&self, Shown { command, tick, sent_nanos }: Shown) -> Result<(), DialogError> {
         let mut inner = self.lock();
         let Some(moments) = inner.latency.shown(command, sent_nanos) else { return Ok(()) };
-        self.hub.tell(&page::latency(&moments));
+        self.hub.tell(&page::latency(&moments, Some(tick)));
         log_latency(&moments);
-        let mut message = DialogMessage::new(DialogKind::Latency, BODY.0, moments.turn, "");
-        message.header.stamps = moments.stamps();
-        inner.publish(&message)
+        inner.publish_latency(&moments)
+    }
+
+    /// A page has shown the frame in which the robot first moved in a turn.
+    pub fn note_drawn(&self, turn: u64, nanos: u64) -> Result<(), DialogError> {
+        let mut inner = self.lock();
+        match inner.latency.drawn(turn, nanos) {
+            Some(moments) => inner.publish_latency(&moments),
+            None => Ok(()),
+        }
     }
 
     fn show_state(&self, inner: &mut Inner) -> Result<(), DialogError> {
@@ -238,37 +320,93 @@ impl Talk {
         Ok(())
     }
 
-    /// Does what follows from a message, `None` of a page's, once it is written down.
+    /// Does what follows from a message for the robot of a body, once it is written down.
     fn carry_out(
         &self,
         inner: &mut Inner,
-        heard: Option<&Envelope>,
-        reactions: Vec<Reaction>,
+        body: BodyId,
+        heard: Heard<'_>,
+        mut reactions: Vec<Reaction>,
     ) -> Result<(), DialogError> {
+        let are_several = inner.robots.are_several();
+        for line in reactions.iter_mut().filter_map(Reaction::line_mut) {
+            line.body = are_several.then_some(body.0);
+            line.visitor = heard.visitor().filter(|_| line.from == Speaker::Person);
+        }
+        let Some(robot) = inner.robots.of_body(body) else { return Ok(()) };
+        let memory = robot.conversation.memory().clone();
+        inner.robots.note_speech(body);
         inner.journal.will_tell(Deed {
-            heard: heard.map(|envelope| (envelope.run, envelope.sequence)),
+            heard: heard.envelope().map(|envelope| (envelope.run, envelope.sequence)),
             lines: reactions.iter().filter_map(Reaction::line).cloned().collect(),
-            conversation: Some(inner.conversation.memory().clone()),
+            conversations: BTreeMap::from([(body.0, memory)]),
         });
         for reaction in reactions {
             match reaction {
                 Reaction::Bus(message) => inner.publish(&message)?,
                 Reaction::Chat(line) => self.hub.say(&line),
                 Reaction::Page(message) => self.hub.tell(&message),
+                Reaction::Interpret(turn, unclear) => {
+                    let is_asked = self
+                        .interpreter
+                        .as_ref()
+                        .is_some_and(|puzzles| puzzles.ask(Asked { body, turn, unclear: *unclear }));
+                    if !is_asked {
+                        self.interpreted(inner, body, turn, &[])?;
+                    }
+                }
                 Reaction::TurnEnded { turn, end } => {
                     self.show_state(inner)?;
-                    self.hub.tell(&page::turn_ended(turn, end.name()));
+                    self.hub.tell(&page::turn_ended(body.0, turn, end.name()));
                 }
             }
         }
-        let asked = inner.conversation.asked().filter(|asked| asked.candidates.len() > 1);
-        self.hub.mark(asked.map(|asked| asked.candidates.as_slice()).unwrap_or_default());
+        self.hub.mark(inner.numbered().map(|asked| asked.candidates.as_slice()).unwrap_or_default());
         inner.journal.told();
         Ok(())
     }
 }
 
+impl Heard<'_> {
+    const fn envelope(&self) -> Option<&Envelope> {
+        match self {
+            Self::OnBus(envelope) => Some(envelope),
+            Self::AtPage(_) | Self::Nothing => None,
+        }
+    }
+
+    const fn visitor(&self) -> Option<u32> {
+        match self {
+            Self::AtPage(visitor) => Some(visitor.number),
+            Self::OnBus(_) | Self::Nothing => None,
+        }
+    }
+}
+
 impl Inner {
+    /// Whom a visitor speaks to, and what is said to them.
+    fn addressed(&mut self, said: &str, visitor: Visitor, nanos: u64) -> Result<(Vec<BodyId>, String), DialogError> {
+        self.look()?;
+        let state = self.newest.as_ref().map(|sample| StateView::new(sample.payload())).transpose()?;
+        Ok(self.robots.addressed(said, visitor, state, nanos))
+    }
+
+    /// Has the robot of a body know who speaks to it.
+    fn listen_to(&mut self, visitor: Visitor, body: BodyId) -> Result<(), DialogError> {
+        self.spoken_to = body;
+        let Some(sample) = &self.newest else { return Ok(()) };
+        let state = StateView::new(sample.payload())?;
+        if let Some(robot) = self.robots.of_body(body) {
+            robot.knowledge.note_speaker(visitor.body, state);
+        }
+        Ok(())
+    }
+
+    /// What is asked of which the answers are numbered.
+    fn numbered(&self) -> Option<&conversation::Asked> {
+        self.robots.asking()?.conversation.asked().filter(|asked| asked.candidates.len() > 1)
+    }
+
     fn refresh(&mut self) -> Result<(), DialogError> {
         while let Some((sample, ())) = self.states.next(|sample| StateView::new(sample.payload()).map(drop))? {
             self.newest = Some(sample);
@@ -279,12 +417,14 @@ impl Inner {
     /// Has the robot look at the world as it is now.
     fn look(&mut self) -> Result<(), DialogError> {
         self.refresh()?;
-        let Self { newest, knowledge, journal, .. } = self;
-        if let Some(sample) = newest {
-            knowledge.look(StateView::new(sample.payload())?, sample.envelope().tick);
-        }
-        if let Some(lessons) = knowledge.take_lessons() {
-            journal.note_lessons(lessons);
+        let Self { newest, robots, journal, .. } = self;
+        for robot in robots.iter_mut() {
+            if let Some(sample) = newest {
+                robot.knowledge.look(StateView::new(sample.payload())?, sample.envelope().tick);
+            }
+            if let Some(lessons) = robot.knowledge.take_lessons() {
+                journal.note_lessons(robot.body.0, lessons);
+            }
         }
         Ok(())
     }
@@ -293,9 +433,12 @@ impl Inner {
     fn look_by_and_by(&mut self) -> Result<(), DialogError> {
         let Some(sample) = &self.newest else { return Ok(()) };
         let state = StateView::new(sample.payload())?;
-        let body = state.bodies.iter().find(|record| record.body == BODY.0);
         let tick = sample.envelope().tick;
-        if body.is_some_and(|body| self.knowledge.is_due(tick, body.position_m, body.yaw_rad)) {
+        let is_due = |robot: &Robot| {
+            let body = state.bodies.iter().find(|record| record.body == robot.body.0);
+            body.is_some_and(|body| robot.knowledge.is_due(tick, body.position_m, body.yaw_rad))
+        };
+        if self.robots.iter().any(is_due) {
             self.look()?;
         }
         Ok(())
@@ -304,17 +447,23 @@ impl Inner {
     /// Tells the bus what a service that was killed may not have told, and the plan under way: an agent that joins later
     /// would not know of it.
     fn tell_again(&mut self) -> Result<(), DialogError> {
-        let lines = self.journal.past().untold.clone();
-        for line in lines {
-            if let Some(message) = self.conversation.message(&line) {
-                self.publish(&message)?;
-            }
+        let untold = &self.journal.past().untold;
+        let is_its = |robot: &Robot, line: &Line| line.body.is_none_or(|body| body == robot.body.0);
+        let mut messages = Vec::new();
+        for robot in self.robots.iter() {
+            let lines = untold.iter().filter(|line| is_its(robot, line));
+            messages.extend(lines.filter_map(|line| robot.conversation.message(line)));
+            messages.extend(robot.conversation.plan_under_way());
         }
+        messages.iter().try_for_each(|message| self.publish(message))?;
         self.journal.told();
-        match self.conversation.plan_under_way() {
-            Some(plan) => self.publish(&plan),
-            None => Ok(()),
-        }
+        Ok(())
+    }
+
+    fn publish_latency(&mut self, moments: &Moments) -> Result<(), DialogError> {
+        let mut message = DialogMessage::new(DialogKind::Latency, self.spoken_to.0, moments.turn, "");
+        message.header.stamps = moments.stamps();
+        self.publish(&message)
     }
 
     fn publish(&mut self, message: &DialogMessage) -> Result<(), DialogError> {
@@ -383,7 +532,7 @@ impl Ears {
             listener: bus.listener(Wake::Talk)?,
             dialog: Inbox::new(bus, Topic::Dialog)?,
             events: Inbox::new(bus, Topic::Events)?,
-            heart: Heart::new(bus, "dialog", BODY.0)?,
+            heart: Heart::new(bus, "dialog", 0)?,
             joined_nanos: monotonic_nanos(),
         })
     }

@@ -7,7 +7,7 @@ use std::{
 
 use axum::extract::ws::{Message, WebSocket};
 use cohabit_bus::{message::Thing, monotonic_nanos};
-use cohabit_cdf::ObjectId;
+use cohabit_cdf::{BodyId, ObjectId};
 use serde::Deserialize;
 use serde_json::Value;
 use tokio::{
@@ -22,11 +22,13 @@ use crate::{
     DialogError,
     affordances::Deed,
     driving::{Driver, News, Told},
+    hub::Hub,
     limits::{LONGEST_TEXT, Limits, MOST_PAGES},
     page,
+    robots::Visitor,
     talk::Talk,
     view::{Frame, View, Viewing},
-    web::Service,
+    web::Live,
 };
 
 /// How often it is seen whether a page that drives is still there.
@@ -46,6 +48,8 @@ enum FromPage {
     Say { text: String },
     /// The page has shown its first frame.
     Shown,
+    /// The page has shown a frame in which the robot first moves as it was told to in this turn.
+    Drawn { turn: u64 },
     /// Somebody wants to look through another camera.
     View { camera: String },
     /// Somebody chose one of the objects that a question offers.
@@ -63,23 +67,26 @@ enum FromPage {
 }
 
 /// Serves a page until it goes.
-pub async fn converse(service: Service, mut socket: WebSocket) {
-    let Some((first, messages, _visit)) = service.hub.join() else {
+pub async fn converse(hub: Arc<Hub>, live: Live, mut socket: WebSocket, key: u64) {
+    let Some((first, messages, _visit)) = hub.join() else {
         let text = format!("{MOST_PAGES} pages are open already; close one and reload.");
         let _ = socket.send(Message::text(page::error(&text).to_string())).await;
         return;
     };
-    for message in first {
+    let number = live.talk.visitor(key);
+    for message in std::iter::once(page::you(number).to_string()).chain(first) {
         if socket.send(Message::text(message)).await.is_err() {
             return;
         }
     }
-    let Some(view) = service.hub.views.first().cloned() else { return };
-    Visit::new(service, view).run(socket, messages).await;
+    let Some(view) = hub.views.first().cloned() else { return };
+    Visit::new(hub, live, view, number).run(socket, messages).await;
 }
 
 struct Visit {
-    service: Service,
+    hub: Arc<Hub>,
+    live: Live,
+    number: u32,
     view: Arc<View>,
     frames: watch::Receiver<Option<Frame>>,
     _viewing: Viewing,
@@ -104,13 +111,15 @@ struct Aim {
 struct Gone;
 
 impl Visit {
-    fn new(service: Service, view: Arc<View>) -> Self {
+    fn new(hub: Arc<Hub>, live: Live, view: Arc<View>, number: u32) -> Self {
         let now = Instant::now();
         let (mut frames, viewing) = view.join();
         frames.mark_changed();
         let aim = Aim { told: Value::Null, at: now, picked: None };
         Self {
-            service,
+            hub,
+            live,
+            number,
             view,
             frames,
             _viewing: viewing,
@@ -176,7 +185,7 @@ impl Visit {
 
     /// Where what the robot asks about is in the newest frame, if that is news.
     fn mark(&mut self) -> Option<Message> {
-        let marked = self.service.hub.marked();
+        let marked = self.hub.marked();
         if marked.is_empty() && self.marks.is_empty() {
             return None;
         }
@@ -202,7 +211,7 @@ impl Visit {
             }
             None => Vec::new(),
         };
-        let aim = self.service.talk.aim(&things, driver.body()).inspect_err(|error| tracing::warn!("{error}")).ok()?;
+        let aim = self.live.talk.aim(&things, driver.body()).inspect_err(|error| tracing::warn!("{error}")).ok()?;
         (aim != self.aim.told).then(|| {
             self.aim.told = aim;
             Message::text(self.aim.told.to_string())
@@ -267,14 +276,15 @@ impl Visit {
             return Err(a_lot());
         }
         match message {
-            FromPage::Shown => self.service.hub.note_shown(),
+            FromPage::Shown => self.hub.note_shown(),
+            FromPage::Drawn { turn } => self.note_drawn(turn, received_nanos)?,
             FromPage::View { camera } => self.look_through(&camera)?,
             FromPage::Point { camera, tick, x, y } => {
                 return self.point(&camera, tick, [x, y], received_nanos).await;
             }
             FromPage::DriveBody { body } => {
                 self.driver = None;
-                self.driver = Some(Driver::claim(&self.service.drivers, body)?);
+                self.driver = Some(Driver::claim(&self.live.drivers, body)?);
             }
             FromPage::Release => self.driver = None,
             FromPage::Act { deed, object } => return self.act(deed, ObjectId(object)),
@@ -283,6 +293,10 @@ impl Visit {
             FromPage::Drive { .. } => {}
         }
         Ok(Vec::new())
+    }
+
+    fn note_drawn(&self, turn: u64, received_nanos: u64) -> Result<(), String> {
+        self.live.talk.note_drawn(turn, received_nanos).map_err(|error| error.to_string())
     }
 
     fn drive(&mut self, speeds: [f32; 3]) -> Result<Vec<Message>, String> {
@@ -304,7 +318,7 @@ impl Visit {
 
     fn view_of(&self, camera: &str) -> Result<Arc<View>, String> {
         let is_meant = |view: &&Arc<View>| view.camera.to_string() == camera;
-        self.service.hub.views.iter().find(is_meant).cloned().ok_or_else(|| format!("There is no camera {camera}."))
+        self.hub.views.iter().find(is_meant).cloned().ok_or_else(|| format!("There is no camera {camera}."))
     }
 
     fn look_through(&mut self, camera: &str) -> Result<(), String> {
@@ -329,11 +343,11 @@ impl Visit {
             return Ok(self.look(true).into_iter().collect());
         }
         if let Thing::Object(object) = thing
-            && self.service.talk.is_answer(object)
+            && self.live.talk.is_answer(object)
         {
             self.choose(object, received_nanos).await?;
         }
-        let seen = self.service.talk.seen(thing, place).map_err(|error| error.to_string())?;
+        let seen = self.live.talk.seen(thing, place).map_err(|error| error.to_string())?;
         Ok(seen.iter().map(tell).collect())
     }
 
@@ -345,18 +359,25 @@ impl Visit {
         if text.len() > LONGEST_TEXT {
             return Err(format!("That is too long for me: {LONGEST_TEXT} characters at most, please."));
         }
-        self.tell_robot(move |talk| talk.hear(&text, received_nanos)).await
+        let visitor = self.visitor();
+        self.tell_robot(move |talk| talk.hear(&text, visitor, received_nanos)).await
     }
 
     async fn choose(&mut self, object: ObjectId, received_nanos: u64) -> Result<(), String> {
-        self.tell_robot(move |talk| talk.choose(object, received_nanos)).await
+        let visitor = self.visitor();
+        self.tell_robot(move |talk| talk.choose(object, visitor, received_nanos)).await
+    }
+
+    fn visitor(&self) -> Visitor {
+        let driven = self.driver.as_ref().filter(|driver| driver.is_driving());
+        Visitor { number: self.number, body: driven.map(|driver| BodyId(driver.body())) }
     }
 
     async fn tell_robot(
         &mut self,
         tell: impl FnOnce(&Talk) -> Result<(), DialogError> + Send + 'static,
     ) -> Result<(), String> {
-        let talk = Arc::clone(&self.service.talk);
+        let talk = Arc::clone(&self.live.talk);
         if let Ok(Err(error)) = tokio::task::spawn_blocking(move || tell(&talk)).await {
             tracing::error!("{error}");
             return Err("The robot cannot be reached.".to_owned());

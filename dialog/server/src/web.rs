@@ -10,17 +10,20 @@ use axum::{
     routing::get,
 };
 
-use crate::{driving::Drivers, hub::Hub, limits::LONGEST_MESSAGE, talk::Talk, token, visit};
+use crate::{
+    driving::Drivers, hub::Hub, limits::LONGEST_MESSAGE, screening::Screening, talk::Talk, token, viewer, visit,
+};
 
 const INDEX: &str = include_str!("../../web/index.html");
 const SCRIPT_TYPE: &str = "text/javascript; charset=utf-8";
 /// The page's other files: path, media type, text.
-const FILES: [(&str, &str, &str); 9] = [
+const FILES: [(&str, &str, &str); 10] = [
     ("/app.js", SCRIPT_TYPE, include_str!("../../web/app.js")),
     ("/dom.js", SCRIPT_TYPE, include_str!("../../web/dom.js")),
     ("/driving.js", SCRIPT_TYPE, include_str!("../../web/driving.js")),
     ("/floor.js", SCRIPT_TYPE, include_str!("../../web/floor.js")),
     ("/goals.js", SCRIPT_TYPE, include_str!("../../web/goals.js")),
+    ("/replay.js", SCRIPT_TYPE, include_str!("../../web/replay.js")),
     ("/socket.js", SCRIPT_TYPE, include_str!("../../web/socket.js")),
     ("/talk.js", SCRIPT_TYPE, include_str!("../../web/talk.js")),
     ("/view.js", SCRIPT_TYPE, include_str!("../../web/view.js")),
@@ -34,12 +37,28 @@ const POLICY: &str = "default-src 'self'; img-src 'self' blob:; style-src 'self'
 pub struct Service {
     /// What all pages share.
     pub hub: Arc<Hub>,
+    /// What pages see.
+    pub host: Host,
+    /// What lets a page in.
+    pub token: Option<Arc<str>>,
+}
+
+/// What pages see: a session that goes on, or one that was recorded.
+#[derive(Clone)]
+pub enum Host {
+    /// People speak, and drive.
+    Live(Live),
+    /// People look.
+    Recorded(Arc<Screening>),
+}
+
+/// What pages of a session that goes on have to do with.
+#[derive(Clone)]
+pub struct Live {
     /// The conversation.
     pub talk: Arc<Talk>,
     /// Who drives.
     pub drivers: Arc<Drivers>,
-    /// What lets a page in.
-    pub token: Option<Arc<str>>,
 }
 
 /// Serves on `listener` until `over`.
@@ -126,7 +145,15 @@ async fn socket(
     if !same_origin(&headers) {
         return (StatusCode::FORBIDDEN, "Pages of other sites cannot speak to a session.\n").into_response();
     }
-    upgrade.max_message_size(LONGEST_MESSAGE).on_upgrade(|socket| async move { visit::converse(service, socket).await })
+    // A page keeps its key when it connects again; one that has none is somebody new.
+    let key = parameters.get("visitor").and_then(|key| key.parse().ok()).unwrap_or_else(cohabit_bus::monotonic_nanos);
+    let Service { hub, host, .. } = service;
+    upgrade.max_message_size(LONGEST_MESSAGE).on_upgrade(move |socket| async move {
+        match host {
+            Host::Live(live) => visit::converse(hub, live, socket, key).await,
+            Host::Recorded(screening) => viewer::watch(hub, screening, socket).await,
+        }
+    })
 }
 
 /// A browser names the site that opens a socket; only our own page may. Other programs name none.

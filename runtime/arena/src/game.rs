@@ -12,7 +12,7 @@ use cohabit_bus::{
 };
 use cohabit_cdf::{Action, BodyId, GoToTarget, ObjectId, Status, Verb};
 use cohabit_engine::{BuildError, CameraPlan, Engine, EngineError, Mount, SessionPlan, Stills};
-use cohabit_record::{RecordError, Recorder, Recording};
+use cohabit_record::{RecordError, Recorder, Recording, SessionFacts};
 use cohabit_render::{Lens, MeshLibrary, Renderer};
 use cohabit_world::{Vec3, World};
 use serde_json::Value;
@@ -120,7 +120,7 @@ impl Game {
         let stills = Stills::new(plan, meshes, renderer, &cameras, &bus)?;
         let engine = Engine::new(plan, world, &cameras, &bus)?;
         let failed = |source| GameError::Record { path: log.to_owned(), source };
-        let recording = Some(recorder.begin(session, log).map_err(failed)?);
+        let recording = Some(recorder.begin(&SessionFacts::named(session), log).map_err(failed)?);
         let (log, perspective) = (log.to_owned(), Perspective::default());
         let mut game = Self { engine, stills, commands, events, frames, recording, log, perspective, commanded: 0 };
         game.send(&CommandMessage::claim(0, BODY.0, "client", false))?;
@@ -393,7 +393,7 @@ impl Game {
         lens: Option<Lens>,
         read: impl FnOnce(FrameView<'_>) -> Result<T, GameError>,
     ) -> Result<T, GameError> {
-        self.stills.shoot(&self.engine, camera, lens)?;
+        self.stills.shoot(self.engine.visible(), camera, lens)?;
         let frames = self.frames.iter_mut().find(|(id, _)| *id == camera).map(|(_, frames)| frames);
         let sample = frames.map_or(Ok(None), |frames| frames.latest())?.ok_or(GameError::NoFrame(camera))?;
         read(FrameView::new(sample.payload())?)

@@ -1,7 +1,7 @@
 //! A session's name, where its shared memory lies, and how it is cleaned away.
 
 use std::{
-    collections::BTreeMap,
+    collections::{BTreeMap, BTreeSet},
     fs::{self, File},
     io,
     os::unix::fs::{DirBuilderExt as _, MetadataExt as _},
@@ -213,10 +213,17 @@ impl Session {
         drop(lock);
     }
 
-    /// Wipes every session of this user whose supervisor is dead; gives their names.
+    /// Wipes every session of this user whose supervisor is dead; gives their names. A process that was only starting when
+    /// its supervisor died may leave shared memory behind after its session was wiped: that is wiped, too.
     pub fn wipe_dead() -> Vec<String> {
+        let user = rustix::process::getuid().as_raw();
+        // Sessions are locked before they have shared memory.
+        let remains = Self::in_shared_memory(Path::new(SHARED_MEMORY)).unwrap_or_default();
+        let mut names: BTreeSet<String> =
+            remains.into_iter().filter(|remains| remains.user == user).map(|remains| remains.session).collect();
+        names.extend(locked_names());
         let mut wiped = Vec::new();
-        for name in locked_names() {
+        for name in names {
             if let Ok(session) = Self::new(&name)
                 && let Ok(Some(lock)) = session.lock()
             {

@@ -13,6 +13,8 @@ pub enum Topic {
     State,
     /// What the simulator took in at each tick and the digest of what came of it: what a log needs to replay.
     Ticks,
+    /// The whole simulated state, now and then, for who is to go on from it.
+    Snapshots,
     /// Outcomes of commands and what else happened.
     Events,
     /// What bodies are told to do, by whom, and who is waited for.
@@ -38,7 +40,7 @@ pub enum Wake {
     Pulses,
     /// [`Topic::Dialog`], [`Topic::Events`] and [`Topic::Steps`].
     Talk,
-    /// [`Topic::State`], [`Topic::Mission`] and [`Topic::Ticks`].
+    /// [`Topic::State`], [`Topic::Mission`], [`Topic::Ticks`] and [`Topic::Snapshots`].
     State,
     /// [`Topic::Frames`] of one camera.
     Frames(CameraId),
@@ -51,7 +53,7 @@ impl Topic {
             Self::Mission => 1,
             Self::State | Self::Steps => 4,
             Self::Ticks => 2048,
-            Self::Frames(_) => 2,
+            Self::Frames(_) | Self::Snapshots => 2,
             Self::Pulses => 8,
             Self::Control => 64,
             Self::Events | Self::Commands | Self::Dialog => 512,
@@ -62,6 +64,8 @@ impl Topic {
     pub(crate) const fn history(self) -> usize {
         match self {
             Self::Mission | Self::State | Self::Frames(_) | Self::Pulses => 1,
+            // That which a session began with, and the latest.
+            Self::Snapshots => 2,
             Self::Dialog | Self::Events => 512,
             Self::Ticks => 2048,
             Self::Commands | Self::Control | Self::Steps => 0,
@@ -72,7 +76,7 @@ impl Topic {
     pub(crate) const fn most_subscribers(self) -> usize {
         match self {
             // Recorders and viewers.
-            Self::Ticks => 8,
+            Self::Ticks | Self::Snapshots => 8,
             _ => 32,
         }
     }
@@ -85,7 +89,7 @@ impl Topic {
             Self::Control | Self::Pulses => Some(128),
             Self::Steps => Some(512),
             Self::Dialog => Some(48 << 10),
-            Self::Mission | Self::State | Self::Ticks | Self::Frames(_) => None,
+            Self::Mission | Self::State | Self::Ticks | Self::Snapshots | Self::Frames(_) => None,
         }
     }
 
@@ -93,7 +97,7 @@ impl Topic {
     pub(crate) const fn usual_bytes(self) -> usize {
         match self {
             Self::Mission => 64 << 10,
-            Self::State => 96 << 10,
+            Self::State | Self::Snapshots => 96 << 10,
             Self::Frames(CameraId::Egocentric(_)) => 300 * 300 * 16 + (16 << 10),
             Self::Frames(_) => 854 * 480 * 8 + (16 << 10),
             Self::Ticks => 512,
@@ -110,7 +114,7 @@ impl Topic {
     #[must_use]
     pub const fn wake(self) -> Wake {
         match self {
-            Self::Mission | Self::State | Self::Ticks => Wake::State,
+            Self::Mission | Self::State | Self::Ticks | Self::Snapshots => Wake::State,
             Self::Events | Self::Dialog | Self::Steps => Wake::Talk,
             Self::Commands | Self::Control => Wake::Commands,
             Self::Pulses => Wake::Pulses,
@@ -125,6 +129,7 @@ impl fmt::Display for Topic {
             Self::Mission => f.write_str("mission"),
             Self::State => f.write_str("state"),
             Self::Ticks => f.write_str("ticks"),
+            Self::Snapshots => f.write_str("snapshots"),
             Self::Events => f.write_str("events"),
             Self::Commands => f.write_str("commands"),
             Self::Control => f.write_str("control"),

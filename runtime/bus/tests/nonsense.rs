@@ -9,7 +9,7 @@ use cohabit_bus::{
     Topic,
     message::{
         CommandMessage, Control, ControlMessage, DialogView, EventMessage, FrameView, Malformed, MissionMessage, Plane,
-        PulseMessage, StateView, StepView, Thing, TickView, read,
+        PulseMessage, SnapshotView, StateView, StepView, Thing, TickView, read,
     },
 };
 use cohabit_cdf::Action;
@@ -23,6 +23,7 @@ fn look(topic: Topic, payload: &[u8]) -> Result<(), Malformed> {
         Topic::Mission => drop(format!("{:?}", MissionMessage::read(payload)?)),
         Topic::State => drop(format!("{:?}", StateView::new(payload)?)),
         Topic::Ticks => drop(format!("{:?}", TickView::new(payload)?)),
+        Topic::Snapshots => drop(format!("{:?}", SnapshotView::new(payload)?)),
         Topic::Events => {
             let event: EventMessage = read(payload)?;
             drop(format!("{event:?} {:?} {:?}", event.kind(), event.status()));

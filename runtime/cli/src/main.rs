@@ -1,9 +1,12 @@
 //! `cohabit`: people and robots together in a simulated office.
 
 mod arena;
+mod branch;
+mod build;
 mod check;
 mod doctor;
 mod eval;
+mod export;
 mod failure;
 mod gallery;
 mod minds;
@@ -12,13 +15,14 @@ mod peers;
 mod play;
 mod rendering;
 mod replay;
+mod rerun;
 mod sessions;
 mod stop;
 mod supervisor;
 mod time;
 mod top;
 
-use std::process::ExitCode;
+use std::{ffi::OsString, process::ExitCode};
 
 use clap::{Parser, Subcommand};
 use tracing_subscriber::EnvFilter;
@@ -39,6 +43,10 @@ enum Command {
     Check(check::Check),
     /// Re-simulate a recorded session and compare it tick by tick
     Replay(replay::Replay),
+    /// Lay two recorded sessions beside each other in rerun
+    Compare(rerun::Compare),
+    /// Write session logs as tables, or sum them up by condition
+    Export(export::Export),
     /// Play many missions headless, by what is said in them, and report what came of them
     Eval(eval::Eval),
     /// Say what this machine lacks for a session, and what that costs
@@ -66,10 +74,19 @@ fn main() -> ExitCode {
         .with_target(false)
         .compact()
         .init();
-    let done = match Cohabit::parse().command {
+    match run(Cohabit::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => failure::report(&error),
+    }
+}
+
+fn run(asked: Cohabit) -> anyhow::Result<()> {
+    match asked.command {
         Command::Play(play) => play.run(),
         Command::Check(check) => check.run(),
         Command::Replay(replay) => replay.run(),
+        Command::Compare(compare) => compare.run(),
+        Command::Export(export) => export.run(),
         Command::Eval(eval) => eval.run(),
         Command::Doctor(doctor) => doctor.run(),
         Command::Top(top) => top.run(),
@@ -79,9 +96,12 @@ fn main() -> ExitCode {
         Command::Agent(agent) => agent.run(),
         Command::Dialog(dialog) => dialog.run(),
         Command::Record(record) => record.run(),
-    };
-    match done {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => failure::report(&error),
     }
+}
+
+/// Plays as the command line of `play` says that these arguments are of.
+fn play(arguments: impl IntoIterator<Item = OsString>) -> anyhow::Result<()> {
+    let line = ["cohabit", "play"].map(OsString::from).into_iter().chain(arguments);
+    // What is wrong with them is said as clap says it.
+    run(Cohabit::parse_from(line))
 }

@@ -90,6 +90,11 @@ impl MindRequest {
         arguments.into_iter().map(OsString::from).collect()
     }
 
+    /// The body of one that does what people ask of it.
+    pub fn spoken_to(&self) -> Option<u32> {
+        (self.kind == MindKind::Dialog).then_some(self.body)
+    }
+
     /// Says what is wrong with these minds for a session, before anything of it is started.
     pub fn check(requests: &[Self], plan: &SessionPlan) -> anyhow::Result<()> {
         let bodies = plan.mission.robots.len().max(1) + plan.bodies.len();

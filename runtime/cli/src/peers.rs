@@ -2,28 +2,33 @@
 
 use std::{
     ffi::OsString,
+    fmt,
     io::Write as _,
     net::{IpAddr, SocketAddr},
     path::PathBuf,
+    str::FromStr,
     sync::{Arc, atomic::AtomicBool},
     thread,
 };
 
 use anyhow::Context as _;
-use cohabit_bus::{Session, Shm, message::Control};
+use cohabit_bus::{CameraId, Session, Shm, message::Control};
 use cohabit_cdf::BodyRequest;
-use cohabit_dialog::{Asking, DialogConfig, Drivable, Knows};
-use cohabit_engine::{CameraPlan, SessionPlan, Simulator};
-use cohabit_record::{LogError, RecordError, Recorder};
+use cohabit_dialog::{Asking, DialogConfig, Drivable, Endpoint, Knows};
+use cohabit_engine::{Appearance, BuildError, CameraPlan, SessionPlan, Simulator};
+use cohabit_record::{Branch, LogError, RecordError, Recorder, SessionFacts};
 use cohabit_render::MeshLibrary;
+use cohabit_world::World;
 
 use crate::{
     arena::{ArenaOptions, Games},
+    branch::{BranchPoint, Branched},
+    build,
     failure::bad_input,
     minds::MindKind,
     mission_file::MissionFile,
     rendering::Rendering,
-    stop,
+    rerun, stop,
 };
 
 /// What all peers of a session are told.
@@ -65,6 +70,9 @@ pub struct Sim {
     /// A body beside the mission's own robot: `robot` or `person`, with a room if wanted; as often as needed
     #[arg(long = "body", value_name = "KIND[@ROOM]")]
     bodies: Vec<BodyRequest>,
+    /// Go on from a point of a recorded session instead, LOG@TIME
+    #[arg(long, value_name = "LOG@TIME", conflicts_with_all = ["mission", "seed", "bodies", "arena_port"])]
+    branch: Option<BranchPoint>,
     /// A camera beside those of the bodies, on the topic `frames/NAME`: KIND is `egocentric`, `panorama`,
     /// `third-person`, `fixed` (x=, y=, z= in metres, yaw=, pitch= in degrees) or `top-down` (span= in metres); all have
     /// size=WxH, rate=, planes=color+depth+normals+ids, and most body= and fov=; as often as needed
@@ -92,6 +100,15 @@ pub struct Timing {
     /// In lock-step, the world begins when so many agents attend; if absent, one, or as many as `play` starts
     #[arg(long, requires = "lock_step")]
     agents: Option<usize>,
+}
+
+impl fmt::Display for Timing {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.lock_step {
+            true => write!(f, "lock-step with {} agents", self.agents()),
+            false => write!(f, "real time, {} times", self.speed),
+        }
+    }
 }
 
 /// A speed that the clock takes.
@@ -135,20 +152,35 @@ impl Sim {
             let (mission, rendering) = (self.mission.as_deref(), self.rendering);
             return self.arena.serve(port, &Games { mission, seed: self.seed, bodies: &self.bodies, rendering });
         }
-        let plan = MissionFile::find(self.mission.as_deref())?.plan(self.seed, &self.bodies)?;
-        let plan = self.timing.of(plan.with_cameras(self.cameras.clone()).map_err(bad_input)?);
+        let (plan, before) = self.plan()?;
+        let cameras = [plan.cameras.as_slice(), &self.cameras].concat();
+        let plan = self.timing.of(plan.with_cameras(cameras).map_err(bad_input)?);
         let session = self.session.clone().unwrap_or_default();
         let (bus, stop) = Joining { session, supervisor: self.supervisor }.join()?;
-        let (world, meshes) = thread::scope(|scope| {
+        let (before, meshes) = thread::scope(|scope| {
             let meshes = scope.spawn(|| MeshLibrary::build(&plan.catalog));
-            let world = plan.build();
-            (world, meshes.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
+            let before = before.map_or_else(|| Ok((plan.build()?, Appearance::default())), Ok::<_, BuildError>);
+            (before, meshes.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
         });
         let meshes = Arc::new(meshes.context("build the models")?);
         let renderer = self.rendering.start()?;
-        let simulator = Simulator::new(&plan, world.map_err(bad_input)?, meshes, renderer, &bus)?;
+        let (world, appearance) = before.map_err(bad_input)?;
+        let simulator = Simulator::new(&plan, world, meshes, renderer, &bus)?.appearing(appearance);
         simulator.starting(self.timing.speed, self.timing.paused).run(&stop)?;
         Ok(())
+    }
+}
+
+impl Sim {
+    /// What is simulated, and the world that it goes on from if that is not the mission's.
+    fn plan(&self) -> anyhow::Result<(SessionPlan, Option<(World, Appearance)>)> {
+        match &self.branch {
+            Some(point) => {
+                let Branched { plan, world, appearance, .. } = point.open()?;
+                Ok((plan, Some((world, appearance))))
+            }
+            None => Ok((MissionFile::find(self.mission.as_deref())?.plan(self.seed, &self.bodies)?, None)),
+        }
     }
 }
 
@@ -188,6 +220,9 @@ pub struct Dialog {
     joining: Joining,
     #[command(flatten)]
     listening: Listening,
+    /// A body whose robot people speak to; as often as there are
+    #[arg(long = "robot", value_name = "BODY", default_value = "0")]
+    robots: Vec<u32>,
 }
 
 /// Where the page is served.
@@ -206,9 +241,49 @@ pub struct Listening {
     /// What the robot may know: `everything` there is, or what it has `seen` so far, beside the floor plan
     #[arg(long, default_value_t)]
     pub knows: Knows,
+    /// What a body is called, such as `0=Rosie`, by those who speak to it and on the page; as often as needed
+    #[arg(long = "name", value_name = "BODY=NAME")]
+    pub names: Vec<BodyName>,
     /// When the robot asks: `never`, when it is `unsure`, or `always`, and before it does anything
     #[arg(long, value_name = "WHEN", default_value_t)]
     pub ask: Asking,
+}
+
+/// The longest name of a body, in characters.
+const LONGEST_NAME: usize = 24;
+
+/// What a body is called.
+#[derive(Clone, Debug, Eq, PartialEq)]
+pub struct BodyName {
+    /// Which.
+    pub body: u32,
+    /// Its name.
+    pub name: String,
+}
+
+impl FromStr for BodyName {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (body, name) =
+            text.split_once('=').ok_or_else(|| "write a body and its name, such as `0=Rosie`".to_owned())?;
+        let body = body.parse().map_err(|_| format!("`{body}` is no body: bodies count from 0, such as `0={name}`"))?;
+        let is_name =
+            |name: &str| name.chars().all(|c| c.is_alphanumeric() || c == ' ') && name.contains(char::is_alphabetic);
+        let name = name.trim();
+        if !is_name(name) || name.chars().count() > LONGEST_NAME {
+            return Err(format!(
+                "`{name}` is no name: up to {LONGEST_NAME} letters, digits and spaces, such as `Rosie`"
+            ));
+        }
+        Ok(Self { body, name: name.to_owned() })
+    }
+}
+
+impl fmt::Display for BodyName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}={}", self.body, self.name)
+    }
 }
 
 impl Dialog {
@@ -225,6 +300,9 @@ impl Dialog {
             listen: SocketAddr::new(self.listening.listen, self.listening.port),
             knows: self.listening.knows,
             asking: self.listening.ask,
+            interpreter: Endpoint::from_environment().map_err(bad_input)?.map(|model| Box::new(model) as _),
+            robots: self.robots.clone(),
+            names: self.listening.names.iter().map(|one| (one.body, one.name.clone())).collect(),
             drivable: self.listening.drive,
             on_first_frame: Box::new(|| tell_supervisor("shown")),
         };
@@ -247,14 +325,116 @@ pub struct Record {
     /// The log file to write; one of the same session is carried on with
     #[arg(long)]
     log: PathBuf,
+    #[command(flatten)]
+    noted: Noted,
+    #[command(flatten)]
+    watching: Watching,
+}
+
+/// Who watches a session besides its pages.
+#[derive(clap::Args, Clone, Copy, Debug, Default)]
+pub struct Watching {
+    /// Show the session live in rerun's viewer at an address; where none listens, one is started
+    #[arg(long, value_name = "ADDRESS", num_args = 0..=1, require_equals = true, default_missing_value = "127.0.0.1:9876")]
+    rerun: Option<SocketAddr>,
+}
+
+impl Watching {
+    /// Says what is missing for it, before anything is started.
+    pub fn check(self) -> anyhow::Result<()> {
+        if self.rerun.is_some() { rerun::check() } else { Ok(()) }
+    }
+
+    /// The same as arguments of another process.
+    pub fn arguments(self) -> Option<OsString> {
+        self.rerun.map(|viewer| format!("--rerun={viewer}").into())
+    }
+
+    fn start(self, session: &str) -> anyhow::Result<Option<rerun::Live>> {
+        self.rerun.map(|viewer| rerun::Live::start(session, viewer)).transpose()
+    }
+}
+
+/// What a log notes of its session besides what is told on the bus.
+#[derive(clap::Args, Clone, Default)]
+pub struct Noted {
+    /// What the participant is called in the study, for the log: a label, not a name
+    #[arg(long, value_name = "LABEL", value_parser = label)]
+    pub participant: Option<String>,
+    /// How the session is played, for the log; as often as needed
+    #[arg(long = "setting", hide = true, value_name = "NAME=VALUE", value_parser = setting)]
+    pub settings: Vec<(String, String)>,
+    /// A camera of the session, for the log; as often as needed
+    #[arg(long = "camera", hide = true)]
+    pub cameras: Vec<CameraPlan>,
+    /// A camera whose frames are recorded, too; as often as needed
+    #[arg(long = "record-frames", value_name = "CAMERA")]
+    pub frames: Vec<CameraId>,
+    /// The session that it goes on from, for the log
+    #[arg(long, hide = true, value_parser = branch)]
+    pub branched: Option<Branch>,
+}
+
+/// How the settings of a log that hold the names of bodies begin; the body's number follows.
+pub const NAME_OF: &str = "name.";
+
+/// What a participant may be called.
+pub fn label(text: &str) -> Result<String, String> {
+    const LONGEST: usize = 64;
+    let fits = !text.trim().is_empty() && text.len() <= LONGEST && !text.chars().any(char::is_control);
+    if fits { Ok(text.to_owned()) } else { Err(format!("one to {LONGEST} bytes of text on one line")) }
+}
+
+fn setting(text: &str) -> Result<(String, String), String> {
+    let parts = text.split_once('=').ok_or("NAME=VALUE")?;
+    Ok((parts.0.to_owned(), parts.1.to_owned()))
+}
+
+/// The end of [`Noted::arguments`]' last argument, read back.
+fn branch(text: &str) -> Result<Branch, String> {
+    let read = || {
+        let (tick, rest) = text.split_once(',')?;
+        let (run, session) = rest.split_once(',')?;
+        let run = u64::from_str_radix(run, 16).ok()?;
+        Some(Branch { session: session.to_owned(), run, tick: tick.parse().ok()? })
+    };
+    read().ok_or_else(|| "TICK,RUN,SESSION".to_owned())
+}
+
+impl Noted {
+    /// The same as arguments of another process.
+    pub fn arguments(&self) -> Vec<OsString> {
+        let participant = self.participant.iter().map(|label| format!("--participant={label}"));
+        let settings = self.settings.iter().map(|(name, value)| format!("--setting={name}={value}"));
+        let cameras = self.cameras.iter().map(|camera| format!("--camera={camera}"));
+        let frames = self.frames.iter().map(|camera| format!("--record-frames={camera}"));
+        let branched = self.branched.iter();
+        let branched = branched.map(|branch| format!("--branched={},{:x},{}", branch.tick, branch.run, branch.session));
+        participant.chain(settings).chain(cameras).chain(frames).chain(branched).map(OsString::from).collect()
+    }
+
+    fn facts(&self, session: &str) -> SessionFacts {
+        SessionFacts {
+            session: session.to_owned(),
+            build: build::id().unwrap_or_default(),
+            participant: self.participant.clone(),
+            settings: self.settings.iter().cloned().collect(),
+            cameras: self.cameras.iter().map(ToString::to_string).collect(),
+            frames: self.frames.clone(),
+            branched: self.branched.clone(),
+        }
+    }
 }
 
 impl Record {
     /// Runs the recorder.
     pub fn run(&self) -> anyhow::Result<()> {
         let (bus, stop) = self.joining.join()?;
+        let _live = self.watching.start(&self.joining.session)?;
         let caught_up = || tell_supervisor(&format!("recording {}", self.log.display()));
-        Recorder::new(&bus)?.run(&self.joining.session, &self.log, &stop, caught_up).map_err(|error| match error {
+        let facts = self.noted.facts(&self.joining.session);
+        let recorder = Recorder::new(&bus)?.filming(&bus, &facts.frames)?;
+        recorder.run(&facts, &self.log, &stop, caught_up).map_err(|error| match error {
             RecordError::Log(LogError::Write { .. }) | RecordError::Bus(_) | RecordError::Malformed(_) => error.into(),
             RecordError::Log(_) | RecordError::NoMission => bad_input(error),
         })

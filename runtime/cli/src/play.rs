@@ -1,20 +1,23 @@
 //! `cohabit play`: one session from start to end.
 
 use std::{
+    ffi::OsString,
     path::PathBuf,
     time::{Instant, SystemTime, UNIX_EPOCH},
 };
 
-use cohabit_bus::{Session, SessionError};
+use cohabit_bus::{CameraId, Session, SessionError, Shm, message::Plane};
 use cohabit_cdf::BodyRequest;
-use cohabit_engine::CameraPlan;
+use cohabit_engine::{CameraPlan, SessionPlan};
+use cohabit_record::Branch;
 
 use crate::{
+    branch::{BranchPoint, Branched},
     doctor::ensure_room,
     failure::bad_input,
     minds::MindRequest,
     mission_file::MissionFile,
-    peers::{Listening, Timing},
+    peers::{self, Listening, NAME_OF, Noted, Timing, Watching},
     rendering::Rendering,
     sessions, stop,
     supervisor::{Role, Supervisor},
@@ -45,13 +48,25 @@ pub struct Play {
     /// size=WxH, rate=, planes=color+depth+normals+ids, and most body= and fov=; as often as needed
     #[arg(long = "camera", value_name = "NAME=KIND[,OPTION=VALUE]")]
     cameras: Vec<CameraPlan>,
+    /// Go on from a point of a recorded session instead, LOG@TIME: its mission, its bodies, its world
+    #[arg(long, value_name = "LOG@TIME", conflicts_with_all = ["mission", "seed", "bodies"])]
+    branch: Option<BranchPoint>,
     /// The session log to write; one in the user's data folder if absent
     #[arg(long)]
     log: Option<PathBuf>,
+    /// What the participant is called in the study, for the log: a label, not a name
+    #[arg(long, value_name = "LABEL", value_parser = peers::label)]
+    participant: Option<String>,
+    /// Record the frames of this camera, too, as the log else holds only what is needed to render them anew: `spectator/0`,
+    /// `eyes/1`, or the name of one given by `--camera`; as often as needed
+    #[arg(long = "record-frames", value_name = "CAMERA")]
+    frames: Vec<CameraId>,
     #[command(flatten)]
     rendering: Rendering,
     #[command(flatten)]
     timing: Timing,
+    #[command(flatten)]
+    watching: Watching,
 }
 
 impl Play {
@@ -60,10 +75,11 @@ impl Play {
         let began = Instant::now();
         let stop = stop::on_request()?;
         let seed = self.seed.unwrap_or_else(clock_seed);
-        let mission = MissionFile::find(self.mission.as_deref())?;
-        let plan = mission.plan(seed, &self.bodies)?.with_cameras(self.cameras.clone()).map_err(bad_input)?;
+        let (plan, branched) = self.plan(seed)?;
         MindRequest::check(&self.minds, &plan)?;
+        self.check_frames(&plan)?;
         self.rendering.check()?;
+        self.watching.check()?;
         for name in Session::wipe_dead() {
             println!("cleaned up after session {name}, which was not ended");
         }
@@ -75,18 +91,92 @@ impl Play {
             SessionError::Folder { .. } => anyhow::Error::new(error),
             other => bad_input(other),
         })?;
-        println!("Playing \"{}\" ({})", plan.mission.goal_text, mission.name);
+        // What all peers share is made before there are any: one that is killed while it makes it would keep the others out.
+        drop(Shm::join(&session).map_err(bad_input)?);
+        println!("Playing \"{}\" ({})", plan.mission.goal_text, plan.file);
+        let robots: Vec<u32> = self.minds.iter().filter_map(MindRequest::spoken_to).collect();
         let timing = self.timing.with_agents(self.minds.len());
-        let sim = Role::sim(self.mission.as_deref(), seed, &self.bodies, &self.cameras, self.rendering, timing);
+        let sim = Role::sim(self.world_arguments(seed), self.rendering, timing);
         let minds = self.minds.iter().map(|agent| Role::agent(agent, seed));
-        let peers = [Role::record(&log), Role::dialog(&self.listening)];
+        let noted = self.noted(&plan, &robots, branched);
+        let peers = [Role::record(&log, &noted, self.watching), Role::dialog(&self.listening, &robots)];
         let roles = std::iter::once(sim).chain(peers).chain(minds);
         let played = Supervisor::start(&name, roles, began).and_then(|supervisor| supervisor.run(&stop));
         session.end(lock);
+        // What the killed one before was still starting may have come late.
+        Session::wipe_dead();
         if log.is_file() {
             println!("Recorded in {0}\nReplay it with: cohabit replay {0}", log.display());
         }
         played
+    }
+
+    /// What is played, and the session that it goes on from.
+    fn plan(&self, seed: u64) -> anyhow::Result<(SessionPlan, Option<Branch>)> {
+        let (plan, branched) = match &self.branch {
+            Some(point) => {
+                let Branched { plan, from, .. } = point.open()?;
+                println!("Going on from {} (tick {}) of session {}", point.at, from.tick, from.session);
+                (plan, Some(from))
+            }
+            None => (MissionFile::find(self.mission.as_deref())?.plan(seed, &self.bodies)?, None),
+        };
+        let cameras = [plan.cameras.as_slice(), &self.cameras].concat();
+        Ok((plan.with_cameras(cameras).map_err(bad_input)?, branched))
+    }
+
+    /// Says which of the cameras to be recorded are none.
+    fn check_frames(&self, plan: &SessionPlan) -> anyhow::Result<()> {
+        let known = plan.all_cameras(plan.mission.robots.len().max(1) + plan.bodies.len());
+        let has_colors = |camera: &&CameraPlan| camera.planes.contains(&Plane::Color);
+        let known: Vec<_> = known.iter().filter(has_colors).map(|camera| camera.id).collect();
+        match self.frames.iter().find(|camera| !known.contains(camera)) {
+            None => Ok(()),
+            Some(camera) => {
+                let known: Vec<_> = known.iter().map(ToString::to_string).collect();
+                Err(bad_input(format!("`--record-frames {camera}`: the cameras with colours are {}", known.join(", "))))
+            }
+        }
+    }
+
+    /// The same as arguments of the simulator.
+    fn world_arguments(&self, seed: u64) -> Vec<OsString> {
+        let cameras = self.cameras.iter().map(|camera| format!("--camera={camera}").into());
+        let world: Vec<OsString> = match &self.branch {
+            Some(point) => vec![point.argument()],
+            None => {
+                let bodies = self.bodies.iter().map(|body| format!("--body={body}").into());
+                let seed = ["--seed".into(), seed.to_string().into()];
+                seed.into_iter().chain(bodies).chain(self.mission.iter().map(OsString::from)).collect()
+            }
+        };
+        cameras.chain(world).collect()
+    }
+
+    /// What the log notes of the session.
+    fn noted(&self, plan: &SessionPlan, robots: &[u32], branched: Option<Branch>) -> Noted {
+        let minds = self.minds.iter().map(ToString::to_string).collect::<Vec<_>>().join(" ");
+        let Listening { drive, knows, ask, names, .. } = &self.listening;
+        let robots = robots.iter().map(u32::to_string).collect::<Vec<_>>().join(",");
+        let settings = [
+            ("agents", minds),
+            ("ask", ask.name().to_owned()),
+            ("drive", drive.to_string()),
+            ("knows", knows.to_string()),
+            ("renderer", self.rendering.to_string()),
+            ("robots", robots),
+            ("timing", self.timing.to_string()),
+        ];
+        let settings = settings.into_iter().map(|(name, value)| (name.to_owned(), value));
+        let names = names.iter().map(|one| (format!("{NAME_OF}{}", one.body), one.name.clone()));
+        let settings = settings.chain(names).collect();
+        Noted {
+            participant: self.participant.clone(),
+            settings,
+            cameras: plan.cameras.clone(),
+            frames: self.frames.clone(),
+            branched,
+        }
     }
 
     fn log_path(&self, session: &str) -> anyhow::Result<PathBuf> {

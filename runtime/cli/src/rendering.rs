@@ -1,6 +1,6 @@
 //! Which renderer draws, and with how many threads.
 
-use std::ffi::OsString;
+use std::{ffi::OsString, fmt};
 
 use clap::ValueEnum;
 use cohabit_gpu::{Adapter, GpuError, GpuRenderer, Wanted};
@@ -17,6 +17,13 @@ pub enum Choice {
     Cpu,
     /// A GPU, or a Vulkan driver in software
     Gpu,
+}
+
+impl fmt::Display for Rendering {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [_, name, ..] = self.arguments();
+        f.write_str(&name.to_string_lossy())
+    }
 }
 
 /// What draws.

@@ -1,38 +1,123 @@
-//! `cohabit replay`: does a recorded session come out the same?
+//! `cohabit replay`: does a recorded session come out the same, and what was to be seen of it?
 
-use std::{path::PathBuf, sync::Arc, time::Instant};
+mod film;
+mod page;
+mod picture;
+mod session_time;
+mod y4m;
+
+use std::{
+    ffi::OsString,
+    ops::ControlFlow,
+    path::{Path, PathBuf},
+    sync::Arc,
+    time::Instant,
+};
 
 use cohabit_cdf::Catalog;
-use cohabit_record::Log;
+use cohabit_engine::{Replayer, replay};
+use cohabit_record::{Log, SessionEntry, entry::fingerprint};
 
-use crate::failure::bad_input;
+pub use session_time::SessionTime;
+
+use crate::{branch::BranchPoint, failure::bad_input, rendering::Rendering, rerun};
+use film::{Film, FilmOptions};
+use page::PageOptions;
 
 /// Feeds a log's inputs to a new world, and compares the digests of every tick.
 #[derive(clap::Args)]
 pub struct Replay {
     /// The session log
     log: PathBuf,
+    /// Begin at this time of the session: seconds (83.5), minutes (1:23.5), or a tick (tick:4980); what was before is not
+    /// compared
+    #[arg(long, value_name = "TIME")]
+    at: Option<SessionTime>,
+    /// End at this time of the session
+    #[arg(long, value_name = "TIME")]
+    until: Option<SessionTime>,
+    #[command(flatten)]
+    film: FilmOptions,
+    #[command(flatten)]
+    page: PageOptions,
+    #[command(flatten)]
+    rendering: Rendering,
+    /// Go on live from this time of the session: starts a session as `play` does, whose log says where it went on from
+    #[arg(long, value_name = "TIME", conflicts_with_all = ["at", "until", "frames", "video", "page"])]
+    branch: Option<SessionTime>,
+    /// Options of `play` for `--branch`, such as `-- --port 0 --participant P07`
+    #[arg(last = true, requires = "branch", value_name = "OPTIONS OF PLAY")]
+    play: Vec<OsString>,
+    /// Make a recording of it for rerun, with `--rate` pictures a second of the robot's eyes; beside the log, if no file is
+    /// named
+    #[arg(long, value_name = "FILE.rrd", num_args = 0..=1, conflicts_with_all = ["at", "until", "frames", "video", "page", "branch"])]
+    rerun: Option<Option<PathBuf>>,
+    /// What those pictures show; or `none`
+    #[arg(long, value_name = "PLANE[+PLANE]", default_value = "color+depth+normals+ids", requires = "rerun")]
+    planes: String,
 }
 
 impl Replay {
     /// Replays; fails if a tick differs.
     pub fn run(&self) -> anyhow::Result<()> {
-        let log = Log::open(&self.log).map_err(bad_input)?;
-        let path = self.log.display();
-        println!(
-            "{path}: session {}, mission {}, seed {}",
-            log.session.session, log.session.mission_file, log.session.seed
-        );
-        if let Some(reason) = &log.cut {
-            println!("{path} ends early ({reason}); what it holds is replayed");
+        if let Some(out) = &self.rerun {
+            let out = out.clone().unwrap_or_else(|| self.log.with_extension("rrd"));
+            return rerun::replay(&self.log, &out, self.film.rate(), &self.planes);
         }
-        let missing = log.missing();
-        if missing > 0 {
-            println!("{path} misses {missing} events or dialog messages: its recorder was away for too long");
+        if let Some(at) = self.branch {
+            let point = BranchPoint { log: self.log.clone(), at };
+            return crate::play(std::iter::once(point.argument()).chain(self.play.iter().cloned()));
         }
-        let began = Instant::now();
-        let replay = cohabit_engine::replay::replay(&log, Arc::new(Catalog::builtin())).map_err(bad_input)?;
-        let simulated_s = replay.ticks as f64 * cohabit_engine::replay::TICK_S;
+        let log = open(&self.log)?;
+        let mut replayer = Replayer::new(&log, Arc::new(Catalog::builtin())).map_err(bad_input)?;
+        tell_what_changed(&log.session, &replayer);
+        if let Some(at) = self.at {
+            self.go_to(at, &mut replayer)?;
+        }
+        if self.page.page {
+            return self.page.show(replayer, self.rendering);
+        }
+        let mut film = self.film.begin(&replayer, self.rendering)?;
+        if let Some(film) = &mut film {
+            film.see(&replayer)?;
+        }
+        self.replay(&mut replayer, film)
+    }
+
+    fn go_to(&self, at: SessionTime, replayer: &mut Replayer<'_>) -> anyhow::Result<()> {
+        let [first, last] = replayer.span();
+        if !(first..=last).contains(&at.tick) {
+            let [first, last] = [first, last].map(|tick| SessionTime { tick });
+            return Err(bad_input(format!("{}: `--at {at}`: it goes from {first} to {last}", self.log.display())));
+        }
+        replayer.go_to(at.tick).map_err(bad_input)?;
+        let world = replayer.world();
+        println!("At {at} (tick {}):", world.tick());
+        for body in world.bodies() {
+            let held = body.held.and_then(|held| world.object(held));
+            let holds = held.map_or_else(|| "nothing".to_owned(), |object| object.instance.to_owned());
+            let [x, y, _] = body.position_m.to_array();
+            println!("  body {} in {} at {x:.2} {y:.2}, holds {holds}", body.id.0, body.room.id());
+        }
+        for goal in world.goals() {
+            println!("  [{}] {}", if goal.met { "x" } else { " " }, goal.description);
+        }
+        Ok(())
+    }
+
+    fn replay(&self, replayer: &mut Replayer<'_>, mut film: Option<Film>) -> anyhow::Result<()> {
+        let last = self.until.map_or(u64::MAX, |until| until.tick);
+        let (began, mut filmed) = (Instant::now(), Ok(()));
+        let replay = replay::verify(replayer, &mut |replayer| {
+            filmed = film.as_mut().map_or(Ok(()), |film| film.see(replayer));
+            if filmed.is_err() || replayer.world().tick() >= last {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
+            }
+        });
+        filmed?;
+        let simulated_s = replay.ticks as f64 * replay::TICK_S;
         let wall_s = began.elapsed().as_secs_f64();
         println!(
             "{} ticks ({simulated_s:.1} s) with {} inputs replayed in {wall_s:.2} s, {:.0} times real time; {} of {} goals met",
@@ -42,12 +127,48 @@ impl Replay {
             replay.goals.0,
             replay.goals.1
         );
-        match replay.difference {
-            None => {
-                println!("no tick differs");
-                Ok(())
-            }
-            Some(difference) => anyhow::bail!("{difference}"),
+        if let Some(film) = film {
+            println!("{}", film.finish()?);
         }
+        for gap in &replay.gaps {
+            println!("{gap}: replayed on from the next snapshot");
+        }
+        match (replay.difference, replay.gaps.len()) {
+            (None, 0) => println!("no tick differs"),
+            (None, _) => println!("no tick differs of those that the log has"),
+            (Some(difference), _) => anyhow::bail!("{difference}"),
+        }
+        Ok(())
+    }
+}
+
+/// Opens a log, and says what it is and what is wrong with it.
+pub fn open(path: &Path) -> anyhow::Result<Log> {
+    let log = Log::open(path).map_err(bad_input)?;
+    let SessionEntry { session, mission_file, seed, participant, branched, .. } = &log.session;
+    let path = path.display();
+    let participant = participant.as_ref().map_or_else(String::new, |label| format!(", participant {label}"));
+    println!("{path}: session {session}, mission {mission_file}, seed {seed}{participant}");
+    if let Some(branch) = branched {
+        let at = SessionTime { tick: branch.tick };
+        println!("{path} goes on from {at} (tick {}) of session {}", branch.tick, branch.session);
+    }
+    for problem in log.problems() {
+        println!("{path}: {problem}");
+    }
+    Ok(log)
+}
+
+/// A session that was played with other objects or another floor plan will hardly come out the same.
+fn tell_what_changed(session: &SessionEntry, replayer: &Replayer<'_>) {
+    let plan = replayer.plan();
+    let parts = [
+        ("catalogue of objects", &session.catalog, fingerprint(plan.catalog.classes())),
+        ("floor plan", &session.layout, fingerprint(&*plan.layout)),
+    ];
+    for (part, recorded, now) in parts.iter().filter(|(_, recorded, now)| !recorded.is_empty() && *recorded != now) {
+        println!(
+            "the {part} is another one than it was played with ({recorded} then, {now} now): it may come out otherwise"
+        );
     }
 }

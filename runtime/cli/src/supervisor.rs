@@ -15,14 +15,12 @@ use std::{
 };
 
 use anyhow::Context as _;
-use cohabit_cdf::BodyRequest;
-use cohabit_engine::CameraPlan;
 use rustix::process::{Pid, Signal, kill_process, setpriority_process};
 
 use crate::{
     failure::BadInput,
     minds::MindRequest,
-    peers::{Listening, Timing},
+    peers::{Listening, Noted, Timing, Watching},
     rendering::Rendering,
 };
 
@@ -47,27 +45,20 @@ pub struct Role {
 }
 
 impl Role {
-    /// The simulator: without it there is no session.
-    pub fn sim(
-        mission: Option<&str>,
-        seed: u64,
-        bodies: &[BodyRequest],
-        cameras: &[CameraPlan],
-        rendering: Rendering,
-        timing: Timing,
-    ) -> Self {
-        let mut arguments = vec!["--seed".into(), seed.to_string().into()];
-        arguments.extend(rendering.arguments());
+    /// The simulator, without which there is no session; `world` are the arguments that say what is simulated.
+    pub fn sim(world: Vec<OsString>, rendering: Rendering, timing: Timing) -> Self {
+        let mut arguments: Vec<OsString> = rendering.arguments().into();
         arguments.extend(timing.arguments());
-        arguments.extend(bodies.iter().map(|body| format!("--body={body}").into()));
-        arguments.extend(cameras.iter().map(|camera| format!("--camera={camera}").into()));
-        arguments.extend(mission.map(OsString::from));
+        arguments.extend(world);
         Self { name: "sim", arguments }
     }
 
     /// The recorder.
-    pub fn record(log: &Path) -> Self {
-        Self { name: "record", arguments: vec!["--log".into(), log.into()] }
+    pub fn record(log: &Path, noted: &Noted, watching: Watching) -> Self {
+        let mut arguments = vec!["--log".into(), log.into()];
+        arguments.extend(noted.arguments());
+        arguments.extend(watching.arguments());
+        Self { name: "record", arguments }
     }
 
     /// A mind.
@@ -76,12 +67,15 @@ impl Role {
     }
 
     /// The dialog service.
-    pub fn dialog(listening: &Listening) -> Self {
+    pub fn dialog(listening: &Listening, robots: &[u32]) -> Self {
         let (listen, port) = (listening.listen.to_string(), listening.port.to_string());
         let (drive, knows) = (listening.drive.to_string(), listening.knows.to_string());
         let ask = listening.ask.name();
         let arguments = ["--listen", &listen, "--port", &port, "--drive", &drive, "--knows", &knows, "--ask", ask];
-        Self { name: "dialog", arguments: arguments.map(OsString::from).to_vec() }
+        let names = listening.names.iter().flat_map(|name| ["--name".to_owned(), name.to_string()]);
+        let robots = robots.iter().flat_map(|body| ["--robot".to_owned(), body.to_string()]);
+        let arguments = arguments.map(str::to_owned).into_iter().chain(names).chain(robots);
+        Self { name: "dialog", arguments: arguments.map(OsString::from).collect() }
     }
 
     /// The order in which roles are ended: who speaks first, who writes down last.

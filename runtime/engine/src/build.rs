@@ -126,7 +126,8 @@ impl SessionPlan {
     }
 
     /// All cameras of a session with so many bodies.
-    pub(crate) fn cameras(&self, bodies: usize) -> Vec<CameraPlan> {
+    #[must_use]
+    pub fn all_cameras(&self, bodies: usize) -> Vec<CameraPlan> {
         CameraPlan::of_bodies(bodies).chain(self.cameras.iter().cloned()).collect()
     }
 

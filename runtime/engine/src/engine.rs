@@ -5,25 +5,25 @@ use std::collections::BTreeMap;
 use cohabit_bus::{
     BusError, Heart, Publisher, Topic, Transport,
     message::{
-        CommandMessage, Control, EventKind, EventMessage, MissionMessage, NONE, Stage, StepView, TickHeader,
-        TickMessage,
+        CommandMessage, Control, EventKind, EventMessage, MissionMessage, NONE, SnapshotView, Stage, StepView,
+        TickHeader, TickMessage,
     },
 };
-use cohabit_cdf::{Action, BodyId, ObjectId};
-use cohabit_world::{CameraTarget, DT_NANOS, Event, Input, Report, World};
+use cohabit_cdf::{Action, BodyId};
+use cohabit_world::{Input, Report, World};
 
 use crate::{
+    appearance::{Appearance, Visible},
     attendance::Due,
     build::SessionPlan,
     camera_plan::CameraPlan,
     intake::Intake,
-    motion::Motion,
-    report,
+    report, snapshot,
     stopwatch::{Stopwatch, stage_of},
 };
 
-/// How long an object that is pointed out stays outlined.
-const HIGHLIGHT_TICKS: u64 = 240;
+/// Ticks between two snapshots: what is between can be worked out anew in a tenth of a second.
+const SNAPSHOT_EVERY: u64 = 600;
 
 /// Why a tick could not be completed.
 #[derive(Debug, thiserror::Error)]
@@ -47,6 +47,7 @@ pub struct Engine {
     mission: Box<dyn Publisher>,
     state: Box<dyn Publisher>,
     ticks: Box<dyn Publisher>,
+    snapshots: Box<dyn Publisher>,
     events: Box<dyn Publisher>,
     steps: Box<dyn Publisher>,
     heart: Heart,
@@ -54,11 +55,7 @@ pub struct Engine {
     paused: bool,
     unrecorded: Option<Unrecorded>,
     turn_by_command: BTreeMap<u64, u64>,
-    latest_started: u64,
-    highlighted: Vec<(ObjectId, u64)>,
-    /// What the mission shows, one after the other, each until a tick.
-    shown: Vec<(CameraTarget, u64)>,
-    motion: Motion,
+    appearance: Appearance,
     /// Whether ticks are told, for a recorder that is there or may join.
     tells_ticks: bool,
 }
@@ -80,6 +77,7 @@ impl Engine {
             mission: bus.publisher(Topic::Mission)?,
             state: bus.publisher(Topic::State)?,
             ticks: bus.publisher(Topic::Ticks)?,
+            snapshots: bus.publisher(Topic::Snapshots)?,
             events: bus.publisher(Topic::Events)?,
             steps: bus.publisher(Topic::Steps)?,
             heart: Heart::new(bus, "sim", NONE)?,
@@ -87,10 +85,7 @@ impl Engine {
             paused: false,
             unrecorded: None,
             turn_by_command: BTreeMap::new(),
-            latest_started: 0,
-            highlighted: Vec::new(),
-            shown: Vec::new(),
-            motion: Motion::default(),
+            appearance: Appearance::default(),
             tells_ticks: true,
         };
         let cameras = cameras.iter().map(CameraPlan::record).collect();
@@ -105,6 +100,12 @@ impl Engine {
         Self { tells_ticks: false, ..self }
     }
 
+    /// The same, going on from a moment at which that was seen of its world besides.
+    #[must_use]
+    pub fn appearing(self, appearance: Appearance) -> Self {
+        Self { appearance, ..self }
+    }
+
     /// The world as it is.
     #[must_use]
     pub const fn world(&self) -> &World {
@@ -117,26 +118,10 @@ impl Engine {
         self.world
     }
 
-    /// The latest command that has begun to move its body; 0 if none has.
+    /// All that can be seen now.
     #[must_use]
-    pub const fn latest_started(&self) -> u64 {
-        self.latest_started
-    }
-
-    /// What is seen to move besides.
-    pub(crate) const fn motion(&self) -> &Motion {
-        &self.motion
-    }
-
-    /// The objects that are outlined now.
-    pub fn highlighted(&self) -> impl Iterator<Item = ObjectId> + '_ {
-        self.highlighted.iter().map(|(object, _)| *object)
-    }
-
-    /// What the mission shows now to the people who watch.
-    #[must_use]
-    pub fn shown(&self) -> Option<CameraTarget> {
-        self.shown.iter().find(|(_, until)| *until > self.world.tick()).map(|(target, _)| *target)
+    pub const fn visible(&self) -> Visible<'_> {
+        Visible { world: &self.world, appearance: &self.appearance }
     }
 
     /// One tick, whose wall time is stamped `wall_nanos` (since 1970).
@@ -156,9 +141,7 @@ impl Engine {
         let inputs: Vec<Input> = messages.iter().filter_map(|message| self.input(message)).collect();
         self.stopwatch.over(Stage::Drain);
         let report = self.world.step_telling(&inputs, &mut |phase| self.stopwatch.over(stage_of(phase)));
-        self.note_started(&inputs);
-        self.note_shown(&report);
-        self.motion.note(&self.world, &report);
+        self.appearance.note(&self.world, &inputs, &report);
         // State before events: who hears of an event finds the state that it speaks of.
         self.publish_state()?;
         self.publish_events(&inputs, report)?;
@@ -173,6 +156,9 @@ impl Engine {
         if let Some(tick) = self.unrecorded.take().filter(|_| self.tells_ticks) {
             self.stopwatch.restart();
             self.publish_tick(tick)?;
+            if self.world.tick().is_multiple_of(SNAPSHOT_EVERY) {
+                self.keep_state()?;
+            }
             self.stopwatch.over(Stage::Record);
         }
         self.beat()
@@ -245,7 +231,7 @@ impl Engine {
     /// # Errors
     /// [`EngineError::Bus`].
     pub fn greet(&mut self) -> Result<(), EngineError> {
-        for topic in [&mut self.mission, &mut self.state, &mut self.events, &mut self.ticks] {
+        for topic in [&mut self.mission, &mut self.state, &mut self.events, &mut self.ticks, &mut self.snapshots] {
             topic.update()?;
         }
         let buried = self.intake.bury();
@@ -262,34 +248,6 @@ impl Engine {
         self.turn_by_command.insert(message.command, message.turn);
         let action = Action::try_from(message.action).ok()?;
         Some(Input { command: message.command, body: BodyId(message.body), action })
-    }
-
-    /// What is driven is told anew all the time, and would hide all else.
-    fn note_started(&mut self, inputs: &[Input]) {
-        let is_drive = |input: &&Input| matches!(input.action, Action::Drive { .. });
-        if let Some(input) = inputs.iter().rfind(|input| !is_drive(input)) {
-            self.latest_started = input.command;
-        }
-    }
-
-    fn note_shown(&mut self, report: &Report) {
-        let now = self.world.tick();
-        self.highlighted.retain(|(_, until)| *until > now);
-        self.shown.retain(|(_, until)| *until > now);
-        for event in &report.events {
-            match event {
-                Event::Highlighted { object, .. } => {
-                    self.highlighted.retain(|(other, _)| other != object);
-                    self.highlighted.push((*object, now + HIGHLIGHT_TICKS));
-                }
-                Event::CameraMovement { target, duration_s, .. } => {
-                    let ticks = (f64::from(*duration_s) / (DT_NANOS as f64 * 1e-9)) as u64;
-                    let from = self.shown.last().map_or(now, |(_, until)| *until);
-                    self.shown.push((*target, from + ticks));
-                }
-                _ => {}
-            }
-        }
     }
 
     fn publish_events(&mut self, inputs: &[Input], report: Report) -> Result<(), EngineError> {
@@ -320,6 +278,14 @@ impl Engine {
         let header = TickHeader { digest, wall_nanos, late_nanos, stage_nanos, ..TickHeader::default() };
         let message = TickMessage { header, inputs };
         self.ticks.send(self.world.tick(), message.bytes(), &mut |bytes| message.write(bytes))?;
+        Ok(())
+    }
+
+    /// Sends all that is needed to go on from here.
+    pub(crate) fn keep_state(&mut self) -> Result<(), EngineError> {
+        let state = snapshot::write(self.visible());
+        let bytes = SnapshotView::bytes(state.len());
+        self.snapshots.send(self.world.tick(), bytes, &mut |bytes| SnapshotView::write(&state, bytes))?;
         Ok(())
     }
 

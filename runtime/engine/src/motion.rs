@@ -5,6 +5,7 @@
 use cohabit_cdf::{BodyId, Fluid, ObjectId};
 use cohabit_world::{DT_NANOS, Event, Report, SoundKind, World};
 use glam::Vec3;
+use serde::{Deserialize, Serialize};
 
 /// How long something is poured, ticks: a second.
 const POUR_TICKS: u64 = 60;
@@ -17,7 +18,7 @@ const FOLLOW: f32 = 0.2;
 const ROUND_M: f32 = 4096.0;
 
 /// How far and how fast a body has truly gone along its heading.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Serialize)]
 pub(crate) struct Gait {
     /// Forwards less backwards, m.
     pub way_m: f32,
@@ -44,7 +45,7 @@ impl Gait {
 }
 
 /// Something that is being poured, or filled under a tap.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub(crate) struct Pour {
     /// Who holds it.
     pub body: BodyId,
@@ -77,7 +78,7 @@ impl Pour {
 }
 
 /// All of one world.
-#[derive(Debug, Default)]
+#[derive(Debug, Default, Deserialize, Serialize)]
 pub(crate) struct Motion {
     gaits: Vec<Gait>,
     /// What each body held after the last tick, and what that was filled with.

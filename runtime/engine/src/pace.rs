@@ -41,6 +41,8 @@ impl Pace {
             Control::Resume => (self.stands, self.steps) = (false, 0),
             Control::Step(ticks) => (self.stands, self.steps) = (true, ticks),
             Control::Speed(speed) => self.speed = speed,
+            // What is played live is where it is.
+            Control::Seek(_) => {}
         }
         match control {
             Control::Pause => "paused".to_owned(),
@@ -48,6 +50,7 @@ impl Pace {
             Control::Step(1) => "one tick".to_owned(),
             Control::Step(ticks) => format!("{ticks} ticks"),
             Control::Speed(speed) => format!("{speed} times real time"),
+            Control::Seek(_) => "only a recorded session goes elsewhere".to_owned(),
         }
     }
 

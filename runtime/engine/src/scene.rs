@@ -11,7 +11,7 @@ use cohabit_world::{BodyView, ObjectView, World};
 use glam::{Quat, Vec3};
 
 use crate::{
-    engine::Engine,
+    appearance::Visible,
     motion::{Gait, Motion, Pour},
     shot::{self, Outlook},
 };
@@ -35,6 +35,8 @@ pub struct Moment {
     pub bodies: Vec<Standing>,
     /// What the mission shows to the people who watch, instead of their body.
     pub shot: Option<Outlook>,
+    /// How often the time had leapt before: a camera does not follow a body from one time to another.
+    pub leaps: u64,
 }
 
 /// Where a body stands and looks.
@@ -169,9 +171,10 @@ pub fn furnishings(world: &World) -> impl Iterator<Item = Instance> + '_ {
 }
 
 impl Moment {
-    /// Captures an engine's world.
-    pub fn capture(engine: &Engine, seen_nanos: u64) -> Self {
-        let (world, motion) = (engine.world(), engine.motion());
+    /// Captures a world.
+    pub fn capture(visible: Visible<'_>, seen_nanos: u64) -> Self {
+        let Visible { world, appearance } = visible;
+        let motion = appearance.motion();
         let bodies = world.bodies().map(|body| Instance {
             id: body_instance_id(body.id),
             look: look_of(&body, motion.gait(body.id), arm_of(&body, motion, world.tick())),
@@ -192,10 +195,10 @@ impl Moment {
         }
         Self {
             tick: world.tick(),
-            command: engine.latest_started(),
+            command: appearance.latest_started(),
             seen_nanos,
             instances,
-            highlights: engine
+            highlights: appearance
                 .highlighted()
                 .map(|object| Highlight { id: object_instance_id(object), color: HIGHLIGHT_COLOR })
                 .collect(),
@@ -209,7 +212,8 @@ impl Moment {
                     head_pitch_rad: body.head_pitch_rad,
                 })
                 .collect(),
-            shot: engine.shown().and_then(|target| shot::outlook(target, world)),
+            shot: appearance.shown(world.tick()).and_then(|target| shot::outlook(target, world)),
+            leaps: 0,
         }
     }
 }

@@ -14,6 +14,7 @@ use cohabit_render::{CpuRenderer, MeshLibrary, Renderer};
 use cohabit_world::{DT_NANOS, World};
 
 use crate::{
+    appearance::Appearance,
     build::SessionPlan,
     engine::{Engine, EngineError},
     pace::Pace,
@@ -60,7 +61,7 @@ impl Simulator {
         renderer: Box<dyn Renderer>,
         bus: &dyn Transport,
     ) -> Result<Self, EngineError> {
-        let cameras = plan.cameras(world.bodies().len());
+        let cameras = plan.all_cameras(world.bodies().len());
         let engine = Engine::new(plan, world, &cameras, bus)?;
         let studio = |renderer, cameras: &[_]| {
             let (layout, catalog) = (Arc::clone(&plan.layout), Arc::clone(&plan.catalog));
@@ -82,6 +83,12 @@ impl Simulator {
     #[must_use]
     pub fn starting(self, speed: f32, paused: bool) -> Self {
         Self { pace: Pace::new(speed, paused), ..self }
+    }
+
+    /// The same, going on from a moment at which that was seen of its world besides.
+    #[must_use]
+    pub fn appearing(self, appearance: Appearance) -> Self {
+        Self { engine: self.engine.appearing(appearance), ..self }
     }
 
     /// Goes on until `stop`.
@@ -149,7 +156,7 @@ impl<G: Fn(u64) -> bool> Clock<'_, G> {
             }
             self.obey()?;
         }
-        Ok(())
+        self.engine.keep_state()
     }
 
     /// The world waits for all who attend, and goes as fast as they do.
@@ -160,7 +167,7 @@ impl<G: Fn(u64) -> bool> Clock<'_, G> {
             let due = self.engine.ask();
             if !due.runs.is_empty() {
                 self.engine.restart_stopwatch();
-                studio.shoot_watched(&due.bodies, &|nanos| Moment::capture(&self.engine, nanos))?;
+                studio.shoot_watched(&due.bodies, &|nanos| Moment::capture(self.engine.visible(), nanos))?;
                 self.engine.publish_step(&due.runs)?;
                 self.engine.note_stage(Stage::Show);
             }
@@ -178,7 +185,8 @@ impl<G: Fn(u64) -> bool> Clock<'_, G> {
             }
             self.obey()?;
         }
-        self.engine.record()
+        self.engine.record()?;
+        self.engine.keep_state()
     }
 
     fn goes_on(&self) -> bool {
@@ -190,6 +198,8 @@ impl<G: Fn(u64) -> bool> Clock<'_, G> {
         if self.pace.is_paused() {
             self.engine.set_clock(true, "paused")?;
         }
+        // Of the beginning, too: it may not be that of the mission.
+        self.engine.keep_state()?;
         self.engine.show_state()?;
         self.engine.restart_stopwatch();
         Ok(())
@@ -229,7 +239,7 @@ impl<G: Fn(u64) -> bool> Clock<'_, G> {
     /// Leaves the scene to those who render.
     fn show(&mut self) {
         self.shown_nanos = monotonic_nanos();
-        self.desk.leave(Moment::capture(&self.engine, self.shown_nanos));
+        self.desk.leave(Moment::capture(self.engine.visible(), self.shown_nanos));
     }
 
     /// The same, no more often than in real time.

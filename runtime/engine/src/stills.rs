@@ -1,11 +1,11 @@
-//! Pictures when somebody asks for them: for those who step an engine themselves, as fast as they like.
+//! Pictures when somebody asks for them: for those who step a world themselves, as fast as they like, or replay one.
 
-use std::sync::Arc;
+use std::{sync::Arc, time::Duration};
 
 use cohabit_bus::{BusError, CameraId, Transport, monotonic_nanos};
 use cohabit_render::{Lens, MeshLibrary, Renderer};
 
-use crate::{build::SessionPlan, camera_plan::CameraPlan, engine::Engine, scene::Moment, studio::Studio};
+use crate::{appearance::Visible, build::SessionPlan, camera_plan::CameraPlan, scene::Moment, studio::Studio};
 
 /// Cameras of one session that look only when they are told to.
 pub struct Stills {
@@ -33,15 +33,24 @@ impl Stills {
     ///
     /// # Errors
     /// [`BusError::Send`].
-    pub fn shoot(&mut self, engine: &Engine, camera: CameraId, lens: Option<Lens>) -> Result<(), BusError> {
-        self.studio.shoot_now(&Moment::capture(engine, monotonic_nanos()), camera, lens)
+    pub fn shoot(&mut self, visible: Visible<'_>, camera: CameraId, lens: Option<Lens>) -> Result<(), BusError> {
+        self.studio.shoot_now(&Moment::capture(visible, monotonic_nanos()), camera, lens)
+    }
+
+    /// The same with a camera that goes on from its last picture, so many seconds of the session ago.
+    ///
+    /// # Errors
+    /// [`BusError::Send`].
+    pub fn follow(&mut self, visible: Visible<'_>, camera: CameraId, since_s: f64) -> Result<(), BusError> {
+        let since = Duration::from_secs_f64(since_s);
+        self.studio.shoot_after(&Moment::capture(visible, monotonic_nanos()), camera, since)
     }
 
     /// The same with many cameras of one moment, each with its own lens, which may cost less than one after another.
     ///
     /// # Errors
     /// [`BusError::Send`].
-    pub fn shoot_all(&mut self, engine: &Engine, cameras: &[CameraId]) -> Result<(), BusError> {
-        self.studio.shoot_all_now(&Moment::capture(engine, monotonic_nanos()), cameras)
+    pub fn shoot_all(&mut self, visible: Visible<'_>, cameras: &[CameraId]) -> Result<(), BusError> {
+        self.studio.shoot_all_now(&Moment::capture(visible, monotonic_nanos()), cameras)
     }
 }

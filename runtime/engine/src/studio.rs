@@ -75,13 +75,15 @@ struct Post {
     plan: CameraPlan,
     publisher: Box<dyn Publisher>,
     rig: CameraRig,
+    /// Those of its last moment.
+    leaps: u64,
     sent: Option<Instant>,
 }
 
 impl Post {
     fn new(bus: &dyn Transport, plan: CameraPlan) -> Result<Self, BusError> {
         let publisher = bus.publisher(Topic::Frames(plan.id))?;
-        Ok(Self { plan, publisher, rig: CameraRig::default(), sent: None })
+        Ok(Self { plan, publisher, rig: CameraRig::default(), leaps: 0, sent: None })
     }
 
     /// Whether a frame is due, and how long after the one before.
@@ -98,6 +100,9 @@ impl Post {
     /// A camera for each picture of its frame; none if its body is not there.
     fn aim(&mut self, moment: &Moment, layout: &Layout, tall: &[Tall], since: Duration) -> Vec<Camera> {
         let lens = self.plan.lens;
+        if std::mem::replace(&mut self.leaps, moment.leaps) != moment.leaps {
+            self.rig = CameraRig::default();
+        }
         let standing = |body: u8| moment.bodies.get(usize::from(body));
         let own = |body: u8| body_instance_id(cohabit_cdf::BodyId(u32::from(body)));
         let cameras = match self.plan.mount {
@@ -207,6 +212,17 @@ impl Studio {
         let shot = self.expose(moment, vec![(index, Duration::from_secs(1))]);
         self.posts[index].plan.lens = own;
         shot
+    }
+
+    /// Renders and sends a frame of one camera, so long after its last one.
+    ///
+    /// # Errors
+    /// [`BusError`].
+    pub fn shoot_after(&mut self, moment: &Moment, camera: CameraId, since: Duration) -> Result<(), BusError> {
+        match self.posts.iter().position(|post| post.plan.id == camera) {
+            Some(index) => self.expose(moment, vec![(index, since)]),
+            None => Ok(()),
+        }
     }
 
     /// Renders and sends a frame of each of these cameras, due or not.

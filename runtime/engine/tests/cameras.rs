@@ -129,7 +129,7 @@ fn stills_are_taken_when_they_are_asked_for() {
     let mut engine = Engine::new(&plan, plan.build().unwrap(), &plan.cameras, &bus).unwrap();
     let mut frames = bus.subscriber(Topic::Frames(plan.cameras[0].id)).unwrap();
     let mut shoot = |engine: &Engine, lens| {
-        stills.shoot(engine, plan.cameras[0].id, lens).unwrap();
+        stills.shoot(engine.visible(), plan.cameras[0].id, lens).unwrap();
         frames.receive().unwrap().unwrap()
     };
     let size = |sample: &Sample| {

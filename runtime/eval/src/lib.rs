@@ -10,7 +10,6 @@ mod chance;
 mod dataset;
 mod family;
 mod generate;
-mod interval;
 mod lock_step;
 mod meaning;
 mod play;

@@ -8,7 +8,7 @@ use cohabit_cdf::{Action, BodyId};
 use cohabit_dialog::{Asked, Conversation, Knowledge, Reaction, TurnEnd, known};
 use cohabit_engine::{SessionPlan, report};
 use cohabit_language::Known;
-use cohabit_record::{InputEntry, LogError};
+use cohabit_record::{InputEntry, LogError, SessionFacts};
 use cohabit_world::{Input, Outcome, World};
 
 use crate::trace::Trace;
@@ -61,8 +61,8 @@ impl LockStep {
     ///
     /// # Errors
     /// [`LogError`].
-    pub fn record(&mut self, path: &Path, session: &str, plan: &SessionPlan) -> Result<(), LogError> {
-        self.trace = Some(Trace::create(path, session, plan)?);
+    pub fn record(&mut self, path: &Path, facts: &SessionFacts, plan: &SessionPlan) -> Result<(), LogError> {
+        self.trace = Some(Trace::create(path, facts, plan)?);
         Ok(())
     }
 
@@ -196,7 +196,7 @@ impl LockStep {
             match reaction {
                 Reaction::Bus(message) => self.pass_on(&message)?,
                 Reaction::TurnEnded { turn, end } => self.noted.turns.push((turn, end)),
-                Reaction::Chat(_) | Reaction::Page(_) => {}
+                Reaction::Chat(_) | Reaction::Page(_) | Reaction::Interpret(..) => {}
             }
         }
         Ok(())
@@ -219,7 +219,7 @@ impl LockStep {
     }
 
     fn write_down(&mut self, message: &DialogMessage) -> Result<(), LogError> {
-        self.trace.as_mut().map_or(Ok(()), |trace| trace.dialog(message))
+        self.trace.as_mut().map_or(Ok(()), |trace| trace.dialog(self.world.tick(), message))
     }
 
     fn act(&mut self, turn: u64, action: Action) {

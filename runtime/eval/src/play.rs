@@ -7,7 +7,7 @@ use cohabit_cdf::BodyId;
 use cohabit_dialog::{Conversation, Knowledge, TurnEnd};
 use cohabit_engine::SessionPlan;
 use cohabit_language::{Asking, Known, Knows, Language};
-use cohabit_record::LogError;
+use cohabit_record::{LogError, SessionFacts};
 use cohabit_world::{Outcome, World};
 use serde::{Deserialize, Serialize};
 
@@ -50,6 +50,17 @@ impl Settings {
     #[must_use]
     pub fn expert(seed: u64) -> Self {
         Self { seed, knows: Knows::Everything, asking: Asking::Never, ..Self::default() }
+    }
+
+    /// As a log notes them.
+    fn noted(&self) -> BTreeMap<String, String> {
+        let played = [("knows", self.knows.to_string()), ("ask", self.asking.to_string())];
+        let speaks = |Style { vagueness, typos, mistakes }: Style| {
+            [("vagueness", vagueness), ("typos", typos), ("mistakes", mistakes)]
+                .map(|(name, share)| (name, share.to_string()))
+        };
+        let all = played.into_iter().chain(self.style.map(speaks).into_iter().flatten());
+        all.map(|(name, value)| (name.to_owned(), value)).collect()
     }
 }
 
@@ -145,7 +156,8 @@ pub fn play(task: &Task, settings: &Settings, language: &Language) -> Result<Pla
     let mut session = LockStep::new(world, conversation, knowledge);
     if let Some(folder) = &settings.record {
         let path = folder.join(format!("{}.mcap", file_name(&task.id)));
-        session.record(&path, &task.id, &plan)?;
+        let facts = SessionFacts { settings: settings.noted(), ..SessionFacts::named(&task.id) };
+        session.record(&path, &facts, &plan)?;
         played.log = Some(path);
     }
     let user = settings.style.map(|style| {

@@ -2,12 +2,10 @@
 
 use std::collections::BTreeMap;
 
+use cohabit_tables::wilson_95;
 use serde::{Deserialize, Serialize};
 
-use crate::{
-    interval::wilson_95,
-    play::{Caps, Played},
-};
+use crate::play::{Caps, Played};
 
 /// All results, and their sums.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]

@@ -8,7 +8,9 @@ use cohabit_bus::{
     monotonic_nanos, wall_nanos,
 };
 use cohabit_engine::SessionPlan;
-use cohabit_record::{DialogEntry, EventEntry, InputEntry, LogError, LogWriter, SessionEntry, TickEntry, entry::hex};
+use cohabit_record::{
+    DialogEntry, EventEntry, InputEntry, LogError, LogWriter, SessionEntry, SessionFacts, TickEntry, entry::hex,
+};
 use cohabit_world::World;
 
 /// Writes a log.
@@ -18,8 +20,9 @@ pub struct Trace {
 
 impl Trace {
     /// Creates the log of `plan`, which must not exist.
-    pub fn create(path: &Path, session: &str, plan: &SessionPlan) -> Result<Self, LogError> {
-        let entry = SessionEntry::new(session, &plan.message());
+    pub fn create(path: &Path, facts: &SessionFacts, plan: &SessionPlan) -> Result<Self, LogError> {
+        let entry = SessionEntry::new(facts, &plan.message());
+        let entry = entry.with(&plan.catalog, &plan.layout);
         Ok(Self { log: LogWriter::create(path, &entry, wall_nanos())? })
     }
 
@@ -38,10 +41,10 @@ impl Trace {
     }
 
     /// Something was said or planned.
-    pub fn dialog(&mut self, message: &DialogMessage) -> Result<(), LogError> {
+    pub fn dialog(&mut self, tick: u64, message: &DialogMessage) -> Result<(), LogError> {
         let envelope = Envelope { sent_nanos: monotonic_nanos(), ..Envelope::default() };
         let view = DialogView { header: &message.header, steps: &message.steps };
-        match DialogEntry::new(&envelope, view) {
+        match DialogEntry::new(tick, &envelope, view) {
             Some(entry) => self.log.dialog(&entry, wall_nanos()),
             None => Ok(()),
         }

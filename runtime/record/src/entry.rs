@@ -1,10 +1,12 @@
 //! What a log holds, as JSON messages of MCAP channels.
 
+use std::collections::BTreeMap;
+
 use cohabit_bus::{
-    Envelope,
+    CameraId, Envelope,
     message::{CommandMessage, DialogView, EventMessage, MissionMessage, TickView},
 };
-use cohabit_cdf::{Action, BodyRequest, Status};
+use cohabit_cdf::{Action, BodyRequest, Catalog, Layout, Status};
 use serde::{Deserialize, Serialize};
 
 /// The kinds of entries, each on its own channel.
@@ -22,6 +24,12 @@ pub struct SessionEntry {
     pub format: u32,
     /// The version of the program that wrote it.
     pub program: String,
+    /// The build of it, as its linker named it; empty if it did not.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub build: String,
+    /// The version of the messages on its bus.
+    #[serde(default)]
+    pub messages: u32,
     /// The session's name.
     pub session: String,
     /// The mission file's name.
@@ -36,31 +44,113 @@ pub struct SessionEntry {
     /// The simulator's run, unlike that of any other; 0 where there was none.
     #[serde(default, with = "run", skip_serializing_if = "is_zero")]
     pub run: u64,
+    /// Stands for the catalogue of objects that it was played with; empty if that was not noted.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub catalog: String,
+    /// Stands for its floor plan.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub layout: String,
+    /// What the participant is called in the study: a label, not a name.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub participant: Option<String>,
+    /// How it was played, by the names of the options.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub settings: BTreeMap<String, String>,
+    /// The cameras beside those of the bodies, as `--camera` has them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub cameras: Vec<String>,
+    /// The cameras whose frames are in the log.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub frames: Vec<String>,
+    /// The session that it went on from, if it did not begin at the beginning.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub branched: Option<Branch>,
+}
+
+/// A point of another session.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub struct Branch {
+    /// The other session's name.
+    pub session: String,
+    /// Its simulator's run.
+    #[serde(default, with = "run", skip_serializing_if = "is_zero")]
+    pub run: u64,
+    /// The tick after which this one goes on.
+    pub tick: u64,
+}
+
+/// What is noted of a session besides what is told on its bus.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SessionFacts {
+    /// Its name.
+    pub session: String,
+    /// The build of the program that plays it.
+    pub build: String,
+    /// What the participant is called in the study.
+    pub participant: Option<String>,
+    /// How it is played, by the names of the options.
+    pub settings: BTreeMap<String, String>,
+    /// The cameras beside those of the bodies, as `--camera` has them.
+    pub cameras: Vec<String>,
+    /// The cameras whose frames are recorded.
+    pub frames: Vec<CameraId>,
+    /// The session that it goes on from.
+    pub branched: Option<Branch>,
+}
+
+impl SessionFacts {
+    /// A session of that name, of which nothing more is known.
+    #[must_use]
+    pub fn named(session: &str) -> Self {
+        Self { session: session.to_owned(), ..Self::default() }
+    }
 }
 
 impl SessionEntry {
-    /// The format this build writes.
-    pub const FORMAT: u32 = 1;
+    /// The format this build writes: 2 since segments are sealed, and digests tell the parts of the state apart.
+    pub const FORMAT: u32 = 2;
 
     /// The entry of a mission as a simulator published it.
     #[must_use]
-    pub fn new(session: &str, mission: &MissionMessage) -> Self {
+    pub fn new(facts: &SessionFacts, mission: &MissionMessage) -> Self {
+        let SessionFacts { session, build, participant, settings, cameras, frames, branched } = facts.clone();
         Self {
             format: Self::FORMAT,
             program: env!("CARGO_PKG_VERSION").to_owned(),
-            session: session.to_owned(),
+            build,
+            messages: Envelope::VERSION,
+            session,
             mission_file: mission.header.file.as_str().to_owned(),
             mission_text: mission.text.clone(),
             seed: mission.header.seed,
             bodies: mission.bodies.clone(),
             run: 0,
+            catalog: String::new(),
+            layout: String::new(),
+            participant,
+            settings,
+            cameras,
+            frames: frames.iter().map(ToString::to_string).collect(),
+            branched,
         }
     }
+
+    /// The same with what stands for the catalogue and the floor plan that it is played with.
+    #[must_use]
+    pub fn with(self, catalog: &Catalog, layout: &Layout) -> Self {
+        Self { catalog: fingerprint(catalog.classes()), layout: fingerprint(layout), ..self }
+    }
+}
+
+/// Stands for a value: another one has another.
+#[must_use]
+pub fn fingerprint(value: &(impl std::fmt::Debug + ?Sized)) -> String {
+    hex(&blake3::hash(format!("{value:?}").as_bytes()).as_bytes()[..8])
 }
 
 impl Entry for SessionEntry {
     const TOPIC: &'static str = "/session";
-    const SCHEMA: &'static str = r#"{"title":"Session","type":"object","properties":{"format":{"type":"integer"},"program":{"type":"string"},"session":{"type":"string"},"mission_file":{"type":"string"},"mission_text":{"type":"string"},"seed":{"type":"integer"},"bodies":{"type":"array","items":{"type":"object"}},"run":{"type":"string"}}}"#;
+    const SCHEMA: &'static str = r#"{"title":"Session","type":"object","properties":{"format":{"type":"integer"},"program":{"type":"string"},"build":{"type":"string"},"messages":{"type":"integer"},"session":{"type":"string"},"mission_file":{"type":"string"},"mission_text":{"type":"string"},"seed":{"type":"integer"},"bodies":{"type":"array","items":{"type":"object"}},"run":{"type":"string"},"catalog":{"type":"string"},"layout":{"type":"string"},"participant":{"type":"string"},"settings":{"type":"object"},"cameras":{"type":"array","items":{"type":"string"}},"frames":{"type":"array","items":{"type":"string"}},"branched":{"type":"object"}}}"#;
 }
 
 /// One tick: what went in, and the digest of what came out.
@@ -68,9 +158,10 @@ impl Entry for SessionEntry {
 pub struct TickEntry {
     /// Its number.
     pub tick: u64,
-    /// BLAKE3 of the simulated state after it, in hexadecimal.
+    /// The digest of the simulated state after it, in hexadecimal: 16 digits for each part of the state.
     pub digest: String,
-    /// Wall time of its start, ns since 1970.
+    /// Wall time of its start, ns since 1970: the time of the message that holds the entry.
+    #[serde(default, skip_serializing)]
     pub wall_nanos: u64,
     /// What it took in.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -113,6 +204,12 @@ const fn is_zero(number: &u64) -> bool {
     *number == 0
 }
 
+/// Format 1 had four, and not when the frame was shown.
+fn stamps<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<[u64; 5], D::Error> {
+    let found = Vec::<u64>::deserialize(deserializer)?;
+    Ok(std::array::from_fn(|index| found.get(index).copied().unwrap_or(0)))
+}
+
 /// A run's number, in hexadecimal: it has more bits than numbers of JSON hold exactly.
 mod run {
     use serde::{Deserialize as _, Deserializer, Serializer, de::Error as _};
@@ -140,7 +237,7 @@ pub fn hex(bytes: &[u8]) -> String {
 
 impl Entry for TickEntry {
     const TOPIC: &'static str = "/ticks";
-    const SCHEMA: &'static str = r#"{"title":"Tick","type":"object","properties":{"tick":{"type":"integer"},"digest":{"type":"string"},"wall_nanos":{"type":"integer"},"inputs":{"type":"array","items":{"type":"object"}}}}"#;
+    const SCHEMA: &'static str = r#"{"title":"Tick","type":"object","properties":{"tick":{"type":"integer"},"digest":{"type":"string"},"inputs":{"type":"array","items":{"type":"object"}}}}"#;
 }
 
 /// Something that happened.
@@ -212,6 +309,9 @@ impl Entry for EventEntry {
 /// Something that was said, planned or done about a turn.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct DialogEntry {
+    /// The newest tick that was recorded before it.
+    #[serde(default)]
+    pub tick: u64,
     /// What kind of dialog message.
     pub kind: String,
     /// The turn; 0 is none.
@@ -225,8 +325,10 @@ pub struct DialogEntry {
     pub status: Option<Status>,
     /// When it was sent, ns of the machine's monotonic clock.
     pub sent_nanos: u64,
-    /// Received, understood, first motion, first changed frame: ns of the same clock, 0 where it did not happen.
-    pub stamps: [u64; 4],
+    /// Received, understood, first motion, first changed frame, that frame shown by a page: ns of the same clock, 0
+    /// where it did not happen (yet). A turn's last entry knows most.
+    #[serde(deserialize_with = "stamps")]
+    pub stamps: [u64; 5],
     /// What was said.
     pub text: String,
     /// A plan's steps.
@@ -241,11 +343,12 @@ pub struct DialogEntry {
 }
 
 impl DialogEntry {
-    /// The entry of a dialog message as published; `None` if it is of no known kind.
+    /// The entry of a dialog message as published when `tick` was the newest; `None` if it is of no known kind.
     #[must_use]
-    pub fn new(envelope: &Envelope, view: DialogView<'_>) -> Option<Self> {
+    pub fn new(tick: u64, envelope: &Envelope, view: DialogView<'_>) -> Option<Self> {
         let kind = view.header.kind()?;
         Some(Self {
+            tick,
             kind: format!("{kind:?}"),
             turn: view.header.turn,
             body: view.header.body,
@@ -263,5 +366,42 @@ impl DialogEntry {
 
 impl Entry for DialogEntry {
     const TOPIC: &'static str = "/dialog";
-    const SCHEMA: &'static str = r#"{"title":"Dialog","type":"object","properties":{"kind":{"type":"string"},"turn":{"type":"integer"},"body":{"type":"integer"},"step":{"type":"integer"},"status":{"type":"string"},"sent_nanos":{"type":"integer"},"stamps":{"type":"array","items":{"type":"integer"}},"text":{"type":"string"},"steps":{"type":"array","items":{"type":"object"}},"run":{"type":"string"},"sequence":{"type":"integer"}}}"#;
+    const SCHEMA: &'static str = r#"{"title":"Dialog","type":"object","properties":{"tick":{"type":"integer"},"kind":{"type":"string"},"turn":{"type":"integer"},"body":{"type":"integer"},"step":{"type":"integer"},"status":{"type":"string"},"sent_nanos":{"type":"integer"},"stamps":{"type":"array","items":{"type":"integer"}},"text":{"type":"string"},"steps":{"type":"array","items":{"type":"object"}},"run":{"type":"string"},"sequence":{"type":"integer"}}}"#;
+}
+
+/// What nobody took down in time: the recorder was away, or its disk slow, for longer than the bus keeps messages.
+#[derive(Clone, Copy, Debug, Default, Deserialize, Eq, PartialEq, Serialize)]
+pub struct GapEntry {
+    /// The newest tick when that was noticed.
+    pub tick: u64,
+    /// Ticks that are missing before it.
+    pub ticks: u64,
+    /// Events that are missing.
+    pub events: u64,
+    /// Dialog messages that are missing.
+    pub dialog: u64,
+}
+
+impl GapEntry {
+    /// Messages missing in all.
+    #[must_use]
+    pub const fn messages(&self) -> u64 {
+        self.ticks + self.events + self.dialog
+    }
+}
+
+impl std::fmt::Display for GapEntry {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { tick, ticks, events, dialog } = self;
+        write!(
+            f,
+            "{ticks} ticks, {events} events and {dialog} dialog messages before tick {tick} are missing: its recorder was \
+             away, or its disk slow, for too long"
+        )
+    }
+}
+
+impl Entry for GapEntry {
+    const TOPIC: &'static str = "/gaps";
+    const SCHEMA: &'static str = r#"{"title":"Gap","type":"object","properties":{"tick":{"type":"integer"},"ticks":{"type":"integer"},"events":{"type":"integer"},"dialog":{"type":"integer"}}}"#;
 }

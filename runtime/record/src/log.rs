@@ -6,10 +6,14 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use mcap::{MessageStream, read::Options};
-use serde::de::DeserializeOwned;
+use mcap::records::Record;
 
-use crate::entry::{DialogEntry, Entry, EventEntry, SessionEntry, TickEntry};
+use crate::{
+    entry::{DialogEntry, EventEntry, GapEntry, SessionEntry, TickEntry},
+    reading::Reading,
+    segment::{Piece, SEAL, Segments, index_problem, records},
+    snapshot::Snapshot,
+};
 
 /// A whole log in memory.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,8 +26,38 @@ pub struct Log {
     pub events: Vec<EventEntry>,
     /// What was said.
     pub dialog: Vec<DialogEntry>,
+    /// The state after some of the ticks.
+    pub snapshots: Vec<Snapshot>,
+    /// What its recorder could not take down in time.
+    pub gaps: Vec<GapEntry>,
+    /// What was damaged since.
+    pub lost: Vec<Lost>,
     /// Why it ends early, if it does: its recorder was killed, or the file is damaged from there on.
     pub cut: Option<String>,
+}
+
+/// A part of a log that is not as it was written.
+#[derive(Clone, Debug, Eq, PartialEq)]
+pub struct Lost {
+    /// Its first byte, and the one after its last.
+    pub bytes: [usize; 2],
+    /// The newest tick before it; 0 if there is none.
+    pub after_tick: u64,
+    /// The first tick behind it, if there is one.
+    pub before_tick: Option<u64>,
+}
+
+impl std::fmt::Display for Lost {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let ([from, to], after) = (self.bytes, self.after_tick);
+        write!(f, "bytes {from} to {to} are damaged, and lost: ")?;
+        match self.before_tick {
+            Some(before) if before == after + 1 => write!(f, "what was noted between tick {after} and tick {before}"),
+            Some(before) if before == after + 2 => write!(f, "tick {}", after + 1),
+            Some(before) => write!(f, "ticks {} to {}", after + 1, before.saturating_sub(1)),
+            None => write!(f, "what followed tick {after}"),
+        }
+    }
 }
 
 /// Why a log could not be written or read.
@@ -106,48 +140,135 @@ impl Log {
     /// # Errors
     /// [`LogError::NotALog`], [`LogError::TooNew`].
     pub fn parse(path: &Path, bytes: &[u8]) -> Result<Self, LogError> {
-        let not_a_log = |reason: String| LogError::NotALog { path: path.to_owned(), reason };
-        let stream = MessageStream::new_with_options(bytes, Options::IgnoreEndMagic.into())
-            .map_err(|error| not_a_log(error.to_string()))?;
-        let (mut session, mut cut) = (None, None);
-        let (mut ticks, mut events, mut dialog) = (Vec::new(), Vec::new(), Vec::new());
-        for message in stream {
-            let taken = message.map_err(|error| error.to_string()).and_then(|message| {
-                match message.channel.topic.as_str() {
-                    SessionEntry::TOPIC => session = Some(decode::<SessionEntry>(&message.data)?),
-                    TickEntry::TOPIC => ticks.push(decode(&message.data)?),
-                    EventEntry::TOPIC => events.push(decode(&message.data)?),
-                    DialogEntry::TOPIC => dialog.push(decode(&message.data)?),
-                    _ => {}
+        if !bytes.starts_with(mcap::MAGIC) {
+            return Err(LogError::NotALog { path: path.to_owned(), reason: "it is no MCAP file".to_owned() });
+        }
+        let mut log = Opening { path, reading: Reading::default(), lost: Vec::new(), cut: None };
+        if Segments::new(bytes).next().is_some_and(|first| matches!(first, Piece::Whole(_))) {
+            log.read_segments(bytes)?;
+        } else {
+            log.read_unsealed(bytes)?;
+        }
+        log.open()
+    }
+}
+
+/// A log that is being read.
+struct Opening<'a> {
+    path: &'a Path,
+    reading: Reading,
+    lost: Vec<Lost>,
+    cut: Option<String>,
+}
+
+impl Opening<'_> {
+    fn read_segments(&mut self, bytes: &[u8]) -> Result<(), LogError> {
+        self.cut = Some("its recorder did not end it".to_owned());
+        for piece in Segments::new(bytes) {
+            match piece {
+                Piece::Whole(range) => self.take(&bytes[..range.end], range.start)?,
+                Piece::Damaged(range) => {
+                    let after_tick = self.reading.newest_tick();
+                    self.lost.push(Lost { bytes: [range.start, range.end], after_tick, before_tick: None });
                 }
-                Ok(())
-            });
-            if let Err(reason) = taken {
-                cut = Some(reason);
-                break;
+                Piece::Rest(range) => {
+                    self.cut = Some(format!("its last {} bytes are torn or damaged", range.len()));
+                }
+                Piece::End(at) => self.cut = index_problem(bytes, at).map(str::to_owned),
             }
         }
-        if cut.is_none() && !bytes.ends_with(mcap::MAGIC) {
-            cut = Some("its recorder did not end it".to_owned());
+        Ok(())
+    }
+
+    /// Takes in sealed records: what they say was written so.
+    fn take(&mut self, bytes: &[u8], at: usize) -> Result<(), LogError> {
+        for (kind, body) in records(bytes, at) {
+            let start = body.start;
+            let record = mcap::parse_record(kind, &bytes[body]).map_err(|error| error.to_string());
+            let taken = record.and_then(|record| self.reading.take(&record));
+            taken.map_err(|reason| self.not_a_log(format!("what is at byte {start} is not known here: {reason}")))?;
+            self.ensure_known()?;
         }
-        let reason = || cut.clone().unwrap_or_else(|| "no session entry".to_owned());
-        let session = session.ok_or_else(|| not_a_log(reason()))?;
-        if session.format > SessionEntry::FORMAT {
-            let (found, known, program) = (session.format, SessionEntry::FORMAT, session.program);
-            return Err(LogError::TooNew { path: path.to_owned(), found, known, program });
+        let newest = self.reading.newest_tick();
+        for lost in self.lost.iter_mut().filter(|lost| lost.before_tick.is_none() && newest > lost.after_tick) {
+            let behind = self.reading.ticks.iter().rfind(|entry| entry.tick > lost.after_tick);
+            lost.before_tick = behind.map(|entry| entry.tick);
         }
-        Ok(Self { session, ticks, events, dialog, cut })
+        Ok(())
+    }
+
+    fn ensure_known(&self) -> Result<(), LogError> {
+        let Some(session) = &self.reading.session else { return Ok(()) };
+        if session.format <= SessionEntry::FORMAT {
+            return Ok(());
+        }
+        let (found, known, program) = (session.format, SessionEntry::FORMAT, session.program.clone());
+        Err(LogError::TooNew { path: self.path.to_owned(), found, known, program })
+    }
+
+    /// Format 1 had no seals: what is damaged in it is found only where it cannot be read.
+    fn read_unsealed(&mut self, bytes: &[u8]) -> Result<(), LogError> {
+        let mut end = mcap::MAGIC.len();
+        self.cut = Some("its recorder did not end it".to_owned());
+        for (kind, body) in records(bytes, 0) {
+            let (start, after) = (body.start, body.end);
+            match mcap::parse_record(kind, &bytes[body]) {
+                Ok(Record::Unknown { opcode: SEAL, .. }) => {
+                    return Err(self.not_a_log("its beginning is damaged".to_owned()));
+                }
+                Ok(Record::DataEnd(_)) => {
+                    self.cut = index_problem(bytes, end).map(str::to_owned);
+                    break;
+                }
+                record => {
+                    let taken = record.map_err(|error| error.to_string());
+                    if let Err(reason) = taken.and_then(|record| self.reading.take(&record)) {
+                        self.cut = Some(format!("it is damaged at byte {start}: {reason}"));
+                        break;
+                    }
+                    self.ensure_known()?;
+                }
+            }
+            end = after;
+        }
+        match &self.reading.session {
+            Some(session) if session.format > 1 => Err(self.not_a_log("its beginning is damaged".to_owned())),
+            Some(_) => Ok(()),
+            None => Err(self.not_a_log("it has no session entry, or its beginning is damaged or torn".to_owned())),
+        }
+    }
+
+    fn not_a_log(&self, reason: String) -> LogError {
+        LogError::NotALog { path: self.path.to_owned(), reason }
+    }
+
+    fn open(self) -> Result<Log, LogError> {
+        let Self { path, reading, lost, cut } = self;
+        let Reading { session, ticks, events, dialog, snapshots, gaps, .. } = reading;
+        let reason = "no session entry".to_owned();
+        let session = session.ok_or(LogError::NotALog { path: path.to_owned(), reason })?;
+        Ok(Log { session, ticks, events, dialog, snapshots, gaps, lost, cut })
     }
 }
 
 impl Log {
-    /// How many events and dialog messages are missing between the first and the last of their senders: nobody took
-    /// them down in time.
+    /// How many ticks, events and dialog messages are missing between the first and the last of their senders: nobody
+    /// took them down in time, or they were damaged since.
     #[must_use]
     pub fn missing(&self) -> u64 {
         let events = self.events.iter().map(|entry| (entry.run, entry.sequence));
         let dialog = self.dialog.iter().map(|entry| (entry.run, entry.sequence));
-        gaps(events) + gaps(dialog)
+        // Ticks are of the simulator's run alone, whose number does not matter.
+        let ticks = self.ticks.iter().map(|entry| (1, entry.tick));
+        gaps(events) + gaps(dialog) + gaps(ticks)
+    }
+
+    /// What is wrong with it, a sentence each; nothing, if it is as its recorder wrote it and nothing was missed.
+    #[must_use]
+    pub fn problems(&self) -> Vec<String> {
+        let lost = self.lost.iter().map(ToString::to_string);
+        let cut = self.cut.iter().map(|reason| format!("it ends early: {reason}"));
+        lost.chain(self.gaps.iter().map(ToString::to_string)).chain(cut).collect()
     }
 }
 
@@ -159,57 +280,29 @@ fn gaps(numbers: impl Iterator<Item = (u64, u64)>) -> u64 {
     counted.map(|(run, number)| newest.insert(run, number).map_or(0, |before| number.saturating_sub(before + 1))).sum()
 }
 
-fn decode<T: DeserializeOwned>(data: &[u8]) -> Result<T, String> {
-    serde_json::from_slice(data).map_err(|error| error.to_string())
-}
-
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
 mod tests {
-    use cohabit_cdf::Action;
-
     use super::*;
-    use crate::{entry::InputEntry, writer::LogWriter};
 
-    fn sample(path: &Path) -> Log {
-        let session = SessionEntry {
-            format: SessionEntry::FORMAT,
-            program: "test".to_owned(),
-            session: "s".to_owned(),
-            mission_file: "m.json".to_owned(),
-            mission_text: "{}".to_owned(),
-            seed: u64::MAX,
-            bodies: vec!["person@Lab1".parse().unwrap()],
-            run: u64::MAX,
-        };
-        let inputs = vec![InputEntry { command: 1 << 50, turn: 1, body: 0, action: Action::LookAround }];
-        let ticks: Vec<_> = (0..50)
-            .map(|tick| TickEntry { tick, digest: format!("{tick:064x}"), wall_nanos: tick, inputs: inputs.clone() })
-            .collect();
-        let mut writer = LogWriter::create(path, &session, 1).unwrap();
-        for tick in &ticks {
-            writer.tick(tick).unwrap();
-        }
-        writer.finish().unwrap();
-        Log { session, ticks, events: Vec::new(), dialog: Vec::new(), cut: None }
+    #[test]
+    fn what_is_lost_is_said() {
+        let lost = |after_tick, before_tick| Lost { bytes: [10, 20], after_tick, before_tick }.to_string();
+        assert_eq!(lost(4, None), "bytes 10 to 20 are damaged, and lost: what followed tick 4");
+        assert_eq!(lost(4, Some(5)), "bytes 10 to 20 are damaged, and lost: what was noted between tick 4 and tick 5");
+        assert_eq!(lost(4, Some(6)), "bytes 10 to 20 are damaged, and lost: tick 5");
+        assert_eq!(lost(4, Some(9)), "bytes 10 to 20 are damaged, and lost: ticks 5 to 8");
     }
 
     #[test]
-    fn what_is_written_is_read_also_when_cut_anywhere() {
-        let path = std::env::temp_dir().join(format!("cohabit-log-{}.mcap", std::process::id()));
-        let _ = std::fs::remove_file(&path);
-        let whole = sample(&path);
-        assert_eq!(Log::open(&path).unwrap(), whole);
-        assert!(matches!(LogWriter::create(&path, &whole.session, 1), Err(LogError::File { .. })), "never overwritten");
-        let bytes = std::fs::read(&path).unwrap();
-        std::fs::remove_file(&path).unwrap();
-        for length in (0..bytes.len()).step_by(7) {
-            if let Ok(part) = Log::parse(&path, &bytes[..length]) {
-                assert!(part.cut.is_some(), "cut at {length} unnoticed");
-                assert_eq!(part.ticks, whole.ticks[..part.ticks.len()]);
-            }
-        }
-        let end = bytes.len();
-        assert!(Log::parse(&path, &bytes[..end - 1]).unwrap().ticks.len() == 50);
+    fn what_is_no_log_is_refused() {
+        let check = |bytes: &[u8]| match Log::parse(Path::new("x.mcap"), bytes) {
+            Err(LogError::NotALog { reason, .. }) => assert!(!reason.is_empty()),
+            other => panic!("{other:?}"),
+        };
+        check(b"");
+        check(b"my notes");
+        check(mcap::MAGIC);
+        check(&[mcap::MAGIC, mcap::MAGIC].concat());
     }
 }

@@ -1,21 +1,25 @@
 //! The recorder: a peer that writes down what passes on the bus.
 
 use std::{
+    io::Write,
     path::Path,
     sync::atomic::{AtomicBool, Ordering},
     time::{Duration, Instant},
 };
 
 use cohabit_bus::{
-    BusError, Heart, Inbox, Listener, Sample, Topic, Transport, Wake,
-    message::{self, DialogView, EventMessage, Malformed, MissionMessage, NONE, TickView},
+    BusError, CameraId, Heart, Inbox, Listener, Sample, Topic, Transport, Wake,
+    message::{self, DialogView, EventMessage, Malformed, MissionMessage, NONE, SnapshotView, TickView},
     process_of, wall_nanos,
 };
+use cohabit_cdf::{Catalog, Layout, mission::read_mission};
 
 use crate::{
     carry_on::Written,
-    entry::{DialogEntry, EventEntry, SessionEntry, TickEntry},
+    entry::{DialogEntry, EventEntry, GapEntry, SessionEntry, SessionFacts, TickEntry},
+    film::Film,
     log::LogError,
+    snapshot::Snapshot,
     turns::Turns,
     writer::LogWriter,
 };
@@ -49,6 +53,8 @@ pub struct Recorder {
     ticks: Inbox,
     events: Inbox,
     dialog: Inbox,
+    snapshots: Inbox,
+    films: Vec<Film>,
     listener: Box<dyn Listener>,
     heart: Heart,
     turns: Turns,
@@ -71,10 +77,21 @@ impl Recorder {
             ticks: Inbox::new(bus, Topic::Ticks)?,
             events: Inbox::new(bus, Topic::Events)?,
             dialog: Inbox::new(bus, Topic::Dialog)?,
+            snapshots: Inbox::new(bus, Topic::Snapshots)?,
+            films: Vec::new(),
             listener: bus.listener(Wake::State)?,
             heart: Heart::new(bus, "recorder", NONE)?,
             turns: Turns::new(bus)?,
         })
+    }
+
+    /// The same with the frames of these cameras, which are then rendered whether or not anybody else looks.
+    ///
+    /// # Errors
+    /// [`BusError`].
+    pub fn filming(self, bus: &dyn Transport, cameras: &[CameraId]) -> Result<Self, BusError> {
+        let films = cameras.iter().map(|camera| Film::new(bus, *camera)).collect::<Result<_, _>>()?;
+        Ok(Self { films, ..self })
     }
 
     /// Records until `stop`, then ends the log. Writes nothing if no simulator ever came. Where the log is there already,
@@ -85,13 +102,13 @@ impl Recorder {
     /// [`RecordError`].
     pub fn run(
         mut self,
-        session: &str,
+        facts: &SessionFacts,
         path: &Path,
         stop: &AtomicBool,
         caught_up: impl FnOnce(),
     ) -> Result<(), RecordError> {
         let Some(began) = self.wait_for_mission(stop)? else { return Ok(()) };
-        let (entry, now) = (began.entry(session), wall_nanos());
+        let (entry, now) = (began.entry(facts), wall_nanos());
         let (log, written) = match LogWriter::carry_on(path, &entry, now) {
             Err(LogError::File { source, .. }) if source.kind() == std::io::ErrorKind::NotFound => {
                 (LogWriter::create(path, &entry, now)?, Written::default())
@@ -124,9 +141,19 @@ impl Recorder {
     ///
     /// # Errors
     /// [`RecordError`].
-    pub fn begin(mut self, session: &str, path: &Path) -> Result<Recording, RecordError> {
+    pub fn begin(mut self, facts: &SessionFacts, path: &Path) -> Result<Recording, RecordError> {
         let began = self.mission()?.ok_or(RecordError::NoMission)?;
-        let log = LogWriter::create(path, &began.entry(session), wall_nanos())?;
+        let log = LogWriter::create(path, &began.entry(facts), wall_nanos())?;
+        Ok(Recording::new(self, process_of(began.run), log, Written::default()))
+    }
+
+    /// The same with a log that goes to `out`.
+    ///
+    /// # Errors
+    /// [`RecordError`].
+    pub fn begin_in(mut self, facts: &SessionFacts, out: Box<dyn Write + Send>) -> Result<Recording, RecordError> {
+        let began = self.mission()?.ok_or(RecordError::NoMission)?;
+        let log = LogWriter::begin(Path::new("the log"), out, &began.entry(facts), wall_nanos())?;
         Ok(Recording::new(self, process_of(began.run), log, Written::default()))
     }
 
@@ -150,8 +177,15 @@ impl Recorder {
 }
 
 impl Began {
-    fn entry(&self, session: &str) -> SessionEntry {
-        SessionEntry { run: self.run, ..SessionEntry::new(session, &self.mission) }
+    fn entry(&self, facts: &SessionFacts) -> SessionEntry {
+        let entry = SessionEntry { run: self.run, ..SessionEntry::new(facts, &self.mission) };
+        let catalog = Catalog::builtin();
+        // What cannot be read was not played by a simulator of this program.
+        let checked = read_mission(&entry.mission_file, &entry.mission_text, &catalog).ok();
+        match checked.and_then(|checked| Layout::builtin(&checked.mission.layout).ok()) {
+            Some(layout) => entry.with(&catalog, &layout),
+            None => entry,
+        }
     }
 }
 
@@ -182,46 +216,91 @@ impl Recording {
 
     fn drain(&mut self) -> Result<(), RecordError> {
         let now = wall_nanos();
-        let Self { recorder, log, written, missing, simulator, .. } = self;
-        let is_simulator = |sample: &Sample| {
-            let whose = process_of(sample.envelope().run);
-            if whose == *simulator { Ok(()) } else { Err(Malformed("it is the simulator's to say")) }
+        let gap = GapEntry {
+            ticks: self.drain_ticks()?,
+            events: self.drain_events(now)?,
+            dialog: self.drain_dialog(now)?,
+            tick: self.written.tick,
         };
-        let before = *missing;
+        self.drain_snapshots(now)?;
+        self.drain_frames(now)?;
+        if gap.messages() > 0 {
+            self.log.gap(&gap, now)?;
+            self.missing += gap.messages();
+            tracing::error!("{gap}");
+        }
+        self.recorder.heart.beat(self.written.tick, self.missing)?;
+        Ok(())
+    }
+
+    /// Takes down ticks; how many are missing among them. So do the following of theirs.
+    fn drain_ticks(&mut self) -> Result<u64, RecordError> {
+        let Self { recorder, log, written, simulator, .. } = self;
+        let mut missing = 0;
         while let Some((sample, ())) = recorder.ticks.next(|sample| {
-            is_simulator(sample)?;
+            is_of(*simulator, sample)?;
             TickView::new(sample.payload()).map(drop)
         })? {
             let tick = sample.envelope().tick;
             let Some(gap) = written.tick(tick) else { continue };
-            *missing += gap;
+            missing += gap;
             log.tick(&TickEntry::new(tick, TickView::new(sample.payload())?))?;
         }
+        Ok(missing)
+    }
+
+    fn drain_events(&mut self, now: u64) -> Result<u64, RecordError> {
+        let Self { recorder, log, written, simulator, .. } = self;
+        let mut missing = 0;
         while let Some((sample, event)) = recorder
             .events
-            .next(|sample| is_simulator(sample).and_then(|()| message::read::<EventMessage>(sample.payload())))?
+            .next(|sample| is_of(*simulator, sample).and_then(|()| message::read::<EventMessage>(sample.payload())))?
         {
             let envelope = sample.envelope();
             let Some(gap) = written.event(envelope.run, envelope.sequence) else { continue };
-            *missing += gap;
+            missing += gap;
             if let Some(entry) = EventEntry::new(envelope, &event) {
                 log.event(&entry, now)?;
             }
         }
+        Ok(missing)
+    }
+
+    fn drain_dialog(&mut self, now: u64) -> Result<u64, RecordError> {
+        let Self { recorder, log, written, .. } = self;
+        let mut missing = 0;
         while let Some((sample, ())) = recorder.dialog.next(|sample| DialogView::new(sample.payload()).map(drop))? {
             let envelope = sample.envelope();
             let Some(gap) = written.dialog(envelope.run, envelope.sequence) else { continue };
-            *missing += gap;
-            if let Some(entry) = DialogEntry::new(envelope, DialogView::new(sample.payload())?) {
+            missing += gap;
+            if let Some(entry) = DialogEntry::new(written.tick, envelope, DialogView::new(sample.payload())?) {
                 log.dialog(&entry, now)?;
             }
         }
-        recorder.heart.beat(written.tick, *missing)?;
-        if *missing > before {
-            tracing::error!(
-                "the log misses {} messages: its recorder was away, or its disk slow, for too long",
-                *missing - before
-            );
+        Ok(missing)
+    }
+
+    /// One that is missing is no loss: the ticks tell all that it would.
+    fn drain_snapshots(&mut self, now: u64) -> Result<(), RecordError> {
+        let Self { recorder, log, written, simulator, .. } = self;
+        while let Some((sample, ())) = recorder.snapshots.next(|sample| {
+            is_of(*simulator, sample)?;
+            SnapshotView::new(sample.payload()).map(drop)
+        })? {
+            let tick = sample.envelope().tick;
+            if written.snapshot(tick) {
+                log.snapshot(&Snapshot::pack(tick, SnapshotView::new(sample.payload())?.state), now)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Nor is a frame: it can be rendered anew.
+    fn drain_frames(&mut self, now: u64) -> Result<(), RecordError> {
+        for film in &mut self.recorder.films {
+            while let Some(entry) = film.next(now)? {
+                self.log.frame(&entry, now)?;
+            }
         }
         Ok(())
     }
@@ -247,6 +326,12 @@ impl Recording {
     }
 }
 
+/// What only the simulator may say.
+fn is_of(simulator: u32, sample: &Sample) -> Result<(), Malformed> {
+    let is_its = process_of(sample.envelope().run) == simulator;
+    if is_its { Ok(()) } else { Err(Malformed("it is the simulator's to say")) }
+}
+
 #[cfg(test)]
 mod tests {
     use cohabit_bus::Local;
@@ -257,7 +342,7 @@ mod tests {
     fn where_no_simulator_came_there_is_nothing_to_record() {
         let path = std::env::temp_dir().join(format!("cohabit-no-mission-{}.mcap", std::process::id()));
         let recorder = Recorder::new(&Local::new(1)).expect("a bus");
-        assert!(matches!(recorder.begin("s", &path), Err(RecordError::NoMission)));
+        assert!(matches!(recorder.begin(&SessionFacts::named("s"), &path), Err(RecordError::NoMission)));
         assert!(!path.exists());
     }
 }

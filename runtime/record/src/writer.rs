@@ -3,28 +3,39 @@
 use std::{
     collections::BTreeMap,
     fs::File,
-    io::Write as _,
+    io::{self, Seek, SeekFrom, Write},
     path::{Path, PathBuf},
+    sync::{Arc, Mutex, MutexGuard, PoisonError},
 };
 
 use mcap::{
-    WriteOptions,
+    McapError, WriteOptions,
     records::{MessageHeader, Record},
 };
 
 use crate::{
-    carry_on::{Tail, Written, carry_on},
-    entry::{DialogEntry, Entry, EventEntry, SessionEntry, TickEntry},
+    carry_on::{Written, carry_on},
+    entry::{DialogEntry, Entry, EventEntry, GapEntry, SessionEntry, TickEntry},
+    film::FrameEntry,
     log::LogError,
+    segment::{SEAL, Seal},
+    snapshot::Snapshot,
 };
 
 /// What wrote a log.
 pub(crate) const LIBRARY: &str = concat!("cohabit ", env!("CARGO_PKG_VERSION"));
+/// Where snapshots are, in an encoding of their own.
+pub(crate) const SNAPSHOTS: &str = "/snapshots";
+const SNAPSHOT_ENCODING: &str = "cohabit-snapshot";
 
-/// An open log, locked for this process. What was appended is safe from the end of this process after [`Self::flush`].
+/// An open log, locked for this process if it is a file. What was appended is safe from the end of this process after
+/// [`Self::flush`].
 pub struct LogWriter {
     path: PathBuf,
-    mcap: mcap::Writer<Tail>,
+    out: Box<dyn Write + Send>,
+    mcap: mcap::Writer<Segment>,
+    segment: Segment,
+    seal: Seal,
     channels: BTreeMap<String, u16>,
     sequence: u32,
 }
@@ -37,11 +48,11 @@ impl LogWriter {
     pub fn create(path: &Path, session: &SessionEntry, wall_nanos: u64) -> Result<Self, LogError> {
         let file = File::create_new(path).map_err(|source| LogError::File { path: path.to_owned(), source })?;
         file.try_lock().map_err(|_| LogError::Busy { path: path.to_owned() })?;
-        Self::begin(path, file, session, wall_nanos)
+        Self::begin(path, Box::new(file), session, wall_nanos)
     }
 
     /// Opens the log of the same session that an earlier recorder began and did not end, or has ended too early: what it
-    /// holds is kept, but for a torn record at its end. Gives what it holds.
+    /// holds is kept, but for a torn segment at its end. Gives what it holds.
     ///
     /// # Errors
     /// [`LogError::File`], [`LogError::Busy`], [`LogError::NotALog`], [`LogError::OtherSession`], [`LogError::Write`].
@@ -49,51 +60,60 @@ impl LogWriter {
         carry_on(path, session, wall_nanos)
     }
 
-    /// Begins a log in an empty file.
-    pub(crate) fn begin(path: &Path, file: File, session: &SessionEntry, wall_nanos: u64) -> Result<Self, LogError> {
-        let mut log = Self::after(path, Tail::new(file, 0))?;
+    /// Begins a log that goes to `out`; `path` is for messages alone.
+    ///
+    /// # Errors
+    /// [`LogError::Write`].
+    pub fn begin(
+        path: &Path,
+        out: Box<dyn Write + Send>,
+        session: &SessionEntry,
+        wall_nanos: u64,
+    ) -> Result<Self, LogError> {
+        let mut log = Self::empty(path, out)?;
+        log.open_channels(&session.frames)?;
         log.append(session, wall_nanos)?;
         log.flush()?;
         Ok(log)
     }
 
-    /// A log that goes on after what its tail knows to be there, which must then be told [`Self::again`].
-    pub(crate) fn after(path: &Path, tail: Tail) -> Result<Self, LogError> {
+    fn empty(path: &Path, out: Box<dyn Write + Send>) -> Result<Self, LogError> {
+        let segment = Segment::default();
         let mcap = WriteOptions::new()
             .profile("cohabit")
             .library(LIBRARY)
             .compression(None)
             .use_chunks(false)
-            .create(tail)
+            .create(segment.clone())
             .map_err(|source| LogError::Write { path: path.to_owned(), source })?;
-        Ok(Self { path: path.to_owned(), mcap, channels: BTreeMap::new(), sequence: 0 })
+        let (path, seal) = (path.to_owned(), Seal::default());
+        Ok(Self { path, out, mcap, segment, seal, channels: BTreeMap::new(), sequence: 0 })
     }
 
-    /// Takes note of a record that is there.
-    pub(crate) fn again(&mut self, record: &Record<'_>) -> Result<(), LogError> {
-        let done = match record {
-            Record::Schema { header, data } => {
-                self.mcap.add_schema(&header.name, &header.encoding, data).map(|id| id == header.id)
-            }
-            Record::Channel(channel) => {
-                self.channels.insert(channel.topic.clone(), channel.id);
-                let (topic, encoding) = (&channel.topic, &channel.message_encoding);
-                let id = self.mcap.add_channel(channel.schema_id, topic, encoding, &channel.metadata);
-                id.map(|id| id == channel.id)
-            }
-            Record::Message { header, data } => {
-                self.sequence = header.sequence.wrapping_add(1);
-                self.mcap.write_to_known_channel(header, data).map(|()| true)
-            }
-            _ => Ok(true),
-        };
-        match done {
-            Ok(true) => Ok(()),
-            Ok(false) => {
-                Err(LogError::NotALog { path: self.path.clone(), reason: "its channels are numbered otherwise".into() })
-            }
-            Err(source) => Err(LogError::Write { path: self.path.clone(), source }),
+    /// All at the beginning: an entry can be understood wherever what precedes it is damaged.
+    fn open_channels(&mut self, cameras: &[String]) -> Result<(), LogError> {
+        self.open_channel::<SessionEntry>()?;
+        self.open_channel::<TickEntry>()?;
+        self.open_channel::<EventEntry>()?;
+        self.open_channel::<DialogEntry>()?;
+        self.open_channel::<GapEntry>()?;
+        let id = self.mcap.add_channel(0, SNAPSHOTS, SNAPSHOT_ENCODING, &BTreeMap::new());
+        self.channels.insert(SNAPSHOTS.to_owned(), self.written(id)?);
+        for camera in cameras {
+            let schema = self.mcap.add_schema(FrameEntry::SCHEMA_NAME, "jsonschema", FrameEntry::SCHEMA.as_bytes());
+            let (schema, topic) = (self.written(schema)?, format!("{}{camera}", FrameEntry::TOPICS));
+            let id = self.mcap.add_channel(schema, &topic, "json", &BTreeMap::new());
+            self.channels.insert(topic, self.written(id)?);
         }
+        Ok(())
+    }
+
+    fn open_channel<E: Entry>(&mut self) -> Result<(), LogError> {
+        let schema = self.mcap.add_schema(&E::TOPIC[1..], "jsonschema", E::SCHEMA.as_bytes());
+        let schema = self.written(schema)?;
+        let id = self.mcap.add_channel(schema, E::TOPIC, "json", &BTreeMap::new());
+        self.channels.insert(E::TOPIC.to_owned(), self.written(id)?);
+        Ok(())
     }
 
     /// Appends a tick.
@@ -120,12 +140,40 @@ impl LogWriter {
         self.append(entry, wall_nanos)
     }
 
-    /// Hands all that was appended to the operating system.
+    /// Appends that something is missing.
+    ///
+    /// # Errors
+    /// [`LogError::Write`].
+    pub fn gap(&mut self, entry: &GapEntry, wall_nanos: u64) -> Result<(), LogError> {
+        self.append(entry, wall_nanos)
+    }
+
+    /// Appends a snapshot.
+    ///
+    /// # Errors
+    /// [`LogError::Write`].
+    pub fn snapshot(&mut self, snapshot: &Snapshot, wall_nanos: u64) -> Result<(), LogError> {
+        self.message(SNAPSHOTS, &snapshot.message(), wall_nanos)
+    }
+
+    /// Appends a frame of a camera that the session entry names.
+    ///
+    /// # Errors
+    /// [`LogError::Write`].
+    pub(crate) fn frame(&mut self, entry: &FrameEntry, wall_nanos: u64) -> Result<(), LogError> {
+        let data = serde_json::to_vec(entry).map_err(|source| LogError::Encode { path: self.path.clone(), source })?;
+        self.message(&entry.topic(), &data, wall_nanos)
+    }
+
+    /// Seals all that was appended, and hands it to the operating system in one piece.
     ///
     /// # Errors
     /// [`LogError::Write`].
     pub fn flush(&mut self) -> Result<(), LogError> {
-        self.mcap.flush().map_err(|source| LogError::Write { path: self.path.clone(), source })
+        self.seal()?;
+        let segment = self.segment.take();
+        let written = self.out.write_all(&segment).and_then(|()| self.out.flush());
+        self.written(written.map_err(McapError::from))
     }
 
     /// Ends the log with its index.
@@ -133,30 +181,134 @@ impl LogWriter {
     /// # Errors
     /// [`LogError::Write`].
     pub fn finish(mut self) -> Result<(), LogError> {
-        let path = self.path;
-        self.mcap.finish().map_err(|source| LogError::Write { path: path.clone(), source })?;
-        self.mcap.into_inner().flush().map_err(|source| LogError::File { path, source })
+        self.seal()?;
+        let finished = self.mcap.finish().map(drop);
+        self.written(finished)?;
+        let segment = self.segment.take();
+        let written = self.out.write_all(&segment).and_then(|()| self.out.flush());
+        self.written(written.map_err(McapError::from))
+    }
+
+    fn seal(&mut self) -> Result<(), LogError> {
+        let next = self.segment.unsealed(|segment| (!segment.is_empty()).then(|| self.seal.next(segment)));
+        let Some(next) = next else { return Ok(()) };
+        self.seal = next;
+        let sealed = self.mcap.write_private_record(SEAL, &next.body(), Default::default());
+        self.written(sealed)
     }
 
     fn append<E: Entry>(&mut self, entry: &E, wall_nanos: u64) -> Result<(), LogError> {
-        let failed = |path: &Path, source| LogError::Write { path: path.to_owned(), source };
-        let channel_id = match self.channels.get(E::TOPIC) {
-            Some(id) => *id,
-            None => {
-                let id = self.open_channel::<E>().map_err(|source| failed(&self.path, source))?;
-                self.channels.insert(E::TOPIC.to_owned(), id);
-                id
-            }
-        };
         let data = serde_json::to_vec(entry).map_err(|source| LogError::Encode { path: self.path.clone(), source })?;
+        self.message(E::TOPIC, &data, wall_nanos)
+    }
+
+    fn message(&mut self, topic: &str, data: &[u8], wall_nanos: u64) -> Result<(), LogError> {
+        let channel_id = self.channels.get(topic).copied().unwrap_or(u16::MAX);
         let header =
             MessageHeader { channel_id, sequence: self.sequence, log_time: wall_nanos, publish_time: wall_nanos };
         self.sequence = self.sequence.wrapping_add(1);
-        self.mcap.write_to_known_channel(&header, &data).map_err(|source| failed(&self.path, source))
+        let written = self.mcap.write_to_known_channel(&header, data);
+        self.written(written)
     }
 
-    fn open_channel<E: Entry>(&mut self) -> mcap::McapResult<u16> {
-        let schema = self.mcap.add_schema(&E::TOPIC[1..], "jsonschema", E::SCHEMA.as_bytes())?;
-        self.mcap.add_channel(schema, E::TOPIC, "json", &BTreeMap::new())
+    fn written<T>(&self, written: Result<T, McapError>) -> Result<T, LogError> {
+        written.map_err(|source| LogError::Write { path: self.path.clone(), source })
+    }
+}
+
+/// What a log holds already, when it is carried on with.
+impl LogWriter {
+    /// A log that goes on in `out` after these sealed records, which are there already.
+    pub(crate) fn after<'a>(
+        path: &Path,
+        out: Box<dyn Write + Send>,
+        records: impl IntoIterator<Item = Record<'a>>,
+        seal: Seal,
+    ) -> Result<Self, LogError> {
+        let mut log = Self::empty(path, out)?;
+        for record in records {
+            log.again(&record)?;
+            log.segment.take();
+        }
+        log.seal = seal;
+        Ok(log)
+    }
+
+    /// Takes note of a record that is there.
+    fn again(&mut self, record: &Record<'_>) -> Result<(), LogError> {
+        let done = match record {
+            Record::Schema { header, data } => {
+                self.mcap.add_schema(&header.name, &header.encoding, data).map(|id| id == header.id)
+            }
+            Record::Channel(channel) => {
+                self.channels.insert(channel.topic.clone(), channel.id);
+                let (topic, encoding) = (&channel.topic, &channel.message_encoding);
+                let id = self.mcap.add_channel(channel.schema_id, topic, encoding, &channel.metadata);
+                id.map(|id| id == channel.id)
+            }
+            Record::Message { header, data } => {
+                self.sequence = header.sequence.wrapping_add(1);
+                self.mcap.write_to_known_channel(header, data).map(|()| true)
+            }
+            Record::Unknown { opcode, data } => {
+                self.mcap.write_private_record(*opcode, data, Default::default()).map(|()| true)
+            }
+            _ => Ok(true),
+        };
+        if self.written(done)? {
+            return Ok(());
+        }
+        Err(LogError::NotALog { path: self.path.clone(), reason: "its channels are numbered otherwise".to_owned() })
+    }
+}
+
+/// Bytes of a log that were not handed on yet.
+#[derive(Clone, Default)]
+struct Segment(Arc<Mutex<Unsealed>>);
+
+#[derive(Default)]
+struct Unsealed {
+    bytes: Vec<u8>,
+    /// How many went before.
+    before: u64,
+}
+
+impl Segment {
+    fn lock(&self) -> MutexGuard<'_, Unsealed> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn unsealed<T>(&self, read: impl FnOnce(&[u8]) -> T) -> T {
+        read(&self.lock().bytes)
+    }
+
+    fn take(&self) -> Vec<u8> {
+        let mut unsealed = self.lock();
+        unsealed.before += unsealed.bytes.len() as u64;
+        std::mem::take(&mut unsealed.bytes)
+    }
+}
+
+impl Write for Segment {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.lock().bytes.extend_from_slice(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+/// A log is only ever appended to: its writer asks where it is, and never goes elsewhere.
+impl Seek for Segment {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        let unsealed = self.lock();
+        let here = unsealed.before + unsealed.bytes.len() as u64;
+        match to {
+            SeekFrom::Current(0) => Ok(here),
+            SeekFrom::Start(there) if there == here => Ok(here),
+            _ => Err(io::Error::other("a log is only appended to")),
+        }
     }
 }

@@ -26,6 +26,7 @@ mod color;
 #[cfg(test)]
 mod coplanar;
 mod cpu;
+mod figure;
 mod furnish;
 pub mod gallery;
 mod hidden;
@@ -57,6 +58,7 @@ mod visibility;
 
 pub use camera::{Camera, FAR_M};
 pub use cpu::{CpuRenderer, has_wide_vectors};
+pub use figure::{Figure, Shape};
 pub use furnish::furnish;
 pub use instance::{Highlight, Instance, Look};
 pub use instance_color::{instance_color, instance_of_color};

@@ -33,7 +33,7 @@ impl Scene {
         let mut soups = Soups::default();
         let mesh = &self.plan.mesh;
         for part in &self.plan.parts {
-            let surface = |paint| flat(paint, Vec3::ONE, Vec3::ONE);
+            let surface = |paint| shown(flat(paint, Vec3::ONE, Vec3::ONE));
             soups.of(part.id).push(mesh, &mesh.pieces[part.piece as usize], &Transform::IDENTITY, surface);
         }
         for placed in self.placed() {
@@ -43,7 +43,7 @@ impl Scene {
             let solid = |(piece, _): &&(u16, u16)| mesh.pieces[usize::from(*piece)].veil != Some(Veil::Airy);
             for (piece, transform) in placed.pieces.iter().filter(solid) {
                 let transform = &placed.transforms[usize::from(*transform)];
-                let surface = |paint| flat(paint, tint, fluid);
+                let surface = |paint| shown(flat(paint, tint, fluid));
                 soups.of(id).push(mesh, &mesh.pieces[usize::from(*piece)], transform, surface);
             }
         }
@@ -69,16 +69,25 @@ impl Soups {
     }
 }
 
-fn flat(paint: Paint, tint: Vec3, fluid: Vec3) -> [u8; 3] {
-    let light = match paint {
+/// The colour of a surface, in linear light.
+pub(crate) fn flat(paint: Paint, tint: Vec3, fluid: Vec3) -> Vec3 {
+    match paint {
         Paint::Fixed(light) => light,
         Paint::Tint => tint,
         Paint::Fluid => fluid,
-    };
+    }
+}
+
+fn shown(light: Vec3) -> [u8; 3] {
     color::to_srgb(color::srgb_table(), light)
 }
 
 impl Soup {
+    /// Adds a piece in its mesh's frame.
+    pub(crate) fn push_plain(&mut self, mesh: &Mesh, piece: &Piece, color_of: impl Fn(Paint) -> [u8; 3]) {
+        self.push(mesh, piece, &Transform::IDENTITY, color_of);
+    }
+
     fn push(&mut self, mesh: &Mesh, piece: &Piece, transform: &Transform, color_of: impl Fn(Paint) -> [u8; 3]) {
         let corners = piece.corners.start as usize..piece.corners.end as usize;
         let triangles = piece.triangles.start as usize..piece.triangles.end as usize;

@@ -1,7 +1,7 @@
 //! Making way: bodies that meet pass each other on the right, go round who stands, step aside, or wait; and nobody
 //! stands in the swing of a door that is to open. Never knows what a command is for.
 
-use cohabit_cdf::{Action, BodyId, ObjectId};
+use cohabit_cdf::{Action, BodyId, BodyKind, ObjectId};
 use glam::Vec2;
 
 use crate::{
@@ -27,6 +27,12 @@ const LOOK_TICKS: u64 = 6;
 const MOST_DETOURS: u32 = 150;
 /// Ticks after which a body with the higher, and the lower, id steps aside where two cannot pass.
 const ASIDE_TICKS: [u32; 2] = [20, 100];
+/// Ticks after which a robot that has nothing to do makes way.
+const UNASKED_TICKS: u32 = 40;
+/// So often one body has others make way.
+const MOST_SENT_ASIDE: u32 = 3;
+/// Nobody goes further to make way, m.
+const FURTHEST_ASIDE_M: f32 = 12.0;
 /// Ticks that a body that stepped aside waits at most.
 const ASIDE_FOR_TICKS: u32 = 900;
 
@@ -152,6 +158,10 @@ impl World {
 
     /// What a body does that cannot go on: another way, a step aside, or nothing.
     pub(crate) fn make_way(&self, id: BodyId, task: &mut Task, met: Obstruction) {
+        // Who makes way unasked does no more than that.
+        if task.command().is_none() {
+            return;
+        }
         match met {
             Obstruction::Body(other) => {
                 // Whoever comes first in the order of ids has the right of way, also where several wait for each other.
@@ -184,40 +194,18 @@ impl World {
 
     /// Goes to the nearest place off the way of another body, and lets that pass.
     fn step_aside(&self, id: BodyId, task: &mut Task, other: BodyId) -> bool {
-        /// So many places are tried.
-        const PLACES: usize = 80;
-        /// Nobody goes further to make way, m.
-        const FURTHEST_M: f32 = 12.0;
-        let body = &self.state.bodies[id.0 as usize];
         // Whoever is already on the way aside goes on to where it was going before.
         let first = task.steps.iter().position(|step| matches!(step, Step::Walk { .. }));
         let Some((first, Step::Walk { path: whole, .. })) = first.map(|at| (at, &task.steps[at])) else { return false };
         let Some(goal) = whole.last().copied() else { return false };
-        let ways: Vec<(&Body, &[Vec2])> = self
-            .others(id)
-            .filter(|(_, other)| other.position.distance(body.position) < FURTHEST_M)
-            .filter_map(|(_, other)| Some((other, other.task.as_ref()?.way()?)))
+        let walking = |other: &'_ Body| other.task.as_ref().and_then(Task::way).map(<[Vec2]>::to_vec);
+        let ways: Vec<(Vec2, f32, Vec<Vec2>)> = self
+            .near(id)
+            .filter_map(|other| {
+                Some((other.position, berth(&self.state.bodies[id.0 as usize], other), walking(other)?))
+            })
             .collect();
-        let closed: Vec<Vec<Vec2>> = self
-            .others(id)
-            .filter(|(_, other)| other.position.distance(body.position) < FURTHEST_M)
-            .map(|(_, other)| Footprint::new(other.position, Vec2::ZERO, 0.0).inflated(berth(body, other) - BERTH_M))
-            .collect();
-        let floor = Navigation::around(&self.facts(), &closed);
-        let mut rooms: Vec<Vec2> = self.layout.viewpoints.iter().map(|viewpoint| viewpoint.at_m.into()).collect();
-        rooms.sort_by(|one, two| one.distance(body.position).total_cmp(&two.distance(body.position)));
-        let places = places_around(body.position, 3.0).chain(rooms).filter(|place| {
-            floor.is_walkable(*place)
-                && ways
-                    .iter()
-                    .all(|(walker, way)| passes_near(walker.position, way, *place, FURTHEST_M) > berth(body, walker))
-                && self.others(id).all(|(_, other)| other.position.distance(*place) > berth(body, other))
-        });
-        let found = places.take(PLACES).find_map(|place| {
-            let (aside, length) = floor.path(body.position, place)?;
-            let (back, _) = self.navigation.path(place, goal)?;
-            (length < FURTHEST_M).then_some((aside, back))
-        });
+        let found = self.way_aside(id, &ways, |place| self.navigation.path(place, goal).map(|(back, _)| back));
         let Some((aside, back)) = found else { return false };
         task.steps.truncate(first);
         task.steps.push(Step::Walk { path: back, next: 0 });
@@ -225,6 +213,59 @@ impl World {
         task.steps.push(Step::Walk { path: aside, next: 0 });
         task.detours += 1;
         true
+    }
+
+    /// Has a robot that has nothing to do go out of the way of a body that waits for it in vain.
+    pub(crate) fn send_aside(&mut self, walker: BodyId, task: &mut Task, met: Obstruction) {
+        let (Obstruction::Body(stander), Some(way), Some(_)) = (met, task.way(), task.command()) else { return };
+        let (body, walking) = (&self.state.bodies[stander.0 as usize], &self.state.bodies[walker.0 as usize]);
+        let is_idle = body.kind == BodyKind::Robot && !body.busy();
+        let is_due = task.waited % UNASKED_TICKS == UNASKED_TICKS - 1 && task.detours < MOST_DETOURS;
+        if !is_idle || !is_due {
+            return;
+        }
+        let way = [(walking.position, berth(body, walking), way.to_vec())];
+        if let Some((path, ())) = self.way_aside(stander, &way, |_| Some(())) {
+            let version = self.navigation.version;
+            self.state.bodies[stander.0 as usize].task = Some(Task::aside(path, version));
+            task.detours += MOST_DETOURS / MOST_SENT_ASIDE;
+        }
+    }
+
+    /// The way to the nearest place where a body stands off these ways, each from a point with so much room beside it, and
+    /// from which it can go on.
+    fn way_aside<T>(
+        &self,
+        id: BodyId,
+        ways: &[(Vec2, f32, Vec<Vec2>)],
+        goes_on: impl Fn(Vec2) -> Option<T>,
+    ) -> Option<(Vec<Vec2>, T)> {
+        /// So many places are tried.
+        const PLACES: usize = 80;
+        let body = &self.state.bodies[id.0 as usize];
+        let closed: Vec<Vec<Vec2>> = self
+            .near(id)
+            .map(|other| Footprint::new(other.position, Vec2::ZERO, 0.0).inflated(berth(body, other) - BERTH_M))
+            .collect();
+        let floor = Navigation::around(&self.facts(), &closed);
+        let mut rooms: Vec<Vec2> = self.layout.viewpoints.iter().map(|viewpoint| viewpoint.at_m.into()).collect();
+        rooms.sort_by(|one, two| one.distance(body.position).total_cmp(&two.distance(body.position)));
+        let is_aside = |place: &Vec2| {
+            floor.is_walkable(*place)
+                && ways.iter().all(|(from, berth, way)| passes_near(*from, way, *place, FURTHEST_ASIDE_M) > *berth)
+                && self.others(id).all(|(_, other)| other.position.distance(*place) > berth(body, other))
+        };
+        places_around(body.position, 3.0).chain(rooms).filter(is_aside).take(PLACES).find_map(|place| {
+            let (aside, length) = floor.path(body.position, place)?;
+            let then = goes_on(place)?;
+            (length < FURTHEST_ASIDE_M).then_some((aside, then))
+        })
+    }
+
+    /// The other bodies that are not far from one.
+    fn near(&self, id: BodyId) -> impl Iterator<Item = &Body> {
+        let at = self.state.bodies[id.0 as usize].position;
+        self.others(id).map(|(_, other)| other).filter(move |other| other.position.distance(at) < FURTHEST_ASIDE_M)
     }
 
     /// Whether a body that stepped aside may go on: the other one has passed, or does not walk any more.

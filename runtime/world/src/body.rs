@@ -105,6 +105,20 @@ pub(crate) struct Task {
 }
 
 impl Task {
+    /// What stands for a walk that nobody has asked for: a command of that kind takes no time, and is never a task.
+    const UNASKED: Action = Action::Stop;
+
+    /// A walk out of somebody's way.
+    pub fn aside(path: Vec<Vec2>, floor_version: u64) -> Self {
+        let steps = vec![Step::Walk { path, next: 0 }];
+        Self::new(0, Self::UNASKED, steps, false, floor_version)
+    }
+
+    /// The command that it carries out, if it is one.
+    pub fn command(&self) -> Option<u64> {
+        (self.action != Self::UNASKED).then_some(self.command)
+    }
+
     /// A task that is about to begin.
     pub fn new(command: u64, action: Action, steps: Vec<Step>, alternate: bool, floor_version: u64) -> Self {
         Self {
@@ -273,7 +287,7 @@ impl BodyView {
             arm: body.arm,
             speed_m_s: body.speed_m_s,
             busy: body.busy(),
-            command: body.task.as_ref().map(|task| task.command),
+            command: body.task.as_ref().and_then(Task::command),
             alive: body.alive,
             flags: body.flags,
         }

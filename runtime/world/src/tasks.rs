@@ -79,7 +79,7 @@ impl World {
         let task = body.task.take()?;
         self.let_stand(&task.pushing);
         Some(Outcome {
-            command: task.command,
+            command: task.command()?,
             body: id,
             status: Status::Interrupted,
             detail: "another command took its place".to_owned(),
@@ -212,7 +212,7 @@ impl World {
         let from = self.state.bodies[index].position;
         let mut body = self.state.bodies[index].clone();
         let Some(mut step) = task.steps.pop() else {
-            return Some(self.finish(id, &task, (Status::ActionSuccessful, "done".to_owned())));
+            return self.finish(id, &task, (Status::ActionSuccessful, "done".to_owned()));
         };
         if let Step::Yield { to, ticks_left } = &mut step
             && self.has_passed(id, *to)
@@ -253,13 +253,14 @@ impl World {
                 task.steps.push(step);
                 if let Some(met) = met.get() {
                     self.make_way(id, &mut task, met);
+                    self.send_aside(id, &mut task, met);
                 }
                 None
             }
             Progress::Blocked => Some((Status::TargetInaccessible, self.complaint(met.get()))),
         };
         match end {
-            Some(end) => Some(self.finish(id, &task, end)),
+            Some(end) => self.finish(id, &task, end),
             None => {
                 self.state.bodies[index].task = Some(task);
                 None
@@ -274,9 +275,9 @@ impl World {
         }
     }
 
-    fn finish(&mut self, body: BodyId, task: &Task, (status, detail): End) -> Outcome {
+    fn finish(&mut self, body: BodyId, task: &Task, (status, detail): End) -> Option<Outcome> {
         self.let_stand(&task.pushing);
-        Outcome { command: task.command, body, status, detail }
+        Some(Outcome { command: task.command()?, body, status, detail })
     }
 
     /// Rules the action as things stand now, and applies what follows.

@@ -13,9 +13,10 @@ mod vending;
 use cohabit_cdf::{ClassId, Color, ObjectId};
 use serde::{Deserialize, Serialize};
 
+pub use self::lab::EMBIGGEN;
 pub(crate) use self::{
     kitchen::{can_brew, freeze, is_beans},
-    lab::{EMBIGGEN, cartridge, product_anchor},
+    lab::{cartridge, product_anchor},
     vending::{behind_glass, is_slot, tray_anchor, vended},
 };
 use crate::{anchors::fitting_anchors, effect::Effect, effect::Spot, facts::Facts};

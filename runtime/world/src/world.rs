@@ -12,7 +12,8 @@ use crate::{
     apply::{Changes, settle},
     body::{Body, BodyView},
     build::{self, BuildError},
-    digest::digest,
+    difference,
+    digest::{digest, digest_as_one},
     entity::{Object, ObjectView, Support},
     facts::Facts,
     floor::Floor,
@@ -330,10 +331,24 @@ impl World {
         self.state.tick
     }
 
-    /// Blake3 over all simulated state, in a canonical order.
+    /// A number for each part of the simulated state, in the order of [`DIGEST_PARTS`](crate::DIGEST_PARTS), of
+    /// [`DIGEST_PART_BYTES`](crate::DIGEST_PART_BYTES) each.
     #[must_use]
     pub fn digest(&self) -> [u8; 32] {
         digest(&self.state)
+    }
+
+    /// One number for all of it, as logs of format 1 have it.
+    #[must_use]
+    pub fn digest_as_one(&self) -> [u8; 32] {
+        digest_as_one(&self.state)
+    }
+
+    /// What differs between this world and another one of the same mission: objects and bodies by name, each with what
+    /// of it differs; nothing, if nothing does.
+    #[must_use]
+    pub fn differences(&self, other: &Self) -> Vec<String> {
+        difference::between(&self.state, &other.state)
     }
 
     /// All simulated state as bytes.

@@ -75,15 +75,26 @@ fn a_robot_goes_around_a_person_who_stands() {
 
 #[test]
 fn who_stands_in_the_way_is_named() {
-    for (kind, name) in [(BodyKind::Person, "person 1 is in my way"), (BodyKind::Robot, "robot 2 is in my way")] {
-        let mut play = Play::new(floor(&corridor(1.0), "", &[], RoomId::Reception));
-        play.join(kind, RoomId::Hallway);
-        let outcomes = play.run_watched(&[(0, view(RoomId::Warehouse, 1))], keep_apart);
-        assert_eq!((outcomes[0].status, outcomes[0].detail.as_str()), (Status::TargetInaccessible, name));
-        // The same for a plain step forward.
-        let outcomes = play.run_watched(&[(0, ahead(3.0))], keep_apart);
-        assert_eq!((outcomes[0].status, outcomes[0].detail.as_str()), (Status::TargetInaccessible, name));
-    }
+    let mut play = Play::new(floor(&corridor(1.0), "", &[], RoomId::Reception));
+    play.join(BodyKind::Person, RoomId::Hallway);
+    let outcomes = play.run_watched(&[(0, view(RoomId::Warehouse, 1))], keep_apart);
+    let named = (Status::TargetInaccessible, "person 1 is in my way");
+    assert_eq!((outcomes[0].status, outcomes[0].detail.as_str()), named);
+    // The same for a plain step forward.
+    let outcomes = play.run_watched(&[(0, ahead(3.0))], keep_apart);
+    assert_eq!((outcomes[0].status, outcomes[0].detail.as_str()), named);
+}
+
+#[test]
+fn a_robot_that_has_nothing_to_do_makes_way() {
+    let mut play = Play::new(floor(&corridor(1.0), "", &[], RoomId::Reception));
+    play.join(BodyKind::Robot, RoomId::Hallway);
+    let stood = play.body(1).position_m;
+    let outcomes = play.run_watched(&[(0, view(RoomId::Warehouse, 1))], keep_apart);
+    // Nobody asked it to, so nobody is told of it.
+    assert_eq!(outcomes.len(), 1, "{outcomes:?}");
+    assert!(outcomes[0].status.is_success(), "{outcomes:?}");
+    assert_ne!(play.body(1).position_m, stood);
 }
 
 #[test]

@@ -1,6 +1,8 @@
 //! A small office: a catalogue of two dozen classes, and a robot in the break room that knows it all.
 #![allow(dead_code, missing_docs, clippy::unwrap_used)]
 
+mod plan;
+
 use std::{
     fmt::Write as _,
     sync::{Arc, OnceLock},
@@ -177,6 +179,7 @@ pub fn scene(catalog: &Catalog, marks: &[&str]) -> Known {
             KnownGoal { text: "Pour milk into the bowl".to_owned(), met: false },
         ],
         floor: None,
+        person: None,
     };
     for line in &lines {
         let mut position = line[2].split(' ').map(|number| number.parse().unwrap());
@@ -248,7 +251,7 @@ fn change(known: &mut Known, id: &dyn Fn(&str) -> ObjectId, mark: &str) {
     }
 }
 
-fn set(object: &mut KnownObject, mark: &str) {
+pub(crate) fn set(object: &mut KnownObject, mark: &str) {
     let flag = match mark {
         "" => return,
         "red" => return object.color = Color::Red,
@@ -297,7 +300,7 @@ pub fn text(understanding: &Understanding, scene: &Known) -> String {
         }
         Understanding::Question { text, .. } => format!("? {text}"),
         Understanding::Answer { text, .. } => format!("= {text}"),
-        Understanding::Refusal { text } => format!("! {text}"),
+        Understanding::Refusal { text, .. } => format!("! {text}"),
         Understanding::Stop { .. } => "stop!".to_owned(),
     }
 }
@@ -311,6 +314,9 @@ pub struct Talk {
 
 impl Talk {
     pub fn new(marks: &[&str]) -> Self {
+        if let Some((language, scene)) = plan::talk(marks) {
+            return Self { language, scene, context: Context::default() };
+        }
         static OFFICE: OnceLock<(Arc<Catalog>, Language)> = OnceLock::new();
         let (catalog, language) = OFFICE.get_or_init(|| {
             let catalog = catalog();

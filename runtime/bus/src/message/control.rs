@@ -17,6 +17,8 @@ pub enum Control {
     Step(u32),
     /// It goes on so many times as fast as real time, in real time; no matter in lock-step.
     Speed(f32),
+    /// A recorded session goes to this tick; a live one does not.
+    Seek(u32),
 }
 
 impl Control {
@@ -28,9 +30,9 @@ impl Control {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct ControlMessage {
-    /// 1 pauses, 2 resumes, 3 steps, 4 sets the speed.
+    /// 1 pauses, 2 resumes, 3 steps, 4 sets the speed, 5 goes elsewhere in a recorded session.
     kind: u32,
-    /// Ticks of a step.
+    /// Ticks of a step; the tick to go to.
     ticks: u32,
     /// How many times as fast as real time.
     speed: f32,
@@ -45,6 +47,7 @@ impl From<Control> for ControlMessage {
             Control::Resume => Self { kind: 2, ..Self::default() },
             Control::Step(ticks) => Self { kind: 3, ticks, ..Self::default() },
             Control::Speed(speed) => Self { kind: 4, speed, ..Self::default() },
+            Control::Seek(ticks) => Self { kind: 5, ticks, ..Self::default() },
         }
     }
 }
@@ -58,6 +61,7 @@ impl TryFrom<ControlMessage> for Control {
             2 => Ok(Self::Resume),
             3 => Ok(Self::Step(message.ticks)),
             4 if Self::SPEEDS.contains(&message.speed) => Ok(Self::Speed(message.speed)),
+            5 => Ok(Self::Seek(message.ticks)),
             4 => Err(Malformed("a speed out of bounds")),
             _ => Err(Malformed("no such control")),
         }

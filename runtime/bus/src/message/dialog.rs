@@ -29,7 +29,8 @@ pub enum DialogKind {
 }
 
 impl DialogKind {
-    const ALL: [Self; 8] = [
+    /// All kinds.
+    pub const ALL: [Self; 8] = [
         Self::Utterance,
         Self::Reply,
         Self::Question,
@@ -59,9 +60,9 @@ pub struct DialogHeader {
     pub steps: u32,
     /// Zero.
     pub reserved: u32,
-    /// [`monotonic_nanos`](crate::monotonic_nanos) of: text received, understood, first motion, first changed frame;
-    /// 0 where it did not happen.
-    pub stamps: [u64; 4],
+    /// [`monotonic_nanos`](crate::monotonic_nanos) of: text received, understood, first motion, first changed frame,
+    /// that frame shown by a page; 0 where it did not happen (yet).
+    pub stamps: [u64; 5],
     /// What is said.
     pub text: Text<2046>,
 }

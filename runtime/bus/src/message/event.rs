@@ -49,7 +49,8 @@ pub enum EventKind {
 }
 
 impl EventKind {
-    const ALL: [Self; 18] = [
+    /// All kinds.
+    pub const ALL: [Self; 18] = [
         Self::Outcome,
         Self::Started,
         Self::GoalMet,

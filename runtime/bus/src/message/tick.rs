@@ -8,7 +8,8 @@ use super::{CommandMessage, Malformed, layout};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct TickHeader {
-    /// BLAKE3 of the whole simulated state after the tick.
+    /// The digest of the simulated state after the tick: 8 bytes for each of its parts, in order: objects, bodies,
+    /// mission, physics.
     pub digest: [u8; 32],
     /// Inputs that follow.
     pub inputs: u32,

@@ -12,7 +12,7 @@ use cohabit_bus::{
     message::{
         ActionRecord, BodyRecord, CameraRecord, CommandMessage, ControlMessage, DialogHeader, EventMessage,
         FrameHeader, GoalRecord, MissionHeader, NoteRecord, ObjectRecord, PlanStep, PulseMessage, SeenRecord,
-        StateHeader, StepHeader, TickHeader,
+        SnapshotHeader, StateHeader, StepHeader, TickHeader,
     },
 };
 
@@ -43,6 +43,7 @@ const SIZES: &[(&str, usize)] = &sizes![
     PlanStep,
     PulseMessage,
     SeenRecord,
+    SnapshotHeader,
     StateHeader,
     StepHeader,
     TickHeader,

@@ -5,7 +5,7 @@ use cohabit_bus::{
     message::{
         BodyRecord, CameraKind, CameraRecord, CommandMessage, Control, ControlMessage, DialogKind, DialogMessage,
         EventKind, EventMessage, FrameLayout, GoalRecord, MissionMessage, NoteRecord, ObjectRecord, PlanStep, Plane,
-        PulseMessage, StateParts, StepView, TickMessage,
+        PulseMessage, SnapshotView, StateParts, StepView, TickMessage,
     },
 };
 use cohabit_cdf::{BodyKind, BodyRequest};
@@ -25,7 +25,8 @@ pub fn topics() -> Vec<Topic> {
     let next = |topic: Topic| match topic {
         Topic::Mission => Some(Topic::State),
         Topic::State => Some(Topic::Ticks),
-        Topic::Ticks => Some(Topic::Events),
+        Topic::Ticks => Some(Topic::Snapshots),
+        Topic::Snapshots => Some(Topic::Events),
         Topic::Events => Some(Topic::Commands),
         Topic::Commands => Some(Topic::Control),
         Topic::Control => Some(Topic::Steps),
@@ -59,6 +60,7 @@ impl Payload {
                 "",
             ),
             Topic::Ticks => ("ticks", "TickHeader", &[("CommandMessage", "inputs")], ""),
+            Topic::Snapshots => ("snapshots", "SnapshotHeader", &[("u8", "bytes")], ", the state"),
             Topic::Events => ("events", "EventMessage", &[], ""),
             Topic::Commands => ("commands", "CommandMessage", &[], ""),
             Topic::Control => ("control", "ControlMessage", &[], ""),
@@ -125,6 +127,7 @@ pub fn example(topic: Topic) -> Example {
             let message = TickMessage { inputs: vec![CommandMessage::default()], ..TickMessage::default() };
             filled(message.bytes(), |bytes| message.write(bytes))
         }
+        Topic::Snapshots => filled(SnapshotView::bytes(3), |bytes| SnapshotView::write(b"abc", bytes)),
         Topic::Events => filled(size_of::<EventMessage>(), |bytes| {
             bytes.copy_from_slice(bytemuck::bytes_of(&EventMessage::new(EventKind::Sound)));
         }),

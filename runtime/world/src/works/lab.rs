@@ -11,7 +11,7 @@ use crate::{
 };
 
 /// How much larger the embiggenator makes things.
-pub(crate) const EMBIGGEN: f32 = 1.8;
+pub const EMBIGGEN: f32 = 1.8;
 const CARROT: &str = "Carrot_01";
 /// What a day undoes.
 const UNDONE: [StateFlag; 4] = [StateFlag::Broken, StateFlag::Eaten, StateFlag::Cooked, StateFlag::Cut];

@@ -1,0 +1,103 @@
+//! What was heard, taken as it is or for what it sounds like; and what is said before the words that count.
+
+use crate::{
+    chatter,
+    clause::{self, Part},
+    context::Context,
+    conversation::Conversation,
+    hearing,
+    intent::Intent,
+    question::{self, QuestionKind},
+    token,
+    understanding::{Clarification, Understanding},
+};
+
+/// An answer to `which lab` has fewer words than this; more is another request.
+const LONGEST_LAB_ANSWER: usize = 6;
+
+impl Conversation<'_> {
+    /// What was heard, or else what may have been said instead: what sounds like it, and can be done.
+    pub(crate) fn understand_heard(
+        &self,
+        words: Vec<String>,
+        as_said: Option<Vec<String>>,
+        context: &mut Context,
+    ) -> Understanding {
+        let parts = clause::parts(self.lexicon, self.catalog, &words);
+        let is_puzzled = hearing::is_puzzled(&parts, &words);
+        if !is_puzzled && as_said.is_none() {
+            return self.understand_all(words, context);
+        }
+        let before = context.clone();
+        let heard = self.understand_all(words.clone(), context);
+        let is_unclear = |part: &Part| matches!(part, Part::Clause(clause) if !chatter::is_clear(clause) || !clause.unknown.is_empty());
+        let is_doubtful = parts.iter().any(is_unclear)
+            && matches!(heard, Understanding::Question { .. } | Understanding::Refusal { .. });
+        if !is_lost(&heard) && !is_doubtful
+            || question::read(self.lexicon, &words).is_some_and(|one| one.kind != QuestionKind::Unknown)
+        {
+            return heard;
+        }
+        // What made sense, and cannot be, was perhaps repaired amiss.
+        let heard_words = Some(&words).filter(|_| is_puzzled);
+        let readings = as_said.iter().chain(heard_words);
+        let readings: Vec<_> =
+            readings.flat_map(|words| hearing::readings(self.lexicon, self.catalog, words)).collect();
+        let mut asked = None;
+        for reading in readings {
+            let mut then = before.clone();
+            let understanding = self.understand_all(reading, &mut then);
+            match understanding {
+                Understanding::Plan { .. } | Understanding::Answer { .. } => {
+                    *context = then;
+                    return understanding;
+                }
+                Understanding::Question { .. } if !is_lost(&understanding) => {
+                    asked = asked.or(Some((understanding, then)));
+                }
+                _ => {}
+            }
+        }
+        let Some((question, then)) = asked else { return heard };
+        *context = then;
+        question
+    }
+
+    /// The words without `wait` and such at their start, if there are more.
+    pub(crate) fn without_pause(&self, words: Vec<String>) -> Vec<String> {
+        let Some((length, ())) = self.lexicon.amends.pauses.longest(&words) else { return words };
+        let rest = words[length..].iter().position(|word| !token::is_punctuation(word)).map(|at| &words[length + at..]);
+        let goes_on = |rest: &[String]| {
+            self.lexicon.verbs.longest(rest).is_none_or(|(_, intents)| !intents.contains(&Intent::Stop))
+        };
+        rest.filter(|rest| goes_on(rest)).map_or_else(|| words.clone(), <[String]>::to_vec)
+    }
+
+    /// Whether the words are a request or a question of their own, and no answer to which lab is meant.
+    pub(crate) fn asks_for_more(&self, words: &[String]) -> bool {
+        let names_room = (0..words.len()).any(|at| self.lexicon.rooms.longest(&words[at..]).is_some());
+        if names_room {
+            return words.len() >= LONGEST_LAB_ANSWER;
+        }
+        let asks = |part: &Part| matches!(part, Part::Clause(clause) if chatter::is_clear(clause));
+        // `where the printer is` answers.
+        let is_asked = words.iter().any(|word| word == "?");
+        let asks_else = |kind| kind != QuestionKind::Unknown && (is_asked || kind != QuestionKind::Where);
+        let is_question = || question::read(self.lexicon, words).is_some_and(|one| asks_else(one.kind));
+        clause::parts(self.lexicon, self.catalog, words).iter().any(asks) || is_question()
+    }
+}
+
+/// Whether little came of an utterance.
+const fn is_lost(understanding: &Understanding) -> bool {
+    match understanding {
+        Understanding::Refusal { .. } => true,
+        Understanding::Question { kind, .. } => {
+            matches!(
+                kind,
+                Clarification::Appearance | Clarification::Location | Clarification::Request | Clarification::Direction
+            )
+        }
+        _ => false,
+    }
+}

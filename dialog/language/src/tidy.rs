@@ -1,0 +1,192 @@
+//! What people say besides what they mean, left out: numbering, hesitation, words said twice, and what they took back.
+
+use crate::{amend, clause, inflect, intent::Intent, lexicon::Lexicon, order, phrase::Reader, token};
+
+/// So many words may be said twice in a row.
+const LONGEST_STUTTER: usize = 4;
+
+/// The words that are meant.
+pub(crate) fn tidied(lexicon: &Lexicon, words: &[String]) -> Vec<String> {
+    let words = amend::without_slips(lexicon, &without_numbers(lexicon, words));
+    let words = without_stutter(&without_hesitation(lexicon, words));
+    let words = order::in_order(lexicon, &asked_plainly(lexicon, words));
+    amend::without_where(lexicon, without_pause(lexicon, words))
+}
+
+/// Most words between a kind wish and its `if`.
+const LONGEST_WISH: usize = 9;
+
+/// `it would help me a lot if you opened the fridge`, `get me what is in it`: the request that this is.
+fn asked_plainly(lexicon: &Lexicon, words: Vec<String>) -> Vec<String> {
+    let start = clause::leading(lexicon, &words);
+    let begins = |first: &[&str]| first.iter().zip(&words[start..]).all(|(one, word)| one == word);
+    let is_wish = [["it", "would"], ["that", "would"], ["i", "would"], ["would", "it"], ["i", "will"]]
+        .iter()
+        .any(|first| begins(first));
+    let at = words.iter().skip(start).take(LONGEST_WISH).position(|word| word == "if").filter(|_| is_wish);
+    let mut words = match at.map(|at| &words[start + at + 1..]) {
+        Some([you, rest @ ..]) if you == "you" => {
+            let modal = usize::from(
+                rest.first().is_some_and(|word| matches!(word.as_str(), "could" | "would" | "can" | "will")),
+            );
+            stemmed(lexicon, &rest[modal..])
+        }
+        Some(rest) => ["i", "want"].iter().map(|word| (*word).to_owned()).chain(rest.iter().cloned()).collect(),
+        None => words,
+    };
+    let is_named = |words: &[String], at: usize| {
+        let is_placed = words[at..].starts_with(&["what".to_owned(), "is".to_owned()])
+            && lexicon.prepositions.longest(&words[at + 2..]).is_some();
+        let chunk = words[..at]
+            .iter()
+            .rposition(|word| token::is_punctuation(word) || word == "and")
+            .map_or(0, |last| last + 1);
+        let verb = chunk + clause::leading(lexicon, &words[chunk..at]);
+        let intents = lexicon.verbs.longest(&words[verb..at]).map_or(&[][..], |(_, intents)| intents.as_slice());
+        is_placed && intents.iter().any(|intent| intent.needs_object()) && !intents.contains(&Intent::Examine)
+    };
+    for at in 1..words.len().saturating_sub(2) {
+        if is_named(&words, at) {
+            (words[at], words[at + 1]) = ("the".to_owned(), "thing".to_owned());
+        }
+    }
+    words
+}
+
+/// The words with their first as the verb that it is a form of.
+pub(crate) fn stemmed(lexicon: &Lexicon, words: &[String]) -> Vec<String> {
+    let Some((first, rest)) = words.split_first() else { return Vec::new() };
+    let verb = if inflect::is_verb(lexicon, first) { None } else { inflect::stem(lexicon, first) };
+    std::iter::once(verb.unwrap_or_else(|| first.clone())).chain(rest.iter().cloned()).collect()
+}
+
+/// `open up, fridge`, `bring! the mug!`: a verb and what it is about, with a pause between.
+fn without_pause(lexicon: &Lexicon, mut words: Vec<String>) -> Vec<String> {
+    let is_pause = |at: usize| {
+        let mut reader = Reader::new(lexicon, &words);
+        reader.at = at + 1;
+        let is_noun = lexicon.articles.longest(reader.rest()).is_some() || reader.starts_noun();
+        let start = words[..at].iter().rposition(|word| token::is_punctuation(word)).map_or(0, |last| last + 1);
+        let start = start + clause::leading(lexicon, &words[start..at]);
+        let verb = lexicon.verbs.exact(&words[start..at]);
+        matches!(words[at].as_str(), "," | "!")
+            && verb.is_some_and(|intents| intents.iter().all(|intent| intent.needs_object()))
+            && is_noun
+            && !reader.at_verb()
+    };
+    let pauses: Vec<usize> = (1..words.len()).filter(|at| is_pause(*at)).collect();
+    pauses.into_iter().rev().for_each(|at| drop(words.remove(at)));
+    words
+}
+
+/// `1. open the fridge 2. take the milk`, `step 1: …`: the numbers end sentences, and mean no more.
+fn without_numbers(lexicon: &Lexicon, words: &[String]) -> Vec<String> {
+    let mut result = Vec::with_capacity(words.len());
+    let mut at = 0;
+    while at < words.len() {
+        let is_start = at == 0 || result.last().is_some_and(|last: &String| token::is_punctuation(last));
+        match numbering(lexicon, &words[at..], is_start) {
+            Some(length) => {
+                if result.last().is_some_and(|last| !token::ends_sentence(last)) {
+                    result.push(".".to_owned());
+                }
+                at += length;
+            }
+            None => {
+                // `give me please the mug`
+                let is_polite = words[at] == "please" && at > 0 && at + 1 < words.len();
+                if is_polite
+                    && !token::is_punctuation(&words[at - 1])
+                    && !token::is_punctuation(&words[at + 1])
+                    && words[at - 1] != "please"
+                {
+                    at += 1;
+                    continue;
+                }
+                let is_and = words[at] == "n" && at > 0 && at + 1 < words.len();
+                result.push(if is_and { "and".to_owned() } else { words[at].clone() });
+                at += 1;
+            }
+        }
+    }
+    result
+}
+
+/// How many words number what comes next.
+fn numbering(lexicon: &Lexicon, words: &[String], is_start: bool) -> Option<usize> {
+    let titled = usize::from(lexicon.amends.numbered.contains(&words[0]));
+    let is_number =
+        |word: &String| token::digits(word).is_some() || lexicon.numbers.exact(std::slice::from_ref(word)).is_some();
+    words.get(titled).filter(|word| is_number(word))?;
+    let marked = words.get(titled + 1).is_some_and(|word| matches!(word.as_str(), ":" | "." | ","));
+    let mut reader = Reader::new(lexicon, words);
+    reader.at = titled + 1 + usize::from(marked);
+    let is_numbered = marked && titled > 0 || (is_start || marked) && token::digits(&words[titled]).is_some();
+    (is_numbered && reader.at_verb()).then_some(reader.at)
+}
+
+/// `pick up the um, yellow mug`; what consists of nothing else stays.
+fn without_hesitation(lexicon: &Lexicon, words: Vec<String>) -> Vec<String> {
+    let hesitates = |word: &String| lexicon.amends.hesitations.contains(word);
+    if words.iter().all(|word| hesitates(word) || token::is_punctuation(word)) {
+        return words;
+    }
+    let mut result: Vec<String> = Vec::with_capacity(words.len());
+    let mut was_hesitant = false;
+    for word in words {
+        if hesitates(&word) {
+            was_hesitant = true;
+            result.pop_if(|last| last == ",");
+        } else if word != "," || !was_hesitant {
+            was_hesitant = false;
+            result.push(word);
+        }
+    }
+    result
+}
+
+/// `go to the, go to the fridge`, `the the`; numbers are said twice for a reason.
+fn without_stutter(words: &[String]) -> Vec<String> {
+    let mut result: Vec<String> = Vec::with_capacity(words.len());
+    for word in words {
+        result.push(word.clone());
+        while let Some(length) = stuttered(&result) {
+            result.truncate(result.len() - length);
+        }
+    }
+    result
+}
+
+fn stuttered(words: &[String]) -> Option<usize> {
+    (1..=LONGEST_STUTTER).find(|length| {
+        let Some(start) = words.len().checked_sub(2 * length) else { return false };
+        let (first, second) = words[start..].split_at(*length);
+        let is_spoken = |word: &String| word.chars().all(char::is_alphabetic);
+        first == second && first.iter().all(is_spoken)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use cohabit_cdf::Catalog;
+
+    #[test]
+    fn what_is_not_meant_is_left_out() {
+        let lexicon = Lexicon::new(&Catalog::builtin());
+        let check = |said: &str, expected: &str| {
+            assert_eq!(tidied(&lexicon, &token::words(said)).join(" "), expected, "{said}");
+        };
+        check("pick up the um the uh yellow mug", "pick up the yellow mug");
+        check("go to the go to the fridge", "go to the fridge");
+        check("1. open the fridge 2. take the milk", "open the fridge . take the milk");
+        check("Step 1: open it. Step two: close it", "open it . close it");
+        check("move 2 meters", "move 2 meters");
+        check("um", "um");
+        check("open up, fridge", "open up fridge");
+        check("take the milk n close it", "take the milk and close it");
+        check("open the fridge, no, scratch that, open the freezer", "open the freezer");
+        check("take the red, no, the yellow mug", "take the yellow mug");
+        check("get the knife and, hmm, no, actually, not the knife, get the hammer", "get the hammer");
+    }
+}

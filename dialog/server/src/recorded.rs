@@ -1,0 +1,132 @@
+//! What a page was told in a recorded session, from its log.
+
+use cohabit_bus::message::{DialogKind, EventKind};
+use cohabit_record::{DialogEntry, EventEntry, Log};
+use serde_json::{Value, json};
+
+use crate::{
+    latency::Moments,
+    page::{self, Line, LineKind, Speaker},
+};
+
+/// Something that pages were told.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Told {
+    /// A line of chat.
+    Line(Line),
+    /// Something that is not kept.
+    Page(Value),
+    /// An object was pointed out.
+    Highlight(u32),
+}
+
+/// All that pages were told, in order, each with its tick; and of `several` robots by which.
+pub fn told(log: &Log, several: bool) -> Vec<(u64, Told)> {
+    let said = log.dialog.iter().filter_map(|entry| Some((entry.tick, said(entry, several)?)));
+    let happened = log.events.iter().filter_map(|entry| Some((entry.tick, happened(entry)?)));
+    let mut told: Vec<_> = said.chain(happened).collect();
+    told.sort_by_key(|(tick, _)| *tick);
+    told
+}
+
+fn said(entry: &DialogEntry, several: bool) -> Option<Told> {
+    let body = several.then_some(entry.body);
+    let line = |from, kind| Some(Told::Line(Line { body, ..Line::new(from, kind, entry.turn, entry.text.as_str()) }));
+    match kind(&entry.kind)? {
+        DialogKind::Utterance => line(Speaker::Person, LineKind::Say),
+        DialogKind::Reply => line(Speaker::Robot, LineKind::Say),
+        DialogKind::Question => line(Speaker::Robot, LineKind::Question),
+        DialogKind::Latency => {
+            let [received, understood, moved, shown, drawn] = entry.stamps;
+            let moments = Moments { turn: entry.turn, received, understood, moved, shown, drawn };
+            Some(Told::Page(page::latency(&moments, None)))
+        }
+        DialogKind::Plan | DialogKind::StepStarted | DialogKind::StepEnded | DialogKind::PlanEnded => None,
+    }
+}
+
+fn happened(entry: &EventEntry) -> Option<Told> {
+    let line = |kind, text: String| (!text.is_empty()).then(|| Told::Line(Line::new(Speaker::Game, kind, 0, text)));
+    let text = || entry.text.clone();
+    match event_kind(&entry.kind)? {
+        EventKind::GoalMet => line(LineKind::Goal, text()),
+        EventKind::NoteRead => line(LineKind::Note, text()),
+        EventKind::Message | EventKind::CameraMovement => line(LineKind::Say, text()),
+        EventKind::GoalShown => line(LineKind::Goal, page::new_goal(&entry.text)),
+        EventKind::MissionComplete => line(LineKind::Ending, page::COMPLETE.to_owned()),
+        EventKind::MissionFailed => line(LineKind::Ending, page::failed(&entry.text)),
+        EventKind::Highlighted => entry.object.map(Told::Highlight),
+        _ => None,
+    }
+}
+
+/// A log has kinds by name.
+fn kind(name: &str) -> Option<DialogKind> {
+    DialogKind::ALL.into_iter().find(|kind| format!("{kind:?}") == name)
+}
+
+fn event_kind(name: &str) -> Option<EventKind> {
+    EventKind::ALL.into_iter().find(|kind| format!("{kind:?}") == name)
+}
+
+/// What a time bar marks: sentences of people, goals and how it ended.
+pub fn marks(told: &[(u64, Told)]) -> Vec<Value> {
+    let marked = told.iter().filter_map(|(tick, told)| {
+        let Told::Line(line) = told else { return None };
+        let kind = match (line.from, line.kind) {
+            (Speaker::Person, _) => "said",
+            (Speaker::Game, LineKind::Goal) => "goal",
+            (Speaker::Game, LineKind::Ending) => "ending",
+            _ => return None,
+        };
+        Some(json!({ "tick": tick, "kind": kind, "text": line.text }))
+    });
+    marked.collect()
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use cohabit_bus::{
+        Envelope,
+        message::{DialogMessage, DialogView, EventMessage},
+    };
+    use cohabit_record::{SessionEntry, SessionFacts};
+
+    use super::*;
+
+    fn spoken(tick: u64, kind: DialogKind, text: &str) -> DialogEntry {
+        let message = DialogMessage::new(kind, 0, 1, text);
+        DialogEntry::new(tick, &Envelope::default(), DialogView { header: &message.header, steps: &[] }).unwrap()
+    }
+
+    #[test]
+    fn the_chat_is_told_as_it_was() {
+        let session = SessionEntry::new(&SessionFacts::named("s"), &cohabit_bus::message::MissionMessage::default());
+        let goal = EventMessage::new(EventKind::GoalMet).saying("A goal");
+        let goal = EventEntry::new(&Envelope { tick: 20, ..Envelope::default() }, &goal).unwrap();
+        let log = Log {
+            session,
+            ticks: Vec::new(),
+            events: vec![goal],
+            dialog: vec![
+                spoken(10, DialogKind::Utterance, "open the fridge"),
+                spoken(10, DialogKind::Plan, ""),
+                spoken(30, DialogKind::Reply, "Done."),
+            ],
+            snapshots: Vec::new(),
+            gaps: Vec::new(),
+            lost: Vec::new(),
+            cut: None,
+        };
+        let told = told(&log, false);
+        let expected = [
+            (10, Line::new(Speaker::Person, LineKind::Say, 1, "open the fridge")),
+            (20, Line::new(Speaker::Game, LineKind::Goal, 0, "A goal")),
+            (30, Line::new(Speaker::Robot, LineKind::Say, 1, "Done.")),
+        ];
+        assert_eq!(told, expected.map(|(tick, line)| (tick, Told::Line(line))));
+        let marked: Vec<_> = marks(&told).iter().map(|mark| mark["kind"].as_str().unwrap().to_owned()).collect();
+        assert_eq!(marked, ["said", "goal"]);
+    }
+}

@@ -1,0 +1,137 @@
+//! One page's visit to a recorded session: it looks, points, and says where to go.
+
+use std::{sync::Arc, time::Instant};
+
+use axum::extract::ws::{Message, WebSocket};
+use cohabit_bus::message::{Control, Thing};
+use serde::Deserialize;
+use tokio::sync::{broadcast, watch};
+
+use crate::{
+    hub::Hub,
+    limits::{Limits, MOST_PAGES},
+    page,
+    screening::Screening,
+    view::{Frame, View, Viewing},
+};
+
+/// What a page sends.
+#[derive(Deserialize)]
+#[serde(tag = "type", rename_all = "snake_case")]
+enum FromPage {
+    /// The page has shown its first frame.
+    Shown,
+    /// Somebody wants to look through another camera.
+    View { camera: String },
+    /// Somebody points at something in the picture: how far from the left and from the top, 0 to 1.
+    Point { camera: String, tick: u64, x: f32, y: f32 },
+    /// It is to stand still.
+    Pause,
+    /// It is to go on.
+    Resume,
+    /// It is to go so many times as fast as it was played.
+    Speed { factor: f32 },
+    /// It is to go to this tick.
+    Seek { tick: u32 },
+}
+
+struct Viewer {
+    hub: Arc<Hub>,
+    screening: Arc<Screening>,
+    view: Arc<View>,
+    frames: watch::Receiver<Option<Frame>>,
+    _viewing: Viewing,
+    limits: Limits,
+}
+
+/// Serves a page until it goes.
+pub async fn watch(hub: Arc<Hub>, screening: Arc<Screening>, mut socket: WebSocket) {
+    let Some((first, messages, _visit)) = hub.join() else {
+        let text = format!("{MOST_PAGES} pages are open already; close one and reload.");
+        let _ = socket.send(Message::text(page::error(&text).to_string())).await;
+        return;
+    };
+    for message in first {
+        if socket.send(Message::text(message)).await.is_err() {
+            return;
+        }
+    }
+    let Some(view) = hub.views.first().cloned() else { return };
+    let (mut frames, viewing) = view.join();
+    frames.mark_changed();
+    let limits = Limits::new(Instant::now());
+    Viewer { hub, screening, view, frames, _viewing: viewing, limits }.run(socket, messages).await;
+}
+
+impl Viewer {
+    async fn run(mut self, mut socket: WebSocket, mut messages: broadcast::Receiver<Arc<str>>) {
+        loop {
+            let answer = tokio::select! {
+                biased;
+                received = socket.recv() => match received {
+                    Some(Ok(Message::Text(text))) => self.answer(&text),
+                    Some(Ok(Message::Close(_)) | Err(_)) | None => return,
+                    Some(Ok(_)) => None,
+                },
+                message = messages.recv() => match message {
+                    Ok(message) => Some(Message::text(message.to_string())),
+                    // It fell behind: closing makes it connect again and be told all anew.
+                    Err(_) => return,
+                },
+                changed = self.frames.changed() => match changed {
+                    Ok(()) => self.frames.borrow_and_update().clone().map(|frame| Message::binary(frame.to_vec())),
+                    Err(_) => return,
+                },
+            };
+            if let Some(answer) = answer
+                && socket.send(answer).await.is_err()
+            {
+                return;
+            }
+        }
+    }
+
+    fn answer(&mut self, text: &str) -> Option<Message> {
+        let answer = self.take(text).unwrap_or_else(|problem| Some(page::error(&problem)))?;
+        Some(Message::text(answer.to_string()))
+    }
+
+    /// Takes a message of the page; says what is wrong with it, if anything.
+    fn take(&mut self, text: &str) -> Result<Option<serde_json::Value>, String> {
+        if !self.limits.all.admits(Instant::now()) {
+            return Err("That was a lot at once; wait a moment, please.".to_owned());
+        }
+        let message: FromPage =
+            serde_json::from_str(text).map_err(|error| format!("The page sent nonsense: {error}"))?;
+        match message {
+            FromPage::Shown => {
+                self.hub.note_shown();
+                Ok(None)
+            }
+            FromPage::View { camera } => {
+                self.view = self.view_of(&camera)?;
+                (self.frames, self._viewing) = self.view.join();
+                self.frames.mark_changed();
+                Ok(None)
+            }
+            FromPage::Point { camera, tick, x, y } => {
+                let Some(id) = self.view_of(&camera)?.id_at(tick, [x, y]) else { return Ok(None) };
+                self.screening.seen(Thing::of_id(id), [x, y]).map_err(|error| error.to_string())
+            }
+            FromPage::Pause => self.ask(Control::Pause),
+            FromPage::Resume => self.ask(Control::Resume),
+            FromPage::Speed { factor } if Control::SPEEDS.contains(&factor) => self.ask(Control::Speed(factor)),
+            FromPage::Speed { factor } => Err(format!("It cannot go {factor} times as fast.")),
+            FromPage::Seek { tick } => self.ask(Control::Seek(tick)),
+        }
+    }
+
+    fn ask(&self, control: Control) -> Result<Option<serde_json::Value>, String> {
+        self.screening.ask(control).map(|()| None).map_err(|error| error.to_string())
+    }
+
+    fn view_of(&self, camera: &str) -> Result<Arc<View>, String> {
+        let is_meant = |view: &&Arc<View>| view.camera.to_string() == camera;
+        self.hub.views.iter().find(is_meant).cloned().ok_or_else(|| format!("There is no camera {camera}."))
+    }
+}

@@ -1,0 +1,263 @@
+//! A log that was cut or changed at any place opens and says what is lost, or is refused; what it then says is what was
+//! written.
+#![allow(clippy::unwrap_used, missing_docs)]
+
+use std::{
+    io::{self, Write},
+    path::Path,
+    sync::{Arc, Mutex},
+};
+
+use bytemuck::Zeroable as _;
+use cohabit_bus::{
+    Envelope, Text,
+    message::{DialogKind, DialogMessage, DialogView, EventKind, EventMessage, MissionHeader, MissionMessage},
+};
+use cohabit_cdf::Action;
+use cohabit_record::{
+    DialogEntry, EventEntry, GapEntry, InputEntry, Log, LogError, LogWriter, SessionEntry, SessionFacts, Snapshot,
+    TickEntry,
+};
+
+const TICKS: u64 = 60;
+const CASES: u64 = 1000;
+
+/// Memory that a log is written to.
+#[derive(Clone, Default)]
+struct Memory(Arc<Mutex<Vec<u8>>>);
+
+impl Write for Memory {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0.lock().unwrap().extend_from_slice(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+fn session() -> SessionEntry {
+    let header = MissionHeader { seed: u64::MAX, file: Text::new("m.json"), ..MissionHeader::zeroed() };
+    let bodies = vec!["person@Lab1".parse().unwrap()];
+    let mission = MissionMessage { header, bodies, cameras: Vec::new(), text: "{}".to_owned() };
+    let facts = SessionFacts {
+        participant: Some("P07".to_owned()),
+        settings: [("ask".to_owned(), "unsure".to_owned())].into(),
+        ..SessionFacts::named("s")
+    };
+    SessionEntry { run: u64::MAX, ..SessionEntry::new(&facts, &mission) }
+}
+
+fn tick(tick: u64) -> TickEntry {
+    let inputs = if tick.is_multiple_of(7) {
+        vec![InputEntry { command: 1 << 50, turn: 1, body: 0, action: Action::LookAround }]
+    } else {
+        Vec::new()
+    };
+    TickEntry { tick, digest: format!("{tick:064x}"), wall_nanos: 1_000 + tick, inputs }
+}
+
+fn event(sequence: u64) -> EventEntry {
+    let envelope = Envelope { tick: sequence, run: 1 << 61, sequence, ..Envelope::default() };
+    EventEntry::new(&envelope, &EventMessage::new(EventKind::Message).saying("hello")).unwrap()
+}
+
+fn reply(tick: u64) -> DialogEntry {
+    let message = DialogMessage::new(DialogKind::Reply, 0, tick, "Here you are.");
+    let envelope = Envelope { run: 1 << 62, sequence: tick / 5, ..Envelope::default() };
+    DialogEntry::new(tick, &envelope, DialogView { header: &message.header, steps: &message.steps }).unwrap()
+}
+
+/// What is written at a tick, and sealed.
+fn write(log: &mut LogWriter, number: u64) {
+    log.tick(&tick(number)).unwrap();
+    log.event(&event(number), number).unwrap();
+    if number.is_multiple_of(5) {
+        log.dialog(&reply(number), number).unwrap();
+    }
+    if number.is_multiple_of(20) {
+        log.snapshot(&Snapshot::pack(number, &[number as u8; 500]), number).unwrap();
+        log.gap(&GapEntry { tick: number, events: 3, ..GapEntry::default() }, number).unwrap();
+    }
+    log.flush().unwrap();
+}
+
+/// A log, and where each of its segments ends: the first holds the session, each further one a tick.
+fn sample() -> (Vec<u8>, Vec<usize>) {
+    let memory = Memory::default();
+    let length = || memory.0.lock().unwrap().len();
+    let mut log = LogWriter::begin(Path::new("a log"), Box::new(memory.clone()), &session(), 1).unwrap();
+    let mut ends = vec![length()];
+    for number in 1..=TICKS {
+        write(&mut log, number);
+        ends.push(length());
+    }
+    log.finish().unwrap();
+    let bytes = memory.0.lock().unwrap().clone();
+    (bytes, ends)
+}
+
+fn parse(bytes: &[u8]) -> Result<Log, LogError> {
+    Log::parse(Path::new("a log"), bytes)
+}
+
+/// The numbers of a seed, one after the other (SplitMix64).
+struct Numbers(u64);
+
+impl Numbers {
+    fn below(&mut self, limit: usize) -> usize {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mixed = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((mixed ^ (mixed >> 31)) % limit as u64) as usize
+    }
+}
+
+/// Nothing that a damaged log says is otherwise than what was written: it says all of it, but for these ticks.
+fn check_says_what_was_written(log: &Log, missing: &[u64], what: &str) {
+    let is_there = |tick: u64| !missing.contains(&tick);
+    let ticks: Vec<_> = (1..=TICKS).filter(|number| is_there(*number)).map(tick).collect();
+    let events: Vec<_> = (1..=TICKS).filter(|number| is_there(*number)).map(event).collect();
+    let dialog: Vec<_> = (5..=TICKS).step_by(5).filter(|number| is_there(*number)).map(reply).collect();
+    let snapshots: Vec<_> = (20..=TICKS)
+        .step_by(20)
+        .filter(|number| is_there(*number))
+        .map(|number| Snapshot::pack(number, &[number as u8; 500]))
+        .collect();
+    assert_eq!(log.session, session(), "{what}");
+    assert_eq!(log.ticks, ticks, "{what}");
+    assert_eq!(log.events, events, "{what}");
+    assert_eq!(log.dialog, dialog, "{what}");
+    assert_eq!(log.snapshots, snapshots, "{what}");
+}
+
+#[test]
+fn a_whole_log_says_all_and_lacks_nothing() {
+    let (bytes, _) = sample();
+    let log = parse(&bytes).unwrap();
+    check_says_what_was_written(&log, &[], "whole");
+    assert_eq!((log.lost.len(), log.cut.as_deref(), log.missing()), (0, None, 0));
+    assert_eq!(log.problems().len(), 3, "its recorder noted three gaps: {:?}", log.problems());
+}
+
+#[test]
+fn a_log_cut_anywhere_opens_up_to_there_or_is_refused() {
+    let (bytes, ends) = sample();
+    let mut numbers = Numbers(1);
+    for _ in 0..CASES {
+        let length = numbers.below(bytes.len());
+        let what = format!("cut at {length}");
+        match parse(&bytes[..length]) {
+            Ok(log) => {
+                let whole = ends.iter().filter(|end| **end <= length).count();
+                let missing: Vec<_> = (whole as u64..=TICKS).collect();
+                check_says_what_was_written(&log, &missing, &what);
+                let said = log.cut.clone().unwrap_or_else(|| panic!("{what}: unnoticed"));
+                let rest = length - ends[whole - 1];
+                let is_torn = rest > 0 && whole <= TICKS as usize;
+                assert!(!is_torn || said.contains(&format!("last {rest} bytes")), "{what}: {said}");
+            }
+            Err(error) => {
+                assert!(length < ends[0], "{what}: {error}");
+                assert!(matches!(error, LogError::NotALog { .. }), "{what}: {error}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_log_with_a_changed_byte_says_what_is_lost_or_is_refused() {
+    let (bytes, ends) = sample();
+    let mut numbers = Numbers(2);
+    for _ in 0..CASES {
+        let place = numbers.below(bytes.len());
+        let mut changed = bytes.clone();
+        changed[place] ^= 1 + numbers.below(255) as u8;
+        let what = format!("byte {place} is {:#04x} instead of {:#04x}", changed[place], bytes[place]);
+        let segment = ends.partition_point(|end| *end <= place);
+        match parse(&changed) {
+            // The first segment is all that cannot be done without.
+            Err(error) => {
+                assert!(segment == 0, "{what}, in segment {segment}: {error}");
+                assert!(!error.to_string().is_empty());
+            }
+            Ok(log) if segment > TICKS as usize => {
+                check_says_what_was_written(&log, &[], &what);
+                assert!(log.cut.is_some(), "{what}: the index is damaged, and nobody says so");
+            }
+            Ok(log) => {
+                assert!(segment > 0, "{what}: the beginning is damaged, and nobody says so");
+                // Where a seal is damaged, what follows it cannot be told to follow.
+                let count = log.ticks.len() as u64;
+                let missing: Vec<_> = (segment as u64..).take((TICKS - count) as usize).collect();
+                assert!((1..=2).contains(&missing.len()), "{what}: {missing:?}");
+                check_says_what_was_written(&log, &missing, &what);
+                let said = log.problems().join("; ");
+                assert!(log.lost.len() == 1 || log.cut.is_some(), "{what}: {said}");
+                assert!(said.contains("damaged"), "{what}: {said}");
+            }
+        }
+    }
+}
+
+#[test]
+fn segments_that_go_come_or_change_places_are_found_out() {
+    let (bytes, ends) = sample();
+    let segment = |number: usize| &bytes[ends[number - 1]..ends[number]];
+    let [before, after] = [&bytes[..ends[9]], &bytes[ends[12]..]];
+    let gone = [before, segment(11), segment(12), after].concat();
+    let doubled = [before, segment(10), segment(10), segment(11), segment(12), after].concat();
+    let swapped = [before, segment(11), segment(10), segment(12), after].concat();
+    for (what, changed) in [("gone", gone), ("doubled", doubled), ("swapped", swapped)] {
+        let log = parse(&changed).unwrap();
+        assert!(!log.lost.is_empty(), "{what}");
+        let expected: Vec<_> = log.ticks.iter().map(|entry| tick(entry.tick)).collect();
+        assert_eq!(log.ticks, expected, "{what}");
+        assert!(log.ticks.windows(2).all(|pair| pair[0].tick < pair[1].tick), "{what}");
+    }
+}
+
+/// A log as format 1 had it: no seals, and fewer fields.
+fn old(format: u32, end: bool) -> Vec<u8> {
+    let mut writer = mcap::WriteOptions::new()
+        .profile("cohabit")
+        .library("cohabit 0.1.0")
+        .compression(None)
+        .use_chunks(false)
+        .create(io::Cursor::new(Vec::new()))
+        .unwrap();
+    let mut write = |topic: &str, text: &str| {
+        let schema = writer.add_schema(&topic[1..], "jsonschema", b"{}").unwrap();
+        let channel_id = writer.add_channel(schema, topic, "json", &Default::default()).unwrap();
+        let header = mcap::records::MessageHeader { channel_id, sequence: 0, log_time: 1, publish_time: 1 };
+        writer.write_to_known_channel(&header, text.as_bytes()).unwrap();
+    };
+    let session = format!(
+        r#"{{"format":{format},"program":"0.9.9","session":"s","mission_file":"m","mission_text":"{{}}","seed":7,"run":"ff"}}"#
+    );
+    write("/session", &session);
+    write("/ticks", r#"{"tick":1,"digest":"00","wall_nanos":5}"#);
+    write("/dialog", r#"{"kind":"Reply","turn":1,"body":0,"step":0,"sent_nanos":9,"stamps":[1,2,3,4],"text":"Hello"}"#);
+    if end {
+        writer.finish().unwrap();
+    }
+    writer.into_inner().into_inner()
+}
+
+#[test]
+fn a_log_of_an_older_format_opens() {
+    for end in [true, false] {
+        let log = parse(&old(1, end)).unwrap();
+        assert_eq!((log.session.seed, log.session.run, log.ticks[0].wall_nanos), (7, 0xff, 1));
+        assert_eq!((log.dialog[0].tick, log.dialog[0].stamps), (1, [1, 2, 3, 4, 0]));
+        assert_eq!(log.cut.is_none(), end);
+    }
+}
+
+#[test]
+fn a_log_of_a_newer_format_says_which_program_reads_it() {
+    let error = parse(&old(99, true)).unwrap_err();
+    assert!(matches!(error, LogError::TooNew { found: 99, .. }), "{error}");
+    assert!(error.to_string().contains("0.9.9"), "{error}");
+}

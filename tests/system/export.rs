@@ -1,0 +1,74 @@
+//! Logs as tables, and what is said where rerun would be needed.
+
+use std::{fs, path::PathBuf, process::Command};
+
+use cohabit_tests::run;
+
+use crate::COHABIT;
+
+/// A folder of a test's own, empty.
+fn folder(name: &str) -> PathBuf {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+#[test]
+fn logs_of_an_evaluation_are_tables_and_conditions() {
+    let folder = folder("export");
+    let text = |path: &PathBuf| path.to_str().unwrap().to_owned();
+    let (logs, tables) = (folder.join("logs"), folder.join("tables"));
+    for ask in ["never", "always"] {
+        let (seed, record) = ("--seed=3", text(&logs.join(ask)));
+        let made = ["eval", "--user", "simulated", "--missions", "2", seed, "--ask", ask, "--record", &record];
+        assert!(run(COHABIT, &made).unwrap().status.success());
+    }
+    let [never, always] = ["never", "always"].map(|ask| text(&logs.join(ask)));
+    let out = text(&tables);
+    let done = run(COHABIT, &["export", &never, &always, "--out", &out, "--summary", "--json"]).unwrap();
+    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+    let summary: serde_json::Value = serde_json::from_slice(&done.stdout).unwrap();
+    assert_eq!(summary["sessions"], 4);
+    assert_eq!(summary["conditions"], serde_json::json!(["ask"]));
+    for name in ["sessions", "turns", "actions", "goals", "codebook"] {
+        let lines = fs::read_to_string(tables.join(format!("{name}.csv"))).unwrap();
+        assert!(lines.lines().count() > 4, "{name}: {lines}");
+    }
+    let printed = run(COHABIT, &["export", &never, "--summary"]).unwrap();
+    assert!(String::from_utf8_lossy(&printed.stdout).contains("no setting differs"));
+}
+
+#[test]
+fn what_cannot_be_exported_is_named() {
+    let empty = folder("export-empty");
+    let path = empty.to_str().unwrap();
+    for (arguments, part) in [
+        (vec!["export", path, "--summary"], "no session logs"),
+        (vec!["export", "/nowhere.mcap", "--summary"], "/nowhere.mcap"),
+        (vec!["export", path], "--out"),
+    ] {
+        let output = run(COHABIT, &arguments).unwrap();
+        let text = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {text}");
+        assert!(text.contains(part), "{arguments:?}: no `{part}` in {text}");
+    }
+}
+
+#[test]
+fn where_the_program_for_rerun_is_not_there_it_is_said_how_to_build_it() {
+    // In a folder of its own nothing is beside it.
+    let alone = folder("alone").join("cohabit");
+    fs::hard_link(COHABIT, &alone).or_else(|_| fs::copy(COHABIT, &alone).map(drop)).unwrap();
+    for arguments in [
+        &["replay", "x.mcap", "--rerun"][..],
+        &["compare", "x.mcap", "y.mcap"],
+        &["export", "x.mcap", "--out", "y", "--format", "parquet"],
+        &["play", "--rerun"],
+    ] {
+        let output = Command::new(&alone).args(arguments).env("PATH", "").output().unwrap();
+        let text = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {text}");
+        assert!(text.contains("cargo build --release -p cohabit-rerun"), "{arguments:?}: {text}");
+    }
+}
