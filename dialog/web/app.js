@@ -7,13 +7,14 @@ import { enlargeMap, floor } from "./floor.js";
 import { expandGoals, takeState } from "./goals.js";
 import { buildReplay, takePlayer, takeReplayKey, takeRewind } from "./replay.js";
 import { greeted, listen, watchSilence } from "./socket.js";
+import { askWhenDue, buildSurvey, noteAnswered, takeAnswered } from "./survey.js";
 import { clearChat, endDoing, input, say, takeLatency, meet, takeLine, takeProgress, takeTurn, takeYou } from "./talk.js";
 import { awaitFrame, buildViews, nextView, showRate, takeFrame, takeMarks, takeSeen } from "./view.js";
 
 /** What tests and curious people may read. */
 window.cohabit = { frames: 0, state: null, latency: null, view: null, seen: null, driving: null, aim: null, marks: [] };
 
-function takeHello({ session, mission, map, views, drivable, robots, replay }) {
+function takeHello({ session, mission, map, views, drivable, robots, questionnaires, replay }) {
   greeted();
   byId("session").textContent = replay ? `${session} · recorded` : session;
   document.title = mission.title ? `${mission.title} · Cohabit` : "Cohabit";
@@ -26,6 +27,7 @@ function takeHello({ session, mission, map, views, drivable, robots, replay }) {
   clearChat();
   endDoing();
   buildReplay(replay);
+  buildSurvey(questionnaires);
 }
 
 /** Whatever has the focus, if no body is driven: Escape stops the robot, Alt+C changes the view, and a letter or a slash begins a sentence. */
@@ -34,7 +36,7 @@ document.addEventListener("keydown", (event) => {
     event.preventDefault();
     nextView();
   }
-  if (event.isComposing || takeReplayKey(event) || takeKey(event) || event.ctrlKey || event.metaKey || event.altKey) return;
+  if (event.isComposing || document.querySelector("dialog[open]") || takeReplayKey(event) || takeKey(event) || event.ctrlKey || event.metaKey || event.altKey) return;
   if (event.key === "Escape" && !event.repeat) {
     enlargeMap(false);
     say("stop");
@@ -50,11 +52,15 @@ setInterval(() => {
   watchSilence();
 }, 500);
 listen({
-  you: takeYou,
+  you: (you) => {
+    takeYou(you);
+    noteAnswered(you.answered);
+  },
   hello: takeHello,
   state: (state) => {
     takeState(state);
     takePlayer(state);
+    askWhenDue(state);
     showHeld(state);
   },
   chat: takeLine,
@@ -69,6 +75,7 @@ listen({
   driving: takeDriving,
   aim: takeAim,
   acted: takeActed,
+  answered: takeAnswered,
   rewind: takeRewind,
   highlight: (message) => floor.pointOut(message),
   error: (message) => toast(message.text),

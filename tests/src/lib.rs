@@ -7,6 +7,7 @@ mod browser;
 mod page;
 mod play;
 mod python;
+mod scratch;
 mod soak;
 mod socket;
 
@@ -14,6 +15,7 @@ pub use browser::{Browser, Tab};
 pub use page::Page;
 pub use play::{Play, reference_data, run};
 pub use python::{output, python_with};
+pub use scratch::Scratch;
 pub use soak::{Resident, Soaked, soak};
 
 /// The processor and the number of cores, as benches print them.

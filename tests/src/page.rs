@@ -27,7 +27,19 @@ impl Page {
     /// # Errors
     /// When it cannot be reached.
     pub fn open(authority: &str) -> anyhow::Result<Self> {
-        let socket = Socket::open(&format!("ws://{authority}/ws"))?;
+        Self::at(&format!("ws://{authority}/ws"))
+    }
+
+    /// The same as the page of that key, by which the session knows it again.
+    ///
+    /// # Errors
+    /// When it cannot be reached.
+    pub fn open_as(authority: &str, key: u32) -> anyhow::Result<Self> {
+        Self::at(&format!("ws://{authority}/ws?visitor={key}"))
+    }
+
+    fn at(address: &str) -> anyhow::Result<Self> {
+        let socket = Socket::open(address)?;
         Ok(Self { socket, chat: Vec::new(), state: Value::Null, aim: Value::Null, frames: 0 })
     }
 

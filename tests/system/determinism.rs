@@ -1,40 +1,15 @@
 //! The same missions with the same seed, in two runs of the program: every tick the same; and a log that was changed is
 //! found out.
 
-use std::{
-    collections::BTreeMap,
-    path::{Path, PathBuf},
-};
+use std::{collections::BTreeMap, path::Path};
 
 use cohabit_record::{Log, LogWriter};
-use cohabit_tests::run;
+use cohabit_tests::{Scratch, run};
 
 use crate::COHABIT;
 
-/// A new folder, gone again at the end.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new(name: &str) -> Self {
-        let folder = std::env::temp_dir().join(format!("cohabit-determinism-{name}-{}", std::process::id()));
-        let _ = std::fs::remove_dir_all(&folder);
-        std::fs::create_dir_all(&folder).unwrap();
-        Self(folder)
-    }
-
-    fn path(&self, name: &str) -> String {
-        self.0.join(name).to_str().unwrap().to_owned()
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
-}
-
 /// Plays the built-in missions by so many worker processes; their logs, by file name.
-fn logs(folder: &Folder, workers: &str) -> BTreeMap<String, Log> {
+fn logs(folder: &Scratch, workers: &str) -> BTreeMap<String, Log> {
     let missions = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cdf/missions");
     let into = folder.path(workers);
     let arguments = ["eval", missions.to_str().unwrap(), "--workers", workers, "--seed", "9", "--record", &into];
@@ -47,7 +22,7 @@ fn logs(folder: &Folder, workers: &str) -> BTreeMap<String, Log> {
 
 #[test]
 fn two_runs_agree_tick_for_tick() {
-    let folder = Folder::new("runs");
+    let folder = Scratch::new("determinism-runs");
     let (one, two) = (logs(&folder, "1"), logs(&folder, "2"));
     assert!(one.len() >= 4 && one.keys().eq(two.keys()), "{:?} {:?}", one.keys(), two.keys());
     for (name, log) in &one {
@@ -62,7 +37,7 @@ fn two_runs_agree_tick_for_tick() {
 
 #[test]
 fn a_changed_log_is_found_out_at_the_tick() {
-    let folder = Folder::new("changed");
+    let folder = Scratch::new("determinism-changed");
     let (_, log) = logs(&folder, "1").pop_first().unwrap();
     // A command that was never given changes what follows; a digest that was never had differs by itself.
     let given = log.ticks.iter().position(|tick| !tick.inputs.is_empty()).unwrap();

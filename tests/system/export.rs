@@ -1,38 +1,29 @@
 //! Logs as tables, and what is said where rerun would be needed.
 
-use std::{fs, path::PathBuf, process::Command};
+use std::{fs, process::Command};
 
-use cohabit_tests::run;
+use cohabit_tests::{Scratch, run};
 
 use crate::COHABIT;
 
-/// A folder of a test's own, empty.
-fn folder(name: &str) -> PathBuf {
-    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
-    let _ = fs::remove_dir_all(&folder);
-    fs::create_dir_all(&folder).unwrap();
-    folder
-}
-
 #[test]
 fn logs_of_an_evaluation_are_tables_and_conditions() {
-    let folder = folder("export");
-    let text = |path: &PathBuf| path.to_str().unwrap().to_owned();
-    let (logs, tables) = (folder.join("logs"), folder.join("tables"));
+    let scratch = Scratch::new("export");
+    let logs = |ask: &str| scratch.path(&format!("logs/{ask}"));
     for ask in ["never", "always"] {
-        let (seed, record) = ("--seed=3", text(&logs.join(ask)));
+        let (seed, record) = ("--seed=3", logs(ask));
         let made = ["eval", "--user", "simulated", "--missions", "2", seed, "--ask", ask, "--record", &record];
         assert!(run(COHABIT, &made).unwrap().status.success());
     }
-    let [never, always] = ["never", "always"].map(|ask| text(&logs.join(ask)));
-    let out = text(&tables);
+    let [never, always] = ["never", "always"].map(logs);
+    let out = scratch.path("tables");
     let done = run(COHABIT, &["export", &never, &always, "--out", &out, "--summary", "--json"]).unwrap();
     assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
     let summary: serde_json::Value = serde_json::from_slice(&done.stdout).unwrap();
     assert_eq!(summary["sessions"], 4);
     assert_eq!(summary["conditions"], serde_json::json!(["ask"]));
     for name in ["sessions", "turns", "actions", "goals", "codebook"] {
-        let lines = fs::read_to_string(tables.join(format!("{name}.csv"))).unwrap();
+        let lines = fs::read_to_string(format!("{out}/{name}.csv")).unwrap();
         assert!(lines.lines().count() > 4, "{name}: {lines}");
     }
     let printed = run(COHABIT, &["export", &never, "--summary"]).unwrap();
@@ -41,8 +32,8 @@ fn logs_of_an_evaluation_are_tables_and_conditions() {
 
 #[test]
 fn what_cannot_be_exported_is_named() {
-    let empty = folder("export-empty");
-    let path = empty.to_str().unwrap();
+    let scratch = Scratch::new("export-empty");
+    let path = &*scratch.path("");
     for (arguments, part) in [
         (vec!["export", path, "--summary"], "no session logs"),
         (vec!["export", "/nowhere.mcap", "--summary"], "/nowhere.mcap"),
@@ -58,7 +49,8 @@ fn what_cannot_be_exported_is_named() {
 #[test]
 fn where_the_program_for_rerun_is_not_there_it_is_said_how_to_build_it() {
     // In a folder of its own nothing is beside it.
-    let alone = folder("alone").join("cohabit");
+    let scratch = Scratch::new("alone");
+    let alone = scratch.path("cohabit");
     fs::hard_link(COHABIT, &alone).or_else(|_| fs::copy(COHABIT, &alone).map(drop)).unwrap();
     for arguments in [
         &["replay", "x.mcap", "--rerun"][..],

@@ -219,6 +219,7 @@ fn a_session_goes_on_from_a_point_of_another_one() {
     let point = format!("{}@tick:{at}", ended.log.display());
     let again = Play::start(COHABIT, &["--branch", &point]).unwrap();
     let mut page = Page::open(again.authority()).unwrap();
+    page.wait("what was said before", |page, _| page.chat.iter().any(|(from, _)| from == "person")).unwrap();
     page.do_and_wait("look around").unwrap();
     assert!(page.state["others"].as_array().is_some_and(|others| others.len() == 1), "{}", page.state);
     drop(page);

@@ -1,6 +1,6 @@
 //! Several robots and several people in one session: who is spoken to, and who said what.
 
-use cohabit_tests::{Page, Play};
+use cohabit_tests::{Page, Play, Scratch};
 use serde_json::{Value, json};
 
 use crate::COHABIT;
@@ -103,13 +103,11 @@ fn people_at_several_pages_are_told_apart_and_the_robot_comes_to_who_calls() {
 
 #[test]
 fn what_a_mind_says_of_its_own_accord_is_shown() {
-    let script = std::env::temp_dir().join(format!("cohabit-says-{}.txt", std::process::id()));
-    std::fs::write(&script, "wait 1\nsay Here you are.\n").unwrap();
-    let mind = format!("scripted@1={}", script.display());
+    let scratch = Scratch::new("says");
+    let mind = format!("scripted@1={}", scratch.write("script.txt", "wait 1\nsay Here you are.\n"));
     let arguments = ["make_cereal", "--body", "robot@BreakRoom", "--agent", "dialog", "--agent", &mind];
     let play = Play::start(COHABIT, &arguments).unwrap();
     let mut page = Page::open(play.authority()).unwrap();
     page.wait("what it says", |_, message| said_by(message, 1, "Here you are.")).unwrap();
     play.end().unwrap();
-    std::fs::remove_file(script).unwrap();
 }

@@ -61,13 +61,6 @@ impl Reaction {
             _ => None,
         }
     }
-
-    pub(crate) const fn line_mut(&mut self) -> Option<&mut Line> {
-        match self {
-            Self::Chat(line) => Some(line),
-            _ => None,
-        }
-    }
 }
 
 impl TurnEnd {
@@ -224,7 +217,10 @@ impl Conversation {
             (Speaker::Robot, _) => DialogKind::Reply,
             (Speaker::Game, _) => return None,
         };
-        Some(DialogMessage::new(kind, self.body, line.turn, &line.text))
+        let mut message = DialogMessage::new(kind, self.body, line.turn, &line.text);
+        message.header.person = line.visitor.unwrap_or(0);
+        message.steps = line.answers.iter().map(Answer::offer).collect();
+        Some(message)
     }
 
     /// What the robot did, if this tells of a step that succeeded: to be noted before the conversation follows it.
@@ -355,7 +351,7 @@ impl Conversation {
                 let mut line = Line::new(Speaker::Robot, LineKind::Question, turn, text);
                 line.answers = asked.answers(options);
                 self.memory.asked = Some(asked);
-                reactions.push(self.bus(DialogKind::Question, turn, &line.text));
+                reactions.extend(self.message(&line).map(|message| Reaction::Bus(Box::new(message))));
                 reactions.push(Reaction::Chat(line));
                 self.point_out(turn, number, &candidates, knowledge, TurnEnd::Asked, reactions);
             }

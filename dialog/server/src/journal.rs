@@ -5,7 +5,7 @@
 //! followed by one that tells it.
 
 use std::{
-    collections::{BTreeMap, VecDeque},
+    collections::{BTreeMap, BTreeSet, VecDeque},
     fs::{self, File},
     io::{self, Write as _},
     net::SocketAddr,
@@ -15,9 +15,10 @@ use std::{
 
 use cohabit_bus::Envelope;
 use cohabit_language::Lessons;
+use cohabit_record::Log;
 use serde::{Deserialize, Serialize};
 
-use crate::{conversation, hub::LINES_KEPT, page::Line};
+use crate::{conversation, hub::LINES_KEPT, page::Line, recorded};
 
 /// The file is written anew when it has grown by so much.
 const MOST_GROWTH: u64 = 4 << 20;
@@ -62,6 +63,9 @@ pub struct Past {
     pub lessons: BTreeMap<u32, Lessons>,
     /// The keys of the pages, in the order in which they came.
     pub visitors: Vec<u64>,
+    /// The questionnaires that each visitor has answered.
+    #[serde(default)]
+    pub answered: BTreeMap<u32, BTreeSet<String>>,
     /// What may not have been told.
     pub untold: Vec<Line>,
     /// How far the publishers were followed, by their runs.
@@ -80,6 +84,8 @@ enum Entry {
     Lessons(u32, Lessons),
     /// A page that was not there before.
     Visitor(u64),
+    /// A visitor has answered a questionnaire.
+    Answered(u32, String),
     /// The deed before was told.
     Told,
 }
@@ -99,6 +105,9 @@ impl Past {
             Entry::Place(place) => self.place = Some(place),
             Entry::Lessons(body, lessons) => self.lessons.entry(body).or_default().add(lessons),
             Entry::Visitor(key) => self.visitors.push(key),
+            Entry::Answered(visitor, questionnaire) => {
+                self.answered.entry(visitor).or_default().insert(questionnaire);
+            }
             Entry::Told => self.untold.clear(),
             Entry::Deed(Deed { heard, lines, conversations }) => {
                 self.lines.extend(lines.iter().cloned());
@@ -112,6 +121,24 @@ impl Past {
             }
         }
     }
+}
+
+/// Begins the journal of a session that goes on from a point of another one: its pages know what was said up to there.
+/// Its robots remember nothing of it.
+///
+/// # Errors
+/// When the file cannot be written.
+pub fn begin_after(path: &Path, log: &Log, tick: u64, several_robots: bool) -> io::Result<()> {
+    let told = recorded::told(log, several_robots);
+    let lines = told.into_iter().filter(|(at, _)| *at <= tick).filter_map(|(_, told)| match told {
+        // Nobody waits for an answer any more.
+        recorded::Told::Line(line) => Some(Line { answers: Vec::new(), ..line }),
+        _ => None,
+    });
+    let mut lines: VecDeque<_> = lines.collect();
+    lines.drain(..lines.len().saturating_sub(LINES_KEPT));
+    let past = Past { lines, ..Past::default() };
+    Journal::new(None, past).write_anew(path)
 }
 
 impl Journal {
@@ -180,6 +207,11 @@ impl Journal {
             self.write(Entry::Visitor(key));
         }
         at as u32 + 1
+    }
+
+    /// Writes down that a visitor has answered a questionnaire.
+    pub fn note_answered(&mut self, visitor: u32, questionnaire: &str) {
+        self.write(Entry::Answered(visitor, questionnaire.to_owned()));
     }
 
     /// Writes down what will be told.

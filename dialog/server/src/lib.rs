@@ -14,9 +14,11 @@ pub mod known;
 mod latency;
 mod limits;
 mod page;
+mod questionnaire;
 mod recorded;
 mod robots;
 mod screening;
+mod survey;
 mod talk;
 mod token;
 mod view;
@@ -39,11 +41,15 @@ use std::{
 use cohabit_bus::{BusError, Transport, message::CameraRecord};
 use cohabit_cdf::{Catalog, Layout, Mission};
 
+use serde_json::json;
+
 pub use cohabit_language::{Asking, Interpreter, Knows, Language};
 pub use conversation::{Asked, Conversation, Reaction, TurnEnd};
 pub use driving::{Drivable, NotDrivable};
 pub use interpreter::{Endpoint, EndpointError};
+pub use journal::begin_after;
 pub use known::Knowledge;
+pub use questionnaire::{Questionnaire, QuestionnaireError};
 pub use screening::{ScreeningConfig, screen};
 
 use crate::{
@@ -51,6 +57,7 @@ use crate::{
     hub::Hub,
     journal::{Journal, Place},
     robots::{BodyNames, RobotName, Robots},
+    survey::Survey,
     talk::{Ears, Talk},
     view::View,
     web::{Host, Live, Service},
@@ -78,6 +85,8 @@ pub struct DialogConfig {
     pub robots: Vec<u32>,
     /// What bodies are called, if not by what they are.
     pub names: BTreeMap<u32, String>,
+    /// What people are asked about the session.
+    pub questionnaires: Vec<Questionnaire>,
     /// Called once, when a page says that it has shown a frame.
     pub on_first_frame: Box<dyn Fn() + Send + Sync>,
 }
@@ -126,7 +135,8 @@ pub fn serve(
     let drivers = Arc::new(Drivers::new(Arc::clone(&bus), config.drivable, &bodies, &names));
     let views = page::views(&config.cameras, &names, config.robots.len());
     let robots: Vec<RobotName> = robots::named(&config.robots, &names);
-    let hello = page::hello(&config.session, &mission, &layout, &catalog, &views, drivers.bodies(), &robots);
+    let mut hello = page::hello(&config.session, &mission, &layout, &catalog, &views, drivers.bodies(), &robots);
+    hello["questionnaires"] = json!(config.questionnaires);
     let views = views.into_iter().map(|view| View::new(view.camera)).collect();
     let hub = Arc::new(Hub::new(hello, views, config.on_first_frame));
     let journal = Journal::open(config.journal.as_deref());
@@ -136,6 +146,7 @@ pub fn serve(
     let robots = Robots::new(&robots, config.knows, &language, &catalog, &layout, told, interprets);
     let (puzzles, asked) = interprets.then(interpreter::puzzles).unzip();
     let talk = Talk::new(&*bus, catalog, robots, puzzles, Arc::clone(&hub), Arc::clone(&drivers), journal)?;
+    let survey = Arc::new(Survey::new(&*bus, config.questionnaires)?);
     let ears = Ears::new(&*bus)?;
     talk.serve_at(place.clone());
     let Place { address, token } = place;
@@ -151,7 +162,7 @@ pub fn serve(
         }
         let mut workers = vec![
             scope.spawn(|| until_ended(&ended, || talk::listen(ears, &talk, &over))),
-            scope.spawn(|| until_ended(&ended, || talk::show_state(&talk, STATE_EVERY, &over))),
+            scope.spawn(|| until_ended(&ended, || talk::show_state(&talk, &survey, STATE_EVERY, &over))),
         ];
         for view in (0..=u8::MAX).zip(&hub.views) {
             let (bus, talk, over, ended) = (&*bus, &talk, &over, &ended);
@@ -160,7 +171,7 @@ pub fn serve(
         }
         ready(&token::page_address(address, token.as_deref()));
         let (hub, token) = (Arc::clone(&hub), token.map(Arc::from));
-        let host = Host::Live(Live { talk: Arc::clone(&talk), drivers });
+        let host = Host::Live(Live { talk: Arc::clone(&talk), drivers, survey: Arc::clone(&survey) });
         let served = web::serve(listener, Service { hub, host, token }, &over).map_err(DialogError::Serve);
         ended.store(true, Ordering::Relaxed);
         workers

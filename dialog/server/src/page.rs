@@ -3,10 +3,12 @@
 use std::collections::BTreeMap;
 
 use cohabit_bus::{
-    CameraId,
-    message::{BodyRecord, CameraRecord, NONE, ObjectRecord, Plane, StateView, Thing},
+    CameraId, Text,
+    message::{BodyRecord, CameraRecord, NONE, ObjectRecord, PlanStep, Plane, StateView, Thing},
 };
-use cohabit_cdf::{BodyKind, Catalog, ClassId, Layout, Mission, RoomId, layout::OpeningKind, model::Axis};
+use cohabit_cdf::{
+    Action, BodyKind, Catalog, ClassId, Layout, Mission, ObjectId, RoomId, layout::OpeningKind, model::Axis,
+};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
@@ -90,6 +92,14 @@ pub struct Answer {
     pub object: Option<u32>,
 }
 
+impl Answer {
+    /// The same on the bus.
+    pub fn offer(&self) -> PlanStep {
+        let action = self.object.map(|object| Action::Highlight { object: ObjectId(object) }.into());
+        PlanStep { action: action.unwrap_or_default(), says: Text::new(&self.text) }
+    }
+}
+
 impl Line {
     /// A line of chat.
     pub fn new(from: Speaker, kind: LineKind, turn: u64, text: impl Into<String>) -> Self {
@@ -166,9 +176,14 @@ pub fn views(cameras: &[CameraRecord], names: &[String], robots: usize) -> Vec<V
     views
 }
 
-/// Which number a page has among all.
-pub fn you(visitor: u32) -> Value {
-    json!({ "type": "you", "visitor": visitor })
+/// Which number a page has among all, and the questionnaires that it has answered.
+pub fn you(visitor: u32, answered: &[String]) -> Value {
+    json!({ "type": "you", "visitor": visitor, "answered": answered })
+}
+
+/// A questionnaire is answered, or is not, and why.
+pub fn answered(questionnaire: &str, problem: Option<&str>) -> Value {
+    json!({ "type": "answered", "questionnaire": questionnaire, "problem": problem })
 }
 
 /// A name that somebody was given stands alone.

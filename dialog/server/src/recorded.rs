@@ -1,12 +1,15 @@
 //! What a page was told in a recorded session, from its log.
 
+use std::collections::BTreeSet;
+
 use cohabit_bus::message::{DialogKind, EventKind};
+use cohabit_cdf::ObjectId;
 use cohabit_record::{DialogEntry, EventEntry, Log};
 use serde_json::{Value, json};
 
 use crate::{
     latency::Moments,
-    page::{self, Line, LineKind, Speaker},
+    page::{self, Answer, Line, LineKind, Speaker},
 };
 
 /// Something that pages were told.
@@ -22,16 +25,31 @@ pub enum Told {
 
 /// All that pages were told, in order, each with its tick; and of `several` robots by which.
 pub fn told(log: &Log, several: bool) -> Vec<(u64, Told)> {
-    let said = log.dialog.iter().filter_map(|entry| Some((entry.tick, said(entry, several)?)));
+    let people: BTreeSet<u32> = log.dialog.iter().map(|entry| entry.person).filter(|person| *person != 0).collect();
+    let names = Names { robots: several, people: people.len() > 1 };
+    let said = log.dialog.iter().filter_map(|entry| Some((entry.tick, said(entry, names)?)));
     let happened = log.events.iter().filter_map(|entry| Some((entry.tick, happened(entry)?)));
     let mut told: Vec<_> = said.chain(happened).collect();
     told.sort_by_key(|(tick, _)| *tick);
     told
 }
 
-fn said(entry: &DialogEntry, several: bool) -> Option<Told> {
-    let body = several.then_some(entry.body);
-    let line = |from, kind| Some(Told::Line(Line { body, ..Line::new(from, kind, entry.turn, entry.text.as_str()) }));
+/// Who is to be told apart.
+#[derive(Clone, Copy)]
+struct Names {
+    robots: bool,
+    people: bool,
+}
+
+fn said(entry: &DialogEntry, names: Names) -> Option<Told> {
+    let body = names.robots.then_some(entry.body);
+    let visitor = (names.people && entry.person != 0).then_some(entry.person);
+    let answers =
+        || entry.offers.iter().map(|offer| Answer { text: offer.text.clone(), object: offer.object }).collect();
+    let line = |from, kind| {
+        let line = Line::new(from, kind, entry.turn, entry.text.as_str());
+        Some(Told::Line(Line { body, visitor, answers: answers(), ..line }))
+    };
     match kind(&entry.kind)? {
         DialogKind::Utterance => line(Speaker::Person, LineKind::Say),
         DialogKind::Reply => line(Speaker::Robot, LineKind::Say),
@@ -58,6 +76,13 @@ fn happened(entry: &EventEntry) -> Option<Told> {
         EventKind::Highlighted => entry.object.map(Told::Highlight),
         _ => None,
     }
+}
+
+/// The objects that are numbered after these lines: those that the last question offers, if nothing was said since.
+pub fn numbered<'a>(lines: impl DoubleEndedIterator<Item = &'a Line>) -> Vec<ObjectId> {
+    let newest = lines.rev().find(|line| line.from != Speaker::Game);
+    let objects: Vec<_> = newest.iter().flat_map(|line| &line.answers).filter_map(|answer| answer.object).collect();
+    objects.into_iter().map(ObjectId).filter(|_| newest.is_some_and(|line| line.answers.len() > 1)).collect()
 }
 
 /// A log has kinds by name.
@@ -114,6 +139,7 @@ mod tests {
                 spoken(10, DialogKind::Plan, ""),
                 spoken(30, DialogKind::Reply, "Done."),
             ],
+            answers: Vec::new(),
             snapshots: Vec::new(),
             gaps: Vec::new(),
             lost: Vec::new(),

@@ -155,12 +155,15 @@ impl Screening {
         let (now, before) = (sample.envelope().tick, inner.tick);
         let state = StateView::new(sample.payload())?;
         if now < before || now > before + LEAP_TICKS {
-            self.hub.rewind(&self.lines_to(now));
+            self.hub.rewind(&self.lines_to(now).cloned().collect::<Vec<_>>());
         } else {
             self.told
                 .iter()
                 .filter(|(tick, _)| before < *tick && *tick <= now)
                 .for_each(|(_, told)| self.tell(told, state));
+        }
+        if now != before {
+            self.hub.mark(&recorded::numbered(self.lines_to(now)));
         }
         let mut message = page::state(now, state, &[], &self.catalog);
         message["player"] = json!({ "paused": state.header.paused == 1, "speed": inner.speed });
@@ -169,9 +172,9 @@ impl Screening {
         Ok(())
     }
 
-    fn lines_to(&self, now: u64) -> Vec<page::Line> {
-        let told = self.told.iter().take_while(|(tick, _)| *tick <= now);
-        told.filter_map(|(_, told)| if let Told::Line(line) = told { Some(line.clone()) } else { None }).collect()
+    fn lines_to(&self, now: u64) -> impl DoubleEndedIterator<Item = &page::Line> {
+        let told = &self.told[..self.told.partition_point(|(tick, _)| *tick <= now)];
+        told.iter().filter_map(|(_, told)| if let Told::Line(line) = told { Some(line) } else { None })
     }
 
     fn tell(&self, told: &Told, state: StateView<'_>) {

@@ -30,6 +30,7 @@ use crate::{
     latency::{Latency, Moments},
     page::{self, Line, LineKind, Speaker},
     robots::{Robot, Robots, Visitor},
+    survey::Survey,
 };
 
 /// The conversations, with their ends on the bus and to the pages. One lock: who speaks first is heard first.
@@ -118,6 +119,16 @@ impl Talk {
     /// The number of the page of this key.
     pub fn visitor(&self, key: u64) -> u32 {
         self.lock().journal.visitor(key)
+    }
+
+    /// The questionnaires that a visitor has answered.
+    pub fn answered(&self, visitor: u32) -> Vec<String> {
+        self.lock().journal.past().answered.get(&visitor).into_iter().flatten().cloned().collect()
+    }
+
+    /// Notes that a visitor has answered a questionnaire.
+    pub fn note_answered(&self, visitor: u32, questionnaire: &str) {
+        self.lock().journal.note_answered(visitor, questionnaire);
     }
 
     /// Somebody at a page said something, received at `received_nanos`.
@@ -329,9 +340,17 @@ impl Talk {
         mut reactions: Vec<Reaction>,
     ) -> Result<(), DialogError> {
         let are_several = inner.robots.are_several();
-        for line in reactions.iter_mut().filter_map(Reaction::line_mut) {
-            line.body = are_several.then_some(body.0);
-            line.visitor = heard.visitor().filter(|_| line.from == Speaker::Person);
+        for reaction in &mut reactions {
+            match reaction {
+                Reaction::Chat(line) => {
+                    line.body = are_several.then_some(body.0);
+                    line.visitor = heard.visitor().filter(|_| line.from == Speaker::Person);
+                }
+                Reaction::Bus(message) if message.header.kind() == Some(DialogKind::Utterance) => {
+                    message.header.person = heard.visitor().unwrap_or(0);
+                }
+                _ => {}
+            }
         }
         let Some(robot) = inner.robots.of_body(body) else { return Ok(()) };
         let memory = robot.conversation.memory().clone();
@@ -556,13 +575,14 @@ pub fn listen(ears: Ears, talk: &Talk, over: &dyn Fn() -> bool) -> Result<(), Di
 }
 
 /// Shows the state to the pages, and what was said to peers that joined, again and again, until `over`.
-pub fn show_state(talk: &Talk, every: Duration, over: &dyn Fn() -> bool) -> Result<(), DialogError> {
+pub fn show_state(talk: &Talk, survey: &Survey, every: Duration, over: &dyn Fn() -> bool) -> Result<(), DialogError> {
     while !over() {
         let mut inner = talk.lock();
         talk.show_state(&mut inner)?;
         inner.look_by_and_by()?;
         inner.dialog.update()?;
         drop(inner);
+        survey.update()?;
         thread::sleep(every);
     }
     Ok(())

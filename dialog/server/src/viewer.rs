@@ -12,7 +12,7 @@ use crate::{
     limits::{Limits, MOST_PAGES},
     page,
     screening::Screening,
-    view::{Frame, View, Viewing},
+    view::{Frame, Marks, View, Viewing},
 };
 
 /// What a page sends.
@@ -41,6 +41,7 @@ struct Viewer {
     view: Arc<View>,
     frames: watch::Receiver<Option<Frame>>,
     _viewing: Viewing,
+    marks: Marks,
     limits: Limits,
 }
 
@@ -60,35 +61,45 @@ pub async fn watch(hub: Arc<Hub>, screening: Arc<Screening>, mut socket: WebSock
     let (mut frames, viewing) = view.join();
     frames.mark_changed();
     let limits = Limits::new(Instant::now());
-    Viewer { hub, screening, view, frames, _viewing: viewing, limits }.run(socket, messages).await;
+    Viewer { hub, screening, view, frames, _viewing: viewing, marks: Marks::default(), limits }
+        .run(socket, messages)
+        .await;
 }
 
 impl Viewer {
     async fn run(mut self, mut socket: WebSocket, mut messages: broadcast::Receiver<Arc<str>>) {
         loop {
-            let answer = tokio::select! {
+            let answers = tokio::select! {
                 biased;
                 received = socket.recv() => match received {
-                    Some(Ok(Message::Text(text))) => self.answer(&text),
+                    Some(Ok(Message::Text(text))) => self.answer(&text).into_iter().collect(),
                     Some(Ok(Message::Close(_)) | Err(_)) | None => return,
-                    Some(Ok(_)) => None,
+                    Some(Ok(_)) => Vec::new(),
                 },
                 message = messages.recv() => match message {
-                    Ok(message) => Some(Message::text(message.to_string())),
+                    Ok(message) => vec![Message::text(message.to_string())],
                     // It fell behind: closing makes it connect again and be told all anew.
                     Err(_) => return,
                 },
                 changed = self.frames.changed() => match changed {
-                    Ok(()) => self.frames.borrow_and_update().clone().map(|frame| Message::binary(frame.to_vec())),
+                    Ok(()) => self.show(),
                     Err(_) => return,
                 },
             };
-            if let Some(answer) = answer
-                && socket.send(answer).await.is_err()
-            {
-                return;
+            for answer in answers {
+                if socket.send(answer).await.is_err() {
+                    return;
+                }
             }
         }
+    }
+
+    /// The newest frame, and where what the robot asked about is in it, if that is news.
+    fn show(&mut self) -> Vec<Message> {
+        let frame = self.frames.borrow_and_update().clone();
+        let marks = self.marks.news(&self.view, &self.hub.marked());
+        let frame = frame.map(|frame| Message::binary(frame.to_vec()));
+        frame.into_iter().chain(marks.map(|marks| Message::text(marks.to_string()))).collect()
     }
 
     fn answer(&mut self, text: &str) -> Option<Message> {

@@ -25,9 +25,10 @@ use crate::{
     hub::Hub,
     limits::{LONGEST_TEXT, Limits, MOST_PAGES},
     page,
+    questionnaire::Given,
     robots::Visitor,
     talk::Talk,
-    view::{Frame, View, Viewing},
+    view::{Frame, Marks, View, Viewing},
     web::Live,
 };
 
@@ -62,6 +63,8 @@ enum FromPage {
     Release,
     /// The keys as they are held now, as speeds: along the heading, turning, and the head's pitch.
     Drive { forward_m_s: f32, turn_rad_s: f32, pitch_rad_s: f32 },
+    /// Somebody answers a questionnaire: an answer a question.
+    Answer { questionnaire: String, answers: Vec<Option<Given>> },
     /// Somebody does something to an object with the body's hand.
     Act { deed: Deed, object: u32 },
 }
@@ -74,7 +77,7 @@ pub async fn converse(hub: Arc<Hub>, live: Live, mut socket: WebSocket, key: u64
         return;
     };
     let number = live.talk.visitor(key);
-    for message in std::iter::once(page::you(number).to_string()).chain(first) {
+    for message in std::iter::once(page::you(number, &live.talk.answered(number)).to_string()).chain(first) {
         if socket.send(Message::text(message)).await.is_err() {
             return;
         }
@@ -93,8 +96,7 @@ struct Visit {
     limits: Limits,
     driver: Option<Driver>,
     aim: Aim,
-    /// Where the numbered objects are, as the page was told.
-    marks: Vec<(usize, [f32; 2])>,
+    marks: Marks,
     /// Since when the page has been asked whether it is there, without a word from it.
     asked_at: Option<Instant>,
 }
@@ -126,7 +128,7 @@ impl Visit {
             limits: Limits::new(now),
             driver: None,
             aim,
-            marks: Vec::new(),
+            marks: Marks::default(),
             asked_at: None,
         }
     }
@@ -185,16 +187,7 @@ impl Visit {
 
     /// Where what the robot asks about is in the newest frame, if that is news.
     fn mark(&mut self) -> Option<Message> {
-        let marked = self.hub.marked();
-        if marked.is_empty() && self.marks.is_empty() {
-            return None;
-        }
-        let places = (1..).zip(self.view.places(&marked));
-        let marks: Vec<(usize, [f32; 2])> = places.filter_map(|(number, place)| Some((number, place?))).collect();
-        (marks != self.marks).then(|| {
-            self.marks = marks;
-            tell(&page::marks(self.view.camera, &self.marks))
-        })
+        self.marks.news(&self.view, &self.hub.marked()).as_ref().map(tell)
     }
 
     /// What is before the driven body, if that is news.
@@ -287,6 +280,7 @@ impl Visit {
                 self.driver = Some(Driver::claim(&self.live.drivers, body)?);
             }
             FromPage::Release => self.driver = None,
+            FromPage::Answer { questionnaire, answers } => return Ok(vec![self.survey(&questionnaire, &answers)]),
             FromPage::Act { deed, object } => return self.act(deed, ObjectId(object)),
             FromPage::Say { text } => self.say(&text, received_nanos).await?,
             FromPage::Choose { object } => self.choose(ObjectId(object), received_nanos).await?,
@@ -366,6 +360,14 @@ impl Visit {
     async fn choose(&mut self, object: ObjectId, received_nanos: u64) -> Result<(), String> {
         let visitor = self.visitor();
         self.tell_robot(move |talk| talk.choose(object, visitor, received_nanos)).await
+    }
+
+    fn survey(&self, questionnaire: &str, given: &[Option<Given>]) -> Message {
+        let problem = self.live.survey.answer(self.number, questionnaire, given).err();
+        if problem.is_none() {
+            self.live.talk.note_answered(self.number, questionnaire);
+        }
+        tell(&page::answered(questionnaire, problem.map(|problem| problem.to_string()).as_deref()))
     }
 
     fn visitor(&self) -> Visitor {

@@ -11,13 +11,14 @@ use axum::{
 };
 
 use crate::{
-    driving::Drivers, hub::Hub, limits::LONGEST_MESSAGE, screening::Screening, talk::Talk, token, viewer, visit,
+    driving::Drivers, hub::Hub, limits::LONGEST_MESSAGE, screening::Screening, survey::Survey, talk::Talk, token,
+    viewer, visit,
 };
 
 const INDEX: &str = include_str!("../../web/index.html");
 const SCRIPT_TYPE: &str = "text/javascript; charset=utf-8";
 /// The page's other files: path, media type, text.
-const FILES: [(&str, &str, &str); 10] = [
+const FILES: [(&str, &str, &str); 11] = [
     ("/app.js", SCRIPT_TYPE, include_str!("../../web/app.js")),
     ("/dom.js", SCRIPT_TYPE, include_str!("../../web/dom.js")),
     ("/driving.js", SCRIPT_TYPE, include_str!("../../web/driving.js")),
@@ -25,6 +26,7 @@ const FILES: [(&str, &str, &str); 10] = [
     ("/goals.js", SCRIPT_TYPE, include_str!("../../web/goals.js")),
     ("/replay.js", SCRIPT_TYPE, include_str!("../../web/replay.js")),
     ("/socket.js", SCRIPT_TYPE, include_str!("../../web/socket.js")),
+    ("/survey.js", SCRIPT_TYPE, include_str!("../../web/survey.js")),
     ("/talk.js", SCRIPT_TYPE, include_str!("../../web/talk.js")),
     ("/view.js", SCRIPT_TYPE, include_str!("../../web/view.js")),
     ("/style.css", "text/css; charset=utf-8", include_str!("../../web/style.css")),
@@ -59,6 +61,8 @@ pub struct Live {
     pub talk: Arc<Talk>,
     /// Who drives.
     pub drivers: Arc<Drivers>,
+    /// What people are asked.
+    pub survey: Arc<Survey>,
 }
 
 /// Serves on `listener` until `over`.

@@ -27,6 +27,8 @@ pub enum Topic {
     Pulses,
     /// What people and robots say, and plans.
     Dialog,
+    /// What people answer to questionnaires.
+    Answers,
     /// One camera's frames; the latest is kept for late joiners.
     Frames(CameraId),
 }
@@ -38,7 +40,7 @@ pub enum Wake {
     Commands,
     /// [`Topic::Pulses`].
     Pulses,
-    /// [`Topic::Dialog`], [`Topic::Events`] and [`Topic::Steps`].
+    /// [`Topic::Dialog`], [`Topic::Events`], [`Topic::Steps`] and [`Topic::Answers`].
     Talk,
     /// [`Topic::State`], [`Topic::Mission`], [`Topic::Ticks`] and [`Topic::Snapshots`].
     State,
@@ -56,6 +58,7 @@ impl Topic {
             Self::Frames(_) | Self::Snapshots => 2,
             Self::Pulses => 8,
             Self::Control => 64,
+            Self::Answers => 128,
             Self::Events | Self::Commands | Self::Dialog => 512,
         }
     }
@@ -67,6 +70,7 @@ impl Topic {
             // That which a session began with, and the latest.
             Self::Snapshots => 2,
             Self::Dialog | Self::Events => 512,
+            Self::Answers => 128,
             Self::Ticks => 2048,
             Self::Commands | Self::Control | Self::Steps => 0,
         }
@@ -77,6 +81,7 @@ impl Topic {
         match self {
             // Recorders and viewers.
             Self::Ticks | Self::Snapshots => 8,
+            Self::Answers => 4,
             _ => 32,
         }
     }
@@ -88,6 +93,7 @@ impl Topic {
             Self::Events | Self::Commands => Some(1024),
             Self::Control | Self::Pulses => Some(128),
             Self::Steps => Some(512),
+            Self::Answers => Some(3072),
             Self::Dialog => Some(48 << 10),
             Self::Mission | Self::State | Self::Ticks | Self::Snapshots | Self::Frames(_) => None,
         }
@@ -101,12 +107,16 @@ impl Topic {
             Self::Frames(CameraId::Egocentric(_)) => 300 * 300 * 16 + (16 << 10),
             Self::Frames(_) => 854 * 480 * 8 + (16 << 10),
             Self::Ticks => 512,
-            Self::Events | Self::Commands | Self::Dialog | Self::Control | Self::Steps | Self::Pulses => {
-                match self.most_bytes() {
-                    Some(bytes) => bytes,
-                    None => 0,
-                }
-            }
+            Self::Events
+            | Self::Commands
+            | Self::Dialog
+            | Self::Answers
+            | Self::Control
+            | Self::Steps
+            | Self::Pulses => match self.most_bytes() {
+                Some(bytes) => bytes,
+                None => 0,
+            },
         }
     }
 
@@ -115,7 +125,7 @@ impl Topic {
     pub const fn wake(self) -> Wake {
         match self {
             Self::Mission | Self::State | Self::Ticks | Self::Snapshots => Wake::State,
-            Self::Events | Self::Dialog | Self::Steps => Wake::Talk,
+            Self::Events | Self::Dialog | Self::Steps | Self::Answers => Wake::Talk,
             Self::Commands | Self::Control => Wake::Commands,
             Self::Pulses => Wake::Pulses,
             Self::Frames(camera) => Wake::Frames(camera),
@@ -136,6 +146,7 @@ impl fmt::Display for Topic {
             Self::Steps => f.write_str("steps"),
             Self::Pulses => f.write_str("pulses"),
             Self::Dialog => f.write_str("dialog"),
+            Self::Answers => f.write_str("answers"),
             Self::Frames(camera) => write!(f, "frames/{camera}"),
         }
     }
@@ -157,7 +168,8 @@ impl fmt::Display for Wake {
 mod tests {
     use super::*;
     use crate::message::{
-        CommandMessage, ControlMessage, DialogKind, DialogMessage, EventMessage, PlanStep, PulseMessage, StepView,
+        AnswerMessage, CommandMessage, ControlMessage, DialogKind, DialogMessage, EventMessage, PlanStep, PulseMessage,
+        StepView,
     };
 
     #[test]
@@ -171,6 +183,7 @@ mod tests {
             (Topic::Pulses, size_of::<PulseMessage>()),
             (Topic::Steps, StepView::bytes(32)),
             (Topic::Dialog, dialog.bytes()),
+            (Topic::Answers, size_of::<AnswerMessage>()),
         ];
         for (topic, bytes) in largest {
             assert!(topic.most_bytes().is_some_and(|most| bytes <= most), "{topic}: {bytes}");

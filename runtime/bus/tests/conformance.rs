@@ -339,7 +339,7 @@ fn publishers_count_their_readers() {
 fn listeners_wake_for_their_group_alone() {
     let groups = [
         (Wake::Commands, vec![Topic::Commands]),
-        (Wake::Talk, vec![Topic::Dialog, Topic::Events]),
+        (Wake::Talk, vec![Topic::Dialog, Topic::Events, Topic::Answers]),
         (Wake::State, vec![Topic::State, Topic::Mission, Topic::Ticks, Topic::Snapshots]),
         (Wake::Frames(CameraId::Eyes(1)), vec![Topic::Frames(CameraId::Eyes(1))]),
         (Wake::Frames(CameraId::Eyes(2)), vec![Topic::Frames(CameraId::Eyes(2))]),

@@ -8,8 +8,8 @@ mod payload;
 use cohabit_bus::{
     Topic,
     message::{
-        CommandMessage, Control, ControlMessage, DialogView, EventMessage, FrameView, Malformed, MissionMessage, Plane,
-        PulseMessage, SnapshotView, StateView, StepView, Thing, TickView, read,
+        AnswerMessage, CommandMessage, Control, ControlMessage, DialogView, EventMessage, FrameView, Malformed,
+        MissionMessage, Plane, PulseMessage, SnapshotView, StateView, StepView, Thing, TickView, read,
     },
 };
 use cohabit_cdf::Action;
@@ -35,6 +35,10 @@ fn look(topic: Topic, payload: &[u8]) -> Result<(), Malformed> {
         Topic::Dialog => {
             let view = DialogView::new(payload)?;
             drop(format!("{view:?} {:?} {:?}", view.header.kind(), view.header.status()));
+        }
+        Topic::Answers => {
+            let answer: AnswerMessage = read(payload)?;
+            drop(format!("{answer:?} {:?}", answer.kind()));
         }
         Topic::Frames(_) => {
             let view = FrameView::new(payload)?;

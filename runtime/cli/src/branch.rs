@@ -43,6 +43,8 @@ pub struct Branched {
     pub appearance: Appearance,
     /// Where that was.
     pub from: Branch,
+    /// Its log.
+    pub log: Log,
 }
 
 impl BranchPoint {
@@ -66,7 +68,7 @@ impl BranchPoint {
         let plan = replayer.plan().clone();
         let (world, appearance) = replayer.into_parts();
         let from = Branch { session: log.session.session.clone(), run: log.session.run, tick };
-        Ok(Branched { plan, world, appearance, from })
+        Ok(Branched { plan, world, appearance, from, log })
     }
 
     /// The same choice as an argument of another process.

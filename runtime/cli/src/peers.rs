@@ -14,7 +14,7 @@ use std::{
 use anyhow::Context as _;
 use cohabit_bus::{CameraId, Session, Shm, message::Control};
 use cohabit_cdf::BodyRequest;
-use cohabit_dialog::{Asking, DialogConfig, Drivable, Endpoint, Knows};
+use cohabit_dialog::{Asking, DialogConfig, Drivable, Endpoint, Knows, Questionnaire};
 use cohabit_engine::{Appearance, BuildError, CameraPlan, SessionPlan, Simulator};
 use cohabit_record::{Branch, LogError, RecordError, Recorder, SessionFacts};
 use cohabit_render::MeshLibrary;
@@ -247,6 +247,10 @@ pub struct Listening {
     /// When the robot asks: `never`, when it is `unsure`, or `always`, and before it does anything
     #[arg(long, value_name = "WHEN", default_value_t)]
     pub ask: Asking,
+    /// What people are asked on the page, before they play or after: `sus` (System Usability Scale), `tlx` (NASA Task Load
+    /// Index), or a file (TOML); as often as needed
+    #[arg(long = "questionnaire", value_name = "NAME|FILE")]
+    pub questionnaires: Vec<String>,
 }
 
 /// The longest name of a body, in characters.
@@ -286,6 +290,26 @@ impl fmt::Display for BodyName {
     }
 }
 
+impl Listening {
+    /// What people are asked.
+    pub fn questionnaires(&self) -> anyhow::Result<Vec<Questionnaire>> {
+        let found: Vec<_> = self
+            .questionnaires
+            .iter()
+            .map(|name| Questionnaire::find(name))
+            .collect::<Result<_, _>>()
+            .map_err(bad_input)?;
+        let twice = found.iter().enumerate().find(|(at, one)| found[..*at].iter().any(|other| other.name == one.name));
+        match twice {
+            Some((_, one)) => Err(bad_input(format!(
+                "`--questionnaire`: two are called `{}` (a file's name, without its ending, is that of its questionnaire)",
+                one.name
+            ))),
+            None => Ok(found),
+        }
+    }
+}
+
 impl Dialog {
     /// Runs the dialog service. Prints its address, and later the time of the first frame shown, for its supervisor.
     pub fn run(&self) -> anyhow::Result<()> {
@@ -295,7 +319,7 @@ impl Dialog {
         let SessionPlan { catalog, layout, mission, .. } = file.plan(message.header.seed, &message.bodies)?;
         let config = DialogConfig {
             session: self.joining.session.clone(),
-            journal: Some(Session::new(&self.joining.session).map_err(bad_input)?.folder().join("dialog.journal")),
+            journal: Some(journal(&Session::new(&self.joining.session).map_err(bad_input)?)),
             cameras: message.cameras,
             listen: SocketAddr::new(self.listening.listen, self.listening.port),
             knows: self.listening.knows,
@@ -304,11 +328,17 @@ impl Dialog {
             robots: self.robots.clone(),
             names: self.listening.names.iter().map(|one| (one.body, one.name.clone())).collect(),
             drivable: self.listening.drive,
+            questionnaires: self.listening.questionnaires()?,
             on_first_frame: Box::new(|| tell_supervisor("shown")),
         };
         let ready = |address: &str| tell_supervisor(&format!("page {address}"));
         cohabit_dialog::serve(Arc::new(bus), mission, layout, catalog, config, &stop, ready).map_err(bad_input)
     }
+}
+
+/// Where the dialog service of a session writes down what was said.
+pub fn journal(session: &Session) -> PathBuf {
+    session.folder().join("dialog.journal")
 }
 
 fn tell_supervisor(line: &str) {

@@ -6,10 +6,12 @@ use std::{
     time::{Instant, SystemTime, UNIX_EPOCH},
 };
 
+use anyhow::Context as _;
 use cohabit_bus::{CameraId, Session, SessionError, Shm, message::Plane};
 use cohabit_cdf::BodyRequest;
+use cohabit_dialog::{Questionnaire, begin_after};
 use cohabit_engine::{CameraPlan, SessionPlan};
-use cohabit_record::Branch;
+use cohabit_record::{Branch, Log};
 
 use crate::{
     branch::{BranchPoint, Branched},
@@ -69,17 +71,25 @@ pub struct Play {
     watching: Watching,
 }
 
+/// A session that this one goes on from.
+struct Before {
+    from: Branch,
+    log: Log,
+}
+
 impl Play {
     /// Plays until the user ends it.
     pub fn run(&self) -> anyhow::Result<()> {
         let began = Instant::now();
         let stop = stop::on_request()?;
         let seed = self.seed.unwrap_or_else(clock_seed);
-        let (plan, branched) = self.plan(seed)?;
+        let (plan, before) = self.plan(seed)?;
         MindRequest::check(&self.minds, &plan)?;
+        let robots: Vec<u32> = self.minds.iter().filter_map(MindRequest::spoken_to).collect();
         self.check_frames(&plan)?;
         self.rendering.check()?;
         self.watching.check()?;
+        let questionnaires = self.listening.questionnaires()?;
         for name in Session::wipe_dead() {
             println!("cleaned up after session {name}, which was not ended");
         }
@@ -93,12 +103,15 @@ impl Play {
         })?;
         // What all peers share is made before there are any: one that is killed while it makes it would keep the others out.
         drop(Shm::join(&session).map_err(bad_input)?);
+        if let Some(Before { from, log }) = &before {
+            let journal = peers::journal(&session);
+            begin_after(&journal, log, from.tick, robots.len() > 1).with_context(|| journal.display().to_string())?;
+        }
         println!("Playing \"{}\" ({})", plan.mission.goal_text, plan.file);
-        let robots: Vec<u32> = self.minds.iter().filter_map(MindRequest::spoken_to).collect();
         let timing = self.timing.with_agents(self.minds.len());
         let sim = Role::sim(self.world_arguments(seed), self.rendering, timing);
         let minds = self.minds.iter().map(|agent| Role::agent(agent, seed));
-        let noted = self.noted(&plan, &robots, branched);
+        let noted = self.noted(&plan, &robots, &questionnaires, before.map(|before| before.from));
         let peers = [Role::record(&log, &noted, self.watching), Role::dialog(&self.listening, &robots)];
         let roles = std::iter::once(sim).chain(peers).chain(minds);
         let played = Supervisor::start(&name, roles, began).and_then(|supervisor| supervisor.run(&stop));
@@ -112,17 +125,17 @@ impl Play {
     }
 
     /// What is played, and the session that it goes on from.
-    fn plan(&self, seed: u64) -> anyhow::Result<(SessionPlan, Option<Branch>)> {
-        let (plan, branched) = match &self.branch {
+    fn plan(&self, seed: u64) -> anyhow::Result<(SessionPlan, Option<Before>)> {
+        let (plan, before) = match &self.branch {
             Some(point) => {
-                let Branched { plan, from, .. } = point.open()?;
+                let Branched { plan, from, log, .. } = point.open()?;
                 println!("Going on from {} (tick {}) of session {}", point.at, from.tick, from.session);
-                (plan, Some(from))
+                (plan, Some(Before { from, log }))
             }
             None => (MissionFile::find(self.mission.as_deref())?.plan(seed, &self.bodies)?, None),
         };
         let cameras = [plan.cameras.as_slice(), &self.cameras].concat();
-        Ok((plan.with_cameras(cameras).map_err(bad_input)?, branched))
+        Ok((plan.with_cameras(cameras).map_err(bad_input)?, before))
     }
 
     /// Says which of the cameras to be recorded are none.
@@ -154,7 +167,13 @@ impl Play {
     }
 
     /// What the log notes of the session.
-    fn noted(&self, plan: &SessionPlan, robots: &[u32], branched: Option<Branch>) -> Noted {
+    fn noted(
+        &self,
+        plan: &SessionPlan,
+        robots: &[u32],
+        questionnaires: &[Questionnaire],
+        branched: Option<Branch>,
+    ) -> Noted {
         let minds = self.minds.iter().map(ToString::to_string).collect::<Vec<_>>().join(" ");
         let Listening { drive, knows, ask, names, .. } = &self.listening;
         let robots = robots.iter().map(u32::to_string).collect::<Vec<_>>().join(",");
@@ -167,7 +186,9 @@ impl Play {
             ("robots", robots),
             ("timing", self.timing.to_string()),
         ];
-        let settings = settings.into_iter().map(|(name, value)| (name.to_owned(), value));
+        let asked = questionnaires.iter().map(|one| one.name.as_str()).collect::<Vec<_>>().join(" ");
+        let asked = (!asked.is_empty()).then_some(("questionnaires", asked));
+        let settings = settings.into_iter().chain(asked).map(|(name, value)| (name.to_owned(), value));
         let names = names.iter().map(|one| (format!("{NAME_OF}{}", one.body), one.name.clone()));
         let settings = settings.chain(names).collect();
         Noted {

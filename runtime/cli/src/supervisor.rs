@@ -74,7 +74,8 @@ impl Role {
         let arguments = ["--listen", &listen, "--port", &port, "--drive", &drive, "--knows", &knows, "--ask", ask];
         let names = listening.names.iter().flat_map(|name| ["--name".to_owned(), name.to_string()]);
         let robots = robots.iter().flat_map(|body| ["--robot".to_owned(), body.to_string()]);
-        let arguments = arguments.map(str::to_owned).into_iter().chain(names).chain(robots);
+        let questionnaires = listening.questionnaires.iter().map(|name| format!("--questionnaire={name}"));
+        let arguments = arguments.map(str::to_owned).into_iter().chain(names).chain(robots).chain(questionnaires);
         Self { name: "dialog", arguments: arguments.map(OsString::from).collect() }
     }
 

@@ -27,6 +27,7 @@ pub struct Written {
     snapshot: Option<u64>,
     events: BTreeMap<u64, u64>,
     dialog: BTreeMap<u64, u64>,
+    answers: BTreeMap<u64, u64>,
 }
 
 impl Written {
@@ -41,6 +42,9 @@ impl Written {
         for entry in &log.dialog {
             written.dialog(entry.run, entry.sequence);
         }
+        for entry in &log.answers {
+            written.answer(entry.run, entry.sequence);
+        }
         written
     }
 
@@ -53,6 +57,11 @@ impl Written {
     /// The same of a dialog message.
     pub(crate) fn dialog(&mut self, run: u64, sequence: u64) -> Option<u64> {
         step(&mut self.dialog, run, sequence)
+    }
+
+    /// The same of an answer.
+    pub(crate) fn answer(&mut self, run: u64, sequence: u64) -> Option<u64> {
+        step(&mut self.answers, run, sequence)
     }
 
     /// The same of a tick.

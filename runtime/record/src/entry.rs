@@ -4,7 +4,10 @@ use std::collections::BTreeMap;
 
 use cohabit_bus::{
     CameraId, Envelope,
-    message::{CommandMessage, DialogView, EventMessage, MissionMessage, TickView},
+    message::{
+        AnswerKind, AnswerMessage, CommandMessage, DialogKind, DialogView, EventMessage, MissionMessage, PlanStep,
+        TickView,
+    },
 };
 use cohabit_cdf::{Action, BodyRequest, Catalog, Layout, Status};
 use serde::{Deserialize, Serialize};
@@ -204,6 +207,11 @@ const fn is_zero(number: &u64) -> bool {
     *number == 0
 }
 
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks so")]
+const fn is_none(person: &u32) -> bool {
+    *person == 0
+}
+
 /// Format 1 had four, and not when the frame was shown.
 fn stamps<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<[u64; 5], D::Error> {
     let found = Vec::<u64>::deserialize(deserializer)?;
@@ -318,6 +326,9 @@ pub struct DialogEntry {
     pub turn: u64,
     /// The body spoken to, or speaking.
     pub body: u32,
+    /// The number of the page at which a person said it; 0 where none did.
+    #[serde(default, skip_serializing_if = "is_none")]
+    pub person: u32,
     /// Which step of the turn's plan.
     pub step: u32,
     /// How the step went.
@@ -334,6 +345,9 @@ pub struct DialogEntry {
     /// A plan's steps.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub steps: Vec<Action>,
+    /// The answers that a question offers.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub offers: Vec<OfferEntry>,
     /// Whose run sent it; 0 where none did.
     #[serde(default, with = "run", skip_serializing_if = "is_zero")]
     pub run: u64,
@@ -342,22 +356,46 @@ pub struct DialogEntry {
     pub sequence: u64,
 }
 
+/// An answer that a question offers.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub struct OfferEntry {
+    /// What it says.
+    pub text: String,
+    /// The object that it means, if it means one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub object: Option<u32>,
+}
+
+impl OfferEntry {
+    fn new(offer: &PlanStep) -> Self {
+        let object = match Action::try_from(offer.action) {
+            Ok(Action::Highlight { object }) => Some(object.0),
+            _ => None,
+        };
+        Self { text: offer.says.as_str().to_owned(), object }
+    }
+}
+
 impl DialogEntry {
     /// The entry of a dialog message as published when `tick` was the newest; `None` if it is of no known kind.
     #[must_use]
     pub fn new(tick: u64, envelope: &Envelope, view: DialogView<'_>) -> Option<Self> {
         let kind = view.header.kind()?;
+        let asks = kind == DialogKind::Question;
+        let action = |step: &PlanStep| Action::try_from(step.action).ok();
         Some(Self {
             tick,
             kind: format!("{kind:?}"),
             turn: view.header.turn,
             body: view.header.body,
+            person: view.header.person,
             step: view.header.step,
             status: view.header.status(),
             sent_nanos: envelope.sent_nanos,
             stamps: view.header.stamps,
             text: view.header.text.as_str().to_owned(),
-            steps: view.steps.iter().filter_map(|step| Action::try_from(step.action).ok()).collect(),
+            steps: if asks { Vec::new() } else { view.steps.iter().filter_map(action).collect() },
+            offers: if asks { view.steps.iter().map(OfferEntry::new).collect() } else { Vec::new() },
             run: envelope.run,
             sequence: envelope.sequence,
         })
@@ -366,7 +404,69 @@ impl DialogEntry {
 
 impl Entry for DialogEntry {
     const TOPIC: &'static str = "/dialog";
-    const SCHEMA: &'static str = r#"{"title":"Dialog","type":"object","properties":{"tick":{"type":"integer"},"kind":{"type":"string"},"turn":{"type":"integer"},"body":{"type":"integer"},"step":{"type":"integer"},"status":{"type":"string"},"sent_nanos":{"type":"integer"},"stamps":{"type":"array","items":{"type":"integer"}},"text":{"type":"string"},"steps":{"type":"array","items":{"type":"object"}},"run":{"type":"string"},"sequence":{"type":"integer"}}}"#;
+    const SCHEMA: &'static str = r#"{"title":"Dialog","type":"object","properties":{"tick":{"type":"integer"},"kind":{"type":"string"},"turn":{"type":"integer"},"body":{"type":"integer"},"person":{"type":"integer"},"step":{"type":"integer"},"status":{"type":"string"},"sent_nanos":{"type":"integer"},"stamps":{"type":"array","items":{"type":"integer"}},"text":{"type":"string"},"steps":{"type":"array","items":{"type":"object"}},"offers":{"type":"array","items":{"type":"object"}},"run":{"type":"string"},"sequence":{"type":"integer"}}}"#;
+}
+
+/// What a person answered to a question of a questionnaire; the newest to a question counts.
+#[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]
+pub struct AnswerEntry {
+    /// The newest tick that was recorded before it.
+    pub tick: u64,
+    /// The number of the person's page.
+    pub person: u32,
+    /// The questionnaire's name.
+    pub questionnaire: String,
+    /// Which question, from 1.
+    pub item: u32,
+    /// What was asked.
+    pub question: String,
+    /// What kind of answer it is.
+    pub kind: String,
+    /// The number that was chosen.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub value: Option<i32>,
+    /// The lowest and the highest number of its scale.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scale: Option<[i32; 2]>,
+    /// Whether a high number means little of what the questionnaire measures.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub reversed: bool,
+    /// The words, or what was chosen says.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub text: String,
+    /// Whose run sent it; 0 where none did.
+    #[serde(default, with = "run", skip_serializing_if = "is_zero")]
+    pub run: u64,
+    /// That run's count of answers, from 0.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub sequence: u64,
+}
+
+impl AnswerEntry {
+    /// The entry of an answer as published when `tick` was the newest; `None` if it is of no known kind.
+    #[must_use]
+    pub fn new(tick: u64, envelope: &Envelope, message: &AnswerMessage) -> Option<Self> {
+        let kind = message.kind()?;
+        Some(Self {
+            tick,
+            person: message.person,
+            questionnaire: message.questionnaire.as_str().to_owned(),
+            item: message.item,
+            question: message.question.as_str().to_owned(),
+            kind: format!("{kind:?}"),
+            value: (kind != AnswerKind::Words).then_some(message.value),
+            scale: (kind == AnswerKind::Scale).then_some([message.least, message.most]),
+            reversed: message.reversed != 0,
+            text: message.text.as_str().to_owned(),
+            run: envelope.run,
+            sequence: envelope.sequence,
+        })
+    }
+}
+
+impl Entry for AnswerEntry {
+    const TOPIC: &'static str = "/answers";
+    const SCHEMA: &'static str = r#"{"title":"Answer","type":"object","properties":{"tick":{"type":"integer"},"person":{"type":"integer"},"questionnaire":{"type":"string"},"item":{"type":"integer"},"question":{"type":"string"},"kind":{"type":"string"},"value":{"type":"integer"},"scale":{"type":"array","items":{"type":"integer"}},"reversed":{"type":"boolean"},"text":{"type":"string"},"run":{"type":"string"},"sequence":{"type":"integer"}}}"#;
 }
 
 /// What nobody took down in time: the recorder was away, or its disk slow, for longer than the bus keeps messages.
@@ -380,28 +480,31 @@ pub struct GapEntry {
     pub events: u64,
     /// Dialog messages that are missing.
     pub dialog: u64,
+    /// Answers to questionnaires that are missing.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub answers: u64,
 }
 
 impl GapEntry {
     /// Messages missing in all.
     #[must_use]
     pub const fn messages(&self) -> u64 {
-        self.ticks + self.events + self.dialog
+        self.ticks + self.events + self.dialog + self.answers
     }
 }
 
 impl std::fmt::Display for GapEntry {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { tick, ticks, events, dialog } = self;
+        let Self { tick, ticks, events, dialog, answers } = self;
         write!(
             f,
-            "{ticks} ticks, {events} events and {dialog} dialog messages before tick {tick} are missing: its recorder was \
-             away, or its disk slow, for too long"
-        )
+            "{ticks} ticks, {events} events, {dialog} dialog messages and {answers} answers before tick {tick} "
+        )?;
+        f.write_str("are missing: its recorder was away, or its disk slow, for too long")
     }
 }
 
 impl Entry for GapEntry {
     const TOPIC: &'static str = "/gaps";
-    const SCHEMA: &'static str = r#"{"title":"Gap","type":"object","properties":{"tick":{"type":"integer"},"ticks":{"type":"integer"},"events":{"type":"integer"},"dialog":{"type":"integer"}}}"#;
+    const SCHEMA: &'static str = r#"{"title":"Gap","type":"object","properties":{"tick":{"type":"integer"},"ticks":{"type":"integer"},"events":{"type":"integer"},"dialog":{"type":"integer"},"answers":{"type":"integer"}}}"#;
 }

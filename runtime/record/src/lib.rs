@@ -37,7 +37,10 @@ mod turns;
 mod writer;
 
 pub use carry_on::Written;
-pub use entry::{Branch, DialogEntry, EventEntry, GapEntry, InputEntry, SessionEntry, SessionFacts, TickEntry};
+pub use entry::{
+    AnswerEntry, Branch, DialogEntry, EventEntry, GapEntry, InputEntry, OfferEntry, SessionEntry, SessionFacts,
+    TickEntry,
+};
 pub use log::{Log, LogError, Lost};
 pub use recorder::{RecordError, Recorder, Recording};
 pub use snapshot::Snapshot;

@@ -9,7 +9,7 @@ use std::{
 use mcap::records::Record;
 
 use crate::{
-    entry::{DialogEntry, EventEntry, GapEntry, SessionEntry, TickEntry},
+    entry::{AnswerEntry, DialogEntry, EventEntry, GapEntry, SessionEntry, TickEntry},
     reading::Reading,
     segment::{Piece, SEAL, Segments, index_problem, records},
     snapshot::Snapshot,
@@ -26,6 +26,8 @@ pub struct Log {
     pub events: Vec<EventEntry>,
     /// What was said.
     pub dialog: Vec<DialogEntry>,
+    /// What people answered to questionnaires.
+    pub answers: Vec<AnswerEntry>,
     /// The state after some of the ticks.
     pub snapshots: Vec<Snapshot>,
     /// What its recorder could not take down in time.
@@ -244,23 +246,24 @@ impl Opening<'_> {
 
     fn open(self) -> Result<Log, LogError> {
         let Self { path, reading, lost, cut } = self;
-        let Reading { session, ticks, events, dialog, snapshots, gaps, .. } = reading;
+        let Reading { session, ticks, events, dialog, answers, snapshots, gaps, .. } = reading;
         let reason = "no session entry".to_owned();
         let session = session.ok_or(LogError::NotALog { path: path.to_owned(), reason })?;
-        Ok(Log { session, ticks, events, dialog, snapshots, gaps, lost, cut })
+        Ok(Log { session, ticks, events, dialog, answers, snapshots, gaps, lost, cut })
     }
 }
 
 impl Log {
-    /// How many ticks, events and dialog messages are missing between the first and the last of their senders: nobody
+    /// How many ticks, events, dialog messages and answers are missing between the first and the last of their senders: nobody
     /// took them down in time, or they were damaged since.
     #[must_use]
     pub fn missing(&self) -> u64 {
         let events = self.events.iter().map(|entry| (entry.run, entry.sequence));
         let dialog = self.dialog.iter().map(|entry| (entry.run, entry.sequence));
+        let answers = self.answers.iter().map(|entry| (entry.run, entry.sequence));
         // Ticks are of the simulator's run alone, whose number does not matter.
         let ticks = self.ticks.iter().map(|entry| (1, entry.tick));
-        gaps(events) + gaps(dialog) + gaps(ticks)
+        gaps(events) + gaps(dialog) + gaps(answers) + gaps(ticks)
     }
 
     /// What is wrong with it, a sentence each; nothing, if it is as its recorder wrote it and nothing was missed.

@@ -6,7 +6,7 @@ use mcap::records::Record;
 use serde::de::DeserializeOwned;
 
 use crate::{
-    entry::{DialogEntry, Entry, EventEntry, GapEntry, SessionEntry, TickEntry},
+    entry::{AnswerEntry, DialogEntry, Entry, EventEntry, GapEntry, SessionEntry, TickEntry},
     snapshot::Snapshot,
     writer::SNAPSHOTS,
 };
@@ -18,6 +18,7 @@ pub(crate) struct Reading {
     pub ticks: Vec<TickEntry>,
     pub events: Vec<EventEntry>,
     pub dialog: Vec<DialogEntry>,
+    pub answers: Vec<AnswerEntry>,
     pub snapshots: Vec<Snapshot>,
     pub gaps: Vec<GapEntry>,
     channels: BTreeMap<u16, String>,
@@ -40,6 +41,7 @@ impl Reading {
                 }
                 Some(EventEntry::TOPIC) => self.events.push(decode(data)?),
                 Some(DialogEntry::TOPIC) => self.take_dialog(decode(data)?),
+                Some(AnswerEntry::TOPIC) => self.answers.push(decode(data)?),
                 Some(GapEntry::TOPIC) => self.gaps.push(decode(data)?),
                 Some(SNAPSHOTS) => self.snapshots.push(Snapshot::read(data).ok_or("a snapshot is too short")?),
                 // A newer program may have written it.

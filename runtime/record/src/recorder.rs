@@ -9,14 +9,14 @@ use std::{
 
 use cohabit_bus::{
     BusError, CameraId, Heart, Inbox, Listener, Sample, Topic, Transport, Wake,
-    message::{self, DialogView, EventMessage, Malformed, MissionMessage, NONE, SnapshotView, TickView},
+    message::{self, AnswerMessage, DialogView, EventMessage, Malformed, MissionMessage, NONE, SnapshotView, TickView},
     process_of, wall_nanos,
 };
 use cohabit_cdf::{Catalog, Layout, mission::read_mission};
 
 use crate::{
     carry_on::Written,
-    entry::{DialogEntry, EventEntry, GapEntry, SessionEntry, SessionFacts, TickEntry},
+    entry::{AnswerEntry, DialogEntry, EventEntry, GapEntry, SessionEntry, SessionFacts, TickEntry},
     film::Film,
     log::LogError,
     snapshot::Snapshot,
@@ -53,6 +53,7 @@ pub struct Recorder {
     ticks: Inbox,
     events: Inbox,
     dialog: Inbox,
+    answers: Inbox,
     snapshots: Inbox,
     films: Vec<Film>,
     listener: Box<dyn Listener>,
@@ -77,6 +78,7 @@ impl Recorder {
             ticks: Inbox::new(bus, Topic::Ticks)?,
             events: Inbox::new(bus, Topic::Events)?,
             dialog: Inbox::new(bus, Topic::Dialog)?,
+            answers: Inbox::new(bus, Topic::Answers)?,
             snapshots: Inbox::new(bus, Topic::Snapshots)?,
             films: Vec::new(),
             listener: bus.listener(Wake::State)?,
@@ -220,6 +222,7 @@ impl Recording {
             ticks: self.drain_ticks()?,
             events: self.drain_events(now)?,
             dialog: self.drain_dialog(now)?,
+            answers: self.drain_answers(now)?,
             tick: self.written.tick,
         };
         self.drain_snapshots(now)?;
@@ -275,6 +278,22 @@ impl Recording {
             missing += gap;
             if let Some(entry) = DialogEntry::new(written.tick, envelope, DialogView::new(sample.payload())?) {
                 log.dialog(&entry, now)?;
+            }
+        }
+        Ok(missing)
+    }
+
+    fn drain_answers(&mut self, now: u64) -> Result<u64, RecordError> {
+        let Self { recorder, log, written, .. } = self;
+        let mut missing = 0;
+        while let Some((sample, answer)) =
+            recorder.answers.next(|sample| message::read::<AnswerMessage>(sample.payload()))?
+        {
+            let envelope = sample.envelope();
+            let Some(gap) = written.answer(envelope.run, envelope.sequence) else { continue };
+            missing += gap;
+            if let Some(entry) = AnswerEntry::new(written.tick, envelope, &answer) {
+                log.answer(&entry, now)?;
             }
         }
         Ok(missing)

@@ -15,7 +15,7 @@ use mcap::{
 
 use crate::{
     carry_on::{Written, carry_on},
-    entry::{DialogEntry, Entry, EventEntry, GapEntry, SessionEntry, TickEntry},
+    entry::{AnswerEntry, DialogEntry, Entry, EventEntry, GapEntry, SessionEntry, TickEntry},
     film::FrameEntry,
     log::LogError,
     segment::{SEAL, Seal},
@@ -96,6 +96,7 @@ impl LogWriter {
         self.open_channel::<TickEntry>()?;
         self.open_channel::<EventEntry>()?;
         self.open_channel::<DialogEntry>()?;
+        self.open_channel::<AnswerEntry>()?;
         self.open_channel::<GapEntry>()?;
         let id = self.mcap.add_channel(0, SNAPSHOTS, SNAPSHOT_ENCODING, &BTreeMap::new());
         self.channels.insert(SNAPSHOTS.to_owned(), self.written(id)?);
@@ -137,6 +138,14 @@ impl LogWriter {
     /// # Errors
     /// [`LogError::Write`].
     pub fn dialog(&mut self, entry: &DialogEntry, wall_nanos: u64) -> Result<(), LogError> {
+        self.append(entry, wall_nanos)
+    }
+
+    /// Appends an answer to a questionnaire.
+    ///
+    /// # Errors
+    /// [`LogError::Write`].
+    pub fn answer(&mut self, entry: &AnswerEntry, wall_nanos: u64) -> Result<(), LogError> {
         self.append(entry, wall_nanos)
     }
 

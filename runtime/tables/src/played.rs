@@ -45,6 +45,7 @@ pub enum PlayedError {
 pub(crate) struct Turn {
     pub number: u64,
     pub body: u32,
+    pub person: u32,
     pub tick: u64,
     pub said: String,
     pub replies: Vec<String>,
@@ -162,8 +163,9 @@ fn turns(dialog: &[DialogEntry]) -> (Vec<Turn>, BTreeMap<u64, u64>) {
     let (mut turns, mut turn_of) = (Vec::<Turn>::new(), BTreeMap::new());
     for entry in dialog {
         if entry.kind == "Utterance" {
-            let (number, body, tick, said) = (entry.turn, entry.body, entry.tick, entry.text.clone());
-            turns.push(Turn { number, body, tick, said, told: (entry.sent_nanos, None), ..Turn::default() });
+            let (number, body, person, tick) = (entry.turn, entry.body, entry.person, entry.tick);
+            let (said, told) = (entry.text.clone(), (entry.sent_nanos, None));
+            turns.push(Turn { number, body, person, tick, said, told, ..Turn::default() });
             turn_of.insert(number, number);
             continue;
         }

@@ -3,6 +3,7 @@
 use std::{borrow::Cow, collections::BTreeSet};
 
 use crate::{
+    answers,
     played::{Played, seconds},
     table::{
         Cell, Field,
@@ -51,14 +52,22 @@ pub fn table(played: &[Played]) -> Table {
         unit: "",
         meaning: Cow::Owned(format!("how it was played: what its log notes as `{name}`")),
     };
+    let scored = answers::scored(played);
+    let score = |name: &&str| Field {
+        name: Cow::Owned(format!("score_{name}")),
+        kind: Real,
+        unit: "",
+        meaning: Cow::Owned(format!("what the questionnaire {name} amounts to, 0 to 100, mean over persons")),
+    };
     let row = |played: &Played| {
         let own = |name: &&str| Cell::maybe(played.log.session.settings.get(*name), Cell::text);
-        row(played).into_iter().chain(settings.iter().map(own)).collect()
+        let score = |name: &&str| Cell::maybe(played.score(name), Cell::Real);
+        row(played).into_iter().chain(settings.iter().map(own)).chain(scored.iter().map(score)).collect()
     };
     Table {
         name: "sessions",
         meaning: "a session, as its log tells it",
-        fields: FIELDS.into_iter().chain(settings.iter().map(setting)).collect(),
+        fields: FIELDS.into_iter().chain(settings.iter().map(setting)).chain(scored.iter().map(score)).collect(),
         rows: played.iter().map(row).collect(),
     }
 }

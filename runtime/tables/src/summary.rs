@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use crate::{
+    answers,
     fit::{Fit, value},
     interval::{mean_95, wilson_95},
     played::Played,
@@ -41,7 +42,7 @@ pub struct Group {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Measure {
     /// The outcome.
-    pub outcome: &'static str,
+    pub outcome: String,
     /// Its unit; empty where it has none.
     pub unit: &'static str,
     /// Sessions that have it.
@@ -71,34 +72,58 @@ const MISSION: &str = "mission";
 const PARTICIPANT: &str = "participant";
 
 /// What comes of a session.
-struct Outcome {
-    name: &'static str,
-    unit: &'static str,
-    is_share: bool,
-    of: fn(&Played) -> Option<f64>,
+enum Outcome<'a> {
+    /// A share.
+    Success,
+    /// How many there were.
+    Count(&'static str, fn(&Played) -> usize),
+    /// How long something took.
+    Latency(&'static str, Latency),
+    /// What a questionnaire amounts to, 0 to 100.
+    Score(&'a str),
 }
 
-impl Outcome {
-    const fn count(name: &'static str, of: fn(&Played) -> Option<f64>) -> Self {
-        Self { name, unit: "", is_share: false, of }
+impl Outcome<'_> {
+    fn name(&self) -> String {
+        match self {
+            Self::Success => "success".to_owned(),
+            Self::Count(name, _) | Self::Latency(name, _) => (*name).to_owned(),
+            Self::Score(questionnaire) => format!("{questionnaire} score"),
+        }
     }
 
-    const fn latency(name: &'static str, of: fn(&Played) -> Option<f64>) -> Self {
-        Self { name, unit: "ms", is_share: false, of }
+    const fn unit(&self) -> &'static str {
+        match self {
+            Self::Latency(..) => "ms",
+            Self::Success | Self::Count(..) | Self::Score(_) => "",
+        }
+    }
+
+    fn of(&self, played: &Played) -> Option<f64> {
+        match self {
+            Self::Success => played.success().map(|success| f64::from(u8::from(success))),
+            Self::Count(_, count) => Some(count(played) as f64),
+            Self::Latency(_, which) => played.mean_ms(*which),
+            Self::Score(questionnaire) => played.score(questionnaire),
+        }
     }
 }
 
-const OUTCOMES: [Outcome; 9] = [
-    Outcome { is_share: true, ..Outcome::count("success", |played| Some(f64::from(u8::from(played.success()?)))) },
-    Outcome::count("actions", |played| Some(played.robots_actions().count() as f64)),
-    Outcome::count("failed actions", |played| Some(played.failed_actions() as f64)),
-    Outcome::count("questions", |played| Some(played.questions() as f64)),
-    Outcome::latency("answered", |played| played.mean_ms(Latency::Answered)),
-    Outcome::latency("understood", |played| played.mean_ms(Latency::Understood)),
-    Outcome::latency("moved", |played| played.mean_ms(Latency::Moved)),
-    Outcome::latency("framed", |played| played.mean_ms(Latency::Framed)),
-    Outcome::latency("shown", |played| played.mean_ms(Latency::Shown)),
-];
+/// All that may come of these sessions.
+fn outcomes(played: &[Played]) -> Vec<Outcome<'_>> {
+    let always = [
+        Outcome::Success,
+        Outcome::Count("actions", |played| played.robots_actions().count()),
+        Outcome::Count("failed actions", Played::failed_actions),
+        Outcome::Count("questions", Played::questions),
+        Outcome::Latency("answered", Latency::Answered),
+        Outcome::Latency("understood", Latency::Understood),
+        Outcome::Latency("moved", Latency::Moved),
+        Outcome::Latency("framed", Latency::Framed),
+        Outcome::Latency("shown", Latency::Shown),
+    ];
+    always.into_iter().chain(answers::scored(played).into_iter().map(Outcome::Score)).collect()
+}
 
 /// All that a session may be compared by.
 fn conditions(played: &Played) -> BTreeMap<String, String> {
@@ -122,21 +147,22 @@ impl Summary {
         for (played, own) in played.iter().zip(&own) {
             groups.entry(names.iter().map(|name| value(own, name)).collect()).or_default().push(played);
         }
+        let outcomes = outcomes(played);
         let of_key = |(key, members): (Vec<&str>, Vec<&Played>)| {
             let conditions = names.iter().cloned().zip(key.into_iter().map(str::to_owned)).collect();
-            Group::new(conditions, &members)
+            Group::new(conditions, &members, &outcomes)
         };
-        let all = Group::new(BTreeMap::new(), &played.iter().collect::<Vec<_>>());
+        let all = Group::new(BTreeMap::new(), &played.iter().collect::<Vec<_>>(), &outcomes);
         let each = groups.into_iter().map(of_key).filter(|group| !group.conditions.is_empty());
-        let fit = |outcome: &Outcome| {
+        let fit = |outcome: &Outcome<'_>| {
             let observed: Vec<_> =
-                played.iter().zip(&own).filter_map(|(played, own)| Some(((outcome.of)(played)?, own))).collect();
-            (!observed.is_empty()).then(|| Fit::new(outcome.name, outcome.unit, &names, &observed))
+                played.iter().zip(&own).filter_map(|(played, own)| Some((outcome.of(played)?, own))).collect();
+            (!observed.is_empty()).then(|| Fit::new(&outcome.name(), outcome.unit(), &names, &observed))
         };
         Ok(Self {
             sessions: played.len(),
             groups: std::iter::once(all).chain(each).collect(),
-            fits: if names.is_empty() { Vec::new() } else { OUTCOMES.iter().filter_map(fit).collect() },
+            fits: if names.is_empty() { Vec::new() } else { outcomes.iter().filter_map(fit).collect() },
             conditions: names,
         })
     }
@@ -162,26 +188,26 @@ fn known(by: &[String], own: &[BTreeMap<String, String>]) -> Result<Vec<String>,
 }
 
 impl Group {
-    fn new(conditions: BTreeMap<String, String>, members: &[&Played]) -> Self {
-        let measure = |outcome: &Outcome| {
-            let values: Vec<f64> = members.iter().filter_map(|played| (outcome.of)(played)).collect();
+    fn new(conditions: BTreeMap<String, String>, members: &[&Played], outcomes: &[Outcome<'_>]) -> Self {
+        let measure = |outcome: &Outcome<'_>| {
+            let values: Vec<f64> = members.iter().filter_map(|played| outcome.of(played)).collect();
             Measure::new(outcome, &values)
         };
-        Self { conditions, sessions: members.len(), measures: OUTCOMES.iter().map(measure).collect() }
+        Self { conditions, sessions: members.len(), measures: outcomes.iter().map(measure).collect() }
     }
 }
 
 impl Measure {
-    fn new(outcome: &Outcome, values: &[f64]) -> Self {
+    fn new(outcome: &Outcome<'_>, values: &[f64]) -> Self {
         let sum: f64 = values.iter().sum();
         let interval_95 = match values.len() {
             0 => None,
-            count if outcome.is_share => Some(wilson_95(sum as usize, count)),
+            count if matches!(outcome, Outcome::Success) => Some(wilson_95(sum as usize, count)),
             _ => mean_95(values),
         };
         Self {
-            outcome: outcome.name,
-            unit: outcome.unit,
+            outcome: outcome.name(),
+            unit: outcome.unit(),
             sessions: values.len(),
             mean: (!values.is_empty()).then(|| sum / values.len() as f64),
             interval_95,

@@ -9,10 +9,11 @@ use crate::{
     },
 };
 
-const FIELDS: [Field; 18] = [
+const FIELDS: [Field; 19] = [
     Field::new("session", Text, "", "the session, as in the table of sessions"),
     Field::new("turn", Whole, "", "the turn: counts what people said in the session, from 1"),
     Field::new("body", Whole, "", "the body that was spoken to"),
+    Field::new("person", Whole, "", "the number of the page at which it was said; 0 where that was not noted"),
     Field::new("tick", Whole, "", "the newest tick when it was said"),
     Field::new("time_s", Real, "s", "simulated time when it was said"),
     Field::new("said", Text, "", "what was said"),
@@ -49,6 +50,7 @@ fn row(played: &Played, turn: &Turn) -> Vec<Cell> {
         Cell::text(&played.name),
         Cell::whole(turn.number),
         Cell::whole(turn.body),
+        Cell::whole(turn.person),
         Cell::whole(turn.tick),
         Cell::Real(seconds(turn.tick)),
         Cell::text(&turn.said),

@@ -14,7 +14,7 @@ pub enum DialogKind {
     Utterance = 1,
     /// The robot says something.
     Reply = 2,
-    /// The robot asks something, and waits for an answer.
+    /// The robot asks something, and waits for an answer; the steps that follow are answers that it offers.
     Question = 3,
     /// What the robot is to do about a turn: steps follow. A new plan ends the one before.
     Plan = 4,
@@ -58,8 +58,8 @@ pub struct DialogHeader {
     status: u32,
     /// Steps that follow.
     pub steps: u32,
-    /// Zero.
-    pub reserved: u32,
+    /// The number of the page at which a person said it; 0 where none did.
+    pub person: u32,
     /// [`monotonic_nanos`](crate::monotonic_nanos) of: text received, understood, first motion, first changed frame,
     /// that frame shown by a page; 0 where it did not happen (yet).
     pub stamps: [u64; 5],
@@ -67,7 +67,7 @@ pub struct DialogHeader {
     pub text: Text<2046>,
 }
 
-/// One step of a plan.
+/// One step of a plan; or an answer that a question offers, which is to look at an object, or to say something.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct PlanStep {
@@ -82,7 +82,7 @@ pub struct PlanStep {
 pub struct DialogMessage {
     /// All but the steps.
     pub header: DialogHeader,
-    /// The steps of a plan.
+    /// The steps of a plan, or the answers of a question.
     pub steps: Vec<PlanStep>,
 }
 
@@ -129,7 +129,7 @@ impl DialogMessage {
 pub struct DialogView<'a> {
     /// All but the steps.
     pub header: &'a DialogHeader,
-    /// The steps of a plan.
+    /// The steps of a plan, or the answers of a question.
     pub steps: &'a [PlanStep],
 }
 

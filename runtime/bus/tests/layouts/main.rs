@@ -10,9 +10,9 @@ use std::{fs, path::Path};
 use cohabit_bus::{
     Envelope, Topic,
     message::{
-        ActionRecord, BodyRecord, CameraRecord, CommandMessage, ControlMessage, DialogHeader, EventMessage,
-        FrameHeader, GoalRecord, MissionHeader, NoteRecord, ObjectRecord, PlanStep, PulseMessage, SeenRecord,
-        SnapshotHeader, StateHeader, StepHeader, TickHeader,
+        ActionRecord, AnswerMessage, BodyRecord, CameraRecord, CommandMessage, ControlMessage, DialogHeader,
+        EventMessage, FrameHeader, GoalRecord, MissionHeader, NoteRecord, ObjectRecord, PlanStep, PulseMessage,
+        SeenRecord, SnapshotHeader, StateHeader, StepHeader, TickHeader,
     },
 };
 
@@ -28,6 +28,7 @@ macro_rules! sizes {
 /// What the compiler makes of each record that can be named from outside.
 const SIZES: &[(&str, usize)] = &sizes![
     ActionRecord,
+    AnswerMessage,
     BodyRecord,
     CameraRecord,
     CommandMessage,

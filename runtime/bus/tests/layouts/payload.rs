@@ -3,9 +3,9 @@
 use cohabit_bus::{
     Block, CameraId, Topic,
     message::{
-        BodyRecord, CameraKind, CameraRecord, CommandMessage, Control, ControlMessage, DialogKind, DialogMessage,
-        EventKind, EventMessage, FrameLayout, GoalRecord, MissionMessage, NoteRecord, ObjectRecord, PlanStep, Plane,
-        PulseMessage, SnapshotView, StateParts, StepView, TickMessage,
+        AnswerKind, AnswerMessage, BodyRecord, CameraKind, CameraRecord, CommandMessage, Control, ControlMessage,
+        DialogKind, DialogMessage, EventKind, EventMessage, FrameLayout, GoalRecord, MissionMessage, NoteRecord,
+        ObjectRecord, PlanStep, Plane, PulseMessage, SnapshotView, StateParts, StepView, TickMessage,
     },
 };
 use cohabit_cdf::{BodyKind, BodyRequest};
@@ -32,7 +32,8 @@ pub fn topics() -> Vec<Topic> {
         Topic::Control => Some(Topic::Steps),
         Topic::Steps => Some(Topic::Pulses),
         Topic::Pulses => Some(Topic::Dialog),
-        Topic::Dialog => Some(Topic::Frames(CameraId::Egocentric(0))),
+        Topic::Dialog => Some(Topic::Answers),
+        Topic::Answers => Some(Topic::Frames(CameraId::Egocentric(0))),
         Topic::Frames(_) => None,
     };
     std::iter::successors(Some(Topic::Mission), |topic| next(*topic)).collect()
@@ -67,6 +68,7 @@ impl Payload {
             Topic::Steps => ("steps", "StepHeader", &[("u64", "due")], ", the runs of those whose turn it is"),
             Topic::Pulses => ("pulses", "PulseMessage", &[], ""),
             Topic::Dialog => ("dialog", "DialogHeader", &[("PlanStep", "steps")], ""),
+            Topic::Answers => ("answers", "AnswerMessage", &[], ""),
             Topic::Frames(_) => (
                 "frames/<camera>",
                 "FrameHeader",
@@ -142,6 +144,9 @@ pub fn example(topic: Topic) -> Example {
             message.steps = vec![PlanStep::default()];
             filled(message.bytes(), |bytes| message.write(bytes))
         }
+        Topic::Answers => filled(size_of::<AnswerMessage>(), |bytes| {
+            bytes.copy_from_slice(bytemuck::bytes_of(&AnswerMessage::new(AnswerKind::Scale)));
+        }),
         Topic::Frames(_) => {
             let layout = FrameLayout::new(5, 3, 1, &Plane::ALL, 2);
             filled(layout.bytes(), |bytes| layout.split_mut(bytes).header.seen = 1)

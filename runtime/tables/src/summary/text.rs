@@ -15,7 +15,7 @@ impl fmt::Display for Summary {
         let labels: Vec<String> = self.groups.iter().map(Group::label).collect();
         let shown: Vec<&Measure> = self.groups[0].measures.iter().filter(|measure| measure.mean.is_some()).collect();
         let mut rows = vec![vec![String::new(), "sessions".to_owned()]];
-        rows[0].extend(shown.iter().map(|measure| with_unit(measure.outcome, measure.unit)));
+        rows[0].extend(shown.iter().map(|measure| with_unit(&measure.outcome, measure.unit)));
         for (group, label) in self.groups.iter().zip(labels) {
             let own = shown.iter().map(|wanted| {
                 let measure = group.measures.iter().find(|measure| measure.outcome == wanted.outcome);

@@ -1,0 +1,173 @@
+// Questionnaires: asked before people play or after, one after the other, and answered when the session says so.
+
+import { byId, element, toast } from "./dom.js";
+import { send } from "./socket.js";
+
+/** Scales with more places than these are sliders. */
+const MOST_BUTTONS = 11;
+/** So long the end of a mission is seen before questions cover it, ms. */
+const ENDING_SEEN_MS = 3500;
+
+const card = byId("survey");
+let questionnaires = [];
+let answered = new Set();
+/** Those that were put off. */
+const later = new Set();
+/** The one that is shown, and how to read its answers. */
+let shown = null;
+let fields = [];
+let endedAt = null;
+
+export function noteAnswered(names = []) {
+  answered = new Set(names);
+}
+
+export function buildSurvey(all = []) {
+  questionnaires = all;
+  if (shown && (answered.has(shown.name) || !questionnaires.some(({ name }) => name === shown.name))) close();
+  showButton();
+}
+
+/** Whether a questionnaire is to be answered now, the mission being over or not. */
+export function askWhenDue({ ending }) {
+  if (ending === "running") endedAt = null;
+  else endedAt ??= performance.now();
+  const isOver = endedAt !== null && performance.now() - endedAt > ENDING_SEEN_MS;
+  const due = asked(isOver).find(({ name }) => !later.has(name));
+  showButton();
+  if (due && !shown) show(due);
+}
+
+function asked(isOver) {
+  return questionnaires.filter(({ name, when }) => !answered.has(name) && (when === "before" || isOver));
+}
+
+function showButton() {
+  byId("survey-open").hidden = !questionnaires.some(({ name }) => !answered.has(name));
+}
+
+function show(questionnaire) {
+  shown = questionnaire;
+  byId("survey-title").textContent = questionnaire.title;
+  byId("survey-about").textContent = questionnaire.about;
+  fields = questionnaire.items.map(fieldOf);
+  byId("survey-items").replaceChildren(...fields.map(({ row }) => row));
+  showProblem("");
+  card.showModal();
+  card.querySelector("form").scrollTop = 0;
+}
+
+function close() {
+  shown = null;
+  card.close();
+}
+
+function fieldOf(item, index) {
+  const row = element("li", "survey-item");
+  const label = element("p", "survey-ask", item.ask);
+  label.id = `survey-ask-${index}`;
+  if (item.optional) label.append(element("span", "survey-optional", " (optional)"));
+  const { control, read } = item.scale ? scaleOf(item.scale, index) : item.choice ? choiceOf(item.choice, index) : wordsOf();
+  control.setAttribute("aria-labelledby", label.id);
+  row.append(label, control);
+  return { row, optional: item.optional, read };
+}
+
+function scaleOf(scale, index) {
+  const places = (scale.most - scale.least) / scale.step + 1;
+  return places > MOST_BUTTONS ? sliderOf(scale) : buttonsOf(scale, places, index);
+}
+
+function ends({ left, right, least, most }) {
+  return [element("span", "survey-end", left || String(least)), element("span", "survey-end", right || String(most))];
+}
+
+function buttonsOf(scale, places, index) {
+  const control = element("div", "survey-scale");
+  control.role = "radiogroup";
+  const [left, right] = ends(scale);
+  const row = element("div", "survey-places");
+  row.append(...Array.from({ length: places }, (_, at) => radio(index, scale.least + at * scale.step, String(scale.least + at * scale.step))));
+  control.append(left, row, right);
+  return { control, read: () => chosen(control) };
+}
+
+function choiceOf(choices, index) {
+  const control = element("div", "survey-choice");
+  control.role = "radiogroup";
+  control.append(...choices.map((text, at) => radio(index, at + 1, text)));
+  return { control, read: () => chosen(control) };
+}
+
+function radio(index, value, text) {
+  const label = element("label", "survey-radio");
+  const input = element("input");
+  Object.assign(input, { type: "radio", name: `survey-${index}`, value });
+  label.append(input, element("span", "", text));
+  return label;
+}
+
+function chosen(control) {
+  const input = control.querySelector("input:checked");
+  return input ? { value: Number(input.value) } : null;
+}
+
+/** A slider that has no value before it is touched. */
+function sliderOf(scale) {
+  const control = element("div", "survey-scale slider untouched");
+  const input = element("input");
+  Object.assign(input, { type: "range", min: scale.least, max: scale.most, step: scale.step });
+  const touch = () => control.classList.remove("untouched");
+  for (const kind of ["input", "pointerup"]) input.addEventListener(kind, touch);
+  const [left, right] = ends(scale);
+  control.append(left, input, right);
+  return { control, read: () => (control.classList.contains("untouched") ? null : { value: Number(input.value) }) };
+}
+
+function wordsOf() {
+  const control = element("textarea", "survey-words");
+  Object.assign(control, { rows: 3, maxLength: 2000 });
+  return { control, read: () => (control.value.trim() ? { text: control.value.trim() } : null) };
+}
+
+function showProblem(text) {
+  byId("survey-problem").textContent = text;
+}
+
+byId("survey-form").addEventListener("submit", (event) => {
+  event.preventDefault();
+  const answers = fields.map(({ read }) => read());
+  const missing = fields.findIndex(({ optional }, index) => !optional && answers[index] === null);
+  fields.forEach(({ row }, index) => row.classList.toggle("missing", index === missing));
+  if (missing >= 0) {
+    showProblem(`Question ${missing + 1} has no answer yet.`);
+    fields[missing].row.scrollIntoView({ block: "center" });
+  } else if (send({ type: "answer", questionnaire: shown.name, answers })) {
+    showProblem("");
+  } else {
+    showProblem("There is no connection at the moment; please try again in a while.");
+  }
+});
+
+export function takeAnswered({ questionnaire, problem }) {
+  if (problem) {
+    showProblem(problem);
+    return;
+  }
+  answered.add(questionnaire);
+  if (shown?.name === questionnaire) close();
+  showButton();
+  toast("Thank you.");
+}
+
+function putOff() {
+  if (shown) later.add(shown.name);
+  shown = null;
+}
+
+byId("survey-later").addEventListener("click", () => card.close());
+card.addEventListener("close", putOff);
+byId("survey-open").addEventListener("click", () => {
+  const [first] = questionnaires.filter(({ name }) => !answered.has(name));
+  if (first) show(first);
+});

@@ -1,0 +1,88 @@
+//! Questionnaires: asked on the page, answered once, recorded, and told in tables.
+
+use std::fs;
+
+use cohabit_record::Log;
+use cohabit_tests::{Page, Play, Scratch, run};
+use rustix::process::Signal;
+use serde_json::{Value, json};
+
+use crate::COHABIT;
+
+const AFTER: &str = r#"
+title = "Your robot"
+
+[[item]]
+ask = "Which did you like?"
+choice = ["its voice", "its manners"]
+
+[[item]]
+ask = "What would you change?"
+words = true
+optional = true
+"#;
+
+fn answer(page: &mut Page, questionnaire: &str, answers: &Value) -> Value {
+    page.send(&json!({ "type": "answer", "questionnaire": questionnaire, "answers": answers })).unwrap();
+    page.wait("what comes of the answers", |_, message| message["type"] == "answered").unwrap()["problem"].clone()
+}
+
+#[test]
+fn questionnaires_are_answered_recorded_and_scored() {
+    let scratch = Scratch::new("survey");
+    let file = scratch.write("after.toml", AFTER);
+    let play = Play::start(COHABIT, &["--questionnaire", "sus", "--questionnaire", &file]).unwrap();
+    let mut page = Page::open_as(play.authority(), 7).unwrap();
+    let hello = page.wait("the greeting", |_, message| message["type"] == "hello").unwrap();
+    let names: Vec<_> = hello["questionnaires"].as_array().unwrap().iter().map(|one| one["name"].clone()).collect();
+    assert_eq!(names, ["sus", "after"]);
+    let scale = |value: i32| json!({ "value": value });
+    let mut sus: Vec<Value> = [4, 2, 4, 2, 4, 2, 4, 2, 4].map(scale).into();
+    assert_eq!(answer(&mut page, "sus", &json!(sus)), "9 answers to 10 questions.");
+    sus.push(scale(6));
+    assert_eq!(answer(&mut page, "sus", &json!(sus)), "Question 10 has no answer yet.");
+    sus[9] = scale(5);
+    assert_eq!(answer(&mut page, "sus", &json!(sus)), Value::Null);
+    // What was answered is known to a service that takes a dead one's place.
+    play.send("dialog", Signal::KILL).unwrap();
+    let mut again = (0..100)
+        .find_map(|_| {
+            std::thread::sleep(std::time::Duration::from_millis(100));
+            Page::open_as(play.authority(), 7).ok()
+        })
+        .expect("the page's service again");
+    let you = again.wait("who it is", |_, message| message["type"] == "you").unwrap();
+    assert_eq!((&you["visitor"], &you["answered"]), (&json!(1), &json!(["sus"])));
+    assert_eq!(answer(&mut again, "after", &json!([scale(2), { "text": " Less talk. " }])), Value::Null);
+    let play = play.end().unwrap();
+
+    let log = Log::open(&play.log).unwrap();
+    assert_eq!(log.problems(), [] as [&str; 0]);
+    assert_eq!(log.session.settings["questionnaires"], "sus after");
+    assert_eq!(log.answers.len(), 12);
+    let (log, tables) = (play.log.to_str().unwrap(), scratch.path("tables"));
+    let done = run(COHABIT, &["export", log, "--out", &tables, "--summary"]).unwrap();
+    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+    let printed = String::from_utf8_lossy(&done.stdout).into_owned();
+    // By Brooke: 2.5 times the sum of what is above 1, or below 5 where it is reversed.
+    assert!(printed.contains("sus score") && printed.contains("67.5"), "{printed}");
+    let rows = fs::read_to_string(format!("{tables}/questionnaires.csv")).unwrap();
+    assert_eq!(rows.lines().count(), 13, "{rows}");
+    assert!(rows.contains("its manners") && rows.contains("Less talk."), "{rows}");
+}
+
+#[test]
+fn what_cannot_be_asked_is_said_before_anything_starts() {
+    let scratch = Scratch::new("survey-refused");
+    let wrong = scratch.write("wrong.toml", "title = \"T\"\n[[item]]\nask = \"How?\"\n");
+    for (arguments, part) in [
+        (["--questionnaire", "none-such"].to_vec(), "sus, tlx"),
+        (["--questionnaire", &wrong].to_vec(), "item 1: it has no `scale`"),
+        (["--questionnaire", "sus", "--questionnaire", "sus"].to_vec(), "two are called `sus`"),
+    ] {
+        let output = run(COHABIT, &[&["play"][..], &arguments].concat()).unwrap();
+        let text = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{text}");
+        assert!(text.contains(part), "no `{part}` in {text}");
+    }
+}
