@@ -7,11 +7,12 @@ import { enlargeMap, floor } from "./floor.js";
 import { expandGoals, takeState } from "./goals.js";
 import { buildReplay, takePlayer, takeReplayKey, takeRewind } from "./replay.js";
 import { greeted, listen, watchSilence } from "./socket.js";
+import { forgetSounds, hearState, takeSound } from "./sound.js";
 import { clearChat, endDoing, input, say, takeLatency, meet, takeLine, takeProgress, takeTurn, takeYou } from "./talk.js";
 import { awaitFrame, buildViews, nextView, showRate, takeFrame, takeMarks, takeSeen } from "./view.js";
 
 /** What tests and curious people may read. */
-window.cohabit = { frames: 0, state: null, latency: null, view: null, seen: null, driving: null, aim: null, marks: [] };
+window.cohabit = { frames: 0, state: null, latency: null, view: null, seen: null, driving: null, aim: null, marks: [], sounds: [] };
 
 function takeHello({ session, mission, map, views, drivable, robots, replay }) {
   greeted();
@@ -25,6 +26,7 @@ function takeHello({ session, mission, map, views, drivable, robots, replay }) {
   meet(robots);
   clearChat();
   endDoing();
+  forgetSounds();
   buildReplay(replay);
 }
 
@@ -56,6 +58,7 @@ listen({
     takeState(state);
     takePlayer(state);
     showHeld(state);
+    hearState(state);
   },
   chat: takeLine,
   progress: takeProgress,
@@ -69,7 +72,11 @@ listen({
   driving: takeDriving,
   aim: takeAim,
   acted: takeActed,
-  rewind: takeRewind,
+  rewind: (past) => {
+    forgetSounds();
+    takeRewind(past);
+  },
+  sound: takeSound,
   highlight: (message) => floor.pointOut(message),
   error: (message) => toast(message.text),
   frame: takeFrame,

@@ -317,6 +317,14 @@ pub fn highlight(object: &ObjectRecord, number: Option<usize>, catalog: &Catalog
     json!({ "type": "highlight", "x": x, "y": y, "name": name(object, catalog), "number": number })
 }
 
+/// Something can be heard of an object: what kind of sound, of what class, and where, m.
+pub fn sound(object: &ObjectRecord, kind: &str, catalog: &Catalog) -> Value {
+    let [x, y, z] = object.position_m;
+    let known = usize::from(object.class) < catalog.classes().len();
+    let class = if known { &catalog.class(ClassId(object.class)).id } else { "" };
+    json!({ "type": "sound", "kind": kind.to_lowercase(), "of": class, "x": x, "y": y, "z": z })
+}
+
 /// Where in the picture of a camera the numbered answers to the open question are: number, and how far from the left and
 /// from the top, 0 to 1.
 pub fn marks(camera: CameraId, marks: &[(usize, [f32; 2])]) -> Value {

@@ -18,6 +18,8 @@ pub enum Told {
     Page(Value),
     /// An object was pointed out.
     Highlight(u32),
+    /// An object could be heard: which, and what kind of sound.
+    Sound(u32, String),
 }
 
 /// All that pages were told, in order, each with its tick; and of `several` robots by which.
@@ -56,6 +58,7 @@ fn happened(entry: &EventEntry) -> Option<Told> {
         EventKind::MissionComplete => line(LineKind::Ending, page::COMPLETE.to_owned()),
         EventKind::MissionFailed => line(LineKind::Ending, page::failed(&entry.text)),
         EventKind::Highlighted => entry.object.map(Told::Highlight),
+        EventKind::Sound => entry.object.map(|object| Told::Sound(object, text())),
         _ => None,
     }
 }

@@ -246,6 +246,7 @@ impl Talk {
             Some(EventKind::MissionComplete) => game(LineKind::Ending, page::COMPLETE),
             Some(EventKind::MissionFailed) => game(LineKind::Ending, &page::failed(text)),
             Some(EventKind::Highlighted) if is_new => self.show_highlight(&mut inner, event.object)?,
+            Some(EventKind::Sound) if is_new => self.sound(&mut inner, event.object, text)?,
             _ => {}
         }
         Ok(())
@@ -272,6 +273,17 @@ impl Talk {
         if let Some(record) = state.objects.iter().find(|record| record.object == object) {
             let at = inner.numbered().and_then(|asked| asked.candidates.iter().position(|one| one.0 == object));
             self.hub.tell(&page::highlight(record, at.map(|at| at + 1), &self.catalog));
+        }
+        Ok(())
+    }
+
+    /// Has the pages play what can be heard of an object.
+    fn sound(&self, inner: &mut Inner, object: u32, kind: &str) -> Result<(), DialogError> {
+        inner.refresh()?;
+        let Some(sample) = &inner.newest else { return Ok(()) };
+        let state = StateView::new(sample.payload())?;
+        if let Some(record) = state.objects.iter().find(|record| record.object == object) {
+            self.hub.tell(&page::sound(record, kind, &self.catalog));
         }
         Ok(())
     }

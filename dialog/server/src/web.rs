@@ -17,7 +17,7 @@ use crate::{
 const INDEX: &str = include_str!("../../web/index.html");
 const SCRIPT_TYPE: &str = "text/javascript; charset=utf-8";
 /// The page's other files: path, media type, text.
-const FILES: [(&str, &str, &str); 10] = [
+const FILES: [(&str, &str, &str); 11] = [
     ("/app.js", SCRIPT_TYPE, include_str!("../../web/app.js")),
     ("/dom.js", SCRIPT_TYPE, include_str!("../../web/dom.js")),
     ("/driving.js", SCRIPT_TYPE, include_str!("../../web/driving.js")),
@@ -25,6 +25,7 @@ const FILES: [(&str, &str, &str); 10] = [
     ("/goals.js", SCRIPT_TYPE, include_str!("../../web/goals.js")),
     ("/replay.js", SCRIPT_TYPE, include_str!("../../web/replay.js")),
     ("/socket.js", SCRIPT_TYPE, include_str!("../../web/socket.js")),
+    ("/sound.js", SCRIPT_TYPE, include_str!("../../web/sound.js")),
     ("/talk.js", SCRIPT_TYPE, include_str!("../../web/talk.js")),
     ("/view.js", SCRIPT_TYPE, include_str!("../../web/view.js")),
     ("/style.css", "text/css; charset=utf-8", include_str!("../../web/style.css")),
