@@ -1,6 +1,7 @@
 //! The messages of a session, as they lie in shared memory: fixed records, and lists of them behind a header.
 
 mod action;
+mod audio;
 mod camera;
 mod command;
 mod control;
@@ -16,6 +17,7 @@ mod step;
 mod tick;
 
 pub use action::ActionRecord;
+pub use audio::{AudioHeader, AudioView};
 pub use camera::{CameraKind, CameraRecord};
 pub use command::{CommandKind, CommandMessage};
 pub use control::{Control, ControlMessage};

@@ -2,7 +2,10 @@
 
 use std::fmt;
 
-use crate::camera::CameraId;
+use crate::{
+    camera::CameraId,
+    message::{AudioHeader, AudioView},
+};
 
 /// A topic: one kind of message, from anybody to everybody who subscribes.
 #[derive(Clone, Copy, Debug, Eq, Hash, Ord, PartialEq, PartialOrd)]
@@ -27,6 +30,10 @@ pub enum Topic {
     Pulses,
     /// What people and robots say, and plans.
     Dialog,
+    /// What people say aloud at the pages, as it comes from their microphones.
+    Microphone,
+    /// What robots say aloud.
+    Speech,
     /// One camera's frames; the latest is kept for late joiners.
     Frames(CameraId),
 }
@@ -40,6 +47,8 @@ pub enum Wake {
     Pulses,
     /// [`Topic::Dialog`], [`Topic::Events`] and [`Topic::Steps`].
     Talk,
+    /// [`Topic::Microphone`] and [`Topic::Speech`].
+    Audio,
     /// [`Topic::State`], [`Topic::Mission`], [`Topic::Ticks`] and [`Topic::Snapshots`].
     State,
     /// [`Topic::Frames`] of one camera.
@@ -55,7 +64,8 @@ impl Topic {
             Self::Ticks => 2048,
             Self::Frames(_) | Self::Snapshots => 2,
             Self::Pulses => 8,
-            Self::Control => 64,
+            // Of sound, some seconds.
+            Self::Control | Self::Microphone | Self::Speech => 64,
             Self::Events | Self::Commands | Self::Dialog => 512,
         }
     }
@@ -68,15 +78,15 @@ impl Topic {
             Self::Snapshots => 2,
             Self::Dialog | Self::Events => 512,
             Self::Ticks => 2048,
-            Self::Commands | Self::Control | Self::Steps => 0,
+            Self::Commands | Self::Control | Self::Steps | Self::Microphone | Self::Speech => 0,
         }
     }
 
     /// The most that may subscribe at once. A connection's memory grows with it, times [`Self::depth`].
     pub(crate) const fn most_subscribers(self) -> usize {
         match self {
-            // Recorders and viewers.
-            Self::Ticks | Self::Snapshots => 8,
+            // Recorders and viewers; who listens.
+            Self::Ticks | Self::Snapshots | Self::Microphone | Self::Speech => 8,
             _ => 32,
         }
     }
@@ -89,6 +99,7 @@ impl Topic {
             Self::Control | Self::Pulses => Some(128),
             Self::Steps => Some(512),
             Self::Dialog => Some(48 << 10),
+            Self::Microphone | Self::Speech => Some(AudioView::bytes(AudioHeader::MOST_SAMPLES)),
             Self::Mission | Self::State | Self::Ticks | Self::Snapshots | Self::Frames(_) => None,
         }
     }
@@ -101,12 +112,17 @@ impl Topic {
             Self::Frames(CameraId::Egocentric(_)) => 300 * 300 * 16 + (16 << 10),
             Self::Frames(_) => 854 * 480 * 8 + (16 << 10),
             Self::Ticks => 512,
-            Self::Events | Self::Commands | Self::Dialog | Self::Control | Self::Steps | Self::Pulses => {
-                match self.most_bytes() {
-                    Some(bytes) => bytes,
-                    None => 0,
-                }
-            }
+            Self::Events
+            | Self::Commands
+            | Self::Dialog
+            | Self::Microphone
+            | Self::Speech
+            | Self::Control
+            | Self::Steps
+            | Self::Pulses => match self.most_bytes() {
+                Some(bytes) => bytes,
+                None => 0,
+            },
         }
     }
 
@@ -116,6 +132,7 @@ impl Topic {
         match self {
             Self::Mission | Self::State | Self::Ticks | Self::Snapshots => Wake::State,
             Self::Events | Self::Dialog | Self::Steps => Wake::Talk,
+            Self::Microphone | Self::Speech => Wake::Audio,
             Self::Commands | Self::Control => Wake::Commands,
             Self::Pulses => Wake::Pulses,
             Self::Frames(camera) => Wake::Frames(camera),
@@ -136,6 +153,8 @@ impl fmt::Display for Topic {
             Self::Steps => f.write_str("steps"),
             Self::Pulses => f.write_str("pulses"),
             Self::Dialog => f.write_str("dialog"),
+            Self::Microphone => f.write_str("microphone"),
+            Self::Speech => f.write_str("speech"),
             Self::Frames(camera) => write!(f, "frames/{camera}"),
         }
     }
@@ -147,6 +166,7 @@ impl fmt::Display for Wake {
             Self::Commands => f.write_str("wake/commands"),
             Self::Pulses => f.write_str("wake/pulses"),
             Self::Talk => f.write_str("wake/talk"),
+            Self::Audio => f.write_str("wake/audio"),
             Self::State => f.write_str("wake/state"),
             Self::Frames(camera) => write!(f, "wake/frames/{camera}"),
         }
@@ -171,6 +191,8 @@ mod tests {
             (Topic::Pulses, size_of::<PulseMessage>()),
             (Topic::Steps, StepView::bytes(32)),
             (Topic::Dialog, dialog.bytes()),
+            (Topic::Microphone, AudioView::bytes(1_000_000)),
+            (Topic::Speech, AudioView::bytes(1_000_000)),
         ];
         for (topic, bytes) in largest {
             assert!(topic.most_bytes().is_some_and(|most| bytes <= most), "{topic}: {bytes}");

@@ -8,8 +8,8 @@ mod payload;
 use cohabit_bus::{
     Topic,
     message::{
-        CommandMessage, Control, ControlMessage, DialogView, EventMessage, FrameView, Malformed, MissionMessage, Plane,
-        PulseMessage, SnapshotView, StateView, StepView, Thing, TickView, read,
+        AudioView, CommandMessage, Control, ControlMessage, DialogView, EventMessage, FrameView, Malformed,
+        MissionMessage, Plane, PulseMessage, SnapshotView, StateView, StepView, Thing, TickView, read,
     },
 };
 use cohabit_cdf::Action;
@@ -36,6 +36,7 @@ fn look(topic: Topic, payload: &[u8]) -> Result<(), Malformed> {
             let view = DialogView::new(payload)?;
             drop(format!("{view:?} {:?} {:?}", view.header.kind(), view.header.status()));
         }
+        Topic::Microphone | Topic::Speech => drop(format!("{:?}", AudioView::new(payload)?)),
         Topic::Frames(_) => {
             let view = FrameView::new(payload)?;
             let sums = Plane::ALL.map(|plane| view.plane(plane).map(|bytes| bytes.iter().map(|b| u64::from(*b)).sum()));

@@ -3,9 +3,9 @@
 use cohabit_bus::{
     Block, CameraId, Topic,
     message::{
-        BodyRecord, CameraKind, CameraRecord, CommandMessage, Control, ControlMessage, DialogKind, DialogMessage,
-        EventKind, EventMessage, FrameLayout, GoalRecord, MissionMessage, NoteRecord, ObjectRecord, PlanStep, Plane,
-        PulseMessage, SnapshotView, StateParts, StepView, TickMessage,
+        AudioHeader, AudioView, BodyRecord, CameraKind, CameraRecord, CommandMessage, Control, ControlMessage,
+        DialogKind, DialogMessage, EventKind, EventMessage, FrameLayout, GoalRecord, MissionMessage, NoteRecord,
+        ObjectRecord, PlanStep, Plane, PulseMessage, SnapshotView, StateParts, StepView, TickMessage,
     },
 };
 use cohabit_cdf::{BodyKind, BodyRequest};
@@ -32,7 +32,9 @@ pub fn topics() -> Vec<Topic> {
         Topic::Control => Some(Topic::Steps),
         Topic::Steps => Some(Topic::Pulses),
         Topic::Pulses => Some(Topic::Dialog),
-        Topic::Dialog => Some(Topic::Frames(CameraId::Egocentric(0))),
+        Topic::Dialog => Some(Topic::Microphone),
+        Topic::Microphone => Some(Topic::Speech),
+        Topic::Speech => Some(Topic::Frames(CameraId::Egocentric(0))),
         Topic::Frames(_) => None,
     };
     std::iter::successors(Some(Topic::Mission), |topic| next(*topic)).collect()
@@ -67,6 +69,8 @@ impl Payload {
             Topic::Steps => ("steps", "StepHeader", &[("u64", "due")], ", the runs of those whose turn it is"),
             Topic::Pulses => ("pulses", "PulseMessage", &[], ""),
             Topic::Dialog => ("dialog", "DialogHeader", &[("PlanStep", "steps")], ""),
+            Topic::Microphone => ("microphone", "AudioHeader", &[("i16", "samples")], ""),
+            Topic::Speech => ("speech", "AudioHeader", &[("i16", "samples")], ""),
             Topic::Frames(_) => (
                 "frames/<camera>",
                 "FrameHeader",
@@ -141,6 +145,14 @@ pub fn example(topic: Topic) -> Example {
             let mut message = DialogMessage::new(DialogKind::Plan, 0, 1, "a plan");
             message.steps = vec![PlanStep::default()];
             filled(message.bytes(), |bytes| message.write(bytes))
+        }
+        Topic::Microphone => {
+            let header = AudioHeader::of_visitor(16_000, 1, 1);
+            filled(AudioView::bytes(3), |bytes| AudioView::write(header, &[1; 3], bytes))
+        }
+        Topic::Speech => {
+            let header = AudioHeader::of_body(22_050, 0, 1, 1);
+            filled(AudioView::bytes(3), |bytes| AudioView::write(header.last(), &[1; 3], bytes))
         }
         Topic::Frames(_) => {
             let layout = FrameLayout::new(5, 3, 1, &Plane::ALL, 2);
