@@ -9,12 +9,16 @@ import { buildReplay, takePlayer, takeReplayKey, takeRewind } from "./replay.js"
 import { greeted, listen, watchSilence } from "./socket.js";
 import { forgetSounds, hearState, takeSound } from "./sound.js";
 import { clearChat, endDoing, input, say, takeLatency, meet, takeLine, takeProgress, takeTurn, takeYou } from "./talk.js";
+import { forgetHeard, greetVoice, speakLine, stopListening, takeDeaf, takeHeard, takeHearing, takeHush, takeSpeech, takeVoice, takeVoiceKey } from "./voice.js";
 import { awaitFrame, buildViews, nextView, showRate, takeFrame, takeMarks, takeSeen } from "./view.js";
 
-/** What tests and curious people may read. */
-window.cohabit = { frames: 0, state: null, latency: null, view: null, seen: null, driving: null, aim: null, marks: [], sounds: [] };
+/** Binary messages that are pieces of what robots say begin so; all others are frames. */
+const SPEECH = 2;
 
-function takeHello({ session, mission, map, views, drivable, robots, replay }) {
+/** What tests and curious people may read. */
+window.cohabit = { frames: 0, state: null, latency: null, view: null, seen: null, driving: null, aim: null, marks: [], sounds: [], voice: {} };
+
+function takeHello({ session, mission, map, views, drivable, robots, replay, voice }) {
   greeted();
   byId("session").textContent = replay ? `${session} · recorded` : session;
   document.title = mission.title ? `${mission.title} · Cohabit` : "Cohabit";
@@ -27,6 +31,7 @@ function takeHello({ session, mission, map, views, drivable, robots, replay }) {
   clearChat();
   endDoing();
   forgetSounds();
+  greetVoice(voice);
   buildReplay(replay);
 }
 
@@ -36,9 +41,10 @@ document.addEventListener("keydown", (event) => {
     event.preventDefault();
     nextView();
   }
-  if (event.isComposing || takeReplayKey(event) || takeKey(event) || event.ctrlKey || event.metaKey || event.altKey) return;
+  if (event.isComposing || takeVoiceKey(event) || takeReplayKey(event) || takeKey(event) || event.ctrlKey || event.metaKey || event.altKey) return;
   if (event.key === "Escape" && !event.repeat) {
     enlargeMap(false);
+    forgetHeard();
     say("stop");
   } else if (document.activeElement !== input && !(document.activeElement instanceof HTMLSelectElement) && /^[\p{L}\p{N}/]$/u.test(event.key)) {
     if (event.key === "/") event.preventDefault();
@@ -60,7 +66,10 @@ listen({
     showHeld(state);
     hearState(state);
   },
-  chat: takeLine,
+  chat: (line) => {
+    if (!byId("chat").hasAttribute("aria-busy")) speakLine(line);
+    takeLine(line);
+  },
   progress: takeProgress,
   turn: takeTurn,
   latency: (latency) => {
@@ -79,8 +88,14 @@ listen({
   sound: takeSound,
   highlight: (message) => floor.pointOut(message),
   error: (message) => toast(message.text),
-  frame: takeFrame,
+  voice: takeVoice,
+  hearing: takeHearing,
+  heard: takeHeard,
+  hush: takeHush,
+  deaf: takeDeaf,
+  binary: (buffer) => (new Uint8Array(buffer, 0, 1)[0] === SPEECH ? takeSpeech(buffer) : takeFrame(buffer)),
   lost: () => {
+    stopListening();
     endDoing();
     takeDriving({ body: null, text: "" });
   },

@@ -141,6 +141,12 @@ impl Language {
         Self { asking, ..self }
     }
 
+    /// Whether it asks at all.
+    #[must_use]
+    pub fn may_ask(&self) -> bool {
+        self.asking != Asking::Never
+    }
+
     /// What `utterance` means in `scene`, given the conversation so far. Any text is taken; none panics.
     #[must_use]
     pub fn understand(&self, utterance: &str, scene: &Known, context: &mut Context) -> Understanding {

@@ -17,11 +17,13 @@ mod page;
 mod recorded;
 mod robots;
 mod screening;
+mod spoken;
 mod talk;
 mod token;
 mod view;
 mod viewer;
 mod visit;
+mod voice;
 mod web;
 
 use std::{
@@ -38,13 +40,16 @@ use std::{
 
 use cohabit_bus::{BusError, Transport, message::CameraRecord};
 use cohabit_cdf::{Catalog, Layout, Mission};
+use serde_json::Value;
 
 pub use cohabit_language::{Asking, Interpreter, Knows, Language};
+pub use cohabit_speech::VoiceSettings;
 pub use conversation::{Asked, Conversation, Reaction, TurnEnd};
 pub use driving::{Drivable, NotDrivable};
 pub use interpreter::{Endpoint, EndpointError};
 pub use known::Knowledge;
 pub use screening::{ScreeningConfig, screen};
+pub use voice::VoiceConfig;
 
 use crate::{
     driving::Drivers,
@@ -53,6 +58,7 @@ use crate::{
     robots::{BodyNames, RobotName, Robots},
     talk::{Ears, Talk},
     view::View,
+    voice::Voice,
     web::{Host, Live, Service},
 };
 
@@ -78,6 +84,8 @@ pub struct DialogConfig {
     pub robots: Vec<u32>,
     /// What bodies are called, if not by what they are.
     pub names: BTreeMap<u32, String>,
+    /// How people are heard, and robots speak.
+    pub voice: VoiceConfig,
     /// Called once, when a page says that it has shown a frame.
     pub on_first_frame: Box<dyn Fn() + Send + Sync>,
 }
@@ -126,7 +134,8 @@ pub fn serve(
     let drivers = Arc::new(Drivers::new(Arc::clone(&bus), config.drivable, &bodies, &names));
     let views = page::views(&config.cameras, &names, config.robots.len());
     let robots: Vec<RobotName> = robots::named(&config.robots, &names);
-    let hello = page::hello(&config.session, &mission, &layout, &catalog, &views, drivers.bodies(), &robots);
+    let mut hello = page::hello(&config.session, &mission, &layout, &catalog, &views, drivers.bodies(), &robots);
+    hello["voice"] = config.voice.json();
     let views = views.into_iter().map(|view| View::new(view.camera)).collect();
     let hub = Arc::new(Hub::new(hello, views, config.on_first_frame));
     let journal = Journal::open(config.journal.as_deref());
@@ -135,7 +144,11 @@ pub fn serve(
     let interprets = config.interpreter.is_some();
     let robots = Robots::new(&robots, config.knows, &language, &catalog, &layout, told, interprets);
     let (puzzles, asked) = interprets.then(interpreter::puzzles).unzip();
-    let talk = Talk::new(&*bus, catalog, robots, puzzles, Arc::clone(&hub), Arc::clone(&drivers), journal)?;
+    let (tells, plays) = (Arc::clone(&hub), Arc::clone(&hub));
+    let (tell, play) = (move |message: &Value| tells.tell(message), move |piece| plays.play(piece));
+    let voice = Voice::new(Arc::clone(&bus), config.voice, tell, play);
+    let (shown, spoken) = (Arc::clone(&hub), Arc::clone(&voice));
+    let talk = Talk::new(&*bus, catalog, robots, puzzles, shown, Arc::clone(&drivers), journal, spoken)?;
     let ears = Ears::new(&*bus)?;
     talk.serve_at(place.clone());
     let Place { address, token } = place;
@@ -160,7 +173,7 @@ pub fn serve(
         }
         ready(&token::page_address(address, token.as_deref()));
         let (hub, token) = (Arc::clone(&hub), token.map(Arc::from));
-        let host = Host::Live(Live { talk: Arc::clone(&talk), drivers });
+        let host = Host::Live(Live { talk: Arc::clone(&talk), drivers, voice });
         let served = web::serve(listener, Service { hub, host, token }, &over).map_err(DialogError::Serve);
         ended.store(true, Ordering::Relaxed);
         workers

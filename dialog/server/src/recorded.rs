@@ -40,10 +40,14 @@ fn said(entry: &DialogEntry, several: bool) -> Option<Told> {
         DialogKind::Question => line(Speaker::Robot, LineKind::Question),
         DialogKind::Latency => {
             let [received, understood, moved, shown, drawn] = entry.stamps;
-            let moments = Moments { turn: entry.turn, received, understood, moved, shown, drawn };
+            let moments = Moments { turn: entry.turn, received, understood, moved, shown, drawn, ..Moments::default() };
             Some(Told::Page(page::latency(&moments, None)))
         }
-        DialogKind::Plan | DialogKind::StepStarted | DialogKind::StepEnded | DialogKind::PlanEnded => None,
+        DialogKind::Plan
+        | DialogKind::StepStarted
+        | DialogKind::StepEnded
+        | DialogKind::PlanEnded
+        | DialogKind::Spoken => None,
     }
 }
 

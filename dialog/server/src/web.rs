@@ -12,12 +12,13 @@ use axum::{
 
 use crate::{
     driving::Drivers, hub::Hub, limits::LONGEST_MESSAGE, screening::Screening, talk::Talk, token, viewer, visit,
+    voice::Voice,
 };
 
 const INDEX: &str = include_str!("../../web/index.html");
 const SCRIPT_TYPE: &str = "text/javascript; charset=utf-8";
 /// The page's other files: path, media type, text.
-const FILES: [(&str, &str, &str); 11] = [
+const FILES: [(&str, &str, &str); 13] = [
     ("/app.js", SCRIPT_TYPE, include_str!("../../web/app.js")),
     ("/dom.js", SCRIPT_TYPE, include_str!("../../web/dom.js")),
     ("/driving.js", SCRIPT_TYPE, include_str!("../../web/driving.js")),
@@ -28,6 +29,8 @@ const FILES: [(&str, &str, &str); 11] = [
     ("/sound.js", SCRIPT_TYPE, include_str!("../../web/sound.js")),
     ("/talk.js", SCRIPT_TYPE, include_str!("../../web/talk.js")),
     ("/view.js", SCRIPT_TYPE, include_str!("../../web/view.js")),
+    ("/microphone.js", SCRIPT_TYPE, include_str!("../../web/microphone.js")),
+    ("/voice.js", SCRIPT_TYPE, include_str!("../../web/voice.js")),
     ("/style.css", "text/css; charset=utf-8", include_str!("../../web/style.css")),
 ];
 const ICON: &str = include_str!("../../web/favicon.svg");
@@ -60,6 +63,8 @@ pub struct Live {
     pub talk: Arc<Talk>,
     /// Who drives.
     pub drivers: Arc<Drivers>,
+    /// Voice.
+    pub voice: Arc<Voice>,
 }
 
 /// Serves on `listener` until `over`.

@@ -156,7 +156,7 @@ impl Play {
     /// What the log notes of the session.
     fn noted(&self, plan: &SessionPlan, robots: &[u32], branched: Option<Branch>) -> Noted {
         let minds = self.minds.iter().map(ToString::to_string).collect::<Vec<_>>().join(" ");
-        let Listening { drive, knows, ask, names, .. } = &self.listening;
+        let Listening { drive, knows, ask, names, voice, .. } = &self.listening;
         let robots = robots.iter().map(u32::to_string).collect::<Vec<_>>().join(",");
         let settings = [
             ("agents", minds),
@@ -167,7 +167,7 @@ impl Play {
             ("robots", robots),
             ("timing", self.timing.to_string()),
         ];
-        let settings = settings.into_iter().map(|(name, value)| (name.to_owned(), value));
+        let settings = settings.into_iter().chain(voice.settings()).map(|(name, value)| (name.to_owned(), value));
         let names = names.iter().map(|one| (format!("{NAME_OF}{}", one.body), one.name.clone()));
         let settings = settings.chain(names).collect();
         Noted {
@@ -175,6 +175,7 @@ impl Play {
             settings,
             cameras: plan.cameras.clone(),
             frames: self.frames.clone(),
+            audio: self.listening.voice.record_audio,
             branched,
         }
     }

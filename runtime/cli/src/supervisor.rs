@@ -75,6 +75,7 @@ impl Role {
         let names = listening.names.iter().flat_map(|name| ["--name".to_owned(), name.to_string()]);
         let robots = robots.iter().flat_map(|body| ["--robot".to_owned(), body.to_string()]);
         let arguments = arguments.map(str::to_owned).into_iter().chain(names).chain(robots);
+        let arguments = arguments.chain(listening.voice.arguments());
         Self { name: "dialog", arguments: arguments.map(OsString::from).collect() }
     }
 

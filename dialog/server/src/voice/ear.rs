@@ -1,0 +1,323 @@
+//! How a page is heard: a thread that takes its sound, and tells what is said in it.
+
+use std::{
+    sync::{
+        Arc,
+        mpsc::{Receiver, SyncSender, TrySendError, sync_channel},
+    },
+    thread,
+    time::Duration,
+};
+
+use cohabit_bus::{
+    Publisher, Topic,
+    message::{AudioHeader, AudioView},
+    monotonic_nanos,
+};
+use cohabit_language::says_stop;
+use cohabit_speech::{Bias, Ear, Heard, RATE, Recognition, Turns, Utterance, errors::Injector, from_pcm};
+use serde_json::{Value, json};
+use tokio::sync::mpsc::UnboundedSender;
+
+use super::Voice;
+use crate::{robots::Visitor, spoken::Spoken, talk::Talk};
+
+/// The most bytes of one piece of sound: a second.
+pub const LONGEST_PIECE: usize = 2 * RATE as usize;
+/// The most pieces that wait to be listened to.
+const MOST_WAITING: usize = 64;
+/// How often what was said so far is looked at, s: stop is to be heard soon.
+const PARTIAL_EVERY_S: f32 = 0.32;
+/// What is said for whoever says stop, in whatever words; and how long it takes until the robots' own answer has sounded, ns.
+const STOP: &str = "stop";
+const OWN_STOP_NANOS: u64 = 5_000_000_000;
+/// Sound that comes so much faster than it lasts is not of the rate that the page says.
+const FASTEST: f64 = 1.4;
+/// So much sound must have come before that is told, s.
+const TOLD_AFTER_S: f64 = 3.0;
+
+/// Where a page's sound goes. Its thread ends when this is dropped.
+pub struct Hearing {
+    to: SyncSender<ToEar>,
+    /// When it began, and how many samples came since.
+    began_nanos: u64,
+    samples: u64,
+    is_behind: bool,
+}
+
+/// What an ear is sent.
+enum ToEar {
+    /// Samples, and when they came.
+    Sound(Vec<i16>, u64),
+    /// A key is held: no pause ends what is said.
+    Hold,
+    /// It was released, or the microphone is gone: what was said is all.
+    Finish,
+}
+
+/// What an ear tells its page's visit.
+pub enum FromEar {
+    /// To the page.
+    Page(Value),
+    /// Somebody said this.
+    Said(Box<Spoken>),
+}
+
+/// Whose ear it is.
+pub struct EarAt {
+    /// Voice of the session.
+    pub voice: Arc<Voice>,
+    /// The conversation.
+    pub talk: Arc<Talk>,
+    /// The page's number.
+    pub visitor: u32,
+    /// Who is told.
+    pub to: UnboundedSender<FromEar>,
+}
+
+impl Hearing {
+    /// Listens to a page that sends so many samples a second.
+    ///
+    /// # Errors
+    /// In a sentence for people, if that is another rate than is needed.
+    pub fn begin(at: EarAt, rate: u32) -> Result<Self, String> {
+        if rate != RATE {
+            return Err(format!(
+                "The microphone sends {rate} samples a second, where {RATE} are needed: reload the page, or type."
+            ));
+        }
+        let (to, sent) = sync_channel(MOST_WAITING);
+        thread::spawn(move || at.listen(&sent));
+        Ok(Self { to, began_nanos: monotonic_nanos(), samples: 0, is_behind: false })
+    }
+
+    /// Takes a piece of sound: 16-bit samples, little-endian.
+    ///
+    /// # Errors
+    /// In a sentence for people, if it is none.
+    pub fn take(&mut self, bytes: &[u8], received_nanos: u64) -> Result<(), String> {
+        if bytes.len() % 2 == 1 || bytes.len() > LONGEST_PIECE {
+            return Err(format!(
+                "The microphone sends {} bytes at once, which are no samples of 16 bits, a second at most: text still works.",
+                bytes.len()
+            ));
+        }
+        self.samples += bytes.len() as u64 / 2;
+        let (came_s, lasts_s) =
+            (received_nanos.saturating_sub(self.began_nanos) as f64 * 1e-9, self.samples as f64 / f64::from(RATE));
+        if lasts_s > TOLD_AFTER_S && lasts_s > came_s * FASTEST + 1.0 {
+            return Err(format!(
+                "The microphone sends {:.0} samples a second, where {RATE} are needed: reload the page, or type.",
+                self.samples as f64 / came_s.max(0.1)
+            ));
+        }
+        let samples = bytes.chunks_exact(2).map(|pair| i16::from_le_bytes([pair[0], pair[1]])).collect();
+        match self.to.try_send(ToEar::Sound(samples, received_nanos)) {
+            Ok(()) => {
+                self.is_behind = false;
+                Ok(())
+            }
+            // Told once, until it has caught up.
+            Err(TrySendError::Full(_)) if self.is_behind => Ok(()),
+            Err(TrySendError::Full(_)) => {
+                self.is_behind = true;
+                Err("I cannot listen as fast as you speak; some of that was lost.".to_owned())
+            }
+            Err(TrySendError::Disconnected(_)) => Err("I cannot hear any more: text still works.".to_owned()),
+        }
+    }
+
+    /// A key is held.
+    pub fn hold(&self) {
+        let _ = self.to.send(ToEar::Hold);
+    }
+
+    /// It is released.
+    pub fn finish(&self) {
+        let _ = self.to.send(ToEar::Finish);
+    }
+}
+
+/// An ear at work.
+struct Listening<'a> {
+    at: &'a EarAt,
+    ear: Ear,
+    injector: Injector,
+    bus: Option<Box<dyn Publisher>>,
+    sayings: u64,
+    /// When the newest sample came, ns.
+    newest_nanos: u64,
+    /// When somebody began to say what they are saying.
+    began_nanos: u64,
+    /// Whether what is being said has said stop already, and when somebody last did.
+    has_stopped: bool,
+    stopped_nanos: u64,
+    /// What was said to be likely last.
+    likely: u64,
+}
+
+impl EarAt {
+    fn listen(&self, sent: &Receiver<ToEar>) {
+        let told = self.voice.told();
+        let opened = self.voice.opened().recognizer.clone().zip(self.voice.vad());
+        self.tell(told);
+        let Some((recognizer, vad)) = opened else { return };
+        let turns = Turns { partial_every_s: PARTIAL_EVERY_S, ..Turns::default() };
+        let microphone = self.voice.bus.publisher(Topic::Microphone);
+        let mut listening = Listening {
+            at: self,
+            ear: Ear::new(vad, Box::new(recognizer), turns),
+            injector: Injector::new(self.voice.config.errors, self.voice.config.seed ^ u64::from(self.visitor)),
+            bus: microphone.inspect_err(|error| tracing::warn!("microphones are not heard on the bus: {error}")).ok(),
+            sayings: 0,
+            newest_nanos: monotonic_nanos(),
+            began_nanos: 0,
+            has_stopped: false,
+            stopped_nanos: 0,
+            likely: 0,
+        };
+        listening.expect();
+        while let Ok(next) = sent.recv() {
+            listening.take(next);
+        }
+    }
+
+    fn tell(&self, message: Value) {
+        // A page that is gone need not be told.
+        let _ = self.to.send(FromEar::Page(message));
+    }
+}
+
+impl Listening<'_> {
+    fn take(&mut self, next: ToEar) {
+        let talk = Arc::clone(&self.at.talk);
+        let heard = match next {
+            ToEar::Sound(samples, nanos) => {
+                self.newest_nanos = nanos;
+                self.publish(&samples);
+                self.ear.push(&from_pcm(&samples), &mut |text| talk.is_whole(text))
+            }
+            ToEar::Hold => {
+                self.ear.hold();
+                Ok(Vec::new())
+            }
+            ToEar::Finish => self.ear.finish().map(|heard| heard.into_iter().collect()),
+        };
+        match heard {
+            Ok(heard) => heard.into_iter().for_each(|heard| self.hear(heard)),
+            Err(error) => {
+                tracing::warn!("{error}");
+                self.at.tell(
+                    json!({ "type": "error", "text": format!("I could not hear that: {error}. You can type it.") }),
+                );
+                self.at.tell(state("nothing", ""));
+            }
+        }
+    }
+
+    fn hear(&mut self, heard: Heard) {
+        match heard {
+            Heard::Began { began } => {
+                self.began_nanos = self.nanos_of(began);
+                self.has_stopped = false;
+                self.sayings += 1;
+                self.at.tell(state("began", ""));
+                self.expect();
+            }
+            Heard::Partial { text } => {
+                self.stop_if_said(&text);
+                self.at.tell(state("partial", &text));
+            }
+            Heard::Said(utterance) => self.said(utterance),
+        }
+    }
+
+    /// Stop is done before anything is made of what else is said.
+    fn stop_if_said(&mut self, text: &str) -> bool {
+        let stops = says_stop(text);
+        if stops && !self.has_stopped {
+            self.has_stopped = true;
+            self.stop();
+        }
+        stops
+    }
+
+    /// Has all robots stop, and say no more. Where one of them says that word just now, who said it cannot be told: then it
+    /// is done once, lest they stop each other for ever.
+    fn stop(&mut self) {
+        let now = monotonic_nanos();
+        let is_own_word = says_stop(&self.at.voice.mouth.says(self.began_nanos));
+        if is_own_word && now.saturating_sub(self.stopped_nanos) < OWN_STOP_NANOS {
+            return;
+        }
+        self.stopped_nanos = now;
+        let visitor = Visitor { number: self.at.visitor, body: None };
+        if let Err(error) = self.at.talk.hear(STOP, visitor, now) {
+            tracing::error!("{error}");
+        }
+    }
+
+    fn said(&mut self, utterance: Utterance) {
+        let [began_nanos, ended_nanos] = [utterance.began, utterance.ended].map(|sample| self.nanos_of(sample));
+        let Utterance { recognition, is_cut, .. } = utterance;
+        if is_cut {
+            let text =
+                "That was very long: I listened to the first half a minute. Say it in a few short sentences, please.";
+            self.at.tell(json!({ "type": "error", "text": text }));
+        }
+        let mouth = &self.at.voice.mouth;
+        let own = mouth.is_echo(recognition.best(), began_nanos) || mouth.is_echo(&recognition.raw, began_nanos);
+        let heard = recognition.hypotheses.iter().map(|one| one.text.as_str()).chain([recognition.raw.as_str()]);
+        // Its own words stop it where they say stop, lest somebody's are taken for them.
+        let stops = heard.map(|text| self.stop_if_said(text)).fold(false, |any, one| any || one);
+        if stops || own || recognition.best().is_empty() {
+            self.at.tell(state(if stops { "stopped" } else { "nothing" }, ""));
+            return;
+        }
+        let recognition = self.injector.garble_recognition(&recognition);
+        thread::sleep(self.at.voice.config.delay);
+        let spoken = Spoken { began_nanos, ended_nanos, text_nanos: monotonic_nanos(), ..spoken(recognition) };
+        if spoken.readings.is_empty() {
+            self.at.tell(state("nothing", ""));
+            return;
+        }
+        let _ = self.at.to.send(FromEar::Said(Box::new(spoken)));
+    }
+
+    /// When a sample came, by when the newest did.
+    fn nanos_of(&self, sample: u64) -> u64 {
+        let before = self.ear.position().saturating_sub(sample);
+        self.newest_nanos.saturating_sub(before * 1_000_000_000 / u64::from(RATE))
+    }
+
+    /// Has the recogniser know what is likely to be said, if that is news.
+    fn expect(&mut self) {
+        let Some((likely, forms)) = self.at.talk.likely(self.likely) else { return };
+        self.likely = likely;
+        self.ear.bias(&Bias { words: forms.words, sentences: forms.sentences });
+    }
+
+    fn publish(&mut self, samples: &[i16]) {
+        let Some(bus) = &mut self.bus else { return };
+        let header = AudioHeader::of_visitor(RATE, self.at.visitor, self.sayings);
+        for piece in samples.chunks(AudioHeader::MOST_SAMPLES) {
+            let write = &mut |bytes: &mut [u8]| AudioView::write(header, piece, bytes);
+            if let Err(error) = bus.send(0, AudioView::bytes(piece.len()), write) {
+                tracing::warn!("{error}");
+            }
+        }
+    }
+}
+
+fn spoken(recognition: Recognition) -> Spoken {
+    Spoken {
+        readings: recognition.hypotheses.into_iter().map(|one| (one.text, one.score)).collect(),
+        raw: recognition.raw,
+        confidence: recognition.confidence,
+        ..Spoken::default()
+    }
+}
+
+fn state(state: &str, text: &str) -> Value {
+    json!({ "type": "hearing", "state": state, "text": text })
+}
