@@ -5,7 +5,13 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use crate::{Recognizer, SpeechError, Synthesizer, Vad};
+use crate::{
+    Recognizer, SpeechError, Synthesizer, Vad,
+    earshot::Earshot,
+    moonshine::{self, Moonshine},
+    onnx,
+    silero::Silero,
+};
 
 /// Where an engine comes from.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -143,10 +149,41 @@ impl Engines {
     /// Opens what there is; it takes a second where models are loaded.
     #[must_use]
     pub fn open(settings: &VoiceSettings) -> Self {
-        let _ = settings;
-        Self { vad: Box::new(crate::fake::Loudness), recognizer: None, synthesizer: None, lacks: Vec::new() }
+        let mut lacks = Vec::new();
+        let vad = vad(settings, &mut lacks);
+        let recognizer = recognizer(settings).unwrap_or_else(|error| {
+            lacks.push(Lack { part: Part::Recognition, why: error.to_string(), instead: "text alone".into() });
+            None
+        });
+        Self { vad, recognizer, synthesizer: None, lacks }
     }
 }
+
+fn vad(settings: &VoiceSettings, lacks: &mut Vec<Lack>) -> Box<dyn Vad> {
+    match Silero::open(&settings.folder) {
+        Ok(silero) => Box::new(silero),
+        Err(error) => {
+            let instead = "a simpler detector, which takes more noise for speech".into();
+            lacks.push(Lack { part: Part::VoiceActivity, why: error.to_string(), instead });
+            Box::new(Earshot::new())
+        }
+    }
+}
+
+fn recognizer(settings: &VoiceSettings) -> Result<Option<Box<dyn Recognizer>>, SpeechError> {
+    let library = settings.folder.join(onnx::LIBRARY);
+    match &settings.recognizer {
+        Source::Installed => {
+            let folder = settings.folder.join(moonshine::FOLDER);
+            Ok(Some(Box::new(Moonshine::open(&folder, &library, THREADS)?)))
+        }
+        Source::Folder(folder) => Ok(Some(Box::new(Moonshine::open(folder, &library, THREADS)?))),
+        Source::Wyoming(_) | Source::Off => Ok(None),
+    }
+}
+
+/// A model at work leaves the simulator a core of the two that there are.
+const THREADS: usize = 1;
 
 /// How a file that is not there is said to be got.
 pub(crate) const INSTALL: &str = "`cohabit voice install` fetches it";
