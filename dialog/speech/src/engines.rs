@@ -8,9 +8,12 @@ use std::{
 use crate::{
     Recognizer, SpeechError, Synthesizer, Vad,
     earshot::Earshot,
+    espeak::Espeak,
     moonshine::{self, Moonshine},
     onnx,
+    piper::{self, Piper},
     silero::Silero,
+    wyoming::Wyoming,
 };
 
 /// Where an engine comes from.
@@ -155,7 +158,8 @@ impl Engines {
             lacks.push(Lack { part: Part::Recognition, why: error.to_string(), instead: "text alone".into() });
             None
         });
-        Self { vad, recognizer, synthesizer: None, lacks }
+        let synthesizer = synthesizer(settings, &mut lacks);
+        Self { vad, recognizer, synthesizer, lacks }
     }
 }
 
@@ -178,8 +182,27 @@ fn recognizer(settings: &VoiceSettings) -> Result<Option<Box<dyn Recognizer>>, S
             Ok(Some(Box::new(Moonshine::open(&folder, &library, THREADS)?)))
         }
         Source::Folder(folder) => Ok(Some(Box::new(Moonshine::open(folder, &library, THREADS)?))),
-        Source::Wyoming(_) | Source::Off => Ok(None),
+        Source::Wyoming(address) => Ok(Some(Box::new(Wyoming::open(address)?))),
+        Source::Off => Ok(None),
     }
+}
+
+fn synthesizer(settings: &VoiceSettings, lacks: &mut Vec<Lack>) -> Option<Box<dyn Synthesizer>> {
+    let piper = |folder: &Path| Piper::open(folder, &settings.folder.join(onnx::LIBRARY), THREADS);
+    let opened: Result<Box<dyn Synthesizer>, SpeechError> = match &settings.synthesizer {
+        Source::Off => return None,
+        Source::Wyoming(address) => Wyoming::open(address).map(|server| Box::new(server) as _),
+        Source::Installed => piper(&settings.folder.join(piper::FOLDER)).map(|piper| Box::new(piper) as _),
+        Source::Folder(folder) => piper(folder).map(|piper| Box::new(piper) as _),
+    };
+    let error = match opened {
+        Ok(synthesizer) => return Some(synthesizer),
+        Err(error) => error,
+    };
+    let espeak = Espeak::open();
+    let instead = if espeak.is_ok() { "espeak-ng's own voice" } else { "the browser's own voice, where it has one" };
+    lacks.push(Lack { part: Part::Synthesis, why: error.to_string(), instead: instead.into() });
+    espeak.ok().map(|espeak| Box::new(espeak) as _)
 }
 
 /// A model at work leaves the simulator a core of the two that there are.
