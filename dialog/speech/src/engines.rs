@@ -5,7 +5,16 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use crate::{Recognizer, SpeechError, Synthesizer, Vad};
+use crate::{
+    Recognizer, SpeechError, Synthesizer, Vad,
+    earshot::Earshot,
+    espeak::Espeak,
+    moonshine::{self, Moonshine},
+    onnx,
+    piper::{self, Piper},
+    silero::Silero,
+    wyoming::Wyoming,
+};
 
 /// Where an engine comes from.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -143,10 +152,61 @@ impl Engines {
     /// Opens what there is; it takes a second where models are loaded.
     #[must_use]
     pub fn open(settings: &VoiceSettings) -> Self {
-        let _ = settings;
-        Self { vad: Box::new(crate::fake::Loudness), recognizer: None, synthesizer: None, lacks: Vec::new() }
+        let mut lacks = Vec::new();
+        let vad = vad(settings, &mut lacks);
+        let recognizer = recognizer(settings).unwrap_or_else(|error| {
+            lacks.push(Lack { part: Part::Recognition, why: error.to_string(), instead: "text alone".into() });
+            None
+        });
+        let synthesizer = synthesizer(settings, &mut lacks);
+        Self { vad, recognizer, synthesizer, lacks }
     }
 }
+
+fn vad(settings: &VoiceSettings, lacks: &mut Vec<Lack>) -> Box<dyn Vad> {
+    match Silero::open(&settings.folder) {
+        Ok(silero) => Box::new(silero),
+        Err(error) => {
+            let instead = "a simpler detector, which takes more noise for speech".into();
+            lacks.push(Lack { part: Part::VoiceActivity, why: error.to_string(), instead });
+            Box::new(Earshot::new())
+        }
+    }
+}
+
+fn recognizer(settings: &VoiceSettings) -> Result<Option<Box<dyn Recognizer>>, SpeechError> {
+    let library = settings.folder.join(onnx::LIBRARY);
+    match &settings.recognizer {
+        Source::Installed => {
+            let folder = settings.folder.join(moonshine::FOLDER);
+            Ok(Some(Box::new(Moonshine::open(&folder, &library, THREADS)?)))
+        }
+        Source::Folder(folder) => Ok(Some(Box::new(Moonshine::open(folder, &library, THREADS)?))),
+        Source::Wyoming(address) => Ok(Some(Box::new(Wyoming::open(address)?))),
+        Source::Off => Ok(None),
+    }
+}
+
+fn synthesizer(settings: &VoiceSettings, lacks: &mut Vec<Lack>) -> Option<Box<dyn Synthesizer>> {
+    let piper = |folder: &Path| Piper::open(folder, &settings.folder.join(onnx::LIBRARY), THREADS);
+    let opened: Result<Box<dyn Synthesizer>, SpeechError> = match &settings.synthesizer {
+        Source::Off => return None,
+        Source::Wyoming(address) => Wyoming::open(address).map(|server| Box::new(server) as _),
+        Source::Installed => piper(&settings.folder.join(piper::FOLDER)).map(|piper| Box::new(piper) as _),
+        Source::Folder(folder) => piper(folder).map(|piper| Box::new(piper) as _),
+    };
+    let error = match opened {
+        Ok(synthesizer) => return Some(synthesizer),
+        Err(error) => error,
+    };
+    let espeak = Espeak::open();
+    let instead = if espeak.is_ok() { "espeak-ng's own voice" } else { "the browser's own voice, where it has one" };
+    lacks.push(Lack { part: Part::Synthesis, why: error.to_string(), instead: instead.into() });
+    espeak.ok().map(|espeak| Box::new(espeak) as _)
+}
+
+/// A model at work leaves the simulator a core of the two that there are.
+const THREADS: usize = 1;
 
 /// How a file that is not there is said to be got.
 pub(crate) const INSTALL: &str = "`cohabit voice install` fetches it";
