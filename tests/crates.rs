@@ -29,7 +29,18 @@ const LEVELS: &[(&str, u8, &[&str])] = &[
 /// Dependencies that others may name too: the log, the page and existing clients speak JSON, tests report errors of all
 /// kinds, and there are two programs.
 const SHARED: &[(&str, &[&str])] = &[
-    ("serde_json", &["cohabit-record", "cohabit-speech", "cohabit-arena", "cohabit-dialog", "cohabit-eval", "cohabit", "cohabit-tests"]),
+    (
+        "serde_json",
+        &[
+            "cohabit-record",
+            "cohabit-speech",
+            "cohabit-arena",
+            "cohabit-dialog",
+            "cohabit-eval",
+            "cohabit",
+            "cohabit-tests",
+        ],
+    ),
     ("anyhow", &["cohabit-rerun", "cohabit-tests"]),
     ("clap", &["cohabit-rerun"]),
 ];

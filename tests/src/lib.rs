@@ -9,12 +9,14 @@ mod play;
 mod python;
 mod soak;
 mod socket;
+mod speech;
 
 pub use browser::{Browser, Tab};
 pub use page::Page;
 pub use play::{Play, reference_data, run};
 pub use python::{output, python_with};
 pub use soak::{Resident, Soaked, soak};
+pub use speech::SpeechServer;
 
 /// The processor and the number of cores, as benches print them.
 #[must_use]

@@ -20,7 +20,7 @@ use cohabit_bus::Transport;
 use cohabit_speech::{Bias, Engines, Recognition, Recognizer, SpeechError, Vad, VoiceSettings};
 use serde_json::{Value, json};
 
-pub use ear::{EarAt, FromEar, Hearing, LONGEST_PIECE};
+pub use ear::{EarAt, FromEar, Hearing};
 pub use mouth::Mouth;
 
 use crate::page::Line;

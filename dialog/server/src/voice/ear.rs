@@ -6,7 +6,6 @@ use std::{
         mpsc::{Receiver, SyncSender, TrySendError, sync_channel},
     },
     thread,
-    time::Duration,
 };
 
 use cohabit_bus::{
@@ -23,7 +22,7 @@ use super::Voice;
 use crate::{robots::Visitor, spoken::Spoken, talk::Talk};
 
 /// The most bytes of one piece of sound: a second.
-pub const LONGEST_PIECE: usize = 2 * RATE as usize;
+const LONGEST_PIECE: usize = 2 * RATE as usize;
 /// The most pieces that wait to be listened to.
 const MOST_WAITING: usize = 64;
 /// How often what was said so far is looked at, s: stop is to be heard soon.
