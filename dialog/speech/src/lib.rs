@@ -50,7 +50,7 @@ mod vad;
 mod wyoming;
 
 pub use audio::{RATE, Resampler, from_pcm, resample, to_pcm};
-pub use bias::Bias;
+pub use bias::{Bias, Scene};
 pub use ear::{Ear, Heard, Utterance};
 pub use engines::{Engines, Lack, Part, Source, VoiceSettings};
 pub use error::SpeechError;

@@ -29,6 +29,13 @@ impl Recognition {
         self.hypotheses.first().map_or("", |hypothesis| &hypothesis.text)
     }
 
+    /// The likeliest reading that makes sense to who knows what can be meant; the likeliest of all where none does.
+    #[must_use]
+    pub fn sensible(&self, mut makes_sense: impl FnMut(&str) -> bool) -> &str {
+        let found = self.hypotheses.iter().find(|hypothesis| makes_sense(&hypothesis.text));
+        found.map_or(self.best(), |hypothesis| &hypothesis.text)
+    }
+
     /// One reading, of which nothing else is known.
     #[must_use]
     pub fn sure(text: impl Into<String>) -> Self {
