@@ -9,14 +9,14 @@ import { buildReplay, takePlayer, takeReplayKey, takeRewind } from "./replay.js"
 import { greeted, listen, watchSilence } from "./socket.js";
 import { forgetSounds, hearState, takeSound } from "./sound.js";
 import { clearChat, endDoing, input, say, takeLatency, meet, takeLine, takeProgress, takeTurn, takeYou } from "./talk.js";
-import { forgetHeard, greetVoice, speakLine, stopListening, takeDeaf, takeHeard, takeHearing, takeHush, takeSpeech, takeVoice, takeVoiceKey } from "./voice.js";
+import { forgetHeard, greetVoice, loseMicrophone, speakLine, stopListening, takeDeaf, takeHeard, takeHearing, takeHush, takeSpeech, takeVoice, takeVoiceKey } from "./voice.js";
 import { awaitFrame, buildViews, nextView, showRate, takeFrame, takeMarks, takeSeen } from "./view.js";
 
 /** Binary messages that are pieces of what robots say begin so; all others are frames. */
 const SPEECH = 2;
 
 /** What tests and curious people may read. */
-window.cohabit = { frames: 0, state: null, latency: null, view: null, seen: null, driving: null, aim: null, marks: [], sounds: [], voice: {} };
+window.cohabit = { frames: 0, state: null, latency: null, view: null, seen: null, driving: null, aim: null, marks: [], sounds: [], voice: {}, loseMicrophone };
 
 function takeHello({ session, mission, map, views, drivable, robots, replay, voice }) {
   greeted();

@@ -111,7 +111,8 @@ async function openMicrophone() {
   return true;
 }
 
-function loseMicrophone() {
+/** The microphone was pulled out, or forbidden. */
+export function loseMicrophone() {
   if (!stream) return;
   dropMicrophone();
   stopListening();

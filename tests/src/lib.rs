@@ -16,7 +16,7 @@ pub use page::Page;
 pub use play::{Play, reference_data, run};
 pub use python::{output, python_with};
 pub use soak::{Resident, Soaked, soak};
-pub use speech::SpeechServer;
+pub use speech::{SpeechServer, babble, wav};
 
 /// The processor and the number of cores, as benches print them.
 #[must_use]

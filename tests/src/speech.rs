@@ -88,6 +88,54 @@ fn answer(stream: TcpStream, by_length: Vec<(usize, String)>, said: &Mutex<Vec<S
     }
 }
 
+/// Syllables of nobody's: a voice of 130 Hz in the formants of `ah` and `ee`, four a second, at 16 kHz. Voice activity takes
+/// it for speech.
+#[must_use]
+pub fn babble(seconds: f32) -> Vec<f32> {
+    const FORMANTS: [[(f32, f32); 3]; 2] =
+        [[(730.0, 90.0), (1090.0, 110.0), (2440.0, 160.0)], [(300.0, 60.0), (2300.0, 120.0), (3000.0, 170.0)]];
+    let rate = cohabit_speech::RATE as f32;
+    let mut resonators = [[[0.0_f32; 2]; 3]; 2];
+    let (mut phase, mut out) = (0.0_f32, Vec::new());
+    for at in 0..(seconds * rate) as usize {
+        let time = at as f32 / rate;
+        // It rises and falls as a sentence does.
+        phase += (130.0 + 18.0 * (time * 2.1).sin()) / rate;
+        phase -= phase.floor();
+        let pulse = if phase < 0.4 { (std::f32::consts::PI * phase / 0.4).sin() } else { 0.0 } - 0.25;
+        let syllable = time * 4.0;
+        let loud = (std::f32::consts::PI * syllable.fract()).sin().powf(0.6);
+        let vowel = syllable as usize % 2;
+        let mut sum = 0.0;
+        for ((centre, width), state) in FORMANTS[vowel].iter().zip(&mut resonators[vowel]) {
+            let radius = (-std::f32::consts::PI * width / rate).exp();
+            let angle = 2.0 * std::f32::consts::PI * centre / rate;
+            let value = pulse * (1.0 - radius) + 2.0 * radius * angle.cos() * state[0] - radius * radius * state[1];
+            *state = [value, state[0]];
+            sum += value;
+        }
+        out.push(sum * loud);
+    }
+    let loudest = out.iter().fold(f32::MIN_POSITIVE, |loudest: f32, sample| loudest.max(sample.abs()));
+    out.iter().map(|sample| 0.5 * sample / loudest).collect()
+}
+
+/// A WAV file of 16 kHz mono.
+#[must_use]
+pub fn wav(samples: &[f32]) -> Vec<u8> {
+    let pcm: Vec<u8> = cohabit_speech::to_pcm(samples).iter().flat_map(|sample| sample.to_le_bytes()).collect();
+    let (rate, bytes) = (cohabit_speech::RATE, pcm.len() as u32);
+    let mut file = b"RIFF".to_vec();
+    file.extend((36 + bytes).to_le_bytes());
+    file.extend(b"WAVEfmt \x10\0\0\0\x01\0\x01\0");
+    file.extend(rate.to_le_bytes());
+    file.extend((rate * 2).to_le_bytes());
+    file.extend(b"\x02\0\x10\0data");
+    file.extend(bytes.to_le_bytes());
+    file.extend(pcm);
+    file
+}
+
 /// The next event: its kind, data and payload.
 fn next(reader: &mut BufReader<TcpStream>) -> anyhow::Result<(String, Value, Vec<u8>)> {
     let mut line = String::new();

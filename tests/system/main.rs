@@ -18,6 +18,7 @@ mod searching;
 mod sessions;
 mod several;
 mod soak;
+mod voice;
 
 /// The binary under test.
 const COHABIT: &str = env!("CARGO_BIN_EXE_cohabit");

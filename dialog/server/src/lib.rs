@@ -165,6 +165,7 @@ pub fn serve(
         let mut workers = vec![
             scope.spawn(|| until_ended(&ended, || talk::listen(ears, &talk, &over))),
             scope.spawn(|| until_ended(&ended, || talk::show_state(&talk, STATE_EVERY, &over))),
+            scope.spawn(|| until_ended(&ended, || voice.pass_on(&over))),
         ];
         for view in (0..=u8::MAX).zip(&hub.views) {
             let (bus, talk, over, ended) = (&*bus, &talk, &over, &ended);
@@ -173,7 +174,7 @@ pub fn serve(
         }
         ready(&token::page_address(address, token.as_deref()));
         let (hub, token) = (Arc::clone(&hub), token.map(Arc::from));
-        let host = Host::Live(Live { talk: Arc::clone(&talk), drivers, voice });
+        let host = Host::Live(Live { talk: Arc::clone(&talk), drivers, voice: Arc::clone(&voice) });
         let served = web::serve(listener, Service { hub, host, token }, &over).map_err(DialogError::Serve);
         ended.store(true, Ordering::Relaxed);
         workers

@@ -32,9 +32,11 @@ use crate::{
     page::{self, Line, LineKind, Speaker},
     robots::{Robot, Robots, Visitor},
     spoken::Spoken,
-    voice::Voice,
+    voice::{Audience, Voice},
 };
 
+/// What is said for whoever says stop aloud, in whatever words.
+const STOP: &str = "stop";
 /// What is said to who is called by name, for recognisers.
 const CALLED: [&str; 5] = ["stop", "come here", "go to the break room", "look around", "pick it up"];
 
@@ -191,31 +193,6 @@ impl Talk {
         let reading =
             inner.robots.look_at(body).and_then(|robot| robot.conversation.reading(spoken, &called, &robot.knowledge));
         Ok(reading.map(|reading| reading.text))
-    }
-
-    /// Whether what was said so far is a whole sentence to whom it would be said.
-    pub fn is_whole(&self, text: &str) -> bool {
-        let inner = self.lock();
-        let text = inner.robots.called(text);
-        let robot = inner.robots.look_at(inner.spoken_to).or_else(|| inner.robots.iter().next());
-        robot.is_some_and(|robot| robot.conversation.is_whole(&text, &robot.knowledge))
-    }
-
-    /// What is likely to be said, if that is other than what had this number before; with its number.
-    pub fn likely(&self, before: u64) -> Option<(u64, SpokenForms)> {
-        let inner = self.lock();
-        let robot = inner.robots.iter().next()?;
-        let number = robot.knowledge.number();
-        if number == before {
-            return None;
-        }
-        let mut forms = robot.conversation.spoken_forms(&robot.knowledge)?;
-        drop(inner);
-        // Who is called by name is so at the beginning.
-        let names: Vec<String> = self.names.iter().map(|name| name.to_lowercase()).collect();
-        forms.words.extend(names.iter().flat_map(|name| name.split_whitespace().map(str::to_owned)));
-        forms.sentences.extend(names.iter().flat_map(|name| CALLED.map(|said| format!("{name} {said}"))));
-        Some((number, forms))
     }
 
     /// A page plays the first sound of an answer.
@@ -472,6 +449,37 @@ impl Talk {
         self.hub.mark(inner.numbered().map(|asked| asked.candidates.as_slice()).unwrap_or_default());
         inner.journal.told();
         Ok(())
+    }
+}
+
+impl Audience for Talk {
+    fn is_whole(&self, text: &str) -> bool {
+        let inner = self.lock();
+        let text = inner.robots.called(text);
+        let robot = inner.robots.look_at(inner.spoken_to).or_else(|| inner.robots.iter().next());
+        robot.is_some_and(|robot| robot.conversation.is_whole(&text, &robot.knowledge))
+    }
+
+    fn likely(&self, before: u64) -> Option<(u64, SpokenForms)> {
+        let inner = self.lock();
+        let robot = inner.robots.iter().next()?;
+        let number = robot.knowledge.number();
+        if number == before {
+            return None;
+        }
+        let mut forms = robot.conversation.spoken_forms(&robot.knowledge)?;
+        drop(inner);
+        // Who is called by name is so at the beginning.
+        let names: Vec<String> = self.names.iter().map(|name| name.to_lowercase()).collect();
+        forms.words.extend(names.iter().flat_map(|name| name.split_whitespace().map(str::to_owned)));
+        forms.sentences.extend(names.iter().flat_map(|name| CALLED.map(|said| format!("{name} {said}"))));
+        Some((number, forms))
+    }
+
+    fn stop(&self, visitor: u32, heard_nanos: u64) {
+        if let Err(error) = self.hear(STOP, Visitor { number: visitor, body: None }, heard_nanos) {
+            tracing::error!("{error}");
+        }
     }
 }
 

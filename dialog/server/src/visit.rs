@@ -30,7 +30,7 @@ use crate::{
     spoken::Spoken,
     talk::Talk,
     view::{Frame, View, Viewing},
-    voice::{EarAt, FromEar, Hearer, Hearing},
+    voice::{Audience, EarAt, FromEar, Hearer, Hearing},
     web::Live,
 };
 
@@ -412,7 +412,7 @@ impl Visit {
             let Live { voice, talk, .. } = &self.live;
             let at = EarAt {
                 voice: Arc::clone(voice),
-                talk: Arc::clone(talk),
+                talk: Arc::clone(talk) as Arc<dyn Audience>,
                 visitor: self.number,
                 to: self.ear.0.clone(),
             };

@@ -16,14 +16,14 @@ use std::{
     time::Duration,
 };
 
-use cohabit_bus::Transport;
+use cohabit_bus::{Inbox, Topic, Transport, Wake, message::AudioView, process_of};
 use cohabit_speech::{Bias, Engines, Recognition, Recognizer, SpeechError, Vad, VoiceSettings};
 use serde_json::{Value, json};
 
-pub use ear::{EarAt, FromEar, Hearing};
+pub use ear::{Audience, EarAt, FromEar, Hearing};
 pub use mouth::Mouth;
 
-use crate::page::Line;
+use crate::{DialogError, page::Line};
 
 /// Settings of voice.
 #[derive(Clone, Debug)]
@@ -199,6 +199,21 @@ impl Voice {
         }
     }
 
+    /// Passes on what others on the bus say aloud to the pages that hear robots, until `over`.
+    pub fn pass_on(&self, over: &dyn Fn() -> bool) -> Result<(), DialogError> {
+        let (mut listener, mut speech) = (self.bus.listener(Wake::Audio)?, Inbox::new(&*self.bus, Topic::Speech)?);
+        while !over() {
+            listener.wait(Duration::from_millis(200))?;
+            while let Some((sample, ())) = speech.next(|sample| AudioView::new(sample.payload()).map(drop))? {
+                let is_own = process_of(sample.envelope().run) == std::process::id();
+                if !is_own && self.hearers.load(Ordering::Relaxed) > 0 {
+                    self.mouth.pass_on(AudioView::new(sample.payload())?);
+                }
+            }
+        }
+        Ok(())
+    }
+
     /// Has robots say no more of what they are saying.
     pub fn hush(&self) {
         self.mouth.hush();
@@ -207,5 +222,22 @@ impl Voice {
     /// A page says a text with a voice of its own, from now or until now.
     pub fn note_own_voice(&self, text: Option<&str>, nanos: u64) {
         self.mouth.note_own_voice(text, nanos);
+    }
+}
+
+#[cfg(test)]
+impl Voice {
+    /// Voice with these engines.
+    fn with(engines: Engines, config: VoiceConfig, bus: Arc<dyn Transport>) -> Arc<Self> {
+        let voice = Self::new(bus, config, |_| (), |_| ());
+        let Engines { vad, recognizer, synthesizer, .. } = engines;
+        let speaks = synthesizer.is_some();
+        if let Some(synthesizer) = synthesizer {
+            voice.mouth.open(synthesizer, &*voice.bus);
+        }
+        let recognizer = recognizer.map(|recognizer| Shared(Arc::new(Mutex::new(Told { recognizer, bias: None }))));
+        let opened = Opened { recognizer, vad: Mutex::new(Some(vad)), lacks: Vec::new(), speaks };
+        assert!(voice.engines.set(opened).is_ok());
+        voice
     }
 }

@@ -25,6 +25,8 @@ use super::echo::Echo;
 const MOST_WAITING: usize = 6;
 /// What is longer than this is not said to its end, characters: it can be read.
 const LONGEST: usize = 400;
+/// Sayings of others are numbered beyond its own.
+const PASSED_ON: u64 = 1 << 48;
 /// How often an idle mouth looks whether there still is a session.
 const LOOK_EVERY: Duration = Duration::from_millis(500);
 /// What most plans are answered with; its sound is made beforehand, so that it comes at once.
@@ -139,6 +141,11 @@ impl Mouth {
             Some(text) => echo.note(&spoken(text), nanos, u64::MAX / 2),
             None => echo.cut(nanos),
         }
+    }
+
+    /// Has the pages hear what somebody else on the bus says aloud.
+    pub fn pass_on(&self, view: AudioView<'_>) {
+        (self.play)(frame(&AudioHeader { saying: view.header.saying | PASSED_ON, ..*view.header }, view.samples));
     }
 
     fn is_hushed(&self, saying: &Saying) -> bool {
