@@ -155,7 +155,7 @@ async function listen(wanted) {
 export function stopListening() {
   if (mode === "off") return;
   mode = "off";
-  send({ type: "listened", more: false });
+  send({ type: "listened" });
   showHearing("");
   show();
   letGo();
@@ -177,12 +177,12 @@ function release() {
   if (mode !== "held") return;
   if (performance.now() - pressedAt < TAP_MS) {
     mode = "tap";
-    send({ type: "listened", more: true });
+    send({ type: "listened" });
     show();
   } else {
     // What was said comes after: the session listens on until it has told it.
     mode = "off";
-    send({ type: "listened", more: false });
+    send({ type: "listened" });
     show();
     letGo();
   }
@@ -231,7 +231,7 @@ export function takeHeard({ number, text, edit_ms: editMs }) {
   showHearing("");
   // Who types something else is not interrupted.
   const isFree = input.value.trim() === "";
-  pending = { number, text, isShown: isFree, timer: setTimeout(() => sendHeard(isFree ? input.value : text), editMs) };
+  pending = { number, text, isShown: isFree, timer: setTimeout(() => sendHeard(isFree ? input.value : text, false), editMs) };
   if (!isFree) {
     showHearing(text, "partial");
     return;
@@ -242,13 +242,13 @@ export function takeHeard({ number, text, edit_ms: editMs }) {
   composer.classList.add("editing");
 }
 
-/** Sends what was heard, as it reads now; whether anything was. */
-export function sendHeard(text) {
+/** Sends what was heard, as it reads now; `sure`, if somebody did that. Whether anything was heard. */
+export function sendHeard(text, sure = true) {
   if (!pending) return false;
   const { number, isShown } = pending;
   endEditing();
   if (isShown) input.value = "";
-  send({ type: "heard", number, text: text.trim() || null });
+  send({ type: "heard", number, text: text.trim() || null, sure });
   return true;
 }
 
@@ -258,7 +258,7 @@ export function forgetHeard(tells = true) {
   const { number, isShown } = pending;
   endEditing();
   if (isShown) input.value = "";
-  if (tells) send({ type: "heard", number, text: null });
+  if (tells) send({ type: "heard", number, text: null, sure: true });
 }
 
 function endEditing() {

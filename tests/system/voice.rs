@@ -118,18 +118,19 @@ fn what_was_heard_can_be_changed_before_the_robot_hears_it() {
     let mut page = Page::open(play.authority()).unwrap();
     listen(&mut page, true);
     page.speak(&babble(OFFICE_S)).unwrap();
-    page.send(&json!({ "type": "listened", "more": true })).unwrap();
+    page.send(&json!({ "type": "listened" })).unwrap();
     let heard = page.wait("what was heard", |_, message| message["type"] == "heard").unwrap();
     assert_eq!(heard["text"], "go to the main office");
     assert!(!page.chat.iter().any(|(from, _)| from == "person"), "it waits");
-    page.send(&json!({ "type": "heard", "number": heard["number"], "text": "where is the milk?" })).unwrap();
+    page.send(&json!({ "type": "heard", "number": heard["number"], "text": "where is the milk?", "sure": true }))
+        .unwrap();
     page.wait("the answer", |page, _| has_said(page, "person", "milk") && has_said(page, "robot", "milk")).unwrap();
     // What is forgotten is not said.
     page.send(&json!({ "type": "listen", "rate": 16_000, "held": true })).unwrap();
     page.speak(&babble(OFFICE_S)).unwrap();
-    page.send(&json!({ "type": "listened", "more": false })).unwrap();
+    page.send(&json!({ "type": "listened" })).unwrap();
     let heard = page.wait("what was heard", |_, message| message["type"] == "heard").unwrap();
-    page.send(&json!({ "type": "heard", "number": heard["number"], "text": null })).unwrap();
+    page.send(&json!({ "type": "heard", "number": heard["number"], "text": null, "sure": true })).unwrap();
     page.do_and_wait("what are you holding?").unwrap();
     assert!(!has_said(&page, "person", "main office"), "{:?}", page.chat);
     play.end().unwrap();

@@ -73,9 +73,12 @@ const JOINED_EVERY: usize = 7;
 /// A step between one pair of thing and place and the next, so that all come together with many.
 const STRIDE: usize = 7;
 
-/// Words that say stop wherever they stand, and those that do at an end of what was said.
+/// Words that say stop wherever they stand, and those that do first, or in few words.
 const STOPS: [&str; 3] = ["stop", "halt", "stopp"];
-const STOPS_AT_AN_END: [&str; 2] = ["wait", "freeze"];
+const STOPS_FIRST: [&str; 1] = ["wait"];
+const FEW: usize = 4;
+/// Says stop alone: with more words it is what the freeze ray does.
+const STOPS_ALONE: [&str; 1] = ["freeze"];
 /// What before them says the contrary.
 const NOT: [&str; 4] = ["not", "dont", "never", "without"];
 
@@ -103,11 +106,11 @@ impl Kind {
 pub fn says_stop(text: &str) -> bool {
     let words: Vec<String> = token::words(text).into_iter().filter(|word| !is_punctuation(word)).collect();
     let is_meant = |at: usize| at == 0 || !NOT.contains(&words[at - 1].as_str());
-    let at_an_end = |at: usize| at == 0 || at + 1 == words.len();
     words.iter().enumerate().any(|(at, word)| {
         let word = word.as_str();
-        let alone = word != "freeze" || words.len() <= 2;
-        is_meant(at) && (STOPS.contains(&word) || STOPS_AT_AN_END.contains(&word) && at_an_end(at) && alone)
+        let is_first = STOPS_FIRST.contains(&word) && (at == 0 || words.len() <= FEW);
+        let is_alone = STOPS_ALONE.contains(&word) && words.len() == 1;
+        is_meant(at) && (STOPS.contains(&word) || is_first || is_alone)
     })
 }
 
@@ -277,6 +280,7 @@ mod tests {
         check("Wait a moment", true);
         check("hey wait", true);
         check("freeze", true);
+        check("go to the break room and wait", false);
         check("freeze the apple", false);
         check("the kitchen where people wait is nice", false);
         check("don't stop", false);

@@ -70,10 +70,10 @@ enum FromPage {
     /// Sound comes from a microphone, as binary messages of so many 16-bit samples a second; while `held`, no pause ends what
     /// is said.
     Listen { rate: u32, held: bool },
-    /// What was said is all; with `more`, the sound goes on.
-    Listened { more: bool },
-    /// What was heard is meant, perhaps in other words, or is to be forgotten.
-    Heard { number: u64, text: Option<String> },
+    /// What was said is all.
+    Listened,
+    /// What was heard is meant, perhaps in other words, or is to be forgotten; `sure`, if somebody read it and said so.
+    Heard { number: u64, text: Option<String>, sure: bool },
     /// Somebody wants to hear what robots say, or not.
     Aloud { on: bool },
     /// The page plays the first sound of an answer.
@@ -323,8 +323,8 @@ impl Visit {
             FromPage::Say { text } => self.say(&text, received_nanos).await?,
             FromPage::Choose { object } => self.choose(ObjectId(object), received_nanos).await?,
             FromPage::Listen { rate, held } => self.begin_listening(rate, held)?,
-            FromPage::Listened { more } => self.end_listening(more),
-            FromPage::Heard { number, text } => self.say_heard(number, text, received_nanos).await?,
+            FromPage::Listened => self.end_listening(),
+            FromPage::Heard { number, text, sure } => self.say_heard(number, text, sure, received_nanos).await?,
             FromPage::Aloud { on } => return Ok(self.hear_robots(on)),
             FromPage::Sounded { turn } => {
                 self.live.talk.note_sounded(turn, received_nanos).map_err(|error| error.to_string())?;
@@ -418,18 +418,18 @@ impl Visit {
             };
             self.hearing = Some(Hearing::begin(at, rate)?);
         }
-        if let Some(hearing) = self.hearing.as_ref().filter(|_| held) {
+        let Some(hearing) = &mut self.hearing else { return Ok(()) };
+        hearing.begin_again(rate)?;
+        if held {
             hearing.hold();
         }
         Ok(())
     }
 
-    fn end_listening(&mut self, more: bool) {
+    /// What was said is all. The ear stays, should more be said.
+    fn end_listening(&mut self) {
         if let Some(hearing) = &self.hearing {
             hearing.finish();
-        }
-        if !more {
-            self.hearing = None;
         }
     }
 
@@ -489,15 +489,20 @@ impl Visit {
     }
 
     /// What was heard is meant, perhaps in other words; or is to be forgotten.
-    async fn say_heard(&mut self, number: u64, text: Option<String>, received_nanos: u64) -> Result<(), String> {
+    async fn say_heard(
+        &mut self,
+        number: u64,
+        text: Option<String>,
+        sure: bool,
+        received_nanos: u64,
+    ) -> Result<(), String> {
         let Some((_, spoken)) = self.heard.take_if(|(heard, _)| *heard == number) else { return Ok(()) };
         let Some(text) = text else { return Ok(()) };
         if text.trim().is_empty() || text.len() > LONGEST_TEXT {
             return self.say(&text, received_nanos).await;
         }
         let is_as_heard = spoken.readings.iter().any(|(reading, _)| *reading == text) || spoken.raw == text;
-        // What somebody has read and sent is what they mean.
-        let confidence = 1.0;
+        let confidence = if sure || !is_as_heard { 1.0 } else { spoken.confidence };
         let raw = if is_as_heard { spoken.raw } else { text.clone() };
         let spoken = Spoken { readings: vec![(text, 0.0)], raw, confidence, text_nanos: received_nanos, ..spoken };
         self.say_aloud(spoken).await.map(drop)

@@ -91,14 +91,20 @@ impl Hearing {
     /// # Errors
     /// In a sentence for people, if that is another rate than is needed.
     pub fn begin(at: EarAt, rate: u32) -> Result<Self, String> {
-        if rate != RATE {
-            return Err(format!(
-                "The microphone sends {rate} samples a second, where {RATE} are needed: reload the page, or type."
-            ));
-        }
+        check(rate)?;
         let (to, sent) = sync_channel(MOST_WAITING);
         thread::spawn(move || at.listen(&sent));
         Ok(Self { to, began_nanos: monotonic_nanos(), samples: 0, is_behind: false })
+    }
+
+    /// The page sends sound again, after a while or not.
+    ///
+    /// # Errors
+    /// As [`Hearing::begin`].
+    pub fn begin_again(&mut self, rate: u32) -> Result<(), String> {
+        check(rate)?;
+        (self.began_nanos, self.samples) = (monotonic_nanos(), 0);
+        Ok(())
     }
 
     /// Takes a piece of sound: 16-bit samples, little-endian.
@@ -146,6 +152,12 @@ impl Hearing {
     pub fn finish(&self) {
         let _ = self.to.send(ToEar::Finish);
     }
+}
+
+fn check(rate: u32) -> Result<(), String> {
+    let refusal =
+        || format!("The microphone sends {rate} samples a second, where {RATE} are needed: reload the page, or type.");
+    if rate == RATE { Ok(()) } else { Err(refusal()) }
 }
 
 /// An ear at work.
