@@ -3,7 +3,6 @@
 import { byId, toast } from "./dom.js";
 import { send, sendSound } from "./socket.js";
 import { audio } from "./sound.js";
-import { input } from "./talk.js";
 
 const REMEMBERED = "cohabit-voice";
 /** Sound goes to the session at this rate. */
@@ -19,6 +18,7 @@ const LEAD_S = 0.05;
 /** How long a notice about voice is shown. */
 const NOTE_MS = 9000;
 
+const input = byId("chat-input");
 const mic = byId("mic");
 const composer = byId("composer");
 
@@ -43,6 +43,7 @@ function show() {
   document.body.classList.toggle("listening", isOn);
   mic.setAttribute("aria-pressed", String(isOn));
   byId("open-mic").setAttribute("aria-pressed", String(mode === "open"));
+  byId("hearing-text").dataset.waits = engines ? "Listening…" : "Getting ready to listen…";
   byId("aloud").setAttribute("aria-pressed", String(Boolean(settings.aloud)));
   byId("recorded").hidden = !isRecorded || !isOn;
   if (!isOn) showLevel(0);

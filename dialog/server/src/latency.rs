@@ -5,8 +5,8 @@
 pub struct Moments {
     /// The turn.
     pub turn: u64,
-    /// Somebody began to say it, and was done.
-    pub speech: [u64; 2],
+    /// Somebody began to say it, was done, and what it was was there.
+    pub speech: [u64; 3],
     /// Text received.
     pub received: u64,
     /// Plan sent.
@@ -31,12 +31,13 @@ impl Moments {
     /// Milliseconds from the end of speech to its text, and from the text to the first sound of the answer.
     pub fn spoken_milliseconds(&self) -> [Option<f64>; 2] {
         let between = |from: u64, to: u64| (from != 0 && to != 0).then(|| to.saturating_sub(from) as f64 * 1e-6);
-        [between(self.speech[1], self.received), between(self.received, self.sounded)]
+        [between(self.speech[1], self.speech[2]), between(self.received, self.sounded)]
     }
 
     /// As in a dialog message about what was spoken.
     pub const fn spoken_stamps(&self) -> [u64; 5] {
-        [self.speech[0], self.speech[1], self.received, self.understood, self.sounded]
+        let [began, ended, text] = self.speech;
+        [began, ended, if text == 0 { self.received } else { text }, self.understood, self.sounded]
     }
 
     /// As in a dialog message.
@@ -62,8 +63,8 @@ impl Latency {
         self.heard.clear();
     }
 
-    /// The newest turn was spoken, from when until when, and sounded like this.
-    pub fn spoken(&mut self, speech: [u64; 2], heard: &str) -> Moments {
+    /// The newest turn was spoken, from when until when, its text was there then, and it sounded like this.
+    pub fn spoken(&mut self, speech: [u64; 3], heard: &str) -> Moments {
         self.now.speech = speech;
         heard.clone_into(&mut self.heard);
         self.now
@@ -139,13 +140,13 @@ mod tests {
     fn a_spoken_turn_has_its_own_chain() {
         let mut latency = Latency::default();
         latency.begin(3, 5_000_000, 6_000_000);
-        assert_eq!(latency.spoken([1_000_000, 4_000_000], "go").spoken_milliseconds(), [Some(1.0), None]);
+        assert_eq!(latency.spoken([1_000_000, 3_000_000, 4_000_000], "go").spoken_milliseconds(), [Some(1.0), None]);
         assert_eq!(latency.sounded(2, 9_000_000), None, "another turn");
         let moments = latency.sounded(3, 8_000_000).unwrap();
-        assert_eq!(moments.spoken_stamps(), [1_000_000, 4_000_000, 5_000_000, 6_000_000, 8_000_000]);
+        assert_eq!(moments.spoken_stamps(), [1_000_000, 3_000_000, 4_000_000, 6_000_000, 8_000_000]);
         assert_eq!(moments.spoken_milliseconds(), [Some(1.0), Some(3.0)]);
         assert_eq!(latency.sounded(3, 9_000_000), None);
         latency.begin(4, 9_000_000, 9_000_000);
-        assert_eq!((latency.heard.as_str(), latency.now.speech), ("", [0, 0]));
+        assert_eq!((latency.heard.as_str(), latency.now.speech), ("", [0, 0, 0]));
     }
 }

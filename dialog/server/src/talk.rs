@@ -151,8 +151,9 @@ impl Talk {
         Ok(())
     }
 
-    /// Somebody at a page said something aloud, or has changed what was heard. Whether anybody seems to have said anything.
-    pub fn hear_aloud(&self, spoken: &Spoken, visitor: Visitor) -> Result<bool, DialogError> {
+    /// Somebody at a page said something aloud, and meant it then, perhaps in other words than were heard. Whether anybody
+    /// seems to have said anything.
+    pub fn hear_aloud(&self, spoken: &Spoken, visitor: Visitor, meant_nanos: u64) -> Result<bool, DialogError> {
         let mut inner = self.lock();
         let Some((first, _)) = spoken.readings.first() else { return Ok(false) };
         let Some(body) = inner.addressed(first, visitor, spoken.text_nanos)?.0.first().copied() else {
@@ -173,8 +174,9 @@ impl Talk {
             let Some(robot) = inner.robots.of_body(body) else { continue };
             let (turn, mut reactions) = robot.conversation.hear_aloud(&said, &text, aloud, &robot.knowledge);
             reactions.retain(|reaction| nth == 0 || is_shown_to_all(reaction));
-            inner.latency.begin(turn, spoken.text_nanos, monotonic_nanos());
-            let moments = inner.latency.spoken([spoken.began_nanos, spoken.ended_nanos], &spoken.raw);
+            inner.latency.begin(turn, meant_nanos, monotonic_nanos());
+            let speech = [spoken.began_nanos, spoken.ended_nanos, spoken.text_nanos];
+            let moments = inner.latency.spoken(speech, &spoken.raw);
             self.carry_out(&mut inner, body, Heard::AtPage(visitor), reactions)?;
             inner.publish_spoken(&moments)?;
             self.hub.tell(&page::latency(&moments, None));

@@ -444,7 +444,7 @@ impl Visit {
             Err("The microphone sends more than can be listened to: reload the page, or type.".to_owned())
         };
         match taken {
-            Ok(()) => Vec::new(),
+            Ok(note) => note.map(|note| tell(&page::error(note))).into_iter().collect(),
             Err(problem) => {
                 self.hearing = None;
                 vec![tell(&page::error(&problem)), tell(&page::deaf())]
@@ -467,7 +467,8 @@ impl Visit {
     async fn take_spoken(&mut self, spoken: Spoken) -> Result<Vec<Message>, String> {
         let edit = self.live.voice.config.edit;
         if edit.is_zero() {
-            return self.say_aloud(spoken).await;
+            let meant_nanos = spoken.text_nanos;
+            return self.say_aloud(spoken, meant_nanos).await;
         }
         let read = self.live.talk.read(&spoken, self.visitor()).map_err(|error| error.to_string())?;
         let Some(text) = read else { return Ok(vec![tell(&page::hearing("nothing"))]) };
@@ -476,9 +477,9 @@ impl Visit {
         Ok(vec![tell(&page::heard(self.heard_count, &text, edit.as_millis()))])
     }
 
-    async fn say_aloud(&mut self, spoken: Spoken) -> Result<Vec<Message>, String> {
+    async fn say_aloud(&mut self, spoken: Spoken, meant_nanos: u64) -> Result<Vec<Message>, String> {
         let (visitor, talk) = (self.visitor(), Arc::clone(&self.live.talk));
-        match tokio::task::spawn_blocking(move || talk.hear_aloud(&spoken, visitor)).await {
+        match tokio::task::spawn_blocking(move || talk.hear_aloud(&spoken, visitor, meant_nanos)).await {
             Ok(Ok(is_heard)) => Ok(vec![tell(&page::hearing(if is_heard { "said" } else { "nothing" }))]),
             Ok(Err(error)) => {
                 tracing::error!("{error}");
@@ -504,8 +505,8 @@ impl Visit {
         let is_as_heard = spoken.readings.iter().any(|(reading, _)| *reading == text) || spoken.raw == text;
         let confidence = if sure || !is_as_heard { 1.0 } else { spoken.confidence };
         let raw = if is_as_heard { spoken.raw } else { text.clone() };
-        let spoken = Spoken { readings: vec![(text, 0.0)], raw, confidence, text_nanos: received_nanos, ..spoken };
-        self.say_aloud(spoken).await.map(drop)
+        let spoken = Spoken { readings: vec![(text, 0.0)], raw, confidence, ..spoken };
+        self.say_aloud(spoken, received_nanos).await.map(drop)
     }
 
     /// Has the page hear what robots say, or not; gives what it is told of the engines.
