@@ -9,12 +9,13 @@ use cohabit_bus::{
     message::{DialogHeader, DialogKind, DialogMessage, PlanStep},
 };
 use cohabit_cdf::{Action, GoToTarget, ObjectId, Status};
-use cohabit_language::{Clarification, Context, Language, Step, Unclear, Understanding, within_half_turn};
+use cohabit_language::{Clarification, Context, Language, SpokenForms, Step, Unclear, Understanding, within_half_turn};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use crate::known::Knowledge;
 use crate::page::{self, Answer, Line, LineKind, Speaker};
+use crate::spoken::{Reading, Spoken};
 
 /// What the conversation wants done.
 #[derive(Clone, Debug, PartialEq)]
@@ -151,6 +152,8 @@ pub struct Memory {
     said: VecDeque<(bool, String)>,
     /// What an interpreter was asked about.
     puzzle: Option<Puzzle>,
+    /// What was heard, and is not trusted: a yes means it.
+    unsure: Option<String>,
 }
 
 /// Words that an interpreter may make something of.
@@ -159,6 +162,15 @@ struct Puzzle {
     turn: u64,
     /// What the robot says if it does not.
     refusal: String,
+}
+
+/// How something was heard that was said aloud.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Aloud<'a> {
+    /// What it sounds like by itself.
+    pub raw: &'a str,
+    /// Whether the robot asks before it does it.
+    pub is_doubtful: bool,
 }
 
 /// So many lines tell an interpreter what it is about.
@@ -243,6 +255,59 @@ impl Conversation {
 
     /// The same, of which `text` is said to this robot: all but its name.
     pub(crate) fn hear_called(&mut self, said: &str, text: &str, knowledge: &Knowledge) -> (u64, Vec<Reaction>) {
+        self.hear_as(said, text, None, knowledge)
+    }
+
+    /// The same, said aloud: what is not trusted is asked about, and what is not understood is told as it was heard.
+    pub(crate) fn hear_aloud(
+        &mut self,
+        said: &str,
+        text: &str,
+        aloud: Aloud<'_>,
+        knowledge: &Knowledge,
+    ) -> (u64, Vec<Reaction>) {
+        self.hear_as(said, text, Some(aloud), knowledge)
+    }
+
+    /// Which reading of what was said aloud is meant; `called` takes the robot's name out of one.
+    pub(crate) fn reading(
+        &self,
+        spoken: &Spoken,
+        called: &dyn Fn(&str) -> String,
+        knowledge: &Knowledge,
+    ) -> Option<Reading> {
+        let known = knowledge.known()?;
+        let meant = |text: &str| self.language.understand(text, &known, &mut self.memory.context.clone());
+        let consents = |text: &str| self.memory.unsure.is_some() && self.language.consent(text, &known).is_some();
+        Reading::of(spoken, |text| {
+            let text = called(text);
+            if consents(&text) { Understanding::Answer { text, highlight: Vec::new() } } else { meant(&text) }
+        })
+    }
+
+    /// Whether the robot asks before it does what was heard.
+    pub(crate) fn doubts(&self, reading: &Reading, spoken: &Spoken) -> bool {
+        reading.is_doubtful(spoken.confidence, &self.language)
+    }
+
+    /// Whether what was said so far is a whole sentence.
+    pub(crate) fn is_whole(&self, text: &str, knowledge: &Knowledge) -> bool {
+        let known = knowledge.known();
+        known.is_some_and(|known| self.language.is_whole(text, &known, &self.memory.context))
+    }
+
+    /// What is likely to be said.
+    pub(crate) fn spoken_forms(&self, knowledge: &Knowledge) -> Option<SpokenForms> {
+        Some(self.language.spoken_forms(&knowledge.known()?))
+    }
+
+    fn hear_as(
+        &mut self,
+        said: &str,
+        text: &str,
+        aloud: Option<Aloud<'_>>,
+        knowledge: &Knowledge,
+    ) -> (u64, Vec<Reaction>) {
         self.memory.turns += 1;
         let turn = self.memory.turns;
         let mut reactions = vec![
@@ -257,7 +322,32 @@ impl Conversation {
         self.leave_puzzle(&mut reactions);
         let before = self.memory.said.iter().cloned().collect();
         self.note_line(false, text);
-        match self.language.understand(text, &known, &mut self.memory.context) {
+        let mut text = text.to_owned();
+        if let Some(unsure) = self.memory.unsure.take() {
+            match self.language.consent(&text, &known) {
+                Some(true) => text = unsure,
+                Some(false) => {
+                    self.memory.asked = None;
+                    let again = "All right. Please say it once more, or type it.";
+                    self.say(turn, DialogKind::Reply, LineKind::Say, again, &mut reactions);
+                    reactions.push(Reaction::TurnEnded { turn, end: TurnEnd::Answered });
+                    return (turn, reactions);
+                }
+                None => {}
+            }
+        }
+        if aloud.is_some_and(|aloud| aloud.is_doubtful) {
+            self.ask_what_was_heard(turn, &text, &mut reactions);
+            return (turn, reactions);
+        }
+        let text = text.as_str();
+        let understood = match (self.language.understand(text, &known, &mut self.memory.context), aloud) {
+            (Understanding::Refusal { is_lost: true, text }, Some(Aloud { raw, .. })) => {
+                Understanding::Refusal { is_lost: true, text: format!("I heard \"{}\". {text}", plainly(raw)) }
+            }
+            (understood, _) => understood,
+        };
+        match understood {
             Understanding::Refusal { is_lost: true, text: refusal } if self.interprets => {
                 let unclear = self.language.unclear(text, &known, before);
                 self.memory.puzzle = Some(Puzzle { turn, refusal });
@@ -267,6 +357,20 @@ impl Conversation {
             understanding => self.react(turn, turn, understanding, knowledge, &mut reactions),
         }
         (turn, reactions)
+    }
+
+    /// Asks whether what was heard was said; a yes means it.
+    fn ask_what_was_heard(&mut self, turn: u64, text: &str, reactions: &mut Vec<Reaction>) {
+        let question = format!("I am not sure I heard that right: \"{}\". Shall I do that?", plainly(text));
+        self.memory.unsure = Some(text.to_owned());
+        self.note_line(true, &question);
+        let asked = Asked { kind: Clarification::Confirmation, candidates: Vec::new() };
+        let mut line = Line::new(Speaker::Robot, LineKind::Question, turn, question);
+        line.answers = asked.answers(vec!["yes".to_owned(), "no".to_owned()]);
+        self.memory.asked = Some(asked);
+        reactions.push(self.bus(DialogKind::Question, turn, &line.text));
+        reactions.push(Reaction::Chat(line));
+        reactions.push(Reaction::TurnEnded { turn, end: TurnEnd::Asked });
     }
 
     /// An interpreter made these requests of what was said in a turn, or nothing.
@@ -524,6 +628,11 @@ fn to_where_it_was(mut steps: Vec<Step>, knowledge: &Knowledge) -> (Vec<Step>, O
     steps.truncate(at);
     steps.push(Step { action: Action::GoTo { target: GoToTarget::Point(place) }, says });
     (steps, Some(id))
+}
+
+/// What was heard, to be quoted.
+fn plainly(heard: &str) -> &str {
+    heard.trim().trim_end_matches(['.', '!', ','])
 }
 
 /// Whether a plan that ended so may be followed by more.

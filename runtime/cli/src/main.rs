@@ -21,6 +21,7 @@ mod stop;
 mod supervisor;
 mod time;
 mod top;
+mod voice;
 
 use std::{ffi::OsString, process::ExitCode};
 
