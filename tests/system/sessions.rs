@@ -12,7 +12,7 @@ fn two_sessions_run_side_by_side_and_leave_nothing() {
     for play in [&one, &two] {
         let mut page = Page::open(play.authority()).unwrap();
         page.do_and_wait("turn left 90 degrees").unwrap();
-        assert!(page.frames > 0, "no frame came");
+        page.wait("a frame", |page, _| page.frames > 0).unwrap();
     }
     one.end().unwrap();
     let mut page = Page::open(two.authority()).unwrap();
