@@ -36,8 +36,8 @@ impl Default for Turns {
             goes_on: 0.35,
             shortest_s: 0.12,
             before_s: 0.3,
-            complete_after_s: 0.2,
-            incomplete_after_s: 0.8,
+            complete_after_s: 0.16,
+            incomplete_after_s: 0.55,
             partial_every_s: 0.5,
             longest_s: 30.0,
         }
