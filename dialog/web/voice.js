@@ -140,13 +140,13 @@ async function listen(wanted) {
     return;
   }
   mode = wanted;
-  if (settings.aloud === null) speakAloud(true);
-  showHearing("", "");
+  showHearing("");
   show();
   if (!(await takeMicrophone())) {
     stopListening();
     return;
   }
+  if (settings.aloud === null) speakAloud(true);
   // The key may be up again, now that the browser has asked.
   if (mode === "off") letGo();
   else if (!send({ type: "listen", rate: RATE, held: mode === "held" })) stopListening();
@@ -157,7 +157,7 @@ export function stopListening() {
   if (mode === "off") return;
   mode = "off";
   send({ type: "listened" });
-  showHearing("");
+  if (!byId("hearing").classList.contains("note")) showHearing("");
   show();
   letGo();
 }

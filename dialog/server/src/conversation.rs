@@ -9,7 +9,7 @@ use cohabit_bus::{
     message::{DialogHeader, DialogKind, DialogMessage, PlanStep},
 };
 use cohabit_cdf::{Action, GoToTarget, ObjectId, Status};
-use cohabit_language::{Clarification, Context, Language, SpokenForms, Step, Unclear, Understanding, within_half_turn};
+use cohabit_language::{Clarification, Context, Language, Step, Unclear, Understanding, within_half_turn};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -296,9 +296,9 @@ impl Conversation {
         known.is_some_and(|known| self.language.is_whole(text, &known, &self.memory.context))
     }
 
-    /// What is likely to be said.
-    pub(crate) fn spoken_forms(&self, knowledge: &Knowledge) -> Option<SpokenForms> {
-        Some(self.language.spoken_forms(&knowledge.known()?))
+    /// Its language, to be asked while it goes on.
+    pub(crate) const fn language(&self) -> &Language {
+        &self.language
     }
 
     fn hear_as(
@@ -643,4 +643,90 @@ const fn goes_on(status: Status) -> bool {
 /// Whether the end of a plan whose last step is this is told; that it stopped or pointed was told before.
 fn worth_telling(step: &Step) -> bool {
     !matches!(step.action, Action::Stop | Action::Highlight { .. }) && !step.says.is_empty()
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use std::sync::Arc;
+
+    use cohabit_bus::message::{BodyRecord, NONE, StateParts, StateView};
+    use cohabit_cdf::{BodyId, Catalog, Layout, RoomId};
+    use cohabit_language::Knows;
+
+    use super::*;
+
+    /// What a robot knows that stands in an empty break room.
+    fn knowledge() -> Knowledge {
+        let (catalog, layout) = (Arc::new(Catalog::builtin()), Layout::builtin("OfficeLayout1").unwrap());
+        let room = RoomId::ALL.iter().position(|room| *room == RoomId::BreakRoom).unwrap() as u32;
+        let body = BodyRecord { room, held: NONE, position_m: [4.0, 10.0, 0.0], ..BodyRecord::default() };
+        let parts = StateParts { bodies: vec![body], ..StateParts::default() };
+        let mut bytes = vec![0_u64; parts.bytes().div_ceil(8)];
+        let bytes = &mut bytemuck::cast_slice_mut(&mut bytes)[..parts.bytes()];
+        parts.write(bytes);
+        let mut knowledge = Knowledge::new(Knows::Everything, catalog, &layout, BodyId(0));
+        knowledge.look(StateView::new(bytes).unwrap(), 1);
+        knowledge
+    }
+
+    fn conversation() -> Conversation {
+        Conversation::new(Language::new(Arc::new(Catalog::builtin())), 0)
+    }
+
+    fn says(reactions: &[Reaction]) -> String {
+        let lines = reactions.iter().filter_map(Reaction::line).filter(|line| line.from == Speaker::Robot);
+        lines.map(|line| line.text.clone()).collect::<Vec<_>>().join(" ")
+    }
+
+    fn plans(reactions: &[Reaction]) -> bool {
+        let is_plan = |reaction: &Reaction| matches!(reaction, Reaction::Bus(message) if message.header.kind() == Some(DialogKind::Plan));
+        reactions.iter().any(is_plan)
+    }
+
+    const DOUBTED: Aloud<'_> = Aloud { raw: "go to the main office", is_doubtful: true };
+
+    #[test]
+    fn what_is_doubted_is_asked_about_and_a_yes_means_it() {
+        let (mut conversation, knowledge) = (conversation(), knowledge());
+        let said = "go to the main office";
+        let (_, reactions) = conversation.hear_aloud(said, said, DOUBTED, &knowledge);
+        assert!(!plans(&reactions));
+        assert!(says(&reactions).contains("\"go to the main office\". Shall I do that?"), "{}", says(&reactions));
+        let question =
+            reactions.iter().filter_map(Reaction::line).find(|line| line.kind == LineKind::Question).unwrap();
+        assert_eq!(question.answers.iter().map(|answer| answer.text.as_str()).collect::<Vec<_>>(), ["yes", "no"]);
+        // A yes that is heard makes sense, though no question of the language's waits for it.
+        let yes = Spoken { readings: vec![("yes".to_owned(), -0.1)], confidence: 0.3, ..Spoken::default() };
+        let reading = conversation.reading(&yes, &str::to_owned, &knowledge).unwrap();
+        assert!(!conversation.doubts(&reading, &yes));
+        let (_, reactions) = conversation.hear("yes", &knowledge);
+        assert!(plans(&reactions), "{}", says(&reactions));
+    }
+
+    #[test]
+    fn what_was_not_said_is_not_done() {
+        let (mut conversation, knowledge) = (conversation(), knowledge());
+        let said = "go to the main office";
+        conversation.hear_aloud(said, said, DOUBTED, &knowledge);
+        let (_, reactions) = conversation.hear("no", &knowledge);
+        assert!(!plans(&reactions) && says(&reactions).contains("once more"), "{}", says(&reactions));
+        // Nor later.
+        let (_, reactions) = conversation.hear("yes", &knowledge);
+        assert!(!plans(&reactions), "{}", says(&reactions));
+        // Something else is what it is.
+        conversation.hear_aloud(said, said, DOUBTED, &knowledge);
+        let (_, reactions) = conversation.hear("go to the reception", &knowledge);
+        assert!(plans(&reactions) && says(&reactions).contains("reception"), "{}", says(&reactions));
+    }
+
+    #[test]
+    fn what_is_not_known_is_repeated_as_it_was_heard() {
+        let (mut conversation, knowledge) = (conversation(), knowledge());
+        let aloud = Aloud { raw: "Blorp the zargle.", is_doubtful: false };
+        let (_, reactions) = conversation.hear_aloud("blorp the zargle", "blorp the zargle", aloud, &knowledge);
+        assert!(says(&reactions).starts_with("I heard \"Blorp the zargle\". "), "{}", says(&reactions));
+        let (_, reactions) = conversation.hear("blorp the zargle", &knowledge);
+        assert!(!says(&reactions).contains("I heard"), "who types knows what they typed");
+    }
 }

@@ -122,9 +122,11 @@ mod tests {
 
     #[test]
     fn what_is_far_less_likely_is_not_taken_for_it() {
-        let meant = read(&[("play some jazz music please", -0.1), ("place", -2.0)], "play some jazz music please", 0.8)
-            .unwrap();
-        assert_eq!((meant.text.as_str(), meant.sense), ("play some jazz music please", Sense::None));
+        let said = "play some jazz music please";
+        let meant = read(&[(said, -0.1), ("go to the break room", -2.0)], said, 0.8).unwrap();
+        assert_eq!((meant.text.as_str(), meant.acts), (said, false));
+        let meant = read(&[("blorp the zargle", -0.1)], "blorp the zargle", 0.8).unwrap();
+        assert_eq!(meant.sense, Sense::None);
     }
 
     #[test]

@@ -488,8 +488,10 @@ impl Audience for Talk {
         if number == before {
             return None;
         }
-        let mut forms = robot.conversation.spoken_forms(&robot.knowledge)?;
+        let (language, known) = (robot.conversation.language().clone(), robot.knowledge.known()?);
         drop(inner);
+        // That takes a while, in which others are heard.
+        let mut forms = language.spoken_forms(&known);
         // Who is called by name is so at the beginning.
         let names: Vec<String> = self.names.iter().map(|name| name.to_lowercase()).collect();
         forms.words.extend(names.iter().flat_map(|name| name.split_whitespace().map(str::to_owned)));

@@ -37,6 +37,7 @@ pub mod errors;
 mod espeak;
 pub mod fake;
 mod gate;
+pub mod install;
 mod listener;
 mod moonshine;
 mod ngram;

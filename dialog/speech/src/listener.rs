@@ -36,14 +36,17 @@ impl Default for Turns {
             goes_on: 0.35,
             shortest_s: 0.12,
             before_s: 0.3,
-            complete_after_s: 0.2,
-            incomplete_after_s: 0.8,
+            complete_after_s: 0.16,
+            incomplete_after_s: 0.55,
             partial_every_s: 0.5,
             longest_s: 30.0,
         }
     }
 }
 
+/// Windows of silence after which what was said so far is given, if it is no longer than this, s.
+const SOON: usize = 2;
+const SHORT_S: f32 = 2.0;
 /// Of a long turn, what was said so far is given whenever a quarter more was said: telling it costs as much as it is long.
 const PARTIAL_SHARE: usize = 4;
 
@@ -111,6 +114,16 @@ struct Open {
 }
 
 impl Open {
+    /// Whether enough more was said, or somebody pauses who said anything more: a word such as stop is to be known soon.
+    fn is_worth_telling(&self, enough: usize) -> bool {
+        let more = self.samples.len() - self.given;
+        match self.silence {
+            0 => more >= enough,
+            SOON => more > SOON * WINDOW && self.samples.len() <= samples(SHORT_S),
+            _ => false,
+        }
+    }
+
     /// Where the speech ended, within the samples.
     fn ended(&self) -> usize {
         self.samples.len() - self.silence * WINDOW
@@ -252,7 +265,7 @@ impl Listener {
             if is_complete(&turn.samples)? {
                 self.end(false, turns);
             }
-        } else if silent == 0 && turn.samples.len() >= turn.given + self.turns.until_partial(turn.samples.len()) {
+        } else if turn.is_worth_telling(self.turns.until_partial(turn.samples.len())) {
             turn.given = turn.samples.len();
             turns.push(Turn::Partial { samples: turn.samples.clone() });
         }

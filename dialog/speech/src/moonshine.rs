@@ -36,7 +36,10 @@ const TOKENS_EACH_SECOND: f32 = 6.5;
 const BEAM: usize = 5;
 const BRANCHES: usize = 16;
 /// How much say the language model has.
-const LAMBDA: f32 = 0.25;
+fn lambda() -> f32 {
+    static U: std::sync::OnceLock<f32> = std::sync::OnceLock::new();
+    *U.get_or_init(|| std::env::var("T_LAMBDA").ok().and_then(|x| x.parse().ok()).unwrap_or(0.25))
+}
 
 /// An opened model.
 pub(crate) struct Moonshine {
@@ -125,6 +128,13 @@ impl Moonshine {
         if bias::words(&raw).is_empty() {
             return Recognition::default();
         }
+        if std::env::var_os("DEBUG_BEAM").is_some() {
+            print!("BEAM\t{:.2}\t{:.2}\t{raw}", spelt.greedy.by_sound, spelt.greedy.score);
+            for o in spelt.others.iter().take(5) {
+                print!("\t{:.2}\t{:.2}\t{}", o.by_sound, o.score, self.text(o));
+            }
+            println!();
+        }
         let is_open = |text: &String| self.model.as_ref().is_some_and(|model| gate::is_open(model, text, &raw));
         let mut found: Vec<(String, &Spelling)> = Vec::new();
         let others = spelt.others.iter().map(|other| (self.text(other), other)).filter(|(text, _)| is_open(text));
@@ -140,6 +150,11 @@ impl Moonshine {
 }
 
 impl Spelling {
+    /// Whether it is at its end.
+    fn is_done(&self) -> bool {
+        self.tokens.last() == Some(&END)
+    }
+
     /// Logarithm of how likely a token of it is by the sound.
     fn each(&self) -> f32 {
         self.by_sound / self.tokens.len().max(1) as f32
@@ -335,6 +350,9 @@ impl<'m> Steps<'m> {
                 let (token, chance) = rows[greedy.row][0];
                 greedy.by_sound += chance;
                 greedy.tokens.push(token);
+                if let Some(model) = &self.moonshine.model {
+                    self.judge(model, &mut greedy);
+                }
                 is_greedy_done = token == END;
             }
             beam = self.branch(&beam, &rows, &mut done);
@@ -365,6 +383,19 @@ impl<'m> Steps<'m> {
         self.logits.chunks_exact(self.moonshine.tokens.len()).map(likeliest).collect()
     }
 
+    /// What the language model has to say about the last token.
+    fn judge(&self, model: &NGram, spelling: &mut Spelling) {
+        let Some(token) = spelling.tokens.last() else { return };
+        let by_model = if *token == END {
+            model.end(&mut spelling.place)
+        } else {
+            let spelt = self.moonshine.tokens.get(*token).expect("invariant: as many logits as tokens");
+            model.spell(&mut spelling.place, spelt.begins_word, &spelt.letters, spelt.ends_word);
+            model.so_far(&spelling.place)
+        };
+        spelling.score = spelling.by_sound + lambda() * by_model;
+    }
+
     /// The best spellings that go on from those of the beam; what ends goes to those that are done.
     fn branch(&self, beam: &[Spelling], rows: &[Vec<(i64, f32)>], done: &mut Vec<Spelling>) -> Vec<Spelling> {
         let Some(model) = &self.moonshine.model else { return Vec::new() };
@@ -374,20 +405,22 @@ impl<'m> Steps<'m> {
                 let mut longer = spelling.clone();
                 longer.by_sound += chance;
                 longer.tokens.push(*token);
-                let by_model = if *token == END {
-                    model.end(&mut longer.place)
-                } else {
-                    let spelt = self.moonshine.tokens.get(*token).expect("invariant: as many logits as tokens");
-                    model.spell(&mut longer.place, spelt.begins_word, &spelt.letters, spelt.ends_word);
-                    model.so_far(&longer.place)
-                };
-                longer.score = longer.by_sound + LAMBDA * by_model;
+                self.judge(model, &mut longer);
                 next.push(longer);
             }
         }
         next.sort_by(|one, other| other.score.total_cmp(&one.score));
-        next.truncate(BEAM);
-        let (ended, next) = next.into_iter().partition(|spelling| spelling.tokens.last() == Some(&END));
+        // Those that differ in marks and capitals alone say the same: the likeliest stands for all.
+        let mut said: Vec<(String, bool)> = Vec::with_capacity(BEAM);
+        next.retain(|spelling| {
+            let says = (spelling.place.words().to_owned(), spelling.is_done());
+            let is_new = said.len() < BEAM && !said.contains(&says);
+            if is_new {
+                said.push(says);
+            }
+            is_new
+        });
+        let (ended, next) = next.into_iter().partition(Spelling::is_done);
         done.extend::<Vec<_>>(ended);
         next
     }

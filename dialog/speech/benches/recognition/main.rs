@@ -111,6 +111,9 @@ fn spoken(ear: &mut Ear, voice: &mut Voice, commands: &[Command], mut noise: Opt
         let heard =
             found.recognitions.iter().map(|recognition| sensible(recognition, &talk)).collect::<Vec<_>>().join(" ");
         let raw = found.recognitions.iter().map(|recognition| recognition.raw.clone()).collect::<Vec<_>>().join(" ");
+        if std::env::var_os("DEBUG_BEAM").is_some() {
+            println!("SAID\t{}", command.text);
+        }
         let meant = talk.say(command.text);
         let understood = if heard.is_empty() { String::new() } else { Talk::new(&command.marks).say(&heard) };
         let is_same = meant == understood;

@@ -98,7 +98,7 @@ impl Noise {
         let high = white - self.water[0];
         (self.water[0], self.water[1]) = (white, 0.7 * self.water[1] + 0.3 * high);
         let running = self.water[1] * (0.6 + 0.4 * (2.0 * PI * 0.2 * time_s).sin());
-        if self.uniform() > 1.0 - 3.0 / RATE as f32 {
+        if self.uniform() > 1.0 - 1.0 / RATE as f32 {
             let (pitch, loud) = (2_000.0 + 1_500.0 * self.uniform(), 1.0 + 0.7 * self.uniform());
             self.ringing.push((pitch, loud, self.at));
         }
@@ -111,7 +111,7 @@ impl Noise {
         let clatter: f32 = self.ringing.iter().map(ring).sum();
         self.ringing.retain(|(.., began)| (self.at - began) < RATE as usize / 2);
         self.at += 1;
-        0.35 * hum + 1.6 * self.fan + 0.25 * running + 0.6 * clatter
+        0.35 * hum + 1.6 * self.fan + 0.12 * running + 0.5 * clatter
     }
 
     /// From -1 to 1.

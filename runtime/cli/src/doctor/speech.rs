@@ -1,6 +1,6 @@
 //! What a session hears and speaks with.
 
-use cohabit_speech::{Engines, Part, VoiceSettings};
+use cohabit_speech::{Engines, Lack, Part, VoiceSettings};
 
 use super::{finding::Finding, machine::Machine};
 
@@ -22,13 +22,12 @@ fn judge(engines: &Engines, settings: &VoiceSettings) -> Finding {
         (Some(one), None) | (None, Some(one)) => one,
         (Some(hears), Some(speaks)) => format!("{hears}, {speaks}"),
     };
-    let lacks: Vec<String> = engines.lacks.iter().map(ToString::to_string).collect();
-    let is_mute = engines.lacks.iter().any(|lack| lack.part != Part::VoiceActivity);
-    match lacks.first() {
+    // What matters most is told: without text there is no speech to tell from noise.
+    let matters = |lack: &&Lack| lack.part != Part::VoiceActivity;
+    match engines.lacks.iter().find(matters).or(engines.lacks.first()) {
         None => Finding::good(format!("{found} ({})", settings.folder.display())),
         Some(lack) => {
-            let costs =
-                if is_mute { COSTS.to_owned() } else { format!("speech is told from noise less well; {COSTS}") };
+            let costs = if matters(&lack) { COSTS } else { "noise is more often taken for speech" };
             Finding::costs(format!("{found}; {lack}"), costs, "`cohabit voice install`")
         }
     }
