@@ -14,6 +14,7 @@ const LEVELS: &[(&str, u8, &[&str])] = &[
     ("cohabit-record", 2, &["mcap", "crc32fast", "flate2"]),
     ("cohabit-agent", 2, &[]),
     ("cohabit-language", 2, &[]),
+    ("cohabit-speech", 2, &["ort", "earshot", "sha2", "zip"]),
     ("cohabit-gpu", 3, &["wgpu"]),
     ("cohabit-engine", 3, &[]),
     ("cohabit-tables", 3, &["csv", "faer", "statrs"]),
@@ -28,7 +29,18 @@ const LEVELS: &[(&str, u8, &[&str])] = &[
 /// Dependencies that others may name too: the log, the page and existing clients speak JSON, tests report errors of all
 /// kinds, and there are two programs.
 const SHARED: &[(&str, &[&str])] = &[
-    ("serde_json", &["cohabit-record", "cohabit-arena", "cohabit-dialog", "cohabit-eval", "cohabit", "cohabit-tests"]),
+    (
+        "serde_json",
+        &[
+            "cohabit-record",
+            "cohabit-speech",
+            "cohabit-arena",
+            "cohabit-dialog",
+            "cohabit-eval",
+            "cohabit",
+            "cohabit-tests",
+        ],
+    ),
     ("anyhow", &["cohabit-rerun", "cohabit-tests"]),
     ("clap", &["cohabit-rerun"]),
 ];

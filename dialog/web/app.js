@@ -8,13 +8,18 @@ import { expandGoals, takeState } from "./goals.js";
 import { buildReplay, takePlayer, takeReplayKey, takeRewind } from "./replay.js";
 import { greeted, listen, watchSilence } from "./socket.js";
 import { askWhenDue, buildSurvey, noteAnswered, takeAnswered } from "./survey.js";
+import { forgetSounds, hearState, takeSound } from "./sound.js";
 import { clearChat, endDoing, input, say, takeLatency, meet, takeLine, takeProgress, takeTurn, takeYou } from "./talk.js";
+import { forgetHeard, greetVoice, loseMicrophone, speakLine, stopListening, takeDeaf, takeHeard, takeHearing, takeHush, takeSpeech, takeVoice, takeVoiceKey } from "./voice.js";
 import { awaitFrame, buildViews, nextView, showRate, takeFrame, takeMarks, takeSeen } from "./view.js";
 
-/** What tests and curious people may read. */
-window.cohabit = { frames: 0, state: null, latency: null, view: null, seen: null, driving: null, aim: null, marks: [] };
+/** Binary messages that are pieces of what robots say begin so; all others are frames. */
+const SPEECH = 2;
 
-function takeHello({ session, mission, map, views, drivable, robots, questionnaires, replay }) {
+/** What tests and curious people may read. */
+window.cohabit = { frames: 0, state: null, latency: null, view: null, seen: null, driving: null, aim: null, marks: [], sounds: [], voice: {}, loseMicrophone };
+
+function takeHello({ session, mission, map, views, drivable, robots, questionnaires, replay, voice }) {
   greeted();
   byId("session").textContent = replay ? `${session} · recorded` : session;
   document.title = mission.title ? `${mission.title} · Cohabit` : "Cohabit";
@@ -26,6 +31,8 @@ function takeHello({ session, mission, map, views, drivable, robots, questionnai
   meet(robots);
   clearChat();
   endDoing();
+  forgetSounds();
+  greetVoice(voice);
   buildReplay(replay);
   buildSurvey(questionnaires);
 }
@@ -36,9 +43,10 @@ document.addEventListener("keydown", (event) => {
     event.preventDefault();
     nextView();
   }
-  if (event.isComposing || document.querySelector("dialog[open]") || takeReplayKey(event) || takeKey(event) || event.ctrlKey || event.metaKey || event.altKey) return;
+  if (event.isComposing || document.querySelector("dialog[open]") || takeVoiceKey(event) || takeReplayKey(event) || takeKey(event) || event.ctrlKey || event.metaKey || event.altKey) return;
   if (event.key === "Escape" && !event.repeat) {
     enlargeMap(false);
+    forgetHeard();
     say("stop");
   } else if (document.activeElement !== input && !(document.activeElement instanceof HTMLSelectElement) && /^[\p{L}\p{N}/]$/u.test(event.key)) {
     if (event.key === "/") event.preventDefault();
@@ -62,8 +70,12 @@ listen({
     takePlayer(state);
     askWhenDue(state);
     showHeld(state);
+    hearState(state);
   },
-  chat: takeLine,
+  chat: (line) => {
+    if (!byId("chat").hasAttribute("aria-busy")) speakLine(line);
+    takeLine(line);
+  },
   progress: takeProgress,
   turn: takeTurn,
   latency: (latency) => {
@@ -76,11 +88,21 @@ listen({
   aim: takeAim,
   acted: takeActed,
   answered: takeAnswered,
-  rewind: takeRewind,
+  rewind: (past) => {
+    forgetSounds();
+    takeRewind(past);
+  },
+  sound: takeSound,
   highlight: (message) => floor.pointOut(message),
   error: (message) => toast(message.text),
-  frame: takeFrame,
+  voice: takeVoice,
+  hearing: takeHearing,
+  heard: takeHeard,
+  hush: takeHush,
+  deaf: takeDeaf,
+  binary: (buffer) => (new Uint8Array(buffer, 0, 1)[0] === SPEECH ? takeSpeech(buffer) : takeFrame(buffer)),
   lost: () => {
+    stopListening();
     endDoing();
     takeDriving({ body: null, text: "" });
   },

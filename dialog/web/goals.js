@@ -2,7 +2,7 @@
 
 import { byId, calm, capitalised, drawn, element, narrow } from "./dom.js";
 import { floor } from "./floor.js";
-import { endDoing } from "./talk.js";
+import { endDoing, input } from "./talk.js";
 
 let goalsShown = "";
 let metBefore = null;

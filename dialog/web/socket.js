@@ -23,7 +23,7 @@ function socketAddress() {
   return `${scheme}://${location.host}/ws?${parameters}`;
 }
 
-/** What to call for each type of message, for a `frame`, and when the connection is `lost`. */
+/** What to call for each type of message, for `binary` ones, and when the connection is `lost`. */
 export function listen(to) {
   receivers = to;
   connect();
@@ -35,7 +35,7 @@ function connect() {
   socket.onmessage = ({ data }) => {
     heardAt = performance.now();
     if (typeof data === "string") take(JSON.parse(data));
-    else receivers.frame(data);
+    else receivers.binary(data);
   };
   socket.onclose = () => {
     showLink("lost");
@@ -49,6 +49,13 @@ export function send(message) {
   if (socket?.readyState !== WebSocket.OPEN) return false;
   socket.send(JSON.stringify(message));
   return true;
+}
+
+/** More sound than this does not wait to be sent: it is too late then. */
+const MOST_WAITING_BYTES = 256 << 10;
+
+export function sendSound(piece) {
+  if (socket?.readyState === WebSocket.OPEN && socket.bufferedAmount < MOST_WAITING_BYTES) socket.send(piece);
 }
 
 function take(message) {

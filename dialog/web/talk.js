@@ -3,6 +3,7 @@
 import { byId, capitalised, element, narrow, toast } from "./dom.js";
 import { floor } from "./floor.js";
 import { send } from "./socket.js";
+import { sendHeard } from "./voice.js";
 
 /** So near its end, the log follows what is said, px. */
 const NEAR_END_PX = 60;
@@ -184,7 +185,7 @@ export function endDoing() {
 
 export function takeLatency(latency) {
   window.cohabit.latency = latency;
-  const words = { understood: latency.understood_ms, moving: latency.moved_ms, seen: latency.shown_ms };
+  const words = { heard: latency.heard_ms, understood: latency.understood_ms, answering: latency.sounded_ms, moving: latency.moved_ms, seen: latency.shown_ms };
   const parts = Object.entries(words).filter(([, ms]) => typeof ms === "number");
   byId("latency").textContent = parts.map(([word, ms]) => `${word} ${inMilliseconds(ms)}`).join(" · ");
 }
@@ -223,7 +224,8 @@ function recall(step) {
 byId("composer").addEventListener("submit", (event) => {
   event.preventDefault();
   const text = input.value.trim();
-  if (text && say(text)) {
+  if (sendHeard(input.value)) draft = "";
+  else if (text && say(text)) {
     input.value = "";
     draft = "";
   }

@@ -3,6 +3,7 @@
 import { byId, capitalised, drawn, element } from "./dom.js";
 import { floor } from "./floor.js";
 import { send, showLink } from "./socket.js";
+import { hearThrough } from "./sound.js";
 
 const HEADER_BYTES = 16;
 const FRAME_KIND = 1;
@@ -117,6 +118,7 @@ export function lookThrough(view, chosen = true) {
   if (!view || view === looking) return;
   const first = looking === null;
   looking = view;
+  hearThrough(view.camera);
   waiting = null;
   // A session shows its first view unasked.
   if (!first || view !== views[0]) send({ type: "view", camera: view.camera });

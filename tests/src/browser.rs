@@ -2,7 +2,7 @@
 
 use std::{
     io::{BufRead as _, BufReader},
-    path::PathBuf,
+    path::{Path, PathBuf},
     process::{Child, Command, Stdio},
     sync::atomic::{AtomicU32, Ordering},
     time::Instant,
@@ -36,6 +36,20 @@ impl Browser {
     /// # Errors
     /// When one is there but does not start.
     pub fn start() -> anyhow::Result<Option<Self>> {
+        Self::start_with(&[])
+    }
+
+    /// The same, with a microphone that gives the sound of a WAV file once, and is allowed to every page.
+    ///
+    /// # Errors
+    /// When one is there but does not start.
+    pub fn start_speaking(wav: &Path) -> anyhow::Result<Option<Self>> {
+        let sound = format!("--use-file-for-fake-audio-capture={}%noloop", wav.display());
+        let gestures = "--autoplay-policy=no-user-gesture-required";
+        Self::start_with(&["--use-fake-device-for-media-stream", "--use-fake-ui-for-media-stream", &sound, gestures])
+    }
+
+    fn start_with(more: &[&str]) -> anyhow::Result<Option<Self>> {
         let Some(program) = find() else {
             eprintln!("skipped: there is no browser here ({})", NAMES.join(", "));
             return Ok(None);
@@ -53,6 +67,7 @@ impl Browser {
                 "--mute-audio",
             ])
             .args(["--remote-debugging-port=0", "--window-size=1280,720"])
+            .args(more)
             .arg(format!("--user-data-dir={}", profile.display()))
             .stderr(Stdio::piped())
             .stdout(Stdio::null())

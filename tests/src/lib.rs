@@ -10,6 +10,7 @@ mod python;
 mod scratch;
 mod soak;
 mod socket;
+mod speech;
 
 pub use browser::{Browser, Tab};
 pub use page::Page;
@@ -17,6 +18,7 @@ pub use play::{Play, reference_data, run};
 pub use python::{output, python_with};
 pub use scratch::Scratch;
 pub use soak::{Resident, Soaked, soak};
+pub use speech::{SpeechServer, babble, wav};
 
 /// The processor and the number of cores, as benches print them.
 #[must_use]

@@ -1,6 +1,6 @@
 //! A client of a session's page: speaks its WebSocket, without a browser.
 
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use anyhow::bail;
 use serde_json::{Value, json};
@@ -19,7 +19,13 @@ pub struct Page {
     pub aim: Value,
     /// Frames seen.
     pub frames: u64,
+    /// Samples heard of what robots say.
+    pub heard_samples: u64,
 }
+
+/// Binary messages that are pieces of what robots say begin with this, and so many bytes stand before their samples.
+const SPEECH: u8 = 2;
+const SPEECH_HEADER: usize = 24;
 
 impl Page {
     /// Opens the page at `authority` (`host:port`).
@@ -40,7 +46,7 @@ impl Page {
 
     fn at(address: &str) -> anyhow::Result<Self> {
         let socket = Socket::open(address)?;
-        Ok(Self { socket, chat: Vec::new(), state: Value::Null, aim: Value::Null, frames: 0 })
+        Ok(Self { socket, chat: Vec::new(), state: Value::Null, aim: Value::Null, frames: 0, heard_samples: 0 })
     }
 
     /// Types a sentence.
@@ -59,6 +65,27 @@ impl Page {
         self.socket.send(message)
     }
 
+    /// Sends bytes, as of a microphone.
+    ///
+    /// # Errors
+    /// When the socket is gone.
+    pub fn send_bytes(&mut self, bytes: Vec<u8>) -> anyhow::Result<()> {
+        self.socket.send_bytes(bytes)
+    }
+
+    /// Says something into the page's microphone: samples of 16 kHz, as fast as they last.
+    ///
+    /// # Errors
+    /// When the socket is gone.
+    pub fn speak(&mut self, samples: &[f32]) -> anyhow::Result<()> {
+        const PIECE: usize = 1024;
+        for piece in cohabit_speech::to_pcm(samples).chunks(PIECE) {
+            self.send_bytes(piece.iter().flat_map(|sample| sample.to_le_bytes()).collect())?;
+            std::thread::sleep(Duration::from_secs_f64(piece.len() as f64 / f64::from(cohabit_speech::RATE)));
+        }
+        Ok(())
+    }
+
     /// The next message that is not a frame.
     ///
     /// # Errors
@@ -70,6 +97,9 @@ impl Page {
                     let message: Value = serde_json::from_str(&text)?;
                     self.note(&message);
                     return Ok(message);
+                }
+                Message::Binary(bytes) if bytes.first() == Some(&SPEECH) => {
+                    self.heard_samples += bytes.len().saturating_sub(SPEECH_HEADER) as u64 / 2;
                 }
                 Message::Binary(_) => self.frames += 1,
                 Message::Close(_) => bail!("the page's socket was closed"),

@@ -27,6 +27,11 @@ impl Socket {
         self.0.send(Message::text(message.to_string())).context("send to the socket")
     }
 
+    /// Sends bytes.
+    pub fn send_bytes(&mut self, bytes: Vec<u8>) -> anyhow::Result<()> {
+        self.0.send(Message::binary(bytes)).context("send to the socket")
+    }
+
     /// The next message.
     ///
     /// A machine that is halted and goes on ends each read that has a time limit, though nothing came: see signal(7).

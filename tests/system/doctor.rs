@@ -7,7 +7,7 @@ use serde_json::Value;
 
 use crate::COHABIT;
 
-const CHECKS: [&str; 6] = ["shared memory", "runtime folder", "session logs", "GPU", "audio", "timers"];
+const CHECKS: [&str; 7] = ["shared memory", "runtime folder", "session logs", "GPU", "audio", "voice", "timers"];
 
 #[test]
 fn a_machine_that_runs_these_tests_can_run_sessions() {

@@ -19,6 +19,7 @@ mod sessions;
 mod several;
 mod soak;
 mod survey;
+mod voice;
 
 /// The binary under test.
 const COHABIT: &str = env!("CARGO_BIN_EXE_cohabit");

@@ -64,6 +64,7 @@ mod settle;
 mod sight;
 mod sound;
 mod spelling;
+mod spoken;
 mod table;
 mod tail;
 mod tidy;
@@ -86,6 +87,7 @@ pub use known::{Known, KnownGoal, KnownObject, KnownPerson, KnownRobot, within_h
 pub use memory::{Knows, Lessons, Memory};
 pub use oracle::Oracle;
 pub use sight::Gaze;
+pub use spoken::{SpokenForms, says_stop};
 pub use understanding::{Asking, Clarification, Step, Understanding};
 
 use crate::{
@@ -137,6 +139,12 @@ impl Language {
     #[must_use]
     pub fn asking(self, asking: Asking) -> Self {
         Self { asking, ..self }
+    }
+
+    /// Whether it asks at all.
+    #[must_use]
+    pub fn may_ask(&self) -> bool {
+        self.asking != Asking::Never
     }
 
     /// What `utterance` means in `scene`, given the conversation so far. Any text is taken; none panics.

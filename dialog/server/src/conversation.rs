@@ -15,6 +15,7 @@ use serde_json::Value;
 
 use crate::known::Knowledge;
 use crate::page::{self, Answer, Line, LineKind, Speaker};
+use crate::spoken::{Reading, Spoken};
 
 /// What the conversation wants done.
 #[derive(Clone, Debug, PartialEq)]
@@ -151,6 +152,8 @@ pub struct Memory {
     said: VecDeque<(bool, String)>,
     /// What an interpreter was asked about.
     puzzle: Option<Puzzle>,
+    /// What was heard, and is not trusted: a yes means it.
+    unsure: Option<String>,
 }
 
 /// Words that an interpreter may make something of.
@@ -159,6 +162,15 @@ struct Puzzle {
     turn: u64,
     /// What the robot says if it does not.
     refusal: String,
+}
+
+/// How something was heard that was said aloud.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Aloud<'a> {
+    /// What it sounds like by itself.
+    pub raw: &'a str,
+    /// Whether the robot asks before it does it.
+    pub is_doubtful: bool,
 }
 
 /// So many lines tell an interpreter what it is about.
@@ -243,6 +255,59 @@ impl Conversation {
 
     /// The same, of which `text` is said to this robot: all but its name.
     pub(crate) fn hear_called(&mut self, said: &str, text: &str, knowledge: &Knowledge) -> (u64, Vec<Reaction>) {
+        self.hear_as(said, text, None, knowledge)
+    }
+
+    /// The same, said aloud: what is not trusted is asked about, and what is not understood is told as it was heard.
+    pub(crate) fn hear_aloud(
+        &mut self,
+        said: &str,
+        text: &str,
+        aloud: Aloud<'_>,
+        knowledge: &Knowledge,
+    ) -> (u64, Vec<Reaction>) {
+        self.hear_as(said, text, Some(aloud), knowledge)
+    }
+
+    /// Which reading of what was said aloud is meant; `called` takes the robot's name out of one.
+    pub(crate) fn reading(
+        &self,
+        spoken: &Spoken,
+        called: &dyn Fn(&str) -> String,
+        knowledge: &Knowledge,
+    ) -> Option<Reading> {
+        let known = knowledge.known()?;
+        let meant = |text: &str| self.language.understand(text, &known, &mut self.memory.context.clone());
+        let consents = |text: &str| self.memory.unsure.is_some() && self.language.consent(text, &known).is_some();
+        Reading::of(spoken, |text| {
+            let text = called(text);
+            if consents(&text) { Understanding::Answer { text, highlight: Vec::new() } } else { meant(&text) }
+        })
+    }
+
+    /// Whether the robot asks before it does what was heard.
+    pub(crate) fn doubts(&self, reading: &Reading, spoken: &Spoken) -> bool {
+        reading.is_doubtful(spoken.confidence, &self.language)
+    }
+
+    /// Whether what was said so far is a whole sentence.
+    pub(crate) fn is_whole(&self, text: &str, knowledge: &Knowledge) -> bool {
+        let known = knowledge.known();
+        known.is_some_and(|known| self.language.is_whole(text, &known, &self.memory.context))
+    }
+
+    /// Its language, to be asked while it goes on.
+    pub(crate) const fn language(&self) -> &Language {
+        &self.language
+    }
+
+    fn hear_as(
+        &mut self,
+        said: &str,
+        text: &str,
+        aloud: Option<Aloud<'_>>,
+        knowledge: &Knowledge,
+    ) -> (u64, Vec<Reaction>) {
         self.memory.turns += 1;
         let turn = self.memory.turns;
         let mut reactions = vec![
@@ -257,7 +322,32 @@ impl Conversation {
         self.leave_puzzle(&mut reactions);
         let before = self.memory.said.iter().cloned().collect();
         self.note_line(false, text);
-        match self.language.understand(text, &known, &mut self.memory.context) {
+        let mut text = text.to_owned();
+        if let Some(unsure) = self.memory.unsure.take() {
+            match self.language.consent(&text, &known) {
+                Some(true) => text = unsure,
+                Some(false) => {
+                    self.memory.asked = None;
+                    let again = "All right. Please say it once more, or type it.";
+                    self.say(turn, DialogKind::Reply, LineKind::Say, again, &mut reactions);
+                    reactions.push(Reaction::TurnEnded { turn, end: TurnEnd::Answered });
+                    return (turn, reactions);
+                }
+                None => {}
+            }
+        }
+        if aloud.is_some_and(|aloud| aloud.is_doubtful) {
+            self.ask_what_was_heard(turn, &text, &mut reactions);
+            return (turn, reactions);
+        }
+        let text = text.as_str();
+        let understood = match (self.language.understand(text, &known, &mut self.memory.context), aloud) {
+            (Understanding::Refusal { is_lost: true, text }, Some(Aloud { raw, .. })) => {
+                Understanding::Refusal { is_lost: true, text: format!("I heard \"{}\". {text}", plainly(raw)) }
+            }
+            (understood, _) => understood,
+        };
+        match understood {
             Understanding::Refusal { is_lost: true, text: refusal } if self.interprets => {
                 let unclear = self.language.unclear(text, &known, before);
                 self.memory.puzzle = Some(Puzzle { turn, refusal });
@@ -267,6 +357,20 @@ impl Conversation {
             understanding => self.react(turn, turn, understanding, knowledge, &mut reactions),
         }
         (turn, reactions)
+    }
+
+    /// Asks whether what was heard was said; a yes means it.
+    fn ask_what_was_heard(&mut self, turn: u64, text: &str, reactions: &mut Vec<Reaction>) {
+        let question = format!("I am not sure I heard that right: \"{}\". Shall I do that?", plainly(text));
+        self.memory.unsure = Some(text.to_owned());
+        self.note_line(true, &question);
+        let asked = Asked { kind: Clarification::Confirmation, candidates: Vec::new() };
+        let mut line = Line::new(Speaker::Robot, LineKind::Question, turn, question);
+        line.answers = asked.answers(vec!["yes".to_owned(), "no".to_owned()]);
+        self.memory.asked = Some(asked);
+        reactions.push(self.bus(DialogKind::Question, turn, &line.text));
+        reactions.push(Reaction::Chat(line));
+        reactions.push(Reaction::TurnEnded { turn, end: TurnEnd::Asked });
     }
 
     /// An interpreter made these requests of what was said in a turn, or nothing.
@@ -526,6 +630,11 @@ fn to_where_it_was(mut steps: Vec<Step>, knowledge: &Knowledge) -> (Vec<Step>, O
     (steps, Some(id))
 }
 
+/// What was heard, to be quoted.
+fn plainly(heard: &str) -> &str {
+    heard.trim().trim_end_matches(['.', '!', ','])
+}
+
 /// Whether a plan that ended so may be followed by more.
 const fn goes_on(status: Status) -> bool {
     !matches!(status, Status::Interrupted | Status::KilledByHazard)
@@ -534,4 +643,90 @@ const fn goes_on(status: Status) -> bool {
 /// Whether the end of a plan whose last step is this is told; that it stopped or pointed was told before.
 fn worth_telling(step: &Step) -> bool {
     !matches!(step.action, Action::Stop | Action::Highlight { .. }) && !step.says.is_empty()
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use std::sync::Arc;
+
+    use cohabit_bus::message::{BodyRecord, NONE, StateParts, StateView};
+    use cohabit_cdf::{BodyId, Catalog, Layout, RoomId};
+    use cohabit_language::Knows;
+
+    use super::*;
+
+    /// What a robot knows that stands in an empty break room.
+    fn knowledge() -> Knowledge {
+        let (catalog, layout) = (Arc::new(Catalog::builtin()), Layout::builtin("OfficeLayout1").unwrap());
+        let room = RoomId::ALL.iter().position(|room| *room == RoomId::BreakRoom).unwrap() as u32;
+        let body = BodyRecord { room, held: NONE, position_m: [4.0, 10.0, 0.0], ..BodyRecord::default() };
+        let parts = StateParts { bodies: vec![body], ..StateParts::default() };
+        let mut bytes = vec![0_u64; parts.bytes().div_ceil(8)];
+        let bytes = &mut bytemuck::cast_slice_mut(&mut bytes)[..parts.bytes()];
+        parts.write(bytes);
+        let mut knowledge = Knowledge::new(Knows::Everything, catalog, &layout, BodyId(0));
+        knowledge.look(StateView::new(bytes).unwrap(), 1);
+        knowledge
+    }
+
+    fn conversation() -> Conversation {
+        Conversation::new(Language::new(Arc::new(Catalog::builtin())), 0)
+    }
+
+    fn says(reactions: &[Reaction]) -> String {
+        let lines = reactions.iter().filter_map(Reaction::line).filter(|line| line.from == Speaker::Robot);
+        lines.map(|line| line.text.clone()).collect::<Vec<_>>().join(" ")
+    }
+
+    fn plans(reactions: &[Reaction]) -> bool {
+        let is_plan = |reaction: &Reaction| matches!(reaction, Reaction::Bus(message) if message.header.kind() == Some(DialogKind::Plan));
+        reactions.iter().any(is_plan)
+    }
+
+    const DOUBTED: Aloud<'_> = Aloud { raw: "go to the main office", is_doubtful: true };
+
+    #[test]
+    fn what_is_doubted_is_asked_about_and_a_yes_means_it() {
+        let (mut conversation, knowledge) = (conversation(), knowledge());
+        let said = "go to the main office";
+        let (_, reactions) = conversation.hear_aloud(said, said, DOUBTED, &knowledge);
+        assert!(!plans(&reactions));
+        assert!(says(&reactions).contains("\"go to the main office\". Shall I do that?"), "{}", says(&reactions));
+        let question =
+            reactions.iter().filter_map(Reaction::line).find(|line| line.kind == LineKind::Question).unwrap();
+        assert_eq!(question.answers.iter().map(|answer| answer.text.as_str()).collect::<Vec<_>>(), ["yes", "no"]);
+        // A yes that is heard makes sense, though no question of the language's waits for it.
+        let yes = Spoken { readings: vec![("yes".to_owned(), -0.1)], confidence: 0.3, ..Spoken::default() };
+        let reading = conversation.reading(&yes, &str::to_owned, &knowledge).unwrap();
+        assert!(!conversation.doubts(&reading, &yes));
+        let (_, reactions) = conversation.hear("yes", &knowledge);
+        assert!(plans(&reactions), "{}", says(&reactions));
+    }
+
+    #[test]
+    fn what_was_not_said_is_not_done() {
+        let (mut conversation, knowledge) = (conversation(), knowledge());
+        let said = "go to the main office";
+        conversation.hear_aloud(said, said, DOUBTED, &knowledge);
+        let (_, reactions) = conversation.hear("no", &knowledge);
+        assert!(!plans(&reactions) && says(&reactions).contains("once more"), "{}", says(&reactions));
+        // Nor later.
+        let (_, reactions) = conversation.hear("yes", &knowledge);
+        assert!(!plans(&reactions), "{}", says(&reactions));
+        // Something else is what it is.
+        conversation.hear_aloud(said, said, DOUBTED, &knowledge);
+        let (_, reactions) = conversation.hear("go to the reception", &knowledge);
+        assert!(plans(&reactions) && says(&reactions).contains("reception"), "{}", says(&reactions));
+    }
+
+    #[test]
+    fn what_is_not_known_is_repeated_as_it_was_heard() {
+        let (mut conversation, knowledge) = (conversation(), knowledge());
+        let aloud = Aloud { raw: "Blorp the zargle.", is_doubtful: false };
+        let (_, reactions) = conversation.hear_aloud("blorp the zargle", "blorp the zargle", aloud, &knowledge);
+        assert!(says(&reactions).starts_with("I heard \"Blorp the zargle\". "), "{}", says(&reactions));
+        let (_, reactions) = conversation.hear("blorp the zargle", &knowledge);
+        assert!(!says(&reactions).contains("I heard"), "who types knows what they typed");
+    }
 }

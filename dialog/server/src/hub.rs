@@ -19,6 +19,9 @@ pub const LINES_KEPT: usize = 500;
 /// Messages kept for a page that is slow; then it is told to reload what it missed.
 const MESSAGES_KEPT: usize = 256;
 
+/// Pieces of sound kept for a page that is slow; it then misses some.
+const SOUNDS_KEPT: usize = 256;
+
 /// Where the service's parts and the pages meet.
 pub struct Hub {
     hello: String,
@@ -27,6 +30,8 @@ pub struct Hub {
     /// The objects that the robot asks about, in the order of their numbers.
     marked: Mutex<Arc<[ObjectId]>>,
     messages: broadcast::Sender<Arc<str>>,
+    /// What robots say aloud, piece by piece, for pages that hear it.
+    sounds: broadcast::Sender<Arc<Vec<u8>>>,
     /// The cameras that pages can look through, the usual one first.
     pub views: Vec<Arc<View>>,
     pages: AtomicUsize,
@@ -60,6 +65,7 @@ impl Hub {
             state: Mutex::default(),
             marked: Mutex::default(),
             messages: broadcast::Sender::new(MESSAGES_KEPT),
+            sounds: broadcast::Sender::new(SOUNDS_KEPT),
             views: views.into_iter().map(Arc::new).collect(),
             pages: AtomicUsize::new(0),
             first_frame_shown: AtomicBool::new(false),
@@ -110,6 +116,16 @@ impl Hub {
     /// Tells all pages something that need not be kept.
     pub fn tell(&self, message: &Value) {
         let _ = self.messages.send(message.to_string().into());
+    }
+
+    /// Has the pages that hear robots play a piece of sound.
+    pub fn play(&self, piece: Vec<u8>) {
+        let _ = self.sounds.send(Arc::new(piece));
+    }
+
+    /// What robots say from now on.
+    pub fn sounds(&self) -> broadcast::Receiver<Arc<Vec<u8>>> {
+        self.sounds.subscribe()
     }
 
     /// Tells all pages the state, if it is news, and keeps it.

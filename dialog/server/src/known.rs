@@ -1,6 +1,10 @@
 //! What the robot knows, from the states that the simulator publishes.
 
-use std::sync::Arc;
+use std::{
+    collections::BTreeSet,
+    hash::{DefaultHasher, Hash as _, Hasher as _},
+    sync::Arc,
+};
 
 use cohabit_bus::message::{NONE, ObjectRecord, StateView};
 use cohabit_cdf::{Action, BodyId, Catalog, ClassId, Color, Fluid, Layout, ObjectId, RoomId, state::StateFlags};
@@ -104,6 +108,16 @@ impl Knowledge {
     /// Forgets a thing that was not where it was believed to be.
     pub(crate) fn forget(&mut self, id: ObjectId) {
         self.memory.forget(id);
+    }
+
+    /// A number that changes with what there is to speak of: the classes and colours of things.
+    pub fn number(&self) -> u64 {
+        let mut hasher = DefaultHasher::new();
+        let things = self.known().map(|known| known.objects).unwrap_or_default();
+        let things: BTreeSet<_> =
+            things.iter().map(|thing| (thing.class, thing.color as u32, thing.in_mission)).collect();
+        things.hash(&mut hasher);
+        hasher.finish().max(1)
     }
 
     /// What was learnt since this was last asked.

@@ -5,6 +5,8 @@
 pub struct Moments {
     /// The turn.
     pub turn: u64,
+    /// Somebody began to say it, was done, and what it was was there.
+    pub speech: [u64; 3],
     /// Text received.
     pub received: u64,
     /// Plan sent.
@@ -15,6 +17,8 @@ pub struct Moments {
     pub shown: u64,
     /// That frame, or a later one, shown by a page.
     pub drawn: u64,
+    /// The answer is heard at a page.
+    pub sounded: u64,
 }
 
 impl Moments {
@@ -22,6 +26,18 @@ impl Moments {
     pub fn milliseconds(&self) -> [Option<f64>; 3] {
         let after = |moment: u64| (moment != 0).then(|| moment.saturating_sub(self.received) as f64 * 1e-6);
         [after(self.understood), after(self.moved), after(self.shown)]
+    }
+
+    /// Milliseconds from the end of speech to its text, and from the text to the first sound of the answer.
+    pub fn spoken_milliseconds(&self) -> [Option<f64>; 2] {
+        let between = |from: u64, to: u64| (from != 0 && to != 0).then(|| to.saturating_sub(from) as f64 * 1e-6);
+        [between(self.speech[1], self.speech[2]), between(self.received, self.sounded)]
+    }
+
+    /// As in a dialog message about what was spoken.
+    pub const fn spoken_stamps(&self) -> [u64; 5] {
+        let [began, ended, text] = self.speech;
+        [began, ended, if text == 0 { self.received } else { text }, self.understood, self.sounded]
     }
 
     /// As in a dialog message.
@@ -35,6 +51,8 @@ impl Moments {
 pub struct Latency {
     now: Moments,
     first_command: u64,
+    /// What the newest turn sounded like.
+    pub heard: String,
 }
 
 impl Latency {
@@ -42,6 +60,24 @@ impl Latency {
     pub fn begin(&mut self, turn: u64, received: u64, understood: u64) {
         self.now = Moments { turn, received, understood, ..Moments::default() };
         self.first_command = 0;
+        self.heard.clear();
+    }
+
+    /// The newest turn was spoken, from when until when, its text was there then, and it sounded like this.
+    pub fn spoken(&mut self, speech: [u64; 3], heard: &str) -> Moments {
+        self.now.speech = speech;
+        heard.clone_into(&mut self.heard);
+        self.now
+    }
+
+    /// The answer to `turn` is heard at a page. Gives the moments if that is news.
+    pub fn sounded(&mut self, turn: u64, nanos: u64) -> Option<Moments> {
+        let first = turn != 0 && turn == self.now.turn && self.now.sounded == 0;
+        if !first {
+            return None;
+        }
+        self.now.sounded = nanos;
+        Some(self.now)
     }
 
     /// The world took up a command of `turn`. Gives the moments if that is news.
@@ -98,5 +134,19 @@ mod tests {
             [1_000_000, 2_000_000, 3_000_000, 5_000_000, 6_000_000]
         );
         assert_eq!(latency.drawn(3, 7_000_000), None);
+    }
+
+    #[test]
+    fn a_spoken_turn_has_its_own_chain() {
+        let mut latency = Latency::default();
+        latency.begin(3, 5_000_000, 6_000_000);
+        assert_eq!(latency.spoken([1_000_000, 3_000_000, 4_000_000], "go").spoken_milliseconds(), [Some(1.0), None]);
+        assert_eq!(latency.sounded(2, 9_000_000), None, "another turn");
+        let moments = latency.sounded(3, 8_000_000).unwrap();
+        assert_eq!(moments.spoken_stamps(), [1_000_000, 3_000_000, 4_000_000, 6_000_000, 8_000_000]);
+        assert_eq!(moments.spoken_milliseconds(), [Some(1.0), Some(3.0)]);
+        assert_eq!(latency.sounded(3, 9_000_000), None);
+        latency.begin(4, 9_000_000, 9_000_000);
+        assert_eq!((latency.heard.as_str(), latency.now.speech), ("", [0, 0, 0]));
     }
 }

@@ -18,12 +18,14 @@ mod questionnaire;
 mod recorded;
 mod robots;
 mod screening;
+mod spoken;
 mod survey;
 mod talk;
 mod token;
 mod view;
 mod viewer;
 mod visit;
+mod voice;
 mod web;
 
 use std::{
@@ -40,10 +42,10 @@ use std::{
 
 use cohabit_bus::{BusError, Transport, message::CameraRecord};
 use cohabit_cdf::{Catalog, Layout, Mission};
-
-use serde_json::json;
+use serde_json::{Value, json};
 
 pub use cohabit_language::{Asking, Interpreter, Knows, Language};
+pub use cohabit_speech::VoiceSettings;
 pub use conversation::{Asked, Conversation, Reaction, TurnEnd};
 pub use driving::{Drivable, NotDrivable};
 pub use interpreter::{Endpoint, EndpointError};
@@ -51,6 +53,7 @@ pub use journal::begin_after;
 pub use known::Knowledge;
 pub use questionnaire::{Questionnaire, QuestionnaireError};
 pub use screening::{ScreeningConfig, screen};
+pub use voice::VoiceConfig;
 
 use crate::{
     driving::Drivers,
@@ -60,6 +63,7 @@ use crate::{
     survey::Survey,
     talk::{Ears, Talk},
     view::View,
+    voice::Voice,
     web::{Host, Live, Service},
 };
 
@@ -87,6 +91,8 @@ pub struct DialogConfig {
     pub names: BTreeMap<u32, String>,
     /// What people are asked about the session.
     pub questionnaires: Vec<Questionnaire>,
+    /// How people are heard, and robots speak.
+    pub voice: VoiceConfig,
     /// Called once, when a page says that it has shown a frame.
     pub on_first_frame: Box<dyn Fn() + Send + Sync>,
 }
@@ -137,6 +143,7 @@ pub fn serve(
     let robots: Vec<RobotName> = robots::named(&config.robots, &names);
     let mut hello = page::hello(&config.session, &mission, &layout, &catalog, &views, drivers.bodies(), &robots);
     hello["questionnaires"] = json!(config.questionnaires);
+    hello["voice"] = config.voice.json();
     let views = views.into_iter().map(|view| View::new(view.camera)).collect();
     let hub = Arc::new(Hub::new(hello, views, config.on_first_frame));
     let journal = Journal::open(config.journal.as_deref());
@@ -145,8 +152,12 @@ pub fn serve(
     let interprets = config.interpreter.is_some();
     let robots = Robots::new(&robots, config.knows, &language, &catalog, &layout, told, interprets);
     let (puzzles, asked) = interprets.then(interpreter::puzzles).unzip();
-    let talk = Talk::new(&*bus, catalog, robots, puzzles, Arc::clone(&hub), Arc::clone(&drivers), journal)?;
     let survey = Arc::new(Survey::new(&*bus, config.questionnaires)?);
+    let (tells, plays) = (Arc::clone(&hub), Arc::clone(&hub));
+    let (tell, play) = (move |message: &Value| tells.tell(message), move |piece| plays.play(piece));
+    let voice = Voice::new(Arc::clone(&bus), config.voice, tell, play);
+    let (shown, spoken) = (Arc::clone(&hub), Arc::clone(&voice));
+    let talk = Talk::new(&*bus, catalog, robots, puzzles, shown, Arc::clone(&drivers), journal, spoken)?;
     let ears = Ears::new(&*bus)?;
     talk.serve_at(place.clone());
     let Place { address, token } = place;
@@ -163,6 +174,7 @@ pub fn serve(
         let mut workers = vec![
             scope.spawn(|| until_ended(&ended, || talk::listen(ears, &talk, &over))),
             scope.spawn(|| until_ended(&ended, || talk::show_state(&talk, &survey, STATE_EVERY, &over))),
+            scope.spawn(|| until_ended(&ended, || voice.pass_on(&over))),
         ];
         for view in (0..=u8::MAX).zip(&hub.views) {
             let (bus, talk, over, ended) = (&*bus, &talk, &over, &ended);
@@ -171,7 +183,8 @@ pub fn serve(
         }
         ready(&token::page_address(address, token.as_deref()));
         let (hub, token) = (Arc::clone(&hub), token.map(Arc::from));
-        let host = Host::Live(Live { talk: Arc::clone(&talk), drivers, survey: Arc::clone(&survey) });
+        let (survey, voice) = (Arc::clone(&survey), Arc::clone(&voice));
+        let host = Host::Live(Live { talk: Arc::clone(&talk), drivers, survey, voice });
         let served = web::serve(listener, Service { hub, host, token }, &over).map_err(DialogError::Serve);
         ended.store(true, Ordering::Relaxed);
         workers

@@ -12,6 +12,8 @@ pub const MOST_PAGES: usize = 16;
 const ALL_PER_SECOND: f64 = 40.0;
 /// Held keys a second: a page tells them again nine times a second, and at every change.
 const DRIVES_PER_SECOND: f64 = 20.0;
+/// Pieces of sound a second: a page sends sixteen, and more after a moment in which it could not.
+const SOUNDS_PER_SECOND: f64 = 120.0;
 /// All other messages a second.
 const OTHERS_PER_SECOND: f64 = 10.0;
 
@@ -21,6 +23,8 @@ pub struct Limits {
     pub all: Throttle,
     /// Held keys.
     pub drives: Throttle,
+    /// Pieces of sound.
+    pub sounds: Throttle,
     /// Anything else.
     pub others: Throttle,
 }
@@ -31,6 +35,7 @@ impl Limits {
         Self {
             all: Throttle::new(now, ALL_PER_SECOND),
             drives: Throttle::new(now, DRIVES_PER_SECOND),
+            sounds: Throttle::new(now, SOUNDS_PER_SECOND),
             others: Throttle::new(now, OTHERS_PER_SECOND),
         }
     }

@@ -332,6 +332,14 @@ pub fn highlight(object: &ObjectRecord, number: Option<usize>, catalog: &Catalog
     json!({ "type": "highlight", "x": x, "y": y, "name": name(object, catalog), "number": number })
 }
 
+/// Something can be heard of an object: what kind of sound, of what class, and where, m.
+pub fn sound(object: &ObjectRecord, kind: &str, catalog: &Catalog) -> Value {
+    let [x, y, z] = object.position_m;
+    let known = usize::from(object.class) < catalog.classes().len();
+    let class = if known { &catalog.class(ClassId(object.class)).id } else { "" };
+    json!({ "type": "sound", "kind": kind.to_lowercase(), "of": class, "x": x, "y": y, "z": z })
+}
+
 /// Where in the picture of a camera the numbered answers to the open question are: number, and how far from the left and
 /// from the top, 0 to 1.
 pub fn marks(camera: CameraId, marks: &[(usize, [f32; 2])]) -> Value {
@@ -352,8 +360,9 @@ pub fn turn_ended(body: u32, turn: u64, status: &str) -> Value {
 /// How long a turn took so far; of its first changed frame the tick, which a page tells when it has shown it.
 pub fn latency(moments: &Moments, frame: Option<u64>) -> Value {
     let [understood, moved, shown] = moments.milliseconds();
-    json!({ "type": "latency", "turn": moments.turn, "frame": frame,
-            "understood_ms": understood, "moved_ms": moved, "shown_ms": shown })
+    let [heard, sounded] = moments.spoken_milliseconds();
+    json!({ "type": "latency", "turn": moments.turn, "frame": frame, "heard_ms": heard, "understood_ms": understood,
+            "moved_ms": moved, "shown_ms": shown, "sounded_ms": sounded })
 }
 
 /// The page drives a body from now on, or none any more; why, if it did not ask for that.
@@ -371,6 +380,21 @@ pub fn aim(object: Option<(u32, &str)>, afforded: &[Affordance], far: bool) -> V
 /// What came of a deed.
 pub fn acted(ok: bool, text: &str) -> Value {
     json!({ "type": "acted", "ok": ok, "text": text })
+}
+
+/// What was heard at a page, to be changed there before the robot hears it: its number, and for how long.
+pub fn heard(number: u64, text: &str, edit_ms: u128) -> Value {
+    json!({ "type": "heard", "number": number, "text": text, "edit_ms": edit_ms as u64 })
+}
+
+/// What came of what was being said at a page: `said`, or `nothing`.
+pub fn hearing(state: &str) -> Value {
+    json!({ "type": "hearing", "state": state, "text": "" })
+}
+
+/// A page's microphone is not listened to any more.
+pub fn deaf() -> Value {
+    json!({ "type": "deaf" })
 }
 
 /// Something is wrong with what a page sent.

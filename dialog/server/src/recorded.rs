@@ -21,6 +21,8 @@ pub enum Told {
     Page(Value),
     /// An object was pointed out.
     Highlight(u32),
+    /// An object could be heard: which, and what kind of sound.
+    Sound(u32, String),
 }
 
 /// All that pages were told, in order, each with its tick; and of `several` robots by which.
@@ -56,10 +58,14 @@ fn said(entry: &DialogEntry, names: Names) -> Option<Told> {
         DialogKind::Question => line(Speaker::Robot, LineKind::Question),
         DialogKind::Latency => {
             let [received, understood, moved, shown, drawn] = entry.stamps;
-            let moments = Moments { turn: entry.turn, received, understood, moved, shown, drawn };
+            let moments = Moments { turn: entry.turn, received, understood, moved, shown, drawn, ..Moments::default() };
             Some(Told::Page(page::latency(&moments, None)))
         }
-        DialogKind::Plan | DialogKind::StepStarted | DialogKind::StepEnded | DialogKind::PlanEnded => None,
+        DialogKind::Plan
+        | DialogKind::StepStarted
+        | DialogKind::StepEnded
+        | DialogKind::PlanEnded
+        | DialogKind::Spoken => None,
     }
 }
 
@@ -74,6 +80,7 @@ fn happened(entry: &EventEntry) -> Option<Told> {
         EventKind::MissionComplete => line(LineKind::Ending, page::COMPLETE.to_owned()),
         EventKind::MissionFailed => line(LineKind::Ending, page::failed(&entry.text)),
         EventKind::Highlighted => entry.object.map(Told::Highlight),
+        EventKind::Sound => entry.object.map(|object| Told::Sound(object, text())),
         _ => None,
     }
 }

@@ -48,6 +48,7 @@ pub struct Visitor {
 pub struct Robots {
     robots: Vec<Robot>,
     roster: Roster,
+    called: Vec<String>,
     /// How the world calls those that were given names.
     pub names: BodyNames,
     /// Who of the visitors spoke to which last, and when, ns.
@@ -107,6 +108,7 @@ impl Robots {
         Self {
             robots: names.iter().map(robot).collect(),
             roster: Roster::new(names.iter().map(|one| one.name.as_str())),
+            called: names.iter().map(|one| one.name.clone()).collect(),
             names: told,
             spoken: BTreeMap::new(),
             asked_last: 0,
@@ -164,6 +166,21 @@ impl Robots {
         if let Some(at) = at.filter(|at| self.robots[*at].conversation.asked().is_some()) {
             self.asked_last = at;
         }
+    }
+
+    /// What they are called.
+    pub fn called_by(&self) -> impl Iterator<Item = &str> {
+        self.called.iter().map(String::as_str)
+    }
+
+    /// What is said to whom is called by name.
+    pub fn called(&self, text: &str) -> String {
+        self.roster.addressed(text).text
+    }
+
+    /// The robot of a body, to look at.
+    pub fn look_at(&self, body: BodyId) -> Option<&Robot> {
+        self.robots.iter().find(|robot| robot.body == body)
     }
 
     /// Whom a visitor speaks to, by name, or else by what came before and by who is near, and what is said to them. Who

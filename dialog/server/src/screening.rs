@@ -13,7 +13,7 @@ use std::{
 
 use cohabit_bus::{
     Inbox, Listener, Publisher, Sample, Topic, Transport, Wake,
-    message::{CameraRecord, Control, ControlMessage, StateView, Thing},
+    message::{CameraRecord, Control, ControlMessage, ObjectRecord, StateView, Thing},
 };
 use cohabit_cdf::{Catalog, Layout, Mission};
 use cohabit_record::Log;
@@ -178,14 +178,16 @@ impl Screening {
     }
 
     fn tell(&self, told: &Told, state: StateView<'_>) {
+        let about = |object: u32, message: &dyn Fn(&ObjectRecord) -> Value| {
+            if let Some(record) = state.objects.iter().find(|record| record.object == object) {
+                self.hub.tell(&message(record));
+            }
+        };
         match told {
             Told::Line(line) => self.hub.say(line),
             Told::Page(message) => self.hub.tell(message),
-            Told::Highlight(object) => {
-                if let Some(record) = state.objects.iter().find(|record| record.object == *object) {
-                    self.hub.tell(&page::highlight(record, None, &self.catalog));
-                }
-            }
+            Told::Highlight(object) => about(*object, &|record| page::highlight(record, None, &self.catalog)),
+            Told::Sound(object, kind) => about(*object, &|record| page::sound(record, kind, &self.catalog)),
         }
     }
 

@@ -16,12 +16,13 @@ use cohabit_bus::{
     monotonic_nanos,
 };
 use cohabit_cdf::{BodyId, Catalog, ObjectId};
+use cohabit_language::SpokenForms;
 use serde_json::Value;
 
 use crate::{
     DialogError,
     affordances::{self, Affordance},
-    conversation::{self, Reaction},
+    conversation::{self, Aloud, Reaction},
     driving::Drivers,
     frames::Shown,
     hub::Hub,
@@ -30,8 +31,15 @@ use crate::{
     latency::{Latency, Moments},
     page::{self, Line, LineKind, Speaker},
     robots::{Robot, Robots, Visitor},
+    spoken::Spoken,
     survey::Survey,
+    voice::{Audience, Voice},
 };
+
+/// What is said for whoever says stop aloud, in whatever words.
+const STOP: &str = "stop";
+/// What is said to who is called by name, for recognisers.
+const CALLED: [&str; 5] = ["stop", "come here", "go to the break room", "look around", "pick it up"];
 
 /// The conversations, with their ends on the bus and to the pages. One lock: who speaks first is heard first.
 pub struct Talk {
@@ -41,6 +49,10 @@ pub struct Talk {
     catalog: Arc<Catalog>,
     /// Who makes something of what is not understood, if anybody.
     interpreter: Option<Puzzles>,
+    /// How robots speak, and who is heard.
+    voice: Arc<Voice>,
+    /// What robots were named.
+    names: Vec<String>,
 }
 
 struct Inner {
@@ -75,7 +87,9 @@ impl Talk {
         hub: Arc<Hub>,
         drivers: Arc<Drivers>,
         journal: Journal,
+        voice: Arc<Voice>,
     ) -> Result<Arc<Self>, DialogError> {
+        let names = robots.are_several().then(|| robots.called_by().map(str::to_owned).collect()).unwrap_or_default();
         let past = journal.past();
         hub.restore(&past.lines);
         robots.restore(&past.conversations, &past.lessons);
@@ -89,7 +103,7 @@ impl Talk {
             spoken_to: BodyId(0),
         };
         inner.tell_again()?;
-        Ok(Arc::new(Self { inner: Mutex::new(inner), hub, drivers, catalog, interpreter }))
+        Ok(Arc::new(Self { inner: Mutex::new(inner), hub, drivers, catalog, interpreter, voice, names }))
     }
 
     /// Waits until this conversation sees the world, or until `over`: who is let in then is understood at once.
@@ -133,23 +147,78 @@ impl Talk {
 
     /// Somebody at a page said something, received at `received_nanos`.
     pub fn hear(&self, said: &str, visitor: Visitor, received_nanos: u64) -> Result<(), DialogError> {
+        // What was being said is the answer to something else.
+        self.voice.hush();
         let mut inner = self.lock();
         let (bodies, text) = inner.addressed(said, visitor, received_nanos)?;
         for (nth, body) in bodies.into_iter().enumerate() {
             inner.listen_to(visitor, body)?;
             let Some(robot) = inner.robots.of_body(body) else { continue };
             let (turn, mut reactions) = robot.conversation.hear_called(said, &text, &robot.knowledge);
-            // All that were called hear it, and it is shown once.
-            let is_shown = |reaction: &Reaction| reaction.line().is_none_or(|line| line.from != Speaker::Person);
-            reactions.retain(|reaction| nth == 0 || is_shown(reaction));
+            reactions.retain(|reaction| nth == 0 || is_shown_to_all(reaction));
             inner.latency.begin(turn, received_nanos, monotonic_nanos());
             self.carry_out(&mut inner, body, Heard::AtPage(visitor), reactions)?;
         }
         Ok(())
     }
 
+    /// Somebody at a page said something aloud, and meant it then, perhaps in other words than were heard. Whether anybody
+    /// seems to have said anything.
+    pub fn hear_aloud(&self, spoken: &Spoken, visitor: Visitor, meant_nanos: u64) -> Result<bool, DialogError> {
+        let mut inner = self.lock();
+        let Some((first, _)) = spoken.readings.first() else { return Ok(false) };
+        let Some(body) = inner.addressed(first, visitor, spoken.text_nanos)?.0.first().copied() else {
+            return Ok(false);
+        };
+        let called = |text: &str| inner.robots.called(text);
+        let reading = inner.robots.look_at(body).and_then(|Robot { conversation, knowledge, .. }| {
+            let reading = conversation.reading(spoken, &called, knowledge)?;
+            let is_doubtful = conversation.doubts(&reading, spoken);
+            Some((reading.text, is_doubtful))
+        });
+        let Some((said, is_doubtful)) = reading else { return Ok(false) };
+        self.voice.hush();
+        let (bodies, text) = inner.addressed(&said, visitor, spoken.text_nanos)?;
+        let aloud = Aloud { raw: &spoken.raw, is_doubtful };
+        for (nth, body) in bodies.into_iter().enumerate() {
+            inner.listen_to(visitor, body)?;
+            let Some(robot) = inner.robots.of_body(body) else { continue };
+            let (turn, mut reactions) = robot.conversation.hear_aloud(&said, &text, aloud, &robot.knowledge);
+            reactions.retain(|reaction| nth == 0 || is_shown_to_all(reaction));
+            inner.latency.begin(turn, meant_nanos, monotonic_nanos());
+            let speech = [spoken.began_nanos, spoken.ended_nanos, spoken.text_nanos];
+            let moments = inner.latency.spoken(speech, &spoken.raw);
+            self.carry_out(&mut inner, body, Heard::AtPage(visitor), reactions)?;
+            inner.publish_spoken(&moments)?;
+            self.hub.tell(&page::latency(&moments, None));
+        }
+        Ok(true)
+    }
+
+    /// Which reading of what was said aloud is meant; `None` if nobody seems to have said anything.
+    pub fn read(&self, spoken: &Spoken, visitor: Visitor) -> Result<Option<String>, DialogError> {
+        let mut inner = self.lock();
+        let Some((first, _)) = spoken.readings.first() else { return Ok(None) };
+        let Some(body) = inner.addressed(first, visitor, spoken.text_nanos)?.0.first().copied() else {
+            return Ok(None);
+        };
+        let called = |text: &str| inner.robots.called(text);
+        let reading =
+            inner.robots.look_at(body).and_then(|robot| robot.conversation.reading(spoken, &called, &robot.knowledge));
+        Ok(reading.map(|reading| reading.text))
+    }
+
+    /// A page plays the first sound of an answer.
+    pub fn note_sounded(&self, turn: u64, nanos: u64) -> Result<(), DialogError> {
+        let mut inner = self.lock();
+        let Some(moments) = inner.latency.sounded(turn, nanos) else { return Ok(()) };
+        self.hub.tell(&page::latency(&moments, None));
+        inner.publish_spoken(&moments)
+    }
+
     /// Somebody at a page chose an object, received at `received_nanos`.
     pub fn choose(&self, object: ObjectId, visitor: Visitor, received_nanos: u64) -> Result<(), DialogError> {
+        self.voice.hush();
         let mut inner = self.lock();
         let answered = inner.robots.answered_by(object);
         let body = match answered {
@@ -229,6 +298,7 @@ impl Talk {
         let kind = if header.kind() == Some(DialogKind::Question) { LineKind::Question } else { LineKind::Say };
         let mut line = Line::new(Speaker::Robot, kind, 0, header.text.as_str());
         line.body = Some(header.body);
+        self.voice.say(&line, header.body);
         self.tell(inner, envelope, line);
         Ok(())
     }
@@ -257,6 +327,7 @@ impl Talk {
             Some(EventKind::MissionComplete) => game(LineKind::Ending, page::COMPLETE),
             Some(EventKind::MissionFailed) => game(LineKind::Ending, &page::failed(text)),
             Some(EventKind::Highlighted) if is_new => self.show_highlight(&mut inner, event.object)?,
+            Some(EventKind::Sound) if is_new => self.sound(&mut inner, event.object, text)?,
             _ => {}
         }
         Ok(())
@@ -283,6 +354,17 @@ impl Talk {
         if let Some(record) = state.objects.iter().find(|record| record.object == object) {
             let at = inner.numbered().and_then(|asked| asked.candidates.iter().position(|one| one.0 == object));
             self.hub.tell(&page::highlight(record, at.map(|at| at + 1), &self.catalog));
+        }
+        Ok(())
+    }
+
+    /// Has the pages play what can be heard of an object.
+    fn sound(&self, inner: &mut Inner, object: u32, kind: &str) -> Result<(), DialogError> {
+        inner.refresh()?;
+        let Some(sample) = &inner.newest else { return Ok(()) };
+        let state = StateView::new(sample.payload())?;
+        if let Some(record) = state.objects.iter().find(|record| record.object == object) {
+            self.hub.tell(&page::sound(record, kind, &self.catalog));
         }
         Ok(())
     }
@@ -363,7 +445,12 @@ impl Talk {
         for reaction in reactions {
             match reaction {
                 Reaction::Bus(message) => inner.publish(&message)?,
-                Reaction::Chat(line) => self.hub.say(&line),
+                Reaction::Chat(line) => {
+                    self.hub.say(&line);
+                    if line.from == Speaker::Robot {
+                        self.voice.say(&line, body.0);
+                    }
+                }
                 Reaction::Page(message) => self.hub.tell(&message),
                 Reaction::Interpret(turn, unclear) => {
                     let is_asked = self
@@ -383,6 +470,39 @@ impl Talk {
         self.hub.mark(inner.numbered().map(|asked| asked.candidates.as_slice()).unwrap_or_default());
         inner.journal.told();
         Ok(())
+    }
+}
+
+impl Audience for Talk {
+    fn is_whole(&self, text: &str) -> bool {
+        let inner = self.lock();
+        let text = inner.robots.called(text);
+        let robot = inner.robots.look_at(inner.spoken_to).or_else(|| inner.robots.iter().next());
+        robot.is_some_and(|robot| robot.conversation.is_whole(&text, &robot.knowledge))
+    }
+
+    fn likely(&self, before: u64) -> Option<(u64, SpokenForms)> {
+        let inner = self.lock();
+        let robot = inner.robots.iter().next()?;
+        let number = robot.knowledge.number();
+        if number == before {
+            return None;
+        }
+        let (language, known) = (robot.conversation.language().clone(), robot.knowledge.known()?);
+        drop(inner);
+        // That takes a while, in which others are heard.
+        let mut forms = language.spoken_forms(&known);
+        // Who is called by name is so at the beginning.
+        let names: Vec<String> = self.names.iter().map(|name| name.to_lowercase()).collect();
+        forms.words.extend(names.iter().flat_map(|name| name.split_whitespace().map(str::to_owned)));
+        forms.sentences.extend(names.iter().flat_map(|name| CALLED.map(|said| format!("{name} {said}"))));
+        Some((number, forms))
+    }
+
+    fn stop(&self, visitor: u32, heard_nanos: u64) {
+        if let Err(error) = self.hear(STOP, Visitor { number: visitor, body: None }, heard_nanos) {
+            tracing::error!("{error}");
+        }
     }
 }
 
@@ -485,10 +605,22 @@ impl Inner {
         self.publish(&message)
     }
 
+    fn publish_spoken(&mut self, moments: &Moments) -> Result<(), DialogError> {
+        let heard = self.latency.heard.clone();
+        let mut message = DialogMessage::new(DialogKind::Spoken, self.spoken_to.0, moments.turn, &heard);
+        message.header.stamps = moments.spoken_stamps();
+        self.publish(&message)
+    }
+
     fn publish(&mut self, message: &DialogMessage) -> Result<(), DialogError> {
         self.dialog.send(0, message.bytes(), &mut |bytes| message.write(bytes))?;
         Ok(())
     }
+}
+
+/// All that were called hear what somebody said, and it is shown once.
+fn is_shown_to_all(reaction: &Reaction) -> bool {
+    reaction.line().is_none_or(|line| line.from != Speaker::Person)
 }
 
 fn aimed(things: &[Thing], body: u32, state: StateView<'_>, catalog: &Catalog) -> Value {

@@ -13,6 +13,7 @@ use serde_json::Value;
 use tokio::{
     sync::{
         broadcast::{self, error::RecvError},
+        mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel},
         watch,
     },
     time::{MissedTickBehavior, interval, timeout},
@@ -27,8 +28,10 @@ use crate::{
     page,
     questionnaire::Given,
     robots::Visitor,
+    spoken::Spoken,
     talk::Talk,
     view::{Frame, Marks, View, Viewing},
+    voice::{Audience, EarAt, FromEar, Hearer, Hearing},
     web::Live,
 };
 
@@ -67,6 +70,19 @@ enum FromPage {
     Answer { questionnaire: String, answers: Vec<Option<Given>> },
     /// Somebody does something to an object with the body's hand.
     Act { deed: Deed, object: u32 },
+    /// Sound comes from a microphone, as binary messages of so many 16-bit samples a second; while `held`, no pause ends what
+    /// is said.
+    Listen { rate: u32, held: bool },
+    /// What was said is all.
+    Listened,
+    /// What was heard is meant, perhaps in other words, or is to be forgotten; `sure`, if somebody read it and said so.
+    Heard { number: u64, text: Option<String>, sure: bool },
+    /// Somebody wants to hear what robots say, or not.
+    Aloud { on: bool },
+    /// The page plays the first sound of an answer.
+    Sounded { turn: u64 },
+    /// The page says a text with its browser's voice, from now on; or no more.
+    OwnVoice { text: Option<String> },
 }
 
 /// Serves a page until it goes.
@@ -97,6 +113,14 @@ struct Visit {
     driver: Option<Driver>,
     aim: Aim,
     marks: Marks,
+    /// Where its sound goes, while it sends any.
+    hearing: Option<Hearing>,
+    ear: (UnboundedSender<FromEar>, UnboundedReceiver<FromEar>),
+    /// What was heard and can be changed yet, with its number.
+    heard: Option<(u64, Spoken)>,
+    heard_count: u64,
+    /// What robots say aloud, where it is wanted.
+    sounds: Option<(broadcast::Receiver<Arc<Vec<u8>>>, Hearer)>,
     /// Since when the page has been asked whether it is there, without a word from it.
     asked_at: Option<Instant>,
 }
@@ -129,6 +153,11 @@ impl Visit {
             driver: None,
             aim,
             marks: Marks::default(),
+            hearing: None,
+            ear: unbounded_channel(),
+            heard: None,
+            heard_count: 0,
+            sounds: None,
             asked_at: None,
         }
     }
@@ -144,12 +173,15 @@ impl Visit {
                     self.asked_at = None;
                     match received {
                         Some(Ok(Message::Text(text))) => Ok(self.answer(&text).await),
+                        Some(Ok(Message::Binary(bytes))) => Ok(self.listen(&bytes)),
                         Some(Ok(Message::Close(_)) | Err(_)) | None => Err(Gone),
                         Some(Ok(_)) => Ok(Vec::new()),
                     }
                 }
                 _ = beat.tick() => self.beat(),
                 news = next_news(&mut self.driver) => Ok(self.note(&news)),
+                Some(heard) = self.ear.1.recv() => Ok(self.take_heard(heard).await),
+                piece = next_sound(&mut self.sounds) => Ok(vec![Message::binary(piece.to_vec())]),
                 message = messages.recv() => match message {
                     Ok(message) => Ok(vec![Message::text(message.to_string())]),
                     // It fell behind: closing makes it connect again and be told all anew.
@@ -284,6 +316,17 @@ impl Visit {
             FromPage::Act { deed, object } => return self.act(deed, ObjectId(object)),
             FromPage::Say { text } => self.say(&text, received_nanos).await?,
             FromPage::Choose { object } => self.choose(ObjectId(object), received_nanos).await?,
+            FromPage::Listen { rate, held } => self.begin_listening(rate, held)?,
+            FromPage::Listened => self.end_listening(),
+            FromPage::Heard { number, text, sure } => self.say_heard(number, text, sure, received_nanos).await?,
+            FromPage::Aloud { on } => return Ok(self.hear_robots(on)),
+            FromPage::Sounded { turn } => {
+                self.live.talk.note_sounded(turn, received_nanos).map_err(|error| error.to_string())?;
+            }
+            FromPage::OwnVoice { text } => {
+                let text = text.filter(|text| text.len() <= LONGEST_TEXT);
+                self.live.voice.note_own_voice(text.as_deref(), received_nanos);
+            }
             FromPage::Drive { .. } => {}
         }
         Ok(Vec::new())
@@ -357,6 +400,122 @@ impl Visit {
         self.tell_robot(move |talk| talk.hear(&text, visitor, received_nanos)).await
     }
 
+    /// Listens to the page's microphone from now on.
+    fn begin_listening(&mut self, rate: u32, held: bool) -> Result<(), String> {
+        if self.hearing.is_none() {
+            let Live { voice, talk, .. } = &self.live;
+            let at = EarAt {
+                voice: Arc::clone(voice),
+                talk: Arc::clone(talk) as Arc<dyn Audience>,
+                visitor: self.number,
+                to: self.ear.0.clone(),
+            };
+            self.hearing = Some(Hearing::begin(at, rate)?);
+        }
+        let Some(hearing) = &mut self.hearing else { return Ok(()) };
+        hearing.begin_again(rate)?;
+        if held {
+            hearing.hold();
+        }
+        Ok(())
+    }
+
+    /// What was said is all. The ear stays, should more be said.
+    fn end_listening(&mut self) {
+        if let Some(hearing) = &self.hearing {
+            hearing.finish();
+        }
+    }
+
+    /// Takes a piece of sound; what cannot be listened to ends the listening, and says why.
+    fn listen(&mut self, bytes: &[u8]) -> Vec<Message> {
+        let (received_nanos, now) = (monotonic_nanos(), Instant::now());
+        // What comes after the end, or before it was begun, was on its way.
+        let Some(hearing) = &mut self.hearing else { return Vec::new() };
+        let taken = if self.limits.sounds.admits(now) {
+            hearing.take(bytes, received_nanos)
+        } else {
+            Err("The microphone sends more than can be listened to: reload the page, or type.".to_owned())
+        };
+        match taken {
+            Ok(note) => note.map(|note| tell(&page::error(note))).into_iter().collect(),
+            Err(problem) => {
+                self.hearing = None;
+                vec![tell(&page::error(&problem)), tell(&page::deaf())]
+            }
+        }
+    }
+
+    /// What the page's ear heard.
+    async fn take_heard(&mut self, heard: FromEar) -> Vec<Message> {
+        match heard {
+            FromEar::Page(message) => vec![tell(&message)],
+            FromEar::Said(spoken) => {
+                let said = self.take_spoken(*spoken).await;
+                said.unwrap_or_else(|problem| vec![tell(&page::error(&problem))])
+            }
+        }
+    }
+
+    /// Shows what was heard for a moment, if it can be changed, or has the robot hear it.
+    async fn take_spoken(&mut self, spoken: Spoken) -> Result<Vec<Message>, String> {
+        let edit = self.live.voice.config.edit;
+        if edit.is_zero() {
+            let meant_nanos = spoken.text_nanos;
+            return self.say_aloud(spoken, meant_nanos).await;
+        }
+        let read = self.live.talk.read(&spoken, self.visitor()).map_err(|error| error.to_string())?;
+        let Some(text) = read else { return Ok(vec![tell(&page::hearing("nothing"))]) };
+        self.heard_count += 1;
+        self.heard = Some((self.heard_count, spoken));
+        Ok(vec![tell(&page::heard(self.heard_count, &text, edit.as_millis()))])
+    }
+
+    async fn say_aloud(&mut self, spoken: Spoken, meant_nanos: u64) -> Result<Vec<Message>, String> {
+        let (visitor, talk) = (self.visitor(), Arc::clone(&self.live.talk));
+        match tokio::task::spawn_blocking(move || talk.hear_aloud(&spoken, visitor, meant_nanos)).await {
+            Ok(Ok(is_heard)) => Ok(vec![tell(&page::hearing(if is_heard { "said" } else { "nothing" }))]),
+            Ok(Err(error)) => {
+                tracing::error!("{error}");
+                Err("The robot cannot be reached.".to_owned())
+            }
+            Err(_) => Ok(Vec::new()),
+        }
+    }
+
+    /// What was heard is meant, perhaps in other words; or is to be forgotten.
+    async fn say_heard(
+        &mut self,
+        number: u64,
+        text: Option<String>,
+        sure: bool,
+        received_nanos: u64,
+    ) -> Result<(), String> {
+        let Some((_, spoken)) = self.heard.take_if(|(heard, _)| *heard == number) else { return Ok(()) };
+        let Some(text) = text else { return Ok(()) };
+        if text.trim().is_empty() || text.len() > LONGEST_TEXT {
+            return self.say(&text, received_nanos).await;
+        }
+        let is_as_heard = spoken.readings.iter().any(|(reading, _)| *reading == text) || spoken.raw == text;
+        let confidence = if sure || !is_as_heard { 1.0 } else { spoken.confidence };
+        let raw = if is_as_heard { spoken.raw } else { text.clone() };
+        let spoken = Spoken { readings: vec![(text, 0.0)], raw, confidence, ..spoken };
+        self.say_aloud(spoken, received_nanos).await.map(drop)
+    }
+
+    /// Has the page hear what robots say, or not; gives what it is told of the engines.
+    fn hear_robots(&mut self, on: bool) -> Vec<Message> {
+        if !on {
+            self.sounds = None;
+        } else if self.sounds.is_none() {
+            self.sounds = Some((self.hub.sounds(), self.live.voice.hearer()));
+            let (voice, to) = (Arc::clone(&self.live.voice), self.ear.0.clone());
+            // Opening the engines takes a second.
+            std::thread::spawn(move || drop(to.send(FromEar::Page(voice.told()))));
+        }
+        Vec::new()
+    }
+
     async fn choose(&mut self, object: ObjectId, received_nanos: u64) -> Result<(), String> {
         let visitor = self.visitor();
         self.tell_robot(move |talk| talk.choose(object, visitor, received_nanos)).await
@@ -397,6 +556,21 @@ async fn send(socket: &mut WebSocket, message: Message, drives: bool) -> Result<
 
 fn tell(message: &Value) -> Message {
     Message::text(message.to_string())
+}
+
+/// The next piece of what robots say; pends where that is not wanted.
+async fn next_sound(sounds: &mut Option<(broadcast::Receiver<Arc<Vec<u8>>>, Hearer)>) -> Arc<Vec<u8>> {
+    if let Some((sounds, _)) = sounds {
+        loop {
+            match sounds.recv().await {
+                Ok(piece) => return piece,
+                // It misses some.
+                Err(RecvError::Lagged(_)) => {}
+                Err(RecvError::Closed) => break,
+            }
+        }
+    }
+    std::future::pending().await
 }
 
 /// The next news of who drives; pends where nobody does.

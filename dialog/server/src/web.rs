@@ -12,13 +12,13 @@ use axum::{
 
 use crate::{
     driving::Drivers, hub::Hub, limits::LONGEST_MESSAGE, screening::Screening, survey::Survey, talk::Talk, token,
-    viewer, visit,
+    viewer, visit, voice::Voice,
 };
 
 const INDEX: &str = include_str!("../../web/index.html");
 const SCRIPT_TYPE: &str = "text/javascript; charset=utf-8";
 /// The page's other files: path, media type, text.
-const FILES: [(&str, &str, &str); 11] = [
+const FILES: [(&str, &str, &str); 14] = [
     ("/app.js", SCRIPT_TYPE, include_str!("../../web/app.js")),
     ("/dom.js", SCRIPT_TYPE, include_str!("../../web/dom.js")),
     ("/driving.js", SCRIPT_TYPE, include_str!("../../web/driving.js")),
@@ -27,8 +27,11 @@ const FILES: [(&str, &str, &str); 11] = [
     ("/replay.js", SCRIPT_TYPE, include_str!("../../web/replay.js")),
     ("/socket.js", SCRIPT_TYPE, include_str!("../../web/socket.js")),
     ("/survey.js", SCRIPT_TYPE, include_str!("../../web/survey.js")),
+    ("/sound.js", SCRIPT_TYPE, include_str!("../../web/sound.js")),
     ("/talk.js", SCRIPT_TYPE, include_str!("../../web/talk.js")),
     ("/view.js", SCRIPT_TYPE, include_str!("../../web/view.js")),
+    ("/microphone.js", SCRIPT_TYPE, include_str!("../../web/microphone.js")),
+    ("/voice.js", SCRIPT_TYPE, include_str!("../../web/voice.js")),
     ("/style.css", "text/css; charset=utf-8", include_str!("../../web/style.css")),
 ];
 const ICON: &str = include_str!("../../web/favicon.svg");
@@ -63,6 +66,8 @@ pub struct Live {
     pub drivers: Arc<Drivers>,
     /// What people are asked.
     pub survey: Arc<Survey>,
+    /// Voice.
+    pub voice: Arc<Voice>,
 }
 
 /// Serves on `listener` until `over`.

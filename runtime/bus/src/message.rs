@@ -2,6 +2,7 @@
 
 mod action;
 mod answer;
+mod audio;
 mod camera;
 mod command;
 mod control;
@@ -18,6 +19,7 @@ mod tick;
 
 pub use action::ActionRecord;
 pub use answer::{AnswerKind, AnswerMessage};
+pub use audio::{AudioHeader, AudioView};
 pub use camera::{CameraKind, CameraRecord};
 pub use command::{CommandKind, CommandMessage};
 pub use control::{Control, ControlMessage};

@@ -134,6 +134,7 @@ impl Transport for Shm {
             Wake::Commands => Topic::Commands,
             Wake::Pulses => Topic::Pulses,
             Wake::Talk => Topic::Dialog,
+            Wake::Audio => Topic::Speech,
             Wake::State => Topic::State,
             Wake::Frames(camera) => Topic::Frames(camera),
         };

@@ -2,7 +2,10 @@
 
 use std::fmt;
 
-use crate::camera::CameraId;
+use crate::{
+    camera::CameraId,
+    message::{AudioHeader, AudioView},
+};
 
 /// A topic: one kind of message, from anybody to everybody who subscribes.
 #[derive(Clone, Copy, Debug, Eq, Hash, Ord, PartialEq, PartialOrd)]
@@ -29,6 +32,10 @@ pub enum Topic {
     Dialog,
     /// What people answer to questionnaires.
     Answers,
+    /// What people say aloud at the pages, as it comes from their microphones.
+    Microphone,
+    /// What robots say aloud.
+    Speech,
     /// One camera's frames; the latest is kept for late joiners.
     Frames(CameraId),
 }
@@ -42,6 +49,8 @@ pub enum Wake {
     Pulses,
     /// [`Topic::Dialog`], [`Topic::Events`], [`Topic::Steps`] and [`Topic::Answers`].
     Talk,
+    /// [`Topic::Microphone`] and [`Topic::Speech`].
+    Audio,
     /// [`Topic::State`], [`Topic::Mission`], [`Topic::Ticks`] and [`Topic::Snapshots`].
     State,
     /// [`Topic::Frames`] of one camera.
@@ -57,8 +66,9 @@ impl Topic {
             Self::Ticks => 2048,
             Self::Frames(_) | Self::Snapshots => 2,
             Self::Pulses => 8,
-            Self::Control => 64,
             Self::Answers => 128,
+            // Of sound, some seconds.
+            Self::Control | Self::Microphone | Self::Speech => 64,
             Self::Events | Self::Commands | Self::Dialog => 512,
         }
     }
@@ -72,16 +82,16 @@ impl Topic {
             Self::Dialog | Self::Events => 512,
             Self::Answers => 128,
             Self::Ticks => 2048,
-            Self::Commands | Self::Control | Self::Steps => 0,
+            Self::Commands | Self::Control | Self::Steps | Self::Microphone | Self::Speech => 0,
         }
     }
 
     /// The most that may subscribe at once. A connection's memory grows with it, times [`Self::depth`].
     pub(crate) const fn most_subscribers(self) -> usize {
         match self {
-            // Recorders and viewers.
-            Self::Ticks | Self::Snapshots => 8,
             Self::Answers => 4,
+            // Recorders and viewers; who listens.
+            Self::Ticks | Self::Snapshots | Self::Microphone | Self::Speech => 8,
             _ => 32,
         }
     }
@@ -95,6 +105,7 @@ impl Topic {
             Self::Steps => Some(512),
             Self::Answers => Some(3072),
             Self::Dialog => Some(48 << 10),
+            Self::Microphone | Self::Speech => Some(AudioView::bytes(AudioHeader::MOST_SAMPLES)),
             Self::Mission | Self::State | Self::Ticks | Self::Snapshots | Self::Frames(_) => None,
         }
     }
@@ -111,6 +122,8 @@ impl Topic {
             | Self::Commands
             | Self::Dialog
             | Self::Answers
+            | Self::Microphone
+            | Self::Speech
             | Self::Control
             | Self::Steps
             | Self::Pulses => match self.most_bytes() {
@@ -126,6 +139,7 @@ impl Topic {
         match self {
             Self::Mission | Self::State | Self::Ticks | Self::Snapshots => Wake::State,
             Self::Events | Self::Dialog | Self::Steps | Self::Answers => Wake::Talk,
+            Self::Microphone | Self::Speech => Wake::Audio,
             Self::Commands | Self::Control => Wake::Commands,
             Self::Pulses => Wake::Pulses,
             Self::Frames(camera) => Wake::Frames(camera),
@@ -147,6 +161,8 @@ impl fmt::Display for Topic {
             Self::Pulses => f.write_str("pulses"),
             Self::Dialog => f.write_str("dialog"),
             Self::Answers => f.write_str("answers"),
+            Self::Microphone => f.write_str("microphone"),
+            Self::Speech => f.write_str("speech"),
             Self::Frames(camera) => write!(f, "frames/{camera}"),
         }
     }
@@ -158,6 +174,7 @@ impl fmt::Display for Wake {
             Self::Commands => f.write_str("wake/commands"),
             Self::Pulses => f.write_str("wake/pulses"),
             Self::Talk => f.write_str("wake/talk"),
+            Self::Audio => f.write_str("wake/audio"),
             Self::State => f.write_str("wake/state"),
             Self::Frames(camera) => write!(f, "wake/frames/{camera}"),
         }
@@ -184,6 +201,8 @@ mod tests {
             (Topic::Steps, StepView::bytes(32)),
             (Topic::Dialog, dialog.bytes()),
             (Topic::Answers, size_of::<AnswerMessage>()),
+            (Topic::Microphone, AudioView::bytes(1_000_000)),
+            (Topic::Speech, AudioView::bytes(1_000_000)),
         ];
         for (topic, bytes) in largest {
             assert!(topic.most_bytes().is_some_and(|most| bytes <= most), "{topic}: {bytes}");

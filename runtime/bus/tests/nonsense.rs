@@ -8,8 +8,8 @@ mod payload;
 use cohabit_bus::{
     Topic,
     message::{
-        AnswerMessage, CommandMessage, Control, ControlMessage, DialogView, EventMessage, FrameView, Malformed,
-        MissionMessage, Plane, PulseMessage, SnapshotView, StateView, StepView, Thing, TickView, read,
+        AnswerMessage, AudioView, CommandMessage, Control, ControlMessage, DialogView, EventMessage, FrameView,
+        Malformed, MissionMessage, Plane, PulseMessage, SnapshotView, StateView, StepView, Thing, TickView, read,
     },
 };
 use cohabit_cdf::Action;
@@ -40,6 +40,7 @@ fn look(topic: Topic, payload: &[u8]) -> Result<(), Malformed> {
             let answer: AnswerMessage = read(payload)?;
             drop(format!("{answer:?} {:?}", answer.kind()));
         }
+        Topic::Microphone | Topic::Speech => drop(format!("{:?}", AudioView::new(payload)?)),
         Topic::Frames(_) => {
             let view = FrameView::new(payload)?;
             let sums = Plane::ALL.map(|plane| view.plane(plane).map(|bytes| bytes.iter().map(|b| u64::from(*b)).sum()));

@@ -5,6 +5,7 @@ mod finding;
 mod machine;
 mod memory;
 mod processor;
+mod speech;
 mod system;
 
 use std::io::{self, BufWriter, Write};
@@ -24,7 +25,7 @@ struct Check {
 }
 
 /// All of them, in the order in which they are told.
-const CHECKS: [Check; 16] = [
+const CHECKS: [Check; 17] = [
     Check { name: "shared memory", look: memory::shared_memory },
     Check { name: "sessions in it", look: memory::leftovers },
     Check { name: "sessions running", look: system::running },
@@ -37,6 +38,7 @@ const CHECKS: [Check; 16] = [
     Check { name: "memory", look: memory::memory },
     Check { name: "GPU", look: devices::gpu },
     Check { name: "audio", look: devices::audio },
+    Check { name: "voice", look: speech::voice },
     Check { name: "open files", look: system::open_files },
     Check { name: "locked memory", look: system::swap },
     Check { name: "clock", look: processor::clock },
@@ -117,6 +119,8 @@ fn verdict(findings: &[(&str, Finding)]) -> String {
 mod tests {
     use std::{fs, net::SocketAddr, path::PathBuf};
 
+    use cohabit_speech::VoiceSettings;
+
     use super::*;
 
     /// A made-up machine in a folder, which goes when this is dropped.
@@ -138,6 +142,7 @@ mod tests {
                 page: SocketAddr::from(([127, 0, 0, 1], 0)),
                 program: folder.join("cohabit"),
                 user: rustix::process::getuid().as_raw(),
+                voice: Ok(VoiceSettings::installed(folder.join("voice"))),
             };
             Self { machine, folder }
         }
@@ -157,6 +162,8 @@ mod tests {
         assert_eq!(of("shared memory").state, State::Broken);
         assert_eq!(of("browser").state, State::Costs);
         assert_eq!(of("GPU").state, State::Costs);
+        assert_eq!(of("voice").state, State::Costs);
+        assert!(of("voice").remedy.contains("cohabit voice install"));
         for (name, finding) in &findings {
             assert!(!finding.found.is_empty(), "{name}");
             assert_eq!(finding.state == State::Good, finding.costs.is_empty(), "{name}: {finding:?}");

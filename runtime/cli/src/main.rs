@@ -21,6 +21,7 @@ mod stop;
 mod supervisor;
 mod time;
 mod top;
+mod voice;
 
 use std::{ffi::OsString, process::ExitCode};
 
@@ -55,6 +56,8 @@ enum Command {
     Top(top::Top),
     /// Have the world of a running session stand still, go on, step, or go faster
     Time(time::Time),
+    /// Have this machine hear and speak
+    Voice(voice::Voice),
     /// Draw all objects in all their states, all floor plans and all rooms
     Gallery(gallery::Gallery),
     /// The world of a session, its cameras and its clock; or, with --arena-port, a simulator for existing clients
@@ -91,6 +94,7 @@ fn run(asked: Cohabit) -> anyhow::Result<()> {
         Command::Doctor(doctor) => doctor.run(),
         Command::Top(top) => top.run(),
         Command::Time(time) => time.run(),
+        Command::Voice(voice) => voice.run(),
         Command::Gallery(gallery) => gallery.run(),
         Command::Sim(sim) => sim.run(),
         Command::Agent(agent) => agent.run(),

@@ -29,6 +29,7 @@ use crate::{
     mission_file::MissionFile,
     rendering::Rendering,
     rerun, stop,
+    voice::VoiceOptions,
 };
 
 /// What all peers of a session are told.
@@ -251,6 +252,8 @@ pub struct Listening {
     /// Index), or a file (TOML); as often as needed
     #[arg(long = "questionnaire", value_name = "NAME|FILE")]
     pub questionnaires: Vec<String>,
+    #[command(flatten)]
+    pub voice: VoiceOptions,
 }
 
 /// The longest name of a body, in characters.
@@ -329,6 +332,7 @@ impl Dialog {
             names: self.listening.names.iter().map(|one| (one.body, one.name.clone())).collect(),
             drivable: self.listening.drive,
             questionnaires: self.listening.questionnaires()?,
+            voice: self.listening.voice.config(message.header.seed),
             on_first_frame: Box::new(|| tell_supervisor("shown")),
         };
         let ready = |address: &str| tell_supervisor(&format!("page {address}"));
@@ -400,6 +404,9 @@ pub struct Noted {
     /// A camera whose frames are recorded, too; as often as needed
     #[arg(long = "record-frames", value_name = "CAMERA")]
     pub frames: Vec<CameraId>,
+    /// Record what people and robots say aloud
+    #[arg(long = "record-audio", hide = true)]
+    pub audio: bool,
     /// The session that it goes on from, for the log
     #[arg(long, hide = true, value_parser = branch)]
     pub branched: Option<Branch>,
@@ -440,7 +447,15 @@ impl Noted {
         let frames = self.frames.iter().map(|camera| format!("--record-frames={camera}"));
         let branched = self.branched.iter();
         let branched = branched.map(|branch| format!("--branched={},{:x},{}", branch.tick, branch.run, branch.session));
-        participant.chain(settings).chain(cameras).chain(frames).chain(branched).map(OsString::from).collect()
+        let audio = self.audio.then(|| "--record-audio".to_owned());
+        participant
+            .chain(settings)
+            .chain(cameras)
+            .chain(frames)
+            .chain(audio)
+            .chain(branched)
+            .map(OsString::from)
+            .collect()
     }
 
     fn facts(&self, session: &str) -> SessionFacts {
@@ -451,6 +466,7 @@ impl Noted {
             settings: self.settings.iter().cloned().collect(),
             cameras: self.cameras.iter().map(ToString::to_string).collect(),
             frames: self.frames.clone(),
+            audio: self.audio,
             branched: self.branched.clone(),
         }
     }
@@ -464,6 +480,7 @@ impl Record {
         let caught_up = || tell_supervisor(&format!("recording {}", self.log.display()));
         let facts = self.noted.facts(&self.joining.session);
         let recorder = Recorder::new(&bus)?.filming(&bus, &facts.frames)?;
+        let recorder = if facts.audio { recorder.taping(&bus)? } else { recorder };
         recorder.run(&facts, &self.log, &stop, caught_up).map_err(|error| match error {
             RecordError::Log(LogError::Write { .. }) | RecordError::Bus(_) | RecordError::Malformed(_) => error.into(),
             RecordError::Log(_) | RecordError::NoMission => bad_input(error),

@@ -175,7 +175,7 @@ impl Play {
         branched: Option<Branch>,
     ) -> Noted {
         let minds = self.minds.iter().map(ToString::to_string).collect::<Vec<_>>().join(" ");
-        let Listening { drive, knows, ask, names, .. } = &self.listening;
+        let Listening { drive, knows, ask, names, voice, .. } = &self.listening;
         let robots = robots.iter().map(u32::to_string).collect::<Vec<_>>().join(",");
         let settings = [
             ("agents", minds),
@@ -188,7 +188,8 @@ impl Play {
         ];
         let asked = questionnaires.iter().map(|one| one.name.as_str()).collect::<Vec<_>>().join(" ");
         let asked = (!asked.is_empty()).then_some(("questionnaires", asked));
-        let settings = settings.into_iter().chain(asked).map(|(name, value)| (name.to_owned(), value));
+        let settings =
+            settings.into_iter().chain(asked).chain(voice.settings()).map(|(name, value)| (name.to_owned(), value));
         let names = names.iter().map(|one| (format!("{NAME_OF}{}", one.body), one.name.clone()));
         let settings = settings.chain(names).collect();
         Noted {
@@ -196,6 +197,7 @@ impl Play {
             settings,
             cameras: plan.cameras.clone(),
             frames: self.frames.clone(),
+            audio: self.listening.voice.record_audio,
             branched,
         }
     }

@@ -76,6 +76,7 @@ impl Role {
         let robots = robots.iter().flat_map(|body| ["--robot".to_owned(), body.to_string()]);
         let questionnaires = listening.questionnaires.iter().map(|name| format!("--questionnaire={name}"));
         let arguments = arguments.map(str::to_owned).into_iter().chain(names).chain(robots).chain(questionnaires);
+        let arguments = arguments.chain(listening.voice.arguments());
         Self { name: "dialog", arguments: arguments.map(OsString::from).collect() }
     }
 

@@ -65,6 +65,9 @@ pub struct SessionEntry {
     /// The cameras whose frames are in the log.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub frames: Vec<String>,
+    /// Whether what was said aloud is in the log.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub audio: bool,
     /// The session that it went on from, if it did not begin at the beginning.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub branched: Option<Branch>,
@@ -97,6 +100,8 @@ pub struct SessionFacts {
     pub cameras: Vec<String>,
     /// The cameras whose frames are recorded.
     pub frames: Vec<CameraId>,
+    /// Whether what is said aloud is recorded: people agreed to it.
+    pub audio: bool,
     /// The session that it goes on from.
     pub branched: Option<Branch>,
 }
@@ -116,7 +121,7 @@ impl SessionEntry {
     /// The entry of a mission as a simulator published it.
     #[must_use]
     pub fn new(facts: &SessionFacts, mission: &MissionMessage) -> Self {
-        let SessionFacts { session, build, participant, settings, cameras, frames, branched } = facts.clone();
+        let SessionFacts { session, build, participant, settings, cameras, frames, audio, branched } = facts.clone();
         Self {
             format: Self::FORMAT,
             program: env!("CARGO_PKG_VERSION").to_owned(),
@@ -134,6 +139,7 @@ impl SessionEntry {
             settings,
             cameras,
             frames: frames.iter().map(ToString::to_string).collect(),
+            audio,
             branched,
         }
     }
@@ -153,7 +159,7 @@ pub fn fingerprint(value: &(impl std::fmt::Debug + ?Sized)) -> String {
 
 impl Entry for SessionEntry {
     const TOPIC: &'static str = "/session";
-    const SCHEMA: &'static str = r#"{"title":"Session","type":"object","properties":{"format":{"type":"integer"},"program":{"type":"string"},"build":{"type":"string"},"messages":{"type":"integer"},"session":{"type":"string"},"mission_file":{"type":"string"},"mission_text":{"type":"string"},"seed":{"type":"integer"},"bodies":{"type":"array","items":{"type":"object"}},"run":{"type":"string"},"catalog":{"type":"string"},"layout":{"type":"string"},"participant":{"type":"string"},"settings":{"type":"object"},"cameras":{"type":"array","items":{"type":"string"}},"frames":{"type":"array","items":{"type":"string"}},"branched":{"type":"object"}}}"#;
+    const SCHEMA: &'static str = r#"{"title":"Session","type":"object","properties":{"format":{"type":"integer"},"program":{"type":"string"},"build":{"type":"string"},"messages":{"type":"integer"},"session":{"type":"string"},"mission_file":{"type":"string"},"mission_text":{"type":"string"},"seed":{"type":"integer"},"bodies":{"type":"array","items":{"type":"object"}},"run":{"type":"string"},"catalog":{"type":"string"},"layout":{"type":"string"},"participant":{"type":"string"},"settings":{"type":"object"},"cameras":{"type":"array","items":{"type":"string"}},"frames":{"type":"array","items":{"type":"string"}},"audio":{"type":"boolean"},"branched":{"type":"object"}}}"#;
 }
 
 /// One tick: what went in, and the digest of what came out.

@@ -6,7 +6,8 @@
 //! # Format 2
 //! An MCAP file of profile `cohabit`, without chunks. Its first records are the schemas and channels of all entries, and
 //! the `/session` entry. The channels `/session`, `/ticks`, `/events`, `/dialog` and `/gaps` hold JSON, whose schemas
-//! are in the file; so does `/frames/<camera>` for cameras whose frames were asked for, as Foxglove's `CompressedImage`.
+//! are in the file; so does `/frames/<camera>` for cameras whose frames were asked for, as Foxglove's `CompressedImage`,
+//! and `/audio/microphone` and `/audio/speech`, where sound was asked for, as Foxglove's `RawAudio`.
 //! `/snapshots` holds the tick (8 bytes, little-endian) and behind it the state, deflated. A message's
 //! time is the machine's wall clock.
 //!
@@ -33,6 +34,7 @@ mod reading;
 mod recorder;
 mod segment;
 mod snapshot;
+mod tape;
 mod turns;
 mod writer;
 

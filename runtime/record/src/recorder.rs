@@ -20,6 +20,7 @@ use crate::{
     film::Film,
     log::LogError,
     snapshot::Snapshot,
+    tape::Tape,
     turns::Turns,
     writer::LogWriter,
 };
@@ -56,6 +57,7 @@ pub struct Recorder {
     answers: Inbox,
     snapshots: Inbox,
     films: Vec<Film>,
+    tape: Option<Tape>,
     listener: Box<dyn Listener>,
     heart: Heart,
     turns: Turns,
@@ -81,6 +83,7 @@ impl Recorder {
             answers: Inbox::new(bus, Topic::Answers)?,
             snapshots: Inbox::new(bus, Topic::Snapshots)?,
             films: Vec::new(),
+            tape: None,
             listener: bus.listener(Wake::State)?,
             heart: Heart::new(bus, "recorder", NONE)?,
             turns: Turns::new(bus)?,
@@ -94,6 +97,14 @@ impl Recorder {
     pub fn filming(self, bus: &dyn Transport, cameras: &[CameraId]) -> Result<Self, BusError> {
         let films = cameras.iter().map(|camera| Film::new(bus, *camera)).collect::<Result<_, _>>()?;
         Ok(Self { films, ..self })
+    }
+
+    /// The same with what is said aloud.
+    ///
+    /// # Errors
+    /// [`BusError`].
+    pub fn taping(self, bus: &dyn Transport) -> Result<Self, BusError> {
+        Ok(Self { tape: Some(Tape::new(bus)?), ..self })
     }
 
     /// Records until `stop`, then ends the log. Writes nothing if no simulator ever came. Where the log is there already,
@@ -227,6 +238,7 @@ impl Recording {
         };
         self.drain_snapshots(now)?;
         self.drain_frames(now)?;
+        self.drain_audio(now)?;
         if gap.messages() > 0 {
             self.log.gap(&gap, now)?;
             self.missing += gap.messages();
@@ -320,6 +332,15 @@ impl Recording {
             while let Some(entry) = film.next(now)? {
                 self.log.frame(&entry, now)?;
             }
+        }
+        Ok(())
+    }
+
+    fn drain_audio(&mut self, now: u64) -> Result<(), RecordError> {
+        let Self { recorder, log, written, .. } = self;
+        let Some(tape) = &mut recorder.tape else { return Ok(()) };
+        while let Some((channel, entry)) = tape.next(written.tick, now)? {
+            log.audio(channel, &entry, now)?;
         }
         Ok(())
     }

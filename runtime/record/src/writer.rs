@@ -20,6 +20,7 @@ use crate::{
     log::LogError,
     segment::{SEAL, Seal},
     snapshot::Snapshot,
+    tape::AudioEntry,
 };
 
 /// What wrote a log.
@@ -71,7 +72,7 @@ impl LogWriter {
         wall_nanos: u64,
     ) -> Result<Self, LogError> {
         let mut log = Self::empty(path, out)?;
-        log.open_channels(&session.frames)?;
+        log.open_channels(&session.frames, session.audio)?;
         log.append(session, wall_nanos)?;
         log.flush()?;
         Ok(log)
@@ -91,7 +92,7 @@ impl LogWriter {
     }
 
     /// All at the beginning: an entry can be understood wherever what precedes it is damaged.
-    fn open_channels(&mut self, cameras: &[String]) -> Result<(), LogError> {
+    fn open_channels(&mut self, cameras: &[String], audio: bool) -> Result<(), LogError> {
         self.open_channel::<SessionEntry>()?;
         self.open_channel::<TickEntry>()?;
         self.open_channel::<EventEntry>()?;
@@ -105,6 +106,12 @@ impl LogWriter {
             let (schema, topic) = (self.written(schema)?, format!("{}{camera}", FrameEntry::TOPICS));
             let id = self.mcap.add_channel(schema, &topic, "json", &BTreeMap::new());
             self.channels.insert(topic, self.written(id)?);
+        }
+        for (channel, _) in AudioEntry::CHANNELS.into_iter().filter(|_| audio) {
+            let schema = self.mcap.add_schema(AudioEntry::SCHEMA_NAME, "jsonschema", AudioEntry::SCHEMA.as_bytes());
+            let schema = self.written(schema)?;
+            let id = self.mcap.add_channel(schema, channel, "json", &BTreeMap::new());
+            self.channels.insert(channel.to_owned(), self.written(id)?);
         }
         Ok(())
     }
@@ -172,6 +179,15 @@ impl LogWriter {
     pub(crate) fn frame(&mut self, entry: &FrameEntry, wall_nanos: u64) -> Result<(), LogError> {
         let data = serde_json::to_vec(entry).map_err(|source| LogError::Encode { path: self.path.clone(), source })?;
         self.message(&entry.topic(), &data, wall_nanos)
+    }
+
+    /// Appends a piece of sound, where the session entry says that there is any.
+    ///
+    /// # Errors
+    /// [`LogError::Write`].
+    pub(crate) fn audio(&mut self, channel: &str, entry: &AudioEntry, wall_nanos: u64) -> Result<(), LogError> {
+        let data = serde_json::to_vec(entry).map_err(|source| LogError::Encode { path: self.path.clone(), source })?;
+        self.message(channel, &data, wall_nanos)
     }
 
     /// Seals all that was appended, and hands it to the operating system in one piece.

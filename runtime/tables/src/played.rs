@@ -55,6 +55,10 @@ pub(crate) struct Turn {
     pub ended: Option<Status>,
     /// Received, understood, first motion, first changed frame, shown by a page: ns of one clock, 0 where it did not happen.
     pub stamps: [u64; 5],
+    /// Speech began, speech ended, its words, understood, first sound of an answer: of the same clock.
+    pub spoken: [u64; 5],
+    /// What it sounded like.
+    pub heard: String,
     /// When it was told, and when it was first answered, ns of the same clock.
     told: (u64, Option<u64>),
 }
@@ -151,11 +155,31 @@ impl Turn {
         later.map(|stamp| (received != 0 && stamp != 0).then(|| stamp.saturating_sub(received) as f64 * 1e-6))
     }
 
+    /// How long it took to say, s.
+    pub fn speech_s(&self) -> Option<f64> {
+        between_ms(self.spoken[0], self.spoken[1]).map(|ms| ms * 1e-3)
+    }
+
+    /// Milliseconds from the end of speech to its words.
+    pub fn heard_ms(&self) -> Option<f64> {
+        between_ms(self.spoken[1], self.spoken[2])
+    }
+
+    /// Milliseconds from the words to the first sound of an answer.
+    pub fn sounded_ms(&self) -> Option<f64> {
+        between_ms(self.spoken[2], self.spoken[4])
+    }
+
     /// Milliseconds from the words to the first answer or question.
     pub fn answered_ms(&self) -> Option<f64> {
         let (told, answered) = self.told;
         answered.map(|answered| answered.saturating_sub(told) as f64 * 1e-6)
     }
+}
+
+/// Milliseconds between two stamps, if both are there.
+fn between_ms(from: u64, to: u64) -> Option<f64> {
+    (from != 0 && to != 0).then(|| to.saturating_sub(from) as f64 * 1e-6)
 }
 
 /// Turns, and the turn that each plan's number belongs to: those of a search count on in the series of turns.
@@ -192,6 +216,10 @@ fn note(turn: &mut Turn, entry: &DialogEntry) {
             for (known, stamp) in turn.stamps.iter_mut().zip(entry.stamps) {
                 *known = if stamp == 0 { *known } else { stamp };
             }
+        }
+        "Spoken" => {
+            turn.spoken = entry.stamps;
+            turn.heard.clone_from(&entry.text);
         }
         _ => {}
     }

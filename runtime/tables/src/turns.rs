@@ -9,7 +9,7 @@ use crate::{
     },
 };
 
-const FIELDS: [Field; 19] = [
+const FIELDS: [Field; 23] = [
     Field::new("session", Text, "", "the session, as in the table of sessions"),
     Field::new("turn", Whole, "", "the turn: counts what people said in the session, from 1"),
     Field::new("body", Whole, "", "the body that was spoken to"),
@@ -29,6 +29,15 @@ const FIELDS: [Field; 19] = [
     Field::new("moved_ms", Real, "ms", "wall time from its words to the robot's first motion"),
     Field::new("framed_ms", Real, "ms", "wall time from its words to the first frame in which that motion is seen"),
     Field::new("shown_ms", Real, "ms", "wall time from its words until a page showed that frame, or a later one"),
+    Field::new("heard", Text, "", "what it sounded like before it was made sense of; nothing where it was typed"),
+    Field::new("speech_s", Real, "s", "how long it took to say; nothing where it was typed"),
+    Field::new("heard_ms", Real, "ms", "wall time from the end of speech to its words; nothing where it was typed"),
+    Field::new(
+        "sounded_ms",
+        Real,
+        "ms",
+        "wall time from its words to the first sound of an answer that was said aloud",
+    ),
 ];
 
 /// All turns of these sessions.
@@ -66,5 +75,9 @@ fn row(played: &Played, turn: &Turn) -> Vec<Cell> {
         moved,
         framed,
         shown,
+        Cell::text(&turn.heard),
+        Cell::maybe(turn.speech_s(), Cell::Real),
+        Cell::maybe(turn.heard_ms(), Cell::Real),
+        Cell::maybe(turn.sounded_ms(), Cell::Real),
     ]
 }

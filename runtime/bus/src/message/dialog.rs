@@ -26,11 +26,14 @@ pub enum DialogKind {
     PlanEnded = 7,
     /// How long the turn took, in `stamps`: for logs.
     Latency = 8,
+    /// How a turn was spoken: for logs. `stamps` are of other moments: speech began, speech ended, its text was there,
+    /// understood, first sound of the answer. The text is what was heard, before it was made sense of.
+    Spoken = 9,
 }
 
 impl DialogKind {
     /// All kinds.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Utterance,
         Self::Reply,
         Self::Question,
@@ -39,6 +42,7 @@ impl DialogKind {
         Self::StepEnded,
         Self::PlanEnded,
         Self::Latency,
+        Self::Spoken,
     ];
 }
 
@@ -61,7 +65,7 @@ pub struct DialogHeader {
     /// The number of the page at which a person said it; 0 where none did.
     pub person: u32,
     /// [`monotonic_nanos`](crate::monotonic_nanos) of: text received, understood, first motion, first changed frame,
-    /// that frame shown by a page; 0 where it did not happen (yet).
+    /// that frame shown by a page; 0 where it did not happen (yet). Of [`DialogKind::Spoken`], of other moments.
     pub stamps: [u64; 5],
     /// What is said.
     pub text: Text<2046>,

@@ -10,9 +10,9 @@ use std::{fs, path::Path};
 use cohabit_bus::{
     Envelope, Topic,
     message::{
-        ActionRecord, AnswerMessage, BodyRecord, CameraRecord, CommandMessage, ControlMessage, DialogHeader,
-        EventMessage, FrameHeader, GoalRecord, MissionHeader, NoteRecord, ObjectRecord, PlanStep, PulseMessage,
-        SeenRecord, SnapshotHeader, StateHeader, StepHeader, TickHeader,
+        ActionRecord, AnswerMessage, AudioHeader, BodyRecord, CameraRecord, CommandMessage, ControlMessage,
+        DialogHeader, EventMessage, FrameHeader, GoalRecord, MissionHeader, NoteRecord, ObjectRecord, PlanStep,
+        PulseMessage, SeenRecord, SnapshotHeader, StateHeader, StepHeader, TickHeader,
     },
 };
 
@@ -29,6 +29,7 @@ macro_rules! sizes {
 const SIZES: &[(&str, usize)] = &sizes![
     ActionRecord,
     AnswerMessage,
+    AudioHeader,
     BodyRecord,
     CameraRecord,
     CommandMessage,
@@ -92,6 +93,8 @@ fn payloads_are_made_of_what_the_document_says() {
                 (1, 3)
             } else if *record == "u64" {
                 (8, 1)
+            } else if *record == "i16" {
+                (2, 3)
             } else {
                 (source.record(record).bytes(), place + 1)
             };

@@ -3,9 +3,10 @@
 use cohabit_bus::{
     Block, CameraId, Topic,
     message::{
-        AnswerKind, AnswerMessage, BodyRecord, CameraKind, CameraRecord, CommandMessage, Control, ControlMessage,
-        DialogKind, DialogMessage, EventKind, EventMessage, FrameLayout, GoalRecord, MissionMessage, NoteRecord,
-        ObjectRecord, PlanStep, Plane, PulseMessage, SnapshotView, StateParts, StepView, TickMessage,
+        AnswerKind, AnswerMessage, AudioHeader, AudioView, BodyRecord, CameraKind, CameraRecord, CommandMessage,
+        Control, ControlMessage, DialogKind, DialogMessage, EventKind, EventMessage, FrameLayout, GoalRecord,
+        MissionMessage, NoteRecord, ObjectRecord, PlanStep, Plane, PulseMessage, SnapshotView, StateParts, StepView,
+        TickMessage,
     },
 };
 use cohabit_cdf::{BodyKind, BodyRequest};
@@ -33,7 +34,9 @@ pub fn topics() -> Vec<Topic> {
         Topic::Steps => Some(Topic::Pulses),
         Topic::Pulses => Some(Topic::Dialog),
         Topic::Dialog => Some(Topic::Answers),
-        Topic::Answers => Some(Topic::Frames(CameraId::Egocentric(0))),
+        Topic::Answers => Some(Topic::Microphone),
+        Topic::Microphone => Some(Topic::Speech),
+        Topic::Speech => Some(Topic::Frames(CameraId::Egocentric(0))),
         Topic::Frames(_) => None,
     };
     std::iter::successors(Some(Topic::Mission), |topic| next(*topic)).collect()
@@ -69,6 +72,8 @@ impl Payload {
             Topic::Pulses => ("pulses", "PulseMessage", &[], ""),
             Topic::Dialog => ("dialog", "DialogHeader", &[("PlanStep", "steps")], ""),
             Topic::Answers => ("answers", "AnswerMessage", &[], ""),
+            Topic::Microphone => ("microphone", "AudioHeader", &[("i16", "samples")], ""),
+            Topic::Speech => ("speech", "AudioHeader", &[("i16", "samples")], ""),
             Topic::Frames(_) => (
                 "frames/<camera>",
                 "FrameHeader",
@@ -147,6 +152,14 @@ pub fn example(topic: Topic) -> Example {
         Topic::Answers => filled(size_of::<AnswerMessage>(), |bytes| {
             bytes.copy_from_slice(bytemuck::bytes_of(&AnswerMessage::new(AnswerKind::Scale)));
         }),
+        Topic::Microphone => {
+            let header = AudioHeader::of_visitor(16_000, 1, 1);
+            filled(AudioView::bytes(3), |bytes| AudioView::write(header, &[1; 3], bytes))
+        }
+        Topic::Speech => {
+            let header = AudioHeader::of_body(22_050, 0, 1, 1);
+            filled(AudioView::bytes(3), |bytes| AudioView::write(header.last(), &[1; 3], bytes))
+        }
         Topic::Frames(_) => {
             let layout = FrameLayout::new(5, 3, 1, &Plane::ALL, 2);
             filled(layout.bytes(), |bytes| layout.split_mut(bytes).header.seen = 1)

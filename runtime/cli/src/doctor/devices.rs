@@ -83,7 +83,7 @@ fn judge_gpu(answer: io::Result<String>) -> Finding {
     Finding::costs(found.unwrap_or_else(|| "none".to_owned()), COSTS, "")
 }
 
-/// Whether there is something to hear and speak with. Nothing uses it yet.
+/// Whether there is something to hear and speak with: for the browser on this machine.
 pub fn audio(machine: &Machine) -> Finding {
     let names = fs::read_dir(machine.at("dev/snd")).into_iter().flatten().flatten();
     let names: Vec<_> = names.map(|entry| entry.file_name().to_string_lossy().into_owned()).collect();
@@ -93,7 +93,7 @@ pub fn audio(machine: &Machine) -> Finding {
         (0, 0) => "none".to_owned(),
         (microphones, speakers) => format!("{microphones} to record, {speakers} to play"),
     };
-    Finding::good(format!("{found}; this build has no voice, people type"))
+    Finding::good(format!("{found}, for a page that is open here"))
 }
 
 /// Whether the page's port is free.

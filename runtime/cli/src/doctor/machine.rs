@@ -8,6 +8,8 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use cohabit_speech::VoiceSettings;
+
 use crate::{peers::Listening, sessions};
 
 /// A machine to look at; tests make up their own.
@@ -27,6 +29,8 @@ pub struct Machine {
     pub program: PathBuf,
     /// Who asks.
     pub user: u32,
+    /// What sessions hear and speak with; why that cannot be told.
+    pub voice: Result<VoiceSettings, String>,
 }
 
 impl Machine {
@@ -40,6 +44,7 @@ impl Machine {
             page: SocketAddr::new(listening.listen, listening.port),
             program: env::current_exe()?,
             user: rustix::process::getuid().as_raw(),
+            voice: VoiceSettings::from_env().map_err(|error| error.to_string()),
         })
     }
 

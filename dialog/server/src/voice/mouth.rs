@@ -1,0 +1,327 @@
+//! How robots speak: a thread that makes sound of what they say, piece by piece, and can be broken off at any piece.
+
+use std::{
+    collections::VecDeque,
+    ops::ControlFlow,
+    sync::{
+        Arc, Condvar, Mutex, MutexGuard, PoisonError, Weak,
+        atomic::{AtomicU64, Ordering},
+    },
+    thread,
+    time::Duration,
+};
+
+use cohabit_bus::{
+    Publisher, Topic, Transport,
+    message::{AudioHeader, AudioView},
+    monotonic_nanos,
+};
+use cohabit_speech::Synthesizer;
+use serde_json::{Value, json};
+
+use super::echo::Echo;
+
+/// More than this does not wait to be said; what waited longest is left out.
+const MOST_WAITING: usize = 6;
+/// What is longer than this is not said to its end, characters: it can be read.
+const LONGEST: usize = 400;
+/// Sayings of others are numbered beyond its own.
+const PASSED_ON: u64 = 1 << 48;
+/// How often an idle mouth looks whether there still is a session.
+const LOOK_EVERY: Duration = Duration::from_millis(500);
+/// What most plans are answered with; its sound is made beforehand, so that it comes at once.
+const AT_ONCE: &str = "OK";
+
+/// What all pages are told, and hear.
+type Tell = Box<dyn Fn(&Value) + Send + Sync>;
+type Play = Box<dyn Fn(Vec<u8>) + Send + Sync>;
+
+/// How robots speak.
+pub struct Mouth {
+    waiting: Mutex<VecDeque<Saying>>,
+    more: Condvar,
+    /// Counts what was said.
+    sayings: AtomicU64,
+    /// Counts how often everybody was hushed: what was said before is not said to its end.
+    hushed: AtomicU64,
+    echo: Mutex<Echo>,
+    tell: Tell,
+    play: Play,
+}
+
+/// Something to be said aloud.
+struct Saying {
+    body: u32,
+    turn: u64,
+    text: String,
+    hushed: u64,
+}
+
+/// What a mouth speaks with.
+struct Tongue {
+    rate_hz: u32,
+    bus: Option<Box<dyn Publisher>>,
+    /// The sound of [`AT_ONCE`].
+    at_once: Vec<i16>,
+    /// Until when what was sent so far sounds, ns.
+    until: u64,
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl Mouth {
+    /// A mouth that cannot speak yet.
+    pub fn new(tell: Tell, play: Play) -> Arc<Self> {
+        Arc::new(Self {
+            waiting: Mutex::default(),
+            more: Condvar::new(),
+            sayings: AtomicU64::new(0),
+            hushed: AtomicU64::new(0),
+            echo: Mutex::default(),
+            tell,
+            play,
+        })
+    }
+
+    /// Has it speak from now on, as long as there is anybody who may have it say something.
+    pub fn open(self: &Arc<Self>, mut synthesizer: Box<dyn Synthesizer>, bus: &dyn Transport) {
+        let publisher = bus.publisher(Topic::Speech);
+        let bus = publisher.inspect_err(|error| tracing::warn!("robots are not heard on the bus: {error}")).ok();
+        let mouth = Arc::downgrade(self);
+        thread::spawn(move || {
+            let mut tongue = Tongue { rate_hz: synthesizer.rate().max(1), bus, at_once: Vec::new(), until: 0 };
+            tongue.prepare(&mut *synthesizer);
+            while let Some(next) = next(&mouth) {
+                let (Some(saying), Some(mouth)) = (next, mouth.upgrade()) else { continue };
+                tongue.say(&mut *synthesizer, &mouth, &saying);
+            }
+        });
+    }
+
+    /// Says something after what waits.
+    pub fn say(&self, body: u32, turn: u64, text: &str) {
+        let text = spoken(text);
+        if text.is_empty() {
+            return;
+        }
+        let mut waiting = lock(&self.waiting);
+        if waiting.len() == MOST_WAITING {
+            waiting.pop_front();
+        }
+        waiting.push_back(Saying { body, turn, text, hushed: self.hushed.load(Ordering::Relaxed) });
+        self.more.notify_all();
+    }
+
+    /// Breaks off what is said, and forgets what waits.
+    pub fn hush(&self) {
+        lock(&self.waiting).clear();
+        self.hushed.fetch_add(1, Ordering::Relaxed);
+        lock(&self.echo).cut(monotonic_nanos());
+        // A page may get a piece that was sent before this after it.
+        (self.tell)(&json!({ "type": "hush", "saying": self.sayings.load(Ordering::Relaxed) }));
+    }
+
+    /// Whether what was heard from then on is what a robot was saying.
+    pub fn is_echo(&self, heard: &str, began_nanos: u64) -> bool {
+        lock(&self.echo).is_echo(heard, began_nanos)
+    }
+
+    /// What robots were saying then.
+    pub fn says(&self, began_nanos: u64) -> String {
+        lock(&self.echo).says(began_nanos)
+    }
+
+    /// A page says a text with its browser's voice, from now or until now.
+    pub fn note_own_voice(&self, text: Option<&str>, nanos: u64) {
+        let mut echo = lock(&self.echo);
+        match text {
+            // However long that takes: it is told when it ends.
+            Some(text) => echo.note(&spoken(text), nanos, u64::MAX / 2),
+            None => echo.cut(nanos),
+        }
+    }
+
+    /// Has the pages hear what somebody else on the bus says aloud.
+    pub fn pass_on(&self, view: AudioView<'_>) {
+        (self.play)(frame(&AudioHeader { saying: view.header.saying | PASSED_ON, ..*view.header }, view.samples));
+    }
+
+    fn is_hushed(&self, saying: &Saying) -> bool {
+        self.hushed.load(Ordering::Relaxed) != saying.hushed
+    }
+}
+
+/// The next thing to be said; nothing for now, or `None` where nobody is left who may have it said.
+fn next(mouth: &Weak<Mouth>) -> Option<Option<Saying>> {
+    let mouth = mouth.upgrade()?;
+    let mut waiting = lock(&mouth.waiting);
+    if waiting.is_empty() {
+        (waiting, _) = mouth.more.wait_timeout(waiting, LOOK_EVERY).unwrap_or_else(PoisonError::into_inner);
+    }
+    Some(waiting.pop_front())
+}
+
+impl Tongue {
+    /// Makes the sound that is to come at once; that also has the engine warm.
+    fn prepare(&mut self, synthesizer: &mut dyn Synthesizer) {
+        let made = synthesizer.speak(&format!("{AT_ONCE}."), &mut |piece| {
+            self.at_once.extend(piece);
+            ControlFlow::Continue(())
+        });
+        if let Err(error) = made {
+            tracing::warn!("{error}");
+            self.at_once.clear();
+        }
+    }
+
+    fn say(&mut self, synthesizer: &mut dyn Synthesizer, mouth: &Mouth, saying: &Saying) {
+        if mouth.is_hushed(saying) {
+            return;
+        }
+        mouth.sayings.fetch_add(1, Ordering::Relaxed);
+        let began = monotonic_nanos();
+        self.until = self.until.max(began);
+        lock(&mouth.echo).note(&saying.text, self.until.min(began + 1), self.until);
+        let mut text = saying.text.as_str();
+        if let Some(rest) = text.strip_prefix(AT_ONCE).filter(|_| !self.at_once.is_empty())
+            && let Some(rest) = rest.strip_prefix(", ").or_else(|| rest.strip_prefix(". "))
+        {
+            text = rest;
+            let at_once = self.at_once.clone();
+            self.send(mouth, saying, &at_once);
+        }
+        let said = synthesizer.speak(text, &mut |piece| {
+            if mouth.is_hushed(saying) {
+                return ControlFlow::Break(());
+            }
+            self.send(mouth, saying, piece);
+            ControlFlow::Continue(())
+        });
+        if let Err(error) = said {
+            tracing::warn!("{error}");
+            (mouth.tell)(&json!({ "type": "error", "text": format!("The robot has lost its voice: {error}") }));
+        }
+        if mouth.is_hushed(saying) {
+            self.until = monotonic_nanos();
+        }
+        self.send_piece(mouth, saying, &[], true);
+    }
+
+    fn send(&mut self, mouth: &Mouth, saying: &Saying, samples: &[i16]) {
+        for piece in samples.chunks(AudioHeader::MOST_SAMPLES) {
+            self.send_piece(mouth, saying, piece, false);
+        }
+        let lasts = samples.len() as u64 * 1_000_000_000 / u64::from(self.rate_hz);
+        self.until = self.until.max(monotonic_nanos()) + lasts;
+        lock(&mouth.echo).lasts_until(self.until);
+    }
+
+    fn send_piece(&mut self, mouth: &Mouth, saying: &Saying, piece: &[i16], is_last: bool) {
+        let header =
+            AudioHeader::of_body(self.rate_hz, saying.body, saying.turn, mouth.sayings.load(Ordering::Relaxed));
+        let header = if is_last { header.last() } else { header };
+        (mouth.play)(frame(&header, piece));
+        if let Some(bus) = &mut self.bus {
+            let write = &mut |bytes: &mut [u8]| AudioView::write(header, piece, bytes);
+            if let Err(error) = bus.send(0, AudioView::bytes(piece.len()), write) {
+                tracing::warn!("{error}");
+            }
+        }
+    }
+}
+
+/// A piece of sound as pages get it: a kind byte (2), 1 if it is the last of its saying, two zero bytes, the rate (u32), the
+/// turn and the saying (u64), and the samples, all little-endian.
+fn frame(header: &AudioHeader, samples: &[i16]) -> Vec<u8> {
+    let mut frame = vec![2, u8::from(header.is_last == 1), 0, 0];
+    frame.extend(header.rate_hz.to_le_bytes());
+    frame.extend(header.turn.to_le_bytes());
+    frame.extend(header.saying.to_le_bytes());
+    frame.extend(samples.iter().flat_map(|sample| sample.to_le_bytes()));
+    frame
+}
+
+/// A text as it is said: what cannot be pronounced left out, and no longer than is listened to.
+fn spoken(text: &str) -> String {
+    let words: String = text.chars().map(|c| if matches!(c, '"' | '*' | '_' | '`' | '\n') { ' ' } else { c }).collect();
+    let words = words.split_whitespace().collect::<Vec<_>>().join(" ");
+    match words.char_indices().nth(LONGEST) {
+        Some((at, _)) => words[..words[..at].rfind(['.', '!', '?', ',', ' ']).unwrap_or(at)].to_owned(),
+        None => words,
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
+
+    use cohabit_bus::Local;
+    use cohabit_speech::fake::Beeper;
+
+    use super::*;
+
+    /// A mouth that beeps, with what pages are told and hear.
+    fn mouth() -> (Arc<Mouth>, Receiver<Value>, Receiver<Vec<u8>>) {
+        let ((tell, told), (play, played)) = (mpsc::channel(), mpsc::channel());
+        let tell = move |message: &Value| tell.send(message.clone()).unwrap();
+        let mouth = Mouth::new(Box::new(tell), Box::new(move |piece| drop(play.send(piece))));
+        mouth.open(Box::new(Beeper), &Local::new(1));
+        (mouth, told, played)
+    }
+
+    const LONG: Duration = Duration::from_secs(20);
+
+    fn turn(piece: &[u8]) -> u64 {
+        u64::from_le_bytes(piece[8..16].try_into().unwrap())
+    }
+
+    #[test]
+    fn what_is_said_sounds_in_pieces_the_last_of_which_says_so() {
+        let (mouth, _told, played) = mouth();
+        mouth.say(0, 7, "OK, going to the break room.");
+        let mut samples = 0;
+        loop {
+            let piece = played.recv_timeout(LONG).unwrap();
+            assert_eq!((piece[0], turn(&piece)), (2, 7));
+            assert_eq!(u32::from_le_bytes(piece[4..8].try_into().unwrap()), cohabit_speech::RATE);
+            samples += (piece.len() - 24) / 2;
+            if piece[1] == 1 {
+                break;
+            }
+        }
+        // A beep lasts 50 ms a letter: two before, and the rest.
+        assert_eq!(samples, (2 + "goingtothebreakroom".len()) * 800);
+        assert!(mouth.is_echo("going to the break room", monotonic_nanos()));
+    }
+
+    #[test]
+    fn who_is_hushed_says_no_more() {
+        let (mouth, told, played) = mouth();
+        for turn in 1..=3 {
+            mouth.say(0, turn, &"a long sentence ".repeat(20));
+        }
+        played.recv_timeout(LONG).unwrap();
+        mouth.hush();
+        assert_eq!(told.recv_timeout(LONG).unwrap()["type"], "hush");
+        mouth.say(0, 9, "Done.");
+        let pieces = std::iter::from_fn(|| match played.recv_timeout(LONG) {
+            Ok(piece) => (!(turn(&piece) == 9 && piece[1] == 1)).then_some(piece),
+            Err(RecvTimeoutError::Timeout | RecvTimeoutError::Disconnected) => {
+                panic!("what was said after is not heard")
+            }
+        });
+        let turns: Vec<u64> = pieces.map(|piece| turn(&piece)).collect();
+        assert!(!turns.contains(&2) && !turns.contains(&3), "{turns:?}");
+    }
+
+    #[test]
+    fn what_cannot_be_pronounced_is_left_out() {
+        assert_eq!(spoken("I heard \"open\nit\"."), "I heard open it .");
+        let long = spoken(&"word ".repeat(200));
+        assert!(long.chars().count() <= LONGEST && long.ends_with("word"), "{long}");
+        assert_eq!(spoken(" \n"), "");
+    }
+}

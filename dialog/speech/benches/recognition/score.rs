@@ -1,0 +1,137 @@
+//! What is counted.
+
+use std::fmt;
+
+/// Over commands of one voice.
+#[derive(Default)]
+pub struct Score {
+    commands: usize,
+    words: usize,
+    wrong: usize,
+    exact: usize,
+    same: usize,
+    cut: usize,
+    delays_s: Vec<f64>,
+    cpu_s: f64,
+    sound_s: f64,
+}
+
+impl Score {
+    pub fn note(&mut self, said: &str, heard: &str, is_same: bool, delays_s: &[f64], is_cut: bool) {
+        let (said, heard) = (words(said), words(heard));
+        let wrong = distance(&said, &heard);
+        self.commands += 1;
+        self.words += said.len();
+        self.wrong += wrong;
+        self.exact += usize::from(wrong == 0);
+        self.same += usize::from(is_same);
+        self.cut += usize::from(is_cut);
+        self.delays_s.extend(delays_s.last());
+    }
+
+    pub fn note_cpu(&mut self, cpu_s: f64, sound_s: f64) {
+        self.cpu_s += cpu_s;
+        self.sound_s += sound_s;
+    }
+
+    pub fn add(&mut self, other: &Self) {
+        self.commands += other.commands;
+        self.words += other.words;
+        self.wrong += other.wrong;
+        self.exact += other.exact;
+        self.same += other.same;
+        self.cut += other.cut;
+        self.delays_s.extend(&other.delays_s);
+        self.note_cpu(other.cpu_s, other.sound_s);
+    }
+}
+
+impl fmt::Display for Score {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let share = |part: usize, of: usize| 100.0 * part as f64 / of.max(1) as f64;
+        let mut delays_s = self.delays_s.clone();
+        delays_s.sort_by(f64::total_cmp);
+        let delay_s =
+            |share: f64| delays_s.get(((delays_s.len() as f64 - 1.0) * share) as usize).copied().unwrap_or(0.0);
+        write!(
+            f,
+            "{:.1} % | {:.0} % | {:.1} % | {} | {:.2} / {:.2} | {:.2}",
+            share(self.wrong, self.words),
+            share(self.exact, self.commands),
+            share(self.same, self.commands),
+            self.cut,
+            delay_s(0.5),
+            delay_s(0.95),
+            self.cpu_s / self.sound_s.max(1e-9)
+        )
+    }
+}
+
+/// Numbers, as they are spoken and as they are written.
+const NUMBERS: &[(&str, &str)] = &[
+    ("1", "one"),
+    ("2", "two"),
+    ("3", "three"),
+    ("4", "four"),
+    ("5", "five"),
+    ("6", "six"),
+    ("10", "ten"),
+    ("20", "twenty"),
+    ("30", "thirty"),
+    ("45", "forty five"),
+    ("90", "ninety"),
+    ("180", "one eighty"),
+    ("ok", "okay"),
+    ("3d", "three d"),
+];
+
+/// The words of a text, as they sound.
+fn words(text: &str) -> Vec<String> {
+    let text = text.to_lowercase().replace(['-', '’'], " ").replace('\'', "");
+    let words = text.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty());
+    let spoken =
+        words.map(|word| NUMBERS.iter().find(|(written, _)| *written == word).map_or(word, |(_, spoken)| spoken));
+    spoken.flat_map(str::split_whitespace).map(str::to_owned).collect()
+}
+
+/// Words to replace, leave out or put in.
+fn distance(one: &[String], other: &[String]) -> usize {
+    let mut row: Vec<usize> = (0..=other.len()).collect();
+    for (at, word) in one.iter().enumerate() {
+        let mut diagonal = std::mem::replace(&mut row[0], at + 1);
+        for (to, candidate) in other.iter().enumerate() {
+            let replaced = diagonal + usize::from(word != candidate);
+            diagonal = row[to + 1];
+            row[to + 1] = replaced.min(diagonal + 1).min(row[to] + 1);
+        }
+    }
+    row[other.len()]
+}
+
+/// What this process takes, from `/proc`.
+pub mod machine {
+    /// Ticks a second of the counts of the kernel, on all Linux machines.
+    const TICKS: f64 = 100.0;
+
+    pub fn memory_mb() -> u64 {
+        status("VmRSS:")
+    }
+
+    pub fn most_memory_mb() -> u64 {
+        status("VmHWM:")
+    }
+
+    fn status(name: &str) -> u64 {
+        let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+        let line = status.lines().find_map(|line| line.strip_prefix(name)).unwrap_or_default();
+        line.split_whitespace().next().and_then(|kb| kb.parse::<u64>().ok()).unwrap_or(0) / 1024
+    }
+
+    /// CPU time of all threads so far.
+    pub fn cpu_s() -> f64 {
+        let stat = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
+        let fields: Vec<&str> = stat.rsplit(')').next().unwrap_or_default().split_whitespace().collect();
+        let ticks = |at: usize| fields.get(at).and_then(|ticks| ticks.parse::<f64>().ok()).unwrap_or(0.0);
+        (ticks(11) + ticks(12)) / TICKS
+    }
+}

@@ -1,0 +1,229 @@
+//! A small language model of what is likely to be said: how likely a word is after the two before it.
+//!
+//! Trigrams, bigrams and single words, each mixed with the next simpler one by how many different words followed
+//! (Witten and Bell, "The zero-frequency problem", 1991).
+
+use std::{
+    collections::{BTreeMap, HashMap},
+    ops::Range,
+};
+
+use crate::{Bias, bias};
+
+/// What stands for a word in counts. Words that are not known have none.
+type Word = u32;
+
+/// What stands before the first word, and after the last.
+const EDGE: Word = 0;
+/// Chance of a word that is not known.
+fn unknown() -> f32 {
+    static U: std::sync::OnceLock<f32> = std::sync::OnceLock::new();
+    *U.get_or_init(|| std::env::var("T_UNK").ok().and_then(|x| x.parse().ok()).unwrap_or(1e-6))
+}
+/// Of single words, so much of the chance goes to all that are known alike.
+const EVEN: f32 = 0.1;
+
+/// How often words followed, and how many different ones.
+#[derive(Default)]
+struct Follows {
+    total: u32,
+    of: BTreeMap<Word, u32>,
+}
+
+/// The model.
+pub(crate) struct NGram {
+    /// Known words in order; the word at `index` is `index + 1`.
+    words: Vec<String>,
+    single: Follows,
+    after_one: HashMap<Word, Follows>,
+    after_two: HashMap<[Word; 2], Follows>,
+}
+
+/// Where in a sentence one is: the two words before, and how a word begins that is not complete.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Place {
+    before: [Word; 2],
+    prefix: String,
+    /// Logarithm of how likely the complete words are.
+    complete: f32,
+    /// All words, for telling those apart that differ in more than marks.
+    words: String,
+}
+
+impl Place {
+    /// The words so far, and the letters of the one that is not complete.
+    pub(crate) fn words(&self) -> &str {
+        &self.words
+    }
+}
+
+impl NGram {
+    /// The model of a bias, unless that says nothing.
+    pub(crate) fn of(bias: &Bias) -> Option<Self> {
+        if bias.is_empty() {
+            return None;
+        }
+        let sentences: Vec<Vec<String>> = bias.sentences.iter().map(|sentence| bias::words(sentence)).collect();
+        let mut known: Vec<String> = sentences.iter().flatten().chain(&bias.words).cloned().collect();
+        known.sort_unstable();
+        known.dedup();
+        let mut model =
+            Self { words: known, single: Follows::default(), after_one: HashMap::new(), after_two: HashMap::new() };
+        for sentence in &sentences {
+            model.count(sentence);
+        }
+        Some(model)
+    }
+
+    fn count(&mut self, sentence: &[String]) {
+        let mut before = [EDGE; 2];
+        let words: Vec<Word> = sentence.iter().filter_map(|word| self.word(word)).collect();
+        for word in words.into_iter().chain([EDGE]) {
+            self.single.note(word);
+            self.after_one.entry(before[1]).or_default().note(word);
+            self.after_two.entry(before).or_default().note(word);
+            before = [before[1], word];
+        }
+    }
+
+    fn word(&self, word: &str) -> Option<Word> {
+        self.words.binary_search_by(|known| known.as_str().cmp(word)).ok().map(|at| at as Word + 1)
+    }
+
+    /// Whether a word is known.
+    pub(crate) fn knows(&self, word: &str) -> bool {
+        self.word(word).is_some()
+    }
+
+    fn chance(&self, before: [Word; 2], word: Word) -> f32 {
+        let even = 1.0 / (self.words.len() + 1) as f32;
+        let single = EVEN * even + (1.0 - EVEN) * self.single.share(word, even);
+        let one = self.after_one.get(&before[1]).map_or(single, |follows| follows.share(word, single));
+        self.after_two.get(&before).map_or(one, |follows| follows.share(word, one))
+    }
+
+    /// The words that begin so, as a range.
+    fn beginning(&self, prefix: &str) -> Range<usize> {
+        let from = self.words.partition_point(|word| word.as_str() < prefix);
+        let length = self.words[from..].partition_point(|word| word.starts_with(prefix));
+        from..from + length
+    }
+
+    /// Logarithm of how likely what was said so far is, where the word that is not complete becomes the likeliest.
+    pub(crate) fn so_far(&self, place: &Place) -> f32 {
+        if place.prefix.is_empty() {
+            return place.complete;
+        }
+        let words = self.beginning(&place.prefix).map(|at| self.chance(place.before, at as Word + 1));
+        place.complete + words.fold(unknown(), f32::max).ln()
+    }
+
+    /// What is said goes on with letters.
+    pub(crate) fn spell(&self, place: &mut Place, begins_word: bool, letters: &str, ends_word: bool) {
+        if begins_word {
+            self.complete(place);
+        }
+        if place.prefix.is_empty() && !letters.is_empty() {
+            place.words.push(' ');
+        }
+        place.words.push_str(letters);
+        place.prefix.push_str(letters);
+        if ends_word {
+            self.complete(place);
+        }
+    }
+
+    /// The word that is spelt is complete.
+    fn complete(&self, place: &mut Place) {
+        if place.prefix.is_empty() {
+            return;
+        }
+        let prefix = std::mem::take(&mut place.prefix);
+        let word = self.word(prefix.trim_matches('\''));
+        place.complete += word.map_or(unknown(), |word| self.chance(place.before, word)).ln();
+        // After a word that is not known, what comes is judged by itself.
+        place.before = [place.before[1], word.unwrap_or(Word::MAX)];
+    }
+
+    /// Nothing more is said: logarithm of how likely all of it is.
+    pub(crate) fn end(&self, place: &mut Place) -> f32 {
+        self.complete(place);
+        place.complete + self.chance(place.before, EDGE).ln()
+    }
+}
+
+impl Follows {
+    fn note(&mut self, word: Word) {
+        self.total += 1;
+        *self.of.entry(word).or_default() += 1;
+    }
+
+    /// Share of a word, mixed with what a simpler model says.
+    fn share(&self, word: Word, simpler: f32) -> f32 {
+        let (seen, different) = (self.of.get(&word).copied().unwrap_or(0) as f32, self.of.len() as f32);
+        (seen + different * simpler) / (self.total as f32 + different)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::*;
+
+    fn model() -> NGram {
+        let sentences = ["pick up the mug", "pick up the bowl", "put the mug on the table", "go to the table"];
+        let mut bias = Bias::of(sentences);
+        bias.words.insert("fridge".into());
+        NGram::of(&bias).unwrap()
+    }
+
+    fn of(model: &NGram, text: &str) -> f32 {
+        let mut place = Place::default();
+        for word in text.split(' ') {
+            model.spell(&mut place, true, word, false);
+        }
+        model.end(&mut place)
+    }
+
+    #[test]
+    fn chances_sum_to_one() {
+        let model = model();
+        for before in [[0, 0], [1, 2], [3, 4], [7, 7], [Word::MAX; 2]] {
+            let sum: f32 = (0..=model.words.len() as Word).map(|word| model.chance(before, word)).sum();
+            assert!((sum - 1.0).abs() < 1e-4, "{sum} after {before:?}");
+        }
+    }
+
+    #[test]
+    fn what_is_like_the_sentences_is_likelier() {
+        let model = model();
+        let less = |one: &str, other: &str| {
+            assert!(of(&model, one) < of(&model, other), "{one}: {} {other}: {}", of(&model, one), of(&model, other));
+        };
+        less("pick up the table", "pick up the mug");
+        less("up pick mug the", "pick up the mug");
+        less("pick up the zebra", "pick up the fridge");
+        less("pick up the fridge", "pick up the bowl");
+    }
+
+    #[test]
+    fn the_beginning_of_a_word_is_as_likely_as_the_best_that_begins_so() {
+        let model = model();
+        let mut place = Place::default();
+        for (begins, letters) in [(true, "pick"), (true, "up"), (true, "the"), (true, "b")] {
+            model.spell(&mut place, begins, letters, false);
+        }
+        let before = model.so_far(&place);
+        model.spell(&mut place, false, "owl", true);
+        assert_eq!((model.so_far(&place), place.words()), (before, " pick up the bowl"));
+        model.spell(&mut place, true, "xy", false);
+        assert!((model.so_far(&place) - before - unknown().ln()).abs() < 1e-3);
+    }
+
+    #[test]
+    fn no_sentences_make_no_model() {
+        assert!(NGram::of(&Bias::default()).is_none());
+        assert!(NGram::of(&Bias::of(["…"])).is_some_and(|model| !model.knows("the")));
+    }
+}
