@@ -41,7 +41,7 @@ pub use inbox::{Inbox, Nonsense};
 pub use local::Local;
 pub use priority::{give_way, go_first};
 pub use session::{Remains, Session, SessionError};
-pub use shm::Shm;
+pub use shm::{HeldTopics, Shm};
 pub use text::Text;
 pub use topic::{Topic, Wake};
 pub use transport::{Listener, Publisher, Sample, Subscriber, Transport, is_alive, process_of};

@@ -72,6 +72,14 @@ impl Shm {
         Ok(Self { session: session.clone(), node: Arc::new(node) })
     }
 
+    /// Makes these topics, before there are peers: one that dies while it makes a topic would keep all others from it.
+    ///
+    /// # Errors
+    /// [`BusError::Open`].
+    pub fn hold(&self, topics: impl IntoIterator<Item = Topic>) -> Result<HeldTopics, BusError> {
+        topics.into_iter().map(|topic| self.topic_service(topic)).collect::<Result<_, _>>().map(HeldTopics)
+    }
+
     /// Frees what peers that died have left in the session; call it about once a second.
     pub fn clean_up_dead_peers(&self) {
         let _ = self.node.try_cleanup_dead_nodes();
@@ -97,6 +105,9 @@ impl Shm {
         Bell::open(&self.session.shared_file(&wake.to_string()))
     }
 }
+
+/// Topics that are there for as long as this is.
+pub struct HeldTopics(#[expect(dead_code, reason = "they are held, not used")] Vec<PortFactory<Ipc, [Block], ()>>);
 
 fn service_name(name: &str) -> Result<ServiceName, String> {
     name.try_into().map_err(|e| format!("{e:?}"))

@@ -58,6 +58,23 @@ pub enum Wake {
 }
 
 impl Topic {
+    /// All but those of cameras, which every session has.
+    pub const OF_ALL_SESSIONS: [Self; 13] = [
+        Self::Mission,
+        Self::State,
+        Self::Ticks,
+        Self::Snapshots,
+        Self::Events,
+        Self::Commands,
+        Self::Control,
+        Self::Steps,
+        Self::Pulses,
+        Self::Dialog,
+        Self::Answers,
+        Self::Microphone,
+        Self::Speech,
+    ];
+
     /// Samples kept for a subscriber that does not keep up; older ones are lost to it.
     pub(crate) const fn depth(self) -> usize {
         match self {

@@ -7,7 +7,7 @@ use std::{
 };
 
 use anyhow::Context as _;
-use cohabit_bus::{CameraId, Session, SessionError, Shm, message::Plane};
+use cohabit_bus::{CameraId, Session, SessionError, Shm, Topic, message::Plane};
 use cohabit_cdf::BodyRequest;
 use cohabit_dialog::{Questionnaire, begin_after};
 use cohabit_engine::{CameraPlan, SessionPlan};
@@ -102,7 +102,9 @@ impl Play {
             other => bad_input(other),
         })?;
         // What all peers share is made before there are any: one that is killed while it makes it would keep the others out.
-        drop(Shm::join(&session).map_err(bad_input)?);
+        let bus = Shm::join(&session).map_err(bad_input)?;
+        let frames = cameras(&plan).into_iter().map(|camera| Topic::Frames(camera.id));
+        let topics = bus.hold(Topic::OF_ALL_SESSIONS.into_iter().chain(frames))?;
         if let Some(Before { from, log }) = &before {
             let journal = peers::journal(&session);
             begin_after(&journal, log, from.tick, robots.len() > 1).with_context(|| journal.display().to_string())?;
@@ -115,6 +117,7 @@ impl Play {
         let peers = [Role::record(&log, &noted, self.watching), Role::dialog(&self.listening, &robots)];
         let roles = std::iter::once(sim).chain(peers).chain(minds);
         let played = Supervisor::start(&name, roles, began).and_then(|supervisor| supervisor.run(&stop));
+        drop((topics, bus));
         session.end(lock);
         // What the killed one before was still starting may have come late.
         Session::wipe_dead();
@@ -140,7 +143,7 @@ impl Play {
 
     /// Says which of the cameras to be recorded are none.
     fn check_frames(&self, plan: &SessionPlan) -> anyhow::Result<()> {
-        let known = plan.all_cameras(plan.mission.robots.len().max(1) + plan.bodies.len());
+        let known = cameras(plan);
         let has_colors = |camera: &&CameraPlan| camera.planes.contains(&Plane::Color);
         let known: Vec<_> = known.iter().filter(has_colors).map(|camera| camera.id).collect();
         match self.frames.iter().find(|camera| !known.contains(camera)) {
@@ -211,6 +214,11 @@ impl Play {
         }
         Ok(sessions::folder(None)?.join(format!("{}_{session}.mcap", sessions::time())))
     }
+}
+
+/// All cameras of a session.
+fn cameras(plan: &SessionPlan) -> Vec<CameraPlan> {
+    plan.all_cameras(plan.mission.robots.len().max(1) + plan.bodies.len())
 }
 
 fn clock_seed() -> u64 {

@@ -39,7 +39,9 @@ pub fn topics() -> Vec<Topic> {
         Topic::Speech => Some(Topic::Frames(CameraId::Egocentric(0))),
         Topic::Frames(_) => None,
     };
-    std::iter::successors(Some(Topic::Mission), |topic| next(*topic)).collect()
+    let topics: Vec<_> = std::iter::successors(Some(Topic::Mission), |topic| next(*topic)).collect();
+    assert_eq!(topics[..topics.len() - 1], Topic::OF_ALL_SESSIONS);
+    topics
 }
 
 impl Payload {
