@@ -107,7 +107,7 @@ fn stop_is_heard_while_the_robot_moves_and_speaks() {
     page.wait("the robot to stop", |page, _| has_said(page, "robot", "I stop") && page.state["robot"]["busy"] == false)
         .unwrap();
     assert_ne!(room(&page), "MainOffice");
-    let raw = play.end().unwrap().log;
+    let raw = play.end().unwrap().log.clone();
     assert!(!Log::open(&raw).unwrap().session.audio, "nobody agreed to that");
 }
 
