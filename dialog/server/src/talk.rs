@@ -54,6 +54,16 @@ pub struct Talk {
     names: Vec<String>,
 }
 
+/// All by which a conversation has to do with pages.
+pub struct Pages {
+    /// What they share.
+    pub hub: Arc<Hub>,
+    /// Who drives.
+    pub drivers: Arc<Drivers>,
+    /// How they are heard, and hear.
+    pub voice: Arc<Voice>,
+}
+
 struct Inner {
     robots: Robots,
     journal: Journal,
@@ -77,17 +87,16 @@ enum Heard<'a> {
 }
 
 impl Talk {
-    /// A conversation on `bus`, shown to the pages of `hub`; it goes on where that of `journal` was.
+    /// A conversation on `bus`, shown to the pages; it goes on where that of `journal` was.
     pub fn new(
         bus: &dyn Transport,
         catalog: Arc<Catalog>,
         mut robots: Robots,
         interpreter: Option<Puzzles>,
-        hub: Arc<Hub>,
-        drivers: Arc<Drivers>,
+        pages: Pages,
         journal: Journal,
-        voice: Arc<Voice>,
     ) -> Result<Arc<Self>, DialogError> {
+        let Pages { hub, drivers, voice } = pages;
         let names = robots.are_several().then(|| robots.called_by().map(str::to_owned).collect()).unwrap_or_default();
         let past = journal.past();
         hub.restore(&past.lines);
