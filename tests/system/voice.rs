@@ -7,7 +7,7 @@ use cohabit_bus::{
     message::{AudioHeader, AudioView},
 };
 use cohabit_record::Log;
-use cohabit_speech::{Engines, Recognizer as _, VoiceSettings};
+use cohabit_speech::{Engines, VoiceSettings};
 use cohabit_tests::{Browser, Page, Play, SpeechServer, Tab, babble, wav};
 use serde_json::{Value, json};
 
@@ -107,8 +107,8 @@ fn stop_is_heard_while_the_robot_moves_and_speaks() {
     page.wait("the robot to stop", |page, _| has_said(page, "robot", "I stop") && page.state["robot"]["busy"] == false)
         .unwrap();
     assert_ne!(room(&page), "MainOffice");
-    let raw = play.end().unwrap().log.clone();
-    assert!(!Log::open(&raw).unwrap().session.audio, "nobody agreed to that");
+    let ended = play.end().unwrap();
+    assert!(!Log::open(&ended.log).unwrap().session.audio, "nobody agreed to that");
 }
 
 #[test]

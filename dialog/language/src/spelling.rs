@@ -34,11 +34,6 @@ impl Vocabulary {
         self.ordinary.insert(word.to_owned());
     }
 
-    /// All words that the robot understands.
-    pub(crate) fn words(&self) -> impl Iterator<Item = &str> {
-        self.meaningful.iter().map(String::as_str)
-    }
-
     /// Whether the robot understands the word.
     pub(crate) fn has(&self, word: &str) -> bool {
         self.meaningful.contains(word)

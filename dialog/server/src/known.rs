@@ -110,12 +110,15 @@ impl Knowledge {
         self.memory.forget(id);
     }
 
-    /// A number that changes with what there is to speak of: the classes and colours of things.
-    pub fn number(&self) -> u64 {
+    /// All that there is, whether or not the body has seen it: what people may speak of.
+    pub(crate) const fn world(&self) -> Option<&Known> {
+        self.world.as_ref()
+    }
+
+    /// A number that changes with what there is to speak of: the classes of things.
+    pub(crate) fn number(&self) -> u64 {
+        let things: BTreeSet<_> = self.world.iter().flat_map(|world| &world.objects).map(|thing| thing.class).collect();
         let mut hasher = DefaultHasher::new();
-        let things = self.known().map(|known| known.objects).unwrap_or_default();
-        let things: BTreeSet<_> =
-            things.iter().map(|thing| (thing.class, thing.color as u32, thing.in_mission)).collect();
         things.hash(&mut hasher);
         hasher.finish().max(1)
     }

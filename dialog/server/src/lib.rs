@@ -61,7 +61,7 @@ use crate::{
     journal::{Journal, Place},
     robots::{BodyNames, RobotName, Robots},
     survey::Survey,
-    talk::{Ears, Talk},
+    talk::{Ears, Pages, Talk},
     view::View,
     voice::Voice,
     web::{Host, Live, Service},
@@ -156,8 +156,8 @@ pub fn serve(
     let (tells, plays) = (Arc::clone(&hub), Arc::clone(&hub));
     let (tell, play) = (move |message: &Value| tells.tell(message), move |piece| plays.play(piece));
     let voice = Voice::new(Arc::clone(&bus), config.voice, tell, play);
-    let (shown, spoken) = (Arc::clone(&hub), Arc::clone(&voice));
-    let talk = Talk::new(&*bus, catalog, robots, puzzles, shown, Arc::clone(&drivers), journal, spoken)?;
+    let pages = Pages { hub: Arc::clone(&hub), drivers: Arc::clone(&drivers), voice: Arc::clone(&voice) };
+    let talk = Talk::new(&*bus, catalog, robots, puzzles, pages, journal)?;
     let ears = Ears::new(&*bus)?;
     talk.serve_at(place.clone());
     let Place { address, token } = place;

@@ -16,7 +16,7 @@ use cohabit_bus::{
     monotonic_nanos,
 };
 use cohabit_cdf::{BodyId, Catalog, ObjectId};
-use cohabit_language::SpokenForms;
+use cohabit_speech::Scene;
 use serde_json::Value;
 
 use crate::{
@@ -38,8 +38,6 @@ use crate::{
 
 /// What is said for whoever says stop aloud, in whatever words.
 const STOP: &str = "stop";
-/// What is said to who is called by name, for recognisers.
-const CALLED: [&str; 5] = ["stop", "come here", "go to the break room", "look around", "pick it up"];
 
 /// The conversations, with their ends on the bus and to the pages. One lock: who speaks first is heard first.
 pub struct Talk {
@@ -53,6 +51,16 @@ pub struct Talk {
     voice: Arc<Voice>,
     /// What robots were named.
     names: Vec<String>,
+}
+
+/// All by which a conversation has to do with pages.
+pub struct Pages {
+    /// What they share.
+    pub hub: Arc<Hub>,
+    /// Who drives.
+    pub drivers: Arc<Drivers>,
+    /// How they are heard, and hear.
+    pub voice: Arc<Voice>,
 }
 
 struct Inner {
@@ -78,17 +86,16 @@ enum Heard<'a> {
 }
 
 impl Talk {
-    /// A conversation on `bus`, shown to the pages of `hub`; it goes on where that of `journal` was.
+    /// A conversation on `bus`, shown to the pages; it goes on where that of `journal` was.
     pub fn new(
         bus: &dyn Transport,
         catalog: Arc<Catalog>,
         mut robots: Robots,
         interpreter: Option<Puzzles>,
-        hub: Arc<Hub>,
-        drivers: Arc<Drivers>,
+        pages: Pages,
         journal: Journal,
-        voice: Arc<Voice>,
     ) -> Result<Arc<Self>, DialogError> {
+        let Pages { hub, drivers, voice } = pages;
         let names = robots.are_several().then(|| robots.called_by().map(str::to_owned).collect()).unwrap_or_default();
         let past = journal.past();
         hub.restore(&past.lines);
@@ -481,22 +488,19 @@ impl Audience for Talk {
         robot.is_some_and(|robot| robot.conversation.is_whole(&text, &robot.knowledge))
     }
 
-    fn likely(&self, before: u64) -> Option<(u64, SpokenForms)> {
+    fn likely(&self, before: u64) -> Option<(u64, Scene)> {
         let inner = self.lock();
         let robot = inner.robots.iter().next()?;
         let number = robot.knowledge.number();
         if number == before {
             return None;
         }
-        let (language, known) = (robot.conversation.language().clone(), robot.knowledge.known()?);
+        let names = robot.conversation.language().spoken_names(robot.knowledge.world()?);
         drop(inner);
-        // That takes a while, in which others are heard.
-        let mut forms = language.spoken_forms(&known);
-        // Who is called by name is so at the beginning.
-        let names: Vec<String> = self.names.iter().map(|name| name.to_lowercase()).collect();
-        forms.words.extend(names.iter().flat_map(|name| name.split_whitespace().map(str::to_owned)));
-        forms.sentences.extend(names.iter().flat_map(|name| CALLED.map(|said| format!("{name} {said}"))));
-        Some((number, forms))
+        let [things, places, rooms] =
+            [names.things, names.places, names.rooms].map(|names| names.into_iter().collect());
+        let words = self.names.clone();
+        Some((number, Scene { things, places, rooms, words }))
     }
 
     fn stop(&self, visitor: u32, heard_nanos: u64) {

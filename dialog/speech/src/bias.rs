@@ -49,6 +49,8 @@ impl Bias {
             }
         }
         bias.words.extend(bias.sentences.iter().flat_map(|sentence| words(sentence)));
+        let plural = |name: &String| words(name).pop().map(|word| word + "s");
+        bias.words.extend(scene.things.iter().filter_map(plural));
         bias.words.extend(scene.words.iter().flat_map(|word| words(word)));
         bias
     }
@@ -100,7 +102,10 @@ fn fill(shape: &str, scene: &Scene, from: usize, into: &mut Vec<String>) {
     let is_first = from == 0;
     let count = if is_first { names.len() } else { PAIRS.min(names.len()) };
     for at in 0..count {
-        let filled = format!("{head}{}{tail}", names[(from * 7 + at) % names.len()]);
+        let name = names[(from * 7 + at) % names.len()];
+        let is_an = head.ends_with(" a ") && name.starts_with(['a', 'e', 'i', 'o']);
+        let filled =
+            format!("{}{}{name}{tail}", head.trim_end(), if is_an { "n " } else { &head[head.trim_end().len()..] });
         fill(&filled, scene, from + at + 1, into);
     }
 }
@@ -128,18 +133,20 @@ mod tests {
     fn shapes_are_filled_with_what_is_there() {
         let owned = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>();
         let scene = Scene {
-            things: owned(&["mug", "bowl"]),
+            things: owned(&["mug", "apple"]),
             places: owned(&["sink", "table", "fridge"]),
             rooms: owned(&["lab"]),
             words: owned(&["Rosie"]),
         };
-        let shapes = "# going\ngo to the {room}\nput the {thing} on the {place}\nfly {nowhere}\nstop\n= uh, please";
+        let shapes = "# going\ngo to the {room}\nput the {thing} on the {place}\nfly {nowhere}\nfind a {thing}\nstop\n= uh, please";
         let bias = Bias::shaped(shapes, &scene);
-        assert_eq!(bias.sentences.len(), 1 + 2 * PAIRS + 1, "{:?}", bias.sentences);
-        assert!(bias.sentences.contains(&"go to the lab".to_owned()));
-        let pairs = bias.sentences.iter().filter(|sentence| sentence.starts_with("put the bowl on the ")).count();
+        assert_eq!(bias.sentences.len(), 1 + 2 * PAIRS + 2 + 1, "{:?}", bias.sentences);
+        for sentence in ["go to the lab", "find a mug", "find an apple"] {
+            assert!(bias.sentences.contains(&sentence.to_owned()), "{sentence}");
+        }
+        let pairs = bias.sentences.iter().filter(|sentence| sentence.starts_with("put the apple on the ")).count();
         assert_eq!(pairs, PAIRS);
-        assert!(["uh", "please", "rosie", "stop"].into_iter().all(|word| bias.words.contains(word)));
+        assert!(["uh", "please", "rosie", "stop", "mugs"].into_iter().all(|word| bias.words.contains(word)));
         assert!(!bias.words.contains("nowhere"));
     }
 

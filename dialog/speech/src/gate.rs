@@ -1,48 +1,46 @@
 //! Whether what a language model makes of the sound may stand for what was heard without it.
 //!
-//! Without a gate, whatever is said becomes something likely ("play some jazz music please" → "place").
+//! Without a gate, whatever is said becomes something likely ("turn down the music" → "turn the computer"). What decides is
+//! how much less likely it is by the sound alone; over 411 commands and 39 other things said by three synthetic voices, that
+//! let more commands pass, and bent fewer other things, than counting words that differ.
 
-use crate::{bias, distance, ngram::NGram};
+use crate::bias;
 
-/// The most that the words may differ from those heard, as a share of these; from measurements on off-domain speech.
-const FARTHEST: f32 = 0.6;
-/// The shortest they may be, as a share of those heard.
+/// The most that it may be less likely by the sound: logarithm, for one word; for more it grows with the square root, as
+/// the sum of errors that have nothing to do with each other.
+const UNLIKELIER: f32 = 1.5;
+/// The shortest it may be, as a share of the words heard.
 const SHORTEST: f32 = 0.6;
 
-/// Whether `domain` may stand for `raw`: the model knows what it has of other words, it is near enough, and not much shorter.
-pub(crate) fn is_open(model: &NGram, domain: &str, raw: &str) -> bool {
-    let (domain, raw) = (bias::words(domain), bias::words(raw));
-    let (length, heard) = (domain.len() as f32, raw.len() as f32);
-    length > 0.0
-        && domain.iter().all(|word| model.knows(word) || raw.contains(word))
-        && length >= SHORTEST * heard
-        && distance::words(&domain, &raw) as f32 <= FARTHEST * heard
+/// A text, and the logarithm of how likely it is by the sound.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Heard<'a> {
+    pub(crate) text: &'a str,
+    pub(crate) by_sound: f32,
+}
+
+/// Whether `domain` may stand for `raw`.
+pub(crate) fn is_open(domain: Heard<'_>, raw: Heard<'_>) -> bool {
+    let [length, heard] = [domain, raw].map(|heard| bias::words(heard.text).len() as f32);
+    length > 0.0 && length >= SHORTEST * heard && raw.by_sound - domain.by_sound <= UNLIKELIER * heard.sqrt()
 }
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
-
     use super::*;
-    use crate::Bias;
 
     #[test]
-    fn only_what_is_near_passes() {
-        let bias =
-            Bias::of(["go to the break room and pick up the bowl", "place it on the table", "turn right", "stop"]);
-        let model = NGram::of(&bias).unwrap();
-        let check = |domain: &str, raw: &str, expected: bool| {
-            assert_eq!(is_open(&model, domain, raw), expected, "{domain} for {raw}");
+    fn only_what_is_near_in_sound_passes() {
+        let check = |domain: (&str, f32), raw: (&str, f32), expected: bool| {
+            let [domain, raw] = [domain, raw].map(|(text, by_sound)| Heard { text, by_sound });
+            assert_eq!(is_open(domain, raw), expected, "{domain:?} for {raw:?}");
         };
-        check("Go to the break room.", "Go to the brake room.", true);
-        check("Turn right.", "Turn light", true);
-        check("Place.", "Play some jazz music please.", false);
-        check("Pick up the bowl.", "Pick up the zebra and the bowl and the other one", false);
-        check("Go to the jazz room", "Go to the chess room", false);
-        check("Go to the jazz room and stop", "Go to the jazz room and top", true);
-        check("stop", "", false);
-        check("", "Stop", false);
-        check("stop", "stop", true);
-        check("stop", "top", false);
+        check(("Put the bowl on the shelf.", -4.0), ("But the bowl on the shelf.", -2.0), true);
+        check(("Put the bowl on the shelf.", -9.0), ("But the bowl on the shelf.", -2.0), false);
+        check(("Stop.", -2.0), ("Top.", -1.0), true);
+        check(("Stop.", -3.0), ("Top.", -1.0), false);
+        check(("Place.", -3.0), ("Play some jazz music please.", -2.0), false);
+        check(("", -1.0), ("", -1.0), false);
+        check(("Stop.", -1.0), ("", -1.0), true);
     }
 }

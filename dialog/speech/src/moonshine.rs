@@ -15,7 +15,7 @@ use crate::{
     audio::tame,
     bias,
     engines::file,
-    gate,
+    gate::{self, Heard},
     ngram::{NGram, Place},
     onnx,
     tokens::{BEGIN, END, Tokens},
@@ -36,10 +36,7 @@ const TOKENS_EACH_SECOND: f32 = 6.5;
 const BEAM: usize = 5;
 const BRANCHES: usize = 16;
 /// How much say the language model has.
-fn lambda() -> f32 {
-    static U: std::sync::OnceLock<f32> = std::sync::OnceLock::new();
-    *U.get_or_init(|| std::env::var("T_LAMBDA").ok().and_then(|x| x.parse().ok()).unwrap_or(0.25))
-}
+const LAMBDA: f32 = 0.35;
 
 /// An opened model.
 pub(crate) struct Moonshine {
@@ -128,16 +125,11 @@ impl Moonshine {
         if bias::words(&raw).is_empty() {
             return Recognition::default();
         }
-        if std::env::var_os("DEBUG_BEAM").is_some() {
-            print!("BEAM\t{:.2}\t{:.2}\t{raw}", spelt.greedy.by_sound, spelt.greedy.score);
-            for o in spelt.others.iter().take(5) {
-                print!("\t{:.2}\t{:.2}\t{}", o.by_sound, o.score, self.text(o));
-            }
-            println!();
-        }
-        let is_open = |text: &String| self.model.as_ref().is_some_and(|model| gate::is_open(model, text, &raw));
+        let heard = Heard { text: &raw, by_sound: spelt.greedy.by_sound };
+        let is_open =
+            |(text, other): &(String, &Spelling)| gate::is_open(Heard { text, by_sound: other.by_sound }, heard);
         let mut found: Vec<(String, &Spelling)> = Vec::new();
-        let others = spelt.others.iter().map(|other| (self.text(other), other)).filter(|(text, _)| is_open(text));
+        let others = spelt.others.iter().map(|other| (self.text(other), other)).filter(is_open);
         for (text, spelling) in others.chain([(raw.clone(), &spelt.greedy)]) {
             if !found.iter().any(|(known, _)| bias::words(known) == bias::words(&text)) {
                 found.push((text, spelling));
@@ -383,6 +375,11 @@ impl<'m> Steps<'m> {
         self.logits.chunks_exact(self.moonshine.tokens.len()).map(likeliest).collect()
     }
 
+    /// Whether a spelling of the beam may go on with a token.
+    fn may_follow(&self, token: i64) -> bool {
+        token == END || self.moonshine.tokens.get(token).is_some_and(|spelt| spelt.is_plain)
+    }
+
     /// What the language model has to say about the last token.
     fn judge(&self, model: &NGram, spelling: &mut Spelling) {
         let Some(token) = spelling.tokens.last() else { return };
@@ -393,7 +390,7 @@ impl<'m> Steps<'m> {
             model.spell(&mut spelling.place, spelt.begins_word, &spelt.letters, spelt.ends_word);
             model.so_far(&spelling.place)
         };
-        spelling.score = spelling.by_sound + lambda() * by_model;
+        spelling.score = spelling.by_sound + LAMBDA * by_model;
     }
 
     /// The best spellings that go on from those of the beam; what ends goes to those that are done.
@@ -402,6 +399,9 @@ impl<'m> Steps<'m> {
         let mut next: Vec<Spelling> = Vec::new();
         for spelling in beam {
             for (token, chance) in &rows[spelling.row] {
+                if !self.may_follow(*token) {
+                    continue;
+                }
                 let mut longer = spelling.clone();
                 longer.by_sound += chance;
                 longer.tokens.push(*token);

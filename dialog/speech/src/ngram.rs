@@ -15,11 +15,10 @@ type Word = u32;
 
 /// What stands before the first word, and after the last.
 const EDGE: Word = 0;
-/// Chance of a word that is not known.
-fn unknown() -> f32 {
-    static U: std::sync::OnceLock<f32> = std::sync::OnceLock::new();
-    *U.get_or_init(|| std::env::var("T_UNK").ok().and_then(|x| x.parse().ok()).unwrap_or(1e-6))
-}
+/// Chance of a word that is not known, at all.
+const UNKNOWN: f32 = 1e-3;
+/// And for each of its letters, so that nothing is gained by writing two words as one.
+const LETTER: f32 = 0.15;
 /// Of single words, so much of the chance goes to all that are known alike.
 const EVEN: f32 = 0.1;
 
@@ -90,11 +89,6 @@ impl NGram {
         self.words.binary_search_by(|known| known.as_str().cmp(word)).ok().map(|at| at as Word + 1)
     }
 
-    /// Whether a word is known.
-    pub(crate) fn knows(&self, word: &str) -> bool {
-        self.word(word).is_some()
-    }
-
     fn chance(&self, before: [Word; 2], word: Word) -> f32 {
         let even = 1.0 / (self.words.len() + 1) as f32;
         let single = EVEN * even + (1.0 - EVEN) * self.single.share(word, even);
@@ -115,7 +109,7 @@ impl NGram {
             return place.complete;
         }
         let words = self.beginning(&place.prefix).map(|at| self.chance(place.before, at as Word + 1));
-        place.complete + words.fold(unknown(), f32::max).ln()
+        words.reduce(f32::max).map_or_else(|| strange(&place.prefix), f32::ln) + place.complete
     }
 
     /// What is said goes on with letters.
@@ -140,7 +134,7 @@ impl NGram {
         }
         let prefix = std::mem::take(&mut place.prefix);
         let word = self.word(prefix.trim_matches('\''));
-        place.complete += word.map_or(unknown(), |word| self.chance(place.before, word)).ln();
+        place.complete += word.map_or_else(|| strange(&prefix), |word| self.chance(place.before, word).ln());
         // After a word that is not known, what comes is judged by itself.
         place.before = [place.before[1], word.unwrap_or(Word::MAX)];
     }
@@ -150,6 +144,11 @@ impl NGram {
         self.complete(place);
         place.complete + self.chance(place.before, EDGE).ln()
     }
+}
+
+/// Logarithm of the chance of a word that is not known.
+fn strange(word: &str) -> f32 {
+    UNKNOWN.ln() + word.chars().count() as f32 * LETTER.ln()
 }
 
 impl Follows {
@@ -218,12 +217,12 @@ mod tests {
         model.spell(&mut place, false, "owl", true);
         assert_eq!((model.so_far(&place), place.words()), (before, " pick up the bowl"));
         model.spell(&mut place, true, "xy", false);
-        assert!((model.so_far(&place) - before - unknown().ln()).abs() < 1e-3);
+        assert!((model.so_far(&place) - before - strange("xy")).abs() < 1e-3);
     }
 
     #[test]
     fn no_sentences_make_no_model() {
         assert!(NGram::of(&Bias::default()).is_none());
-        assert!(NGram::of(&Bias::of(["…"])).is_some_and(|model| !model.knows("the")));
+        assert!(NGram::of(&Bias::of(["…"])).is_some_and(|model| model.word("the").is_none()));
     }
 }

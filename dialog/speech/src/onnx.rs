@@ -98,3 +98,31 @@ fn whole_library(path: &Path) -> Result<(), SpeechError> {
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use std::fs;
+
+    use super::*;
+
+    #[test]
+    fn a_library_that_is_none_is_refused_before_it_is_loaded() {
+        let path = std::env::temp_dir().join(format!("cohabit-library-{}.so", std::process::id()));
+        let mut whole = vec![0; 4_096];
+        whole[..5].copy_from_slice(b"\x7fELF\x02");
+        whole[0x28..0x30].copy_from_slice(&2_048u64.to_le_bytes());
+        whole[0x3A..0x3E].copy_from_slice(&[64, 0, 32, 0]);
+        let check = |bytes: &[u8], expected: &str| {
+            fs::write(&path, bytes).unwrap();
+            let error = whole_library(&path).err().map(|error| error.to_string()).unwrap_or_default();
+            assert!(error.contains(expected) && (expected.is_empty() || error.contains("cohabit-library")), "{error}");
+        };
+        check(&whole, "");
+        check(&whole[..3_000], "it has 3000 bytes of 4096: it was cut off");
+        check(b"MZ", "cohabit voice install");
+        check(&[0; 100], "no library");
+        fs::remove_file(&path).unwrap();
+    }
+}

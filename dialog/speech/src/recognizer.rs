@@ -29,11 +29,12 @@ impl Recognition {
         self.hypotheses.first().map_or("", |hypothesis| &hypothesis.text)
     }
 
-    /// The likeliest reading that makes sense to who knows what can be meant; the likeliest of all where none does.
+    /// The reading that makes most sense to who knows what can be meant: of those with the highest rank, the likeliest.
     #[must_use]
-    pub fn sensible(&self, mut makes_sense: impl FnMut(&str) -> bool) -> &str {
-        let found = self.hypotheses.iter().find(|hypothesis| makes_sense(&hypothesis.text));
-        found.map_or(self.best(), |hypothesis| &hypothesis.text)
+    pub fn sensible(&self, mut sense: impl FnMut(&str) -> u8) -> &str {
+        let ranked = self.hypotheses.iter().map(|hypothesis| (sense(&hypothesis.text), &hypothesis.text));
+        let best = ranked.reduce(|best, other| if other.0 > best.0 { other } else { best });
+        best.map_or("", |(_, text)| text)
     }
 
     /// One reading, of which nothing else is known.
@@ -68,4 +69,19 @@ pub trait Recognizer: Send {
 
     /// What it is, for people.
     fn name(&self) -> &str;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_makes_sense_is_taken() {
+        let reading = |text: &str| Hypothesis { text: text.into(), score: 0.0 };
+        let hypotheses = vec![reading("turn light"), reading("turn right"), reading("turn on")];
+        let recognition = Recognition { hypotheses, ..Recognition::default() };
+        assert_eq!(recognition.sensible(|text| u8::from(text != "turn light")), "turn right");
+        assert_eq!(recognition.sensible(|_| 0), "turn light");
+        assert_eq!((Recognition::default().sensible(|_| 1), Recognition::sure("").best()), ("", ""));
+    }
 }

@@ -25,6 +25,8 @@ pub(crate) struct Spelt {
     pub(crate) letters: String,
     /// Whether a word ends within it, as with punctuation.
     pub(crate) ends_word: bool,
+    /// Whether it is part of what is spoken: no note of music, no dash, no byte of one.
+    pub(crate) is_plain: bool,
 }
 
 impl Tokens {
@@ -83,7 +85,8 @@ impl Spelt {
         let is_letter = |c: char| c.is_alphanumeric() || c == '\'';
         let letters: String = word.chars().take_while(|c| is_letter(*c)).collect();
         let ends_word = letters.len() < word.len();
-        Self { bytes: text.into_bytes(), begins_word, letters, ends_word }
+        let is_plain = text.chars().all(|c| c.is_alphanumeric() || " '’.,?!".contains(c));
+        Self { bytes: text.into_bytes(), begins_word, letters, ends_word, is_plain }
     }
 }
 

@@ -13,8 +13,8 @@ use cohabit_bus::{
     message::{AudioHeader, AudioView},
     monotonic_nanos,
 };
-use cohabit_language::{SpokenForms, says_stop};
-use cohabit_speech::{Bias, Ear, Heard, RATE, Recognition, Turns, Utterance, errors::Injector, from_pcm};
+use cohabit_language::says_stop;
+use cohabit_speech::{Bias, Ear, Heard, RATE, Recognition, Scene, Turns, Utterance, errors::Injector, from_pcm};
 use serde_json::{Value, json};
 use tokio::sync::mpsc::UnboundedSender;
 
@@ -68,8 +68,8 @@ pub trait Audience: Send + Sync {
     /// Whether what was said so far is a whole sentence.
     fn is_whole(&self, text: &str) -> bool;
 
-    /// What is likely to be said, if that is other than what had this number before; with its number.
-    fn likely(&self, before: u64) -> Option<(u64, SpokenForms)>;
+    /// What there is to speak of, if that is other than what had this number before; with its number.
+    fn likely(&self, before: u64) -> Option<(u64, Scene)>;
 
     /// Somebody at a page says stop.
     fn stop(&self, visitor: u32, heard_nanos: u64);
@@ -321,9 +321,9 @@ impl Listening<'_> {
 
     /// Has the recogniser know what is likely to be said, if that is news.
     fn expect(&mut self) {
-        let Some((likely, forms)) = self.at.talk.likely(self.likely) else { return };
+        let Some((likely, scene)) = self.at.talk.likely(self.likely) else { return };
         self.likely = likely;
-        self.ear.bias(&Bias { words: forms.words, sentences: forms.sentences });
+        self.ear.bias(&Bias::of_scene(&scene));
     }
 
     fn publish(&mut self, samples: &[i16]) {
@@ -374,7 +374,7 @@ mod tests {
             text.ends_with("office")
         }
 
-        fn likely(&self, _: u64) -> Option<(u64, SpokenForms)> {
+        fn likely(&self, _: u64) -> Option<(u64, Scene)> {
             None
         }
 
@@ -384,7 +384,7 @@ mod tests {
     }
 
     /// An ear at work, with what it tells, and its room.
-    struct Scene {
+    struct Hall {
         hearing: Hearing,
         told: UnboundedReceiver<FromEar>,
         room: Arc<Room>,
@@ -396,7 +396,7 @@ mod tests {
     const LONG: Duration = Duration::from_secs(30);
     const PIECE: usize = 8_000;
 
-    impl Scene {
+    impl Hall {
         fn new(reader: fake::Reader, config: impl FnOnce(&mut VoiceConfig)) -> Self {
             let mut settings = VoiceConfig::new(Ok(VoiceSettings::installed("nowhere")));
             config(&mut settings);
@@ -470,7 +470,7 @@ mod tests {
 
     #[test]
     fn what_is_said_is_told_with_its_times() {
-        let mut scene = Scene::new(fake::Reader::default(), |_| ());
+        let mut scene = Hall::new(fake::Reader::default(), |_| ());
         let speech = fake::hidden("go to the main office");
         let [begins, lasts] = [1.0, speech.len() as f64 / f64::from(RATE)];
         let start = scene.nanos;
@@ -487,7 +487,7 @@ mod tests {
 
     #[test]
     fn stop_is_done_while_it_is_said_and_not_said_again() {
-        let mut scene = Scene::new(fake::Reader::default(), |_| ());
+        let mut scene = Hall::new(fake::Reader::default(), |_| ());
         scene.speak(&[fake::hidden("stop right there you robot"), silence(1.5)].concat());
         scene.state("stopped");
         assert_eq!(scene.stops(), 1, "once, though it was heard in pieces and whole");
@@ -495,7 +495,7 @@ mod tests {
 
     #[test]
     fn errors_and_delays_are_made_on_purpose_but_never_for_stop() {
-        let mut scene = Scene::new(fake::Reader::default(), |config| {
+        let mut scene = Hall::new(fake::Reader::default(), |config| {
             (config.errors, config.delay, config.seed) = (1.0, Duration::from_millis(40), 3);
         });
         scene.speak(&[fake::hidden("turn right at the light"), silence(1.5)].concat());
@@ -509,7 +509,7 @@ mod tests {
 
     #[test]
     fn the_robots_own_voice_is_not_answered_but_stop_is_heard() {
-        let mut scene = Scene::new(fake::Reader::default(), |_| ());
+        let mut scene = Hall::new(fake::Reader::default(), |_| ());
         scene.voice.mouth.note_own_voice(Some("OK, going to the main office."), monotonic_nanos());
         scene.speak(&[fake::hidden("going to the main office"), silence(1.5)].concat());
         scene.state("nothing");
@@ -527,7 +527,7 @@ mod tests {
     #[test]
     fn ten_minutes_without_a_pause_are_cut_told_and_survived() {
         let by_length = vec![(3, "go to the main office".to_owned()), (200, "a long story".to_owned())];
-        let mut scene = Scene::new(fake::Reader { by_length, ..fake::Reader::default() }, |_| ());
+        let mut scene = Hall::new(fake::Reader { by_length, ..fake::Reader::default() }, |_| ());
         scene.speak(&loud(600.0));
         let text = scene.next(|told| match told {
             FromEar::Page(message) if message["type"] == "error" => Some(message["text"].to_string()),
@@ -542,7 +542,7 @@ mod tests {
 
     #[test]
     fn silence_is_nothing() {
-        let mut scene = Scene::new(fake::Reader::default(), |_| ());
+        let mut scene = Hall::new(fake::Reader::default(), |_| ());
         scene.speak(&silence(20.0));
         scene.speak(&[loud(0.5), silence(1.5)].concat());
         scene.state("nothing");
@@ -553,7 +553,7 @@ mod tests {
 
     #[test]
     fn what_is_no_sound_of_the_rate_is_refused() {
-        let mut scene = Scene::new(fake::Reader::default(), |_| ());
+        let mut scene = Hall::new(fake::Reader::default(), |_| ());
         let now = scene.nanos;
         assert!(scene.hearing.take(&[0; 7], now).unwrap_err().contains("7 bytes"));
         assert!(scene.hearing.take(&vec![0; LONGEST_PIECE + 2], now).is_err());

@@ -12,6 +12,7 @@
 
 #![allow(missing_docs, clippy::unwrap_used)]
 
+mod cases;
 #[path = "../../../language/tests/support/mod.rs"]
 mod office;
 mod score;
@@ -20,33 +21,20 @@ mod voices;
 
 use std::{path::Path, time::Instant};
 
-use cohabit_cdf::Property;
-use cohabit_language::Understanding;
-use cohabit_speech::{Bias, Ear, Engines, Heard, RATE, Recognition, Scene, Turns, VoiceSettings};
+use cases::{Command, commands, scene};
+use cohabit_language::{Clarification, Understanding};
+use cohabit_speech::{Bias, Ear, Engines, Heard, RATE, Recognition, Turns, VoiceSettings};
 use office::Talk;
 use score::{Score, machine};
 use sound::Noise;
 use voices::Voice;
 
-/// Commands that were written to be typed, or to test what is no speech, are left out.
-const UNSPOKEN: &[&str] =
-    &["typos", "hurried student", "dictation", "very short", "whole stories", "speech", "conversations"];
-/// Of the language's own utterances, every so many are spoken: they are many.
-const EVERY_OTHER: usize = 4;
-/// Longer ones are none that are spoken in one breath: words.
-const LONGEST: usize = 18;
 /// How much louder than the noise the speech is.
 const NOISY_DB: f32 = 10.0;
 /// Of nothing, noise and other talk, so much is listened to.
 const IDLE_S: usize = 600;
 /// What comes in at once: 20 ms.
 const PIECE: usize = RATE as usize / 50;
-
-/// A command, and the office that it is said in.
-struct Command {
-    marks: Vec<&'static str>,
-    text: &'static str,
-}
 
 /// What came of a sound.
 #[derive(Default)]
@@ -71,10 +59,7 @@ fn main() {
     let mut voices = voices::all(engines.synthesizer.take());
     let commands = commands();
     println!("{} commands, {} voices\n", commands.len(), voices.len());
-    println!(
-        "| voice | words wrong | exact command | same action | turns cut | end of speech → text, s p50/p95 | CPU s a second |"
-    );
-    println!("|---|---|---|---|---|---|---|");
+    println!("{}", Score::HEAD);
     let mut totals = [Score::default(), Score::default()];
     for voice in &mut voices {
         for (noisy, total) in totals.iter_mut().enumerate() {
@@ -111,9 +96,6 @@ fn spoken(ear: &mut Ear, voice: &mut Voice, commands: &[Command], mut noise: Opt
         let heard =
             found.recognitions.iter().map(|recognition| sensible(recognition, &talk)).collect::<Vec<_>>().join(" ");
         let raw = found.recognitions.iter().map(|recognition| recognition.raw.clone()).collect::<Vec<_>>().join(" ");
-        if std::env::var_os("DEBUG_BEAM").is_some() {
-            println!("SAID\t{}", command.text);
-        }
         let meant = talk.say(command.text);
         let understood = if heard.is_empty() { String::new() } else { Talk::new(&command.marks).say(&heard) };
         let is_same = meant == understood;
@@ -122,7 +104,8 @@ fn spoken(ear: &mut Ear, voice: &mut Voice, commands: &[Command], mut noise: Opt
             println!("    {confidence:.2} said   {}\n         heard  {heard}\n         raw    {raw}", command.text);
             println!("         meant  {meant}\n         found  {understood}");
         }
-        score.note(command.text, &heard, is_same, &found.delays_s, found.recognitions.len() > 1);
+        score.note(command.text, &heard, &found.delays_s, found.recognitions.len() > 1);
+        score.note_action(command.is_of_mission, is_same, is_act(&understood), confidence);
         score.note_cpu(cpu_s, sound.len() as f64 / f64::from(RATE));
     }
     score
@@ -130,11 +113,21 @@ fn spoken(ear: &mut Ear, voice: &mut Voice, commands: &[Command], mut noise: Opt
 
 /// The reading that is taken: the likeliest that the robot makes sense of.
 fn sensible(recognition: &Recognition, talk: &Talk) -> String {
-    recognition.sensible(|text| makes_sense(&understood(text, talk))).to_owned()
+    recognition.sensible(|text| sense(&understood(text, talk))).to_owned()
 }
 
-fn makes_sense(understanding: &Understanding) -> bool {
-    !matches!(understanding, Understanding::Refusal { is_lost: true, .. })
+/// Whether something is done: what is understood is no question, answer or refusal.
+fn is_act(understood: &str) -> bool {
+    !understood.is_empty() && !understood.starts_with(['?', '=', '!'])
+}
+
+/// What the robot does not understand makes no sense; what it wonders about may.
+fn sense(understanding: &Understanding) -> u8 {
+    match understanding {
+        Understanding::Refusal { is_lost: true, .. } => 0,
+        Understanding::Question { kind: Clarification::Appearance | Clarification::Request, .. } => 1,
+        _ => 2,
+    }
 }
 
 fn understood(text: &str, talk: &Talk) -> Understanding {
@@ -210,14 +203,11 @@ fn nothing(ear: &mut Ear, voices: &mut [Voice]) {
             acts
         };
         let acted: Vec<&Recognition> = found.recognitions.iter().filter(acts).collect();
-        let trusted = acted.iter().filter(|recognition| recognition.confidence >= TRUSTED).count();
+        let trusted = acted.iter().filter(|recognition| recognition.confidence >= score::TRUSTED).count();
         let minutes = sound.len() as f64 / f64::from(RATE) / 60.0;
         println!("| {name} | {minutes:.1} | {} | {} | {trusted} |", found.recognitions.len(), acted.len());
     }
 }
-
-/// What is trusted less is asked about before it is acted on.
-const TRUSTED: f32 = 0.6;
 
 fn recordings() -> Vec<(String, Vec<f32>)> {
     let Some(folder) = std::env::var_os("RECORDINGS") else { return Vec::new() };
@@ -226,54 +216,4 @@ fn recordings() -> Vec<(String, Vec<f32>)> {
     sounds
         .filter_map(|path| Some((path.file_stem()?.to_string_lossy().into_owned(), sound::read_wav(&path)?)))
         .collect()
-}
-
-/// All that can be spoken of in an office, as people call it.
-fn scene(talk: &Talk) -> Scene {
-    let catalog = talk.language.catalog();
-    let mut scene = Scene::default();
-    for object in &talk.scene.objects {
-        let class = catalog.class(object.class);
-        let names = [class.name.clone()].into_iter().chain(class.words.iter().cloned()).map(|name| name.to_lowercase());
-        let into = if class.properties.contains(&Property::Pickupable) { &mut scene.things } else { &mut scene.places };
-        into.extend(names);
-    }
-    scene.rooms = cohabit_cdf::RoomId::ALL.iter().map(|room| room.name().to_lowercase()).collect();
-    for names in [&mut scene.things, &mut scene.places] {
-        names.sort_unstable();
-        names.dedup();
-    }
-    scene
-}
-
-/// Those of the missions, and some of the language's own.
-fn commands() -> Vec<Command> {
-    let own = cases(include_str!("commands.txt"));
-    let others = [
-        include_str!("../../../language/tests/utterances/seen.txt"),
-        include_str!("../../../language/tests/utterances/voices.txt"),
-    ];
-    let others = others.into_iter().flat_map(cases).step_by(EVERY_OTHER);
-    let every = std::env::var("EVERY").ok().and_then(|every| every.parse().ok()).unwrap_or(1);
-    own.into_iter().chain(others).step_by(every).collect()
-}
-
-fn cases(set: &'static str) -> Vec<Command> {
-    let (mut kind, mut marks, mut commands) = ("", Vec::new(), Vec::new());
-    for line in set.lines().map(str::trim).filter(|line| !line.is_empty()) {
-        let said = line.split_once(" -> ").map_or(line, |(said, _)| said);
-        if let Some(named) = line.strip_prefix("# kind:") {
-            kind = named.trim();
-        } else if let Some(list) = line.strip_prefix('[').and_then(|rest| rest.strip_suffix(']')) {
-            let list = list.strip_prefix("marks:").unwrap_or(list);
-            marks = list.split(';').map(str::trim).filter(|mark| !mark.is_empty()).collect();
-        } else if !line.starts_with('#') && !said.contains(" / ") && is_spoken(kind, said) {
-            commands.push(Command { marks: marks.clone(), text: said });
-        }
-    }
-    commands
-}
-
-fn is_spoken(kind: &str, said: &str) -> bool {
-    !UNSPOKEN.contains(&kind) && said.split(' ').count() <= LONGEST
 }

@@ -9,24 +9,40 @@ pub struct Score {
     words: usize,
     wrong: usize,
     exact: usize,
-    same: usize,
+    /// The same action as typed, and all: of commands about the missions, and others.
+    same: [[usize; 2]; 2],
+    /// Another action than what was typed, and how many of them were trusted.
+    other_acts: [usize; 2],
     cut: usize,
     delays_s: Vec<f64>,
     cpu_s: f64,
     sound_s: f64,
 }
 
+/// What is trusted less is asked about before it is acted on.
+pub const TRUSTED: f32 = 0.6;
+
 impl Score {
-    pub fn note(&mut self, said: &str, heard: &str, is_same: bool, delays_s: &[f64], is_cut: bool) {
+    pub const HEAD: &str = "| voice | words wrong | exact command | same action | of missions | other action | trusted | turns cut | end of speech → text, s p50 / p95 | CPU s a second |\n|---|---|---|---|---|---|---|---|---|---|";
+
+    pub fn note(&mut self, said: &str, heard: &str, delays_s: &[f64], is_cut: bool) {
         let (said, heard) = (words(said), words(heard));
         let wrong = distance(&said, &heard);
         self.commands += 1;
         self.words += said.len();
         self.wrong += wrong;
         self.exact += usize::from(wrong == 0);
-        self.same += usize::from(is_same);
         self.cut += usize::from(is_cut);
         self.delays_s.extend(delays_s.last());
+    }
+
+    pub fn note_action(&mut self, is_of_mission: bool, is_same: bool, is_act: bool, confidence: f32) {
+        let [same, all] = &mut self.same[usize::from(!is_of_mission)];
+        *same += usize::from(is_same);
+        *all += 1;
+        let is_other = is_act && !is_same;
+        self.other_acts[0] += usize::from(is_other);
+        self.other_acts[1] += usize::from(is_other && confidence >= TRUSTED);
     }
 
     pub fn note_cpu(&mut self, cpu_s: f64, sound_s: f64) {
@@ -39,7 +55,10 @@ impl Score {
         self.words += other.words;
         self.wrong += other.wrong;
         self.exact += other.exact;
-        self.same += other.same;
+        let add =
+            |into: &mut [usize; 2], more: &[usize; 2]| into.iter_mut().zip(more).for_each(|(into, more)| *into += more);
+        self.same.iter_mut().zip(&other.same).for_each(|(into, more)| add(into, more));
+        add(&mut self.other_acts, &other.other_acts);
         self.cut += other.cut;
         self.delays_s.extend(&other.delays_s);
         self.note_cpu(other.cpu_s, other.sound_s);
@@ -55,10 +74,13 @@ impl fmt::Display for Score {
             |share: f64| delays_s.get(((delays_s.len() as f64 - 1.0) * share) as usize).copied().unwrap_or(0.0);
         write!(
             f,
-            "{:.1} % | {:.0} % | {:.1} % | {} | {:.2} / {:.2} | {:.2}",
+            "{:.1} % | {:.0} % | {:.1} % | {:.1} % | {} | {} | {} | {:.2} / {:.2} | {:.2}",
             share(self.wrong, self.words),
             share(self.exact, self.commands),
-            share(self.same, self.commands),
+            share(self.same[0][0] + self.same[1][0], self.commands),
+            share(self.same[0][0], self.same[0][1]),
+            self.other_acts[0],
+            self.other_acts[1],
             self.cut,
             delay_s(0.5),
             delay_s(0.95),

@@ -1,0 +1,215 @@
+//! The real engines, where they are installed (`cohabit voice install`); where they are not, each test says that it is skipped.
+
+#![allow(clippy::unwrap_used)]
+
+use std::{
+    fs,
+    ops::ControlFlow,
+    path::{Path, PathBuf},
+};
+
+use cohabit_speech::{
+    Bias, Ear, Engines, Heard, Part, RATE, Scene, Source, SpeechError, Turns, VoiceSettings, WINDOW, from_pcm, resample,
+};
+
+/// The user's data folder, if all is in it.
+fn installed() -> Option<VoiceSettings> {
+    let settings = VoiceSettings::from_env().unwrap();
+    let lacks = Engines::open(&settings).lacks;
+    lacks.iter().for_each(|lack| println!("skipped: {lack}"));
+    lacks.is_empty().then_some(settings)
+}
+
+/// A text, spoken by the engines' own voice, between silences.
+fn spoken(engines: &mut Engines, text: &str) -> Vec<f32> {
+    let synthesizer = engines.synthesizer.as_mut().unwrap();
+    let (rate, mut samples) = (synthesizer.rate(), Vec::new());
+    let take = &mut |chunk: &[i16]| {
+        samples.extend(from_pcm(chunk));
+        ControlFlow::Continue(())
+    };
+    synthesizer.speak(text, take).unwrap();
+    let silence = vec![0.0; RATE as usize];
+    [silence.clone(), resample(&samples, rate, RATE).unwrap(), silence].concat()
+}
+
+fn office() -> Bias {
+    let names = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect();
+    Bias::of_scene(&Scene {
+        things: names(&["bowl", "mug", "milk", "cereal box"]),
+        places: names(&["table", "fridge", "microwave", "sink"]),
+        rooms: names(&["break room", "main office", "quantum lab"]),
+        words: Vec::new(),
+    })
+}
+
+fn words(text: &str) -> String {
+    let kept: String = text.to_lowercase().chars().filter(|c| c.is_alphanumeric() || *c == ' ').collect();
+    kept.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+#[test]
+fn what_is_spoken_is_heard() {
+    let Some(settings) = installed() else { return };
+    let mut engines = Engines::open(&settings);
+    let sound = spoken(&mut engines, "Go to the break room and pick up the bowl.");
+    let mut ear = Ear::new(engines.vad, engines.recognizer.unwrap(), Turns::default());
+    ear.bias(&office());
+    let mut heard = Vec::new();
+    for piece in sound.chunks(320) {
+        heard.extend(ear.push(piece, &mut |text| words(text).ends_with("bowl")).unwrap());
+    }
+    assert!(matches!(heard[0], Heard::Began { began } if began > RATE as u64 / 2));
+    assert!(heard.iter().any(|heard| matches!(heard, Heard::Partial { text } if words(text).starts_with("go to"))));
+    let Some(Heard::Said(said)) = heard.last() else { panic!("{heard:?}") };
+    assert_eq!(words(said.recognition.best()), "go to the break room and pick up the bowl");
+    assert!(said.recognition.confidence > 0.5, "{}", said.recognition.confidence);
+    assert!(said.ended < said.told && said.began < said.ended);
+}
+
+#[test]
+fn speech_is_told_from_silence_and_noise() {
+    let Some(settings) = installed() else { return };
+    let nowhere = VoiceSettings { synthesizer: Source::Installed, ..VoiceSettings::installed("/nowhere") };
+    let mut engines = Engines::open(&settings);
+    let speech = spoken(&mut engines, "Please open the fridge and take the milk.");
+    // The same for what stands in where nothing is installed.
+    for mut vad in [engines.vad, Engines::open(&nowhere).vad] {
+        let mut share = |sound: &[f32]| {
+            vad.reset();
+            let windows = sound.chunks_exact(WINDOW).map(|window| window.try_into().unwrap());
+            let likely = windows.filter(|window| vad.speech(window).unwrap() > 0.5).count();
+            likely as f32 / (sound.len() / WINDOW) as f32
+        };
+        let hum: Vec<f32> = (0..RATE * 3).map(|at| 0.1 * (at as f32 * 0.0196).sin()).collect();
+        assert!(share(&speech) > 0.3);
+        assert!(share(&vec![0.0; RATE as usize * 3]) < 0.02);
+        assert!(share(&hum) < 0.1);
+    }
+}
+
+#[test]
+fn what_is_no_speech_fails_nothing() {
+    let Some(settings) = installed() else { return };
+    let mut recognizer = Engines::open(&settings).recognizer.unwrap();
+    recognizer.bias(&office());
+    assert!(recognizer.recognize(&[]).unwrap().hypotheses.is_empty());
+    for odd in [f32::NAN, f32::INFINITY, f32::MIN, 0.0, 1e-40] {
+        recognizer.recognize(&[odd; 2_000]).unwrap();
+    }
+    recognizer.partial(&[f32::NAN]).unwrap();
+    // More than the model takes at once is heard in parts.
+    let long: Vec<f32> = (0..RATE * 70).map(|at| 0.3 * ((at as f32) * 0.05 + ((at / 900) as f32)).sin()).collect();
+    recognizer.recognize(&long).unwrap();
+}
+
+#[test]
+fn a_bias_may_change_and_go() {
+    let Some(settings) = installed() else { return };
+    let mut engines = Engines::open(&settings);
+    let sound = spoken(&mut engines, "Pick up the bowl.");
+    let mut recognizer = engines.recognizer.unwrap();
+    let plain = recognizer.recognize(&sound).unwrap();
+    assert_eq!(plain.best(), plain.raw);
+    recognizer.bias(&office());
+    let biased = recognizer.recognize(&sound).unwrap();
+    assert_eq!(biased.raw, plain.raw);
+    assert_eq!(words(biased.best()), "pick up the bowl");
+    recognizer.bias(&Bias::default());
+    assert_eq!(recognizer.recognize(&sound).unwrap(), plain);
+}
+
+#[test]
+fn speaking_can_be_stopped() {
+    let Some(settings) = installed() else { return };
+    let mut synthesizer = Engines::open(&settings).synthesizer.unwrap();
+    let mut chunks = Vec::new();
+    let mut stop = |chunk: &[i16]| {
+        chunks.push(chunk.len());
+        if chunks.len() == 2 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    };
+    synthesizer.speak("This is a sentence. This is another one. And a third.", &mut stop).unwrap();
+    assert_eq!(chunks.len(), 2);
+    assert!(chunks.iter().all(|length| *length <= synthesizer.rate() as usize / 10));
+    synthesizer.speak("", &mut |_| panic!("nothing to speak")).unwrap();
+    synthesizer.speak("… ♪ 🙂", &mut |_| ControlFlow::Continue(())).unwrap();
+}
+
+/// A copy of what is installed, one file of which is changed.
+struct Copy(PathBuf);
+
+impl Copy {
+    fn of(settings: &VoiceSettings, name: &str, changed: &str, change: impl Fn(&mut Vec<u8>)) -> Self {
+        let folder = std::env::temp_dir().join(format!("cohabit-engines-{name}-{}", std::process::id()));
+        let _ = fs::remove_dir_all(&folder);
+        for part in ["runtime", "moonshine", "silero", "piper"] {
+            fs::create_dir_all(folder.join(part)).unwrap();
+            for file in fs::read_dir(settings.folder.join(part)).unwrap().flatten() {
+                let to = folder.join(part).join(file.file_name());
+                if to == folder.join(changed) {
+                    let mut bytes = fs::read(file.path()).unwrap();
+                    change(&mut bytes);
+                    fs::write(to, bytes).unwrap();
+                } else {
+                    std::os::unix::fs::symlink(file.path(), to).unwrap();
+                }
+            }
+        }
+        Self(folder)
+    }
+}
+
+impl Drop for Copy {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+#[test]
+fn a_broken_model_is_named_and_costs_its_part_alone() {
+    let Some(settings) = installed() else { return };
+    let check = |file: &str, part: Part, change: &dyn Fn(&mut Vec<u8>)| {
+        let copy = Copy::of(&settings, "broken", file, change);
+        let engines = Engines::open(&VoiceSettings::installed(&copy.0));
+        let [lack] = &engines.lacks[..] else { panic!("{file}: {:?}", engines.lacks) };
+        assert!(lack.part == part && lack.why.contains(file) && lack.why.contains("cohabit voice install"), "{lack}");
+        assert_eq!(engines.recognizer.is_some(), part != Part::Recognition);
+    };
+    let cut: &dyn Fn(&mut Vec<u8>) = &|bytes| bytes.truncate(bytes.len() / 2);
+    let nothing: &dyn Fn(&mut Vec<u8>) = &|bytes| bytes.clear();
+    let other: &dyn Fn(&mut Vec<u8>) = &|bytes| *bytes = b"this is no model".repeat(99);
+    let damaged: &dyn Fn(&mut Vec<u8>) = &|bytes| {
+        let length = bytes.len();
+        (0..64).for_each(|at| bytes[at * (length / 64)] ^= 0x55);
+    };
+    for change in [cut, nothing, other, damaged] {
+        check("moonshine/encoder_model.ort", Part::Recognition, change);
+        check("moonshine/decoder_model_merged.ort", Part::Recognition, change);
+        check("moonshine/tokenizer.bin", Part::Recognition, change);
+        check("silero/silero_vad.onnx", Part::VoiceActivity, change);
+        check("piper/voice.onnx", Part::Synthesis, change);
+        check("piper/voice.onnx.json", Part::Synthesis, change);
+    }
+}
+
+#[test]
+fn where_nothing_is_installed_that_is_said_and_how_to_mend_it() {
+    let engines = Engines::open(&VoiceSettings::installed("/nowhere"));
+    assert!(engines.recognizer.is_none());
+    for part in [Part::VoiceActivity, Part::Recognition, Part::Synthesis] {
+        let lack = engines.lacks.iter().find(|lack| lack.part == part).unwrap().to_string();
+        assert!(
+            lack.contains("/nowhere") && lack.contains("cohabit voice install") && lack.contains("Instead"),
+            "{lack}"
+        );
+    }
+    let off =
+        VoiceSettings { recognizer: Source::Off, synthesizer: Source::Off, ..VoiceSettings::installed("/nowhere") };
+    let engines = Engines::open(&off);
+    assert!(engines.recognizer.is_none() && engines.synthesizer.is_none() && engines.lacks.len() == 1);
+    let folder = Source::Folder(Path::new("/nowhere/model").into());
+    let other = VoiceSettings { recognizer: folder, ..VoiceSettings::installed("/nowhere") };
+    assert!(Engines::open(&other).lacks.iter().any(|lack| lack.why.contains("/nowhere/model/encoder_model")));
+    let error = SpeechError::Sound("none".into()).to_string();
+    assert_eq!(error, "read the sound: none");
+}
