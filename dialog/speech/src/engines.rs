@@ -9,6 +9,7 @@ use crate::{
     Recognizer, SpeechError, Synthesizer, Vad,
     earshot::Earshot,
     espeak::Espeak,
+    install,
     moonshine::{self, Moonshine},
     onnx,
     piper::{self, Piper},
@@ -163,8 +164,21 @@ impl Engines {
     }
 }
 
+/// That what is installed of a part is what was installed; of the runtime too, before it is loaded.
+fn whole(folder: &Path, part: &str) -> Result<(), SpeechError> {
+    let runtime = if onnx::is_loaded() { None } else { install::damaged(folder, "runtime/") };
+    match runtime.or_else(|| install::damaged(folder, part)) {
+        Some(path) => Err(SpeechError::Broken {
+            why: "it is damaged, or another file than was installed".into(),
+            remedy: onnx::remedy(&path),
+            path,
+        }),
+        None => Ok(()),
+    }
+}
+
 fn vad(settings: &VoiceSettings, lacks: &mut Vec<Lack>) -> Box<dyn Vad> {
-    match Silero::open(&settings.folder) {
+    match whole(&settings.folder, "silero/").and_then(|()| Silero::open(&settings.folder)) {
         Ok(silero) => Box::new(silero),
         Err(error) => {
             let instead = "a simpler detector, which takes more noise for speech".into();
@@ -179,21 +193,28 @@ fn recognizer(settings: &VoiceSettings) -> Result<Option<Box<dyn Recognizer>>, S
     match &settings.recognizer {
         Source::Installed => {
             let folder = settings.folder.join(moonshine::FOLDER);
+            whole(&settings.folder, "moonshine/")?;
             Ok(Some(Box::new(Moonshine::open(&folder, &library, THREADS)?)))
         }
-        Source::Folder(folder) => Ok(Some(Box::new(Moonshine::open(folder, &library, THREADS)?))),
+        Source::Folder(folder) => {
+            whole(&settings.folder, "runtime/")?;
+            Ok(Some(Box::new(Moonshine::open(folder, &library, THREADS)?)))
+        }
         Source::Wyoming(address) => Ok(Some(Box::new(Wyoming::open(address)?))),
         Source::Off => Ok(None),
     }
 }
 
 fn synthesizer(settings: &VoiceSettings, lacks: &mut Vec<Lack>) -> Option<Box<dyn Synthesizer>> {
-    let piper = |folder: &Path| Piper::open(folder, &settings.folder.join(onnx::LIBRARY), THREADS);
+    let piper = |folder: &Path, part: &str| {
+        whole(&settings.folder, part)?;
+        Piper::open(folder, &settings.folder.join(onnx::LIBRARY), THREADS)
+    };
     let opened: Result<Box<dyn Synthesizer>, SpeechError> = match &settings.synthesizer {
         Source::Off => return None,
         Source::Wyoming(address) => Wyoming::open(address).map(|server| Box::new(server) as _),
-        Source::Installed => piper(&settings.folder.join(piper::FOLDER)).map(|piper| Box::new(piper) as _),
-        Source::Folder(folder) => piper(folder).map(|piper| Box::new(piper) as _),
+        Source::Installed => piper(&settings.folder.join(piper::FOLDER), "piper/").map(|piper| Box::new(piper) as _),
+        Source::Folder(folder) => piper(folder, "runtime/").map(|piper| Box::new(piper) as _),
     };
     let error = match opened {
         Ok(synthesizer) => return Some(synthesizer),

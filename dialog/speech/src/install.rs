@@ -179,6 +179,17 @@ pub fn packages() -> Result<Vec<Package>, InstallError> {
     }
 }
 
+/// The first installed file below a part of the data folder that is not what was installed, to the last bit: a model that is
+/// damaged fails in ways of its own, or ends the process.
+pub(crate) fn damaged(folder: &Path, part: &str) -> Option<PathBuf> {
+    let packages = packages().unwrap_or_default();
+    let files = packages.iter().flat_map(|package| &package.files).filter(|file| file.to.starts_with(part));
+    files
+        .map(|file| (folder.join(&file.to), &file.sha256))
+        .find(|(path, sha256)| digest(path).is_ok_and(|found| found != **sha256))
+        .map(|(path, _)| path)
+}
+
 impl Package {
     /// Whether all of it is in the data folder, as long as it should be.
     #[must_use]

@@ -41,6 +41,11 @@ pub(crate) fn load(library: &Path) -> Result<(), SpeechError> {
     Ok(())
 }
 
+/// Whether a runtime is loaded.
+pub(crate) fn is_loaded() -> bool {
+    RUNTIME.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).is_some()
+}
+
 /// A model, on so many threads.
 ///
 /// # Errors
