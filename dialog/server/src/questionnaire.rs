@@ -260,7 +260,7 @@ impl Questionnaire {
     ///
     /// # Errors
     /// [`NotAnswered`], when one is missing or is none.
-    pub fn answered(&self, person: u32, given: &[Option<Given>]) -> Result<Vec<AnswerMessage>, NotAnswered> {
+    pub(crate) fn answered(&self, person: u32, given: &[Option<Given>]) -> Result<Vec<AnswerMessage>, NotAnswered> {
         if given.len() != self.items.len() {
             return Err(NotAnswered(format!("{} answers to {} questions.", given.len(), self.items.len())));
         }

@@ -96,7 +96,7 @@ impl Talk {
         journal: Journal,
     ) -> Result<Arc<Self>, DialogError> {
         let Pages { hub, drivers, voice } = pages;
-        let names = robots.are_several().then(|| robots.called_by().map(str::to_owned).collect()).unwrap_or_default();
+        let names = if robots.are_several() { robots.called_by().map(str::to_owned).collect() } else { Vec::new() };
         let past = journal.past();
         hub.restore(&past.lines);
         robots.restore(&past.conversations, &past.lessons);

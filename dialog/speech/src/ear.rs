@@ -162,11 +162,11 @@ mod tests {
     }
 
     fn said(heard: &[Heard]) -> Vec<&str> {
-        let text = |heard| match heard {
-            &Heard::Said(ref utterance) => Some(utterance.recognition.best()),
+        let said = heard.iter().filter_map(|heard| match heard {
+            Heard::Said(utterance) => Some(utterance.recognition.best()),
             _ => None,
-        };
-        heard.iter().filter_map(text).collect()
+        });
+        said.collect()
     }
 
     #[test]

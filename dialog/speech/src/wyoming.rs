@@ -219,8 +219,11 @@ mod tests {
     use super::*;
     use crate::fake;
 
+    /// What a server answers to an event, and to sound.
+    type Answer = fn(&Event, &[u8]) -> Vec<(&'static str, Value, Vec<u8>)>;
+
     /// A server that answers each connection by `answer` of the first event that is no description, and of all samples.
-    fn serve(answer: fn(&Event, &[u8]) -> Vec<(&'static str, Value, Vec<u8>)>) -> String {
+    fn serve(answer: Answer) -> String {
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();
         let address = listener.local_addr().unwrap().to_string();
         thread::spawn(move || {
@@ -232,12 +235,11 @@ mod tests {
                     continue;
                 }
                 let mut sound = Vec::new();
-                while asked.kind == "transcribe" {
+                let mut goes_on = asked.kind == "transcribe";
+                while goes_on {
                     let Ok(event) = connection.next() else { break };
                     sound.extend(&event.payload);
-                    if event.kind == "audio-stop" {
-                        break;
-                    }
+                    goes_on = event.kind != "audio-stop";
                 }
                 for (kind, data, payload) in answer(&asked, &sound) {
                     if connection.send(kind, &data, &payload).is_err() {
@@ -294,7 +296,7 @@ mod tests {
     fn what_is_wrong_with_a_server_is_said() {
         let closed = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().to_string();
         assert!(Wyoming::open(&closed).err().unwrap().to_string().contains(&closed));
-        let check = |answer: fn(&Event, &[u8]) -> Vec<(&'static str, Value, Vec<u8>)>, expected: &str| {
+        let check = |answer: Answer, expected: &str| {
             let mut server = Wyoming::open(&serve(answer)).unwrap();
             let error = server.recognize(&[0.1; 100]).unwrap_err().to_string();
             assert!(error.contains(expected), "{error}");

@@ -298,7 +298,7 @@ impl Listening<'_> {
         let own = mouth.is_echo(recognition.best(), began_nanos) || mouth.is_echo(&recognition.raw, began_nanos);
         let heard = recognition.hypotheses.iter().map(|one| one.text.as_str()).chain([recognition.raw.as_str()]);
         // Its own words stop it where they say stop, lest somebody's are taken for them.
-        let stops = heard.map(|text| self.stop_if_said(text)).fold(false, |any, one| any || one);
+        let stops = heard.filter(|text| self.stop_if_said(text)).count() > 0;
         if stops || own || recognition.best().is_empty() {
             self.at.tell(state(if stops { "stopped" } else { "nothing" }, ""));
             return;
