@@ -323,10 +323,9 @@ fn a_spoken_stop_stops_it() {
     tab.wait_until("document.querySelector('#chat').innerText.includes('I stop')").unwrap();
     tab.wait_until("!window.cohabit.state.robot.busy").unwrap();
     // It was still on its way, however late a slow machine heard that.
-    assert_eq!(
-        tab.evaluate("document.querySelector('#chat').innerText.includes('I am in the main office')").unwrap(),
-        false
-    );
+    let arrived =
+        tab.evaluate("document.querySelector('#chat').innerText.includes('I am in the main office')").unwrap();
+    assert_eq!(arrived, json!(false));
     drop((tab, browser));
     play.end().unwrap();
     let _ = fs::remove_file(sound);

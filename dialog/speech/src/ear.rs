@@ -178,7 +178,8 @@ mod tests {
         assert_eq!(said(&heard), ["go to the lab"]);
         let Some(Heard::Said(utterance)) = heard.last() else { panic!("{heard:?}") };
         let pause_s = (utterance.told - utterance.ended) as f32 / RATE as f32;
-        assert!((0.2..0.25).contains(&pause_s), "{pause_s}");
+        let expected_s = Turns::default().complete_after_s;
+        assert!((expected_s..expected_s + 0.05).contains(&pause_s), "{pause_s}");
         assert!(matches!(heard[0], Heard::Began { began } if began < 8_000));
     }
 
@@ -189,7 +190,7 @@ mod tests {
         let heard: Vec<Heard> = sound.chunks(320).flat_map(|piece| ear.push(piece, &mut |_| false).unwrap()).collect();
         let Some(Heard::Said(utterance)) = heard.last() else { panic!("{heard:?}") };
         assert_eq!(utterance.recognition.best(), "put the mug");
-        assert!((utterance.told - utterance.ended) as f32 / RATE as f32 >= 0.8);
+        assert!((utterance.told - utterance.ended) as f32 / RATE as f32 >= Turns::default().incomplete_after_s);
     }
 
     #[test]

@@ -333,7 +333,8 @@ mod tests {
         let [(began, ended, false)] = ends(&turns)[..] else { panic!("{turns:?}") };
         assert!((began - 0.7).abs() < 0.04 && (ended - 2.0).abs() < 0.04, "{began} {ended}");
         let Some(Turn::Ended { samples: said, .. }) = turns.last() else { panic!() };
-        assert!((said.len() as f32 / RATE as f32 - 2.1).abs() < 0.1, "{}", said.len());
+        let expected_s = 0.3 + 1.0 + Turns::default().incomplete_after_s;
+        assert!((said.len() as f32 / RATE as f32 - expected_s).abs() < 0.1, "{}", said.len());
     }
 
     #[test]

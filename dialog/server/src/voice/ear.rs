@@ -232,6 +232,10 @@ impl Listening<'_> {
             }
             ToEar::Finish => self.ear.finish().map(|heard| heard.into_iter().collect()),
         };
+        // Of a piece in which somebody begins, what was heard is theirs already.
+        if heard.iter().flatten().any(|heard| matches!(heard, Heard::Began { .. })) {
+            self.has_stopped = false;
+        }
         self.stop_if_said(&so_far);
         match heard {
             Ok(heard) => heard.into_iter().for_each(|heard| self.hear(heard)),
@@ -249,7 +253,6 @@ impl Listening<'_> {
         match heard {
             Heard::Began { began } => {
                 self.began_nanos = self.nanos_of(began);
-                self.has_stopped = false;
                 self.sayings += 1;
                 self.at.tell(state("began", ""));
                 self.expect();
