@@ -10,8 +10,8 @@ use std::{
 use cohabit_bus::{
     Envelope, Heart, Inbox, Listener, Publisher, Sample, Topic, Transport, Wake,
     message::{
-        self, BodyRecord, DialogHeader, DialogKind, DialogMessage, DialogView, EventKind, EventMessage, StateView,
-        Thing,
+        self, BodyRecord, DialogHeader, DialogKind, DialogMessage, DialogView, EventKind, EventMessage, ObjectRecord,
+        StateView, Thing,
     },
     monotonic_nanos,
 };
@@ -334,7 +334,9 @@ impl Talk {
             Some(EventKind::MissionComplete) => game(LineKind::Ending, page::COMPLETE),
             Some(EventKind::MissionFailed) => game(LineKind::Ending, &page::failed(text)),
             Some(EventKind::Highlighted) if is_new => self.show_highlight(&mut inner, event.object)?,
-            Some(EventKind::Sound) if is_new => self.sound(&mut inner, event.object, text)?,
+            Some(EventKind::Sound) if is_new => {
+                self.tell_of(&mut inner, event.object, |_, record| page::sound(record, text, &self.catalog))?;
+            }
             _ => {}
         }
         Ok(())
@@ -355,23 +357,24 @@ impl Talk {
     }
 
     fn show_highlight(&self, inner: &mut Inner, object: u32) -> Result<(), DialogError> {
-        inner.refresh()?;
-        let Some(sample) = &inner.newest else { return Ok(()) };
-        let state = StateView::new(sample.payload())?;
-        if let Some(record) = state.objects.iter().find(|record| record.object == object) {
+        self.tell_of(inner, object, |inner, record| {
             let at = inner.numbered().and_then(|asked| asked.candidates.iter().position(|one| one.0 == object));
-            self.hub.tell(&page::highlight(record, at.map(|at| at + 1), &self.catalog));
-        }
-        Ok(())
+            page::highlight(record, at.map(|at| at + 1), &self.catalog)
+        })
     }
 
-    /// Has the pages play what can be heard of an object.
-    fn sound(&self, inner: &mut Inner, object: u32, kind: &str) -> Result<(), DialogError> {
+    /// Tells the pages something of an object, if it is there.
+    fn tell_of(
+        &self,
+        inner: &mut Inner,
+        object: u32,
+        message: impl FnOnce(&Inner, &ObjectRecord) -> Value,
+    ) -> Result<(), DialogError> {
         inner.refresh()?;
         let Some(sample) = &inner.newest else { return Ok(()) };
         let state = StateView::new(sample.payload())?;
         if let Some(record) = state.objects.iter().find(|record| record.object == object) {
-            self.hub.tell(&page::sound(record, kind, &self.catalog));
+            self.hub.tell(&message(inner, record));
         }
         Ok(())
     }

@@ -1,7 +1,8 @@
 //! How far texts are from each other.
 
 /// The fewest words to replace, leave out or put in that make one list of words the other.
-pub(crate) fn words<W: PartialEq>(one: &[W], other: &[W]) -> usize {
+#[must_use]
+pub fn words<W: PartialEq>(one: &[W], other: &[W]) -> usize {
     let mut row: Vec<usize> = (0..=other.len()).collect();
     for (at, word) in one.iter().enumerate() {
         let mut diagonal = std::mem::replace(&mut row[0], at + 1);

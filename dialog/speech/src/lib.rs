@@ -52,6 +52,7 @@ mod wyoming;
 
 pub use audio::{RATE, Resampler, from_pcm, resample, to_pcm};
 pub use bias::{Bias, Scene};
+pub use distance::words as word_distance;
 pub use ear::{Ear, Heard, Utterance};
 pub use engines::{Engines, Lack, Part, Source, VoiceSettings};
 pub use error::SpeechError;

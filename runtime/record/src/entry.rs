@@ -208,14 +208,8 @@ impl InputEntry {
     }
 }
 
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks so")]
-const fn is_zero(number: &u64) -> bool {
-    *number == 0
-}
-
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks so")]
-const fn is_none(person: &u32) -> bool {
-    *person == 0
+fn is_zero<N: Default + PartialEq>(number: &N) -> bool {
+    *number == N::default()
 }
 
 /// Format 1 had four, and not when the frame was shown.
@@ -333,7 +327,7 @@ pub struct DialogEntry {
     /// The body spoken to, or speaking.
     pub body: u32,
     /// The number of the page at which a person said it; 0 where none did.
-    #[serde(default, skip_serializing_if = "is_none")]
+    #[serde(default, skip_serializing_if = "is_zero")]
     pub person: u32,
     /// Which step of the turn's plan.
     pub step: u32,

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use cohabit_speech::word_distance;
+
 /// Over commands of one voice.
 #[derive(Default)]
 pub struct Score {
@@ -27,7 +29,7 @@ impl Score {
 
     pub fn note(&mut self, said: &str, heard: &str, delays_s: &[f64], is_cut: bool) {
         let (said, heard) = (words(said), words(heard));
-        let wrong = distance(&said, &heard);
+        let wrong = word_distance(&said, &heard);
         self.commands += 1;
         self.words += said.len();
         self.wrong += wrong;
@@ -114,20 +116,6 @@ fn words(text: &str) -> Vec<String> {
     let spoken =
         words.map(|word| NUMBERS.iter().find(|(written, _)| *written == word).map_or(word, |(_, spoken)| spoken));
     spoken.flat_map(str::split_whitespace).map(str::to_owned).collect()
-}
-
-/// Words to replace, leave out or put in.
-fn distance(one: &[String], other: &[String]) -> usize {
-    let mut row: Vec<usize> = (0..=other.len()).collect();
-    for (at, word) in one.iter().enumerate() {
-        let mut diagonal = std::mem::replace(&mut row[0], at + 1);
-        for (to, candidate) in other.iter().enumerate() {
-            let replaced = diagonal + usize::from(word != candidate);
-            diagonal = row[to + 1];
-            row[to + 1] = replaced.min(diagonal + 1).min(row[to] + 1);
-        }
-    }
-    row[other.len()]
 }
 
 /// What this process takes, from `/proc`.
