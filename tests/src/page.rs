@@ -1,6 +1,9 @@
 //! A client of a session's page: speaks its WebSocket, without a browser.
 
-use std::time::{Duration, Instant};
+use std::{
+    thread,
+    time::{Duration, Instant},
+};
 
 use anyhow::bail;
 use serde_json::{Value, json};
@@ -42,6 +45,21 @@ impl Page {
     /// When it cannot be reached.
     pub fn open_as(authority: &str, key: u32) -> anyhow::Result<Self> {
         Self::at(&format!("ws://{authority}/ws?visitor={key}"))
+    }
+
+    /// Opens one anew where who served it was killed: as soon as another serves it.
+    ///
+    /// # Errors
+    /// When nobody serves it for long.
+    pub fn once_served(open: impl Fn() -> anyhow::Result<Self>) -> anyhow::Result<Self> {
+        let deadline = Instant::now() + WATCHDOG;
+        loop {
+            match open() {
+                Ok(page) => return Ok(page),
+                Err(error) if Instant::now() > deadline => return Err(error),
+                Err(_) => thread::park_timeout(Duration::from_millis(20)),
+            }
+        }
     }
 
     fn at(address: &str) -> anyhow::Result<Self> {

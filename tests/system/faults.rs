@@ -18,7 +18,7 @@ use std::{
 
 use cohabit_bus::{CameraId, Session, Shm, Topic, Transport as _};
 use cohabit_tests::{Page, Play, run};
-use person::{Person, WORK};
+use person::Person;
 use round::{Counts, Dice, Plan};
 use rustix::process::Signal;
 use witness::Witness;
@@ -59,7 +59,7 @@ fn a_process_that_hangs_slows_nobody_and_carries_on_when_it_wakes() {
         let play = Play::start(COHABIT, &["cold_soda", "--seed", "5"]).unwrap();
         let witness = Witness::new(&play.session).unwrap();
         let mut person = Person::at(play.authority()).unwrap();
-        person.page.say(WORK).unwrap();
+        person.ask_for_work().unwrap();
         play.send(role, Signal::STOP).unwrap();
         // The world goes on: it is not asked how fast.
         witness.wait_for(witness.newest() + 120).unwrap();
@@ -140,7 +140,7 @@ fn who_sends_nonsense_is_cut_off_and_nobody_else_is_harmed() {
         publishers.push(publisher);
     }
     let mut person = Person::at(play.authority()).unwrap();
-    person.page.say(WORK).unwrap();
+    person.ask_for_work().unwrap();
     person.have_done().unwrap();
     play.wait_for_line("sent nonsense on topic `commands`").unwrap();
     let seen = witness.end().unwrap();

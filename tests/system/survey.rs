@@ -45,12 +45,7 @@ fn questionnaires_are_answered_recorded_and_scored() {
     assert_eq!(answer(&mut page, "sus", &json!(sus)), Value::Null);
     // What was answered is known to a service that takes a dead one's place.
     play.send("dialog", Signal::KILL).unwrap();
-    let mut again = (0..100)
-        .find_map(|_| {
-            std::thread::sleep(std::time::Duration::from_millis(100));
-            Page::open_as(play.authority(), 7).ok()
-        })
-        .expect("the page's service again");
+    let mut again = Page::once_served(|| Page::open_as(play.authority(), 7)).unwrap();
     let you = again.wait("who it is", |_, message| message["type"] == "you").unwrap();
     assert_eq!((&you["visitor"], &you["answered"]), (&json!(1), &json!(["sus"])));
     assert_eq!(answer(&mut again, "after", &json!([scale(2), { "text": " Less talk. " }])), Value::Null);

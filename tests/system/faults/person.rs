@@ -1,9 +1,6 @@
 //! Somebody who talks to the robot.
 
-use std::{
-    thread,
-    time::{Duration, Instant},
-};
+use std::time::{Duration, Instant};
 
 use anyhow::{Context as _, ensure};
 use cohabit_tests::Page;
@@ -24,9 +21,17 @@ pub struct Person {
 }
 
 impl Person {
-    /// A person who opens the page there.
+    /// A person who opens the page there as soon as it is served.
     pub fn at(authority: &str) -> anyhow::Result<Self> {
-        Ok(Self { authority: authority.to_owned(), page: Page::open(authority)? })
+        Ok(Self { authority: authority.to_owned(), page: open(authority)? })
+    }
+
+    /// Asks for [`WORK`].
+    pub fn ask_for_work(&mut self) -> anyhow::Result<()> {
+        match self.page.say(WORK) {
+            Ok(()) => Ok(()),
+            Err(_) => self.come_back(),
+        }
     }
 
     /// Waits until [`WORK`] is done, which was asked for.
@@ -81,15 +86,12 @@ impl Person {
         found["turn"].as_u64().context("a turn")
     }
 
-    /// Opens the page as soon as it is served.
+    /// Opens the page again, as soon as it is served.
     pub fn open(&self) -> anyhow::Result<Page> {
-        let deadline = Instant::now() + WATCHDOG;
-        loop {
-            match Page::open(&self.authority) {
-                Ok(page) => return Ok(page),
-                Err(error) if Instant::now() > deadline => return Err(error),
-                Err(_) => thread::park_timeout(Duration::from_millis(20)),
-            }
-        }
+        open(&self.authority)
     }
+}
+
+fn open(authority: &str) -> anyhow::Result<Page> {
+    Page::once_served(|| Page::open(authority))
 }

@@ -12,13 +12,10 @@ use std::{
 use anyhow::{Context as _, ensure};
 use cohabit_bus::wall_nanos;
 use cohabit_record::Log;
-use cohabit_tests::{Page, Play, run};
+use cohabit_tests::{Play, run};
 use rustix::process::{Pid, Signal, kill_process};
 
-use super::{
-    person::{Person, WORK},
-    witness::Witness,
-};
+use super::{person::Person, witness::Witness};
 use crate::COHABIT;
 
 /// The longest that work is gone on with before somebody is killed.
@@ -109,18 +106,18 @@ impl Plan {
                     "sim" | "play" => self.check_ended(&mut play, None, killed),
                     _ => {
                         play.wait_until_ready()?;
-                        let mut page = Page::open(play.authority())?;
-                        page.say(WORK)?;
+                        let mut person = Person::at(play.authority())?;
+                        person.ask_for_work()?;
                         let witness = Witness::new(&play.session)?;
-                        self.check_carries_on(play, page, witness, killed)
+                        self.check_carries_on(play, person, witness, killed)
                     }
                 }
             }
             Moment::Working(after) => {
                 play.wait_until_ready()?;
                 let witness = Witness::new(&play.session)?;
-                let mut page = Page::open(play.authority())?;
-                page.say(WORK)?;
+                let mut person = Person::at(play.authority())?;
+                person.ask_for_work()?;
                 thread::sleep(after);
                 let killed = self.kill(&play)?;
                 match self.victim {
@@ -129,10 +126,10 @@ impl Plan {
                         let copy = play.folder.join("at-the-kill.mcap");
                         fs::copy(&play.log, &copy)?;
                         let log_behind = behind(&copy, &witness, killed)?;
-                        let measured = self.check_carries_on(play, page, witness, killed)?;
+                        let measured = self.check_carries_on(play, person, witness, killed)?;
                         Ok(Measured { log_behind, ..measured })
                     }
-                    _ => self.check_carries_on(play, page, witness, killed),
+                    _ => self.check_carries_on(play, person, witness, killed),
                 }
             }
         }
@@ -180,8 +177,13 @@ impl Plan {
     }
 
     /// The session goes on: what was asked is done, the next thing is understood, and all is recorded.
-    fn check_carries_on(&self, play: Play, page: Page, witness: Witness, killed: u64) -> anyhow::Result<Measured> {
-        let mut person = Person { authority: play.authority().to_owned(), page };
+    fn check_carries_on(
+        &self,
+        play: Play,
+        mut person: Person,
+        witness: Witness,
+        killed: u64,
+    ) -> anyhow::Result<Measured> {
         person.have_done()?;
         let done_after = Duration::from_nanos(wall_nanos() - killed);
         person.ask("what are you holding?", 1)?;
