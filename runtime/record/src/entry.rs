@@ -404,7 +404,7 @@ impl DialogEntry {
 
 impl Entry for DialogEntry {
     const TOPIC: &'static str = "/dialog";
-    const SCHEMA: &'static str = r#"{"title":"Dialog","type":"object","properties":{"tick":{"type":"integer"},"kind":{"type":"string"},"turn":{"type":"integer"},"body":{"type":"integer"},"person":{"type":"integer"},"step":{"type":"integer"},"status":{"type":"string"},"sent_nanos":{"type":"integer"},"stamps":{"type":"array","items":{"type":"integer"}},"text":{"type":"string"},"steps":{"type":"array","items":{"type":"object"}},"offers":{"type":"array","items":{"type":"object"}},"run":{"type":"string"},"sequence":{"type":"integer"}}}"#;
+    const SCHEMA: &'static str = r#"{"title":"Dialog","type":"object","properties":{"tick":{"type":"integer"},"kind":{"type":"string"},"turn":{"type":"integer"},"body":{"type":"integer"},"person":{"type":"integer"},"step":{"type":"integer"},"status":{"type":"string"},"sent_nanos":{"type":"integer"},"stamps":{"type":"array","items":{"type":"integer"}},"text":{"type":"string"},"steps":{"type":"array","items":{"type":["object","string"]}},"offers":{"type":"array","items":{"type":"object"}},"run":{"type":"string"},"sequence":{"type":"integer"}}}"#;
 }
 
 /// What a person answered to a question of a questionnaire; the newest to a question counts.

@@ -19,7 +19,8 @@
 //! carries on with it, and nothing is missing or told twice.
 //!
 //! The recorder is a peer like others, whom nobody waits for: if it is away for longer than the bus keeps messages, or
-//! its disk is too slow, the log says in `/gaps` what it misses.
+//! its disk is too slow, the log says in `/gaps` what it misses. While the disk is full, what there is no room for waits in
+//! memory, and is told; with room again, nothing is missing.
 //!
 //! Format 1 had neither seals nor snapshots nor gaps, and digests that did not tell the parts of a state apart. Its logs
 //! open; what is damaged in them is found only where it cannot be read.
@@ -34,6 +35,7 @@ mod reading;
 mod recorder;
 mod segment;
 mod snapshot;
+mod spool;
 mod tape;
 mod turns;
 mod writer;

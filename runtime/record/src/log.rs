@@ -87,6 +87,14 @@ pub enum LogError {
         /// The session's name.
         session: String,
     },
+    /// The disk does not take the log.
+    #[error("write {path}: {source}")]
+    Disk {
+        /// Which.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
     /// The log cannot be written.
     #[error("write {path}: {source}")]
     Write {

@@ -20,6 +20,7 @@ use crate::{
     log::LogError,
     segment::{SEAL, Seal},
     snapshot::Snapshot,
+    spool::Spool,
     tape::AudioEntry,
 };
 
@@ -33,7 +34,7 @@ const SNAPSHOT_ENCODING: &str = "cohabit-snapshot";
 /// [`Self::flush`].
 pub struct LogWriter {
     path: PathBuf,
-    out: Box<dyn Write + Send>,
+    out: Spool,
     mcap: mcap::Writer<Segment>,
     segment: Segment,
     seal: Seal,
@@ -87,7 +88,7 @@ impl LogWriter {
             .use_chunks(false)
             .create(segment.clone())
             .map_err(|source| LogError::Write { path: path.to_owned(), source })?;
-        let (path, seal) = (path.to_owned(), Seal::default());
+        let (out, path, seal) = (Spool::new(path, out), path.to_owned(), Seal::default());
         Ok(Self { path, out, mcap, segment, seal, channels: BTreeMap::new(), sequence: 0 })
     }
 
@@ -190,28 +191,27 @@ impl LogWriter {
         self.message(channel, &data, wall_nanos)
     }
 
-    /// Seals all that was appended, and hands it to the operating system in one piece.
+    /// Seals all that was appended, and hands it to the operating system in one piece; what the disk has no room for
+    /// waits, and goes before what comes next.
     ///
     /// # Errors
-    /// [`LogError::Write`].
+    /// [`LogError::Disk`], [`LogError::Write`].
     pub fn flush(&mut self) -> Result<(), LogError> {
         self.seal()?;
-        let segment = self.segment.take();
-        let written = self.out.write_all(&segment).and_then(|()| self.out.flush());
-        self.written(written.map_err(McapError::from))
+        let handed = self.out.push(&self.segment.take());
+        handed.map_err(|source| LogError::Disk { path: self.path.clone(), source })
     }
 
     /// Ends the log with its index.
     ///
     /// # Errors
-    /// [`LogError::Write`].
+    /// [`LogError::Disk`], [`LogError::Write`].
     pub fn finish(mut self) -> Result<(), LogError> {
         self.seal()?;
         let finished = self.mcap.finish().map(drop);
         self.written(finished)?;
-        let segment = self.segment.take();
-        let written = self.out.write_all(&segment).and_then(|()| self.out.flush());
-        self.written(written.map_err(McapError::from))
+        let handed = self.out.push(&self.segment.take()).and_then(|()| self.out.finish());
+        handed.map_err(|source| LogError::Disk { path: self.path.clone(), source })
     }
 
     fn seal(&mut self) -> Result<(), LogError> {

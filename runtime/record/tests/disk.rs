@@ -1,4 +1,5 @@
-//! A disk that takes its time: nobody waits for it, and the log says what it misses.
+//! A disk that takes its time: nobody waits for it, and the log says what it misses. One that is full: with room again,
+//! nothing is missing.
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use std::{
@@ -13,7 +14,7 @@ use cohabit_bus::{
     Local, Publisher, Text, Topic, Transport,
     message::{EventKind, EventMessage, MissionHeader, MissionMessage, TickHeader, TickMessage},
 };
-use cohabit_record::{Log, Recorder, SessionFacts};
+use cohabit_record::{Log, Recorder, Recording, SessionFacts};
 
 /// More than the bus keeps of any of them.
 const TICKS: u64 = 5000;
@@ -24,13 +25,15 @@ struct Disk {
     is_stuck: bool,
     /// Whether somebody waits for it.
     is_awaited: bool,
+    /// How many bytes it has, where it has an end.
+    size: Option<usize>,
 }
 
-/// A disk that is stuck until it is let go.
+/// A disk that can be stuck until it is let go, and full until it is made larger.
 #[derive(Clone, Default)]
-struct SlowDisk(Arc<(Mutex<Disk>, Condvar)>);
+struct BadDisk(Arc<(Mutex<Disk>, Condvar)>);
 
-impl SlowDisk {
+impl BadDisk {
     fn change(&self, change: impl FnOnce(&mut Disk)) {
         change(&mut self.0.0.lock().unwrap());
         self.0.1.notify_all();
@@ -41,12 +44,18 @@ impl SlowDisk {
     }
 }
 
-impl Write for SlowDisk {
+impl Write for BadDisk {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         self.change(|disk| disk.is_awaited = disk.is_stuck);
         self.wait_until(|disk| !disk.is_stuck);
-        self.change(|disk| disk.bytes.extend_from_slice(bytes));
-        Ok(bytes.len())
+        let mut disk = self.0.0.lock().unwrap();
+        let room = disk.size.map_or(usize::MAX, |size| size - disk.bytes.len());
+        if room == 0 {
+            return Err(io::ErrorKind::StorageFull.into());
+        }
+        let taken = bytes.len().min(room);
+        disk.bytes.extend_from_slice(&bytes[..taken]);
+        Ok(taken)
     }
 
     fn flush(&mut self) -> io::Result<()> {
@@ -81,7 +90,7 @@ fn the_world_goes_on_and_the_log_states_the_gap() {
     let bus = Local::new(1);
     let recorder = Recorder::new(&bus).unwrap();
     let mut world = World::new(&bus);
-    let disk = SlowDisk::default();
+    let disk = BadDisk::default();
     let mut recording = recorder.begin_in(&SessionFacts::named("s"), Box::new(disk.clone())).unwrap();
     disk.change(|disk| disk.is_stuck = true);
     world.tick(1);
@@ -107,4 +116,45 @@ fn the_world_goes_on_and_the_log_states_the_gap() {
     assert_eq!(log.missing(), gap.messages());
     assert!(log.problems()[0].contains("its disk slow"), "{:?}", log.problems());
     assert_eq!(log.lost, []);
+}
+
+/// A recording on a disk that is full behind some of its first hundred ticks, after two hundred of them.
+fn on_a_full_disk(bus: &Local) -> (BadDisk, World, Recording) {
+    let recorder = Recorder::new(bus).unwrap();
+    let mut world = World::new(bus);
+    let disk = BadDisk::default();
+    let mut recording = recorder.begin_in(&SessionFacts::named("s"), Box::new(disk.clone())).unwrap();
+    disk.change(|disk| disk.size = Some(disk.bytes.len() + 10_001));
+    for number in 1..=200 {
+        world.tick(number);
+        recording.take_down().unwrap();
+        recording.flush().unwrap();
+    }
+    disk.change(|disk| assert_eq!(Some(disk.bytes.len()), disk.size));
+    (disk, world, recording)
+}
+
+#[test]
+fn what_a_full_disk_had_no_room_for_is_written_when_there_is_some() {
+    let (disk, mut world, mut recording) = on_a_full_disk(&Local::new(1));
+    let bytes = disk.0.0.lock().unwrap().bytes.clone();
+    let before = Log::parse(Path::new("the log"), &bytes).unwrap();
+    assert!((1..200).contains(&before.ticks.len()), "{}", before.ticks.len());
+    disk.change(|disk| disk.size = None);
+    world.tick(201);
+    recording.take_down().unwrap();
+    recording.finish().unwrap();
+    let bytes = disk.0.0.lock().unwrap().bytes.clone();
+    let log = Log::parse(Path::new("the log"), &bytes).unwrap();
+    assert_eq!(log.problems(), [] as [&str; 0]);
+    assert_eq!((log.ticks.len(), log.events.len()), (201, 201));
+}
+
+#[test]
+fn a_log_that_ends_on_a_full_disk_says_so() {
+    let (disk, _world, recording) = on_a_full_disk(&Local::new(1));
+    let error = recording.finish().unwrap_err().to_string();
+    assert!(error.contains("write the log: no storage space") && error.contains("KiB are missing"), "{error}");
+    let bytes = disk.0.0.lock().unwrap().bytes.clone();
+    assert!(Log::parse(Path::new("the log"), &bytes).unwrap().cut.is_some());
 }
