@@ -56,6 +56,8 @@ pub struct Soaked {
     pub control_nanos: Vec<u64>,
     /// Ticks that began a whole tick too late.
     pub missed: usize,
+    /// The share of the processors' time that the machine's host gave to others meanwhile.
+    pub stolen: f64,
     /// Ticks that were sent and not seen.
     pub lost: u64,
     /// Bytes that each role's processes hold, look by look.
@@ -89,6 +91,38 @@ impl Soaked {
     pub fn control_ms(&self, share: f64) -> f64 {
         at(&self.control_nanos, share)
     }
+
+    /// How often that thread woke a whole tick too late.
+    #[must_use]
+    pub fn control_missed(&self) -> usize {
+        missed(&self.control_nanos)
+    }
+}
+
+/// How many of these are a whole tick.
+fn missed(late_nanos: &[u64]) -> usize {
+    late_nanos.iter().filter(|late| **late >= TICK_NANOS).count()
+}
+
+/// What the processors' time went to since the machine began.
+#[derive(Clone, Copy, Debug, Default)]
+struct Processors {
+    all: u64,
+    stolen: u64,
+}
+
+impl Processors {
+    /// Zeros where that is not told: see proc_stat(5).
+    fn now() -> Self {
+        let text = fs::read_to_string("/proc/stat").unwrap_or_default();
+        let times = text.lines().next().unwrap_or_default().split_whitespace().skip(1);
+        let times: Vec<u64> = times.map_while(|time| time.parse().ok()).take(8).collect();
+        Self { all: times.iter().sum(), stolen: times.get(7).copied().unwrap_or(0) }
+    }
+
+    fn stolen_until(self, later: Self) -> f64 {
+        (later.stolen - self.stolen) as f64 / (later.all - self.all).max(1) as f64
+    }
 }
 
 /// What the given share of `nanos`, which rise, is at most, ms.
@@ -103,7 +137,7 @@ fn at(nanos: &[u64], share: f64) -> f64 {
 /// When the session does not start, go on, or end as it should, or its log does not replay.
 pub fn soak(binary: &str, lasting: Duration) -> anyhow::Result<Soaked> {
     let play = Play::start(binary, &ARGUMENTS)?;
-    let over = AtomicBool::new(false);
+    let (over, before) = (AtomicBool::new(false), Processors::now());
     let mut soaked = Soaked::default();
     thread::scope(|scope| -> anyhow::Result<()> {
         let (over, authority) = (&over, play.authority());
@@ -134,7 +168,8 @@ pub fn soak(binary: &str, lasting: Duration) -> anyhow::Result<Soaked> {
     })?;
     soaked.late_nanos.sort_unstable();
     soaked.control_nanos.sort_unstable();
-    soaked.missed = soaked.late_nanos.iter().filter(|late| **late >= TICK_NANOS).count();
+    soaked.missed = missed(&soaked.late_nanos);
+    soaked.stolen = before.stolen_until(Processors::now());
     let ended = play.end()?;
     let replayed = run(binary, &["replay", ended.log.to_str().context("a path")?])?;
     soaked.replayed = String::from_utf8_lossy(&replayed.stdout).into_owned();

@@ -39,7 +39,7 @@ pub use error::BusError;
 pub use heart::Heart;
 pub use inbox::{Inbox, Nonsense};
 pub use local::Local;
-pub use priority::{give_way, go_first};
+pub use priority::{Urgency, give_way, go_first};
 pub use session::{Remains, Session, SessionError};
 pub use shm::{HeldTopics, Shm};
 pub use text::Text;

@@ -25,11 +25,18 @@ fn late(what: &str, [p50, p90, p99, p999, max]: [f64; 5]) {
 
 fn print(soaked: &Soaked, seconds: f64) {
     let ticks = soaked.late_nanos.len();
-    let share = 100.0 * soaked.missed as f64 / ticks.max(1) as f64;
-    println!("ticks: {ticks} seen, {} not seen; {} missed ({share:.3} %)", soaked.lost, soaked.missed);
+    let share = |missed: usize, of: &[u64]| 100.0 * missed as f64 / of.len().max(1) as f64;
+    let (own, control) = (soaked.missed, soaked.control_missed());
+    let own_share = share(own, &soaked.late_nanos);
+    println!("ticks: {ticks} seen, {} not seen; {own} missed ({own_share:.3} %)", soaked.lost);
     let shares = [0.5, 0.9, 0.99, 0.999, 1.0];
     late("ticks begun late by", shares.map(|share| soaked.late_ms(share)));
     late("a thread beside it that only wakes", shares.map(|share| soaked.control_ms(share)));
+    println!(
+        "that thread missed {control} ({:.3} %); the machine's host gave {:.2} % of the processors' time to others",
+        share(control, &soaked.control_nanos),
+        100.0 * soaked.stolen
+    );
     for (role, looks) in &soaked.resident {
         let at = |share: f64| looks[((looks.len() - 1) as f64 * share) as usize];
         let [tenth, quarter, half, three, end] = [0.1, 0.25, 0.5, 0.75, 1.0].map(at);

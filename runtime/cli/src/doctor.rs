@@ -25,7 +25,7 @@ struct Check {
 }
 
 /// All of them, in the order in which they are told.
-const CHECKS: [Check; 17] = [
+const CHECKS: [Check; 18] = [
     Check { name: "shared memory", look: memory::shared_memory },
     Check { name: "sessions in it", look: memory::leftovers },
     Check { name: "sessions running", look: system::running },
@@ -34,6 +34,7 @@ const CHECKS: [Check; 17] = [
     Check { name: "page's port", look: devices::port },
     Check { name: "browser", look: devices::browser },
     Check { name: "cores", look: processor::cores },
+    Check { name: "priority", look: processor::urgency },
     Check { name: "vectors", look: processor::vectors },
     Check { name: "memory", look: memory::memory },
     Check { name: "GPU", look: devices::gpu },
@@ -142,6 +143,7 @@ mod tests {
                 page: SocketAddr::from(([127, 0, 0, 1], 0)),
                 program: folder.join("cohabit"),
                 user: rustix::process::getuid().as_raw(),
+                urgency: cohabit_bus::Urgency::ShortTurns,
                 voice: Ok(VoiceSettings::installed(folder.join("voice"))),
             };
             Self { machine, folder }
@@ -162,6 +164,7 @@ mod tests {
         assert_eq!(of("shared memory").state, State::Broken);
         assert_eq!(of("browser").state, State::Costs);
         assert_eq!(of("GPU").state, State::Costs);
+        assert_eq!(of("priority").state, State::Costs);
         assert_eq!(of("voice").state, State::Costs);
         assert!(of("voice").remedy.contains("cohabit voice install"));
         for (name, finding) in &findings {

@@ -113,7 +113,6 @@ impl Simulator {
                 }
                 !stop.load(Ordering::Relaxed) && !cameras.is_finished()
             };
-            go_first();
             let mut clock = Clock { engine, desk: &desk, bell, pace, goes_on, shown_nanos: 0 };
             let ran = match lock_step {
                 None => clock.run_in_real_time(),
@@ -142,6 +141,7 @@ struct Clock<'a, G> {
 impl<G: Fn(u64) -> bool> Clock<'_, G> {
     /// The world never waits.
     fn run_in_real_time(&mut self) -> Result<(), EngineError> {
+        go_first();
         self.begin()?;
         while self.goes_on() {
             if self.pace.is_paused() {

@@ -8,6 +8,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use cohabit_bus::Urgency;
 use cohabit_speech::VoiceSettings;
 
 use crate::{peers::Listening, sessions};
@@ -29,6 +30,8 @@ pub struct Machine {
     pub program: PathBuf,
     /// Who asks.
     pub user: u32,
+    /// How soon its ticks are served.
+    pub urgency: Urgency,
     /// What sessions hear and speak with; why that cannot be told.
     pub voice: Result<VoiceSettings, String>,
 }
@@ -44,6 +47,7 @@ impl Machine {
             page: SocketAddr::new(listening.listen, listening.port),
             program: env::current_exe()?,
             user: rustix::process::getuid().as_raw(),
+            urgency: super::processor::granted(),
             voice: VoiceSettings::from_env().map_err(|error| error.to_string()),
         })
     }

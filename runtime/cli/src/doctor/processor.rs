@@ -5,7 +5,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use cohabit_bus::monotonic_nanos;
+use cohabit_bus::{Urgency, go_first, monotonic_nanos};
 
 use super::{finding::Finding, machine::Machine};
 
@@ -84,4 +84,26 @@ pub fn timers(machine: &Machine) -> Finding {
     }
     let remedy = "end what else keeps the cores busy; on a laptop, choose the power profile `performance`";
     Finding::costs(found, "ticks begin late now and then: motion looks uneven, latencies scatter", remedy)
+}
+
+/// How soon a tick begins that is due while others keep the cores busy.
+pub fn urgency(machine: &Machine) -> Finding {
+    match machine.urgency {
+        Urgency::RealTime => Finding::good("real time: ticks begin before whatever else runs"),
+        Urgency::ShortTurns => no_real_time("none of real time; short turns at a core are granted"),
+        Urgency::Usual => no_real_time("none"),
+    }
+}
+
+fn no_real_time(found: &str) -> Finding {
+    Finding::costs(
+        found,
+        "while the cores are busy, one tick of a hundred begins some ms late",
+        "add `YOU - rtprio 1` (YOU is your user's name) to /etc/security/limits.d/cohabit.conf and log in again",
+    )
+}
+
+/// What is granted to a thread of this program that asks for it.
+pub fn granted() -> Urgency {
+    thread::spawn(go_first).join().unwrap_or(Urgency::Usual)
 }
