@@ -70,8 +70,8 @@ impl Deeds {
     /// Nothing has happened yet; tells how its plots look.
     pub fn new(recording: &Recording) -> anyhow::Result<Self> {
         for (path, name, color) in PLOTS {
-            let line = SeriesLines::new().with_names([name]).with_colors([color]).with_widths([2.0]);
-            recording.log_always(path, &line.with_interpolation_mode(InterpolationMode::StepAfter))?;
+            let line = SeriesLines::new().with_widths([2.0]).with_interpolation_mode(InterpolationMode::StepAfter);
+            recording.log_line(path, name, color, line)?;
         }
         Ok(Self::default())
     }

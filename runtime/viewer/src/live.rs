@@ -11,16 +11,18 @@ use std::{
 
 use cohabit_bus::{
     Heart, Inbox, Listener, Sample, Topic, Transport, Wake,
-    message::{self, DialogView, EventMessage, FrameView, MissionMessage, NONE, StateParts, StateView, TickView},
+    message::{
+        self, AnswerMessage, DialogView, EventMessage, FrameView, MissionMessage, NONE, StateParts, StateView, TickView,
+    },
 };
 use cohabit_cdf::Catalog;
 use cohabit_engine::SessionPlan;
-use cohabit_record::{DialogEntry, EventEntry, InputEntry};
+use cohabit_record::{AnswerEntry, DialogEntry, EventEntry, InputEntry};
 use cohabit_render::MeshLibrary;
 use re_sdk::RecordingStream;
 
 use crate::{
-    recording::{Recording, When},
+    recording::{Recording, Side, When},
     replay::CAMERA,
     showing::Showing,
 };
@@ -37,6 +39,7 @@ pub struct Watch {
     ticks: Inbox,
     events: Inbox,
     dialog: Inbox,
+    answers: Inbox,
     frames: Inbox,
     bell: Box<dyn Listener>,
     heart: Heart,
@@ -52,6 +55,7 @@ impl Watch {
             ticks: Inbox::new(bus, Topic::Ticks)?,
             events: Inbox::new(bus, Topic::Events)?,
             dialog: Inbox::new(bus, Topic::Dialog)?,
+            answers: Inbox::new(bus, Topic::Answers)?,
             frames: Inbox::new(bus, Topic::Frames(CAMERA))?,
             bell: bus.listener(Wake::State)?,
             heart: Heart::new(bus, "viewer", NONE)?,
@@ -82,7 +86,7 @@ impl Watch {
         about: &[(String, String)],
         stop: &AtomicBool,
     ) -> anyhow::Result<()> {
-        let mut showing = Showing::new(Recording::new(stream.clone(), ""), plan, meshes, about)?;
+        let mut showing = Showing::new(Recording::new(stream.clone(), Side::Only), plan, meshes, about)?;
         while !stop.load(Ordering::Relaxed) {
             self.bell.wait(EVERY)?;
             self.tell(&mut showing)?;
@@ -119,6 +123,14 @@ impl Watch {
             showing.at(now);
             showing.dialog(&entry)?;
         }
+        while let Some((sample, answer)) =
+            self.answers.next(|sample| message::read::<AnswerMessage>(sample.payload()))?
+        {
+            let now = self.moments.back().copied().unwrap_or_default();
+            let Some(entry) = AnswerEntry::new(now.tick, sample.envelope(), &answer) else { continue };
+            showing.at(now);
+            showing.answer(&entry)?;
+        }
         while let Some((sample, ())) = self.frames.next(|sample| FrameView::new(sample.payload()).map(drop))? {
             self.frame(showing, &sample)?;
         }
@@ -153,7 +165,7 @@ impl Watch {
     }
 
     fn lost(&self) -> u64 {
-        self.ticks.lost() + self.events.lost() + self.dialog.lost()
+        self.ticks.lost() + self.events.lost() + self.dialog.lost() + self.answers.lost()
     }
 }
 

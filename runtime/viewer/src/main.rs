@@ -32,6 +32,7 @@ use cohabit_cdf::Catalog;
 use cohabit_render::MeshLibrary;
 use cohabit_tables::Played;
 use panes::Contents;
+use recording::Side;
 use replay::{CAMERA, Seen};
 use sink::Sink;
 use tracing_subscriber::EnvFilter;
@@ -144,8 +145,8 @@ impl Replay {
         let (catalog, meshes) = models()?;
         let session = replay::Session::open(&self.log, &catalog, &meshes)?;
         let stream = self.target.sink().open(&session.name())?;
-        blueprint::send(&stream, &session.contents("", "", &self.seen)?.pane())?;
-        let ticks = session.show(&stream, "", &self.seen)?;
+        blueprint::send(&stream, &session.contents(Side::Only, &self.seen)?.pane())?;
+        let ticks = session.show(&stream, Side::Only, &self.seen)?;
         sink::finish(stream)?;
         self.target.tell(ticks);
         Ok(())
@@ -158,9 +159,9 @@ impl Compare {
         let [left, right] = [&self.left, &self.right].map(|log| replay::Session::open(log, &catalog, &meshes));
         let (left, right) = (left?, right?);
         let stream = self.target.sink().open(&format!("{} beside {}", left.name(), right.name()))?;
-        let (one, other) = (left.contents("a/", "A: ", &self.seen)?, right.contents("b/", "B: ", &self.seen)?);
+        let (one, other) = (left.contents(Side::A, &self.seen)?, right.contents(Side::B, &self.seen)?);
         blueprint::send(&stream, &one.beside(&other))?;
-        let ticks = left.show(&stream, "a/", &self.seen)?.max(right.show(&stream, "b/", &self.seen)?);
+        let ticks = left.show(&stream, Side::A, &self.seen)?.max(right.show(&stream, Side::B, &self.seen)?);
         sink::finish(stream)?;
         self.target.tell(ticks);
         Ok(())
@@ -176,8 +177,7 @@ impl Live {
         let Some(plan) = watch.plan(&catalog, &stop)? else { return Ok(()) };
         let stream = self.target.sink().open(&format!("{} ({})", self.session, plan.file))?;
         let planes = cohabit_bus::message::Plane::ALL;
-        let contents =
-            Contents { root: "", label: "", bounds_m: plan.layout.bounds_m(), camera: CAMERA, planes: &planes };
+        let contents = Contents { side: Side::Only, bounds_m: plan.layout.bounds_m(), camera: CAMERA, planes: &planes };
         blueprint::send(&stream, &contents.pane())?;
         let about = [("session".to_owned(), self.session.clone())];
         watch.show(&stream, plan, meshes, &about, &stop)?;

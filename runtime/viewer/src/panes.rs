@@ -5,6 +5,7 @@ use cohabit_bus::{CameraId, message::Plane};
 use crate::{
     blueprint::{Pane, View},
     pictures::camera_path,
+    recording::Side,
 };
 
 /// The eye stands so much south of the office's middle and so high, in lengths of its longer side.
@@ -13,10 +14,8 @@ const EYE_HEIGHT: f32 = 0.7;
 
 /// What a session's layout needs to know.
 pub struct Contents<'a> {
-    /// Where it is logged: nothing, or a path that ends in a slash.
-    pub root: &'a str,
-    /// What stands before names of its views.
-    pub label: &'a str,
+    /// Which session of the recording it is.
+    pub side: Side,
     /// `[west, south, east, north]` of its floor plan, m.
     pub bounds_m: [f32; 4],
     /// The camera that is shown.
@@ -57,7 +56,7 @@ impl Contents<'_> {
             ])
         };
         let both = |plot: fn(&Self) -> View, name: &str, below: &str| {
-            let all = [self.root, other.root].map(|root| format!("/{root}{below}/**"));
+            let all = [self, other].map(|own| format!("/{}/**", own.path(below)));
             Pane::View(plot(self).on(&all.each_ref().map(String::as_str)).called(name, ""))
         };
         Pane::Column(vec![
@@ -73,11 +72,11 @@ impl Contents<'_> {
     }
 
     fn name(&self, name: &str) -> String {
-        format!("{}{name}", self.label)
+        self.side.name(name)
     }
 
     fn path(&self, path: &str) -> String {
-        format!("{}{path}", self.root)
+        format!("{}{path}", self.side.root())
     }
 
     fn office(&self) -> View {

@@ -2,7 +2,7 @@
 
 use anyhow::Context as _;
 use re_sdk::{AsComponents, RecordingStream, TimeCell};
-use re_sdk_types::archetypes::Clear;
+use re_sdk_types::archetypes::{Clear, SeriesLines};
 
 /// The timeline of ticks.
 pub const TICK: &str = "tick";
@@ -27,20 +27,57 @@ impl When {
     }
 }
 
+/// Which of a recording's sessions one is.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum Side {
+    /// There is no other.
+    Only,
+    /// The first of two.
+    A,
+    /// The second.
+    B,
+}
+
+impl Side {
+    /// What the paths of its entities begin with.
+    pub const fn root(self) -> &'static str {
+        match self {
+            Self::Only => "",
+            Self::A => "a/",
+            Self::B => "b/",
+        }
+    }
+
+    /// `name` as people are to read it.
+    pub fn name(self, name: &str) -> String {
+        match self {
+            Self::Only => name.to_owned(),
+            Self::A => format!("A: {name}"),
+            Self::B => format!("B: {name}"),
+        }
+    }
+
+    /// The colour of what is `color` where there is no other: beside the first, the second is dim.
+    pub fn color(self, color: [u8; 3]) -> [u8; 3] {
+        if self == Self::B { color.map(|channel| channel / 2) } else { color }
+    }
+}
+
 /// One session's part of a recording.
 #[derive(Clone, Debug)]
 pub struct Recording {
     stream: RecordingStream,
-    root: &'static str,
+    /// Which session's.
+    pub side: Side,
 }
 
 impl Recording {
-    /// All that is logged goes below `root` in `stream`: nothing, or a path that ends in a slash.
-    pub fn new(stream: RecordingStream, root: &'static str) -> Self {
+    /// All that is logged goes into `stream`, below the root of its side.
+    pub fn new(stream: RecordingStream, side: Side) -> Self {
         // What is logged belongs to moments of the session, not to those of logging.
         stream.set_log_tick_enabled(false);
         stream.set_log_time_enabled(false);
-        Self { stream, root }
+        Self { stream, side }
     }
 
     /// What is logged next belongs to this moment.
@@ -66,13 +103,18 @@ impl Recording {
         self.stream.log_static(self.path(path), what).with_context(|| format!("log `{path}`"))
     }
 
+    /// Logs how a line of a plot looks.
+    pub fn log_line(&self, path: &str, name: &str, color: [u8; 3], line: SeriesLines) -> anyhow::Result<()> {
+        self.log_always(path, &line.with_names([self.side.name(name)]).with_colors([self.side.color(color)]))
+    }
+
     /// From now on nothing is there, nor below.
     pub fn clear(&self, path: &str) -> anyhow::Result<()> {
         self.log(path, &Clear::recursive())
     }
 
     fn path(&self, path: &str) -> String {
-        format!("{}{path}", self.root)
+        format!("{}{path}", self.side.root())
     }
 }
 

@@ -15,7 +15,7 @@ use re_sdk::RecordingStream;
 
 use crate::{
     panes::Contents,
-    recording::{Recording, When},
+    recording::{Recording, Side, When},
     showing::Showing,
 };
 
@@ -79,21 +79,21 @@ impl Session {
         format!("{} ({})", self.log.session.session, self.log.session.mission_file)
     }
 
-    /// The layout that shows it, where it is logged below `root`; `label` stands before the names of its views.
-    pub fn contents<'a>(&self, root: &'a str, label: &'a str, seen: &'a Seen) -> anyhow::Result<Contents<'a>> {
+    /// The layout that shows it.
+    pub fn contents<'a>(&self, side: Side, seen: &'a Seen) -> anyhow::Result<Contents<'a>> {
         let replayer = Replayer::new(&self.log, Arc::clone(&self.catalog))?;
         let planes: &[Plane] = if seen.rate > 0.0 { &seen.planes.0 } else { &[] };
-        Ok(Contents { root, label, bounds_m: replayer.plan().layout.bounds_m(), camera: CAMERA, planes })
+        Ok(Contents { side, bounds_m: replayer.plan().layout.bounds_m(), camera: CAMERA, planes })
     }
 
-    /// Shows all of it in `stream`, below `root`; gives how many ticks that were.
-    pub fn show(&self, stream: &RecordingStream, root: &'static str, seen: &Seen) -> anyhow::Result<u64> {
+    /// Shows all of it in `stream`; gives how many ticks that were.
+    pub fn show(&self, stream: &RecordingStream, side: Side, seen: &Seen) -> anyhow::Result<u64> {
         let replayer = Replayer::new(&self.log, Arc::clone(&self.catalog))?;
         let plan = replayer.plan().clone();
-        let (recording, meshes) = (Recording::new(stream.clone(), root), Arc::clone(&self.meshes));
+        let (recording, meshes) = (Recording::new(stream.clone(), side), Arc::clone(&self.meshes));
         let eyes = Eyes::new(&plan, &self.meshes, seen)?;
         let showing = Showing::new(recording, plan, meshes, &about(&self.log.session))?;
-        Show { log: &self.log, replayer, showing, eyes, events: 0, dialog: 0 }.run()
+        Show { log: &self.log, replayer, showing, eyes, events: 0, dialog: 0, answers: 0 }.run()
     }
 }
 
@@ -111,9 +111,10 @@ struct Show<'a> {
     replayer: Replayer<'a>,
     showing: Showing,
     eyes: Option<Eyes>,
-    /// Events and dialog messages that were told.
+    /// Events, dialog messages and answers to questionnaires that were told.
     events: usize,
     dialog: usize,
+    answers: usize,
 }
 
 impl Show<'_> {
@@ -125,7 +126,11 @@ impl Show<'_> {
         let mut ticks = 0;
         loop {
             ticks += self.stretch()?;
-            let Some(gap) = self.replayer.gap() else { return Ok(ticks) };
+            let Some(gap) = self.replayer.gap() else {
+                // After the last tick nothing happens any more, but questionnaires may be answered.
+                self.answers(u64::MAX)?;
+                return Ok(ticks);
+            };
             anyhow::ensure!(self.replayer.skip_gap(), "{gap}, and no snapshot to go on from");
         }
     }
@@ -155,10 +160,21 @@ impl Show<'_> {
         log.events[self.events..][..events].iter().try_for_each(|event| self.showing.event(event))?;
         log.dialog[self.dialog..][..dialog].iter().try_for_each(|said| self.showing.dialog(said))?;
         (self.events, self.dialog) = (self.events + events, self.dialog + dialog);
+        self.answers(entry.tick)?;
         match &mut self.eyes {
             Some(eyes) if entry.tick % eyes.every_ticks == 0 => eyes.look(&self.replayer, &mut self.showing),
             _ => Ok(()),
         }
+    }
+}
+
+impl Show<'_> {
+    /// Tells what was answered until a tick.
+    fn answers(&mut self, tick: u64) -> anyhow::Result<()> {
+        let until = self.log.answers[self.answers..].iter().take_while(|answer| answer.tick <= tick).count();
+        self.log.answers[self.answers..][..until].iter().try_for_each(|answer| self.showing.answer(answer))?;
+        self.answers += until;
+        Ok(())
     }
 }
 

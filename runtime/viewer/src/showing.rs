@@ -7,7 +7,7 @@ use cohabit_bus::{
     message::{FrameView, StateParts, StateView},
 };
 use cohabit_engine::SessionPlan;
-use cohabit_record::{DialogEntry, EventEntry, InputEntry};
+use cohabit_record::{AnswerEntry, DialogEntry, EventEntry, InputEntry};
 use cohabit_render::MeshLibrary;
 use re_sdk_types::{
     archetypes::{TextDocument, TextLog},
@@ -88,6 +88,11 @@ impl Showing {
     /// Something was said.
     pub fn dialog(&mut self, entry: &DialogEntry) -> anyhow::Result<()> {
         if self.talk.hear(&self.recording, entry)? { self.mark() } else { Ok(()) }
+    }
+
+    /// Somebody answered a question of a questionnaire.
+    pub fn answer(&self, entry: &AnswerEntry) -> anyhow::Result<()> {
+        Talk::answered(&self.recording, entry)
     }
 
     /// A camera saw this.

@@ -1,13 +1,16 @@
 //! What was said, how long answers took, and what the robot asks about.
 
 use cohabit_cdf::{Action, ObjectId};
-use cohabit_record::DialogEntry;
+use cohabit_record::{AnswerEntry, DialogEntry};
 use re_sdk_types::{
     archetypes::{Scalars, SeriesLines, SeriesPoints, StateChange, TextLog},
-    components::TextLogLevel,
+    components::{MarkerShape, TextLogLevel},
 };
 
-use crate::{deeds::colored, recording::Recording};
+use crate::{
+    deeds::colored,
+    recording::{Recording, Side},
+};
 
 /// Where each kind of speech goes, how it is marked, and its colour.
 struct Voice {
@@ -23,13 +26,41 @@ const VOICES: [Voice; 3] = [
     Voice { kind: "Question", path: "dialog/robot", level: "QUESTION", color: [255, 196, 61] },
 ];
 
-/// What is measured of a turn, in the order of its stamps after the first.
-const LATENCIES: [(&str, &str, [u8; 3]); 4] = [
-    ("latency/understood", "understood", [125, 170, 255]),
-    ("latency/moved", "first motion", [140, 215, 150]),
-    ("latency/framed", "first changed frame", [255, 196, 61]),
-    ("latency/shown", "shown by a page", [236, 64, 122]),
+/// What is measured of a turn.
+struct Measure {
+    /// The kind of entry that has its stamps.
+    kind: &'static str,
+    /// From which of them to which.
+    between: [usize; 2],
+    path: &'static str,
+    name: &'static str,
+    color: [u8; 3],
+}
+
+const MEASURES: [Measure; 6] = [
+    Measure::new("Spoken", [1, 2], "latency/heard", "words, after speech", [190, 160, 255]),
+    Measure::new("Latency", [0, 1], "latency/understood", "understood", [125, 170, 255]),
+    Measure::new("Latency", [0, 2], "latency/moved", "first motion", [140, 215, 150]),
+    Measure::new("Latency", [0, 3], "latency/framed", "first changed frame", [255, 196, 61]),
+    Measure::new("Latency", [0, 4], "latency/shown", "shown by a page", [236, 64, 122]),
+    Measure::new("Spoken", [3, 4], "latency/sounded", "first sound, after understanding", [120, 220, 220]),
 ];
+
+impl Measure {
+    const fn new(
+        kind: &'static str,
+        between: [usize; 2],
+        path: &'static str,
+        name: &'static str,
+        color: [u8; 3],
+    ) -> Self {
+        Self { kind, between, path, name, color }
+    }
+}
+
+/// The colours of what speech sounded like, and of answers to questionnaires.
+const HEARD: [u8; 3] = [150, 150, 150];
+const ANSWERED: [u8; 3] = [190, 160, 255];
 
 /// What the robot is about, in its lane.
 const LANE: &str = "states/conversation";
@@ -43,20 +74,18 @@ pub struct Talk {
     /// What was last said, if that was a question: its turn.
     question: Option<u64>,
     asked: Vec<ObjectId>,
-    /// Latencies told already, by turn.
-    told: (u64, [bool; 4]),
+    /// What was measured of the newest turn, and told.
+    told: (u64, [bool; MEASURES.len()]),
+    /// The newest turn of which it was told what it sounded like.
+    heard: u64,
 }
 
 impl Talk {
     /// A conversation in which nothing was said yet; tells how its plots look.
     pub fn new(recording: &Recording) -> anyhow::Result<Self> {
-        for (path, name, color) in LATENCIES {
-            recording
-                .log_always(path, &SeriesLines::new().with_names([name]).with_colors([color]).with_widths([1.5]))?;
-            recording.log_always(
-                path,
-                &SeriesPoints::new().with_names([name]).with_colors([color]).with_marker_sizes([3.0]),
-            )?;
+        for Measure { path, name, color, .. } in MEASURES {
+            recording.log_line(path, name, color, SeriesLines::new().with_widths([1.5]))?;
+            recording.log_always(path, &points(recording.side, name, color))?;
         }
         recording.log_always(LANE, &colored(&ABOUT))?;
         Ok(Self::default())
@@ -93,6 +122,10 @@ impl Talk {
             }
             "Reply" | "PlanEnded" if self.question.is_none() => recording.log(LANE, &StateChange::single(""))?,
             "Latency" => self.measure(recording, entry)?,
+            "Spoken" => {
+                self.sounded(recording, entry)?;
+                self.measure(recording, entry)?;
+            }
             _ => {}
         }
         Ok(self.asked.len() != before)
@@ -100,17 +133,46 @@ impl Talk {
 
     fn measure(&mut self, recording: &Recording, entry: &DialogEntry) -> anyhow::Result<()> {
         if self.told.0 != entry.turn {
-            self.told = (entry.turn, [false; 4]);
+            self.told = (entry.turn, [false; MEASURES.len()]);
         }
-        let [received, later @ ..] = entry.stamps;
-        for (((path, ..), stamp), told) in LATENCIES.into_iter().zip(later).zip(&mut self.told.1) {
-            if stamp != 0 && !*told {
+        for (measure, told) in MEASURES.iter().zip(&mut self.told.1).filter(|(measure, _)| measure.kind == entry.kind) {
+            let [from, to] = measure.between.map(|stamp| entry.stamps[stamp]);
+            if from != 0 && to != 0 && !*told {
                 *told = true;
-                recording.log(path, &Scalars::single(stamp.saturating_sub(received) as f64 * 1e-6))?;
+                recording.log(measure.path, &Scalars::single(to.saturating_sub(from) as f64 * 1e-6))?;
             }
         }
         Ok(())
     }
+
+    /// Tells what a spoken turn sounded like, once.
+    fn sounded(&mut self, recording: &Recording, entry: &DialogEntry) -> anyhow::Result<()> {
+        if self.heard == entry.turn || entry.text.is_empty() {
+            return Ok(());
+        }
+        self.heard = entry.turn;
+        let text = TextLog::new(format!("“{}”", entry.text)).with_level("HEARD").with_color(HEARD);
+        recording.log("dialog/heard", &text)
+    }
+
+    /// Tells what a person answered to a question of a questionnaire.
+    pub fn answered(recording: &Recording, entry: &AnswerEntry) -> anyhow::Result<()> {
+        let AnswerEntry { questionnaire, item, question, text, value, .. } = entry;
+        let answer = match value {
+            Some(value) if text.is_empty() => value.to_string(),
+            Some(value) => format!("{value}: {text}"),
+            None => text.clone(),
+        };
+        let said = TextLog::new(format!("{questionnaire} {item}. {question} — {answer}"));
+        recording.log("dialog/questionnaires", &said.with_level("ANSWER").with_color(ANSWERED))
+    }
+}
+
+/// The points of a plot, which two sessions have in different shapes.
+fn points(side: Side, name: &str, color: [u8; 3]) -> SeriesPoints {
+    let shape = if side == Side::B { MarkerShape::Diamond } else { MarkerShape::Circle };
+    let points = SeriesPoints::new().with_names([side.name(name)]).with_colors([side.color(color)]);
+    points.with_markers([shape]).with_marker_sizes([3.0])
 }
 
 const fn is_pointing(action: &Action) -> bool {
