@@ -49,6 +49,14 @@ impl Browser {
         Self::start_with(&["--use-fake-device-for-media-stream", "--use-fake-ui-for-media-stream", &sound, gestures])
     }
 
+    /// The same, which trusts any certificate.
+    ///
+    /// # Errors
+    /// When one is there but does not start.
+    pub fn start_trusting() -> anyhow::Result<Option<Self>> {
+        Self::start_with(&["--ignore-certificate-errors"])
+    }
+
     fn start_with(more: &[&str]) -> anyhow::Result<Option<Self>> {
         let Some(program) = find() else {
             eprintln!("skipped: there is no browser here ({})", NAMES.join(", "));

@@ -88,8 +88,8 @@ impl Play {
     /// # Errors
     /// When it ends, or says nothing for too long.
     pub fn wait_until_ready(&mut self) -> anyhow::Result<()> {
-        let line = self.wait_for_line("http://")?;
-        let start = line.find("http://").context("an address")?;
+        let line = self.wait_for_line("Open http")?;
+        let start = line.find("http").context("an address")?;
         line[start..].split_whitespace().next().context("an address")?.clone_into(&mut self.address);
         Ok(())
     }
@@ -97,7 +97,8 @@ impl Play {
     /// The `host:port` of the page.
     #[must_use]
     pub fn authority(&self) -> &str {
-        self.address.trim_start_matches("http://").split('/').next().unwrap_or_default()
+        let (_, behind) = self.address.split_once("://").unwrap_or_default();
+        behind.split('/').next().unwrap_or_default()
     }
 
     /// Waits for a line of its output that contains `part`.

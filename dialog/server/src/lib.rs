@@ -21,6 +21,7 @@ mod screening;
 mod spoken;
 mod survey;
 mod talk;
+mod tls;
 mod token;
 mod view;
 mod viewer;
@@ -53,6 +54,7 @@ pub use journal::begin_after;
 pub use known::Knowledge;
 pub use questionnaire::{Questionnaire, QuestionnaireError};
 pub use screening::{ScreeningConfig, screen};
+pub use tls::{Identity, TlsError};
 pub use voice::VoiceConfig;
 
 use crate::{
@@ -73,6 +75,8 @@ pub struct DialogConfig {
     pub session: String,
     /// Where the page is served; port 0 takes any that is free.
     pub listen: SocketAddr,
+    /// What the page is served with by HTTPS, if it is to be.
+    pub identity: Option<Identity>,
     /// Where what is said is written down, for the service that takes a dead one's place; nowhere, if absent.
     pub journal: Option<PathBuf>,
     /// The session's cameras.
@@ -181,11 +185,12 @@ pub fn serve(
             let shown = move |shown| talk.note_frame(shown);
             workers.push(scope.spawn(move || until_ended(ended, || frames::relay(bus, view, &shown, over))));
         }
-        ready(&token::page_address(address, token.as_deref()));
+        ready(&token::page_address(address, config.identity.is_some(), token.as_deref()));
         let (hub, token) = (Arc::clone(&hub), token.map(Arc::from));
         let (survey, voice) = (Arc::clone(&survey), Arc::clone(&voice));
         let host = Host::Live(Live { talk: Arc::clone(&talk), drivers, survey, voice });
-        let served = web::serve(listener, Service { hub, host, token }, &over).map_err(DialogError::Serve);
+        let served = web::serve(listener, Service { hub, host, token, identity: config.identity }, &over)
+            .map_err(DialogError::Serve);
         ended.store(true, Ordering::Relaxed);
         workers
             .into_iter()

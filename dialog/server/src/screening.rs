@@ -110,9 +110,9 @@ pub fn screen(
             let (over, ended) = (&over, &ended);
             workers.push(scope.spawn(move || until_ended(ended, || frames::relay(bus, view, &|_| Ok(()), over))));
         }
-        ready(&token::page_address(address, token.as_deref()));
+        ready(&token::page_address(address, false, token.as_deref()));
         let host = Host::Recorded(Arc::clone(&screening));
-        let service = Service { hub: Arc::clone(&hub), host, token: token.map(Arc::from) };
+        let service = Service { hub: Arc::clone(&hub), host, token: token.map(Arc::from), identity: None };
         let served = web::serve(listener, service, &over).map_err(DialogError::Serve);
         ended.store(true, Ordering::Relaxed);
         workers

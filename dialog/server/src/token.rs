@@ -1,6 +1,12 @@
 //! The word that lets a page from another machine in.
 
-use std::{fmt::Write as _, fs::File, io, io::Read as _, net::SocketAddr};
+use std::{
+    fmt::Write as _,
+    fs::File,
+    io,
+    io::Read as _,
+    net::{SocketAddr, UdpSocket},
+};
 
 /// A fresh token where `address` can be reached from other machines; none on loopback.
 pub fn for_address(address: SocketAddr) -> io::Result<Option<String>> {
@@ -16,11 +22,29 @@ pub fn for_address(address: SocketAddr) -> io::Result<Option<String>> {
 }
 
 /// The address to open.
-pub fn page_address(address: SocketAddr, token: Option<&str>) -> String {
+pub fn page_address(address: SocketAddr, encrypted: bool, token: Option<&str>) -> String {
+    let scheme = if encrypted { "https" } else { "http" };
+    let address = reachable(address);
     match token {
-        Some(token) => format!("http://{address}/?token={token}"),
-        None => format!("http://{address}/"),
+        Some(token) => format!("{scheme}://{address}/?token={token}"),
+        None => format!("{scheme}://{address}/"),
     }
+}
+
+/// The address at which others reach what listens at `address`, where that is any of this machine's.
+fn reachable(address: SocketAddr) -> SocketAddr {
+    let own = || {
+        // Nothing is sent: the address is one for examples, to which no way leads but the usual one.
+        let (here, there) = match address {
+            SocketAddr::V4(_) => ("0.0.0.0:0", "192.0.2.1:9"),
+            SocketAddr::V6(_) => ("[::]:0", "[2001:db8::1]:9"),
+        };
+        let socket = UdpSocket::bind(here).ok()?;
+        socket.connect(there).ok()?;
+        socket.local_addr().ok()
+    };
+    let ip = if address.ip().is_unspecified() { own().map(|own| own.ip()) } else { None };
+    SocketAddr::new(ip.unwrap_or_else(|| address.ip()), address.port())
 }
 
 /// Whether `given` is the token, compared in constant time.

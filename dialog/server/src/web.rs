@@ -11,8 +11,15 @@ use axum::{
 };
 
 use crate::{
-    driving::Drivers, hub::Hub, limits::LONGEST_MESSAGE, screening::Screening, survey::Survey, talk::Talk, token,
-    viewer, visit, voice::Voice,
+    driving::Drivers,
+    hub::Hub,
+    limits::LONGEST_MESSAGE,
+    screening::Screening,
+    survey::Survey,
+    talk::Talk,
+    tls::{Encrypted, Identity},
+    token, viewer, visit,
+    voice::Voice,
 };
 
 const INDEX: &str = include_str!("../../web/index.html");
@@ -46,6 +53,8 @@ pub struct Service {
     pub host: Host,
     /// What lets a page in.
     pub token: Option<Arc<str>>,
+    /// What it is served with by HTTPS, if it is.
+    pub identity: Option<Identity>,
 }
 
 /// What pages see: a session that goes on, or one that was recorded.
@@ -72,6 +81,7 @@ pub struct Live {
 
 /// Serves on `listener` until `over`.
 pub fn serve(listener: TcpListener, service: Service, over: &dyn Fn() -> bool) -> io::Result<()> {
+    let identity = service.identity.clone();
     let files = FILES
         .into_iter()
         .fold(Router::new(), |router, (path, kind, text)| router.route(path, get(move || file(kind, text))));
@@ -85,8 +95,14 @@ pub fn serve(listener: TcpListener, service: Service, over: &dyn Fn() -> bool) -
     let served = runtime.block_on(async {
         listener.set_nonblocking(true)?;
         let listener = tokio::net::TcpListener::from_std(listener)?;
+        let served = async {
+            match identity {
+                Some(identity) => axum::serve(Encrypted::new(listener, &identity)?, router).await,
+                None => axum::serve(listener, router).await,
+            }
+        };
         tokio::select! {
-            served = axum::serve(listener, router) => served,
+            served = served => served,
             () = until(over) => Ok(()),
         }
     });

@@ -90,6 +90,9 @@ impl Play {
         self.rendering.check()?;
         self.watching.check()?;
         let questionnaires = self.listening.questionnaires()?;
+        if let Some(notice) = self.listening.notice(self.listening.identity()?.as_ref()) {
+            println!("{notice}");
+        }
         for name in Session::wipe_dead() {
             println!("cleaned up after session {name}, which was not ended");
         }

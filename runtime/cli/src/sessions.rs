@@ -24,9 +24,14 @@ pub fn time() -> String {
 
 /// The folder for sessions in the user's data folder.
 pub fn usual_folder() -> PathBuf {
+    data_folder().join("sessions")
+}
+
+/// Where this user's data of this program is.
+pub fn data_folder() -> PathBuf {
     let home = || std::env::var_os("HOME").map(|home| Path::new(&home).join(".local/share"));
     let base = std::env::var_os("XDG_DATA_HOME").map(PathBuf::from).filter(|path| path.is_absolute());
-    base.or_else(home).unwrap_or_else(std::env::temp_dir).join("cohabit/sessions")
+    base.or_else(home).unwrap_or_else(std::env::temp_dir).join("cohabit")
 }
 
 /// The session of that name, or the one that runs.

@@ -77,7 +77,8 @@ impl Role {
         let questionnaires = listening.questionnaires.iter().map(|name| format!("--questionnaire={name}"));
         let arguments = arguments.map(str::to_owned).into_iter().chain(names).chain(robots).chain(questionnaires);
         let arguments = arguments.chain(listening.voice.arguments());
-        Self { name: "dialog", arguments: arguments.map(OsString::from).collect() }
+        let tls = listening.tls_arguments();
+        Self { name: "dialog", arguments: arguments.map(OsString::from).chain(tls).collect() }
     }
 
     /// The order in which roles are ended: who speaks first, who writes down last.
