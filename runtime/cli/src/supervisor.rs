@@ -113,22 +113,30 @@ impl Running {
 pub struct Supervisor {
     session: String,
     running: Vec<Running>,
+    told: Arc<Told>,
+}
+
+/// When the session was started, and what its user was told since.
+struct Told {
     began: Instant,
+    page: AtomicBool,
+    frame: AtomicBool,
 }
 
 impl Supervisor {
     /// Starts all roles.
     pub fn start(session: &str, roles: impl IntoIterator<Item = Role>, began: Instant) -> anyhow::Result<Self> {
-        let mut supervisor = Self { session: session.to_owned(), running: Vec::new(), began };
+        let told = Told { began, page: AtomicBool::new(false), frame: AtomicBool::new(false) };
+        let mut supervisor = Self { session: session.to_owned(), running: Vec::new(), told: Arc::new(told) };
         for role in roles {
             let records = Arc::default();
-            let child = supervisor.spawn(&role, &records, true)?;
+            let child = supervisor.spawn(&role, &records)?;
             supervisor.running.push(Running { role, child, restarts: Vec::new(), records });
         }
         Ok(supervisor)
     }
 
-    fn spawn(&self, role: &Role, records: &Arc<AtomicBool>, is_first: bool) -> anyhow::Result<Child> {
+    fn spawn(&self, role: &Role, records: &Arc<AtomicBool>) -> anyhow::Result<Child> {
         let mut child = Command::new(THIS_PROGRAM)
             .arg0(std::env::args_os().next().unwrap_or_else(|| "cohabit".into()))
             .arg(role.name)
@@ -147,8 +155,8 @@ impl Supervisor {
             let _ = setpriority_process(Some(pid), AGENTS_GIVE_WAY);
         }
         if let Some(out) = child.stdout.take() {
-            let (began, records) = (is_first.then_some(self.began), Arc::clone(records));
-            thread::spawn(move || relay(out, began, &records));
+            let (told, records) = (Arc::clone(&self.told), Arc::clone(records));
+            thread::spawn(move || relay(out, &told, &records));
         }
         Ok(child)
     }
@@ -177,7 +185,7 @@ impl Supervisor {
             }
             eprintln!("cohabit: the {name} process ended ({}); starting it again", describe(status));
             let records = Arc::default();
-            let child = self.spawn(&self.running[index].role, &records, false)?;
+            let child = self.spawn(&self.running[index].role, &records)?;
             let running = &mut self.running[index];
             (running.child, running.records) = (child, records);
             running.restarts.push(Instant::now());
@@ -243,21 +251,23 @@ fn describe(status: ExitStatus) -> String {
     }
 }
 
-/// Tells the user what a process tells its supervisor; `began` is when the session was started, if the process was
-/// started with it. Notes whether it records.
-fn relay(out: ChildStdout, began: Option<Instant>, records: &AtomicBool) {
+/// Tells the user what a process tells its supervisor. Notes whether it records.
+fn relay(out: ChildStdout, told: &Told, records: &AtomicBool) {
     for line in BufReader::new(out).lines().map_while(Result::ok) {
-        let seconds = began.map(|began| began.elapsed().as_secs_f64());
-        match (line.split_once(' '), seconds) {
-            (Some(("page", address)), Some(seconds)) => {
-                println!("Open {address}  (ready after {seconds:.2} s; Ctrl-C ends the session)")
+        let seconds = told.began.elapsed().as_secs_f64();
+        match line.split_once(' ') {
+            Some(("page", address)) if told.page.swap(true, Ordering::Relaxed) => {
+                println!("The page is back at {address}");
             }
-            (Some(("page", address)), None) => println!("The page is back at {address}"),
-            (Some(("recording", _)), _) => records.store(true, Ordering::Relaxed),
-            (None, Some(seconds)) if line == "shown" => {
-                println!("First frame on the page {seconds:.2} s after the start");
+            Some(("page", address)) => {
+                println!("Open {address}  (ready after {seconds:.2} s; Ctrl-C ends the session)");
             }
-            (None, None) if line == "shown" => {}
+            Some(("recording", _)) => records.store(true, Ordering::Relaxed),
+            None if line == "shown" => {
+                if !told.frame.swap(true, Ordering::Relaxed) {
+                    println!("First frame on the page {seconds:.2} s after the start");
+                }
+            }
             _ => println!("{line}"),
         }
     }
