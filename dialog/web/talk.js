@@ -39,6 +39,7 @@ function speakerOf({ from, body, visitor: by }) {
 export function clearChat() {
   log.setAttribute("aria-busy", "true");
   log.replaceChildren();
+  byId("trail").replaceChildren();
   lastSpeaker = "";
   byId("chips").hidden = false;
 }
@@ -150,9 +151,24 @@ const MOST_STEPS = 24;
 const doing = new Map();
 
 export function takeProgress(progress) {
+  endStep(progress.body, "done");
   doing.delete(progress.body);
   doing.set(progress.body, progress);
   showDoing(progress);
+}
+
+/** Older steps are forgotten. */
+const MOST_PAST_STEPS = 20;
+
+/** Adds what a robot was about to the trail of what was done. */
+function endStep(body, status) {
+  const progress = doing.get(body);
+  if (!progress) return;
+  const name = robotNames.get(body);
+  const step = element("li", status === "done" ? "done" : "undone", name ? `${name}: ${progress.text}` : capitalised(progress.text));
+  const trail = byId("trail");
+  trail.prepend(step);
+  while (trail.childElementCount > MOST_PAST_STEPS) trail.lastElementChild.remove();
 }
 
 function showDoing({ body, step, steps, text }) {
@@ -166,8 +182,9 @@ function showDoing({ body, step, steps, text }) {
   byId("doing-steps").replaceChildren(...marks);
 }
 
-export function takeTurn({ body, turn, ended }) {
+export function takeTurn({ body, turn, ended, status }) {
   if (!ended || turn < (doing.get(body)?.turn ?? 0)) return;
+  endStep(body, status);
   doing.delete(body);
   const other = [...doing.values()].at(-1);
   if (other) showDoing(other);
