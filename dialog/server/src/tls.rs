@@ -1,7 +1,6 @@
 //! The page by HTTPS: to a page beyond this machine, browsers give a microphone only so.
 
 use std::{
-    fmt::Write as _,
     fs,
     io::{self, Write as _},
     net::SocketAddr,
@@ -119,7 +118,8 @@ impl Identity {
         let (certificate, key) = (folder.join(CERTIFICATE), folder.join(KEY));
         let made = fs::metadata(&certificate).and_then(|data| data.modified());
         let age = made.ok().and_then(|made| SystemTime::now().duration_since(made).ok());
-        if !age.is_some_and(|age| age < USED_FOR) || !key.exists() {
+        let is_fresh = age.is_some_and(|age| age < USED_FOR);
+        if !(is_fresh && key.exists()) {
             make(folder, names)?;
         }
         Self::read(&certificate, &key)
@@ -155,24 +155,11 @@ fn keep(path: &Path, text: &str) -> Result<(), TlsError> {
     written.map_err(|source| TlsError::File { path: path.to_owned(), source })
 }
 
-fn fingerprint(certificate: &CertificateDer<'_>) -> String {
-    let digest = TLS13_AES_128_GCM_SHA256.suite_hash(certificate);
-    digest.iter().enumerate().fold(String::new(), |mut text, (place, byte)| {
-        let colon = if place == 0 { "" } else { ":" };
-        let _ = write!(text, "{colon}{byte:02X}");
-        text
-    })
-}
-
-/// What can be hashed with the hash of a suite: SHA-256 comes with TLS.
-trait SuiteHash {
-    fn suite_hash(&self, bytes: &[u8]) -> Vec<u8>;
-}
-
-impl SuiteHash for rustls::SupportedCipherSuite {
-    fn suite_hash(&self, bytes: &[u8]) -> Vec<u8> {
-        self.tls13().map(|suite| suite.common.hash_provider.hash(bytes).as_ref().to_vec()).unwrap_or_default()
-    }
+/// By the hash of a suite: SHA-256 comes with TLS.
+fn fingerprint(certificate: &[u8]) -> String {
+    let digest = TLS13_AES_128_GCM_SHA256.tls13().map(|suite| suite.common.hash_provider.hash(certificate));
+    let bytes: &[u8] = digest.as_ref().map(AsRef::as_ref).unwrap_or_default();
+    bytes.iter().map(|byte| format!("{byte:02X}")).collect::<Vec<_>>().join(":")
 }
 
 /// Clients who have agreed on keys. Those who are about to keep nobody else waiting.
