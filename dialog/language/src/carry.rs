@@ -226,7 +226,13 @@ impl Planner<'_> {
     fn find_target(&self, phrase: &Phrase, goal: &Goal, object: ObjectId, intent: Intent) -> Result<ObjectId, Fault> {
         let is_beside = matches!(goal.preposition, Preposition::Near | Preposition::LeftOf | Preposition::RightOf);
         let affordances: &[Property] = if is_beside { &[] } else { TAKES };
-        let target = self.find_one(phrase, &Want::place(intent, affordances, Some(object)), Some(goal.role))?;
+        // `on the counter` is its top, rather than one with doors.
+        let open = match goal.preposition {
+            Preposition::On => self.classes(|class| !self.catalog.class(class).has(Property::Openable)),
+            _ => Vec::new(),
+        };
+        let want = Want { classes: &open, ..Want::place(intent, affordances, Some(object)) };
+        let target = self.find_one(phrase, &want, Some(goal.role))?;
         let parent = self.scene.object(target).and_then(|target| target.parent);
         Ok(parent.filter(|_| is_beside).unwrap_or(target))
     }

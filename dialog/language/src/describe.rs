@@ -20,10 +20,18 @@ const TELLING: [(StateFlag, &str, &str); 6] = [
 /// States by which people see a difference before anybody says anything.
 const VISIBLE: [StateFlag; 4] = [StateFlag::Broken, StateFlag::Dirty, StateFlag::Embiggenated, StateFlag::Cereal];
 
-/// The plain name of a class: its readable name in lower case, `TAM` and such kept.
+/// The plain name of a class: its readable name in lower case, `TAM` and such kept; `table round small` in the order in which
+/// people say that.
 pub(crate) fn name(catalog: &Catalog, class: ClassId) -> String {
     let class = catalog.class(class);
     let name = if class.name.is_empty() { &class.id } else { &class.name };
+    let sorted = |name: &str| {
+        let mut words: Vec<_> = name.split_whitespace().map(str::to_lowercase).collect();
+        words.sort_unstable();
+        words
+    };
+    let is_it = |said: &&String| said.len() == name.len() && sorted(said) == sorted(name);
+    let name = class.words.iter().find(is_it).unwrap_or(name);
     let lower = |word: &str| {
         let is_acronym = word.chars().filter(|character| character.is_uppercase()).count() > 1;
         if is_acronym { word.to_owned() } else { word.to_lowercase() }
