@@ -4,6 +4,7 @@
 mod arena;
 mod bad_input;
 mod browser;
+mod check;
 mod determinism;
 mod doctor;
 mod driving;
