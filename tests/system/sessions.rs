@@ -41,7 +41,10 @@ fn a_supervisor_killed_takes_all_with_it_and_the_next_one_cleans_up() {
     let play = Play::start(COHABIT, &[]).unwrap();
     let session = play.session.clone();
     let copy = std::env::temp_dir().join(format!("{session}-killed.mcap"));
-    std::fs::hard_link(&play.log, &copy).unwrap();
+    // The page may be served before the recorder has begun.
+    while std::fs::hard_link(&play.log, &copy).is_err() {
+        std::thread::yield_now();
+    }
     kill_process(Pid::from_raw(i32::try_from(play.pid()).unwrap()).unwrap(), Signal::KILL).unwrap();
     while play.left_behind().iter().any(|line| line.contains("--session")) {
         std::thread::yield_now();
