@@ -115,6 +115,8 @@ impl Plan {
             }
             Moment::Working(after) => {
                 play.wait_until_ready()?;
+                // The page may be served before the recorder has begun.
+                wait_until("the log has begun", || fs::metadata(&play.log).is_ok_and(|log| log.len() > 0))?;
                 let witness = Witness::new(&play.session)?;
                 let mut person = Person::at(play.authority())?;
                 person.ask_for_work()?;
