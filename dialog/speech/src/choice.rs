@@ -59,6 +59,8 @@ struct Tried<D> {
     value: f32,
     /// Whether it would be asked about by itself.
     is_unsure: bool,
+    /// Whether it is what was heard without bias, of words that are all known.
+    is_plainly_heard: bool,
 }
 
 /// The reading that is meant: the likeliest, where what makes less sense must be likelier. `None` if nobody seems to have said
@@ -77,7 +79,8 @@ pub fn choose<D: PartialEq>(heard: &Recognition, mut mean: impl FnMut(&str) -> M
             let idle = if meaning.deed.is_none() { IDLE } else { 0.0 };
             let less = (LESS[meaning.sense as usize] + strange).min(LESS[0]) + idle;
             let is_unsure = reading.strange > 0 || reading.confidence < SURE;
-            tried.push(Tried { text, meaning, value: reading.score - less, is_unsure });
+            let is_plainly_heard = reading.strange == 0 && reading.text == heard.raw;
+            tried.push(Tried { text, meaning, value: reading.score - less, is_unsure, is_plainly_heard });
         }
     }
     let best =
@@ -85,13 +88,18 @@ pub fn choose<D: PartialEq>(heard: &Recognition, mut mean: impl FnMut(&str) -> M
     let Tried { value, is_unsure, .. } = tried[best];
     let is_other = |other: &Tried<D>| other.meaning.deed.is_some() && other.meaning.deed != tried[best].meaning.deed;
     let is_near = tried.iter().any(|other| other.value >= value - NEAR && is_other(other));
+    // What was heard without bias makes sense as well, and is something else.
+    let is_bent = tried.iter().any(|other| {
+        let makes_sense = other.is_plainly_heard && other.meaning.sense >= Sense::Asks;
+        makes_sense && other.meaning.deed != tried[best].meaning.deed && !tried[best].is_plainly_heard
+    });
     let Tried { text, meaning, .. } = tried.swap_remove(best);
     if meaning.sense == Sense::None {
         // What means nothing is told as it sounded.
         let text = if heard.raw.is_empty() { text } else { heard.raw.clone() };
         return (heard.confidence() >= NOISE).then_some(Choice { text, meaning, is_doubtful: false });
     }
-    let is_doubtful = meaning.deed.is_some() && (is_unsure || is_near);
+    let is_doubtful = meaning.deed.is_some() && (is_unsure || is_near || is_bent);
     Some(Choice { text, meaning, is_doubtful })
 }
 
@@ -154,6 +162,10 @@ mod tests {
         check(&[("Turn right.", -5.0, 0.9, 0), ("Turn left.", -6.5, 0.9, 0)], "Turn right.", true);
         check(&[("Turn right.", -5.0, 0.9, 0), ("Turn left.", -7.5, 0.9, 0)], "Turn right.", false);
         check(&[("Turn right.", -5.0, 0.9, 0), ("Turned right.", -5.5, 0.9, 0)], "Turn right.", false);
+        check(&[("Turn right.", -5.0, 0.9, 0), ("Turn left.", -9.5, 0.9, 0)], "Turn right.", false);
+        let bent = [("Turn right.", -5.0, 0.9, 0), ("Turn left.", -9.5, 0.9, 0)];
+        let recognition = Recognition { raw: "Turn left.".to_owned(), ..heard(&bent) };
+        assert_eq!(choose(&recognition, mean).map(|choice| choice.is_doubtful), Some(true));
         // Not what does nothing.
         check(&[("Open that.", -5.0, 0.4, 0)], "Open that.", false);
     }

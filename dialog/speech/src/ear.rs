@@ -4,6 +4,9 @@ use std::borrow::Cow;
 
 use crate::{Bias, Listener, RATE, Recognition, Recognizer, SpeechError, Turn, Turns, Vad};
 
+/// Nothing joins what is longer, samples: all of it would be recognised again.
+const LONGEST_JOINED: usize = 12 * RATE as usize;
+
 /// What was heard.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Heard {
@@ -185,7 +188,8 @@ impl Ear {
                 };
                 let (told, joins) = (self.listener.position(), before.is_some());
                 let began = before.map_or(began, |before| before.began);
-                if self.joins > 0 && !is_cut && !recognition.best().is_empty() {
+                let may_go_on = samples.len() <= LONGEST_JOINED && !is_cut && !recognition.best().is_empty();
+                if self.joins > 0 && may_go_on {
                     self.last = Some(Last { samples: samples.clone(), began, told });
                 }
                 Ok(Some(Heard::Said(Utterance { recognition, samples, began, ended, told, is_cut, joins })))

@@ -53,6 +53,8 @@ impl Default for Turns {
 /// Windows of silence after which what was said so far is given, if it is no longer than this, s.
 const SOON: usize = 2;
 const SHORT_S: f32 = 2.0;
+/// It is not asked of longer turns whether they are complete, s: answers would take as long as they are.
+const ASKED_S: f32 = 15.0;
 /// Of a long turn, what was said so far is given whenever a quarter more was said: telling it costs as much as it is long.
 const PARTIAL_SHARE: usize = 4;
 
@@ -267,7 +269,8 @@ impl Listener {
             return Ok(());
         }
         if silent >= samples(self.turns.asks_after_s) && turn.is_complete.is_none() {
-            turn.is_complete = Some(is_complete(&turn.samples)?);
+            let is_asked = turn.samples.len() <= samples(ASKED_S);
+            turn.is_complete = Some(is_asked && is_complete(&turn.samples)?);
         }
         let is_complete = turn.is_complete == Some(true);
         let ends_after_s = if is_complete { self.turns.complete_after_s } else { self.turns.incomplete_after_s };
@@ -373,6 +376,20 @@ mod tests {
             })
             .unwrap();
         assert_eq!(asked, 2);
+    }
+
+    #[test]
+    fn a_long_story_is_not_asked_about_in_each_of_its_pauses() {
+        let mut asked = 0;
+        let mut listener = Listener::new(Box::new(Loudness), Turns::default());
+        let story = sound(&[(SPEECH, 2.0), (0.0, 0.4)].repeat(10));
+        listener
+            .push(&story, &mut |_| {
+                asked += 1;
+                Ok(false)
+            })
+            .unwrap();
+        assert_eq!(asked, 6);
     }
 
     #[test]

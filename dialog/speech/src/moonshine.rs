@@ -35,6 +35,8 @@ const TOKENS_EACH_SECOND: f32 = 6.5;
 /// How many spellings are followed at once, and how many tokens each may go on with.
 const BEAM: usize = 5;
 const BRANCHES: usize = 16;
+/// What is longer is no request, and spelt greedily alone: a beam takes six times as long.
+const REQUEST: usize = 12 * RATE as usize;
 /// What fits the sound less well is listened to once more, with so much silence around it.
 const CLEAR: f32 = 0.6;
 const AROUND: usize = RATE as usize / 5;
@@ -126,10 +128,11 @@ impl Moonshine {
     /// What is said in a sound that is short enough. Where that is in doubt, it is listened to once more, with silence around it:
     /// the model is then lost at other places.
     fn listen(&mut self, samples: &[f32]) -> ort::Result<Recognition> {
-        let spelt = self.spell(samples, self.model.is_some())?;
+        let is_short = self.model.is_some() && samples.len() <= REQUEST;
+        let spelt = self.spell(samples, is_short)?;
         let heard = self.recognition(&spelt);
         let is_doubtful = |first: &Hypothesis| first.strange > 0 || first.confidence < CLEAR;
-        if self.model.is_none() || !heard.hypotheses.first().is_some_and(is_doubtful) {
+        if !is_short || !heard.hypotheses.first().is_some_and(is_doubtful) {
             return Ok(heard);
         }
         let spelt = self.spell(&[&[0.0; AROUND], samples, &[0.0; AROUND]].concat(), true)?;

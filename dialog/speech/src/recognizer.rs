@@ -2,6 +2,9 @@
 
 use crate::{Bias, SpeechError};
 
+/// A reading is much less likely than another if the logarithms of how likely they are differ by more than this.
+const NEAR: f32 = 4.0;
+
 /// One reading of what was said.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hypothesis {
@@ -35,6 +38,13 @@ impl Recognition {
     #[must_use]
     pub fn confidence(&self) -> f32 {
         self.hypotheses.first().map_or(0.0, |hypothesis| hypothesis.confidence)
+    }
+
+    /// All that may well have been said: the readings that are not much less likely than the first, and what was heard without bias.
+    pub fn likely(&self) -> impl Iterator<Item = &str> {
+        let least = self.hypotheses.first().map_or(0.0, |first| first.score - NEAR);
+        let near = self.hypotheses.iter().filter(move |reading| reading.score >= least);
+        near.map(|reading| reading.text.as_str()).chain([self.raw.as_str()])
     }
 
     /// One reading, of which nothing else is known.

@@ -313,9 +313,8 @@ impl Listening<'_> {
         }
         let mouth = &self.at.voice.mouth;
         let own = mouth.is_echo(recognition.best(), began_nanos) || mouth.is_echo(&recognition.raw, began_nanos);
-        let heard = recognition.hypotheses.iter().map(|one| one.text.as_str()).chain([recognition.raw.as_str()]);
         // Its own words stop it where they say stop, lest somebody's are taken for them.
-        let stops = heard.filter(|text| self.stop_if_said(text)).count() > 0;
+        let stops = recognition.likely().filter(|text| self.stop_if_said(text)).count() > 0;
         if stops || own {
             self.ear.part();
         }

@@ -23,7 +23,7 @@ mod voices;
 use std::{path::Path, time::Instant};
 
 use cases::{Command, commands, half, scene};
-use cohabit_language::{Clarification, Step, Understanding};
+use cohabit_language::{Clarification, Step, Understanding, says_stop};
 use cohabit_speech::{Bias, Ear, Engines, Heard, Meaning, RATE, Recognition, Sense, Turns, VoiceSettings, choose};
 use office::Talk;
 use score::{Score, machine};
@@ -141,6 +141,12 @@ impl Turn {
         let mut talk = Talk::new(&command.marks);
         let (mut heard, mut texts, mut is_doubted) = (Vec::new(), Vec::new(), false);
         for recognition in &found.recognitions {
+            // What may say stop stops, before anything is made of it.
+            if let Some(stop) = recognition.likely().find(|text| says_stop(text)) {
+                texts.push("stop!".to_owned());
+                heard.push(stop.to_owned());
+                continue;
+            }
             let Some(choice) = choose(recognition, |text| meaning(&understood(text, &talk))) else { continue };
             is_doubted |= choice.is_doubtful;
             texts.push(talk.say(&choice.text));
