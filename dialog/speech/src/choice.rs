@@ -2,7 +2,7 @@
 //!
 //! Who understands the language says what each reading comes to ([`Meaning`]); nothing of the language is known here.
 
-use crate::Recognition;
+use crate::{Recognition, bias};
 
 /// So many readings are tried: each takes as long as understanding a sentence.
 const MOST_TRIED: usize = 8;
@@ -68,6 +68,7 @@ struct Tried<D> {
 ///
 /// Where a recogniser hears pauses says little: each reading is tried without the marks within it first, then with them.
 pub fn choose<D: PartialEq>(heard: &Recognition, mut mean: impl FnMut(&str) -> Meaning<D>) -> Option<Choice<D>> {
+    let raw = bias::words(&heard.raw);
     let mut tried: Vec<Tried<D>> = Vec::new();
     for reading in heard.hypotheses.iter().take(MOST_TRIED) {
         let plain = without_marks(&reading.text);
@@ -79,7 +80,7 @@ pub fn choose<D: PartialEq>(heard: &Recognition, mut mean: impl FnMut(&str) -> M
             let idle = if meaning.deed.is_none() { IDLE } else { 0.0 };
             let less = (LESS[meaning.sense as usize] + strange).min(LESS[0]) + idle;
             let is_unsure = reading.strange > 0 || reading.confidence < SURE;
-            let is_plainly_heard = reading.strange == 0 && reading.text == heard.raw;
+            let is_plainly_heard = reading.strange == 0 && bias::words(&reading.text) == raw;
             tried.push(Tried { text, meaning, value: reading.score - less, is_unsure, is_plainly_heard });
         }
     }

@@ -154,7 +154,8 @@ impl Moonshine {
             score: if self.model.is_some() { spelling.score } else { spelling.by_sound },
             confidence: spelling.each().exp(),
             strange: self.model.as_ref().map_or(0, |model| model.strange(&text)),
-            text,
+            // `break-room` is said like `break room`.
+            text: text.replace('-', " "),
         });
         Recognition { hypotheses: ordered(readings), raw }
     }
