@@ -190,7 +190,11 @@ function release() {
 }
 
 /** The session tells how far it has heard. */
-export function takeHearing({ state, text }) {
+export function takeHearing({ state, text, joins }) {
+  // Who goes on with what can be changed yet has not said all of it.
+  if (state === "began" && joins) holdHeard();
+  else if (state === "nothing" && pending?.isHeld) waitToSend();
+  else if (state === "stopped") forgetHeard();
   if (state === "partial") showHearing(text, "partial");
   else if (state === "began") showHearing("…", "partial");
   else {
@@ -232,15 +236,34 @@ export function takeHeard({ number, text, edit_ms: editMs }) {
   showHearing("");
   // Who types something else is not interrupted.
   const isFree = input.value.trim() === "";
-  pending = { number, text, isShown: isFree, timer: setTimeout(() => sendHeard(isFree ? input.value : text, false), editMs) };
+  pending = { number, text, isShown: isFree, isChanged: false, isHeld: false, editMs, timer: 0 };
+  waitToSend();
   if (!isFree) {
     showHearing(text, "partial");
     return;
   }
   input.value = text;
   input.setSelectionRange(text.length, text.length);
+}
+
+/** What was heard is sent in a moment, unless somebody changes it or goes on. */
+function waitToSend() {
+  if (!pending || pending.isChanged) return;
+  const { text, isShown, editMs } = pending;
+  pending.isHeld = false;
+  clearTimeout(pending.timer);
+  pending.timer = setTimeout(() => sendHeard(isShown ? input.value : text, false), editMs);
+  if (!isShown) return;
   composer.style.setProperty("--edit", `${editMs}ms`);
   composer.classList.add("editing");
+}
+
+/** What was heard waits until the rest of it was said. */
+function holdHeard() {
+  if (!pending) return;
+  pending.isHeld = true;
+  clearTimeout(pending.timer);
+  composer.classList.remove("editing");
 }
 
 /** Sends what was heard, as it reads now; `sure`, if somebody did that. Whether anything was heard. */
@@ -271,8 +294,8 @@ function endEditing() {
 // Who changes it has all the time.
 input.addEventListener("input", () => {
   if (!pending?.isShown) return;
-  clearTimeout(pending.timer);
-  composer.classList.remove("editing");
+  pending.isChanged = true;
+  holdHeard();
 });
 
 // ---------------------------------------------------------------------------------------------- what robots say

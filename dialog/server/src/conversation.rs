@@ -269,7 +269,8 @@ impl Conversation {
         self.hear_as(said, text, Some(aloud), knowledge)
     }
 
-    /// Which reading of what was said aloud is meant; `called` takes the robot's name out of one.
+    /// Which reading of what was said aloud is meant, and whether it is to be asked about first; `called` takes the robot's name
+    /// out of one.
     pub(crate) fn reading(
         &self,
         spoken: &Spoken,
@@ -279,15 +280,11 @@ impl Conversation {
         let known = knowledge.known()?;
         let meant = |text: &str| self.language.understand(text, &known, &mut self.memory.context.clone());
         let consents = |text: &str| self.memory.unsure.is_some() && self.language.consent(text, &known).is_some();
-        Reading::of(spoken, |text| {
+        let reading = spoken.reading(|text| {
             let text = called(text);
             if consents(&text) { Understanding::Answer { text, highlight: Vec::new() } } else { meant(&text) }
-        })
-    }
-
-    /// Whether the robot asks before it does what was heard.
-    pub(crate) fn doubts(&self, reading: &Reading, spoken: &Spoken) -> bool {
-        reading.is_doubtful(spoken.confidence, &self.language)
+        })?;
+        Some(Reading { is_doubtful: reading.is_doubtful && self.language.may_ask(), ..reading })
     }
 
     /// Whether what was said so far is a whole sentence.
@@ -653,6 +650,7 @@ mod tests {
     use cohabit_bus::message::{BodyRecord, NONE, StateParts, StateView};
     use cohabit_cdf::{BodyId, Catalog, Layout, RoomId};
     use cohabit_language::Knows;
+    use cohabit_speech::Recognition;
 
     use super::*;
 
@@ -697,9 +695,9 @@ mod tests {
             reactions.iter().filter_map(Reaction::line).find(|line| line.kind == LineKind::Question).unwrap();
         assert_eq!(question.answers.iter().map(|answer| answer.text.as_str()).collect::<Vec<_>>(), ["yes", "no"]);
         // A yes that is heard makes sense, though no question of the language's waits for it.
-        let yes = Spoken { readings: vec![("yes".to_owned(), -0.1)], confidence: 0.3, ..Spoken::default() };
+        let yes = Spoken { heard: Recognition::trusted("yes", 0.3), ..Spoken::default() };
         let reading = conversation.reading(&yes, &str::to_owned, &knowledge).unwrap();
-        assert!(!conversation.doubts(&reading, &yes));
+        assert!(!reading.is_doubtful);
         let (_, reactions) = conversation.hear("yes", &knowledge);
         assert!(plans(&reactions), "{}", says(&reactions));
     }

@@ -31,7 +31,7 @@ use crate::{
     latency::{Latency, Moments},
     page::{self, Line, LineKind, Speaker},
     robots::{Robot, Robots, Visitor},
-    spoken::Spoken,
+    spoken::{Reading, Spoken},
     survey::Survey,
     voice::{Audience, Voice},
 };
@@ -173,20 +173,17 @@ impl Talk {
     /// seems to have said anything.
     pub fn hear_aloud(&self, spoken: &Spoken, visitor: Visitor, meant_nanos: u64) -> Result<bool, DialogError> {
         let mut inner = self.lock();
-        let Some((first, _)) = spoken.readings.first() else { return Ok(false) };
+        let Some(first) = spoken.first() else { return Ok(false) };
         let Some(body) = inner.addressed(first, visitor, spoken.text_nanos)?.0.first().copied() else {
             return Ok(false);
         };
         let called = |text: &str| inner.robots.called(text);
-        let reading = inner.robots.look_at(body).and_then(|Robot { conversation, knowledge, .. }| {
-            let reading = conversation.reading(spoken, &called, knowledge)?;
-            let is_doubtful = conversation.doubts(&reading, spoken);
-            Some((reading.text, is_doubtful))
-        });
-        let Some((said, is_doubtful)) = reading else { return Ok(false) };
+        let reading =
+            inner.robots.look_at(body).and_then(|robot| robot.conversation.reading(spoken, &called, &robot.knowledge));
+        let Some(Reading { text: said, is_doubtful }) = reading else { return Ok(false) };
         self.voice.hush();
         let (bodies, text) = inner.addressed(&said, visitor, spoken.text_nanos)?;
-        let aloud = Aloud { raw: &spoken.raw, is_doubtful };
+        let aloud = Aloud { raw: &spoken.heard.raw, is_doubtful };
         for (nth, body) in bodies.into_iter().enumerate() {
             inner.listen_to(visitor, body)?;
             let Some(robot) = inner.robots.of_body(body) else { continue };
@@ -194,7 +191,7 @@ impl Talk {
             reactions.retain(|reaction| nth == 0 || is_shown_to_all(reaction));
             inner.latency.begin(turn, meant_nanos, monotonic_nanos());
             let speech = [spoken.began_nanos, spoken.ended_nanos, spoken.text_nanos];
-            let moments = inner.latency.spoken(speech, &spoken.raw);
+            let moments = inner.latency.spoken(speech, &spoken.heard.raw);
             self.carry_out(&mut inner, body, Heard::AtPage(visitor), reactions)?;
             inner.publish_spoken(&moments)?;
             self.hub.tell(&page::latency(&moments, None));
@@ -203,16 +200,15 @@ impl Talk {
     }
 
     /// Which reading of what was said aloud is meant; `None` if nobody seems to have said anything.
-    pub fn read(&self, spoken: &Spoken, visitor: Visitor) -> Result<Option<String>, DialogError> {
+    pub fn read(&self, spoken: &Spoken, visitor: Visitor) -> Result<Option<Reading>, DialogError> {
         let mut inner = self.lock();
-        let Some((first, _)) = spoken.readings.first() else { return Ok(None) };
+        let Some(first) = spoken.first() else { return Ok(None) };
         let Some(body) = inner.addressed(first, visitor, spoken.text_nanos)?.0.first().copied() else {
             return Ok(None);
         };
         let called = |text: &str| inner.robots.called(text);
-        let reading =
-            inner.robots.look_at(body).and_then(|robot| robot.conversation.reading(spoken, &called, &robot.knowledge));
-        Ok(reading.map(|reading| reading.text))
+        let robot = inner.robots.look_at(body);
+        Ok(robot.and_then(|robot| robot.conversation.reading(spoken, &called, &robot.knowledge)))
     }
 
     /// A page plays the first sound of an answer.

@@ -8,6 +8,7 @@ use std::{
 use axum::extract::ws::{Message, WebSocket};
 use cohabit_bus::{message::Thing, monotonic_nanos};
 use cohabit_cdf::{BodyId, ObjectId};
+use cohabit_speech::Recognition;
 use serde::Deserialize;
 use serde_json::Value;
 use tokio::{
@@ -28,7 +29,7 @@ use crate::{
     page,
     questionnaire::Given,
     robots::Visitor,
-    spoken::Spoken,
+    spoken::{Reading, Spoken},
     talk::Talk,
     view::{Frame, Marks, View, Viewing},
     voice::{Audience, EarAt, FromEar, Hearer, Hearing},
@@ -465,10 +466,11 @@ impl Visit {
             return self.say_aloud(spoken, meant_nanos).await;
         }
         let read = self.live.talk.read(&spoken, self.visitor()).map_err(|error| error.to_string())?;
-        let Some(text) = read else { return Ok(vec![tell(&page::hearing("nothing"))]) };
+        let Some(reading) = read else { return Ok(vec![tell(&page::hearing("nothing"))]) };
         self.heard_count += 1;
-        self.heard = Some((self.heard_count, spoken));
-        Ok(vec![tell(&page::heard(self.heard_count, &text, edit.as_millis()))])
+        let told = tell(&page::heard(self.heard_count, &reading.text, edit.as_millis()));
+        self.heard = Some((self.heard_count, Spoken { settled: Some(reading), ..spoken }));
+        Ok(vec![told])
     }
 
     async fn say_aloud(&mut self, spoken: Spoken, meant_nanos: u64) -> Result<Vec<Message>, String> {
@@ -492,14 +494,17 @@ impl Visit {
         received_nanos: u64,
     ) -> Result<(), String> {
         let Some((_, spoken)) = self.heard.take_if(|(heard, _)| *heard == number) else { return Ok(()) };
+        if let Some(hearing) = &self.hearing {
+            hearing.part();
+        }
         let Some(text) = text else { return Ok(()) };
         if text.trim().is_empty() || text.len() > LONGEST_TEXT {
             return self.say(&text, received_nanos).await;
         }
-        let is_as_heard = spoken.readings.iter().any(|(reading, _)| *reading == text) || spoken.raw == text;
-        let confidence = if sure || !is_as_heard { 1.0 } else { spoken.confidence };
-        let raw = if is_as_heard { spoken.raw } else { text.clone() };
-        let spoken = Spoken { readings: vec![(text, 0.0)], raw, confidence, ..spoken };
+        let shown = spoken.settled.filter(|reading| reading.text == text);
+        let heard = if shown.is_some() { spoken.heard } else { Recognition::sure(text.as_str()) };
+        let is_doubtful = !sure && shown.is_some_and(|reading| reading.is_doubtful);
+        let spoken = Spoken { heard, settled: Some(Reading { text, is_doubtful }), ..spoken };
         self.say_aloud(spoken, received_nanos).await.map(drop)
     }
 

@@ -1,6 +1,11 @@
 //! What is said in sound that never ends: turns of speech, and their text.
 
-use crate::{Bias, Listener, Recognition, Recognizer, SpeechError, Turn, Turns, Vad};
+use std::borrow::Cow;
+
+use crate::{Bias, Listener, RATE, Recognition, Recognizer, SpeechError, Turn, Turns, Vad};
+
+/// Nothing joins what is longer, samples: all of it would be recognised again.
+const LONGEST_JOINED: usize = 12 * RATE as usize;
 
 /// What was heard.
 #[derive(Clone, Debug, PartialEq)]
@@ -9,6 +14,8 @@ pub enum Heard {
     Began {
         /// Counted from the first one that the ear was given.
         began: u64,
+        /// Whether they go on with what they said before: that is told again, with what they say now.
+        joins: bool,
     },
     /// What they said so far, unless it is what it was.
     Partial {
@@ -34,6 +41,8 @@ pub struct Utterance {
     pub told: u64,
     /// Whether it was cut for its length.
     pub is_cut: bool,
+    /// Whether it begins with all of the utterance before it, in whose place it stands.
+    pub joins: bool,
 }
 
 /// A [`Listener`] with a [`Recognizer`].
@@ -45,13 +54,33 @@ pub struct Ear {
     /// What was recognised in the last pause, and of how many samples.
     recognized: Option<(usize, Recognition)>,
     partial: String,
+    /// What was said last, while more may join it.
+    last: Option<Last>,
+    /// What came before the open turn, and is one with it.
+    before: Option<Last>,
+    joins: u64,
+}
+
+/// A turn that may be gone on with.
+struct Last {
+    samples: Vec<f32>,
+    began: u64,
+    told: u64,
 }
 
 impl Ear {
     /// An ear that has heard nothing.
     #[must_use]
     pub fn new(vad: Box<dyn Vad>, recognizer: Box<dyn Recognizer>, turns: Turns) -> Self {
-        Self { listener: Listener::new(vad, turns), recognizer, recognized: None, partial: String::new() }
+        Self {
+            listener: Listener::new(vad, turns),
+            recognizer,
+            recognized: None,
+            partial: String::new(),
+            last: None,
+            before: None,
+            joins: (turns.joins_s * RATE as f32) as u64,
+        }
     }
 
     /// What is likely to be said from now on.
@@ -81,9 +110,9 @@ impl Ear {
         samples: &[f32],
         is_complete: &mut dyn FnMut(&str) -> bool,
     ) -> Result<Vec<Heard>, SpeechError> {
-        let Self { listener, recognizer, recognized, .. } = self;
+        let Self { listener, recognizer, recognized, before, .. } = self;
         let mut in_pause = |said: &[f32]| {
-            let recognition = recognizer.recognize(said)?;
+            let recognition = recognizer.recognize(&with(before.as_ref(), said))?;
             let is_complete = is_complete(recognition.best());
             *recognized = Some((said.len(), recognition));
             Ok(is_complete)
@@ -102,9 +131,18 @@ impl Ear {
         Ok(heard)
     }
 
-    /// No pause ends a turn until [`Ear::finish`], as where a key is held.
+    /// No pause ends a turn until [`Ear::finish`], as where a key is held. What is said then is one of its own.
     pub fn hold(&mut self) {
+        self.part();
         self.listener.hold();
+    }
+
+    /// What was told last is done with: what is said next, or just now, does not join it.
+    pub fn part(&mut self) {
+        self.last = None;
+        if self.before.take().is_some() {
+            self.recognized = None;
+        }
     }
 
     /// Ends the turn at once, as where a key is released; none if nobody spoke.
@@ -118,6 +156,7 @@ impl Ear {
     /// Forgets what was said in an open turn, as where the microphone goes.
     pub fn reset(&mut self) {
         self.listener.reset();
+        self.part();
         self.recognized = None;
         self.partial.clear();
     }
@@ -127,10 +166,12 @@ impl Ear {
             Turn::Began { began } => {
                 self.partial.clear();
                 self.recognized = None;
-                Ok(Some(Heard::Began { began }))
+                let position = self.listener.position();
+                self.before = self.last.take().filter(|last| position <= last.told + self.joins);
+                Ok(Some(Heard::Began { began, joins: self.before.is_some() }))
             }
             Turn::Partial { samples } => {
-                let text = self.recognizer.partial(&samples)?.unwrap_or_default();
+                let text = self.recognizer.partial(&with(self.before.as_ref(), &samples))?.unwrap_or_default();
                 if text.is_empty() || text == self.partial {
                     return Ok(None);
                 }
@@ -138,15 +179,30 @@ impl Ear {
                 Ok(Some(Heard::Partial { text }))
             }
             Turn::Ended { samples, began, ended, is_cut } => {
-                let spoken = (ended - began) as usize;
+                let (spoken, length) = ((ended - began) as usize, samples.len());
+                let before = self.before.take();
+                let samples = with(before.as_ref(), &samples).into_owned();
                 let recognition = match self.recognized.take() {
-                    Some((of, recognition)) if (spoken..=samples.len()).contains(&of) => recognition,
+                    Some((of, recognition)) if (spoken..=length).contains(&of) => recognition,
                     _ => self.recognizer.recognize(&samples)?,
                 };
-                let told = self.listener.position();
-                Ok(Some(Heard::Said(Utterance { recognition, samples, began, ended, told, is_cut })))
+                let (told, joins) = (self.listener.position(), before.is_some());
+                let began = before.map_or(began, |before| before.began);
+                let may_go_on = samples.len() <= LONGEST_JOINED && !is_cut && !recognition.best().is_empty();
+                if self.joins > 0 && may_go_on {
+                    self.last = Some(Last { samples: samples.clone(), began, told });
+                }
+                Ok(Some(Heard::Said(Utterance { recognition, samples, began, ended, told, is_cut, joins })))
             }
         }
+    }
+}
+
+/// The samples, after what comes before them.
+fn with<'s>(before: Option<&Last>, samples: &'s [f32]) -> Cow<'s, [f32]> {
+    match before {
+        Some(before) => Cow::Owned([&before.samples, samples].concat()),
+        None => Cow::Borrowed(samples),
     }
 }
 
@@ -155,7 +211,7 @@ mod tests {
     #![allow(clippy::unwrap_used)]
 
     use super::*;
-    use crate::{RATE, fake};
+    use crate::fake;
 
     fn ear() -> Ear {
         Ear::new(Box::new(fake::Loudness), Box::new(fake::Reader::default()), Turns::default())
@@ -180,7 +236,7 @@ mod tests {
         let pause_s = (utterance.told - utterance.ended) as f32 / RATE as f32;
         let expected_s = Turns::default().complete_after_s;
         assert!((expected_s..expected_s + 0.05).contains(&pause_s), "{pause_s}");
-        assert!(matches!(heard[0], Heard::Began { began } if began < 8_000));
+        assert!(matches!(heard[0], Heard::Began { began, joins: false } if began < 8_000));
     }
 
     #[test]
@@ -191,6 +247,34 @@ mod tests {
         let Some(Heard::Said(utterance)) = heard.last() else { panic!("{heard:?}") };
         assert_eq!(utterance.recognition.best(), "put the mug");
         assert!((utterance.told - utterance.ended) as f32 / RATE as f32 >= Turns::default().incomplete_after_s);
+    }
+
+    /// All that is told of two parts of a sentence, the first of which might be one, with a pause of so many samples between.
+    fn in_two(pause: usize, between: impl Fn(&mut Ear)) -> Vec<Utterance> {
+        let turns = Turns { joins_s: 1.0, ..Turns::default() };
+        let mut ear = Ear::new(Box::new(fake::Loudness), Box::new(fake::Reader::default()), turns);
+        let mut heard = Vec::new();
+        for part in [fake::hidden("take the mug"), vec![0.0; pause], fake::hidden("and drop it"), vec![0.0; 20_000]] {
+            for piece in part.chunks(320) {
+                heard.extend(ear.push(piece, &mut |_| true).unwrap());
+            }
+            if heard.iter().any(|heard| matches!(heard, Heard::Said(_))) {
+                between(&mut ear);
+            }
+        }
+        heard.into_iter().filter_map(|heard| if let Heard::Said(said) = heard { Some(said) } else { None }).collect()
+    }
+
+    #[test]
+    fn who_goes_on_soon_has_said_one_thing() {
+        let [first, both] = &in_two(10_000, |_| ())[..] else { panic!() };
+        assert_eq!((first.recognition.best(), first.joins), ("take the mug", false));
+        assert_eq!((both.recognition.best(), both.joins, both.began), ("take the mug and drop it", true, first.began));
+        for [_, second] in
+            [in_two(40_000, |_| ()), in_two(10_000, Ear::part)].map(|said| <[_; 2]>::try_from(said).unwrap())
+        {
+            assert_eq!((second.recognition.best(), second.joins), ("and drop it", false));
+        }
     }
 
     #[test]

@@ -72,18 +72,17 @@ impl Injector {
         let garbled = self.garble(&best);
         let (said, heard) = (bias::words(&best), bias::words(&garbled));
         let wrong = crate::distance::words(&said, &heard) as f32 / said.len().max(1) as f32;
-        let others = recognition
-            .hypotheses
-            .iter()
-            .skip(1)
-            .map(|other| Hypothesis { text: self.garble(&other.text), score: other.score });
-        let first = Hypothesis { text: garbled.clone(), score: recognition.hypotheses[0].score };
+        let first = Hypothesis { text: garbled.clone(), ..recognition.hypotheses[0] };
+        let others = recognition.hypotheses[1..].iter();
+        let others: Vec<Hypothesis> =
+            others.map(|other| Hypothesis { text: self.garble(&other.text), ..*other }).collect();
         let mut texts = BTreeSet::new();
-        let hypotheses = std::iter::once(first)
-            .chain(others.collect::<Vec<_>>())
+        let mut hypotheses: Vec<Hypothesis> = std::iter::once(first)
+            .chain(others)
             .filter(|hypothesis| !hypothesis.text.is_empty() && texts.insert(hypothesis.text.clone()))
             .collect();
-        Recognition { hypotheses, raw: garbled, confidence: recognition.confidence * (1.0 - 0.5 * wrong.min(1.0)) }
+        hypotheses.iter_mut().for_each(|hypothesis| hypothesis.confidence *= 1.0 - 0.5 * wrong.min(1.0));
+        Recognition { hypotheses, raw: garbled }
     }
 
     /// Another word that sounds like this one, with the punctuation that stood around it.
@@ -176,7 +175,7 @@ mod tests {
         let recognition = Recognition::sure(SAID);
         assert_eq!(Injector::new(0.0, 1).garble_recognition(&recognition), recognition);
         let garbled = Injector::new(0.5, 1).garble_recognition(&recognition);
-        assert!(garbled.confidence < 1.0 && garbled.best() == garbled.raw && garbled.best() != SAID);
+        assert!(garbled.confidence() < 1.0 && garbled.best() == garbled.raw && garbled.best() != SAID);
         assert_eq!(Injector::new(f32::NAN, 1).garble(SAID), SAID);
     }
 }

@@ -79,8 +79,7 @@ impl Reader {
         let tenths = samples.len() * 10 / RATE as usize;
         let by_length = || self.by_length.iter().rfind(|(from, _)| tenths >= *from).map(|(_, text)| text.clone());
         let text = if texts.is_empty() { by_length().unwrap_or_default() } else { texts.join(" ") };
-        let sure = Recognition::sure(text);
-        Recognition { confidence: sure.confidence.min(self.confidence.unwrap_or(1.0)), ..sure }
+        Recognition::trusted(text, self.confidence.unwrap_or(1.0))
     }
 }
 
@@ -153,7 +152,7 @@ mod tests {
         let mut reader = Reader { by_length, confidence: Some(0.4), ..Reader::default() };
         let mut heard = |seconds: f32| reader.recognize(&vec![0.1; (seconds * RATE as f32) as usize]).unwrap();
         assert_eq!((heard(0.1).best(), heard(1.0).best(), heard(9.0).best()), ("", "stop", "open the fridge"));
-        assert_eq!((heard(0.1).confidence, heard(1.0).confidence), (0.0, 0.4));
+        assert_eq!((heard(0.1).confidence(), heard(1.0).confidence()), (0.0, 0.4));
     }
 
     #[test]

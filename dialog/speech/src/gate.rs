@@ -8,7 +8,7 @@ use crate::bias;
 
 /// The most that it may be less likely by the sound: logarithm, for one word; for more it grows with the square root, as
 /// the sum of errors that have nothing to do with each other.
-const UNLIKELIER: f32 = 1.5;
+const UNLIKELIER: f32 = 2.5;
 /// The shortest it may be, as a share of the words heard.
 const SHORTEST: f32 = 0.6;
 
@@ -37,8 +37,8 @@ mod tests {
         };
         check(("Put the bowl on the shelf.", -4.0), ("But the bowl on the shelf.", -2.0), true);
         check(("Put the bowl on the shelf.", -9.0), ("But the bowl on the shelf.", -2.0), false);
-        check(("Stop.", -2.0), ("Top.", -1.0), true);
-        check(("Stop.", -3.0), ("Top.", -1.0), false);
+        check(("Stop.", -3.0), ("Top.", -1.0), true);
+        check(("Stop.", -4.0), ("Top.", -1.0), false);
         check(("Place.", -3.0), ("Play some jazz music please.", -2.0), false);
         check(("", -1.0), ("", -1.0), false);
         check(("Stop.", -1.0), ("", -1.0), true);

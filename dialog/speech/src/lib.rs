@@ -28,6 +28,7 @@
 
 mod audio;
 mod bias;
+mod choice;
 mod distance;
 mod ear;
 mod earshot;
@@ -52,6 +53,7 @@ mod wyoming;
 
 pub use audio::{RATE, Resampler, from_pcm, resample, to_pcm};
 pub use bias::{Bias, Scene};
+pub use choice::{Choice, Meaning, Sense, choose};
 pub use distance::words as word_distance;
 pub use ear::{Ear, Heard, Utterance};
 pub use engines::{Engines, Lack, Part, Source, VoiceSettings};

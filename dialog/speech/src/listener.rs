@@ -19,10 +19,14 @@ pub struct Turns {
     pub shortest_s: f32,
     /// What came before the speech was noticed belongs to it, for so long.
     pub before_s: f32,
+    /// After so much silence it is asked whether the sentence is complete: what answers may take the time until the turn ends.
+    pub asks_after_s: f32,
     /// So much silence ends a turn whose sentence is complete.
     pub complete_after_s: f32,
     /// So much silence ends any turn.
     pub incomplete_after_s: f32,
+    /// Who speaks again so soon after a turn was told goes on with it; zero where each turn is one of its own.
+    pub joins_s: f32,
     /// What was said so far is given so often.
     pub partial_every_s: f32,
     /// A longer turn is cut, and said to be.
@@ -36,8 +40,10 @@ impl Default for Turns {
             goes_on: 0.35,
             shortest_s: 0.12,
             before_s: 0.3,
-            complete_after_s: 0.16,
-            incomplete_after_s: 0.55,
+            asks_after_s: 0.12,
+            complete_after_s: 0.24,
+            incomplete_after_s: 0.56,
+            joins_s: 0.0,
             partial_every_s: 0.5,
             longest_s: 30.0,
         }
@@ -47,6 +53,8 @@ impl Default for Turns {
 /// Windows of silence after which what was said so far is given, if it is no longer than this, s.
 const SOON: usize = 2;
 const SHORT_S: f32 = 2.0;
+/// It is not asked of longer turns whether they are complete, s: answers would take as long as they are.
+const ASKED_S: f32 = 15.0;
 /// Of a long turn, what was said so far is given whenever a quarter more was said: telling it costs as much as it is long.
 const PARTIAL_SHARE: usize = 4;
 
@@ -107,8 +115,8 @@ struct Open {
     silence: usize,
     /// How long it was when it was last given.
     given: usize,
-    /// Whether it was asked for in this pause whether the sentence is complete.
-    was_asked: bool,
+    /// Whether the sentence is complete, if that was asked in this pause.
+    is_complete: Option<bool>,
     /// Whether it was said that it began.
     is_told: bool,
 }
@@ -157,8 +165,8 @@ impl Listener {
 
     /// Takes samples at [`RATE`], any number of them; what is no number is silence.
     ///
-    /// In each pause, after [`Turns::complete_after_s`], `is_complete` is asked once with all that was said so far; the turn ends
-    /// there if it is.
+    /// In each pause, after [`Turns::asks_after_s`], `is_complete` is asked once with all that was said so far; if it is, the turn
+    /// ends after [`Turns::complete_after_s`].
     ///
     /// # Errors
     /// [`SpeechError::Engine`] if voice activity cannot be told, or what `is_complete` returns.
@@ -221,7 +229,7 @@ impl Listener {
             Some(turn) => {
                 turn.samples.extend(window);
                 if speech >= self.turns.goes_on {
-                    (turn.speech, turn.silence, turn.was_asked) = (turn.speech + 1, 0, false);
+                    (turn.speech, turn.silence, turn.is_complete) = (turn.speech + 1, 0, None);
                 } else {
                     turn.silence += 1;
                 }
@@ -234,7 +242,7 @@ impl Listener {
         let mut samples: Vec<f32> = self.before.drain(..).collect();
         let began = self.position - WINDOW as u64 - samples.len() as u64;
         samples.extend(window);
-        let turn = Open { samples, began, speech: 1, silence: 0, given: 0, was_asked: false, is_told: false };
+        let turn = Open { samples, began, speech: 1, silence: 0, given: 0, is_complete: None, is_told: false };
         self.turn = Some(turn);
     }
 
@@ -258,13 +266,16 @@ impl Listener {
         }
         if turn.samples.len() >= samples(self.turns.longest_s) {
             self.end(true, turns);
-        } else if silent >= samples(self.turns.incomplete_after_s) && !self.is_held {
+            return Ok(());
+        }
+        if silent >= samples(self.turns.asks_after_s) && turn.is_complete.is_none() {
+            let is_asked = turn.samples.len() <= samples(ASKED_S);
+            turn.is_complete = Some(is_asked && is_complete(&turn.samples)?);
+        }
+        let is_complete = turn.is_complete == Some(true);
+        let ends_after_s = if is_complete { self.turns.complete_after_s } else { self.turns.incomplete_after_s };
+        if silent >= samples(ends_after_s) && !self.is_held {
             self.end(false, turns);
-        } else if silent >= samples(self.turns.complete_after_s) && !turn.was_asked && !self.is_held {
-            turn.was_asked = true;
-            if is_complete(&turn.samples)? {
-                self.end(false, turns);
-            }
         } else if turn.is_worth_telling(self.turns.until_partial(turn.samples.len())) {
             turn.given = turn.samples.len();
             turns.push(Turn::Partial { samples: turn.samples.clone() });
@@ -365,6 +376,20 @@ mod tests {
             })
             .unwrap();
         assert_eq!(asked, 2);
+    }
+
+    #[test]
+    fn a_long_story_is_not_asked_about_in_each_of_its_pauses() {
+        let mut asked = 0;
+        let mut listener = Listener::new(Box::new(Loudness), Turns::default());
+        let story = sound(&[(SPEECH, 2.0), (0.0, 0.4)].repeat(10));
+        listener
+            .push(&story, &mut |_| {
+                asked += 1;
+                Ok(false)
+            })
+            .unwrap();
+        assert_eq!(asked, 6);
     }
 
     #[test]

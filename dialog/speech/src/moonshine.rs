@@ -35,6 +35,11 @@ const TOKENS_EACH_SECOND: f32 = 6.5;
 /// How many spellings are followed at once, and how many tokens each may go on with.
 const BEAM: usize = 5;
 const BRANCHES: usize = 16;
+/// What is longer is no request, and spelt greedily alone: a beam takes six times as long.
+const REQUEST: usize = 12 * RATE as usize;
+/// What fits the sound less well is listened to once more, with so much silence around it.
+const CLEAR: f32 = 0.6;
+const AROUND: usize = RATE as usize / 5;
 /// How much say the language model has.
 const LAMBDA: f32 = 0.35;
 
@@ -120,6 +125,22 @@ impl Moonshine {
         self.tokens.text(&spelling.tokens)
     }
 
+    /// What is said in a sound that is short enough. Where that is in doubt, it is listened to once more, with silence around it:
+    /// the model is then lost at other places.
+    fn listen(&mut self, samples: &[f32]) -> ort::Result<Recognition> {
+        let is_short = self.model.is_some() && samples.len() <= REQUEST;
+        let spelt = self.spell(samples, is_short)?;
+        let heard = self.recognition(&spelt);
+        let is_doubtful = |first: &Hypothesis| first.strange > 0 || first.confidence < CLEAR;
+        if !is_short || !heard.hypotheses.first().is_some_and(is_doubtful) {
+            return Ok(heard);
+        }
+        let spelt = self.spell(&[&[0.0; AROUND], samples, &[0.0; AROUND]].concat(), true)?;
+        let again = self.recognition(&spelt);
+        let hypotheses = ordered(heard.hypotheses.into_iter().chain(again.hypotheses));
+        Ok(Recognition { hypotheses, ..heard })
+    }
+
     fn recognition(&self, spelt: &Spelt) -> Recognition {
         let raw = self.text(&spelt.greedy);
         if bias::words(&raw).is_empty() {
@@ -128,17 +149,30 @@ impl Moonshine {
         let heard = Heard { text: &raw, by_sound: spelt.greedy.by_sound };
         let is_open =
             |(text, other): &(String, &Spelling)| gate::is_open(Heard { text, by_sound: other.by_sound }, heard);
-        let mut found: Vec<(String, &Spelling)> = Vec::new();
         let others = spelt.others.iter().map(|other| (self.text(other), other)).filter(is_open);
-        for (text, spelling) in others.chain([(raw.clone(), &spelt.greedy)]) {
-            if !found.iter().any(|(known, _)| bias::words(known) == bias::words(&text)) {
-                found.push((text, spelling));
-            }
-        }
-        let confidence = found.first().map_or(0.0, |(_, spelling)| spelling.each().exp());
-        let hypotheses = found.into_iter().map(|(text, spelling)| Hypothesis { text, score: spelling.each() });
-        Recognition { hypotheses: hypotheses.collect(), raw, confidence }
+        let readings = others.chain([(raw.clone(), &spelt.greedy)]).map(|(text, spelling)| Hypothesis {
+            score: if self.model.is_some() { spelling.score } else { spelling.by_sound },
+            confidence: spelling.each().exp(),
+            strange: self.model.as_ref().map_or(0, |model| model.strange(&text)),
+            // `break-room` is said like `break room`.
+            text: text.replace('-', " "),
+        });
+        Recognition { hypotheses: ordered(readings), raw }
     }
+}
+
+/// Readings, the likeliest first; of those that differ in marks alone, the likeliest.
+fn ordered(readings: impl Iterator<Item = Hypothesis>) -> Vec<Hypothesis> {
+    let mut readings: Vec<Hypothesis> = readings.collect();
+    readings.sort_by(|one, other| other.score.total_cmp(&one.score));
+    let mut known: Vec<Vec<String>> = Vec::new();
+    readings.retain(|reading| {
+        let words = bias::words(&reading.text);
+        let is_new = !known.contains(&words);
+        known.push(words);
+        is_new
+    });
+    readings
 }
 
 impl Spelling {
@@ -161,8 +195,7 @@ impl Recognizer for Moonshine {
     fn recognize(&mut self, samples: &[f32]) -> Result<Recognition, SpeechError> {
         let mut parts = Vec::new();
         for part in parted(samples) {
-            let spelt = self.spell(part, self.model.is_some()).map_err(failed)?;
-            parts.push(self.recognition(&spelt));
+            parts.push(self.listen(part).map_err(failed)?);
         }
         Ok(joined(parts))
     }
@@ -224,8 +257,11 @@ fn joined(mut parts: Vec<Recognition>) -> Recognition {
         parts.iter().map(of).filter(|text| !text.is_empty()).collect::<Vec<_>>().join(" ")
     };
     let (best, raw) = (text(&|part| part.best().to_owned()), text(&|part| part.raw.clone()));
-    let confidence = parts.iter().map(|part| part.confidence).fold(1.0, f32::min);
-    Recognition { raw, confidence, ..Recognition::sure(best) }
+    let confidence = parts.iter().map(Recognition::confidence).fold(1.0, f32::min);
+    let strange = parts.iter().filter_map(|part| part.hypotheses.first()).map(|first| first.strange).sum();
+    let mut whole = Recognition { raw, ..Recognition::trusted(best, confidence) };
+    whole.hypotheses.iter_mut().for_each(|reading| reading.strange = strange);
+    whole
 }
 
 /// The decoder at work on one utterance.
@@ -476,7 +512,10 @@ mod tests {
     fn what_was_heard_in_parts_is_one() {
         let parts = ["Open the", "", "fridge."].map(Recognition::sure).to_vec();
         let whole = joined(parts);
-        assert_eq!((whole.best(), whole.raw.as_str(), whole.confidence), ("Open the fridge.", "Open the fridge.", 0.0));
+        assert_eq!(
+            (whole.best(), whole.raw.as_str(), whole.confidence()),
+            ("Open the fridge.", "Open the fridge.", 0.0)
+        );
         assert_eq!(joined(Vec::new()), Recognition::default());
     }
 }

@@ -89,6 +89,12 @@ impl NGram {
         self.words.binary_search_by(|known| known.as_str().cmp(word)).ok().map(|at| at as Word + 1)
     }
 
+    /// How many words of a text it does not know; numbers are known.
+    pub(crate) fn strange(&self, text: &str) -> usize {
+        let is_number = |word: &String| word.chars().all(|c| c.is_ascii_digit());
+        bias::words(text).iter().filter(|word| self.word(word).is_none() && !is_number(word)).count()
+    }
+
     fn chance(&self, before: [Word; 2], word: Word) -> f32 {
         let even = 1.0 / (self.words.len() + 1) as f32;
         let single = EVEN * even + (1.0 - EVEN) * self.single.share(word, even);
@@ -218,6 +224,13 @@ mod tests {
         assert_eq!((model.so_far(&place), place.words()), (before, " pick up the bowl"));
         model.spell(&mut place, true, "xy", false);
         assert!((model.so_far(&place) - before - strange("xy")).abs() < 1e-3);
+    }
+
+    #[test]
+    fn strange_words_are_counted() {
+        let check = |text: &str, expected: usize| assert_eq!(model().strange(text), expected, "{text}");
+        check("Pick up the fridge.", 0);
+        check("Pick up the pole, 30 zebras", 2);
     }
 
     #[test]

@@ -2,13 +2,20 @@
 
 use crate::{Bias, SpeechError};
 
+/// A reading is much less likely than another if the logarithms of how likely they are differ by more than this.
+const NEAR: f32 = 4.0;
+
 /// One reading of what was said.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hypothesis {
     /// The words, as they would be typed.
     pub text: String,
-    /// Logarithm of how likely it is, a token; comparable within one recognition alone.
+    /// Logarithm of how likely it is, with all that the recogniser was told; comparable within one recognition alone.
     pub score: f32,
+    /// How well it fits the sound, from 0 to 1.
+    pub confidence: f32,
+    /// Words of it that the recogniser was told nothing of; none if it was told nothing at all.
+    pub strange: usize,
 }
 
 /// What was heard in one utterance.
@@ -18,8 +25,6 @@ pub struct Recognition {
     pub hypotheses: Vec<Hypothesis>,
     /// What was heard without bias.
     pub raw: String,
-    /// How far the first reading is to be trusted, from 0 to 1.
-    pub confidence: f32,
 }
 
 impl Recognition {
@@ -29,21 +34,31 @@ impl Recognition {
         self.hypotheses.first().map_or("", |hypothesis| &hypothesis.text)
     }
 
-    /// The reading that makes most sense to who knows what can be meant: of those with the highest rank, the likeliest.
+    /// How well the likeliest reading fits the sound, from 0 to 1.
     #[must_use]
-    pub fn sensible(&self, mut sense: impl FnMut(&str) -> u8) -> &str {
-        let ranked = self.hypotheses.iter().map(|hypothesis| (sense(&hypothesis.text), &hypothesis.text));
-        let best = ranked.reduce(|best, other| if other.0 > best.0 { other } else { best });
-        best.map_or("", |(_, text)| text)
+    pub fn confidence(&self) -> f32 {
+        self.hypotheses.first().map_or(0.0, |hypothesis| hypothesis.confidence)
+    }
+
+    /// All that may well have been said: the readings that are not much less likely than the first, and what was heard without bias.
+    pub fn likely(&self) -> impl Iterator<Item = &str> {
+        let least = self.hypotheses.first().map_or(0.0, |first| first.score - NEAR);
+        let near = self.hypotheses.iter().filter(move |reading| reading.score >= least);
+        near.map(|reading| reading.text.as_str()).chain([self.raw.as_str()])
     }
 
     /// One reading, of which nothing else is known.
     #[must_use]
     pub fn sure(text: impl Into<String>) -> Self {
+        Self::trusted(text, 1.0)
+    }
+
+    /// One reading, which is trusted so far.
+    #[must_use]
+    pub fn trusted(text: impl Into<String>, confidence: f32) -> Self {
         let raw: String = text.into();
-        let hypotheses =
-            (!raw.is_empty()).then(|| Hypothesis { text: raw.clone(), score: 0.0 }).into_iter().collect::<Vec<_>>();
-        Self { confidence: if hypotheses.is_empty() { 0.0 } else { 1.0 }, hypotheses, raw }
+        let reading = Hypothesis { text: raw.clone(), score: 0.0, confidence, strange: 0 };
+        Self { hypotheses: if raw.is_empty() { Vec::new() } else { vec![reading] }, raw }
     }
 }
 
@@ -69,19 +84,4 @@ pub trait Recognizer: Send {
 
     /// What it is, for people.
     fn name(&self) -> &str;
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_makes_sense_is_taken() {
-        let reading = |text: &str| Hypothesis { text: text.into(), score: 0.0 };
-        let hypotheses = vec![reading("turn light"), reading("turn right"), reading("turn on")];
-        let recognition = Recognition { hypotheses, ..Recognition::default() };
-        assert_eq!(recognition.sensible(|text| u8::from(text != "turn light")), "turn right");
-        assert_eq!(recognition.sensible(|_| 0), "turn light");
-        assert_eq!((Recognition::default().sensible(|_| 1), Recognition::sure("").best()), ("", ""));
-    }
 }

@@ -14,7 +14,7 @@ use cohabit_bus::{
     monotonic_nanos,
 };
 use cohabit_language::says_stop;
-use cohabit_speech::{Bias, Ear, Heard, RATE, Recognition, Scene, Turns, Utterance, errors::Injector, from_pcm};
+use cohabit_speech::{Bias, Ear, Heard, RATE, Scene, Turns, Utterance, errors::Injector, from_pcm};
 use serde_json::{Value, json};
 use tokio::sync::mpsc::UnboundedSender;
 
@@ -27,6 +27,8 @@ const LONGEST_PIECE: usize = 2 * RATE as usize;
 const MOST_WAITING: usize = 256;
 /// How often what was said so far is looked at, s: stop is to be heard soon.
 const PARTIAL_EVERY_S: f32 = 0.32;
+/// Who speaks again so soon while what they said can be changed yet goes on with it, s.
+const JOINS_S: f32 = 1.5;
 /// So long it takes until the robots' own answer to a stop has sounded, ns.
 const OWN_STOP_NANOS: u64 = 5_000_000_000;
 /// Sound that comes so much faster than it lasts is not of the rate that the page says.
@@ -53,6 +55,8 @@ enum ToEar {
     Hold,
     /// It was released, or the microphone is gone: what was said is all.
     Finish,
+    /// What was told last is done, or forgotten: nothing joins it.
+    Part,
 }
 
 /// What an ear tells its page's visit.
@@ -154,6 +158,11 @@ impl Hearing {
     pub fn finish(&self) {
         let _ = self.to.send(ToEar::Finish);
     }
+
+    /// What was told last is done, or forgotten: what is said next does not go on with it.
+    pub fn part(&self) {
+        let _ = self.to.send(ToEar::Part);
+    }
 }
 
 fn check(rate: u32) -> Result<(), String> {
@@ -186,7 +195,8 @@ impl EarAt {
         let opened = self.voice.opened().recognizer.clone().zip(self.voice.vad());
         self.tell(told);
         let Some((recognizer, vad)) = opened else { return };
-        let turns = Turns { partial_every_s: PARTIAL_EVERY_S, ..Turns::default() };
+        let joins_s = self.voice.config.edit.as_secs_f32().min(JOINS_S);
+        let turns = Turns { partial_every_s: PARTIAL_EVERY_S, joins_s, ..Turns::default() };
         let microphone = self.voice.bus.publisher(Topic::Microphone);
         let mut listening = Listening {
             at: self,
@@ -231,6 +241,10 @@ impl Listening<'_> {
                 Ok(Vec::new())
             }
             ToEar::Finish => self.ear.finish().map(|heard| heard.into_iter().collect()),
+            ToEar::Part => {
+                self.ear.part();
+                Ok(Vec::new())
+            }
         };
         // Of a piece in which somebody begins, what was heard is theirs already.
         if heard.iter().flatten().any(|heard| matches!(heard, Heard::Began { .. })) {
@@ -251,10 +265,10 @@ impl Listening<'_> {
 
     fn hear(&mut self, heard: Heard) {
         match heard {
-            Heard::Began { began } => {
+            Heard::Began { began, joins } => {
                 self.began_nanos = self.nanos_of(began);
                 self.sayings += 1;
-                self.at.tell(state("began", ""));
+                self.at.tell(json!({ "type": "hearing", "state": "began", "text": "", "joins": joins }));
                 self.expect();
             }
             Heard::Partial { text } => {
@@ -299,17 +313,20 @@ impl Listening<'_> {
         }
         let mouth = &self.at.voice.mouth;
         let own = mouth.is_echo(recognition.best(), began_nanos) || mouth.is_echo(&recognition.raw, began_nanos);
-        let heard = recognition.hypotheses.iter().map(|one| one.text.as_str()).chain([recognition.raw.as_str()]);
         // Its own words stop it where they say stop, lest somebody's are taken for them.
-        let stops = heard.filter(|text| self.stop_if_said(text)).count() > 0;
+        let stops = recognition.likely().filter(|text| self.stop_if_said(text)).count() > 0;
+        if stops || own {
+            self.ear.part();
+        }
         if stops || own || recognition.best().is_empty() {
             self.at.tell(state(if stops { "stopped" } else { "nothing" }, ""));
             return;
         }
         let recognition = self.injector.garble_recognition(&recognition);
         thread::sleep(self.at.voice.config.delay);
-        let spoken = Spoken { began_nanos, ended_nanos, text_nanos: monotonic_nanos(), ..spoken(recognition) };
-        if spoken.readings.is_empty() {
+        let spoken =
+            Spoken { began_nanos, ended_nanos, text_nanos: monotonic_nanos(), heard: recognition, settled: None };
+        if spoken.first().is_none() {
             self.at.tell(state("nothing", ""));
             return;
         }
@@ -338,15 +355,6 @@ impl Listening<'_> {
                 tracing::warn!("{error}");
             }
         }
-    }
-}
-
-fn spoken(recognition: Recognition) -> Spoken {
-    Spoken {
-        readings: recognition.hypotheses.into_iter().map(|one| (one.text, one.score)).collect(),
-        raw: recognition.raw,
-        confidence: recognition.confidence,
-        ..Spoken::default()
     }
 }
 
@@ -480,7 +488,7 @@ mod tests {
         scene.speak(&[silence(1.0), speech, silence(1.5)].concat());
         assert_eq!(scene.state("began")["type"], "hearing");
         let spoken = scene.said();
-        assert_eq!(spoken.readings[0].0, "go to the main office");
+        assert_eq!(spoken.heard.best(), "go to the main office");
         let after = |nanos: u64| nanos.saturating_sub(start) as f64 * 1e-9;
         // The pieces here are half a second long, and so are the doubts.
         assert!((after(spoken.began_nanos) - begins).abs() < 0.6, "{}", after(spoken.began_nanos));
@@ -503,7 +511,7 @@ mod tests {
         });
         scene.speak(&[fake::hidden("turn right at the light"), silence(1.5)].concat());
         let spoken = scene.said();
-        assert_ne!(spoken.readings[0].0, "turn right at the light");
+        assert_ne!(spoken.heard.best(), "turn right at the light");
         assert!(spoken.text_nanos > 0);
         scene.speak(&[fake::hidden("stop"), silence(1.5)].concat());
         scene.state("stopped");
@@ -537,10 +545,28 @@ mod tests {
             _ => None,
         });
         assert!(text.contains("That was very long"), "{text}");
-        assert_eq!(scene.said().readings[0].0, "a long story");
+        assert_eq!(scene.said().heard.best(), "a long story");
         // What comes after is heard as ever.
         scene.speak(&[silence(2.0), loud(1.0), silence(2.0)].concat());
-        while scene.said().readings[0].0 != "go to the main office" {}
+        while scene.said().heard.best() != "go to the main office" {}
+    }
+
+    #[test]
+    fn who_goes_on_before_it_was_done_has_said_one_thing() {
+        let mut scene = Hall::new(fake::Reader::default(), |config| config.edit = Duration::from_secs(1));
+        let parts =
+            || [fake::hidden("go to the main office"), silence(0.7), fake::hidden("and open the door"), silence(1.5)];
+        scene.speak(&parts().concat());
+        assert_eq!(scene.said().heard.best(), "go to the main office");
+        assert_eq!(scene.state("began")["joins"], true);
+        assert_eq!(scene.said().heard.best(), "go to the main office and open the door");
+        // What is done is not said again.
+        let [first, pause, second, rest] = parts();
+        scene.speak(&[rest.clone(), first, pause].concat());
+        assert_eq!(scene.said().heard.best(), "go to the main office");
+        scene.hearing.part();
+        scene.speak(&[second, rest].concat());
+        assert_eq!(scene.said().heard.best(), "and open the door");
     }
 
     #[test]

@@ -8,7 +8,8 @@
 //!
 //! It needs the engines in the data folder, and Flite for the third voice; it says what it goes without. What the voices
 //! say is kept between runs, in the target folder. `EVERY=5` takes every fifth command alone, `SHOW=1` prints what went wrong,
-//! `RECORDINGS=folder` adds recordings of people (16-bit mono WAV) to the talk about other things.
+//! `RECORDINGS=folder` adds recordings of people (16-bit mono WAV) to the talk about other things, and tells how many words were
+//! heard wrong of those with their words beside them (`a.txt` for `a.wav`).
 
 #![allow(missing_docs, clippy::unwrap_used)]
 
@@ -21,14 +22,15 @@ mod voices;
 
 use std::{path::Path, time::Instant};
 
-use cases::{Command, commands, scene};
-use cohabit_language::{Clarification, Understanding};
-use cohabit_speech::{Bias, Ear, Engines, Heard, RATE, Recognition, Turns, VoiceSettings};
+use cases::{Command, commands, half, scene};
+use cohabit_language::{Clarification, Step, Understanding, says_stop};
+use cohabit_speech::{Bias, Ear, Engines, Heard, Meaning, RATE, Recognition, Sense, Turns, VoiceSettings, choose};
 use office::Talk;
 use score::{Score, machine};
 use sound::Noise;
 use voices::Voice;
 
+const NOISES: [&str; 2] = ["", ", 10 dB kitchen"];
 /// How much louder than the noise the speech is.
 const NOISY_DB: f32 = 10.0;
 /// Of nothing, noise and other talk, so much is listened to.
@@ -55,32 +57,36 @@ fn main() {
         return;
     };
     println!("{}, {}\n", vad.name(), recognizer.name());
-    let mut ear = Ear::new(vad, recognizer, Turns::default());
+    // As in a session where what was heard can be changed for a moment.
+    let mut ear = Ear::new(vad, recognizer, Turns { joins_s: 1.0, ..Turns::default() });
     let mut voices = voices::all(engines.synthesizer.take());
     let commands = commands();
     println!("{} commands, {} voices\n", commands.len(), voices.len());
     println!("{}", Score::HEAD);
-    let mut totals = [Score::default(), Score::default()];
+    let mut totals: [[Score; 2]; 2] = Default::default();
     for voice in &mut voices {
         for (noisy, total) in totals.iter_mut().enumerate() {
-            let score = spoken(&mut ear, voice, &commands, (noisy == 1).then(Noise::new));
-            let name = format!("{}{}", voice.name(), if noisy == 1 { ", 10 dB kitchen" } else { "" });
-            println!("| {name} | {score} |");
-            total.add(&score);
+            let scores = spoken(&mut ear, voice, &commands, (noisy == 1).then(Noise::new));
+            println!("| {}{} | {} |", voice.name(), NOISES[noisy], Score::sum(&scores));
+            total.iter_mut().zip(&scores).for_each(|(total, score)| total.add(score));
         }
     }
-    println!("| all, clean | {} |\n| all, 10 dB kitchen | {} |", totals[0], totals[1]);
+    for (name, halves) in NOISES.iter().zip(&totals) {
+        println!("| all{name} | {} |", Score::sum(halves));
+        println!("| all{name}, looked at | {} |\n| all{name}, kept | {} |", halves[0], halves[1]);
+    }
     let most = machine::most_memory_mb();
     println!("\nmemory: {idle} MB before, {opened} MB with engines open, at most {most} MB with all of this bench");
     nothing(&mut ear, &mut voices);
 }
 
-fn spoken(ear: &mut Ear, voice: &mut Voice, commands: &[Command], mut noise: Option<Noise>) -> Score {
-    let mut score = Score::default();
+/// By which half the commands are of.
+fn spoken(ear: &mut Ear, voice: &mut Voice, commands: &[Command], mut noise: Option<Noise>) -> [Score; 2] {
+    let mut scores = [Score::default(), Score::default()];
     let mut marks: Option<&[&str]> = None;
     for command in commands {
         let Some(speech) = voice.say(command.text) else { continue };
-        let mut talk = Talk::new(&command.marks);
+        let talk = Talk::new(&command.marks);
         if marks != Some(&command.marks) {
             ear.bias(&Bias::of_scene(&scene(&talk)));
             marks = Some(&command.marks);
@@ -92,28 +98,73 @@ fn spoken(ear: &mut Ear, voice: &mut Voice, commands: &[Command], mut noise: Opt
         }
         let before = machine::cpu_s();
         let found = listen(ear, &sound, Some(ends_at), &talk);
-        let cpu_s = machine::cpu_s() - before;
-        let heard =
-            found.recognitions.iter().map(|recognition| sensible(recognition, &talk)).collect::<Vec<_>>().join(" ");
-        let raw = found.recognitions.iter().map(|recognition| recognition.raw.clone()).collect::<Vec<_>>().join(" ");
-        let meant = talk.say(command.text);
-        let understood = if heard.is_empty() { String::new() } else { Talk::new(&command.marks).say(&heard) };
-        let is_same = meant == understood;
-        let confidence = found.recognitions.iter().map(|recognition| recognition.confidence).fold(1.0, f32::min);
-        if std::env::var_os("SHOW").is_some() && !is_same {
-            println!("    {confidence:.2} said   {}\n         heard  {heard}\n         raw    {raw}", command.text);
-            println!("         meant  {meant}\n         found  {understood}");
+        let score = &mut scores[usize::from(half(command.text))];
+        score.note_cpu(machine::cpu_s() - before, sound.len() as f64 / f64::from(RATE));
+        let turn = Turn::of(command, &found);
+        if std::env::var_os("SHOW").is_some() && turn.outcome != Outcome::Same {
+            println!(
+                "    {:?} said   {}\n         heard  {}\n         raw    {}",
+                turn.outcome, command.text, turn.heard, turn.raw
+            );
+            println!("         meant  {}\n         found  {}", turn.meant, turn.found);
         }
-        score.note(command.text, &heard, &found.delays_s, found.recognitions.len() > 1);
-        score.note_action(command.is_of_mission, is_same, is_act(&understood), confidence);
-        score.note_cpu(cpu_s, sound.len() as f64 / f64::from(RATE));
+        score.note(command, &turn, &found.delays_s, found.recognitions.len() > 1);
     }
-    score
+    scores
 }
 
-/// The reading that is taken: the likeliest that the robot makes sense of.
-fn sensible(recognition: &Recognition, talk: &Talk) -> String {
-    recognition.sensible(|text| sense(&understood(text, talk))).to_owned()
+/// What came of a command, as it would in a session that acts without delay.
+pub struct Turn {
+    pub heard: String,
+    pub raw: String,
+    pub meant: String,
+    pub found: String,
+    pub outcome: Outcome,
+}
+
+/// Beside what comes of the same words typed.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum Outcome {
+    /// The same.
+    Same,
+    /// The same, after a yes.
+    SameAfterYes,
+    /// Nothing is done: the robot asks, or says that it did not understand.
+    Nothing,
+    /// Something else is done.
+    Other,
+}
+
+impl Turn {
+    fn of(command: &Command, found: &Found) -> Self {
+        let meant = Talk::new(&command.marks).say(command.text);
+        let mut talk = Talk::new(&command.marks);
+        let (mut heard, mut texts, mut is_doubted) = (Vec::new(), Vec::new(), false);
+        for recognition in &found.recognitions {
+            // What may say stop stops, before anything is made of it.
+            if let Some(stop) = recognition.likely().find(|text| says_stop(text)) {
+                texts.push("stop!".to_owned());
+                heard.push(stop.to_owned());
+                continue;
+            }
+            let Some(choice) = choose(recognition, |text| meaning(&understood(text, &talk))) else { continue };
+            is_doubted |= choice.is_doubtful;
+            texts.push(talk.say(&choice.text));
+            heard.push(choice.text);
+        }
+        let raw = found.recognitions.iter().map(|recognition| recognition.raw.clone()).collect::<Vec<_>>().join(" ");
+        // What was cut in two is done one after the other.
+        let acts: Vec<&str> = texts.iter().map(String::as_str).filter(|text| is_act(text)).collect();
+        let acted = !acts.is_empty();
+        let found = if acted { acts.join(", ") } else { texts.last().cloned().unwrap_or_default() };
+        let outcome = match (found == meant, is_doubted) {
+            (true, false) => Outcome::Same,
+            (true, true) => Outcome::SameAfterYes,
+            (false, false) if acted => Outcome::Other,
+            (false, _) => Outcome::Nothing,
+        };
+        Self { heard: heard.join(" "), raw, meant, found, outcome }
+    }
 }
 
 /// Whether something is done: what is understood is no question, answer or refusal.
@@ -121,40 +172,41 @@ fn is_act(understood: &str) -> bool {
     !understood.is_empty() && !understood.starts_with(['?', '=', '!'])
 }
 
-/// What the robot does not understand makes no sense; what it wonders about may.
-fn sense(understanding: &Understanding) -> u8 {
-    match understanding {
-        Understanding::Refusal { is_lost: true, .. } => 0,
-        Understanding::Question { kind: Clarification::Appearance | Clarification::Request, .. } => 1,
-        _ => 2,
-    }
+/// What a reading comes to: as the dialog service has it.
+fn meaning(understanding: &Understanding) -> Meaning<Vec<Step>> {
+    let (sense, deed) = match understanding {
+        Understanding::Plan { steps, .. } => (Sense::Clear, Some(steps.clone())),
+        Understanding::Stop { .. } | Understanding::Answer { .. } => (Sense::Clear, None),
+        Understanding::Question { kind: Clarification::Appearance | Clarification::Request, .. } => {
+            (Sense::Vague, None)
+        }
+        Understanding::Question { .. } | Understanding::Refusal { is_lost: false, .. } => (Sense::Asks, None),
+        Understanding::Refusal { is_lost: true, .. } => (Sense::None, None),
+    };
+    Meaning { sense, deed }
 }
 
 fn understood(text: &str, talk: &Talk) -> Understanding {
     talk.language.understand(text, &talk.scene, &mut talk.context.clone())
 }
 
-/// Listens as to an open microphone.
+/// Listens as to an open microphone, in real time as far as what is listened to goes: a piece waits until the one before is done.
 fn listen(ear: &mut Ear, sound: &[f32], ends_at: Option<usize>, talk: &Talk) -> Found {
     let mut found = Found::default();
-    let start = ear.position();
-    let mut is_complete = |text: &str| {
-        matches!(
-            understood(text, talk),
-            Understanding::Plan { .. } | Understanding::Stop { .. } | Understanding::Answer { .. }
-        )
-    };
-    for piece in sound.chunks(PIECE) {
+    let seconds = |samples: usize| samples as f64 / f64::from(RATE);
+    let mut is_complete = |text: &str| talk.language.is_whole(text, &talk.scene, &talk.context);
+    let mut done_s = 0.0f64;
+    for (at, piece) in sound.chunks(PIECE).enumerate() {
         let began = Instant::now();
-        for heard in ear.push(piece, &mut is_complete).unwrap() {
+        let heard = ear.push(piece, &mut is_complete).unwrap();
+        done_s = done_s.max(seconds((at + 1) * PIECE)) + began.elapsed().as_secs_f64();
+        for heard in heard {
             let Heard::Said(utterance) = heard else { continue };
-            if let Some(ends_at) = ends_at {
-                let pause_s = (utterance.told - start) as f64 / f64::from(RATE) - ends_at as f64 / f64::from(RATE);
-                found.delays_s.push(pause_s + began.elapsed().as_secs_f64());
+            if utterance.joins {
+                found.recognitions.pop();
             }
-            if !utterance.recognition.best().is_empty() {
-                found.recognitions.push(utterance.recognition);
-            }
+            found.delays_s.extend(ends_at.map(|ends_at| done_s - seconds(ends_at)));
+            found.recognitions.extend(Some(utterance.recognition).filter(|recognition| !recognition.best().is_empty()));
         }
     }
     ear.reset();
@@ -170,43 +222,54 @@ fn nothing(ear: &mut Ear, voices: &mut [Voice]) {
     let (mut hiss, mut kitchen) = (vec![0.0; third], vec![0.0; third]);
     noise.add(&mut hiss, 1e-3, 0.0);
     noise.add(&mut kitchen, 0.05, 0.0);
-    let mut other = Vec::new();
+    let mut parts = vec![
+        ("silence".to_owned(), hiss),
+        ("kitchen".to_owned(), kitchen),
+        ("other talk".to_owned(), other(voices, third)),
+    ];
+    parts.extend(recordings());
+    println!("\n| what | minutes | utterances | asked about | acted on |\n|---|---|---|---|---|");
+    for (name, sound) in parts {
+        let found = listen(ear, &sound, None, &talk);
+        if let Some(said) = written(&name) {
+            let heard =
+                found.recognitions.iter().map(|recognition| recognition.raw.as_str()).collect::<Vec<_>>().join(" ");
+            println!("    {name}: {:.1} % of words wrong", score::wrong(&said, &heard));
+        }
+        let (mut asked, mut acted) = (0, 0);
+        for recognition in &found.recognitions {
+            let Some(choice) = choose(recognition, |text| meaning(&understood(text, &talk))) else { continue };
+            let Some(deed) = &choice.meaning.deed else { continue };
+            *(if choice.is_doubtful { &mut asked } else { &mut acted }) += 1;
+            if std::env::var_os("SHOW").is_some() {
+                println!("    {} {} ({}): {deed:?}", choice.is_doubtful, choice.text, recognition.raw);
+            }
+        }
+        let minutes = sound.len() as f64 / f64::from(RATE) / 60.0;
+        println!("| {name} | {minutes:.1} | {} | {asked} | {acted} |", found.recognitions.len());
+    }
+}
+
+/// At least so much talk about other things, of all voices in turn.
+fn other(voices: &mut [Voice], length: usize) -> Vec<f32> {
     let said = include_str!("../../../language/tests/utterances/off_domain.txt");
     let said: Vec<&str> = said.lines().filter(|line| !line.starts_with('#') && !line.is_empty()).collect();
+    let mut talk = Vec::new();
     for (at, text) in said.iter().cycle().enumerate() {
-        if other.len() >= third || voices.is_empty() {
+        if voices.is_empty() || talk.len() >= length {
             break;
         }
         let voice = at % voices.len();
-        other.extend(voices[voice].say(text).unwrap_or_default());
-        other.extend(vec![0.0; RATE as usize]);
+        talk.extend(voices[voice].say(text).unwrap_or_default());
+        talk.extend(vec![0.0; RATE as usize * 2]);
     }
-    let mut parts =
-        vec![("silence".to_owned(), hiss), ("kitchen".to_owned(), kitchen), ("other talk".to_owned(), other)];
-    parts.extend(recordings());
-    println!("\n| what | minutes | utterances | acted on | acted on, of those trusted |");
-    println!("|---|---|---|---|---|");
-    for (name, sound) in parts {
-        let found = listen(ear, &sound, None, &talk);
-        let acts = |recognition: &&Recognition| {
-            let text = sensible(recognition, &talk);
-            let understanding = understood(&text, &talk);
-            let acts = matches!(understanding, Understanding::Plan { .. } | Understanding::Stop { .. });
-            if acts && std::env::var_os("SHOW").is_some() {
-                println!(
-                    "    {:.2} {text} ({}): {}",
-                    recognition.confidence,
-                    recognition.raw,
-                    office::text(&understanding, &talk.scene)
-                );
-            }
-            acts
-        };
-        let acted: Vec<&Recognition> = found.recognitions.iter().filter(acts).collect();
-        let trusted = acted.iter().filter(|recognition| recognition.confidence >= score::TRUSTED).count();
-        let minutes = sound.len() as f64 / f64::from(RATE) / 60.0;
-        println!("| {name} | {minutes:.1} | {} | {} | {trusted} |", found.recognitions.len(), acted.len());
-    }
+    talk
+}
+
+/// What is said in a recording, if that stands beside it.
+fn written(name: &str) -> Option<String> {
+    let folder = std::env::var_os("RECORDINGS")?;
+    std::fs::read_to_string(Path::new(&folder).join(format!("{name}.txt"))).ok()
 }
 
 fn recordings() -> Vec<(String, Vec<f32>)> {

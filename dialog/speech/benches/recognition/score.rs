@@ -4,6 +4,8 @@ use std::fmt;
 
 use cohabit_speech::word_distance;
 
+use crate::{Outcome, Turn, cases::Command};
+
 /// Over commands of one voice.
 #[derive(Default)]
 pub struct Score {
@@ -11,24 +13,22 @@ pub struct Score {
     words: usize,
     wrong: usize,
     exact: usize,
-    /// The same action as typed, and all: of commands about the missions, and others.
-    same: [[usize; 2]; 2],
-    /// Another action than what was typed, and how many of them were trusted.
-    other_acts: [usize; 2],
+    same: usize,
+    same_after_yes: usize,
+    other: usize,
+    /// Of commands about the missions: the same, after a yes or without, and all.
+    of_missions: [usize; 2],
     cut: usize,
     delays_s: Vec<f64>,
     cpu_s: f64,
     sound_s: f64,
 }
 
-/// What is trusted less is asked about before it is acted on.
-pub const TRUSTED: f32 = 0.6;
-
 impl Score {
-    pub const HEAD: &str = "| voice | words wrong | exact command | same action | of missions | other action | trusted | turns cut | end of speech → text, s p50 / p95 | CPU s a second |\n|---|---|---|---|---|---|---|---|---|---|";
+    pub const HEAD: &str = "| voice | words wrong | exact | same action | after a yes | other action | of missions, same | cut in two | end of speech → text, s p50 / p95 | CPU s a second |\n|---|---|---|---|---|---|---|---|---|---|";
 
-    pub fn note(&mut self, said: &str, heard: &str, delays_s: &[f64], is_cut: bool) {
-        let (said, heard) = (words(said), words(heard));
+    pub fn note(&mut self, command: &Command, turn: &Turn, delays_s: &[f64], is_cut: bool) {
+        let (said, heard) = (words(command.text), words(&turn.heard));
         let wrong = word_distance(&said, &heard);
         self.commands += 1;
         self.words += said.len();
@@ -36,15 +36,17 @@ impl Score {
         self.exact += usize::from(wrong == 0);
         self.cut += usize::from(is_cut);
         self.delays_s.extend(delays_s.last());
-    }
-
-    pub fn note_action(&mut self, is_of_mission: bool, is_same: bool, is_act: bool, confidence: f32) {
-        let [same, all] = &mut self.same[usize::from(!is_of_mission)];
-        *same += usize::from(is_same);
-        *all += 1;
-        let is_other = is_act && !is_same;
-        self.other_acts[0] += usize::from(is_other);
-        self.other_acts[1] += usize::from(is_other && confidence >= TRUSTED);
+        let is_same = matches!(turn.outcome, Outcome::Same | Outcome::SameAfterYes);
+        match turn.outcome {
+            Outcome::Same => self.same += 1,
+            Outcome::SameAfterYes => self.same_after_yes += 1,
+            Outcome::Other => self.other += 1,
+            Outcome::Nothing => {}
+        }
+        if command.is_of_mission {
+            self.of_missions[0] += usize::from(is_same);
+            self.of_missions[1] += 1;
+        }
     }
 
     pub fn note_cpu(&mut self, cpu_s: f64, sound_s: f64) {
@@ -52,15 +54,22 @@ impl Score {
         self.sound_s += sound_s;
     }
 
+    pub fn sum(scores: &[Self]) -> Self {
+        let mut sum = Self::default();
+        scores.iter().for_each(|score| sum.add(score));
+        sum
+    }
+
     pub fn add(&mut self, other: &Self) {
         self.commands += other.commands;
         self.words += other.words;
         self.wrong += other.wrong;
         self.exact += other.exact;
-        let add =
-            |into: &mut [usize; 2], more: &[usize; 2]| into.iter_mut().zip(more).for_each(|(into, more)| *into += more);
-        self.same.iter_mut().zip(&other.same).for_each(|(into, more)| add(into, more));
-        add(&mut self.other_acts, &other.other_acts);
+        self.same += other.same;
+        self.same_after_yes += other.same_after_yes;
+        self.other += other.other;
+        self.of_missions[0] += other.of_missions[0];
+        self.of_missions[1] += other.of_missions[1];
         self.cut += other.cut;
         self.delays_s.extend(&other.delays_s);
         self.note_cpu(other.cpu_s, other.sound_s);
@@ -70,19 +79,20 @@ impl Score {
 impl fmt::Display for Score {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let share = |part: usize, of: usize| 100.0 * part as f64 / of.max(1) as f64;
+        let of_all = |part: usize| share(part, self.commands);
         let mut delays_s = self.delays_s.clone();
         delays_s.sort_by(f64::total_cmp);
         let delay_s =
             |share: f64| delays_s.get(((delays_s.len() as f64 - 1.0) * share) as usize).copied().unwrap_or(0.0);
         write!(
             f,
-            "{:.1} % | {:.0} % | {:.1} % | {:.1} % | {} | {} | {} | {:.2} / {:.2} | {:.2}",
+            "{:.1} % | {:.0} % | {:.1} % | {:.1} % | {:.1} % | {:.1} % | {} | {:.2} / {:.2} | {:.2}",
             share(self.wrong, self.words),
-            share(self.exact, self.commands),
-            share(self.same[0][0] + self.same[1][0], self.commands),
-            share(self.same[0][0], self.same[0][1]),
-            self.other_acts[0],
-            self.other_acts[1],
+            of_all(self.exact),
+            of_all(self.same),
+            of_all(self.same_after_yes),
+            of_all(self.other),
+            share(self.of_missions[0], self.of_missions[1]),
             self.cut,
             delay_s(0.5),
             delay_s(0.95),
@@ -108,6 +118,12 @@ const NUMBERS: &[(&str, &str)] = &[
     ("ok", "okay"),
     ("3d", "three d"),
 ];
+
+/// Words heard wrong, of a hundred.
+pub fn wrong(said: &str, heard: &str) -> f64 {
+    let (said, heard) = (words(said), words(heard));
+    100.0 * word_distance(&said, &heard) as f64 / said.len().max(1) as f64
+}
 
 /// The words of a text, as they sound.
 fn words(text: &str) -> Vec<String> {
