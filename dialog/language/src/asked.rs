@@ -49,7 +49,9 @@ impl Conversation<'_> {
                 Some(self.plan(clauses, consent, context))
             }
             Pending::Offer { steps } if is_yes => Some(self.go(steps, context)),
-            Pending::Search { clauses } if is_yes || is(Small::Search) => Some(self.plan(clauses, Consent::default(), context)),
+            Pending::Search { clauses } if is_yes || is(Small::Search) => {
+                Some(self.plan(clauses, Consent::default(), context))
+            }
             Pending::PutDown { .. } | Pending::Offer { .. } | Pending::Search { .. } | Pending::Lab { .. } => None,
             Pending::Direction { clauses, clause } => self.turned(words, clauses, clause, context),
             Pending::Where { clauses, slot, consent } if is_yes || is(Small::Unsure) || is(Small::Search) => {

@@ -174,10 +174,8 @@ impl Memory {
     #[must_use]
     pub fn known(&self) -> Option<Known> {
         let robot = self.robot.clone()?;
-        let told = |thing: &KnownObject| KnownObject {
-            in_mission: self.spoken_of.contains(&thing.class),
-            ..thing.clone()
-        };
+        let told =
+            |thing: &KnownObject| KnownObject { in_mission: self.spoken_of.contains(&thing.class), ..thing.clone() };
         let objects = self.things.values().map(told).collect();
         Some(Known { robot, objects, goals: self.goals.clone(), floor: Some(self.floor.clone()), person: None })
     }

@@ -163,7 +163,9 @@ impl Conversation<'_> {
             return understanding;
         };
         let Some(target) = self.sought(&fault).or_else(|| self.told_of(&fault, &search)) else {
-            if let (true, Fault::Miss { phrase, miss: Miss::Unseen, .. }) = (planner.has_looked && search.is_told, &fault) {
+            if let (true, Fault::Miss { phrase, miss: Miss::Unseen, .. }) =
+                (planner.has_looked && search.is_told, &fault)
+            {
                 (context.pending, context.search) = (None, None);
                 let found = format!("I have looked, and found no {}.", bare(&plan::said(phrase)));
                 return Understanding::refusal(found);
