@@ -53,9 +53,22 @@ pub(crate) fn amended(lexicon: &Lexicon, words: &[String], parts: &[Part], reque
         return None;
     }
     let last = request.iter().rfind(|clause| clause.intent != Intent::Mention)?;
+    let words = &without_denied(lexicon, words);
     let plain: Vec<String> = words.iter().filter(|word| !token::is_punctuation(word)).cloned().collect();
     let starts = (0..plain.len()).filter(|start| plain[..*start].iter().all(|word| is_around(lexicon, word)));
     starts.into_iter().find_map(|start| amend(lexicon, &plain[start..], last)).map(|clause| vec![clause])
+}
+
+/// `no, not the knife! the bowl!`: without what was not meant, if what was is said after it.
+fn without_denied(lexicon: &Lexicon, words: &[String]) -> Vec<String> {
+    let denied = (0..words.len()).filter(|at| words[*at] == "not").find_map(|at| {
+        let mut reader = Reader::new(lexicon, words);
+        reader.at = at + 1;
+        let is_named = reader.phrase().is_some_and(|phrase| !phrase.namings.is_empty());
+        let is_end = reader.rest().first().is_some_and(|word| token::is_punctuation(word));
+        (is_named && is_end && reader.at + 1 < words.len()).then_some(at..reader.at)
+    });
+    denied.map_or_else(|| words.to_vec(), |denied| [&words[..denied.start], &words[denied.end..]].concat())
 }
 
 /// More words than this are no second thought.
@@ -70,6 +83,12 @@ fn is_around(lexicon: &Lexicon, word: &String) -> bool {
 fn amend(lexicon: &Lexicon, words: &[String], last: &Clause) -> Option<Clause> {
     let mut clause = last.clone();
     let mut reader = Reader::new(lexicon, words);
+    if matches!(last.intent, Intent::TurnOn | Intent::TurnOff | Intent::Toggle)
+        && let Some(intent) = switched(words, |word| is_around(lexicon, word))
+    {
+        let verb = intent.verb().to_owned();
+        return Some(Clause { intent, verb, ..clause });
+    }
     if matches!(last.intent, Intent::Turn | Intent::Travel | Intent::Look) {
         let (length, direction) = lexicon.directions.longest(words)?;
         reader.at = length;
@@ -106,6 +125,17 @@ fn amend(lexicon: &Lexicon, words: &[String], last: &Clause) -> Option<Clause> {
     }
     let is_whole = reader.rest().iter().all(|word| is_around(lexicon, word));
     is_whole.then_some(clause)
+}
+
+/// `on`, `off again`: what is to become of what was switched.
+pub(crate) fn switched(words: &[String], is_spare: impl Fn(&String) -> bool) -> Option<Intent> {
+    let (first, rest) = words.split_first()?;
+    let intent = match first.as_str() {
+        "on" => Intent::TurnOn,
+        "off" => Intent::TurnOff,
+        _ => return None,
+    };
+    rest.iter().all(is_spare).then_some(intent)
 }
 
 /// Puts a phrase where the last one of its kind stood; an adjective alone says more of what was named then.

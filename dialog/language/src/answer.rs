@@ -7,10 +7,10 @@ use cohabit_cdf::{Catalog, Fluid, ObjectId, state::StateFlag};
 use crate::{
     context::{Failure, Focus},
     describe,
-    ground::{Ground, Miss, Want, has_state},
+    ground::{self, Ground, Miss, Want, has_state},
     intent::Intent,
     judge::Judge,
-    known::{Known, KnownObject},
+    known::{self, Known, KnownObject},
     lexicon::{Lexicon, Pronoun, StateWord},
     phrase::{Phrase, RelationKind},
     question::{Question, QuestionKind},
@@ -20,6 +20,8 @@ use crate::{
 
 /// How many things an answer names before it says `and more`.
 const LIST: usize = 8;
+/// How many neighbours of a thing.
+const NEIGHBOURS: usize = 4;
 
 /// What people can say, as examples.
 pub(crate) const EXAMPLES: &str = "I can go to rooms and objects, pick things up and put them down, open, close, switch, fill, pour, clean, break, scan, heat, cool, \
@@ -76,6 +78,7 @@ impl Answerer<'_> {
                 }
             }
             (QuestionKind::Contents, Some(phrase)) => self.with_object(phrase, |id| self.contents(id)),
+            (QuestionKind::Near, Some(phrase)) => self.with_object(phrase, |id| self.neighbours(id)),
             (QuestionKind::Text, phrase) => self.text(phrase),
             (QuestionKind::Color, Some(phrase)) => self.with_object(phrase, |id| self.color(id)),
             (QuestionKind::Count, Some(phrase)) => self.count(phrase),
@@ -284,6 +287,34 @@ impl Answerer<'_> {
                 self.listed(&inside)
             ),
             highlight,
+        }
+    }
+
+    /// What is next to a thing, the nearest first.
+    fn neighbours(&self, id: ObjectId) -> Understanding {
+        let Some(object) = self.scene.object(id) else { return Understanding::refusal(HINT) };
+        let apart_m = |other: &KnownObject| known::distance_m(object.position_m, other.position_m);
+        let is_free = |other: &&KnownObject| {
+            let is_within = |inner: ObjectId, outer: ObjectId| self.scene.ancestors(inner).any(|one| one.id == outer);
+            other.id != id
+                && other.room == object.room
+                && self.scene.robot.held != Some(other.id)
+                && !is_within(other.id, id)
+                && !is_within(id, other.id)
+                && apart_m(other) < ground::NEAR_M
+        };
+        let mut near: Vec<&KnownObject> = self.scene.objects.iter().filter(is_free).collect();
+        near.sort_by(|one, other| apart_m(one).total_cmp(&apart_m(other)).then(one.id.cmp(&other.id)));
+        near.truncate(NEIGHBOURS);
+        let the = self.short(id);
+        if near.is_empty() {
+            return Understanding::answer(format!("I know of nothing next to {the}."));
+        }
+        let names: Vec<String> = near.iter().map(|other| self.short(other.id)).collect();
+        let verb = if near.len() > 1 { "are" } else { "is" };
+        Understanding::Answer {
+            text: format!("Next to {the} {verb} {}.", describe::list(&names, "and")),
+            highlight: near.iter().map(|other| other.id).collect(),
         }
     }
 

@@ -1,13 +1,13 @@
 //! What people say to a question of the robot's: yes and no, a description, a place, a click, or something else.
 
-use cohabit_cdf::{Action, ObjectId};
+use cohabit_cdf::ObjectId;
 
 use crate::{
     ask,
     clause::{Clause, Part},
     context::{Consent, Context, Pending, Role, Slot},
     conversation::Conversation,
-    ground::{Ground, Want},
+    ground::{Ground, Miss, Want},
     hearing,
     intent::Intent,
     lexicon::{Direction, Preposition, Pronoun, Side, Small},
@@ -15,7 +15,7 @@ use crate::{
     plan::Fault,
     question::{self, QuestionKind},
     token,
-    understanding::{Step, Understanding},
+    understanding::Understanding,
 };
 
 /// A request that waits for what one of its phrases means.
@@ -36,7 +36,8 @@ impl Conversation<'_> {
         let pending = context.pending.take()?;
         let small = self.small(words);
         let is = |kind| small.contains(&kind);
-        let is_command = small.is_empty() && parts.iter().any(|part| matches!(part, Part::Clause(_)));
+        let is_command =
+            (small.is_empty() || is(Small::Search)) && parts.iter().any(|part| matches!(part, Part::Clause(_)));
         let is_yes = self.small_at_start(words, Small::Yes) && !is_command;
         let leaves = is(Small::No) || is(Small::Neither) && !matches!(pending, Pending::Which { .. });
         if leaves && !is_command && !matches!(&pending, Pending::Which { candidates, .. } if candidates.len() == 1) {
@@ -48,11 +49,13 @@ impl Conversation<'_> {
                 Some(self.plan(clauses, consent, context))
             }
             Pending::Offer { steps } if is_yes => Some(self.go(steps, context)),
-            Pending::Search { clauses } if is_yes => Some(self.plan(clauses, Consent::default(), context)),
+            Pending::Search { clauses } if is_yes || is(Small::Search) => {
+                Some(self.plan(clauses, Consent::default(), context))
+            }
             Pending::PutDown { .. } | Pending::Offer { .. } | Pending::Search { .. } | Pending::Lab { .. } => None,
             Pending::Direction { clauses, clause } => self.turned(words, clauses, clause, context),
-            Pending::Where { clauses, slot, .. } if is_yes || is(Small::Unsure) => {
-                Some(self.go(self.search(phrase(&clauses, slot)), context))
+            Pending::Where { clauses, slot, consent } if is_yes || is(Small::Unsure) || is(Small::Search) => {
+                Some(self.look_for(clauses, slot, consent, context))
             }
             Pending::Where { clauses, slot, consent } => {
                 let open = Open { clauses, slot, consent };
@@ -207,12 +210,13 @@ impl Conversation<'_> {
         }
         let said = phrase_mut(&mut open.clauses, open.slot)?;
         describe_by(said, told);
-        let search = self.search(Some(said));
         let consent = Consent { is_agreed: true, ..open.consent };
         let mut planner = self.planner(context.focus.clone());
         planner.may_put_down = consent.may_put_down;
         match planner.run(&open.clauses) {
-            Err(Fault::Miss { .. }) => Some(self.go(search, context)),
+            Err(Fault::Miss { miss: Miss::Unseen, .. }) => {
+                Some(self.look_for(open.clauses, open.slot, consent, context))
+            }
             _ => Some(self.plan(open.clauses, consent, context)),
         }
     }
@@ -261,19 +265,6 @@ impl Conversation<'_> {
             Side::Behind => Some(Direction::Around),
             _ => None,
         }
-    }
-
-    /// Looks for something: where it was said to be, if that was said, or here.
-    fn search(&self, phrase: Option<&Phrase>) -> Vec<Step> {
-        let mut planner = self.planner(crate::context::Focus::default());
-        if let Some(room) = phrase.and_then(|phrase| phrase.room) {
-            planner.go_to_room(room);
-        } else if let Some(near) = phrase.and_then(|phrase| phrase.relations.first()) {
-            let want = crate::ground::Want::place(Intent::Find, &[], None);
-            planner.ground().one(&near.to, &want).into_iter().for_each(|object| planner.go_to_object(object));
-        }
-        planner.push(Action::LookAround, "looking around".to_owned());
-        planner.steps
     }
 
     /// Whether it is a question, a courtesy or such, and so no answer.

@@ -37,10 +37,25 @@ impl Planner<'_> {
 
     /// The kind of what the thing in the hand was taken from.
     pub(crate) fn origin_kind(&self) -> Vec<Naming> {
-        let origin = self.focus.origins.first().and_then(|(_, origin)| self.scene.object(*origin));
-        let Some(origin) = origin else { return Vec::new() };
-        let name = &self.catalog.class(origin.class).name;
-        let same = self.classes(|class| self.catalog.class(class).name == *name);
+        let origin = self.focus.origins.first().map(|(_, origin)| *origin);
+        self.kind_of(origin)
+    }
+
+    /// The kind of what a thing is on or in.
+    pub(crate) fn place_kind(&self, phrase: &Phrase, intent: Intent) -> Vec<Naming> {
+        let thing = self.ground().one(phrase, &Want::object(intent)).ok();
+        self.kind_of(thing.and_then(|id| self.scene.object(id)?.parent))
+    }
+
+    fn kind_of(&self, id: Option<ObjectId>) -> Vec<Naming> {
+        let class = id.and_then(|id| self.scene.object(id)).map(|object| object.class);
+        class.map_or_else(Vec::new, |class| self.of_kind(&[Naming { class, weight: 1.0 }]))
+    }
+
+    /// All classes that have the same name as one of these: of the green desk, all desks.
+    pub(crate) fn of_kind(&self, namings: &[Naming]) -> Vec<Naming> {
+        let names: Vec<&String> = namings.iter().map(|naming| &self.catalog.class(naming.class).name).collect();
+        let same = self.classes(|class| names.contains(&&self.catalog.class(class).name));
         same.into_iter().map(|class| Naming { class, weight: 1.0 }).collect()
     }
 
@@ -100,8 +115,17 @@ impl Planner<'_> {
         self.push(Action::Place { receptacle }, says);
     }
 
-    fn preposition(&self, receptacle: ObjectId) -> &'static str {
+    pub(crate) fn preposition(&self, receptacle: ObjectId) -> &'static str {
         self.scene.object(receptacle).map_or("on", |object| crate::describe::inside(self.catalog, object.class))
+    }
+
+    /// What a thing is to be put into that nobody said where: what takes only such things, or else what was spoken of.
+    fn made_for(&self, object: ObjectId) -> Option<ObjectId> {
+        let id = &self.catalog.class(self.scene.object(object)?.class).id;
+        let keys = |class: &ObjectClass| class.receptacle.as_ref().is_some_and(|kind| kind.keys.contains(id));
+        let keyed = self.classes(|class| keys(self.catalog.class(class)));
+        let spoken = self.focus.place.filter(|place| self.has(*place, Property::Receptacle) && *place != object);
+        self.nearest(&keyed).or(spoken)
     }
 
     /// A table, desk or counter with room left: where `beside` stands, or else the nearest.
@@ -146,6 +170,12 @@ impl Planner<'_> {
         // Taken before the goal is grounded: `put it on the table` means a table near where it is.
         match &settled.goal {
             None if settled.is_back => self.put_back(object),
+            None if settled.is_inserted && self.made_for(object).is_some() => {
+                let place = self.made_for(object).unwrap_or(object);
+                self.hold(object)?;
+                self.place_on(place);
+                Ok(())
+            }
             None if settled.intent == Intent::Bring => {
                 self.pick_up(object, self.may_put_down)?;
                 let says = format!("bringing you {}", self.the(object));
@@ -191,7 +221,10 @@ impl Planner<'_> {
             Place::Object(phrase) => {
                 let target = self.find_target(phrase, goal, object, settled.intent)?;
                 let is_there = self.scene.object(object).is_some_and(|known| known.parent == Some(target));
-                if is_there && settled.objects.iter().any(|phrase| phrase.is_all) {
+                // `bring it to the microwave and put it in` is one errand.
+                let is_done = is_there
+                    && self.steps.last().is_some_and(|step| step.action == Action::Place { receptacle: target });
+                if is_done || is_there && settled.objects.iter().any(|phrase| phrase.is_all) {
                     return Ok(());
                 }
                 if target == object && self.scene.robot.held == Some(object) {

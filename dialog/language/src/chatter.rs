@@ -76,6 +76,16 @@ fn is_request(lexicon: &Lexicon, catalog: &Catalog, words: &[String], at: usize)
 fn is_reported(lexicon: &Lexicon, before: &[String]) -> bool {
     let is_cut = |word: &String| token::is_punctuation(word) || matches!(word.as_str(), "so" | "but" | "and" | "then");
     let start = before.iter().rposition(is_cut).map_or(0, |at| at + 1);
+    // `my mother said you have to …`
+    let musts =
+        [&["you", "have", "to"][..], &["you", "should"], &["you", "must"], &["you", "need", "to"], &["you", "to"]];
+    let ends = |must: &&[&str]| {
+        before.len() >= must.len()
+            && before[before.len() - must.len()..].iter().zip(*must).all(|(word, one)| word == one)
+    };
+    if musts.iter().any(ends) {
+        return false;
+    }
     before[start..].iter().any(|word| lexicon.chatter.reports.contains(word))
 }
 

@@ -6,7 +6,7 @@ use cohabit_cdf::{Catalog, Fluid};
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    chatter,
+    amend, chatter,
     intent::Intent,
     lexicon::{Direction, Lexicon, Preposition, Pronoun},
     phrase::{Phrase, Place, Reader},
@@ -177,6 +177,15 @@ fn folded(parts: Vec<Part>) -> Vec<Part> {
     folded
 }
 
+/// The request to put a thing where it is said to be.
+pub(crate) fn placing(mut phrase: Phrase) -> Option<Clause> {
+    let place = phrase.relations.pop()?.to;
+    Some(Clause {
+        places: vec![(Preposition::In, Place::Object(place))],
+        ..Clause::about(Intent::Place, "put", phrase)
+    })
+}
+
 /// Whether the word at `at` is in a part of the utterance that is not to be done.
 pub(crate) fn is_forbidden(lexicon: &Lexicon, words: &[String], at: usize) -> bool {
     cuts(lexicon, words).into_iter().filter(|cut| cut.contains(&at)).any(|cut| {
@@ -327,15 +336,26 @@ pub(crate) fn leading(lexicon: &Lexicon, words: &[String]) -> usize {
         let verb = lexicon.verbs.longest(rest).map_or(0, |(length, _)| length);
         let lead = lexicon.lead.longest(rest).map_or(0, |(length, ())| length);
         let talk = lexicon.talk.longest(rest).map_or(0, |(length, ())| length);
-        // `cool the banana` is no `cool!`.
-        let is_verb = verb > 0 && talk == verb && rest.get(talk).is_some_and(|word| !token::is_punctuation(word));
+        // `cool the banana` is no `cool!`, nor `move it to the table` a `move it!`.
+        let is_verb = verb > 0
+            && rest.get(talk).is_some_and(|word| !token::is_punctuation(word))
+            && (talk == verb || talk > verb && lexicon.prepositions.longest(&rest[talk..]).is_some());
         let talk = if is_verb { 0 } else { talk };
         match lead.max(talk) {
             length @ 1.. if length >= verb && (talk > 0 || lexicon.negation.longest(rest).is_none()) => at += length,
-            _ if is_joint => at += 1,
+            _ if is_joint || verb == 1 && goes_to_do(lexicon, rest) => at += 1,
             _ => return at,
         }
     }
+}
+
+/// `go fill the mug`: one who goes to do something does it.
+fn goes_to_do(lexicon: &Lexicon, words: &[String]) -> bool {
+    let does = |rest: &[String]| {
+        let is_way = lexicon.directions.longest(rest).is_some() || lexicon.prepositions.longest(rest).is_some();
+        !is_way && Reader::new(lexicon, rest).at_verb()
+    };
+    matches!(words[0].as_str(), "go" | "come") && does(&words[1..])
 }
 
 fn read_part(lexicon: &Lexicon, catalog: &Catalog, words: &[String], before: &[Part]) -> (Part, usize) {
@@ -363,9 +383,19 @@ fn read_part(lexicon: &Lexicon, catalog: &Catalog, words: &[String], before: &[P
     {
         return (Part::Where(preposition, place), used);
     }
+    // `turn it on, then off again`
+    let chunk = chatter::chunk(words);
+    if let Some(Part::Clause(previous)) = before.last()
+        && matches!(previous.intent, Intent::TurnOn | Intent::TurnOff | Intent::Toggle)
+        && let Some(intent) = amend::switched(chunk, |word| lexicon.trail.exact(std::slice::from_ref(word)).is_some())
+    {
+        let it = Phrase { pronoun: Some(Pronoun::Thing), text: "it".to_owned(), ..Phrase::default() };
+        return (Part::Clause(Clause::about(intent, intent.verb(), it)), chunk.len());
+    }
     let mut reader = Reader::new(lexicon, words);
     if let Some(Part::Clause(previous)) = before.last()
         && reading::takes_objects(previous.intent)
+        && !tells_of_it(lexicon, words)
         && let Some((clause, used)) = reading::read_as(lexicon, previous.intent, &previous.verb, words, 0)
             .filter(|(clause, _)| reading::is_complete(clause, catalog) && !is_gloss(clause) && clause.names_any())
     {
@@ -383,6 +413,14 @@ fn read_part(lexicon: &Lexicon, catalog: &Catalog, words: &[String], before: &[P
         return (Part::Clause(clause), used);
     }
     chatter::read(lexicon, catalog, words)
+}
+
+/// `shut the fridge, it lets the cold out`: says something of it, and asks for nothing.
+fn tells_of_it(lexicon: &Lexicon, words: &[String]) -> bool {
+    let is_subject = matches!(words[0].as_str(), "it" | "they" | "he" | "she" | "i" | "we");
+    is_subject
+        && words.get(1).is_some_and(|next| !token::is_punctuation(next) && lexicon.trail.longest(&words[1..]).is_none())
+        && lexicon.prepositions.longest(&words[1..]).is_none()
 }
 
 /// `go to the office, the one with the desks`: says of what was named which one it is.

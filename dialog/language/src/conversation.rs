@@ -21,7 +21,7 @@ use crate::{
     known::Known,
     lab,
     lexicon::{Lexicon, Small},
-    phrase::{Phrase, Place},
+    phrase::{Phrase, Place, RelationKind},
     plan::{Fault, Planner},
     process::Devices,
     question::{self, QuestionKind},
@@ -80,7 +80,8 @@ impl Conversation<'_> {
             return Understanding::refusal(format!("I did not hear anything. {HINT}"));
         }
         // `wait, how many are there?`, in answer to a question
-        let words = if context.pending.is_some() { self.without_pause(words) } else { words };
+        let words =
+            if context.pending.is_some() || self.pauses_to_ask(&words) { self.without_pause(words) } else { words };
         if let Some(Pending::Lab { words: before, at }) = &context.pending
             && !self.asks_for_more(&words)
             && let Some(room) = lab::answered(self.lexicon, self.scene, &words)
@@ -150,6 +151,16 @@ impl Conversation<'_> {
                 question.about.into_iter().for_each(|phrase| self.mention(&Part::Mention(phrase), context));
                 return self.answer(&next, context);
             }
+            // `is the mug empty? if so, fill it`
+            if let Some((length, holds)) = self.lexicon.conditions.longest(later) {
+                let answer = self.answer(&question, context);
+                let later = &later[length..];
+                if *holds == denies(&answer) || later.iter().all(|word| token::is_punctuation(word)) {
+                    return answer;
+                }
+                context.pending = None;
+                return self.request(later, clause::parts(self.lexicon, self.catalog, later), context);
+            }
             let asked = clause::parts(self.lexicon, self.catalog, later);
             if !asked.iter().any(|part| matches!(part, Part::Clause(clause) if chatter::is_clear(clause))) {
                 return self.answer(&question, context);
@@ -182,6 +193,26 @@ impl Conversation<'_> {
         let object = self.scene.object(id)?;
         let is_carried = self.catalog.class(object.class).has(cohabit_cdf::Property::Pickupable);
         if is_carried { object.parent } else { Some(id) }
+    }
+
+    /// Does what the next goal says, as if the person had said it.
+    fn next_goal(&self, context: &mut Context) -> Understanding {
+        let Some(goal) = self.scene.goals.iter().find(|goal| !goal.met && !goal.text.is_empty()) else {
+            return Understanding::answer("There is nothing left to do that I know of.");
+        };
+        let (words, _) = self.lexicon.normalise(&goal.text);
+        let words = tidy::tidied(self.lexicon, &words);
+        let lost = || {
+            let text = goal.text.trim_end_matches('.');
+            Understanding::lost(format!("The next goal is: {text}. Tell me what to do for it, step by step."))
+        };
+        if self.small(&words).contains(&Small::Goal) {
+            return lost();
+        }
+        match self.understand_words(words, context) {
+            Understanding::Refusal { is_lost: true, .. } | Understanding::Answer { .. } => lost(),
+            understanding => understanding,
+        }
     }
 
     /// Takes back the last plan.
@@ -233,6 +264,9 @@ impl Conversation<'_> {
                     clauses.push(Clause::mention(phrase))
                 }
                 Part::Where(..) => {}
+                Part::Fragment(phrase) if self.is_to_be_there(&phrase, context) => {
+                    clauses.extend(clause::placing(phrase))
+                }
                 Part::Fragment(phrase) => {
                     clauses.push(Clause::mention(phrase.clone()));
                     fragment = fragment.or(Some(phrase));
@@ -265,6 +299,24 @@ impl Conversation<'_> {
             return reply::unclear(&words);
         }
         self.plan(clause::joined(clauses), Consent::default(), context)
+    }
+
+    /// `both apples on the plate`, of such as are not on it: there they are to be.
+    fn is_to_be_there(&self, phrase: &Phrase, context: &Context) -> bool {
+        let [relation] = phrase.relations.as_slice() else { return false };
+        if relation.kind != RelationKind::Inside || phrase.namings.is_empty() || relation.to.namings.is_empty() {
+            return false;
+        }
+        let ground = Ground { catalog: self.catalog, scene: self.scene, focus: &context.focus, judge: self.judge };
+        let bare = Phrase { relations: Vec::new(), ..phrase.clone() };
+        let want = Want::object(Intent::Place);
+        let is_carried = |id: &ObjectId| {
+            let object = self.scene.object(*id);
+            object.is_some_and(|object| self.catalog.class(object.class).has(cohabit_cdf::Property::Pickupable))
+        };
+        let elsewhere = ground.all(&bare, &want).is_ok_and(|found| found.iter().all(is_carried));
+        let place = ground.all(&relation.to, &Want::place(Intent::Place, &[], None)).is_ok();
+        elsewhere && place && matches!(ground.all(phrase, &want), Err(Miss::Mismatch(_)))
     }
 
     /// An object without a verb.
@@ -477,6 +529,9 @@ impl Conversation<'_> {
                 _ => Understanding::answer("All right."),
             });
         }
+        if is(Small::Goal) {
+            return Some(self.next_goal(context));
+        }
         if is(Small::Undo) || self.is_undo(words) {
             return Some(self.undo(context));
         }
@@ -521,6 +576,12 @@ fn stops(parts: &[Part]) -> bool {
     let waits = |clause: &Clause| clause.verb.starts_with("wait") || clause.verb.starts_with("stay");
     let begins = asked.first().is_some_and(|first| first.intent == Intent::Stop);
     asked.iter().any(|clause| clause.intent == Intent::Stop && (begins || !waits(clause)))
+}
+
+/// Whether an answer says no.
+fn denies(answer: &Understanding) -> bool {
+    let Understanding::Answer { text, .. } = answer else { return true };
+    ["No", "I know of no", "I have not seen", "My hand is empty"].iter().any(|no| text.starts_with(no))
 }
 
 /// Whether it does more than look and point.

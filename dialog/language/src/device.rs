@@ -165,6 +165,16 @@ impl Planner<'_> {
             if self.is_plain_switch(&settled, index)? {
                 continue;
             }
+            // Each of several in its turn: there is but one hand.
+            if settled.objects[index].is_all {
+                let want = Want { held_first: false, ..Want::object(settled.intent) };
+                let phrase = settled.objects[index].clone();
+                for id in self.find_each(&phrase, &want, Some(Role::Object(index)))? {
+                    let one = Phrase { chosen: Some(id), is_all: false, ..phrase.clone() };
+                    self.add_process(&Settled { objects: vec![one], ..settled.clone() })?;
+                }
+                continue;
+            }
             let object = self.process_object(&settled, index)?;
             if settled.intent == Intent::Fill && settled.fluid == Some(Fluid::Milk) {
                 let cartons: Vec<ClassId> = self.catalog.find("MilkCarton_01").into_iter().collect();

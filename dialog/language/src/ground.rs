@@ -27,6 +27,9 @@ const PLAUSIBLE: f32 = 0.3;
 /// Most candidates that a question is about.
 const MOST_RIVALS: usize = 32;
 
+/// Most things of which one may be what a strange word means.
+const MOST_STRANGERS: usize = 4;
+
 /// What is named by less than this below the best is not offered instead.
 const WORSE_NAME: f32 = 0.2;
 
@@ -34,7 +37,7 @@ const WORSE_NAME: f32 = 0.2;
 const VAGUE_NAME: f32 = 0.6;
 
 /// How near `next to` is, m.
-const NEAR_M: f32 = 1.5;
+pub(crate) const NEAR_M: f32 = 1.5;
 
 /// What is nearer to something than others by more than this is the one that is next to it, m.
 const NEARER_M: f32 = 0.15;
@@ -205,7 +208,7 @@ impl<'a> Ground<'a> {
             .collect();
         // A noun that means nothing may be anything, whatever its colour.
         if phrase.is_empty() && !phrase.unknown.is_empty() {
-            return Err(Miss::Unknown);
+            return Err(self.perhaps(phrase, want));
         }
         if base.is_empty() {
             return Err(if phrase.is_empty() && !phrase.says_something() { Miss::Unknown } else { Miss::Unseen });
@@ -242,6 +245,21 @@ impl<'a> Ground<'a> {
         self.keep_at_side(phrase, &mut left);
         self.keep_at_side(phrase, &mut base);
         Ok(Described { base, left })
+    }
+
+    /// What a word may mean that nobody taught it: what is where it is said to be, to be asked about.
+    fn perhaps(&self, phrase: &Phrase, want: &Want<'_>) -> Miss {
+        let is_placed = |relation: &Relation| relation.kind == RelationKind::Inside && relation.to.unknown.is_empty();
+        if self.judge.asking == Asking::Never || phrase.is_all || !phrase.relations.iter().any(is_placed) {
+            return Miss::Unknown;
+        }
+        let thing = Phrase { unknown: Vec::new(), ..phrase.clone() };
+        match self.described(&thing, want) {
+            Ok(Described { left, .. }) if left.len() <= MOST_STRANGERS => {
+                Miss::Several(left.iter().map(|object| object.id).collect())
+            }
+            _ => Miss::Unknown,
+        }
     }
 
     /// `the mug next to the apple`: of several, the one that is nearest to it.
@@ -306,6 +324,7 @@ impl<'a> Ground<'a> {
                 (Some(last), Some(Pronoun::One)) => {
                     describe::name(self.catalog, last.class) == describe::name(self.catalog, object.class)
                 }
+                (None, Some(Pronoun::One)) if !self.focus.group.is_empty() => self.focus.group.contains(&object.id),
                 _ => phrase.says_something(),
             };
         }

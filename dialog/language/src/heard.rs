@@ -73,6 +73,14 @@ impl Conversation<'_> {
         rest.filter(|rest| goes_on(rest)).map_or_else(|| words.clone(), <[String]>::to_vec)
     }
 
+    /// Whether a pause is made for a question: `wait, is there anything in it?`
+    pub(crate) fn pauses_to_ask(&self, words: &[String]) -> bool {
+        let asks =
+            |rest: &[String]| question::read(self.lexicon, rest).is_some_and(|one| one.kind != QuestionKind::Unknown);
+        let length = self.lexicon.amends.pauses.longest(words).map_or(0, |(length, ())| length);
+        length > 0 && words.iter().any(|word| word == "?") && asks(&words[length..])
+    }
+
     /// Whether the words are a request or a question of their own, and no answer to which lab is meant.
     pub(crate) fn asks_for_more(&self, words: &[String]) -> bool {
         let names_room = (0..words.len()).any(|at| self.lexicon.rooms.longest(&words[at..]).is_some());

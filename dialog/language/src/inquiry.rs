@@ -15,13 +15,15 @@ impl Conversation<'_> {
     pub(crate) fn asked_after_talk(&self, words: &[String], parts: &[Part]) -> Option<question::Question> {
         let asks = |part: &Part| matches!(part, Part::Clause(_) | Part::Forbidden(_));
         let later = later_sentences(words);
-        // `the note on the wall, what does it say?`
-        let comma = words.iter().position(|word| word == ",").map_or(&[][..], |at| &words[at + 1..]);
-        let later = if later.is_empty() { comma } else { later };
-        if later.is_empty() || parts.iter().any(asks) {
+        if parts.iter().any(asks) {
             return None;
         }
-        question::read(self.lexicon, later).filter(|question| question.kind != QuestionKind::Unknown)
+        // `the note on the wall, what does it say?`
+        let after = (0..words.len()).filter(|at| words[*at] == ",").map(|at| &words[at + 1..]);
+        let mut later = std::iter::once(later).chain(after).filter(|later| !later.is_empty());
+        later.find_map(|later| {
+            question::read(self.lexicon, later).filter(|question| question.kind != QuestionKind::Unknown)
+        })
     }
 
     /// What talk is about is what `it` stands for after it.

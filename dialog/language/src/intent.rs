@@ -40,6 +40,7 @@ pub(crate) enum Intent {
     Carrot,
     Resize,
     Brew,
+    Swap,
     Use,
     Impossible,
     /// Nothing is asked for, but something is spoken of.
@@ -50,9 +51,14 @@ impl Intent {
     /// What the object of this request should afford, any of them.
     pub(crate) const fn affordances(self) -> &'static [Property] {
         match self {
-            Self::PickUp | Self::Bring | Self::Place | Self::Drop | Self::Heat | Self::Cool | Self::Repair => {
-                &[Property::Pickupable]
-            }
+            Self::PickUp
+            | Self::Bring
+            | Self::Place
+            | Self::Drop
+            | Self::Heat
+            | Self::Cool
+            | Self::Repair
+            | Self::Swap => &[Property::Pickupable],
             Self::Print | Self::Toast | Self::Carrot | Self::Resize | Self::Color | Self::Clean => {
                 &[Property::Pickupable]
             }
@@ -145,6 +151,7 @@ impl Intent {
             Self::Carrot => "turn into a carrot",
             Self::Resize => "resize",
             Self::Brew => "make coffee in",
+            Self::Swap => "swap",
             Self::Use => "use",
             Self::Impossible => "do that to",
             Self::Mention => "mention",

@@ -102,11 +102,15 @@ pub(crate) enum Small {
     No,
     Neither,
     Unsure,
+    /// Look for it.
+    Search,
     Any,
     Hello,
     Thanks,
     Again,
     Undo,
+    /// Do what the mission wants next.
+    Goal,
 }
 
 /// The tables.
@@ -136,6 +140,10 @@ pub(crate) struct Lexicon {
     pub(crate) hand_words: PhraseTable<()>,
     pub(crate) motion_spare: PhraseTable<()>,
     pub(crate) reports: PhraseTable<()>,
+    /// What is to be done if something holds, or if it does not.
+    pub(crate) conditions: PhraseTable<bool>,
+    /// `show me`, before `how many mugs there are`.
+    pub(crate) tells: PhraseTable<()>,
     pub(crate) undone: PhraseTable<()>,
     pub(crate) titles: PhraseTable<()>,
     pub(crate) pronouns: PhraseTable<Pronoun>,
@@ -210,6 +218,8 @@ struct WordFile {
     hand_words: Words,
     motion_spare: Words,
     reports: Words,
+    tells: Words,
+    conditions: Conditions,
     undone: Words,
     titles: Words,
     pronouns: BTreeMap<Pronoun, Vec<String>>,
@@ -230,11 +240,20 @@ struct WordFile {
     no: Words,
     neither: Words,
     unsure: Words,
+    search: Words,
     any: Words,
     hello: Words,
     thanks: Words,
     again: Words,
     undo: Words,
+    do_goal: Words,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Conditions {
+    holds: Vec<String>,
+    fails: Vec<String>,
 }
 
 #[derive(Deserialize)]
@@ -430,12 +449,15 @@ impl Lexicon {
             (&mut self.hand_words, &file.hand_words),
             (&mut self.motion_spare, &file.motion_spare),
             (&mut self.reports, &file.reports),
+            (&mut self.tells, &file.tells),
             (&mut self.undone, &file.undone),
             (&mut self.titles, &file.titles),
         ];
         for (table, entry) in plain {
             entry.words.iter().for_each(|word| table.insert(word, ()));
         }
+        file.conditions.holds.iter().for_each(|words| self.conditions.insert(words, true));
+        file.conditions.fails.iter().for_each(|words| self.conditions.insert(words, false));
         add_all(&mut self.pronouns, &file.pronouns);
         add_all(&mut self.prepositions, &file.prepositions);
         add_all(&mut self.sides, &file.sides);
@@ -474,11 +496,13 @@ impl Lexicon {
             (Small::No, &file.no),
             (Small::Neither, &file.neither),
             (Small::Unsure, &file.unsure),
+            (Small::Search, &file.search),
             (Small::Any, &file.any),
             (Small::Hello, &file.hello),
             (Small::Thanks, &file.thanks),
             (Small::Again, &file.again),
             (Small::Undo, &file.undo),
+            (Small::Goal, &file.do_goal),
         ];
         for (small, list) in lists {
             for word in &list.words {
@@ -647,6 +671,7 @@ impl Lexicon {
             &self.hand_words,
             &self.motion_spare,
             &self.reports,
+            &self.tells,
             &self.undone,
             &self.titles,
         ] {
@@ -670,6 +695,7 @@ impl Lexicon {
         self.questions.words().for_each(&mut learn);
         self.classes.words().for_each(&mut learn);
         self.brings_about.words().for_each(&mut learn);
+        self.wishes.shooters.words().chain(&self.wishes.subjecters).chain(&self.wishes.infecters).for_each(&mut learn);
         self.kinds.iter().for_each(&mut learn);
         self.talk.words().chain(self.people.words()).for_each(|word| vocabulary.learn_talk(word));
         self.chat.words().for_each(|word| vocabulary.learn_plain(word));

@@ -65,6 +65,7 @@ mod sight;
 mod sound;
 mod spelling;
 mod spoken;
+mod swap;
 mod table;
 mod tail;
 mod tidy;

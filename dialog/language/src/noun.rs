@@ -229,7 +229,14 @@ impl<'a> Reader<'a> {
             return;
         }
         let Some(word) = rest.first() else { return };
-        if let Some((length, ())) = lexicon.generic.longest(rest) {
+        // `any thing to eat`: a kind of things.
+        let generic = lexicon.generic.longest(rest).map_or(0, |(length, ())| length);
+        if let Some((length, namings)) =
+            lexicon.name_parts.longest(rest).filter(|(length, _)| generic > 0 && *length > generic)
+        {
+            phrase.namings = namings.clone();
+            self.at += length;
+        } else if let Some((length, ())) = lexicon.generic.longest(rest) {
             phrase.pronoun = Some(Pronoun::Thing);
             self.at += length;
         } else if self.is_one_head() {

@@ -113,6 +113,21 @@ impl Phrase {
             || self.pronoun == Some(Pronoun::Thing) && !self.states.is_empty()
     }
 
+    /// Whether it is `it` or `them`, and no more.
+    pub(crate) fn is_bare_pronoun(&self) -> bool {
+        matches!(self.text.as_str(), "it" | "them" | "that" | "this" | "those" | "these")
+    }
+
+    /// Whether it is one of a kind that was named before it: `the yellow one`.
+    pub(crate) fn is_one_of_kind(&self) -> bool {
+        self.pronoun == Some(Pronoun::One) && self.namings.is_empty()
+    }
+
+    /// Whether it stands for several: `them`.
+    pub(crate) fn is_many(&self) -> bool {
+        self.pronoun == Some(Pronoun::Things)
+    }
+
     /// How much it means this class; nothing, if it does not.
     pub(crate) fn naming(&self, class: ClassId) -> Option<f32> {
         self.namings.iter().find(|naming| naming.class == class).map(|naming| naming.weight)
@@ -231,6 +246,11 @@ impl<'a> Reader<'a> {
         let is_named =
             |at: usize| self.lexicon.classes.longest(&rest[at..]).is_some_and(|(noun, _)| at + noun > length);
         if length > 1 && self.lexicon.articles.exact(&rest[..1]).is_some() && is_named(1) {
+            return None;
+        }
+        // `something sharp` is the name of things by what they are for.
+        let is_longer = |found: Option<(usize, &Vec<Naming>)>| found.is_some_and(|(noun, _)| noun > length);
+        if is_longer(self.lexicon.classes.longest(rest)) || is_longer(self.lexicon.name_parts.longest(rest)) {
             return None;
         }
         // `that mug`, `this one red mug`: an article, unless nothing follows that could be a noun phrase.

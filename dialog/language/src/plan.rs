@@ -95,6 +95,7 @@ impl Planner<'_> {
             Intent::Turn => return self.turn(clause),
             Intent::Look => self.look(clause),
             Intent::Mention => self.mention(clause),
+            Intent::Swap => return self.swap(clause),
             Intent::Impossible => {
                 let things = if clause.objects.is_empty() { "" } else { " things" };
                 return Err(Fault::Cannot(format!("I cannot {}{things}, I am afraid.", clause.verb)));
@@ -106,6 +107,15 @@ impl Planner<'_> {
 
     fn add_object_clause(&mut self, clause: &Clause) -> Result<(), Fault> {
         let settled = settle::settle(self, clause);
+        if shifts(clause)
+            && let [phrase] = clause.objects.as_slice()
+        {
+            let object = self.find_one(phrase, &Want::object(clause.intent), Some(Role::Object(0)))?;
+            return Err(Fault::Cannot(format!(
+                "I can put {} on something else, but I cannot shift it about.",
+                self.the(object)
+            )));
+        }
         match clause.intent {
             Intent::PickUp => self.add_pick_up(&settled),
             Intent::Place | Intent::Bring | Intent::Drop => self.add_place(&settled),
@@ -231,7 +241,12 @@ impl Planner<'_> {
         Ok(found)
     }
 
-    fn find_each(&self, phrase: &Phrase, want: &Want<'_>, role: Option<Role>) -> Result<Vec<ObjectId>, Fault> {
+    pub(crate) fn find_each(
+        &self,
+        phrase: &Phrase,
+        want: &Want<'_>,
+        role: Option<Role>,
+    ) -> Result<Vec<ObjectId>, Fault> {
         if self.is_group(phrase) {
             return Ok(self.focus.group.clone());
         }
@@ -588,4 +603,11 @@ pub(crate) fn said(phrase: &Phrase) -> String {
 fn plain_number(value: f32) -> String {
     let rounded = (value * 100.0).round() / 100.0;
     format!("{rounded}")
+}
+
+/// `move the bowl a bit to the left`: to nowhere that could be named.
+fn shifts(clause: &Clause) -> bool {
+    let is_way = |place: &(Preposition, Place)| matches!(place.1, Place::Side(Side::Left | Side::Right | Side::Middle));
+    let is_moved = matches!(clause.verb.as_str(), "move" | "shift" | "slide" | "nudge" | "push" | "scoot");
+    is_moved && !clause.places.is_empty() && clause.places.iter().all(is_way)
 }

@@ -23,6 +23,8 @@ pub(crate) enum QuestionKind {
     Goals,
     Seeing,
     Contents,
+    /// What is next to it.
+    Near,
     Color,
     Text,
     Look,
@@ -158,10 +160,8 @@ fn put_plainly(lexicon: &Lexicon, words: &[String]) -> Option<Vec<String>> {
     }
     // `show me how many mugs there are`
     let is_wh = |word: &String| matches!(word.as_str(), "how" | "what" | "where" | "which" | "who" | "why");
-    let shown = ["show me", "explain me", "explain to me", "explain"].iter().map(|start| token::words(start));
-    if let Some(rest) = shown.into_iter().find_map(|start| asked.strip_prefix(start.as_slice()))
-        && rest.first().is_some_and(is_wh)
-    {
+    let shown = lexicon.tells.longest(asked).map(|(length, ())| &asked[length..]);
+    if let Some(rest) = shown.filter(|rest| rest.first().is_some_and(is_wh)) {
         return Some(rest.to_vec());
     }
     // `list all objects on the table`

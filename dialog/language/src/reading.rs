@@ -6,8 +6,8 @@ use crate::{
     clause::{Amount, Clause},
     intent::Intent,
     lexicon::{Direction, Lexicon, Preposition, Pronoun},
-    phrase::{Place, Reader},
-    tail, token,
+    phrase::{Phrase, Place, Reader},
+    swap, tail, token,
 };
 
 /// The best reading of a clause that begins with a verb, and how many words it took.
@@ -26,7 +26,13 @@ pub(crate) fn read(lexicon: &Lexicon, catalog: &Catalog, words: &[String]) -> Op
     }
     readings.retain(|(clause, _)| is_complete(clause, catalog));
     // `hit it`: rather a button than to pieces.
-    readings.sort_by_key(|(clause, _)| clause.intent == Intent::Break && is_unnamed(clause));
+    // `make the apple a carrot`: rather that than to print it.
+    let is_last_resort = |clause: &Clause| match clause.intent {
+        Intent::Break => is_unnamed(clause),
+        Intent::Print => clause.has_stray_noun,
+        _ => false,
+    };
+    readings.sort_by_key(|(clause, _)| is_last_resort(clause));
     let best = readings.iter().position(|(clause, _)| is_sensible(clause, catalog)).unwrap_or(0);
     readings.into_iter().nth(best)
 }
@@ -239,9 +245,29 @@ pub(crate) fn read_objects(reader: &mut Reader<'_>, clause: &mut Clause) {
         } else if next.at_long_verb() {
             break;
         }
-        let Some(phrase) = next.phrase() else { break };
+        let phrase = if clause.intent == Intent::Swap { placed(&mut next) } else { next.phrase() };
+        let Some(mut phrase) = phrase else { break };
+        // `the red mug and the yellow one`
+        if let Some(before) = clause.objects.last().filter(|_| phrase.is_one_of_kind()) {
+            phrase.namings.clone_from(&before.namings);
+        }
         clause.objects.push(phrase);
         *reader = next;
+    }
+}
+
+/// `the mug on the desk`, of `swap the mug on the desk with the bowl`.
+fn placed(reader: &mut Reader<'_>) -> Option<Phrase> {
+    let mut phrase = reader.phrase()?;
+    loop {
+        let mut next = *reader;
+        match next.place() {
+            Some((Preposition::With | Preposition::For | Preposition::To, _)) | None => return Some(phrase),
+            Some((preposition, place)) => {
+                phrase.attach(preposition, place);
+                *reader = next;
+            }
+        }
     }
 }
 
@@ -338,6 +364,7 @@ pub(crate) fn is_complete(clause: &Clause, catalog: &Catalog) -> bool {
         Intent::Place => has_object || !clause.places.is_empty(),
         Intent::Pour => has_object || !clause.places.is_empty(),
         Intent::Drop => true,
+        Intent::Swap => swap::is_of_two(clause),
         Intent::Color => has_object && clause.color.is_some(),
         Intent::Carrot => has_object && (is_named("Carrot_01") || clause.verb.starts_with("carrot")),
         _ => has_object,

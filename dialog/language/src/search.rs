@@ -7,8 +7,9 @@ use cohabit_cdf::{Action, ClassId, GoToTarget, ObjectClass, ObjectId, Property, 
 use serde::{Deserialize, Serialize};
 
 use crate::{
+    asked,
     clause::Clause,
-    context::{Consent, Context, Role},
+    context::{Consent, Context, Role, Slot},
     conversation::Conversation,
     describe,
     floor::Floor,
@@ -54,6 +55,9 @@ pub(crate) struct Search {
     /// What it opened in vain.
     to_close: Option<ObjectId>,
     legs: u16,
+    /// Whether somebody told it to look, where it asked.
+    #[serde(default)]
+    is_told: bool,
 }
 
 /// What is looked for.
@@ -102,7 +106,13 @@ impl Search {
             unreachable: Vec::new(),
             to_close: None,
             legs: 0,
+            is_told: false,
         }
+    }
+
+    /// The same, of which somebody said that it is to look for what it does not know.
+    pub(crate) fn told(clauses: Vec<Clause>, consent: Consent) -> Self {
+        Self { is_told: true, ..Self::new(clauses, consent) }
     }
 
     /// Whether it is under way, and not waiting for the beginning of the request to be done.
@@ -152,7 +162,14 @@ impl Conversation<'_> {
             context.request = search.clauses;
             return understanding;
         };
-        let Some(target) = self.sought(&fault) else {
+        let Some(target) = self.sought(&fault).or_else(|| self.told_of(&fault, &search)) else {
+            if let (true, Fault::Miss { phrase, miss: Miss::Unseen, .. }) =
+                (planner.has_looked && search.is_told, &fault)
+            {
+                (context.pending, context.search) = (None, None);
+                let found = format!("I have looked, and found no {}.", bare(&plan::said(phrase)));
+                return Understanding::refusal(found);
+            }
             return self.fault(fault, search.clauses, search.consent, context);
         };
         let (done, focus) = planner.begun;
@@ -170,6 +187,38 @@ impl Conversation<'_> {
         }
         let is_new = search.look_for(target);
         self.look_on(search, is_new, context)
+    }
+
+    /// Looks for what a request names, as somebody said when it asked where that is, and goes on with it.
+    pub(crate) fn look_for(
+        &self,
+        clauses: Vec<Clause>,
+        slot: Slot,
+        consent: Consent,
+        context: &mut Context,
+    ) -> Understanding {
+        if self.scene.floor.is_some() {
+            return self.proceed(Search::told(clauses, consent), context);
+        }
+        // Who knows everything there is can but look once more where it was said to be.
+        let understanding = self.go(self.look_once(asked::phrase(&clauses, slot)), context);
+        context.request.clone_from(&clauses);
+        let (_, here) = self.stands();
+        context.search = Some(Search { looked_m: vec![here], ..Search::told(clauses, consent) });
+        understanding
+    }
+
+    /// Looks where it was said to be, if that was said, or here.
+    fn look_once(&self, phrase: Option<&Phrase>) -> Vec<Step> {
+        let mut planner = self.planner(crate::context::Focus::default());
+        if let Some(room) = phrase.and_then(|phrase| phrase.room) {
+            planner.go_to_room(room);
+        } else if let Some(near) = phrase.and_then(|phrase| phrase.relations.first()) {
+            let want = Want::place(Intent::Find, &[], None);
+            planner.ground().one(&near.to, &want).into_iter().for_each(|object| planner.go_to_object(object));
+        }
+        planner.push(Action::LookAround, "looking around".to_owned());
+        planner.steps
     }
 
     /// The next leg, or the end of the search.
@@ -255,6 +304,14 @@ impl Conversation<'_> {
             }
             _ => None,
         }
+    }
+
+    /// What somebody told it to look for, whatever it is.
+    fn told_of(&self, fault: &Fault, search: &Search) -> Option<Target> {
+        self.scene.floor.as_ref().filter(|_| search.is_told)?;
+        let Fault::Miss { phrase, miss: Miss::Unseen, .. } = fault else { return None };
+        let room = phrase.room.or(phrase.is_here.then_some(self.scene.robot.room));
+        Some(self.target_of(phrase).unwrap_or_else(|| self.target(plan::said(phrase), Vec::new(), room)))
     }
 
     fn affords_any(&self, classes: &[ClassId], intent: Intent) -> bool {

@@ -20,6 +20,8 @@ pub(crate) struct Settled {
     pub(crate) tool: Option<(Phrase, Role)>,
     pub(crate) color: Option<String>,
     pub(crate) fluid: Option<cohabit_cdf::Fluid>,
+    /// Whether it is to go into something that was made for it.
+    pub(crate) is_inserted: bool,
     /// Whether it is to go back to where it was taken from.
     pub(crate) is_back: bool,
     /// Whether it is to be left, somewhere or as it is.
@@ -60,6 +62,10 @@ pub(crate) fn settle(planner: &Planner<'_>, clause: &Clause) -> Settled {
         fluid: clause.fluid,
         is_wish: clause.is_wish,
         is_left: clause.verb == "leave",
+        is_inserted: matches!(
+            clause.verb.as_str(),
+            "insert" | "install" | "mount" | "slot" | "load" | "attach" | "feed"
+        ),
         is_back: clause.verb.ends_with(" back") || clause.verb == "return",
     };
     for (index, (preposition, place)) in clause.places.iter().enumerate() {
@@ -72,6 +78,9 @@ pub(crate) fn settle(planner: &Planner<'_>, clause: &Clause) -> Settled {
             (Preposition::From, Place::Object(_)) if clause.intent == Intent::Fill => {
                 settled.take_place(planner, Preposition::At, place, role);
             }
+            // `switch the laser on from its computer`
+            (Preposition::From, Place::Object(_))
+                if matches!(clause.intent, Intent::TurnOn | Intent::TurnOff | Intent::Toggle) => {}
             (Preposition::From, _) => settled.describe_object(Preposition::From, place),
             _ if has_goal(clause.intent) => settled.take_place(planner, *preposition, place, role),
             _ => settled.describe_object(*preposition, place),
@@ -86,10 +95,14 @@ impl Settled {
     fn name_goal(&mut self, planner: &Planner<'_>) {
         let Some(object) = self.objects.last() else { return };
         let mut before = object.relations.last().map_or(&object.namings, |relation| &relation.to.namings).clone();
-        // `take it off the green desk and put it on the blue one`
+        // `take it off the green desk and put it on the blue one`, `the thing on the green desk, put it on the blue one`
         if before.is_empty() {
             before = planner.origin_kind();
         }
+        if before.is_empty() {
+            before = planner.place_kind(object, self.intent);
+        }
+        let before = planner.of_kind(&before);
         if let Some(Goal { place: Place::Object(phrase), .. }) = &mut self.goal
             && phrase.pronoun == Some(Pronoun::One)
             && phrase.namings.is_empty()
@@ -133,6 +146,8 @@ impl Settled {
                 }
             }
             (Some(Goal { place: Place::Object(phrase), .. }), _) => phrase.attach(preposition, place.clone()),
+            // `bring it here`
+            (None, Place::Here) if self.objects.last().is_some_and(|object| object.is_bare_pronoun()) => {}
             (Some(_), _) | (None, Place::Side(_) | Place::Here) => self.describe_object(preposition, place),
             // `fill the bowl in the kitchen` says where the bowl is, `put it in the kitchen` where it goes.
             (None, Place::Room(_)) if !matches!(self.intent, Intent::Place | Intent::Bring | Intent::Drop) => {

@@ -8,7 +8,7 @@ const LONGEST_STUTTER: usize = 4;
 /// The words that are meant.
 pub(crate) fn tidied(lexicon: &Lexicon, words: &[String]) -> Vec<String> {
     let words = amend::without_slips(lexicon, &without_numbers(lexicon, words));
-    let words = without_stutter(&without_hesitation(lexicon, words));
+    let words = without_stutter(&without_tags(without_hesitation(lexicon, words)));
     let words = order::in_order(lexicon, &asked_plainly(lexicon, words));
     amend::without_where(lexicon, without_pause(lexicon, words))
 }
@@ -143,6 +143,14 @@ fn without_hesitation(lexicon: &Lexicon, words: Vec<String>) -> Vec<String> {
         }
     }
     result
+}
+
+/// `that is the laser, right?`: no way to turn.
+fn without_tags(mut words: Vec<String>) -> Vec<String> {
+    let is_tag = |at: usize| words[at] == "," && words[at + 1] == "right" && words[at + 2] == "?";
+    let tags: Vec<usize> = (1..words.len().saturating_sub(2)).filter(|at| is_tag(*at)).collect();
+    tags.into_iter().rev().for_each(|at| drop(words.drain(at..at + 2)));
+    words
 }
 
 /// `go to the, go to the fridge`, `the the`; numbers are said twice for a reason.

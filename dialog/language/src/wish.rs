@@ -31,6 +31,9 @@ pub(crate) struct Wishes {
     ensurers: PhraseTable<()>,
     performers: PhraseTable<()>,
     undoes: BTreeMap<String, String>,
+    pub(crate) subjecters: BTreeSet<String>,
+    pub(crate) infecters: BTreeSet<String>,
+    pub(crate) shooters: PhraseTable<()>,
 }
 
 /// The request that a wish at the start of `words` comes to, and how many words the wish took.
@@ -62,6 +65,47 @@ fn spoken(lexicon: &Lexicon, chunk: &[String]) -> Option<Vec<String>> {
         .or_else(|| ensured(lexicon, chunk))
         .or_else(|| performed(lexicon, chunk))
         .or_else(|| left_so(lexicon, chunk))
+        .or_else(|| clefted(lexicon, chunk))
+        .or_else(|| infected(lexicon, chunk))
+        .or_else(|| subjected(lexicon, chunk))
+        .or_else(|| shot(lexicon, chunk))
+}
+
+/// `it is the cereal that I want`
+fn clefted(lexicon: &Lexicon, words: &[String]) -> Option<Vec<String>> {
+    let rest = words.strip_prefix(["it", "is"].map(str::to_owned).as_slice())?;
+    let (thing, after) = thing(lexicon, rest)?;
+    let after = after.strip_prefix(["that".to_owned()].as_slice()).unwrap_or(after);
+    let (wish, who) = after.split_last()?;
+    let is_wish = lexicon.wishes.wishes.contains(wish) && !who.is_empty();
+    (is_wish && who.iter().all(|word| lexicon.wishes.wishers.contains(word)))
+        .then(|| joined(&[&["get"], &texts(thing)]))
+}
+
+/// `infect the computer with the floppy disk`: the disk goes into it.
+fn infected(lexicon: &Lexicon, words: &[String]) -> Option<Vec<String>> {
+    let (_, rest) = words.split_first().filter(|(first, _)| lexicon.wishes.infecters.contains(*first))?;
+    let (thing, after) = thing(lexicon, rest)?;
+    let (_, tool) = after.split_first().filter(|(with, _)| matches!(with.as_str(), "with" | "using"))?;
+    Some(joined(&[&["put"], &texts(tool), &["in"], &texts(thing)]))
+}
+
+/// `subject the mug to the laser`: the laser is to be used on it.
+fn subjected(lexicon: &Lexicon, words: &[String]) -> Option<Vec<String>> {
+    let (_, rest) = words.split_first().filter(|(first, _)| lexicon.wishes.subjecters.contains(*first))?;
+    let (thing, after) = thing(lexicon, rest)?;
+    let (_, device) = after.split_first().filter(|(to, _)| *to == "to")?;
+    Some(joined(&[&["use"], &texts(device), &["on"], &texts(thing)]))
+}
+
+/// `zap the mug with the freeze ray`: what it is shot with is to be used on it.
+fn shot(lexicon: &Lexicon, words: &[String]) -> Option<Vec<String>> {
+    let (length, ()) = lexicon.wishes.shooters.longest(words)?;
+    let (thing, after) = thing(lexicon, &words[length..])?;
+    let (_, device) = after.split_first().filter(|(with, _)| matches!(with.as_str(), "with" | "using"))?;
+    let phrase = Reader::new(lexicon, device).phrase().filter(|phrase| !phrase.namings.is_empty())?;
+    let is_carried = phrase.namings.iter().any(|naming| lexicon.carried.contains(&naming.class));
+    (!is_carried).then(|| joined(&[&["use"], &texts(device), &["on"], &texts(thing)]))
 }
 
 /// `you left the microwave open`: it is to be as it was.
@@ -153,8 +197,8 @@ fn ordered(lexicon: &Lexicon, words: &[String]) -> Option<Vec<String>> {
     let is_coffee = rest.iter().take(3).any(|word| word == "coffee") && rest.first().is_some_and(|word| word != "the");
     let is_some = rest.first().is_some_and(|word| word == "some") && rest.get(1).is_some_and(|word| word == "water");
     // `put water in the cup`
-    let is_put = matches!(first.as_str(), "put" | "add")
-        && rest.iter().take(3).any(|word| matches!(word.as_str(), "in" | "into" | "to"));
+    let is_put = matches!(first.as_str(), "put" | "add" | "give")
+        && rest.iter().take(3).any(|word| matches!(word.as_str(), "in" | "into" | "to" | "inside"));
     (is_made || has_measure || is_coffee || is_some || is_put).then(|| drink(lexicon, rest)).flatten()
 }
 
@@ -171,7 +215,8 @@ fn drink(lexicon: &Lexicon, words: &[String]) -> Option<Vec<String>> {
         }
     };
     let what = rest[..length].join(" ");
-    let into = after.first().is_some_and(|word| matches!(word.as_str(), "in" | "into" | "to")) && after.len() > 1;
+    let into =
+        after.first().is_some_and(|word| matches!(word.as_str(), "in" | "into" | "to" | "inside")) && after.len() > 1;
     if !into && !is_after(lexicon, after) {
         return None;
     }
@@ -345,6 +390,12 @@ fn participle<'a>(lexicon: &Lexicon, words: &'a [String]) -> Option<(Vec<String>
 /// The verb, the thing, and what follows it.
 fn finish(lexicon: &Lexicon, verb: Vec<String>, thing: &[String], left: &[String]) -> Option<Vec<String>> {
     let left = if is_after(lexicon, left) { &[][..] } else { left };
+    // `have the plate cleaned and returned to the table`
+    if let Some((next, rest)) =
+        left.split_first().filter(|(and, _)| *and == "and").and_then(|(_, left)| participle(lexicon, left))
+    {
+        return Some(joined(&[&texts(&verb), &texts(thing), &["and"], &texts(&next), &["it"], &texts(rest)]));
+    }
     Some(joined(&[&texts(&verb), &texts(thing), &texts(left)]))
 }
 

@@ -298,6 +298,38 @@ fn it_looks_for_what_it_does_not_know_and_goes_on() {
 }
 
 #[test]
+fn what_it_asks_the_place_of_it_looks_for_when_told_to() {
+    for answer in ["yes", "find it", "you look", "I forgot where it is", "look around"] {
+        let mut robot = Robot::new(&[]);
+        // A hammer holds no water: perhaps something else is meant.
+        let (_, said) = robot.say("fill the hammer", 1);
+        assert!(said[0].starts_with("? I have not seen a hammer. Where is it"), "{said:?}");
+        let (done, said) = robot.say(answer, 80);
+        assert!(done.contains(&"take Hammer_1".to_owned()), "{answer}: {done:?} {said:?}");
+    }
+    let mut robot = Robot::new(&[]);
+    robot.say("fill the hammer", 1);
+    let (done, _) = robot.say("it is in the main office", 80);
+    assert!(done[0].starts_with("go MainOffice"), "{done:?}");
+    assert!(done.contains(&"take Hammer_1".to_owned()), "{done:?}");
+}
+
+#[test]
+fn of_the_missions_things_it_knows_what_the_goals_speak_of() {
+    let mut robot = Robot::new(&[]);
+    robot.world.objects.iter_mut().for_each(|object| object.in_mission = true);
+    robot.look(true);
+    let known = robot.memory.known().unwrap();
+    let told = known.objects.iter().filter(|object| object.in_mission).map(|object| object.instance.as_str());
+    // The milk is spoken of, too; it is not known before it was seen.
+    assert_eq!(told.collect::<Vec<_>>(), ["Bowl_01_1"]);
+    robot.say("open the fridge", 1);
+    let known = robot.memory.known().unwrap();
+    let told = known.objects.iter().filter(|object| object.in_mission).map(|object| object.instance.as_str());
+    assert_eq!(told.collect::<Vec<_>>(), ["Bowl_01_1", "MilkCarton_01_1"]);
+}
+
+#[test]
 fn a_named_room_is_searched_and_no_other() {
     let mut robot = Robot::new(&[]);
     let (done, _) = robot.say("pick up the trophy in the main office", 60);
