@@ -7,7 +7,7 @@ use std::{
     sync::Arc,
 };
 
-use cohabit_cdf::{Action, Catalog, ClassId, ObjectClass, ObjectId, Property, StateFlag, Verb};
+use cohabit_cdf::{Action, Catalog, ObjectId, Property, StateFlag, Verb};
 use serde::{Deserialize, Serialize};
 
 use crate::{
@@ -15,7 +15,6 @@ use crate::{
     known::{Known, KnownGoal, KnownObject, KnownRobot, distance_m},
     remedy,
     sight::{Gaze, Sight},
-    token,
 };
 
 /// No office holds more.
@@ -41,8 +40,6 @@ pub enum Knows {
 pub struct Memory {
     robot: Option<KnownRobot>,
     goals: Vec<KnownGoal>,
-    /// The kinds of things that the goals speak of.
-    spoken_of: BTreeSet<ClassId>,
     things: BTreeMap<ObjectId, KnownObject>,
     floor: Floor,
     /// What was learnt and not handed out by [`Self::take_lessons`] yet.
@@ -115,7 +112,6 @@ impl Memory {
         Self {
             robot: None,
             goals: Vec::new(),
-            spoken_of: BTreeSet::new(),
             things: BTreeMap::new(),
             floor: Floor::new(plan),
             fresh: BTreeSet::new(),
@@ -127,10 +123,7 @@ impl Memory {
     pub fn take_in(&mut self, catalog: &Catalog, world: &Known, gaze: Gaze) {
         let put_away = self.robot.as_ref().and_then(|robot| robot.held).filter(|held| world.robot.held != Some(*held));
         self.robot = Some(world.robot.clone());
-        if self.goals != world.goals {
-            self.goals.clone_from(&world.goals);
-            self.spoken_of = spoken_of(catalog, &self.goals);
-        }
+        self.goals.clone_from(&world.goals);
         self.see_doors(world);
         let plan = Arc::clone(&self.floor.plan);
         let sight = Sight::new(catalog, &plan, gaze, world);
@@ -169,14 +162,11 @@ impl Memory {
         }
     }
 
-    /// What the robot knows; nothing, as long as it has not opened its eyes. Which things are there for the mission's sake
-    /// it does not see: those are that its goals speak of.
+    /// What the robot knows; nothing, as long as it has not opened its eyes.
     #[must_use]
     pub fn known(&self) -> Option<Known> {
         let robot = self.robot.clone()?;
-        let told =
-            |thing: &KnownObject| KnownObject { in_mission: self.spoken_of.contains(&thing.class), ..thing.clone() };
-        let objects = self.things.values().map(told).collect();
+        let objects = self.things.values().cloned().collect();
         Some(Known { robot, objects, goals: self.goals.clone(), floor: Some(self.floor.clone()), person: None })
     }
 
@@ -233,7 +223,7 @@ impl Memory {
     }
 
     fn learn(&mut self, object: &KnownObject, visible: bool) {
-        let known = KnownObject { visible, is_hidden: false, in_mission: false, ..object.clone() };
+        let known = KnownObject { visible, is_hidden: false, ..object.clone() };
         let before = self.things.get(&object.id);
         if before.is_none() && self.things.len() >= MOST_THINGS {
             return;
@@ -285,20 +275,6 @@ impl Memory {
             }
         }
     }
-}
-
-/// The classes of which a name stands in the text of a goal.
-fn spoken_of(catalog: &Catalog, goals: &[KnownGoal]) -> BTreeSet<ClassId> {
-    let texts: Vec<Vec<String>> = goals.iter().map(|goal| token::words(&goal.text)).collect();
-    let is_word = |said: &String, word: &String| said == word || said.strip_suffix('s') == Some(word);
-    let says = |name: &str| {
-        let name = token::words(name);
-        let is_it = |said: &[String]| said.iter().zip(&name).all(|(said, word)| is_word(said, word));
-        !name.is_empty() && texts.iter().any(|text| text.windows(name.len()).any(is_it))
-    };
-    let classes = (0..).map(ClassId).zip(catalog.classes());
-    let named = |class: &ObjectClass| says(&class.name) || class.words.iter().any(|word| says(word));
-    classes.filter(|(_, class)| named(class)).map(|(id, _)| id).collect()
 }
 
 /// Whether nothing in it can be seen.

@@ -315,21 +315,6 @@ fn what_it_asks_the_place_of_it_looks_for_when_told_to() {
 }
 
 #[test]
-fn of_the_missions_things_it_knows_what_the_goals_speak_of() {
-    let mut robot = Robot::new(&[]);
-    robot.world.objects.iter_mut().for_each(|object| object.in_mission = true);
-    robot.look(true);
-    let known = robot.memory.known().unwrap();
-    let told = known.objects.iter().filter(|object| object.in_mission).map(|object| object.instance.as_str());
-    // The milk is spoken of, too; it is not known before it was seen.
-    assert_eq!(told.collect::<Vec<_>>(), ["Bowl_01_1"]);
-    robot.say("open the fridge", 1);
-    let known = robot.memory.known().unwrap();
-    let told = known.objects.iter().filter(|object| object.in_mission).map(|object| object.instance.as_str());
-    assert_eq!(told.collect::<Vec<_>>(), ["Bowl_01_1", "MilkCarton_01_1"]);
-}
-
-#[test]
 fn a_named_room_is_searched_and_no_other() {
     let mut robot = Robot::new(&[]);
     let (done, _) = robot.say("pick up the trophy in the main office", 60);
