@@ -157,9 +157,14 @@ export function stopListening() {
   if (mode === "off") return;
   mode = "off";
   send({ type: "listened" });
-  if (!byId("hearing").classList.contains("note")) showHearing("");
+  clearHearing();
   show();
   letGo();
+}
+
+/** Nothing is heard any more; what people are to know of it stays. */
+function clearHearing(text = "") {
+  if (text || !byId("hearing").classList.contains("note")) showHearing(text);
 }
 
 function letGo() {
@@ -198,7 +203,7 @@ export function takeHearing({ state, text, joins }) {
   if (state === "partial") showHearing(text, "partial");
   else if (state === "began") showHearing("…", "partial");
   else {
-    showHearing(state === "nothing" && mode === "tap" ? "I heard nothing." : "", "");
+    clearHearing(state === "nothing" && mode === "tap" ? "I heard nothing." : "");
     if (mode === "tap") stopListening();
   }
 }

@@ -10,7 +10,7 @@ const LESS_URGENT: i32 = 10;
 /// as soon as it wakes: see sched_setattr(2).
 const SHORT_TURN_NANOS: u64 = 100_000;
 /// The lowest priority of real time: before all that has none, and behind whatever else has one.
-const REAL_TIME_PRIORITY: u32 = 1;
+const REAL_TIME_PRIORITY: i32 = 1;
 
 /// How soon a thread that has a deadline is served when it wakes.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
@@ -38,13 +38,13 @@ pub fn go_first() -> Urgency {
 }
 
 /// Schedules this thread so; `None` where that is not granted.
-fn schedule(policy: i32, nice: i32, priority: u32, runtime_nanos: u64) -> Option<()> {
+fn schedule(policy: i32, nice: i32, priority: i32, runtime_nanos: u64) -> Option<()> {
     let asked = libc::sched_attr {
         size: size_of::<libc::sched_attr>() as u32,
         sched_policy: policy as u32,
         sched_flags: libc::SCHED_FLAG_RESET_ON_FORK as u64,
         sched_nice: nice,
-        sched_priority: priority,
+        sched_priority: priority as u32,
         sched_runtime: runtime_nanos,
         sched_deadline: 0,
         sched_period: 0,

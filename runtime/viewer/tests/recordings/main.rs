@@ -11,7 +11,7 @@ use std::{
 };
 
 use cohabit_bus::{
-    Inbox, Session, Shm, Topic, Transport,
+    Inbox, Session, Shm, Topic,
     message::{self, PulseMessage},
 };
 use cohabit_cdf::{Catalog, mission};
@@ -170,11 +170,11 @@ fn tables_are_read_with_their_units_and_meanings() {
     let rows = turns["rows"].as_array().unwrap().iter().filter(|row| row["session"] == "cold_soda");
     assert_eq!(rows.map(|row| row["said"].as_str().unwrap()).collect::<Vec<_>>(), said);
     let codebook = read(python, "table", &out.join("codebook.parquet"));
-    let fields: usize = ["sessions", "turns", "actions", "goals"]
+    let fields: usize = ["sessions", "turns", "actions", "goals", "questionnaires"]
         .map(|name| read(python, "table", &out.join(format!("{name}.parquet")))["fields"].as_object().unwrap().len())
         .iter()
         .sum();
-    assert_eq!(codebook["rows"].as_array().unwrap().len(), fields + 4, "each column, and each table");
+    assert_eq!(codebook["rows"].as_array().unwrap().len(), fields + 5, "each column, and each table");
 }
 
 /// The program as it watches a session; ended when dropped.
