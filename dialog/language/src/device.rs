@@ -1,6 +1,6 @@
 //! Plans with machines: switching them, and getting things heated, cooled, cleaned, repaired, coloured and printed.
 
-use cohabit_cdf::{ClassId, Fluid, ObjectId, Property, Verb, state::StateFlag};
+use cohabit_cdf::{Action, ClassId, Fluid, ObjectId, Property, Verb, state::StateFlag};
 
 use crate::{
     context::Role,
@@ -94,7 +94,11 @@ impl Planner<'_> {
             .object(machine)
             .is_some_and(|known| self.devices.must_be_shut(known.class) && known.has(StateFlag::Opened));
         if is_open {
-            self.notes.push(format!("{} is open, so I close it first", self.the(machine)));
+            // What this very plan opens is no news.
+            let opens = Action::Interact { verb: Verb::Open, object: machine };
+            if !self.steps.iter().any(|step| step.action == opens) {
+                self.notes.push(format!("{} is open, so I close it first", self.the(machine)));
+            }
             self.interact(Verb::Close, machine, "closing");
         }
     }
