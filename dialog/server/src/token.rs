@@ -5,7 +5,7 @@ use std::{
     fs::File,
     io,
     io::Read as _,
-    net::{SocketAddr, UdpSocket},
+    net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr, UdpSocket},
 };
 
 /// A fresh token where `address` can be reached from other machines; none on loopback.
@@ -31,20 +31,26 @@ pub fn page_address(address: SocketAddr, encrypted: bool, token: Option<&str>) -
     }
 }
 
-/// The address at which others reach what listens at `address`, where that is any of this machine's.
+/// The address at which others reach what listens at `address`, where that is any of this machine's; a machine without a
+/// network is reached from itself alone.
 fn reachable(address: SocketAddr) -> SocketAddr {
-    let own = || {
-        // Nothing is sent: the address is one for examples, to which no way leads but the usual one.
-        let (here, there) = match address {
-            SocketAddr::V4(_) => ("0.0.0.0:0", "192.0.2.1:9"),
-            SocketAddr::V6(_) => ("[::]:0", "[2001:db8::1]:9"),
-        };
-        let socket = UdpSocket::bind(here).ok()?;
-        socket.connect(there).ok()?;
-        socket.local_addr().ok()
+    let ip = match address.ip() {
+        IpAddr::V4(ip) if ip.is_unspecified() => {
+            own_ip("0.0.0.0:0", "192.0.2.1:9").unwrap_or(Ipv4Addr::LOCALHOST.into())
+        }
+        IpAddr::V6(ip) if ip.is_unspecified() => {
+            own_ip("[::]:0", "[2001:db8::1]:9").unwrap_or(Ipv6Addr::LOCALHOST.into())
+        }
+        ip => ip,
     };
-    let ip = if address.ip().is_unspecified() { own().map(|own| own.ip()) } else { None };
-    SocketAddr::new(ip.unwrap_or_else(|| address.ip()), address.port())
+    SocketAddr::new(ip, address.port())
+}
+
+/// The address that this machine has on the way to `there`, an address for examples. Nothing is sent.
+fn own_ip(here: &str, there: &str) -> Option<IpAddr> {
+    let socket = UdpSocket::bind(here).ok()?;
+    socket.connect(there).ok()?;
+    Some(socket.local_addr().ok()?.ip())
 }
 
 /// Whether `given` is the token, compared in constant time.
