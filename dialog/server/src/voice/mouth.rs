@@ -263,13 +263,17 @@ mod tests {
 
     use super::*;
 
-    /// A mouth that beeps, with what pages are told and hear.
-    fn mouth() -> (Arc<Mouth>, Receiver<Value>, Receiver<Vec<u8>>) {
-        let ((tell, told), (play, played)) = (mpsc::channel(), mpsc::channel());
+    /// A mouth that beeps, with what pages are told and hear; it may be so many pieces ahead of them.
+    fn mouth_ahead(pieces: usize) -> (Arc<Mouth>, Receiver<Value>, Receiver<Vec<u8>>) {
+        let ((tell, told), (play, played)) = (mpsc::channel(), mpsc::sync_channel(pieces));
         let tell = move |message: &Value| tell.send(message.clone()).unwrap();
         let mouth = Mouth::new(Box::new(tell), Box::new(move |piece| drop(play.send(piece))));
         mouth.open(Box::new(Beeper), &Local::new(1));
         (mouth, told, played)
+    }
+
+    fn mouth() -> (Arc<Mouth>, Receiver<Value>, Receiver<Vec<u8>>) {
+        mouth_ahead(1000)
     }
 
     const LONG: Duration = Duration::from_secs(20);
@@ -299,7 +303,8 @@ mod tests {
 
     #[test]
     fn who_is_hushed_says_no_more() {
-        let (mouth, told, played) = mouth();
+        // It is still at the first when it is hushed: what it says next waits until that was heard.
+        let (mouth, told, played) = mouth_ahead(0);
         for turn in 1..=3 {
             mouth.say(0, turn, &"a long sentence ".repeat(20));
         }
