@@ -168,14 +168,14 @@ impl Planner<'_> {
         }
         let object = self.what_to_place(settled)?;
         // Taken before the goal is grounded: `put it on the table` means a table near where it is.
+        let is_inserted = settled.is_inserted && settled.goal.is_none() && !settled.is_back;
+        if let Some(place) = is_inserted.then(|| self.made_for(object)).flatten() {
+            self.hold(object)?;
+            self.place_on(place);
+            return Ok(());
+        }
         match &settled.goal {
             None if settled.is_back => self.put_back(object),
-            None if settled.is_inserted && self.made_for(object).is_some() => {
-                let place = self.made_for(object).unwrap_or(object);
-                self.hold(object)?;
-                self.place_on(place);
-                Ok(())
-            }
             None if settled.intent == Intent::Bring => {
                 self.pick_up(object, self.may_put_down)?;
                 let says = format!("bringing you {}", self.the(object));

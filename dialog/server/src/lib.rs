@@ -54,6 +54,7 @@ pub use journal::begin_after;
 pub use known::Knowledge;
 pub use questionnaire::{Questionnaire, QuestionnaireError};
 pub use screening::{ScreeningConfig, screen};
+pub use spoken::meaning;
 pub use tls::{Identity, TlsError};
 pub use voice::VoiceConfig;
 

@@ -42,7 +42,9 @@ impl Spoken {
     }
 }
 
-fn meaning(understanding: Understanding) -> Meaning<Vec<Step>> {
+/// What a reading comes to, by what the language makes of it.
+#[must_use]
+pub fn meaning(understanding: Understanding) -> Meaning<Vec<Step>> {
     let (sense, deed) = match understanding {
         Understanding::Plan { steps, .. } => (Sense::Clear, Some(steps)),
         Understanding::Stop { .. } | Understanding::Answer { .. } => (Sense::Clear, None),

@@ -199,7 +199,7 @@ impl LogWriter {
     pub fn flush(&mut self) -> Result<(), LogError> {
         self.seal()?;
         let handed = self.out.push(&self.segment.take());
-        handed.map_err(|source| LogError::Disk { path: self.path.clone(), source })
+        self.handed(handed)
     }
 
     /// Ends the log with its index.
@@ -211,7 +211,7 @@ impl LogWriter {
         let finished = self.mcap.finish().map(drop);
         self.written(finished)?;
         let handed = self.out.push(&self.segment.take()).and_then(|()| self.out.finish());
-        handed.map_err(|source| LogError::Disk { path: self.path.clone(), source })
+        self.handed(handed)
     }
 
     fn seal(&mut self) -> Result<(), LogError> {
@@ -234,6 +234,10 @@ impl LogWriter {
         self.sequence = self.sequence.wrapping_add(1);
         let written = self.mcap.write_to_known_channel(&header, data);
         self.written(written)
+    }
+
+    fn handed(&self, handed: io::Result<()>) -> Result<(), LogError> {
+        handed.map_err(|source| LogError::Disk { path: self.path.clone(), source })
     }
 
     fn written<T>(&self, written: Result<T, McapError>) -> Result<T, LogError> {

@@ -151,31 +151,34 @@ impl Show<'_> {
     fn tick(&mut self, entry: &TickEntry) -> anyhow::Result<()> {
         self.showing.at(When { tick: entry.tick, wall_nanos: entry.wall_nanos });
         let log = self.log;
-        let events = log.events[self.events..].iter().take_while(|event| event.tick <= entry.tick).count();
-        let dialog = log.dialog[self.dialog..].iter().take_while(|said| said.tick <= entry.tick).count();
-        if events > 0 || !entry.inputs.is_empty() || entry.tick % SCENE_EVERY_TICKS == 0 {
+        let events = due(&log.events, &mut self.events, |event| event.tick <= entry.tick);
+        let dialog = due(&log.dialog, &mut self.dialog, |said| said.tick <= entry.tick);
+        if !events.is_empty() || !entry.inputs.is_empty() || entry.tick % SCENE_EVERY_TICKS == 0 {
             self.showing.state(self.replayer.state())?;
         }
         entry.inputs.iter().try_for_each(|input| self.showing.input(input))?;
-        log.events[self.events..][..events].iter().try_for_each(|event| self.showing.event(event))?;
-        log.dialog[self.dialog..][..dialog].iter().try_for_each(|said| self.showing.dialog(said))?;
-        (self.events, self.dialog) = (self.events + events, self.dialog + dialog);
+        events.iter().try_for_each(|event| self.showing.event(event))?;
+        dialog.iter().try_for_each(|said| self.showing.dialog(said))?;
         self.answers(entry.tick)?;
         match &mut self.eyes {
             Some(eyes) if entry.tick % eyes.every_ticks == 0 => eyes.look(&self.replayer, &mut self.showing),
             _ => Ok(()),
         }
     }
-}
 
-impl Show<'_> {
     /// Tells what was answered until a tick.
     fn answers(&mut self, tick: u64) -> anyhow::Result<()> {
-        let until = self.log.answers[self.answers..].iter().take_while(|answer| answer.tick <= tick).count();
-        self.log.answers[self.answers..][..until].iter().try_for_each(|answer| self.showing.answer(answer))?;
-        self.answers += until;
-        Ok(())
+        let answers = due(&self.log.answers, &mut self.answers, |answer| answer.tick <= tick);
+        answers.iter().try_for_each(|answer| self.showing.answer(answer))
     }
+}
+
+/// Those of `entries` behind the first `told` that are due, which count as told from now on.
+fn due<'a, E>(entries: &'a [E], told: &mut usize, is_due: impl Fn(&E) -> bool) -> &'a [E] {
+    let left = &entries[*told..];
+    let count = left.iter().take_while(|entry| is_due(entry)).count();
+    *told += count;
+    &left[..count]
 }
 
 /// The robot's camera, which looks again at what it saw.

@@ -23,8 +23,9 @@ mod voices;
 use std::{path::Path, time::Instant};
 
 use cases::{Command, commands, half, scene};
-use cohabit_language::{Clarification, Step, Understanding, says_stop};
-use cohabit_speech::{Bias, Ear, Engines, Heard, Meaning, RATE, Recognition, Sense, Turns, VoiceSettings, choose};
+use cohabit_dialog::meaning;
+use cohabit_language::{Understanding, says_stop};
+use cohabit_speech::{Bias, Ear, Engines, Heard, RATE, Recognition, Turns, VoiceSettings, choose};
 use office::Talk;
 use score::{Score, machine};
 use sound::Noise;
@@ -147,7 +148,7 @@ impl Turn {
                 heard.push(stop.to_owned());
                 continue;
             }
-            let Some(choice) = choose(recognition, |text| meaning(&understood(text, &talk))) else { continue };
+            let Some(choice) = choose(recognition, |text| meaning(understood(text, &talk))) else { continue };
             is_doubted |= choice.is_doubtful;
             texts.push(talk.say(&choice.text));
             heard.push(choice.text);
@@ -170,20 +171,6 @@ impl Turn {
 /// Whether something is done: what is understood is no question, answer or refusal.
 fn is_act(understood: &str) -> bool {
     !understood.is_empty() && !understood.starts_with(['?', '=', '!'])
-}
-
-/// What a reading comes to: as the dialog service has it.
-fn meaning(understanding: &Understanding) -> Meaning<Vec<Step>> {
-    let (sense, deed) = match understanding {
-        Understanding::Plan { steps, .. } => (Sense::Clear, Some(steps.clone())),
-        Understanding::Stop { .. } | Understanding::Answer { .. } => (Sense::Clear, None),
-        Understanding::Question { kind: Clarification::Appearance | Clarification::Request, .. } => {
-            (Sense::Vague, None)
-        }
-        Understanding::Question { .. } | Understanding::Refusal { is_lost: false, .. } => (Sense::Asks, None),
-        Understanding::Refusal { is_lost: true, .. } => (Sense::None, None),
-    };
-    Meaning { sense, deed }
 }
 
 fn understood(text: &str, talk: &Talk) -> Understanding {
@@ -238,7 +225,7 @@ fn nothing(ear: &mut Ear, voices: &mut [Voice]) {
         }
         let (mut asked, mut acted) = (0, 0);
         for recognition in &found.recognitions {
-            let Some(choice) = choose(recognition, |text| meaning(&understood(text, &talk))) else { continue };
+            let Some(choice) = choose(recognition, |text| meaning(understood(text, &talk))) else { continue };
             let Some(deed) = &choice.meaning.deed else { continue };
             *(if choice.is_doubtful { &mut asked } else { &mut acted }) += 1;
             if std::env::var_os("SHOW").is_some() {
