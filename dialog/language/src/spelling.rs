@@ -34,6 +34,11 @@ impl Vocabulary {
         self.ordinary.insert(word.to_owned());
     }
 
+    /// All words that were learnt.
+    pub(crate) fn words(&self) -> impl Iterator<Item = &String> {
+        self.meaningful.iter().chain(&self.plain).chain(&self.ordinary)
+    }
+
     /// Whether the robot understands the word.
     pub(crate) fn has(&self, word: &str) -> bool {
         self.meaningful.contains(word)

@@ -25,6 +25,8 @@ pub struct SpokenNames {
     pub places: BTreeSet<String>,
     /// Rooms.
     pub rooms: BTreeSet<String>,
+    /// All other words that the robot knows.
+    pub words: BTreeSet<String>,
 }
 
 /// Words that say stop wherever they stand, and those that do first, or in few words.
@@ -61,6 +63,7 @@ impl Language {
             into.extend(std::iter::once(&class.name).chain(&class.words).map(|name| name.to_lowercase()));
         }
         names.rooms = RoomId::ALL.iter().map(|room| room.name().to_lowercase()).collect();
+        names.words = self.lexicon.vocabulary.words().cloned().collect();
         names
     }
 

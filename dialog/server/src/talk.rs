@@ -498,8 +498,7 @@ impl Audience for Talk {
         drop(inner);
         let [things, places, rooms] =
             [names.things, names.places, names.rooms].map(|names| names.into_iter().collect());
-        let words = self.names.clone();
-        Some((number, Scene { things, places, rooms, words }))
+        Some((number, Scene { things, places, rooms, words: self.names.clone(), known: names.words }))
     }
 
     fn stop(&self, visitor: u32, heard_nanos: u64) {

@@ -22,6 +22,8 @@ pub struct Bias {
     pub words: BTreeSet<String>,
     /// Sentences that are likely, each as it would be typed. How often one stands here is how likely it is.
     pub sentences: Vec<String>,
+    /// Words that are as unlikely as any other, but would be understood.
+    pub known: BTreeSet<String>,
 }
 
 impl Bias {
@@ -30,13 +32,13 @@ impl Bias {
     pub fn of(sentences: impl IntoIterator<Item = impl Into<String>>) -> Self {
         let sentences: Vec<String> = sentences.into_iter().map(Into::into).collect();
         let words = sentences.iter().flat_map(|sentence| words(sentence)).collect();
-        Self { words, sentences }
+        Self { words, sentences, known: BTreeSet::new() }
     }
 
     /// What is said to a robot that knows of these: requests, questions and answers.
     #[must_use]
     pub fn of_scene(scene: &Scene) -> Self {
-        Self::shaped(REQUESTS, scene)
+        Self { known: scene.known.clone(), ..Self::shaped(REQUESTS, scene) }
     }
 
     /// Shapes with slots, one a line, filled with what is there; `=` begins a line of words, `#` one that says nothing.
@@ -73,6 +75,8 @@ pub struct Scene {
     pub rooms: Vec<String>,
     /// Other words that may be said: names of robots and people, what goals speak of.
     pub words: Vec<String>,
+    /// All other words that are understood, in small letters.
+    pub known: BTreeSet<String>,
 }
 
 impl Scene {
@@ -137,6 +141,7 @@ mod tests {
             places: owned(&["sink", "table", "fridge"]),
             rooms: owned(&["lab"]),
             words: owned(&["Rosie"]),
+            known: BTreeSet::new(),
         };
         let shapes = "# going\ngo to the {room}\nput the {thing} on the {place}\nfly {nowhere}\nfind a {thing}\nstop\n= uh, please";
         let bias = Bias::shaped(shapes, &scene);
@@ -153,7 +158,7 @@ mod tests {
     #[test]
     fn what_people_say_names_all_that_is_there() {
         let names = |kind: &str| (0..30).map(|at| format!("{kind}{at}")).collect::<Vec<_>>();
-        let scene = Scene { things: names("thing"), places: names("place"), rooms: names("room"), words: Vec::new() };
+        let scene = Scene { things: names("thing"), places: names("place"), rooms: names("room"), ..Scene::default() };
         let bias = Bias::of_scene(&scene);
         assert!(
             names("thing").iter().chain(&names("place")).chain(&names("room")).all(|name| bias.words.contains(name))

@@ -4,7 +4,7 @@
 //! (Witten and Bell, "The zero-frequency problem", 1991).
 
 use std::{
-    collections::{BTreeMap, HashMap},
+    collections::{BTreeMap, BTreeSet, HashMap},
     ops::Range,
 };
 
@@ -36,6 +36,8 @@ pub(crate) struct NGram {
     single: Follows,
     after_one: HashMap<Word, Follows>,
     after_two: HashMap<[Word; 2], Follows>,
+    /// Words that are not known here, but to who hears them.
+    understood: BTreeSet<String>,
 }
 
 /// Where in a sentence one is: the two words before, and how a word begins that is not complete.
@@ -66,8 +68,13 @@ impl NGram {
         let mut known: Vec<String> = sentences.iter().flatten().chain(&bias.words).cloned().collect();
         known.sort_unstable();
         known.dedup();
-        let mut model =
-            Self { words: known, single: Follows::default(), after_one: HashMap::new(), after_two: HashMap::new() };
+        let mut model = Self {
+            words: known,
+            single: Follows::default(),
+            after_one: HashMap::new(),
+            after_two: HashMap::new(),
+            understood: bias.known.clone(),
+        };
         for sentence in &sentences {
             model.count(sentence);
         }
@@ -89,10 +96,11 @@ impl NGram {
         self.words.binary_search_by(|known| known.as_str().cmp(word)).ok().map(|at| at as Word + 1)
     }
 
-    /// How many words of a text it does not know; numbers are known.
+    /// How many words of a text nobody knows; numbers are known.
     pub(crate) fn strange(&self, text: &str) -> usize {
-        let is_number = |word: &String| word.chars().all(|c| c.is_ascii_digit());
-        bias::words(text).iter().filter(|word| self.word(word).is_none() && !is_number(word)).count()
+        let is_number = |word: &str| word.chars().all(|c| c.is_ascii_digit());
+        let is_known = |word: &String| self.word(word).is_some() || self.understood.contains(word) || is_number(word);
+        bias::words(text).iter().filter(|word| !is_known(word)).count()
     }
 
     fn chance(&self, before: [Word; 2], word: Word) -> f32 {
@@ -231,6 +239,8 @@ mod tests {
         let check = |text: &str, expected: usize| assert_eq!(model().strange(text), expected, "{text}");
         check("Pick up the fridge.", 0);
         check("Pick up the pole, 30 zebras", 2);
+        let bias = Bias { known: ["pole".to_owned()].into(), ..Bias::of(["pick up the mug"]) };
+        assert_eq!(NGram::of(&bias).unwrap().strange("Pick up the pole, 30 zebras"), 1);
     }
 
     #[test]

@@ -1,7 +1,6 @@
 //! What is said: commands about the things of the missions that ship, and some of the language's own utterances, each with
 //! the office that it is said in.
 
-use cohabit_cdf::{Property, RoomId};
 use cohabit_speech::Scene;
 
 use crate::office::Talk;
@@ -40,20 +39,9 @@ pub struct Command {
 
 /// All that can be spoken of in an office, as people call it.
 pub fn scene(talk: &Talk) -> Scene {
-    let catalog = talk.language.catalog();
-    let mut scene = Scene::default();
-    for object in &talk.scene.objects {
-        let class = catalog.class(object.class);
-        let names = [class.name.clone()].into_iter().chain(class.words.iter().cloned()).map(|name| name.to_lowercase());
-        let into = if class.properties.contains(&Property::Pickupable) { &mut scene.things } else { &mut scene.places };
-        into.extend(names);
-    }
-    scene.rooms = RoomId::ALL.iter().map(|room| room.name().to_lowercase()).collect();
-    for names in [&mut scene.things, &mut scene.places] {
-        names.sort_unstable();
-        names.dedup();
-    }
-    scene
+    let names = talk.language.spoken_names(&talk.scene);
+    let [things, places, rooms] = [names.things, names.places, names.rooms].map(|names| names.into_iter().collect());
+    Scene { things, places, rooms, words: Vec::new(), known: names.words }
 }
 
 /// Those of the missions, and some of the language's own.

@@ -36,6 +36,8 @@ const NOISES: [&str; 2] = ["", ", 10 dB kitchen"];
 const NOISY_DB: f32 = 10.0;
 /// Of nothing, noise and other talk, so much is listened to.
 const IDLE_S: usize = 600;
+/// What comes of what says stop, before anything is made of it.
+const STOP: &str = "stop!";
 /// What comes in at once: 20 ms.
 const PIECE: usize = RATE as usize / 50;
 
@@ -138,13 +140,13 @@ pub enum Outcome {
 
 impl Turn {
     fn of(command: &Command, found: &Found) -> Self {
-        let meant = Talk::new(&command.marks).say(command.text);
+        let meant = if says_stop(command.text) { STOP.to_owned() } else { Talk::new(&command.marks).say(command.text) };
         let mut talk = Talk::new(&command.marks);
         let (mut heard, mut texts, mut is_doubted) = (Vec::new(), Vec::new(), false);
         for recognition in &found.recognitions {
-            // What may say stop stops, before anything is made of it.
+            // What may say stop stops.
             if let Some(stop) = recognition.likely().find(|text| says_stop(text)) {
-                texts.push("stop!".to_owned());
+                texts.push(STOP.to_owned());
                 heard.push(stop.to_owned());
                 continue;
             }
