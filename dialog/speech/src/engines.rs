@@ -9,9 +9,7 @@ use crate::{
     Recognizer, SpeechError, Synthesizer, Vad,
     earshot::Earshot,
     espeak::Espeak,
-    install,
-    moonshine::{self, Moonshine},
-    onnx,
+    install, model, moonshine, onnx,
     piper::{self, Piper},
     silero::Silero,
     wyoming::Wyoming,
@@ -23,7 +21,7 @@ pub enum Source {
     /// What is installed in the data folder.
     #[default]
     Installed,
-    /// A folder with another model.
+    /// A folder with another model: of recognisers a Moonshine or a Whisper, which is told by what lies in it.
     Folder(PathBuf),
     /// A server that speaks the Wyoming protocol: host and port.
     Wyoming(String),
@@ -194,14 +192,27 @@ fn recognizer(settings: &VoiceSettings) -> Result<Option<Box<dyn Recognizer>>, S
         Source::Installed => {
             let folder = settings.folder.join(moonshine::FOLDER);
             whole(&settings.folder, "moonshine/")?;
-            Ok(Some(Box::new(Moonshine::open(&folder, &library, THREADS)?)))
+            Ok(Some(model::open(&folder, &library, THREADS)?))
         }
         Source::Folder(folder) => {
             whole(&settings.folder, "runtime/")?;
-            Ok(Some(Box::new(Moonshine::open(folder, &library, THREADS)?)))
+            Ok(Some(model::open(folder, &library, THREADS).map_err(|error| of_folder(error, folder))?))
         }
         Source::Wyoming(address) => Ok(Some(Box::new(Wyoming::open(address)?))),
         Source::Off => Ok(None),
+    }
+}
+
+/// What is wrong in a folder of the user's own is not mended by installing.
+fn of_folder(error: SpeechError, folder: &Path) -> SpeechError {
+    match error {
+        SpeechError::Missing { path, .. } if path.starts_with(folder) => {
+            SpeechError::Missing { path, remedy: EXPORT.into() }
+        }
+        SpeechError::Broken { path, why, .. } if path.starts_with(folder) => {
+            SpeechError::Broken { path, why, remedy: EXPORT.into() }
+        }
+        other => other,
     }
 }
 
@@ -231,6 +242,10 @@ const THREADS: usize = 1;
 
 /// How a file that is not there is said to be got.
 pub(crate) const INSTALL: &str = "`cohabit voice install` fetches it";
+
+/// And one of a folder with another recogniser.
+const EXPORT: &str = "COHABIT_RECOGNIZER names a folder with a Moonshine or Whisper model, as `optimum-cli export onnx` writes \
+                      it; without it, what is installed is used";
 
 /// A file of a folder, if it is there.
 ///

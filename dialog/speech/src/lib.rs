@@ -27,8 +27,10 @@
 //! ```
 
 mod audio;
+mod beam;
 mod bias;
 mod choice;
+mod decoder;
 mod distance;
 mod ear;
 mod earshot;
@@ -40,15 +42,21 @@ pub mod fake;
 mod gate;
 pub mod install;
 mod listener;
+mod mel;
+mod model;
 mod moonshine;
 mod ngram;
 mod onnx;
 mod piper;
+mod prompt;
 mod recognizer;
 mod silero;
+mod speller;
 mod synthesizer;
 mod tokens;
 mod vad;
+mod vocabulary;
+mod whisper;
 mod wyoming;
 
 pub use audio::{RATE, Resampler, from_pcm, resample, to_pcm};

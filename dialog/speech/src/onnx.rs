@@ -10,6 +10,7 @@ use ort::{
     ep::CPU,
     logging::LogLevel,
     session::{Session, builder::GraphOptimizationLevel},
+    value::ValueType,
 };
 
 use crate::{SpeechError, engines::INSTALL};
@@ -68,6 +69,15 @@ pub(crate) fn open(model: &Path, threads: usize) -> Result<Session, SpeechError>
         builder.commit_from_file(model)
     };
     session().map_err(|error| broken(model, error))
+}
+
+/// The shape of what a model takes by a name, -1 where any length will do.
+pub(crate) fn shape(session: &Session, input: &str) -> Option<Vec<i64>> {
+    let input = session.inputs().iter().find(|other| other.name() == input)?;
+    match input.dtype() {
+        ValueType::Tensor { shape, .. } => Some(shape.to_vec()),
+        _ => None,
+    }
 }
 
 fn broken(path: &Path, error: impl std::fmt::Display) -> SpeechError {

@@ -1,19 +1,24 @@
-//! Tokens of a Moonshine model, and the text that they spell.
+//! Tokens of a model, and the text that they spell.
 
 use std::{fs, path::Path};
 
-use crate::{SpeechError, onnx};
+use crate::{SpeechError, engines::file, onnx, vocabulary::Vocabulary};
 
-/// What stands for the space before a word.
+/// The file that they stand in.
+const TABLE: &str = "tokenizer.bin";
+/// What stands for the space before a word in Moonshine's tables.
 const SPACE: &str = "▁";
-/// Tokens that begin and end an utterance.
+/// Tokens that begin and end an utterance of Moonshine.
 pub(crate) const BEGIN: i64 = 1;
 pub(crate) const END: i64 = 2;
-/// Tokens of single bytes, after `<unk>`, `<s>` and `</s>`.
+/// Its tokens of single bytes, after `<unk>`, `<s>` and `</s>`.
 const BYTES: std::ops::Range<usize> = 3..259;
 
 /// What each token spells.
-pub(crate) struct Tokens(Vec<Spelt>);
+pub(crate) struct Tokens {
+    table: Vec<Spelt>,
+    end: i64,
+}
 
 /// A token's text.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -27,11 +32,35 @@ pub(crate) struct Spelt {
     pub(crate) ends_word: bool,
     /// Whether it is part of what is spoken: no note of music, no dash, no byte of one.
     pub(crate) is_plain: bool,
+    comes: Comes,
+}
+
+/// Where a token may come.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) enum Comes {
+    #[default]
+    Anywhere,
+    /// Anywhere but first.
+    Later,
+    Never,
 }
 
 impl Tokens {
+    /// A table of what tokens spell, and the token that ends an utterance.
+    pub(crate) fn new(table: Vec<Spelt>, end: i64) -> Self {
+        Self { table, end }
+    }
+
+    /// Those of a Moonshine model: its own table, or, where there is none, that of a tokenizer.
+    pub(crate) fn of_moonshine(folder: &Path) -> Result<Self, SpeechError> {
+        match (file(folder, TABLE), Vocabulary::open(folder)?) {
+            (Err(_), Some(vocabulary)) => Self::of_pieces(&vocabulary),
+            (table, _) => Self::open(&table?),
+        }
+    }
+
     /// Reads a table: for each token its length (a byte, or two if the first is 128 or more) and its text.
-    pub(crate) fn open(path: &Path) -> Result<Self, SpeechError> {
+    fn open(path: &Path) -> Result<Self, SpeechError> {
         let broken = |why: String| SpeechError::Broken { path: path.into(), why, remedy: onnx::remedy(path) };
         let table = fs::read(path).map_err(|error| broken(error.to_string()))?;
         Self::parse(&table).ok_or_else(|| broken(format!("it is no table of tokens ({} bytes)", table.len())))
@@ -48,18 +77,44 @@ impl Tokens {
                 }
             };
             let (text, behind) = behind.split_at_checked(length)?;
-            tokens.push(Spelt::new(tokens.len(), text));
+            tokens.push(piece(tokens.len(), text));
             rest = behind;
         }
-        (tokens.len() > BYTES.end).then_some(Self(tokens))
+        (tokens.len() > BYTES.end).then_some(Self::new(tokens, END))
+    }
+
+    /// The same pieces as a tokenizer has them, where single bytes are written `<0x41>`.
+    fn of_pieces(vocabulary: &Vocabulary) -> Result<Self, SpeechError> {
+        let byte = |name: &str| u8::from_str_radix(name.strip_prefix("<0x")?.strip_suffix('>')?, 16).ok();
+        let names = vocabulary.names();
+        if names.len() <= BYTES.end || !names[BYTES].iter().all(|name| byte(name).is_some()) {
+            return Err(vocabulary.other("a Moonshine model"));
+        }
+        let text = |name: &&str| byte(name).map_or_else(|| name.as_bytes().to_vec(), |byte| vec![byte]);
+        let table = names.iter().enumerate().map(|(token, name)| piece(token, &text(name))).collect();
+        Ok(Self::new(table, END))
     }
 
     pub(crate) fn len(&self) -> usize {
-        self.0.len()
+        self.table.len()
+    }
+
+    /// The token that ends an utterance.
+    pub(crate) fn end(&self) -> i64 {
+        self.end
     }
 
     pub(crate) fn get(&self, token: i64) -> Option<&Spelt> {
-        usize::try_from(token).ok().and_then(|token| self.0.get(token))
+        usize::try_from(token).ok().and_then(|token| self.table.get(token))
+    }
+
+    /// Whether a token may come, as the first of all or later.
+    pub(crate) fn may_come(&self, token: usize, is_first: bool) -> bool {
+        self.table.get(token).is_some_and(|spelt| match spelt.comes {
+            Comes::Anywhere => true,
+            Comes::Later => !is_first,
+            Comes::Never => false,
+        })
     }
 
     /// The text that tokens spell.
@@ -71,23 +126,34 @@ impl Tokens {
 }
 
 impl Spelt {
-    fn new(token: usize, text: &[u8]) -> Self {
-        let is_mark = token < BYTES.start || text.starts_with(b"<<");
-        if is_mark {
-            return Self::default();
-        }
-        if BYTES.contains(&token) {
-            return Self { bytes: text.to_vec(), ..Self::default() };
-        }
-        let text = String::from_utf8_lossy(text).replace(SPACE, " ");
+    /// What a token of these bytes spells, of which the first may be the space before a word.
+    pub(crate) fn new(bytes: Vec<u8>, comes: Comes) -> Self {
+        let text = String::from_utf8_lossy(&bytes);
         let begins_word = text.starts_with(' ');
         let word = text.trim_start().to_lowercase();
         let is_letter = |c: char| c.is_alphanumeric() || c == '\'';
         let letters: String = word.chars().take_while(|c| is_letter(*c)).collect();
         let ends_word = letters.len() < word.len();
         let is_plain = text.chars().all(|c| c.is_alphanumeric() || " '’.,?!".contains(c));
-        Self { bytes: text.into_bytes(), begins_word, letters, ends_word, is_plain }
+        Self { begins_word, letters, ends_word, is_plain, comes, bytes }
     }
+
+    /// A token that spells nothing.
+    pub(crate) fn mark(comes: Comes) -> Self {
+        Self { comes, ..Self::default() }
+    }
+}
+
+/// A token of a Moonshine model.
+fn piece(token: usize, text: &[u8]) -> Spelt {
+    let is_mark = token < BYTES.start || text.starts_with(b"<<");
+    if is_mark {
+        return Spelt::mark(Comes::Anywhere);
+    }
+    if BYTES.contains(&token) {
+        return Spelt { bytes: text.to_vec(), ..Spelt::default() };
+    }
+    Spelt::new(String::from_utf8_lossy(text).replace(SPACE, " ").into_bytes(), Comes::Anywhere)
 }
 
 #[cfg(test)]

@@ -192,6 +192,129 @@ fn a_broken_model_is_named_and_costs_its_part_alone() {
     }
 }
 
+/// A Whisper model of one layer and random weights, as `optimum` 1.23 exports it: it hears nothing right, but runs.
+const WHISPER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/whisper");
+const ENCODER: &str = "encoder_model.onnx";
+const DECODER: &str = "decoder_model_merged.onnx";
+const TOKENIZER: &str = "tokenizer.json";
+
+/// A folder with these files, gone when it is done with.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn of(files: &[(&str, Vec<u8>)]) -> Self {
+        let folder = std::env::temp_dir().join(format!("cohabit-whisper-{}", std::process::id()));
+        let _ = fs::remove_dir_all(&folder);
+        for (name, bytes) in files {
+            let path = folder.join(name);
+            fs::create_dir_all(path.parent().unwrap()).unwrap();
+            fs::write(path, bytes).unwrap();
+        }
+        Self(folder)
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+fn heard_with(settings: &VoiceSettings, folder: impl Into<PathBuf>) -> Engines {
+    Engines::open(&VoiceSettings { recognizer: Source::Folder(folder.into()), ..settings.clone() })
+}
+
+#[test]
+fn a_folder_with_whisper_is_opened_and_fails_on_nothing() {
+    let Some(settings) = installed() else { return };
+    let file = |name: &str| fs::read(Path::new(WHISPER).join(name)).unwrap();
+    // As it is, and as whole repositories of such models are laid out.
+    let (encoder, decoder) = (file(ENCODER), file(DECODER));
+    let laid_out = Folder::of(&[
+        ("onnx/encoder_model_quantized.onnx", encoder),
+        ("onnx/decoder_model_merged_quantized.onnx", decoder),
+        (TOKENIZER, file(TOKENIZER)),
+    ]);
+    let noise: Vec<f32> = (0..RATE * 2).map(|at| 0.3 * ((at * at % 977) as f32 / 977.0 - 0.5)).collect();
+    let mut found = Vec::new();
+    for folder in [Path::new(WHISPER), &laid_out.0] {
+        let engines = heard_with(&settings, folder);
+        assert!(engines.lacks.is_empty(), "{:?}", engines.lacks);
+        let mut recognizer = engines.recognizer.unwrap();
+        assert!(recognizer.name().starts_with("Whisper ("), "{}", recognizer.name());
+        for odd in [f32::NAN, f32::INFINITY, f32::MIN, 0.0, 1e-40] {
+            recognizer.recognize(&[odd; 2_000]).unwrap();
+        }
+        assert!(recognizer.recognize(&[]).unwrap().hypotheses.is_empty());
+        recognizer.recognize(&[0.1; RATE as usize * 31]).unwrap();
+        let plain = recognizer.recognize(&noise).unwrap();
+        assert!(plain.raw.chars().all(|c| !c.is_control()) && !plain.raw.contains("<|"), "{}", plain.raw);
+        recognizer.bias(&office());
+        let biased = recognizer.recognize(&noise).unwrap();
+        assert_eq!(recognizer.recognize(&noise).unwrap(), biased);
+        recognizer.bias(&Bias::default());
+        assert_eq!(recognizer.recognize(&noise).unwrap(), plain);
+        found.push((plain, biased));
+    }
+    assert_eq!(found[0], found[1]);
+}
+
+#[test]
+fn what_is_wrong_with_a_folder_is_named() {
+    let Some(settings) = installed() else { return };
+    let file = |name: &str| fs::read(Path::new(WHISPER).join(name)).unwrap();
+    let check = |changed: &str, bytes: Option<Vec<u8>>, named: &str, expected: &str| {
+        let mut files = [ENCODER, DECODER, TOKENIZER].map(|name| (name, file(name))).to_vec();
+        files.retain(|(name, _)| *name != changed);
+        files.extend(bytes.map(|bytes| (changed, bytes)));
+        let folder = Folder::of(&files);
+        let engines = heard_with(&settings, &folder.0);
+        let [lack] = &engines.lacks[..] else { panic!("{changed}: {:?}", engines.lacks) };
+        let path = folder.0.join(named).display().to_string();
+        assert!(lack.part == Part::Recognition && engines.recognizer.is_none(), "{lack}");
+        assert!(lack.why.contains(&path) && lack.why.contains("COHABIT_RECOGNIZER names a folder"), "{lack}");
+        assert!(lack.why.contains(expected), "{lack}");
+    };
+    let cut = |name: &str| Some(file(name).split_off(99));
+    for name in [ENCODER, DECODER] {
+        check(name, None, name, "there is no such file");
+        check(name, cut(name), name, "");
+        check(name, Some(Vec::new()), name, "");
+    }
+    check(ENCODER, Some(file(DECODER)), ENCODER, "the encoder of neither a Moonshine nor a Whisper model");
+    check(DECODER, Some(file(ENCODER)), DECODER, "no decoder that remembers");
+    check(TOKENIZER, None, TOKENIZER, "there is no such file");
+    check(TOKENIZER, cut(TOKENIZER), TOKENIZER, "it holds no tokens");
+    let text = String::from_utf8(file(TOKENIZER)).unwrap();
+    let other = text.replace("<|startoftranscript|>", "<s>");
+    check(TOKENIZER, Some(other.into_bytes()), TOKENIZER, "are not those of a Whisper model");
+    // Of a model with more languages.
+    let larger = text.replace(r#""id": 274"#, r#""id": 275"#);
+    assert_ne!(text, larger);
+    check(TOKENIZER, Some(larger.into_bytes()), DECODER, "are of a model with");
+}
+
+#[test]
+fn what_is_spoken_is_heard_by_whisper() {
+    let Some(folder) = std::env::var_os("COHABIT_WHISPER") else {
+        println!("skipped: COHABIT_WHISPER names no folder with a Whisper model");
+        return;
+    };
+    let Some(settings) = installed() else { return };
+    let mut engines = heard_with(&settings, folder);
+    assert!(engines.lacks.is_empty(), "{:?}", engines.lacks);
+    let said = "go to the break room and pick up the bowl";
+    let sound = spoken(&mut engines, said);
+    let mut recognizer = engines.recognizer.unwrap();
+    for bias in [Bias::default(), office()] {
+        recognizer.bias(&bias);
+        let heard = recognizer.recognize(&sound).unwrap();
+        assert_eq!(words(heard.best()), said);
+        assert!(heard.confidence() > 0.5, "{}", heard.confidence());
+    }
+    assert_eq!(recognizer.recognize(&vec![0.0; RATE as usize * 2]).unwrap().best(), "");
+}
+
 #[test]
 fn where_nothing_is_installed_that_is_said_and_how_to_mend_it() {
     let engines = Engines::open(&VoiceSettings::installed("/nowhere"));
