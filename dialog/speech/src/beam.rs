@@ -1,5 +1,5 @@
 //! The search for what a decoder spells: greedily, and by a beam that a language model of what is likely has a say in
-//! (`score = ln p(sound) + λ ln p(words)`), in one batch.
+//! (`score = ln p(sound) + λ ln p(words) + β · words`), in one batch.
 
 use crate::{
     decoder::Steps,
@@ -8,8 +8,12 @@ use crate::{
 };
 
 /// How many spellings are followed at once, and how many tokens each may go on with.
-const BEAM: usize = 5;
+const BEAM: usize = 8;
 const BRANCHES: usize = 16;
+/// What speaks for each word, β: without it the language model has the short win, as each of their words costs.
+const WORD: f32 = 1.0;
+/// What goes on is followed until it is so much less likely than the best that is done.
+const FALLEN: f32 = 2.0;
 
 /// One way to spell what was heard.
 #[derive(Clone, Debug)]
@@ -17,7 +21,7 @@ pub(crate) struct Spelling {
     pub(crate) tokens: Vec<i64>,
     /// Logarithm of how likely it is by the sound.
     pub(crate) by_sound: f32,
-    /// `by_sound` with the language model's say.
+    /// `by_sound` with the language model's say, and what speaks for each word.
     pub(crate) score: f32,
     place: Place,
     /// Which row of the batch it goes on from.
@@ -70,8 +74,7 @@ impl Search<'_> {
             }
             beam = self.branch(&beam, &rows, &mut done);
             let best = done.iter().map(|spelling| spelling.score).fold(f32::NEG_INFINITY, f32::max);
-            // Going on never makes a spelling likelier.
-            beam.retain(|spelling| spelling.score > best);
+            beam.retain(|spelling| spelling.score > best - FALLEN);
             if step + 1 == most || (is_greedy_done && beam.is_empty()) {
                 break;
             }
@@ -116,7 +119,8 @@ impl Search<'_> {
             model.spell(&mut spelling.place, spelt.begins_word, &spelt.letters, spelt.ends_word);
             model.so_far(&spelling.place)
         };
-        spelling.score = spelling.by_sound + self.lambda * by_model;
+        let words = spelling.place.words().split_whitespace().count() as f32;
+        spelling.score = spelling.by_sound + self.lambda * by_model + WORD * words;
     }
 
     /// The best spellings that go on from those of the beam; what ends goes to those that are done.
