@@ -63,7 +63,9 @@ pub struct Soaked {
 pub struct Resident {
     /// Of their own. What leaks is here.
     pub own: u64,
-    /// Mapped from files or shared memory: grows until all of the topics' rings was once passed through.
+    /// Mapped from files, such as code.
+    pub files: u64,
+    /// Shared memory: grows until all of the topics' rings was once passed through.
     pub shared: u64,
 }
 
@@ -76,7 +78,7 @@ impl Resident {
             let line = status.lines().find_map(|line| line.strip_prefix(name));
             line.and_then(|line| line.trim().strip_suffix(" kB")?.parse::<u64>().ok()).unwrap_or(0)
         };
-        Self { own: kib("RssAnon:") << 10, shared: (kib("RssFile:") + kib("RssShmem:")) << 10 }
+        Self { own: kib("RssAnon:") << 10, files: kib("RssFile:") << 10, shared: kib("RssShmem:") << 10 }
     }
 }
 
@@ -101,6 +103,7 @@ pub fn soak(binary: &str, lasting: Duration) -> anyhow::Result<Soaked> {
                 let looks = play.processes(role).into_iter().map(Resident::of);
                 let all = looks.fold(Resident::default(), |all, one| Resident {
                     own: all.own + one.own,
+                    files: all.files + one.files,
                     shared: all.shared + one.shared,
                 });
                 soaked.resident.entry(role).or_default().push(all);

@@ -26,7 +26,7 @@ fn print(soaked: &Soaked, seconds: f64) {
         let [tenth, quarter, half, three, end] = [0.1, 0.25, 0.5, 0.75, 1.0].map(at);
         let mib = |bytes: u64| format!("{:.1}", bytes as f64 / MIB);
         let own = [tenth, quarter, half, three, end].map(|look| mib(look.own)).join(", ");
-        let (first, last) = (mib(tenth.shared), mib(end.shared));
+        let (first, last) = (mib(tenth.files + tenth.shared), mib(end.files + end.shared));
         println!(
             "{role:>7} resident, MiB, at 10, 25, 50, 75, 100 % of the time: {own}; shared, first and last: {first}, {last}"
         );

@@ -144,11 +144,13 @@ fn beside(
     })
 }
 
-/// Bytes that a process and its children hold.
+/// Bytes that a process and its children hold, all but the memory that the session shares.
 fn held(process: i32) -> u64 {
-    let children = fs::read_to_string(format!("/proc/{process}/task/{process}/children")).unwrap_or_default();
-    let children = children.split_whitespace().filter_map(|child| child.parse().ok());
-    std::iter::once(process).chain(children).map(Resident::of).map(|resident| resident.own + resident.shared).sum()
+    let threads = fs::read_dir(format!("/proc/{process}/task")).into_iter().flatten().flatten();
+    let children = threads.map(|thread| fs::read_to_string(thread.path().join("children")).unwrap_or_default());
+    let children: Vec<i32> =
+        children.collect::<String>().split_whitespace().filter_map(|child| child.parse().ok()).collect();
+    std::iter::once(process).chain(children).map(Resident::of).map(|resident| resident.own + resident.files).sum()
 }
 
 struct Scene {
@@ -167,14 +169,15 @@ impl Scene {
     }
 
     fn command(&mut self, command: &Saying) -> anyhow::Result<()> {
+        let from = self.person.all.len();
         let said = self.person.say(command);
         let lasts_s = command.samples.len() as f64 / f64::from(cohabit_speech::RATE);
         let heard = self.person.wait(lasts_s + LONGEST_S, |received| {
             let line = message(received, "chat").filter(|line| line["from"] == "person")?;
             Some((line["turn"].as_u64()?, line["text"].as_str()?.to_owned()))
         })?;
-        let Some((shown, (turn, text))) = heard else {
-            println!("not heard: {} ({})", command.text, command.voice);
+        let Some((shown, (turn, text))) = heard.filter(|(_, (_, text))| text != "stop") else {
+            println!("not heard: {} ({}): {}", command.text, command.voice, self.heard(from));
             return Ok(());
         };
         if !is_same(&text, command.text) {
@@ -199,6 +202,13 @@ impl Scene {
         }
         measures.note("understood → first sound at the page", understood, sounded);
         Ok(())
+    }
+
+    /// What the page was told of what was heard from then on.
+    fn heard(&self, from: usize) -> String {
+        let heard = self.person.all[from..].iter().filter_map(|(_, received)| message(received, "hearing"));
+        let heard = heard.map(|told| format!("{} {}", told["state"].as_str().unwrap_or_default(), told["text"]));
+        heard.collect::<Vec<_>>().join(", ")
     }
 
     /// "Stop" while it drives.
@@ -238,12 +248,7 @@ impl Scene {
         self.person.pause(1.0)?;
         let name = |what: &str| format!("{} \"{}\": {what}", stop.voice, stop.text);
         if hushed.is_none() {
-            let heard = self.person.all[from..].iter().filter_map(|(_, received)| message(received, "hearing"));
-            println!(
-                "not stopped by {}: {}",
-                name("heard"),
-                heard.map(ToString::to_string).collect::<Vec<_>>().join(" ")
-            );
+            println!("not stopped by {}", name(&self.heard(from)));
         }
         let seen = self.witness.seen();
         let is_order = |told: &&witness::Told| told.kind == DialogKind::Utterance && told.nanos > said.began;
