@@ -54,7 +54,7 @@ const COMMANDS: [&str; 12] = [
 const DRIVES: [&str; 2] = ["go to the break room", "go to the robotics lab"];
 const QUESTION: &str = "what can you do?";
 /// How it is told to stop.
-const STOPS: [&str; 3] = ["Stop!", "Stop.", "Please stop."];
+const STOPS: [&str; 4] = ["Stop!", "Stop.", "Please stop.", "No no, that is not what I meant, stop."];
 /// What takes longer is given up, s.
 const LONGEST_S: f64 = 4.0;
 
@@ -87,8 +87,8 @@ fn run() -> anyhow::Result<()> {
         let lateness = beside(&play.session, dialog, &most, || match part {
             "quiet" => scene.person.pause(QUIET_S),
             "commands" => scene.commands(&commands, times.unwrap_or(1)),
-            "drive" => scene.drives(&stops, times.unwrap_or(4)),
-            _ => scene.answers(&stops, times.unwrap_or(4)),
+            "drive" => scene.drives(&stops, times.unwrap_or(3)),
+            _ => scene.answers(&stops, times.unwrap_or(3)),
         })?;
         scene.measures.print();
         scene.measures = Measures::default();
@@ -144,13 +144,16 @@ fn beside(
     })
 }
 
-/// Bytes that a process and its children hold, all but the memory that the session shares.
+/// Bytes that a process and the programs that it starts hold, all but the memory that the session shares.
 fn held(process: i32) -> u64 {
+    let program = |process: i32| fs::read_link(format!("/proc/{process}/exe")).ok();
     let threads = fs::read_dir(format!("/proc/{process}/task")).into_iter().flatten().flatten();
     let children = threads.map(|thread| fs::read_to_string(thread.path().join("children")).unwrap_or_default());
-    let children: Vec<i32> =
-        children.collect::<String>().split_whitespace().filter_map(|child| child.parse().ok()).collect();
-    std::iter::once(process).chain(children).map(Resident::of).map(|resident| resident.own + resident.files).sum()
+    let children: String = children.collect();
+    let children = children.split_whitespace().filter_map(|child| child.parse().ok());
+    // One that is about to become another program has its parent's memory until then.
+    let others = children.filter(|child| program(*child) != program(process));
+    std::iter::once(process).chain(others).map(Resident::of).map(|resident| resident.own + resident.files).sum()
 }
 
 struct Scene {
