@@ -331,7 +331,9 @@ impl Listening<'_> {
             }
             Heard::Partial { text } => {
                 self.stop_if(says_stop_already(&text));
-                self.at.tell(state("partial", &text));
+                if !self.has_stopped {
+                    self.at.tell(state("partial", &text));
+                }
             }
             Heard::Said(utterance) => self.said(utterance),
         }
@@ -359,6 +361,8 @@ impl Listening<'_> {
         let after_ms = now.saturating_sub(self.began_nanos) / 1_000_000;
         tracing::info!("page {} says stop, heard {after_ms} ms after its first sound", self.at.visitor);
         self.at.talk.stop(self.at.visitor, now);
+        // What was heard before and can be changed yet is not done either.
+        self.at.tell(state("stopped", ""));
     }
 
     fn said(&mut self, utterance: Utterance) {
@@ -558,6 +562,11 @@ mod tests {
             })
         }
 
+        /// Waits until a turn that says stop was done, and is over.
+        fn stopped(&mut self) {
+            (0..2).for_each(|_| drop(self.state("stopped")));
+        }
+
         fn stops(&self) -> usize {
             self.room.0.lock().unwrap().len()
         }
@@ -592,7 +601,7 @@ mod tests {
     fn stop_is_done_while_it_is_said_and_not_said_again() {
         let mut scene = Hall::new(fake::Reader::default(), |_| ());
         scene.speak(&[fake::hidden("stop right there you robot"), silence(1.5)].concat());
-        scene.state("stopped");
+        scene.stopped();
         assert_eq!(scene.stops(), 1, "once, though it was heard in pieces and whole");
     }
 
@@ -606,7 +615,7 @@ mod tests {
         assert_ne!(spoken.heard.best(), "turn right at the light");
         assert!(spoken.text_nanos > 0);
         scene.speak(&[fake::hidden("stop"), silence(1.5)].concat());
-        scene.state("stopped");
+        scene.stopped();
         assert_eq!(scene.stops(), 1);
     }
 
@@ -617,12 +626,35 @@ mod tests {
         scene.speak(&[fake::hidden("going to the main office"), silence(1.5)].concat());
         scene.state("nothing");
         scene.speak(&[fake::hidden("stop"), silence(1.5)].concat());
-        scene.state("stopped");
+        scene.stopped();
         assert_eq!(scene.stops(), 1);
         // What it says of stopping stops it once, and no more.
         scene.voice.mouth.note_own_voice(None, monotonic_nanos());
         scene.voice.mouth.note_own_voice(Some("OK, I stop."), monotonic_nanos());
         scene.speak(&[fake::hidden("ok i stop"), silence(1.5)].concat());
+        scene.state("stopped");
+        assert_eq!(scene.stops(), 1);
+    }
+
+    #[test]
+    fn stop_is_heard_over_a_long_answer_that_speaks_of_it_however_soon_after_another() {
+        let mut scene = Hall::new(fake::Reader::default(), |_| ());
+        let answer = "I can go to rooms and objects, and pick things up. Say \"stop\" to stop me.";
+        for stops in 1..=3 {
+            scene.voice.mouth.note_own_voice(Some(answer), monotonic_nanos());
+            scene.speak(&[fake::hidden("stop"), silence(1.5)].concat());
+            scene.stopped();
+            assert_eq!(scene.stops(), stops);
+            scene.voice.mouth.note_own_voice(None, monotonic_nanos());
+        }
+    }
+
+    #[test]
+    fn stop_is_heard_at_the_end_of_a_long_sentence_before_that_ends() {
+        let mut scene = Hall::new(fake::Reader::default(), |_| ());
+        // Nothing ends it: it is heard in what was said last.
+        scene.speak(&[fake::hidden("no that is not at all what I meant to say"), fake::hidden("stop")].concat());
+        scene.speak(&loud(1.0));
         scene.state("stopped");
         assert_eq!(scene.stops(), 1);
     }
