@@ -1,8 +1,8 @@
 // Runs beside the page's sound: takes what the microphone gives, at whatever rate, and hands on 16 kHz mono in pieces.
 
 const RATE = 16000;
-/** Samples of a piece: 64 ms. */
-const PIECE = 1024;
+/** Samples of a piece: 32 ms. */
+const PIECE = 512;
 /** How many zero crossings of the filter are used on either side. */
 const CROSSINGS = 16;
 

@@ -194,13 +194,16 @@ function release() {
   }
 }
 
+/** What was heard so far is not said to its end, and may yet change. */
+const unfinished = (text) => `${text.replace(/[\s.,;:!?…]+$/, "")}…`;
+
 /** The session tells how far it has heard. */
 export function takeHearing({ state, text, joins }) {
   // Who goes on with what can be changed yet has not said all of it.
   if (state === "began" && joins) holdHeard();
   else if (state === "nothing" && pending?.isHeld) waitToSend();
   else if (state === "stopped") forgetHeard();
-  if (state === "partial") showHearing(text, "partial");
+  if (state === "partial") showHearing(unfinished(text), "partial");
   else if (state === "began") showHearing("…", "partial");
   else {
     clearHearing(state === "nothing" && mode === "tap" ? "I heard nothing." : "");

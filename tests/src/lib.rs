@@ -4,6 +4,7 @@
 //! binary is.
 
 mod browser;
+mod lateness;
 mod page;
 mod play;
 mod python;
@@ -13,7 +14,8 @@ mod socket;
 mod speech;
 
 pub use browser::{Browser, Tab};
-pub use page::Page;
+pub use lateness::Lateness;
+pub use page::{Page, Pen, Received, Sound};
 pub use play::{Play, reference_data, run};
 pub use python::{output, python_with};
 pub use scratch::Scratch;

@@ -5,11 +5,11 @@ use std::{
     time::{Duration, Instant},
 };
 
-use anyhow::bail;
+use anyhow::{Context as _, bail};
 use serde_json::{Value, json};
 use tungstenite::Message;
 
-use crate::socket::{Socket, WATCHDOG};
+use crate::socket::{Sender, Socket, WATCHDOG};
 
 /// An open page.
 pub struct Page {
@@ -29,6 +29,66 @@ pub struct Page {
 /// Binary messages that are pieces of what robots say begin with this, and so many bytes stand before their samples.
 const SPEECH: u8 = 2;
 const SPEECH_HEADER: usize = 24;
+
+/// What comes to a page.
+#[derive(Clone, Debug)]
+pub enum Received {
+    /// A message.
+    Message(Value),
+    /// A piece of what a robot says.
+    Sound(Sound),
+    /// A picture.
+    Frame,
+}
+
+/// A piece of what a robot says.
+#[derive(Clone, Copy, Debug)]
+pub struct Sound {
+    /// The turn that it answers.
+    pub turn: u64,
+    /// Which saying it belongs to.
+    pub saying: u64,
+    /// Whether it is the last piece of it.
+    pub is_last: bool,
+    /// How many samples it has.
+    pub samples: usize,
+    /// Samples a second.
+    pub rate_hz: u32,
+}
+
+impl Sound {
+    fn read(bytes: &[u8]) -> Option<Self> {
+        let number = |at: usize| Some(u64::from_le_bytes(bytes.get(at..at + 8)?.try_into().ok()?));
+        Some(Self {
+            turn: number(8)?,
+            saying: number(16)?,
+            is_last: bytes[1] == 1,
+            samples: (bytes.len() - SPEECH_HEADER) / 2,
+            rate_hz: (number(0)? >> 32) as u32,
+        })
+    }
+}
+
+/// What sends on a page's socket, while another thread reads what comes to the page.
+pub struct Pen(Sender);
+
+impl Pen {
+    /// Sends a message.
+    ///
+    /// # Errors
+    /// When the socket is gone.
+    pub fn send(&mut self, message: &Value) -> anyhow::Result<()> {
+        self.0.send(Message::text(message.to_string()))
+    }
+
+    /// Sends samples of 16 kHz, as of a microphone.
+    ///
+    /// # Errors
+    /// When the socket is gone.
+    pub fn send_sound(&mut self, samples: &[i16]) -> anyhow::Result<()> {
+        self.0.send(Message::binary(samples.iter().flat_map(|sample| sample.to_le_bytes()).collect::<Vec<u8>>()))
+    }
+}
 
 impl Page {
     /// Opens the page at `authority` (`host:port`).
@@ -104,22 +164,47 @@ impl Page {
         Ok(())
     }
 
+    /// What sends on the same socket, while another thread reads.
+    ///
+    /// # Errors
+    /// When the socket is gone.
+    pub fn pen(&self) -> anyhow::Result<Pen> {
+        Ok(Pen(self.socket.sender()?))
+    }
+
     /// The next message that is not a frame.
     ///
     /// # Errors
     /// When the socket is gone or silent for too long.
     pub fn next_message(&mut self) -> anyhow::Result<Value> {
         loop {
+            if let Received::Message(message) = self.next_received()? {
+                return Ok(message);
+            }
+        }
+    }
+
+    /// Whatever comes next.
+    ///
+    /// # Errors
+    /// When the socket is gone or silent for too long.
+    pub fn next_received(&mut self) -> anyhow::Result<Received> {
+        loop {
             match self.socket.read()? {
                 Message::Text(text) => {
                     let message: Value = serde_json::from_str(&text)?;
                     self.note(&message);
-                    return Ok(message);
+                    return Ok(Received::Message(message));
                 }
                 Message::Binary(bytes) if bytes.first() == Some(&SPEECH) => {
-                    self.heard_samples += bytes.len().saturating_sub(SPEECH_HEADER) as u64 / 2;
+                    let sound = Sound::read(&bytes).context("a piece of sound that is too short")?;
+                    self.heard_samples += sound.samples as u64;
+                    return Ok(Received::Sound(sound));
                 }
-                Message::Binary(_) => self.frames += 1,
+                Message::Binary(_) => {
+                    self.frames += 1;
+                    return Ok(Received::Frame);
+                }
                 Message::Close(_) => bail!("the page's socket was closed"),
                 _ => {}
             }

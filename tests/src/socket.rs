@@ -2,9 +2,9 @@
 
 use std::{io::ErrorKind, net::TcpStream, time::Duration};
 
-use anyhow::Context as _;
+use anyhow::{Context as _, bail};
 use serde_json::Value;
-use tungstenite::{Error, Message, WebSocket, stream::MaybeTlsStream};
+use tungstenite::{Error, Message, WebSocket, protocol::Role, stream::MaybeTlsStream};
 
 /// The longest that anything is waited for.
 pub(crate) const WATCHDOG: Duration = Duration::from_secs(120);
@@ -20,6 +20,12 @@ impl Socket {
             stream.set_read_timeout(Some(WATCHDOG))?;
         }
         Ok(Self(socket))
+    }
+
+    /// Another end that sends on the same connection.
+    pub fn sender(&self) -> anyhow::Result<Sender> {
+        let MaybeTlsStream::Plain(stream) = self.0.get_ref() else { bail!("only a plain socket has two ends") };
+        Ok(Sender(WebSocket::from_raw_socket(stream.try_clone()?, Role::Client, None)))
     }
 
     /// Sends a message as text.
@@ -42,5 +48,15 @@ impl Socket {
                 read => return read.context("read from the socket"),
             }
         }
+    }
+}
+
+/// An end of a connection that only sends: another thread may read meanwhile.
+pub(crate) struct Sender(WebSocket<TcpStream>);
+
+impl Sender {
+    /// Sends a message.
+    pub fn send(&mut self, message: Message) -> anyhow::Result<()> {
+        self.0.send(message).context("send to the socket")
     }
 }

@@ -88,7 +88,7 @@ pub use known::{Known, KnownGoal, KnownObject, KnownPerson, KnownRobot, within_h
 pub use memory::{Knows, Lessons, Memory};
 pub use oracle::Oracle;
 pub use sight::Gaze;
-pub use spoken::{SpokenNames, says_stop};
+pub use spoken::{SpokenNames, says_stop, says_stop_already};
 pub use understanding::{Asking, Clarification, Step, Understanding};
 
 use crate::{

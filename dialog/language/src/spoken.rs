@@ -42,14 +42,30 @@ const NOT: [&str; 4] = ["not", "dont", "never", "without"];
 /// piece of what is heard.
 #[must_use]
 pub fn says_stop(text: &str) -> bool {
-    let words: Vec<String> = token::words(text).into_iter().filter(|word| !is_punctuation(word)).collect();
-    let is_meant = |at: usize| at == 0 || !NOT.contains(&words[at - 1].as_str());
+    let words = plain_words(text);
     words.iter().enumerate().any(|(at, word)| {
         let word = word.as_str();
         let is_first = STOPS_FIRST.contains(&word) && (at == 0 || words.len() <= FEW);
         let is_alone = STOPS_ALONE.contains(&word) && words.len() == 1;
-        is_meant(at) && (STOPS.contains(&word) || is_first || is_alone)
+        is_meant(&words, at) && (STOPS.contains(&word) || is_first || is_alone)
     })
+}
+
+/// The same of what was heard in the midst of speech, which goes on: "wait" may yet become "where is", and "freeze" is said
+/// of things, too.
+#[must_use]
+pub fn says_stop_already(text: &str) -> bool {
+    let words = plain_words(text);
+    words.iter().enumerate().any(|(at, word)| is_meant(&words, at) && STOPS.contains(&word.as_str()))
+}
+
+fn plain_words(text: &str) -> Vec<String> {
+    token::words(text).into_iter().filter(|word| !is_punctuation(word)).collect()
+}
+
+/// Whether the word before says the contrary.
+fn is_meant(words: &[String], at: usize) -> bool {
+    at == 0 || !NOT.contains(&words[at - 1].as_str())
 }
 
 impl Language {
@@ -70,7 +86,7 @@ impl Language {
     /// Whether what was said so far is a whole sentence, after which nothing need be waited for.
     #[must_use]
     pub fn is_whole(&self, text: &str, scene: &Known, context: &Context) -> bool {
-        let words: Vec<String> = token::words(text).into_iter().filter(|word| !is_punctuation(word)).collect();
+        let words = plain_words(text);
         let Some(last) = words.last() else { return false };
         let one = std::slice::from_ref(last);
         let lexicon = &self.lexicon;
@@ -141,6 +157,17 @@ mod tests {
         check("don't stop", false);
         check("do not stop", false);
         check("the stopper", false);
+        check("", false);
+    }
+
+    #[test]
+    fn what_may_yet_become_another_word_does_not_say_stop_already() {
+        let check = |text: &str, expected: bool| assert_eq!(says_stop_already(text), expected, "{text}");
+        check("Please stop", true);
+        check("halt", true);
+        check("Wait 'em", false);
+        check("freeze", false);
+        check("wait, don't stop", false);
         check("", false);
     }
 

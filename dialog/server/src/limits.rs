@@ -12,7 +12,7 @@ pub const MOST_PAGES: usize = 16;
 const ALL_PER_SECOND: f64 = 40.0;
 /// Held keys a second: a page tells them again nine times a second, and at every change.
 const DRIVES_PER_SECOND: f64 = 20.0;
-/// Pieces of sound a second: a page sends sixteen, and more after a moment in which it could not.
+/// Pieces of sound a second: a page sends 32, and more after a moment in which it could not.
 const SOUNDS_PER_SECOND: f64 = 120.0;
 /// All other messages a second.
 const OTHERS_PER_SECOND: f64 = 10.0;

@@ -487,6 +487,14 @@ impl Audience for Talk {
         robot.is_some_and(|robot| robot.conversation.is_whole(&text, &robot.knowledge))
     }
 
+    fn is_at_work(&self) -> bool {
+        let inner = self.lock();
+        let Some(state) = inner.newest.as_ref().and_then(|sample| StateView::new(sample.payload()).ok()) else {
+            return false;
+        };
+        inner.robots.iter().any(|robot| state.bodies.iter().any(|body| body.body == robot.body.0 && body.busy == 1))
+    }
+
     fn likely(&self, before: u64) -> Option<(u64, Scene)> {
         let inner = self.lock();
         let robot = inner.robots.iter().next()?;

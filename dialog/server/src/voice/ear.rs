@@ -1,8 +1,9 @@
 //! How a page is heard: a thread that takes its sound, and tells what is said in it.
 
 use std::{
+    collections::VecDeque,
     sync::{
-        Arc,
+        Arc, Mutex, PoisonError,
         mpsc::{Receiver, SyncSender, TrySendError, sync_channel},
     },
     thread,
@@ -13,24 +14,35 @@ use cohabit_bus::{
     message::{AudioHeader, AudioView},
     monotonic_nanos,
 };
-use cohabit_language::says_stop;
-use cohabit_speech::{Bias, Ear, Heard, RATE, Scene, Turns, Utterance, errors::Injector, from_pcm};
+use cohabit_language::{says_stop, says_stop_already};
+use cohabit_speech::{
+    Bias, Ear, Heard, RATE, Recognition, Recognizer, Scene, SpeechError, Turns, Utterance, errors::Injector, from_pcm,
+};
 use serde_json::{Value, json};
 use tokio::sync::mpsc::UnboundedSender;
 
-use super::Voice;
+use super::{Shared, Voice};
 use crate::spoken::Spoken;
 
 /// The most bytes of one piece of sound: a second.
 const LONGEST_PIECE: usize = 2 * RATE as usize;
 /// The most pieces that wait to be listened to: some come while the engines are opened.
 const MOST_WAITING: usize = 256;
-/// How often what was said so far is looked at, s: stop is to be heard soon.
+/// How often what was said so far is told, s.
 const PARTIAL_EVERY_S: f32 = 0.32;
+/// As soon as nobody speaks it is recognised what was said, s: that takes as long as the shortest pause that ends a turn. Who
+/// makes a longer one in the middle of what they say goes on with it: see [`JOINS_S`].
+const ASKS_AFTER_S: f32 = 0.06;
+const COMPLETE_AFTER_S: f32 = 0.19;
+/// While a robot is at work, what was said last is listened to for a stop so often, and so much of it, s: a word, and what it may
+/// stand in.
+const WATCH_EVERY_S: f32 = 0.128;
+const WATCHED_S: f32 = 1.4;
 /// Who speaks again so soon while what they said can be changed yet goes on with it, s.
 const JOINS_S: f32 = 1.5;
-/// So long it takes until the robots' own answer to a stop has sounded, ns.
+/// So long it takes until the robots' own answer to a stop has sounded, ns; and it has no more words.
 const OWN_STOP_NANOS: u64 = 5_000_000_000;
+const OWN_STOP_WORDS: usize = 4;
 /// Sound that comes so much faster than it lasts is not of the rate that the page says.
 const FASTEST: f64 = 1.4;
 /// So much sound must have come before that is told, s.
@@ -71,6 +83,9 @@ pub enum FromEar {
 pub trait Audience: Send + Sync {
     /// Whether what was said so far is a whole sentence.
     fn is_whole(&self, text: &str) -> bool;
+
+    /// Whether a robot does anything that somebody may want to stop.
+    fn is_at_work(&self) -> bool;
 
     /// What there is to speak of, if that is other than what had this number before; with its number.
     fn likely(&self, before: u64) -> Option<(u64, Scene)>;
@@ -175,6 +190,7 @@ fn check(rate: u32) -> Result<(), String> {
 struct Listening<'a> {
     at: &'a EarAt,
     ear: Ear,
+    recognizer: Shared,
     injector: Injector,
     bus: Option<Box<dyn Publisher>>,
     sayings: u64,
@@ -182,6 +198,13 @@ struct Listening<'a> {
     newest_nanos: u64,
     /// When somebody began to say what they are saying.
     began_nanos: u64,
+    /// All that was recognised since it was last asked whether that says stop.
+    readings: Readings,
+    /// What came last, and how many samples came since it was listened to for a stop.
+    last: VecDeque<f32>,
+    unwatched: usize,
+    /// The first sample of what is being said.
+    first: u64,
     /// Whether what is being said has said stop already, and when somebody last did.
     has_stopped: bool,
     stopped_nanos: u64,
@@ -196,11 +219,24 @@ impl EarAt {
         self.tell(told);
         let Some((recognizer, vad)) = opened else { return };
         let joins_s = self.voice.config.edit.as_secs_f32().min(JOINS_S);
-        let turns = Turns { partial_every_s: PARTIAL_EVERY_S, joins_s, ..Turns::default() };
+        let turns = Turns {
+            partial_every_s: PARTIAL_EVERY_S,
+            asks_after_s: ASKS_AFTER_S,
+            complete_after_s: COMPLETE_AFTER_S,
+            joins_s,
+            ..Turns::default()
+        };
+        let readings = Readings::default();
+        let attentive = Attentive { recognizer: recognizer.clone(), readings: Arc::clone(&readings) };
         let microphone = self.voice.bus.publisher(Topic::Microphone);
         let mut listening = Listening {
             at: self,
-            ear: Ear::new(vad, Box::new(recognizer), turns),
+            ear: Ear::new(vad, Box::new(attentive), turns),
+            recognizer,
+            readings,
+            last: VecDeque::new(),
+            unwatched: 0,
+            first: 0,
             injector: Injector::new(self.voice.config.errors, self.voice.config.seed ^ u64::from(self.visitor)),
             bus: microphone.inspect_err(|error| tracing::warn!("microphones are not heard on the bus: {error}")).ok(),
             sayings: 0,
@@ -225,16 +261,13 @@ impl EarAt {
 impl Listening<'_> {
     fn take(&mut self, next: ToEar) {
         let talk = Arc::clone(&self.at.talk);
-        // What was said up to a pause, which may be in the middle of a sentence.
-        let mut so_far = String::new();
         let heard = match next {
             ToEar::Sound(samples, nanos) => {
                 self.newest_nanos = nanos;
                 self.publish(&samples);
-                self.ear.push(&from_pcm(&samples), &mut |text| {
-                    text.clone_into(&mut so_far);
-                    talk.is_whole(text)
-                })
+                let samples = from_pcm(&samples);
+                self.watch(&samples);
+                self.ear.push(&samples, &mut |text| talk.is_whole(text))
             }
             ToEar::Hold => {
                 self.ear.hold();
@@ -250,7 +283,11 @@ impl Listening<'_> {
         if heard.iter().flatten().any(|heard| matches!(heard, Heard::Began { .. })) {
             self.has_stopped = false;
         }
-        self.stop_if_said(&so_far);
+        // What was said up to a pause, which may be in the middle of a sentence.
+        let readings = std::mem::take(&mut *self.readings.lock().unwrap_or_else(PoisonError::into_inner));
+        for text in readings {
+            self.stop_if(says_stop(&text));
+        }
         match heard {
             Ok(heard) => heard.into_iter().for_each(|heard| self.hear(heard)),
             Err(error) => {
@@ -263,25 +300,47 @@ impl Listening<'_> {
         }
     }
 
+    /// Listens for a stop in what is being said, whenever a little more of it was said, before anything else is made of it.
+    fn watch(&mut self, samples: &[f32]) {
+        let [watched, every] = [WATCHED_S, WATCH_EVERY_S].map(|seconds| (seconds * RATE as f32) as usize);
+        self.last.extend(samples);
+        let surplus = self.last.len().saturating_sub(watched);
+        self.last.drain(..surplus);
+        self.unwatched += samples.len();
+        let is_due = self.ear.is_in_turn() && self.unwatched >= every && !self.has_stopped;
+        if !is_due || !(self.at.voice.mouth.is_speaking() || self.at.talk.is_at_work()) {
+            return;
+        }
+        self.unwatched = 0;
+        let said = (self.ear.position() + samples.len() as u64).saturating_sub(self.first) as usize;
+        let from = self.last.len().saturating_sub(said);
+        match self.recognizer.partial(&self.last.make_contiguous()[from..]) {
+            Ok(text) => drop(self.stop_if(text.is_some_and(|text| says_stop_already(&text)))),
+            // Whoever recognises all of it tells that.
+            Err(error) => tracing::warn!("{error}"),
+        }
+    }
+
     fn hear(&mut self, heard: Heard) {
         match heard {
             Heard::Began { began, joins } => {
-                self.began_nanos = self.nanos_of(began);
+                (self.began_nanos, self.first) = (self.nanos_of(began), began);
                 self.sayings += 1;
                 self.at.tell(json!({ "type": "hearing", "state": "began", "text": "", "joins": joins }));
                 self.expect();
             }
             Heard::Partial { text } => {
-                self.stop_if_said(&text);
-                self.at.tell(state("partial", &text));
+                self.stop_if(says_stop_already(&text));
+                if !self.has_stopped {
+                    self.at.tell(state("partial", &text));
+                }
             }
             Heard::Said(utterance) => self.said(utterance),
         }
     }
 
     /// Stop is done before anything is made of what else is said.
-    fn stop_if_said(&mut self, text: &str) -> bool {
-        let stops = says_stop(text);
+    fn stop_if(&mut self, stops: bool) -> bool {
         if stops && !self.has_stopped {
             self.has_stopped = true;
             self.stop();
@@ -289,11 +348,12 @@ impl Listening<'_> {
         stops
     }
 
-    /// Has all robots stop, and say no more. Where one of them says that word just now, who said it cannot be told: then it
-    /// is done once, lest they stop each other for ever.
+    /// Has all robots stop, and say no more. Where one of them answers to a stop just now, who says that word cannot be told:
+    /// then it is done once, lest they stop each other for ever. They have stopped then.
     fn stop(&mut self) {
         let now = monotonic_nanos();
-        let is_own_word = says_stop(&self.at.voice.mouth.says(self.began_nanos));
+        let is_answer = |said: &str| says_stop(said) && said.split(' ').count() <= OWN_STOP_WORDS;
+        let is_own_word = self.at.voice.mouth.says(self.began_nanos, is_answer);
         if is_own_word && now.saturating_sub(self.stopped_nanos) < OWN_STOP_NANOS {
             return;
         }
@@ -301,6 +361,8 @@ impl Listening<'_> {
         let after_ms = now.saturating_sub(self.began_nanos) / 1_000_000;
         tracing::info!("page {} says stop, heard {after_ms} ms after its first sound", self.at.visitor);
         self.at.talk.stop(self.at.visitor, now);
+        // What was heard before and can be changed yet is not done either.
+        self.at.tell(state("stopped", ""));
     }
 
     fn said(&mut self, utterance: Utterance) {
@@ -314,7 +376,7 @@ impl Listening<'_> {
         let mouth = &self.at.voice.mouth;
         let own = mouth.is_echo(recognition.best(), began_nanos) || mouth.is_echo(&recognition.raw, began_nanos);
         // Its own words stop it where they say stop, lest somebody's are taken for them.
-        let stops = recognition.likely().filter(|text| self.stop_if_said(text)).count() > 0;
+        let stops = recognition.likely().filter(|text| self.stop_if(says_stop(text))).count() > 0;
         if stops || own {
             self.ear.part();
         }
@@ -358,6 +420,36 @@ impl Listening<'_> {
     }
 }
 
+/// What was recognised.
+type Readings = Arc<Mutex<Vec<String>>>;
+
+/// A recogniser that notes all that may well have been said.
+struct Attentive {
+    recognizer: Shared,
+    readings: Readings,
+}
+
+impl Recognizer for Attentive {
+    fn bias(&mut self, bias: &Bias) {
+        self.recognizer.bias(bias);
+    }
+
+    fn recognize(&mut self, samples: &[f32]) -> Result<Recognition, SpeechError> {
+        let recognition = self.recognizer.recognize(samples)?;
+        let mut readings = self.readings.lock().unwrap_or_else(PoisonError::into_inner);
+        readings.extend(recognition.likely().map(str::to_owned));
+        Ok(recognition)
+    }
+
+    fn partial(&mut self, samples: &[f32]) -> Result<Option<String>, SpeechError> {
+        self.recognizer.partial(samples)
+    }
+
+    fn name(&self) -> &str {
+        self.recognizer.name()
+    }
+}
+
 fn state(state: &str, text: &str) -> Value {
     json!({ "type": "hearing", "state": state, "text": text })
 }
@@ -383,6 +475,10 @@ mod tests {
     impl Audience for Room {
         fn is_whole(&self, text: &str) -> bool {
             text.ends_with("office")
+        }
+
+        fn is_at_work(&self) -> bool {
+            true
         }
 
         fn likely(&self, _: u64) -> Option<(u64, Scene)> {
@@ -466,6 +562,11 @@ mod tests {
             })
         }
 
+        /// Waits until a turn that says stop was done, and is over.
+        fn stopped(&mut self) {
+            (0..2).for_each(|_| drop(self.state("stopped")));
+        }
+
         fn stops(&self) -> usize {
             self.room.0.lock().unwrap().len()
         }
@@ -500,7 +601,7 @@ mod tests {
     fn stop_is_done_while_it_is_said_and_not_said_again() {
         let mut scene = Hall::new(fake::Reader::default(), |_| ());
         scene.speak(&[fake::hidden("stop right there you robot"), silence(1.5)].concat());
-        scene.state("stopped");
+        scene.stopped();
         assert_eq!(scene.stops(), 1, "once, though it was heard in pieces and whole");
     }
 
@@ -514,7 +615,7 @@ mod tests {
         assert_ne!(spoken.heard.best(), "turn right at the light");
         assert!(spoken.text_nanos > 0);
         scene.speak(&[fake::hidden("stop"), silence(1.5)].concat());
-        scene.state("stopped");
+        scene.stopped();
         assert_eq!(scene.stops(), 1);
     }
 
@@ -525,12 +626,35 @@ mod tests {
         scene.speak(&[fake::hidden("going to the main office"), silence(1.5)].concat());
         scene.state("nothing");
         scene.speak(&[fake::hidden("stop"), silence(1.5)].concat());
-        scene.state("stopped");
+        scene.stopped();
         assert_eq!(scene.stops(), 1);
         // What it says of stopping stops it once, and no more.
         scene.voice.mouth.note_own_voice(None, monotonic_nanos());
         scene.voice.mouth.note_own_voice(Some("OK, I stop."), monotonic_nanos());
         scene.speak(&[fake::hidden("ok i stop"), silence(1.5)].concat());
+        scene.state("stopped");
+        assert_eq!(scene.stops(), 1);
+    }
+
+    #[test]
+    fn stop_is_heard_over_a_long_answer_that_speaks_of_it_however_soon_after_another() {
+        let mut scene = Hall::new(fake::Reader::default(), |_| ());
+        let answer = "I can go to rooms and objects, and pick things up. Say \"stop\" to stop me.";
+        for stops in 1..=3 {
+            scene.voice.mouth.note_own_voice(Some(answer), monotonic_nanos());
+            scene.speak(&[fake::hidden("stop"), silence(1.5)].concat());
+            scene.stopped();
+            assert_eq!(scene.stops(), stops);
+            scene.voice.mouth.note_own_voice(None, monotonic_nanos());
+        }
+    }
+
+    #[test]
+    fn stop_is_heard_at_the_end_of_a_long_sentence_before_that_ends() {
+        let mut scene = Hall::new(fake::Reader::default(), |_| ());
+        // Nothing ends it: it is heard in what was said last.
+        scene.speak(&[fake::hidden("no that is not at all what I meant to say"), fake::hidden("stop")].concat());
+        scene.speak(&loud(1.0));
         scene.state("stopped");
         assert_eq!(scene.stops(), 1);
     }

@@ -53,9 +53,9 @@ impl Echo {
         !heard.is_empty() && self.during(began).any(|said| resembles(&heard, &said.words))
     }
 
-    /// The words that were being said then.
-    pub fn says(&self, began: u64) -> String {
-        self.during(began).map(|said| said.words.join(" ")).collect::<Vec<_>>().join(" ")
+    /// Whether what was being said then was such a text.
+    pub fn says(&self, began: u64, is_such: impl Fn(&str) -> bool) -> bool {
+        self.during(began).any(|said| is_such(&said.words.join(" ")))
     }
 
     fn during(&self, at: u64) -> impl Iterator<Item = &Said> {

@@ -27,6 +27,9 @@ const MOST_WAITING: usize = 6;
 const LONGEST: usize = 400;
 /// Sayings of others are numbered beyond its own.
 const PASSED_ON: u64 = 1 << 48;
+/// What is said is made no more than so long before it sounds: who is hushed has then not been made in vain, and whoever
+/// listens meanwhile has the processor.
+const AHEAD: Duration = Duration::from_secs(2);
 /// How often an idle mouth looks whether there still is a session.
 const LOOK_EVERY: Duration = Duration::from_millis(500);
 /// What most plans are answered with; its sound is made beforehand, so that it comes at once.
@@ -116,11 +119,25 @@ impl Mouth {
 
     /// Breaks off what is said, and forgets what waits.
     pub fn hush(&self) {
-        lock(&self.waiting).clear();
+        let mut waiting = lock(&self.waiting);
+        waiting.clear();
         self.hushed.fetch_add(1, Ordering::Relaxed);
+        let saying = self.sayings.load(Ordering::Relaxed);
+        self.more.notify_all();
+        drop(waiting);
         lock(&self.echo).cut(monotonic_nanos());
         // A page may get a piece that was sent before this after it.
-        (self.tell)(&json!({ "type": "hush", "saying": self.sayings.load(Ordering::Relaxed) }));
+        (self.tell)(&json!({ "type": "hush", "saying": saying }));
+    }
+
+    /// Begins to say something, unless everybody was hushed since. Who hushes everybody after that tells of it by its number.
+    fn begin(&self, saying: &Saying) -> bool {
+        let _waiting = lock(&self.waiting);
+        let begins = !self.is_hushed(saying);
+        if begins {
+            self.sayings.fetch_add(1, Ordering::Relaxed);
+        }
+        begins
     }
 
     /// Whether what was heard from then on is what a robot was saying.
@@ -128,9 +145,14 @@ impl Mouth {
         lock(&self.echo).is_echo(heard, began_nanos)
     }
 
-    /// What robots were saying then.
-    pub fn says(&self, began_nanos: u64) -> String {
-        lock(&self.echo).says(began_nanos)
+    /// Whether what robots were saying then was such a text.
+    pub fn says(&self, began_nanos: u64, is_such: impl Fn(&str) -> bool) -> bool {
+        lock(&self.echo).says(began_nanos, is_such)
+    }
+
+    /// Whether anything sounds that robots say.
+    pub fn is_speaking(&self) -> bool {
+        self.says(monotonic_nanos(), |_| true)
     }
 
     /// A page says a text with its browser's voice, from now or until now.
@@ -146,6 +168,12 @@ impl Mouth {
     /// Has the pages hear what somebody else on the bus says aloud.
     pub fn pass_on(&self, view: AudioView<'_>) {
         (self.play)(frame(&AudioHeader { saying: view.header.saying | PASSED_ON, ..*view.header }, view.samples));
+    }
+
+    /// Waits so long, or until that is hushed.
+    fn rest(&self, saying: &Saying, lasting: Duration) {
+        let rests = self.more.wait_timeout_while(lock(&self.waiting), lasting, |_| !self.is_hushed(saying));
+        drop(rests.unwrap_or_else(PoisonError::into_inner));
     }
 
     fn is_hushed(&self, saying: &Saying) -> bool {
@@ -177,10 +205,9 @@ impl Tongue {
     }
 
     fn say(&mut self, synthesizer: &mut dyn Synthesizer, mouth: &Mouth, saying: &Saying) {
-        if mouth.is_hushed(saying) {
+        if !mouth.begin(saying) {
             return;
         }
-        mouth.sayings.fetch_add(1, Ordering::Relaxed);
         let began = monotonic_nanos();
         self.until = self.until.max(began);
         lock(&mouth.echo).note(&saying.text, self.until.min(began + 1), self.until);
@@ -190,15 +217,14 @@ impl Tongue {
         {
             text = rest;
             let at_once = self.at_once.clone();
-            self.send(mouth, saying, &at_once);
+            // Whether it is hushed by then is seen below.
+            let _ = self.send(mouth, saying, &at_once);
         }
-        let said = synthesizer.speak(text, &mut |piece| {
-            if mouth.is_hushed(saying) {
-                return ControlFlow::Break(());
-            }
-            self.send(mouth, saying, piece);
-            ControlFlow::Continue(())
-        });
+        let said = if mouth.is_hushed(saying) {
+            Ok(())
+        } else {
+            synthesizer.speak(text, &mut |piece| self.send(mouth, saying, piece))
+        };
         if let Err(error) = said {
             tracing::warn!("{error}");
             (mouth.tell)(&json!({ "type": "error", "text": format!("The robot has lost its voice: {error}") }));
@@ -209,13 +235,20 @@ impl Tongue {
         self.send_piece(mouth, saying, &[], true);
     }
 
-    fn send(&mut self, mouth: &Mouth, saying: &Saying, samples: &[i16]) {
+    /// Sends more of a saying, unless it is hushed, and waits where that is far ahead of what sounds.
+    fn send(&mut self, mouth: &Mouth, saying: &Saying, samples: &[i16]) -> ControlFlow<()> {
+        if mouth.is_hushed(saying) {
+            return ControlFlow::Break(());
+        }
         for piece in samples.chunks(AudioHeader::MOST_SAMPLES) {
             self.send_piece(mouth, saying, piece, false);
         }
         let lasts = samples.len() as u64 * 1_000_000_000 / u64::from(self.rate_hz);
         self.until = self.until.max(monotonic_nanos()) + lasts;
         lock(&mouth.echo).lasts_until(self.until);
+        let ahead = Duration::from_nanos(self.until.saturating_sub(monotonic_nanos()));
+        mouth.rest(saying, ahead.saturating_sub(AHEAD));
+        ControlFlow::Continue(())
     }
 
     fn send_piece(&mut self, mouth: &Mouth, saying: &Saying, piece: &[i16], is_last: bool) {
@@ -320,6 +353,30 @@ mod tests {
         });
         let turns: Vec<u64> = pieces.map(|piece| turn(&piece)).collect();
         assert!(!turns.contains(&2) && !turns.contains(&3), "{turns:?}");
+    }
+
+    #[test]
+    fn what_comes_after_a_hush_has_the_number_of_what_was_hushed() {
+        let (mouth, told, played) = mouth();
+        let mut pieces = Vec::new();
+        for turn in 1..=200 {
+            mouth.say(0, turn, "OK, going.");
+            // At any moment of it: before it began, or after.
+            if turn % 2 == 0 {
+                pieces.push(played.recv_timeout(LONG).unwrap());
+            }
+            mouth.hush();
+        }
+        mouth.say(0, 1_000, "Done.");
+        let hushed: Vec<u64> = told.try_iter().map(|message| message["saying"].as_u64().unwrap()).collect();
+        assert_eq!(hushed.len(), 200);
+        let last = |piece: &Vec<u8>| turn(piece) == 1_000 && piece[1] == 1;
+        pieces.extend(std::iter::from_fn(|| Some(played.recv_timeout(LONG).unwrap()).filter(|piece| !last(piece))));
+        for piece in pieces {
+            let saying = u64::from_le_bytes(piece[16..24].try_into().unwrap());
+            let hushed = hushed[turn(&piece) as usize - 1];
+            assert!(saying <= hushed, "turn {} is heard as saying {saying}, after {hushed}", turn(&piece));
+        }
     }
 
     #[test]
