@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::{
     amend, chatter,
     intent::Intent,
-    lexicon::{Direction, Lexicon, Preposition, Pronoun},
+    lexicon::{Direction, Lexicon, Manner, Preposition, Pronoun},
     phrase::{Phrase, Place, Reader},
     reading, token, verbless, wish,
 };
@@ -29,6 +29,8 @@ pub(crate) struct Clause {
     pub(crate) has_stray_noun: bool,
     /// The verb as it was said.
     pub(crate) verb: String,
+    #[serde(default)]
+    pub(crate) manner: Option<Manner>,
     /// Whether it was wished for rather than asked for.
     #[serde(default)]
     pub(crate) is_wish: bool,
@@ -99,6 +101,7 @@ impl Clause {
             unknown: Vec::new(),
             has_stray_noun: false,
             verb: verb.to_owned(),
+            manner: None,
             is_wish: false,
         }
     }
@@ -281,6 +284,12 @@ fn read_segment(lexicon: &Lexicon, catalog: &Catalog, segment: &[String], parts:
         });
         if let Some((clause, used)) = going {
             parts.push(continued(parts.last(), clause));
+            rest = &rest[used..];
+            continue;
+        }
+        let is_told = parts.iter().any(|part| matches!(part, Part::Clause(_)));
+        let taken = (0..=skipped).find_map(|at| Some(at + wish::taken_over(lexicon, &rest[at..])?));
+        if let Some(used) = taken.filter(|_| is_told) {
             rest = &rest[used..];
             continue;
         }

@@ -35,6 +35,20 @@ const SMALL_WORDS: &[&str] = &[
     "take", "get", "we", "he", "she", "up", "down",
 ];
 
+/// How a verb has it done, besides what it asks for.
+#[derive(Clone, Copy, Debug, Deserialize, Eq, Ord, PartialEq, PartialOrd, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Manner {
+    /// Into what was made for it.
+    Insert,
+    /// To nowhere that could be named.
+    Shift,
+    /// As it is, or where it is.
+    Leave,
+    /// To where it was taken from.
+    Back,
+}
+
 /// What an adjective demands of an object's state.
 #[derive(Clone, Copy, Debug, Deserialize, Eq, PartialEq, Serialize)]
 pub(crate) enum StateWord {
@@ -165,6 +179,7 @@ pub(crate) struct Lexicon {
     pub(crate) verbs: PhraseTable<Vec<Intent>>,
     /// The first words of all verbs.
     pub(crate) verb_heads: BTreeSet<String>,
+    pub(crate) manners: PhraseTable<Manner>,
     /// First words of a verb whose last word may stand after the object; that word; the intent.
     pub(crate) separable: Vec<(Vec<String>, String, Intent)>,
     pub(crate) questions: PhraseTable<QuestionKind>,
@@ -266,6 +281,7 @@ struct FillWords {
 struct VerbFile {
     #[serde(rename = "verb")]
     verbs: Vec<VerbEntry>,
+    manners: BTreeMap<Manner, Vec<String>>,
 }
 
 #[derive(Deserialize)]
@@ -528,6 +544,7 @@ impl Lexicon {
                 }
             }
         }
+        add_all(&mut self.manners, &file.manners);
         let file: QuestionFile = parse(include_str!("../data/questions.toml"));
         for entry in file.questions {
             entry.starts.iter().for_each(|start| self.questions.insert(start, entry.kind));

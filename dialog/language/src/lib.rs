@@ -59,6 +59,7 @@ mod reading;
 mod remedy;
 mod reply;
 mod report;
+mod saying;
 mod search;
 mod settle;
 mod sight;

@@ -11,10 +11,10 @@ use crate::{
     intent::Intent,
     judge::Judge,
     known::{Known, KnownObject},
-    lexicon::{Direction, Preposition, Pronoun, Side},
+    lexicon::{Direction, Manner, Preposition, Pronoun, Side},
     phrase::{Phrase, Place},
     process::Devices,
-    search,
+    saying, search,
     settle::{self, Settled},
     understanding::{Asking, Step},
 };
@@ -436,7 +436,7 @@ impl Planner<'_> {
             match self.find_one(phrase, &want, Some(Role::Object(index))) {
                 Ok(object) => self.go_to_object(object),
                 Err(Fault::Miss { miss: Miss::Unseen, .. }) if is_nameable && self.looks_about() => {
-                    self.notes.push(format!("I have not seen {} yet, so I look around for it", said(phrase)));
+                    self.notes.push(format!("I have not seen {} yet, so I look around for it", saying::said(phrase)));
                     phrase.room.into_iter().for_each(|room| self.go_to_room(room));
                     self.push(Action::LookAround, "looking around".to_owned());
                 }
@@ -585,21 +585,6 @@ impl Planner<'_> {
     }
 }
 
-/// What somebody called an object, without an article.
-pub(crate) fn noun(phrase: &Phrase) -> &str {
-    let mut noun = phrase.text.as_str();
-    for article in ["the ", "a ", "an ", "my ", "your ", "this ", "that ", "some ", "any "] {
-        noun = noun.strip_prefix(article).unwrap_or(noun);
-    }
-    noun
-}
-
-/// What was said of an object, as something that is not there: `a mug`, `any milk`.
-pub(crate) fn said(phrase: &Phrase) -> String {
-    let text = describe::indefinite(noun(phrase));
-    text.strip_prefix("some ").map_or_else(|| text.clone(), |noun| format!("any {noun}"))
-}
-
 fn plain_number(value: f32) -> String {
     let rounded = (value * 100.0).round() / 100.0;
     format!("{rounded}")
@@ -608,6 +593,5 @@ fn plain_number(value: f32) -> String {
 /// `move the bowl a bit to the left`: to nowhere that could be named.
 fn shifts(clause: &Clause) -> bool {
     let is_way = |place: &(Preposition, Place)| matches!(place.1, Place::Side(Side::Left | Side::Right | Side::Middle));
-    let is_moved = matches!(clause.verb.as_str(), "move" | "shift" | "slide" | "nudge" | "push" | "scoot");
-    is_moved && !clause.places.is_empty() && clause.places.iter().all(is_way)
+    clause.manner == Some(Manner::Shift) && !clause.places.is_empty() && clause.places.iter().all(is_way)
 }

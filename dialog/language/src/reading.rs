@@ -74,6 +74,7 @@ pub(crate) fn read_as(
     verb_length: usize,
 ) -> Option<(Clause, usize)> {
     let mut clause = Clause::new(intent, verb);
+    clause.manner = lexicon.manners.exact(&token::words(verb)).copied();
     let mut reader = Reader::new(lexicon, words);
     reader.at = verb_length;
     match intent {

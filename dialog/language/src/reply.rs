@@ -6,7 +6,7 @@ use crate::{
     ground::Miss,
     intent::Intent,
     phrase::Phrase,
-    plan,
+    saying,
     understanding::{Step, Understanding},
 };
 
@@ -43,9 +43,12 @@ pub(crate) fn miss(phrase: &Phrase, miss: &Miss, intent: Intent) -> String {
         );
     }
     match miss {
-        Miss::NoReferent => format!("What shall I {}? I do not know what \"{}\" is.", intent.verb(), phrase.text),
-        Miss::Unknown => format!("What shall I {}?", intent.verb()),
-        _ => format!("I have not seen {}.", plan::said(phrase)),
+        Miss::NoReferent => format!("{} {}", saying::what_for(intent, phrase), saying::unresolved(phrase)),
+        Miss::Unknown => saying::what_for(intent, phrase),
+        _ if saying::noun(phrase).is_none() => {
+            format!("{} {}", saying::unresolved(phrase), saying::what_for(intent, phrase))
+        }
+        _ => format!("I have not seen {}.", saying::said(phrase)),
     }
 }
 

@@ -54,9 +54,11 @@ pub(crate) fn read_tail(reader: &mut Reader<'_>, clause: &mut Clause) {
         if reader.at_verb() {
             break;
         }
+        let start = reader.at;
         if let Some(phrase) = clause.last_phrase()
             && reader.after_noun(phrase)
         {
+            phrase.text = format!("{} {}", phrase.text, reader.words[start..reader.at].join(" ")).trim().to_owned();
             continue;
         }
         if chatter::is_subordinator(reader.lexicon, &reader.words[reader.at]) {

@@ -12,6 +12,7 @@ use crate::{
     phrase::Reader,
     reading,
     table::PhraseTable,
+    token,
 };
 
 /// The words of wishing: `data/wishes.toml` says what each list is.
@@ -30,6 +31,8 @@ pub(crate) struct Wishes {
     removers: PhraseTable<()>,
     ensurers: PhraseTable<()>,
     performers: PhraseTable<()>,
+    takeovers: PhraseTable<()>,
+    taken: BTreeSet<String>,
     undoes: BTreeMap<String, String>,
     pub(crate) subjecters: BTreeSet<String>,
     pub(crate) infecters: BTreeSet<String>,
@@ -41,6 +44,18 @@ pub(crate) fn request(lexicon: &Lexicon, words: &[String]) -> Option<(Vec<String
     let chunk = chunk(lexicon, words);
     let wished = spoken(lexicon, chunk).or_else(|| stated(lexicon, chunk))?;
     Some((wished, chunk.len()))
+}
+
+/// `do it for me`, `take care of that`: how many words hand over what was told before them.
+pub(crate) fn taken_over(lexicon: &Lexicon, words: &[String]) -> Option<usize> {
+    let (length, ()) = lexicon.wishes.takeovers.longest(words)?;
+    let is_told = words.get(length).is_some_and(|word| matches!(word.as_str(), "it" | "that" | "this" | "so" | "them"));
+    let used =
+        length + 1 + words.get(length + 1..)?.iter().take_while(|word| lexicon.wishes.taken.contains(*word)).count();
+    let is_end = words.get(used).is_none_or(|word| {
+        token::is_punctuation(word) || matches!(word.as_str(), "and" | "that" | "it" | "because" | "so" | "but" | "i")
+    });
+    (is_told && is_end).then_some(used)
 }
 
 /// Whether a wish with words of its own begins there.
