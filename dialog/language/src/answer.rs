@@ -71,7 +71,9 @@ impl Answerer<'_> {
             (QuestionKind::Contents, None) if self.focus.place.is_some() => {
                 self.focus.place.map_or_else(|| Understanding::refusal(HINT), |place| self.contents(place))
             }
-            (QuestionKind::State, Some(phrase)) if phrase.pronoun == Some(Pronoun::Thing) && phrase.is_any => {
+            (QuestionKind::State | QuestionKind::Look | QuestionKind::Unknown | QuestionKind::Where, Some(phrase))
+                if phrase.pronoun == Some(Pronoun::Thing) && phrase.is_any =>
+            {
                 match phrase.relations.first() {
                     Some(relation) => self.with_object(&relation.to, |id| self.contents(id)),
                     None => self.seeing(),
@@ -90,8 +92,11 @@ impl Answerer<'_> {
                 Understanding::lost(saying::unresolved(phrase))
             }
             (QuestionKind::Where, _) if !question.rest.is_empty() => {
-                Understanding::lost(format!("I do not know what \"{}\" is.", question.rest.join(" ")))
+                let phrase = Phrase { text: question.rest.join(" "), ..Phrase::default() };
+                let text = saying::noun(&phrase).map(|noun| format!("I do not know what \"{noun}\" is."));
+                Understanding::lost(text.unwrap_or_else(|| saying::unresolved(&phrase)))
             }
+            (QuestionKind::Where, None) => Understanding::lost("I cannot tell what you mean. Name it to me, please."),
             _ => Understanding::lost(format!("I do not know how to answer that. {HINT}")),
         }
     }
@@ -343,13 +348,22 @@ impl Answerer<'_> {
     }
 
     fn count(&self, phrase: &Phrase) -> Understanding {
-        let all: Vec<ObjectId> = self.scene.objects.iter().map(|object| object.id).collect();
-        let found = self.ground().narrow(phrase, &all);
+        let is_them = phrase.is_many() || phrase.is_one_of_kind();
+        if is_them && self.focus.group.is_empty() {
+            return Understanding::lost(saying::unresolved(phrase));
+        }
+        let all: Vec<ObjectId> = match is_them {
+            true => self.focus.group.clone(),
+            false => self.scene.objects.iter().map(|object| object.id).collect(),
+        };
+        let bare = Phrase { pronoun: None, ..phrase.clone() };
+        let found = self.ground().narrow(if is_them { &bare } else { phrase }, &all);
         let noun = saying::noun_or_thing(phrase);
         let text = match found.len() {
             0 => format!("I know of no {noun}."),
             1 => format!("I know of one: {}.", self.full(found[0])),
-            count => format!("I know of {count}: {}.", describe::counted(noun, count)),
+            count if noun.contains(' ') => format!("I know of {count}."),
+            count => format!("I know of {count} {}.", describe::plural(noun)),
         };
         Understanding::whether(!found.is_empty(), text, found)
     }

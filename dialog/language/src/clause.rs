@@ -31,6 +31,9 @@ pub(crate) struct Clause {
     pub(crate) verb: String,
     #[serde(default)]
     pub(crate) manner: Option<Manner>,
+    /// Whether it says by what means the request before it is to be carried out.
+    #[serde(default)]
+    pub(crate) is_means: bool,
     /// Whether it was wished for rather than asked for.
     #[serde(default)]
     pub(crate) is_wish: bool,
@@ -102,6 +105,7 @@ impl Clause {
             has_stray_noun: false,
             verb: verb.to_owned(),
             manner: None,
+            is_means: false,
             is_wish: false,
         }
     }
@@ -141,13 +145,29 @@ pub(crate) fn parts(lexicon: &Lexicon, catalog: &Catalog, words: &[String]) -> V
     for cut in cuts(lexicon, words) {
         let before = parts.len();
         let is_consequence = cut.start > 0 && words[cut.start - 1] == "so" || words[cut.start] == "so";
-        read_segment(lexicon, catalog, &words[cut], &mut parts);
+        let follows = cut.start > 0 && words[cut.start - 1] == "then";
+        match verbless::late_place(lexicon, &words[cut.clone()])
+            .filter(|(_, _, used)| follows && *used == cut.len() && puts_away(&parts))
+        {
+            // `the plate washed, then on the counter`
+            Some((preposition, place, _)) => {
+                let it = Phrase { pronoun: Some(Pronoun::Thing), text: "it".to_owned(), ..Phrase::default() };
+                let places = vec![(preposition, place)];
+                parts.push(Part::Clause(Clause { places, ..Clause::about(Intent::Place, "put", it) }));
+            }
+            None => read_segment(lexicon, catalog, &words[cut], &mut parts),
+        }
         let asks = |part: &Part| matches!(part, Part::Clause(clause) if !clause.is_wish);
         if is_consequence && parts[before..].iter().any(asks) {
             parts[..before].iter_mut().for_each(demote);
         }
     }
     folded(parts)
+}
+
+/// Whether what was asked for last is about a thing that can be put somewhere afterwards.
+fn puts_away(parts: &[Part]) -> bool {
+    matches!(parts.last(), Some(Part::Clause(clause)) if clause.intent != Intent::GoTo && !clause.objects.is_empty())
 }
 
 /// `i could use a coffee, so take the mug`: what was wished for is the reason.
@@ -251,19 +271,21 @@ fn cuts(lexicon: &Lexicon, words: &[String]) -> Vec<Range<usize>> {
     let mut start = 0;
     for at in 0..words.len() {
         let is_end = token::ends_sentence(&words[at]) || words[at] == "then";
-        let is_joint = matches!(words[at].as_str(), "," | "and" | "but" | "so") && {
-            let mut reader = Reader::new(lexicon, words);
-            reader.at = at + 1;
-            let forbids = lexicon.negation.longest(reader.rest()).is_some();
-            reader.skip(|lexicon| &lexicon.lead);
-            forbids
-                || reader.next_is("with") && verbless::begins_with_tool(reader)
-                || reader.at_verb()
-                || lexicon.negation.longest(reader.rest()).is_some()
-                || at > 0
-                    && lexicon.numbers.longest(&words[at - 1..at]).is_none()
-                    && verbless::implied_motion(lexicon, chatter::chunk(reader.rest())).is_some()
-        };
+        let is_joint = matches!(words[at].as_str(), "," | "and" | "but" | "so")
+            && !ends_courtesy(lexicon, &words[start..=at])
+            && {
+                let mut reader = Reader::new(lexicon, words);
+                reader.at = at + 1;
+                let forbids = lexicon.negation.longest(reader.rest()).is_some();
+                reader.skip(|lexicon| &lexicon.lead);
+                forbids
+                    || reader.next_is("with") && verbless::begins_with_tool(reader)
+                    || reader.at_verb()
+                    || lexicon.negation.longest(reader.rest()).is_some()
+                    || at > 0
+                        && lexicon.numbers.longest(&words[at - 1..at]).is_none()
+                        && verbless::implied_motion(lexicon, chatter::chunk(reader.rest())).is_some()
+            };
         if is_end || is_joint {
             cuts.push(start..at);
             start = at + 1;
@@ -273,6 +295,18 @@ fn cuts(lexicon: &Lexicon, words: &[String]) -> Vec<Range<usize>> {
     cuts.retain(|cut| words[cut.clone()].iter().any(|word| !token::is_punctuation(word)));
     cuts
 }
+
+/// `go ahead and`, `be so kind and`: no joint between two requests.
+fn ends_courtesy(lexicon: &Lexicon, words: &[String]) -> bool {
+    let is_one = |start: usize| {
+        let said = &words[start..];
+        lexicon.lead.exact(said).is_some() || lexicon.talk.exact(said).is_some()
+    };
+    words.len() > 1 && (words.len().saturating_sub(LONGEST_COURTESY)..words.len() - 1).any(is_one)
+}
+
+/// Most words of a courtesy that ends in `and`.
+const LONGEST_COURTESY: usize = 6;
 
 fn read_segment(lexicon: &Lexicon, catalog: &Catalog, segment: &[String], parts: &mut Vec<Part>) {
     let mut rest = segment;
@@ -301,7 +335,11 @@ fn read_segment(lexicon: &Lexicon, catalog: &Catalog, segment: &[String], parts:
             rest = &rest[used..];
             continue;
         }
-        let (part, used) = read_part(lexicon, catalog, rest, parts);
+        let is_means = skipped > 0 && segment[segment.len() - rest.len() - 1] == "by";
+        let (mut part, used) = read_part(lexicon, catalog, rest, parts);
+        if let Part::Clause(clause) = &mut part {
+            clause.is_means = is_means && matches!(parts.last(), Some(Part::Clause(_)));
+        }
         parts.push(part);
         rest = &rest[used.clamp(1, rest.len())..];
     }
@@ -401,6 +439,14 @@ fn read_part(lexicon: &Lexicon, catalog: &Catalog, words: &[String], before: &[P
         let it = Phrase { pronoun: Some(Pronoun::Thing), text: "it".to_owned(), ..Phrase::default() };
         return (Part::Clause(Clause::about(intent, intent.verb(), it)), chunk.len());
     }
+    // `open the fridge, take the milk, close`
+    let is_named = lexicon.classes.longest(words).is_some();
+    if let Some((clause, used)) = verbless::gap(lexicon, catalog, words)
+        .filter(|_| !before.is_empty())
+        .filter(|(clause, _)| !is_named && clause.intent.needs_object())
+    {
+        return (Part::Clause(clause), used);
+    }
     let mut reader = Reader::new(lexicon, words);
     if let Some(Part::Clause(previous)) = before.last()
         && reading::takes_objects(previous.intent)
@@ -418,7 +464,7 @@ fn read_part(lexicon: &Lexicon, catalog: &Catalog, words: &[String], before: &[P
             return (Part::Fragment(phrase), reader.at);
         }
     }
-    if let Some((clause, used)) = verbless::gap(lexicon, catalog, words, before) {
+    if let Some((clause, used)) = verbless::gap(lexicon, catalog, words).filter(|_| !before.is_empty()) {
         return (Part::Clause(clause), used);
     }
     chatter::read(lexicon, catalog, words)

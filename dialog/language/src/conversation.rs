@@ -422,7 +422,7 @@ impl Conversation<'_> {
                 if asks && phrase.unknown.is_empty() =>
             {
                 context.pending = Some(Pending::Look { clauses, slot, consent });
-                ask::referent(reply::miss(&phrase, &miss, intent))
+                ask::referent(reply::miss(&phrase, &miss, intent, Some(slot.role)))
             }
             Fault::Miss { slot: Some(slot), phrase, .. }
                 if asks && phrase.namings.is_empty() && !phrase.unknown.is_empty() =>
@@ -431,7 +431,7 @@ impl Conversation<'_> {
                 ask::appearance(&phrase)
             }
             Fault::Miss { phrase, miss, intent, .. } => {
-                let text = reply::miss(&phrase, &miss, intent);
+                let text = reply::miss(&phrase, &miss, intent, None);
                 if phrase.unknown.is_empty() { Understanding::refusal(text) } else { Understanding::lost(text) }
             }
         }

@@ -249,7 +249,8 @@ pub(crate) fn counted(noun: &str, count: usize) -> String {
     format!("{number} {}", plural(noun))
 }
 
-fn plural(noun: &str) -> String {
+/// Several of a noun.
+pub(crate) fn plural(noun: &str) -> String {
     const VOWEL_Y: [&str; 4] = ["ay", "ey", "oy", "uy"];
     const HISSING: [&str; 5] = ["ss", "x", "z", "ch", "sh"];
     let ends = |endings: &[&str]| endings.iter().any(|ending| noun.ends_with(ending));

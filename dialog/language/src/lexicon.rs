@@ -6,8 +6,8 @@ use cohabit_cdf::{Catalog, ClassId, Fluid, Property, RoomId, state::StateFlag};
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    amend::Amends, chatter::Chatter, inflect, intent::Intent, question::QuestionKind, sound::Sounding,
-    spelling::Vocabulary, table::PhraseTable, token, wish::Wishes,
+    amend::Amends, chatter::Chatter, inflect, intent::Intent, misheard::Misheard, question::QuestionKind,
+    sound::Sounding, spelling::Vocabulary, table::PhraseTable, token, wish::Wishes,
 };
 
 /// A class that a word may mean, and how much it means it: 1 for its name, less for words further down its list.
@@ -47,6 +47,8 @@ pub(crate) enum Manner {
     Leave,
     /// To where it was taken from.
     Back,
+    /// In a color, said or not.
+    Color,
 }
 
 /// What an adjective demands of an object's state.
@@ -200,6 +202,7 @@ pub(crate) struct Lexicon {
     pub(crate) chatter: Chatter,
     /// How the words sound that may be taken for others.
     pub(crate) sounds: Sounding,
+    pub(crate) misheard: Misheard,
 }
 
 #[derive(Deserialize)]
@@ -356,8 +359,9 @@ impl Lexicon {
 
     /// The words of an utterance: tokens, with spelling repaired and set phrases replaced; and how many were misspelt.
     pub(crate) fn normalise(&self, text: &str) -> (Vec<String>, usize) {
-        let replaced = self.replaced(&token::words(text));
-        let replaced = self.vocabulary.respaced(replaced);
+        // What is replaced may complete what is.
+        let replaced = self.replaced(&self.replaced(&token::words(text)));
+        let replaced = self.rejoined(self.vocabulary.respaced(replaced));
         let mut corrected: Vec<String> = Vec::with_capacity(replaced.len());
         let mut repairs = 0;
         for word in &replaced {
@@ -391,6 +395,25 @@ impl Lexicon {
             .into_iter()
             .map(|word| self.vocabulary.singular(&word).filter(|_| !self.vocabulary.has(&word)).unwrap_or(word))
             .collect()
+    }
+
+    /// `in serted`: a form of a verb with a space in it.
+    fn rejoined(&self, words: Vec<String>) -> Vec<String> {
+        let mut result: Vec<String> = Vec::with_capacity(words.len());
+        for word in words {
+            let is_odd = word.len() > 2
+                && word.chars().all(|letter| letter.is_ascii_alphabetic())
+                && !self.vocabulary.is_word(&word);
+            let whole = result.last().filter(|_| is_odd).map(|last| format!("{last}{word}"));
+            match whole.filter(|whole| inflect::stem(self, whole).is_some()) {
+                Some(whole) => {
+                    result.pop();
+                    result.push(whole);
+                }
+                None => result.push(word),
+            }
+        }
+        result
     }
 
     /// `opening` after `would you mind`, as the verb; and `makes` after what makes, as no verb.
@@ -664,6 +687,8 @@ impl Lexicon {
         };
         let words: BTreeSet<&String> = tables.iter().flatten().filter(spoken).copied().collect();
         self.sounds = Sounding::new(words.into_iter());
+        let names = self.classes.phrases().chain(self.rooms.phrases()).filter(|name| name.len() > 1);
+        self.misheard = Misheard::new(names);
     }
 
     fn build_vocabulary(&mut self) {

@@ -48,6 +48,7 @@ mod known;
 mod lab;
 mod lexicon;
 mod memory;
+mod misheard;
 mod noun;
 mod oracle;
 mod order;

@@ -76,13 +76,24 @@ impl Planner<'_> {
         for (index, clause) in clauses.iter().enumerate() {
             self.clause = index;
             self.begun = (self.steps.len(), self.focus.clone());
+            let before = clause.is_means.then(|| self.scene.clone());
             match (self.add(clause), clauses.get(index + 1)) {
                 // `take it, take the knife`: what was meant was said at once.
                 (Err(Fault::Miss { miss: Miss::NoReferent, .. }), Some(next)) if next.intent == clause.intent => {}
                 (result, _) => result?,
             }
+            before.into_iter().for_each(|scene| self.drop_known_means(scene));
         }
         Ok(())
+    }
+
+    /// `switch the power on by pulling the lever`: what the request comes to anyway is not done twice.
+    fn drop_known_means(&mut self, scene: Known) {
+        let (asked, means) = self.steps.split_at(self.begun.0);
+        if means.iter().all(|step| asked.iter().any(|other| other.action == step.action)) {
+            self.steps.truncate(self.begun.0);
+            self.scene = scene;
+        }
     }
 
     fn add(&mut self, clause: &Clause) -> Result<(), Fault> {
@@ -115,6 +126,9 @@ impl Planner<'_> {
                 "I can put {} on something else, but I cannot shift it about.",
                 self.the(object)
             )));
+        }
+        if clause.intent == Intent::Color && clause.color.is_none() && clause.places.is_empty() {
+            return Err(Fault::Cannot("Which color shall it be? Say, for example, \"paint it red\".".to_owned()));
         }
         match clause.intent {
             Intent::PickUp => self.add_pick_up(&settled),
@@ -363,6 +377,25 @@ impl Planner<'_> {
             Some(((_, place), rest)) => (place.clone(), rest),
             None => return Err(Fault::Cannot("Tell me where to go.".to_owned())),
         };
+        let is_room = matches!(target, Place::Room(_));
+        let is_carried = |phrase: &Phrase| {
+            let mut classes = phrase.namings.iter().map(|naming| self.catalog.class(naming.class));
+            is_room && classes.any(|class| class.has(Property::Pickupable))
+        };
+        let is_taken_along = |(preposition, place): &&(Preposition, Place)| {
+            *preposition == Preposition::With
+                && matches!(place, Place::Object(phrase) if phrase.is_bare_pronoun() || is_carried(phrase))
+        };
+        // `head to the break room with it`
+        if let Some((_, Place::Object(thing))) = rest.iter().find(is_taken_along) {
+            let along = thing.clone();
+            let places: Vec<_> = clause.places.iter().filter(|place| !is_taken_along(place)).cloned().collect();
+            let object = self.find_one(&along, &Want::object(Intent::Bring), None)?;
+            if self.scene.robot.held != Some(object) {
+                self.add(&Clause::about(Intent::PickUp, "take", Phrase { chosen: Some(object), ..along }))?;
+            }
+            return self.go_to(&Clause { places, ..clause.clone() });
+        }
         // `go to the kitchen by the fridge`: the fridge, in the kitchen.
         if let (Place::Room(room), [(_, Place::Object(phrase)), more @ ..]) = (&target, rest) {
             let mut phrase = phrase.clone();

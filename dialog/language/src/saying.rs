@@ -1,6 +1,6 @@
 //! How the robot says back what people called a thing: `a red mug`, `any milk`; what a pronoun stands for it cannot.
 
-use crate::{describe, intent::Intent, lexicon::Pronoun, phrase::Phrase};
+use crate::{context::Role, describe, intent::Intent, phrase::Phrase};
 
 /// Words before a noun that say which of them, or how many, and not what it is.
 const DETERMINERS: &[&str] = &[
@@ -92,11 +92,14 @@ pub(crate) fn unresolved(phrase: &Phrase) -> String {
 }
 
 /// What is asked where it was not said, or could not be found out.
-pub(crate) fn what_for(intent: Intent, phrase: &Phrase) -> String {
+pub(crate) fn what_for(intent: Intent, role: Option<Role>) -> String {
     match intent {
         Intent::GoTo | Intent::Travel => "Where shall I go?".to_owned(),
         Intent::Find => "What shall I look for?".to_owned(),
-        _ if phrase.pronoun == Some(Pronoun::Place) => "Where shall I do that?".to_owned(),
+        Intent::Place | Intent::Bring | Intent::Drop if matches!(role, Some(Role::Place(_))) => {
+            "Where shall I put it?".to_owned()
+        }
+        _ if matches!(role, Some(Role::Place(_))) => format!("What shall I {} it with?", intent.verb()),
         _ => format!("What shall I {}?", intent.verb()),
     }
 }

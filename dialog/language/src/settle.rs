@@ -71,6 +71,9 @@ pub(crate) fn settle(planner: &Planner<'_>, clause: &Clause) -> Settled {
             (Preposition::With, Place::Object(phrase)) if has_tool(clause.intent) => {
                 settled.tool = Some((phrase.clone(), role));
             }
+            // `put it into the fridge with it`: said twice.
+            (Preposition::With, Place::Object(phrase))
+                if matches!(clause.intent, Intent::Place | Intent::Bring) && phrase.is_bare_pronoun() => {}
             // `fill it from the tap`
             (Preposition::From, Place::Object(_)) if clause.intent == Intent::Fill => {
                 settled.take_place(planner, Preposition::At, place, role);
