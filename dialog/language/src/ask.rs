@@ -1,6 +1,6 @@
 //! The questions the robot asks: the four of Alexa Arena (location, appearance, direction, reference) and confirmations.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use cohabit_cdf::{Catalog, ObjectId};
 
@@ -71,7 +71,13 @@ impl Ask<'_> {
         let looks = self.parts(&objects, |object| describe::look(self.catalog, object));
         let places = self.parts(&objects, |object| describe::place(self.catalog, self.scene, object.id));
         let noun = phrase.and_then(saying::noun).unwrap_or("thing");
-        let known = format!("I know of {}.", describe::counted(noun, objects.len()));
+        let names: BTreeSet<String> = objects.iter().map(|object| describe::name(self.catalog, object.class)).collect();
+        // `garbage`: of so many trash cans.
+        let kind = names
+            .first()
+            .filter(|_| names.len() == 1)
+            .map_or(if noun.contains(' ') { "thing" } else { noun }, String::as_str);
+        let known = format!("I know of {}.", describe::counted(kind, objects.len()));
         let (kind, text, parts) = if bits(&looks) >= bits(&places) {
             (Clarification::Appearance, format!("{known} What does the one you mean look like?"), looks)
         } else {

@@ -57,6 +57,9 @@ const PRONOUNS: &[&str] = &[
     "on",
 ];
 
+/// First words of what names nothing: `it in the kitchen`, `not the red one`.
+const VAGUE_FIRST: &[&str] = &["", "it", "them", "they", "there", "here", "not"];
+
 /// What somebody called an object, without an article; nothing where that is no name of it.
 pub(crate) fn noun(phrase: &Phrase) -> Option<&str> {
     let mut noun = phrase.text.as_str();
@@ -67,7 +70,8 @@ pub(crate) fn noun(phrase: &Phrase) -> Option<&str> {
         }
         noun = rest;
     }
-    let is_vague = noun.is_empty() || PRONOUNS.contains(&noun) || DETERMINERS.contains(&noun);
+    let first = noun.split(' ').next().unwrap_or_default();
+    let is_vague = PRONOUNS.contains(&noun) || DETERMINERS.contains(&noun) || VAGUE_FIRST.contains(&first);
     (!is_vague).then_some(noun)
 }
 
@@ -123,5 +127,6 @@ mod tests {
         check("the one", "what you mean");
         check("it", "what you mean");
         check("the red one", "a red one");
+        check("it in the kitchen", "what you mean");
     }
 }
