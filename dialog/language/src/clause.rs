@@ -6,7 +6,7 @@ use cohabit_cdf::{Catalog, Fluid};
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    amend, chatter,
+    amend, chatter, gloss,
     intent::Intent,
     lexicon::{Direction, Lexicon, Manner, Preposition, Pronoun},
     phrase::{Phrase, Place, Reader},
@@ -159,45 +159,15 @@ pub(crate) fn parts(lexicon: &Lexicon, catalog: &Catalog, words: &[String]) -> V
         }
         let asks = |part: &Part| matches!(part, Part::Clause(clause) if !clause.is_wish);
         if is_consequence && parts[before..].iter().any(asks) {
-            parts[..before].iter_mut().for_each(demote);
+            parts[..before].iter_mut().for_each(gloss::demote);
         }
     }
-    folded(parts)
+    gloss::folded(parts)
 }
 
 /// Whether what was asked for last is about a thing that can be put somewhere afterwards.
 fn puts_away(parts: &[Part]) -> bool {
     matches!(parts.last(), Some(Part::Clause(clause)) if clause.intent != Intent::GoTo && !clause.objects.is_empty())
-}
-
-/// `i could use a coffee, so take the mug`: what was wished for is the reason.
-fn demote(part: &mut Part) {
-    if let Part::Clause(clause) = part
-        && clause.is_wish
-    {
-        let phrase = clause.objects.first().cloned();
-        *part = phrase.map_or_else(|| Part::Aside(Vec::new()), Part::Mention);
-    }
-}
-
-/// `fill my cup, the red one`: what was said more exactly is meant so.
-fn folded(parts: Vec<Part>) -> Vec<Part> {
-    let mut folded: Vec<Part> = Vec::with_capacity(parts.len());
-    for part in parts {
-        match (part, folded.last_mut()) {
-            (Part::Gloss(phrase), Some(Part::Clause(clause))) => {
-                if let Some(said) = clause.last_phrase() {
-                    let namings = if phrase.namings.is_empty() { said.namings.clone() } else { phrase.namings.clone() };
-                    *said = Phrase { namings, pronoun: None, ..phrase };
-                }
-            }
-            (Part::Where(preposition, place), Some(Part::Clause(clause))) => clause.take_where(preposition, place),
-            (Part::Gloss(phrase) | Part::Where(_, Place::Object(phrase)), _) => folded.push(Part::Mention(phrase)),
-            (Part::Where(..), _) => {}
-            (part, _) => folded.push(part),
-        }
-    }
-    folded
 }
 
 /// The request to put a thing where it is said to be.
@@ -335,7 +305,8 @@ fn read_segment(lexicon: &Lexicon, catalog: &Catalog, segment: &[String], parts:
             rest = &rest[used..];
             continue;
         }
-        let is_means = skipped > 0 && segment[segment.len() - rest.len() - 1] == "by";
+        let start = segment.len() - rest.len();
+        let is_means = start > 0 && segment[start - 1] == "by";
         let (mut part, used) = read_part(lexicon, catalog, rest, parts);
         if let Part::Clause(clause) = &mut part {
             clause.is_means = is_means && matches!(parts.last(), Some(Part::Clause(_)));
@@ -451,10 +422,12 @@ fn read_part(lexicon: &Lexicon, catalog: &Catalog, words: &[String], before: &[P
     if let Some(Part::Clause(previous)) = before.last()
         && reading::takes_objects(previous.intent)
         && !tells_of_it(lexicon, words)
-        && let Some((clause, used)) = reading::read_as(lexicon, previous.intent, &previous.verb, words, 0)
-            .filter(|(clause, _)| reading::is_complete(clause, catalog) && !is_gloss(clause) && clause.names_any())
+        && let Some((clause, used)) =
+            reading::read_as(lexicon, previous.intent, &previous.verb, words, 0).filter(|(clause, _)| {
+                reading::is_complete(clause, catalog) && !gloss::is_gloss(clause) && clause.names_any()
+            })
     {
-        let part = gloss(previous, &clause).map_or(Part::Clause(clause), Part::Gloss);
+        let part = gloss::of(previous, &clause).map_or(Part::Clause(clause), Part::Gloss);
         return (part, used);
     }
     if let Some(phrase) = reader.phrase_with_place().filter(|phrase| !phrase.is_empty() && phrase.unknown.is_empty()) {
@@ -476,39 +449,6 @@ fn tells_of_it(lexicon: &Lexicon, words: &[String]) -> bool {
     is_subject
         && words.get(1).is_some_and(|next| !token::is_punctuation(next) && lexicon.trail.longest(&words[1..]).is_none())
         && lexicon.prepositions.longest(&words[1..]).is_none()
-}
-
-/// `go to the office, the one with the desks`: says of what was named which one it is.
-fn is_gloss(clause: &Clause) -> bool {
-    let is_one = |place: &Place| matches!(place, Place::Object(phrase) if phrase.pronoun == Some(Pronoun::One));
-    clause.intent == Intent::GoTo && clause.places.iter().any(|(_, place)| is_one(place))
-}
-
-/// `fill my cup with water, the red cup`: says of what was named, and not described, which one it is.
-fn gloss(previous: &Clause, clause: &Clause) -> Option<Phrase> {
-    let mut previous = previous.clone();
-    let said = previous.last_phrase()?;
-    let place = clause.places.first().and_then(|(_, place)| match place {
-        Place::Object(phrase) => Some(phrase),
-        _ => None,
-    });
-    let phrase = match (clause.objects.as_slice(), clause.places.len()) {
-        ([phrase], 0) => Some(phrase),
-        ([], 1) => place,
-        _ => None,
-    }?;
-    tells_more(said, phrase).then(|| phrase.clone())
-}
-
-/// Whether a phrase says which one is meant by what was said before it.
-pub(crate) fn tells_more(said: &Phrase, phrase: &Phrase) -> bool {
-    let is_vague = said.pronoun == Some(Pronoun::Thing) && !said.is_described()
-        || said.pronoun == Some(Pronoun::One) && said.namings.is_empty();
-    let is_same = phrase.namings.iter().any(|naming| said.naming(naming.class).is_some());
-    let tells = phrase.is_described() || phrase.side.is_some() || phrase.ordinal.is_some() || !phrase.states.is_empty();
-    let told = said.is_described() || said.side.is_some() || said.ordinal.is_some() || said.is_all;
-    let is_one = phrase.pronoun == Some(Pronoun::One);
-    is_vague && !phrase.namings.is_empty() || !told && tells && (is_same || is_one)
 }
 
 /// The words that are not in the vocabulary.

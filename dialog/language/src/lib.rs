@@ -34,6 +34,7 @@ mod conversation;
 mod describe;
 mod device;
 mod floor;
+mod gloss;
 mod ground;
 mod habits;
 mod heard;
@@ -49,6 +50,7 @@ mod lab;
 mod lexicon;
 mod memory;
 mod misheard;
+mod naming;
 mod noun;
 mod oracle;
 mod order;
@@ -76,6 +78,7 @@ mod understanding;
 mod undo;
 mod verbless;
 mod wish;
+mod words;
 
 use std::sync::Arc;
 

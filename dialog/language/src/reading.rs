@@ -3,7 +3,8 @@
 use cohabit_cdf::Catalog;
 
 use crate::{
-    clause::{self, Amount, Clause},
+    clause::{Amount, Clause},
+    gloss,
     intent::Intent,
     lexicon::{Direction, Lexicon, Manner, Preposition, Pronoun},
     phrase::{Phrase, Place, Reader},
@@ -254,7 +255,7 @@ pub(crate) fn read_objects(reader: &mut Reader<'_>, clause: &mut Clause) {
         // `one of the apples, whichever is nearer`: which one that is.
         if reader.next_is(",")
             && let Some(said) =
-                clause.objects.last_mut().filter(|said| phrase.is_one_of_kind() && clause::tells_more(said, &phrase))
+                clause.objects.last_mut().filter(|said| phrase.is_one_of_kind() && gloss::tells_more(said, &phrase))
         {
             *said = Phrase { namings: said.namings.clone(), pronoun: None, ..phrase };
             *reader = next;

@@ -3,6 +3,7 @@
 use crate::{
     chatter,
     clause::{self, Clause},
+    gloss,
     intent::Intent,
     lexicon::{Preposition, Pronoun},
     phrase::{Phrase, Place, Reader},
@@ -155,7 +156,7 @@ impl Reader<'_> {
         let Some(mut phrase) = reader.phrase().filter(is_noun) else { return false };
         // `the apple the green one`
         if phrase.namings.is_empty() {
-            let Some(said) = clause.last_phrase().filter(|said| clause::tells_more(said, &phrase)) else {
+            let Some(said) = clause.last_phrase().filter(|said| gloss::tells_more(said, &phrase)) else {
                 return false;
             };
             (phrase.namings, phrase.pronoun) = (said.namings.clone(), None);
@@ -168,7 +169,7 @@ impl Reader<'_> {
             clause.objects.push(phrase);
         } else if clause.intent == Intent::Carrot && clause.places.is_empty() {
             clause.places.push((Preposition::In, Place::Object(phrase)));
-        } else if let Some(said) = clause.last_phrase().filter(|said| clause::tells_more(said, &phrase)) {
+        } else if let Some(said) = clause.last_phrase().filter(|said| gloss::tells_more(said, &phrase)) {
             *said = phrase;
         } else {
             return false;
