@@ -10,6 +10,7 @@ use crate::{
     intent::Intent,
     lexicon::{Direction, Lexicon, Preposition, Pronoun, Side},
     phrase::{Phrase, Place, Reader},
+    reading,
     table::PhraseTable,
     token,
 };
@@ -25,7 +26,9 @@ pub(crate) struct Amends {
     keepers: BTreeSet<String>,
     stands: BTreeSet<String>,
     slips: PhraseTable<()>,
+    own: BTreeSet<String>,
     fillers: BTreeSet<String>,
+    pub(crate) likes: BTreeSet<String>,
     pub(crate) hesitations: BTreeSet<String>,
     pub(crate) numbered: BTreeSet<String>,
     pub(crate) pauses: PhraseTable<()>,
@@ -56,7 +59,8 @@ pub(crate) fn amended(lexicon: &Lexicon, words: &[String], parts: &[Part], reque
     let words = &without_denied(lexicon, words);
     let plain: Vec<String> = words.iter().filter(|word| !token::is_punctuation(word)).cloned().collect();
     let starts = (0..plain.len()).filter(|start| plain[..*start].iter().all(|word| is_around(lexicon, word)));
-    starts.into_iter().find_map(|start| amend(lexicon, &plain[start..], last)).map(|clause| vec![clause])
+    let is_wrong = words.iter().any(|word| word == "wrong");
+    starts.into_iter().find_map(|start| amend(lexicon, &plain[start..], last, is_wrong)).map(|clause| vec![clause])
 }
 
 /// `no, not the knife! the bowl!`: without what was not meant, if what was is said after it.
@@ -80,7 +84,7 @@ fn is_around(lexicon: &Lexicon, word: &String) -> bool {
 }
 
 /// `last` with what the words say, if they say nothing else.
-fn amend(lexicon: &Lexicon, words: &[String], last: &Clause) -> Option<Clause> {
+fn amend(lexicon: &Lexicon, words: &[String], last: &Clause, is_wrong: bool) -> Option<Clause> {
     let mut clause = last.clone();
     let mut reader = Reader::new(lexicon, words);
     if matches!(last.intent, Intent::TurnOn | Intent::TurnOff | Intent::Toggle)
@@ -110,6 +114,10 @@ fn amend(lexicon: &Lexicon, words: &[String], last: &Clause) -> Option<Clause> {
                 // `the one that has the hammer`
                 while let Some((preposition, place)) = reader.place() {
                     phrase.attach(preposition, place);
+                }
+                // `wrong mug`: the other one.
+                if is_wrong && !phrase.is_described() && phrase.side.is_none() {
+                    phrase = Phrase { side: Some(Side::Other), ..Phrase::default() };
                 }
                 replace(lexicon, &mut clause, phrase)?;
             }
@@ -238,17 +246,14 @@ fn told_anew(lexicon: &Lexicon, before: &[String], after: &[String]) -> Option<V
 
 /// `on the table, no, on the counter`: from the preposition on; `the red, no, the yellow`: from the phrase on.
 fn named_anew(lexicon: &Lexicon, before: &[String], after: &[String]) -> Option<Vec<String>> {
-    let mut first = Reader::new(lexicon, after);
-    let is_place = lexicon.prepositions.longest(after).is_some();
-    let spans = |at: &usize| {
-        let mut reader = Reader::new(lexicon, before);
-        reader.at = *at;
-        let is_one = if is_place { reader.place().is_some() } else { reader.phrase().is_some() };
-        is_one && reader.is_done() && !Reader { at: *at, ..reader }.at_verb()
-    };
-    let has_phrase = if is_place { first.place().is_some() } else { first.phrase().is_some() };
     let has_verb = lexicon.verbs.longest(after).is_some();
-    let at = (0..before.len()).find(spans).filter(|_| has_phrase && !has_verb)?;
+    let spans = |kind: Said, at: usize| {
+        let reader = Reader { at, ..Reader::new(lexicon, before) };
+        kind.read(reader).is_some_and(|reader| reader.is_done()) && !reader.at_verb()
+    };
+    let kinds = if lexicon.prepositions.longest(after).is_some() { &[Said::Place][..] } else { &Said::NAMED };
+    let kinds = kinds.iter().filter(|kind| kind.read(Reader::new(lexicon, after)).is_some());
+    let at = kinds.filter_map(|kind| (0..before.len()).find(|at| spans(*kind, *at))).next().filter(|_| !has_verb)?;
     let mut words: Vec<String> = before[..at].iter().chain(after).cloned().collect();
     // `the red mug, I mean the yellow one`: a mug still.
     let noun = (at..before.len()).find(|at| lexicon.classes.exact(&before[*at..]).is_some());
@@ -260,12 +265,40 @@ fn named_anew(lexicon: &Lexicon, before: &[String], after: &[String]) -> Option<
     Some(words)
 }
 
+/// What may be said anew.
+#[derive(Clone, Copy)]
+enum Said {
+    Place,
+    Thing,
+    Room,
+    Amount,
+}
+
+impl Said {
+    const NAMED: [Self; 3] = [Self::Thing, Self::Room, Self::Amount];
+
+    /// The reader behind it, if it stands there.
+    fn read(self, mut reader: Reader<'_>) -> Option<Reader<'_>> {
+        match self {
+            Self::Place => drop(reader.place()?),
+            Self::Thing => drop(reader.phrase()?),
+            Self::Room => {
+                reader.destination().filter(|place| matches!(place, Place::Room(_)))?;
+            }
+            Self::Amount => {
+                reading::read_amount(&mut reader).map(drop).or_else(|| reader.number().map(drop))?;
+            }
+        }
+        Some(reader)
+    }
+}
+
 /// Where somebody takes back what was just said: where that ends, and where what is said instead begins.
 fn slip(lexicon: &Lexicon, words: &[String]) -> Option<(usize, usize)> {
     let is_filler = |word: &String| word == "," || lexicon.amends.fillers.contains(word);
     let start = (1..words.len()).find(|at| {
         let before = &words[at - 1];
-        let is_own = matches!(words[*at].as_str(), "i" | "no" | "scratch" | "strike");
+        let is_own = lexicon.amends.own.contains(&words[*at]);
         lexicon.amends.slips.longest(&words[*at..]).is_some() && (is_own || before == "." || is_filler(before))
     })?;
     let mut end = start;

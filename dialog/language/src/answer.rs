@@ -14,7 +14,7 @@ use crate::{
     lexicon::{Lexicon, Pronoun, StateWord},
     phrase::{Phrase, RelationKind},
     question::{Question, QuestionKind},
-    reply, report,
+    reply, report, saying,
     understanding::{Step, Understanding},
 };
 
@@ -71,7 +71,9 @@ impl Answerer<'_> {
             (QuestionKind::Contents, None) if self.focus.place.is_some() => {
                 self.focus.place.map_or_else(|| Understanding::refusal(HINT), |place| self.contents(place))
             }
-            (QuestionKind::State, Some(phrase)) if phrase.pronoun == Some(Pronoun::Thing) && phrase.is_any => {
+            (QuestionKind::State | QuestionKind::Look | QuestionKind::Unknown | QuestionKind::Where, Some(phrase))
+                if phrase.pronoun == Some(Pronoun::Thing) && phrase.is_any =>
+            {
                 match phrase.relations.first() {
                     Some(relation) => self.with_object(&relation.to, |id| self.contents(id)),
                     None => self.seeing(),
@@ -86,9 +88,15 @@ impl Answerer<'_> {
             (QuestionKind::Where | QuestionKind::Look | QuestionKind::Unknown, Some(phrase)) if !phrase.is_empty() => {
                 self.place_of(phrase)
             }
-            (QuestionKind::Where, _) if !question.rest.is_empty() => {
-                Understanding::lost(format!("I do not know what \"{}\" is.", question.rest.join(" ")))
+            (QuestionKind::Where, Some(phrase)) if phrase.pronoun.is_some() => {
+                Understanding::lost(saying::unresolved(phrase))
             }
+            (QuestionKind::Where, _) if !question.rest.is_empty() => {
+                let phrase = Phrase { text: question.rest.join(" "), ..Phrase::default() };
+                let text = saying::noun(&phrase).map(|noun| format!("I do not know what \"{noun}\" is."));
+                Understanding::lost(text.unwrap_or_else(|| saying::unresolved(&phrase)))
+            }
+            (QuestionKind::Where, None) => Understanding::lost("I cannot tell what you mean. Name it to me, please."),
             _ => Understanding::lost(format!("I do not know how to answer that. {HINT}")),
         }
     }
@@ -106,16 +114,16 @@ impl Answerer<'_> {
     }
 
     fn holding(&self) -> Understanding {
-        let Some(held) = self.scene.robot.held else { return Understanding::answer("My hand is empty.") };
+        let Some(held) = self.scene.robot.held else { return empty_handed("My hand is empty.") };
         let text = format!("I am holding {}{}.", self.short(held), self.filling(held));
-        Understanding::Answer { text, highlight: Vec::new() }
+        Understanding::whether(true, text, Vec::new())
     }
 
     fn whether_holding(&self, phrase: &Phrase) -> Understanding {
-        let Some(held) = self.scene.robot.held else { return Understanding::answer("No, my hand is empty.") };
+        let Some(held) = self.scene.robot.held else { return empty_handed("No, my hand is empty.") };
         let is_it = self.ground().narrow(phrase, &[held]) == [held];
         let start = if is_it { "Yes" } else { "No" };
-        Understanding::answer(format!("{start}, I am holding {}.", self.short(held)))
+        Understanding::whether(is_it, format!("{start}, I am holding {}.", self.short(held)), Vec::new())
     }
 
     fn filling(&self, id: ObjectId) -> String {
@@ -141,11 +149,11 @@ impl Answerer<'_> {
         let (met, left): (Vec<_>, Vec<_>) = goals.partition(|goal| goal.met);
         if left.is_empty() {
             let text = if met.is_empty() { "There is no goal that I know of." } else { "Nothing: everything is done!" };
-            return Understanding::answer(text);
+            return Understanding::whether(false, text, Vec::new());
         }
         let texts: Vec<String> = left.iter().map(|goal| goal.text.trim_end_matches('.').to_owned()).collect();
         let done = if met.is_empty() { String::new() } else { format!(" Done so far: {}.", met.len()) };
-        Understanding::answer(format!("Still to do: {}.{done}", texts.join("; ")))
+        Understanding::whether(true, format!("Still to do: {}.{done}", texts.join("; ")), Vec::new())
     }
 
     /// What the mission wants next, and how to ask for it.
@@ -190,7 +198,7 @@ impl Answerer<'_> {
             self.scene.objects.iter().filter(|object| object.room == self.scene.robot.room).collect();
         let (list, start) = if visible.is_empty() { (here, "Around me there is") } else { (visible, "I see") };
         if list.is_empty() {
-            return Understanding::answer("I see nothing of note here.");
+            return Understanding::whether(false, "I see nothing of note here.", Vec::new());
         }
         Understanding::answer(format!("{start} {}.", self.listed(&list)))
     }
@@ -219,19 +227,23 @@ impl Answerer<'_> {
     }
 
     fn unseen(&self, phrase: &Phrase) -> Understanding {
-        let said = crate::plan::said(phrase);
+        if saying::noun(phrase).is_none() {
+            return Understanding::refusal(saying::unresolved(phrase));
+        }
+        let said = saying::said(phrase);
         if self.scene.floor.is_some() && phrase.unknown.is_empty() {
             let text = format!("I have not seen {said} yet. Shall I look for it?");
             return crate::ask::confirmation(text);
         }
-        Understanding::answer(format!("I have not seen {said}. I can look around if you want."))
+        let text = format!("I have not seen {said}. I can look around if you want.");
+        Understanding::whether(false, text, Vec::new())
     }
 
     fn place_of(&self, phrase: &Phrase) -> Understanding {
         let want = Want::place(Intent::Find, &[], None);
         let Ok(found) = self.ground().plausible(phrase, &want) else { return self.elsewhere(phrase) };
         let places: Vec<String> = found.iter().take(LIST).map(|id| self.place_sentence(*id)).collect();
-        Understanding::Answer { text: describe::sentence(&describe::list(&places, "and")), highlight: found }
+        Understanding::whether(true, describe::sentence(&describe::list(&places, "and")), found)
     }
 
     /// What is not where it was asked for may be known to be somewhere else.
@@ -241,8 +253,7 @@ impl Answerer<'_> {
         match self.ground().plausible(&bare, &want) {
             Ok(found) if bare != *phrase && !found.is_empty() => {
                 let places: Vec<String> = found.iter().take(LIST).map(|id| self.place_sentence(*id)).collect();
-                let text = format!("No, but {}.", describe::list(&places, "and"));
-                Understanding::Answer { text, highlight: found }
+                Understanding::whether(false, format!("No, but {}.", describe::list(&places, "and")), found)
             }
             _ => self.unseen(phrase),
         }
@@ -272,22 +283,15 @@ impl Answerer<'_> {
         let start = start.trim_end_matches('.');
         if inside.is_empty() {
             let filling = self.filling(id);
-            let text = if filling.is_empty() {
-                format!("I know of nothing {preposition} {place}.")
-            } else {
-                format!("It is {place}{filling}.")
-            };
-            return Understanding::answer(text);
+            if filling.is_empty() {
+                let text = format!("I know of nothing {preposition} {place}.");
+                return Understanding::whether(false, text, Vec::new());
+            }
+            return Understanding::whether(true, format!("It is {place}{filling}."), Vec::new());
         }
         let highlight = inside.iter().map(|object| object.id).collect();
-        Understanding::Answer {
-            text: format!(
-                "{start} {place} there {} {}.",
-                if inside.len() > 1 { "are" } else { "is" },
-                self.listed(&inside)
-            ),
-            highlight,
-        }
+        let verb = if inside.len() > 1 { "are" } else { "is" };
+        Understanding::whether(true, format!("{start} {place} there {verb} {}.", self.listed(&inside)), highlight)
     }
 
     /// What is next to a thing, the nearest first.
@@ -308,14 +312,12 @@ impl Answerer<'_> {
         near.truncate(NEIGHBOURS);
         let the = self.short(id);
         if near.is_empty() {
-            return Understanding::answer(format!("I know of nothing next to {the}."));
+            return Understanding::whether(false, format!("I know of nothing next to {the}."), Vec::new());
         }
         let names: Vec<String> = near.iter().map(|other| self.short(other.id)).collect();
         let verb = if near.len() > 1 { "are" } else { "is" };
-        Understanding::Answer {
-            text: format!("Next to {the} {verb} {}.", describe::list(&names, "and")),
-            highlight: near.iter().map(|other| other.id).collect(),
-        }
+        let text = format!("Next to {the} {verb} {}.", describe::list(&names, "and"));
+        Understanding::whether(true, text, near.iter().map(|other| other.id).collect())
     }
 
     fn text(&self, phrase: Option<&Phrase>) -> Understanding {
@@ -328,38 +330,42 @@ impl Answerer<'_> {
             notes().min_by(|a, b| self.scene.distance_m(a).total_cmp(&self.scene.distance_m(b)).then(a.id.cmp(&b.id)))
         };
         match of_phrase.filter(|object| !object.text.is_empty()).or_else(nearest) {
-            Some(note) => Understanding::Answer {
-                text: format!(
-                    "{} says: \"{}\"",
-                    describe::sentence(&self.full(note.id)).trim_end_matches('.'),
-                    note.text
-                ),
-                highlight: vec![note.id],
-            },
+            Some(note) => {
+                let the = describe::sentence(&self.full(note.id));
+                let text = format!("{} says: \"{}\"", the.trim_end_matches('.'), note.text);
+                Understanding::whether(true, text, vec![note.id])
+            }
             None => {
-                Understanding::answer("I know of nothing written here. I can look at a note if you point me to one.")
+                let text = "I know of nothing written here. I can look at a note if you point me to one.";
+                Understanding::whether(false, text, Vec::new())
             }
         }
     }
 
     fn color(&self, id: ObjectId) -> Understanding {
         let color = self.scene.object(id).map(|object| describe::color(self.catalog, object)).unwrap_or_default();
-        Understanding::Answer {
-            text: describe::sentence(&format!("{} is {color}", self.short(id))),
-            highlight: vec![id],
-        }
+        Understanding::about(describe::sentence(&format!("{} is {color}", self.short(id))), vec![id])
     }
 
     fn count(&self, phrase: &Phrase) -> Understanding {
-        let all: Vec<ObjectId> = self.scene.objects.iter().map(|object| object.id).collect();
-        let found = self.ground().narrow(phrase, &all);
-        let noun = phrase.text.trim();
+        let is_them = phrase.is_many() || phrase.is_one_of_kind();
+        if is_them && self.focus.group.is_empty() {
+            return Understanding::lost(saying::unresolved(phrase));
+        }
+        let all: Vec<ObjectId> = match is_them {
+            true => self.focus.group.clone(),
+            false => self.scene.objects.iter().map(|object| object.id).collect(),
+        };
+        let bare = Phrase { pronoun: None, ..phrase.clone() };
+        let found = self.ground().narrow(if is_them { &bare } else { phrase }, &all);
+        let noun = saying::noun_or_thing(phrase);
         let text = match found.len() {
             0 => format!("I know of no {noun}."),
-            1 => format!("I know of one {noun}: {}.", self.full(found[0])),
-            count => format!("I know of {count}, counting every {noun}."),
+            1 => format!("I know of one: {}.", self.full(found[0])),
+            count if noun.contains(' ') => format!("I know of {count}."),
+            count => format!("I know of {count} {}.", describe::plural(noun)),
         };
-        Understanding::Answer { text, highlight: found }
+        Understanding::whether(!found.is_empty(), text, found)
     }
 
     /// `is the fridge open`, `is the milk in the fridge`, `is the mug broken`.
@@ -388,14 +394,18 @@ impl Answerer<'_> {
                 } else {
                     format!("No, {} is not {words}.", self.short(id))
                 };
-                Understanding::Answer { text, highlight: vec![id] }
+                Understanding::whether(holds, text, vec![id])
             }),
             None if inside => self.with_object(&bare, |id| {
                 let holds = self.ground().narrow(phrase, &[id]) == [id];
                 let start = if holds { "Yes" } else { "No" };
-                Understanding::Answer { text: format!("{start}, {}.", self.place_sentence(id)), highlight: vec![id] }
+                Understanding::whether(holds, format!("{start}, {}.", self.place_sentence(id)), vec![id])
             }),
             None => self.place_of(&bare),
         }
     }
+}
+
+fn empty_handed(text: &str) -> Understanding {
+    Understanding::whether(false, text, Vec::new())
 }

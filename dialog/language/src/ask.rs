@@ -1,6 +1,6 @@
 //! The questions the robot asks: the four of Alexa Arena (location, appearance, direction, reference) and confirmations.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use cohabit_cdf::{Catalog, ObjectId};
 
@@ -8,7 +8,7 @@ use crate::{
     describe,
     known::{Known, KnownObject},
     phrase::Phrase,
-    plan, reply,
+    reply, saying,
     understanding::{Clarification, Step, Understanding},
 };
 
@@ -50,9 +50,10 @@ impl Ask<'_> {
 
     /// There is none as described: perhaps one of these will do.
     pub(crate) fn instead(self, phrase: &Phrase, candidates: Vec<ObjectId>) -> Understanding {
-        let names = describe::apart(self.catalog, self.scene, &candidates);
-        let said = plan::said(phrase);
-        let text = format!("I do not know of {said}. Do you mean {}?", describe::list(&names, "or"));
+        let names = describe::apart_from(self.catalog, self.scene, &candidates, phrase);
+        let unknown = saying::noun(phrase).filter(|noun| !names.iter().any(|name| describe::is_same(name, noun)));
+        let denied = unknown.map(|_| format!("I do not know of {}. ", saying::said(phrase))).unwrap_or_default();
+        let text = format!("{denied}Do you mean {}?", describe::list(&names, "or"));
         reference(Some(phrase), text, candidates, names)
     }
 
@@ -69,8 +70,14 @@ impl Ask<'_> {
         let objects: Vec<&KnownObject> = candidates.iter().filter_map(|id| self.scene.object(*id)).collect();
         let looks = self.parts(&objects, |object| describe::look(self.catalog, object));
         let places = self.parts(&objects, |object| describe::place(self.catalog, self.scene, object.id));
-        let noun = phrase.map(plan::noun).filter(|noun| !noun.is_empty()).unwrap_or("thing");
-        let known = format!("I know of {}.", describe::counted(noun, objects.len()));
+        let noun = phrase.and_then(saying::noun).unwrap_or("thing");
+        let names: BTreeSet<String> = objects.iter().map(|object| describe::name(self.catalog, object.class)).collect();
+        // `garbage`: of so many trash cans.
+        let kind = names
+            .first()
+            .filter(|_| names.len() == 1)
+            .map_or(if noun.contains(' ') { "thing" } else { noun }, String::as_str);
+        let known = format!("I know of {}.", describe::counted(kind, objects.len()));
         let (kind, text, parts) = if bits(&looks) >= bits(&places) {
             (Clarification::Appearance, format!("{known} What does the one you mean look like?"), looks)
         } else {
@@ -115,7 +122,7 @@ fn reference(phrase: Option<&Phrase>, text: String, candidates: Vec<ObjectId>, n
     let is_one = candidates.len() == 1;
     Understanding::Question {
         kind: if is_one { Clarification::Confirmation } else { Clarification::Reference },
-        about: phrase.map(plan::noun).unwrap_or_default().to_owned(),
+        about: phrase.and_then(saying::noun).unwrap_or_default().to_owned(),
         text,
         candidates,
         options: if is_one { YES_OR_NO.map(str::to_owned).to_vec() } else { names },
@@ -141,8 +148,10 @@ pub(crate) fn shall_i(steps: &[Step], notes: &[String]) -> Understanding {
 
 /// Where is what nobody has seen?
 pub(crate) fn location(phrase: &Phrase) -> Understanding {
-    let text = format!("I have not seen {}. Where is it, or shall I look around?", plan::said(phrase));
-    of_kind(Clarification::Location, plan::noun(phrase), text, &["look around"])
+    let unseen = saying::noun(phrase)
+        .map_or_else(|| saying::unresolved(phrase), |_| format!("I have not seen {}.", saying::said(phrase)));
+    let text = format!("{unseen} Where is it, or shall I look around?");
+    of_kind(Clarification::Location, saying::noun(phrase).unwrap_or_default(), text, &["look around"])
 }
 
 /// What does it look like, whose name means nothing to the robot?

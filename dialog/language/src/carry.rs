@@ -200,8 +200,12 @@ impl Planner<'_> {
         let Some(goal) = &settled.goal else {
             return Err(Fault::Cannot("I can only carry one thing at a time. Tell me where to put them.".to_owned()));
         };
+        let before = self.steps.len();
         for object in objects {
             self.place_at(object, goal, settled)?;
+        }
+        if self.steps.len() == before {
+            self.notes.push("all of that is there already".to_owned());
         }
         Ok(())
     }

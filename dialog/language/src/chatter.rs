@@ -19,7 +19,7 @@ use crate::{
 pub(crate) struct Chatter {
     subordinators: BTreeSet<String>,
     pub(crate) before_requests: BTreeSet<String>,
-    reports: BTreeSet<String>,
+    pub(crate) reports: BTreeSet<String>,
 }
 
 /// Most words of an opener.

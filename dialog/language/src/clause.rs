@@ -6,9 +6,9 @@ use cohabit_cdf::{Catalog, Fluid};
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    amend, chatter,
+    amend, chatter, gloss,
     intent::Intent,
-    lexicon::{Direction, Lexicon, Preposition, Pronoun},
+    lexicon::{Direction, Lexicon, Manner, Preposition, Pronoun},
     phrase::{Phrase, Place, Reader},
     reading, token, verbless, wish,
 };
@@ -29,6 +29,11 @@ pub(crate) struct Clause {
     pub(crate) has_stray_noun: bool,
     /// The verb as it was said.
     pub(crate) verb: String,
+    #[serde(default)]
+    pub(crate) manner: Option<Manner>,
+    /// Whether it says by what means the request before it is to be carried out.
+    #[serde(default)]
+    pub(crate) is_means: bool,
     /// Whether it was wished for rather than asked for.
     #[serde(default)]
     pub(crate) is_wish: bool,
@@ -99,6 +104,8 @@ impl Clause {
             unknown: Vec::new(),
             has_stray_noun: false,
             verb: verb.to_owned(),
+            manner: None,
+            is_means: false,
             is_wish: false,
         }
     }
@@ -138,43 +145,29 @@ pub(crate) fn parts(lexicon: &Lexicon, catalog: &Catalog, words: &[String]) -> V
     for cut in cuts(lexicon, words) {
         let before = parts.len();
         let is_consequence = cut.start > 0 && words[cut.start - 1] == "so" || words[cut.start] == "so";
-        read_segment(lexicon, catalog, &words[cut], &mut parts);
+        let follows = cut.start > 0 && words[cut.start - 1] == "then";
+        match verbless::late_place(lexicon, &words[cut.clone()])
+            .filter(|(_, _, used)| follows && *used == cut.len() && puts_away(&parts))
+        {
+            // `the plate washed, then on the counter`
+            Some((preposition, place, _)) => {
+                let it = Phrase { pronoun: Some(Pronoun::Thing), text: "it".to_owned(), ..Phrase::default() };
+                let places = vec![(preposition, place)];
+                parts.push(Part::Clause(Clause { places, ..Clause::about(Intent::Place, "put", it) }));
+            }
+            None => read_segment(lexicon, catalog, &words[cut], &mut parts),
+        }
         let asks = |part: &Part| matches!(part, Part::Clause(clause) if !clause.is_wish);
         if is_consequence && parts[before..].iter().any(asks) {
-            parts[..before].iter_mut().for_each(demote);
+            parts[..before].iter_mut().for_each(gloss::demote);
         }
     }
-    folded(parts)
+    gloss::folded(parts)
 }
 
-/// `i could use a coffee, so take the mug`: what was wished for is the reason.
-fn demote(part: &mut Part) {
-    if let Part::Clause(clause) = part
-        && clause.is_wish
-    {
-        let phrase = clause.objects.first().cloned();
-        *part = phrase.map_or_else(|| Part::Aside(Vec::new()), Part::Mention);
-    }
-}
-
-/// `fill my cup, the red one`: what was said more exactly is meant so.
-fn folded(parts: Vec<Part>) -> Vec<Part> {
-    let mut folded: Vec<Part> = Vec::with_capacity(parts.len());
-    for part in parts {
-        match (part, folded.last_mut()) {
-            (Part::Gloss(phrase), Some(Part::Clause(clause))) => {
-                if let Some(said) = clause.last_phrase() {
-                    let namings = if phrase.namings.is_empty() { said.namings.clone() } else { phrase.namings.clone() };
-                    *said = Phrase { namings, pronoun: None, ..phrase };
-                }
-            }
-            (Part::Where(preposition, place), Some(Part::Clause(clause))) => clause.take_where(preposition, place),
-            (Part::Gloss(phrase) | Part::Where(_, Place::Object(phrase)), _) => folded.push(Part::Mention(phrase)),
-            (Part::Where(..), _) => {}
-            (part, _) => folded.push(part),
-        }
-    }
-    folded
+/// Whether what was asked for last is about a thing that can be put somewhere afterwards.
+fn puts_away(parts: &[Part]) -> bool {
+    matches!(parts.last(), Some(Part::Clause(clause)) if clause.intent != Intent::GoTo && !clause.objects.is_empty())
 }
 
 /// The request to put a thing where it is said to be.
@@ -248,19 +241,21 @@ fn cuts(lexicon: &Lexicon, words: &[String]) -> Vec<Range<usize>> {
     let mut start = 0;
     for at in 0..words.len() {
         let is_end = token::ends_sentence(&words[at]) || words[at] == "then";
-        let is_joint = matches!(words[at].as_str(), "," | "and" | "but" | "so") && {
-            let mut reader = Reader::new(lexicon, words);
-            reader.at = at + 1;
-            let forbids = lexicon.negation.longest(reader.rest()).is_some();
-            reader.skip(|lexicon| &lexicon.lead);
-            forbids
-                || reader.next_is("with") && verbless::begins_with_tool(reader)
-                || reader.at_verb()
-                || lexicon.negation.longest(reader.rest()).is_some()
-                || at > 0
-                    && lexicon.numbers.longest(&words[at - 1..at]).is_none()
-                    && verbless::implied_motion(lexicon, chatter::chunk(reader.rest())).is_some()
-        };
+        let is_joint = matches!(words[at].as_str(), "," | "and" | "but" | "so")
+            && !ends_courtesy(lexicon, &words[start..=at])
+            && {
+                let mut reader = Reader::new(lexicon, words);
+                reader.at = at + 1;
+                let forbids = lexicon.negation.longest(reader.rest()).is_some();
+                reader.skip(|lexicon| &lexicon.lead);
+                forbids
+                    || reader.next_is("with") && verbless::begins_with_tool(reader)
+                    || reader.at_verb()
+                    || lexicon.negation.longest(reader.rest()).is_some()
+                    || at > 0
+                        && lexicon.numbers.longest(&words[at - 1..at]).is_none()
+                        && verbless::implied_motion(lexicon, chatter::chunk(reader.rest())).is_some()
+            };
         if is_end || is_joint {
             cuts.push(start..at);
             start = at + 1;
@@ -270,6 +265,18 @@ fn cuts(lexicon: &Lexicon, words: &[String]) -> Vec<Range<usize>> {
     cuts.retain(|cut| words[cut.clone()].iter().any(|word| !token::is_punctuation(word)));
     cuts
 }
+
+/// `go ahead and`, `be so kind and`: no joint between two requests.
+fn ends_courtesy(lexicon: &Lexicon, words: &[String]) -> bool {
+    let is_one = |start: usize| {
+        let said = &words[start..];
+        lexicon.lead.exact(said).is_some() || lexicon.talk.exact(said).is_some()
+    };
+    words.len() > 1 && (words.len().saturating_sub(LONGEST_COURTESY)..words.len() - 1).any(is_one)
+}
+
+/// Most words of a courtesy that ends in `and`.
+const LONGEST_COURTESY: usize = 6;
 
 fn read_segment(lexicon: &Lexicon, catalog: &Catalog, segment: &[String], parts: &mut Vec<Part>) {
     let mut rest = segment;
@@ -284,6 +291,12 @@ fn read_segment(lexicon: &Lexicon, catalog: &Catalog, segment: &[String], parts:
             rest = &rest[used..];
             continue;
         }
+        let is_told = parts.iter().any(|part| matches!(part, Part::Clause(_)));
+        let taken = (0..=skipped).find_map(|at| Some(at + wish::taken_over(lexicon, &rest[at..])?));
+        if let Some(used) = taken.filter(|_| is_told) {
+            rest = &rest[used..];
+            continue;
+        }
         rest = &rest[skipped..];
         if rest.is_empty() {
             break;
@@ -292,7 +305,12 @@ fn read_segment(lexicon: &Lexicon, catalog: &Catalog, segment: &[String], parts:
             rest = &rest[used..];
             continue;
         }
-        let (part, used) = read_part(lexicon, catalog, rest, parts);
+        let start = segment.len() - rest.len();
+        let is_means = start > 0 && segment[start - 1] == "by";
+        let (mut part, used) = read_part(lexicon, catalog, rest, parts);
+        if let Part::Clause(clause) = &mut part {
+            clause.is_means = is_means && matches!(parts.last(), Some(Part::Clause(_)));
+        }
         parts.push(part);
         rest = &rest[used.clamp(1, rest.len())..];
     }
@@ -392,14 +410,24 @@ fn read_part(lexicon: &Lexicon, catalog: &Catalog, words: &[String], before: &[P
         let it = Phrase { pronoun: Some(Pronoun::Thing), text: "it".to_owned(), ..Phrase::default() };
         return (Part::Clause(Clause::about(intent, intent.verb(), it)), chunk.len());
     }
+    // `open the fridge, take the milk, close`
+    let is_named = lexicon.classes.longest(words).is_some();
+    if let Some((clause, used)) = verbless::gap(lexicon, catalog, words)
+        .filter(|_| !before.is_empty())
+        .filter(|(clause, _)| !is_named && clause.intent.needs_object())
+    {
+        return (Part::Clause(clause), used);
+    }
     let mut reader = Reader::new(lexicon, words);
     if let Some(Part::Clause(previous)) = before.last()
         && reading::takes_objects(previous.intent)
         && !tells_of_it(lexicon, words)
-        && let Some((clause, used)) = reading::read_as(lexicon, previous.intent, &previous.verb, words, 0)
-            .filter(|(clause, _)| reading::is_complete(clause, catalog) && !is_gloss(clause) && clause.names_any())
+        && let Some((clause, used)) =
+            reading::read_as(lexicon, previous.intent, &previous.verb, words, 0).filter(|(clause, _)| {
+                reading::is_complete(clause, catalog) && !gloss::is_gloss(clause) && clause.names_any()
+            })
     {
-        let part = gloss(previous, &clause).map_or(Part::Clause(clause), Part::Gloss);
+        let part = gloss::of(previous, &clause).map_or(Part::Clause(clause), Part::Gloss);
         return (part, used);
     }
     if let Some(phrase) = reader.phrase_with_place().filter(|phrase| !phrase.is_empty() && phrase.unknown.is_empty()) {
@@ -409,7 +437,7 @@ fn read_part(lexicon: &Lexicon, catalog: &Catalog, words: &[String], before: &[P
             return (Part::Fragment(phrase), reader.at);
         }
     }
-    if let Some((clause, used)) = verbless::gap(lexicon, catalog, words, before) {
+    if let Some((clause, used)) = verbless::gap(lexicon, catalog, words).filter(|_| !before.is_empty()) {
         return (Part::Clause(clause), used);
     }
     chatter::read(lexicon, catalog, words)
@@ -421,39 +449,6 @@ fn tells_of_it(lexicon: &Lexicon, words: &[String]) -> bool {
     is_subject
         && words.get(1).is_some_and(|next| !token::is_punctuation(next) && lexicon.trail.longest(&words[1..]).is_none())
         && lexicon.prepositions.longest(&words[1..]).is_none()
-}
-
-/// `go to the office, the one with the desks`: says of what was named which one it is.
-fn is_gloss(clause: &Clause) -> bool {
-    let is_one = |place: &Place| matches!(place, Place::Object(phrase) if phrase.pronoun == Some(Pronoun::One));
-    clause.intent == Intent::GoTo && clause.places.iter().any(|(_, place)| is_one(place))
-}
-
-/// `fill my cup with water, the red cup`: says of what was named, and not described, which one it is.
-fn gloss(previous: &Clause, clause: &Clause) -> Option<Phrase> {
-    let mut previous = previous.clone();
-    let said = previous.last_phrase()?;
-    let place = clause.places.first().and_then(|(_, place)| match place {
-        Place::Object(phrase) => Some(phrase),
-        _ => None,
-    });
-    let phrase = match (clause.objects.as_slice(), clause.places.len()) {
-        ([phrase], 0) => Some(phrase),
-        ([], 1) => place,
-        _ => None,
-    }?;
-    tells_more(said, phrase).then(|| phrase.clone())
-}
-
-/// Whether a phrase says which one is meant by what was said before it.
-pub(crate) fn tells_more(said: &Phrase, phrase: &Phrase) -> bool {
-    let is_vague = said.pronoun == Some(Pronoun::Thing) && !said.is_described()
-        || said.pronoun == Some(Pronoun::One) && said.namings.is_empty();
-    let is_same = phrase.namings.iter().any(|naming| said.naming(naming.class).is_some());
-    let tells = phrase.is_described() || phrase.side.is_some() || phrase.ordinal.is_some() || !phrase.states.is_empty();
-    let told = said.is_described() || said.side.is_some() || said.ordinal.is_some() || said.is_all;
-    let is_one = phrase.pronoun == Some(Pronoun::One);
-    is_vague && !phrase.namings.is_empty() || !told && tells && (is_same || is_one)
 }
 
 /// The words that are not in the vocabulary.

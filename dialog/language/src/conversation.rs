@@ -155,7 +155,7 @@ impl Conversation<'_> {
             if let Some((length, holds)) = self.lexicon.conditions.longest(later) {
                 let answer = self.answer(&question, context);
                 let later = &later[length..];
-                if *holds == denies(&answer) || later.iter().all(|word| token::is_punctuation(word)) {
+                if *holds == answer.denies() || later.iter().all(|word| token::is_punctuation(word)) {
                     return answer;
                 }
                 context.pending = None;
@@ -422,7 +422,7 @@ impl Conversation<'_> {
                 if asks && phrase.unknown.is_empty() =>
             {
                 context.pending = Some(Pending::Look { clauses, slot, consent });
-                ask::referent(reply::miss(&phrase, &miss, intent))
+                ask::referent(reply::miss(&phrase, &miss, intent, Some(slot.role)))
             }
             Fault::Miss { slot: Some(slot), phrase, .. }
                 if asks && phrase.namings.is_empty() && !phrase.unknown.is_empty() =>
@@ -431,7 +431,7 @@ impl Conversation<'_> {
                 ask::appearance(&phrase)
             }
             Fault::Miss { phrase, miss, intent, .. } => {
-                let text = reply::miss(&phrase, &miss, intent);
+                let text = reply::miss(&phrase, &miss, intent, None);
                 if phrase.unknown.is_empty() { Understanding::refusal(text) } else { Understanding::lost(text) }
             }
         }
@@ -576,12 +576,6 @@ fn stops(parts: &[Part]) -> bool {
     let waits = |clause: &Clause| clause.verb.starts_with("wait") || clause.verb.starts_with("stay");
     let begins = asked.first().is_some_and(|first| first.intent == Intent::Stop);
     asked.iter().any(|clause| clause.intent == Intent::Stop && (begins || !waits(clause)))
-}
-
-/// Whether an answer says no.
-fn denies(answer: &Understanding) -> bool {
-    let Understanding::Answer { text, .. } = answer else { return true };
-    ["No", "I know of no", "I have not seen", "My hand is empty"].iter().any(|no| text.starts_with(no))
 }
 
 /// Whether it does more than look and point.

@@ -5,7 +5,10 @@ use cohabit_cdf::{
     state::{StateFlag, StateFlags},
 };
 
-use crate::known::{Known, KnownObject};
+use crate::{
+    known::{Known, KnownObject},
+    phrase::Phrase,
+};
 
 /// States worth saying when they tell two objects apart.
 const TELLING: [(StateFlag, &str, &str); 6] = [
@@ -178,6 +181,30 @@ pub(crate) fn apart(catalog: &Catalog, scene: &Known, candidates: &[ObjectId]) -
         .collect()
 }
 
+/// The same, of things that are not as `phrase` says: by what they differ in from that.
+pub(crate) fn apart_from(catalog: &Catalog, scene: &Known, candidates: &[ObjectId], phrase: &Phrase) -> Vec<String> {
+    let named = apart(catalog, scene, candidates);
+    named
+        .into_iter()
+        .zip(candidates.iter().filter_map(|id| scene.object(*id)))
+        .map(|(name, object)| {
+            let color_of = color(catalog, object);
+            let is_colored = phrase.color.is_some() && !color_of.is_empty() && !name.contains(&color_of);
+            let name = match name.strip_prefix("the ").filter(|_| is_colored) {
+                Some(bare) => format!("the {color_of} {bare}"),
+                None => name,
+            };
+            if is_same(&name, &phrase.text) { format!("{name} here in the {}", object.room.name()) } else { name }
+        })
+        .collect()
+}
+
+/// Whether a name says nothing that `said` does not say.
+pub(crate) fn is_same(name: &str, said: &str) -> bool {
+    let has = |word: &str| word == "the" || said.split(' ').any(|one| one == word);
+    name.split(' ').all(has)
+}
+
 const fn contents(fluid: Fluid) -> &'static str {
     match fluid {
         Fluid::None => "that is empty",
@@ -222,7 +249,8 @@ pub(crate) fn counted(noun: &str, count: usize) -> String {
     format!("{number} {}", plural(noun))
 }
 
-fn plural(noun: &str) -> String {
+/// Several of a noun.
+pub(crate) fn plural(noun: &str) -> String {
     const VOWEL_Y: [&str; 4] = ["ay", "ey", "oy", "uy"];
     const HISSING: [&str; 5] = ["ss", "x", "z", "ch", "sh"];
     let ends = |endings: &[&str]| endings.iter().any(|ending| noun.ends_with(ending));

@@ -268,7 +268,7 @@ impl Planner<'_> {
             return self.find_one(phrase, &Want::object(Intent::Print), role);
         }
         self.nearest(&classes).ok_or_else(|| {
-            let said = crate::plan::said(phrase);
+            let said = crate::saying::said(phrase);
             self.need(&classes, format!("I do not know how to make {said}: I have seen no cartridge for it."))
         })
     }

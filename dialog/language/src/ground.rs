@@ -234,6 +234,11 @@ impl<'a> Ground<'a> {
             bare.relations.retain(|relation| !points(relation));
             return self.described(&bare, want);
         }
+        if left.is_empty()
+            && let Some(found) = self.described_otherwise(phrase, want)
+        {
+            return Ok(found);
+        }
         if left.is_empty() {
             self.keep_best_named(phrase, &mut base);
             return Err(Miss::Mismatch(base.iter().map(|object| object.id).collect()));
@@ -245,6 +250,26 @@ impl<'a> Ground<'a> {
         self.keep_at_side(phrase, &mut left);
         self.keep_at_side(phrase, &mut base);
         Ok(Described { base, left })
+    }
+
+    /// What the words may mean besides, where nothing is as they say at first: `the mug on the table that is yellow`, of a yellow
+    /// mug; `the shelf that is red`, of a red wall shelf.
+    fn described_otherwise(&self, phrase: &Phrase, want: &Want<'_>) -> Option<Described<'a>> {
+        if let Some(other) = phrase.with_late_look() {
+            return self.described(&other, want).ok();
+        }
+        let best = phrase.namings.iter().max_by(|one, other| one.weight.total_cmp(&other.weight))?;
+        let name = describe::name(self.catalog, best.class);
+        let kind = name.rsplit(' ').next().filter(|kind| phrase.text.split(' ').any(|word| word == *kind))?;
+        let ends = |name: &String| name.to_lowercase().strip_suffix(kind).is_some_and(|before| before.ends_with(' '));
+        let is_kind = |object: &&KnownObject| {
+            let class = self.catalog.class(object.class);
+            std::iter::once(&class.name).chain(&class.words).any(ends)
+        };
+        let mut base: Vec<&KnownObject> = self.scene.objects.iter().filter(is_kind).collect();
+        base.retain(|object| Some(object.id) != want.exclude && !phrase.excluded.contains(&object.id));
+        let left: Vec<&KnownObject> = base.iter().filter(|object| self.is_as_said(phrase, object)).copied().collect();
+        (!left.is_empty()).then_some(Described { base, left })
     }
 
     /// What a word may mean that nobody taught it: what is where it is said to be, to be asked about.

@@ -1,15 +1,15 @@
 //! What was heard, taken as it is or for what it sounds like; and what is said before the words that count.
 
 use crate::{
-    chatter,
+    ask, chatter,
     clause::{self, Part},
-    context::Context,
+    context::{Context, Pending},
     conversation::Conversation,
     hearing,
     intent::Intent,
     question::{self, QuestionKind},
     token,
-    understanding::{Clarification, Understanding},
+    understanding::{Asking, Clarification, Understanding},
 };
 
 /// An answer to `which lab` has fewer words than this; more is another request.
@@ -46,8 +46,14 @@ impl Conversation<'_> {
         let mut asked = None;
         for reading in readings {
             let mut then = before.clone();
-            let understanding = self.understand_all(reading, &mut then);
+            let understanding = self.understand_all(reading.words, &mut then);
             match understanding {
+                Understanding::Plan { steps, .. } if reading.is_doubtful && self.judge.asking != Asking::Never => {
+                    *context = before;
+                    let question = ask::shall_i(&steps, &[]);
+                    context.pending = Some(Pending::Offer { steps });
+                    return question;
+                }
                 Understanding::Plan { .. } | Understanding::Answer { .. } => {
                     *context = then;
                     return understanding;

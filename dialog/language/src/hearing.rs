@@ -21,6 +21,9 @@ const MOST_WORDS: usize = 8;
 /// At most so many words were heard for one, which has more letters than this.
 const MOST_JOINED: usize = 3;
 const SHORTEST_JOINED: usize = 4;
+/// So many names of several words, and so many letters with a number, are tried in one place.
+const MOST_NAMES: usize = 2;
+const MOST_CODES: usize = 2;
 /// Longer utterances are not guessed at, nor what has more strange words than this.
 const LONGEST: usize = 24;
 const MOST_STRANGE: usize = 4;
@@ -31,6 +34,15 @@ struct Guess {
     length: usize,
     word: String,
     cost: f32,
+    /// Whether so little was to be heard of it that one had better ask.
+    is_doubtful: bool,
+}
+
+/// What may have been said.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Heard {
+    pub(crate) words: Vec<String>,
+    pub(crate) is_doubtful: bool,
 }
 
 /// Whether something in the words made no sense.
@@ -52,7 +64,7 @@ pub(crate) fn is_puzzled(parts: &[Part], words: &[String]) -> bool {
 }
 
 /// What may have been said, the likeliest first; each makes sense as it stands.
-pub(crate) fn readings(lexicon: &Lexicon, catalog: &Catalog, words: &[String]) -> Vec<Vec<String>> {
+pub(crate) fn readings(lexicon: &Lexicon, catalog: &Catalog, words: &[String]) -> Vec<Heard> {
     let strange = words.iter().filter(|word| is_strange(lexicon, word)).count();
     if words.len() > LONGEST || strange > MOST_STRANGE {
         return Vec::new();
@@ -61,23 +73,24 @@ pub(crate) fn readings(lexicon: &Lexicon, catalog: &Catalog, words: &[String]) -
     guesses.sort_by(|one, other| {
         one.cost.total_cmp(&other.cost).then(one.at.cmp(&other.at)).then(one.word.cmp(&other.word))
     });
-    let mut readings: Vec<(f32, Vec<String>)> =
-        guesses.iter().map(|guess| (guess.cost, with(words, &[guess]))).collect();
+    let mut readings: Vec<(f32, Vec<String>, bool)> =
+        guesses.iter().map(|guess| (guess.cost, with(words, &[guess]), guess.is_doubtful)).collect();
     for (index, one) in guesses.iter().enumerate().take(MOST_READINGS) {
         for other in guesses[index + 1..].iter().take(MOST_READINGS) {
             let is_apart = one.at + one.length <= other.at || other.at + other.length <= one.at;
             if is_apart {
-                readings.push((one.cost + other.cost + PAIR, with(words, &[one, other])));
+                let is_doubtful = one.is_doubtful || other.is_doubtful;
+                readings.push((one.cost + other.cost + PAIR, with(words, &[one, other]), is_doubtful));
             }
         }
     }
-    readings.sort_by(|(one, a), (other, b)| one.total_cmp(other).then_with(|| a.cmp(b)));
-    let mut sensible: Vec<Vec<String>> = Vec::new();
-    for (cost, reading) in readings.into_iter().take(MOST_TRIED) {
+    readings.sort_by(|(one, a, _), (other, b, _)| one.total_cmp(other).then_with(|| a.cmp(b)));
+    let mut sensible: Vec<Heard> = Vec::new();
+    for (cost, reading, is_doubtful) in readings.into_iter().take(MOST_TRIED) {
         let reading = lexicon.replaced(&reading);
         let makes_sense = asks(lexicon, catalog, &reading) || cost <= NEARLY && is_question(lexicon, &reading);
-        if makes_sense && !sensible.contains(&reading) {
-            sensible.push(reading);
+        if makes_sense && sensible.iter().all(|known| known.words != reading) {
+            sensible.push(Heard { words: reading, is_doubtful });
         }
         if sensible.len() == MOST_READINGS / 4 {
             break;
@@ -132,9 +145,18 @@ fn guesses(lexicon: &Lexicon, words: &[String]) -> Vec<Guess> {
             at == 0 || lexicon.chatter.before_requests.contains(&words[at - 1]) || is_punctuation(&words[at - 1]);
         for length in 1..=MOST_JOINED.min(words.len() - at) {
             let heard = &words[at..at + length];
+            let guess = |cost, word: &str, is_doubtful| Guess { at, length, word: word.to_owned(), cost, is_doubtful };
+            let codes = lexicon.misheard.codes(heard).into_iter().filter(|(_, code)| heard.join(" ") != **code);
+            guesses.extend(codes.take(MOST_CODES).map(|(cost, code)| guess(cost, code, true)));
             if !is_spoken(&heard[length - 1]) {
                 break;
             }
+            if length == 1 {
+                guesses.extend(lexicon.misheard.small(&heard[0], begins).map(|(cost, word)| guess(cost, word, false)));
+            }
+            let is_odd = heard.iter().any(|word| !lexicon.vocabulary.is_word(word));
+            let names = lexicon.misheard.names(heard, is_odd).into_iter().filter(|(_, name)| heard.join(" ") != **name);
+            guesses.extend(names.take(MOST_NAMES).map(|(cost, name)| guess(cost, name, false)));
             let limit =
                 if length == 1 { limit_of(lexicon, &heard[0], has_strange) } else { joined_limit(lexicon, heard) };
             if limit == 0.0 {
@@ -147,7 +169,7 @@ fn guesses(lexicon: &Lexicon, words: &[String]) -> Vec<Guess> {
                     && (length == 1 || meant.len() > SHORTEST_JOINED)
             };
             let found = alike(lexicon, heard).into_iter().filter(fits).take(if length == 1 { MOST_WORDS } else { 2 });
-            guesses.extend(found.map(|(cost, word)| Guess { at, length, word: word.to_owned(), cost }));
+            guesses.extend(found.map(|(cost, word)| guess(cost, word, false)));
         }
     }
     guesses
@@ -210,7 +232,7 @@ fn with(words: &[String], guesses: &[&Guess]) -> Vec<String> {
     while at < words.len() {
         match guesses.iter().find(|guess| guess.at == at) {
             Some(guess) => {
-                result.push(guess.word.clone());
+                result.extend(guess.word.split(' ').map(str::to_owned));
                 at += guess.length;
             }
             None => {

@@ -80,12 +80,21 @@ impl<'a> Reader<'a> {
         let rest = reader.rest();
         let noun = reader.lexicon.classes.longest(rest).map_or(0, |(length, _)| length);
         if let Some((length, color)) = reader.lexicon.colors.longest(rest).filter(|(length, _)| *length > noun) {
-            phrase.color = Some(color.clone());
+            (phrase.color, phrase.is_look_late) = (Some(color.clone()), true);
+            self.at = reader.at + length;
+            return true;
+        }
+        let preposition = reader.lexicon.prepositions.longest(rest).map_or(0, |(length, _)| length);
+        if let Some((length, side @ (Side::Nearest | Side::Farthest))) = reader.lexicon.sides.longest(rest)
+            && length >= preposition
+        {
+            phrase.side = Some(*side);
             self.at = reader.at + length;
             return true;
         }
         if let Some((length, state)) = reader.lexicon.states.longest(rest).filter(|(length, _)| *length > noun) {
             phrase.states.push(*state);
+            phrase.is_look_late = true;
             self.at = reader.at + length;
             return true;
         }

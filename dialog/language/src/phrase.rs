@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     lexicon::{Lexicon, Naming, Preposition, Pronoun, Side, StateWord},
-    token,
+    saying, token,
 };
 
 /// What somebody said about an object.
@@ -36,6 +36,9 @@ pub(crate) struct Phrase {
     /// What it is not: `the mug that is not yellow`.
     #[serde(default)]
     pub(crate) not: Vec<Phrase>,
+    /// Whether its look was said after it, by `that is`, and so perhaps of what stands before it.
+    #[serde(default)]
+    pub(crate) is_look_late: bool,
     /// Words in it that mean nothing to the robot.
     pub(crate) unknown: Vec<String>,
     /// What it was found to mean when the robot asked.
@@ -111,6 +114,27 @@ impl Phrase {
             || self.is_here
             || !self.not.is_empty()
             || self.pronoun == Some(Pronoun::Thing) && !self.states.is_empty()
+    }
+
+    /// `the mug on the table that is yellow`: the same, where the mug is.
+    pub(crate) fn with_late_look(&self) -> Option<Self> {
+        let mut phrase = self.clone();
+        let late = phrase.relations.iter_mut().find(|relation| relation.to.is_look_late)?;
+        late.to.is_look_late = false;
+        let (color, states) = (late.to.color.take(), std::mem::take(&mut late.to.states));
+        phrase.color = phrase.color.or(color);
+        phrase.states.extend(states);
+        Some(phrase)
+    }
+
+    /// Takes words that say more of it; a colour alone is said before its noun.
+    pub(crate) fn say_more(&mut self, words: &[String]) {
+        let color = words.last().filter(|last| self.color.as_ref() == Some(*last));
+        let noun = saying::noun(self).filter(|noun| !noun.contains(' ')).map(str::to_owned);
+        self.text = match (color, noun) {
+            (Some(color), Some(noun)) => format!("the {color} {noun}"),
+            _ => format!("{} {}", self.text, words.join(" ")).trim().to_owned(),
+        };
     }
 
     /// Whether it is `it` or `them`, and no more.

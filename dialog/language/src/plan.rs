@@ -11,10 +11,10 @@ use crate::{
     intent::Intent,
     judge::Judge,
     known::{Known, KnownObject},
-    lexicon::{Direction, Preposition, Pronoun, Side},
+    lexicon::{Direction, Manner, Preposition, Pronoun, Side},
     phrase::{Phrase, Place},
     process::Devices,
-    search,
+    saying, search,
     settle::{self, Settled},
     understanding::{Asking, Step},
 };
@@ -76,13 +76,24 @@ impl Planner<'_> {
         for (index, clause) in clauses.iter().enumerate() {
             self.clause = index;
             self.begun = (self.steps.len(), self.focus.clone());
+            let before = clause.is_means.then(|| self.scene.clone());
             match (self.add(clause), clauses.get(index + 1)) {
                 // `take it, take the knife`: what was meant was said at once.
                 (Err(Fault::Miss { miss: Miss::NoReferent, .. }), Some(next)) if next.intent == clause.intent => {}
                 (result, _) => result?,
             }
+            before.into_iter().for_each(|scene| self.drop_known_means(scene));
         }
         Ok(())
+    }
+
+    /// `switch the power on by pulling the lever`: what the request comes to anyway is not done twice.
+    fn drop_known_means(&mut self, scene: Known) {
+        let (asked, means) = self.steps.split_at(self.begun.0);
+        if means.iter().all(|step| asked.iter().any(|other| other.action == step.action)) {
+            self.steps.truncate(self.begun.0);
+            self.scene = scene;
+        }
     }
 
     fn add(&mut self, clause: &Clause) -> Result<(), Fault> {
@@ -115,6 +126,9 @@ impl Planner<'_> {
                 "I can put {} on something else, but I cannot shift it about.",
                 self.the(object)
             )));
+        }
+        if clause.intent == Intent::Color && clause.color.is_none() && clause.places.is_empty() {
+            return Err(Fault::Cannot("Which color shall it be? Say, for example, \"paint it red\".".to_owned()));
         }
         match clause.intent {
             Intent::PickUp => self.add_pick_up(&settled),
@@ -363,6 +377,25 @@ impl Planner<'_> {
             Some(((_, place), rest)) => (place.clone(), rest),
             None => return Err(Fault::Cannot("Tell me where to go.".to_owned())),
         };
+        let is_room = matches!(target, Place::Room(_));
+        let is_carried = |phrase: &Phrase| {
+            let mut classes = phrase.namings.iter().map(|naming| self.catalog.class(naming.class));
+            is_room && classes.any(|class| class.has(Property::Pickupable))
+        };
+        let is_taken_along = |(preposition, place): &&(Preposition, Place)| {
+            *preposition == Preposition::With
+                && matches!(place, Place::Object(phrase) if phrase.is_bare_pronoun() || is_carried(phrase))
+        };
+        // `head to the break room with it`
+        if let Some((_, Place::Object(thing))) = rest.iter().find(is_taken_along) {
+            let along = thing.clone();
+            let places: Vec<_> = clause.places.iter().filter(|place| !is_taken_along(place)).cloned().collect();
+            let object = self.find_one(&along, &Want::object(Intent::Bring), None)?;
+            if self.scene.robot.held != Some(object) {
+                self.add(&Clause::about(Intent::PickUp, "take", Phrase { chosen: Some(object), ..along }))?;
+            }
+            return self.go_to(&Clause { places, ..clause.clone() });
+        }
         // `go to the kitchen by the fridge`: the fridge, in the kitchen.
         if let (Place::Room(room), [(_, Place::Object(phrase)), more @ ..]) = (&target, rest) {
             let mut phrase = phrase.clone();
@@ -436,7 +469,7 @@ impl Planner<'_> {
             match self.find_one(phrase, &want, Some(Role::Object(index))) {
                 Ok(object) => self.go_to_object(object),
                 Err(Fault::Miss { miss: Miss::Unseen, .. }) if is_nameable && self.looks_about() => {
-                    self.notes.push(format!("I have not seen {} yet, so I look around for it", said(phrase)));
+                    self.notes.push(format!("I have not seen {} yet, so I look around for it", saying::said(phrase)));
                     phrase.room.into_iter().for_each(|room| self.go_to_room(room));
                     self.push(Action::LookAround, "looking around".to_owned());
                 }
@@ -585,21 +618,6 @@ impl Planner<'_> {
     }
 }
 
-/// What somebody called an object, without an article.
-pub(crate) fn noun(phrase: &Phrase) -> &str {
-    let mut noun = phrase.text.as_str();
-    for article in ["the ", "a ", "an ", "my ", "your ", "this ", "that ", "some ", "any "] {
-        noun = noun.strip_prefix(article).unwrap_or(noun);
-    }
-    noun
-}
-
-/// What was said of an object, as something that is not there: `a mug`, `any milk`.
-pub(crate) fn said(phrase: &Phrase) -> String {
-    let text = describe::indefinite(noun(phrase));
-    text.strip_prefix("some ").map_or_else(|| text.clone(), |noun| format!("any {noun}"))
-}
-
 fn plain_number(value: f32) -> String {
     let rounded = (value * 100.0).round() / 100.0;
     format!("{rounded}")
@@ -608,6 +626,5 @@ fn plain_number(value: f32) -> String {
 /// `move the bowl a bit to the left`: to nowhere that could be named.
 fn shifts(clause: &Clause) -> bool {
     let is_way = |place: &(Preposition, Place)| matches!(place.1, Place::Side(Side::Left | Side::Right | Side::Middle));
-    let is_moved = matches!(clause.verb.as_str(), "move" | "shift" | "slide" | "nudge" | "push" | "scoot");
-    is_moved && !clause.places.is_empty() && clause.places.iter().all(is_way)
+    clause.manner == Some(Manner::Shift) && !clause.places.is_empty() && clause.places.iter().all(is_way)
 }

@@ -171,7 +171,8 @@ fn put_plainly(lexicon: &Lexicon, words: &[String]) -> Option<Vec<String>> {
         .iter()
         .take_while(|word| spare(word) || lexicon.generic.exact(std::slice::from_ref(*word)).is_some())
         .count();
-    let named = &asked[length + skipped..];
+    let linked = &asked[length + skipped..];
+    let named = &linked[lexicon.link.longest(linked).map_or(0, |(link, ())| link)..];
     if length > 0 && skipped > 0 && lexicon.prepositions.longest(named).is_some() {
         let what_is = ["what", "is"].map(str::to_owned);
         return Some(what_is.iter().chain(named).cloned().collect());

@@ -4,8 +4,9 @@ use cohabit_cdf::Catalog;
 
 use crate::{
     clause::{Amount, Clause},
+    gloss,
     intent::Intent,
-    lexicon::{Direction, Lexicon, Preposition, Pronoun},
+    lexicon::{Direction, Lexicon, Manner, Preposition, Pronoun},
     phrase::{Phrase, Place, Reader},
     swap, tail, token,
 };
@@ -74,6 +75,7 @@ pub(crate) fn read_as(
     verb_length: usize,
 ) -> Option<(Clause, usize)> {
     let mut clause = Clause::new(intent, verb);
+    clause.manner = lexicon.manners.exact(&token::words(verb)).copied();
     let mut reader = Reader::new(lexicon, words);
     reader.at = verb_length;
     match intent {
@@ -193,7 +195,10 @@ pub(crate) fn read_amount(reader: &mut Reader<'_>) -> Option<Amount> {
         && let Some((length, unit)) = after.rest().get(1..).and_then(|rest| after.lexicon.units.longest(rest))
     {
         reader.at += 1 + length;
-        return Some(Amount::Meters(*unit));
+        // `a meter and a half`
+        let has_half = reader.rest().iter().map(String::as_str).take(3).eq(["and", "a", "half"]);
+        reader.at += if has_half { 3 } else { 0 };
+        return Some(Amount::Meters(if has_half { unit * 1.5 } else { *unit }));
     }
     let value = after.number()?;
     // `three more steps`
@@ -247,6 +252,15 @@ pub(crate) fn read_objects(reader: &mut Reader<'_>, clause: &mut Clause) {
         }
         let phrase = if clause.intent == Intent::Swap { placed(&mut next) } else { next.phrase() };
         let Some(mut phrase) = phrase else { break };
+        // `one of the apples, whichever is nearer`: which one that is.
+        if reader.next_is(",")
+            && let Some(said) =
+                clause.objects.last_mut().filter(|said| phrase.is_one_of_kind() && gloss::tells_more(said, &phrase))
+        {
+            *said = Phrase { namings: said.namings.clone(), pronoun: None, ..phrase };
+            *reader = next;
+            continue;
+        }
         // `the red mug and the yellow one`
         if let Some(before) = clause.objects.last().filter(|_| phrase.is_one_of_kind()) {
             phrase.namings.clone_from(&before.namings);
@@ -365,7 +379,7 @@ pub(crate) fn is_complete(clause: &Clause, catalog: &Catalog) -> bool {
         Intent::Pour => has_object || !clause.places.is_empty(),
         Intent::Drop => true,
         Intent::Swap => swap::is_of_two(clause),
-        Intent::Color => has_object && clause.color.is_some(),
+        Intent::Color => has_object && (clause.color.is_some() || clause.manner == Some(Manner::Color)),
         Intent::Carrot => has_object && (is_named("Carrot_01") || clause.verb.starts_with("carrot")),
         _ => has_object,
     }

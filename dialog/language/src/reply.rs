@@ -2,11 +2,12 @@
 
 use crate::{
     answer::HINT,
+    context::Role,
     describe,
     ground::Miss,
     intent::Intent,
     phrase::Phrase,
-    plan,
+    saying,
     understanding::{Step, Understanding},
 };
 
@@ -35,17 +36,22 @@ pub(crate) fn plan_in_words(steps: &[Step]) -> String {
 }
 
 /// What to say where a phrase found nothing; mismatches and several candidates are questions of their own.
-pub(crate) fn miss(phrase: &Phrase, miss: &Miss, intent: Intent) -> String {
+pub(crate) fn miss(phrase: &Phrase, miss: &Miss, intent: Intent, role: Option<Role>) -> String {
     if !phrase.unknown.is_empty() && phrase.namings.is_empty() {
         let words = phrase.unknown.join(" ");
         return format!(
             "I do not know what \"{words}\" is. Name me something in the office, such as the mug or the fridge."
         );
     }
+    let what = || saying::what_for(intent, role);
     match miss {
-        Miss::NoReferent => format!("What shall I {}? I do not know what \"{}\" is.", intent.verb(), phrase.text),
-        Miss::Unknown => format!("What shall I {}?", intent.verb()),
-        _ => format!("I have not seen {}.", plan::said(phrase)),
+        Miss::NoReferent if phrase.text.is_empty() => what(),
+        Miss::NoReferent => format!("{} {}", what(), saying::unresolved(phrase)),
+        Miss::Unknown => what(),
+        _ if saying::noun(phrase).is_none() => {
+            format!("{} {}", saying::unresolved(phrase), what())
+        }
+        _ => format!("I have not seen {}.", saying::said(phrase)),
     }
 }
 

@@ -17,8 +17,8 @@ use crate::{
     intent::Intent,
     known::{Known, KnownObject, distance_m},
     phrase::{Phrase, RelationKind},
-    plan::{self, Fault},
-    remedy, reply, sight,
+    plan::Fault,
+    remedy, reply, saying, sight,
     understanding::{Asking, Step, Understanding},
 };
 
@@ -167,7 +167,7 @@ impl Conversation<'_> {
                 (planner.has_looked && search.is_told, &fault)
             {
                 (context.pending, context.search) = (None, None);
-                let found = format!("I have looked, and found no {}.", bare(&plan::said(phrase)));
+                let found = format!("I have looked, and found no {}.", bare(&saying::said(phrase)));
                 return Understanding::refusal(found);
             }
             return self.fault(fault, search.clauses, search.consent, context);
@@ -311,7 +311,7 @@ impl Conversation<'_> {
         self.scene.floor.as_ref().filter(|_| search.is_told)?;
         let Fault::Miss { phrase, miss: Miss::Unseen, .. } = fault else { return None };
         let room = phrase.room.or(phrase.is_here.then_some(self.scene.robot.room));
-        Some(self.target_of(phrase).unwrap_or_else(|| self.target(plan::said(phrase), Vec::new(), room)))
+        Some(self.target_of(phrase).unwrap_or_else(|| self.target(saying::said(phrase), Vec::new(), room)))
     }
 
     fn affords_any(&self, classes: &[ClassId], intent: Intent) -> bool {
@@ -334,7 +334,7 @@ impl Conversation<'_> {
             return None;
         }
         let room = phrase.room.or(phrase.is_here.then_some(self.scene.robot.room));
-        let mut target = self.target(plan::said(phrase), classes, room);
+        let mut target = self.target(saying::said(phrase), classes, room);
         for relation in &phrase.relations {
             let ground = Ground {
                 catalog: self.catalog,

@@ -6,7 +6,7 @@ use crate::{
     context::Role,
     ground::{Miss, Want},
     intent::Intent,
-    lexicon::{Preposition, Pronoun},
+    lexicon::{Manner, Preposition, Pronoun},
     phrase::{Phrase, Place},
     plan::Planner,
 };
@@ -61,12 +61,9 @@ pub(crate) fn settle(planner: &Planner<'_>, clause: &Clause) -> Settled {
         color: clause.color.clone(),
         fluid: clause.fluid,
         is_wish: clause.is_wish,
-        is_left: clause.verb == "leave",
-        is_inserted: matches!(
-            clause.verb.as_str(),
-            "insert" | "install" | "mount" | "slot" | "load" | "attach" | "feed"
-        ),
-        is_back: clause.verb.ends_with(" back") || clause.verb == "return",
+        is_left: clause.manner == Some(Manner::Leave),
+        is_inserted: clause.manner == Some(Manner::Insert),
+        is_back: clause.manner == Some(Manner::Back),
     };
     for (index, (preposition, place)) in clause.places.iter().enumerate() {
         let role = Role::Place(index);
@@ -74,6 +71,9 @@ pub(crate) fn settle(planner: &Planner<'_>, clause: &Clause) -> Settled {
             (Preposition::With, Place::Object(phrase)) if has_tool(clause.intent) => {
                 settled.tool = Some((phrase.clone(), role));
             }
+            // `put it into the fridge with it`: said twice.
+            (Preposition::With, Place::Object(phrase))
+                if matches!(clause.intent, Intent::Place | Intent::Bring) && phrase.is_bare_pronoun() => {}
             // `fill it from the tap`
             (Preposition::From, Place::Object(_)) if clause.intent == Intent::Fill => {
                 settled.take_place(planner, Preposition::At, place, role);

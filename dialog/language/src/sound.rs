@@ -30,6 +30,7 @@ const PAIRS: &[(char, char)] = &[
     ('j', 'x'),
     ('c', 'x'),
     ('m', 'n'),
+    ('m', 'b'),
     ('q', 's'),
     ('q', 'f'),
     ('q', 't'),
@@ -50,6 +51,13 @@ pub(crate) struct Sounding {
 impl Sounding {
     pub(crate) fn new<'a>(words: impl Iterator<Item = &'a String>) -> Self {
         let mut words: Vec<(Sounds, String)> = words.map(|word| (sounds(word), word.clone())).collect();
+        words.sort();
+        Self { words }
+    }
+
+    /// Of words whose sounds are known.
+    pub(crate) fn of(words: impl Iterator<Item = (Vec<char>, String)>) -> Self {
+        let mut words: Vec<(Sounds, String)> = words.collect();
         words.sort();
         Self { words }
     }

@@ -44,6 +44,11 @@ impl Vocabulary {
         self.meaningful.contains(word)
     }
 
+    /// Whether it is a word at all, as far as is known.
+    pub(crate) fn is_word(&self, word: &str) -> bool {
+        self.has(word) || self.is_plain(word) || self.is_ordinary(word) || self.singular(word).is_some()
+    }
+
     /// Whether it is one of those.
     pub(crate) fn is_ordinary(&self, word: &str) -> bool {
         self.ordinary.contains(word)
@@ -132,12 +137,7 @@ impl Vocabulary {
     pub(crate) fn respaced(&self, words: Vec<String>) -> Vec<String> {
         let mut result: Vec<String> = Vec::with_capacity(words.len());
         for word in words {
-            let is_known = |word: &str| {
-                self.has(word)
-                    || self.plain.contains(word)
-                    || self.ordinary.contains(word)
-                    || self.singular(word).is_some()
-            };
+            let is_known = |word: &str| self.is_word(word);
             let is_spelt = |word: &str| word.chars().all(|letter| letter.is_ascii_alphabetic());
             let pair =
                 result.last().filter(|last| is_spelt(last) && is_spelt(&word) && !(is_known(last) && is_known(&word)));

@@ -55,6 +55,11 @@ impl<T> PhraseTable<T> {
             .find_map(|length| self.meanings.get(&words[..length]).map(|meaning| (length, meaning)))
     }
 
+    /// All phrases.
+    pub(crate) fn phrases(&self) -> impl Iterator<Item = &[String]> {
+        self.meanings.keys().map(Vec::as_slice)
+    }
+
     /// The meaning of exactly these words.
     pub(crate) fn exact(&self, words: &[String]) -> Option<&T> {
         self.meanings.get(words)

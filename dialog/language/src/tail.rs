@@ -3,6 +3,7 @@
 use crate::{
     chatter,
     clause::{self, Clause},
+    gloss,
     intent::Intent,
     lexicon::{Preposition, Pronoun},
     phrase::{Phrase, Place, Reader},
@@ -11,6 +12,9 @@ use crate::{
 
 pub(crate) fn read_tail(reader: &mut Reader<'_>, clause: &mut Clause) {
     while !reader.is_done() {
+        if reader.and_room(clause) {
+            continue;
+        }
         if token::is_punctuation(&reader.words[reader.at]) || reader.next_is("and") {
             break;
         }
@@ -54,9 +58,11 @@ pub(crate) fn read_tail(reader: &mut Reader<'_>, clause: &mut Clause) {
         if reader.at_verb() {
             break;
         }
+        let start = reader.at;
         if let Some(phrase) = clause.last_phrase()
             && reader.after_noun(phrase)
         {
+            phrase.say_more(&reader.words[start..reader.at]);
             continue;
         }
         if chatter::is_subordinator(reader.lexicon, &reader.words[reader.at]) {
@@ -77,12 +83,36 @@ pub(crate) fn read_tail(reader: &mut Reader<'_>, clause: &mut Clause) {
             reader.lexicon.classes.longest(reader.rest()).is_some(),
             reader.lexicon.generic.longest(reader.rest()).is_some(),
         ];
-        clause.has_stray_noun |= nouns.contains(&true);
+        // `move it to the table`: that, and not the robot itself.
+        let is_moved = matches!(clause.intent, Intent::Travel | Intent::Turn)
+            && (reader.lexicon.pronouns.longest(reader.rest()).is_some_and(|(_, one)| is_thing(*one))
+                || reader.lexicon.name_parts.longest(reader.rest()).is_some() && reader.is_free_noun());
+        clause.has_stray_noun |= nouns.contains(&true) || is_moved;
         reader.at += 1;
     }
 }
 
+const fn is_thing(pronoun: Pronoun) -> bool {
+    matches!(pronoun, Pronoun::Thing | Pronoun::Things)
+}
+
 impl Reader<'_> {
+    /// `put it on the desk and the robotics lab`: heard for `in`, as nothing can be put on a room.
+    pub(crate) fn and_room(&mut self, clause: &mut Clause) -> bool {
+        let mut reader = Self { at: self.at + 1, ..*self };
+        let takes_things = reading::takes_objects(clause.intent) && clause.intent != Intent::GoTo;
+        if !self.next_is("and") || !takes_things {
+            return false;
+        }
+        let Some(place @ Place::Room(_)) = reader.destination().filter(|_| !reader.at_verb()) else { return false };
+        reader.skip(|lexicon| &lexicon.trail);
+        let is_end = reader.rest().first().is_none_or(|word| token::is_punctuation(word));
+        let Some(phrase) = clause.last_phrase().filter(|phrase| is_end && phrase.room.is_none()) else { return false };
+        phrase.attach(Preposition::In, place);
+        self.at = reader.at;
+        true
+    }
+
     /// `to my boss`, `for the guests`: steps over whom something is for.
     pub(crate) fn person(&mut self) -> bool {
         let mut reader = *self;
@@ -119,8 +149,18 @@ impl Reader<'_> {
     /// `take out of the cabinet the bread`, `the apple the red apple`, `turn the apple a carrot`.
     pub(crate) fn names_late(&mut self, clause: &mut Clause) -> bool {
         let mut reader = *self;
-        let is_noun = |phrase: &Phrase| !phrase.namings.is_empty() && phrase.unknown.is_empty();
-        let Some(phrase) = reader.phrase().filter(is_noun) else { return false };
+        let is_noun = |phrase: &Phrase| {
+            let is_one = phrase.pronoun == Some(Pronoun::One) && phrase.is_described();
+            (!phrase.namings.is_empty() || is_one) && phrase.unknown.is_empty()
+        };
+        let Some(mut phrase) = reader.phrase().filter(is_noun) else { return false };
+        // `the apple the green one`
+        if phrase.namings.is_empty() {
+            let Some(said) = clause.last_phrase().filter(|said| gloss::tells_more(said, &phrase)) else {
+                return false;
+            };
+            (phrase.namings, phrase.pronoun) = (said.namings.clone(), None);
+        }
         if clause.objects.is_empty()
             && !clause.places.is_empty()
             && reading::takes_objects(clause.intent)
@@ -129,7 +169,7 @@ impl Reader<'_> {
             clause.objects.push(phrase);
         } else if clause.intent == Intent::Carrot && clause.places.is_empty() {
             clause.places.push((Preposition::In, Place::Object(phrase)));
-        } else if let Some(said) = clause.last_phrase().filter(|said| clause::tells_more(said, &phrase)) {
+        } else if let Some(said) = clause.last_phrase().filter(|said| gloss::tells_more(said, &phrase)) {
             *said = phrase;
         } else {
             return false;

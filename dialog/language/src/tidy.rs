@@ -1,6 +1,6 @@
 //! What people say besides what they mean, left out: numbering, hesitation, words said twice, and what they took back.
 
-use crate::{amend, clause, inflect, intent::Intent, lexicon::Lexicon, order, phrase::Reader, token};
+use crate::{amend, clause, inflect, intent::Intent, lexicon::Lexicon, order, phrase::Reader, token, wish};
 
 /// So many words may be said twice in a row.
 const LONGEST_STUTTER: usize = 4;
@@ -8,7 +8,8 @@ const LONGEST_STUTTER: usize = 4;
 /// The words that are meant.
 pub(crate) fn tidied(lexicon: &Lexicon, words: &[String]) -> Vec<String> {
     let words = amend::without_slips(lexicon, &without_numbers(lexicon, words));
-    let words = without_stutter(&without_tags(without_hesitation(lexicon, words)));
+    let words = without_stutter(&without_tags(without_like(lexicon, without_hesitation(lexicon, words))));
+    let words = wish::told_to_take_over(lexicon, words);
     let words = order::in_order(lexicon, &asked_plainly(lexicon, words));
     amend::without_where(lexicon, without_pause(lexicon, words))
 }
@@ -145,6 +146,21 @@ fn without_hesitation(lexicon: &Lexicon, words: Vec<String>) -> Vec<String> {
     result
 }
 
+/// `could you like open it`, `turn like ninety degrees`: a word that fills, not what somebody likes or what is alike.
+fn without_like(lexicon: &Lexicon, mut words: Vec<String>) -> Vec<String> {
+    let fills = |at: usize| {
+        let rest = &words[at + 1..];
+        let says_more = at > 0 && lexicon.amends.likes.contains(&words[at - 1]);
+        let leads = lexicon.lead.longest(rest).is_some_and(|(length, ())| length > 1);
+        let is_number = rest.first().is_some_and(|word| token::digits(word).is_some())
+            || lexicon.numbers.longest(rest).is_some_and(|(_, number)| *number > 1.0);
+        words[at] == "like" && !says_more && (Reader::new(lexicon, rest).at_verb() || leads || is_number)
+    };
+    let fillers: Vec<usize> = (0..words.len()).filter(|at| fills(*at)).collect();
+    fillers.into_iter().rev().for_each(|at| drop(words.remove(at)));
+    words
+}
+
 /// `that is the laser, right?`: no way to turn.
 fn without_tags(mut words: Vec<String>) -> Vec<String> {
     let is_tag = |at: usize| words[at] == "," && words[at + 1] == "right" && words[at + 2] == "?";
@@ -190,6 +206,12 @@ mod tests {
         check("1. open the fridge 2. take the milk", "open the fridge . take the milk");
         check("Step 1: open it. Step two: close it", "open it . close it");
         check("move 2 meters", "move 2 meters");
+        check("could you like go over to the fridge", "could you go over to the fridge");
+        check("i would like water", "i would like water");
+        check("grab the red mug sorry the yellow mug", "grab the yellow mug");
+        check("go to the quantum lab no sorry the robotics lab", "go to the robotics lab");
+        check("move three no make that two meters forward", "move two meters forward");
+        check("i was told to chill the banana , can you do it", "chill the banana , can you do it");
         check("um", "um");
         check("open up, fridge", "open up fridge");
         check("take the milk n close it", "take the milk and close it");

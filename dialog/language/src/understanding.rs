@@ -32,6 +32,8 @@ pub enum Understanding {
         text: String,
         /// What it speaks about, to be outlined.
         highlight: Vec<ObjectId>,
+        /// Whether what was asked is so; nothing, where that was not asked.
+        holds: Option<bool>,
     },
     /// It did not understand, or cannot.
     Refusal {
@@ -57,7 +59,22 @@ impl Understanding {
     }
 
     pub(crate) fn answer(text: impl Into<String>) -> Self {
-        Self::Answer { text: text.into(), highlight: Vec::new() }
+        Self::Answer { text: text.into(), highlight: Vec::new(), holds: None }
+    }
+
+    /// An answer about these things that says no more than how they are.
+    pub(crate) fn about(text: impl Into<String>, highlight: Vec<ObjectId>) -> Self {
+        Self::Answer { text: text.into(), highlight, holds: None }
+    }
+
+    /// An answer that says whether something is so.
+    pub(crate) fn whether(holds: bool, text: impl Into<String>, highlight: Vec<ObjectId>) -> Self {
+        Self::Answer { text: text.into(), highlight, holds: Some(holds) }
+    }
+
+    /// Whether it leaves what was asked denied, or open.
+    pub(crate) const fn denies(&self) -> bool {
+        !matches!(self, Self::Answer { holds: None | Some(true), .. })
     }
 }
 

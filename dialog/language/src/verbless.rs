@@ -4,7 +4,7 @@ use cohabit_cdf::Catalog;
 
 use crate::{
     chatter,
-    clause::{Clause, Part},
+    clause::Clause,
     intent::Intent,
     lexicon::{Direction, Lexicon, Preposition, Pronoun},
     phrase::{Phrase, Place, Reader},
@@ -30,15 +30,17 @@ pub(crate) fn late_place(lexicon: &Lexicon, words: &[String]) -> Option<(Preposi
 }
 
 /// `a hammer that I would like you to pick up`: what the verb at the end is about was said before.
-pub(crate) fn gap(lexicon: &Lexicon, catalog: &Catalog, words: &[String], before: &[Part]) -> Option<(Clause, usize)> {
+pub(crate) fn gap(lexicon: &Lexicon, catalog: &Catalog, words: &[String]) -> Option<(Clause, usize)> {
     let (length, _) = lexicon.verbs.longest(words)?;
     let is_last = words[length..].iter().all(|word| token::is_punctuation(word));
-    if before.is_empty() || !is_last {
+    if !is_last {
         return None;
     }
     let mut whole = words[..length].to_vec();
     whole.push("it".to_owned());
-    reading::read(lexicon, catalog, &whole).map(|(clause, _)| (clause, words.len()))
+    let (mut clause, _) = reading::read(lexicon, catalog, &whole)?;
+    clause.objects.iter_mut().for_each(|unsaid| unsaid.text.clear());
+    Some((clause, words.len()))
 }
 
 /// `use the hammer to break the mug`, `with the hammer, break the mug`.
@@ -94,6 +96,10 @@ pub(crate) fn implied_going(lexicon: &Lexicon, words: &[String]) -> Option<Claus
         return None;
     }
     reader.at += 1;
+    // `to open the fridge` is no way to the open fridge.
+    if is_to && reader.at_verb() {
+        return None;
+    }
     let place = reader.destination().filter(is_known_place)?;
     // `into the fridge with it`
     if reader.next_is("with")

@@ -12,6 +12,7 @@ use crate::{
     phrase::Reader,
     reading,
     table::PhraseTable,
+    token,
 };
 
 /// The words of wishing: `data/wishes.toml` says what each list is.
@@ -30,6 +31,8 @@ pub(crate) struct Wishes {
     removers: PhraseTable<()>,
     ensurers: PhraseTable<()>,
     performers: PhraseTable<()>,
+    takeovers: PhraseTable<()>,
+    taken: BTreeSet<String>,
     undoes: BTreeMap<String, String>,
     pub(crate) subjecters: BTreeSet<String>,
     pub(crate) infecters: BTreeSet<String>,
@@ -42,6 +45,42 @@ pub(crate) fn request(lexicon: &Lexicon, words: &[String]) -> Option<(Vec<String
     let wished = spoken(lexicon, chunk).or_else(|| stated(lexicon, chunk))?;
     Some((wished, chunk.len()))
 }
+
+/// `do it for me`, `take care of that`: how many words hand over what was told before them.
+pub(crate) fn taken_over(lexicon: &Lexicon, words: &[String]) -> Option<usize> {
+    let (length, ()) = lexicon.wishes.takeovers.longest(words)?;
+    let is_told = words.get(length).is_some_and(|word| matches!(word.as_str(), "it" | "that" | "this" | "so" | "them"));
+    let used =
+        length + 1 + words.get(length + 1..)?.iter().take_while(|word| lexicon.wishes.taken.contains(*word)).count();
+    let is_end = words.get(used).is_none_or(|word| {
+        token::is_punctuation(word) || matches!(word.as_str(), "and" | "that" | "it" | "because" | "so" | "but" | "i")
+    });
+    (is_told && is_end).then_some(used)
+}
+
+/// `i was told to chill the banana but I have no time, can you do it`: what was told is asked for, where it is handed over.
+pub(crate) fn told_to_take_over(lexicon: &Lexicon, words: Vec<String>) -> Vec<String> {
+    let is_asked = |at: usize| at > 0 && lexicon.lead.exact(&words[at - 1..at]).is_some();
+    let Some(end) = (1..words.len()).find(|at| is_asked(*at) && taken_over(lexicon, &words[*at..]).is_some()) else {
+        return words;
+    };
+    let is_told = |start: &usize, to: &usize| {
+        let teller = &words[*start..*to];
+        let reports = |word: &String| lexicon.chatter.reports.contains(word);
+        matches!(teller[0].as_str(), "i" | "we") && teller.iter().any(reports) && words[*to] == "to"
+    };
+    let told = (0..end).find_map(|start| {
+        let to = (start + 1..end.min(start + LONGEST_TELLER)).find(|to| is_told(&start, to))?;
+        Reader::new(lexicon, &words[to + 1..]).at_verb().then_some((start, to))
+    });
+    match told {
+        Some((start, to)) => [&words[..start], &words[to + 1..]].concat(),
+        None => words,
+    }
+}
+
+/// Most words that say who told it whom: `i have been told by my boss to`.
+const LONGEST_TELLER: usize = 8;
 
 /// Whether a wish with words of its own begins there.
 pub(crate) fn is_said(lexicon: &Lexicon, words: &[String]) -> bool {
@@ -145,9 +184,14 @@ fn until_next<'a>(lexicon: &Lexicon, words: &'a [String]) -> &'a [String] {
         reader.at = at + 1;
         let is_joint = matches!(words[*at].as_str(), "and" | "so" | "but" | "then");
         reader.skip(|lexicon| &lexicon.lead);
-        is_joint && reader.at_verb()
+        is_joint && reader.at_verb() || *at > 0 && asks_anew(&words[*at..])
     });
     &words[..end.unwrap_or(words.len())]
+}
+
+/// `i need it fixed, can you do it` without the pause.
+fn asks_anew(words: &[String]) -> bool {
+    matches!(words, [modal, you, ..] if matches!(modal.as_str(), "can" | "could" | "would" | "will") && you == "you")
 }
 
 /// `i want …`, `my boss would like …`.
@@ -169,7 +213,9 @@ fn wanted(lexicon: &Lexicon, words: &[String]) -> Option<Vec<String>> {
     {
         let skipped = rest.iter().take_while(|word| matches!(word.as_str(), "over" | "back" | "right" | "up")).count();
         let is_place = lexicon.prepositions.longest(&rest[skipped..]).is_some();
-        let place = Reader::new(lexicon, &rest[skipped..]).place().filter(|_| is_place);
+        let does = rest[skipped..].first().is_some_and(|word| word == "to")
+            && Reader::new(lexicon, &rest[skipped + 1..]).at_verb();
+        let place = Reader::new(lexicon, &rest[skipped..]).place().filter(|_| is_place && !does);
         return place.map(|_| joined(&[&["go", "to"], &texts(inner(lexicon, &rest[skipped + 1..]))]));
     }
     // `i would want to have the bowl cold`

@@ -393,3 +393,53 @@ fn a_carried_object_can_be_anything() {
     assert_eq!(talk.say("pick up the mug"), "take CoffeeMug_Boss_1");
     assert_eq!(talk.say("grab the cup"), "take CoffeeMug_Boss_1");
 }
+
+#[test]
+fn what_was_told_and_handed_over_is_asked_once() {
+    check(
+        &[],
+        "I'm supposed to chill the banana but I have no time, can you do it -> take Banana_01_1, open FridgeUpper_02_1, put FridgeUpper_02_1…
+        I have to wash the plate. take care of that for me -> take FoodPlate_01_1, toggle KitchenCounterSink_01_1, clean KitchenCounterSink_01_1
+        i was told to scan the hammer so please handle it -> scan Hammer_1
+        I need you to open the microwave -> open Microwave_01_1
+        I left the cereal box out, can you move it to the table? -> take Cereal_Box_01_1, put TableRound_02_1
+        go to the kitchen with the hammer -> take Hammer_1, go BreakRoom
+        open the fridge, grab the milk, close -> open FridgeLower_02_1, take MilkCarton_01_1, close FridgeLower_02_1
+        wash the plate, then on the counter -> take FoodPlate_01_1, toggle KitchenCounterSink_01_1, clean KitchenCounterSink_01_1, put KitchenCounterTop_02_1
+        restore power at the fuse box by throwing the lever -> toggle FuseBox_01_Lever_1",
+    );
+    check(
+        &["held Bowl_01_1"],
+        "head to the main office with it -> go MainOffice
+        into the time machine with it -> open YesterdayMachine_01_1, put YesterdayMachine_01_1",
+    );
+}
+
+#[test]
+fn what_is_said_after_a_place_may_be_about_the_thing() {
+    check(
+        &["at Lab1 10 8"],
+        "make your way to the shelf in the robotics lab that is red -> go AP_Prop_Shelf_Wall_Laser_1
+        switch on the computer on the desk that is red -> toggle V_Monitor_Laser_1
+        take the mug on the table that is yellow -> take CoffeeMug_Yellow_1
+        put the apple on the table that's green into the freezer -> take Apple_2, open FridgeUpper_02_1, put FridgeUpper_02_1
+        go to the desk that is closest -> go Desk_01_1
+        go to the desk in the main office which is green -> go AP_Prop_Desk_Green_1",
+    );
+}
+
+#[test]
+fn names_and_short_words_are_heard_for_what_sounds_like_them() {
+    check(
+        &[],
+        "go to the robotic slab -> go Lab1
+        move forward at tiny bit -> move 0.50
+        put the banana on the green desk and the main office -> take Banana_01_1, put AP_Prop_Desk_Green_1
+        but the trophy on the red desk -> take Trophy01_1, put AP_Prop_Desk_Red_1",
+    );
+    let mut talk = Talk::new(&["plan OfficeLayout1 BreakRoom"]);
+    let asked = talk.say("hit D5 on the bending machine");
+    assert!(asked.starts_with("? ") && asked.ends_with("Shall I?"), "{asked}");
+    assert_eq!(talk.say("yes"), "toggle VendingMachine_01_E5_Button");
+    assert_eq!(talk.say("press B4"), "toggle VendingMachine_01_B4_Button");
+}

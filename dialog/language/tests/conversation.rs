@@ -63,7 +63,7 @@ fn another_may_do() {
     check(&[], "> pick up the blue apple\n? I do not know of a blue apple. Do you mean…\n> the red one\ntake Apple_1");
     check(
         &["without CoffeeMug_Yellow_1"],
-        "> pick up the blue mug\n? I do not know of a blue mug. Do you mean the mug on the round table?\n> yes\ntake CoffeeMug_Boss_1",
+        "> pick up the blue mug\n? I do not know of a blue mug. Do you mean the red mug on the round table?\n> yes\ntake CoffeeMug_Boss_1",
     );
     check(
         &["without Hammer_1"],

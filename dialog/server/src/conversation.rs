@@ -282,7 +282,11 @@ impl Conversation {
         let consents = |text: &str| self.memory.unsure.is_some() && self.language.consent(text, &known).is_some();
         let reading = spoken.reading(|text| {
             let text = called(text);
-            if consents(&text) { Understanding::Answer { text, highlight: Vec::new() } } else { meant(&text) }
+            if consents(&text) {
+                Understanding::Answer { text, highlight: Vec::new(), holds: Some(true) }
+            } else {
+                meant(&text)
+            }
         })?;
         Some(Reading { is_doubtful: reading.is_doubtful && self.language.may_ask(), ..reading })
     }
@@ -456,7 +460,7 @@ impl Conversation {
                 reactions.push(Reaction::Chat(line));
                 self.point_out(turn, number, &candidates, knowledge, TurnEnd::Asked, reactions);
             }
-            Understanding::Answer { text, highlight } => {
+            Understanding::Answer { text, highlight, .. } => {
                 self.say(turn, DialogKind::Reply, LineKind::Say, &text, reactions);
                 self.point_out(turn, number, &highlight, knowledge, TurnEnd::Answered, reactions);
             }
