@@ -20,7 +20,7 @@ use std::{
 };
 
 use anyhow::Context as _;
-use cohabit_bus::message::DialogKind;
+use cohabit_bus::{message::DialogKind, monotonic_nanos};
 use cohabit_tests::{Lateness, Play, Received, Resident, machine};
 
 use crate::{
@@ -55,6 +55,8 @@ const DRIVES: [&str; 2] = ["go to the break room", "go to the robotics lab"];
 const QUESTION: &str = "what can you do?";
 /// How it is told to stop.
 const STOPS: [&str; 4] = ["Stop!", "Stop.", "Please stop.", "No no, that is not what I meant, stop."];
+/// What is put down for whoever says it, in whatever words.
+const STOP: &str = "stop";
 /// What takes longer is given up, s.
 const LONGEST_S: f64 = 4.0;
 
@@ -179,7 +181,7 @@ impl Scene {
             let line = message(received, "chat").filter(|line| line["from"] == "person")?;
             Some((line["turn"].as_u64()?, line["text"].as_str()?.to_owned()))
         })?;
-        let Some((shown, (turn, text))) = heard.filter(|(_, (_, text))| text != "stop") else {
+        let Some((shown, (turn, text))) = heard.filter(|(_, (_, text))| text != STOP) else {
             println!("not heard: {} ({}): {}", command.text, command.voice, self.heard(from));
             return Ok(());
         };
@@ -246,15 +248,29 @@ impl Scene {
         let from = self.person.all.len();
         let said = self.person.say(stop);
         let lasts_s = stop.samples.len() as f64 / f64::from(cohabit_speech::RATE);
-        let hushed = self.person.wait(lasts_s + LONGEST_S, |received| message(received, "hush").map(drop))?;
-        let hushed = hushed.map(|(nanos, ())| nanos);
+        let is_told = |received: &Received| {
+            let line = message(received, "chat").filter(|line| line["from"] == "person" && line["text"] == STOP)?;
+            Some(line.is_object())
+        };
+        // Whoever is heard hushes the robot: the last time before the line, it was this.
+        let told = self.person.wait(lasts_s + LONGEST_S, is_told)?;
+        let hushes = self.person.all[from..].iter().filter(|(_, received)| message(received, "hush").is_some());
+        let hushed = told.and(hushes.map(|(nanos, _)| *nanos).next_back());
         self.person.pause(1.0)?;
+        let deadline = monotonic_nanos() + (LONGEST_S * 1e9) as u64;
+        while is_driving && self.witness.seen().stood(0).is_none() && monotonic_nanos() < deadline {
+            self.person.pause(0.1)?;
+        }
         let name = |what: &str| format!("{} \"{}\": {what}", stop.voice, stop.text);
         if hushed.is_none() {
             println!("not stopped by {}", name(&self.heard(from)));
         }
+        if is_driving && monotonic_nanos() > deadline {
+            println!("it moves on after {}", name(&self.heard(from)));
+        }
         let seen = self.witness.seen();
-        let is_order = |told: &&witness::Told| told.kind == DialogKind::Utterance && told.nanos > said.began;
+        let is_order =
+            |told: &&witness::Told| told.kind == DialogKind::Utterance && told.text == STOP && told.nanos > said.began;
         let ordered = seen.dialog.iter().find(is_order).map(|told| told.nanos);
         let last = seen.speech.iter().rfind(|nanos| hushed.is_some_and(|hushed| **nanos < hushed)).copied();
         let stood = is_driving.then(|| seen.stood(said.began));

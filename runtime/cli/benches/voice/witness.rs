@@ -43,6 +43,7 @@ pub struct Told {
     pub nanos: u64,
     pub kind: DialogKind,
     pub turn: u64,
+    pub text: String,
     pub stamps: [u64; 5],
 }
 
@@ -125,7 +126,8 @@ fn watch(bus: &Shm, seen: &Mutex<Seen>, over: &AtomicBool) -> anyhow::Result<()>
         }
         while let Some((sample, told)) = dialog.next(|sample| {
             let header = DialogView::new(sample.payload())?.header;
-            Ok(header.kind().map(|kind| Told { nanos: 0, kind, turn: header.turn, stamps: header.stamps }))
+            let text = header.text.as_str().to_owned();
+            Ok(header.kind().map(|kind| Told { nanos: 0, kind, turn: header.turn, text, stamps: header.stamps }))
         })? {
             seen.dialog.extend(told.map(|told| Told { nanos: sample.envelope().sent_nanos, ..told }));
         }
