@@ -121,9 +121,9 @@ impl Steps<'_> {
         self.tokens
     }
 
-    /// After the first step: the logits of what comes after one of the tokens that it began with.
-    pub(crate) fn after(&self, place: usize) -> &[f32] {
-        &self.logits[place * self.tokens..(place + 1) * self.tokens]
+    /// After the first step: the logits of what comes after the first token of those that it began with.
+    pub(crate) fn after_first(&self) -> &[f32] {
+        &self.logits[..self.tokens]
     }
 
     /// Tries whether rows can look at one sound, with two that go on with these tokens. Of some exports they cannot: that

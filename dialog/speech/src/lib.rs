@@ -48,7 +48,6 @@ mod moonshine;
 mod ngram;
 mod onnx;
 mod piper;
-mod prompt;
 mod recognizer;
 mod silero;
 mod speller;

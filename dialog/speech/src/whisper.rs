@@ -1,7 +1,10 @@
 //! Whisper models (MIT): an encoder of [loudness by frequency](crate::mel), a decoder, and a byte-level table of tokens; of English
 //! alone, or of many languages, which are told that English is spoken.
+//!
+//! What is likely to be said has its say in the search alone. Telling the model of it beforehand, too, as words or sentences that
+//! had been said, made some commands better and as many worse.
 
-use std::{collections::HashMap, fs, path::Path};
+use std::{fs, path::Path};
 
 use ort::{
     session::{Session, SessionInputValue},
@@ -10,13 +13,12 @@ use ort::{
 use serde::Deserialize;
 
 use crate::{
-    Bias, RATE, SpeechError,
+    RATE, SpeechError,
     decoder::{Decoder, Encoded},
     engines::INSTALL,
     mel::{self, Mel},
     model::Parts,
     onnx,
-    prompt::prompt,
     speller::{Begun, Model},
     tokens::{Comes, Spelt, Tokens},
     vocabulary::{TOKENIZER, Vocabulary, bytes},
@@ -34,11 +36,6 @@ const TIMES: i64 = 1_501;
 /// The model repeats itself where it is lost; nobody says more tokens a second than this, and two more for a word cut short.
 const TOKENS_EACH_SECOND: f32 = 6.5;
 const MORE_TOKENS: usize = 2;
-/// What it is told of what is likely to be said: at most so many sentences and tokens.
-const SENTENCES: usize = 16;
-/// No token that stands for words is longer: bytes.
-const LONGEST_TOKEN: usize = 32;
-const PROMPT: usize = 80;
 
 /// What is written and never spoken (`non_speech_tokens` of Whisper's makers), alone or after a space.
 const UNSPOKEN: &str = r##"" # ( ) * + / : ; < = > @ [ \ ] ^ _ ` { | } ~ 「 」 『 』 << >> <<< >>> -- --- -( -[ (' (" (( )) ((( ))) [[ ]] {{ }} ♪♪ ♪♪♪"##;
@@ -55,18 +52,12 @@ pub(crate) struct Whisper {
     bands: usize,
     tokens: Tokens,
     marks: Marks,
-    /// Tokens by what they spell.
-    spelt: HashMap<Vec<u8>, i64>,
-    /// Tokens of what is likely to be said.
-    prompt: Vec<i64>,
 }
 
 /// Tokens that spell nothing.
 struct Marks {
     /// What is said begins after these.
     begin: Vec<i64>,
-    /// What was said before begins after this.
-    before: Option<i64>,
     /// Nothing is said.
     silence: Option<i64>,
     /// How many tokens the model has.
@@ -93,28 +84,8 @@ impl Whisper {
             _ => Config::of(&parts.folder)?.num_mel_bins.unwrap_or(BANDS),
         };
         let tokens = tokens(&vocabulary).ok_or_else(|| vocabulary.other("a Whisper model"))?;
-        let spelt = spelt(&vocabulary, tokens.end());
         let decoder = Decoder::open(&parts.decoder, threads)?;
-        Ok(Self { encoder, decoder, mel: Mel::new(bands), bands, tokens, marks, spelt, prompt: Vec::new() })
-    }
-
-    /// The tokens of a text, the longest that fit first.
-    fn spell(&self, text: &str) -> Vec<i64> {
-        let (mut rest, mut tokens) = (text.as_bytes(), Vec::new());
-        while !rest.is_empty() {
-            let longest =
-                (1..=rest.len().min(LONGEST_TOKEN)).rev().find_map(|end| Some((end, *self.spelt.get(&rest[..end])?)));
-            let Some((end, token)) = longest else { break };
-            tokens.push(token);
-            rest = &rest[end..];
-        }
-        tokens
-    }
-
-    /// What stands before all that is said.
-    fn before(&self) -> Vec<i64> {
-        let before = self.marks.before.filter(|_| !self.prompt.is_empty());
-        before.into_iter().chain(self.prompt.iter().copied()).chain(self.marks.begin.iter().copied()).collect()
+        Ok(Self { encoder, decoder, mel: Mel::new(bands), bands, tokens, marks })
     }
 }
 
@@ -127,11 +98,6 @@ impl Model for Whisper {
     // Whatever is said, the encoder hears 30 seconds.
     const HAS_PARTIAL: bool = false;
 
-    fn bias(&mut self, bias: &Bias) {
-        self.prompt = self.spell(&prompt(bias, SENTENCES));
-        self.prompt.truncate(PROMPT);
-    }
-
     fn hear(&mut self, samples: &[f32]) -> ort::Result<Begun<'_>> {
         let most = (samples.len() as f32 / RATE as f32 * TOKENS_EACH_SECOND).ceil() as usize + MORE_TOKENS;
         let sound = self.mel.loudness(samples);
@@ -140,14 +106,12 @@ impl Model for Whisper {
         let outputs = self.encoder.run(inputs)?;
         let encoded = Encoded::of(&outputs[0], samples.len())?;
         drop(outputs);
-        let before = self.before();
-        let steps = self.decoder.begin(encoded, &before)?;
+        let steps = self.decoder.begin(encoded, &self.marks.begin)?;
         if steps.tokens() != self.marks.all {
             let (all, known) = (steps.tokens(), self.marks.all);
             return Err(ort::Error::new(format!("it has {all} tokens, those beside it are of a model with {known}")));
         }
-        let begins = before.len() - self.marks.begin.len();
-        let silence = self.marks.silence.map_or(0.0, |silence| chance(steps.after(begins), silence));
+        let silence = self.marks.silence.map_or(0.0, |silence| chance(steps.after_first(), silence));
         Ok(Begun { steps, tokens: &self.tokens, most, silence })
     }
 }
@@ -167,7 +131,6 @@ impl Marks {
         let names = ["<|startoftranscript|>"].iter().chain(told).chain(&["<|notimestamps|>"]);
         Some(Self {
             begin: names.map(|name| id(name)).collect::<Option<_>>()?,
-            before: id("<|startofprev|>"),
             silence: id("<|nospeech|>").or(id("<|nocaptions|>")),
             all: (id("<|notimestamps|>")? + 1 + TIMES) as usize,
         })
@@ -198,11 +161,6 @@ fn tokens(vocabulary: &Vocabulary) -> Option<Tokens> {
         _ => Spelt::mark(Comes::Never),
     };
     Some(Tokens::new(vocabulary.names().iter().enumerate().map(spelt).collect(), end))
-}
-
-fn spelt(vocabulary: &Vocabulary, end: i64) -> HashMap<Vec<u8>, i64> {
-    let names = vocabulary.names().into_iter().take(end as usize).zip(0..);
-    names.filter_map(|(name, token)| Some((bytes(name)?, token))).filter(|(bytes, _)| !bytes.is_empty()).collect()
 }
 
 /// Where a token of these bytes may come.

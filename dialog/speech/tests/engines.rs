@@ -202,8 +202,8 @@ const TOKENIZER: &str = "tokenizer.json";
 struct Folder(PathBuf);
 
 impl Folder {
-    fn of(files: &[(&str, Vec<u8>)]) -> Self {
-        let folder = std::env::temp_dir().join(format!("cohabit-whisper-{}", std::process::id()));
+    fn of(name: &str, files: &[(&str, Vec<u8>)]) -> Self {
+        let folder = std::env::temp_dir().join(format!("cohabit-whisper-{name}-{}", std::process::id()));
         let _ = fs::remove_dir_all(&folder);
         for (name, bytes) in files {
             let path = folder.join(name);
@@ -230,11 +230,12 @@ fn a_folder_with_whisper_is_opened_and_fails_on_nothing() {
     let file = |name: &str| fs::read(Path::new(WHISPER).join(name)).unwrap();
     // As it is, and as whole repositories of such models are laid out.
     let (encoder, decoder) = (file(ENCODER), file(DECODER));
-    let laid_out = Folder::of(&[
+    let files = [
         ("onnx/encoder_model_quantized.onnx", encoder),
         ("onnx/decoder_model_merged_quantized.onnx", decoder),
         (TOKENIZER, file(TOKENIZER)),
-    ]);
+    ];
+    let laid_out = Folder::of("laid-out", &files);
     let noise: Vec<f32> = (0..RATE * 2).map(|at| 0.3 * ((at * at % 977) as f32 / 977.0 - 0.5)).collect();
     let mut found = Vec::new();
     for folder in [Path::new(WHISPER), &laid_out.0] {
@@ -248,7 +249,7 @@ fn a_folder_with_whisper_is_opened_and_fails_on_nothing() {
         assert!(recognizer.recognize(&[]).unwrap().hypotheses.is_empty());
         recognizer.recognize(&[0.1; RATE as usize * 31]).unwrap();
         let plain = recognizer.recognize(&noise).unwrap();
-        assert!(plain.raw.chars().all(|c| !c.is_control()) && !plain.raw.contains("<|"), "{}", plain.raw);
+        assert!(!plain.raw.is_empty() && !plain.raw.contains("<|"), "{}", plain.raw);
         recognizer.bias(&office());
         let biased = recognizer.recognize(&noise).unwrap();
         assert_eq!(recognizer.recognize(&noise).unwrap(), biased);
@@ -267,7 +268,7 @@ fn what_is_wrong_with_a_folder_is_named() {
         let mut files = [ENCODER, DECODER, TOKENIZER].map(|name| (name, file(name))).to_vec();
         files.retain(|(name, _)| *name != changed);
         files.extend(bytes.map(|bytes| (changed, bytes)));
-        let folder = Folder::of(&files);
+        let folder = Folder::of("wrong", &files);
         let engines = heard_with(&settings, &folder.0);
         let [lack] = &engines.lacks[..] else { panic!("{changed}: {:?}", engines.lacks) };
         let path = folder.0.join(named).display().to_string();
