@@ -21,7 +21,8 @@ pub struct Turns {
     pub before_s: f32,
     /// After so much silence it is asked whether the sentence is complete: what answers may take the time until the turn ends.
     pub asks_after_s: f32,
-    /// So much silence ends a turn whose sentence is complete.
+    /// So much silence ends a turn whose sentence is complete: as much as finding that out takes. Who makes such a pause in the
+    /// middle of what they say goes on with it, where [`Turns::joins_s`] has them.
     pub complete_after_s: f32,
     /// So much silence ends any turn.
     pub incomplete_after_s: f32,
@@ -40,8 +41,8 @@ impl Default for Turns {
             goes_on: 0.35,
             shortest_s: 0.12,
             before_s: 0.3,
-            asks_after_s: 0.12,
-            complete_after_s: 0.24,
+            asks_after_s: 0.06,
+            complete_after_s: 0.19,
             incomplete_after_s: 0.56,
             joins_s: 0.0,
             partial_every_s: 0.5,

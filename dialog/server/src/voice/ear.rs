@@ -30,10 +30,6 @@ const LONGEST_PIECE: usize = 2 * RATE as usize;
 const MOST_WAITING: usize = 256;
 /// How often what was said so far is told, s.
 const PARTIAL_EVERY_S: f32 = 0.32;
-/// As soon as nobody speaks it is recognised what was said, s: that takes as long as the shortest pause that ends a turn. Who
-/// makes a longer one in the middle of what they say goes on with it: see [`JOINS_S`].
-const ASKS_AFTER_S: f32 = 0.06;
-const COMPLETE_AFTER_S: f32 = 0.19;
 /// While a robot is at work, what was said last is listened to for a stop so often, and so much of it, s: a word, and what it may
 /// stand in.
 const WATCH_EVERY_S: f32 = 0.128;
@@ -219,13 +215,7 @@ impl EarAt {
         self.tell(told);
         let Some((recognizer, vad)) = opened else { return };
         let joins_s = self.voice.config.edit.as_secs_f32().min(JOINS_S);
-        let turns = Turns {
-            partial_every_s: PARTIAL_EVERY_S,
-            asks_after_s: ASKS_AFTER_S,
-            complete_after_s: COMPLETE_AFTER_S,
-            joins_s,
-            ..Turns::default()
-        };
+        let turns = Turns { partial_every_s: PARTIAL_EVERY_S, joins_s, ..Turns::default() };
         let readings = Readings::default();
         let attentive = Attentive { recognizer: recognizer.clone(), readings: Arc::clone(&readings) };
         let microphone = self.voice.bus.publisher(Topic::Microphone);
