@@ -39,7 +39,7 @@ fn office() -> Bias {
         things: names(&["bowl", "mug", "milk", "cereal box"]),
         places: names(&["table", "fridge", "microwave", "sink"]),
         rooms: names(&["break room", "main office", "quantum lab"]),
-        words: Vec::new(),
+        ..Scene::default()
     })
 }
 
