@@ -372,10 +372,10 @@ mod tests {
         assert_eq!(hushed.len(), 200);
         let last = |piece: &Vec<u8>| turn(piece) == 1_000 && piece[1] == 1;
         pieces.extend(std::iter::from_fn(|| Some(played.recv_timeout(LONG).unwrap()).filter(|piece| !last(piece))));
-        for piece in pieces {
+        for piece in pieces.iter().filter(|piece| turn(piece) <= 200) {
             let saying = u64::from_le_bytes(piece[16..24].try_into().unwrap());
-            let hushed = hushed[turn(&piece) as usize - 1];
-            assert!(saying <= hushed, "turn {} is heard as saying {saying}, after {hushed}", turn(&piece));
+            let hushed = hushed[turn(piece) as usize - 1];
+            assert!(saying <= hushed, "turn {} is heard as saying {saying}, after {hushed}", turn(piece));
         }
     }
 
