@@ -186,6 +186,12 @@ impl Lexicon {
         for (table, entry) in plain {
             entry.words.iter().for_each(|word| table.insert(word, ()));
         }
+        // `what i would like you to do is …`
+        file.talk
+            .words
+            .iter()
+            .filter(|said| said.starts_with("what "))
+            .for_each(|said| self.talk.insert(&format!("{said} is"), ()));
         file.conditions.holds.iter().for_each(|words| self.conditions.insert(words, true));
         file.conditions.fails.iter().for_each(|words| self.conditions.insert(words, false));
         add_all(&mut self.pronouns, &file.pronouns);
@@ -365,4 +371,16 @@ fn state_word(flag: &str) -> Option<StateWord> {
 
 fn parse<T: serde::de::DeserializeOwned>(text: &str) -> T {
     toml::from_str(text).expect("invariant: the built-in tables parse, the tests load them")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_verbs_have_a_manner() {
+        let lexicon = Lexicon::new(&Catalog::builtin());
+        let strange: Vec<_> = lexicon.manners.phrases().filter(|verb| lexicon.verbs.exact(verb).is_none()).collect();
+        assert!(strange.is_empty(), "{strange:?}");
+    }
 }
