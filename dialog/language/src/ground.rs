@@ -267,7 +267,13 @@ impl<'a> Ground<'a> {
             std::iter::once(&class.name).chain(&class.words).any(ends)
         };
         let mut base: Vec<&KnownObject> = self.scene.objects.iter().filter(is_kind).collect();
-        base.retain(|object| Some(object.id) != want.exclude && !phrase.excluded.contains(&object.id));
+        let affords = |object: &KnownObject| {
+            let class = self.catalog.class(object.class);
+            want.affordances.is_empty() || want.affordances.iter().any(|affordance| class.has(*affordance))
+        };
+        base.retain(|object| {
+            Some(object.id) != want.exclude && !phrase.excluded.contains(&object.id) && affords(object)
+        });
         let left: Vec<&KnownObject> = base.iter().filter(|object| self.is_as_said(phrase, object)).copied().collect();
         (!left.is_empty()).then_some(Described { base, left })
     }
