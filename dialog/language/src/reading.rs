@@ -79,6 +79,8 @@ pub(crate) fn read_as(
     let mut reader = Reader::new(lexicon, words);
     reader.at = verb_length;
     match intent {
+        // `go back one meter`: no way to a thing of that name.
+        Intent::GoTo if matches!(amount(lexicon, reader.rest()), Some(Amount::Meters(_))) => return None,
         Intent::GoTo => clause.places.push((Preposition::To, reader.destination()?)),
         Intent::Travel | Intent::Turn | Intent::Look => read_motion(&mut reader, &mut clause),
         _ => read_objects(&mut reader, &mut clause),

@@ -300,7 +300,7 @@ fn made_first(lexicon: &Lexicon, words: &[String]) -> Option<Vec<String>> {
     let (length, verb) = lexicon.brings_about.longest(words)?;
     let (thing, left) = thing(lexicon, &words[length..])?;
     // `make hot coffee`: that is made.
-    let has_article = lexicon.articles.exact(&thing[..1]).is_some();
+    let has_article = thing.first().is_some_and(|first| lexicon.articles.exact(std::slice::from_ref(first)).is_some());
     has_article.then(|| finish(lexicon, verb.clone(), thing, left)).flatten()
 }
 

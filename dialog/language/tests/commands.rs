@@ -75,6 +75,9 @@ fn moving_by_itself() {
         "move forward -> move 1.00
         go forward 2 meters -> move 2.00
         move back two steps -> move -1.00
+        go back one meter -> move -1.00
+        go back a meter -> move -1.00
+        step back one meter please -> move -1.00
         walk forward 3m -> move 3.00
         step back half a meter -> move -0.50
         move forward one and a half meters -> move 1.50
