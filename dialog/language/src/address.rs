@@ -2,7 +2,7 @@
 
 use std::{collections::BTreeSet, ops::Range};
 
-use crate::spelling;
+use crate::{spelling, token::NUMBERS};
 
 /// What may stand before a name that is called.
 const CALLS: &[&str] =
@@ -31,7 +31,6 @@ const ALL: &[&[&str]] = &[
     &["everyone"],
     &["robots"],
 ];
-const NUMBERS: &[&str] = &["zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine"];
 const ORDINALS: &[&str] =
     &["zeroth", "first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth"];
 /// A name of fewer letters must be spelt as it is.

@@ -8,6 +8,7 @@ use cohabit_cdf::{
 use crate::{
     known::{Known, KnownObject},
     phrase::Phrase,
+    token::NUMBERS,
 };
 
 /// States worth saying when they tell two objects apart.
@@ -238,11 +239,10 @@ pub(crate) fn indefinite(noun: &str) -> String {
 
 /// So many of a noun, in words: `an apple`, `two apples`.
 pub(crate) fn counted(noun: &str, count: usize) -> String {
-    const NUMBERS: [&str; 8] = ["two", "three", "four", "five", "six", "seven", "eight", "nine"];
     if count < 2 {
         return indefinite(noun);
     }
-    let number = NUMBERS.get(count - 2).map_or_else(|| count.to_string(), |number| (*number).to_owned());
+    let number = NUMBERS.get(count).map_or_else(|| count.to_string(), |number| (*number).to_owned());
     if MASS.contains(&noun) {
         return format!("{number} times {noun}");
     }

@@ -1,6 +1,6 @@
 //! All words the robot understands: its own tables, and the names of the catalogue's classes.
 
-use std::collections::BTreeSet;
+use std::{collections::BTreeSet, sync::Arc};
 
 use cohabit_cdf::{ClassId, Fluid, RoomId, state::StateFlag};
 use serde::{Deserialize, Serialize};
@@ -188,6 +188,8 @@ pub(crate) struct Lexicon {
     /// All words that name a class, by its index.
     pub(crate) class_words: Vec<BTreeSet<String>>,
     pub(crate) vocabulary: Vocabulary,
+    /// All words of the vocabulary, for who hears them.
+    pub(crate) known: Arc<BTreeSet<String>>,
     pub(crate) wishes: Wishes,
     pub(crate) amends: Amends,
     pub(crate) chatter: Chatter,

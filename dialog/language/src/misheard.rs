@@ -7,7 +7,7 @@ use serde::Deserialize;
 
 use crate::{
     sound::{self, Sounding},
-    token,
+    token::{self, NUMBERS},
 };
 
 /// How differently a name may sound, for each of its sounds: where a word heard is none, and where all are.
@@ -104,9 +104,6 @@ impl Misheard {
         Some(sounds)
     }
 }
-
-/// Digits as they are said.
-const NUMBERS: [&str; 10] = ["zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine"];
 
 fn near<'a>(table: &'a Sounding, sounds: &[char], each: f32) -> Vec<(f32, &'a str)> {
     let limit = each * sounds.len() as f32;

@@ -1,7 +1,7 @@
 //! What recognisers of speech must know of the language: what there is to speak of, whether a sentence is complete, and
 //! whether it says stop.
 
-use std::collections::BTreeSet;
+use std::{collections::BTreeSet, sync::Arc};
 
 use cohabit_cdf::{Property, RoomId};
 
@@ -26,7 +26,7 @@ pub struct SpokenNames {
     /// Rooms.
     pub rooms: BTreeSet<String>,
     /// All other words that the robot knows.
-    pub words: BTreeSet<String>,
+    pub words: Arc<BTreeSet<String>>,
 }
 
 /// Words that say stop wherever they stand, and those that do first, or in few words.
@@ -79,7 +79,7 @@ impl Language {
             into.extend(std::iter::once(&class.name).chain(&class.words).map(|name| name.to_lowercase()));
         }
         names.rooms = RoomId::ALL.iter().map(|room| room.name().to_lowercase()).collect();
-        names.words = self.lexicon.vocabulary.words().cloned().collect();
+        names.words = Arc::clone(&self.lexicon.known);
         names
     }
 

@@ -3,6 +3,9 @@
 /// Longest utterance taken, in characters; what people type is ten times shorter.
 pub(crate) const MAX_CHARS: usize = 1000;
 
+/// Digits as they are said.
+pub(crate) const NUMBERS: [&str; 10] = ["zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine"];
+
 /// Whether a word is punctuation that ends a sentence.
 pub(crate) fn ends_sentence(word: &str) -> bool {
     matches!(word, "." | "!" | "?" | ";" | ":")

@@ -1,6 +1,9 @@
 //! The tables of words as they lie in `data`, and how they come into the lexicon.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    sync::Arc,
+};
 
 use cohabit_cdf::{Catalog, Fluid, Property, RoomId, state::StateFlag};
 use serde::Deserialize;
@@ -352,6 +355,7 @@ impl Lexicon {
         self.chat.words().for_each(|word| vocabulary.learn_plain(word));
         include_str!("../data/common.txt").split_whitespace().for_each(|word| vocabulary.learn_plain(word));
         include_str!("../data/ordinary.txt").split_whitespace().for_each(|word| vocabulary.learn_ordinary(word));
+        self.known = Arc::new(vocabulary.words().cloned().collect());
         self.vocabulary = vocabulary;
     }
 }

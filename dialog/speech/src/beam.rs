@@ -10,6 +10,8 @@ use crate::{
 /// How many spellings are followed at once, and how many tokens each may go on with.
 const BEAM: usize = 8;
 const BRANCHES: usize = 16;
+/// How much say the language model has, λ.
+const LAMBDA: f32 = 0.35;
 /// What speaks for each word, β: without it the language model has the short win, as each of their words costs.
 const WORD: f32 = 1.0;
 /// What goes on is followed until it is so much less likely than the best that is done.
@@ -40,9 +42,8 @@ pub(crate) struct Search<'s> {
     /// The decoder, after its first step.
     pub(crate) steps: Steps<'s>,
     pub(crate) tokens: &'s Tokens,
-    /// What is likely to be said, and how much say it has.
+    /// What is likely to be said.
     pub(crate) model: Option<&'s NGram>,
-    pub(crate) lambda: f32,
 }
 
 impl Spelling {
@@ -120,7 +121,7 @@ impl Search<'_> {
             model.so_far(&spelling.place)
         };
         let words = spelling.place.words().split_whitespace().count() as f32;
-        spelling.score = spelling.by_sound + self.lambda * by_model + WORD * words;
+        spelling.score = spelling.by_sound + LAMBDA * by_model + WORD * words;
     }
 
     /// The best spellings that go on from those of the beam; what ends goes to those that are done.

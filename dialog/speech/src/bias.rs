@@ -1,6 +1,6 @@
 //! What is likely to be said.
 
-use std::collections::BTreeSet;
+use std::{collections::BTreeSet, sync::Arc};
 
 /// Shapes of what people say to a robot, with slots for what is there.
 const REQUESTS: &str = include_str!("../data/requests.txt");
@@ -23,7 +23,7 @@ pub struct Bias {
     /// Sentences that are likely, each as it would be typed. How often one stands here is how likely it is.
     pub sentences: Vec<String>,
     /// Words that are as unlikely as any other, but would be understood.
-    pub known: BTreeSet<String>,
+    pub known: Arc<BTreeSet<String>>,
 }
 
 impl Bias {
@@ -32,13 +32,13 @@ impl Bias {
     pub fn of(sentences: impl IntoIterator<Item = impl Into<String>>) -> Self {
         let sentences: Vec<String> = sentences.into_iter().map(Into::into).collect();
         let words = sentences.iter().flat_map(|sentence| words(sentence)).collect();
-        Self { words, sentences, known: BTreeSet::new() }
+        Self { words, sentences, known: Arc::default() }
     }
 
     /// What is said to a robot that knows of these: requests, questions and answers.
     #[must_use]
     pub fn of_scene(scene: &Scene) -> Self {
-        Self { known: scene.known.clone(), ..Self::shaped(REQUESTS, scene) }
+        Self { known: Arc::clone(&scene.known), ..Self::shaped(REQUESTS, scene) }
     }
 
     /// Shapes with slots, one a line, filled with what is there; `=` begins a line of words, `#` one that says nothing.
@@ -76,7 +76,7 @@ pub struct Scene {
     /// Other words that may be said: names of robots and people, what goals speak of.
     pub words: Vec<String>,
     /// All other words that are understood, in small letters.
-    pub known: BTreeSet<String>,
+    pub known: Arc<BTreeSet<String>>,
 }
 
 impl Scene {
@@ -141,7 +141,7 @@ mod tests {
             places: owned(&["sink", "table", "fridge"]),
             rooms: owned(&["lab"]),
             words: owned(&["Rosie"]),
-            known: BTreeSet::new(),
+            known: Arc::default(),
         };
         let shapes = "# going\ngo to the {room}\nput the {thing} on the {place}\nfly {nowhere}\nfind a {thing}\nstop\n= uh, please";
         let bias = Bias::shaped(shapes, &scene);

@@ -10,7 +10,7 @@ use crate::{
     audio::tame,
     decoder::{Decoder, Encoded},
     model::Parts,
-    speller::{Begun, Model},
+    speller::{Begun, Model, most_tokens},
     tokens::{BEGIN, Tokens},
 };
 
@@ -21,8 +21,6 @@ pub(crate) const SOUND: &str = "input_values";
 
 /// Shorter sounds are filled up with silence: the model makes nothing of them otherwise.
 const SHORTEST: usize = RATE as usize / 2;
-/// The model repeats itself where it is lost; nobody says more tokens a second than this.
-const TOKENS_EACH_SECOND: f32 = 6.5;
 
 /// An opened model.
 pub(crate) struct Moonshine {
@@ -45,16 +43,13 @@ impl Moonshine {
 impl Model for Moonshine {
     const NAME: &'static str = "Moonshine";
     const LONGEST: usize = 30 * RATE as usize;
-    const LAMBDA: f32 = 0.35;
-    const CLEAR: f32 = 0.6;
-    const AROUND: usize = RATE as usize / 5;
     const HAS_PARTIAL: bool = true;
 
     fn hear(&mut self, samples: &[f32]) -> ort::Result<Begun<'_>> {
         let mut sound: Vec<f32> = samples.iter().map(|sample| tame(*sample)).collect();
         sound.resize(sound.len().max(SHORTEST), 0.0);
         let length = sound.len();
-        let most = (length as f32 / RATE as f32 * TOKENS_EACH_SECOND).ceil() as usize;
+        let most = most_tokens(length);
         let inputs: Vec<(&str, SessionInputValue<'_>)> = vec![
             (SOUND, Tensor::from_array(([1, length], sound))?.into()),
             ("attention_mask", Tensor::from_array(([1, length], vec![1i64; length]))?.into()),

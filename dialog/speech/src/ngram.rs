@@ -6,6 +6,7 @@
 use std::{
     collections::{BTreeMap, BTreeSet, HashMap},
     ops::Range,
+    sync::Arc,
 };
 
 use crate::{Bias, bias};
@@ -37,7 +38,7 @@ pub(crate) struct NGram {
     after_one: HashMap<Word, Follows>,
     after_two: HashMap<[Word; 2], Follows>,
     /// Words that are not known here, but to who hears them.
-    understood: BTreeSet<String>,
+    understood: Arc<BTreeSet<String>>,
 }
 
 /// Where in a sentence one is: the two words before, and how a word begins that is not complete.
@@ -73,7 +74,7 @@ impl NGram {
             single: Follows::default(),
             after_one: HashMap::new(),
             after_two: HashMap::new(),
-            understood: bias.known.clone(),
+            understood: Arc::clone(&bias.known),
         };
         for sentence in &sentences {
             model.count(sentence);
@@ -239,7 +240,7 @@ mod tests {
         let check = |text: &str, expected: usize| assert_eq!(model().strange(text), expected, "{text}");
         check("Pick up the fridge.", 0);
         check("Pick up the pole, 30 zebras", 2);
-        let bias = Bias { known: ["pole".to_owned()].into(), ..Bias::of(["pick up the mug"]) };
+        let bias = Bias { known: Arc::new(["pole".to_owned()].into()), ..Bias::of(["pick up the mug"]) };
         assert_eq!(NGram::of(&bias).unwrap().strange("Pick up the pole, 30 zebras"), 1);
     }
 

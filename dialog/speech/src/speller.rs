@@ -18,6 +18,11 @@ use crate::{
 
 /// What is longer is no request, and spelt greedily alone: a beam takes six times as long.
 const REQUEST: usize = 12 * RATE as usize;
+/// What fits the sound less well is listened to once more, with so much silence around it, samples.
+const CLEAR: f32 = 0.6;
+const AROUND: usize = RATE as usize / 5;
+/// Models repeat themselves where they are lost; nobody says more tokens a second than this.
+const TOKENS_EACH_SECOND: f32 = 6.5;
 /// Where it is this likely that nothing was said, nothing was: of silence and noise Whisper says so with 0.75 to 0.95, of speech in
 /// noise 5 dB below it with 0.5 at most.
 const SILENT: f32 = 0.8;
@@ -31,11 +36,6 @@ pub(crate) trait Model: Send {
     const NAME: &'static str;
     /// Longer sounds are parted, where they are quietest: samples.
     const LONGEST: usize;
-    /// How much say the language model has.
-    const LAMBDA: f32;
-    /// What fits the sound less well is listened to once more, with so much silence around it, samples.
-    const CLEAR: f32;
-    const AROUND: usize;
     /// Whether a part of an utterance takes less time than all of it.
     const HAS_PARTIAL: bool;
 
@@ -58,6 +58,11 @@ pub(crate) struct Speller<M> {
     model: M,
     likely: Option<NGram>,
     name: String,
+}
+
+/// The most tokens that are said in so many samples.
+pub(crate) fn most_tokens(samples: usize) -> usize {
+    (samples as f32 / RATE as f32 * TOKENS_EACH_SECOND).ceil() as usize
 }
 
 /// An utterance as it was spelt.
@@ -91,7 +96,7 @@ impl<M: Model> Speller<M> {
 
     fn spell(&mut self, samples: &[f32], with_beam: bool) -> ort::Result<Written> {
         let Begun { steps, tokens, most, silence } = self.model.hear(samples)?;
-        let search = Search { steps, tokens, model: self.likely.as_ref(), lambda: M::LAMBDA };
+        let search = Search { steps, tokens, model: self.likely.as_ref() };
         let Spelt { greedy, others } = search.run(most, with_beam)?;
         let text = |spelling: Spelling| (tokens.text(&spelling.tokens), spelling);
         Ok(Written { greedy: text(greedy), others: others.into_iter().map(text).collect(), silence })
@@ -103,11 +108,11 @@ impl<M: Model> Speller<M> {
         let is_short = self.likely.is_some() && samples.len() <= REQUEST;
         let heard = self.spell(samples, is_short)?;
         let heard = self.recognition(heard);
-        let is_doubtful = |first: &Hypothesis| first.strange > 0 || first.confidence < M::CLEAR;
+        let is_doubtful = |first: &Hypothesis| first.strange > 0 || first.confidence < CLEAR;
         if !is_short || !heard.hypotheses.first().is_some_and(is_doubtful) {
             return Ok(heard);
         }
-        let around = vec![0.0; M::AROUND];
+        let around = [0.0; AROUND];
         let again = self.spell(&[&around, samples, &around].concat(), true)?;
         let again = self.recognition(again);
         let hypotheses = ordered(heard.hypotheses.into_iter().chain(again.hypotheses));

@@ -13,13 +13,13 @@ use ort::{
 use serde::Deserialize;
 
 use crate::{
-    RATE, SpeechError,
+    SpeechError,
     decoder::{Decoder, Encoded},
     engines::INSTALL,
     mel::{self, Mel},
     model::Parts,
     onnx,
-    speller::{Begun, Model},
+    speller::{Begun, Model, most_tokens},
     tokens::{Comes, Spelt, Tokens},
     vocabulary::{TOKENIZER, Vocabulary, bytes},
 };
@@ -33,8 +33,7 @@ const BANDS: usize = 80;
 const ENGLISH_END: i64 = 50_256;
 /// Times that a transcript may tell, 0.00 to 30.00 s, have tokens of their own after all others.
 const TIMES: i64 = 1_501;
-/// The model repeats itself where it is lost; nobody says more tokens a second than this, and two more for a word cut short.
-const TOKENS_EACH_SECOND: f32 = 6.5;
+/// So many tokens more than are said there may be, for a word cut short.
 const MORE_TOKENS: usize = 2;
 
 /// What is written and never spoken (`non_speech_tokens` of Whisper's makers), alone or after a space.
@@ -92,14 +91,11 @@ impl Whisper {
 impl Model for Whisper {
     const NAME: &'static str = "Whisper";
     const LONGEST: usize = mel::LENGTH;
-    const LAMBDA: f32 = 0.35;
-    const CLEAR: f32 = 0.6;
-    const AROUND: usize = RATE as usize / 5;
     // Whatever is said, the encoder hears 30 seconds.
     const HAS_PARTIAL: bool = false;
 
     fn hear(&mut self, samples: &[f32]) -> ort::Result<Begun<'_>> {
-        let most = (samples.len() as f32 / RATE as f32 * TOKENS_EACH_SECOND).ceil() as usize + MORE_TOKENS;
+        let most = most_tokens(samples.len()) + MORE_TOKENS;
         let sound = self.mel.loudness(samples);
         let sound = TensorRef::from_array_view(([1, self.bands, mel::MOMENTS], &sound[..]))?;
         let inputs: Vec<(&str, SessionInputValue<'_>)> = vec![(SOUND, sound.into())];
