@@ -60,7 +60,8 @@ pub(crate) fn taken_over(lexicon: &Lexicon, words: &[String]) -> Option<usize> {
 
 /// `i was told to chill the banana but I have no time, can you do it`: what was told is asked for, where it is handed over.
 pub(crate) fn told_to_take_over(lexicon: &Lexicon, words: Vec<String>) -> Vec<String> {
-    let is_asked = |at: usize| at > 0 && lexicon.lead.exact(&words[at - 1..at]).is_some();
+    let begins = |before: &[String]| token::is_punctuation(&before[0]) || lexicon.lead.exact(before).is_some();
+    let is_asked = |at: usize| begins(&words[at - 1..at]);
     let Some(end) = (1..words.len()).find(|at| is_asked(*at) && taken_over(lexicon, &words[*at..]).is_some()) else {
         return words;
     };

@@ -404,6 +404,7 @@ fn what_was_told_and_handed_over_is_asked_once() {
         "I'm supposed to chill the banana but I have no time, can you do it -> take Banana_01_1, open FridgeUpper_02_1, put FridgeUpper_02_1…
         I have to wash the plate. take care of that for me -> take FoodPlate_01_1, toggle KitchenCounterSink_01_1, clean KitchenCounterSink_01_1
         i was told to scan the hammer so please handle it -> scan Hammer_1
+        I was told to scan the hammer, take care of that for me -> scan Hammer_1
         I need you to open the microwave -> open Microwave_01_1
         I left the cereal box out, can you move it to the table? -> take Cereal_Box_01_1, put TableRound_02_1
         go to the kitchen with the hammer -> take Hammer_1, go BreakRoom
