@@ -21,7 +21,7 @@ use crate::{
     command::{Command, Destination, Perspective, SIDE_PX},
     object::robot_id,
     pictures::{PictureError, Pictures},
-    reply::Reply,
+    reply::{End, LastAction, Reply},
 };
 
 /// The robot that clients command.
@@ -68,8 +68,15 @@ pub enum GameError {
     NoFrame(CameraId),
 }
 
-/// What came of a command: its status and a sentence.
-type End = (Status, String);
+/// What came of a batch.
+struct Batch {
+    /// Of the last command that was carried out.
+    end: End,
+    /// That command.
+    last_action: LastAction,
+    /// The lens of the look around that it was, if it was one.
+    around: Option<Lens>,
+}
 
 /// Why a command does not get to the world.
 enum Failure {
@@ -132,12 +139,13 @@ impl Game {
     /// # Errors
     /// [`GameError`]; the game is over then.
     pub fn play(&mut self, batch: &[Value]) -> Result<Reply, GameError> {
-        let ((status, detail), around) = self.run(batch)?;
+        let Batch { end, last_action, around } = self.run(batch)?;
+        let (status, detail) = &end;
         if !status.is_success() {
             tracing::info!("{status:?}: {detail}");
         }
         self.keep(Recording::flush);
-        self.reply(status, detail, around)
+        self.reply(end, last_action, around)
     }
 
     /// Answers what is no batch, and changes nothing.
@@ -145,33 +153,39 @@ impl Game {
     /// # Errors
     /// [`GameError`]; the game is over then.
     pub fn refuse(&mut self, status: Status, problem: String) -> Result<Reply, GameError> {
-        self.reply(status, problem, None)
+        self.reply((status, problem), LastAction::default(), None)
     }
 
-    fn reply(&mut self, status: Status, detail: String, around: Option<Lens>) -> Result<Reply, GameError> {
+    fn reply(&mut self, end: End, last_action: LastAction, around: Option<Lens>) -> Result<Reply, GameError> {
         let pictures = self.look(around)?;
-        Ok(Reply::new(status, detail, self.world(), BODY, pictures))
+        Ok(Reply::new(end, last_action, self.world(), BODY, pictures))
     }
 
-    /// What came of the last command that was carried out, and the lens of the look around that it was, if it was one.
-    fn run(&mut self, batch: &[Value]) -> Result<(End, Option<Lens>), GameError> {
-        if batch.len() > MOST_COMMANDS {
-            let problem = format!("{} commands in one batch: at most {MOST_COMMANDS}", batch.len());
-            return Ok(((Status::IncorrectActionFormat, problem), None));
+    /// Carries out the commands of a batch up to the first that fails.
+    fn run(&mut self, commands: &[Value]) -> Result<Batch, GameError> {
+        let mut batch =
+            Batch { end: done("there was nothing to do"), last_action: LastAction::default(), around: None };
+        if commands.len() > MOST_COMMANDS {
+            let problem = format!("{} commands in one batch: at most {MOST_COMMANDS}", commands.len());
+            return Ok(Batch { end: (Status::IncorrectActionFormat, problem), ..batch });
         }
-        let (mut end, mut around) = (done("there was nothing to do"), None);
-        for (index, value) in batch.iter().enumerate() {
-            let command = match Command::read(index, value) {
-                Ok(command) => command,
-                Err(error) => return Ok(((error.status, error.to_string()), None)),
+        for (index, value) in commands.iter().enumerate() {
+            let command = Command::read(index, value);
+            batch.end = match &command {
+                Ok(command) => self.carry_out(index, command)?,
+                Err(error) => (error.status, error.to_string()),
             };
-            end = self.carry_out(index, &command)?;
-            if !end.0.is_success() {
-                return Ok((end, None));
+            let is_last = index + 1 == commands.len() || !batch.end.0.is_success();
+            if is_last {
+                batch.last_action = LastAction::of(index, value);
+                batch.around = match command {
+                    Ok(Command::LookAround { lens, .. }) if batch.end.0.is_success() => Some(lens),
+                    _ => None,
+                };
+                break;
             }
-            around = if let Command::LookAround { lens, .. } = command { Some(lens) } else { None };
         }
-        Ok((end, around))
+        Ok(batch)
     }
 
     /// The world as it is.

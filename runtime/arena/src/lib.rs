@@ -3,7 +3,9 @@
 //! A client connects by TCP. Each message, both ways, is four bytes of length, little-endian, and so many bytes of JSON
 //! ([`Inbox`], [`framed`]). A JSON object with a `scene` is a mission (CDF): it starts the game anew and has no answer. A
 //! JSON array is a batch of commands: they are carried out in order, each until its outcome, up to the first that fails,
-//! and answered by one object with what came of the last, the pictures, all objects and the goals.
+//! and answered by one object with what came of the last, the pictures, all objects and the goals. `lastAction`, a text of
+//! JSON, is the command that `lastActionSuccess` is of, with its place in the batch (`commandNum`, from 0; -1 if none was
+//! carried out).
 //!
 //! Simulated time goes by only while a batch is carried out, as fast as the machine can, and a moment after each act of
 //! the hand. A game outlives its connection: who reconnects goes on with it. Each game is recorded in a log of its own,

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use cohabit_cdf::{BodyId, Status};
 use cohabit_world::World;
 use serde::Serialize;
+use serde_json::{Map, Value};
 
 use crate::{
     axes::Place,
@@ -12,11 +13,15 @@ use crate::{
     pictures::Pictures,
 };
 
+/// What came of a command: its status and a sentence.
+pub type End = (Status, String);
+
 /// The answer to a batch. Every field is always there; without a game the lists are empty.
 #[derive(Debug, Default, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub struct Reply {
     last_action_success: &'static str,
+    last_action: LastAction,
     /// Beyond what clients of the reference know: what came of the last command, or what is wrong, for people.
     message: String,
     color_image: Vec<String>,
@@ -27,6 +32,32 @@ pub struct Reply {
     agent: AgentRecord,
     scene_metadata: SceneRecord,
     challenge_progress: ProgressRecord,
+}
+
+/// The command that the status is of, as a text of JSON: the command as it was sent, with `commandNum`, its place in the
+/// batch from 0, and `commandType`. Where no command was carried out, they are -1 and empty.
+#[derive(Debug, Serialize)]
+#[serde(transparent)]
+pub struct LastAction(String);
+
+impl LastAction {
+    /// The command at `index` of a batch.
+    pub fn of(index: usize, command: &Value) -> Self {
+        Self::with(Value::from(index), command.as_object().cloned().unwrap_or_default())
+    }
+
+    fn with(index: Value, mut fields: Map<String, Value>) -> Self {
+        let kind = fields.get("commandType").and_then(Value::as_str).unwrap_or_default().to_owned();
+        fields.insert("commandNum".to_owned(), index);
+        fields.insert("commandType".to_owned(), kind.into());
+        Self(Value::Object(fields).to_string())
+    }
+}
+
+impl Default for LastAction {
+    fn default() -> Self {
+        Self::with(Value::from(-1), Map::new())
+    }
 }
 
 #[derive(Debug, Default, Serialize)]
@@ -66,11 +97,13 @@ impl Reply {
     }
 
     /// What came of a batch, and the world after it as `body` sees it.
-    pub fn new(status: Status, message: String, world: &World, body: BodyId, pictures: Pictures) -> Self {
+    pub fn new(end: End, last_action: LastAction, world: &World, body: BodyId, pictures: Pictures) -> Self {
+        let (status, message) = end;
         let Pictures { color, depth, normals, instances } = pictures;
         let held = world.body(body).and_then(|body| body.held).and_then(|held| world.object(held));
         Self {
             last_action_success: name(status),
+            last_action,
             message,
             color_image: color,
             depth_image: depth,

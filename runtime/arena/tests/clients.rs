@@ -140,6 +140,7 @@ fn a_mask_agent_in_python_plays_a_mission() {
     assert_eq!(result["goals"], Value::from(vec![true; 3]));
     assert!(result["masks"].as_u64().unwrap() >= 10);
     assert_eq!(result["nothing"], "InvalidObjectClass");
+    assert_eq!(result["third"], serde_json::json!([false, "two"]));
     assert!(result["relaunched"].as_array().unwrap().contains(&Value::from(false)));
     assert_eq!((&result["carried_on"], &result["again"][0]), (&Value::from(true), &Value::from(false)));
     assert_eq!(result["second"], "ActionSuccessful");

@@ -64,6 +64,7 @@ class Orchestrator:
 
     def __init__(self, port):
         self.port, self.socket, self.response, self.segmentation = port, None, None, []
+        self.last_action = None
         self.builder = RequestBuilder(self)
         self.connect()
 
@@ -112,7 +113,11 @@ class Orchestrator:
     def execute(self, actions):
         """Does actions as a model emits them; says whether they succeeded."""
         commands = [self.builder.command(action) for action in actions]
-        return self.interact(commands)["lastActionSuccess"] in ("ActionSuccessful", "AlternateNavigationUsed")
+        response = self.interact(commands)
+        last = json.loads(response["lastAction"])
+        self.last_action = actions[last["commandNum"]]["id"]
+        assert last["commandType"] == commands[last["commandNum"]]["commandType"], last
+        return response["lastActionSuccess"] in ("ActionSuccessful", "AlternateNavigationUsed")
 
     def segmentation_images(self):
         if not self.segmentation:
@@ -187,7 +192,8 @@ class MaskAgent:
         done = self.orchestrator.execute([{"id": str(self.actions), "type": kind, kind.lower(): fields}])
         if not done:
             response = self.orchestrator.response
-            raise RuntimeError(f"{kind} {fields}: {response['lastActionSuccess']}: {response['message']}")
+            failed = self.orchestrator.last_action
+            raise RuntimeError(f"{failed}: {kind} {fields}: {response['lastActionSuccess']}: {response['message']}")
 
     def detect(self, kind):
         """The largest thing of a class in the last pictures, as an action's object; None if there is none."""
@@ -267,6 +273,10 @@ def main(port, mission, other):
     # A mask with no object on it.
     orchestrator.interact([{"commandType": "PickUp", "pickUpOrPlaceCommand": {"destinationObjectID": None}}])
     result["nothing"] = orchestrator.response["lastActionSuccess"]
+    # The third of five actions fails: the reply says which.
+    turns = [{"id": str(n), "type": "Rotate", "rotate": {"direction": "Right", "magnitude": 0}} for n in range(5)]
+    turns[2] = {"id": "two", "type": "Goto", "goto": {"object": {"officeRoom": "Attic"}}}
+    result["third"] = [orchestrator.execute(turns), orchestrator.last_action]
     # The same connection, another game.
     orchestrator.launch_game(other)
     result["relaunched"] = orchestrator.goals()

@@ -38,10 +38,17 @@ fn color(object: &Value) -> [u8; 4] {
     ["r", "g", "b", "a"].map(|channel| u8::try_from(channels[channel].as_u64().unwrap()).unwrap())
 }
 
+/// The last command that was carried out, as a client reads it: a text that is JSON itself.
+fn last_action(reply: &Value) -> Value {
+    serde_json::from_str(reply["lastAction"].as_str().unwrap()).unwrap()
+}
+
 /// Whether every field is there, of the right type, also where there is no game.
 fn check_form(reply: &Value) {
     let texts = |value: &Value| value.as_array().unwrap().iter().all(Value::is_string);
     assert!(reply["lastActionSuccess"].is_string() && reply["message"].is_string());
+    let last = last_action(reply);
+    assert!(last["commandNum"].is_i64() && last["commandType"].is_string(), "{last}");
     for field in ["colorImage", "depthImage", "normalsImage", "instanceSegmentationImage"] {
         assert!(texts(&reply[field]), "{field}");
     }
@@ -200,6 +207,44 @@ fn a_batch_stops_at_the_first_failure() {
     let many = vec![command("rotate 0"); 1001];
     let reply = client.batch(&many);
     assert!(reply["message"].as_str().unwrap().contains("at most 1000"), "{}", reply["message"]);
+}
+
+#[test]
+fn a_reply_names_the_last_command_that_was_carried_out() {
+    let check = |reply: &Value, number: i64, kind: &str, status: &str| {
+        let last = last_action(reply);
+        let found = (&last["commandNum"], &last["commandType"], &reply["lastActionSuccess"]);
+        assert_eq!(found, (&json!(number), &json!(kind), &json!(status)), "{}", reply["message"]);
+    };
+    let early = Client::new().batch(&[command("rotate 0")]);
+    check(&early, -1, "", "ArenaUnavailable");
+    let mut client = Client::launched(builtin("warm_coffee"));
+    let [turn, unknown] = [command("rotate 0"), command("goto Unicorn_01_1")];
+    let jump = json!({"commandType": "Jump"});
+    let around = json!({"commandType": "LookAround"});
+    let fails = "InvalidObjectClass";
+    let cases: [(&[&Value], i64, &str, &str); 8] = [
+        (&[], -1, "", OK),
+        (&[&turn], 0, "Rotate", OK),
+        (&[&turn, &turn, &around], 2, "LookAround", OK),
+        (&[&unknown, &turn], 0, "GoTo", fails),
+        (&[&turn, &around, &unknown, &turn, &turn], 2, "GoTo", fails),
+        (&[&turn, &jump, &turn], 1, "Jump", "InvalidCommand"),
+        (&[&turn, &json!({"commandType": 7})], 1, "", "IncorrectActionFormat"),
+        (&[&turn, &json!(7)], 1, "", "IncorrectActionFormat"),
+    ];
+    for (batch, number, kind, status) in cases {
+        let batch: Vec<Value> = batch.iter().map(|command| (*command).clone()).collect();
+        check(&client.batch(&batch), number, kind, status);
+    }
+    // What else the client wrote is told too, and it cannot give a command another number.
+    let sent = json!({"commandType": "Rotate", "magnitude": 15.0, "rotationSpeed": 45, "commandNum": 9});
+    let reply = client.batch(&[turn.clone(), sent]);
+    let expected = json!({"commandType": "Rotate", "magnitude": 15.0, "rotationSpeed": 45, "commandNum": 1});
+    assert_eq!(last_action(&reply), expected);
+    // None of a batch that is too long is carried out, nor anything of what is no batch.
+    check(&client.batch(&vec![turn; 1001]), -1, "", "IncorrectActionFormat");
+    check(&client.send(b"7").unwrap(), -1, "", "IncorrectActionFormat");
 }
 
 #[test]
