@@ -7,7 +7,35 @@ use crate::error::bad_argument;
 
 /// One thing that a body can be told to do; objects are given by their number.
 #[pyclass(frozen, name = "Action", module = "cohabit._native")]
-pub struct PyAction(pub Action);
+pub struct PyAction {
+    /// What is sent.
+    pub action: Action,
+    /// Why there is no object of the name that was given: the world refuses the action, and this is the reason.
+    pub unknown: Option<String>,
+}
+
+/// The object of an action: its number, or a sentence that says why there is none.
+#[derive(FromPyObject)]
+pub enum ObjectArgument {
+    /// Its number.
+    Number(u32),
+    /// Why there is none.
+    Unknown(String),
+}
+
+impl PyAction {
+    /// An action that is done to no object, or to one that is known.
+    pub const fn new(action: Action) -> Self {
+        Self { action, unknown: None }
+    }
+
+    fn on(object: ObjectArgument, action: impl FnOnce(ObjectId) -> Action) -> Self {
+        match object {
+            ObjectArgument::Number(number) => Self::new(action(ObjectId(number))),
+            ObjectArgument::Unknown(why) => Self { action: action(ObjectId(u32::MAX)), unknown: Some(why) },
+        }
+    }
+}
 
 /// The room that is called that in missions, in any case.
 fn room_of(id: &str) -> PyResult<RoomId> {
@@ -25,72 +53,72 @@ impl PyAction {
     #[staticmethod]
     #[pyo3(name = "move")]
     fn advance(distance_m: f32) -> PyResult<Self> {
-        Ok(Self(Action::Move { distance_m: finite("distance_m", distance_m)? }))
+        Ok(Self::new(Action::Move { distance_m: finite("distance_m", distance_m)? }))
     }
 
     #[staticmethod]
     fn rotate(yaw_rad: f32) -> PyResult<Self> {
-        Ok(Self(Action::Rotate { yaw_rad: finite("yaw_rad", yaw_rad)? }))
+        Ok(Self::new(Action::Rotate { yaw_rad: finite("yaw_rad", yaw_rad)? }))
     }
 
     #[staticmethod]
     fn look(pitch_rad: f32) -> PyResult<Self> {
-        Ok(Self(Action::Look { pitch_rad: finite("pitch_rad", pitch_rad)? }))
+        Ok(Self::new(Action::Look { pitch_rad: finite("pitch_rad", pitch_rad)? }))
     }
 
     #[staticmethod]
     const fn look_around() -> Self {
-        Self(Action::LookAround)
+        Self::new(Action::LookAround)
     }
 
     #[staticmethod]
-    const fn go_to_object(object: u32) -> Self {
-        Self(Action::GoTo { target: GoToTarget::Object(ObjectId(object)) })
+    fn go_to_object(object: ObjectArgument) -> Self {
+        Self::on(object, |object| Action::GoTo { target: GoToTarget::Object(object) })
     }
 
     #[staticmethod]
     fn go_to_room(room: &str) -> PyResult<Self> {
-        Ok(Self(Action::GoTo { target: GoToTarget::Room(room_of(room)?) }))
+        Ok(Self::new(Action::GoTo { target: GoToTarget::Room(room_of(room)?) }))
     }
 
     #[staticmethod]
     fn go_to_viewpoint(room: &str, number: u8) -> PyResult<Self> {
-        Ok(Self(Action::GoTo { target: GoToTarget::Viewpoint(room_of(room)?, number) }))
+        Ok(Self::new(Action::GoTo { target: GoToTarget::Viewpoint(room_of(room)?, number) }))
     }
 
     #[staticmethod]
     fn go_to_point(x_m: f32, y_m: f32) -> PyResult<Self> {
-        Ok(Self(Action::GoTo { target: GoToTarget::Point([finite("x", x_m)?, finite("y", y_m)?]) }))
+        Ok(Self::new(Action::GoTo { target: GoToTarget::Point([finite("x", x_m)?, finite("y", y_m)?]) }))
     }
 
     #[staticmethod]
-    const fn pick_up(object: u32) -> Self {
-        Self(Action::PickUp { object: ObjectId(object) })
+    fn pick_up(object: ObjectArgument) -> Self {
+        Self::on(object, |object| Action::PickUp { object })
     }
 
     #[staticmethod]
-    const fn place(receptacle: u32) -> Self {
-        Self(Action::Place { receptacle: ObjectId(receptacle) })
+    fn place(receptacle: ObjectArgument) -> Self {
+        Self::on(receptacle, |receptacle| Action::Place { receptacle })
     }
 
     #[staticmethod]
-    fn interact(verb: &str, object: u32) -> PyResult<Self> {
+    fn interact(verb: &str, object: ObjectArgument) -> PyResult<Self> {
         let name = |verb: &Verb| format!("{verb:?}").to_lowercase();
         let verb = Verb::ALL.iter().find(|known| name(known).eq_ignore_ascii_case(verb)).ok_or_else(|| {
             let known: Vec<String> = Verb::ALL.iter().map(name).collect();
             bad_argument(format!("there is no verb `{verb}`: one of {}", known.join(", ")))
         })?;
-        Ok(Self(Action::Interact { verb: *verb, object: ObjectId(object) }))
+        Ok(Self::on(object, |object| Action::Interact { verb: *verb, object }))
     }
 
     #[staticmethod]
-    const fn highlight(object: u32) -> Self {
-        Self(Action::Highlight { object: ObjectId(object) })
+    fn highlight(object: ObjectArgument) -> Self {
+        Self::on(object, |object| Action::Highlight { object })
     }
 
     #[staticmethod]
     fn drive(forward_m_s: f32, turn_rad_s: f32, pitch_rad_s: f32) -> PyResult<Self> {
-        Ok(Self(Action::Drive {
+        Ok(Self::new(Action::Drive {
             forward_m_s: finite("forward_m_s", forward_m_s)?,
             turn_rad_s: finite("turn_rad_s", turn_rad_s)?,
             pitch_rad_s: finite("pitch_rad_s", pitch_rad_s)?,
@@ -99,10 +127,10 @@ impl PyAction {
 
     #[staticmethod]
     const fn stop() -> Self {
-        Self(Action::Stop)
+        Self::new(Action::Stop)
     }
 
     fn __repr__(&self) -> String {
-        format!("{:?}", self.0)
+        format!("{:?}", self.action)
     }
 }

@@ -116,5 +116,5 @@ impl Choice {
 /// A `ValueError` if there is no such choice.
 #[pyfunction]
 pub fn choice_action(choice: usize, object: u32) -> PyResult<Option<PyAction>> {
-    Ok(Choice::numbered(choice)?.action(ObjectId(object)).map(PyAction))
+    Ok(Choice::numbered(choice)?.action(ObjectId(object)).map(PyAction::new))
 }

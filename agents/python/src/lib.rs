@@ -28,6 +28,7 @@ mod _native {
         frame::{Frame, Seen},
         library::{class_ids, class_names},
         memory::Memory,
+        mission_file::mission_text,
         outcome::Outcome,
         senses::Senses,
         session::{Command, Heard, Session},

@@ -3,6 +3,9 @@
 use std::{fs, path::Path};
 
 use cohabit_cdf::mission;
+use pyo3::prelude::*;
+
+use crate::error::bad_argument;
 
 /// The mission played when none is named.
 const DEFAULT: &str = "make_cereal";
@@ -57,4 +60,15 @@ impl MissionFile {
             }
         }
     }
+}
+
+/// The name and the text of the mission in that file, or of the built-in one of that name; of the default one for `None`.
+///
+/// # Errors
+/// A `ValueError` if there is none.
+#[pyfunction]
+#[pyo3(signature = (name=None))]
+pub fn mission_text(name: Option<&str>) -> PyResult<(String, String)> {
+    let file = MissionFile::find(name).map_err(bad_argument)?;
+    Ok((file.name, file.text))
 }

@@ -24,6 +24,14 @@ impl Outcome {
         let success = status.is_success();
         Self { command, body, status: format!("{status:?}"), success, detail: detail.to_owned() }
     }
+
+    /// The same; or, of a command on something that nobody knows, that it was refused for this reason.
+    pub fn or_unknown(self, unknown: Option<&str>) -> Self {
+        match unknown.filter(|_| !self.success) {
+            Some(why) => Self::new(self.command, self.body, Status::InvalidObjectClass, why),
+            None => self,
+        }
+    }
 }
 
 #[pymethods]

@@ -55,6 +55,8 @@ pub struct Session {
 pub struct Command {
     session: Py<Session>,
     number: u64,
+    /// Why there is no object of the name that was given.
+    unknown: Option<String>,
 }
 
 /// The newest state.
@@ -70,6 +72,8 @@ struct Talk {
     dialog: Inbox,
     mouth: Box<dyn Publisher>,
     heard: VecDeque<Heard>,
+    /// In lock-step, whether the world waits for this peer.
+    attends: bool,
     /// Of commands that were given here and have no outcome yet, nothing; else what came of them.
     outcomes: BTreeMap<u64, Option<(Status, String)>>,
 }
@@ -317,6 +321,7 @@ impl Session {
             dialog: Inbox::new(&*bus, Topic::Dialog).map_err(failed)?,
             mouth: bus.publisher(Topic::Dialog).map_err(failed)?,
             heard: VecDeque::new(),
+            attends: false,
             outcomes: BTreeMap::new(),
         };
         let latest = Latest { states: bus.subscriber(Topic::State).map_err(failed)?, newest: None };
@@ -444,7 +449,7 @@ impl Session {
     fn claim(slf: &Bound<'_, Self>, take_over: bool) -> PyResult<Command> {
         let mut talk = lock(&slf.get().talk);
         let number = talk.client.claim(take_over).map_err(failed)?;
-        Ok(Command { session: slf.clone().unbind(), number: talk.expect(number) })
+        Ok(Command { session: slf.clone().unbind(), number: talk.expect(number), unknown: None })
     }
 
     /// Lets go of the body: it goes back to whom it was taken from.
@@ -455,20 +460,25 @@ impl Session {
     /// Has the body do something. Whatever it was doing ends.
     fn act(slf: &Bound<'_, Self>, action: &Bound<'_, PyAction>) -> PyResult<Command> {
         let mut talk = lock(&slf.get().talk);
-        let number = talk.client.act(0, action.get().0).map_err(failed)?;
-        Ok(Command { session: slf.clone().unbind(), number: talk.expect(number) })
+        let PyAction { action, unknown } = action.get();
+        let number = talk.client.act(0, *action).map_err(failed)?;
+        Ok(Command { session: slf.clone().unbind(), number: talk.expect(number), unknown: unknown.clone() })
     }
 
     /// In lock-step: has the world wait for this peer, for `patience` seconds a turn at most; else for ever.
     #[pyo3(signature = (patience=None))]
     fn attend(&self, patience: Option<f64>) -> PyResult<()> {
         let patience = patience.map(seconds).transpose()?;
-        lock(&self.talk).client.attend(patience).map_err(failed)
+        let mut talk = lock(&self.talk);
+        talk.attends = true;
+        talk.client.attend(patience).map_err(failed)
     }
 
     /// In lock-step: has the world wait for this peer no more.
     fn leave(&self) -> PyResult<()> {
-        lock(&self.talk).client.leave().map_err(failed)
+        let mut talk = lock(&self.talk);
+        talk.attends = false;
+        talk.client.leave().map_err(failed)
     }
 
     /// In lock-step: its turn is over, and the next comes so many ticks later, or with an outcome of its body.
@@ -486,7 +496,9 @@ impl Session {
         })?;
         tick.ok_or_else(|| {
             let (name, waited) = (&self.name, timeout.unwrap_or_default());
-            PyTimeoutError::new_err(format!("it was not its turn in session `{name}` for {waited} s"))
+            PyTimeoutError::new_err(format!(
+                "it was not its turn in session `{name}` for {waited} s: the world is paused, or waits for another agent"
+            ))
         })
     }
 
@@ -500,6 +512,16 @@ impl Session {
 
     fn __repr__(&self) -> String {
         format!("Session({:?}, mission={:?})", self.name, self.mission.header.file.as_str())
+    }
+}
+
+impl Drop for Session {
+    fn drop(&mut self) {
+        let mut talk = lock(&self.talk);
+        if talk.attends {
+            // The world would wait for it for as long as this process lives. If the session is gone, nobody waits.
+            let _ = talk.client.leave();
+        }
     }
 }
 
@@ -524,7 +546,7 @@ impl Command {
             let waited = timeout.unwrap_or_default();
             PyTimeoutError::new_err(format!("command {} has no outcome after {waited} s", self.number))
         })?;
-        Ok(Outcome::new(self.number, self.session.get().body(), status, &detail))
+        Ok(self.outcome(self.session.get().body(), status, &detail))
     }
 
     /// What came of it, if it has ended.
@@ -534,11 +556,17 @@ impl Command {
         talk.pump()?;
         let end = talk.outcomes.get(&self.number).cloned().flatten();
         let body = talk.client.body();
-        Ok(end.map(|(status, detail)| Outcome::new(self.number, body, status, &detail)))
+        Ok(end.map(|(status, detail)| self.outcome(body, status, &detail)))
     }
 
     fn __repr__(&self) -> String {
         format!("Command({})", self.number)
+    }
+}
+
+impl Command {
+    fn outcome(&self, body: u32, status: Status, detail: &str) -> Outcome {
+        Outcome::new(self.number, body, status, detail).or_unknown(self.unknown.as_deref())
     }
 }
 

@@ -6,7 +6,7 @@ use cohabit_bus::{
     CameraId, Local, Publisher, Subscriber, Topic, Transport,
     message::{self, CommandMessage, EventKind, EventMessage},
 };
-use cohabit_cdf::{Action, BodyRequest, ObjectId, Status};
+use cohabit_cdf::{Action, BodyRequest, ObjectId};
 use cohabit_engine::{CameraPlan, Engine, SessionPlan, Stills, report};
 use cohabit_render::CpuRenderer;
 use cohabit_world::{DT_NANOS, Ending, World};
@@ -47,17 +47,30 @@ struct Theatre {
     /// The world at its first tick.
     first: Vec<u8>,
     commanded: u64,
-    /// Commands without an outcome yet, and their bodies.
-    pending: Vec<(u64, u32)>,
+    /// Commands without an outcome yet.
+    pending: Vec<Pending>,
     /// The objects in each body's slots.
     slots: Vec<Vec<ObjectId>>,
 }
 
+/// A command without an outcome yet.
+struct Pending {
+    command: u64,
+    body: u32,
+    /// Why there is no object of the name that was given.
+    unknown: Option<String>,
+}
+
+/// Something that a body is to do.
+struct Request {
+    body: u32,
+    action: Action,
+    /// Why there is no object of the name that was given.
+    unknown: Option<String>,
+}
+
 /// Tick, score, ending, and goals by their numbers, with whether they are met.
 type Progress = (u64, u32, &'static str, Vec<(i64, bool)>);
-
-/// What came of a command.
-type End = (u64, u32, Status, String);
 
 fn read_all<T: std::str::FromStr<Err: std::fmt::Display>>(texts: &[String]) -> PyResult<Vec<T>> {
     texts.iter().map(|text| text.parse().map_err(bad_argument)).collect()
@@ -129,11 +142,11 @@ impl Theatre {
         self.claim_all()
     }
 
-    fn command(&mut self, body: u32, action: Action) -> PyResult<()> {
+    fn command(&mut self, request: Request) -> PyResult<()> {
         self.commanded += 1;
-        let command = self.commanded;
+        let (command, Request { body, action, unknown }) = (self.commanded, request);
         self.send(&CommandMessage::act(command, 0, body, action))?;
-        self.pending.push((command, body));
+        self.pending.push(Pending { command, body, unknown });
         Ok(())
     }
 
@@ -148,27 +161,25 @@ impl Theatre {
         self.commands.send_record(tick, message).map(drop).map_err(failed)
     }
 
-    fn tick(&mut self, ends: &mut Vec<End>) -> PyResult<()> {
+    fn tick(&mut self, ends: &mut Vec<Outcome>) -> PyResult<()> {
         let engine = self.engine.as_mut().expect("invariant: replaced, never taken away");
         // A stamp and never a key: simulated time, so that nothing here depends on when it runs.
         engine.tick(engine.world().tick() * DT_NANOS).map_err(failed)?;
         while let Some(sample) = self.events.receive().map_err(failed)? {
             let event: EventMessage = message::read(sample.payload()).map_err(failed)?;
             let (Some(EventKind::Outcome), Some(status)) = (event.kind(), event.status()) else { continue };
-            let Some(place) = self.pending.iter().position(|(command, _)| *command == event.command) else { continue };
-            let (command, body) = self.pending.swap_remove(place);
-            ends.push((command, body, status, event.text.as_str().to_owned()));
+            let Some(place) = self.pending.iter().position(|one| one.command == event.command) else { continue };
+            let Pending { command, body, unknown } = self.pending.swap_remove(place);
+            ends.push(Outcome::new(command, body, status, event.text.as_str()).or_unknown(unknown.as_deref()));
         }
         Ok(())
     }
 
     /// Has bodies do something, each one thing, until all have ended, or for so many ticks.
-    fn carry_out(&mut self, actions: &[(u32, Action)], ticks: Option<u64>) -> PyResult<Vec<End>> {
-        for (body, action) in actions {
-            self.command(*body, *action)?;
-        }
+    fn carry_out(&mut self, requests: Vec<Request>, ticks: Option<u64>) -> PyResult<Vec<Outcome>> {
+        let waits = requests.is_empty() && self.pending.is_empty();
+        requests.into_iter().try_for_each(|request| self.command(request))?;
         let mut ends = Vec::new();
-        let waits = actions.is_empty() && self.pending.is_empty();
         let most = ticks.unwrap_or(if waits { WAIT_TICKS } else { PATIENCE_TICKS });
         for _ in 0..most {
             self.tick(&mut ends)?;
@@ -180,14 +191,15 @@ impl Theatre {
         if ticks.is_none() && !self.pending.is_empty() && self.world().finished().is_none() {
             self.give_up(&mut ends)?;
         }
-        ends.sort_by_key(|(command, ..)| *command);
+        ends.sort_by_key(|end| end.command);
         Ok(ends)
     }
 
     /// Stops all that takes too long.
-    fn give_up(&mut self, ends: &mut Vec<End>) -> PyResult<()> {
-        for (_, body) in self.pending.clone() {
-            self.command(body, Action::Stop)?;
+    fn give_up(&mut self, ends: &mut Vec<Outcome>) -> PyResult<()> {
+        let bodies: Vec<u32> = self.pending.iter().map(|pending| pending.body).collect();
+        for body in bodies {
+            self.command(Request { body, action: Action::Stop, unknown: None })?;
             // Nobody asks what came of stopping.
             self.pending.pop();
         }
@@ -252,26 +264,29 @@ impl Stage {
     /// Has bodies carry out actions, `(body, action)` each, until all have ended, or for `ticks` ticks.
     #[pyo3(signature = (actions, ticks=None))]
     fn act(&self, py: Python<'_>, actions: Vec<(u32, Py<PyAction>)>, ticks: Option<u64>) -> PyResult<Vec<Outcome>> {
-        let actions: Vec<(u32, Action)> = actions.iter().map(|(body, action)| (*body, action.get().0)).collect();
-        let ends = self.with(py, |theatre| theatre.carry_out(&actions, ticks))?;
-        Ok(outcomes(&ends))
+        let request = |(body, action): &(u32, Py<PyAction>)| {
+            let PyAction { action, unknown } = action.get();
+            Request { body: *body, action: *action, unknown: unknown.clone() }
+        };
+        let requests = actions.iter().map(request).collect();
+        self.with(py, |theatre| theatre.carry_out(requests, ticks))
     }
 
     /// The same with choices, `(body, choice, slot)` each; what is in the slots is what `sense` said last.
     #[pyo3(signature = (choices, ticks=None))]
     fn choose(&self, py: Python<'_>, choices: Vec<(u32, usize, usize)>, ticks: Option<u64>) -> PyResult<Vec<Outcome>> {
-        let ends = self.with(py, |theatre| {
-            let mut actions = Vec::new();
+        self.with(py, |theatre| {
+            let mut requests = Vec::new();
             for (body, choice, slot) in choices {
                 let chosen = Choice::numbered(choice)?;
                 // An empty slot is for the world to refuse.
                 let nothing = ObjectId(u32::MAX);
                 let object = theatre.slots.get(body as usize).and_then(|slots| slots.get(slot)).copied();
-                actions.extend(chosen.action(object.unwrap_or(nothing)).map(|action| (body, action)));
+                let action = chosen.action(object.unwrap_or(nothing));
+                requests.extend(action.map(|action| Request { body, action, unknown: None }));
             }
-            theatre.carry_out(&actions, ticks)
-        })?;
-        Ok(outcomes(&ends))
+            theatre.carry_out(requests, ticks)
+        })
     }
 
     /// What these cameras see now.
@@ -341,8 +356,4 @@ impl Stage {
     fn mission(&self, py: Python<'_>) -> PyResult<(String, u64)> {
         self.with(py, |theatre| Ok((theatre.plan.file.clone(), theatre.plan.seed)))
     }
-}
-
-fn outcomes(ends: &[End]) -> Vec<Outcome> {
-    ends.iter().map(|(command, body, status, detail)| Outcome::new(*command, *body, *status, detail)).collect()
 }

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import runpy
 import warnings
 from pathlib import Path
 from typing import Any
@@ -109,6 +110,80 @@ def test_what_makes_no_sense_is_refused_as_data() -> None:
     assert info["status"] == "InvalidObjectClass" and "action_mask" in info
     with pytest.raises(ValueError, match="no choice 99"):
         env.step(np.array([99, 0]))
+
+
+def test_an_unknown_name_is_refused_as_data() -> None:
+    env = cohabit.Env(planes=())
+    env.reset(seed=0)
+    for action, near in [
+        (PickUp("bowel"), "no object `bowel` in this world: did you mean `Bowl`"),
+        (GoTo("Labb1"), "no object or room `Labb1` in this world: did you mean `Lab1`"),
+        (Place("Bowl_01_7"), "`Bowl_01_1`"),
+        (Interact("open", "zzyzx"), "there is no object `zzyzx` in this world"),
+    ]:
+        before = env.state.tick
+        _, reward, terminated, _, info = env.act(action)
+        assert info["status"] == "InvalidObjectClass" and near in info["detail"], info
+        assert (terminated, env.state.tick) == (False, before + 1) and reward <= 0.0
+    assert not info["detail"].endswith("?"), "nothing is called anything like that"
+
+
+def test_an_environment_is_reset_before_its_first_step() -> None:
+    env = cohabit.Env(planes=())
+    many = cohabit.ParallelEnv(planes=())
+    for step in [
+        lambda: env.step(choose(env, "wait")),
+        lambda: env.act(GoTo("bowl")),
+        lambda: many.step({"robot_0": choose(env, "wait")}),
+        lambda: many.act({"robot_0": GoTo("bowl")}),
+    ]:
+        with pytest.raises(gymnasium.error.ResetNeeded, match=r"before calling env.reset\(\)"):
+            step()
+    assert env.state.tick == 0
+    env.reset(seed=0)
+    assert env.step(choose(env, "wait"))[1] <= 0.0, "waiting pays nothing"
+
+
+def test_options_hold_for_an_episode() -> None:
+    env = cohabit.Env("cold_soda", planes=(), ticks_per_step=1)
+    rooms = {}
+    for name, options in [
+        ("own", None),
+        ("other mission", {"mission": "make_cereal"}),
+        ("mirrored", {"layout": "OfficeLayout2_mirror"}),
+        ("seeded", {"seed": 5}),
+        ("seeded alike", {"seed": 5}),
+        ("seeded otherwise", {"seed": 6}),
+        ("own again", {}),
+    ]:
+        env.reset(seed=0, options=options)
+        rooms[name] = (env.office.world.digest(), len(env.state.goals), env.state.find("TableRound_02").position)
+    assert rooms["own"] == rooms["own again"]
+    assert rooms["other mission"][1] != rooms["own"][1]
+    assert rooms["mirrored"][2] != rooms["own"][2]
+    assert rooms["seeded"][0] == rooms["seeded alike"][0] != rooms["seeded otherwise"][0]
+    for options, problem in [
+        ({"mission": "nowhere"}, "nowhere: there is no such file"),
+        ({"layout": "Moonbase"}, "Moonbase"),
+        ({"layout": 2}, "option `layout` is 2"),
+        ({"seed": "five"}, "option `seed` is 'five'"),
+    ]:
+        for other in (env, cohabit.ParallelEnv("cold_soda", bodies=(), planes=())):
+            with pytest.raises(ValueError, match=problem):
+                other.reset(options=options)
+    unknown = "no option `missions` of reset: one of mission, layout, seed"
+    with pytest.raises(ValueError, match=unknown):
+        env.reset(options={"missions": "make_cereal"})
+    with pytest.warns(UserWarning, match=unknown):
+        cohabit.ParallelEnv(planes=()).reset(options={"missions": "make_cereal"})
+    env.reset(seed=0)
+    assert env.office.world.digest() == rooms["own"][0], "what failed changed nothing"
+
+
+def test_the_example_meets_all_goals() -> None:
+    example = Path(__file__).parents[1] / "examples" / "cold_soda.py"
+    goals = runpy.run_path(str(example))["env"].state.goals
+    assert len(goals) == 3 and all(goal.met for goal in goals), goals
 
 
 def test_ticks_go_by_as_many_as_asked_for() -> None:

@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+import gc
+import threading
+
 import numpy as np
 import pytest
+
+from gymnasium.error import ResetNeeded
 
 import cohabit
 from cohabit import CHOICES
@@ -51,3 +56,49 @@ def test_a_camera_is_what_it_is(lock_step_session: str) -> None:
         cohabit.Env(session=joined, camera="large")
     with pytest.raises(ValueError, match="camera `small` has pictures of 48x48"):
         cohabit.Env(session=joined, camera="small", size=84)
+
+
+TURN = np.array([CHOICES.index("turn_left"), 0])
+
+
+def test_two_bodies_on_one_thread_are_refused(lock_step_session: str) -> None:
+    with cohabit.join(lock_step_session, body=0, take_over=True) as one:
+        with cohabit.join(lock_step_session, body=1) as other:
+            envs = [
+                cohabit.Env(session=one, planes=(), slots=8, ticks_per_step=4),
+                cohabit.Env(session=other, camera="small", size=48, slots=8, ticks_per_step=4),
+            ]
+            ticks = [env.reset()[1]["tick"] for env in envs]
+            assert ticks[0] == ticks[1]
+            for env in envs:
+                with pytest.raises(cohabit.Error, match=r"would wait for ever.*from a thread or process of its own"):
+                    env.step(TURN)
+            # Nothing was sent: from two threads they go on from there.
+            threads = [threading.Thread(target=env.step, args=(TURN,), daemon=True) for env in envs]
+            for thread in threads:
+                thread.start()
+            for thread in threads:
+                thread.join(60)
+                assert not thread.is_alive()
+        # The other is closed: one alone is stepped from this thread.
+        *_, info = envs[0].step(TURN)
+        assert info["tick"] == ticks[0] + 8
+
+
+def test_a_session_that_is_dropped_is_not_waited_for(lock_step_session: str) -> None:
+    dropped = cohabit.join(lock_step_session, body=1)
+    dropped.attend(timeout=60)
+    del dropped
+    gc.collect()
+    with cohabit.join(lock_step_session, body=1) as joined:
+        tick = joined.attend(timeout=60)
+        assert joined.step(3, timeout=60) == tick + 3
+
+
+def test_the_world_of_a_session_has_no_options(lock_step_session: str) -> None:
+    with cohabit.join(lock_step_session, body=1) as joined:
+        env = cohabit.Env(session=joined, planes=(), slots=8)
+        with pytest.raises(ValueError, match="no option `mission` of reset: none, for the world of a session"):
+            env.reset(options={"mission": "cold_soda"})
+        with pytest.raises(ResetNeeded):
+            env.step(TURN)

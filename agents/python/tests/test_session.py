@@ -126,8 +126,13 @@ def test_a_command_gets_its_outcome(session: str) -> None:
         assert held is not None and joined.state().find(held).name == "Bowl"
         refused = joined.do(cohabit.PickUp("Bowl_01_1"), timeout=60)
         assert not refused and refused.status == "AlreadyHoldingObject" and refused.detail
+        unknown = joined.do(cohabit.PickUp("bowel"), timeout=60)
+        assert not unknown and unknown.status == "InvalidObjectClass"
+        assert unknown.detail.startswith("there is no object `bowel` in this world: did you mean `Bowl`"), unknown
+        unknown = joined.do(cohabit.GoTo("Lab9"), timeout=60)
+        assert unknown.detail.startswith("there is no object or room `Lab9`") and "`Lab1`" in unknown.detail, unknown
         with pytest.raises(KeyError, match="no object unicorn"):
-            joined.act(cohabit.PickUp("unicorn"))
+            joined.state().find("unicorn")
 
 
 def test_a_body_has_one_commander(session: str) -> None:

@@ -1,11 +1,12 @@
 """What a body can be told to do.
 
 Objects are given by number, by instance id (``"Bowl_01_1"``) or by class (``"Bowl_01"``, ``"bowl"``): the nearest to the
-body that is not hidden.
+body that is not hidden. An action on a name that is unknown is refused: its outcome says so, and names that are similar.
 """
 
 from __future__ import annotations
 
+import difflib
 from dataclasses import dataclass
 from typing import Union
 
@@ -15,17 +16,28 @@ ObjectRef = Union[int, str, _native.Object, _native.Seen]
 """An object: its number, a name, or what ``state`` or a frame gave for it."""
 
 
-def resolve(reference: ObjectRef, state: _native.State, body: int) -> int:
-    """The number of the object that is meant. Raises ``KeyError`` if there is none."""
+def resolve(reference: ObjectRef, state: _native.State, body: int, rooms: bool = False) -> Union[int, str]:
+    """The number of the object that is meant, or a sentence that says why there is none; ``rooms`` may be meant too."""
     if isinstance(reference, _native.Seen):
-        if reference.object is None:
-            raise KeyError(f"{reference!r} is no object")
-        return reference.object
+        return f"{reference!r} is no object" if reference.object is None else reference.object
     if isinstance(reference, _native.Object):
         return reference.id
     if isinstance(reference, int):
         return reference
-    return state.find(reference, near=body).id
+    try:
+        return state.find(reference, near=body).id
+    except KeyError:
+        return _unknown(reference, state, rooms)
+
+
+def _unknown(name: str, state: _native.State, rooms: bool) -> str:
+    """Says that nothing is called that, and what is called something similar."""
+    known = {called for thing in state.objects for called in (thing.name, thing.class_id, thing.instance)}
+    known.update(_native.ROOMS if rooms else ())
+    spelled = {called.lower(): called for called in sorted(known)}
+    near = [spelled[called] for called in difflib.get_close_matches(name.lower(), sorted(spelled), 3)]
+    kinds = "object or room" if rooms else "object"
+    return f"there is no {kinds} `{name}` in this world" + (f": did you mean `{'`, `'.join(near)}`?" if near else "")
 
 
 @dataclass(frozen=True)
@@ -86,7 +98,7 @@ class GoTo:
             return _native.Action.go_to_point(float(first), float(second))
         if isinstance(target, str) and target.lower() in _ROOMS:
             return _native.Action.go_to_room(target)
-        return _native.Action.go_to_object(resolve(target, state, body))
+        return _native.Action.go_to_object(resolve(target, state, body, rooms=True))
 
 
 @dataclass(frozen=True)

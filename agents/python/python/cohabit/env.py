@@ -77,9 +77,14 @@ class Env(gymnasium.Env[Observation, npt.NDArray[np.int64]]):
     def reset(
         self, *, seed: Optional[int] = None, options: Optional[dict[str, Any]] = None
     ) -> tuple[Observation, dict[str, Any]]:
-        """Begins the mission anew. What it leaves to chance follows from ``seed``; there are no ``options``."""
+        """Begins the mission anew. What it leaves to chance follows from ``seed``.
+
+        ``options`` hold for the episode that begins: ``mission``, another mission, as the environment takes one; ``layout``, the
+        id of another floor plan, such as ``"OfficeLayout2_mirror"``; ``seed``, a number that takes the place of the mission's own
+        seed. Raises ``ValueError`` for any other, and for all of them in the world of a session.
+        """
         super().reset(seed=seed)
-        self.office.world.reset(seed if seed is not None else int(self.np_random.integers(2**31)))
+        self.office.begin(seed if seed is not None else int(self.np_random.integers(2**31)), options)
         self._steps = 0
         self._score, _ = self.office.progress()
         (observation,), (info,) = self.office.observe([self._body])
@@ -88,12 +93,17 @@ class Env(gymnasium.Env[Observation, npt.NDArray[np.int64]]):
     def step(
         self, action: npt.NDArray[np.int64]
     ) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
-        """One command, carried out to its outcome, or for ``ticks_per_step``."""
+        """One command, carried out to its outcome, or for ``ticks_per_step``.
+
+        Raises :class:`gymnasium.error.ResetNeeded` before the first :meth:`reset`.
+        """
+        self.office.check_begun("step")
         choice, slot = int(action[0]), int(action[1])
         return self._after(self.office.world.choose([(self._body, choice, slot)], self.ticks_per_step))
 
     def act(self, action: Action) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
         """The same as :meth:`step` with an action in words, such as ``GoTo("bowl")``."""
+        self.office.check_begun("act")
         plain = action.plain(self.state, self._body)
         return self._after(self.office.world.act([(self._body, plain)], self.ticks_per_step))
 

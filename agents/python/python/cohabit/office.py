@@ -51,6 +51,10 @@ PLANES = ("color", "depth", "normals", "ids")
 CHOICES: tuple[str, ...] = tuple(name for name, _ in _native.CHOICES)
 """The kinds of actions of environments, by their numbers."""
 
+OPTIONS = ("mission", "layout", "seed")
+"""What ``reset(options=…)`` takes, for the episode that begins: another ``mission``, another ``layout`` (the floor plan, such
+as ``"OfficeLayout2_mirror"``), and the ``seed`` of what is placed at random, also where the mission has a seed of its own."""
+
 MOST_GOALS = 16
 """Goals that an observation tells of."""
 
@@ -124,16 +128,17 @@ class Guest:
         if not self._begun:
             self.session.claim(self.session.take_over)
             if self.session.peer.lock_step:
-                self.session.attend()
                 if self._camera is not None:
                     # A camera is drawn from the turn on after somebody first looks through it.
                     self.session.peer.open_camera(self._camera)
-                    self.session.step()
+                self.session.attend()
             self._begun = True
 
     def act(self, actions: list[tuple[int, _native.Action]], ticks: Optional[int] = None) -> list[_native.Outcome]:
         """Has the body carry out an action until it has ended, or for so many ticks."""
         peer, lock_step = self.session.peer, self.session.peer.lock_step
+        if lock_step:
+            self.session.check_alone()
         for _, action in actions:
             self._pending = peer.act(action)
         last = self.session.state().tick + (ticks or (_LONG_TICKS if self._pending else _WAIT_TICKS))
@@ -235,15 +240,56 @@ class Office:
             cameras += [
                 f"watch-{body}=third-person,body={body},size={render[0]}x{render[1]},planes=color" for body in range(count)
             ]
+        self._mission = mission
+        self._played: tuple[MissionLike, Optional[str], Optional[int]] = (mission, None, None)
+        self._bodies, self._cameras, self._threads = list(bodies), cameras, threads
+        self._has_begun = False
         self.world: World
         if session is None:
-            name, text = _mission(mission)
-            self.world = _native.Stage(name, text, list(bodies), cameras, 0, threads)
+            self.world = self._stage(*self._played)
         else:
             self.world = Guest(session, self._eyes(session.body) if drawn else None, drawn, self.size)
         self.kinds = tuple(self.world.kinds())
         self.observation_space = self._observation_space()
         self.action_space = spaces.MultiDiscrete([len(CHOICES), slots])
+
+    def _stage(self, mission: MissionLike, layout: Optional[str], seed: Optional[int]) -> _native.Stage:
+        name, text = _mission(mission)
+        if layout is not None or seed is not None:
+            name, text = _changed(name, text, layout, seed)
+        return _native.Stage(name, text, self._bodies, self._cameras, 0, self._threads)
+
+    def begin(self, seed: int, options: Optional[Mapping[str, Any]]) -> None:
+        """Begins the mission anew, or another one that ``options`` name. Raises ``ValueError`` if they name anything else."""
+        played = self._chosen(options or {})
+        if played != self._played:
+            self.world = self._stage(*played)
+            self._played = played
+        self.world.reset(seed)
+        self._has_begun = True
+
+    def check_begun(self, method: str) -> None:
+        """Raises :class:`gymnasium.error.ResetNeeded` before the first :meth:`begin`."""
+        if not self._has_begun:
+            raise gymnasium.error.ResetNeeded(f"Cannot call env.{method}() before calling env.reset()")
+
+    def unknown_option(self, options: Mapping[str, Any]) -> Optional[str]:
+        """What is wrong with the first option that :meth:`begin` does not take; nothing if it takes all."""
+        known = () if isinstance(self.world, Guest) else OPTIONS
+        takes = "one of " + ", ".join(known) if known else "none, for the world of a session goes on as it is"
+        unknown = next((name for name in options if name not in known), None)
+        return None if unknown is None else f"there is no option `{unknown}` of reset: {takes}"
+
+    def _chosen(self, options: Mapping[str, Any]) -> tuple[MissionLike, Optional[str], Optional[int]]:
+        """The mission, layout and seed of the next episode."""
+        if (unknown := self.unknown_option(options)) is not None:
+            raise ValueError(unknown)
+        mission, layout, seed = options.get("mission", self._mission), options.get("layout"), options.get("seed")
+        if layout is not None and not isinstance(layout, str):
+            raise ValueError(f"option `layout` is {layout!r}: the id of a floor plan, such as `OfficeLayout2`")
+        if seed is not None and (isinstance(seed, bool) or not isinstance(seed, (int, np.integer)) or seed < 0):
+            raise ValueError(f"option `seed` is {seed!r}: a number from 0 up")
+        return mission, layout, None if seed is None else int(seed)
 
     def _eyes(self, body: int) -> str:
         """The camera that a body sees by."""
@@ -338,6 +384,25 @@ def _mission(mission: MissionLike) -> tuple[Optional[str], Optional[str]]:
     if isinstance(mission, Mapping):
         return "mission", json.dumps(mission)
     return os.fspath(mission), None
+
+
+def _changed(
+    name: Optional[str], text: Optional[str], layout: Optional[str], seed: Optional[int]
+) -> tuple[str, str]:
+    """A mission's name and text, on another layout or with another seed."""
+    if name is None or text is None:
+        name, text = _native.mission_text(name)
+    try:
+        cdf = json.loads(text)
+    except ValueError as error:
+        raise ValueError(f"{name}: {error}") from None
+    # What is no mission is left as it is: whoever reads it next says what is wrong with it.
+    if isinstance(cdf, dict) and isinstance(cdf.get("scene"), dict):
+        if layout is not None:
+            cdf["scene"]["layoutOverride"] = layout
+        if seed is not None:
+            cdf["scene"]["floor_plan"] = str(seed)
+    return name, json.dumps(cdf)
 
 
 def check_steps(render_mode: Optional[str], ticks_per_step: Optional[int]) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping, Sequence
 from typing import Any, Optional, Union
 
@@ -11,7 +12,7 @@ import numpy.typing as npt
 
 from . import _native
 from .actions import Action
-from .office import MissionLike, Observation, Office, check_steps, outcome_info
+from .office import OPTIONS, MissionLike, Observation, Office, check_steps, outcome_info
 
 try:
     from pettingzoo import ParallelEnv as Base  # type: ignore[import-untyped, unused-ignore]
@@ -81,10 +82,15 @@ class ParallelEnv(Base):  # type: ignore[misc, unused-ignore]
     def reset(
         self, seed: Optional[int] = None, options: Optional[dict[str, Any]] = None
     ) -> tuple[dict[str, Observation], Infos]:
-        """Begins the mission anew. What it leaves to chance follows from ``seed``; there are no ``options``."""
+        """Begins the mission anew. What it leaves to chance follows from ``seed``; ``options`` are those of
+        :meth:`cohabit.Env.reset`, of which unknown ones are warned of: PettingZoo's test of its API passes one."""
+        options = options or {}
+        if (unknown := self.office.unknown_option(options)) is not None:
+            warnings.warn(unknown, stacklevel=2)
+            options = {name: value for name, value in options.items() if name in OPTIONS}
         if seed is not None:
             self._random = np.random.default_rng(seed)
-        self.office.world.reset(seed if seed is not None else int(self._random.integers(2**31)))
+        self.office.begin(seed if seed is not None else int(self._random.integers(2**31)), options)
         self.agents = list(self.possible_agents)
         self._steps = 0
         self._score, _ = self.office.progress()
@@ -92,12 +98,17 @@ class ParallelEnv(Base):  # type: ignore[misc, unused-ignore]
         return observations, infos
 
     def step(self, actions: Mapping[str, npt.NDArray[np.int64]]) -> Step:
-        """A command for each agent; agents that are left out wait."""
+        """A command for each agent; agents that are left out wait.
+
+        Raises :class:`gymnasium.error.ResetNeeded` before the first :meth:`reset`.
+        """
+        self.office.check_begun("step")
         choices = [(self._number[agent], int(action[0]), int(action[1])) for agent, action in actions.items()]
         return self._after(self.office.world.choose(choices, self.ticks_per_step))
 
     def act(self, actions: Mapping[str, Action]) -> Step:
         """The same as :meth:`step` with actions in words, such as ``GoTo("bowl")``."""
+        self.office.check_begun("act")
         state = self.office.world.state()
         plain = [(self._number[agent], action.plain(state, self._number[agent])) for agent, action in actions.items()]
         return self._after(self.office.world.act(plain, self.ticks_per_step))

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import threading
+import time
+import weakref
 from collections.abc import Iterator
 from types import TracebackType
 from typing import Optional
@@ -14,6 +17,13 @@ _ANSWER_S = 5.0
 
 _LONG_TICKS = 60 * 240
 """Longer than any command takes."""
+
+
+_TAKEN_OVER_S = 5.0
+"""How long another thread may take to begin to play a body that this thread played."""
+
+_JOINED: weakref.WeakSet[Session] = weakref.WeakSet()
+"""The sessions of this process."""
 
 
 class Session:
@@ -29,6 +39,9 @@ class Session:
         self.take_over = take_over
         self._claimed = False
         self._attends = False
+        self._turn_of: Optional[int] = None
+        """The thread whose turn it is, which the world waits for."""
+        _JOINED.add(self)
 
     def state(self, timeout: float = 5.0) -> _native.State:
         """The world as it is now: bodies, objects, goals. Waits for the first state, at most ``timeout`` seconds."""
@@ -89,17 +102,51 @@ class Session:
             raise _native.Error(f"session `{self.peer.name}` is not in lock-step: start it with `--lock-step`")
         self.peer.attend(patience)
         self._attends = True
-        return self.peer.turn(timeout)
+        return self._turn(timeout)
 
     def step(self, ticks: int = 1, timeout: Optional[float] = None) -> int:
-        """Ends this peer's turn, and waits for the next: ``ticks`` later, or earlier, with an outcome of its body."""
+        """Ends this peer's turn, and waits for the next: ``ticks`` later, or earlier, with an outcome of its body.
+
+        The world waits for everybody's turn to end. Raises :class:`cohabit.Error` if it waits for another body that this very
+        thread plays, and so would wait for ever: bodies of one session in lock-step are played from threads of their own.
+        """
+        self.check_alone()
+        self._turn_of = None
         self.peer.ready(ticks)
-        return self.peer.turn(timeout)
+        return self._turn(timeout)
+
+    def _turn(self, timeout: Optional[float]) -> int:
+        tick = self.peer.turn(timeout)
+        self._turn_of = threading.get_ident()
+        return tick
+
+    def check_alone(self) -> None:
+        """Raises :class:`cohabit.Error` if it is the turn of another body that this thread plays in the same session.
+
+        Where there are other threads, one of them may be about to play that body: it has some seconds to begin.
+        """
+        until = time.monotonic() + (_TAKEN_OVER_S if threading.active_count() > 1 else 0.0)
+        while (other := self._other_turn()) is not None:
+            if time.monotonic() >= until:
+                raise _native.Error(
+                    f"session `{self.peer.name}` would wait for ever: it is body {other}'s turn too, which this thread plays as "
+                    f"well as body {self.body}; play each body from a thread or process of its own, or close the other first"
+                )
+            time.sleep(0.01)
+
+    def _other_turn(self) -> Optional[int]:
+        """Another body of the same session whose turn it is, and which this thread plays."""
+        here = threading.get_ident()
+        for other in list(_JOINED):
+            if other is not self and other.peer.name == self.peer.name and other._turn_of == here:
+                return other.body
+        return None
 
     def leave(self) -> None:
         """Has the world wait for this peer no more."""
         self.peer.leave()
         self._attends = False
+        self._turn_of = None
 
     def say(self, text: str) -> None:
         """Says something as the body: to the log, and to all who listen."""
