@@ -1,8 +1,13 @@
-//! Lists the data files (catalogue, models, layouts, missions) so that they are built into the crate.
+//! Lists the data files (catalogue, models, layouts, missions) so that they are built into the crate, and tells its tests
+//! whether the reference data are there.
+
+#[path = "../tests/needs.rs"]
+mod needs;
 
 use std::{fmt::Write as _, fs, path::Path};
 
 fn main() {
+    needs::tell(&[needs::REFERENCE_DATA]);
     let root = std::env::var("CARGO_MANIFEST_DIR").expect("cargo sets CARGO_MANIFEST_DIR");
     let out = std::env::var("OUT_DIR").expect("cargo sets OUT_DIR");
     let mut code = String::new();

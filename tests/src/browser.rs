@@ -31,19 +31,19 @@ pub struct Tab {
 }
 
 impl Browser {
-    /// Starts a browser; `None`, which is said, where there is none.
+    /// Starts a browser.
     ///
     /// # Errors
-    /// When one is there but does not start.
-    pub fn start() -> anyhow::Result<Option<Self>> {
+    /// When there is none, or it does not start.
+    pub fn start() -> anyhow::Result<Self> {
         Self::start_with(&[])
     }
 
     /// The same, with a microphone that gives the sound of a WAV file once, and is allowed to every page.
     ///
     /// # Errors
-    /// When one is there but does not start.
-    pub fn start_speaking(wav: &Path) -> anyhow::Result<Option<Self>> {
+    /// When there is none, or it does not start.
+    pub fn start_speaking(wav: &Path) -> anyhow::Result<Self> {
         let sound = format!("--use-file-for-fake-audio-capture={}%noloop", wav.display());
         let gestures = "--autoplay-policy=no-user-gesture-required";
         Self::start_with(&["--use-fake-device-for-media-stream", "--use-fake-ui-for-media-stream", &sound, gestures])
@@ -52,16 +52,13 @@ impl Browser {
     /// The same, which trusts any certificate.
     ///
     /// # Errors
-    /// When one is there but does not start.
-    pub fn start_trusting() -> anyhow::Result<Option<Self>> {
+    /// When there is none, or it does not start.
+    pub fn start_trusting() -> anyhow::Result<Self> {
         Self::start_with(&["--ignore-certificate-errors"])
     }
 
-    fn start_with(more: &[&str]) -> anyhow::Result<Option<Self>> {
-        let Some(program) = find() else {
-            eprintln!("skipped: there is no browser here ({})", NAMES.join(", "));
-            return Ok(None);
-        };
+    fn start_with(more: &[&str]) -> anyhow::Result<Self> {
+        let program = find().with_context(|| format!("there is no browser here ({})", NAMES.join(", ")))?;
         static COUNT: AtomicU32 = AtomicU32::new(0);
         let number = COUNT.fetch_add(1, Ordering::Relaxed);
         let profile = std::env::temp_dir().join(format!("cohabit-browser-{}-{number}", std::process::id()));
@@ -89,7 +86,7 @@ impl Browser {
             .find_map(|line| Some(line.split_once("listening on ")?.1.to_owned()))
             .context("the browser gives no debugging address")?;
         std::thread::spawn(move || lines.for_each(drop));
-        Ok(Some(Self { child, profile, socket }))
+        Ok(Self { child, profile, socket })
     }
 
     /// Opens a page of that size.

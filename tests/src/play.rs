@@ -230,13 +230,8 @@ pub fn run(binary: &str, arguments: &[&str]) -> anyhow::Result<Output> {
     Command::new(binary).args(arguments).stdin(Stdio::null()).output().context("run cohabit")
 }
 
-/// The reference data's folder, or `None`, which is said, where it is absent.
+/// The reference data's folder, for tests that need it.
 #[must_use]
-pub fn reference_data() -> Option<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/arena");
-    if folder.is_dir() {
-        return Some(folder);
-    }
-    eprintln!("skipped: there is no reference data in {}", folder.display());
-    None
+pub fn reference_data() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/arena")
 }

@@ -6,8 +6,9 @@ use serde_json::json;
 use crate::COHABIT;
 
 #[test]
+#[cfg_attr(not(browser), ignore = "needs a browser")]
 fn a_person_opens_the_page_types_and_sees_the_robot_move() {
-    let Some(browser) = Browser::start().unwrap() else { return };
+    let browser = Browser::start().unwrap();
     let mut play = Play::start(COHABIT, &["--camera", "door=fixed,x=4,y=10,yaw=90,rate=5"]).unwrap();
     let mut tab = browser.open(&play.address, 1280, 720).unwrap();
     tab.wait_until("document.querySelector('#chat-input') !== null && window.cohabit?.frames > 0").unwrap();
@@ -61,8 +62,9 @@ fn a_person_opens_the_page_types_and_sees_the_robot_move() {
 }
 
 #[test]
+#[cfg_attr(not(browser), ignore = "needs a browser")]
 fn a_person_answers_a_question_with_a_click() {
-    let Some(browser) = Browser::start().unwrap() else { return };
+    let browser = Browser::start().unwrap();
     let play = Play::start(COHABIT, &["--ask", "always", "--knows", "everything"]).unwrap();
     let mut tab = browser.open(&play.address, 1280, 720).unwrap();
     tab.wait_until("document.querySelector('#chat-input') !== null && window.cohabit?.frames > 0").unwrap();

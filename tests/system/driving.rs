@@ -147,8 +147,9 @@ fn press(tab: &mut cohabit_tests::Tab, code: &str, key: &str, held: Option<&str>
 }
 
 #[test]
+#[cfg_attr(not(browser), ignore = "needs a browser")]
 fn a_person_walks_in_from_the_page_by_keys() {
-    let Some(browser) = Browser::start().unwrap() else { return };
+    let browser = Browser::start().unwrap();
     let play = Play::start(COHABIT, &["--body", "person@MainOffice"]).unwrap();
     let mut tab = browser.open(&play.address, 1280, 720).unwrap();
     tab.wait_until("window.cohabit?.frames > 0 && !document.querySelector('#walk-in').hidden").unwrap();

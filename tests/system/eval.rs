@@ -92,17 +92,21 @@ fn bad_sources_are_refused_with_their_place() {
 }
 
 #[test]
+#[cfg_attr(not(reference_data), ignore = "needs the reference data in ../shared/arena")]
 fn nearly_all_real_missions_are_solved_by_what_their_users_said() {
-    let Some(data) = reference_data() else { return };
+    let data = reference_data();
     let folder = folder("missions");
     let (report, printed) = eval(&folder, &[data.join("missions-dev.jsonl").to_str().unwrap()]);
-    let rate = report["total"]["success_rate"].as_f64().unwrap();
-    assert!(rate >= 0.98, "{printed}");
+    let solved = report["total"]["solved"].as_u64().unwrap();
+    println!("{solved} solved");
+    // 376 of 382 when this was written.
+    assert!(solved >= 375, "{printed}");
 }
 
 #[test]
+#[cfg_attr(not(reference_data), ignore = "needs the reference data in ../shared/arena")]
 fn the_data_set_of_sessions_is_played() {
-    let Some(data) = reference_data() else { return };
+    let data = reference_data();
     let folder = folder("sessions");
     let (report, printed) = eval(&folder, &[data.join("human-sessions-dev.json").to_str().unwrap()]);
     let missions = report["missions"].as_array().unwrap();

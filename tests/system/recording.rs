@@ -189,11 +189,15 @@ fn a_session_is_played_again_on_the_page() {
     page.say("pick up the soda can").unwrap();
     page.wait("a refusal", |_, message| message["type"] == "error").unwrap();
     assert!(page.frames > 0);
-    check_in_browser(&screening, last);
 }
 
-fn check_in_browser(screening: &Screening, last: u64) {
-    let Some(browser) = Browser::start().unwrap() else { return };
+#[test]
+#[cfg_attr(not(browser), ignore = "needs a browser")]
+fn a_browser_plays_a_session_again() {
+    let ended = play("cold_soda", &[]);
+    let last = Log::open(&ended.log).unwrap().ticks.last().unwrap().tick;
+    let screening = Screening::start(&ended.log);
+    let browser = Browser::start().unwrap();
     let mut tab = browser.open(&screening.address, 1280, 720).unwrap();
     tab.wait_until("window.cohabit?.frames > 0 && document.body.classList.contains('replay')").unwrap();
     let hidden = "['#composer', '#walk', '#chips'].every((part) => document.querySelector(part).offsetParent === null)";

@@ -215,10 +215,11 @@ fn open(browser: &Browser, play: &Play) -> Tab {
 const ROBOT_LINES: &str = "document.querySelectorAll('#chat .from-robot').length > 0";
 
 #[test]
+#[cfg_attr(not(browser), ignore = "needs a browser")]
 fn a_person_speaks_to_the_robot_in_a_browser() {
     let server = SpeechServer::start(&HEARD).unwrap();
     let sound = microphone("bowl", &[silence(1.0), babble(BOWL_S), silence(60.0)].concat());
-    let Some(browser) = Browser::start_speaking(&sound).unwrap() else { return };
+    let browser = Browser::start_speaking(&sound).unwrap();
     let play = play(&server, &["--edit-heard", "0.5"]);
     let mut tab = open(&browser, &play);
     // The file begins with the microphone.
@@ -238,10 +239,11 @@ fn a_person_speaks_to_the_robot_in_a_browser() {
 }
 
 #[test]
+#[cfg_attr(not(browser), ignore = "needs a browser")]
 fn a_person_says_stop_in_a_browser_and_a_microphone_vanishes() {
     let server = SpeechServer::start(&HEARD).unwrap();
     let sound = microphone("stop", &[silence(3.0), babble(STOP_S), silence(60.0)].concat());
-    let Some(browser) = Browser::start_speaking(&sound).unwrap() else { return };
+    let browser = Browser::start_speaking(&sound).unwrap();
     let play = play(&server, &[]);
     let mut tab = open(&browser, &play);
     tab.evaluate("document.querySelector('#open-mic').click()").unwrap();
@@ -264,13 +266,10 @@ fn a_person_says_stop_in_a_browser_and_a_microphone_vanishes() {
 }
 
 /// The engines of this machine; nothing, which is said, where they are not installed.
-fn installed() -> Option<Engines> {
+fn installed() -> Engines {
     let engines = Engines::open(&VoiceSettings::from_env().unwrap());
-    if engines.recognizer.is_none() || engines.synthesizer.is_none() {
-        eprintln!("skipped: no voice is installed here (`cohabit voice install`): {:?}", engines.lacks);
-        return None;
-    }
-    Some(engines)
+    assert!(engines.recognizer.is_some() && engines.synthesizer.is_some(), "voice is incomplete: {:?}", engines.lacks);
+    engines
 }
 
 /// How a text is spoken by what is installed, at 16 kHz.
@@ -287,14 +286,15 @@ fn spoken(engines: &mut Engines, text: &str) -> Vec<f32> {
 }
 
 #[test]
+#[cfg_attr(not(all(browser, voice)), ignore = "optional: a browser, `cohabit voice install`, and espeak-ng")]
 fn a_spoken_request_is_recognised_done_and_answered() {
-    let Some(mut engines) = installed() else { return };
+    let mut engines = installed();
     let request = spoken(&mut engines, "Go to the break room and pick up the bowl.");
     let heard = engines.recognizer.as_mut().unwrap().recognize(&request).unwrap();
     println!("without a hint of what is likely: {:?}", heard.best());
     drop(engines);
     let sound = microphone("request", &[silence(1.5), request, silence(60.0)].concat());
-    let Some(browser) = Browser::start_speaking(&sound).unwrap() else { return };
+    let browser = Browser::start_speaking(&sound).unwrap();
     let play = Play::start(COHABIT, &["make_cereal", "--knows", "everything", "--edit-heard", "0"]).unwrap();
     let mut tab = open(&browser, &play);
     tab.evaluate("document.querySelector('#open-mic').click()").unwrap();
@@ -309,12 +309,13 @@ fn a_spoken_request_is_recognised_done_and_answered() {
 }
 
 #[test]
+#[cfg_attr(not(all(browser, voice)), ignore = "optional: a browser, `cohabit voice install`, and espeak-ng")]
 fn a_spoken_stop_stops_it() {
-    let Some(mut engines) = installed() else { return };
+    let mut engines = installed();
     let stop = spoken(&mut engines, "Stop!");
     drop(engines);
     let sound = microphone("real-stop", &[silence(4.0), stop, silence(60.0)].concat());
-    let Some(browser) = Browser::start_speaking(&sound).unwrap() else { return };
+    let browser = Browser::start_speaking(&sound).unwrap();
     let play = Play::start(COHABIT, &["make_cereal", "--knows", "everything"]).unwrap();
     let mut tab = open(&browser, &play);
     tab.evaluate("document.querySelector('#open-mic').click()").unwrap();

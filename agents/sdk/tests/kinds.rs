@@ -74,8 +74,9 @@ fn a_second_has_so_many_ticks() {
 
 /// Not a test by itself: what the next one runs in another process.
 #[test]
+#[ignore = "a process that other tests start"]
 fn works_as_a_process() {
-    let Ok(name) = std::env::var(SESSION) else { return };
+    let name = std::env::var(SESSION).unwrap();
     let bus = Shm::join(&Session::new(&name).unwrap()).unwrap();
     // The session's end kills it.
     cohabit_agent::run(&mut Random::new(SEED), 0, &bus, &AtomicBool::new(false)).unwrap();
@@ -92,7 +93,7 @@ fn an_agent_acts_the_same_in_a_thread_over_shared_memory_and_in_a_process_of_its
     assert_same(&local, &play(plan(0, 3, &[]), &shared.join(), agent(), 0, TICKS));
     let shared = InShared::new("process");
     let mut process = Command::new(std::env::current_exe().unwrap())
-        .args(["--exact", "works_as_a_process"])
+        .args(["--exact", "works_as_a_process", "--ignored"])
         .env(SESSION, shared.session.name())
         .stdout(Stdio::null())
         .spawn()
@@ -230,10 +231,11 @@ fn tidies(mission: usize) {
         println!("  {ended:?}");
     }
     let gaps = done.windows(2).map(|two| two[1].tick - two[0].tick).max().unwrap_or(0);
-    assert!(made >= 4, "{made} things were messed up: {:#?}", played.outcomes);
-    assert!(tidied * 2 >= made, "{tidied} of {made} tidied: {:#?}", played.outcomes);
-    assert!(failed.len() * 3 <= done.len(), "{} failed, {} done", failed.len(), done.len());
-    assert!(rooms >= 4 && gaps < 60 * TICKS_PER_SECOND, "{rooms} rooms, {gaps} ticks without anything done");
+    // When this was written, of 8 or 9 things all were tidied but one, with no failure, in 7 rooms.
+    assert!(made >= 7, "{made} things were messed up: {:#?}", played.outcomes);
+    assert!(tidied + 2 >= made, "{tidied} of {made} tidied: {:#?}", played.outcomes);
+    assert!(failed.len() <= 1 && done.len() >= 30, "{} failed, {} done", failed.len(), done.len());
+    assert!(rooms >= 6 && gaps < 60 * TICKS_PER_SECOND, "{rooms} rooms, {gaps} ticks without anything done");
 }
 
 #[test]

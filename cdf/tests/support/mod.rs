@@ -1,4 +1,4 @@
-//! The missions to test with: the project's own, and real ones where they are at hand.
+//! The missions to test with: the project's own, and real ones, for tests that need the reference data.
 
 #![allow(dead_code, clippy::unwrap_used, reason = "each test file uses what it needs")]
 
@@ -6,12 +6,12 @@ use std::{fs, path::PathBuf};
 
 use cohabit_cdf::mission::{builtin, sources};
 
-/// Where real missions may lie, beside the project's folder.
+/// The reference data, beside the project's folder.
 pub fn arena() -> PathBuf {
     PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/arena"))
 }
 
-/// The files of real missions that are there, as `(name, text)`; said when there are none.
+/// The files of real missions, as `(name, text)`.
 pub fn real_files() -> Vec<(String, String)> {
     let arena = arena();
     let names = [
@@ -21,15 +21,15 @@ pub fn real_files() -> Vec<(String, String)> {
         "missions-dev.jsonl",
         "human-sessions-dev.json",
     ];
-    let read = |name: &str| Some((name.to_owned(), fs::read_to_string(arena.join(name)).ok()?));
-    let files: Vec<_> = names.into_iter().filter_map(read).collect();
-    if files.is_empty() {
-        eprintln!("skipped: no real missions at {}", arena.display());
-    }
-    files
+    let read = |name: &str| {
+        let path = arena.join(name);
+        let text = fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+        (name.to_owned(), text)
+    };
+    names.into_iter().map(read).collect()
 }
 
-/// The real missions that are there, as `(name, text)`.
+/// The real missions, as `(name, text)`.
 pub fn real_missions() -> Vec<(String, String)> {
     let mut missions = Vec::new();
     for (file, text) in real_files() {
@@ -41,8 +41,7 @@ pub fn real_missions() -> Vec<(String, String)> {
     missions
 }
 
-/// The project's own missions and the real ones.
-pub fn all_missions() -> Vec<(String, String)> {
-    let own = builtin().iter().map(|(name, text)| ((*name).to_owned(), (*text).to_owned()));
-    own.chain(real_missions()).collect()
+/// The project's own missions, as `(name, text)`.
+pub fn own_missions() -> Vec<(String, String)> {
+    builtin().iter().map(|(name, text)| ((*name).to_owned(), (*text).to_owned())).collect()
 }

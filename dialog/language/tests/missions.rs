@@ -1,4 +1,4 @@
-//! The utterances of real missions, understood in the built-in office; says so where the missions are absent.
+//! The utterances of real missions, understood in the built-in office.
 
 #![allow(clippy::unwrap_used)]
 
@@ -9,6 +9,9 @@ use std::{path::Path, sync::Arc};
 use cohabit_cdf::{Catalog, Color, Fluid, Layout, Mission, ObjectId, RoomId, state::StateFlags};
 use cohabit_language::{Context, Known, KnownObject, KnownRobot, Language, Understanding};
 use support::text;
+
+/// A few less than led to a plan when this was written: 1,318 of 1,331.
+const FEWEST_PLANNED: usize = 1_315;
 
 /// What the robot would know who had seen all of the office at the start of `mission`.
 fn known(catalog: &Catalog, layout: &Layout, mission: &Mission) -> Known {
@@ -109,16 +112,14 @@ fn strings(line: &str, key: &str) -> Vec<String> {
 }
 
 #[test]
+#[cfg_attr(not(reference_data), ignore = "needs the reference data in ../shared/arena")]
 fn utterances_of_real_missions_are_understood() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/arena/missions-dev.jsonl");
-    let Ok(file) = std::fs::read_to_string(&path) else {
-        eprintln!("skipped: no missions at {}", path.display());
-        return;
-    };
+    let file = std::fs::read_to_string(&path).unwrap();
     let catalog = Arc::new(Catalog::builtin());
     let layout = Layout::builtin("OfficeLayout1").unwrap();
     let language = Language::new(catalog.clone());
-    let (mut said, mut planned, mut rest) = (0, 0, std::collections::BTreeMap::<String, usize>::new());
+    let (mut said, mut planned, mut rest) = (0, 0_usize, std::collections::BTreeMap::<String, usize>::new());
     for line in file.lines() {
         let cdf = line.find("\"cdf\":").map_or("", |at| &line[at + 6..line.len() - 1]);
         let mission = cohabit_cdf::mission::read_mission("mission", cdf, &catalog).unwrap().mission;
@@ -134,9 +135,8 @@ fn utterances_of_real_missions_are_understood() {
             }
         }
     }
-    let share = f64::from(planned) / f64::from(said);
     eprintln!("{planned} of {said} planned; the rest:\n{rest:#?}");
-    assert!(share > 0.95, "only {planned} of {said} utterances led to a plan: {rest:#?}");
+    assert!(planned >= FEWEST_PLANNED, "only {planned} of {said} utterances led to a plan: {rest:#?}");
 }
 
 /// A conversation whose plans are carried out as far as language can tell: positions, hand, doors.

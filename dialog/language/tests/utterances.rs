@@ -3,7 +3,8 @@
 //!
 //! `cargo test -p cohabit-language --test utterances -- --nocapture` prints the figures, and what is wrong
 //! in what may be looked at.
-//! `UTTERANCES=my.txt` before it measures a set of one's own too; `ONLY_FIGURES=1` keeps its cases unseen.
+//! `UTTERANCES=my.txt cargo test -p cohabit-language --test utterances -- --ignored --nocapture` measures a set of one's own;
+//! `ONLY_FIGURES=1` before it keeps its cases unseen.
 
 #![allow(clippy::unwrap_used)]
 
@@ -87,8 +88,8 @@ fn is_as(expected: &str, understanding: &Understanding, found: &str) -> bool {
     }
 }
 
-/// The share of a set that is understood, printed by kind; what is wrong is printed where it may be looked at.
-fn share(name: &str, set: &str, is_open: bool) -> f64 {
+/// How many cases of a set are understood, printed by kind; what is wrong is printed where it may be looked at.
+fn understood(name: &str, set: &str, is_open: bool) -> usize {
     let cases = cases(set);
     let mut kinds: BTreeMap<&str, [usize; 2]> = BTreeMap::new();
     for case in &cases {
@@ -111,24 +112,31 @@ fn share(name: &str, set: &str, is_open: bool) -> f64 {
     }
     let right: usize = kinds.values().map(|[right, _]| right).sum();
     println!("{name}: {right} of {} understood", cases.len());
-    right as f64 / cases.len() as f64
+    right
+}
+
+/// Finds that as many cases of a set are understood as were when this was written, but for a few; raise the number when more are.
+#[track_caller]
+fn check(name: &str, set: &str, is_open: bool, fewest: usize) {
+    let right = understood(name, set, is_open);
+    assert!(right >= fewest, "{name}: {right} cases are understood, {fewest} were");
 }
 
 /// A set of one's own, in the file that `UTTERANCES` names.
 #[test]
+#[ignore = "measures the set of utterances that UTTERANCES names"]
 fn other_sets_are_measured_too() {
-    let Some(path) = std::env::var_os("UTTERANCES") else { return };
+    let path = std::env::var_os("UTTERANCES").map(std::path::PathBuf::from).expect("UTTERANCES names a file");
     let set = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
-    assert!(share("own", &set, std::env::var_os("ONLY_FIGURES").is_none()) > 0.0);
+    assert!(understood("own", &set, std::env::var_os("ONLY_FIGURES").is_none()) > 0);
 }
 
 #[test]
 fn most_of_what_was_looked_at_is_understood() {
-    let seen = share("seen", include_str!("utterances/seen.txt"), true);
-    let voices = share("voices", include_str!("utterances/voices.txt"), true);
-    let manners = share("manners", include_str!("utterances/manners.txt"), true);
-    let spoken = share("spoken", include_str!("utterances/spoken.txt"), true);
-    assert!(seen > 0.9 && voices > 0.85 && manners > 0.8 && spoken > 0.9, "{seen} {voices} {manners} {spoken}");
+    check("seen", include_str!("utterances/seen.txt"), true, 321);
+    check("voices", include_str!("utterances/voices.txt"), true, 731);
+    check("manners", include_str!("utterances/manners.txt"), true, 135);
+    check("spoken", include_str!("utterances/spoken.txt"), true, 62);
 }
 
 #[test]
@@ -144,6 +152,5 @@ fn nothing_is_done_about_what_is_no_request() {
 
 #[test]
 fn most_of_what_people_say_is_understood() {
-    let held_out = share("held out", include_str!("utterances/held_out.txt"), false);
-    assert!(held_out > 0.5, "{held_out}");
+    check("held out", include_str!("utterances/held_out.txt"), false, 269);
 }

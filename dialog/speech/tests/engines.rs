@@ -1,4 +1,4 @@
-//! The real engines, where they are installed (`cohabit voice install`); where they are not, each test says that it is skipped.
+//! The real engines, where they are installed (`cohabit voice install`).
 
 #![allow(clippy::unwrap_used)]
 
@@ -12,12 +12,12 @@ use cohabit_speech::{
     Bias, Ear, Engines, Heard, Part, RATE, Scene, Source, SpeechError, Turns, VoiceSettings, WINDOW, from_pcm, resample,
 };
 
-/// The user's data folder, if all is in it.
-fn installed() -> Option<VoiceSettings> {
+/// The user's data folder, with all that belongs in it.
+fn installed() -> VoiceSettings {
     let settings = VoiceSettings::from_env().unwrap();
     let lacks = Engines::open(&settings).lacks;
-    lacks.iter().for_each(|lack| println!("skipped: {lack}"));
-    lacks.is_empty().then_some(settings)
+    assert!(lacks.is_empty(), "voice is incomplete: {lacks:?}");
+    settings
 }
 
 /// A text, spoken by the engines' own voice, between silences.
@@ -49,8 +49,9 @@ fn words(text: &str) -> String {
 }
 
 #[test]
+#[cfg_attr(not(voice), ignore = "optional: `cohabit voice install`, and espeak-ng")]
 fn what_is_spoken_is_heard() {
-    let Some(settings) = installed() else { return };
+    let settings = installed();
     let mut engines = Engines::open(&settings);
     let sound = spoken(&mut engines, "Go to the break room and pick up the bowl.");
     let mut ear = Ear::new(engines.vad, engines.recognizer.unwrap(), Turns::default());
@@ -68,8 +69,9 @@ fn what_is_spoken_is_heard() {
 }
 
 #[test]
+#[cfg_attr(not(voice), ignore = "optional: `cohabit voice install`, and espeak-ng")]
 fn speech_is_told_from_silence_and_noise() {
-    let Some(settings) = installed() else { return };
+    let settings = installed();
     let nowhere = VoiceSettings { synthesizer: Source::Installed, ..VoiceSettings::installed("/nowhere") };
     let mut engines = Engines::open(&settings);
     let speech = spoken(&mut engines, "Please open the fridge and take the milk.");
@@ -89,8 +91,9 @@ fn speech_is_told_from_silence_and_noise() {
 }
 
 #[test]
+#[cfg_attr(not(voice), ignore = "optional: `cohabit voice install`, and espeak-ng")]
 fn what_is_no_speech_fails_nothing() {
-    let Some(settings) = installed() else { return };
+    let settings = installed();
     let mut recognizer = Engines::open(&settings).recognizer.unwrap();
     recognizer.bias(&office());
     assert!(recognizer.recognize(&[]).unwrap().hypotheses.is_empty());
@@ -104,8 +107,9 @@ fn what_is_no_speech_fails_nothing() {
 }
 
 #[test]
+#[cfg_attr(not(voice), ignore = "optional: `cohabit voice install`, and espeak-ng")]
 fn a_bias_may_change_and_go() {
-    let Some(settings) = installed() else { return };
+    let settings = installed();
     let mut engines = Engines::open(&settings);
     let sound = spoken(&mut engines, "Pick up the bowl.");
     let mut recognizer = engines.recognizer.unwrap();
@@ -120,8 +124,9 @@ fn a_bias_may_change_and_go() {
 }
 
 #[test]
+#[cfg_attr(not(voice), ignore = "optional: `cohabit voice install`, and espeak-ng")]
 fn speaking_can_be_stopped() {
-    let Some(settings) = installed() else { return };
+    let settings = installed();
     let mut synthesizer = Engines::open(&settings).synthesizer.unwrap();
     let mut chunks = Vec::new();
     let mut stop = |chunk: &[i16]| {
@@ -166,8 +171,9 @@ impl Drop for Copy {
 }
 
 #[test]
+#[cfg_attr(not(voice), ignore = "optional: `cohabit voice install`, and espeak-ng")]
 fn a_broken_model_is_named_and_costs_its_part_alone() {
-    let Some(settings) = installed() else { return };
+    let settings = installed();
     let check = |file: &str, part: Part, change: &dyn Fn(&mut Vec<u8>)| {
         let copy = Copy::of(&settings, "broken", file, change);
         let engines = Engines::open(&VoiceSettings::installed(&copy.0));
@@ -225,8 +231,9 @@ fn heard_with(settings: &VoiceSettings, folder: impl Into<PathBuf>) -> Engines {
 }
 
 #[test]
+#[cfg_attr(not(voice), ignore = "optional: `cohabit voice install`, and espeak-ng")]
 fn a_folder_with_whisper_is_opened_and_fails_on_nothing() {
-    let Some(settings) = installed() else { return };
+    let settings = installed();
     let file = |name: &str| fs::read(Path::new(WHISPER).join(name)).unwrap();
     // As it is, and as whole repositories of such models are laid out.
     let (encoder, decoder) = (file(ENCODER), file(DECODER));
@@ -261,8 +268,9 @@ fn a_folder_with_whisper_is_opened_and_fails_on_nothing() {
 }
 
 #[test]
+#[cfg_attr(not(voice), ignore = "optional: `cohabit voice install`, and espeak-ng")]
 fn what_is_wrong_with_a_folder_is_named() {
-    let Some(settings) = installed() else { return };
+    let settings = installed();
     let file = |name: &str| fs::read(Path::new(WHISPER).join(name)).unwrap();
     let check = |changed: &str, bytes: Option<Vec<u8>>, named: &str, expected: &str| {
         let mut files = [ENCODER, DECODER, TOKENIZER].map(|name| (name, file(name))).to_vec();
@@ -296,12 +304,13 @@ fn what_is_wrong_with_a_folder_is_named() {
 }
 
 #[test]
+#[cfg_attr(
+    not(all(voice, whisper)),
+    ignore = "optional: COHABIT_WHISPER names a folder with a Whisper model; and voice"
+)]
 fn what_is_spoken_is_heard_by_whisper() {
-    let Some(folder) = std::env::var_os("COHABIT_WHISPER") else {
-        println!("skipped: COHABIT_WHISPER names no folder with a Whisper model");
-        return;
-    };
-    let Some(settings) = installed() else { return };
+    let folder = std::env::var_os("COHABIT_WHISPER").unwrap();
+    let settings = installed();
     let mut engines = heard_with(&settings, folder);
     assert!(engines.lacks.is_empty(), "{:?}", engines.lacks);
     let said = "go to the break room and pick up the bowl";

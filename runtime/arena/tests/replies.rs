@@ -139,7 +139,8 @@ fn a_look_around_gives_four_pictures_until_the_next_command() {
     let right = client.batch(&[]);
     let wide = seen(&around, 1);
     let (common, all) = (seen(&right, 0).intersection(&wide).count(), seen(&right, 0).len());
-    assert!(common * 10 >= all * 9, "{common} of {all}");
+    // All 11 when this was written.
+    assert!(common + 1 >= all, "{common} of {all}");
 }
 
 #[test]
@@ -442,12 +443,10 @@ fn each_game_has_a_log_that_replays() {
 const EVERY: usize = 24;
 
 #[test]
+#[cfg_attr(not(reference_data), ignore = "needs the reference data in ../shared/arena")]
 fn missions_of_the_reference_are_launched() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/arena/missions-dev.jsonl");
-    let Ok(missions) = std::fs::read_to_string(path) else {
-        eprintln!("skipped: {path} is not there");
-        return;
-    };
+    let missions = std::fs::read_to_string(path).unwrap();
     let mut client = Client::new();
     for line in missions.lines().step_by(EVERY) {
         let task: Value = serde_json::from_str(line).unwrap();

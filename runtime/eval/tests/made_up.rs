@@ -37,6 +37,8 @@ fn people_who_speak_clearly_are_understood_and_say_the_same_each_time() {
     let tally = Tally::of(played.iter());
     let unsolved = played.iter().filter(|task| !task.success);
     let unsolved: Vec<_> = unsolved.map(|task| (&task.id, &task.first_trouble, &task.transcript)).collect();
-    assert!(tally.success_rate >= 0.8, "{unsolved:#?}");
+    println!("{} of {} solved", tally.solved, played.len());
+    // 22 of 24 when this was written.
+    assert!(tally.solved >= 21, "{unsolved:#?}");
     assert_eq!(play(&tasks[0]).transcript, played[0].transcript);
 }

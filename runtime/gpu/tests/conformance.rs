@@ -16,27 +16,38 @@ use cohabit_render::{Camera, CpuRenderer, MeshLibrary, Planes, Renderer, Scene, 
 use compare::{Difference, Picture};
 use views::{office, viewpoints};
 
-/// The renderers to be held against the reference; says which are missing.
-fn renderers() -> Vec<(&'static str, Box<dyn Renderer>)> {
-    let mut all: Vec<(&'static str, Box<dyn Renderer>)> = vec![("cpu, three threads", Box::new(CpuRenderer::new(3)))];
-    if let Some(gpu) = gpu() {
-        all.push(("gpu", Box::new(gpu)));
-    }
-    all
+/// Each renderer passes each of these tests.
+macro_rules! conformance {
+    ($($test:ident),*) => {
+        mod cpu {
+            $(#[test]
+            fn $test() {
+                super::$test("cpu, three threads", Box::new(super::CpuRenderer::new(3)));
+            })*
+        }
+
+        mod gpu {
+            $(#[test]
+            #[cfg_attr(not(vulkan), ignore = "needs a Vulkan driver")]
+            fn $test() {
+                super::$test("gpu", Box::new(super::gpu()));
+            })*
+        }
+    };
 }
 
-/// One on any adapter; nothing where there is none.
-fn gpu() -> Option<GpuRenderer> {
-    match Adapter::find(Wanted::Any) {
-        Ok(adapter) => {
-            println!("on {}", adapter.describe());
-            Some(GpuRenderer::new(&adapter, 2).unwrap().on_loss(|loss| panic!("{loss}")))
-        }
-        Err(error) => {
-            println!("SKIPPED for want of a GPU: {error}");
-            None
-        }
-    }
+conformance!(
+    every_layout_from_every_room,
+    pictures_for_people,
+    states_lights_and_effects,
+    only_what_is_wanted_is_written
+);
+
+/// One on any adapter.
+fn gpu() -> GpuRenderer {
+    let adapter = Adapter::find(Wanted::Any).unwrap();
+    println!("on {}", adapter.describe());
+    GpuRenderer::new(&adapter, 2).unwrap().on_loss(|loss| panic!("{loss}"))
 }
 
 fn meshes() -> (Catalog, Arc<MeshLibrary>) {
@@ -71,81 +82,70 @@ fn check(name: &str, renderer: &mut dyn Renderer, scene: &Scene, cameras: &[Came
     worst
 }
 
-#[test]
-fn every_layout_from_every_room() {
+fn every_layout_from_every_room(name: &str, mut renderer: Box<dyn Renderer>) {
     let (catalog, meshes) = meshes();
-    for (name, mut renderer) in renderers() {
-        for id in Layout::builtin_ids() {
-            let layout = Layout::builtin(&id).unwrap();
-            let mut scene = Scene::new(Arc::clone(&meshes), &layout);
-            scene.set_instances(&furnish(&catalog, &layout));
-            // One large view of each room, and small ones from every other viewpoint.
-            let large = viewpoints(&layout, [300, 300], false, 6);
-            let small = viewpoints(&layout, [84, 84], false, 2);
-            let worst = check(name, &mut *renderer, &scene, &[large, small].concat());
-            println!("{name}, {id}: {worst:?}");
-        }
+    for id in Layout::builtin_ids() {
+        let layout = Layout::builtin(&id).unwrap();
+        let mut scene = Scene::new(Arc::clone(&meshes), &layout);
+        scene.set_instances(&furnish(&catalog, &layout));
+        // One large view of each room, and small ones from every other viewpoint.
+        let large = viewpoints(&layout, [300, 300], false, 6);
+        let small = viewpoints(&layout, [84, 84], false, 2);
+        let worst = check(name, &mut *renderer, &scene, &[large, small].concat());
+        println!("{name}, {id}: {worst:?}");
     }
 }
 
-#[test]
-fn pictures_for_people() {
+fn pictures_for_people(name: &str, mut renderer: Box<dyn Renderer>) {
     let (catalog, meshes) = meshes();
-    for (name, mut renderer) in renderers() {
-        let layout = Layout::builtin("OfficeLayout1").unwrap();
-        let scene = office(&catalog, &meshes, &layout);
-        let mut cameras = viewpoints(&layout, [854, 480], true, 9);
-        cameras.push(Camera::above(layout.bounds_m(), 0.8, 12.0));
+    let layout = Layout::builtin("OfficeLayout1").unwrap();
+    let scene = office(&catalog, &meshes, &layout);
+    let mut cameras = viewpoints(&layout, [854, 480], true, 9);
+    cameras.push(Camera::above(layout.bounds_m(), 0.8, 12.0));
+    let worst = check(name, &mut *renderer, &scene, &cameras);
+    println!("{name}: {worst:?}");
+}
+
+fn states_lights_and_effects(name: &str, mut renderer: Box<dyn Renderer>) {
+    let (catalog, meshes) = meshes();
+    for id in ["OfficeLayout2", "OfficeLayout3"] {
+        let layout = Layout::builtin(id).unwrap();
+        let mut scene = office(&catalog, &meshes, &layout);
+        let cameras = viewpoints(&layout, [300, 300], false, 5);
         let worst = check(name, &mut *renderer, &scene, &cameras);
-        println!("{name}: {worst:?}");
-    }
-}
-
-#[test]
-fn states_lights_and_effects() {
-    let (catalog, meshes) = meshes();
-    for (name, mut renderer) in renderers() {
-        for id in ["OfficeLayout2", "OfficeLayout3"] {
-            let layout = Layout::builtin(id).unwrap();
-            let mut scene = office(&catalog, &meshes, &layout);
-            let cameras = viewpoints(&layout, [300, 300], false, 5);
-            let worst = check(name, &mut *renderer, &scene, &cameras);
-            println!("{name}, {id}, all states: {worst:?}");
-            // What changed is seen, and what is hidden is not.
-            scene.set_time(700_000_000);
-            for room in RoomId::ALL {
-                scene.set_lights(room, (room as u8).is_multiple_of(2));
-            }
-            let hiding: Vec<Camera> = cameras.iter().map(|camera| Camera { hide: Some(5), ..*camera }).collect();
-            let worst = check(name, &mut *renderer, &scene, &hiding);
-            println!("{name}, {id}, later, half of the lamps off: {worst:?}");
+        println!("{name}, {id}, all states: {worst:?}");
+        // What changed is seen, and what is hidden is not.
+        scene.set_time(700_000_000);
+        for room in RoomId::ALL {
+            scene.set_lights(room, (room as u8).is_multiple_of(2));
         }
+        let hiding: Vec<Camera> = cameras.iter().map(|camera| Camera { hide: Some(5), ..*camera }).collect();
+        let worst = check(name, &mut *renderer, &scene, &hiding);
+        println!("{name}, {id}, later, half of the lamps off: {worst:?}");
     }
 }
 
-#[test]
-fn only_what_is_wanted_is_written() {
+fn only_what_is_wanted_is_written(name: &str, mut renderer: Box<dyn Renderer>) {
     let (catalog, meshes) = meshes();
     let layout = Layout::builtin("OfficeLayout1").unwrap();
     let scene = office(&catalog, &meshes, &layout);
     let camera = viewpoints(&layout, [100, 60], false, 1)[3];
     let mut all = Picture::new(&camera);
-    for (name, mut renderer) in renderers() {
-        renderer.render(&scene, &camera, &mut all.planes());
-        let mut ids = vec![7; camera.pixels()];
-        let mut depth_m = vec![7.0; camera.pixels()];
-        renderer.render(&scene, &camera, &mut Planes { ids: Some(&mut ids), ..Planes::default() });
-        renderer.render(&scene, &camera, &mut Planes { depth_m: Some(&mut depth_m), ..Planes::default() });
-        assert_eq!((ids, depth_m), (all.ids.clone(), all.depth_m.clone()), "{name}");
-        renderer.render(&scene, &camera, &mut Planes::default());
-        let none = Camera { width: 0, ..camera };
-        renderer.render(&scene, &none, &mut Planes { ids: Some(&mut []), ..Planes::default() });
-    }
+    renderer.render(&scene, &camera, &mut all.planes());
+    let mut ids = vec![7; camera.pixels()];
+    let mut depth_m = vec![7.0; camera.pixels()];
+    renderer.render(&scene, &camera, &mut Planes { ids: Some(&mut ids), ..Planes::default() });
+    renderer.render(&scene, &camera, &mut Planes { depth_m: Some(&mut depth_m), ..Planes::default() });
+    assert_eq!((ids, depth_m), (all.ids.clone(), all.depth_m.clone()), "{name}");
+    renderer.render(&scene, &camera, &mut Planes::default());
+    let none = Camera { width: 0, ..camera };
+    renderer.render(&scene, &none, &mut Planes { ids: Some(&mut []), ..Planes::default() });
 }
 
 #[test]
+#[cfg_attr(not(vulkan), ignore = "needs a Vulkan driver")]
 fn a_thousand_cameras_at_once() {
-    let Some(mut gpu) = gpu() else { return };
+    let mut gpu = gpu();
     let (catalog, meshes) = meshes();
     let layout = Layout::builtin("OfficeLayout3").unwrap();
     let scene = office(&catalog, &meshes, &layout);
@@ -173,8 +173,9 @@ fn a_thousand_cameras_at_once() {
 }
 
 #[test]
+#[cfg_attr(not(vulkan), ignore = "needs a Vulkan driver")]
 fn a_lost_device_is_replaced_by_the_reference() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = gpu();
     let (tell, told) = std::sync::mpsc::channel();
     let mut gpu = gpu.on_loss(move |loss| tell.send(loss.to_string()).unwrap());
     let (catalog, meshes) = meshes();

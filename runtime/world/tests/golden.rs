@@ -13,14 +13,10 @@ use std::path::PathBuf;
 use cohabit_world::{Ending, Event};
 use support::{Player, play::lives, world};
 
-/// The text of a reference mission, if the reference data are there.
-fn reference(name: &str) -> Option<String> {
+/// The text of a mission of the reference data.
+fn reference(name: &str) -> String {
     let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared/arena/cdf").join(name);
-    let text = std::fs::read_to_string(&path).ok();
-    if text.is_none() {
-        eprintln!("skipped: {} is not there", path.display());
-    }
-    text
+    std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
 fn solve(file: &str, text: &str, actions: &[&str]) -> Player {
@@ -34,8 +30,9 @@ fn solve(file: &str, text: &str, actions: &[&str]) -> Player {
 }
 
 #[test]
+#[cfg_attr(not(reference_data), ignore = "needs the reference data in ../shared/arena")]
 fn cereal() {
-    let Some(text) = reference("mission_01.json") else { return };
+    let text = reference("mission_01.json");
     solve(
         "mission_01.json",
         &text,
@@ -68,8 +65,9 @@ fn cereal() {
 }
 
 #[test]
+#[cfg_attr(not(reference_data), ignore = "needs the reference data in ../shared/arena")]
 fn laser() {
-    let Some(text) = reference("mission_07.json") else { return };
+    let text = reference("mission_07.json");
     solve(
         "mission_07.json",
         &text,
@@ -85,8 +83,9 @@ fn laser() {
 }
 
 #[test]
+#[cfg_attr(not(reference_data), ignore = "needs the reference data in ../shared/arena")]
 fn freeze_ray() {
-    let Some(text) = reference("mission_08.json") else { return };
+    let text = reference("mission_08.json");
     solve(
         "mission_08.json",
         &text,

@@ -1,5 +1,5 @@
 //! Recordings and Parquet tables, made by this very program of sessions that are played here, and read by rerun's own
-//! tools and pyarrow. Without Python or these packages the tests say that they are skipped.
+//! tools and pyarrow, which the tests install.
 #![allow(clippy::unwrap_used)]
 
 use std::{
@@ -36,17 +36,13 @@ fn folder(name: &str) -> PathBuf {
     folder
 }
 
-/// A Python with rerun's package; `None`, once it was said that there is none.
-fn python() -> Option<&'static Path> {
-    static PYTHON: OnceLock<Option<PathBuf>> = OnceLock::new();
-    let find = || {
+/// A Python with rerun's package.
+fn python() -> &'static Path {
+    static PYTHON: OnceLock<PathBuf> = OnceLock::new();
+    PYTHON.get_or_init(|| {
         let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("rerun-python");
-        let found = python_with(&Path::new(HERE).join("requirements.txt"), &folder);
-        found
-            .inspect_err(|why| eprintln!("skipped: no recording is read, for want of rerun's Python package: {why}"))
-            .ok()
-    };
-    PYTHON.get_or_init(find).as_deref()
+        python_with(&Path::new(HERE).join("requirements.txt"), &folder).unwrap()
+    })
 }
 
 fn read(python: &Path, what: &str, path: &Path) -> Value {
@@ -126,6 +122,7 @@ fn check(read: &Value, root: &str, log: &Log) {
 }
 
 #[test]
+#[cfg_attr(not(python), ignore = "needs Python 3.10 or later with venv")]
 fn a_recording_holds_what_was_played_and_two_lie_beside_each_other() {
     let folder = folder("recordings");
     let [soda, coffee] = logs(&folder);
@@ -135,7 +132,7 @@ fn a_recording_holds_what_was_played_and_two_lie_beside_each_other() {
     for recording in [&one, &both] {
         assert!(fs::read(recording).unwrap().starts_with(b"RRF2"));
     }
-    let Some(python) = python() else { return };
+    let python = python();
     let [soda, coffee] = [soda, coffee].map(|log| Log::open(&log).unwrap());
     verify(python, &one);
     verify(python, &both);
@@ -151,12 +148,13 @@ fn a_recording_holds_what_was_played_and_two_lie_beside_each_other() {
 }
 
 #[test]
+#[cfg_attr(not(python), ignore = "needs Python 3.10 or later with venv")]
 fn tables_are_read_with_their_units_and_meanings() {
     let folder = folder("tables");
     let [soda, coffee] = logs(&folder);
     let out = folder.join("out");
     run(&["tables".as_ref(), &soda, &coffee, "--out".as_ref(), &out]);
-    let Some(python) = python() else { return };
+    let python = python();
     let sessions = read(python, "table", &out.join("sessions.parquet"));
     let all = |name: &str| sessions["rows"].as_array().unwrap().iter().map(|row| row[name].clone()).collect::<Vec<_>>();
     assert_eq!(all("session"), ["cold_soda", "warm_coffee"]);
@@ -196,6 +194,7 @@ impl Drop for Watcher {
 }
 
 #[test]
+#[cfg_attr(not(python), ignore = "needs Python 3.10 or later with venv")]
 fn a_running_session_is_shown_through_the_same_conversion() {
     let folder = folder("live");
     let session = Session::new(&format!("rerun-{}", std::process::id())).unwrap();
@@ -223,7 +222,7 @@ fn a_running_session_is_shown_through_the_same_conversion() {
     }
     watcher.end();
     session.end(lock);
-    let Some(python) = python() else { return };
+    let python = python();
     verify(python, &out);
     let read = read(python, "recording", &out);
     for path in ["/world/bodies/robot_0", "/world/plan/BreakRoom/floor", "/goals/all", "/mission", "/world/cameras"] {
