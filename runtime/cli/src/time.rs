@@ -63,7 +63,9 @@ impl Time {
         let mut bell = bus.listener(Wake::Talk)?;
         let mut events = Inbox::new(&bus, Topic::Events)?;
         let asked_nanos = monotonic_nanos();
-        bus.publisher(Topic::Control)?.send_record(0, &ControlMessage::from(Control::from(self.change)))?;
+        // Kept until the answer: what is sent is lost with its publisher, if the simulator has not noticed that one yet.
+        let mut controls = bus.publisher(Topic::Control)?;
+        controls.send_record(0, &ControlMessage::from(Control::from(self.change)))?;
         let deadline = Instant::now() + PATIENCE;
         while Instant::now() < deadline {
             while let Some((sample, event)) = events.next(|sample| message::read::<EventMessage>(sample.payload()))? {
