@@ -2,6 +2,8 @@
 
 use std::{fmt, process::ExitCode};
 
+use crate::terminal::shown_lines;
+
 /// Something the caller gave is wrong: exit code 2. All else that fails is 1.
 #[derive(Debug)]
 pub struct BadInput(pub String);
@@ -23,7 +25,7 @@ pub fn bad_input(message: impl fmt::Display) -> anyhow::Error {
 pub fn report(error: &anyhow::Error) -> ExitCode {
     let text = format!("{error:#}");
     if !text.is_empty() {
-        eprintln!("cohabit: {text}");
+        eprintln!("cohabit: {}", shown_lines(text));
     }
     ExitCode::from(if error.is::<BadInput>() { 2 } else { 1 })
 }
