@@ -22,6 +22,7 @@ mod sessions;
 mod several;
 mod soak;
 mod survey;
+mod untrusted;
 mod voice;
 
 /// The binary under test.
