@@ -5,6 +5,7 @@ mod camera;
 mod expression;
 mod goals;
 mod key;
+pub mod limits;
 mod messages;
 mod names;
 mod nearest;
@@ -148,10 +149,22 @@ pub fn builtin() -> &'static [(&'static str, &'static str)] {
 /// ```
 ///
 /// # Errors
-/// All [`Problems`], warnings among them, if one of them is an error; a single one for what is no JSON.
+/// All [`Problems`], warnings among them, if one of them is an error; a single one for what is no JSON, and for what is larger
+/// than a mission may be ([`limits`]).
 pub fn read_mission(file: &str, text: &str, catalog: &Catalog) -> Result<Checked, Problems> {
     // Editors of another system put a byte order mark before the text.
     let text = text.trim_start_matches('\u{feff}');
+    if let Some(limits::Exceeded { at, message, remedy }) = limits::exceeded(text) {
+        let mut reader = Reader::new(file, catalog);
+        reader.error(&at, message, Some(remedy));
+        if at.is_root() {
+            // It is not looked through for a line.
+            reader.problems.iter_mut().for_each(|problem| problem.position = Some((1, 1)));
+        } else {
+            position::locate(text, &mut reader.problems, file);
+        }
+        return Err(Problems(reader.problems));
+    }
     let value = serde_json::from_str(text).map_err(|error| syntax(file, text, &error))?;
     let mut reader = Reader::new(file, catalog);
     let read = match Loose::<Cdf>::deserialize(&value) {

@@ -6,7 +6,7 @@ mod support;
 
 use cohabit_cdf::{
     Catalog,
-    mission::{builtin, schema::schema},
+    mission::{builtin, read_mission, schema::schema},
 };
 use serde_json::{Value, json};
 
@@ -104,4 +104,38 @@ fn every_reference_is_defined() {
     for reference in all {
         assert!(schema.pointer(reference.trim_start_matches('#')).is_some(), "{reference} is not defined");
     }
+}
+
+/// What the schema says of sizes is what reading holds to.
+#[test]
+fn sizes_are_bounded_as_in_reading() {
+    let catalog = Catalog::builtin();
+    let (schema, validator) = (schema(&catalog), validator());
+    let (_, text) = builtin().iter().find(|(name, _)| *name == "make_cereal.json").unwrap();
+    let note = |index: usize| json!({"name": format!("StickyNote_{index}"), "text": "x", "room": "Lab1"});
+    let apple = |index: usize| json!({"name": format!("Apple_{index}"), "roomLocation": ["Lab1"]});
+    let many = |item: &dyn Fn(usize) -> Value, count: usize| (0..count).map(item).collect::<Vec<_>>();
+    for (pointer, key, value) in [
+        ("/scene/sticky_notes", "sticky_notes", json!(many(&note, 100_000))),
+        ("/scene/required_objects", "required_objects", json!(many(&apple, 1001))),
+        ("/task_goals", "task_goals", json!(vec![json!({"goal_id": 1}); 201])),
+        ("/goal_text", "goal_text", json!("x".repeat(10_001))),
+        ("/task_description", "task_description", json!("ы".repeat(10_001))),
+        ("/stateconditions", "stateconditions", json!(vec![json!({}); 501])),
+        ("/pastPortals", "pastPortals", json!(vec![json!({}); 101])),
+    ] {
+        let mut mission: Value = serde_json::from_str(text).unwrap();
+        let parent = pointer.strip_suffix(key).unwrap().trim_end_matches('/');
+        mission.pointer_mut(parent).unwrap()[key] = value;
+        let found: Vec<_> = validator.iter_errors(&mission).map(|error| error.to_string()).collect();
+        assert!(!found.is_empty(), "{pointer}: the schema has no limit");
+        let problems = read_mission("m.json", &mission.to_string(), &catalog).unwrap_err().0;
+        assert_eq!(problems.len(), 1, "{problems:?}");
+        let [problem] = &problems[..] else { panic!("{problems:?}") };
+        assert!(problem.remedy.as_ref().is_some_and(|remedy| remedy.contains("at most")), "{problem}");
+        let is_too_large = mission.to_string().len() > schema["x-limits"]["bytes"].as_u64().unwrap() as usize;
+        assert_eq!(problem.pointer.as_str(), if is_too_large { "" } else { pointer });
+        assert!(problem.position.is_some_and(|place| is_too_large == (place == (1, 1))), "{problem}");
+    }
+    assert!(schema["description"].as_str().unwrap().contains("bytes"));
 }

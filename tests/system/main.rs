@@ -23,6 +23,7 @@ mod several;
 mod soak;
 mod survey;
 mod time;
+mod untrusted;
 mod voice;
 
 /// The binary under test.

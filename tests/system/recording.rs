@@ -3,6 +3,7 @@
 
 use std::{
     fs,
+    io::{BufRead as _, BufReader},
     path::{Path, PathBuf},
     process::{Child, Command, Stdio},
     sync::Arc,
@@ -12,6 +13,7 @@ use cohabit_cdf::Catalog;
 use cohabit_engine::Replayer;
 use cohabit_record::Log;
 use cohabit_tests::{Browser, Page, Play, run};
+use rustix::process::{Pid, Signal, kill_process};
 use serde_json::json;
 
 use crate::COHABIT;
@@ -130,6 +132,39 @@ fn a_damaged_log_is_replayed_around_what_is_lost() {
     assert!(Log::open(&damaged).unwrap().ticks.len() < whole.ticks.len());
 }
 
+/// A recorder that could not keep up ends with an exit code of its own, whoever stops it.
+#[test]
+fn a_recorder_that_missed_something_does_not_end_well() {
+    let play = Play::start(COHABIT, &["cold_soda", "--speed", "20"]).unwrap();
+    let log = play.folder.join("second.mcap");
+    let mut recorder = Command::new(COHABIT)
+        .args(["record", "--session", &play.session, "--log", log.to_str().unwrap()])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut said = BufReader::new(recorder.stdout.take().unwrap()).lines().map_while(Result::ok);
+    assert!(said.any(|line| line.starts_with("recording ")));
+    let pid = Pid::from_child(&recorder);
+    kill_process(pid, Signal::STOP).unwrap();
+    let mut page = Page::open(play.authority()).unwrap();
+    let at = |page: &Page| page.state["tick"].as_u64().unwrap_or_default();
+    page.wait("a state", |page, _| at(page) > 0).unwrap();
+    let began = at(&page);
+    // The bus keeps 2048 ticks.
+    page.wait("more ticks than the bus keeps", |page, _| at(page) > began + 4000).unwrap();
+    kill_process(pid, Signal::TERM).unwrap();
+    kill_process(pid, Signal::CONT).unwrap();
+    let ended = recorder.wait_with_output().unwrap();
+    let told = String::from_utf8_lossy(&ended.stderr).into_owned();
+    assert_eq!(ended.status.code(), Some(3), "{told}");
+    assert!(told.contains("second.mcap is incomplete: ") && told.contains("messages are missing"), "{told}");
+    let found = Log::open(&log).unwrap();
+    assert!(found.missing() > 0 && !found.gaps.is_empty() && found.cut.is_none(), "{:?}", found.problems());
+    drop(page);
+    play.end().unwrap();
+}
+
 /// `cohabit replay --page`, which is ended when this is dropped.
 struct Screening {
     child: Child,
@@ -138,7 +173,6 @@ struct Screening {
 
 impl Screening {
     fn start(log: &Path) -> Self {
-        use std::io::{BufRead as _, BufReader};
         let mut child = Command::new(COHABIT)
             .args(["replay", log.to_str().unwrap(), "--page", "--port", "0"])
             .stdout(Stdio::piped())

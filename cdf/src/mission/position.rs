@@ -2,7 +2,10 @@
 //!
 //! The text must be JSON already; of anything else this makes some positions or other, but neither fails nor hangs.
 
-use std::{collections::BTreeMap, ops::Range};
+use std::{
+    collections::BTreeMap,
+    ops::{ControlFlow, Range},
+};
 
 use super::problem::{Pointer, Problem, Severity};
 
@@ -18,9 +21,22 @@ pub(super) struct Span {
 /// Walks through `text`; `each` gets every value but the outermost, with its JSON pointer and how deep that is. Gives the
 /// keys that an object has more than once, each with the place of the last.
 pub(super) fn walk(text: &str, mut each: impl FnMut(&str, usize, Span)) -> Vec<(Pointer, usize)> {
+    walk_while(text, |path, depth, span| {
+        each(path, depth, span);
+        ControlFlow::Continue(())
+    })
+}
+
+/// The same, until `each` has seen enough.
+pub(super) fn walk_while(
+    text: &str,
+    mut each: impl FnMut(&str, usize, Span) -> ControlFlow<()>,
+) -> Vec<(Pointer, usize)> {
     let mut walker = Walker { text, at: 0, path: String::new(), open: Vec::new(), repeated: Vec::new() };
     while let Some((depth, span)) = walker.step() {
-        each(&walker.path, walker.open.len(), span);
+        if each(&walker.path, walker.open.len(), span).is_break() {
+            break;
+        }
         walker.path.truncate(depth);
     }
     walker.repeated
@@ -80,19 +96,44 @@ fn printable(key: String) -> String {
 pub(super) struct Lines<'t> {
     text: &'t str,
     starts: Vec<usize>,
+    /// How many characters begin before each block of bytes: a file may be one long line with many problems.
+    before_block: Vec<usize>,
+}
+
+/// Bytes that are counted through to tell a column.
+const BLOCK: usize = 4096;
+
+fn characters(bytes: &[u8]) -> usize {
+    // All but those that go on with a character.
+    bytes.iter().filter(|byte| **byte & 0xc0 != 0x80).count()
 }
 
 impl<'t> Lines<'t> {
     pub fn of(text: &'t str) -> Self {
-        Self { text, starts: std::iter::once(0).chain(text.match_indices('\n').map(|(at, _)| at + 1)).collect() }
+        let starts = std::iter::once(0).chain(text.match_indices('\n').map(|(at, _)| at + 1)).collect();
+        let mut before = 0;
+        let mut before_block = Vec::with_capacity(text.len() / BLOCK + 1);
+        for block in text.as_bytes().chunks(BLOCK) {
+            before_block.push(before);
+            before += characters(block);
+        }
+        Self { text, starts, before_block }
     }
 
     /// Line and column of a byte, both from 1, the column in characters.
     pub fn position(&self, offset: usize) -> (usize, usize) {
         let line = self.starts.partition_point(|start| *start <= offset).max(1);
         let start = self.starts[line - 1];
-        let before = self.text.get(start..offset).map_or(0, |before| before.chars().count());
-        (line, before + 1)
+        let before =
+            self.text.is_char_boundary(offset).then(|| self.characters_before(offset) - self.characters_before(start));
+        (line, before.unwrap_or(0) + 1)
+    }
+
+    /// How many characters are before a byte.
+    fn characters_before(&self, offset: usize) -> usize {
+        let block = (offset / BLOCK).min(self.before_block.len().saturating_sub(1));
+        let before = self.before_block.get(block).copied().unwrap_or(0);
+        before + self.text.as_bytes().get(block * BLOCK..offset).map_or(0, characters)
     }
 
     /// The position of a byte told by its line and its number in the line, both from 1.
@@ -284,6 +325,11 @@ mod tests {
         assert_eq!(lines.position(text.find('1').unwrap_or_default()), (1, 7));
         assert_eq!(lines.position(text.find("bb").unwrap_or_default()), (2, 2));
         assert_eq!(lines.position_of_byte(1, 8), (1, 7));
+        let long = format!("\n{}x", "\u{e9}y".repeat(BLOCK));
+        for characters in [0, 1, 2, BLOCK / 2, BLOCK, BLOCK + 1, 2 * BLOCK] {
+            let offset = 1 + long[1..].chars().take(characters).map(char::len_utf8).sum::<usize>();
+            assert_eq!(Lines::of(&long).position(offset), (2, characters + 1));
+        }
         assert_eq!(lines.position_of_byte(9, 9), (9, 9).min((9, lines.position(text.len()).1)));
     }
 

@@ -1,7 +1,8 @@
 //! The JSON Schema (draft 2020-12) of mission files, for editors and for those who generate missions.
 //!
 //! Made from the same types and tables that reading uses. It describes how missions are to be written; reading is more
-//! generous, and checks more: that what is named is there, and that goals can be met.
+//! generous, and checks more: that what is named is there, and that goals can be met. It states how large a mission may be
+//! ([`limits`]).
 
 use std::borrow::Cow;
 
@@ -12,6 +13,7 @@ use super::{
     expression::KINDS,
     goals::ALWAYS_UNLOCKED,
     key::{InitialKey, flag_keys},
+    limits,
     raw::{Cdf, Loose, Scalar},
     scene::{LAYOUTS, MIRRORED},
 };
@@ -38,6 +40,7 @@ pub fn schema(catalog: &Catalog) -> Value {
     if let Some(definitions) = schema.get_mut("$defs").and_then(Value::as_object_mut) {
         definitions.extend(vocabulary(catalog));
     }
+    limits::state(&mut schema);
     Value::Object(schema)
 }
 

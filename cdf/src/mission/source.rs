@@ -1,10 +1,12 @@
 //! The missions in a text: one alone, one a line, or many by name.
 
+use std::{collections::BTreeMap, ops::ControlFlow};
+
 use serde::de::IgnoredAny;
 
 use super::{
     Checked, Problems,
-    position::{Lines, Span, walk},
+    position::{Lines, Span, walk_while},
     problem::Pointer,
     read_mission,
 };
@@ -94,16 +96,25 @@ fn in_value<'t>(file: &str, text: &'t str, at: (usize, usize)) -> Option<Vec<Sou
     let mut has_scene = false;
     let mut own_id = None;
     let mut found: Vec<(String, Span)> = Vec::new();
-    let mut ids: Vec<(String, String)> = Vec::new();
-    walk(text, |path, depth, span| {
+    let mut ids: BTreeMap<String, String> = BTreeMap::new();
+    walk_while(text, |path, depth, span| {
+        // A mission may be of any size; that it is one is known as soon as its scene begins.
+        has_scene |= path == "/scene" || path.starts_with("/scene/");
+        if has_scene {
+            return ControlFlow::Break(());
+        }
         let (parent, key) = path.rsplit_once('/').unwrap_or_default();
-        has_scene |= path == "/scene";
         if depth <= 2 && MISSION_KEYS.contains(&key) && text[span.value.clone()].starts_with('{') {
             found.push((path.to_owned(), span));
         } else if depth <= 2 && key == "id" {
             let id = text[span.value].trim_matches('"').to_owned();
-            if depth == 1 { own_id = Some(id) } else { ids.push((parent.to_owned(), id)) }
+            if depth == 1 {
+                own_id = Some(id);
+            } else {
+                ids.entry(parent.to_owned()).or_insert(id);
+            }
         }
+        ControlFlow::Continue(())
     });
     if has_scene || found.is_empty() {
         return None;
@@ -111,7 +122,7 @@ fn in_value<'t>(file: &str, text: &'t str, at: (usize, usize)) -> Option<Vec<Sou
     let lines = Lines::of(text);
     let sources = found.into_iter().map(|(path, span)| {
         let (parent, _) = path.rsplit_once('/').unwrap_or_default();
-        let listed = ids.iter().find(|(of, _)| of == parent).map(|(_, id)| id.clone());
+        let listed = ids.get(parent).cloned();
         let key = Pointer::of(parent.to_owned()).last();
         let id = if parent.is_empty() { own_id.clone() } else { listed.or(Some(key)) };
         let (line, column) = lines.position(span.value.start);

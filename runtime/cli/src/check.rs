@@ -1,24 +1,37 @@
-//! `cohabit check`: what is wrong in mission files, and where.
+//! `cohabit check`: what is wrong in mission files, and where. A mission that can be read is laid out as `play` does, too.
 
 use std::{
+    collections::BTreeMap,
     fs,
     io::{self, BufWriter, Write},
     path::{Path, PathBuf},
+    sync::Arc,
 };
 
 use cohabit_cdf::{
-    Catalog,
-    mission::{self, Problem, Severity, Source},
+    Catalog, Layout,
+    mission::{self, Checked, Pointer, Problem, Severity, Source},
 };
+use cohabit_world::{BuildError, World};
 use serde_json::{Value, json};
 
-use crate::{failure::bad_input, mission_file::MissionFile};
+use crate::{
+    failure::bad_input,
+    mission_file::MissionFile,
+    terminal::{shown, shown_json},
+};
 
 /// Endings of the files that are looked for in folders.
 const ENDINGS: [&str; 2] = ["json", "jsonl"];
 
 /// How deep folders are looked through.
 const DEEPEST: usize = 16;
+
+/// The most bytes of a file, which may hold many missions: some ten thousand of the usual size.
+const LARGEST_FILE: usize = 256 << 20;
+
+/// The seed of a mission that leaves it to chance: one of those that `play` may take.
+const SEED: u64 = 0;
 
 /// Prints every problem with its file, line and column, its place, what is wrong and what would be right
 #[derive(clap::Args)]
@@ -65,10 +78,10 @@ impl Check {
             writeln!(out, "{:#}", mission::schema::schema(&Catalog::builtin()))?;
             return Ok(out.flush()?);
         }
-        let catalog = Catalog::builtin();
+        let mut checker = Checker { catalog: Arc::new(Catalog::builtin()), layouts: BTreeMap::new() };
         let mut report = Vec::new();
         let (mut all, mut bad) = (0, 0);
-        for verdict in self.names()?.iter().flat_map(|name| verdicts(name, &catalog)) {
+        for verdict in self.names()?.iter().flat_map(|name| checker.verdicts(name)) {
             all += 1;
             bad += usize::from(!verdict.playable);
             if self.json {
@@ -78,7 +91,7 @@ impl Check {
             }
         }
         if self.json {
-            writeln!(out, "{:#}", Value::Array(report))?;
+            writeln!(out, "{}", shown_json(format_args!("{:#}", Value::Array(report))))?;
         } else if all > 1 {
             writeln!(out, "{} of {all} missions are playable", all - bad)?;
         }
@@ -124,37 +137,91 @@ fn gather(folder: &Path, deeper: usize, found: &mut Vec<PathBuf>) -> io::Result<
     Ok(())
 }
 
-/// One for each mission in a file; one for the file if it cannot be read.
-fn verdicts(name: &str, catalog: &Catalog) -> Vec<Verdict> {
-    match MissionFile::find(Some(name)) {
-        Ok(file) => {
-            let sources = mission::sources(&file.name, &file.text);
-            if sources.is_empty() {
-                return vec![Verdict::unread(name, "there is no mission in this file")];
-            }
-            sources.iter().map(|source| Verdict::of(source, catalog)).collect()
-        }
-        Err(error) => {
-            let text = format!("{error:#}");
-            let prefix = format!("{name}: ");
-            vec![Verdict::unread(name, text.strip_prefix(&prefix).unwrap_or(&text))]
-        }
-    }
+/// What missions are checked against.
+struct Checker {
+    catalog: Arc<Catalog>,
+    /// The floor plans that were needed so far.
+    layouts: BTreeMap<String, Arc<Layout>>,
 }
 
-impl Verdict {
-    fn of(source: &Source<'_>, catalog: &Catalog) -> Self {
-        let (playable, problems) = match source.read(catalog) {
-            Ok(checked) => (true, checked.warnings),
+impl Checker {
+    /// One for each mission in a file; one for the file if it cannot be read.
+    fn verdicts(&mut self, name: &str) -> Vec<Verdict> {
+        match MissionFile::find_up_to(Some(name), LARGEST_FILE) {
+            Ok(file) => {
+                let sources = mission::sources(&file.name, &file.text);
+                if sources.is_empty() {
+                    return vec![Verdict::unread(name, "there is no mission in this file")];
+                }
+                sources.iter().map(|source| self.verdict(source)).collect()
+            }
+            Err(error) => {
+                let text = format!("{error:#}");
+                let prefix = format!("{name}: ");
+                vec![Verdict::unread(name, text.strip_prefix(&prefix).unwrap_or(&text))]
+            }
+        }
+    }
+
+    fn verdict(&mut self, source: &Source<'_>) -> Verdict {
+        let (playable, problems) = match source.read(&self.catalog) {
+            Ok(checked) => match self.lay_out(&checked) {
+                Ok(()) => (true, checked.warnings),
+                Err((at, message)) => {
+                    let problem = Problem {
+                        severity: Severity::Error,
+                        file: source.file.clone(),
+                        position: None,
+                        pointer: source.pointer.join(&at),
+                        message,
+                        remedy: None,
+                    };
+                    (false, checked.warnings.into_iter().chain([problem]).collect())
+                }
+            },
             Err(problems) => (false, problems.0),
         };
         let file = match source.position.0 {
             1 => source.file.clone(),
             line => format!("{}:{line}", source.file),
         };
-        Self { file, id: source.id.clone(), playable, problems }
+        Verdict { file, id: source.id.clone(), playable, problems }
     }
 
+    /// Builds the world of a mission, as a session does; where that fails, the place in the file and why.
+    fn lay_out(&mut self, checked: &Checked) -> Result<(), (Pointer, String)> {
+        let mission = &checked.mission;
+        let layout = match self.layouts.get(&mission.layout) {
+            Some(known) => Arc::clone(known),
+            None => {
+                let found = Layout::builtin(&mission.layout)
+                    .map_err(|error| (Pointer::default().key("scene").key("layoutOverride"), error.to_string()))?;
+                let found = Arc::new(found);
+                self.layouts.insert(mission.layout.clone(), Arc::clone(&found));
+                found
+            }
+        };
+        let built = World::new(Arc::clone(&self.catalog), layout, Arc::new(mission.clone()), SEED);
+        built.map(drop).map_err(|error| (place(checked, &error), error.to_string()))
+    }
+}
+
+/// Where in its file a mission asks for what a world cannot have.
+fn place(checked: &Checked, error: &BuildError) -> Pointer {
+    let objects = checked.raw.scene.known().and_then(|scene| scene.required_objects.known());
+    let named = |name: &str| {
+        objects?.iter().position(|object| {
+            object.known().and_then(|object| object.name.known()).is_some_and(|scalar| scalar.text() == name)
+        })
+    };
+    let scene = Pointer::default().key("scene");
+    match named(error.object()) {
+        Some(index) => scene.key("required_objects").item(index),
+        None => scene,
+    }
+}
+
+impl Verdict {
     fn unread(file: &str, message: &str) -> Self {
         let problem = Problem {
             severity: Severity::Error,
@@ -169,7 +236,7 @@ impl Verdict {
 
     fn print(&self, quiet: bool, out: &mut impl Write) -> io::Result<()> {
         for problem in &self.problems {
-            writeln!(out, "{problem}")?;
+            writeln!(out, "{}", shown(problem))?;
         }
         if quiet && self.playable {
             return Ok(());
@@ -182,7 +249,7 @@ impl Verdict {
         let counts: Vec<_> =
             counts.map(|(count, word)| format!("{count} {word}{}", if *count == 1 { "" } else { "s" })).collect();
         let counts = if counts.is_empty() { String::new() } else { format!(": {}", counts.join(", ")) };
-        writeln!(out, "{}{id}: {verdict}{counts}", self.file)
+        writeln!(out, "{}", shown(format_args!("{}{id}: {verdict}{counts}", self.file)))
     }
 
     fn value(&self) -> Value {

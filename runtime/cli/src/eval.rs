@@ -14,7 +14,7 @@ use cohabit_dialog::{Asking, Knows, Language};
 use cohabit_eval::{Caps, Played, Report, Settings, Style, Tally, Task, generate, play, pool, read_tasks};
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::failure::bad_input;
+use crate::{failure::bad_input, terminal::shown};
 
 /// Plays missions headless and in lock-step, through the real dialog and agent code, and reports what came of them.
 #[derive(clap::Args)]
@@ -225,7 +225,7 @@ const MOST_PRINTED: usize = 30;
 fn print(report: &Report) {
     let unsolved: Vec<&Played> = report.missions.iter().filter(|task| !task.success).collect();
     for task in unsolved.iter().take(MOST_PRINTED) {
-        println!("not solved: {}", why(task));
+        println!("not solved: {}", shown(why(task)));
     }
     if unsolved.len() > MOST_PRINTED {
         println!("... and {} more; `--report FILE` has them all", unsolved.len() - MOST_PRINTED);
@@ -233,7 +233,7 @@ fn print(report: &Report) {
     let width = report.families.keys().map(String::len).max().unwrap_or(0).max(8);
     println!("{:width$}  missions  solved   rate  95 % interval  goals met  actions  failed  questions", "family");
     for (name, tally) in &report.families {
-        row(if name.is_empty() { "not played" } else { name }, width, tally);
+        row(&shown(if name.is_empty() { "not played" } else { name }).to_string(), width, tally);
     }
     row("all", width, &report.total);
     let ticks: u64 = report.missions.iter().map(|task| task.ticks).sum();

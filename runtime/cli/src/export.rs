@@ -9,7 +9,11 @@ use anyhow::Context as _;
 use cohabit_cdf::Catalog;
 use cohabit_tables::{Played, Summary, codebook, tables, write_csv};
 
-use crate::{failure::bad_input, rerun};
+use crate::{
+    failure::bad_input,
+    rerun,
+    terminal::{shown, shown_json, shown_lines},
+};
 
 /// Writes turns, actions, goals and sessions as tables with a codebook, or sums them up by condition.
 #[derive(clap::Args)]
@@ -62,9 +66,9 @@ impl Export {
         if self.summary {
             let summary = Summary::new(&played, &self.by).map_err(bad_input)?;
             if self.json {
-                println!("{}", serde_json::to_string_pretty(&summary).context("a summary")?);
+                println!("{}", shown_json(serde_json::to_string_pretty(&summary).context("a summary")?));
             } else {
-                print!("{summary}");
+                print!("{}", shown_lines(summary));
             }
         }
         Ok(())
@@ -78,7 +82,7 @@ fn write(played: &[Played], folder: &Path, quietly: bool) -> anyhow::Result<()> 
     for table in tables.iter().chain([&codebook(&tables)]) {
         let path = write_csv(table, folder)?;
         if !quietly {
-            println!("{} rows written to {}", table.rows.len(), path.display());
+            println!("{} rows written to {}", table.rows.len(), shown(path.display()));
         }
     }
     Ok(())

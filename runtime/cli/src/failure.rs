@@ -2,7 +2,9 @@
 
 use std::{fmt, process::ExitCode};
 
-/// Something the caller gave is wrong: exit code 2. All else that fails is 1.
+use crate::terminal::shown_lines;
+
+/// Something the caller gave is wrong: exit code 2. What has a code of its own is [`IncompleteLog`]; all else that fails is 1.
 #[derive(Debug)]
 pub struct BadInput(pub String);
 
@@ -14,6 +16,21 @@ impl fmt::Display for BadInput {
 
 impl std::error::Error for BadInput {}
 
+/// A log was written, but not all of its session is in it: exit code 3.
+#[derive(Debug)]
+pub struct IncompleteLog(pub String);
+
+/// The exit code for [`IncompleteLog`].
+pub const INCOMPLETE_LOG: u8 = 3;
+
+impl fmt::Display for IncompleteLog {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for IncompleteLog {}
+
 /// A failure that the caller can mend.
 pub fn bad_input(message: impl fmt::Display) -> anyhow::Error {
     BadInput(message.to_string()).into()
@@ -23,7 +40,14 @@ pub fn bad_input(message: impl fmt::Display) -> anyhow::Error {
 pub fn report(error: &anyhow::Error) -> ExitCode {
     let text = format!("{error:#}");
     if !text.is_empty() {
-        eprintln!("cohabit: {text}");
+        eprintln!("cohabit: {}", shown_lines(text));
     }
-    ExitCode::from(if error.is::<BadInput>() { 2 } else { 1 })
+    let is_incomplete = error.is::<IncompleteLog>();
+    ExitCode::from(if error.is::<BadInput>() {
+        2
+    } else if is_incomplete {
+        INCOMPLETE_LOG
+    } else {
+        1
+    })
 }

@@ -19,14 +19,17 @@ mod rerun;
 mod sessions;
 mod stop;
 mod supervisor;
+mod terminal;
 mod time;
 mod top;
 mod voice;
 
-use std::{ffi::OsString, process::ExitCode};
+use std::{ffi::OsString, io::IsTerminal as _, process::ExitCode};
 
 use clap::{Parser, Subcommand};
-use tracing_subscriber::EnvFilter;
+use tracing_subscriber::{EnvFilter, field::MakeExt as _, fmt::format::debug_fn};
+
+use crate::terminal::shown;
 
 /// People and robots together in a simulated office: start a session, watch it, talk to the robot.
 #[derive(Parser)]
@@ -71,11 +74,17 @@ enum Command {
 }
 
 fn main() -> ExitCode {
+    let fields = debug_fn(|out, field, value| match field.name() {
+        "message" => write!(out, "{}", shown(format_args!("{value:?}"))),
+        name => write!(out, "{name}={}", shown(format_args!("{value:?}"))),
+    });
     tracing_subscriber::fmt()
         .with_env_filter(EnvFilter::try_from_env("COHABIT_LOG").unwrap_or_else(|_| EnvFilter::new("info")))
         .with_writer(std::io::stderr)
+        .with_ansi(std::io::stderr().is_terminal())
         .with_target(false)
         .compact()
+        .fmt_fields(fields.delimited(" "))
         .init();
     match run(Cohabit::parse()) {
         Ok(()) => ExitCode::SUCCESS,

@@ -1,6 +1,6 @@
 //! Finds and reads mission files.
 
-use std::{fs, path::Path, sync::Arc};
+use std::{fs::File, io::Read as _, path::Path, sync::Arc};
 
 use cohabit_cdf::{BodyRequest, Catalog, mission};
 use cohabit_engine::SessionPlan;
@@ -21,9 +21,19 @@ pub struct MissionFile {
 impl MissionFile {
     /// The file at that path, or the built-in mission of that name; the default one for `None`.
     pub fn find(name: Option<&str>) -> anyhow::Result<Self> {
+        Self::find_up_to(name, mission::limits::BYTES)
+    }
+
+    /// The same of a file that may have so many bytes, as it holds many missions. One with more is not read.
+    pub fn find_up_to(name: Option<&str>, most: usize) -> anyhow::Result<Self> {
         let name = name.unwrap_or(DEFAULT);
         if Path::new(name).is_file() {
-            let bytes = fs::read(name).map_err(|error| bad_input(format!("{name}: {error}")))?;
+            let mut bytes = Vec::new();
+            let read = File::open(name).and_then(|file| file.take(most as u64 + 1).read_to_end(&mut bytes));
+            read.map_err(|error| bad_input(format!("{name}: {error}")))?;
+            if bytes.len() > most {
+                return Err(bad_input(format!("{name}: the file has more than {most} bytes, the most that are read")));
+            }
             let text = String::from_utf8(bytes).map_err(|error| {
                 bad_input(format!("{name}: not UTF-8 text from byte {}", error.utf8_error().valid_up_to()))
             })?;

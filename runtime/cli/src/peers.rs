@@ -24,7 +24,7 @@ use crate::{
     arena::{ArenaOptions, Games},
     branch::{BranchPoint, Branched},
     build,
-    failure::bad_input,
+    failure::{IncompleteLog, bad_input},
     minds::MindKind,
     mission_file::MissionFile,
     rendering::Rendering,
@@ -402,7 +402,7 @@ fn tell_supervisor(line: &str) {
     let _ = writeln!(out, "{line}").and_then(|()| out.flush());
 }
 
-/// Writes the session log.
+/// Writes the session log. Exit code 3 says that some of the session is not in it.
 #[derive(clap::Args)]
 pub struct Record {
     #[command(flatten)]
@@ -533,9 +533,10 @@ impl Record {
         let recorder = Recorder::new(&bus)?.filming(&bus, &facts.frames)?;
         let recorder = if facts.audio { recorder.taping(&bus)? } else { recorder };
         recorder.run(&facts, &self.log, &stop, caught_up).map_err(|error| match error {
-            RecordError::Log(LogError::Disk { .. } | LogError::Write { .. })
-            | RecordError::Bus(_)
-            | RecordError::Malformed(_) => error.into(),
+            RecordError::Incomplete { .. } | RecordError::Log(LogError::Disk { .. }) => {
+                IncompleteLog(error.to_string()).into()
+            }
+            RecordError::Log(LogError::Write { .. }) | RecordError::Bus(_) | RecordError::Malformed(_) => error.into(),
             RecordError::Log(_) | RecordError::NoMission => bad_input(error),
         })
     }

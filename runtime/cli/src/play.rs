@@ -23,6 +23,7 @@ use crate::{
     rendering::Rendering,
     sessions, stop,
     supervisor::{Role, Supervisor},
+    terminal::shown,
 };
 
 /// Starts a simulator, an agent, the dialog service and a recorder, and supervises them.
@@ -112,7 +113,7 @@ impl Play {
             let journal = peers::journal(&session);
             begin_after(&journal, log, from.tick, robots.len() > 1).with_context(|| journal.display().to_string())?;
         }
-        println!("Playing \"{}\" ({})", plan.mission.goal_text, plan.file);
+        println!("Playing \"{}\" ({})", shown(&plan.mission.goal_text), shown(&plan.file));
         let timing = self.timing.with_agents(self.minds.len());
         let sim = Role::sim(self.world_arguments(seed), self.rendering, timing);
         let minds = self.minds.iter().map(|agent| Role::agent(agent, seed));
@@ -135,7 +136,7 @@ impl Play {
         let (plan, before) = match &self.branch {
             Some(point) => {
                 let Branched { plan, from, log, .. } = point.open()?;
-                println!("Going on from {} (tick {}) of session {}", point.at, from.tick, from.session);
+                println!("Going on from {} (tick {}) of session {}", point.at, from.tick, shown(&from.session));
                 (plan, Some(Before { from, log }))
             }
             None => (MissionFile::find(self.mission.as_deref())?.plan(seed, &self.bodies)?, None),

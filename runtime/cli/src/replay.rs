@@ -20,7 +20,7 @@ use cohabit_record::{Log, SessionEntry, entry::fingerprint};
 
 pub use session_time::SessionTime;
 
-use crate::{branch::BranchPoint, failure::bad_input, rendering::Rendering, rerun};
+use crate::{branch::BranchPoint, failure::bad_input, rendering::Rendering, rerun, terminal::shown};
 use film::{Film, FilmOptions};
 use page::PageOptions;
 
@@ -97,15 +97,16 @@ impl Replay {
             let held = body.held.and_then(|held| world.object(held));
             let holds = held.map_or_else(|| "nothing".to_owned(), |object| object.instance.to_owned());
             let [x, y, _] = body.position_m.to_array();
-            println!("  body {} in {} at {x:.2} {y:.2}, holds {holds}", body.id.0, body.room.id());
+            println!("  body {} in {} at {x:.2} {y:.2}, holds {}", body.id.0, body.room.id(), shown(holds));
         }
         for goal in world.goals() {
-            println!("  [{}] {}", if goal.met { "x" } else { " " }, goal.description);
+            println!("  [{}] {}", if goal.met { "x" } else { " " }, shown(&goal.description));
         }
         Ok(())
     }
 
     fn replay(&self, replayer: &mut Replayer<'_>, mut film: Option<Film>) -> anyhow::Result<()> {
+        let is_filmed = film.is_some();
         let last = self.until.map_or(u64::MAX, |until| until.tick);
         let (began, mut filmed) = (Instant::now(), Ok(()));
         let replay = replay::verify(replayer, &mut |replayer| {
@@ -131,14 +132,35 @@ impl Replay {
             println!("{}", film.finish()?);
         }
         for gap in &replay.gaps {
-            println!("{gap}: replayed on from the next snapshot");
+            println!("{}: replayed on from the next snapshot", shown(gap));
         }
-        match (replay.difference, replay.gaps.len()) {
-            (None, 0) => println!("no tick differs"),
-            (None, _) => println!("no tick differs of those that the log has"),
-            (Some(difference), _) => anyhow::bail!("{difference}"),
+        if let Some(difference) = &replay.difference {
+            anyhow::bail!("{difference}");
+        }
+        match self.compared(&replay) {
+            Ok(compared) => println!("{compared}"),
+            // A picture of the last moment is what was wanted.
+            Err(nothing) if is_filmed => println!("{nothing}"),
+            Err(nothing) => return Err(nothing),
         }
         Ok(())
+    }
+
+    /// What was compared, where nothing differs; an error if nothing was.
+    fn compared(&self, replay: &replay::Replay) -> anyhow::Result<String> {
+        let (all, log) = (replay.ticks, self.log.display());
+        let Some([first, last]) = replay.span else {
+            let of = if self.at.is_some() { "from `--at` on, the log has no tick" } else { "the log has no tick" };
+            anyhow::bail!("{log}: nothing was compared: {of}");
+        };
+        let ticks = if all == 1 { format!("tick {first}") } else { format!("all {all} ticks from {first} to {last}") };
+        match replay.gaps.len() {
+            0 => Ok(format!("no tick differs: compared {ticks}")),
+            gaps => {
+                let gaps = if gaps == 1 { "1 gap".to_owned() } else { format!("{gaps} gaps") };
+                Ok(format!("no tick differs of those compared: {all} from {first} to {last}, with {gaps} between"))
+            }
+        }
     }
 }
 
@@ -148,13 +170,14 @@ pub fn open(path: &Path) -> anyhow::Result<Log> {
     let SessionEntry { session, mission_file, seed, participant, branched, .. } = &log.session;
     let path = path.display();
     let participant = participant.as_ref().map_or_else(String::new, |label| format!(", participant {label}"));
-    println!("{path}: session {session}, mission {mission_file}, seed {seed}{participant}");
+    println!("{}", shown(format_args!("{path}: session {session}, mission {mission_file}, seed {seed}{participant}")));
     if let Some(branch) = branched {
         let at = SessionTime { tick: branch.tick };
-        println!("{path} goes on from {at} (tick {}) of session {}", branch.tick, branch.session);
+        let (tick, from) = (branch.tick, &branch.session);
+        println!("{}", shown(format_args!("{path} goes on from {at} (tick {tick}) of session {from}")));
     }
     for problem in log.problems() {
-        println!("{path}: {problem}");
+        println!("{}", shown(format_args!("{path}: {problem}")));
     }
     Ok(log)
 }

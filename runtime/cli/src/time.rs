@@ -9,7 +9,7 @@ use cohabit_bus::{
     monotonic_nanos,
 };
 
-use crate::{failure::bad_input, peers, sessions};
+use crate::{failure::bad_input, peers, sessions, terminal::shown};
 
 /// How long the simulator may take to answer.
 const PATIENCE: Duration = Duration::from_secs(2);
@@ -70,7 +70,7 @@ impl Time {
         while Instant::now() < deadline {
             while let Some((sample, event)) = events.next(|sample| message::read::<EventMessage>(sample.payload()))? {
                 if event.kind() == Some(EventKind::Clock) && sample.envelope().sent_nanos >= asked_nanos {
-                    println!("{}: {}, at tick {}", session.name(), event.text.as_str(), sample.envelope().tick);
+                    println!("{}: {}, at tick {}", session.name(), shown(event.text.as_str()), sample.envelope().tick);
                     return Ok(());
                 }
             }

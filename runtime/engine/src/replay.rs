@@ -19,6 +19,8 @@ pub const TICK_S: f64 = cohabit_world::DT_NANOS as f64 * 1e-9;
 pub struct Replay {
     /// Ticks compared.
     pub ticks: u64,
+    /// The first and the last of them, if there are any.
+    pub span: Option<[u64; 2]>,
     /// Inputs fed.
     pub inputs: u64,
     /// Goals met at the end, of how many.
@@ -39,7 +41,7 @@ pub fn replay(log: &Log, catalog: Arc<Catalog>) -> Result<Replay, ReplayError> {
 
 /// The same from where `replayer` is; `each` sees it after every tick, and may end it.
 pub fn verify(replayer: &mut Replayer<'_>, each: &mut dyn FnMut(&Replayer<'_>) -> ControlFlow<()>) -> Replay {
-    let mut replay = Replay { ticks: 0, inputs: 0, goals: (0, 0), gaps: Vec::new(), difference: None };
+    let mut replay = Replay { ticks: 0, span: None, inputs: 0, goals: (0, 0), gaps: Vec::new(), difference: None };
     loop {
         if step_all(replayer, &mut replay, each).is_break() {
             break;
@@ -65,6 +67,7 @@ fn step_all(
 ) -> ControlFlow<()> {
     while let Some(replayed) = replayer.step() {
         replay.ticks += 1;
+        replay.span = Some([replay.span.map_or(replayed.entry.tick, |[first, _]| first), replayed.entry.tick]);
         replay.inputs += replayed.inputs.len() as u64;
         replay.difference = replayed.difference;
         if replay.difference.is_some() {

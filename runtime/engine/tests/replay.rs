@@ -56,6 +56,10 @@ fn catalog() -> Arc<Catalog> {
 
 /// A session of a robot that takes the bowl and points it out, and a person who walks about.
 fn recorded() -> Log {
+    played().log()
+}
+
+fn played() -> Memory {
     let (file, text) = mission::builtin().iter().find(|(file, _)| file.contains("cereal")).unwrap();
     let plan = SessionPlan::new(file, text, catalog(), 3).unwrap();
     let plan = plan.with_bodies(vec!["person@BreakRoom".parse().unwrap()]);
@@ -84,9 +88,10 @@ fn recorded() -> Log {
         }
         engine.tick(tick).unwrap();
         recording.take_down().unwrap();
+        recording.flush().unwrap();
     }
     recording.finish().unwrap();
-    memory.log()
+    memory
 }
 
 fn claim(commands: &mut dyn Publisher) {
@@ -155,6 +160,46 @@ fn behind_a_gap_it_goes_on_from_the_next_snapshot() {
     late.snapshots.clear();
     let error = replay(&late, catalog()).unwrap_err().to_string();
     assert!(error.contains("begins after tick 100 without a snapshot"), "{error}");
+}
+
+/// A log whose beginning is lost, session entry and all, is replayed by a copy of that entry, from a snapshot on.
+#[test]
+fn a_log_without_its_beginning_is_replayed() {
+    let memory = played();
+    let whole = memory.log();
+    let bytes = memory.0.lock().unwrap().clone();
+    let check = |bytes: &[u8], first: u64| {
+        let log = Log::parse(Path::new("a log"), bytes).unwrap();
+        assert_eq!(log.session, whole.session);
+        assert_eq!(log.lost.len(), 1, "{:?}", log.problems());
+        let found = replay(&log, catalog()).unwrap();
+        assert_eq!((found.difference, found.span), (None, Some([first, TICKS])), "{:?}", log.problems());
+    };
+    // Its session entry alone: nothing of the session is missing.
+    let mut changed = bytes.clone();
+    changed[200] ^= 0x40;
+    check(&changed, 1);
+    // All of its first 10 %, zeroed or cut off: it goes on from the first snapshot.
+    let gone = bytes.len() / 10;
+    changed[..gone].fill(0);
+    check(&changed, 601);
+    check(&bytes[gone..], 601);
+}
+
+#[test]
+fn nothing_is_said_of_ticks_that_are_not_compared() {
+    let mut log = recorded();
+    log.ticks.clear();
+    let found = replay(&log, catalog()).unwrap();
+    assert_eq!((found.ticks, found.span), (0, None));
+    let mut log = recorded();
+    log.ticks.swap(700, 900);
+    let error = replay(&log, catalog()).unwrap_err().to_string();
+    assert!(error.contains("not in their order: tick 702 follows tick 901"), "{error}");
+    assert!(log.problems().iter().any(|problem| problem.contains("tick 702 follows tick 901")), "{:?}", log.problems());
+    let mut twice = recorded();
+    twice.ticks.insert(5, twice.ticks[5].clone());
+    assert!(replay(&twice, catalog()).is_err());
 }
 
 #[test]

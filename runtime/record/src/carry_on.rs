@@ -11,7 +11,7 @@ use std::{
 use mcap::records::Record;
 
 use crate::{
-    entry::SessionEntry,
+    entry::{GapEntry, SessionEntry},
     log::{Log, LogError},
     reading::{Reading, library},
     segment::{Piece, Segments, records},
@@ -23,6 +23,8 @@ use crate::{
 pub struct Written {
     /// The newest tick; 0 before the first.
     pub tick: u64,
+    /// How many messages its recorders could not take down in time.
+    pub(crate) missing: u64,
     /// The tick of the newest snapshot.
     snapshot: Option<u64>,
     events: BTreeMap<u64, u64>,
@@ -35,7 +37,8 @@ impl Written {
     fn of(log: &Log) -> Self {
         let tick = log.ticks.last().map_or(0, |entry| entry.tick);
         let snapshot = log.snapshots.last().map(|snapshot| snapshot.tick);
-        let mut written = Self { tick, snapshot, ..Self::default() };
+        let missing = log.gaps.iter().map(GapEntry::messages).fold(0, u64::saturating_add);
+        let mut written = Self { tick, snapshot, missing, ..Self::default() };
         for entry in &log.events {
             written.event(entry.run, entry.sequence);
         }

@@ -20,7 +20,7 @@ pub(crate) trait Entry: Serialize + for<'de> Deserialize<'de> {
     const SCHEMA: &'static str;
 }
 
-/// What was played, once at the beginning.
+/// What was played: the first entry, repeated further behind.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct SessionEntry {
     /// Counts changes of this format.
@@ -115,8 +115,9 @@ impl SessionFacts {
 }
 
 impl SessionEntry {
-    /// The format this build writes: 2 since segments are sealed, and digests tell the parts of the state apart.
-    pub const FORMAT: u32 = 2;
+    /// The format this build writes: 2 since segments are sealed, and digests tell the parts of the state apart; 3 since
+    /// this entry is repeated, and channels have fixed numbers.
+    pub const FORMAT: u32 = 3;
 
     /// The entry of a mission as a simulator published it.
     #[must_use]
@@ -489,7 +490,7 @@ impl GapEntry {
     /// Messages missing in all.
     #[must_use]
     pub const fn messages(&self) -> u64 {
-        self.ticks + self.events + self.dialog + self.answers
+        self.ticks.saturating_add(self.events).saturating_add(self.dialog).saturating_add(self.answers)
     }
 }
 

@@ -3,9 +3,11 @@
 //! It holds the mission with its seed, every input at the tick that took it in, a digest of the world after every
 //! tick, outcomes and other events, what was said, and now and then a snapshot of the whole state.
 //!
-//! # Format 2
+//! # Format 3
 //! An MCAP file of profile `cohabit`, without chunks. Its first records are the schemas and channels of all entries, and
-//! the `/session` entry. The channels `/session`, `/ticks`, `/events`, `/dialog` and `/gaps` hold JSON, whose schemas
+//! the `/session` entry. That entry is repeated, each time in a segment of its own: once 8 KiB follow the first, then with
+//! snapshots, and at the end. The first seven channels have fixed numbers: `/session` 1, `/ticks` 2, `/events` 3, `/dialog`
+//! 4, `/answers` 5, `/gaps` 6, `/snapshots` 7. So a log can be read whose beginning is lost. The channels `/session`, `/ticks`, `/events`, `/dialog` and `/gaps` hold JSON, whose schemas
 //! are in the file; so does `/frames/<camera>` for cameras whose frames were asked for, as Foxglove's `CompressedImage`,
 //! and `/audio/microphone` and `/audio/speech`, where sound was asked for, as Foxglove's `RawAudio`.
 //! `/snapshots` holds the tick (8 bytes, little-endian) and behind it the state, deflated. A message's
@@ -22,12 +24,15 @@
 //! its disk is too slow, the log says in `/gaps` what it misses. While the disk is full, what there is no room for waits in
 //! memory, and is told; with room again, nothing is missing.
 //!
+//! Format 2 had one session entry; where that is damaged, its logs do not open.
+//!
 //! Format 1 had neither seals nor snapshots nor gaps, and digests that did not tell the parts of a state apart. Its logs
 //! open; what is damaged in them is found only where it cannot be read.
 //!
 //! This crate never knows rerun, the world's rules, or where pixels come from.
 
 mod carry_on;
+mod copies;
 pub mod entry;
 mod film;
 mod log;

@@ -52,11 +52,15 @@ pub struct Lost {
 impl std::fmt::Display for Lost {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let ([from, to], after) = (self.bytes, self.after_tick);
+        let next = after.saturating_add(1);
+        if from == 0 && self.before_tick == Some(next) {
+            return write!(f, "bytes 0 to {to} are damaged: its beginning, which is read from a copy further behind");
+        }
         write!(f, "bytes {from} to {to} are damaged, and lost: ")?;
-        match self.before_tick {
-            Some(before) if before == after + 1 => write!(f, "what was noted between tick {after} and tick {before}"),
-            Some(before) if before == after + 2 => write!(f, "tick {}", after + 1),
-            Some(before) => write!(f, "ticks {} to {}", after + 1, before.saturating_sub(1)),
+        match self.before_tick.map(|before| (before, before.saturating_sub(next))) {
+            Some((before, 0)) => write!(f, "what was noted between tick {after} and tick {before}"),
+            Some((_, 1)) => write!(f, "tick {next}"),
+            Some((before, _)) => write!(f, "ticks {next} to {}", before - 1),
             None => write!(f, "what followed tick {after}"),
         }
     }
@@ -150,24 +154,27 @@ impl Log {
     /// # Errors
     /// [`LogError::NotALog`], [`LogError::TooNew`].
     pub fn parse(path: &Path, bytes: &[u8]) -> Result<Self, LogError> {
-        if !bytes.starts_with(mcap::MAGIC) {
-            return Err(LogError::NotALog { path: path.to_owned(), reason: "it is no MCAP file".to_owned() });
-        }
-        let mut log = Opening { path, reading: Reading::default(), lost: Vec::new(), cut: None };
-        if Segments::new(bytes).next().is_some_and(|first| matches!(first, Piece::Whole(_))) {
+        let mut log = Opening { path, reading: Reading::default(), lost: Vec::new(), is_sealed: false, cut: None };
+        if Segments::new(bytes).any(|piece| matches!(piece, Piece::Whole(_))) {
+            log.is_sealed = true;
             log.read_segments(bytes)?;
-        } else {
+        } else if bytes.starts_with(mcap::MAGIC) {
             log.read_unsealed(bytes)?;
+        } else {
+            return Err(log.not_a_log("it is no MCAP file".to_owned()));
         }
         log.open()
     }
 }
+
+const NO_COPY: &str = "its beginning is damaged, and no copy of its session entry follows";
 
 /// A log that is being read.
 struct Opening<'a> {
     path: &'a Path,
     reading: Reading,
     lost: Vec<Lost>,
+    is_sealed: bool,
     cut: Option<String>,
 }
 
@@ -184,7 +191,9 @@ impl Opening<'_> {
                 Piece::Rest(range) => {
                     self.cut = Some(format!("its last {} bytes are torn or damaged", range.len()));
                 }
-                Piece::End(at) => self.cut = index_problem(bytes, at).map(str::to_owned),
+                Piece::End(at) => {
+                    self.cut = index_problem(bytes, at, self.lost.is_empty()).map(str::to_owned);
+                }
             }
         }
         Ok(())
@@ -192,19 +201,26 @@ impl Opening<'_> {
 
     /// Takes in sealed records: what they say was written so.
     fn take(&mut self, bytes: &[u8], at: usize) -> Result<(), LogError> {
+        let known = self.reading.ticks.len();
         for (kind, body) in records(bytes, at) {
             let start = body.start;
             let record = mcap::parse_record(kind, &bytes[body]).map_err(|error| error.to_string());
             let taken = record.and_then(|record| self.reading.take(&record));
-            taken.map_err(|reason| self.not_a_log(format!("what is at byte {start} is not known here: {reason}")))?;
+            taken.map_err(|reason| self.unknown(start, &reason))?;
             self.ensure_known()?;
         }
-        let newest = self.reading.newest_tick();
-        for lost in self.lost.iter_mut().filter(|lost| lost.before_tick.is_none() && newest > lost.after_tick) {
-            let behind = self.reading.ticks.iter().rfind(|entry| entry.tick > lost.after_tick);
-            lost.before_tick = behind.map(|entry| entry.tick);
+        let Some(tick) = self.reading.ticks.get(known).map(|entry| entry.tick) else { return Ok(()) };
+        for lost in self.lost.iter_mut().rev().take_while(|lost| lost.before_tick.is_none()) {
+            lost.before_tick = Some(tick);
         }
         Ok(())
+    }
+
+    fn unknown(&self, at: usize, reason: &str) -> LogError {
+        if self.reading.session.is_none() && !self.reading.knows_channels() {
+            return self.not_a_log(NO_COPY.to_owned());
+        }
+        self.not_a_log(format!("what is at byte {at} is not known here: {reason}"))
     }
 
     fn ensure_known(&self) -> Result<(), LogError> {
@@ -227,7 +243,7 @@ impl Opening<'_> {
                     return Err(self.not_a_log("its beginning is damaged".to_owned()));
                 }
                 Ok(Record::DataEnd(_)) => {
-                    self.cut = index_problem(bytes, end).map(str::to_owned);
+                    self.cut = index_problem(bytes, end, true).map(str::to_owned);
                     break;
                 }
                 record => {
@@ -253,10 +269,15 @@ impl Opening<'_> {
     }
 
     fn open(self) -> Result<Log, LogError> {
-        let Self { path, reading, lost, cut } = self;
+        let Self { path, reading, mut lost, is_sealed, cut } = self;
         let Reading { session, ticks, events, dialog, answers, snapshots, gaps, .. } = reading;
-        let reason = "no session entry".to_owned();
-        let session = session.ok_or(LogError::NotALog { path: path.to_owned(), reason })?;
+        let reason = if is_sealed { NO_COPY } else { "no session entry" };
+        let session = session.ok_or(LogError::NotALog { path: path.to_owned(), reason: reason.to_owned() })?;
+        // Before its first tick a log has none; one that goes on from another one begins behind its point.
+        let first = session.branched.as_ref().map_or(0, |branch| branch.tick);
+        for lost in lost.iter_mut().take_while(|lost| lost.after_tick == 0) {
+            lost.after_tick = first;
+        }
         Ok(Log { session, ticks, events, dialog, answers, snapshots, gaps, lost, cut })
     }
 }
@@ -271,7 +292,15 @@ impl Log {
         let answers = self.answers.iter().map(|entry| (entry.run, entry.sequence));
         // Ticks are of the simulator's run alone, whose number does not matter.
         let ticks = self.ticks.iter().map(|entry| (1, entry.tick));
-        gaps(events) + gaps(dialog) + gaps(answers) + gaps(ticks)
+        [gaps(events), gaps(dialog), gaps(answers), gaps(ticks)].into_iter().fold(0, u64::saturating_add)
+    }
+
+    /// Two ticks of which the later one in the log is not the later one in the session, if there are such: none of this
+    /// program's recorders writes them so.
+    #[must_use]
+    pub fn disorder(&self) -> Option<[u64; 2]> {
+        let mut pairs = self.ticks.windows(2).map(|pair| [pair[0].tick, pair[1].tick]);
+        pairs.find(|[first, second]| first >= second)
     }
 
     /// What is wrong with it, a sentence each; nothing, if it is as its recorder wrote it and nothing was missed.
@@ -279,7 +308,10 @@ impl Log {
     pub fn problems(&self) -> Vec<String> {
         let lost = self.lost.iter().map(ToString::to_string);
         let cut = self.cut.iter().map(|reason| format!("it ends early: {reason}"));
-        lost.chain(self.gaps.iter().map(ToString::to_string)).chain(cut).collect()
+        let disorder = self
+            .disorder()
+            .map(|[first, second]| format!("its ticks are not in their order: tick {second} follows tick {first}"));
+        lost.chain(self.gaps.iter().map(ToString::to_string)).chain(cut).chain(disorder).collect()
     }
 }
 
@@ -288,7 +320,11 @@ fn gaps(numbers: impl Iterator<Item = (u64, u64)>) -> u64 {
     let mut newest = BTreeMap::new();
     // Where no run is told, none was counted.
     let counted = numbers.filter(|(run, _)| *run != 0);
-    counted.map(|(run, number)| newest.insert(run, number).map_or(0, |before| number.saturating_sub(before + 1))).sum()
+    counted
+        .map(|(run, number)| {
+            newest.insert(run, number).map_or(0, |before| number.saturating_sub(before).saturating_sub(1))
+        })
+        .fold(0, u64::saturating_add)
 }
 
 #[cfg(test)]
@@ -303,6 +339,9 @@ mod tests {
         assert_eq!(lost(4, Some(5)), "bytes 10 to 20 are damaged, and lost: what was noted between tick 4 and tick 5");
         assert_eq!(lost(4, Some(6)), "bytes 10 to 20 are damaged, and lost: tick 5");
         assert_eq!(lost(4, Some(9)), "bytes 10 to 20 are damaged, and lost: ticks 5 to 8");
+        let beginning = |before_tick| Lost { bytes: [0, 20], after_tick: 0, before_tick }.to_string();
+        assert!(beginning(Some(1)).contains("its beginning, which is read from a copy"), "{}", beginning(Some(1)));
+        assert_eq!(beginning(Some(9)), "bytes 0 to 20 are damaged, and lost: ticks 1 to 8");
     }
 
     #[test]

@@ -8,7 +8,7 @@ use serde::de::DeserializeOwned;
 use crate::{
     entry::{AnswerEntry, DialogEntry, Entry, EventEntry, GapEntry, SessionEntry, TickEntry},
     snapshot::Snapshot,
-    writer::SNAPSHOTS,
+    writer::{CHANNELS, SNAPSHOTS},
 };
 
 /// What was read so far.
@@ -34,7 +34,8 @@ impl Reading {
             Record::Channel(channel) => {
                 self.channels.insert(channel.id, channel.topic.clone());
             }
-            Record::Message { header, data } => match self.channels.get(&header.channel_id).map(String::as_str) {
+            Record::Message { header, data } => match self.topic(header.channel_id) {
+                Some(SessionEntry::TOPIC) if self.session.is_some() => {}
                 Some(SessionEntry::TOPIC) => self.session = Some(decode(data)?),
                 Some(TickEntry::TOPIC) => {
                     self.ticks.push(TickEntry { wall_nanos: header.log_time, ..decode(data)? });
@@ -51,6 +52,20 @@ impl Reading {
             _ => {}
         }
         Ok(())
+    }
+
+    /// The topic of a channel; where the records of channels are lost, by its number.
+    fn topic(&self, channel: u16) -> Option<&str> {
+        if self.knows_channels() {
+            return self.channels.get(&channel).map(String::as_str);
+        }
+        // Frames and sound follow, which are not read here.
+        Some(CHANNELS.get(usize::from(channel).checked_sub(1)?).copied().unwrap_or_default())
+    }
+
+    /// Whether there was a record of a channel.
+    pub fn knows_channels(&self) -> bool {
+        !self.channels.is_empty()
     }
 
     /// What was said belongs to the newest tick, where that was not noted.

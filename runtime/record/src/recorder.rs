@@ -2,7 +2,7 @@
 
 use std::{
     io::Write,
-    path::Path,
+    path::{Path, PathBuf},
     sync::atomic::{AtomicBool, Ordering},
     time::{Duration, Instant},
 };
@@ -46,6 +46,17 @@ pub enum RecordError {
     /// There is nothing to record.
     #[error("no simulator has published a mission yet")]
     NoMission,
+    /// The log was written to its end, but not all that passed on the bus is in it.
+    #[error(
+        "{path} is incomplete: {missing} messages are missing in it, as its recorder was away, or its disk slow, for too long; \
+         `cohabit replay` says which"
+    )]
+    Incomplete {
+        /// Which.
+        path: PathBuf,
+        /// How many messages.
+        missing: u64,
+    },
 }
 
 /// Records one session.
@@ -112,7 +123,8 @@ impl Recorder {
     /// that peers keep for who joins late has been taken down.
     ///
     /// # Errors
-    /// [`RecordError`].
+    /// [`RecordError`]; [`RecordError::Incomplete`] when all went well but for what this recorder, or an earlier one of the
+    /// same log, could not take down in time.
     pub fn run(
         mut self,
         facts: &SessionFacts,
@@ -146,7 +158,10 @@ impl Recorder {
                 caught_up();
             }
         }
-        recording.finish()
+        match recording.finish()? {
+            0 => Ok(()),
+            missing => Err(RecordError::Incomplete { path: path.to_owned(), missing }),
+        }
     }
 
     /// Begins the log of a simulator that has published its mission already, for somebody who says when there is
@@ -209,13 +224,15 @@ pub struct Recording {
     written: Written,
     /// The process that publishes ticks and events.
     simulator: u32,
+    /// How many messages the log lacks.
     missing: u64,
     flushed: Instant,
 }
 
 impl Recording {
     fn new(recorder: Recorder, simulator: u32, log: LogWriter, written: Written) -> Self {
-        Self { recorder, log, written, simulator, missing: 0, flushed: Instant::now() }
+        let missing = written.missing;
+        Self { recorder, log, written, simulator, missing, flushed: Instant::now() }
     }
 
     /// Takes down all that was published since the last time.
@@ -355,14 +372,14 @@ impl Recording {
         Ok(())
     }
 
-    /// Ends the log.
+    /// Ends the log; how many messages it lacks.
     ///
     /// # Errors
     /// [`RecordError`].
-    pub fn finish(mut self) -> Result<(), RecordError> {
+    pub fn finish(mut self) -> Result<u64, RecordError> {
         self.drain()?;
         self.log.finish()?;
-        Ok(())
+        Ok(self.missing)
     }
 }
 

@@ -15,6 +15,7 @@ use mcap::{
 
 use crate::{
     carry_on::{Written, carry_on},
+    copies::Copies,
     entry::{AnswerEntry, DialogEntry, Entry, EventEntry, GapEntry, SessionEntry, TickEntry},
     film::FrameEntry,
     log::LogError,
@@ -30,6 +31,18 @@ pub(crate) const LIBRARY: &str = concat!("cohabit ", env!("CARGO_PKG_VERSION"));
 pub(crate) const SNAPSHOTS: &str = "/snapshots";
 const SNAPSHOT_ENCODING: &str = "cohabit-snapshot";
 
+/// The channels that every log has, in the order of their numbers, which count from 1: where the records that say so are
+/// lost, a reader knows the channels by these.
+pub(crate) const CHANNELS: [&str; 7] = [
+    SessionEntry::TOPIC,
+    TickEntry::TOPIC,
+    EventEntry::TOPIC,
+    DialogEntry::TOPIC,
+    AnswerEntry::TOPIC,
+    GapEntry::TOPIC,
+    SNAPSHOTS,
+];
+
 /// An open log, locked for this process if it is a file. What was appended is safe from the end of this process after
 /// [`Self::flush`].
 pub struct LogWriter {
@@ -40,6 +53,9 @@ pub struct LogWriter {
     seal: Seal,
     channels: BTreeMap<String, u16>,
     sequence: u32,
+    /// The newest message's time.
+    newest_nanos: u64,
+    copies: Copies,
 }
 
 impl LogWriter {
@@ -89,7 +105,8 @@ impl LogWriter {
             .create(segment.clone())
             .map_err(|source| LogError::Write { path: path.to_owned(), source })?;
         let (out, path, seal) = (Spool::new(path, out), path.to_owned(), Seal::default());
-        Ok(Self { path, out, mcap, segment, seal, channels: BTreeMap::new(), sequence: 0 })
+        let (channels, copies) = (BTreeMap::new(), Copies::default());
+        Ok(Self { path, out, mcap, segment, seal, channels, sequence: 0, newest_nanos: 0, copies })
     }
 
     /// All at the beginning: an entry can be understood wherever what precedes it is damaged.
@@ -100,19 +117,16 @@ impl LogWriter {
         self.open_channel::<DialogEntry>()?;
         self.open_channel::<AnswerEntry>()?;
         self.open_channel::<GapEntry>()?;
-        let id = self.mcap.add_channel(0, SNAPSHOTS, SNAPSHOT_ENCODING, &BTreeMap::new());
-        self.channels.insert(SNAPSHOTS.to_owned(), self.written(id)?);
+        self.add_channel(0, SNAPSHOTS, SNAPSHOT_ENCODING)?;
         for camera in cameras {
             let schema = self.mcap.add_schema(FrameEntry::SCHEMA_NAME, "jsonschema", FrameEntry::SCHEMA.as_bytes());
-            let (schema, topic) = (self.written(schema)?, format!("{}{camera}", FrameEntry::TOPICS));
-            let id = self.mcap.add_channel(schema, &topic, "json", &BTreeMap::new());
-            self.channels.insert(topic, self.written(id)?);
+            let schema = self.written(schema)?;
+            self.add_channel(schema, &format!("{}{camera}", FrameEntry::TOPICS), "json")?;
         }
         for (channel, _) in AudioEntry::CHANNELS.into_iter().filter(|_| audio) {
             let schema = self.mcap.add_schema(AudioEntry::SCHEMA_NAME, "jsonschema", AudioEntry::SCHEMA.as_bytes());
             let schema = self.written(schema)?;
-            let id = self.mcap.add_channel(schema, channel, "json", &BTreeMap::new());
-            self.channels.insert(channel.to_owned(), self.written(id)?);
+            self.add_channel(schema, channel, "json")?;
         }
         Ok(())
     }
@@ -120,8 +134,13 @@ impl LogWriter {
     fn open_channel<E: Entry>(&mut self) -> Result<(), LogError> {
         let schema = self.mcap.add_schema(&E::TOPIC[1..], "jsonschema", E::SCHEMA.as_bytes());
         let schema = self.written(schema)?;
-        let id = self.mcap.add_channel(schema, E::TOPIC, "json", &BTreeMap::new());
-        self.channels.insert(E::TOPIC.to_owned(), self.written(id)?);
+        self.add_channel(schema, E::TOPIC, "json")
+    }
+
+    fn add_channel(&mut self, schema: u16, topic: &str, encoding: &str) -> Result<(), LogError> {
+        // Numbers are given in order, from 1.
+        let id = self.mcap.add_channel(schema, topic, encoding, &BTreeMap::new());
+        self.channels.insert(topic.to_owned(), self.written(id)?);
         Ok(())
     }
 
@@ -198,16 +217,22 @@ impl LogWriter {
     /// [`LogError::Disk`], [`LogError::Write`].
     pub fn flush(&mut self) -> Result<(), LogError> {
         self.seal()?;
+        if self.copies.is_due(self.segment.end()) {
+            self.copy_session()?;
+        }
         let handed = self.out.push(&self.segment.take());
         self.handed(handed)
     }
 
-    /// Ends the log with its index.
+    /// Ends the log with another copy of the session entry, and its index.
     ///
     /// # Errors
     /// [`LogError::Disk`], [`LogError::Write`].
     pub fn finish(mut self) -> Result<(), LogError> {
         self.seal()?;
+        if self.copies.is_due_at_end(self.segment.end()) {
+            self.copy_session()?;
+        }
         let finished = self.mcap.finish().map(drop);
         self.written(finished)?;
         let handed = self.out.push(&self.segment.take()).and_then(|()| self.out.finish());
@@ -219,7 +244,17 @@ impl LogWriter {
         let Some(next) = next else { return Ok(()) };
         self.seal = next;
         let sealed = self.mcap.write_private_record(SEAL, &next.body(), Default::default());
-        self.written(sealed)
+        self.written(sealed)?;
+        self.segment.end_segment();
+        self.copies.note_seal(self.segment.end());
+        Ok(())
+    }
+
+    /// Repeats the session entry in a segment of its own: what is damaged then is one or the other.
+    fn copy_session(&mut self) -> Result<(), LogError> {
+        let entry = self.copies.entry();
+        self.message(SessionEntry::TOPIC, &entry, self.newest_nanos)?;
+        self.seal()
     }
 
     fn append<E: Entry>(&mut self, entry: &E, wall_nanos: u64) -> Result<(), LogError> {
@@ -231,9 +266,22 @@ impl LogWriter {
         let channel_id = self.channels.get(topic).copied().unwrap_or(u16::MAX);
         let header =
             MessageHeader { channel_id, sequence: self.sequence, log_time: wall_nanos, publish_time: wall_nanos };
-        self.sequence = self.sequence.wrapping_add(1);
         let written = self.mcap.write_to_known_channel(&header, data);
-        self.written(written)
+        self.written(written)?;
+        self.note(&header, data);
+        Ok(())
+    }
+
+    /// Takes note of a message that is written now, or was written by an earlier recorder.
+    fn note(&mut self, header: &MessageHeader, data: &[u8]) {
+        self.sequence = header.sequence.wrapping_add(1);
+        self.newest_nanos = header.log_time;
+        let is_of = |topic: &str| self.channels.get(topic) == Some(&header.channel_id);
+        if is_of(SessionEntry::TOPIC) {
+            self.copies.note_session(data);
+        } else if is_of(SNAPSHOTS) {
+            self.copies.note_snapshot();
+        }
     }
 
     fn handed(&self, handed: io::Result<()>) -> Result<(), LogError> {
@@ -260,6 +308,8 @@ impl LogWriter {
             log.segment.take();
         }
         log.seal = seal;
+        // The copy that was due when its recorder was killed.
+        log.flush()?;
         Ok(log)
     }
 
@@ -276,11 +326,13 @@ impl LogWriter {
                 id.map(|id| id == channel.id)
             }
             Record::Message { header, data } => {
-                self.sequence = header.sequence.wrapping_add(1);
+                self.note(header, data);
                 self.mcap.write_to_known_channel(header, data).map(|()| true)
             }
             Record::Unknown { opcode, data } => {
-                self.mcap.write_private_record(*opcode, data, Default::default()).map(|()| true)
+                let written = self.mcap.write_private_record(*opcode, data, Default::default());
+                self.copies.note_seal(self.segment.end());
+                written.map(|()| true)
             }
             _ => Ok(true),
         };
@@ -291,13 +343,15 @@ impl LogWriter {
     }
 }
 
-/// Bytes of a log that were not handed on yet.
+/// Bytes of a log that were not handed on yet: the segment that is written, and perhaps sealed ones before it.
 #[derive(Clone, Default)]
 struct Segment(Arc<Mutex<Unsealed>>);
 
 #[derive(Default)]
 struct Unsealed {
     bytes: Vec<u8>,
+    /// How many of them are sealed.
+    sealed: usize,
     /// How many went before.
     before: u64,
 }
@@ -308,12 +362,26 @@ impl Segment {
     }
 
     fn unsealed<T>(&self, read: impl FnOnce(&[u8]) -> T) -> T {
-        read(&self.lock().bytes)
+        let unsealed = self.lock();
+        read(&unsealed.bytes[unsealed.sealed..])
+    }
+
+    /// All up to here is sealed.
+    fn end_segment(&self) {
+        let mut unsealed = self.lock();
+        unsealed.sealed = unsealed.bytes.len();
+    }
+
+    /// Where the log ends, counted from its beginning.
+    fn end(&self) -> u64 {
+        let unsealed = self.lock();
+        unsealed.before + unsealed.bytes.len() as u64
     }
 
     fn take(&self) -> Vec<u8> {
         let mut unsealed = self.lock();
         unsealed.before += unsealed.bytes.len() as u64;
+        unsealed.sealed = 0;
         std::mem::take(&mut unsealed.bytes)
     }
 }
@@ -332,8 +400,7 @@ impl Write for Segment {
 /// A log is only ever appended to: its writer asks where it is, and never goes elsewhere.
 impl Seek for Segment {
     fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
-        let unsealed = self.lock();
-        let here = unsealed.before + unsealed.bytes.len() as u64;
+        let here = self.end();
         match to {
             SeekFrom::Current(0) => Ok(here),
             SeekFrom::Start(there) if there == here => Ok(here),

@@ -14,7 +14,9 @@ use cohabit_bus::{
         DialogKind, DialogMessage, EventKind, EventMessage, MissionHeader, MissionMessage, TickHeader, TickMessage,
     },
 };
-use cohabit_record::{EventEntry, Log, LogError, LogWriter, Recorder, SessionEntry, SessionFacts, TickEntry};
+use cohabit_record::{
+    EventEntry, Log, LogError, LogWriter, RecordError, Recorder, SessionEntry, SessionFacts, Snapshot, TickEntry,
+};
 use proptest::prelude::*;
 
 /// A file that goes when this is dropped.
@@ -59,6 +61,9 @@ fn write_rest(log: &mut LogWriter, after: u64) {
     for number in after + 1..=TICKS {
         log.tick(&tick(number)).unwrap();
         log.event(&event(number), number).unwrap();
+        if number.is_multiple_of(10) {
+            log.snapshot(&Snapshot::pack(number, &[number as u8; 5000]), number).unwrap();
+        }
         log.flush().unwrap();
     }
 }
@@ -164,4 +169,27 @@ fn recorders_one_after_the_other_write_one_log() {
     assert_eq!(log.events.iter().map(|entry| entry.tick).collect::<Vec<_>>(), all);
     assert_eq!(log.dialog.iter().map(|entry| entry.turn).collect::<Vec<_>>(), all);
     assert_eq!((log.cut.as_deref(), log.missing()), (None, 0));
+}
+
+/// A recorder says at its end when its log lacks something, also when an earlier one missed it.
+#[test]
+fn an_incomplete_log_is_no_success() {
+    let file = Scratch::new("incomplete");
+    let bus = Local::new(1);
+    let mut world = World::new(&bus);
+    let run = || {
+        let recorder = Recorder::new(&bus).unwrap();
+        recorder.run(&SessionFacts::named("s"), &file.0, &AtomicBool::new(true), || {})
+    };
+    (1..=20).for_each(|number| world.tick(number));
+    run().unwrap();
+    // More than the bus keeps.
+    (21..=5000).for_each(|number| world.tick(number));
+    for _ in 0..2 {
+        let error = run().unwrap_err();
+        let log = Log::open(&file.0).unwrap();
+        assert!(log.missing() > 0);
+        assert!(matches!(error, RecordError::Incomplete { missing, .. } if missing == log.missing()), "{error}");
+        assert!(error.to_string().contains("is incomplete"), "{error}");
+    }
 }

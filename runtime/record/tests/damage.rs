@@ -1,5 +1,5 @@
-//! A log that was cut or changed at any place opens and says what is lost, or is refused; what it then says is what was
-//! written.
+//! A log that was damaged at any one place opens and says what is lost, and what it then says is what was written; one that
+//! was cut opens up to there.
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use std::{
@@ -83,7 +83,8 @@ fn write(log: &mut LogWriter, number: u64) {
     log.flush().unwrap();
 }
 
-/// A log, and where each of its segments ends: the first holds the session, each further one a tick.
+/// A log, and where each of its parts ends: the first holds the session, each further one a tick and perhaps a copy of the
+/// session entry.
 fn sample() -> (Vec<u8>, Vec<usize>) {
     let memory = Memory::default();
     let length = || memory.0.lock().unwrap().len();
@@ -141,6 +142,26 @@ fn a_whole_log_says_all_and_lacks_nothing() {
     assert_eq!(log.problems().len(), 3, "its recorder noted three gaps: {:?}", log.problems());
 }
 
+/// Where the session entry stands.
+fn copies(bytes: &[u8]) -> Vec<usize> {
+    let entry = serde_json::to_vec(&session()).unwrap();
+    bytes.windows(entry.len()).enumerate().filter(|(_, part)| *part == entry).map(|(at, _)| at).collect()
+}
+
+/// The ticks that a log does not have.
+fn missing(log: &Log) -> Vec<u64> {
+    (1..=TICKS).filter(|number| log.ticks.iter().all(|entry| entry.tick != *number)).collect()
+}
+
+#[test]
+fn the_session_entry_is_repeated() {
+    let (bytes, ends) = sample();
+    let copies = copies(&bytes);
+    assert!(copies.len() >= 4, "at the beginning, soon after, with a snapshot, at the end: {copies:?}");
+    assert!(copies[0] < ends[0] && copies[1] > ends[0] + 4096, "no one block holds both: {copies:?}, {ends:?}");
+    assert!(copies[copies.len() - 1] > ends[TICKS as usize - 1], "{copies:?}, {ends:?}");
+}
+
 #[test]
 fn a_log_cut_anywhere_opens_up_to_there_or_is_refused() {
     let (bytes, ends) = sample();
@@ -150,13 +171,15 @@ fn a_log_cut_anywhere_opens_up_to_there_or_is_refused() {
         let what = format!("cut at {length}");
         match parse(&bytes[..length]) {
             Ok(log) => {
-                let whole = ends.iter().filter(|end| **end <= length).count();
-                let missing: Vec<_> = (whole as u64..=TICKS).collect();
+                let whole = ends.iter().filter(|end| **end <= length).count() as u64;
+                // Where a copy of the session entry was cut, the tick before it is whole.
+                let missing = missing(&log);
+                assert!(
+                    missing == (whole..=TICKS).collect::<Vec<_>>()
+                        || missing == (whole + 1..=TICKS).collect::<Vec<_>>()
+                );
                 check_says_what_was_written(&log, &missing, &what);
-                let said = log.cut.clone().unwrap_or_else(|| panic!("{what}: unnoticed"));
-                let rest = length - ends[whole - 1];
-                let is_torn = rest > 0 && whole <= TICKS as usize;
-                assert!(!is_torn || said.contains(&format!("last {rest} bytes")), "{what}: {said}");
+                assert!(log.cut.is_some(), "{what}: unnoticed");
             }
             Err(error) => {
                 assert!(length < ends[0], "{what}: {error}");
@@ -166,37 +189,66 @@ fn a_log_cut_anywhere_opens_up_to_there_or_is_refused() {
     }
 }
 
+/// A log of which only these bytes were changed opens, says so, and holds all that stands elsewhere.
+fn check_damaged(changed: &[u8], place: std::ops::Range<usize>, ends: &[usize], what: &str) {
+    let log = parse(changed).unwrap_or_else(|error| panic!("{what}: {error}"));
+    let [first, last] = [place.start, place.end - 1].map(|byte| ends.partition_point(|end| *end <= byte) as u64);
+    let missing = missing(&log);
+    // Where a seal is damaged, what follows it cannot be told to follow.
+    assert!(missing.iter().all(|tick| (first..=last + 1).contains(tick)), "{what}: {missing:?}");
+    check_says_what_was_written(&log, &missing, what);
+    let said = log.problems().join("; ");
+    assert!(log.lost.len() == 1 || log.cut.is_some(), "{what}: {said}");
+    assert!(said.contains("damaged") || said.contains("torn"), "{what}: {said}");
+}
+
 #[test]
-fn a_log_with_a_changed_byte_says_what_is_lost_or_is_refused() {
+fn a_log_with_a_changed_byte_says_what_is_lost() {
     let (bytes, ends) = sample();
     let mut numbers = Numbers(2);
-    for _ in 0..CASES {
-        let place = numbers.below(bytes.len());
+    let anywhere: Vec<_> = (0..CASES).map(|_| numbers.below(bytes.len())).collect();
+    // All of the beginning: the magic, the header, schemas, channels, and the session entry.
+    for place in (0..ends[0] + 64).chain(anywhere) {
         let mut changed = bytes.clone();
         changed[place] ^= 1 + numbers.below(255) as u8;
         let what = format!("byte {place} is {:#04x} instead of {:#04x}", changed[place], bytes[place]);
-        let segment = ends.partition_point(|end| *end <= place);
-        match parse(&changed) {
-            // The first segment is all that cannot be done without.
-            Err(error) => {
-                assert!(segment == 0, "{what}, in segment {segment}: {error}");
-                assert!(!error.to_string().is_empty());
-            }
-            Ok(log) if segment > TICKS as usize => {
-                check_says_what_was_written(&log, &[], &what);
-                assert!(log.cut.is_some(), "{what}: the index is damaged, and nobody says so");
-            }
-            Ok(log) => {
-                assert!(segment > 0, "{what}: the beginning is damaged, and nobody says so");
-                // Where a seal is damaged, what follows it cannot be told to follow.
-                let count = log.ticks.len() as u64;
-                let missing: Vec<_> = (segment as u64..).take((TICKS - count) as usize).collect();
-                assert!((1..=2).contains(&missing.len()), "{what}: {missing:?}");
-                check_says_what_was_written(&log, &missing, &what);
-                let said = log.problems().join("; ");
-                assert!(log.lost.len() == 1 || log.cut.is_some(), "{what}: {said}");
-                assert!(said.contains("damaged"), "{what}: {said}");
-            }
+        check_damaged(&changed, place..place + 1, &ends, &what);
+    }
+}
+
+#[test]
+fn a_log_with_a_block_of_zeros_says_what_is_lost() {
+    let (bytes, ends) = sample();
+    let mut numbers = Numbers(3);
+    let anywhere: Vec<_> = (0..CASES).map(|_| (numbers.below(bytes.len()), 1 + numbers.below(4096))).collect();
+    let sectors = (0..bytes.len()).step_by(512).flat_map(|start| [(start, 512), (start, 4096)]);
+    for (start, length) in sectors.chain(anywhere) {
+        let mut changed = bytes.clone();
+        let place = start..(start + length).min(bytes.len());
+        changed[place.clone()].fill(0);
+        if changed != bytes {
+            check_damaged(&changed, place, &ends, &format!("{length} zeros from byte {start}"));
+        }
+    }
+}
+
+/// Whatever its beginning was, what stands behind is read by a copy of the session entry.
+#[test]
+fn a_log_without_its_beginning_opens() {
+    let (bytes, ends) = sample();
+    let copies = copies(&bytes);
+    let last = copies[copies.len() - 2];
+    let mut numbers = Numbers(4);
+    for gone in (1..CASES / 5).map(|_| 1 + numbers.below(last - 64)).chain([1, 8, ends[0]]) {
+        let whole = ends.iter().filter(|end| **end <= gone).count() as u64;
+        let mut zeros = bytes.clone();
+        zeros[..gone].fill(0);
+        for rest in [&bytes[gone..], &zeros[..]] {
+            let log = parse(rest).unwrap_or_else(|error| panic!("without {gone} bytes: {error}"));
+            let missing = missing(&log);
+            assert!(missing.iter().all(|tick| *tick <= whole + 1), "without {gone} bytes: {missing:?}");
+            check_says_what_was_written(&log, &missing, "without its beginning");
+            assert_eq!(log.lost[0].bytes[0], 0);
         }
     }
 }

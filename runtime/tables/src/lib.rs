@@ -21,7 +21,7 @@ mod summary;
 mod table;
 mod turns;
 
-pub use self::csv::{CsvError, write_csv};
+pub use self::csv::{CsvError, plain_text, write_csv};
 pub use codebook::codebook;
 pub use fit::{Fit, Term};
 pub use interval::{mean_95, wilson_95};

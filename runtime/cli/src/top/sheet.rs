@@ -10,6 +10,7 @@ use cohabit_world::DT_NANOS;
 use serde_json::{Value, json};
 
 use super::window::{Peer, Window};
+use crate::terminal::shown;
 
 /// The figures of one moment.
 pub struct Sheet {
@@ -69,7 +70,7 @@ impl Row {
     fn new(peer: &Peer) -> Self {
         let Peer { pulse, .. } = peer;
         Self {
-            peer: pulse.peer.as_str().to_owned(),
+            peer: shown(pulse.peer.as_str()).to_string(),
             body: (pulse.body != NONE).then_some(pulse.body),
             process: peer.process,
             behind: peer.behind,

@@ -25,6 +25,16 @@ pub enum ReplayError {
     /// One of its cameras cannot.
     #[error("a camera of the session: {0}")]
     Camera(#[from] CameraPlanError),
+    /// Its ticks are not one after the other.
+    #[error(
+        "the log's ticks are not in their order: tick {second} follows tick {first}; nothing of it can be compared"
+    )]
+    Disorder {
+        /// A tick.
+        first: u64,
+        /// The one that follows it in the log.
+        second: u64,
+    },
     /// It does not begin at the beginning, and has no state to go on from.
     #[error("the log begins after tick {tick} without a snapshot of it: nothing of it can be replayed")]
     NoBeginning {
@@ -69,6 +79,9 @@ impl<'a> Replayer<'a> {
     /// # Errors
     /// [`ReplayError`], when the log's session cannot be played by this program.
     pub fn new(log: &'a Log, catalog: Arc<Catalog>) -> Result<Self, ReplayError> {
+        if let Some([first, second]) = log.disorder() {
+            return Err(ReplayError::Disorder { first, second });
+        }
         let plan = plan(&log.session, catalog)?;
         let world = plan.build()?;
         let mut replayer = Self { log, plan, world, appearance: Appearance::default(), next: 0 };

@@ -96,6 +96,22 @@ pub enum BuildError {
     },
 }
 
+impl BuildError {
+    /// What could not be made or placed: an instance id, or `the robot`.
+    #[must_use]
+    pub fn object(&self) -> &str {
+        match self {
+            Self::UnknownClass { object }
+            | Self::NoSuchRoom { object, .. }
+            | Self::NoSuchReceptacle { object, .. }
+            | Self::NoFreePlace { object, .. }
+            | Self::Circular { object, .. }
+            | Self::NoFreeSpot { object, .. }
+            | Self::NoSuchParent { object, .. } => object,
+        }
+    }
+}
+
 /// A world under construction.
 struct Builder<'a> {
     catalog: &'a Catalog,
