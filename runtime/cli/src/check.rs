@@ -33,7 +33,8 @@ const LARGEST_FILE: usize = 256 << 20;
 /// The seed of a mission that leaves it to chance: one of those that `play` may take.
 const SEED: u64 = 0;
 
-/// Prints every problem with its file, line and column, its place, what is wrong and what would be right
+/// Prints every problem with its file, line and column, its place, what is wrong and what would be right. What can be read
+/// is laid out, too, as `play` does it: a mission for whose objects there is no room is not playable
 #[derive(clap::Args)]
 pub struct Check {
     /// Mission files (CDF), files of many missions (JSON lines, or an object of records), folders of these, or names of

@@ -305,6 +305,17 @@ fn a_log_of_an_older_format_opens() {
         assert_eq!((log.dialog[0].tick, log.dialog[0].stamps), (1, [1, 2, 3, 4, 0]));
         assert_eq!(log.cut.is_none(), end);
     }
+    // Format 2 had the session entry once, in a log that is otherwise as it is now.
+    let (memory, entry) = (Memory::default(), SessionEntry { format: 2, ..session() });
+    let mut log = LogWriter::begin(Path::new("a log"), Box::new(memory.clone()), &entry, 1).unwrap();
+    write(&mut log, 1);
+    drop(log);
+    let mut bytes = memory.0.lock().unwrap().clone();
+    let log = parse(&bytes).unwrap();
+    assert_eq!((log.session, log.ticks), (entry, vec![tick(1)]));
+    bytes[100] ^= 1;
+    let error = parse(&bytes).unwrap_err().to_string();
+    assert!(error.contains("its beginning is damaged, and no copy"), "{error}");
 }
 
 #[test]
