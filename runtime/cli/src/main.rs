@@ -26,6 +26,7 @@ mod voice;
 use std::{ffi::OsString, process::ExitCode};
 
 use clap::{Parser, Subcommand};
+use rustix::fs::Mode;
 use tracing_subscriber::EnvFilter;
 
 /// People and robots together in a simulated office: start a session, watch it, talk to the robot.
@@ -70,6 +71,27 @@ enum Command {
     Record(peers::Record),
 }
 
+impl Command {
+    /// Has the files of a session, its log among them, readable by this user alone.
+    fn keep_files_private(&self) {
+        match self {
+            Self::Play(_) | Self::Sim(_) | Self::Agent(_) | Self::Dialog(_) | Self::Record(_) => {
+                rustix::process::umask(Mode::RWXG | Mode::RWXO);
+            }
+            Self::Check(_)
+            | Self::Replay(_)
+            | Self::Compare(_)
+            | Self::Export(_)
+            | Self::Eval(_)
+            | Self::Doctor(_)
+            | Self::Top(_)
+            | Self::Time(_)
+            | Self::Voice(_)
+            | Self::Gallery(_) => {}
+        }
+    }
+}
+
 fn main() -> ExitCode {
     tracing_subscriber::fmt()
         .with_env_filter(EnvFilter::try_from_env("COHABIT_LOG").unwrap_or_else(|_| EnvFilter::new("info")))
@@ -84,6 +106,7 @@ fn main() -> ExitCode {
 }
 
 fn run(asked: Cohabit) -> anyhow::Result<()> {
+    asked.command.keep_files_private();
     match asked.command {
         Command::Play(play) => play.run(),
         Command::Check(check) => check.run(),
