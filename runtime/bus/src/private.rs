@@ -4,9 +4,9 @@
 //! a folder or a symbolic link of somebody else.
 
 use std::{
-    fs::{self, DirBuilder, File, Metadata},
+    fs::{self, DirBuilder, File, Metadata, Permissions},
     io,
-    os::unix::fs::{DirBuilderExt as _, FileTypeExt as _, MetadataExt as _, OpenOptionsExt as _},
+    os::unix::fs::{DirBuilderExt as _, FileTypeExt as _, MetadataExt as _, OpenOptionsExt as _, PermissionsExt as _},
     path::{Path, PathBuf},
 };
 
@@ -78,6 +78,20 @@ pub(crate) fn make_folder(path: &Path) -> Result<(), AccessError> {
     match DirBuilder::new().mode(0o700).create(path) {
         Err(error) if error.kind() != io::ErrorKind::AlreadyExists => Err(system(path, error)),
         _ => check_folder(path),
+    }
+}
+
+/// Takes other users' rights to the folders in one of this user alone, which a library has made with them.
+pub(crate) fn close_folders(path: &Path) {
+    for entry in fs::read_dir(path).into_iter().flatten().flatten() {
+        // Others come and go meanwhile, and none of them can be reached through this one.
+        let Ok(found) = entry.metadata() else { continue };
+        if found.is_dir() {
+            if found.mode() & OTHERS != 0 {
+                let _ = fs::set_permissions(entry.path(), Permissions::from_mode(0o700));
+            }
+            close_folders(&entry.path());
+        }
     }
 }
 
@@ -198,7 +212,7 @@ fn system(path: &Path, source: io::Error) -> AccessError {
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
 mod tests {
-    use std::os::unix::fs::{PermissionsExt as _, symlink};
+    use std::os::unix::fs::symlink;
 
     use super::*;
 
@@ -225,7 +239,7 @@ mod tests {
     }
 
     fn set_mode(path: &Path, mode: u32) {
-        fs::set_permissions(path, fs::Permissions::from_mode(mode)).unwrap();
+        fs::set_permissions(path, Permissions::from_mode(mode)).unwrap();
     }
 
     #[test]

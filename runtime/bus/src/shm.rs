@@ -33,6 +33,8 @@ use crate::{
 type Ipc = ipc_threadsafe::Service;
 
 const MAX_PEERS: usize = 32;
+/// iceoryx2's folder of topics in a session's own.
+const SERVICES: &str = "services";
 /// How the name of iceoryx2's count of nodes ends.
 const GLOBAL_MANAGEMENT: &str = "global_mgmt";
 
@@ -63,12 +65,15 @@ impl Shm {
         config.global.prefix = session.prefix().as_str().try_into().map_err(|e| failed(format!("{e:?}")))?;
         let root = folder.to_string_lossy();
         config.global.set_root_path(&Path::new(root.as_bytes()).map_err(|e| failed(format!("{root}: {e:?}")))?);
+        let access = |source| BusError::Access { session: name(), source };
+        private::make_folder(&folder.join(SERVICES)).map_err(access)?;
         let node = NodeBuilder::new()
             .config(&config)
             .signal_handling_mode(SignalHandlingMode::Disabled)
             .create::<Ipc>()
             .map_err(|e| failed(format!("{e:?}")))?;
-        close_to_others(session).map_err(|source| BusError::Access { session: name(), source })?;
+        close_memory(session).map_err(access)?;
+        private::close_folders(&folder);
         Ok(Self { session: session.clone(), node: Arc::new(node) })
     }
 
@@ -109,7 +114,7 @@ impl Shm {
 /// iceoryx2 makes one file of a session, a count of its nodes, writable for everybody whatever the process's umask. Whoever
 /// makes it, the supervisor, puts a copy in its place that is this user's alone: who opened the first one before has
 /// nothing of it.
-fn close_to_others(session: &Session) -> Result<(), AccessError> {
+fn close_memory(session: &Session) -> Result<(), AccessError> {
     for path in session.memory().filter(|path| path.to_string_lossy().ends_with(GLOBAL_MANAGEMENT)) {
         let failed = |source| AccessError::System { path: path.clone(), source };
         let mode = fs::metadata(&path).map_err(failed)?.mode();

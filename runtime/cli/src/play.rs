@@ -120,7 +120,9 @@ impl Play {
         let peers = [Role::record(&log, &noted, self.watching), Role::dialog(&self.listening, &robots)];
         let roles = std::iter::once(sim).chain(peers).chain(minds);
         let played = Supervisor::start(&name, roles, began).and_then(|supervisor| supervisor.run(&stop));
-        drop((topics, bus));
+        // All of it is wiped now. What iceoryx2 would take back before, it would look up in memory that any program of this
+        // user may have overwritten.
+        std::mem::forget((topics, bus));
         session.end(lock);
         // What the killed one before was still starting may have come late.
         Session::wipe_dead();
@@ -130,7 +132,9 @@ impl Play {
             println!("{how} in {0}\nReplay it with: cohabit replay {0}", log.display());
         }
         match played {
-            Ok(_) if !whole => Err(IncompleteLog("the log is incomplete: see what the recorder said".to_owned()).into()),
+            Ok(_) if !whole => {
+                Err(IncompleteLog("the log is incomplete: see what the recorder said".to_owned()).into())
+            }
             played => played.map(drop),
         }
     }

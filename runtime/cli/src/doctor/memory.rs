@@ -1,6 +1,6 @@
 //! Shared memory, and memory.
 
-use std::{fs, path::Path};
+use std::path::Path;
 
 use cohabit_bus::{Remains, Session};
 
