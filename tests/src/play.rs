@@ -42,7 +42,8 @@ impl Play {
         Self::start_in(binary, arguments, &[])
     }
 
-    /// The same, with these variables set.
+    /// The same, with these variables set. With `XDG_DATA_HOME` among them it is recorded in there, where sessions usually are,
+    /// and not in [`Self::log`]. A `--port` among the arguments is the page's.
     ///
     /// # Errors
     /// When it ends, or says nothing for too long.
@@ -66,11 +67,15 @@ impl Play {
         let folder = std::env::temp_dir().join(format!("cohabit-test-{session}"));
         fs::create_dir_all(&folder)?;
         let log = folder.join("session.mcap");
-        let mut child = Command::new(binary)
-            .arg("play")
-            .args(arguments)
-            .args(["--port", "0", "--session", &session, "--log"])
-            .arg(&log)
+        let mut command = Command::new(binary);
+        command.arg("play").args(arguments).args(["--session", &session]);
+        if !arguments.contains(&"--port") {
+            command.args(["--port", "0"]);
+        }
+        if !environment.iter().any(|(name, _)| *name == "XDG_DATA_HOME") {
+            command.arg("--log").arg(&log);
+        }
+        let mut child = command
             .envs(environment.iter().copied())
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
@@ -126,8 +131,7 @@ impl Play {
     /// # Errors
     /// When it does not end well, or leaves a process, shared memory or files.
     pub fn end(mut self) -> anyhow::Result<Self> {
-        let pid = Pid::from_raw(i32::try_from(self.child.id())?).context("a process id")?;
-        kill_process(pid, Signal::INT)?;
+        self.signal_supervisor(Signal::INT)?;
         let status = self.wait_for_end()?;
         ensure!(status.success(), "it ended with {status}");
         let left = self.left_behind();
@@ -157,6 +161,29 @@ impl Play {
     pub fn send(&self, role: &str, signal: Signal) -> anyhow::Result<()> {
         let pid = self.processes(role).first().copied().and_then(Pid::from_raw).context("no such process")?;
         Ok(kill_process(pid, signal)?)
+    }
+
+    /// Sends a signal to the supervisor.
+    ///
+    /// # Errors
+    /// When it is gone.
+    pub fn signal_supervisor(&self, signal: Signal) -> anyhow::Result<()> {
+        let pid = Pid::from_raw(i32::try_from(self.child.id())?).context("a process id")?;
+        Ok(kill_process(pid, signal)?)
+    }
+
+    /// Kills the supervisor, and waits until all processes of the session are gone.
+    ///
+    /// # Errors
+    /// When they do not go.
+    pub fn kill(&self) -> anyhow::Result<()> {
+        self.signal_supervisor(Signal::KILL)?;
+        let deadline = Instant::now() + WATCHDOG;
+        while !processes_with(&format!("\0--session\0{}\0", self.session)).is_empty() {
+            ensure!(Instant::now() < deadline, "processes of {} do not end", self.session);
+            thread::park_timeout(Duration::from_millis(5));
+        }
+        Ok(())
     }
 
     /// What it has said since it was last waited for a line.

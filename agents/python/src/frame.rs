@@ -67,7 +67,7 @@ impl Frame {
             let view = FrameView::new(sample.payload())?;
             let start = sample.payload().as_ptr() as usize;
             let at = |plane| view.plane(plane).map(|bytes: &[u8]| bytes.as_ptr() as usize - start);
-            (*view.header, Plane::ALL.map(at))
+            (view.header, Plane::ALL.map(at))
         };
         Ok(Self { owner: Owner::Sample(Arc::new(Mutex::new(sample))), tick, header, plane_at })
     }

@@ -9,7 +9,7 @@ use std::{
 };
 
 use cohabit_bus::{
-    BusError, CameraId, Envelope, Inbox, Publisher, Sample, Subscriber, Topic, Transport, Wake,
+    BusError, CameraId, Envelope, Inbox, Publisher, Sample, Topic, Transport, Wake,
     message::{DialogKind, DialogView, EventKind, EventMessage, Malformed, MissionMessage, StateView},
     monotonic_nanos,
 };
@@ -70,11 +70,11 @@ pub fn run(agent: &mut dyn Agent, body: u32, bus: &dyn Transport, stop: &AtomicB
 /// # Errors
 /// [`PeerError`].
 pub fn wait_for_mission(bus: &dyn Transport, stop: &AtomicBool) -> Result<Option<MissionMessage>, PeerError> {
-    let mut missions = bus.subscriber(Topic::Mission)?;
+    let mut missions = Inbox::new(bus, Topic::Mission)?;
     let mut bell = bus.listener(Wake::State)?;
     while !stop.load(Ordering::Relaxed) {
-        if let Some(sample) = missions.latest()? {
-            return Ok(Some(MissionMessage::read(sample.payload())?));
+        if let Some((_, mission)) = missions.latest(|sample| MissionMessage::read(sample.payload()))? {
+            return Ok(Some(mission));
         }
         bell.wait(Duration::from_millis(50))?;
     }
@@ -83,17 +83,17 @@ pub fn wait_for_mission(bus: &dyn Transport, stop: &AtomicBool) -> Result<Option
 
 /// The state of the world as it comes in.
 struct World {
-    states: Box<dyn Subscriber>,
+    states: Inbox,
     newest: Sample,
 }
 
 impl World {
     /// Subscribes to the state, and waits until it is there; `None` if `stop` comes first.
     fn look_at(bus: &dyn Transport, stop: &AtomicBool) -> Result<Option<Self>, PeerError> {
-        let mut states = bus.subscriber(Topic::State)?;
+        let mut states = Inbox::new(bus, Topic::State)?;
         let mut bell = bus.listener(Wake::State)?;
         while !stop.load(Ordering::Relaxed) {
-            if let Some(newest) = states.latest()? {
+            if let Some((newest, ())) = states.latest(is_state)? {
                 return Ok(Some(Self { states, newest }));
             }
             bell.wait(Duration::from_millis(50))?;
@@ -103,10 +103,14 @@ impl World {
 
     /// Takes in the newest state, and says whether it is new.
     fn look(&mut self) -> Result<bool, PeerError> {
-        let Some(newest) = self.states.latest()? else { return Ok(false) };
+        let Some((newest, ())) = self.states.latest(is_state)? else { return Ok(false) };
         self.newest = newest;
         Ok(true)
     }
+}
+
+fn is_state(sample: &Sample) -> Result<(), Malformed> {
+    StateView::new(sample.payload()).map(drop)
 }
 
 /// An agent with its ends on the bus.

@@ -190,9 +190,10 @@ pub fn serve(
         let (hub, token) = (Arc::clone(&hub), token.map(Arc::from));
         let (survey, voice) = (Arc::clone(&survey), Arc::clone(&voice));
         let host = Host::Live(Live { talk: Arc::clone(&talk), drivers, survey, voice });
+        let ending = Ending(&ended);
         let served = web::serve(listener, Service { hub, host, token, identity: config.identity }, &over)
             .map_err(DialogError::Serve);
-        ended.store(true, Ordering::Relaxed);
+        drop(ending);
         workers
             .into_iter()
             .map(|worker| worker.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
@@ -215,9 +216,17 @@ fn listen(address: SocketAddr, before: Option<&Place>) -> Result<(TcpListener, P
     Ok((listener, Place { address, token }))
 }
 
-/// Runs one of the service's loops; if it fails, all end.
+/// Runs one of the service's loops; if it fails or panics, all end.
 fn until_ended(ended: &AtomicBool, work: impl FnOnce() -> Result<(), DialogError>) -> Result<(), DialogError> {
-    let done = work();
-    ended.store(true, Ordering::Relaxed);
-    done
+    let _ending = Ending(ended);
+    work()
+}
+
+/// Ends all of the service's loops when it is dropped.
+struct Ending<'a>(&'a AtomicBool);
+
+impl Drop for Ending<'_> {
+    fn drop(&mut self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
 }

@@ -6,7 +6,6 @@
 use std::{
     fs::File,
     io,
-    os::unix::fs::OpenOptionsExt as _,
     path::Path,
     ptr::{NonNull, null_mut},
     sync::atomic::{AtomicU32, Ordering::SeqCst},
@@ -20,6 +19,8 @@ use rustix::{
     thread::futex,
     time::Timespec,
 };
+
+use crate::private::{self, AccessError};
 
 /// A bell that any process with the same file can ring and hear.
 #[derive(Debug)]
@@ -45,13 +46,17 @@ unsafe impl Sync for Bell {}
 
 impl Bell {
     /// The bell of this file; makes the file, for this user alone, if nobody has.
-    pub(crate) fn open(path: &Path) -> io::Result<Self> {
-        let file = File::options().read(true).write(true).create(true).truncate(false).mode(0o600).open(path)?;
+    pub(crate) fn open(path: &Path) -> Result<Self, AccessError> {
+        let file = private::open_or_create(path)?;
+        Self::map(&file).map_err(|source| AccessError::System { path: path.to_owned(), source })
+    }
+
+    fn map(file: &File) -> io::Result<Self> {
         // Room is had now, or an error: a full file system would otherwise kill who writes.
-        fallocate(&file, FallocateFlags::empty(), 0, size_of::<Strokes>() as u64)?;
+        fallocate(file, FallocateFlags::empty(), 0, size_of::<Strokes>() as u64)?;
         let access = ProtFlags::READ | ProtFlags::WRITE;
         // SAFETY: a new mapping of a file that is as long as what it is taken for, of which all bit patterns are valid.
-        let memory = unsafe { mmap(null_mut(), size_of::<Strokes>(), access, MapFlags::SHARED, &file, 0)? };
+        let memory = unsafe { mmap(null_mut(), size_of::<Strokes>(), access, MapFlags::SHARED, file, 0)? };
         let memory = NonNull::new(memory.cast()).ok_or(io::ErrorKind::OutOfMemory)?;
         Ok(Self { memory })
     }

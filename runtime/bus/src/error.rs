@@ -1,10 +1,37 @@
 //! What can go wrong on a bus.
 
-use crate::topic::Topic;
+use crate::{private::AccessError, topic::Topic};
 
 /// Why an operation on the bus failed.
 #[derive(Debug, thiserror::Error)]
 pub enum BusError {
+    /// There is no such session.
+    #[error("join session `{session}`: there is no such session here; start it with `cohabit play --session NAME`")]
+    NoSession {
+        /// The name that was asked for.
+        session: String,
+    },
+    /// The session was started by a program with another version of the messages.
+    #[error(
+        "join session `{session}`: it speaks version {spoken} of the messages, this program version {own}: use the build \
+         that started the session (`cohabit doctor` tells which sessions run another)"
+    )]
+    OtherVersion {
+        /// The session's name.
+        session: String,
+        /// The session's version.
+        spoken: u32,
+        /// This build's version.
+        own: u32,
+    },
+    /// The session's files are not this user's alone.
+    #[error("join session `{session}`: {source}")]
+    Access {
+        /// The session's name.
+        session: String,
+        /// Which file, and why.
+        source: AccessError,
+    },
     /// The process could not join the session's shared memory.
     #[error("join session `{session}`: {reason}")]
     Join {
@@ -22,7 +49,7 @@ pub enum BusError {
         reason: String,
     },
     /// A sample could not be sent: shared memory is full, say.
-    #[error("send on topic `{topic}`: {reason} (is /dev/shm full? `cohabit doctor` tells)")]
+    #[error("send on topic `{topic}`: {reason}")]
     Send {
         /// Which.
         topic: Topic,

@@ -70,6 +70,21 @@ impl Inbox {
         }
     }
 
+    /// The newest sample that `read` makes sense of, and what it makes of it, if one is there; older ones are dropped.
+    ///
+    /// # Errors
+    /// [`BusError::Receive`].
+    pub fn latest<T>(
+        &mut self,
+        read: impl Fn(&Sample) -> Result<T, Malformed>,
+    ) -> Result<Option<(Sample, T)>, BusError> {
+        let mut newest = None;
+        while let Some(found) = self.next(&read)? {
+            newest = Some(found);
+        }
+        Ok(newest)
+    }
+
     /// Hears nothing more of a publisher.
     pub fn cut_off(&mut self, run: u64, reason: &str) {
         let nonsense = Nonsense { topic: self.topic, process: process_of(run), reason: reason.to_owned() };

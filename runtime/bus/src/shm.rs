@@ -1,9 +1,9 @@
 //! The transport between processes: shared memory by iceoryx2.
 //!
 //! Every session has its own name prefix and root folder, so sessions never meet, and a supervisor can wipe all that
-//! one left behind. All files are the user's own (0600).
+//! one left behind. All files are the user's own (0600), and refused if they are not.
 
-use std::{io, sync::Arc, time::Duration};
+use std::{fmt::Debug, fs, io::Write as _, os::unix::fs::MetadataExt as _, sync::Arc, time::Duration};
 
 use iceoryx2::{
     node::{Node, NodeBuilder},
@@ -21,6 +21,7 @@ use crate::{
     envelope::{Block, Envelope},
     error::BusError,
     local::payload_bytes,
+    private::{self, AccessError},
     session::Session,
     topic::{Topic, Wake},
     transport::{
@@ -32,6 +33,10 @@ use crate::{
 type Ipc = ipc_threadsafe::Service;
 
 const MAX_PEERS: usize = 32;
+/// iceoryx2's folder of topics in a session's own.
+const SERVICES: &str = "services";
+/// How the name of iceoryx2's count of nodes ends.
+const GLOBAL_MANAGEMENT: &str = "global_mgmt";
 
 /// The shared-memory transport of one session.
 pub struct Shm {
@@ -43,32 +48,32 @@ impl Shm {
     /// Joins `session`, whose supervisor must have prepared it.
     ///
     /// # Errors
-    /// [`BusError::Join`].
+    /// [`BusError::NoSession`], [`BusError::OtherVersion`], [`BusError::Access`], [`BusError::Join`].
     pub fn join(session: &Session) -> Result<Self, BusError> {
         set_log_level(LogLevel::Fatal);
         let failed = |reason: String| BusError::Join { session: session.name().to_owned(), reason };
+        let name = || session.name().to_owned();
         let folder = session.folder();
         if !folder.is_dir() {
-            return Err(failed(
-                "there is no such session here; start it with `cohabit play --session NAME`".to_owned(),
-            ));
+            return Err(BusError::NoSession { session: name() });
         }
+        session.check().map_err(|source| BusError::Access { session: name(), source })?;
         if let Some(spoken) = session.version().filter(|spoken| *spoken != Envelope::VERSION) {
-            return Err(failed(format!(
-                "it speaks version {spoken} of the messages, this program version {}: use the build that started the \
-                 session (`cohabit doctor` tells which sessions run another)",
-                Envelope::VERSION
-            )));
+            return Err(BusError::OtherVersion { session: name(), spoken, own: Envelope::VERSION });
         }
         let mut config = Config::default();
         config.global.prefix = session.prefix().as_str().try_into().map_err(|e| failed(format!("{e:?}")))?;
         let root = folder.to_string_lossy();
         config.global.set_root_path(&Path::new(root.as_bytes()).map_err(|e| failed(format!("{root}: {e:?}")))?);
+        let access = |source| BusError::Access { session: name(), source };
+        private::make_folder(&folder.join(SERVICES)).map_err(access)?;
         let node = NodeBuilder::new()
             .config(&config)
             .signal_handling_mode(SignalHandlingMode::Disabled)
             .create::<Ipc>()
             .map_err(|e| failed(format!("{e:?}")))?;
+        close_memory(session).map_err(access)?;
+        private::close_folders(&folder);
         Ok(Self { session: session.clone(), node: Arc::new(node) })
     }
 
@@ -101,9 +106,27 @@ impl Shm {
             .map_err(|e| failed(format!("{e:?}")))
     }
 
-    fn bell(&self, wake: Wake) -> io::Result<Bell> {
+    fn bell(&self, wake: Wake) -> Result<Bell, AccessError> {
         Bell::open(&self.session.shared_file(&wake.to_string()))
     }
+}
+
+/// iceoryx2 makes one file of a session, a count of its nodes, writable for everybody whatever the process's umask. Whoever
+/// makes it, the supervisor, puts a copy in its place that is this user's alone: who opened the first one before has
+/// nothing of it.
+fn close_memory(session: &Session) -> Result<(), AccessError> {
+    for path in session.memory().filter(|path| path.to_string_lossy().ends_with(GLOBAL_MANAGEMENT)) {
+        let failed = |source| AccessError::System { path: path.clone(), source };
+        let mode = fs::metadata(&path).map_err(failed)?.mode();
+        if mode & 0o077 == 0 {
+            continue;
+        }
+        let copied = session.shared_file("copy");
+        let mut copy = private::create_new(&copied)?;
+        let placed = fs::read(&path).and_then(|bytes| copy.write_all(&bytes)).and_then(|()| fs::rename(&copied, &path));
+        placed.map_err(failed)?;
+    }
+    Ok(())
 }
 
 /// Topics that are there for as long as this is.
@@ -166,7 +189,7 @@ struct ShmPublisher {
 
 impl Publisher for ShmPublisher {
     fn send(&mut self, tick: u64, bytes: usize, write: &mut dyn FnMut(&mut [u8])) -> Result<u64, BusError> {
-        let failed = |reason: String| BusError::Send { topic: self.topic, reason };
+        let failed = |error: &dyn Debug| not_sent(self.topic, error);
         let sequence = self.sequence;
         let envelope = Envelope {
             version: Envelope::VERSION,
@@ -178,12 +201,12 @@ impl Publisher for ShmPublisher {
             ..Envelope::default()
         };
         let blocks = 1 + Block::count_for(bytes);
-        let sample = self.port.loan_slice_uninit(blocks).map_err(|e| failed(format!("{e:?}")))?;
+        let sample = self.port.loan_slice_uninit(blocks).map_err(|error| failed(&error))?;
         // SAFETY: a `Block` is plain bytes, of which all patterns are valid, in memory that the shared segment has
         // initialised (the kernel hands out zeroed pages).
         let mut sample = unsafe { sample.assume_init() };
         fill(sample.payload_mut(), envelope, write);
-        sample.send().map_err(|e| failed(format!("{e:?}")))?;
+        sample.send().map_err(|error| failed(&error))?;
         self.bell.ring();
         self.sequence += 1;
         Ok(sequence)
@@ -198,8 +221,15 @@ impl Publisher for ShmPublisher {
     }
 
     fn update(&mut self) -> Result<(), BusError> {
-        self.port.update_connections().map_err(|e| BusError::Send { topic: self.topic, reason: format!("{e:?}") })
+        self.port.update_connections().map_err(|error| not_sent(self.topic, &error))
     }
+}
+
+/// Why a sample was not sent: what the transport says, and whether there is no memory left for it.
+fn not_sent(topic: Topic, error: &dyn Debug) -> BusError {
+    let is_full = Session::shared_memory_is_full();
+    let remedy = if is_full { "; /dev/shm is full, `cohabit doctor` tells more" } else { "" };
+    BusError::Send { topic, reason: format!("{error:?}{remedy}") }
 }
 
 struct ShmSubscriber {

@@ -1,6 +1,6 @@
 //! What every transport offers.
 
-use std::time::Duration;
+use std::{collections::VecDeque, time::Duration};
 
 use bytemuck::NoUninit;
 
@@ -133,8 +133,14 @@ impl Sample {
             let (found, expected) = (envelope.version, Envelope::VERSION);
             return Err(BusError::Version { topic, found, expected });
         }
-        if envelope.payload_bytes as usize > (blocks.len() - 1) * size_of::<Block>() {
-            return Err(BusError::Malformed { topic, reason: "payload longer than its sample" });
+        let payload_bytes = envelope.payload_bytes as usize;
+        if topic.most_bytes().is_some_and(|most| payload_bytes > most) {
+            return Err(BusError::Malformed { topic, reason: "payload longer than its topic takes" });
+        }
+        // How many blocks there are is written in shared memory, too, beside the envelope: if somebody has overwritten both,
+        // they hardly agree.
+        if blocks.len() - 1 != Block::count_for(payload_bytes) {
+            return Err(BusError::Malformed { topic, reason: "payload not of the length of its sample" });
         }
         Ok(Self { memory, envelope })
     }
@@ -161,18 +167,28 @@ impl std::fmt::Debug for Sample {
 /// Counts what a subscriber missed, a publisher's run at a time.
 #[derive(Default)]
 pub(crate) struct GapCounter {
-    next_by_run: Vec<(u64, u64)>,
+    /// Oldest first.
+    next_by_run: VecDeque<(u64, u64)>,
     pub(crate) lost: u64,
 }
+
+/// More publishers than a topic ever had at once, many times over: a peer that writes another run into each envelope must
+/// not fill the memory.
+const MOST_RUNS: usize = 1024;
 
 impl GapCounter {
     pub(crate) fn saw(&mut self, envelope: &Envelope) {
         match self.next_by_run.iter_mut().find(|(run, _)| *run == envelope.run) {
             Some((_, next)) => {
-                self.lost += envelope.sequence.saturating_sub(*next);
-                *next = envelope.sequence + 1;
+                self.lost = self.lost.saturating_add(envelope.sequence.saturating_sub(*next));
+                *next = envelope.sequence.saturating_add(1);
             }
-            None => self.next_by_run.push((envelope.run, envelope.sequence + 1)),
+            None => {
+                if self.next_by_run.len() == MOST_RUNS {
+                    self.next_by_run.pop_front();
+                }
+                self.next_by_run.push_back((envelope.run, envelope.sequence.saturating_add(1)));
+            }
         }
     }
 }
@@ -231,6 +247,7 @@ mod tests {
         let envelope = Envelope { version: Envelope::VERSION, payload_bytes: 128, ..Envelope::default() };
         assert_eq!(sample(envelope, 2).unwrap().payload(), [7; 128]);
         assert!(matches!(sample(envelope, 1), Err(BusError::Malformed { .. })));
+        assert!(matches!(sample(envelope, 3), Err(BusError::Malformed { .. })));
         let other = Envelope { version: 1, ..envelope };
         let Err(error) = sample(other, 2) else { panic!("read") };
         assert!(matches!(error, BusError::Version { found: 1, .. }), "{error}");
@@ -238,7 +255,31 @@ mod tests {
         assert!(matches!(Sample::new(Topic::State, Box::new(Vec::<Block>::new())), Err(BusError::Malformed { .. })));
     }
 
+    #[test]
+    fn a_payload_longer_than_its_topic_takes_is_refused() {
+        let most = Topic::Pulses.most_bytes().unwrap();
+        let of = |bytes: usize| {
+            let payload_bytes = u32::try_from(bytes).unwrap();
+            let envelope = Envelope { version: Envelope::VERSION, payload_bytes, ..Envelope::default() };
+            let mut blocks = vec![Block::default(); 1 + Block::count_for(bytes)];
+            blocks[0] = bytemuck::cast(envelope);
+            Sample::new(Topic::Pulses, Box::new(blocks)).map(drop)
+        };
+        assert!(of(most).is_ok());
+        assert!(matches!(of(most + 1), Err(BusError::Malformed { .. })));
+    }
+
     proptest! {
+        #[test]
+        fn gaps_of_any_envelopes_are_counted_in_bounded_memory(numbers in proptest::collection::vec(any::<[u64; 2]>(), 0..3000)) {
+            let mut gaps = GapCounter::default();
+            let ends = [[1, u64::MAX], [1, 0], [1, u64::MAX], [2, 0], [2, u64::MAX]];
+            for [run, sequence] in numbers.into_iter().chain(ends) {
+                gaps.saw(&Envelope { run, sequence, ..Envelope::default() });
+            }
+            prop_assert!(gaps.next_by_run.len() <= MOST_RUNS);
+        }
+
         #[test]
         fn any_first_block_is_an_envelope_or_refused(
             bytes in proptest::collection::vec(any::<u8>(), 64..256),

@@ -12,7 +12,12 @@ use cohabit_arena::{Arena, Settings};
 use cohabit_cdf::{BodyRequest, Catalog};
 use cohabit_render::MeshLibrary;
 
-use crate::{failure::bad_input, mission_file::MissionFile, rendering::Rendering, sessions, stop};
+use crate::{
+    failure::{bad_input, environment},
+    mission_file::MissionFile,
+    rendering::Rendering,
+    sessions, stop,
+};
 
 /// Where existing clients are listened to, if they are.
 #[derive(clap::Args)]
@@ -53,7 +58,7 @@ impl ArenaOptions {
         let stop = stop::on_request()?;
         let mission = games.mission.map(|name| MissionFile::find(Some(name))).transpose()?;
         if let Some(mission) = &mission {
-            mission.plan(games.seed, games.bodies)?.build().map_err(bad_input)?;
+            mission.plan(games.seed, games.bodies).map_err(bad_input)?.build().map_err(bad_input)?;
         }
         let listener = self.listener(port)?;
         let logs = sessions::folder(self.logs.as_deref())?;
@@ -85,7 +90,7 @@ impl ArenaOptions {
     fn listener(&self, port: u16) -> anyhow::Result<TcpListener> {
         let address = SocketAddr::new(self.listen, port);
         let hint = |error| {
-            bad_input(format!(
+            environment(format!(
                 "{address}: {error}; choose another `--arena-port` (0 takes any that is free) or `--listen`"
             ))
         };

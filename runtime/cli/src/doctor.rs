@@ -16,7 +16,7 @@ use crate::peers::Listening;
 use finding::{Finding, State};
 use machine::Machine;
 
-pub use memory::ensure_room;
+pub use memory::{ensure_room, shared_memory_fault};
 
 /// A look at one thing that a session needs or is better with.
 struct Check {

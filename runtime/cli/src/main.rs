@@ -27,6 +27,7 @@ mod voice;
 use std::{ffi::OsString, io::IsTerminal as _, process::ExitCode};
 
 use clap::{Parser, Subcommand};
+use rustix::fs::Mode;
 use tracing_subscriber::{EnvFilter, field::MakeExt as _, fmt::format::debug_fn};
 
 use crate::terminal::shown;
@@ -73,6 +74,27 @@ enum Command {
     Record(peers::Record),
 }
 
+impl Command {
+    /// Has the files of a session, its log among them, readable by this user alone.
+    fn keep_files_private(&self) {
+        match self {
+            Self::Play(_) | Self::Sim(_) | Self::Agent(_) | Self::Dialog(_) | Self::Record(_) => {
+                rustix::process::umask(Mode::RWXG | Mode::RWXO);
+            }
+            Self::Check(_)
+            | Self::Replay(_)
+            | Self::Compare(_)
+            | Self::Export(_)
+            | Self::Eval(_)
+            | Self::Doctor(_)
+            | Self::Top(_)
+            | Self::Time(_)
+            | Self::Voice(_)
+            | Self::Gallery(_) => {}
+        }
+    }
+}
+
 fn main() -> ExitCode {
     let fields = debug_fn(|out, field, value| match field.name() {
         "message" => write!(out, "{}", shown(format_args!("{value:?}"))),
@@ -93,6 +115,7 @@ fn main() -> ExitCode {
 }
 
 fn run(asked: Cohabit) -> anyhow::Result<()> {
+    asked.command.keep_files_private();
     match asked.command {
         Command::Play(play) => play.run(),
         Command::Check(check) => check.run(),

@@ -3,7 +3,7 @@
 use std::{fs::File, io::Read as _, path::Path, sync::Arc};
 
 use cohabit_cdf::{BodyRequest, Catalog, mission};
-use cohabit_engine::SessionPlan;
+use cohabit_engine::{BuildError, SessionPlan};
 
 use crate::failure::bad_input;
 
@@ -54,8 +54,8 @@ impl MissionFile {
     }
 
     /// Checks it; `seed` is taken where the mission leaves it to chance, `bodies` join those of the mission.
-    pub fn plan(&self, seed: u64, bodies: &[BodyRequest]) -> anyhow::Result<SessionPlan> {
-        let plan = SessionPlan::new(&self.name, &self.text, Arc::new(Catalog::builtin()), seed).map_err(bad_input)?;
+    pub fn plan(&self, seed: u64, bodies: &[BodyRequest]) -> Result<SessionPlan, BuildError> {
+        let plan = SessionPlan::new(&self.name, &self.text, Arc::new(Catalog::builtin()), seed)?;
         Ok(plan.with_bodies(bodies.to_vec()))
     }
 }

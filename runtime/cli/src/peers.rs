@@ -14,7 +14,7 @@ use std::{
 use anyhow::Context as _;
 use cohabit_bus::{CameraId, Session, Shm, message::Control};
 use cohabit_cdf::BodyRequest;
-use cohabit_dialog::{Asking, DialogConfig, Drivable, Endpoint, Identity, Knows, Questionnaire};
+use cohabit_dialog::{Asking, DialogConfig, DialogError, Drivable, Endpoint, Identity, Knows, Questionnaire};
 use cohabit_engine::{Appearance, BuildError, CameraPlan, SessionPlan, Simulator};
 use cohabit_record::{Branch, LogError, RecordError, Recorder, SessionFacts};
 use cohabit_render::MeshLibrary;
@@ -24,7 +24,7 @@ use crate::{
     arena::{ArenaOptions, Games},
     branch::{BranchPoint, Branched},
     build,
-    failure::{IncompleteLog, bad_input},
+    failure::{IncompleteLog, bad_input, environment, joining},
     minds::MindKind,
     mission_file::MissionFile,
     rendering::Rendering,
@@ -48,7 +48,7 @@ impl Joining {
         let stop = stop::on_request()?;
         stop::with_supervisor(self.supervisor)?;
         let session = Session::new(&self.session).map_err(bad_input)?;
-        Ok((Shm::join(&session).map_err(bad_input)?, stop))
+        Ok((Shm::join(&session).map_err(joining)?, stop))
     }
 }
 
@@ -180,7 +180,10 @@ impl Sim {
                 let Branched { plan, world, appearance, .. } = point.open()?;
                 Ok((plan, Some((world, appearance))))
             }
-            None => Ok((MissionFile::find(self.mission.as_deref())?.plan(self.seed, &self.bodies)?, None)),
+            None => Ok((
+                MissionFile::find(self.mission.as_deref())?.plan(self.seed, &self.bodies).map_err(bad_input)?,
+                None,
+            )),
         }
     }
 }
@@ -369,7 +372,8 @@ impl Dialog {
         let (bus, stop) = self.joining.join()?;
         let Some(message) = cohabit_agent::wait_for_mission(&bus, &stop)? else { return Ok(()) };
         let file = MissionFile { name: message.header.file.as_str().to_owned(), text: message.text };
-        let SessionPlan { catalog, layout, mission, .. } = file.plan(message.header.seed, &message.bodies)?;
+        let SessionPlan { catalog, layout, mission, .. } =
+            file.plan(message.header.seed, &message.bodies).context("the mission that the simulator published")?;
         let config = DialogConfig {
             session: self.joining.session.clone(),
             journal: Some(journal(&Session::new(&self.joining.session).map_err(bad_input)?)),
@@ -387,7 +391,12 @@ impl Dialog {
             on_first_frame: Box::new(|| tell_supervisor("shown")),
         };
         let ready = |address: &str| tell_supervisor(&format!("page {address}"));
-        cohabit_dialog::serve(Arc::new(bus), mission, layout, catalog, config, &stop, ready).map_err(bad_input)
+        cohabit_dialog::serve(Arc::new(bus), mission, layout, catalog, config, &stop, ready).map_err(
+            |error| match error {
+                DialogError::Listen { .. } => environment(error),
+                other => other.into(),
+            },
+        )
     }
 }
 
@@ -536,8 +545,14 @@ impl Record {
             RecordError::Incomplete { .. } | RecordError::Log(LogError::Disk { .. }) => {
                 IncompleteLog(error.to_string()).into()
             }
-            RecordError::Log(LogError::Write { .. }) | RecordError::Bus(_) | RecordError::Malformed(_) => error.into(),
-            RecordError::Log(_) | RecordError::NoMission => bad_input(error),
+            RecordError::Log(
+                LogError::File { .. }
+                | LogError::Busy { .. }
+                | LogError::OtherSession { .. }
+                | LogError::NotALog { .. }
+                | LogError::TooNew { .. },
+            ) => bad_input(error),
+            other => other.into(),
         })
     }
 }

@@ -16,7 +16,7 @@ use cohabit_record::{Branch, Log};
 use crate::{
     branch::{BranchPoint, Branched},
     doctor::ensure_room,
-    failure::bad_input,
+    failure::{IncompleteLog, bad_input, environment, joining},
     minds::MindRequest,
     mission_file::MissionFile,
     peers::{self, Listening, NAME_OF, Noted, Timing, Watching},
@@ -102,11 +102,11 @@ impl Play {
         let session = Session::new(&name).map_err(bad_input)?;
         let log = self.log_path(&name)?;
         let lock = session.supervise().map_err(|error| match error {
-            SessionError::Folder { .. } => anyhow::Error::new(error),
-            other => bad_input(other),
+            SessionError::Name(_) | SessionError::Busy(_) => bad_input(error),
+            SessionError::Access(_) | SessionError::NoSharedMemory(_) => environment(error),
         })?;
         // What all peers share is made before there are any: one that is killed while it makes it would keep the others out.
-        let bus = Shm::join(&session).map_err(bad_input)?;
+        let bus = Shm::join(&session).map_err(joining)?;
         let frames = cameras(&plan).into_iter().map(|camera| Topic::Frames(camera.id));
         let topics = bus.hold(Topic::OF_ALL_SESSIONS.into_iter().chain(frames))?;
         if let Some(Before { from, log }) = &before {
@@ -121,14 +121,23 @@ impl Play {
         let peers = [Role::record(&log, &noted, self.watching), Role::dialog(&self.listening, &robots)];
         let roles = std::iter::once(sim).chain(peers).chain(minds);
         let played = Supervisor::start(&name, roles, began).and_then(|supervisor| supervisor.run(&stop));
-        drop((topics, bus));
+        // All of it is wiped now. What iceoryx2 would take back before, it would look up in memory that any program of this
+        // user may have overwritten.
+        std::mem::forget((topics, bus));
         session.end(lock);
         // What the killed one before was still starting may have come late.
         Session::wipe_dead();
+        let whole = played.as_ref().is_ok_and(|ended| ended.log_is_whole);
         if log.is_file() {
-            println!("Recorded in {0}\nReplay it with: cohabit replay {0}", log.display());
+            let how = if whole { "Recorded" } else { "Recorded in part" };
+            println!("{how} in {0}\nReplay it with: cohabit replay {0}", log.display());
         }
-        played
+        match played {
+            Ok(_) if !whole => {
+                Err(IncompleteLog("the log is incomplete: see what the recorder said".to_owned()).into())
+            }
+            played => played.map(drop),
+        }
     }
 
     /// What is played, and the session that it goes on from.
@@ -139,7 +148,7 @@ impl Play {
                 println!("Going on from {} (tick {}) of session {}", point.at, from.tick, shown(&from.session));
                 (plan, Some(Before { from, log }))
             }
-            None => (MissionFile::find(self.mission.as_deref())?.plan(seed, &self.bodies)?, None),
+            None => (MissionFile::find(self.mission.as_deref())?.plan(seed, &self.bodies).map_err(bad_input)?, None),
         };
         let cameras = [plan.cameras.as_slice(), &self.cameras].concat();
         Ok((plan.with_cameras(cameras).map_err(bad_input)?, before))

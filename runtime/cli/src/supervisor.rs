@@ -18,7 +18,8 @@ use anyhow::Context as _;
 use rustix::process::{Pid, Signal, kill_process, setpriority_process};
 
 use crate::{
-    failure::BadInput,
+    doctor::shared_memory_fault,
+    failure::{BAD_INPUT, BadInput, ENVIRONMENT, Environment},
     minds::MindRequest,
     peers::{Listening, Noted, Timing, Watching},
     rendering::Rendering,
@@ -28,10 +29,15 @@ use crate::{
 const GRACE: Duration = Duration::from_secs(3);
 /// How often the processes are looked after.
 const LOOK_EVERY: Duration = Duration::from_millis(20);
-/// A process that ends by itself more often than this within a while is not started again.
-const MOST_RESTARTS: usize = 5;
+/// A process that ends by itself more often than this within a while is not started again, unless all that it lacks is
+/// what the machine may give later, such as its port.
+const MOST_RESTARTS: usize = 8;
 /// The while.
 const RESTARTS_COUNT_FOR: Duration = Duration::from_secs(60);
+/// How long the second restart within the while waits; the first one does not wait, each further one twice as long.
+const FIRST_DELAY: Duration = Duration::from_millis(250);
+/// The longest that a restart waits.
+const LONGEST_DELAY: Duration = Duration::from_secs(4);
 /// How much less urgent than the world its agents are, in steps of niceness.
 const AGENTS_GIVE_WAY: i32 = 5;
 /// This very program, also when its file was replaced or taken away since it was started: all processes of a session
@@ -99,17 +105,53 @@ impl Role {
 struct Running {
     role: Role,
     child: Child,
-    /// When it was started again.
-    restarts: Vec<Instant>,
-    /// Whether it has said that it records.
-    records: Arc<AtomicBool>,
+    /// When it has ended by itself within [`RESTARTS_COUNT_FOR`].
+    ends: Vec<Instant>,
+    /// Whether it is another one than the first.
+    is_again: bool,
+    /// When it is to be started again, if it has ended.
+    again_at: Option<Instant>,
+    /// Whether it has said that it does what it is for: serves the page, or records.
+    works: Arc<AtomicBool>,
+}
+
+/// What follows from the end of a process.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+enum Then {
+    /// It is started again after so long.
+    Restart(Duration),
+    /// The session ends. The process has said itself what is wrong: with its arguments, or with the machine.
+    EndAsSaid(u8),
+    /// The session ends, since it cannot go on without it.
+    End,
 }
 
 impl Running {
-    /// Whether it ends again and again.
-    fn is_hopeless(&mut self) -> bool {
-        self.restarts.retain(|at| at.elapsed() < RESTARTS_COUNT_FOR);
-        self.restarts.len() >= MOST_RESTARTS
+    /// What is to follow from its end; `is_simulator` if there is no session without it.
+    fn ended(&mut self, code: Option<i32>, is_simulator: bool) -> Then {
+        let class =
+            code.and_then(|code| u8::try_from(code).ok()).filter(|code| [BAD_INPUT, ENVIRONMENT].contains(code));
+        // The arguments of one that has worked were right, and so are those of one that takes its place.
+        let is_new = !self.is_again && !self.works.load(Ordering::Relaxed);
+        if let Some(class) = class.filter(|_| is_new) {
+            return Then::EndAsSaid(class);
+        }
+        self.ends.retain(|at| at.elapsed() < RESTARTS_COUNT_FOR);
+        self.ends.push(Instant::now());
+        let may_end = class == Some(ENVIRONMENT) || self.ends.len() <= MOST_RESTARTS;
+        if is_simulator || !may_end { Then::End } else { Then::Restart(delay(self.ends.len())) }
+    }
+
+    fn is_running(&mut self) -> bool {
+        matches!(self.child.try_wait(), Ok(None))
+    }
+}
+
+/// How long one that has ended so many times within the while is waited with.
+fn delay(ends: usize) -> Duration {
+    match u32::try_from(ends).unwrap_or(u32::MAX) {
+        0 | 1 => Duration::ZERO,
+        ends => FIRST_DELAY.saturating_mul(1 << (ends - 2).min(16)).min(LONGEST_DELAY),
     }
 }
 
@@ -133,14 +175,15 @@ impl Supervisor {
         let told = Told { began, page: AtomicBool::new(false), frame: AtomicBool::new(false) };
         let mut supervisor = Self { session: session.to_owned(), running: Vec::new(), told: Arc::new(told) };
         for role in roles {
-            let records = Arc::default();
-            let child = supervisor.spawn(&role, &records)?;
-            supervisor.running.push(Running { role, child, restarts: Vec::new(), records });
+            let works = Arc::default();
+            let child = supervisor.spawn(&role, &works)?;
+            let running = Running { role, child, ends: Vec::new(), is_again: false, again_at: None, works };
+            supervisor.running.push(running);
         }
         Ok(supervisor)
     }
 
-    fn spawn(&self, role: &Role, records: &Arc<AtomicBool>) -> anyhow::Result<Child> {
+    fn spawn(&self, role: &Role, works: &Arc<AtomicBool>) -> anyhow::Result<Child> {
         let own = GIVES_BACK.into_iter().filter(|(name, _)| std::env::var_os(name).is_none());
         let mut child = Command::new(THIS_PROGRAM)
             .envs(own.filter(|_| role.name == "dialog"))
@@ -161,75 +204,120 @@ impl Supervisor {
             let _ = setpriority_process(Some(pid), AGENTS_GIVE_WAY);
         }
         if let Some(out) = child.stdout.take() {
-            let (told, records) = (Arc::clone(&self.told), Arc::clone(records));
-            thread::spawn(move || relay(out, &told, &records));
+            let (told, works) = (Arc::clone(&self.told), Arc::clone(works));
+            thread::spawn(move || relay(out, &told, &works));
         }
         Ok(child)
     }
 
-    /// Watches over the processes until `stop`, or until the session cannot go on.
-    pub fn run(mut self, stop: &Arc<AtomicBool>) -> anyhow::Result<()> {
+    /// Watches over the processes until `stop`, or until the session cannot go on; then ends them.
+    pub fn run(mut self, stop: &Arc<AtomicBool>) -> anyhow::Result<Ended> {
         while !stop.load(Ordering::Relaxed) {
             self.look_after()?;
             thread::sleep(LOOK_EVERY);
         }
         println!("Ending the session");
-        Ok(())
+        Ok(Ended { log_is_whole: self.end_all() })
     }
 
     fn look_after(&mut self) -> anyhow::Result<()> {
         for index in 0..self.running.len() {
             let running = &mut self.running[index];
             let Some(status) = running.child.try_wait().context("look after a process")? else { continue };
-            let name = running.role.name;
-            if status.code() == Some(2) {
-                // It has said itself what is wrong with what it was given.
-                return Err(BadInput(String::new()).into());
+            match running.again_at {
+                Some(at) if at <= Instant::now() => self.start_again(index)?,
+                Some(_) => {}
+                None => self.ended(index, status)?,
             }
-            if name == "sim" || running.is_hopeless() {
-                anyhow::bail!("the {name} process ended ({}); the session cannot go on without it", describe(status));
-            }
-            eprintln!("cohabit: the {name} process ended ({}); starting it again", describe(status));
-            let records = Arc::default();
-            let child = self.spawn(&self.running[index].role, &records)?;
-            let running = &mut self.running[index];
-            (running.child, running.records) = (child, records);
-            running.restarts.push(Instant::now());
         }
         Ok(())
     }
+
+    /// One has ended by itself.
+    fn ended(&mut self, index: usize, status: ExitStatus) -> anyhow::Result<()> {
+        let running = &mut self.running[index];
+        let name = running.role.name;
+        let delay = match running.ended(status.code(), name == "sim") {
+            Then::EndAsSaid(BAD_INPUT) => return Err(BadInput(String::new()).into()),
+            Then::EndAsSaid(_) => return Err(Environment(String::new()).into()),
+            Then::End => {
+                let how = describe(status, &self.session);
+                anyhow::bail!("the {name} process ended ({how}); the session cannot go on without it")
+            }
+            Then::Restart(delay) => delay,
+        };
+        running.again_at = Some(Instant::now() + delay);
+        let when = if delay.is_zero() { String::new() } else { format!(" in {} s", delay.as_secs_f32()) };
+        eprintln!("cohabit: the {name} process ended ({}); starting it again{when}", describe(status, &self.session));
+        Ok(())
+    }
+
+    fn start_again(&mut self, index: usize) -> anyhow::Result<()> {
+        let works = Arc::default();
+        let child = self.spawn(&self.running[index].role, &works)?;
+        let running = &mut self.running[index];
+        (running.child, running.works, running.is_again, running.again_at) = (child, works, true, None);
+        Ok(())
+    }
+}
+
+/// How a session has ended, as its user asked.
+#[derive(Clone, Copy, Debug)]
+pub struct Ended {
+    /// Whether the recorder says that it has written down all.
+    pub log_is_whole: bool,
 }
 
 impl Supervisor {
     /// Waits for a recorder that was just started again: what it has missed can be had only while the others live.
     fn let_recorder_catch_up(&mut self) {
+        let is_recorder = |running: &Running| running.role.name == "record";
+        let waiting = self.running.iter().position(|running| is_recorder(running) && running.again_at.is_some());
+        if let Some(index) = waiting
+            && self.is_simulating()
+        {
+            // That it cannot be started is told by its status.
+            let _ = self.start_again(index);
+        }
         let deadline = Instant::now() + GRACE;
         let is_late = |running: &mut Running| {
-            let is_new = running.role.name == "record" && !running.restarts.is_empty();
-            is_new && !running.records.load(Ordering::Relaxed) && matches!(running.child.try_wait(), Ok(None))
+            let is_behind = running.is_again && !running.works.load(Ordering::Relaxed);
+            is_recorder(running) && is_behind && running.is_running()
         };
-        let simulates =
-            |running: &mut Running| running.role.name == "sim" && matches!(running.child.try_wait(), Ok(None));
-        while self.running.iter_mut().any(simulates)
-            && self.running.iter_mut().any(is_late)
-            && Instant::now() < deadline
-        {
+        while self.is_simulating() && self.running.iter_mut().any(is_late) && Instant::now() < deadline {
             thread::sleep(LOOK_EVERY);
         }
+    }
+
+    fn is_simulating(&mut self) -> bool {
+        self.running.iter_mut().any(|running| running.role.name == "sim" && running.is_running())
+    }
+
+    /// Ends all in order; whether the recorder, which is the last, has ended well.
+    fn end_all(&mut self) -> bool {
+        self.let_recorder_catch_up();
+        self.running.sort_by_key(|running| running.role.ends());
+        let mut is_whole = true;
+        for mut running in self.running.drain(..) {
+            let status = end(&mut running.child);
+            if running.role.name == "record" {
+                // One that was ended before it began has nothing to lose.
+                let began = running.is_again || running.works.load(Ordering::Relaxed);
+                is_whole = status.is_some_and(|status| status.success() || !began && status.code().is_none());
+            }
+        }
+        is_whole
     }
 }
 
 impl Drop for Supervisor {
     fn drop(&mut self) {
-        self.let_recorder_catch_up();
-        self.running.sort_by_key(|running| running.role.ends());
-        for running in &mut self.running {
-            end(&mut running.child);
-        }
+        self.end_all();
     }
 }
 
-fn end(child: &mut Child) {
+/// Asks a process to end, and kills it if it does not; how it has ended.
+fn end(child: &mut Child) -> Option<ExitStatus> {
     let pid = i32::try_from(child.id()).ok().and_then(Pid::from_raw);
     if let (Ok(None), Some(pid)) = (child.try_wait(), pid) {
         let _ = kill_process(pid, Signal::TERM);
@@ -238,37 +326,39 @@ fn end(child: &mut Child) {
     while matches!(child.try_wait(), Ok(None)) {
         if Instant::now() > deadline {
             let _ = child.kill();
-            let _ = child.wait();
-            return;
+            break;
         }
         thread::sleep(Duration::from_millis(5));
     }
+    child.wait().ok()
 }
 
-fn describe(status: ExitStatus) -> String {
+fn describe(status: ExitStatus, session: &str) -> String {
     use std::os::unix::process::ExitStatusExt as _;
     match (status.code(), status.signal()) {
         (Some(code), _) => format!("exit code {code}"),
         (None, Some(signal)) if signal == Signal::BUS.as_raw() => {
-            format!("signal {signal}: /dev/shm is full; free some, or give it more: mount -o remount,size=1g /dev/shm")
+            format!("signal {signal}: {}", shared_memory_fault(session))
         }
         (None, Some(signal)) => format!("signal {signal}"),
         (None, None) => "for an unknown reason".to_owned(),
     }
 }
 
-/// Tells the user what a process tells its supervisor. Notes whether it records.
-fn relay(out: ChildStdout, told: &Told, records: &AtomicBool) {
+/// Tells the user what a process tells its supervisor. Notes whether it does what it is for.
+fn relay(out: ChildStdout, told: &Told, works: &AtomicBool) {
     for line in BufReader::new(out).lines().map_while(Result::ok) {
         let seconds = told.began.elapsed().as_secs_f64();
         match line.split_once(' ') {
-            Some(("page", address)) if told.page.swap(true, Ordering::Relaxed) => {
-                println!("The page is back at {address}");
-            }
             Some(("page", address)) => {
-                println!("Open {address}  (ready after {seconds:.2} s; Ctrl-C ends the session)");
+                works.store(true, Ordering::Relaxed);
+                if told.page.swap(true, Ordering::Relaxed) {
+                    println!("The page is back at {address}");
+                } else {
+                    println!("Open {address}  (ready after {seconds:.2} s; Ctrl-C ends the session)");
+                }
             }
-            Some(("recording", _)) => records.store(true, Ordering::Relaxed),
+            Some(("recording", _)) => works.store(true, Ordering::Relaxed),
             None if line == "shown" => {
                 if !told.frame.swap(true, Ordering::Relaxed) {
                     println!("First frame on the page {seconds:.2} s after the start");
@@ -276,5 +366,46 @@ fn relay(out: ChildStdout, told: &Told, records: &AtomicBool) {
             }
             _ => println!("{line}"),
         }
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    fn running(is_again: bool, works: bool) -> Running {
+        let child = Command::new("true").spawn().unwrap();
+        let role = Role { name: "dialog", arguments: Vec::new() };
+        Running { role, child, ends: Vec::new(), is_again, again_at: None, works: Arc::new(works.into()) }
+    }
+
+    #[test]
+    fn only_one_that_never_worked_ends_the_session_by_what_it_says() {
+        for (is_again, works, code, then) in [
+            (false, false, Some(2), Then::EndAsSaid(2)),
+            (false, false, Some(4), Then::EndAsSaid(4)),
+            (false, true, Some(2), Then::Restart(Duration::ZERO)),
+            (true, false, Some(2), Then::Restart(Duration::ZERO)),
+            (true, false, Some(4), Then::Restart(Duration::ZERO)),
+            (false, false, Some(1), Then::Restart(Duration::ZERO)),
+            (false, false, None, Then::Restart(Duration::ZERO)),
+        ] {
+            let mut running = running(is_again, works);
+            assert_eq!(running.ended(code, false), then, "{is_again} {works} {code:?}");
+            running.child.wait().unwrap();
+        }
+    }
+
+    #[test]
+    fn one_that_crashes_again_and_again_is_given_up_and_one_that_lacks_something_is_not() {
+        let mut crashing = running(true, false);
+        let delays: Vec<_> = (0..MOST_RESTARTS).map(|_| crashing.ended(Some(101), false)).collect();
+        assert_eq!(delays[1], Then::Restart(FIRST_DELAY));
+        assert_eq!(delays.last(), Some(&Then::Restart(LONGEST_DELAY)));
+        assert_eq!(crashing.ended(Some(101), false), Then::End);
+        assert_eq!(crashing.ended(Some(4), false), Then::Restart(LONGEST_DELAY));
+        assert_eq!(running(false, false).ended(None, true), Then::End);
+        crashing.child.wait().unwrap();
     }
 }

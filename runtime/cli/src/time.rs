@@ -9,7 +9,7 @@ use cohabit_bus::{
     monotonic_nanos,
 };
 
-use crate::{failure::bad_input, peers, sessions, terminal::shown};
+use crate::{failure::joining, peers, sessions, terminal::shown};
 
 /// How long the simulator may take to answer.
 const PATIENCE: Duration = Duration::from_secs(2);
@@ -59,7 +59,7 @@ impl Time {
     /// Asks for the change, and waits until the simulator tells of it.
     pub fn run(&self) -> anyhow::Result<()> {
         let session = sessions::running(self.session.as_deref())?;
-        let bus = Shm::join(&session).map_err(bad_input)?;
+        let bus = Shm::join(&session).map_err(joining)?;
         let mut bell = bus.listener(Wake::Talk)?;
         let mut events = Inbox::new(&bus, Topic::Events)?;
         let asked_nanos = monotonic_nanos();

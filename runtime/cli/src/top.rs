@@ -13,12 +13,12 @@ use std::{
 
 use anyhow::Context as _;
 use cohabit_bus::{
-    Heart, Inbox, Shm, Subscriber, Topic, Transport,
+    Heart, Inbox, Sample, Shm, Topic, Transport,
     message::{self, NONE, PulseMessage, StateView, TickView},
     monotonic_nanos,
 };
 
-use crate::{failure::bad_input, sessions, stop};
+use crate::{failure::joining, sessions, stop};
 use sheet::Sheet;
 use window::Window;
 
@@ -49,7 +49,7 @@ impl Top {
     pub fn run(&self) -> anyhow::Result<()> {
         let stop = stop::on_request()?;
         let session = sessions::running(self.session.as_deref())?;
-        let bus = Shm::join(&session).map_err(bad_input)?;
+        let bus = Shm::join(&session).map_err(joining)?;
         let mut watch = Watch::new(&bus)?;
         let live = io::stdout().is_terminal() && !self.json && self.once.is_none();
         let lasting = if self.json { Some(1.0) } else { self.once };
@@ -81,7 +81,7 @@ fn show(text: &str) -> anyhow::Result<()> {
 struct Watch {
     ticks: Inbox,
     pulses: Inbox,
-    states: Box<dyn Subscriber>,
+    states: Inbox,
     heart: Heart,
     window: Window,
     paused: bool,
@@ -92,7 +92,7 @@ impl Watch {
         Ok(Self {
             ticks: Inbox::new(bus, Topic::Ticks)?,
             pulses: Inbox::new(bus, Topic::Pulses)?,
-            states: bus.subscriber(Topic::State)?,
+            states: Inbox::new(bus, Topic::State)?,
             heart: Heart::new(bus, "top", NONE)?,
             window: Window::default(),
             paused: false,
@@ -118,8 +118,9 @@ impl Watch {
         while let Some((sample, pulse)) = self.pulses.next(|sample| message::read::<PulseMessage>(sample.payload()))? {
             self.window.note_pulse(sample.envelope(), pulse);
         }
-        if let Some(sample) = self.states.latest()? {
-            self.paused = StateView::new(sample.payload()).is_ok_and(|state| state.header.paused == 1);
+        let is_paused = |sample: &Sample| Ok(StateView::new(sample.payload())?.header.paused == 1);
+        if let Some((_, paused)) = self.states.latest(is_paused)? {
+            self.paused = paused;
         }
         self.heart.beat(self.window.newest_tick(), self.ticks.lost())?;
         Ok(())

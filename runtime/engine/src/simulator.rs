@@ -113,16 +113,30 @@ impl Simulator {
                 }
                 !stop.load(Ordering::Relaxed) && !cameras.is_finished()
             };
+            let closing = Closing { desk: &desk, over: &over };
             let mut clock = Clock { engine, desk: &desk, bell, pace, goes_on, shown_nanos: 0 };
             let ran = match lock_step {
                 None => clock.run_in_real_time(),
                 Some(lock_step) => clock.run_in_lock_step(lock_step),
             };
-            over.store(true, Ordering::Relaxed);
-            desk.close();
+            drop(closing);
             let shot = cameras.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
             ran.and(shot.map_err(EngineError::from))
         })
+    }
+}
+
+/// Ends the other threads of a simulator when it is dropped: also by a panic of the one that ticks, for which they would
+/// otherwise be waited for in vain.
+struct Closing<'a> {
+    desk: &'a Desk,
+    over: &'a AtomicBool,
+}
+
+impl Drop for Closing<'_> {
+    fn drop(&mut self) {
+        self.over.store(true, Ordering::Relaxed);
+        self.desk.close();
     }
 }
 

@@ -85,18 +85,18 @@ impl Pictures {
     pub fn show(&mut self, recording: &Recording, camera: CameraId, frame: &FrameView<'_>) -> anyhow::Result<()> {
         let path = camera_path(camera);
         let shown = self.cameras.entry(camera).or_default();
-        let place = place(frame.header);
+        let place = place(&frame.header);
         if shown.place.is_none() {
-            recording.log_always(&path, &pinhole(frame.header))?;
+            recording.log_always(&path, &pinhole(&frame.header))?;
         }
         if shown.place != Some(place) {
-            let pose = Transform3D::from_translation_mat3x3(frame.header.position_m, axes(frame.header));
+            let pose = Transform3D::from_translation_mat3x3(frame.header.position_m, axes(&frame.header));
             recording.log(&path, &pose)?;
             shown.place = Some(place);
         }
         for (plane, before) in Plane::ALL.into_iter().zip(&mut shown.planes) {
             let Some(bytes) = frame.plane(plane).filter(|bytes| *bytes != before.as_slice()) else { continue };
-            log_plane(recording, &format!("{path}/{}", plane.name()), plane, bytes, size(frame.header))?;
+            log_plane(recording, &format!("{path}/{}", plane.name()), plane, bytes, size(&frame.header))?;
             before.clear();
             before.extend_from_slice(bytes);
         }

@@ -235,8 +235,8 @@ impl FrameLayout {
 /// A frame as received.
 #[derive(Clone, Copy, Debug)]
 pub struct FrameView<'a> {
-    /// What stands before the planes.
-    pub header: &'a FrameHeader,
+    /// What stands before the planes: a copy, so that what was checked stays as it was whatever is written there later.
+    pub header: FrameHeader,
     payload: &'a [u8],
 }
 
@@ -248,10 +248,12 @@ impl<'a> FrameView<'a> {
     pub fn new(payload: &'a [u8]) -> Result<Self, Malformed> {
         let header = payload.get(..size_of::<FrameHeader>()).ok_or(Malformed("no frame header"))?;
         let header: &FrameHeader = bytemuck::try_from_bytes(header).map_err(|_| Malformed("off its boundary"))?;
+        // Read once and for all: another process may write there meanwhile.
+        let header = *header;
         if header.width > 16_384 || header.height > 16_384 || header.views > 16 {
             return Err(Malformed("a frame of more than 16384 pixels a side, or of more than 16 pictures"));
         }
-        let layout = FrameLayout::of(header);
+        let layout = FrameLayout::of(&header);
         if payload.len() != layout.bytes() {
             return Err(Malformed("not the length of its parts"));
         }
@@ -269,7 +271,7 @@ impl<'a> FrameView<'a> {
     #[must_use]
     pub fn plane(&self, plane: Plane) -> Option<&'a [u8]> {
         let at = self.header.plane_at[plane as usize] as usize;
-        (at > 0).then(|| &self.payload[at..at + FrameLayout::of(self.header).pixels() * Plane::BYTES])
+        (at > 0).then(|| &self.payload[at..at + FrameLayout::of(&self.header).pixels() * Plane::BYTES])
     }
 
     /// Depths, m.
@@ -287,7 +289,7 @@ impl<'a> FrameView<'a> {
     /// What is seen, by picture, then by id; nothing where the frame has no ids.
     #[must_use]
     pub fn seen(&self) -> &'a [SeenRecord] {
-        let records = &self.payload[FrameLayout::of(self.header).seen_at()..];
+        let records = &self.payload[FrameLayout::of(&self.header).seen_at()..];
         bytemuck::cast_slice(&records[..self.header.seen as usize * size_of::<SeenRecord>()])
     }
 }

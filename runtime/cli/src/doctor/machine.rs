@@ -4,6 +4,7 @@ use std::{
     env,
     ffi::OsString,
     fs,
+    io::Write as _,
     net::SocketAddr,
     path::{Path, PathBuf},
 };
@@ -74,6 +75,14 @@ impl Machine {
 pub fn free_bytes(folder: &Path) -> std::io::Result<u64> {
     let system = rustix::fs::statvfs(folder)?;
     Ok(system.f_bavail * system.f_frsize)
+}
+
+/// Tries to write a file, which must not be there yet, and removes it.
+pub fn try_writing(probe: &Path, bytes: &[u8]) -> std::io::Result<()> {
+    // Never through a symbolic link: the folder may be one that everybody can write to.
+    let written = fs::File::create_new(probe)?.write_all(bytes);
+    let _ = fs::remove_file(probe);
+    written
 }
 
 /// The nearest folder above that there is.

@@ -1,14 +1,14 @@
 //! Shared memory, and memory.
 
-use std::{fs, path::Path};
+use std::path::Path;
 
 use cohabit_bus::{Remains, Session};
 
-use crate::failure::bad_input;
+use crate::failure::environment;
 
 use super::{
     finding::{Finding, size},
-    machine::{Machine, free_bytes},
+    machine::{Machine, free_bytes, try_writing},
 };
 
 /// What the kernel calls a tmpfs.
@@ -34,8 +34,7 @@ pub fn shared_memory(machine: &Machine) -> Finding {
         );
     }
     let probe = folder.join(format!("cohabit_{}_doctor-{}", machine.user, std::process::id()));
-    let written = fs::write(&probe, [0; 4096]);
-    let _ = fs::remove_file(&probe);
+    let written = try_writing(&probe, &[0; 4096]);
     let (system, free) = match (written, rustix::fs::statfs(&folder), free_bytes(&folder)) {
         (Ok(()), Ok(system), Ok(free)) => (system, free),
         (Err(error), ..) => {
@@ -60,10 +59,20 @@ pub fn ensure_room() -> anyhow::Result<()> {
         return Ok(());
     }
     let (free, needed) = (size(free), size(SESSION_BYTES));
-    Err(bad_input(format!(
+    Err(environment(format!(
         "{} has {free} free, a session takes up to {needed}: free some, or {MORE}",
         folder.display()
     )))
+}
+
+/// Why the kernel has ended a process of a session that touched its shared memory (SIGBUS).
+pub fn shared_memory_fault(session: &str) -> String {
+    let empty = Session::new(session).map(|session| session.truncated_memory()).unwrap_or_default();
+    match empty.first() {
+        _ if Session::shared_memory_is_full() => format!("/dev/shm is full; free some, or {MORE}"),
+        Some(file) => format!("{} was truncated by another program", file.display()),
+        None => "a file of the session in /dev/shm was truncated by another program".to_owned(),
+    }
 }
 
 /// What gives it more room.

@@ -10,7 +10,7 @@ use rustix::process::{Resource, getrlimit};
 
 use super::{
     finding::{Finding, size},
-    machine::{Machine, existing, free_bytes},
+    machine::{Machine, existing, free_bytes, try_writing},
 };
 
 /// What a log grows by in an hour of the default session: some 40 MiB while nothing much happens, measured; three times that.
@@ -23,26 +23,26 @@ pub fn runtime_folder(machine: &Machine) -> Finding {
     let folder = &machine.runtime_folder;
     let remedy = "set XDG_RUNTIME_DIR to a folder of your own";
     let broken = |found: String| Finding::broken(found, "no session can be made or joined", remedy);
-    if !folder.is_dir() {
+    let Ok(data) = fs::symlink_metadata(folder) else {
         let above = existing(folder);
         return match writable(above) {
             Ok(()) => Finding::good(format!("{} will be made", folder.display())),
             Err(error) => broken(format!("{} cannot be made in {}: {error}", folder.display(), above.display())),
         };
+    };
+    if !data.is_dir() {
+        return broken(format!("{} is not a folder", folder.display()));
     }
-    match (fs::metadata(folder), writable(folder)) {
-        (Ok(data), Ok(())) if data.uid() == machine.user && data.permissions().mode() & 0o077 == 0 => {
-            Finding::good(format!("{}, for this user alone", folder.display()))
-        }
-        (Ok(data), Ok(())) if data.uid() != machine.user => {
-            broken(format!("{} belongs to another user ({})", folder.display(), data.uid()))
-        }
-        (Ok(_), Ok(())) => Finding::costs(
-            format!("{} can be read by other users", folder.display()),
-            "they see the names of sessions",
-            format!("chmod 700 {}", folder.display()),
-        ),
-        (Err(error), _) | (_, Err(error)) => broken(format!("{}: {error}", folder.display())),
+    if data.uid() != machine.user {
+        return broken(format!("{} belongs to another user ({})", folder.display(), data.uid()));
+    }
+    if data.permissions().mode() & 0o077 != 0 {
+        let found = format!("{} can be reached by other users", folder.display());
+        return Finding::broken(found, "no session can be made or joined", format!("chmod 700 {}", folder.display()));
+    }
+    match writable(folder) {
+        Ok(()) => Finding::good(format!("{}, for this user alone", folder.display())),
+        Err(error) => broken(format!("{}: {error}", folder.display())),
     }
 }
 
@@ -68,10 +68,7 @@ pub fn log_folder(machine: &Machine) -> Finding {
 
 /// Tries to write there.
 fn writable(folder: &Path) -> std::io::Result<()> {
-    let probe = folder.join(format!(".cohabit-doctor-{}", std::process::id()));
-    let written = fs::write(&probe, "probe");
-    let _ = fs::remove_file(&probe);
-    written
+    try_writing(&folder.join(format!(".cohabit-doctor-{}", std::process::id())), b"probe")
 }
 
 /// Whether processes may open as many files as they need.
@@ -157,7 +154,7 @@ mod tests {
         assert!(runtime_folder(&fake.machine).found.contains("will be made"));
         fs::create_dir_all(folder).unwrap();
         fs::set_permissions(folder, fs::Permissions::from_mode(0o755)).unwrap();
-        assert_eq!(runtime_folder(&fake.machine).state, State::Costs);
+        assert_eq!(runtime_folder(&fake.machine).state, State::Broken);
         fs::set_permissions(folder, fs::Permissions::from_mode(0o700)).unwrap();
         assert_eq!(runtime_folder(&fake.machine).state, State::Good);
         let other = Machine { user: fake.machine.user + 1, ..fake.machine.clone() };
