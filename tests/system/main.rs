@@ -16,6 +16,7 @@ mod interpreter;
 mod lock_step;
 mod mcap;
 mod missions;
+mod origins;
 mod recording;
 mod searching;
 mod sessions;
