@@ -20,7 +20,7 @@ const LEVELS: &[(&str, u8, &[&str])] = &[
     ("cohabit-tables", 3, &["csv", "faer", "statrs"]),
     ("cohabit-arena", 4, &[]),
     ("cohabit-rerun", 4, &["re_sdk", "re_sdk_types", "arrow", "parquet"]),
-    ("cohabit-dialog", 4, &["tokio", "axum", "rustls", "tokio-rustls", "rcgen"]),
+    ("cohabit-dialog", 4, &["tokio", "axum", "hyper", "hyper-util", "rustls", "tokio-rustls", "rcgen"]),
     ("cohabit-eval", 5, &[]),
     ("cohabit-python", 5, &["pyo3", "numpy"]),
     ("cohabit", 6, &["clap", "anyhow", "indicatif"]),

@@ -1,7 +1,7 @@
 // The page of a session: shows what the robot sees, says and has yet to do, and sends what a person types and drives.
 // It knows the messages of the service's socket and nothing of the world behind them.
 
-import { byId, narrow, toast } from "./dom.js";
+import { byId, limitTexts, narrow, toast } from "./dom.js";
 import { buildDriving, showHeld, takeActed, takeAim, takeDriving, takeKey } from "./driving.js";
 import { enlargeMap, floor } from "./floor.js";
 import { expandGoals, takeState } from "./goals.js";
@@ -19,8 +19,9 @@ const SPEECH = 2;
 /** What tests and curious people may read. */
 window.cohabit = { frames: 0, state: null, latency: null, view: null, seen: null, driving: null, aim: null, marks: [], sounds: [], voice: {}, loseMicrophone };
 
-function takeHello({ session, mission, map, views, drivable, robots, questionnaires, replay, voice }) {
+function takeHello({ session, mission, map, views, drivable, robots, questionnaires, replay, voice, longest_text: longestText }) {
   greeted();
+  limitTexts(longestText);
   byId("session").textContent = replay ? `${session} · recorded` : session;
   document.title = mission.title ? `${mission.title} · Cohabit` : "Cohabit";
   byId("goals-title").textContent = mission.title || "Mission";

@@ -20,6 +20,18 @@ export function drawn(tag, attributes, ...children) {
 
 export const capitalised = (text) => text.charAt(0).toUpperCase() + text.slice(1);
 
+/** The most characters of a text, as the session told; its own limit, counted as it counts them. */
+let longestText = Infinity;
+
+export function limitTexts(longest = Infinity) {
+  longestText = longest;
+}
+
+/** What is wrong with a text that is too long; nothing, if it is not. */
+export function tooLong(text) {
+  const length = [...text].length;
+  return length > longestText ? `It has ${length} characters; ${longestText} at most, please.` : "";
+}
 
 const TOAST_MS = 5000;
 

@@ -1,6 +1,6 @@
 // Questionnaires: asked before people play or after, one after the other, and answered when the session says so.
 
-import { byId, element, toast } from "./dom.js";
+import { byId, element, toast, tooLong } from "./dom.js";
 import { send } from "./socket.js";
 
 /** Scales with more places than these are sliders. */
@@ -17,6 +17,10 @@ const later = new Set();
 let shown = null;
 let fields = [];
 let endedAt = null;
+/** Whether there is a mission that is not over. */
+let isRunning = false;
+/** Whether the person says that they have finished, though it is not over. */
+let finished = false;
 
 export function noteAnswered(names = []) {
   answered = new Set(names);
@@ -29,7 +33,8 @@ export function buildSurvey(all = []) {
 }
 
 /** Whether a questionnaire is to be answered now, the mission being over or not. */
-export function askWhenDue({ ending }) {
+export function askWhenDue({ ending, goals }) {
+  isRunning = ending === "running" && goals.length > 0;
   if (ending === "running") endedAt = null;
   else endedAt ??= performance.now();
   const isOver = endedAt !== null && performance.now() - endedAt > ENDING_SEEN_MS;
@@ -39,11 +44,23 @@ export function askWhenDue({ ending }) {
 }
 
 function asked(isOver) {
-  return questionnaires.filter(({ name, when }) => !answered.has(name) && (when === "before" || isOver));
+  return questionnaires.filter(({ name, when }) => !answered.has(name) && (when === "before" || isOver || finished));
+}
+
+function unanswered() {
+  return questionnaires.filter(({ name }) => !answered.has(name));
+}
+
+/** What is asked after the mission is asked of whoever says that they have finished. */
+function asksEarly(questionnaire) {
+  return questionnaire?.when === "after" && isRunning && !finished;
 }
 
 function showButton() {
-  byId("survey-open").hidden = !questionnaires.some(({ name }) => !answered.has(name));
+  const [first] = unanswered();
+  byId("survey-open").hidden = !first;
+  const text = asksEarly(first) ? "I have finished" : "Questionnaire";
+  if (byId("survey-open").textContent !== text) byId("survey-open").textContent = text;
 }
 
 function show(questionnaire) {
@@ -126,7 +143,7 @@ function sliderOf(scale) {
 
 function wordsOf() {
   const control = element("textarea", "survey-words");
-  Object.assign(control, { rows: 3, maxLength: 2000 });
+  control.rows = 3;
   return { control, read: () => (control.value.trim() ? { text: control.value.trim() } : null) };
 }
 
@@ -137,12 +154,13 @@ function showProblem(text) {
 byId("survey-form").addEventListener("submit", (event) => {
   event.preventDefault();
   const answers = fields.map(({ read }) => read());
-  const missing = fields.findIndex(({ optional }, index) => !optional && answers[index] === null);
-  fields.forEach(({ row }, index) => row.classList.toggle("missing", index === missing));
-  if (missing >= 0) {
-    showProblem(`Question ${missing + 1} has no answer yet.`);
-    fields[missing].row.scrollIntoView({ block: "center" });
-  } else if (send({ type: "answer", questionnaire: shown.name, answers })) {
+  const problems = fields.map(({ optional }, index) => (!optional && answers[index] === null ? "It has no answer yet." : tooLong(answers[index]?.text ?? "")));
+  const wrong = problems.findIndex((problem) => problem);
+  fields.forEach(({ row }, index) => row.classList.toggle("missing", index === wrong));
+  if (wrong >= 0) {
+    showProblem(`Question ${wrong + 1}: ${problems[wrong]}`);
+    fields[wrong].row.scrollIntoView({ block: "center" });
+  } else if (send({ type: "answer", questionnaire: shown.name, answers, finished })) {
     showProblem("");
   } else {
     showProblem("There is no connection at the moment; please try again in a while.");
@@ -168,6 +186,11 @@ function putOff() {
 byId("survey-later").addEventListener("click", () => card.close());
 card.addEventListener("close", putOff);
 byId("survey-open").addEventListener("click", () => {
-  const [first] = questionnaires.filter(({ name }) => !answered.has(name));
-  if (first) show(first);
+  const [first] = unanswered();
+  if (!first) return;
+  if (asksEarly(first)) {
+    if (!window.confirm("The mission is not over yet. Have you finished, and want to answer the questions now?")) return;
+    finished = true;
+  }
+  show(first);
 });

@@ -1,6 +1,6 @@
 // The conversation: what was said, what the robot is about, and what a person types.
 
-import { byId, capitalised, element, narrow, toast } from "./dom.js";
+import { byId, capitalised, element, narrow, toast, tooLong } from "./dom.js";
 import { floor } from "./floor.js";
 import { send } from "./socket.js";
 import { sendHeard } from "./voice.js";
@@ -221,6 +221,11 @@ function remember(text) {
 }
 
 export function say(text) {
+  const problem = tooLong(text);
+  if (problem) {
+    toast(`That is too long for the robot. ${problem}`);
+    return false;
+  }
   if (send({ type: "say", text })) {
     remember(text);
     return true;
@@ -241,7 +246,8 @@ function recall(step) {
 byId("composer").addEventListener("submit", (event) => {
   event.preventDefault();
   const text = input.value.trim();
-  if (sendHeard(input.value)) draft = "";
+  if (tooLong(text)) say(text);
+  else if (sendHeard(input.value)) draft = "";
   else if (text && say(text)) {
     input.value = "";
     draft = "";

@@ -28,6 +28,7 @@ pub struct Tab {
     socket: Socket,
     session: String,
     count: u64,
+    problems: Vec<String>,
 }
 
 impl Browser {
@@ -55,6 +56,15 @@ impl Browser {
     /// When there is none, or it does not start.
     pub fn start_trusting() -> anyhow::Result<Self> {
         Self::start_with(&["--ignore-certificate-errors"])
+    }
+
+    /// The same, for which these names lead to this machine.
+    ///
+    /// # Errors
+    /// When there is none, or it does not start.
+    pub fn start_with_names(names: &[&str]) -> anyhow::Result<Self> {
+        let rules: Vec<_> = names.iter().map(|name| format!("MAP {name} 127.0.0.1")).collect();
+        Self::start_with(&[&format!("--host-resolver-rules={}", rules.join(","))])
     }
 
     fn start_with(more: &[&str]) -> anyhow::Result<Self> {
@@ -95,14 +105,16 @@ impl Browser {
     /// When the browser does not answer.
     pub fn open(&self, address: &str, width: u32, height: u32) -> anyhow::Result<Tab> {
         let socket = Socket::open(&self.socket)?;
-        let mut tab = Tab { socket, session: String::new(), count: 0 };
+        let mut tab = Tab { socket, session: String::new(), count: 0, problems: Vec::new() };
         let target = tab.call("Target.createTarget", &json!({ "url": "about:blank" }))?;
         let attach = json!({ "targetId": target["targetId"], "flatten": true });
         let session = tab.call("Target.attachToTarget", &attach)?;
         session["sessionId"].as_str().context("a session")?.clone_into(&mut tab.session);
         let size = json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 600 });
         tab.call("Emulation.setDeviceMetricsOverride", &size)?;
-        tab.call("Page.enable", &json!({}))?;
+        for domain in ["Page.enable", "Log.enable", "Runtime.enable"] {
+            tab.call(domain, &json!({}))?;
+        }
         tab.call("Page.navigate", &json!({ "url": address }))?;
         Ok(tab)
     }
@@ -133,11 +145,18 @@ impl Tab {
                 continue;
             };
             let answer: Value = serde_json::from_str(&text)?;
+            self.problems.extend(problem(&answer));
             if answer["id"] == json!(self.count) {
                 ensure!(answer["error"].is_null(), "{method}: {}", answer["error"]);
                 return Ok(answer["result"].clone());
             }
         }
+    }
+
+    /// What its console told of errors so far, such as that a policy forbade something.
+    #[must_use]
+    pub fn problems(&self) -> &[String] {
+        &self.problems
     }
 
     /// The value of a JavaScript expression.
@@ -188,6 +207,19 @@ impl Tab {
     pub fn screenshot(&mut self) -> anyhow::Result<String> {
         let answer = self.call("Page.captureScreenshot", &json!({ "format": "png" }))?;
         Ok(answer["data"].as_str().context("a picture")?.to_owned())
+    }
+}
+
+/// What an event of the debugging protocol says is wrong.
+fn problem(event: &Value) -> Option<String> {
+    let parameters = &event["params"];
+    match event["method"].as_str()? {
+        "Log.entryAdded" if parameters["entry"]["level"] == "error" => {
+            let entry = &parameters["entry"];
+            Some(format!("{} {}", entry["text"].as_str()?, entry["url"].as_str().unwrap_or_default()))
+        }
+        "Runtime.exceptionThrown" => Some(parameters["exceptionDetails"].to_string()),
+        _ => None,
     }
 }
 

@@ -91,12 +91,12 @@ impl Pen {
 }
 
 impl Page {
-    /// Opens the page at `authority` (`host:port`).
+    /// Opens the page at `authority`: `host:port`, and behind it `/?token=…`.
     ///
     /// # Errors
     /// When it cannot be reached.
     pub fn open(authority: &str) -> anyhow::Result<Self> {
-        Self::at(&format!("ws://{authority}/ws"))
+        Self::at(authority, None)
     }
 
     /// The same as the page of that key, by which the session knows it again.
@@ -104,7 +104,7 @@ impl Page {
     /// # Errors
     /// When it cannot be reached.
     pub fn open_as(authority: &str, key: u32) -> anyhow::Result<Self> {
-        Self::at(&format!("ws://{authority}/ws?visitor={key}"))
+        Self::at(authority, Some(key))
     }
 
     /// Opens one anew where who served it was killed: as soon as another serves it.
@@ -122,8 +122,10 @@ impl Page {
         }
     }
 
-    fn at(address: &str) -> anyhow::Result<Self> {
-        let socket = Socket::open(address)?;
+    fn at(authority: &str, key: Option<u32>) -> anyhow::Result<Self> {
+        let (host, token) = authority.split_once("/?token=").unwrap_or((authority, ""));
+        let key = key.map(|key| format!("&visitor={key}")).unwrap_or_default();
+        let socket = Socket::open(&format!("ws://{host}/ws?token={token}{key}"))?;
         Ok(Self { socket, chat: Vec::new(), state: Value::Null, aim: Value::Null, frames: 0, heard_samples: 0 })
     }
 

@@ -99,11 +99,10 @@ impl Play {
         Ok(())
     }
 
-    /// The `host:port` of the page.
+    /// The page's address without its scheme: `host:port/?token=…`.
     #[must_use]
     pub fn authority(&self) -> &str {
-        let (_, behind) = self.address.split_once("://").unwrap_or_default();
-        behind.split('/').next().unwrap_or_default()
+        self.address.split_once("://").unwrap_or_default().1
     }
 
     /// Waits for a line of its output that contains `part`.

@@ -14,7 +14,7 @@ fn a_page_by_https_may_hear_and_is_talked_to_like_any_other() {
     assert!(play.address.starts_with("https://") && play.address.contains("token="), "{}", play.address);
     assert!(!play.address.contains("0.0.0.0"), "nobody can go there: {}", play.address);
     // Whatever stands between this machine and others, it reaches itself.
-    let (host, _) = play.authority().rsplit_once(':').unwrap();
+    let (host, _) = play.authority().split_once(':').unwrap();
     let mut tab = browser.open(&play.address.replace(host, "127.0.0.1"), 1280, 720).unwrap();
     tab.wait_until("document.querySelector('#chat-input') !== null && window.cohabit?.frames > 0").unwrap();
     assert_eq!(tab.evaluate("isSecureContext && navigator.mediaDevices !== undefined").unwrap(), true);

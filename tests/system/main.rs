@@ -16,6 +16,7 @@ mod interpreter;
 mod lock_step;
 mod mcap;
 mod missions;
+mod origins;
 mod privacy;
 mod recording;
 mod restarts;

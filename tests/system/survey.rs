@@ -3,7 +3,7 @@
 use std::fs;
 
 use cohabit_record::Log;
-use cohabit_tests::{Page, Play, Scratch, run};
+use cohabit_tests::{Browser, Page, Play, Scratch, run};
 use rustix::process::Signal;
 use serde_json::{Value, json};
 
@@ -22,8 +22,10 @@ words = true
 optional = true
 "#;
 
+/// What comes of the answers of a person who says that they have finished.
 fn answer(page: &mut Page, questionnaire: &str, answers: &Value) -> Value {
-    page.send(&json!({ "type": "answer", "questionnaire": questionnaire, "answers": answers })).unwrap();
+    let finished = json!({ "type": "answer", "questionnaire": questionnaire, "answers": answers, "finished": true });
+    page.send(&finished).unwrap();
     page.wait("what comes of the answers", |_, message| message["type"] == "answered").unwrap()["problem"].clone()
 }
 
@@ -49,12 +51,22 @@ fn questionnaires_are_answered_recorded_and_scored() {
     let you = again.wait("who it is", |_, message| message["type"] == "you").unwrap();
     assert_eq!((&you["visitor"], &you["answered"]), (&json!(1), &json!(["sus"])));
     assert_eq!(answer(&mut again, "after", &json!([scale(2), { "text": " Less talk. " }])), Value::Null);
+    // Once each: the first answers count.
+    let already = "You have answered this already; your first answers count.";
+    assert_eq!(answer(&mut again, "after", &json!([scale(1), null])), already);
+    assert_eq!(answer(&mut again, "sus", &json!(sus)), already);
+    // The longest text is kept whole in any script.
+    let mut other = Page::open_as(play.authority(), 8).unwrap();
+    let long = |letters: usize| json!([scale(1), { "text": "я".repeat(letters) }]);
+    assert_eq!(answer(&mut other, "after", &long(2001)), "Question 2: It has 2001 characters; 2000 at most, please.");
+    assert_eq!(answer(&mut other, "after", &long(2000)), Value::Null);
     let play = play.end().unwrap();
 
     let log = Log::open(&play.log).unwrap();
     assert_eq!(log.problems(), [] as [&str; 0]);
     assert_eq!(log.session.settings["questionnaires"], "sus after");
-    assert_eq!(log.answers.len(), 12);
+    assert_eq!(log.answers.len(), 14);
+    assert_eq!(log.answers[13].text, "я".repeat(2000));
     let (log, tables) = (play.log.to_str().unwrap(), scratch.path("tables"));
     let done = run(COHABIT, &["export", log, "--out", &tables, "--summary"]).unwrap();
     assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
@@ -62,8 +74,49 @@ fn questionnaires_are_answered_recorded_and_scored() {
     // By Brooke: 2.5 times the sum of what is above 1, or below 5 where it is reversed.
     assert!(printed.contains("sus score") && printed.contains("67.5"), "{printed}");
     let rows = fs::read_to_string(format!("{tables}/questionnaires.csv")).unwrap();
-    assert_eq!(rows.lines().count(), 13, "{rows}");
+    assert_eq!(rows.lines().count(), 15, "{rows}");
     assert!(rows.contains("its manners") && rows.contains("Less talk."), "{rows}");
+}
+
+#[test]
+fn what_is_asked_afterwards_is_not_answered_during_the_mission() {
+    let play = Play::start(COHABIT, &["cold_soda", "--seed", "5", "--questionnaire", "sus"]).unwrap();
+    let sus = json!([3, 3, 3, 3, 3, 3, 3, 3, 3, 3].map(|value| json!({ "value": value })));
+    let mut early = Page::open_as(play.authority(), 7).unwrap();
+    early.wait("the mission", |page, _| page.state["goals"].as_array().is_some_and(|goals| !goals.is_empty())).unwrap();
+    early.send(&json!({ "type": "answer", "questionnaire": "sus", "answers": sus })).unwrap();
+    let told = early.wait("what comes of it", |_, message| message["type"] == "answered").unwrap();
+    assert_eq!(told["problem"], "The mission is not over yet: this is asked afterwards.");
+    // Who has done what they could says so.
+    assert_eq!(answer(&mut early, "sus", &sus), Value::Null);
+    let play = play.end().unwrap();
+    assert_eq!(Log::open(&play.log).unwrap().answers.len(), 10);
+}
+
+#[test]
+#[cfg_attr(not(browser), ignore = "needs a browser")]
+fn a_person_who_has_finished_says_so_on_the_page() {
+    let browser = Browser::start().unwrap();
+    let scratch = Scratch::new("survey-page");
+    let file = scratch.write("after.toml", AFTER);
+    let play = Play::start(COHABIT, &["cold_soda", "--seed", "5", "--questionnaire", &file]).unwrap();
+    let mut tab = browser.open(&play.address, 1280, 720).unwrap();
+    let button = "document.querySelector('#survey-open')";
+    tab.wait_until(&format!("window.cohabit?.frames > 0 && {button}.textContent === 'I have finished'")).unwrap();
+    tab.evaluate(&format!("window.confirm = () => true; {button}.click()")).unwrap();
+    let fill = "document.querySelector('#survey input[type=radio]').checked = true; \
+        document.querySelector('#survey textarea').value = 'я'.repeat(2001)";
+    tab.evaluate(fill).unwrap();
+    tab.evaluate("document.querySelector('#survey-send').click()").unwrap();
+    tab.wait_until("document.querySelector('#survey-problem').textContent.includes('2001 characters; 2000 at most')")
+        .unwrap();
+    tab.evaluate("document.querySelector('#survey textarea').value = 'я'.repeat(2000)").unwrap();
+    tab.evaluate("document.querySelector('#survey-send').click()").unwrap();
+    tab.wait_until(&format!("{button}.hidden && !document.querySelector('#survey').open")).unwrap();
+    assert_eq!(tab.problems(), [] as [&str; 0]);
+    drop((tab, browser));
+    let play = play.end().unwrap();
+    assert_eq!(Log::open(&play.log).unwrap().answers[1].text.chars().count(), 2000);
 }
 
 #[test]

@@ -3,8 +3,8 @@
 use std::{sync::Arc, time::Duration};
 
 use cohabit_bus::{
-    Inbox, Sample, Topic, Transport, Wake, give_way,
-    message::{FrameView, Plane},
+    Inbox, Pauses, Sample, Topic, Transport, Wake, give_way,
+    message::{FrameView, Malformed, Plane},
 };
 use jpeg_encoder::{ColorType, Encoder, EncodingError};
 
@@ -31,9 +31,11 @@ pub struct Shown {
 
 /// Relays frames to the pages that look through the view with this index until `over`. Subscribes, and so has frames
 /// rendered, only while there are any; of the first view at the start too, until one was had. `shown` hears of each.
+/// Whoever sends frames that are none is not heard for a pause.
 pub fn relay(
     bus: &dyn Transport,
     (index, view): (u8, &Arc<View>),
+    pauses: Pauses,
     shown: &dyn Fn(Shown) -> Result<(), DialogError>,
     over: &dyn Fn() -> bool,
 ) -> Result<(), DialogError> {
@@ -45,7 +47,7 @@ pub fn relay(
             continue;
         }
         let mut listener = bus.listener(Wake::Frames(view.camera))?;
-        let mut frames = Inbox::new(bus, Topic::Frames(view.camera))?;
+        let mut frames = Inbox::with_pauses(bus, Topic::Frames(view.camera), pauses)?;
         while !over() && (view.is_wanted() || !had_one) {
             listener.wait(Duration::from_millis(50))?;
             let mut newest = None;
@@ -53,7 +55,11 @@ pub fn relay(
                 newest = Some(sample);
             }
             let Some(sample) = newest else { continue };
-            shown(show(&sample, (index, view))?)?;
+            match show(&sample, (index, view)) {
+                Ok(frame) => shown(frame)?,
+                // Its memory was spoilt after it was looked at.
+                Err(error) => tracing::warn!("a frame was passed over: {error}"),
+            }
             had_one = true;
         }
         if index > 0 {
@@ -63,7 +69,7 @@ pub fn relay(
     Ok(())
 }
 
-fn show(sample: &Sample, (index, view): (u8, &Arc<View>)) -> Result<Shown, DialogError> {
+fn show(sample: &Sample, (index, view): (u8, &Arc<View>)) -> Result<Shown, Malformed> {
     let frame = FrameView::new(sample.payload())?;
     let tick = sample.envelope().tick;
     let shown = Shown { command: frame.header.command, tick, sent_nanos: sample.envelope().sent_nanos };
@@ -83,4 +89,64 @@ fn encode(index: u8, tick: u64, [width, height]: [u32; 2], rgba: &[u8]) -> Resul
     let side = |pixels: u32| u16::try_from(pixels).unwrap_or(u16::MAX);
     Encoder::new(&mut bytes, QUALITY).encode(rgba, side(width), side(height), ColorType::Rgba)?;
     Ok(bytes)
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use std::{
+        sync::atomic::{AtomicBool, Ordering},
+        thread,
+        time::Instant,
+    };
+
+    use cohabit_bus::{CameraId, Local, message::FrameLayout};
+
+    use super::*;
+
+    /// Ends the relay also when a check fails.
+    struct Over<'a>(&'a AtomicBool);
+
+    impl Drop for Over<'_> {
+        fn drop(&mut self) {
+            self.0.store(true, Ordering::Relaxed);
+        }
+    }
+
+    #[test]
+    fn frames_are_shown_again_after_some_were_spoilt() {
+        let (bus, over) = (Local::new(1), AtomicBool::new(false));
+        let view = Arc::new(View::new(CameraId::Spectator(0)));
+        let pauses = Pauses { first: Duration::from_millis(5), longest: Duration::from_millis(40) };
+        let layout = FrameLayout::new(16, 16, 1, &[Plane::Color], 0);
+        thread::scope(|scope| {
+            let relayed =
+                scope.spawn(|| relay(&bus, (0, &view), pauses, &|_| Ok(()), &|| over.load(Ordering::Relaxed)));
+            let ending = Over(&over);
+            let (_frames, _viewing) = view.join();
+            let mut publisher = bus.publisher(Topic::Frames(view.camera)).unwrap();
+            let deadline = Instant::now() + Duration::from_secs(60);
+            let mut send = |tick: u64, is_spoilt: bool| {
+                assert!(Instant::now() < deadline, "nothing is shown any more");
+                let write = &mut |bytes: &mut [u8]| {
+                    bytes.fill(0);
+                    layout.split_mut(bytes);
+                    if is_spoilt {
+                        bytes.fill(0xff);
+                    }
+                };
+                publisher.send(tick, layout.bytes(), write).unwrap();
+                thread::sleep(Duration::from_millis(1));
+            };
+            let shown = || view.newest().map(|frame| frame[8]);
+            for tick in [1, 2, 3] {
+                while shown() != Some(tick) {
+                    send(u64::from(tick), false);
+                }
+                (0..100).for_each(|_| send(0, true));
+            }
+            drop(ending);
+            relayed.join().unwrap().unwrap();
+        });
+    }
 }

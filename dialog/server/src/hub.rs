@@ -1,18 +1,19 @@
-//! What all open pages share: the chat so far, the newest state, the views, and how many there are.
+//! What all open pages share: the chat so far, the newest state, the views, and the seats.
 
 use std::{
     collections::VecDeque,
     sync::{
         Arc, Mutex, MutexGuard, PoisonError,
-        atomic::{AtomicBool, AtomicUsize, Ordering},
+        atomic::{AtomicBool, Ordering},
     },
+    time::{Duration, Instant},
 };
 
 use cohabit_cdf::ObjectId;
 use serde_json::{Value, json};
-use tokio::sync::broadcast;
+use tokio::sync::{Notify, broadcast};
 
-use crate::{page::Line, view::View};
+use crate::{limits::ServerLimits, page::Line, view::View};
 
 /// Lines of chat kept for a page that opens or reconnects.
 pub const LINES_KEPT: usize = 500;
@@ -34,17 +35,70 @@ pub struct Hub {
     sounds: broadcast::Sender<Arc<Vec<u8>>>,
     /// The cameras that pages can look through, the usual one first.
     pub views: Vec<Arc<View>>,
-    pages: AtomicUsize,
+    seats: Mutex<Seats>,
     first_frame_shown: AtomicBool,
     on_first_frame: Box<dyn Fn() + Send + Sync>,
 }
 
-/// Counts a page as open while it lives.
-pub struct Visit(Arc<Hub>);
+/// The seats of open pages.
+#[derive(Default)]
+struct Seats {
+    count: u64,
+    /// The oldest first.
+    taken: VecDeque<Seat>,
+}
+
+struct Seat {
+    number: u64,
+    since: Instant,
+    has_spoken: bool,
+    /// Told when it is given to somebody else.
+    given_away: Arc<Notify>,
+}
+
+impl Seats {
+    /// A seat of `most`, if there is one. Where all are taken, it is that of the page that came first of those that have
+    /// not said a word for so long as `first_word`.
+    fn take(&mut self, most: usize, first_word: Duration) -> Option<(u64, Arc<Notify>)> {
+        if self.taken.len() >= most {
+            let gives_way = |seat: &Seat| !seat.has_spoken && seat.since.elapsed() >= first_word;
+            let at = self.taken.iter().position(gives_way)?;
+            self.taken.remove(at)?.given_away.notify_one();
+        }
+        self.count += 1;
+        let given_away = Arc::new(Notify::new());
+        let seat = Seat { number: self.count, since: Instant::now(), has_spoken: false, given_away };
+        let taken = (seat.number, Arc::clone(&seat.given_away));
+        self.taken.push_back(seat);
+        Some(taken)
+    }
+}
+
+/// A page's seat while it lives.
+pub struct Visit {
+    hub: Arc<Hub>,
+    number: u64,
+    given_away: Arc<Notify>,
+}
+
+impl Visit {
+    /// The page has said something: its seat is its own as long as it is there.
+    pub fn note_word(&self) {
+        let mut seats = lock(&self.hub.seats);
+        if let Some(seat) = seats.taken.iter_mut().find(|seat| seat.number == self.number) {
+            seat.has_spoken = true;
+        }
+    }
+
+    /// Waits until the seat is given to somebody else.
+    pub async fn given_away(&self) {
+        self.given_away.notified().await;
+    }
+}
 
 impl Drop for Visit {
     fn drop(&mut self) {
-        self.0.pages.fetch_sub(1, Ordering::Relaxed);
+        lock(&self.hub.seats).taken.retain(|seat| seat.number != self.number);
     }
 }
 
@@ -67,19 +121,19 @@ impl Hub {
             messages: broadcast::Sender::new(MESSAGES_KEPT),
             sounds: broadcast::Sender::new(SOUNDS_KEPT),
             views: views.into_iter().map(Arc::new).collect(),
-            pages: AtomicUsize::new(0),
+            seats: Mutex::default(),
             first_frame_shown: AtomicBool::new(false),
             on_first_frame,
         }
     }
 
     /// Takes a page in, if there is room: what it is to be told first, and what comes after.
-    pub fn join(self: &Arc<Self>) -> Option<(Vec<String>, broadcast::Receiver<Arc<str>>, Visit)> {
-        if self.pages.fetch_add(1, Ordering::Relaxed) >= crate::limits::MOST_PAGES {
-            self.pages.fetch_sub(1, Ordering::Relaxed);
-            return None;
-        }
-        let visit = Visit(Arc::clone(self));
+    pub fn join(
+        self: &Arc<Self>,
+        limits: &ServerLimits,
+    ) -> Option<(Vec<String>, broadcast::Receiver<Arc<str>>, Visit)> {
+        let (number, given_away) = lock(&self.seats).take(limits.most_pages, limits.first_word)?;
+        let visit = Visit { hub: Arc::clone(self), number, given_away };
         // The lines stay locked until the page listens, so that none is missed or told twice.
         let lines = lock(&self.lines);
         let receiver = self.messages.subscribe();
@@ -156,5 +210,49 @@ impl Hub {
         if !self.first_frame_shown.swap(true, Ordering::Relaxed) {
             (self.on_first_frame)();
         }
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    const NEVER: Duration = Duration::from_secs(3600);
+
+    fn hub() -> Arc<Hub> {
+        Arc::new(Hub::new(json!({}), Vec::new(), Box::new(|| ())))
+    }
+
+    fn join(hub: &Arc<Hub>, first_word: Duration) -> Option<Visit> {
+        let limits = ServerLimits { most_pages: 3, first_word, ..ServerLimits::default() };
+        hub.join(&limits).map(|(_, _, visit)| visit)
+    }
+
+    #[test]
+    fn a_seat_is_free_when_its_page_is_gone() {
+        let hub = hub();
+        let mut visits: Vec<_> = (0..3).map(|_| join(&hub, NEVER).unwrap()).collect();
+        assert!(join(&hub, NEVER).is_none());
+        visits.pop();
+        assert!(join(&hub, NEVER).is_some());
+    }
+
+    #[test]
+    fn a_page_that_never_said_a_word_gives_way_and_no_other_does() {
+        let hub = hub();
+        let visits: Vec<_> = (0..3).map(|_| join(&hub, Duration::ZERO).unwrap()).collect();
+        visits[0].note_word();
+        visits[2].note_word();
+        let newcomer = join(&hub, Duration::ZERO).unwrap();
+        let seats = |hub: &Hub| lock(&hub.seats).taken.iter().map(|seat| seat.number).collect::<Vec<_>>();
+        assert_eq!(seats(&hub), [1, 3, 4]);
+        let runtime = tokio::runtime::Builder::new_current_thread().build().unwrap();
+        runtime.block_on(visits[1].given_away());
+        newcomer.note_word();
+        assert!(join(&hub, Duration::ZERO).is_none());
+        // Who gave way frees nobody's seat when it goes.
+        drop(visits);
+        assert_eq!(seats(&hub), [4]);
     }
 }

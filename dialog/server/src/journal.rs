@@ -22,8 +22,8 @@ use crate::{conversation, hub::LINES_KEPT, page::Line, recorded};
 
 /// The file is written anew when it has grown by so much.
 const MOST_GROWTH: u64 = 4 << 20;
-/// The most pages that are told apart.
-const MOST_VISITORS: usize = 1000;
+/// The most visitors that are known again.
+pub const MOST_VISITORS: usize = 1000;
 /// The most publishers' runs of which is known how far they were followed.
 const MOST_RUNS: usize = 256;
 
@@ -33,7 +33,7 @@ pub struct Place {
     /// The address.
     pub address: SocketAddr,
     /// The word that lets a page in.
-    pub token: Option<String>,
+    pub token: String,
 }
 
 /// What follows from one message.
@@ -61,8 +61,11 @@ pub struct Past {
     pub conversations: BTreeMap<u32, conversation::Memory>,
     /// What each robot knows, as far as it saw it.
     pub lessons: BTreeMap<u32, Lessons>,
-    /// The keys of the pages, in the order in which they came.
-    pub visitors: Vec<u64>,
+    /// The keys of the pages by the numbers of their visitors.
+    pub visitors: BTreeMap<u32, u64>,
+    /// The number of the newest visitor.
+    #[serde(default)]
+    newest_visitor: u32,
     /// The questionnaires that each visitor has answered.
     #[serde(default)]
     pub answered: BTreeMap<u32, BTreeSet<String>>,
@@ -82,8 +85,10 @@ enum Entry {
     Deed(Deed),
     /// What a body's robot learnt.
     Lessons(u32, Lessons),
-    /// A page that was not there before.
-    Visitor(u64),
+    /// A visitor who was not there before, and the key of the page.
+    Visitor(u32, u64),
+    /// A visitor who is not known again.
+    Forgotten(u32),
     /// A visitor has answered a questionnaire.
     Answered(u32, String),
     /// The deed before was told.
@@ -104,7 +109,11 @@ impl Past {
             Entry::Past(past) => *self = past,
             Entry::Place(place) => self.place = Some(place),
             Entry::Lessons(body, lessons) => self.lessons.entry(body).or_default().add(lessons),
-            Entry::Visitor(key) => self.visitors.push(key),
+            Entry::Visitor(number, key) => {
+                self.visitors.insert(number, key);
+                self.newest_visitor = number;
+            }
+            Entry::Forgotten(number) => drop(self.visitors.remove(&number)),
             Entry::Answered(visitor, questionnaire) => {
                 self.answered.entry(visitor).or_default().insert(questionnaire);
             }
@@ -195,18 +204,22 @@ impl Journal {
         self.write(Entry::Lessons(body, lessons));
     }
 
-    /// The number of the page of this key: pages are numbered as they come, from 1, and keep their numbers. 0 is that of
-    /// all beyond the most that are told apart.
-    pub fn visitor(&mut self, key: u64) -> u32 {
-        let visitors = &self.past.visitors;
-        let at = visitors.iter().position(|known| *known == key).unwrap_or(visitors.len());
-        if at >= MOST_VISITORS {
-            return 0;
+    /// The number of the visitor whose page has this key: visitors are numbered as they come, from 1, and keep their
+    /// numbers. Of more than can be known again, the oldest is forgotten who has answered nothing and is not there now;
+    /// nobody else gets that number. `None`, if all are there or have answered something.
+    pub fn visitor(&mut self, key: u64, is_there: impl Fn(u32) -> bool) -> Option<u32> {
+        let Past { visitors, answered, newest_visitor, .. } = &self.past;
+        if let Some((number, _)) = visitors.iter().find(|(_, known)| **known == key) {
+            return Some(*number);
         }
-        if at == visitors.len() {
-            self.write(Entry::Visitor(key));
+        let number = newest_visitor + 1;
+        if visitors.len() >= MOST_VISITORS {
+            let may_go = |number: &u32| !answered.contains_key(number) && !is_there(*number);
+            let gone = visitors.keys().copied().find(may_go)?;
+            self.write(Entry::Forgotten(gone));
         }
-        at as u32 + 1
+        self.write(Entry::Visitor(number, key));
+        Some(number)
     }
 
     /// Writes down that a visitor has answered a questionnaire.
@@ -306,7 +319,7 @@ mod tests {
     fn what_was_written_is_there_again_and_what_was_not_told_is_known() {
         let file = Scratch::new("again");
         let mut journal = file.open();
-        let place = Place { address: "127.0.0.1:80".parse().unwrap(), token: Some("secret".to_owned()) };
+        let place = Place { address: "127.0.0.1:80".parse().unwrap(), token: "secret".to_owned() };
         journal.serve_at(place.clone());
         journal.will_tell(deed(3, "one"));
         journal.told();
@@ -336,6 +349,29 @@ mod tests {
             assert_eq!(texts(&file.open()).len(), whole.saturating_sub(1), "{length}");
         }
         assert_eq!(lines, 4);
+    }
+
+    #[test]
+    fn a_visitors_number_is_nobody_elses() {
+        let file = Scratch::new("visitors");
+        let mut journal = file.open();
+        let most = MOST_VISITORS as u64;
+        let nobody = |_| false;
+        for key in 0..most {
+            assert_eq!(u64::from(journal.visitor(key, nobody).unwrap()), key + 1);
+        }
+        journal.note_answered(1, "sus");
+        let is_there = |number| number == 2;
+        let newcomer = journal.visitor(most, is_there);
+        assert_eq!(newcomer, Some(MOST_VISITORS as u32 + 1));
+        drop(journal);
+        let mut journal = file.open();
+        assert_eq!(journal.visitor(0, nobody), Some(1), "who has answered is known again");
+        assert_eq!(journal.visitor(1, nobody), Some(2), "so is who was there");
+        assert_eq!(journal.visitor(most, nobody), newcomer);
+        assert_eq!(journal.visitor(2, is_there), Some(MOST_VISITORS as u32 + 2), "the third was forgotten");
+        assert_eq!(journal.past().visitors.len(), MOST_VISITORS);
+        assert_eq!(journal.visitor(most + 1, |_| true), None);
     }
 
     #[test]

@@ -4,9 +4,11 @@
 //! and recorded, by all. It never knows the world's insides.
 
 mod affordances;
+mod connections;
 mod conversation;
 mod driving;
 mod frames;
+mod hosts;
 mod hub;
 mod interpreter;
 mod journal;
@@ -14,13 +16,16 @@ pub mod known;
 mod latency;
 mod limits;
 mod page;
+mod presence;
 mod questionnaire;
 mod recorded;
 mod robots;
+mod same_user;
 mod screening;
 mod spoken;
 mod survey;
 mod talk;
+mod text;
 mod tls;
 mod token;
 mod view;
@@ -41,7 +46,7 @@ use std::{
     time::Duration,
 };
 
-use cohabit_bus::{BusError, Transport, message::CameraRecord};
+use cohabit_bus::{BusError, Pauses, Transport, message::CameraRecord};
 use cohabit_cdf::{Catalog, Layout, Mission};
 use serde_json::{Value, json};
 
@@ -49,6 +54,7 @@ pub use cohabit_language::{Asking, Interpreter, Knows, Language};
 pub use cohabit_speech::VoiceSettings;
 pub use conversation::{Asked, Conversation, Reaction, TurnEnd};
 pub use driving::{Drivable, NotDrivable};
+pub use hosts::{HostName, NoHost};
 pub use interpreter::{Endpoint, EndpointError};
 pub use journal::begin_after;
 pub use known::Knowledge;
@@ -62,6 +68,7 @@ use crate::{
     driving::Drivers,
     hub::Hub,
     journal::{Journal, Place},
+    limits::ServerLimits,
     robots::{BodyNames, RobotName, Robots},
     survey::Survey,
     talk::{Ears, Pages, Talk},
@@ -76,6 +83,8 @@ pub struct DialogConfig {
     pub session: String,
     /// Where the page is served; port 0 takes any that is free.
     pub listen: SocketAddr,
+    /// The hosts that the page is served as, besides those of this machine.
+    pub hosts: Vec<HostName>,
     /// What the page is served with by HTTPS, if it is to be.
     pub identity: Option<Identity>,
     /// Where what is said is written down, for the service that takes a dead one's place; nowhere, if absent.
@@ -148,6 +157,7 @@ pub fn serve(
     let robots: Vec<RobotName> = robots::named(&config.robots, &names);
     let mut hello = page::hello(&config.session, &mission, &layout, &catalog, &views, drivers.bodies(), &robots);
     hello["questionnaires"] = json!(config.questionnaires);
+    hello["longest_text"] = json!(limits::LONGEST_TEXT_CHARS);
     hello["voice"] = config.voice.json();
     let views = views.into_iter().map(|view| View::new(view.camera)).collect();
     let hub = Arc::new(Hub::new(hello, views, config.on_first_frame));
@@ -184,15 +194,18 @@ pub fn serve(
         for view in (0..=u8::MAX).zip(&hub.views) {
             let (bus, talk, over, ended) = (&*bus, &talk, &over, &ended);
             let shown = move |shown| talk.note_frame(shown);
-            workers.push(scope.spawn(move || until_ended(ended, || frames::relay(bus, view, &shown, over))));
+            workers.push(
+                scope.spawn(move || until_ended(ended, || frames::relay(bus, view, Pauses::default(), &shown, over))),
+            );
         }
-        ready(&token::page_address(address, config.identity.is_some(), token.as_deref()));
-        let (hub, token) = (Arc::clone(&hub), token.map(Arc::from));
+        ready(&token::page_address(address, config.identity.is_some(), &token));
+        let (hub, limits) = (Arc::clone(&hub), ServerLimits::default());
         let (survey, voice) = (Arc::clone(&survey), Arc::clone(&voice));
         let host = Host::Live(Live { talk: Arc::clone(&talk), drivers, survey, voice });
+        let (token, identity, hosts) = (token.into(), config.identity, config.hosts);
+        let service = Service { hub, host, token, admits_own_user: true, identity, hosts, limits };
         let ending = Ending(&ended);
-        let served = web::serve(listener, Service { hub, host, token, identity: config.identity }, &over)
-            .map_err(DialogError::Serve);
+        let served = web::serve(listener, service, &over).map_err(DialogError::Serve);
         drop(ending);
         workers
             .into_iter()
@@ -211,7 +224,7 @@ fn listen(address: SocketAddr, before: Option<&Place>) -> Result<(TcpListener, P
         }
     }
     let listener = TcpListener::bind(address).map_err(|source| DialogError::Listen { address, source })?;
-    let token = token::for_address(address).map_err(DialogError::Serve)?;
+    let token = token::fresh().map_err(DialogError::Serve)?;
     let address = listener.local_addr().map_err(DialogError::Serve)?;
     Ok((listener, Place { address, token }))
 }

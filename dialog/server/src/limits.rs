@@ -1,13 +1,12 @@
-//! What one page may send.
+//! What one page may send, and how long and how often anybody may keep a place of the server.
 
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
-/// The longest sentence taken, in bytes.
-pub const LONGEST_TEXT: usize = 2000;
-/// The longest message read from a page at all, in bytes.
-pub const LONGEST_MESSAGE: usize = 64 << 10;
-/// Pages open at once.
-pub const MOST_PAGES: usize = 16;
+pub use cohabit_bus::message::LONGEST_TEXT_CHARS;
+
+/// The longest message read from a page at all, in bytes: a questionnaire of a hundred questions, each answered by the
+/// longest text in the script that takes most bytes.
+pub const LONGEST_MESSAGE: usize = 1 << 20;
 /// Messages of any kind a second: all that are looked at.
 const ALL_PER_SECOND: f64 = 40.0;
 /// Held keys a second: a page tells them again nine times a second, and at every change.
@@ -17,6 +16,45 @@ const SOUNDS_PER_SECOND: f64 = 120.0;
 /// All other messages a second.
 const OTHERS_PER_SECOND: f64 = 10.0;
 
+/// How long anybody may keep a place of the page's server, and how many places there are. Tests take shorter times.
+#[derive(Clone, Copy, Debug)]
+pub struct ServerLimits {
+    /// The longest that a client may take to send the head of a request, from the moment it connected or was last
+    /// answered. A browser sends it in one packet; Apache and nginx allow 20 to 60 s.
+    pub head: Duration,
+    /// The longest that a client may take to agree on keys: four packets.
+    pub handshake: Duration,
+    /// The longest that a client may take nothing of what is sent to it. A page that is alive takes a state ten times a
+    /// second.
+    pub send: Duration,
+    /// How often a page is asked whether it is still there (a ping, which browsers answer by themselves).
+    pub ping_every: Duration,
+    /// A page that says nothing for so long, though it was asked, is gone: five pings, so that a short loss of the
+    /// network does not end a visit.
+    pub silence: Duration,
+    /// A page that has not said a word so long after it came may have to give way where all places are taken. A browser
+    /// says that it has shown a picture within a second.
+    pub first_word: Duration,
+    /// Connections at once that are no open page yet: 16 pages at the six connections that browsers open, and some more.
+    pub most_connections: usize,
+    /// Pages open at once: what one machine can encode pictures for.
+    pub most_pages: usize,
+}
+
+impl Default for ServerLimits {
+    fn default() -> Self {
+        Self {
+            head: Duration::from_secs(10),
+            handshake: Duration::from_secs(10),
+            send: Duration::from_secs(15),
+            ping_every: Duration::from_secs(3),
+            silence: Duration::from_secs(15),
+            first_word: Duration::from_secs(10),
+            most_connections: 128,
+            most_pages: 16,
+        }
+    }
+}
 /// How fast one page may send what.
 pub struct Limits {
     /// Anything.
@@ -69,8 +107,6 @@ impl Throttle {
 
 #[cfg(test)]
 mod tests {
-    use std::time::Duration;
-
     use super::*;
 
     #[test]

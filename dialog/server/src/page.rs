@@ -12,7 +12,13 @@ use cohabit_cdf::{
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use crate::{affordances::Affordance, driving::DrivableBody, latency::Moments, robots::RobotName};
+use crate::{
+    affordances::Affordance,
+    driving::DrivableBody,
+    latency::Moments,
+    robots::RobotName,
+    text::{in_lines, in_one_line},
+};
 
 /// Who says a line of chat.
 #[derive(Clone, Copy, Debug, Deserialize, Eq, PartialEq, Serialize)]
@@ -108,7 +114,7 @@ impl Line {
             from,
             kind,
             turn,
-            text: text.into(),
+            text: in_lines(&text.into()),
             body: None,
             visitor: None,
             answers: Vec::new(),
@@ -225,7 +231,7 @@ pub fn hello(
     json!({
         "type": "hello",
         "session": session,
-        "mission": { "title": mission.goal_text, "description": mission.description },
+        "mission": { "title": in_one_line(&mission.goal_text), "description": in_one_line(&mission.description) },
         "map": { "rooms": rooms, "openings": openings, "furniture": layout.furniture_outlines_m(catalog) },
         "views": views,
         "drivable": drivable,
@@ -241,7 +247,7 @@ pub fn state(tick: u64, state: StateView<'_>, driven: &[u32], catalog: &Catalog)
         .map(|goal| {
             let hidden = goal.hidden == 1;
             let text = if hidden { "A goal you have yet to discover" } else { goal.description.as_str() };
-            json!({ "text": text, "met": goal.met == 1, "hidden": hidden })
+            json!({ "text": in_one_line(text), "met": goal.met == 1, "hidden": hidden })
         })
         .collect();
     let notes: Vec<Value> = state
@@ -349,6 +355,7 @@ pub fn marks(camera: CameraId, marks: &[(usize, [f32; 2])]) -> Value {
 
 /// A plan goes on.
 pub fn progress(body: u32, turn: u64, step: u32, steps: usize, says: &str) -> Value {
+    let says = in_one_line(says);
     json!({ "type": "progress", "body": body, "turn": turn, "step": step + 1, "steps": steps, "text": says })
 }
 
@@ -395,6 +402,11 @@ pub fn hearing(state: &str) -> Value {
 /// A page's microphone is not listened to any more.
 pub fn deaf() -> Value {
     json!({ "type": "deaf" })
+}
+
+/// There is no seat for a page.
+pub fn full(most: usize) -> Value {
+    error(&format!("{most} pages are open already; close one and reload."))
 }
 
 /// Something is wrong with what a page sent.

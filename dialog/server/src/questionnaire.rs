@@ -13,6 +13,8 @@ use cohabit_bus::{
 };
 use serde::{Deserialize, Serialize};
 
+use crate::text;
+
 /// Those that ship, by name.
 const BUILT_IN: [(&str, &str); 2] = [
     ("sus", include_str!("../data/questionnaires/sus.toml")),
@@ -160,7 +162,7 @@ impl Questionnaire {
         Self::read(&stem, name, &text)
     }
 
-    fn read(name: &str, file: &str, text: &str) -> Result<Self, QuestionnaireError> {
+    pub(crate) fn read(name: &str, file: &str, text: &str) -> Result<Self, QuestionnaireError> {
         let failed = |reason: String| QuestionnaireError { file: file.to_owned(), reason };
         let written: Written = toml::from_str(text).map_err(|error| failed(error.to_string().trim_end().to_owned()))?;
         written.named(name).map_err(failed)
@@ -269,6 +271,11 @@ impl Questionnaire {
             if given.is_none() && item.optional {
                 continue;
             }
+            if let Some(Given::Text(text)) = given
+                && !text::is_within_limit(text.trim())
+            {
+                return Err(NotAnswered(format!("Question {number}: {}", text::too_long(text.trim()))));
+            }
             let answer = given.as_ref().and_then(|given| item.answered(given));
             let mut message = answer.ok_or_else(|| NotAnswered(format!("Question {number} has no answer yet.")))?;
             message.person = person;
@@ -299,7 +306,7 @@ impl Item {
             }
             (Form::Words(_), Given::Text(text)) if !text.trim().is_empty() => {
                 let mut message = AnswerMessage::new(AnswerKind::Words);
-                message.text = Text::new(text.trim());
+                message.text = Text::new(&text::in_lines(text.trim()));
                 Some(message)
             }
             _ => None,
@@ -361,6 +368,11 @@ mod tests {
         assert_eq!(refused(&[Some(Given::Value(0)), Some(Given::Value(3)), None]), "Question 2 has no answer yet.");
         assert_eq!(refused(&[Some(Given::Value(0)), None, None]), "Question 2 has no answer yet.");
         assert_eq!(refused(&[None]), "1 answers to 3 questions.");
+        let long =
+            |letters: usize| [Some(Given::Value(0)), Some(Given::Value(1)), Some(Given::Text("я".repeat(letters)))];
+        assert_eq!(refused(&long(2001)), "Question 3: It has 2001 characters; 2000 at most, please.");
+        let whole = asked.answered(3, &long(2000)).expect("answers");
+        assert_eq!(whole[2].text.as_str().chars().count(), 2000);
         let optional = asked.answered(3, &[Some(Given::Value(0)), Some(Given::Value(1)), None]);
         assert_eq!(optional.map(|messages| messages.len()), Ok(2));
     }

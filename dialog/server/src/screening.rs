@@ -12,7 +12,7 @@ use std::{
 };
 
 use cohabit_bus::{
-    Inbox, Listener, Publisher, Sample, Topic, Transport, Wake,
+    Inbox, Listener, Pauses, Publisher, Sample, Topic, Transport, Wake,
     message::{CameraRecord, Control, ControlMessage, ObjectRecord, StateView, Thing},
 };
 use cohabit_cdf::{Catalog, Layout, Mission};
@@ -21,7 +21,9 @@ use serde_json::{Value, json};
 
 use crate::{
     DialogError, frames,
+    hosts::HostName,
     hub::Hub,
+    limits::ServerLimits,
     page,
     recorded::{self, Told},
     robots, talk, token, until_ended,
@@ -46,6 +48,8 @@ pub struct ScreeningConfig<'a> {
     pub catalog: Arc<Catalog>,
     /// Where the page is served; port 0 takes any that is free.
     pub listen: SocketAddr,
+    /// The hosts that the page is served as, besides those of this machine.
+    pub hosts: Vec<HostName>,
     /// The session's cameras.
     pub cameras: Vec<CameraRecord>,
     /// The bodies that people spoke to.
@@ -98,7 +102,7 @@ pub fn screen(
     let hub = Arc::new(Hub::new(hello, views, Box::new(|| ())));
     let failed = |source| DialogError::Listen { address: config.listen, source };
     let listener = TcpListener::bind(config.listen).map_err(failed)?;
-    let token = token::for_address(config.listen).map_err(DialogError::Serve)?;
+    let token = token::fresh().map_err(DialogError::Serve)?;
     let address = listener.local_addr().map_err(DialogError::Serve)?;
     let screening = Arc::new(Screening::new(bus, Arc::clone(&hub), Arc::clone(catalog), told)?);
     let bell = bus.listener(Wake::State)?;
@@ -108,11 +112,16 @@ pub fn screen(
         let mut workers = vec![scope.spawn(|| until_ended(&ended, || screening.run(bell, &over)))];
         for view in (0..=u8::MAX).zip(&hub.views) {
             let (over, ended) = (&over, &ended);
-            workers.push(scope.spawn(move || until_ended(ended, || frames::relay(bus, view, &|_| Ok(()), over))));
+            workers.push(
+                scope.spawn(move || {
+                    until_ended(ended, || frames::relay(bus, view, Pauses::default(), &|_| Ok(()), over))
+                }),
+            );
         }
-        ready(&token::page_address(address, false, token.as_deref()));
+        ready(&token::page_address(address, false, &token));
         let host = Host::Recorded(Arc::clone(&screening));
-        let service = Service { hub: Arc::clone(&hub), host, token: token.map(Arc::from), identity: None };
+        let (hub, hosts, limits) = (Arc::clone(&hub), config.hosts.clone(), ServerLimits::default());
+        let service = Service { hub, host, token: token.into(), admits_own_user: true, identity: None, hosts, limits };
         let served = web::serve(listener, service, &over).map_err(DialogError::Serve);
         ended.store(true, Ordering::Relaxed);
         workers
@@ -123,7 +132,8 @@ pub fn screen(
 }
 
 impl Screening {
-    fn new(
+    /// What is shown to the pages of `hub`: what `bus` tells, and what was `told` at which tick.
+    pub fn new(
         bus: &dyn Transport,
         hub: Arc<Hub>,
         catalog: Arc<Catalog>,

@@ -32,7 +32,7 @@ use crate::{
     page::{self, Line, LineKind, Speaker},
     robots::{Robot, Robots, Visitor},
     spoken::{Reading, Spoken},
-    survey::Survey,
+    survey::{Register, Survey},
     voice::{Audience, Voice},
 };
 
@@ -72,6 +72,8 @@ struct Inner {
     newest: Option<Sample>,
     /// The body that was spoken to last.
     spoken_to: BodyId,
+    /// The visitors who are there, and how many pages each has open.
+    present: BTreeMap<u32, usize>,
 }
 
 /// What something follows from.
@@ -108,6 +110,7 @@ impl Talk {
             states: Inbox::new(bus, Topic::State)?,
             newest: None,
             spoken_to: BodyId(0),
+            present: BTreeMap::new(),
         };
         inner.tell_again()?;
         Ok(Arc::new(Self { inner: Mutex::new(inner), hub, drivers, catalog, interpreter, voice, names }))
@@ -137,19 +140,24 @@ impl Talk {
         self.inner.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The number of the page of this key.
-    pub fn visitor(&self, key: u64) -> u32 {
-        self.lock().journal.visitor(key)
+    /// A page of this key is open from now on: the number of its visitor, and what they have answered; `None`, if no
+    /// more visitors can be told apart.
+    pub fn enter(&self, key: u64) -> Option<(u32, Vec<String>)> {
+        let Inner { journal, present, .. } = &mut *self.lock();
+        let number = journal.visitor(key, |number| present.contains_key(&number))?;
+        *present.entry(number).or_default() += 1;
+        Some((number, journal.past().answered.get(&number).into_iter().flatten().cloned().collect()))
     }
 
-    /// The questionnaires that a visitor has answered.
-    pub fn answered(&self, visitor: u32) -> Vec<String> {
-        self.lock().journal.past().answered.get(&visitor).into_iter().flatten().cloned().collect()
-    }
-
-    /// Notes that a visitor has answered a questionnaire.
-    pub fn note_answered(&self, visitor: u32, questionnaire: &str) {
-        self.lock().journal.note_answered(visitor, questionnaire);
+    /// A page of that visitor is gone.
+    pub fn leave(&self, number: u32) {
+        let present = &mut self.lock().present;
+        if let Some(pages) = present.get_mut(&number) {
+            *pages -= 1;
+            if *pages == 0 {
+                present.remove(&number);
+            }
+        }
     }
 
     /// Somebody at a page said something, received at `received_nanos`.
@@ -479,6 +487,24 @@ impl Talk {
     }
 }
 
+impl Register for Talk {
+    fn has_answered(&self, visitor: u32, questionnaire: &str) -> bool {
+        let inner = self.lock();
+        inner.journal.past().answered.get(&visitor).is_some_and(|answered| answered.contains(questionnaire))
+    }
+
+    fn note_answered(&self, visitor: u32, questionnaire: &str) {
+        self.lock().journal.note_answered(visitor, questionnaire);
+    }
+
+    fn is_mission_running(&self) -> bool {
+        let inner = self.lock();
+        let state = inner.newest.as_ref().and_then(|sample| StateView::new(sample.payload()).ok());
+        // What has no goals does not end.
+        state.is_none_or(|state| state.header.ending == 0 && state.header.goals > 0)
+    }
+}
+
 impl Audience for Talk {
     fn is_whole(&self, text: &str) -> bool {
         let inner = self.lock();
@@ -706,22 +732,34 @@ pub fn listen(ears: Ears, talk: &Talk, over: &dyn Fn() -> bool) -> Result<(), Di
         listener.wait(Duration::from_millis(100))?;
         while let Some((sample, event)) = events.next(|sample| message::read::<EventMessage>(sample.payload()))? {
             let envelope = sample.envelope();
-            talk.note_event(envelope, &event, envelope.sent_nanos >= joined_nanos)?;
+            pass_over(talk.note_event(envelope, &event, envelope.sent_nanos >= joined_nanos))?;
         }
         while let Some((sample, ())) = dialog.next(|sample| DialogView::new(sample.payload()).map(drop))? {
-            talk.follow(sample.envelope(), DialogView::new(sample.payload())?)?;
+            let followed = DialogView::new(sample.payload()).map_err(DialogError::from);
+            pass_over(followed.and_then(|view| talk.follow(sample.envelope(), view)))?;
         }
         heart.beat(talk.newest_tick(), events.lost() + dialog.lost())?;
     }
     Ok(())
 }
 
+/// A message whose memory was spoilt after it was looked at is passed over: the next one tells.
+fn pass_over(done: Result<(), DialogError>) -> Result<(), DialogError> {
+    match done {
+        Err(DialogError::Malformed(error)) => {
+            tracing::warn!("a message was passed over: {error}");
+            Ok(())
+        }
+        done => done,
+    }
+}
+
 /// Shows the state to the pages, and what was said to peers that joined, again and again, until `over`.
 pub fn show_state(talk: &Talk, survey: &Survey, every: Duration, over: &dyn Fn() -> bool) -> Result<(), DialogError> {
     while !over() {
         let mut inner = talk.lock();
-        talk.show_state(&mut inner)?;
-        inner.look_by_and_by()?;
+        let shown = talk.show_state(&mut inner);
+        pass_over(shown.and_then(|()| inner.look_by_and_by()))?;
         inner.dialog.update()?;
         drop(inner);
         survey.update()?;

@@ -3,25 +3,17 @@
 use std::{
     fs,
     io::{self, Write as _},
-    net::SocketAddr,
     os::unix::fs::{DirBuilderExt as _, OpenOptionsExt as _},
     path::{Path, PathBuf},
     sync::Arc,
     time::{Duration, SystemTime},
 };
 
-use axum::serve::Listener;
 use rustls::{
     ServerConfig,
     crypto::ring::{self, cipher_suite::TLS13_AES_128_GCM_SHA256},
     pki_types::{CertificateDer, PrivateKeyDer, pem::PemObject as _},
 };
-use tokio::{
-    net::{TcpListener, TcpStream},
-    sync::{Semaphore, mpsc},
-    time::{sleep, timeout},
-};
-use tokio_rustls::{TlsAcceptor, server::TlsStream};
 
 /// What the files of a certificate of our own making are called.
 const CERTIFICATE: &str = "certificate.pem";
@@ -32,13 +24,6 @@ const VALID_FOR: Duration = Duration::from_secs(397 * DAY_S);
 /// Clocks of other machines may be so far behind.
 const BEFORE: Duration = Duration::from_secs(DAY_S);
 const DAY_S: u64 = 24 * 3600;
-
-/// The longest that a client may take to agree on keys.
-const AGREED_WITHIN: Duration = Duration::from_secs(10);
-/// The most clients that may be about to.
-const MOST_AGREEING: usize = 64;
-/// After this a listener that failed, such as for want of open files, is tried again.
-const AGAIN_AFTER: Duration = Duration::from_millis(100);
 
 /// Why the page cannot be served by HTTPS.
 #[derive(Debug, thiserror::Error)]
@@ -124,6 +109,11 @@ impl Identity {
         }
         Self::read(&certificate, &key)
     }
+
+    /// What a server needs to agree on keys.
+    pub(crate) fn config(&self) -> Arc<ServerConfig> {
+        Arc::clone(&self.config)
+    }
 }
 
 /// Makes a certificate; nobody but this user can read its key.
@@ -162,70 +152,19 @@ fn fingerprint(certificate: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02X}")).collect::<Vec<_>>().join(":")
 }
 
-/// Clients who have agreed on keys. Those who are about to keep nobody else waiting.
-pub struct Encrypted {
-    agreed: mpsc::Receiver<(TlsStream<TcpStream>, SocketAddr)>,
-    address: SocketAddr,
-}
-
-impl Encrypted {
-    /// Of those who come to `listener`.
-    pub fn new(listener: TcpListener, identity: &Identity) -> io::Result<Self> {
-        let (agree, agreed) = mpsc::channel(MOST_AGREEING);
-        let address = listener.local_addr()?;
-        tokio::spawn(admit(listener, TlsAcceptor::from(Arc::clone(&identity.config)), agree));
-        Ok(Self { agreed, address })
-    }
-}
-
-async fn admit(listener: TcpListener, acceptor: TlsAcceptor, agree: mpsc::Sender<(TlsStream<TcpStream>, SocketAddr)>) {
-    let places = Arc::new(Semaphore::new(MOST_AGREEING));
-    while let Ok(place) = Arc::clone(&places).acquire_owned().await {
-        let Ok((stream, address)) = listener.accept().await else {
-            sleep(AGAIN_AFTER).await;
-            continue;
-        };
-        let (acceptor, agree) = (acceptor.clone(), agree.clone());
-        tokio::spawn(async move {
-            match timeout(AGREED_WITHIN, acceptor.accept(stream)).await {
-                Ok(Ok(stream)) => drop(agree.send((stream, address)).await),
-                Ok(Err(error)) => tracing::debug!("{address} did not agree on keys: {error}"),
-                Err(_) => tracing::debug!("{address} took too long to agree on keys"),
-            }
-            drop(place);
-        });
-    }
-}
-
-impl Listener for Encrypted {
-    type Io = TlsStream<TcpStream>;
-    type Addr = SocketAddr;
-
-    async fn accept(&mut self) -> (Self::Io, Self::Addr) {
-        match self.agreed.recv().await {
-            Some(client) => client,
-            // Who admits them is gone with all else.
-            None => std::future::pending().await,
-        }
-    }
-
-    fn local_addr(&self) -> io::Result<SocketAddr> {
-        Ok(self.address)
-    }
-}
-
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
 mod tests {
     use std::{
         io::{Read as _, Write as _},
-        net,
+        net::{self, SocketAddr},
         os::unix::fs::PermissionsExt as _,
     };
 
     use rustls::{ClientConfig, ClientConnection, RootCertStore, StreamOwned};
 
     use super::*;
+    use crate::{connections, limits::ServerLimits};
 
     /// A folder of a test's own, which goes when this is dropped.
     struct Folder(PathBuf);
@@ -290,12 +229,13 @@ mod tests {
         let identity = own(&folder);
         let runtime = tokio::runtime::Builder::new_multi_thread().worker_threads(1).enable_all().build().unwrap();
         let (address, silent) = runtime.block_on(async {
-            let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
+            let listener = tokio::net::TcpListener::bind("127.0.0.1:0").await.unwrap();
             let address = listener.local_addr().unwrap();
             let router = axum::Router::new().route("/", axum::routing::get(|| async { "the page" }));
-            let encrypted = Encrypted::new(listener, &identity).unwrap();
-            tokio::spawn(async move { axum::serve(encrypted, router).await });
-            let silent: Vec<_> = (0..3).map(|_| net::TcpStream::connect(address).unwrap()).collect();
+            let never = Duration::from_secs(3600);
+            let limits = ServerLimits { most_connections: 4, handshake: never, head: never, ..ServerLimits::default() };
+            tokio::spawn(connections::serve(listener, Some(identity), router, limits));
+            let silent: Vec<_> = (0..12).map(|_| net::TcpStream::connect(address).unwrap()).collect();
             (address, silent)
         });
         let mut plain = net::TcpStream::connect(address).unwrap();

@@ -1,4 +1,4 @@
-//! The word that lets a page from another machine in.
+//! The token that lets a page in: who was given the address may use the session, and no other user of this machine.
 
 use std::{
     fmt::Write as _,
@@ -8,27 +8,21 @@ use std::{
     net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr, UdpSocket},
 };
 
-/// A fresh token where `address` can be reached from other machines; none on loopback.
-pub fn for_address(address: SocketAddr) -> io::Result<Option<String>> {
-    if address.ip().is_loopback() {
-        return Ok(None);
-    }
+/// A fresh token: 128 bits by chance.
+pub fn fresh() -> io::Result<String> {
     let mut bytes = [0u8; 16];
     File::open("/dev/urandom")?.read_exact(&mut bytes)?;
-    Ok(Some(bytes.iter().fold(String::new(), |mut text, byte| {
+    Ok(bytes.iter().fold(String::new(), |mut text, byte| {
         let _ = write!(text, "{byte:02x}");
         text
-    })))
+    }))
 }
 
 /// The address to open.
-pub fn page_address(address: SocketAddr, encrypted: bool, token: Option<&str>) -> String {
+pub fn page_address(address: SocketAddr, encrypted: bool, token: &str) -> String {
     let scheme = if encrypted { "https" } else { "http" };
     let address = reachable(address);
-    match token {
-        Some(token) => format!("{scheme}://{address}/?token={token}"),
-        None => format!("{scheme}://{address}/"),
-    }
+    format!("{scheme}://{address}/?token={token}")
 }
 
 /// The address at which others reach what listens at `address`, where that is any of this machine's; a machine without a
@@ -54,25 +48,31 @@ fn own_ip(here: &str, there: &str) -> Option<IpAddr> {
 }
 
 /// Whether `given` is the token, compared in constant time.
-pub fn admits(token: Option<&str>, given: Option<&str>) -> bool {
-    let Some(token) = token else { return true };
+pub fn admits(token: &str, given: Option<&str>) -> bool {
     let given = given.unwrap_or_default();
     given.len() == token.len() && given.bytes().zip(token.bytes()).fold(0, |differ, (a, b)| differ | (a ^ b)) == 0
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
 
     #[test]
-    fn a_token_is_asked_for_beyond_this_machine_alone() {
-        assert_eq!(for_address("127.0.0.1:1".parse().unwrap()).unwrap(), None);
-        let token = for_address("0.0.0.0:1".parse().unwrap()).unwrap().unwrap();
+    fn the_token_alone_lets_in() {
+        let token = fresh().unwrap();
         assert_eq!(token.len(), 32);
-        assert!(admits(Some(&token), Some(&token)));
+        assert_ne!(token, fresh().unwrap());
+        assert!(admits(&token, Some(&token)));
         for wrong in [None, Some(""), Some("x"), Some("00000000000000000000000000000000")] {
-            assert!(!admits(Some(&token), wrong), "{wrong:?}");
+            assert!(!admits(&token, wrong), "{wrong:?}");
         }
-        assert!(admits(None, None));
+    }
+
+    #[test]
+    fn the_printed_address_is_one_that_leads_here() {
+        let address = |listen: &str| page_address(listen.parse().unwrap(), false, "abc");
+        assert_eq!(address("127.0.0.1:80"), "http://127.0.0.1:80/?token=abc");
+        assert!(!address("0.0.0.0:80").contains("0.0.0.0"));
     }
 }

@@ -8,9 +8,10 @@ use serde::Deserialize;
 use tokio::sync::{broadcast, watch};
 
 use crate::{
-    hub::Hub,
-    limits::{Limits, MOST_PAGES},
+    hub::{Hub, Visit},
+    limits::{Limits, ServerLimits},
     page,
+    presence::Presence,
     screening::Screening,
     view::{Frame, Marks, View, Viewing},
 };
@@ -43,13 +44,14 @@ struct Viewer {
     _viewing: Viewing,
     marks: Marks,
     limits: Limits,
+    visit: Visit,
+    presence: Presence,
 }
 
 /// Serves a page until it goes.
-pub async fn watch(hub: Arc<Hub>, screening: Arc<Screening>, mut socket: WebSocket) {
-    let Some((first, messages, _visit)) = hub.join() else {
-        let text = format!("{MOST_PAGES} pages are open already; close one and reload.");
-        let _ = socket.send(Message::text(page::error(&text).to_string())).await;
+pub async fn watch(hub: Arc<Hub>, screening: Arc<Screening>, mut socket: WebSocket, server: ServerLimits) {
+    let Some((first, messages, visit)) = hub.join(&server) else {
+        let _ = socket.send(Message::text(page::full(server.most_pages).to_string())).await;
         return;
     };
     for message in first {
@@ -60,8 +62,8 @@ pub async fn watch(hub: Arc<Hub>, screening: Arc<Screening>, mut socket: WebSock
     let Some(view) = hub.views.first().cloned() else { return };
     let (mut frames, viewing) = view.join();
     frames.mark_changed();
-    let limits = Limits::new(Instant::now());
-    Viewer { hub, screening, view, frames, _viewing: viewing, marks: Marks::default(), limits }
+    let (limits, presence) = (Limits::new(Instant::now()), Presence::new(server));
+    Viewer { hub, screening, view, frames, _viewing: viewing, marks: Marks::default(), limits, visit, presence }
         .run(socket, messages)
         .await;
 }
@@ -71,11 +73,19 @@ impl Viewer {
         loop {
             let answers = tokio::select! {
                 biased;
-                received = socket.recv() => match received {
-                    Some(Ok(Message::Text(text))) => self.answer(&text).into_iter().collect(),
-                    Some(Ok(Message::Close(_)) | Err(_)) | None => return,
-                    Some(Ok(_)) => Vec::new(),
+                received = socket.recv() => {
+                    self.presence.note_word();
+                    match received {
+                        Some(Ok(Message::Text(text))) => self.answer(&text).into_iter().collect(),
+                        Some(Ok(Message::Close(_)) | Err(_)) | None => return,
+                        Some(Ok(_)) => Vec::new(),
+                    }
+                }
+                () = self.presence.wait() => match self.presence.ask() {
+                    Some(ping) => vec![ping],
+                    None => return,
                 },
+                () = self.visit.given_away() => return,
                 message = messages.recv() => match message {
                     Ok(message) => vec![Message::text(message.to_string())],
                     // It fell behind: closing makes it connect again and be told all anew.
@@ -114,6 +124,7 @@ impl Viewer {
         }
         let message: FromPage =
             serde_json::from_str(text).map_err(|error| format!("The page sent nonsense: {error}"))?;
+        self.visit.note_word();
         match message {
             FromPage::Shown => {
                 self.hub.note_shown();

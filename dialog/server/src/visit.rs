@@ -11,35 +11,32 @@ use cohabit_cdf::{BodyId, ObjectId};
 use cohabit_speech::Recognition;
 use serde::Deserialize;
 use serde_json::Value;
-use tokio::{
-    sync::{
-        broadcast::{self, error::RecvError},
-        mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel},
-        watch,
-    },
-    time::{MissedTickBehavior, interval, timeout},
+use tokio::sync::{
+    broadcast::{self, error::RecvError},
+    mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel},
+    watch,
 };
 
 use crate::{
     DialogError,
     affordances::Deed,
     driving::{Driver, News, Told},
-    hub::Hub,
-    limits::{LONGEST_TEXT, Limits, MOST_PAGES},
+    hub::{self, Hub},
+    journal::MOST_VISITORS,
+    limits::{Limits, ServerLimits},
     page,
+    presence::Presence,
     questionnaire::Given,
     robots::Visitor,
     spoken::{Reading, Spoken},
+    survey::Form,
     talk::Talk,
+    text,
     view::{Frame, Marks, View, Viewing},
     voice::{Audience, EarAt, FromEar, Hearer, Hearing},
     web::Live,
 };
 
-/// How often it is seen whether a page that drives is still there.
-const BEAT: Duration = Duration::from_secs(3);
-/// A page that drives and is silent for so long, or takes so long to take something, is gone.
-const GONE: Duration = Duration::from_secs(15);
 /// Time between two looks at what is before a driven body.
 const AIM_EVERY: Duration = Duration::from_millis(90);
 /// How fast a page may ask anything to move or turn, m/s and rad/s; the body's own limits are narrower.
@@ -67,8 +64,14 @@ enum FromPage {
     Release,
     /// The keys as they are held now, as speeds: along the heading, turning, and the head's pitch.
     Drive { forward_m_s: f32, turn_rad_s: f32, pitch_rad_s: f32 },
-    /// Somebody answers a questionnaire: an answer a question.
-    Answer { questionnaire: String, answers: Vec<Option<Given>> },
+    /// Somebody answers a questionnaire: an answer a question; `finished`, if they say that they have done what they could
+    /// of a mission that is not over.
+    Answer {
+        questionnaire: String,
+        answers: Vec<Option<Given>>,
+        #[serde(default)]
+        finished: bool,
+    },
     /// Somebody does something to an object with the body's hand.
     Act { deed: Deed, object: u32 },
     /// Sound comes from a microphone, as binary messages of so many 16-bit samples a second; while `held`, no pause ends what
@@ -87,26 +90,44 @@ enum FromPage {
 }
 
 /// Serves a page until it goes.
-pub async fn converse(hub: Arc<Hub>, live: Live, mut socket: WebSocket, key: u64) {
-    let Some((first, messages, _visit)) = hub.join() else {
-        let text = format!("{MOST_PAGES} pages are open already; close one and reload.");
-        let _ = socket.send(Message::text(page::error(&text).to_string())).await;
+pub async fn converse(hub: Arc<Hub>, live: Live, mut socket: WebSocket, key: u64, server: ServerLimits) {
+    let Some((first, messages, seat)) = hub.join(&server) else {
+        let _ = socket.send(tell(&page::full(server.most_pages))).await;
         return;
     };
-    let number = live.talk.visitor(key);
-    for message in std::iter::once(page::you(number, &live.talk.answered(number)).to_string()).chain(first) {
+    let Some((number, answered)) = live.talk.enter(key) else {
+        let text = format!("{MOST_VISITORS} people have been here; for more, start another session.");
+        let _ = socket.send(tell(&page::error(&text))).await;
+        return;
+    };
+    let visitor = Entered { talk: Arc::clone(&live.talk), number };
+    for message in std::iter::once(page::you(number, &answered).to_string()).chain(first) {
         if socket.send(Message::text(message)).await.is_err() {
             return;
         }
     }
     let Some(view) = hub.views.first().cloned() else { return };
-    Visit::new(hub, live, view, number).run(socket, messages).await;
+    Visit::new(hub, live, (seat, Presence::new(server)), view, visitor).run(socket, messages).await;
+}
+
+/// A visitor who is there while this lives.
+struct Entered {
+    talk: Arc<Talk>,
+    number: u32,
+}
+
+impl Drop for Entered {
+    fn drop(&mut self) {
+        self.talk.leave(self.number);
+    }
 }
 
 struct Visit {
     hub: Arc<Hub>,
     live: Live,
-    number: u32,
+    seat: hub::Visit,
+    presence: Presence,
+    visitor: Entered,
     view: Arc<View>,
     frames: watch::Receiver<Option<Frame>>,
     _viewing: Viewing,
@@ -122,8 +143,6 @@ struct Visit {
     heard_count: u64,
     /// What robots say aloud, where it is wanted.
     sounds: Option<(broadcast::Receiver<Arc<Vec<u8>>>, Hearer)>,
-    /// Since when the page has been asked whether it is there, without a word from it.
-    asked_at: Option<Instant>,
 }
 
 /// What a driven body has before it, as the page was told.
@@ -138,7 +157,13 @@ struct Aim {
 struct Gone;
 
 impl Visit {
-    fn new(hub: Arc<Hub>, live: Live, view: Arc<View>, number: u32) -> Self {
+    fn new(
+        hub: Arc<Hub>,
+        live: Live,
+        (seat, presence): (hub::Visit, Presence),
+        view: Arc<View>,
+        visitor: Entered,
+    ) -> Self {
         let now = Instant::now();
         let (mut frames, viewing) = view.join();
         frames.mark_changed();
@@ -146,7 +171,9 @@ impl Visit {
         Self {
             hub,
             live,
-            number,
+            seat,
+            presence,
+            visitor,
             view,
             frames,
             _viewing: viewing,
@@ -159,19 +186,16 @@ impl Visit {
             heard: None,
             heard_count: 0,
             sounds: None,
-            asked_at: None,
         }
     }
 
     async fn run(mut self, mut socket: WebSocket, mut messages: broadcast::Receiver<Arc<str>>) {
-        let mut beat = interval(BEAT);
-        beat.set_missed_tick_behavior(MissedTickBehavior::Delay);
         loop {
             // In order: what a page has sent is read before it is found to be silent.
             let answers = tokio::select! {
                 biased;
                 received = socket.recv() => {
-                    self.asked_at = None;
+                    self.presence.note_word();
                     match received {
                         Some(Ok(Message::Text(text))) => Ok(self.answer(&text).await),
                         Some(Ok(Message::Binary(bytes))) => Ok(self.listen(&bytes)),
@@ -179,7 +203,8 @@ impl Visit {
                         Some(Ok(_)) => Ok(Vec::new()),
                     }
                 }
-                _ = beat.tick() => self.beat(),
+                () = self.presence.wait() => self.beat(),
+                () = self.seat.given_away() => Err(Gone),
                 news = next_news(&mut self.driver) => Ok(self.note(&news)),
                 Some(heard) = self.ear.1.recv() => Ok(self.take_heard(heard).await),
                 piece = next_sound(&mut self.sounds) => Ok(vec![Message::binary(piece.to_vec())]),
@@ -192,20 +217,17 @@ impl Visit {
             };
             let Ok(answers) = answers else { return };
             for answer in answers {
-                if send(&mut socket, answer, self.driver.is_some()).await.is_err() {
+                if socket.send(answer).await.is_err() {
                     return;
                 }
             }
         }
     }
 
+    /// Asks the page whether it is there, and sees whether the session still answers who drives.
     fn beat(&mut self) -> Result<Vec<Message>, Gone> {
-        let Some(driver) = &self.driver else { return Ok(Vec::new()) };
-        if self.asked_at.get_or_insert_with(Instant::now).elapsed() > GONE {
-            return Err(Gone);
-        }
-        let mut answers = vec![Message::Ping(Vec::new().into())];
-        if driver.gave_up() {
+        let mut answers = vec![self.presence.ask().ok_or(Gone)?];
+        if self.driver.as_ref().is_some_and(Driver::gave_up) {
             answers.extend(self.end("The session does not answer."));
         }
         Ok(answers)
@@ -290,6 +312,7 @@ impl Visit {
         }
         let message: FromPage =
             serde_json::from_str(text).map_err(|error| format!("The page sent nonsense: {error}"))?;
+        self.seat.note_word();
         if let FromPage::Drive { forward_m_s, turn_rad_s, pitch_rad_s } = message {
             // One too many is left out: the next one says all anew.
             return if self.limits.drives.admits(now) {
@@ -313,7 +336,10 @@ impl Visit {
                 self.driver = Some(Driver::claim(&self.live.drivers, body)?);
             }
             FromPage::Release => self.driver = None,
-            FromPage::Answer { questionnaire, answers } => return Ok(vec![self.survey(&questionnaire, &answers)]),
+            FromPage::Answer { questionnaire, answers, finished } => {
+                let form = Form { questionnaire: &questionnaire, given: &answers, finished };
+                return Ok(vec![self.survey(&form)]);
+            }
             FromPage::Act { deed, object } => return self.act(deed, ObjectId(object)),
             FromPage::Say { text } => self.say(&text, received_nanos).await?,
             FromPage::Choose { object } => self.choose(ObjectId(object), received_nanos).await?,
@@ -325,7 +351,7 @@ impl Visit {
                 self.live.talk.note_sounded(turn, received_nanos).map_err(|error| error.to_string())?;
             }
             FromPage::OwnVoice { text } => {
-                let text = text.filter(|text| text.len() <= LONGEST_TEXT);
+                let text = text.filter(|text| text::is_within_limit(text));
                 self.live.voice.note_own_voice(text.as_deref(), received_nanos);
             }
             FromPage::Drive { .. } => {}
@@ -390,12 +416,12 @@ impl Visit {
     }
 
     async fn say(&mut self, text: &str, received_nanos: u64) -> Result<(), String> {
-        let text = text.trim().to_owned();
+        let text = text::in_one_line(text.trim());
         if text.is_empty() {
             return Ok(());
         }
-        if text.len() > LONGEST_TEXT {
-            return Err(format!("That is too long for me: {LONGEST_TEXT} characters at most, please."));
+        if !text::is_within_limit(&text) {
+            return Err(format!("That is too long for me. {}", text::too_long(&text)));
         }
         let visitor = self.visitor();
         self.tell_robot(move |talk| talk.hear(&text, visitor, received_nanos)).await
@@ -408,7 +434,7 @@ impl Visit {
             let at = EarAt {
                 voice: Arc::clone(voice),
                 talk: Arc::clone(talk) as Arc<dyn Audience>,
-                visitor: self.number,
+                visitor: self.visitor.number,
                 to: self.ear.0.clone(),
             };
             self.hearing = Some(Hearing::begin(at, rate)?);
@@ -497,8 +523,8 @@ impl Visit {
         if let Some(hearing) = &self.hearing {
             hearing.part();
         }
-        let Some(text) = text else { return Ok(()) };
-        if text.trim().is_empty() || text.len() > LONGEST_TEXT {
+        let Some(text) = text.as_deref().map(text::in_one_line) else { return Ok(()) };
+        if text.trim().is_empty() || !text::is_within_limit(&text) {
             return self.say(&text, received_nanos).await;
         }
         let shown = spoken.settled.filter(|reading| reading.text == text);
@@ -526,17 +552,14 @@ impl Visit {
         self.tell_robot(move |talk| talk.choose(object, visitor, received_nanos)).await
     }
 
-    fn survey(&self, questionnaire: &str, given: &[Option<Given>]) -> Message {
-        let problem = self.live.survey.answer(self.number, questionnaire, given).err();
-        if problem.is_none() {
-            self.live.talk.note_answered(self.number, questionnaire);
-        }
-        tell(&page::answered(questionnaire, problem.map(|problem| problem.to_string()).as_deref()))
+    fn survey(&self, form: &Form<'_>) -> Message {
+        let problem = self.live.survey.answer(self.visitor.number, form, &*self.live.talk).err();
+        tell(&page::answered(form.questionnaire, problem.map(|problem| problem.to_string()).as_deref()))
     }
 
     fn visitor(&self) -> Visitor {
         let driven = self.driver.as_ref().filter(|driver| driver.is_driving());
-        Visitor { number: self.number, body: driven.map(|driver| BodyId(driver.body())) }
+        Visitor { number: self.visitor.number, body: driven.map(|driver| BodyId(driver.body())) }
     }
 
     async fn tell_robot(
@@ -550,13 +573,6 @@ impl Visit {
         }
         Ok(())
     }
-}
-
-/// Sends a message. Who drives must not hang: the body is wanted by others.
-async fn send(socket: &mut WebSocket, message: Message, drives: bool) -> Result<(), Gone> {
-    let sent =
-        if drives { timeout(GONE, socket.send(message)).await.map_err(|_| Gone)? } else { socket.send(message).await };
-    sent.map_err(|_| Gone)
 }
 
 fn tell(message: &Value) -> Message {

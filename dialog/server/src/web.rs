@@ -3,21 +3,25 @@
 use std::{collections::HashMap, io, net::TcpListener, sync::Arc, time::Duration};
 
 use axum::{
-    Router,
-    extract::{Query, State, WebSocketUpgrade},
-    http::{HeaderMap, StatusCode, header},
+    Extension, Router,
+    extract::{Query, Request, State, WebSocketUpgrade},
+    http::{HeaderName, HeaderValue, StatusCode, header, uri::Authority},
+    middleware::{self, Next},
     response::{IntoResponse, Response},
     routing::get,
 };
 
 use crate::{
+    connections::{self, Ends},
     driving::Drivers,
+    hosts::{HostName, Hosts, Refusal},
     hub::Hub,
-    limits::LONGEST_MESSAGE,
+    limits::{LONGEST_MESSAGE, ServerLimits},
+    same_user::is_same_user,
     screening::Screening,
     survey::Survey,
     talk::Talk,
-    tls::{Encrypted, Identity},
+    tls::Identity,
     token, viewer, visit,
     voice::Voice,
 };
@@ -42,7 +46,22 @@ const FILES: [(&str, &str, &str); 14] = [
     ("/style.css", "text/css; charset=utf-8", include_str!("../../web/style.css")),
 ];
 const ICON: &str = include_str!("../../web/favicon.svg");
-const POLICY: &str = "default-src 'self'; img-src 'self' blob:; style-src 'self'; connect-src 'self' ws: wss:";
+
+/// Headers of every answer. What is sent is of the type that it says; no address, which may hold the token, is told to
+/// other sites; no other site may show, read or embed any of it.
+fn fixed_headers() -> [(HeaderName, HeaderValue); 5] {
+    [
+        (header::X_CONTENT_TYPE_OPTIONS, HeaderValue::from_static("nosniff")),
+        (header::REFERRER_POLICY, HeaderValue::from_static("no-referrer")),
+        (header::X_FRAME_OPTIONS, HeaderValue::from_static("DENY")),
+        (HeaderName::from_static("cross-origin-opener-policy"), HeaderValue::from_static("same-origin")),
+        (HeaderName::from_static("cross-origin-resource-policy"), HeaderValue::from_static("same-origin")),
+    ]
+}
+/// What the page may load and where it may connect to; a host's socket follows, which older browsers do not take for a
+/// part of `'self'`.
+const POLICY: &str = "default-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'; object-src 'none'; \
+                      connect-src 'self'";
 
 /// What every page has to do with.
 #[derive(Clone)]
@@ -52,7 +71,13 @@ pub struct Service {
     /// What pages see.
     pub host: Host,
     /// What lets a page in.
-    pub token: Option<Arc<str>>,
+    pub token: Arc<str>,
+    /// Whether the user who runs the session is let in on this machine without the token, too.
+    pub admits_own_user: bool,
+    /// The hosts that it is served as, besides those of this machine.
+    pub hosts: Vec<HostName>,
+    /// How long anybody may keep a place, and how many there are.
+    pub limits: ServerLimits,
     /// What it is served with by HTTPS, if it is.
     pub identity: Option<Identity>,
 }
@@ -81,33 +106,60 @@ pub struct Live {
 
 /// Serves on `listener` until `over`.
 pub fn serve(listener: TcpListener, service: Service, over: &dyn Fn() -> bool) -> io::Result<()> {
-    let identity = service.identity.clone();
-    let files = FILES
-        .into_iter()
-        .fold(Router::new(), |router, (path, kind, text)| router.route(path, get(move || file(kind, text))));
-    let router = files
-        .route("/", get(index))
-        .route("/favicon.svg", get(|| file("image/svg+xml", ICON)))
-        .route("/frame.jpg", get(frame))
-        .route("/ws", get(socket))
-        .with_state(service);
+    let (identity, limits) = (service.identity.clone(), service.limits);
+    let hosts = Hosts::new(listener.local_addr()?, identity.is_some(), service.hosts.clone());
+    let router = router(service, hosts);
     let runtime = tokio::runtime::Builder::new_multi_thread().worker_threads(2).enable_all().build()?;
     let served = runtime.block_on(async {
         listener.set_nonblocking(true)?;
         let listener = tokio::net::TcpListener::from_std(listener)?;
-        let served = async {
-            match identity {
-                Some(identity) => axum::serve(Encrypted::new(listener, &identity)?, router).await,
-                None => axum::serve(listener, router).await,
-            }
-        };
         tokio::select! {
-            served = served => served,
+            () = connections::serve(listener, identity, router, limits) => Ok(()),
             () = until(over) => Ok(()),
         }
     });
     runtime.shutdown_timeout(Duration::from_millis(100));
     served
+}
+
+fn router(service: Service, hosts: Hosts) -> Router {
+    let files = FILES
+        .into_iter()
+        .fold(Router::new(), |router, (path, kind, text)| router.route(path, get(move || file(kind, text))));
+    files
+        .route("/", get(index))
+        .route("/favicon.svg", get(|| file("image/svg+xml", ICON)))
+        .route("/frame.jpg", get(frame))
+        .route("/ws", get(socket))
+        .with_state(service)
+        .layer(middleware::from_fn_with_state(Arc::new(hosts), guard))
+}
+
+/// Stands before every route, also those that do not exist: refuses who asks for another host, or comes from another
+/// site, and gives each answer its headers.
+async fn guard(State(hosts): State<Arc<Hosts>>, request: Request, next: Next) -> Response {
+    match hosts.check(request.uri(), request.headers()) {
+        Ok(host) => with_headers(next.run(request).await, Some(&host)),
+        Err(refusal) => with_headers(refusal.into_response(), None),
+    }
+}
+
+impl IntoResponse for Refusal {
+    fn into_response(self) -> Response {
+        (StatusCode::FORBIDDEN, format!("{self}\n")).into_response()
+    }
+}
+
+fn with_headers(mut response: Response, host: Option<&Authority>) -> Response {
+    let headers = response.headers_mut();
+    headers.extend(fixed_headers());
+    // Policies have no form for addresses of IPv6.
+    let host = host.filter(|host| !host.as_str().starts_with('['));
+    let policy = host.map(|host| HeaderValue::try_from(format!("{POLICY} ws://{host} wss://{host}")));
+    let policy = policy.and_then(Result::ok).unwrap_or(HeaderValue::from_static(POLICY));
+    headers.insert(header::CONTENT_SECURITY_POLICY, policy);
+    headers.entry(header::CACHE_CONTROL).or_insert(HeaderValue::from_static("no-store"));
+    response
 }
 
 async fn until(over: &dyn Fn() -> bool) {
@@ -122,71 +174,53 @@ async fn file(kind: &'static str, text: &'static str) -> Response {
 
 type Parameters = Query<HashMap<String, String>>;
 
-fn refused(service: &Service, parameters: &Parameters) -> Option<Response> {
+fn refused(service: &Service, parameters: &Parameters, ends: Ends) -> Option<Response> {
     let given = parameters.get("token").map(String::as_str);
-    let admitted = token::admits(service.token.as_deref(), given);
+    let is_own_user = || service.admits_own_user && is_same_user(ends.client, ends.server);
+    let admitted = token::admits(&service.token, given) || given.is_none() && is_own_user();
     (!admitted).then(|| {
         (StatusCode::FORBIDDEN, "This session asks for its token: open the address that was printed when it started.\n")
             .into_response()
     })
 }
 
-async fn index(State(service): State<Service>, parameters: Parameters) -> Response {
-    if let Some(refusal) = refused(&service, &parameters) {
+async fn index(State(service): State<Service>, Extension(ends): Extension<Ends>, parameters: Parameters) -> Response {
+    if let Some(refusal) = refused(&service, &parameters, ends) {
         return refusal;
     }
-    let kind = "text/html; charset=utf-8";
-    let headers = [
-        (header::CONTENT_TYPE, kind),
-        (header::CACHE_CONTROL, "no-cache"),
-        (header::CONTENT_SECURITY_POLICY, POLICY),
-        (header::REFERRER_POLICY, "no-referrer"),
-    ];
-    (headers, INDEX).into_response()
+    ([(header::CONTENT_TYPE, "text/html; charset=utf-8")], INDEX).into_response()
 }
 
-async fn frame(State(service): State<Service>, parameters: Parameters) -> Response {
-    if let Some(refusal) = refused(&service, &parameters) {
+async fn frame(State(service): State<Service>, Extension(ends): Extension<Ends>, parameters: Parameters) -> Response {
+    if let Some(refusal) = refused(&service, &parameters, ends) {
         return refusal;
     }
     match service.hub.views.first().and_then(|view| view.newest()) {
-        Some(frame) => {
-            let headers = [(header::CONTENT_TYPE, "image/jpeg"), (header::CACHE_CONTROL, "no-store")];
-            (headers, frame[16..].to_vec()).into_response()
-        }
+        Some(frame) => ([(header::CONTENT_TYPE, "image/jpeg")], frame[16..].to_vec()).into_response(),
         None => (StatusCode::SERVICE_UNAVAILABLE, "There is no frame yet.\n").into_response(),
     }
 }
 
 async fn socket(
     State(service): State<Service>,
+    Extension(ends): Extension<Ends>,
     parameters: Parameters,
-    headers: HeaderMap,
     upgrade: WebSocketUpgrade,
 ) -> Response {
-    if let Some(refusal) = refused(&service, &parameters) {
+    if let Some(refusal) = refused(&service, &parameters, ends) {
         return refusal;
-    }
-    if !same_origin(&headers) {
-        return (StatusCode::FORBIDDEN, "Pages of other sites cannot speak to a session.\n").into_response();
     }
     // A page keeps its key when it connects again; one that has none is somebody new.
     let key = parameters.get("visitor").and_then(|key| key.parse().ok()).unwrap_or_else(cohabit_bus::monotonic_nanos);
-    let Service { hub, host, .. } = service;
+    let Service { hub, host, limits, .. } = service;
     upgrade.max_message_size(LONGEST_MESSAGE).on_upgrade(move |socket| async move {
         match host {
-            Host::Live(live) => visit::converse(hub, live, socket, key).await,
-            Host::Recorded(screening) => viewer::watch(hub, screening, socket).await,
+            Host::Live(live) => visit::converse(hub, live, socket, key, limits).await,
+            Host::Recorded(screening) => viewer::watch(hub, screening, socket, limits).await,
         }
     })
 }
 
-/// A browser names the site that opens a socket; only our own page may. Other programs name none.
-fn same_origin(headers: &HeaderMap) -> bool {
-    let text = |name| headers.get(name).and_then(|value| value.to_str().ok());
-    match (text(header::ORIGIN), text(header::HOST)) {
-        (None, _) => true,
-        (Some(origin), Some(host)) => origin.split_once("://").is_some_and(|(_, site)| site == host),
-        (Some(_), None) => false,
-    }
-}
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests;

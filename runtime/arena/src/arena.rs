@@ -12,7 +12,6 @@ use crate::{
     game::{Game, GameError},
     renderer::SharedRenderer,
     reply::Reply,
-    wire::TooLong,
 };
 
 /// What all games have in common.
@@ -84,11 +83,11 @@ impl Arena {
         }
     }
 
-    /// The answer to a message that is too long to be taken in.
+    /// The answer to a message that is not taken in.
     #[must_use]
-    pub fn answer_to_too_long(error: TooLong) -> Vec<u8> {
-        tracing::warn!("a message was refused: {error}");
-        Reply::without_game(Status::IncorrectActionFormat, error.to_string()).json()
+    pub fn refusal(why: String) -> Vec<u8> {
+        tracing::warn!("a message was refused: {why}");
+        Reply::without_game(Status::IncorrectActionFormat, why).json()
     }
 
     /// Starts a game of a mission's text, which `file` is called where it is wrong; the one before ends. That it cannot

@@ -23,8 +23,10 @@
 
 mod arena;
 mod axes;
+mod clients;
 mod command;
 mod game;
+mod limits;
 mod object;
 mod pictures;
 mod renderer;
@@ -33,5 +35,6 @@ mod server;
 mod wire;
 
 pub use arena::{Arena, Settings};
-pub use server::serve;
+pub use limits::ClientLimits;
+pub use server::{serve, serve_within};
 pub use wire::{Inbox, LONGEST, TooLong, framed};

@@ -5,23 +5,21 @@ use std::{
     net::{Shutdown, SocketAddr, TcpListener, TcpStream},
     sync::{
         Mutex, MutexGuard, PoisonError,
-        atomic::{AtomicBool, AtomicUsize, Ordering},
+        atomic::{AtomicBool, Ordering},
     },
     thread,
-    time::Duration,
+    time::{Duration, Instant},
 };
 
 use crate::{
     arena::Arena,
+    clients::{Client, Clients, Phase},
+    limits::ClientLimits,
     wire::{Inbox, framed},
 };
 
-/// The most clients at once. One is usual; those that lost their connection may not know it yet.
-const MOST_CLIENTS: usize = 16;
 /// How often somebody who waits looks whether to stop.
 const LOOK_UP: Duration = Duration::from_millis(50);
-/// How long a client may take to read its answer.
-const READ_WITHIN: Duration = Duration::from_secs(30);
 /// How long a client that is sent away may take to read why.
 const LINGER: Duration = Duration::from_secs(1);
 
@@ -30,13 +28,21 @@ const LINGER: Duration = Duration::from_secs(1);
 /// # Errors
 /// When `listener` has no address.
 pub fn serve(listener: &TcpListener, arena: Arena, stop: &AtomicBool) -> io::Result<()> {
+    serve_within(ClientLimits::default(), listener, arena, stop)
+}
+
+/// The same, with other bounds for clients.
+///
+/// # Errors
+/// When `listener` has no address.
+pub fn serve_within(limits: ClientLimits, listener: &TcpListener, arena: Arena, stop: &AtomicBool) -> io::Result<()> {
     let address = listener.local_addr()?;
-    let office = Office { arena: Mutex::new(arena), clients: AtomicUsize::new(0), stop };
+    let office = Office { arena: Mutex::new(arena), clients: Clients::new(limits), limits, stop };
     let office = &office;
     thread::scope(|scope| {
         scope.spawn(move || {
-            while let Some(client) = office.next_client(listener) {
-                scope.spawn(move || office.attend(client));
+            while let Some((stream, from, client)) = office.next_client(listener) {
+                scope.spawn(move || office.attend(stream, from, client));
             }
         });
         while !stop.load(Ordering::Relaxed) {
@@ -52,7 +58,8 @@ pub fn serve(listener: &TcpListener, arena: Arena, stop: &AtomicBool) -> io::Res
 /// Where clients are attended to.
 struct Office<'a> {
     arena: Mutex<Arena>,
-    clients: AtomicUsize,
+    clients: Clients,
+    limits: ClientLimits,
     stop: &'a AtomicBool,
 }
 
@@ -66,21 +73,17 @@ impl Office<'_> {
     }
 
     /// Waits for a client; `None` is the end.
-    fn next_client(&self, listener: &TcpListener) -> Option<(TcpStream, SocketAddr)> {
+    fn next_client(&self, listener: &TcpListener) -> Option<(TcpStream, SocketAddr, Client<'_>)> {
         loop {
             let accepted = listener.accept();
             if self.stops() {
                 return None;
             }
             match accepted {
-                Ok((stream, from)) if self.clients.load(Ordering::Relaxed) >= MOST_CLIENTS => {
-                    tracing::warn!("{from} was sent away: {MOST_CLIENTS} clients are connected");
-                    drop(stream);
-                }
-                Ok(client) => {
-                    self.clients.fetch_add(1, Ordering::Relaxed);
-                    return Some(client);
-                }
+                Ok((stream, from)) => match self.clients.seat(&stream, from) {
+                    Some(client) => return Some((stream, from, client)),
+                    None => tracing::warn!("{from} was sent away: {} clients are at work", self.limits.most_clients),
+                },
                 Err(error) => {
                     tracing::warn!("a client could not be let in: {error}");
                     thread::sleep(LOOK_UP);
@@ -89,43 +92,85 @@ impl Office<'_> {
         }
     }
 
-    fn attend(&self, (stream, from): (TcpStream, SocketAddr)) {
+    fn attend(&self, stream: TcpStream, from: SocketAddr, client: Client<'_>) {
         tracing::info!("{from} connected");
-        match self.converse(stream) {
+        match self.converse(stream, client) {
             Ok(()) => tracing::info!("{from} left"),
             Err(error) => tracing::info!("{from} was lost: {error}"),
         }
-        self.clients.fetch_sub(1, Ordering::Relaxed);
     }
 
     /// Takes in what a client sends, and answers, until it leaves.
-    fn converse(&self, mut stream: TcpStream) -> io::Result<()> {
+    fn converse(&self, mut stream: TcpStream, mut client: Client<'_>) -> io::Result<()> {
         stream.set_nodelay(true)?;
         stream.set_read_timeout(Some(LOOK_UP))?;
-        stream.set_write_timeout(Some(READ_WITHIN))?;
-        let (mut inbox, mut first) = (Inbox::default(), true);
+        let mut inbox = Inbox::default();
+        // Until when a message must be whole: the first, or one that has begun.
+        let (mut first, mut whole_by) = (true, Some(Instant::now() + self.limits.first_message));
         let mut bytes = vec![0; 64 << 10];
         while !self.stops() {
+            if whole_by.is_some_and(|by| Instant::now() > by) {
+                return Err(io::Error::new(ErrorKind::TimedOut, "its message took too long"));
+            }
             match stream.read(&mut bytes) {
                 Ok(0) => return Ok(()),
                 Ok(count) => inbox.push(&bytes[..count]),
                 Err(error) if is_no_end(&error) => continue,
                 Err(error) => return Err(error),
             }
+            if !client.takes(inbox.held()) {
+                let all = self.limits.shared_bytes;
+                let why = format!("unfinished messages of all clients have more than {all} bytes: try again later");
+                return self.refuse(&mut stream, why);
+            }
+            let came = Instant::now();
             loop {
                 match inbox.next() {
                     Ok(Some(message)) => {
+                        client.note(Phase::Answered);
                         let answer = self.arena().answer(&message, std::mem::take(&mut first));
                         if let Some(answer) = answer {
-                            stream.write_all(&framed(&answer))?;
+                            self.send(&mut stream, &answer)?;
                         }
+                        client.note(Phase::Thinking);
+                        whole_by = None;
                     }
                     Ok(None) => break,
-                    Err(error) => {
-                        stream.write_all(&framed(&Arena::answer_to_too_long(error)))?;
-                        return send_away(&mut stream);
-                    }
+                    Err(error) => return self.refuse(&mut stream, error.to_string()),
                 }
+            }
+            client.takes(inbox.held());
+            whole_by = match (inbox.has_begun(), first, whole_by) {
+                (false, false, _) => None,
+                (true, false, None) => Some(came + self.limits.message),
+                (_, _, by) => by,
+            };
+        }
+        Ok(())
+    }
+
+    /// Tells a client why it is not heard, and ends its connection.
+    fn refuse(&self, stream: &mut TcpStream, why: String) -> io::Result<()> {
+        self.send(stream, &Arena::refusal(why))?;
+        send_away(stream)
+    }
+
+    /// Sends an answer, all of which must be taken in time.
+    fn send(&self, stream: &mut TcpStream, answer: &[u8]) -> io::Result<()> {
+        let by = Instant::now() + self.limits.answer;
+        let answer = framed(answer);
+        let mut rest = &answer[..];
+        while !rest.is_empty() {
+            let left = by.saturating_duration_since(Instant::now());
+            if left.is_zero() {
+                return Err(io::Error::new(ErrorKind::TimedOut, "it took too long to take an answer"));
+            }
+            stream.set_write_timeout(Some(left))?;
+            match stream.write(rest) {
+                Ok(0) => return Err(ErrorKind::WriteZero.into()),
+                Ok(count) => rest = &rest[count..],
+                Err(error) if is_no_end(&error) => {}
+                Err(error) => return Err(error),
             }
         }
         Ok(())

@@ -32,12 +32,19 @@ pub struct TooLong {
 #[derive(Debug, Default)]
 pub struct Inbox {
     bytes: Vec<u8>,
+    /// Where the next message begins in them.
+    start: usize,
 }
 
 impl Inbox {
-    /// Takes in what came. Holds no more than that and what is left of messages before: memory follows what was sent,
-    /// not what a length promises.
+    /// Takes in what came. Memory follows what was sent, not what a length promises: it grows to twice that at most.
     pub fn push(&mut self, bytes: &[u8]) {
+        let needed = self.bytes.len() + bytes.len();
+        if needed > self.bytes.capacity() {
+            let whole = self.length().filter(|length| *length <= LONGEST).map(|length| self.start + PREFIX + length);
+            let grown = (2 * needed).min(whole.unwrap_or(usize::MAX)).max(needed);
+            self.bytes.reserve_exact(grown - self.bytes.len());
+        }
         self.bytes.extend_from_slice(bytes);
     }
 
@@ -48,20 +55,55 @@ impl Inbox {
     #[expect(clippy::should_implement_trait, reason = "it ends only for now")]
     pub fn next(&mut self) -> Result<Option<Vec<u8>>, TooLong> {
         loop {
-            let Some(prefix) = self.bytes.first_chunk::<PREFIX>() else { return Ok(None) };
-            let bytes = u32::from_le_bytes(*prefix) as usize;
-            if bytes > LONGEST {
-                return Err(TooLong { bytes });
+            let Some(length) = self.length() else {
+                self.forget_read();
+                return Ok(None);
+            };
+            if length > LONGEST {
+                return Err(TooLong { bytes: length });
             }
-            if self.bytes.len() < PREFIX + bytes {
+            let (from, end) = (self.start + PREFIX, self.start + PREFIX + length);
+            if self.bytes.len() < end {
+                self.forget_read();
                 return Ok(None);
             }
-            let message = self.bytes[PREFIX..PREFIX + bytes].to_vec();
-            self.bytes.drain(..PREFIX + bytes);
-            if !message.is_empty() {
-                return Ok(Some(message));
+            if length == 0 {
+                self.start = end;
+                continue;
             }
+            if self.bytes.len() - end > length {
+                self.start = end;
+                return Ok(Some(self.bytes[from..end].to_vec()));
+            }
+            // The memory of a long message goes with it.
+            let rest = self.bytes.split_off(end);
+            let mut message = std::mem::replace(&mut self.bytes, rest);
+            self.start = 0;
+            message.drain(..from);
+            return Ok(Some(message));
         }
+    }
+
+    /// Whether a message has begun that is not complete.
+    #[must_use]
+    pub fn has_begun(&self) -> bool {
+        self.bytes.len() > self.start
+    }
+
+    /// What it holds, bytes; it takes twice that of memory at most.
+    #[must_use]
+    pub fn held(&self) -> usize {
+        self.bytes.len()
+    }
+
+    /// What the next message says of its length.
+    fn length(&self) -> Option<usize> {
+        self.bytes[self.start..].first_chunk::<PREFIX>().map(|prefix| u32::from_le_bytes(*prefix) as usize)
+    }
+
+    fn forget_read(&mut self) {
+        self.bytes.drain(..self.start);
+        self.start = 0;
     }
 }
 
@@ -79,6 +121,7 @@ pub fn framed(message: &[u8]) -> Vec<u8> {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used)]
 mod tests {
     use proptest::prelude::*;
 
@@ -118,6 +161,30 @@ mod tests {
                 prop_assert!(bytes > LONGEST);
             }
         }
+    }
+
+    #[test]
+    fn memory_follows_what_was_sent() {
+        let mut inbox = Inbox::default();
+        inbox.push(&u32::try_from(LONGEST).unwrap().to_le_bytes());
+        let piece = vec![b' '; 64 << 10];
+        for sent in 1..=LONGEST / piece.len() {
+            assert!(inbox.bytes.capacity() <= 2 * sent * piece.len(), "{sent}");
+            inbox.push(&piece);
+        }
+        assert!(inbox.bytes.capacity() <= LONGEST + PREFIX);
+        inbox.push(&[1, 0, 0, 0]);
+        assert_eq!(inbox.next().map(|message| message.map(|message| message.len())), Ok(Some(LONGEST)));
+        assert!(inbox.has_begun() && inbox.bytes.capacity() < 100, "{}", inbox.bytes.capacity());
+    }
+
+    #[test]
+    fn many_empty_messages_are_passed_over_at_once() {
+        let mut inbox = Inbox::default();
+        inbox.push(&vec![0; 4 << 20]);
+        inbox.push(&framed(b"[]"));
+        assert_eq!(inbox.next(), Ok(Some(b"[]".to_vec())));
+        assert!(!inbox.has_begun());
     }
 
     #[test]

@@ -13,7 +13,7 @@ use std::{
     time::Duration,
 };
 
-use cohabit_arena::{LONGEST, framed, serve};
+use cohabit_arena::{ClientLimits, LONGEST, framed, serve_within};
 use serde_json::Value;
 use support::{Folder, arena, builtin, command};
 
@@ -28,10 +28,15 @@ impl Drop for Stop<'_> {
 
 /// Has clients talk to a server; gives what they found.
 fn served<T>(folder: &Folder, clients: impl FnOnce(SocketAddr) -> T) -> T {
+    served_within(ClientLimits::default(), folder, clients)
+}
+
+/// The same, with these bounds for clients.
+fn served_within<T>(limits: ClientLimits, folder: &Folder, clients: impl FnOnce(SocketAddr) -> T) -> T {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let (address, stop, arena) = (listener.local_addr().unwrap(), AtomicBool::new(false), arena(&folder.0));
     thread::scope(|scope| {
-        let server = scope.spawn(|| serve(&listener, arena, &stop));
+        let server = scope.spawn(|| serve_within(limits, &listener, arena, &stop));
         let ending = Stop(&stop);
         let found = clients(address);
         drop(ending);
@@ -109,6 +114,105 @@ fn clients_beyond_the_most_are_sent_away() {
         }
         assert_eq!(connect(address).read(&mut [0]).unwrap_or(0), 0);
         assert_eq!(ask(&mut clients[7], &[])["lastActionSuccess"], "ArenaUnavailable");
+    });
+}
+
+const AT_ONCE: Duration = Duration::from_millis(50);
+
+/// Waits until the server has closed a connection.
+fn wait_for_end(stream: &mut TcpStream) {
+    match stream.read(&mut [0; 4096]) {
+        Ok(0) => {}
+        Ok(_) => wait_for_end(stream),
+        Err(error) => assert_ne!(error.kind(), std::io::ErrorKind::WouldBlock, "the connection stays open"),
+    }
+}
+
+#[test]
+fn clients_that_say_nothing_lock_nobody_out() {
+    let folder = Folder::new();
+    served(&folder, |address| {
+        let mut thinking = connect(address);
+        assert_eq!(ask(&mut thinking, &[])["lastActionSuccess"], "ArenaUnavailable");
+        let mut silent: Vec<TcpStream> = (0..40).map(|_| connect(address)).collect();
+        for stream in &mut silent {
+            // Those that were sent away take nothing.
+            let _ = stream.write_all(&[9, 0, 0]);
+        }
+        let mut newcomer = connect(address);
+        assert_eq!(ask(&mut newcomer, &[])["lastActionSuccess"], "ArenaUnavailable");
+        wait_for_end(&mut silent[0]);
+        // Who has spoken keeps its place.
+        assert_eq!(ask(&mut thinking, &[])["lastActionSuccess"], "ArenaUnavailable");
+    });
+}
+
+#[test]
+fn a_client_may_think_as_long_as_it_likes_until_its_place_is_wanted() {
+    let folder = Folder::new();
+    let limits = ClientLimits {
+        most_clients: 2,
+        first_message: AT_ONCE,
+        message: AT_ONCE,
+        gives_way_after: Duration::ZERO,
+        ..ClientLimits::default()
+    };
+    served_within(limits, &folder, |address| {
+        let mut thinking = connect(address);
+        ask(&mut thinking, &[]);
+        // By the time that a silent one was sent away, the thinking one is late by any time-out of a message.
+        wait_for_end(&mut connect(address));
+        wait_for_end(&mut connect(address));
+        assert_eq!(ask(&mut thinking, &[])["lastActionSuccess"], "ArenaUnavailable");
+        let (mut second, mut third) = (connect(address), None);
+        ask(&mut second, &[]);
+        ask(third.insert(connect(address)), &[]);
+        wait_for_end(&mut thinking);
+        ask(&mut second, &[]);
+    });
+}
+
+#[test]
+fn a_message_that_does_not_come_whole_ends_its_connection() {
+    let folder = Folder::new();
+    served_within(ClientLimits { message: AT_ONCE, ..ClientLimits::default() }, &folder, |address| {
+        let mut half = connect(address);
+        ask(&mut half, &[]);
+        half.write_all(&[100, 0, 0, 0, b'[']).unwrap();
+        wait_for_end(&mut half);
+    });
+}
+
+#[test]
+fn unfinished_messages_share_a_bounded_memory() {
+    let folder = Folder::new();
+    let limits = ClientLimits { own_bytes: 1 << 20, shared_bytes: 8 << 20, ..ClientLimits::default() };
+    served_within(limits, &folder, |address| {
+        let mut long = u32::try_from(LONGEST).unwrap().to_le_bytes().to_vec();
+        long.resize(6 << 20, b' ');
+        let mut held = connect(address);
+        held.write_all(&long).unwrap();
+        let mut refused = connect(address);
+        long.resize(16 << 20, b' ');
+        let _ = refused.write_all(&long);
+        let reply = receive(&mut refused);
+        assert!(reply["message"].as_str().unwrap().contains("8388608 bytes: try again later"), "{reply}");
+        // There is room for what is short.
+        let mut short = connect(address);
+        assert_eq!(ask(&mut short, &[])["lastActionSuccess"], "ArenaUnavailable");
+        drop(held);
+    });
+}
+
+#[test]
+fn a_client_that_takes_no_answer_is_lost() {
+    let folder = Folder::new();
+    served_within(ClientLimits { answer: AT_ONCE, ..ClientLimits::default() }, &folder, |address| {
+        let mut deaf = connect(address);
+        let batch = framed(b"[]");
+        // Answers are not read: at last it is found out, and what is sent then fails.
+        while deaf.write_all(&batch).is_ok() {}
+        assert_eq!(ask(&mut connect(address), &[])["lastActionSuccess"], "ArenaUnavailable");
     });
 }
 

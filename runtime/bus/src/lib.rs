@@ -38,7 +38,7 @@ pub use camera::{CameraId, CameraName, CameraNameError};
 pub use envelope::{Block, Envelope, monotonic_nanos, wall_nanos};
 pub use error::BusError;
 pub use heart::Heart;
-pub use inbox::{Inbox, Nonsense};
+pub use inbox::{Inbox, Nonsense, Pauses};
 pub use local::Local;
 pub use priority::{Urgency, give_way, go_first};
 pub use private::AccessError;

@@ -33,6 +33,8 @@ pub use state::{BodyRecord, GoalRecord, NoteRecord, ObjectRecord, StateHeader, S
 pub use step::{StepHeader, StepView};
 pub use tick::{Stage, TickHeader, TickMessage, TickView};
 
+pub use crate::text::LONGEST_TEXT_CHARS;
+
 /// Stands for "no object", "no body" and "no command" in records.
 pub const NONE: u32 = u32::MAX;
 
@@ -47,4 +49,20 @@ pub struct Malformed(pub &'static str);
 /// [`Malformed`], when the length is not the record's.
 pub fn read<T: bytemuck::Pod>(payload: &[u8]) -> Result<T, Malformed> {
     bytemuck::try_pod_read_unaligned(payload).map_err(|_| Malformed("not the length of its record"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_longest_text_is_kept_whole_in_any_script() {
+        for letter in ["a", "я", "語", "😀"] {
+            let text = letter.repeat(LONGEST_TEXT_CHARS);
+            let said = DialogMessage::new(DialogKind::Utterance, 0, 1, &text);
+            let mut answer = AnswerMessage::new(AnswerKind::Words);
+            answer.text = crate::Text::new(&text);
+            assert_eq!((said.header.text.as_str(), answer.text.as_str()), (text.as_str(), text.as_str()), "{letter}");
+        }
+    }
 }

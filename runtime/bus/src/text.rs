@@ -2,6 +2,10 @@
 
 use bytemuck::{Pod, Zeroable};
 
+/// The most characters (Unicode scalar values) of what a person says or writes at once. The page, its server and the
+/// messages have this one limit; 2,000 characters are some minutes of typing, and a page of an answer.
+pub const LONGEST_TEXT_CHARS: usize = 2000;
+
 /// At most `N` bytes of UTF-8; longer text is cut at a character's end.
 #[derive(Clone, Copy)]
 #[repr(C)]

@@ -120,8 +120,8 @@ impl Topic {
             Self::Events | Self::Commands => Some(1024),
             Self::Control | Self::Pulses => Some(128),
             Self::Steps => Some(512),
-            Self::Answers => Some(3072),
-            Self::Dialog => Some(48 << 10),
+            Self::Answers => Some(9 << 10),
+            Self::Dialog => Some(56 << 10),
             Self::Microphone | Self::Speech => Some(AudioView::bytes(AudioHeader::MOST_SAMPLES)),
             Self::Mission | Self::State | Self::Ticks | Self::Snapshots | Self::Frames(_) => None,
         }

@@ -14,7 +14,7 @@ use std::{
 use anyhow::Context as _;
 use cohabit_bus::{CameraId, Session, Shm, message::Control};
 use cohabit_cdf::BodyRequest;
-use cohabit_dialog::{Asking, DialogConfig, DialogError, Drivable, Endpoint, Identity, Knows, Questionnaire};
+use cohabit_dialog::{Asking, DialogConfig, DialogError, Drivable, Endpoint, HostName, Identity, Knows, Questionnaire};
 use cohabit_engine::{Appearance, BuildError, CameraPlan, SessionPlan, Simulator};
 use cohabit_record::{Branch, LogError, RecordError, Recorder, SessionFacts};
 use cohabit_render::MeshLibrary;
@@ -235,9 +235,13 @@ pub struct Listening {
     /// The port of the page; 0 takes any that is free
     #[arg(long, default_value_t = 8765)]
     pub port: u16,
-    /// The address the page listens on; beyond this machine it asks for the session's token
+    /// The address the page listens on, such as 0.0.0.0 for other machines
     #[arg(long, default_value = "127.0.0.1")]
     pub listen: IpAddr,
+    /// A name by which browsers may ask for the page besides those of this machine, such as that of a proxy, with its port
+    /// if it is another one; as often as needed
+    #[arg(long = "host", value_name = "NAME[:PORT]")]
+    pub hosts: Vec<HostName>,
     /// Serve the page by HTTPS: to pages from other machines browsers give a microphone only so. Without a certificate of
     /// yours one is made, which browsers ask about once
     #[arg(long)]
@@ -380,6 +384,7 @@ impl Dialog {
             cameras: message.cameras,
             identity: self.listening.identity()?,
             listen: SocketAddr::new(self.listening.listen, self.listening.port),
+            hosts: self.listening.hosts.clone(),
             knows: self.listening.knows,
             asking: self.listening.ask,
             interpreter: Endpoint::from_environment().map_err(bad_input)?.map(|model| Box::new(model) as _),

@@ -85,7 +85,9 @@ impl Role {
         let names = listening.names.iter().flat_map(|name| ["--name".to_owned(), name.to_string()]);
         let robots = robots.iter().flat_map(|body| ["--robot".to_owned(), body.to_string()]);
         let questionnaires = listening.questionnaires.iter().map(|name| format!("--questionnaire={name}"));
+        let hosts = listening.hosts.iter().map(|host| format!("--host={host}"));
         let arguments = arguments.map(str::to_owned).into_iter().chain(names).chain(robots).chain(questionnaires);
+        let arguments = arguments.chain(hosts);
         let arguments = arguments.chain(listening.voice.arguments());
         let tls = listening.tls_arguments();
         Self { name: "dialog", arguments: arguments.map(OsString::from).chain(tls).collect() }

@@ -29,10 +29,10 @@ const FIELDS: [Field; 13] = [
     Field::new("tick_s", Real, "s", "simulated time at which it was answered"),
 ];
 
-/// All answers of these sessions; of several to one question by one person the newest.
+/// All answers of these sessions; of several to one question by one person the first, which the page's server took.
 pub fn table(played: &[Played]) -> Table {
     let rows =
-        played.iter().flat_map(|played| newest(&played.log.answers).into_values().map(|entry| row(played, entry)));
+        played.iter().flat_map(|played| first(&played.log.answers).into_values().map(|entry| row(played, entry)));
     Table {
         name: "questionnaires",
         meaning: "a person's answer to a question of a questionnaire",
@@ -42,8 +42,10 @@ pub fn table(played: &[Played]) -> Table {
 }
 
 /// By person, questionnaire and question.
-fn newest(answers: &[AnswerEntry]) -> BTreeMap<(u32, &str, u32), &AnswerEntry> {
-    answers.iter().map(|entry| ((entry.person, entry.questionnaire.as_str(), entry.item), entry)).collect()
+fn first(answers: &[AnswerEntry]) -> BTreeMap<(u32, &str, u32), &AnswerEntry> {
+    let keyed = answers.iter().map(|entry| ((entry.person, entry.questionnaire.as_str(), entry.item), entry));
+    // Of equal keys the last one stays.
+    keyed.rev().collect()
 }
 
 fn row(played: &Played, entry: &AnswerEntry) -> Vec<Cell> {
@@ -76,7 +78,7 @@ impl Played {
     /// weights are scored.
     pub(crate) fn score(&self, questionnaire: &str) -> Option<f64> {
         let mut persons = BTreeMap::<u32, Vec<f64>>::new();
-        for ((person, name, _), entry) in newest(&self.log.answers) {
+        for ((person, name, _), entry) in first(&self.log.answers) {
             if let (true, Some(part)) = (name == questionnaire, part(entry)) {
                 persons.entry(person).or_default().push(part);
             }

@@ -16,7 +16,7 @@ pub enum AnswerKind {
     Words = 3,
 }
 
-/// A person's answer to one question of a questionnaire; the newest to a question counts.
+/// A person's answer to one question of a questionnaire; the first to a question counts.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct AnswerMessage {
@@ -41,7 +41,7 @@ pub struct AnswerMessage {
     /// What was asked.
     pub question: Text<510>,
     /// The words, or what was chosen says.
-    pub text: Text<2046>,
+    pub text: Text<8006>,
 }
 
 impl AnswerMessage {

@@ -68,7 +68,7 @@ pub struct DialogHeader {
     /// that frame shown by a page; 0 where it did not happen (yet). Of [`DialogKind::Spoken`], of other moments.
     pub stamps: [u64; 5],
     /// What is said.
-    pub text: Text<2046>,
+    pub text: Text<8006>,
 }
 
 /// One step of a plan; or an answer that a question offers, which is to look at an object, or to say something.

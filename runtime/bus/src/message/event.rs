@@ -44,7 +44,7 @@ pub enum EventKind {
     Clock = 16,
     /// In lock-step, somebody was not waited for any longer: `number` of times in all, and a sentence.
     TimedOut = 17,
-    /// A peer sent nonsense and is not heard any more: a sentence.
+    /// A peer sent nonsense and is not heard for a while: a sentence.
     CutOff = 18,
 }
 

@@ -12,7 +12,7 @@ use std::{
 
 use anyhow::Context as _;
 use cohabit_bus::Local;
-use cohabit_dialog::{ScreeningConfig, screen};
+use cohabit_dialog::{HostName, ScreeningConfig, screen};
 use cohabit_engine::{CameraPlan, Projector, Replayer, replay::TICK_S};
 use cohabit_record::SessionEntry;
 use cohabit_render::MeshLibrary;
@@ -28,9 +28,13 @@ pub struct PageOptions {
     /// The port of the page; 0 takes any that is free
     #[arg(long, default_value_t = 8765, requires = "page")]
     port: u16,
-    /// The address the page listens on; beyond this machine it asks for a token
+    /// The address the page listens on, such as 0.0.0.0 for other machines
     #[arg(long, default_value = "127.0.0.1", requires = "page")]
     listen: IpAddr,
+    /// A name by which browsers may ask for the page besides those of this machine, such as that of a proxy, with its port
+    /// if it is another one; as often as needed
+    #[arg(long = "host", value_name = "NAME[:PORT]", requires = "page")]
+    hosts: Vec<HostName>,
 }
 
 impl PageOptions {
@@ -47,6 +51,7 @@ impl PageOptions {
             layout: &plan.layout,
             catalog: Arc::clone(&plan.catalog),
             listen: SocketAddr::new(self.listen, self.port),
+            hosts: self.hosts.clone(),
             robots: robots(session),
             names: names(session),
             cameras: cameras.iter().map(CameraPlan::record).collect(),
