@@ -396,8 +396,10 @@ impl Conversation<'_> {
             Fault::Offer { text, .. } => Understanding::refusal(text),
             Fault::HandFull { held, .. } => {
                 context.pending = Some(Pending::PutDown { clauses });
+                // What is asked for before may have it take that first.
+                let holds = if self.scene.robot.held == Some(held) { "I am holding" } else { "I will be holding" };
                 let held = describe::short(self.catalog, self.scene, held);
-                ask::confirmation(format!("I am holding {held}. Shall I put it down first?"))
+                ask::confirmation(format!("{holds} {held}. Shall I put it down first?"))
             }
             Fault::Direction => {
                 context.pending = Some(Pending::Direction { clauses, clause: 0 });

@@ -212,7 +212,7 @@ impl Language {
     #[must_use]
     pub fn report(&self, step: &Step, status: Status, detail: &str, scene: &Known) -> String {
         if status.is_success() {
-            return report::success(&self.catalog, scene, step, status);
+            return report::success(&self.catalog, &self.devices, scene, step, status);
         }
         let planner = remedy::planner(&self.catalog, &self.devices, self.judge(), scene, Focus::default());
         let remedy = remedy::remedy(planner, step, status);
