@@ -172,6 +172,8 @@ pub(crate) struct Lexicon {
     pub(crate) verbs: PhraseTable<Vec<Intent>>,
     /// The first words of all verbs.
     pub(crate) verb_heads: BTreeSet<String>,
+    /// Those that say no more than that something is to be changed or destroyed: nobody is taken to have meant one by another word.
+    pub(crate) risky_verbs: BTreeSet<String>,
     pub(crate) manners: PhraseTable<Manner>,
     /// First words of a verb whose last word may stand after the object; that word; the intent.
     pub(crate) separable: Vec<(Vec<String>, String, Intent)>,
