@@ -69,6 +69,7 @@ mod sight;
 mod sound;
 mod spelling;
 mod spoken;
+mod stop;
 mod swap;
 mod table;
 mod tail;
@@ -94,6 +95,7 @@ pub use memory::{Knows, Lessons, Memory};
 pub use oracle::Oracle;
 pub use sight::Gaze;
 pub use spoken::{SpokenNames, says_stop, says_stop_already};
+pub use stop::{Firmness, Stop, find_stop};
 pub use understanding::{Asking, Clarification, Step, Understanding};
 
 use crate::{

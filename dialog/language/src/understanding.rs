@@ -46,6 +46,8 @@ pub enum Understanding {
     Stop {
         /// What it says.
         reply: String,
+        /// What else was asked of it, once it has stopped.
+        then: Option<Box<Self>>,
     },
 }
 
