@@ -157,6 +157,12 @@ impl Conversation<'_> {
         if let Some(understanding) = self.small_talk(words, context) {
             return understanding;
         }
+        if let Some(understanding) = self.answered_yes_or_no(words, context) {
+            return understanding;
+        }
+        if let Some(understanding) = self.on_condition(words, context) {
+            return understanding;
+        }
         // `when you get a minute, bring me the knife` asks for no time.
         let is_asked_to = |question: &question::Question| {
             let is_when = words

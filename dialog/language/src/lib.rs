@@ -28,6 +28,7 @@ mod asked;
 mod carry;
 mod chatter;
 mod clause;
+mod condition;
 mod confidence;
 mod context;
 mod conversation;
@@ -80,6 +81,7 @@ mod undo;
 mod verbless;
 mod wish;
 mod words;
+mod yes_no;
 
 use std::sync::Arc;
 

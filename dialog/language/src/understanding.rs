@@ -74,6 +74,20 @@ impl Understanding {
         Self::Answer { text: text.into(), highlight, holds: Some(holds) }
     }
 
+    /// The same, said after something else.
+    pub(crate) fn after(self, said: &str) -> Self {
+        let joined = |text: String| format!("{said} {text}");
+        match self {
+            Self::Plan { steps, reply } => Self::Plan { steps, reply: joined(reply) },
+            Self::Question { kind, about, text, candidates, options } => {
+                Self::Question { kind, about, text: joined(text), candidates, options }
+            }
+            Self::Answer { text, highlight, holds } => Self::Answer { text: joined(text), highlight, holds },
+            Self::Refusal { text, is_lost } => Self::Refusal { text: joined(text), is_lost },
+            Self::Stop { reply, then } => Self::Stop { reply: joined(reply), then },
+        }
+    }
+
     /// Whether it leaves what was asked denied, or open.
     pub(crate) const fn denies(&self) -> bool {
         !matches!(self, Self::Answer { holds: None | Some(true), .. })

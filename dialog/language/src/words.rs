@@ -144,6 +144,8 @@ impl Lexicon {
             wishes: parse(include_str!("../data/wishes.toml")),
             amends: parse(include_str!("../data/amends.toml")),
             chatter: parse(include_str!("../data/chatter.toml")),
+            ifs: parse(include_str!("../data/conditions.toml")),
+            yes_no: parse(include_str!("../data/yes_no.toml")),
             ..Self::default()
         };
         lexicon.add_words(&file);
