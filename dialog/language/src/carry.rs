@@ -4,13 +4,14 @@ use cohabit_cdf::{Action, ClassId, ObjectClass, ObjectId, Property, RoomId, Verb
 
 use crate::{
     context::Role,
-    ground::Want,
+    ground::{Miss, Want},
     intent::Intent,
     known::KnownObject,
     lexicon::{Naming, Preposition, Pronoun},
     phrase::{Phrase, Place},
     plan::{Fault, Planner},
     settle::{Goal, Settled},
+    understanding::Step,
 };
 
 /// The least area that is a place to put things down, m².
@@ -164,7 +165,8 @@ impl Planner<'_> {
         }
         let is_it = |phrase: &Phrase| phrase.pronoun.is_some();
         if settled.intent == Intent::Drop && self.scene.robot.held.is_none() && settled.objects.iter().all(is_it) {
-            return Err(Fault::Cannot("I am not holding anything.".to_owned()));
+            // `put it on the table, so that your hands are free`: they are, once that is done.
+            return if self.has_put_down() { Ok(()) } else { Err(self.empty_handed()) };
         }
         let object = self.what_to_place(settled)?;
         // Taken before the goal is grounded: `put it on the table` means a table near where it is.
@@ -217,7 +219,21 @@ impl Planner<'_> {
         // `the milk, put on the counter`
         let spoken = self.focus.recent.first().copied().filter(|id| self.has(*id, Property::Pickupable));
         let meant = self.scene.robot.held.or(spoken);
-        meant.ok_or_else(|| Fault::Cannot("I am not holding anything.".to_owned()))
+        meant.ok_or_else(|| self.empty_handed())
+    }
+
+    /// Whether this plan empties the hand.
+    fn has_put_down(&self) -> bool {
+        let puts_down =
+            |step: &Step| matches!(step.action, Action::Place { .. } | Action::Interact { verb: Verb::Throw, .. });
+        self.scene.robot.held.is_none() && self.steps.iter().any(puts_down)
+    }
+
+    /// That there is nothing to put down: now, or once this plan has come so far.
+    fn empty_handed(&self) -> Fault {
+        let text =
+            if self.has_put_down() { "I will not be holding anything then." } else { "I am not holding anything." };
+        Fault::Cannot(text.to_owned())
     }
 
     fn place_at(&mut self, object: ObjectId, goal: &Goal, settled: &Settled) -> Result<(), Fault> {
@@ -366,7 +382,7 @@ impl Planner<'_> {
     }
 
     pub(crate) fn add_break(&mut self, settled: &Settled) -> Result<(), Fault> {
-        let objects = self.find_objects(settled, &Want::object(Intent::Break))?;
+        let objects = self.objects_to_break(settled)?;
         let tool = match &settled.tool {
             Some((phrase, role)) if phrase.pronoun != Some(Pronoun::Place) => {
                 Some(self.find_one(phrase, &Want::place(Intent::Use, &[], None), Some(*role))?)
@@ -384,6 +400,15 @@ impl Planner<'_> {
             self.interact(Verb::Break, object, "breaking");
         }
         Ok(())
+    }
+
+    /// What is to be broken. Who names a tool means to break it: the only thing that it may be is not asked about again.
+    fn objects_to_break(&mut self, settled: &Settled) -> Result<Vec<ObjectId>, Fault> {
+        let names_tool = settled.tool.as_ref().is_some_and(|(phrase, _)| !phrase.is_empty());
+        match self.find_objects(settled, &Want::object(Intent::Break)) {
+            Err(Fault::Miss { miss: Miss::Several(ids), .. }) if names_tool && ids.len() == 1 => Ok(ids),
+            found => found,
+        }
     }
 
     /// A hammer: the one in the hand, or the nearest.

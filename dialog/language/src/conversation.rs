@@ -27,6 +27,7 @@ use crate::{
     question::{self, QuestionKind},
     remedy, reply,
     search::Search,
+    stop::{self, Firmness},
     tidy,
     token::{self, MAX_CHARS},
     understanding::{Asking, Step, Understanding},
@@ -45,6 +46,35 @@ pub(crate) struct Conversation<'a> {
 
 impl Conversation<'_> {
     pub(crate) fn understand(&self, utterance: &str, context: &mut Context) -> Understanding {
+        match stop::find_stop(utterance).filter(|stop| is_heeded(stop.firmness, context)) {
+            Some(stop) => self.stopped(&stop.rest, context),
+            None => self.understand_said(utterance, context),
+        }
+    }
+
+    /// It stops, and then does what else was asked for.
+    fn stopped(&self, rest: &str, context: &mut Context) -> Understanding {
+        context.pending = None;
+        context.running.clear();
+        context.failed = None;
+        context.search = None;
+        let then = self.asks_for_anything(rest).then(|| Box::new(self.understand_said(rest, context)));
+        Understanding::Stop { reply: STOPS.to_owned(), then }
+    }
+
+    /// Whether there is a request or a question in a text, rather than the reason for a stop.
+    fn asks_for_anything(&self, text: &str) -> bool {
+        if text.is_empty() {
+            return false;
+        }
+        let (words, _) = self.lexicon.normalise(text);
+        let words = tidy::tidied(self.lexicon, &words);
+        let asks = |part: &Part| matches!(part, Part::Clause(clause) if !matches!(clause.intent, Intent::Stop | Intent::Mention) && !clause.is_wish && chatter::is_clear(clause));
+        let is_question = || question::read(self.lexicon, &words).is_some_and(|one| one.kind != QuestionKind::Unknown);
+        clause::parts(self.lexicon, self.catalog, &words).iter().any(asks) || is_question()
+    }
+
+    fn understand_said(&self, utterance: &str, context: &mut Context) -> Understanding {
         if utterance.chars().nth(MAX_CHARS).is_some() {
             return Understanding::refusal("That is too much for me at once. Please say it in a few short sentences.");
         }
@@ -96,11 +126,7 @@ impl Conversation<'_> {
     fn understand_words(&self, words: Vec<String>, context: &mut Context) -> Understanding {
         let parts = clause::parts(self.lexicon, self.catalog, &words);
         if stops(&parts) {
-            context.pending = None;
-            context.running.clear();
-            context.failed = None;
-            context.search = None;
-            return Understanding::Stop { reply: "OK, I stop.".to_owned() };
+            return self.stopped("", context);
         }
         let open = context.pending.clone();
         if let Some(understanding) = self.answer_to_pending(&words, &parts, context) {
@@ -129,6 +155,12 @@ impl Conversation<'_> {
     /// What was said, if it is no answer to a question of the robot's.
     fn fresh(&self, words: &[String], parts: Vec<Part>, context: &mut Context) -> Understanding {
         if let Some(understanding) = self.small_talk(words, context) {
+            return understanding;
+        }
+        if let Some(understanding) = self.answered_yes_or_no(words, context) {
+            return understanding;
+        }
+        if let Some(understanding) = self.on_condition(words, context) {
             return understanding;
         }
         // `when you get a minute, bring me the knife` asks for no time.
@@ -396,8 +428,10 @@ impl Conversation<'_> {
             Fault::Offer { text, .. } => Understanding::refusal(text),
             Fault::HandFull { held, .. } => {
                 context.pending = Some(Pending::PutDown { clauses });
+                // What is asked for before may have it take that first.
+                let holds = if self.scene.robot.held == Some(held) { "I am holding" } else { "I will be holding" };
                 let held = describe::short(self.catalog, self.scene, held);
-                ask::confirmation(format!("I am holding {held}. Shall I put it down first?"))
+                ask::confirmation(format!("{holds} {held}. Shall I put it down first?"))
             }
             Fault::Direction => {
                 context.pending = Some(Pending::Direction { clauses, clause: 0 });
@@ -569,13 +603,24 @@ impl Conversation<'_> {
     }
 }
 
-/// Whether it is to stop: not by waiting where it was told to go.
+/// What it says when it stops.
+const STOPS: &str = "OK, I stop.";
+
+/// Whether a stop is meant as one: "leave it" may answer the robot's question, and "never mind" says nothing to a robot that
+/// does nothing.
+fn is_heeded(firmness: Firmness, context: &Context) -> bool {
+    match firmness {
+        Firmness::Firm => true,
+        Firmness::Weak => context.pending.is_none(),
+        Firmness::Dismissal => context.pending.is_none() && (!context.running.is_empty() || context.search.is_some()),
+    }
+}
+
+/// Whether nothing but to stop is asked for.
 fn stops(parts: &[Part]) -> bool {
-    let asked: Vec<&Clause> =
-        parts.iter().filter_map(|part| if let Part::Clause(clause) = part { Some(clause) } else { None }).collect();
-    let waits = |clause: &Clause| clause.verb.starts_with("wait") || clause.verb.starts_with("stay");
-    let begins = asked.first().is_some_and(|first| first.intent == Intent::Stop);
-    asked.iter().any(|clause| clause.intent == Intent::Stop && (begins || !waits(clause)))
+    let mut asked =
+        parts.iter().filter_map(|part| if let Part::Clause(clause) = part { Some(clause) } else { None }).peekable();
+    asked.peek().is_some() && asked.all(|clause| clause.intent == Intent::Stop)
 }
 
 /// Whether it does more than look and point.

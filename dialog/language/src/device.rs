@@ -64,7 +64,12 @@ impl Planner<'_> {
         if wanted == Some(is_on) {
             let state = if is_on { "on" } else { "off" };
             self.focus.mention(object);
-            self.notes.push(format!("{} is already {state}", self.the(object)));
+            self.notes.push(self.already(object, state));
+            return Ok(());
+        }
+        // `I want to see the laser fire, turn it on`
+        let toggles = Action::Interact { verb: Verb::Toggle, object: worker };
+        if wanted == Some(true) && self.steps.last().is_some_and(|step| step.action == toggles) {
             return Ok(());
         }
         if wanted != Some(false) {
@@ -81,6 +86,16 @@ impl Planner<'_> {
             self.focus.mention(object);
         }
         Ok(())
+    }
+
+    /// That it is so already. A machine that runs for a moment was on a moment ago, and its screen may be lit yet.
+    fn already(&self, object: ObjectId, state: &str) -> String {
+        let the = self.the(object);
+        let is_lit = self.scene.object(object).is_some_and(|known| self.devices.is_lit(known.class));
+        if is_lit && state == "off" {
+            return format!("{the} is off: it runs for a moment only, and its screen stays lit");
+        }
+        format!("{the} is already {state}")
     }
 
     fn is_button(&self, class: ClassId) -> bool {

@@ -125,6 +125,8 @@ fn is_question(lexicon: &Lexicon, words: &[String]) -> bool {
     question::read(lexicon, words).is_some_and(|question| question.kind != QuestionKind::Unknown)
 }
 
+/// What sounds the same: `brake`.
+const HOMOPHONE: f32 = 0.02;
 /// What sounds all but the same.
 const SAME: f32 = 0.36;
 /// What an ordinary word, which people say as well, may differ by.
@@ -162,8 +164,17 @@ fn guesses(lexicon: &Lexicon, words: &[String]) -> Vec<Guess> {
             if limit == 0.0 {
                 continue;
             }
+            let is_english = heard.iter().all(|word| lexicon.vocabulary.is_ordinary(word));
+            // No verb that changes things is made of others, and none at all of a verb that the robot merely does not know.
+            let may_be = |cost: f32, meant: &str| {
+                !lexicon.verb_heads.contains(meant)
+                    || lexicon.is_noun(meant)
+                    || cost <= HOMOPHONE
+                    || !lexicon.risky_verbs.contains(meant) && cost <= NEARLY && !is_english
+            };
             let fits = |(cost, meant): &(f32, &str)| {
                 *cost <= limit
+                    && may_be(*cost, meant)
                     && !heard.iter().any(|word| word == meant)
                     && (length == 1 && begins || !lexicon.verb_heads.contains(*meant) || lexicon.is_noun(meant))
                     && (length == 1 || meant.len() > SHORTEST_JOINED)

@@ -116,6 +116,27 @@ impl Intent {
         )
     }
 
+    /// Whether it changes or destroys what it is done to.
+    pub(crate) const fn changes(self) -> bool {
+        matches!(
+            self,
+            Self::Break
+                | Self::Throw
+                | Self::Pour
+                | Self::Fill
+                | Self::Clean
+                | Self::Heat
+                | Self::Cool
+                | Self::Repair
+                | Self::Color
+                | Self::Print
+                | Self::Toast
+                | Self::Carrot
+                | Self::Resize
+                | Self::Brew
+        )
+    }
+
     /// The plain form of the verb, for questions and refusals.
     pub(crate) const fn verb(self) -> &'static str {
         match self {

@@ -6,8 +6,9 @@ use cohabit_cdf::{ClassId, Fluid, RoomId, state::StateFlag};
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    amend::Amends, chatter::Chatter, inflect, intent::Intent, misheard::Misheard, question::QuestionKind,
-    sound::Sounding, spelling::Vocabulary, table::PhraseTable, token, wish::Wishes,
+    amend::Amends, chatter::Chatter, condition::Conditions, inflect, intent::Intent, misheard::Misheard,
+    question::QuestionKind, sound::Sounding, spelling::Vocabulary, table::PhraseTable, token, wish::Wishes,
+    yes_no::YesNo,
 };
 
 /// A class that a word may mean, and how much it means it: 1 for its name, less for words further down its list.
@@ -172,6 +173,8 @@ pub(crate) struct Lexicon {
     pub(crate) verbs: PhraseTable<Vec<Intent>>,
     /// The first words of all verbs.
     pub(crate) verb_heads: BTreeSet<String>,
+    /// Those that say no more than that something is to be changed or destroyed: nobody is taken to have meant one by another word.
+    pub(crate) risky_verbs: BTreeSet<String>,
     pub(crate) manners: PhraseTable<Manner>,
     /// First words of a verb whose last word may stand after the object; that word; the intent.
     pub(crate) separable: Vec<(Vec<String>, String, Intent)>,
@@ -193,6 +196,8 @@ pub(crate) struct Lexicon {
     pub(crate) wishes: Wishes,
     pub(crate) amends: Amends,
     pub(crate) chatter: Chatter,
+    pub(crate) ifs: Conditions,
+    pub(crate) yes_no: YesNo,
     /// How the words sound that may be taken for others.
     pub(crate) sounds: Sounding,
     pub(crate) misheard: Misheard,

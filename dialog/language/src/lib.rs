@@ -28,6 +28,7 @@ mod asked;
 mod carry;
 mod chatter;
 mod clause;
+mod condition;
 mod confidence;
 mod context;
 mod conversation;
@@ -69,6 +70,7 @@ mod sight;
 mod sound;
 mod spelling;
 mod spoken;
+mod stop;
 mod swap;
 mod table;
 mod tail;
@@ -79,6 +81,7 @@ mod undo;
 mod verbless;
 mod wish;
 mod words;
+mod yes_no;
 
 use std::sync::Arc;
 
@@ -94,6 +97,7 @@ pub use memory::{Knows, Lessons, Memory};
 pub use oracle::Oracle;
 pub use sight::Gaze;
 pub use spoken::{SpokenNames, says_stop, says_stop_already};
+pub use stop::{Firmness, Stop, find_stop};
 pub use understanding::{Asking, Clarification, Step, Understanding};
 
 use crate::{
@@ -212,7 +216,7 @@ impl Language {
     #[must_use]
     pub fn report(&self, step: &Step, status: Status, detail: &str, scene: &Known) -> String {
         if status.is_success() {
-            return report::success(&self.catalog, scene, step, status);
+            return report::success(&self.catalog, &self.devices, scene, step, status);
         }
         let planner = remedy::planner(&self.catalog, &self.devices, self.judge(), scene, Focus::default());
         let remedy = remedy::remedy(planner, step, status);

@@ -40,6 +40,8 @@ pub(crate) struct Devices {
     cartridges: Vec<(ClassId, ClassId)>,
     shut_to_run: Vec<ClassId>,
     stays_on: Vec<ClassId>,
+    /// Those of the others that have a screen, which is lit while they have power.
+    is_lit: Vec<ClassId>,
     worked: Vec<(ClassId, Vec<ClassId>)>,
     pub(crate) hammers: Vec<ClassId>,
 }
@@ -92,6 +94,7 @@ struct Doors {
 #[derive(Deserialize)]
 struct Running {
     stays_on: Vec<String>,
+    lit: Vec<String>,
 }
 
 #[derive(Deserialize)]
@@ -135,6 +138,7 @@ impl Devices {
                 .collect(),
             shut_to_run: classes(&file.doors.shut_to_run),
             stays_on: classes(&file.running.stays_on),
+            is_lit: classes(&file.running.lit),
             worked: file
                 .worked
                 .iter()
@@ -157,6 +161,11 @@ impl Devices {
     /// Whether it runs only with its door shut.
     pub(crate) fn must_be_shut(&self, class: ClassId) -> bool {
         self.shut_to_run.contains(&class)
+    }
+
+    /// Whether its screen is lit although it runs for a moment only.
+    pub(crate) fn is_lit(&self, class: ClassId) -> bool {
+        self.is_lit.contains(&class)
     }
 
     /// Whether it stays on when switched on.

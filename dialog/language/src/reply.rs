@@ -62,5 +62,5 @@ pub(crate) fn unclear(unknown: &[String]) -> Understanding {
         return Understanding::lost(format!("I did not understand that. {HINT}"));
     }
     let noun = if quoted.len() == 1 { "the word" } else { "the words" };
-    Understanding::lost(format!("I do not know {noun} {}. {HINT}", describe::list(&quoted, "and")))
+    Understanding::lost(format!("I do not know {noun} {}. What shall I do? {HINT}", describe::list(&quoted, "and")))
 }

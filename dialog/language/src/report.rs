@@ -2,10 +2,10 @@
 
 use cohabit_cdf::{Action, Catalog, GoToTarget, ObjectId, Status, Verb, state::StateFlag};
 
-use crate::{describe, known::Known, understanding::Step};
+use crate::{describe, known::Known, process::Devices, understanding::Step};
 
 /// What is said after success: what is so now.
-pub(crate) fn success(catalog: &Catalog, scene: &Known, step: &Step, status: Status) -> String {
+pub(crate) fn success(catalog: &Catalog, devices: &Devices, scene: &Known, step: &Step, status: Status) -> String {
     let the = |id: ObjectId| describe::short(catalog, scene, id);
     if status == Status::AlternateNavigationUsed {
         return "I got as close as I could.".to_owned();
@@ -24,7 +24,7 @@ pub(crate) fn success(catalog: &Catalog, scene: &Known, step: &Step, status: Sta
         },
         Action::GoTo { target: GoToTarget::Object(object) } => format!("I am at {}", the(object)),
         Action::GoTo { .. } => "I am there".to_owned(),
-        Action::Interact { verb, object } => interaction(&the(object), scene, step, verb, object),
+        Action::Interact { verb, object } => interaction(&the(object), devices, scene, step, verb, object),
         Action::Highlight { object } => format!("this is {}", describe::full(catalog, scene, object)),
         Action::LookAround => "I have looked around".to_owned(),
         Action::Stop => "I have stopped".to_owned(),
@@ -39,14 +39,14 @@ fn preposition(catalog: &Catalog, scene: &Known, id: ObjectId) -> &'static str {
     scene.object(id).map_or("on", |object| describe::inside(catalog, object.class))
 }
 
-fn interaction(the: &str, scene: &Known, step: &Step, verb: Verb, object: ObjectId) -> String {
+fn interaction(the: &str, devices: &Devices, scene: &Known, step: &Step, verb: Verb, object: ObjectId) -> String {
     match verb {
         Verb::Open => format!("{the} is open"),
         Verb::Close => format!("{the} is closed"),
         Verb::Break => format!("{the} is broken"),
         Verb::Scan => format!("I have scanned {the}"),
         Verb::Pour => format!("I have poured it into {the}"),
-        Verb::Toggle => toggled(the, scene, step, object),
+        Verb::Toggle => toggled(the, devices, scene, step, object),
         Verb::Throw => format!("I have thrown it at {the}"),
         Verb::Fill => "it is full now".to_owned(),
         Verb::Clean => "it is clean now".to_owned(),
@@ -57,14 +57,14 @@ fn interaction(the: &str, scene: &Known, step: &Step, verb: Verb, object: Object
     }
 }
 
-/// What was switched, and that it is on where that shows.
-fn toggled(the: &str, scene: &Known, step: &Step, id: ObjectId) -> String {
+/// What was switched, and that it is on where it stays so.
+fn toggled(the: &str, devices: &Devices, scene: &Known, step: &Step, id: ObjectId) -> String {
     let device = scene.object(id).and_then(|object| object.works);
     let is_on = [Some(id), device]
         .into_iter()
         .flatten()
         .filter_map(|id| scene.object(id))
-        .any(|object| object.has(StateFlag::Toggled));
+        .any(|object| object.has(StateFlag::Toggled) && devices.stays_on(object.class));
     let did = [("turning on", "turned on"), ("turning off", "turned off"), ("pressing", "pressed")]
         .into_iter()
         .find_map(|(doing, done)| step.says.starts_with(doing).then_some(done));

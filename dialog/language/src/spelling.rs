@@ -9,6 +9,8 @@ pub(crate) struct Vocabulary {
     plain: BTreeSet<String>,
     ordinary: BTreeSet<String>,
     talk: BTreeSet<String>,
+    verbs: BTreeSet<String>,
+    risky_verbs: BTreeSet<String>,
 }
 
 impl Vocabulary {
@@ -32,6 +34,11 @@ impl Vocabulary {
     /// Adds an ordinary word that nobody misspells for another, but a recogniser of speech may hear for one.
     pub(crate) fn learn_ordinary(&mut self, word: &str) {
         self.ordinary.insert(word.to_owned());
+    }
+
+    /// Notes that a word is a verb and nothing else: only a clear slip is taken for it, and none is for one that changes things.
+    pub(crate) fn learn_verb(&mut self, word: &str, changes: bool) {
+        if changes { &mut self.risky_verbs } else { &mut self.verbs }.insert(word.to_owned());
     }
 
     /// All words that were learnt.
@@ -169,19 +176,22 @@ impl Vocabulary {
         let limit = match word.len() {
             0..=2 => return None,
             3 => {
-                return self
-                    .meaningful
-                    .iter()
-                    .find(|known| known.len() == 3 && !self.talk.contains(*known) && is_swapped(word, known));
+                return self.meaningful.iter().find(|known| {
+                    known.len() == 3
+                        && !self.risky_verbs.contains(*known)
+                        && !self.talk.contains(*known)
+                        && is_swapped(word, known)
+                });
             }
             4..=6 => 1,
             _ => 2,
         };
         self.meaningful
             .iter()
+            .filter(|known| !self.risky_verbs.contains(*known))
             .filter(|known| !self.talk.contains(*known) && known.len() > 2 && known.len().abs_diff(word.len()) <= limit)
             .map(|known| (distance(word.as_bytes(), known.as_bytes()), known))
-            .filter(|(distance, _)| *distance <= limit)
+            .filter(|(distance, known)| *distance <= if self.verbs.contains(*known) { 1 } else { limit })
             .min_by_key(|(distance, known)| {
                 (*distance, !is_swapped(word, known), word.as_bytes().first() != known.as_bytes().first(), *known)
             })
@@ -248,6 +258,10 @@ mod tests {
             vocabulary.learn(word);
         }
         vocabulary.learn_plain("wall");
+        vocabulary.learn("heal");
+        vocabulary.learn_verb("heal", true);
+        vocabulary.learn("examine");
+        vocabulary.learn_verb("examine", false);
         let check = |word: &str, expected: &[&str]| assert_eq!(vocabulary.correct(word), expected, "{word:?}");
         check("micorwave", &["microwave"]);
         check("mircowave", &["microwave"]);
@@ -258,6 +272,10 @@ mod tests {
         check("wall", &["wall"]);
         check("pik", &["pik"]);
         check("zebra", &["zebra"]);
+        check("haul", &["haul"]);
+        check("heall", &["heall"]);
+        check("exmaine", &["examine"]);
+        check("eksamine", &["eksamine"]);
         check("öffne", &["öffne"]);
     }
 }

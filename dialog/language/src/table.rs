@@ -55,6 +55,11 @@ impl<T> PhraseTable<T> {
             .find_map(|length| self.meanings.get(&words[..length]).map(|meaning| (length, meaning)))
     }
 
+    /// How many words the longest phrase has.
+    pub(crate) const fn longest_phrase(&self) -> usize {
+        self.longest
+    }
+
     /// All phrases.
     pub(crate) fn phrases(&self) -> impl Iterator<Item = &[String]> {
         self.meanings.keys().map(Vec::as_slice)

@@ -46,6 +46,8 @@ pub enum Understanding {
     Stop {
         /// What it says.
         reply: String,
+        /// What else was asked of it, once it has stopped.
+        then: Option<Box<Self>>,
     },
 }
 
@@ -70,6 +72,20 @@ impl Understanding {
     /// An answer that says whether something is so.
     pub(crate) fn whether(holds: bool, text: impl Into<String>, highlight: Vec<ObjectId>) -> Self {
         Self::Answer { text: text.into(), highlight, holds: Some(holds) }
+    }
+
+    /// The same, said after something else.
+    pub(crate) fn after(self, said: &str) -> Self {
+        let joined = |text: String| format!("{said} {text}");
+        match self {
+            Self::Plan { steps, reply } => Self::Plan { steps, reply: joined(reply) },
+            Self::Question { kind, about, text, candidates, options } => {
+                Self::Question { kind, about, text: joined(text), candidates, options }
+            }
+            Self::Answer { text, highlight, holds } => Self::Answer { text: joined(text), highlight, holds },
+            Self::Refusal { text, is_lost } => Self::Refusal { text: joined(text), is_lost },
+            Self::Stop { reply, then } => Self::Stop { reply: joined(reply), then },
+        }
     }
 
     /// Whether it leaves what was asked denied, or open.

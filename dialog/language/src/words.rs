@@ -144,6 +144,8 @@ impl Lexicon {
             wishes: parse(include_str!("../data/wishes.toml")),
             amends: parse(include_str!("../data/amends.toml")),
             chatter: parse(include_str!("../data/chatter.toml")),
+            ifs: parse(include_str!("../data/conditions.toml")),
+            yes_no: parse(include_str!("../data/yes_no.toml")),
             ..Self::default()
         };
         lexicon.add_words(&file);
@@ -267,6 +269,14 @@ impl Lexicon {
                 }
             }
         }
+        let (mut risky, mut harmless) = (BTreeSet::new(), BTreeSet::new());
+        for verb in self.verbs.phrases() {
+            for intent in self.verbs.exact(verb).into_iter().flatten() {
+                let heads = if intent.changes() { &mut risky } else { &mut harmless };
+                heads.extend(verb.first().cloned());
+            }
+        }
+        self.risky_verbs = &risky - &harmless;
         add_all(&mut self.manners, &file.manners);
         let file: QuestionFile = parse(include_str!("../data/questions.toml"));
         for entry in file.questions {
@@ -353,6 +363,11 @@ impl Lexicon {
         self.kinds.iter().for_each(&mut learn);
         self.talk.words().chain(self.people.words()).for_each(|word| vocabulary.learn_talk(word));
         self.chat.words().for_each(|word| vocabulary.learn_plain(word));
+        self.verb_heads
+            .iter()
+            .filter(|verb| !self.is_noun(verb))
+            .for_each(|verb| vocabulary.learn_verb(verb, self.risky_verbs.contains(verb)));
+        include_str!("../data/verbs.txt").split_whitespace().for_each(|word| vocabulary.learn_ordinary(word));
         include_str!("../data/common.txt").split_whitespace().for_each(|word| vocabulary.learn_plain(word));
         include_str!("../data/ordinary.txt").split_whitespace().for_each(|word| vocabulary.learn_ordinary(word));
         self.known = Arc::new(vocabulary.words().cloned().collect());

@@ -132,7 +132,7 @@ fn replies_are_english_whatever_is_spoken_of() {
             let asked = request.replace("{}", reference);
             let understanding = talk.language.understand(&asked, &talk.scene, &mut talk.context);
             let said = match &understanding {
-                Understanding::Plan { reply, .. } | Understanding::Stop { reply } => reply.clone(),
+                Understanding::Plan { reply, .. } | Understanding::Stop { reply, .. } => reply.clone(),
                 Understanding::Question { text, .. }
                 | Understanding::Answer { text, .. }
                 | Understanding::Refusal { text, .. } => text.clone(),

@@ -468,9 +468,36 @@ impl Conversation {
                 self.say(turn, DialogKind::Reply, LineKind::Problem, &text, reactions);
                 reactions.push(Reaction::TurnEnded { turn, end: TurnEnd::Refused });
             }
-            Understanding::Stop { reply } => {
+            Understanding::Stop { reply, then } => self.stop(turn, number, reply, then, knowledge, reactions),
+        }
+    }
+
+    /// Stops, and says and does what else was asked for.
+    fn stop(
+        &mut self,
+        turn: u64,
+        number: u64,
+        reply: String,
+        then: Option<Box<Understanding>>,
+        knowledge: &Knowledge,
+        reactions: &mut Vec<Reaction>,
+    ) {
+        let stop = Step { action: Action::Stop, says: String::new() };
+        match then.map(|then| *then) {
+            Some(Understanding::Plan { mut steps, reply: does }) => {
+                steps.insert(0, stop);
+                let reply = format!("{reply} {does}");
+                self.react(turn, number, Understanding::Plan { steps, reply }, knowledge, reactions);
+            }
+            Some(then) => {
                 self.say(turn, DialogKind::Reply, LineKind::Say, &reply, reactions);
-                let stop = Step { action: Action::Stop, says: String::new() };
+                // The turn ends with what is said next, so nobody waits for the end of this plan.
+                reactions.push(Reaction::Bus(Box::new(self.plan_message(number, &[stop]))));
+                self.memory.turns = self.memory.turns.max(number) + 1;
+                self.react(turn, self.memory.turns, then, knowledge, reactions);
+            }
+            None => {
+                self.say(turn, DialogKind::Reply, LineKind::Say, &reply, reactions);
                 self.plan(number, Plan::new(turn, vec![stop]), reactions);
             }
         }
@@ -720,6 +747,32 @@ mod tests {
         conversation.hear_aloud(said, said, DOUBTED, &knowledge);
         let (_, reactions) = conversation.hear("go to the reception", &knowledge);
         assert!(plans(&reactions) && says(&reactions).contains("reception"), "{}", says(&reactions));
+    }
+
+    #[test]
+    fn a_stop_is_carried_out_before_what_else_was_said() {
+        let (mut conversation, knowledge) = (conversation(), knowledge());
+        let actions = |reactions: &[Reaction]| -> Vec<Vec<Action>> {
+            let messages = reactions.iter().filter_map(|reaction| match reaction {
+                Reaction::Bus(message) if message.header.kind() == Some(DialogKind::Plan) => Some(message),
+                _ => None,
+            });
+            messages
+                .map(|message| message.steps.iter().map(|step| Action::try_from(step.action).unwrap()).collect())
+                .collect()
+        };
+        conversation.hear("go to the main office", &knowledge);
+        let (_, reactions) = conversation.hear("Arre stop stop, go to the reception", &knowledge);
+        let [steps] = &actions(&reactions)[..] else { panic!("one plan: {reactions:?}") };
+        assert!(matches!(steps[..], [Action::Stop, Action::GoTo { .. }]), "{steps:?}");
+        assert!(says(&reactions).starts_with("OK, I stop. OK, going to the reception"), "{}", says(&reactions));
+        // What asks for no motion does not keep it from stopping.
+        conversation.hear("go to the main office", &knowledge);
+        let (_, reactions) = conversation.hear("stop! what are you holding?", &knowledge);
+        assert_eq!(actions(&reactions), [[Action::Stop]]);
+        assert_eq!(says(&reactions), "OK, I stop. My hand is empty.");
+        let ends = reactions.iter().filter(|reaction| matches!(reaction, Reaction::TurnEnded { .. })).count();
+        assert_eq!(ends, 1);
     }
 
     #[test]

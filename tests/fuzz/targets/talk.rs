@@ -45,7 +45,7 @@ fn check(understanding: &Understanding) {
             reply
         }
         Understanding::Question { text, .. } | Understanding::Answer { text, .. } | Understanding::Refusal { text, .. } => text,
-        Understanding::Stop { reply } => reply,
+        Understanding::Stop { reply, .. } => reply,
     };
     assert!(!says.is_empty());
 }

@@ -301,7 +301,8 @@ pub fn text(understanding: &Understanding, scene: &Known) -> String {
         Understanding::Question { text, .. } => format!("? {text}"),
         Understanding::Answer { text, .. } => format!("= {text}"),
         Understanding::Refusal { text, .. } => format!("! {text}"),
-        Understanding::Stop { .. } => "stop!".to_owned(),
+        Understanding::Stop { then: None, .. } => "stop!".to_owned(),
+        Understanding::Stop { then: Some(then), .. } => text(then, scene),
     }
 }
 

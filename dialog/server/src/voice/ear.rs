@@ -14,7 +14,7 @@ use cohabit_bus::{
     message::{AudioHeader, AudioView},
     monotonic_nanos,
 };
-use cohabit_language::{says_stop, says_stop_already};
+use cohabit_language::{find_stop, says_stop, says_stop_already};
 use cohabit_speech::{
     Bias, Ear, Heard, RATE, Recognition, Recognizer, Scene, SpeechError, Turns, Utterance, errors::Injector, from_pcm,
 };
@@ -370,10 +370,12 @@ impl Listening<'_> {
         if stops || own {
             self.ear.part();
         }
-        if stops || own || recognition.best().is_empty() {
+        let rest = recognition_of_rest(&recognition, |text| self.at.talk.is_whole(text)).filter(|_| stops && !own);
+        if rest.is_none() && (stops || own || recognition.best().is_empty()) {
             self.at.tell(state(if stops { "stopped" } else { "nothing" }, ""));
             return;
         }
+        let recognition = rest.unwrap_or(recognition);
         let recognition = self.injector.garble_recognition(&recognition);
         thread::sleep(self.at.voice.config.delay);
         let spoken =
@@ -408,6 +410,12 @@ impl Listening<'_> {
             }
         }
     }
+}
+
+/// What else was said with a stop, if that is a whole request or question by itself.
+fn recognition_of_rest(recognition: &Recognition, is_whole: impl Fn(&str) -> bool) -> Option<Recognition> {
+    let rest = find_stop(recognition.best())?.rest;
+    (!rest.is_empty() && is_whole(&rest)).then(|| Recognition::trusted(rest, recognition.confidence()))
 }
 
 /// What was recognised.
@@ -708,5 +716,17 @@ mod tests {
         let at = EarAt { voice: Arc::clone(&scene.voice), talk: Arc::clone(&scene.room) as _, visitor: 1, to };
         let problem = Hearing::begin(at, 44_100).err().unwrap();
         assert!(problem.contains("44100 samples a second"), "{problem}");
+    }
+
+    #[test]
+    fn what_is_said_after_a_stop_is_heard_if_it_is_whole() {
+        let rest = |said: &str, is_whole: bool| {
+            let rest = recognition_of_rest(&Recognition::sure(said), |_| is_whole);
+            rest.map(|rest| rest.best().to_owned())
+        };
+        assert_eq!(rest("stop, come back", true).as_deref(), Some("come back"));
+        assert_eq!(rest("stop, there is a cat", false), None);
+        assert_eq!(rest("stop", true), None);
+        assert_eq!(rest("come back", true), None);
     }
 }

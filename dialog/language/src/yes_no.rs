@@ -1,0 +1,149 @@
+//! Questions that want a yes or a no: "did you close the fridge?" asks, while "can you close the fridge?" requests.
+
+use std::collections::BTreeSet;
+
+use cohabit_cdf::state::StateFlag;
+use serde::Deserialize;
+
+use crate::{
+    chatter,
+    clause::{self, Clause, Part},
+    context::Context,
+    conversation::Conversation,
+    describe,
+    ground::{Ground, Want},
+    inflect,
+    intent::Intent,
+    lexicon::Lexicon,
+    question::{self, QuestionKind},
+    reading, token,
+    understanding::Understanding,
+};
+
+/// The words of such questions: `data/yes_no.toml` says what each list is.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct YesNo {
+    past: BTreeSet<String>,
+    perfect: BTreeSet<String>,
+    subjects: BTreeSet<String>,
+    persons: BTreeSet<String>,
+    stated: BTreeSet<String>,
+    being: BTreeSet<String>,
+    modals: BTreeSet<String>,
+    things: BTreeSet<String>,
+    passive: BTreeSet<String>,
+    between: BTreeSet<String>,
+}
+
+/// Where the question that a sentence asks begins, if it wants a yes or a no and requests nothing.
+pub(crate) fn asked_at(lexicon: &Lexicon, sentence: &[String]) -> Option<usize> {
+    let words = &lexicon.yes_no;
+    let start = clause::leading(lexicon, sentence);
+    let [first, next, ..] = sentence.get(start..)? else { return None };
+    let rest = &sentence[start + 1..];
+    let is_thing = words.things.contains(next)
+        || lexicon.articles.longest(rest).is_some()
+        || lexicon.classes.longest(rest).is_some();
+    let is_stated = start > 0 && words.stated.contains(&sentence[start - 1]);
+    let is_asked = words.past.contains(first) && words.subjects.contains(next)
+        || words.perfect.contains(first) && words.persons.contains(next)
+        || words.being.contains(first) && is_thing
+        || words.modals.contains(first) && is_thing && !rest.iter().any(|word| words.passive.contains(word));
+    (is_asked && !is_stated).then_some(start)
+}
+
+/// The sentences of what was said, without their ends.
+fn sentences(words: &[String]) -> Vec<&[String]> {
+    let sentences = words.split(|word| token::ends_sentence(word));
+    sentences.filter(|sentence| sentence.iter().any(|word| !token::is_punctuation(word))).collect()
+}
+
+impl Conversation<'_> {
+    /// The answer to a question among what was said that would otherwise be carried out; nothing, where there is none.
+    pub(crate) fn answered_yes_or_no(&self, words: &[String], context: &mut Context) -> Option<Understanding> {
+        let sentences = sentences(words);
+        let at = sentences.iter().position(|sentence| asked_at(self.lexicon, sentence).is_some())?;
+        let start = asked_at(self.lexicon, sentences[at])?;
+        let asked = &sentences[at][start..];
+        // What is asked for in other sentences is done.
+        let requests = |sentence: &&&[String]| {
+            let parts = clause::parts(self.lexicon, self.catalog, sentence);
+            asked_at(self.lexicon, sentence).is_none()
+                && parts.iter().any(|part| matches!(part, Part::Clause(clause) if chatter::is_clear(clause)))
+        };
+        let others: Vec<&[String]> = sentences.iter().filter(requests).copied().collect();
+        let does_ask = question::read(self.lexicon, asked).is_some_and(|one| one.kind != QuestionKind::Unknown);
+        if others.is_empty() {
+            let parts = || clause::parts(self.lexicon, self.catalog, words);
+            // What is a question anyway is read with what was said before it.
+            let is_safe = does_ask && !parts().iter().any(|part| matches!(part, Part::Clause(_)));
+            return (!is_safe).then(|| self.whether(asked, context));
+        }
+        // `is the mug empty? if so, fill it` is told by what comes after it.
+        let is_condition = |sentence: &&&[String]| self.lexicon.conditions.longest(sentence).is_some();
+        if at == 0 && (does_ask || others.iter().any(|sentence| is_condition(&sentence))) {
+            return None;
+        }
+        let answer = self.whether(asked, &mut context.clone());
+        let rest = others.join(&".".to_owned());
+        let then = self.understand_all(rest, context);
+        Some(match answer {
+            Understanding::Answer { text, .. } => then.after(&text),
+            _ => then,
+        })
+    }
+
+    /// Whether what is asked is so.
+    fn whether(&self, asked: &[String], context: &mut Context) -> Understanding {
+        if let Some(answer) = self.whether_done(asked, context) {
+            return answer;
+        }
+        match question::read(self.lexicon, asked) {
+            Some(question) if question.kind != QuestionKind::Unknown || question.about.is_some() => {
+                self.answer(&question, context)
+            }
+            _ => Understanding::answer("I cannot say. Tell me to do it, and I will try."),
+        }
+    }
+
+    /// `did you close the fridge`: whether it is closed now.
+    fn whether_done(&self, asked: &[String], context: &mut Context) -> Option<Understanding> {
+        let words = &self.lexicon.yes_no;
+        if !words.past.contains(&asked[0]) && !words.perfect.contains(&asked[0])
+            || asked.get(1).is_none_or(|subject| subject != "you" && subject != "we")
+        {
+            return None;
+        }
+        let skipped = asked[2..].iter().take_while(|word| words.between.contains(*word)).count();
+        let mut done = asked[2 + skipped..].to_vec();
+        let first = done.first_mut()?;
+        if !inflect::is_verb(self.lexicon, first) {
+            *first = inflect::stem(self.lexicon, first)?;
+        }
+        let (clause, _) = reading::read(self.lexicon, self.catalog, &done)?;
+        let (flag, expected, states) = state_after(&clause)?;
+        let ground = Ground { catalog: self.catalog, scene: self.scene, focus: &context.focus, judge: self.judge };
+        let id = ground.one(clause.objects.first()?, &Want::place(Intent::Find, &[], None)).ok()?;
+        let is_so = self.scene.object(id)?.has(flag);
+        let the = describe::short(self.catalog, self.scene, id);
+        context.focus.mention(id);
+        let start = if is_so == expected { "Yes" } else { "No" };
+        let state = if is_so { states[0] } else { states[1] };
+        Some(Understanding::whether(is_so == expected, format!("{start}, {the} is {state}."), vec![id]))
+    }
+}
+
+/// The state that a request brings about, and how it is called where it holds and where it does not.
+fn state_after(clause: &Clause) -> Option<(StateFlag, bool, [&'static str; 2])> {
+    Some(match clause.intent {
+        Intent::Open => (StateFlag::Opened, true, ["open", "closed"]),
+        Intent::Close => (StateFlag::Opened, false, ["open", "closed"]),
+        Intent::TurnOn => (StateFlag::Toggled, true, ["on", "off"]),
+        Intent::TurnOff => (StateFlag::Toggled, false, ["on", "off"]),
+        Intent::Break => (StateFlag::Broken, true, ["broken", "whole"]),
+        Intent::Repair => (StateFlag::Broken, false, ["broken", "whole"]),
+        Intent::Clean => (StateFlag::Dirty, false, ["dirty", "clean"]),
+        _ => return None,
+    })
+}

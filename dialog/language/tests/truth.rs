@@ -1,0 +1,134 @@
+//! What the robot says of itself and of things holds, and it does nothing that was not asked for: questions are answered,
+//! conditions are looked at, and verbs that it does not know are asked about.
+
+#![allow(clippy::unwrap_used)]
+
+mod support;
+
+use support::Talk;
+
+/// What must come of an utterance; `…` ends a prefix.
+fn check(marks: &[&str], said: &str, expected: &str) {
+    let found = Talk::new(marks).say(said);
+    let is_right = expected.strip_suffix('…').map_or(found == expected, |start| found.starts_with(start));
+    assert!(is_right, "{said} {marks:?}\n    wanted {expected}\n    found  {found}");
+}
+
+#[test]
+fn questions_are_answered_and_not_carried_out() {
+    const OPEN: &[&str] = &["FridgeLower_02_1 open"];
+    check(OPEN, "did you close the fridge?", "= No, the fridge is open.");
+    check(&[], "did you close the fridge", "= Yes, the fridge is closed.");
+    check(OPEN, "thanks! did you close the fridge?", "= No, the fridge is open.");
+    check(OPEN, "have you already closed the fridge?", "= No, the fridge is open.");
+    check(&[], "did you turn on the microwave?", "= No, the microwave is off.");
+    check(&[], "have you put the milk away?", "= …");
+    check(&[], "is the fridge open?", "= No, the fridge is not open.");
+    check(&[], "can the knife go in the microwave?", "= …");
+    check(&[], "will the bowl fit in the microwave?", "= …");
+    check(&[], "should I open the fridge?", "= …");
+    check(&[], "does the microwave heat the milk?", "= …");
+}
+
+#[test]
+fn requests_in_the_form_of_questions_are_carried_out() {
+    let opens = "open FridgeLower_02_1";
+    check(&[], "can you open the fridge?", opens);
+    check(&[], "could you open the fridge please", opens);
+    check(&[], "would you mind opening the fridge?", opens);
+    check(&[], "why don't you open the fridge?", opens);
+    check(&[], "will you open the fridge", opens);
+    check(&[], "did you hear me? open the fridge", opens);
+}
+
+#[test]
+fn what_does_not_hold_is_not_carried_out() {
+    const OPEN: &[&str] = &["FridgeLower_02_1 open"];
+    let closes = "close FridgeLower_02_1";
+    check(OPEN, "if the fridge is open, close it", closes);
+    check(OPEN, "close the fridge if it is open", closes);
+    check(OPEN, "if the fridge is open close it", closes);
+    check(&[], "if the fridge is open, close it", "= The fridge is not open. So I leave that.");
+    check(&[], "close the fridge if it's open", "= The fridge is not open. So I leave that.");
+    check(&[], "if the fridge is open, close it. otherwise leave it alone", "= The fridge is not open. …");
+    check(&[], "if the fridge is open, close it, otherwise open the microwave", "open Microwave_01_1");
+    check(OPEN, "if the fridge is open, close it, otherwise open the microwave", closes);
+    check(&[], "turn off the microwave if it is on", "= The microwave is not on. So I leave that.");
+    check(&["Microwave_01_1 on"], "turn off the microwave if it is on", "toggle Microwave_01_1");
+    check(OPEN, "unless the fridge is open, open the microwave", "= The fridge is open. So I leave that.");
+    check(&[], "unless the fridge is open, open the microwave", "open Microwave_01_1");
+    check(&[], "open the microwave unless the fridge is open", "open Microwave_01_1");
+    check(OPEN, "if the fridge is not open, open the microwave", "= The fridge is open. So I leave that.");
+    check(&["held Bowl_01_1"], "if you are holding the bowl, put it on the counter", "put KitchenCounterTop_02_1");
+    check(&[], "if you are holding the bowl, put it on the counter", "= My hand is empty. So I leave that.");
+}
+
+#[test]
+fn what_cannot_be_told_is_asked_about() {
+    check(
+        &[],
+        "if the moon is purple, open the fridge",
+        "? I cannot tell whether the moon is purple. Shall I do it all the same?",
+    );
+    let mut talk = Talk::new(&[]);
+    talk.say("if the moon is purple, open the fridge");
+    assert_eq!(talk.say("yes"), "open FridgeLower_02_1");
+    check(&[], "if it's not too much trouble, open the fridge", "open FridgeLower_02_1");
+    check(&[], "if you can, open the fridge", "open FridgeLower_02_1");
+}
+
+#[test]
+fn unknown_verbs_are_asked_about() {
+    for verb in ["haul", "hoist", "heave", "lug", "whisk", "brayk", "smesh", "frobnicate"] {
+        let found = Talk::new(&[]).say(&format!("{verb} the bowl"));
+        assert!(found.contains(&format!("\"{verb}\"")), "{verb}: {found}");
+    }
+    check(&[], "haul the milk to the table", "! I do not know the word \"haul\"…");
+    check(&[], "opne the fridge", "open FridgeLower_02_1");
+}
+
+#[test]
+fn what_is_said_of_the_hand_is_so() {
+    let said = "put the bowl down on the counter so that you have your hands free to pour the cereal into it";
+    check(&["held Bowl_01_1"], said, "put KitchenCounterTop_02_1…");
+    check(&["held Bowl_01_1"], "put the bowl on the counter and drop it", "put KitchenCounterTop_02_1");
+    check(&[], "drop it", "! I am not holding anything.");
+    check(&["held Bowl_01_1"], "what are you holding?", "= I am holding the bowl.");
+    let asked = Talk::new(&[]).say("pick up the banana and pick up the knife");
+    assert!(!asked.contains("I am holding"), "{asked}");
+}
+
+#[test]
+fn a_screen_that_stays_lit_is_spoken_of_as_such() {
+    let found = Talk::new(&["at Lab1 10 8"]).say("turn off the red computer");
+    assert_eq!(found, "= The red computer is off: it runs for a moment only, and its screen stays lit.");
+    check(&[], "turn off the microwave", "= The microwave is already off.");
+}
+
+#[test]
+fn who_names_the_tool_means_to_break_it() {
+    let said = "break the plate with the hammer";
+    let found = Talk::new(&[]).say(said);
+    assert!(found.starts_with("take Hammer_1, break FoodPlate_01_1"), "{found}");
+}
+
+#[test]
+fn a_stop_is_done_before_what_else_is_said() {
+    use cohabit_language::Understanding;
+    let check = |said: &str, expected: &str| {
+        let mut talk = Talk::new(&[]);
+        talk.say("go to the main office");
+        let understanding = talk.language.understand(said, &talk.scene, &mut talk.context);
+        let Understanding::Stop { then, .. } = understanding else { panic!("{said}: {understanding:?}") };
+        let then = then.map(|then| support::text(&then, &talk.scene)).unwrap_or_default();
+        assert!(expected.strip_suffix('…').map_or(then == expected, |start| then.starts_with(start)), "{said}: {then}");
+    };
+    check("stop", "");
+    check("stop, there is a cat in front of you", "");
+    check("whoa whoa whoa you'll have the lamp over", "");
+    check("Arre stop stop, go to the break room", "go BreakRoom");
+    check("I said stop, leave it", "");
+    check("stop! what are you holding?", "= My hand is empty.");
+    check("stop and open the fridge", "open FridgeLower_02_1");
+    check("never mind", "");
+}
