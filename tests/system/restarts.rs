@@ -1,4 +1,4 @@
-//! A process that cannot be started again at once is tried again, and the session goes on meanwhile.
+//! A process that cannot be started again at once is tried again, and the session goes on meanwhile; what it cannot do is said.
 
 use std::{fs, net::TcpListener};
 
@@ -84,4 +84,16 @@ fn truncated_shared_memory_is_told_from_memory_that_is_full() {
     assert!(!play.wait_for_end().unwrap().success());
     let left = play.left_behind();
     assert!(left.is_empty(), "{left:?}");
+}
+
+#[test]
+fn a_log_that_its_recorder_could_not_end_is_said_to_be_incomplete() {
+    let mut play = Play::start(COHABIT, &[]).unwrap();
+    let mut page = Page::open(play.authority()).unwrap();
+    page.do_and_wait("look around").unwrap();
+    drop(page);
+    play.send("record", Signal::STOP).unwrap();
+    play.signal_supervisor(Signal::INT).unwrap();
+    play.wait_for_line("Recorded in part in").unwrap();
+    assert_eq!(play.wait_for_end().unwrap().code(), Some(3));
 }

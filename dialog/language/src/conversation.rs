@@ -64,12 +64,15 @@ impl Conversation<'_> {
 
     /// Whether there is a request or a question in a text, rather than the reason for a stop.
     fn asks_for_anything(&self, text: &str) -> bool {
-        if text.is_empty() {
-            return false;
+        if text.is_empty() || text.chars().nth(MAX_CHARS).is_some() {
+            return !text.is_empty();
         }
         let (words, _) = self.lexicon.normalise(text);
         let words = tidy::tidied(self.lexicon, &words);
-        let asks = |part: &Part| matches!(part, Part::Clause(clause) if !matches!(clause.intent, Intent::Stop | Intent::Mention) && !clause.is_wish && chatter::is_clear(clause));
+        let asks = |part: &Part| {
+            let Part::Clause(clause) = part else { return false };
+            !matches!(clause.intent, Intent::Stop | Intent::Mention) && !clause.is_wish && chatter::is_clear(clause)
+        };
         let is_question = || question::read(self.lexicon, &words).is_some_and(|one| one.kind != QuestionKind::Unknown);
         clause::parts(self.lexicon, self.catalog, &words).iter().any(asks) || is_question()
     }

@@ -31,8 +31,8 @@ mod clause;
 mod condition;
 mod confidence;
 mod context;
-pub mod corpus;
 mod conversation;
+pub mod corpus;
 mod describe;
 mod device;
 mod floor;
@@ -99,7 +99,7 @@ pub use memory::{Knows, Lessons, Memory};
 pub use oracle::Oracle;
 pub use sight::Gaze;
 pub use spoken::{SpokenNames, says_stop, says_stop_already};
-pub use stop::{Firmness, Stop, find_stop};
+pub use stop::{Firmness, Stop, find_stop, mentions_stop};
 pub use understanding::{Asking, Clarification, Step, Understanding};
 
 use crate::{

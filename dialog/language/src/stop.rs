@@ -63,6 +63,13 @@ pub fn find_stop(text: &str) -> Option<Stop> {
     stop
 }
 
+/// Whether a text has the word itself in it, told to the robot or not: "OK, I stop."
+#[must_use]
+pub fn mentions_stop(text: &str) -> bool {
+    let words = words();
+    tokens(words, text).iter().any(|token| words.core.contains(&token.word))
+}
+
 /// Words beyond these are not listened to.
 const MOST_WORDS: usize = 400;
 /// Most words of a noun phrase that are looked at.

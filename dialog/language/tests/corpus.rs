@@ -8,8 +8,10 @@ use std::{
 };
 
 use cohabit_language::{
+    Firmness,
     corpus::{Dialog, Line},
-    request::{Act, Command, Form, Request},
+    find_stop,
+    request::{Act, Answer, Command, Form, Relation, Request},
 };
 use proptest::prelude::*;
 
@@ -71,6 +73,58 @@ fn the_readme_counts_what_is_there() {
     let readme = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("corpus/README.md")).unwrap();
     let counts = format!("{} speakers, {} dialogs, {utterances} labelled utterances", people.len(), dialogs.len());
     assert!(readme.contains(&counts), "corpus/README.md must say: {counts}");
+}
+
+/// Speakers whose utterances nobody reads during development; only counts are printed of them.
+const HELD_OUT: [&str; 5] = ["camille", "gloria", "hiro", "nneka", "stefan"];
+
+/// Whether a label says that the robot shall stop; `None`, where it may well be heard so: to wait, to do something else or nothing, an
+/// answer, a complaint.
+fn is_stop(requests: &[Request]) -> Option<bool> {
+    let known = |request: &Request, text: &str| matches!(&request.act, Act::Do(Command::Known { form, .. }) if form.text() == text);
+    if requests.iter().any(|request| known(request, "stop") && request.conditions.is_empty()) {
+        return Some(true);
+    }
+    let is_near = requests.iter().any(|request| {
+        let is_wait = ["stop", "wait", "undo", "go on"].iter().any(|text| known(request, text));
+        is_wait
+            || request.relation == Relation::Instead
+            || matches!(
+                request.act,
+                Act::Refrain(_) | Act::Answer(Answer::No | Answer::NoneOfThem | Answer::Words(_)) | Act::Social(_)
+            )
+    });
+    (!is_near).then_some(false)
+}
+
+/// How many utterances of `speakers` are heard as stops, of all that say stop and of all that do not; and those that are heard wrongly.
+fn stops_heard(is_of: impl Fn(&str) -> bool) -> ([(usize, usize); 2], Vec<String>) {
+    let (mut counts, mut wrong) = ([(0, 0); 2], Vec::new());
+    for (speaker, dialog) in dialogs().iter().filter(|(speaker, _)| is_of(speaker)) {
+        for line in &dialog.lines {
+            let Line::Person { text, requests } = line else { continue };
+            let Some(is_stop) = is_stop(requests).filter(|_| !requests.is_empty()) else { continue };
+            let is_heard = find_stop(text).is_some_and(|stop| is_stop || stop.firmness == Firmness::Firm);
+            let count = &mut counts[usize::from(!is_stop)];
+            *count = (count.0 + usize::from(is_heard), count.1 + 1);
+            if is_heard != is_stop {
+                wrong.push(format!("{speaker}: {text}"));
+            }
+        }
+    }
+    (counts, wrong)
+}
+
+#[test]
+fn stops_are_heard_as_stops() {
+    let (looked_at, wrong) = stops_heard(|speaker| !HELD_OUT.contains(&speaker));
+    let (held_out, _) = stops_heard(|speaker| HELD_OUT.contains(&speaker));
+    println!("{}", wrong.join("\n"));
+    for (name, [(stopped, stops), (disturbed, others)]) in [("looked at", looked_at), ("held out", held_out)] {
+        println!(
+            "{name}: {stopped} of {stops} stops are heard, and {disturbed} of {others} other utterances are heard as stops"
+        );
+    }
 }
 
 proptest! {

@@ -6,7 +6,7 @@
 
 use std::path::{Path, PathBuf};
 
-use cohabit_language::{Firmness, find_stop, says_stop};
+use cohabit_language::{Firmness, find_stop, mentions_stop, says_stop};
 
 /// Lines of a list, without comments.
 fn lines(list: &str) -> impl Iterator<Item = &str> {
@@ -94,7 +94,7 @@ fn reference(path: &str) -> PathBuf {
 }
 
 #[test]
-#[ignore = "needs the missions of the reference material"]
+#[cfg_attr(not(reference_data), ignore = "needs the reference data in ../shared/arena")]
 fn the_utterances_of_missions_do_not_stop() {
     let missions = std::fs::read_to_string(reference("arena/missions-dev.jsonl")).unwrap();
     let missions = missions.lines().map(|line| serde_json::from_str::<serde_json::Value>(line).unwrap());
@@ -108,30 +108,6 @@ fn the_utterances_of_missions_do_not_stop() {
 }
 
 #[test]
-#[ignore = "needs the pairs of the reference material"]
-fn the_utterances_of_pairs_do_not_stop() {
-    let mut heard = Vec::new();
-    for file in std::fs::read_dir(reference("people/pairs")).unwrap() {
-        let text = std::fs::read_to_string(file.unwrap().path()).unwrap();
-        for line in text.lines() {
-            let [context, said, plain] = line.split('\t').collect::<Vec<_>>()[..] else { continue };
-            // To wait is to stop, for now; and so is to leave what was asked for.
-            let stops = |request: &str| {
-                let request = request.rsplit(": ").next().unwrap_or(request).trim();
-                matches!(request, "stop" | "wait") || request.starts_with("do not ")
-            };
-            let answers = plain.starts_with("answer:") && context.contains('?');
-            // Whoever says whoa stops it, whatever they ask for next.
-            let is_whoa = said.starts_with("whoa");
-            if !plain.split(';').any(stops) && !answers && !is_whoa && says_stop(said) {
-                heard.push(format!("{context} | {said} | {plain}"));
-            }
-        }
-    }
-    assert!(heard.is_empty(), "{}", heard.join("\n"));
-}
-
-#[test]
 fn nothing_breaks_the_recogniser() {
     let check = |text: &str, expected: bool| assert_eq!(says_stop(text), expected, "{text:?}");
     check("", false);
@@ -141,5 +117,7 @@ fn nothing_breaks_the_recogniser() {
     check(&"stop ".repeat(10_000), true);
     check(&"s".repeat(100_000), false);
     check("Штоп", false);
+    check("OK, I stop.", false);
+    assert!(mentions_stop("OK, I stop.") && !mentions_stop("OK, going to the bus."));
     assert_eq!(find_stop("Stop… ¿puedes abrir la nevera?").unwrap().rest, "puedes abrir la nevera?");
 }

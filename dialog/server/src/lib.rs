@@ -243,3 +243,17 @@ impl Drop for Ending<'_> {
         self.0.store(true, Ordering::Relaxed);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::panic::{catch_unwind, resume_unwind};
+
+    use super::*;
+
+    #[test]
+    fn a_loop_that_panics_ends_all() {
+        let ended = AtomicBool::new(false);
+        let panicked = catch_unwind(|| until_ended(&ended, || resume_unwind(Box::new("as a panic does"))));
+        assert!(panicked.is_err() && ended.load(Ordering::Relaxed));
+    }
+}

@@ -263,3 +263,27 @@ impl<G: Fn(u64) -> bool> Clock<'_, G> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+
+    use super::*;
+
+    #[test]
+    fn a_panic_of_the_thread_that_ticks_ends_the_others() {
+        let (desk, over) = (Desk::default(), AtomicBool::new(false));
+        let panicked = catch_unwind(AssertUnwindSafe(|| {
+            thread::scope(|scope| {
+                scope.spawn(|| {
+                    while !over.load(Ordering::Relaxed) {
+                        thread::yield_now();
+                    }
+                });
+                let _closing = Closing { desk: &desk, over: &over };
+                resume_unwind(Box::new("as a panic does"));
+            });
+        }));
+        assert!(panicked.is_err());
+    }
+}

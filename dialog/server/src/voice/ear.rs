@@ -14,7 +14,7 @@ use cohabit_bus::{
     message::{AudioHeader, AudioView},
     monotonic_nanos,
 };
-use cohabit_language::{find_stop, says_stop, says_stop_already};
+use cohabit_language::{find_stop, mentions_stop, says_stop, says_stop_already};
 use cohabit_speech::{
     Bias, Ear, Heard, RATE, Recognition, Recognizer, Scene, SpeechError, Turns, Utterance, errors::Injector, from_pcm,
 };
@@ -342,7 +342,7 @@ impl Listening<'_> {
     /// then it is done once, lest they stop each other for ever. They have stopped then.
     fn stop(&mut self) {
         let now = monotonic_nanos();
-        let is_answer = |said: &str| says_stop(said) && said.split(' ').count() <= OWN_STOP_WORDS;
+        let is_answer = |said: &str| mentions_stop(said) && said.split(' ').count() <= OWN_STOP_WORDS;
         let is_own_word = self.at.voice.mouth.says(self.began_nanos, is_answer);
         if is_own_word && now.saturating_sub(self.stopped_nanos) < OWN_STOP_NANOS {
             return;
