@@ -171,10 +171,13 @@ enum Piece {
 
 static FORMS: LazyLock<Vec<Pattern>> = LazyLock::new(|| {
     let lines = include_str!("../data/forms.txt").lines().map(str::trim);
-    lines.filter(|line| !line.is_empty() && !(line.starts_with("# ") || *line == "#")).map(Pattern::new).collect()
+    lines.filter(|line| !line.is_empty() && !line.starts_with("# ")).map(Pattern::new).collect()
 });
 
-const CONDITIONS: [(&str, fn(String) -> Condition); 4] =
+/// Makes a condition of its statement.
+type MakeCondition = fn(String) -> Condition;
+
+const CONDITIONS: [(&str, MakeCondition); 4] =
     [("if ", Condition::If), ("unless ", Condition::Unless), ("when ", Condition::When), ("until ", Condition::Until)];
 
 const ANSWERS: [(&str, Answer); 6] = [
