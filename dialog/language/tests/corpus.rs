@@ -125,6 +125,11 @@ fn stops_are_heard_as_stops() {
             "{name}: {stopped} of {stops} stops are heard, and {disturbed} of {others} other utterances are heard as stops"
         );
     }
+    // What was measured when the recogniser first met these utterances, as floors.
+    let [(stopped, _), (disturbed, _)] = looked_at;
+    assert!(stopped >= 92 && disturbed <= 18, "{}", wrong.join("\n"));
+    let [(stopped, _), (disturbed, _)] = held_out;
+    assert!(stopped >= 12 && disturbed <= 1);
 }
 
 proptest! {
