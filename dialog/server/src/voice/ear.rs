@@ -626,11 +626,11 @@ mod tests {
         scene.speak(&[fake::hidden("stop"), silence(1.5)].concat());
         scene.stopped();
         assert_eq!(scene.stops(), 1);
-        // What it says of stopping stops it once, and no more.
+        // What it says of stopping is no stop.
         scene.voice.mouth.note_own_voice(None, monotonic_nanos());
         scene.voice.mouth.note_own_voice(Some("OK, I stop."), monotonic_nanos());
         scene.speak(&[fake::hidden("ok i stop"), silence(1.5)].concat());
-        scene.state("stopped");
+        scene.state("nothing");
         assert_eq!(scene.stops(), 1);
     }
 
