@@ -370,15 +370,7 @@ impl Answerer<'_> {
 
     /// `is the fridge open`, `is the milk in the fridge`, `is the mug broken`.
     fn state(&self, phrase: &Phrase, question: &Question) -> Understanding {
-        let asked = (0..question.rest.len()).rev().find_map(|at| {
-            let (length, state) = self.lexicon.states.longest(&question.rest[at..])?;
-            (at + length == question.rest.len()).then_some(*state)
-        });
-        let is_on = question.rest.last().is_some_and(|word| word == "on");
-        let is_off = question.rest.last().is_some_and(|word| word == "off");
-        let asked = asked
-            .or_else(|| is_on.then_some(StateWord::Flag(StateFlag::Toggled, true)))
-            .or_else(|| is_off.then_some(StateWord::Flag(StateFlag::Toggled, false)));
+        let asked = asked_state(self.lexicon, &question.rest);
         let inside =
             phrase.relations.iter().any(|relation| relation.kind != RelationKind::Has) || phrase.room.is_some();
         let bare = Phrase { relations: Vec::new(), room: None, ..phrase.clone() };
@@ -404,6 +396,18 @@ impl Answerer<'_> {
             None => self.place_of(&bare),
         }
     }
+}
+
+/// The state that the words of a question end with.
+pub(crate) fn asked_state(lexicon: &Lexicon, words: &[String]) -> Option<StateWord> {
+    let named = (0..words.len()).rev().find_map(|at| {
+        let (length, state) = lexicon.states.longest(&words[at..])?;
+        (at + length == words.len()).then_some(*state)
+    });
+    let is_last = |end: &str| words.last().is_some_and(|word| word == end);
+    named
+        .or_else(|| is_last("on").then_some(StateWord::Flag(StateFlag::Toggled, true)))
+        .or_else(|| is_last("off").then_some(StateWord::Flag(StateFlag::Toggled, false)))
 }
 
 fn empty_handed(text: &str) -> Understanding {

@@ -7,11 +7,13 @@ use std::collections::BTreeSet;
 use serde::Deserialize;
 
 use crate::{
+    answer::asked_state,
     ask, chatter,
     clause::{self, Clause, Part},
     context::{Context, Pending},
     conversation::Conversation,
     lexicon::Lexicon,
+    phrase::Phrase,
     question::{self, Question, QuestionKind},
     table::PhraseTable,
     token,
@@ -83,7 +85,9 @@ impl Conversation<'_> {
             }
             Truth::Unknown if self.judge.asking == Asking::Never => None,
             Truth::Unknown => {
-                let clauses: Vec<Clause> = self.clauses(&said(request));
+                // What hangs on another condition is not agreed to with this one.
+                let has_more = condition_at(self.lexicon, &after).is_some();
+                let clauses = self.clauses(&if has_more { request } else { said(request) });
                 context.pending = Some(Pending::Search { clauses });
                 let condition = token::sentence(&condition);
                 Some(ask::confirmation(format!("I cannot tell whether {condition}. Shall I do it all the same?")))
@@ -201,10 +205,15 @@ impl Conversation<'_> {
     fn question_of(&self, condition: &[String], request: &[String]) -> Option<(Question, bool)> {
         let (asked, is_negated) = self.as_question(condition, request)?;
         let question = question::read(self.lexicon, &asked)?;
-        let can_tell = matches!(
-            question.kind,
-            QuestionKind::State | QuestionKind::Where | QuestionKind::Holding | QuestionKind::Contents
-        );
+        let can_tell = match question.kind {
+            // Where a thing is says nothing of whether it is heavy.
+            QuestionKind::State => {
+                let is_placed = |phrase: &Phrase| !phrase.relations.is_empty() || phrase.room.is_some();
+                asked_state(self.lexicon, &question.rest).is_some() || question.about.as_ref().is_some_and(is_placed)
+            }
+            QuestionKind::Where | QuestionKind::Holding | QuestionKind::Contents => true,
+            _ => false,
+        };
         can_tell.then_some((question, is_negated))
     }
 

@@ -70,6 +70,11 @@ fn what_cannot_be_told_is_asked_about() {
         "if the moon is purple, open the fridge",
         "? I cannot tell whether the moon is purple. Shall I do it all the same?",
     );
+    check(
+        &[],
+        "if the bowl is heavy, put it on the counter",
+        "? I cannot tell whether the bowl is heavy. Shall I do it all the same?",
+    );
     let mut talk = Talk::new(&[]);
     talk.say("if the moon is purple, open the fridge");
     assert_eq!(talk.say("yes"), "open FridgeLower_02_1");
