@@ -10,6 +10,7 @@ const LEVELS: &[(&str, u8, &[&str])] = &[
     ("cohabit-cdf", 0, &["serde_json", "schemars"]),
     ("cohabit-world", 1, &["rapier3d", "polyanya"]),
     ("cohabit-bus", 1, &["iceoryx2"]),
+    ("cohabit-parser", 1, &["safetensors"]),
     ("cohabit-render", 2, &[]),
     ("cohabit-record", 2, &["mcap", "crc32fast", "flate2"]),
     ("cohabit-agent", 2, &[]),

@@ -5,6 +5,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::{clause::Clause, known::Known, question::QuestionKind, search::Search, understanding::Step};
 
+/// How many lines of the dialog are remembered.
+const LINES: usize = 4;
+
 /// How many objects a pronoun may reach back.
 const MEMORY: usize = 8;
 
@@ -29,6 +32,9 @@ pub struct Context {
     pub(crate) question: Option<QuestionKind>,
     /// The request that waits until what it names is found.
     pub(crate) search: Option<Search>,
+    /// What was said last, the latest last: whether the robot said it, and what.
+    #[serde(default)]
+    pub(crate) lines: Vec<(bool, String)>,
 }
 
 /// A step that failed.
@@ -159,6 +165,17 @@ impl Focus {
 }
 
 impl Context {
+    /// Takes note of what the robot or a person said. [`crate::Language::understand`] notes what it is told and replies; this is for what
+    /// else is said, such as that a plan has ended. A line that repeats the last one is not noted twice.
+    pub fn note_said(&mut self, by_robot: bool, text: &str) {
+        if self.lines.last().is_some_and(|(by, last)| *by == by_robot && last == text) {
+            return;
+        }
+        self.lines.push((by_robot, text.to_owned()));
+        let surplus = self.lines.len().saturating_sub(LINES);
+        self.lines.drain(..surplus);
+    }
+
     /// Takes note of what came of a step: `yes` after a failure then means the remedy that
     /// [`crate::Language::report`] offered.
     pub fn note_outcome(&mut self, step: &Step, status: Status) {
@@ -200,6 +217,11 @@ impl Context {
         self.search = None;
         self.running.clear();
         self.pending = Some(Pending::Search { clauses: self.request.clone() });
+    }
+
+    /// Whether a plan or a search is under way.
+    pub(crate) const fn is_busy(&self) -> bool {
+        !self.running.is_empty() || self.search.is_some()
     }
 
     /// Whether there is more to do after the plan under way: [`crate::Language::carry_on`] knows what.

@@ -2,6 +2,7 @@
 //! requests.
 
 use cohabit_cdf::{Catalog, ObjectId};
+use cohabit_parser::Parser;
 
 use crate::{
     amend,
@@ -42,14 +43,21 @@ pub(crate) struct Conversation<'a> {
     pub(crate) habits: &'a Habits,
     pub(crate) scene: &'a Known,
     pub(crate) judge: Judge<'a>,
+    pub(crate) parser: Option<&'a Parser>,
 }
 
 impl Conversation<'_> {
     pub(crate) fn understand(&self, utterance: &str, context: &mut Context) -> Understanding {
-        match stop::find_stop(utterance).filter(|stop| is_heeded(stop.firmness, context)) {
-            Some(stop) => self.stopped(&stop.rest, context),
-            None => self.understand_said(utterance, context),
+        if let Some(stop) = stop::find_stop(utterance).filter(|stop| is_heeded(stop.firmness, context)) {
+            return self.stopped(&stop.rest, context);
         }
+        // A robot that does nothing need not stop.
+        if context.is_busy()
+            && let Some(rest) = self.parsed_stop(utterance, context)
+        {
+            return self.stopped(&rest, context);
+        }
+        self.understand_best(utterance, context)
     }
 
     /// It stops, and then does what else was asked for.
@@ -58,7 +66,7 @@ impl Conversation<'_> {
         context.running.clear();
         context.failed = None;
         context.search = None;
-        let then = self.asks_for_anything(rest).then(|| Box::new(self.understand_said(rest, context)));
+        let then = self.asks_for_anything(rest).then(|| Box::new(self.understand_best(rest, context)));
         Understanding::Stop { reply: STOPS.to_owned(), then }
     }
 
@@ -77,7 +85,8 @@ impl Conversation<'_> {
         clause::parts(self.lexicon, self.catalog, &words).iter().any(asks) || is_question()
     }
 
-    fn understand_said(&self, utterance: &str, context: &mut Context) -> Understanding {
+    /// What the grammar makes of what was said.
+    pub(crate) fn understand_said(&self, utterance: &str, context: &mut Context) -> Understanding {
         if utterance.chars().nth(MAX_CHARS).is_some() {
             return Understanding::refusal("That is too much for me at once. Please say it in a few short sentences.");
         }
@@ -615,7 +624,7 @@ fn is_heeded(firmness: Firmness, context: &Context) -> bool {
     match firmness {
         Firmness::Firm => true,
         Firmness::Weak => context.pending.is_none(),
-        Firmness::Dismissal => context.pending.is_none() && (!context.running.is_empty() || context.search.is_some()),
+        Firmness::Dismissal => context.pending.is_none() && context.is_busy(),
     }
 }
 

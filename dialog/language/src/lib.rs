@@ -32,7 +32,6 @@ mod condition;
 mod confidence;
 mod context;
 mod conversation;
-pub mod corpus;
 mod describe;
 mod device;
 mod floor;
@@ -56,6 +55,7 @@ mod naming;
 mod noun;
 mod oracle;
 mod order;
+mod parsed;
 mod phrase;
 mod plan;
 mod process;
@@ -64,7 +64,6 @@ mod reading;
 mod remedy;
 mod reply;
 mod report;
-pub mod request;
 mod saying;
 mod search;
 mod settle;
@@ -88,6 +87,7 @@ mod yes_no;
 use std::sync::Arc;
 
 use cohabit_cdf::{Catalog, ObjectId, Status};
+use cohabit_parser::Parser;
 
 pub use address::{Addressed, Roster};
 pub use confidence::{Doubt, Features, Referent, Referents};
@@ -124,6 +124,7 @@ pub struct Language {
     weights: Arc<Weights>,
     costs: Arc<Costs>,
     asking: Asking,
+    parser: Option<&'static Parser>,
 }
 
 impl Language {
@@ -137,6 +138,7 @@ impl Language {
             weights: Arc::new(Weights::builtin()),
             costs: Arc::new(Costs::new(&catalog)),
             asking: Asking::default(),
+            parser: Some(Parser::builtin()),
             catalog,
         }
     }
@@ -153,6 +155,12 @@ impl Language {
         Self { asking, ..self }
     }
 
+    /// The same without the learned parser: the grammar alone, to compare.
+    #[must_use]
+    pub fn without_parser(self) -> Self {
+        Self { parser: None, ..self }
+    }
+
     /// Whether it asks at all.
     #[must_use]
     pub fn may_ask(&self) -> bool {
@@ -162,7 +170,10 @@ impl Language {
     /// What `utterance` means in `scene`, given the conversation so far. Any text is taken; none panics.
     #[must_use]
     pub fn understand(&self, utterance: &str, scene: &Known, context: &mut Context) -> Understanding {
-        self.conversation(scene).understand(utterance, context)
+        let understanding = self.conversation(scene).understand(utterance, context);
+        context.note_said(false, utterance);
+        context.note_said(true, understanding.reply());
+        understanding
     }
 
     /// What is left to do once a plan has ended, other than by being interrupted: a search goes on, and ends in the
@@ -205,7 +216,7 @@ impl Language {
 
     fn conversation<'a>(&'a self, scene: &'a Known) -> Conversation<'a> {
         let Self { catalog, lexicon, devices, habits, .. } = self;
-        Conversation { catalog, lexicon, devices, habits, scene, judge: self.judge() }
+        Conversation { catalog, lexicon, devices, habits, scene, judge: self.judge(), parser: self.parser }
     }
 
     fn judge(&self) -> Judge<'_> {

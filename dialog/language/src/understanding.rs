@@ -88,6 +88,18 @@ impl Understanding {
         }
     }
 
+    /// What it says.
+    #[must_use]
+    pub fn reply(&self) -> &str {
+        match self {
+            Self::Plan { reply: text, .. }
+            | Self::Question { text, .. }
+            | Self::Answer { text, .. }
+            | Self::Refusal { text, .. }
+            | Self::Stop { reply: text, .. } => text,
+        }
+    }
+
     /// Whether it leaves what was asked denied, or open.
     pub(crate) const fn denies(&self) -> bool {
         !matches!(self, Self::Answer { holds: None | Some(true), .. })

@@ -84,11 +84,16 @@ fn what_cannot_be_told_is_asked_about() {
 
 #[test]
 fn unknown_verbs_are_asked_about() {
-    for verb in ["haul", "hoist", "heave", "lug", "whisk", "brayk", "smesh", "frobnicate"] {
+    for verb in ["brayk", "smesh", "frobnicate"] {
         let found = Talk::new(&[]).say(&format!("{verb} the bowl"));
         assert!(found.contains(&format!("\"{verb}\"")), "{verb}: {found}");
     }
-    check(&[], "haul the milk to the table", "! I do not know the word \"haul\"…");
+    // Verbs in no list: what they mean to most people, a question, or that they are not known; nothing is changed for good.
+    for verb in ["haul", "hoist", "heave", "lug", "whisk"] {
+        let found = Talk::new(&[]).say(&format!("{verb} the bowl"));
+        let is_safe = found == "take Bowl_01_1" || found.starts_with(['?', '!']);
+        assert!(is_safe, "{verb}: {found}");
+    }
     check(&[], "opne the fridge", "open FridgeLower_02_1");
 }
 

@@ -410,6 +410,9 @@ impl Conversation {
     }
 
     fn note_line(&mut self, is_robot: bool, text: &str) {
+        if is_robot {
+            self.memory.context.note_said(true, text);
+        }
         self.memory.said.push_back((is_robot, text.to_owned()));
         while self.memory.said.len() > LINES_BEFORE {
             self.memory.said.pop_front();

@@ -195,8 +195,10 @@ impl Game {
 
     /// Ends the game and its log.
     pub fn end(self) {
-        if let Some(Err(error)) = self.recording.map(Recording::finish) {
-            tracing::error!("{}: {error}", self.log.display());
+        match self.recording.map(Recording::finish) {
+            None | Some(Ok(0)) => {}
+            Some(Ok(missing)) => tracing::error!("{}: {missing} messages are missing", self.log.display()),
+            Some(Err(error)) => tracing::error!("{}: {error}", self.log.display()),
         }
     }
 

@@ -17,6 +17,7 @@ use crate::{
     mission_file::MissionFile,
     rendering::Rendering,
     sessions, stop,
+    terminal::shown,
 };
 
 /// Where existing clients are listened to, if they are.
@@ -78,7 +79,7 @@ impl ArenaOptions {
         }
         let address = listener.local_addr().context("the port")?;
         println!("Listening for clients of Alexa Arena on {address}; ready (Ctrl-C ends it)");
-        println!("Each game is recorded in {}", logs.display());
+        println!("Each game is recorded in {}", shown(logs.display()));
         thread::scope(|scope| {
             // What was not seen yet is shaded meanwhile, so that no reply waits for it.
             scope.spawn(|| meshes.bake_all(&stop));

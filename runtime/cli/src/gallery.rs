@@ -17,7 +17,7 @@ use cohabit_render::{
 use cohabit_world::World;
 use indicatif::ProgressBar;
 
-use crate::{failure::bad_input, rendering::Rendering};
+use crate::{failure::bad_input, rendering::Rendering, terminal::shown};
 
 /// Draws all objects in all their states, all floor plans from above and as maps, and a view of each room, as PNG
 /// files.
@@ -60,7 +60,7 @@ impl Gallery {
             self.floor_plan(&id, &catalog, &meshes, &mut *renderer)?;
         }
         bar.finish_and_clear();
-        println!("{} pictures in {}", fs::read_dir(&self.folder)?.count(), self.folder.display());
+        println!("{} pictures in {}", fs::read_dir(&self.folder)?.count(), shown(self.folder.display()));
         Ok(())
     }
 

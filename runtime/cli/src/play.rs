@@ -130,7 +130,7 @@ impl Play {
         let whole = played.as_ref().is_ok_and(|ended| ended.log_is_whole);
         if log.is_file() {
             let how = if whole { "Recorded" } else { "Recorded in part" };
-            println!("{how} in {0}\nReplay it with: cohabit replay {0}", log.display());
+            println!("{how} in {0}\nReplay it with: cohabit replay {0}", shown(log.display()));
         }
         match played {
             Ok(_) if !whole => {

@@ -129,7 +129,7 @@ impl Replay {
             replay.goals.1
         );
         if let Some(film) = film {
-            println!("{}", film.finish()?);
+            println!("{}", shown(film.finish()?));
         }
         for gap in &replay.gaps {
             println!("{}: replayed on from the next snapshot", shown(gap));

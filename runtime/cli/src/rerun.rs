@@ -12,7 +12,7 @@ use std::{
 use anyhow::Context as _;
 use rustix::process::{Pid, Signal, kill_process};
 
-use crate::failure::bad_input;
+use crate::{failure::bad_input, terminal::shown};
 
 /// The program.
 const PROGRAM: &str = "cohabit-rerun";
@@ -112,5 +112,5 @@ fn run(command: &mut Command) -> anyhow::Result<()> {
 }
 
 fn tell_how_to_see(recording: &Path) {
-    println!("See it with: rerun {}", recording.display());
+    println!("See it with: rerun {}", shown(recording.display()));
 }

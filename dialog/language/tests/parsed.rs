@@ -1,0 +1,46 @@
+//! What the grammar does not read, the learned parser may: reasons around requests, verbs that nobody listed, wishes, stops.
+#![allow(clippy::unwrap_used)]
+
+mod support;
+
+use cohabit_language::Understanding;
+use support::Talk;
+
+#[test]
+fn a_request_is_found_among_other_words() {
+    let mut talk = Talk::new(&[]);
+    let said = "my hands are full at the moment, love, so would you ever fetch us the banana";
+    assert_eq!(talk.say(said), "take Banana_01_1");
+}
+
+#[test]
+fn a_verb_that_is_in_no_list_is_understood_by_what_it_means() {
+    let mut talk = Talk::new(&[]);
+    assert_eq!(talk.say("do us a favour and nab that banana"), "take Banana_01_1");
+}
+
+#[test]
+fn a_stop_in_any_words_ends_what_is_under_way() {
+    for said in ["call it quits", "abandon that"] {
+        let mut talk = Talk::new(&[]);
+        assert_eq!(talk.say("go to the main office"), "go MainOffice");
+        let understanding = talk.language.understand(said, &talk.scene, &mut talk.context);
+        assert!(matches!(understanding, Understanding::Stop { .. }), "{said}: {understanding:?}");
+    }
+}
+
+#[test]
+fn a_wish_that_names_the_goal_is_carried_out() {
+    let mut talk = Talk::new(&["MilkCarton_01_1 in TableRound_02_1"]);
+    let steps = talk.say("I could murder a bowl of milk");
+    assert!(steps.contains("take MilkCarton_01_1") && steps.contains("pour Bowl_01_1"), "{steps}");
+}
+
+#[test]
+fn nothing_is_guessed_of_words_that_mean_nothing() {
+    for said in ["qwertz uiop", "the quick brown fox", "blah blah blah"] {
+        let mut talk = Talk::new(&[]);
+        let understanding = talk.language.understand(said, &talk.scene, &mut talk.context);
+        assert!(!matches!(understanding, Understanding::Plan { .. }), "{said}: {understanding:?}");
+    }
+}

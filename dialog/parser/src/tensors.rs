@@ -1,0 +1,90 @@
+//! The numbers of a model, out of its file.
+
+use std::collections::HashMap;
+
+use safetensors::{Dtype, SafeTensors};
+
+use crate::{ModelError, matrix::Linear};
+
+/// How many embedded numbers share a scale.
+const GROUP: usize = 48;
+
+/// The tensors of a model by their names.
+pub(crate) struct Tensors<'a> {
+    tensors: SafeTensors<'a>,
+    notes: HashMap<String, String>,
+}
+
+impl<'a> Tensors<'a> {
+    pub(crate) fn new(file: &'a [u8]) -> Result<Self, ModelError> {
+        let (_, head) = SafeTensors::read_metadata(file).map_err(|error| ModelError::File(error.to_string()))?;
+        let tensors = SafeTensors::deserialize(file).map_err(|error| ModelError::File(error.to_string()))?;
+        Ok(Self { tensors, notes: head.metadata().clone().unwrap_or_default() })
+    }
+
+    /// A text that belongs to the model.
+    pub(crate) fn note(&self, name: &str) -> Result<&str, ModelError> {
+        self.notes.get(name).map(String::as_str).ok_or_else(|| ModelError::Missing(name.to_owned()))
+    }
+
+    pub(crate) fn floats(&self, name: &str) -> Result<Vec<f32>, ModelError> {
+        let bytes = self.bytes(name, Dtype::F32)?;
+        let numbers = bytes.as_chunks::<4>().0.iter().map(|bytes| f32::from_le_bytes(*bytes));
+        Ok(numbers.collect())
+    }
+
+    /// A matrix with scales and biases of its outputs.
+    pub(crate) fn linear(&self, name: &str) -> Result<Linear, ModelError> {
+        let weights: Vec<i8> =
+            self.bytes(&format!("{name}.weight"), Dtype::I8)?.iter().map(|byte| byte.cast_signed()).collect();
+        let scales = self.floats(&format!("{name}.scale"))?;
+        let bias = self.floats(&format!("{name}.bias"))?;
+        if scales.is_empty() || weights.is_empty() || weights.len() % scales.len() != 0 || bias.len() != scales.len() {
+            return Err(ModelError::Shape(name.to_owned()));
+        }
+        Ok(Linear::new(weights, scales, bias))
+    }
+
+    /// Rows of `width` numbers of 4 bits.
+    pub(crate) fn embedding(&self, name: &str, width: usize) -> Result<Embedding, ModelError> {
+        let packed = self.bytes(&format!("{name}.packed"), Dtype::U8)?.to_vec();
+        let scales: Vec<f32> = self
+            .bytes(&format!("{name}.scale"), Dtype::BF16)?
+            .as_chunks::<2>()
+            .0
+            .iter()
+            .map(|bytes| f32::from_bits(u32::from(u16::from_le_bytes(*bytes)) << 16))
+            .collect();
+        if packed.len() * 2 != scales.len() * GROUP || packed.len() * 2 % width != 0 {
+            return Err(ModelError::Shape(name.to_owned()));
+        }
+        Ok(Embedding { packed, scales, width })
+    }
+
+    fn bytes(&self, name: &str, kind: Dtype) -> Result<&'a [u8], ModelError> {
+        let tensor = self.tensors.tensor(name).map_err(|_| ModelError::Missing(name.to_owned()))?;
+        if tensor.dtype() == kind { Ok(tensor.data()) } else { Err(ModelError::Shape(name.to_owned())) }
+    }
+}
+
+/// Rows of numbers of 4 bits, with a scale for each 48.
+#[derive(Debug)]
+pub(crate) struct Embedding {
+    packed: Vec<u8>,
+    scales: Vec<f32>,
+    width: usize,
+}
+
+impl Embedding {
+    pub(crate) fn rows(&self) -> usize {
+        self.packed.len() * 2 / self.width
+    }
+
+    /// Row `row`, its numbers in order.
+    pub(crate) fn row(&self, row: usize) -> impl Iterator<Item = f32> {
+        let packed = &self.packed[row * self.width / 2..(row + 1) * self.width / 2];
+        let scales = &self.scales[row * self.width / GROUP..];
+        let numbers = packed.iter().flat_map(|byte| [byte & 15, byte >> 4]);
+        numbers.enumerate().map(|(at, number)| (f32::from(number) - 8.0) * scales[at / GROUP])
+    }
+}
