@@ -1,4 +1,4 @@
-//! What many people say, and what it should mean, written by hand. `seen.txt`, `voices.txt`, `manners.txt` and `spoken.txt` are looked at
+//! What many people say, and what it should mean, written by hand. `seen.txt`, `voices.txt`, `manners.txt`, `spoken.txt` and `first_contact.txt` are looked at
 //! while the language is worked on; of `held_out.txt` the figures alone are, so that they say what other people's words are worth.
 //!
 //! `cargo test -p cohabit-language --test utterances -- --nocapture` prints the figures, and what is wrong
@@ -137,6 +137,7 @@ fn most_of_what_was_looked_at_is_understood() {
     check("voices", include_str!("utterances/voices.txt"), true, 731);
     check("manners", include_str!("utterances/manners.txt"), true, 135);
     check("spoken", include_str!("utterances/spoken.txt"), true, 62);
+    check("first contact", include_str!("utterances/first_contact.txt"), true, 80);
 }
 
 #[test]

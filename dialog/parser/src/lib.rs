@@ -2,7 +2,7 @@
 //!
 //! Pure: no I/O, no clock, no randomness, and the same bits on every machine. It knows nothing of the world: descriptions of things
 //! stay the person's own words. A small network reads the utterance and the lines before it, and *marks*: it writes acts, forms and
-//! relations of a closed alphabet, and points to the words of their descriptions; [a grammar](grammar) keeps what it writes whole.
+//! relations of a closed alphabet, and points to the words of their descriptions; a grammar keeps what it writes whole.
 //! Its weights are fitted to the corpus in `dialog/parser/corpus` by `dialog/parser/train`.
 //!
 //! ```

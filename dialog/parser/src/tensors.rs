@@ -39,7 +39,11 @@ impl<'a> Tensors<'a> {
             self.bytes(&format!("{name}.weight"), Dtype::I8)?.iter().map(|byte| byte.cast_signed()).collect();
         let scales = self.floats(&format!("{name}.scale"))?;
         let bias = self.floats(&format!("{name}.bias"))?;
-        if scales.is_empty() || weights.is_empty() || weights.len() % scales.len() != 0 || bias.len() != scales.len() {
+        if scales.is_empty()
+            || weights.is_empty()
+            || !weights.len().is_multiple_of(scales.len())
+            || bias.len() != scales.len()
+        {
             return Err(ModelError::Shape(name.to_owned()));
         }
         Ok(Linear::new(weights, scales, bias))
@@ -55,7 +59,7 @@ impl<'a> Tensors<'a> {
             .iter()
             .map(|bytes| f32::from_bits(u32::from(u16::from_le_bytes(*bytes)) << 16))
             .collect();
-        if packed.len() * 2 != scales.len() * GROUP || packed.len() * 2 % width != 0 {
+        if packed.len() * 2 != scales.len() * GROUP || !(packed.len() * 2).is_multiple_of(width) {
             return Err(ModelError::Shape(name.to_owned()));
         }
         Ok(Embedding { packed, scales, width })
