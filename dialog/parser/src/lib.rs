@@ -14,8 +14,11 @@
 
 mod assemble;
 pub mod corpus;
+mod encoder;
 mod grammar;
+mod layers;
 mod matrix;
+mod meaning;
 mod network;
 pub mod request;
 mod search;
@@ -26,6 +29,7 @@ mod words;
 
 use std::sync::LazyLock;
 
+pub use crate::meaning::{Direction, Directions, Meaning, NUMBERS};
 use crate::{network::Network, request::Request, source::Source, symbol::Symbol, tensors::Tensors, words::Vocabulary};
 
 /// A line of the dialog before an utterance.

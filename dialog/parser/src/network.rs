@@ -1,18 +1,16 @@
 //! The network: an encoder of word pieces in context (the lower layers of MiniLM), and a decoder that writes symbols and points
 //! to words.
 
-use std::sync::LazyLock;
-
 use crate::{
     ModelError,
+    encoder::{self, Encoder, WIDTH},
+    layers::{KeysAndValues, Layer, Norm, add, dot},
     matrix::Linear,
     source::Source,
-    tensors::{Embedding, Tensors},
+    tensors::Tensors,
 };
 
-/// Numbers that stand for a piece, and in the decoder for a letter.
-const WIDTH: usize = 384;
-const HEADS: usize = 12;
+/// Numbers that stand for a letter.
 pub(crate) const DECODER_WIDTH: usize = 256;
 const DECODER_HEADS: usize = 4;
 /// The most letters of an output.
@@ -22,11 +20,7 @@ const POINTER_SCALE: f32 = 16.0;
 
 #[derive(Debug)]
 pub(crate) struct Network {
-    words: Embedding,
-    positions: Vec<f32>,
-    speakers: Vec<f32>,
-    norm: Norm,
-    encoder: Vec<Layer>,
+    encoder: Encoder,
     memory: Linear,
     starts: Linear,
     ends: Linear,
@@ -38,23 +32,6 @@ pub(crate) struct Network {
     to_symbols: Linear,
     to_start: Linear,
     to_end: Linear,
-}
-
-#[derive(Debug)]
-struct Norm {
-    weight: Vec<f32>,
-    bias: Vec<f32>,
-}
-
-/// Attention of a sequence to itself, then a network of one hidden layer.
-#[derive(Debug)]
-struct Layer {
-    query_key_value: Linear,
-    attended: Linear,
-    norm: Norm,
-    hidden: Linear,
-    output: Linear,
-    last_norm: Norm,
 }
 
 /// The same, with attention to the words in between.
@@ -74,12 +51,6 @@ pub(crate) struct Memory {
     ends: Vec<f32>,
     /// Keys and values of each layer.
     attended: Vec<KeysAndValues>,
-}
-
-#[derive(Clone, Debug, Default)]
-struct KeysAndValues {
-    keys: Vec<f32>,
-    values: Vec<f32>,
 }
 
 /// What has been written, as the decoder remembers it.
@@ -107,15 +78,8 @@ pub(crate) struct Scores {
 
 impl Network {
     pub(crate) fn new(tensors: &Tensors<'_>) -> Result<Self, ModelError> {
-        let layers = |kind: &str| tensors.note(kind)?.parse::<usize>().map_err(|_| ModelError::Shape(kind.to_owned()));
         let network = Self {
-            words: tensors.embedding("words", WIDTH)?,
-            positions: tensors.floats("positions")?,
-            speakers: tensors.floats("speakers")?,
-            norm: Norm::new(tensors, "norm")?,
-            encoder: (0..layers("encoder")?)
-                .map(|layer| Layer::new(tensors, &format!("encoder.{layer}")))
-                .collect::<Result<_, _>>()?,
+            encoder: Encoder::new(tensors, tensors)?,
             memory: tensors.linear("memory")?,
             starts: tensors.linear("starts")?,
             ends: tensors.linear("ends")?,
@@ -123,7 +87,7 @@ impl Network {
             letter_positions: tensors.floats("letter_positions")?,
             kinds: tensors.floats("kinds")?,
             letter_norm: Norm::new(tensors, "letter_norm")?,
-            decoder: (0..layers("decoder")?)
+            decoder: (0..tensors.count("decoder")?)
                 .map(|layer| DecoderLayer::new(tensors, &format!("decoder.{layer}")))
                 .collect::<Result<_, _>>()?,
             to_symbols: tensors.linear("to_symbols")?,
@@ -140,30 +104,16 @@ impl Network {
 
     /// How many pieces it knows.
     pub(crate) fn pieces(&self) -> usize {
-        self.words.rows()
+        self.encoder.pieces()
     }
 
     /// Reads an utterance.
     pub(crate) fn encode(&self, source: &Source<'_>) -> Memory {
-        let mut pieces: Vec<f32> = Vec::with_capacity(source.pieces.len() * WIDTH);
-        for (at, (piece, speaker)) in source.pieces.iter().zip(&source.speakers).enumerate() {
-            let position = &self.positions[at * WIDTH..(at + 1) * WIDTH];
-            let speaker = &self.speakers[usize::from(*speaker) * WIDTH..];
-            let sum = self.words.row(*piece as usize).zip(position).zip(speaker);
-            pieces.extend(sum.map(|((word, position), speaker)| word + position + speaker));
-        }
-        self.norm.apply(&mut pieces, WIDTH);
-        for layer in &self.encoder {
-            pieces = layer.apply(pieces);
-        }
+        let pieces = self.encoder.read(&source.pieces, &source.speakers);
         // Each word is the mean of its pieces.
         let mut words = Vec::with_capacity(source.words.len() * WIDTH);
         for span in &source.spans {
-            let mut sum = [0.0; WIDTH];
-            for piece in pieces[span.start * WIDTH..span.end * WIDTH].chunks_exact(WIDTH) {
-                sum.iter_mut().zip(piece).for_each(|(sum, value)| *sum += value);
-            }
-            words.extend(sum.map(|sum| sum / span.len() as f32));
+            words.extend(encoder::mean(&pieces[span.start * WIDTH..span.end * WIDTH]));
         }
         let memory = self.memory.apply(&words);
         let attended = self.decoder.iter().map(|layer| {
@@ -222,42 +172,6 @@ impl Network {
     }
 }
 
-impl Layer {
-    fn new(tensors: &Tensors<'_>, name: &str) -> Result<Self, ModelError> {
-        Ok(Self {
-            query_key_value: tensors.linear(&format!("{name}.query_key_value"))?,
-            attended: tensors.linear(&format!("{name}.attended"))?,
-            norm: Norm::new(tensors, &format!("{name}.norm"))?,
-            hidden: tensors.linear(&format!("{name}.hidden"))?,
-            output: tensors.linear(&format!("{name}.output"))?,
-            last_norm: Norm::new(tensors, &format!("{name}.last_norm"))?,
-        })
-    }
-
-    fn apply(&self, mut rows: Vec<f32>) -> Vec<f32> {
-        let both = self.query_key_value.apply(&rows);
-        let mut attended = KeysAndValues::default();
-        let mut queries = Vec::with_capacity(rows.len());
-        for row in both.chunks_exact(3 * WIDTH) {
-            queries.extend_from_slice(&row[..WIDTH]);
-            attended.push(&row[WIDTH..]);
-        }
-        let mut values = Vec::with_capacity(rows.len());
-        queries.chunks_exact(WIDTH).for_each(|query| values.extend(attended.attend(query, HEADS)));
-        add(&mut rows, &self.attended.apply(&values));
-        self.norm.apply(&mut rows, WIDTH);
-        self.finish(rows, WIDTH)
-    }
-
-    fn finish(&self, mut rows: Vec<f32>, width: usize) -> Vec<f32> {
-        let mut hidden = self.hidden.apply(&rows);
-        hidden.iter_mut().for_each(|value| *value = gelu(*value));
-        add(&mut rows, &self.output.apply(&hidden));
-        self.last_norm.apply(&mut rows, width);
-        rows
-    }
-}
-
 impl DecoderLayer {
     fn new(tensors: &Tensors<'_>, name: &str) -> Result<Self, ModelError> {
         Ok(Self {
@@ -290,124 +204,5 @@ impl DecoderLayer {
         add(&mut states, &self.attended.apply(&values));
         self.norm.apply(&mut states, DECODER_WIDTH);
         self.layer.finish(states, DECODER_WIDTH)
-    }
-}
-
-impl KeysAndValues {
-    /// Adds a key and, behind it, a value.
-    fn push(&mut self, both: &[f32]) {
-        let (key, value) = both.split_at(both.len() / 2);
-        self.keys.extend_from_slice(key);
-        self.values.extend_from_slice(value);
-    }
-
-    /// The values, weighted by how well their keys fit the query, in each head.
-    fn attend(&self, query: &[f32], heads: usize) -> Vec<f32> {
-        let (width, size) = (query.len(), query.len() / heads);
-        let scale = 1.0 / (size as f32).sqrt();
-        let mut attended = vec![0.0; width];
-        for (head, attended) in attended.chunks_exact_mut(size).enumerate() {
-            let part = head * size..(head + 1) * size;
-            let query = &query[part.clone()];
-            let mut weights: Vec<f32> =
-                self.keys.chunks_exact(width).map(|key| dot(query, &key[part.clone()]) * scale).collect();
-            softmax(&mut weights);
-            for (weight, value) in weights.iter().zip(self.values.chunks_exact(width)) {
-                attended.iter_mut().zip(&value[part.clone()]).for_each(|(sum, value)| *sum += weight * value);
-            }
-        }
-        attended
-    }
-}
-
-impl Norm {
-    fn new(tensors: &Tensors<'_>, name: &str) -> Result<Self, ModelError> {
-        Ok(Self { weight: tensors.floats(&format!("{name}.weight"))?, bias: tensors.floats(&format!("{name}.bias"))? })
-    }
-
-    /// Shifts and scales each row to mean 0 and variance 1, then by the learned numbers.
-    fn apply(&self, rows: &mut [f32], width: usize) {
-        for row in rows.chunks_exact_mut(width) {
-            let mean = sum(row) / width as f32;
-            row.iter_mut().for_each(|value| *value -= mean);
-            let factor = 1.0 / (dot(row, row) / width as f32 + 1e-12).sqrt();
-            let learned = self.weight.iter().zip(&self.bias);
-            row.iter_mut().zip(learned).for_each(|(value, (weight, bias))| *value = *value * factor * weight + bias);
-        }
-    }
-}
-
-/// Numbers that are summed side by side: the order of a sum is part of its result.
-const LANES: usize = 16;
-
-fn dot(a: &[f32], b: &[f32]) -> f32 {
-    let mut lanes = [0.0; LANES];
-    let ((a, a_rest), (b, b_rest)) = (a.as_chunks::<LANES>(), b.as_chunks::<LANES>());
-    for (a, b) in a.iter().zip(b) {
-        for lane in 0..LANES {
-            lanes[lane] += a[lane] * b[lane];
-        }
-    }
-    lanes.iter().sum::<f32>() + a_rest.iter().zip(b_rest).map(|(a, b)| a * b).sum::<f32>()
-}
-
-fn sum(values: &[f32]) -> f32 {
-    let mut lanes = [0.0; LANES];
-    let (chunks, rest) = values.as_chunks::<LANES>();
-    for chunk in chunks {
-        lanes.iter_mut().zip(chunk).for_each(|(lane, value)| *lane += value);
-    }
-    lanes.iter().sum::<f32>() + rest.iter().sum::<f32>()
-}
-
-fn add(rows: &mut [f32], others: &[f32]) {
-    rows.iter_mut().zip(others).for_each(|(value, other)| *value += other);
-}
-
-/// From scores to weights that sum to 1.
-pub(crate) fn softmax(scores: &mut [f32]) {
-    let largest = scores.iter().copied().fold(f32::NEG_INFINITY, f32::max);
-    scores.iter_mut().for_each(|score| *score = libm::expf(*score - largest));
-    let total = sum(scores);
-    scores.iter_mut().for_each(|score| *score /= total);
-}
-
-/// `x Φ(x)`, from a table between -8 and 8.
-fn gelu(x: f32) -> f32 {
-    const STEPS: usize = 256;
-    static TABLE: LazyLock<Vec<f32>> = LazyLock::new(|| {
-        let x = |at: usize| at as f32 / STEPS as f32 - 8.0;
-        (0..=16 * STEPS + 1)
-            .map(|at| 0.5 * x(at) * (1.0 + libm::erff(x(at) * std::f32::consts::FRAC_1_SQRT_2)))
-            .collect()
-    });
-    if x.abs() >= 8.0 {
-        return x.max(0.0);
-    }
-    let place = (x + 8.0) * STEPS as f32;
-    let at = place as usize;
-    let part = place - at as f32;
-    TABLE[at] * (1.0 - part) + TABLE[at + 1] * part
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_table_is_the_function() {
-        for at in -1000..1000 {
-            let x = at as f32 * 0.009_7;
-            let exact = 0.5 * x * (1.0 + libm::erff(x * std::f32::consts::FRAC_1_SQRT_2));
-            assert!((gelu(x) - exact).abs() < 1e-5, "{x}");
-        }
-    }
-
-    #[test]
-    fn weights_sum_to_one() {
-        let mut scores = vec![3.0, -1.0, 900.0, 899.0];
-        softmax(&mut scores);
-        assert!((scores.iter().sum::<f32>() - 1.0).abs() < 1e-6);
-        assert!((scores[2] / scores[3] - std::f32::consts::E).abs() < 1e-3);
     }
 }

@@ -27,16 +27,24 @@ impl<'a> Tensors<'a> {
         self.notes.get(name).map(String::as_str).ok_or_else(|| ModelError::Missing(name.to_owned()))
     }
 
+    /// A number that belongs to the model.
+    pub(crate) fn count(&self, name: &str) -> Result<usize, ModelError> {
+        self.note(name)?.parse().map_err(|_| ModelError::Shape(name.to_owned()))
+    }
+
     pub(crate) fn floats(&self, name: &str) -> Result<Vec<f32>, ModelError> {
         let bytes = self.bytes(name, Dtype::F32)?;
         let numbers = bytes.as_chunks::<4>().0.iter().map(|bytes| f32::from_le_bytes(*bytes));
         Ok(numbers.collect())
     }
 
+    pub(crate) fn whole_numbers(&self, name: &str) -> Result<Vec<i8>, ModelError> {
+        Ok(self.bytes(name, Dtype::I8)?.iter().map(|byte| byte.cast_signed()).collect())
+    }
+
     /// A matrix with scales and biases of its outputs.
     pub(crate) fn linear(&self, name: &str) -> Result<Linear, ModelError> {
-        let weights: Vec<i8> =
-            self.bytes(&format!("{name}.weight"), Dtype::I8)?.iter().map(|byte| byte.cast_signed()).collect();
+        let weights = self.whole_numbers(&format!("{name}.weight"))?;
         let scales = self.floats(&format!("{name}.scale"))?;
         let bias = self.floats(&format!("{name}.bias"))?;
         if scales.is_empty()

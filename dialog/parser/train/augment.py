@@ -26,10 +26,10 @@ BOUND = {*letters.RELATIONS, "ANSWER", "OTHERWISE", "again", "go on", "undo"}
 class Augmenter:
     """Draws variants of samples; the same for the same seed."""
 
-    def __init__(self, samples, names, seed):
+    def __init__(self, samples, names, told, seed):
         self.samples = samples
         self.random = random.Random(seed)
-        self.things = self.named(samples, names)
+        self.things = self.named(samples, names) + [corpus.words(said) for said in told]
         self.forms = [form for form in letters.FORMS if letters.PLACES[form]]
 
     def draw(self):

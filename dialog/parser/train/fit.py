@@ -15,7 +15,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import torch
-from safetensors.torch import save_file
+from safetensors.torch import load_file, save_file
 
 import corpus
 import letters
@@ -37,6 +37,7 @@ def main():
     options.add_argument("--minutes", type=float, default=60, help="how long to train")
     options.add_argument("--dev", nargs="*", default=[], help="speakers to compare with, and not to learn from")
     options.add_argument("--out", type=Path, default=corpus.CRATE / "model", help="the folder of the model")
+    options.add_argument("--begin", type=Path, help="a model to begin with, as this program writes them")
     options.add_argument("--device", default="cpu")
     given = options.parse_args()
     torch.manual_seed(SEED)
@@ -44,8 +45,11 @@ def main():
     unlearnt = corpus.HELD_OUT | set(given.dev)
     trained = [sample for sample in samples if sample.speaker not in unlearnt and sample.letters is not None]
     print(f"{len(trained)} utterances to learn from", flush=True)
-    model = network.Network().to(given.device)
-    train(model, Augmenter(trained, thing_names(), SEED), given)
+    model = network.Network()
+    if given.begin:
+        network.take(model, load_file(given.begin))
+    model.to(given.device)
+    train(model, Augmenter(trained, thing_names(), told(), SEED), given)
     given.out.mkdir(parents=True, exist_ok=True)
     tensors = export(model)
     notes = {"symbols": "\n".join(ALPHABET), "encoder": str(network.LAYERS), "decoder": str(network.DECODER_LAYERS)}
@@ -73,6 +77,13 @@ def thing_names():
             if key == "name":
                 names.add(value.strip().strip('"').lower())
     return sorted(names)
+
+
+def told():
+    """What people say for things."""
+    file = corpus.CRATE.parent / "language/data/things.txt"
+    lines = (line.partition(" | ")[2] for line in file.read_text(encoding="utf-8").splitlines())
+    return [said for said in lines if said]
 
 
 def train(model, augmenter, given):
@@ -172,19 +183,7 @@ def export(model):
     tensors["words.packed"] = nibbles[:, 0::2] | (nibbles[:, 1::2] << 4)
     tensors["words.scale"] = scale.bfloat16()
     model.words.weight.data = rounded.to(model.words.weight.device)
-    for name, module in model.named_modules():
-        name = name.replace("words_", "words.")
-        if isinstance(module, torch.nn.Linear):
-            weight = module.weight.data
-            step = (weight.abs().amax(1) / 127).clamp_min(1e-9)
-            integers = (weight / step[:, None]).round().clamp(-127, 127)
-            module.weight.data = integers * step[:, None]
-            tensors |= {f"{name}.weight": integers.to(torch.int8), f"{name}.scale": step, f"{name}.bias": module.bias.data}
-        elif isinstance(module, torch.nn.LayerNorm):
-            tensors |= {f"{name}.weight": module.weight.data, f"{name}.bias": module.bias.data}
-        elif isinstance(module, torch.nn.Embedding) and name != "words":
-            tensors[name] = module.weight.data
-    return {name: tensor.cpu().contiguous() for name, tensor in tensors.items()}
+    return tensors | network.export(model)
 
 
 def write_reference(model, samples, file):

@@ -110,6 +110,24 @@ class Layer(nn.Module):
         return dropout(x, self.training)
 
 
+def encoder_layers(given, count):
+    """The lowest layers of MiniLM."""
+    take = given.__getitem__
+    layers = nn.ModuleList(Layer(WIDTH, HEADS, 4 * WIDTH) for _ in range(count))
+    for at, layer in enumerate(layers):
+        name = f"encoder.layer.{at}"
+        kinds = ("query", "key", "value")
+        for part in ("weight", "bias"):
+            joined = torch.cat([take(f"{name}.attention.self.{kind}.{part}") for kind in kinds])
+            getattr(layer.query_key_value, part).data = joined
+        fill(layer.attended, given, f"{name}.attention.output.dense")
+        fill(layer.norm, given, f"{name}.attention.output.LayerNorm")
+        fill(layer.hidden, given, f"{name}.intermediate.dense")
+        fill(layer.output, given, f"{name}.output.dense")
+        fill(layer.last_norm, given, f"{name}.output.LayerNorm")
+    return layers
+
+
 class Network(nn.Module):
     def __init__(self):
         super().__init__()
@@ -120,18 +138,7 @@ class Network(nn.Module):
         self.speakers = nn.Embedding.from_pretrained(take("embeddings.token_type_embeddings.weight")[:1].repeat(3, 1), freeze=False)
         self.norm = nn.LayerNorm(WIDTH, eps=1e-12)
         fill(self.norm, given, "embeddings.LayerNorm")
-        self.encoder = nn.ModuleList(Layer(WIDTH, HEADS, 4 * WIDTH) for _ in range(LAYERS))
-        for at, layer in enumerate(self.encoder):
-            name = f"encoder.layer.{at}"
-            kinds = ("query", "key", "value")
-            for part in ("weight", "bias"):
-                joined = torch.cat([take(f"{name}.attention.self.{kind}.{part}") for kind in kinds])
-                getattr(layer.query_key_value, part).data = joined
-            fill(layer.attended, given, f"{name}.attention.output.dense")
-            fill(layer.norm, given, f"{name}.attention.output.LayerNorm")
-            fill(layer.hidden, given, f"{name}.intermediate.dense")
-            fill(layer.output, given, f"{name}.output.dense")
-            fill(layer.last_norm, given, f"{name}.output.LayerNorm")
+        self.encoder = encoder_layers(given, LAYERS)
         self.memory = nn.Linear(WIDTH, DECODER_WIDTH)
         self.starts = nn.Linear(WIDTH, DECODER_WIDTH)
         self.ends = nn.Linear(WIDTH, DECODER_WIDTH)
@@ -248,3 +255,35 @@ def to_device(value, device):
     if isinstance(value, dict):
         return {name: to_device(one, device) for name, one in value.items()}
     return value.to(device)
+
+
+def export(model):
+    """The numbers of all modules but the embeddings of word pieces, as `src/tensors.rs` reads them; the model itself computes with them
+    from now on."""
+    tensors = {}
+    for name, module in model.named_modules():
+        name = name.replace("words_", "words.")
+        if isinstance(module, nn.Linear):
+            weight = module.weight.data
+            step = (weight.abs().amax(1) / 127).clamp_min(1e-9)
+            integers = (weight / step[:, None]).round().clamp(-127, 127)
+            module.weight.data = integers * step[:, None]
+            tensors |= {f"{name}.weight": integers.to(torch.int8), f"{name}.scale": step, f"{name}.bias": module.bias.data}
+        elif isinstance(module, nn.LayerNorm):
+            tensors |= {f"{name}.weight": module.weight.data, f"{name}.bias": module.bias.data}
+        elif isinstance(module, nn.Embedding) and name != "words":
+            tensors[name] = module.weight.data
+    return {name: tensor.cpu().contiguous() for name, tensor in tensors.items()}
+
+
+def take(model, tensors):
+    """The numbers that `export` made of a model; those of its words stay as they are."""
+    for name, module in model.named_modules():
+        name = name.replace("words_", "words.")
+        if isinstance(module, nn.Linear):
+            module.weight.data = tensors[f"{name}.weight"].float() * tensors[f"{name}.scale"][:, None]
+            module.bias.data = tensors[f"{name}.bias"]
+        elif isinstance(module, nn.LayerNorm):
+            module.weight.data, module.bias.data = tensors[f"{name}.weight"], tensors[f"{name}.bias"]
+        elif isinstance(module, nn.Embedding) and name != "words":
+            module.weight.data = tensors[name]
