@@ -82,7 +82,8 @@ impl Answerer<'_> {
             (QuestionKind::Contents, Some(phrase)) => self.with_object(phrase, |id| self.contents(id)),
             (QuestionKind::Near, Some(phrase)) => self.with_object(phrase, |id| self.neighbours(id)),
             (QuestionKind::Text, phrase) => self.text(phrase),
-            (QuestionKind::Color, Some(phrase)) => self.with_object(phrase, |id| self.color(id)),
+            (QuestionKind::Color, Some(phrase)) => self.colors(phrase),
+            (QuestionKind::Distance, Some(phrase)) => self.with_object(phrase, |id| self.distance(id)),
             (QuestionKind::Count, Some(phrase)) => self.count(phrase),
             (QuestionKind::State, Some(phrase)) => self.state(phrase, question),
             (QuestionKind::Where | QuestionKind::Look | QuestionKind::Unknown, Some(phrase)) if !phrase.is_empty() => {
@@ -342,9 +343,29 @@ impl Answerer<'_> {
         }
     }
 
-    fn color(&self, id: ObjectId) -> Understanding {
-        let color = self.scene.object(id).map(|object| describe::color(self.catalog, object)).unwrap_or_default();
-        Understanding::about(describe::sentence(&format!("{} is {color}", self.short(id))), vec![id])
+    /// The colour of a thing, or of each that may be meant.
+    fn colors(&self, phrase: &Phrase) -> Understanding {
+        let want = Want::place(Intent::Find, &[], None);
+        let Ok(found) = self.ground().plausible(phrase, &want) else {
+            return self.with_object(phrase, |id| {
+                Understanding::about(describe::sentence(&self.color_sentence(id)), vec![id])
+            });
+        };
+        let mut said: Vec<String> = found.iter().take(LIST).map(|id| self.color_sentence(*id)).collect();
+        said.dedup();
+        Understanding::about(describe::sentence(&describe::list(&said, "and")), found)
+    }
+
+    fn color_sentence(&self, id: ObjectId) -> String {
+        let Some(object) = self.scene.object(id) else { return String::new() };
+        format!("the {} is {}", describe::name(self.catalog, object.class), describe::color(self.catalog, object))
+    }
+
+    fn distance(&self, id: ObjectId) -> Understanding {
+        let Some(object) = self.scene.object(id) else { return Understanding::refusal(HINT) };
+        let meters = self.scene.distance_m(object);
+        let text = format!("{} is {meters:.1} m away from me.", self.short(id));
+        Understanding::about(describe::sentence(&text), vec![id])
     }
 
     fn count(&self, phrase: &Phrase) -> Understanding {

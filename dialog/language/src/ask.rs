@@ -146,6 +146,14 @@ pub(crate) fn shall_i(steps: &[Step], notes: &[String]) -> Understanding {
     confirmation(text.trim())
 }
 
+/// Which of these plans is meant?
+pub(crate) fn which_plan(plans: &[Vec<Step>]) -> Understanding {
+    let names: Vec<String> = plans.iter().map(|steps| reply::plan_in_words(steps)).collect();
+    let text = format!("I am not sure what you mean: {}?", describe::list(&names, "or"));
+    let options: Vec<&str> = names.iter().map(String::as_str).collect();
+    of_kind(Clarification::Confirmation, "", text, &options)
+}
+
 /// Where is what nobody has seen?
 pub(crate) fn location(phrase: &Phrase) -> Understanding {
     let unseen = saying::noun(phrase)

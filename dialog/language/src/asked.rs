@@ -7,16 +7,21 @@ use crate::{
     clause::{Clause, Part},
     context::{Consent, Context, Pending, Role, Slot},
     conversation::Conversation,
+    describe,
     ground::{Ground, Miss, Want},
     hearing,
     intent::Intent,
     lexicon::{Direction, Preposition, Pronoun, Side, Small},
+    likeness::{Likeness, SHARPNESS},
     phrase::{Phrase, Place, Reader, Relation},
     plan::Fault,
     question::{self, QuestionKind},
-    token,
-    understanding::Understanding,
+    reply, token,
+    understanding::{Step, Understanding},
 };
+
+/// How likely a candidate must be to be clearly the one described.
+const CLEARLY: f32 = 0.6;
 
 /// A request that waits for what one of its phrases means.
 struct Open {
@@ -48,11 +53,14 @@ impl Conversation<'_> {
                 let consent = Consent { may_put_down: true, is_agreed: true };
                 Some(self.plan(clauses, consent, context))
             }
-            Pending::Offer { steps } if is_yes => Some(self.go(steps, context)),
+            Pending::Offer { plans } => {
+                let chosen = self.chosen_plan(words, is_yes || is(Small::Any), plans)?;
+                Some(self.go(chosen, context))
+            }
             Pending::Search { clauses } if is_yes || is(Small::Search) => {
                 Some(self.plan(clauses, Consent::default(), context))
             }
-            Pending::PutDown { .. } | Pending::Offer { .. } | Pending::Search { .. } | Pending::Lab { .. } => None,
+            Pending::PutDown { .. } | Pending::Search { .. } | Pending::Lab { .. } => None,
             Pending::Direction { clauses, clause } => self.turned(words, clauses, clause, context),
             Pending::Where { clauses, slot, consent } if is_yes || is(Small::Unsure) || is(Small::Search) => {
                 Some(self.look_for(clauses, slot, consent, context))
@@ -73,6 +81,24 @@ impl Conversation<'_> {
                 self.told_which(words, is_yes, is_command, &candidates, open, context)
             }
         }
+    }
+
+    /// The plan that an answer means: `yes`, `the second one`, or what it was called.
+    fn chosen_plan(&self, words: &[String], is_yes: bool, mut plans: Vec<Vec<Step>>) -> Option<Vec<Step>> {
+        let is_called = |steps: &Vec<Step>| self.lexicon.normalise(&reply::plan_in_words(steps)).0 == words;
+        if let Some(at) = plans.iter().position(is_called) {
+            return Some(plans.swap_remove(at));
+        }
+        let count = i32::try_from(plans.len()).ok()?;
+        let ordinal = self.answer_phrase(&plain(words)).and_then(|phrase| phrase.ordinal);
+        let at = match ordinal {
+            Some(ordinal) if ordinal < 0 => count + ordinal,
+            Some(ordinal) => ordinal - 1,
+            None if is_yes => 0,
+            None => return None,
+        };
+        let at = usize::try_from(at).ok().filter(|at| *at < plans.len())?;
+        Some(plans.swap_remove(at))
     }
 
     /// `yes, do put it down first`.
@@ -163,6 +189,9 @@ impl Conversation<'_> {
                 .find(|left| left.len() == 1)
                 .unwrap_or_default();
         }
+        if left.is_empty() && !is_command && !self.is_aside(words) && !self.names_another(words) {
+            left.extend(self.most_like(words, candidates));
+        }
         match left.as_slice() {
             [one] => Some(self.settle(open, *one, context)),
             [] if is_command || self.is_aside(words) => None,
@@ -172,6 +201,22 @@ impl Conversation<'_> {
                 Some(self.ask_which(open, candidates.to_vec(), context))
             }
         }
+    }
+
+    /// The candidate that the words describe by use or look, if they clearly describe one.
+    fn most_like(&self, words: &[String], candidates: &[ObjectId]) -> Option<ObjectId> {
+        let likeness = Likeness::builtin();
+        let said = likeness.of(&words.join(" "));
+        let names = describe::apart(self.catalog, self.scene, candidates);
+        let utility = |(id, name): (&ObjectId, &String)| {
+            let class = self.scene.object(*id)?.class;
+            let like = likeness.to_class(&said, self.catalog, class) + said.likeness(&likeness.of(name));
+            Some((like / (2.0 * SHARPNESS), *id))
+        };
+        let utilities: Vec<(f32, ObjectId)> = candidates.iter().zip(&names).filter_map(utility).collect();
+        let (highest, best) = utilities.iter().copied().max_by(|(one, _), (other, _)| one.total_cmp(other))?;
+        let whole: f32 = utilities.iter().map(|(utility, _)| (utility - highest).exp()).sum();
+        (1.0 / whole > CLEARLY).then_some(best)
     }
 
     /// Whether it says where something is, or what: `the purple one` alone is no help.

@@ -83,8 +83,8 @@ pub(crate) enum Pending {
     PutDown { clauses: Vec<Clause> },
     /// Whether to look for what was asked about.
     Search { clauses: Vec<Clause> },
-    /// Whether to do this.
-    Offer { steps: Vec<Step> },
+    /// Which of these to do, or whether to do the only one.
+    Offer { plans: Vec<Vec<Step>> },
 }
 
 /// What a person has agreed to in answers to questions about a request.

@@ -399,7 +399,7 @@ impl Conversation<'_> {
         let notes: Vec<String> = found.into_iter().chain(planner.notes).collect();
         if self.judge.asking == Asking::Always && !consent.is_agreed && commits(&planner.steps) {
             let question = ask::shall_i(&planner.steps, &notes);
-            context.pending = Some(Pending::Offer { steps: planner.steps });
+            context.pending = Some(Pending::Offer { plans: vec![planner.steps] });
             return question;
         }
         context.focus = planner.focus;
@@ -434,7 +434,7 @@ impl Conversation<'_> {
         match fault {
             Fault::Cannot(text) | Fault::Need { text, .. } => Understanding::refusal(text),
             Fault::Offer { text, steps } if asks => {
-                context.pending = Some(Pending::Offer { steps });
+                context.pending = Some(Pending::Offer { plans: vec![steps] });
                 ask::confirmation(text)
             }
             Fault::Offer { text, .. } => Understanding::refusal(text),

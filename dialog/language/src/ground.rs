@@ -678,7 +678,7 @@ pub(crate) fn has_state(object: &KnownObject, state: StateWord) -> bool {
 }
 
 /// Whether the object's state makes sense of the request; `None` where state says nothing.
-fn fitting_state(intent: Intent, object: &KnownObject) -> Option<bool> {
+pub(crate) fn fitting_state(intent: Intent, object: &KnownObject) -> Option<bool> {
     match intent {
         Intent::Open => Some(!object.has(StateFlag::Opened)),
         Intent::Close => Some(object.has(StateFlag::Opened)),

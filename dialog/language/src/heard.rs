@@ -51,7 +51,7 @@ impl Conversation<'_> {
                 Understanding::Plan { steps, .. } if reading.is_doubtful && self.judge.asking != Asking::Never => {
                     *context = before;
                     let question = ask::shall_i(&steps, &[]);
-                    context.pending = Some(Pending::Offer { steps });
+                    context.pending = Some(Pending::Offer { plans: vec![steps] });
                     return question;
                 }
                 Understanding::Plan { .. } | Understanding::Answer { .. } => {

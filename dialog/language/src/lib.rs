@@ -20,6 +20,7 @@
 //! # Ok::<(), cohabit_cdf::CatalogError>(())
 //! ```
 
+mod acts;
 mod address;
 mod amend;
 mod answer;
@@ -49,6 +50,7 @@ mod judge;
 mod known;
 mod lab;
 mod lexicon;
+mod likeness;
 mod memory;
 mod misheard;
 mod naming;
@@ -80,6 +82,7 @@ mod token;
 mod understanding;
 mod undo;
 mod verbless;
+mod weighed;
 mod wish;
 mod words;
 mod yes_no;

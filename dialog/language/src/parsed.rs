@@ -1,98 +1,30 @@
 //! What the learned parser makes of an utterance, beside what the grammar makes of it.
 
-use cohabit_cdf::Action;
+use cohabit_cdf::Property;
 use cohabit_parser::{
     Reading, Said,
     request::{Act, Answer, Command, Condition, Relation, Request, Social},
 };
 
 use crate::{
-    answer::HINT,
-    ask, chatter,
+    chatter,
     clause::{self, Part},
-    context::{Context, Pending},
+    context::Context,
     conversation::Conversation,
-    inquiry,
+    describe, hearing, inquiry,
+    intent::Intent,
+    known::KnownObject,
+    likeness::{Likeness, SHARPNESS, UNLIKE},
+    phrase::{Phrase, Place, Reader},
     question::{self, QuestionKind},
     tidy,
-    understanding::{Asking, Clarification, Step, Understanding},
+    understanding::{Clarification, Understanding},
 };
 
-/// How likely a reading must be to count: where the grammar makes no sense of the utterance; where it makes some; and where it makes
-/// more than the reading does.
-const LIKELY: f32 = 0.25;
-const SURE: f32 = 0.6;
-const CERTAIN: f32 = 0.9;
 /// How likely a stop must be for the robot to stop.
 const STOPS: f32 = 0.5;
 
 impl Conversation<'_> {
-    /// The better of what grammar and parser make of an utterance. What the grammar reads to the last word it knows best; of all else the
-    /// parser's readings count, the likeliest first, where they are likely enough and make sense here.
-    pub(crate) fn understand_best(&self, utterance: &str, context: &mut Context) -> Understanding {
-        let mut read = context.clone();
-        let by_grammar = self.understand_said(utterance, &mut read);
-        let is_lost = matches!(by_grammar, Understanding::Refusal { is_lost: true, .. });
-        if !is_lost && self.is_plain(utterance) {
-            *context = read;
-            return by_grammar;
-        }
-        // A question that the grammar answers is not carried out.
-        let is_question = worth(&by_grammar) == Worth::Answered && utterance.trim_end().ends_with('?');
-        let readings = self.readings(utterance, context);
-        let is_foreign = self.has_unheard_word(utterance);
-        // Stops were heard before.
-        for reading in readings.iter().filter(|reading| !reading.requests.iter().any(stops)) {
-            let mut parsed = context.clone();
-            let Some(understanding) = self.understand_reading(reading, utterance, &mut parsed) else { continue };
-            if matches!(understanding, Understanding::Stop { .. }) {
-                continue;
-            }
-            let is_social = !reading.requests.iter().any(asks);
-            let enough = match worth(&by_grammar) {
-                _ if is_foreign => CERTAIN,
-                Worth::None if is_social => SURE,
-                Worth::None => LIKELY,
-                worth if worth <= self::worth(&understanding) => SURE,
-                _ => CERTAIN,
-            };
-            let is_fit = !is_question || worth(&understanding) == Worth::Answered;
-            if worth(&understanding) == Worth::None || !is_fit || reading.probability < enough {
-                continue;
-            }
-            return match understanding {
-                Understanding::Plan { steps, .. } if reading.probability < chance_to_act(&steps) => {
-                    self.proposed(steps, context)
-                }
-                understanding => {
-                    *context = parsed;
-                    understanding
-                }
-            };
-        }
-        *context = read;
-        let excuse = readings.first().filter(|reading| is_lost && reading.probability >= LIKELY).and_then(excuse);
-        excuse.map_or(by_grammar, Understanding::lost)
-    }
-
-    /// Whether there is a word that neither grammar nor parser has ever met: what it means is not guessed.
-    fn has_unheard_word(&self, utterance: &str) -> bool {
-        let (words, _) = self.lexicon.normalise(utterance);
-        let unknown = clause::unknown_words(self.lexicon, &words);
-        let knows = |word: &String| self.parser.is_some_and(|parser| parser.knows(word));
-        unknown.iter().any(|word| !knows(word))
-    }
-
-    /// Asks whether these steps are meant, instead of taking them.
-    fn proposed(&self, steps: Vec<Step>, context: &mut Context) -> Understanding {
-        if self.judge.asking == Asking::Never {
-            return Understanding::lost(format!("I did not understand that. {HINT}"));
-        }
-        let question = ask::shall_i(&steps, &[]);
-        context.pending = Some(Pending::Offer { steps });
-        question
-    }
-
     /// What else is asked for, if the parser takes an utterance for a stop.
     pub(crate) fn parsed_stop(&self, utterance: &str, context: &Context) -> Option<String> {
         let readings = self.readings(utterance, context);
@@ -104,14 +36,14 @@ impl Conversation<'_> {
         Some(others.filter_map(sentence).collect::<Vec<_>>().join(". "))
     }
 
-    fn readings(&self, utterance: &str, context: &Context) -> Vec<Reading> {
+    pub(crate) fn readings(&self, utterance: &str, context: &Context) -> Vec<Reading> {
         let lines: Vec<Said<'_>> =
             context.lines.iter().map(|(by_robot, text)| Said { by_robot: *by_robot, text }).collect();
         self.parser.map(|parser| parser.parse(utterance, &lines)).unwrap_or_default()
     }
 
     /// Whether the grammar reads an utterance to the last word, as one that it knows: requests, or a question, or small talk.
-    fn is_plain(&self, utterance: &str) -> bool {
+    pub(crate) fn is_plain(&self, utterance: &str) -> bool {
         let (words, _) = self.lexicon.normalise(utterance);
         let words = tidy::tidied(self.lexicon, &words);
         if !self.small(&words).is_empty() || self.chat(&words).is_some() {
@@ -134,30 +66,142 @@ impl Conversation<'_> {
         !parts.is_empty() && parts.iter().all(is_read)
     }
 
+    /// Whether the grammar takes an utterance for a question that it does not read to the last word, or that nothing but its guess speaks for.
+    pub(crate) fn takes_for_question(&self, utterance: &str) -> bool {
+        let (words, _) = self.lexicon.normalise(utterance);
+        let words = tidy::tidied(self.lexicon, &words);
+        question::read(self.lexicon, &words).is_some_and(|question| {
+            let is_known = question.about.as_ref().is_none_or(|about| about.unknown.is_empty());
+            let is_asked = utterance.trim_end().ends_with('?');
+            !is_known || !is_asked || matches!(question.kind, QuestionKind::Unknown)
+        })
+    }
+
+    /// The words that neither grammar nor parser has ever met.
+    pub(crate) fn unheard_words(&self, utterance: &str) -> Vec<String> {
+        let (words, _) = self.lexicon.normalise(utterance);
+        let mut unknown = clause::unknown_words(self.lexicon, &words);
+        unknown.retain(|word| !self.parser.is_some_and(|parser| parser.knows(word)));
+        unknown
+    }
+
+    /// Whether the grammar leaves words of an utterance out.
+    pub(crate) fn leaves_words_out(&self, utterance: &str) -> bool {
+        let (words, _) = self.lexicon.normalise(utterance);
+        let words = tidy::tidied(self.lexicon, &words);
+        // A condition is read for itself.
+        let (said, _) = self.lexicon.normalise(utterance);
+        if (0..said.len()).any(|at| self.lexicon.conditions.longest(&said[at..]).is_some()) {
+            return false;
+        }
+        let heard =
+            hearing::readings(self.lexicon, self.catalog, &words).into_iter().find(|reading| !reading.is_doubtful);
+        let words = heard.map_or(words, |reading| reading.words);
+        clause::parts(self.lexicon, self.catalog, &words).iter().any(|part| match part {
+            Part::Clause(clause) if clause.intent == Intent::Impossible => false,
+            Part::Clause(clause) => !clause.unknown.is_empty() || clause.has_stray_noun || !chatter::is_clear(clause),
+            Part::Unclear(_) => true,
+            Part::Aside(words) => !words.is_empty(),
+            _ => false,
+        })
+    }
+
     /// What a reading means; nothing, where it makes no sense in the scene and conversation. What the robot cannot do of it is said.
-    fn understand_reading(&self, reading: &Reading, utterance: &str, context: &mut Context) -> Option<Understanding> {
+    pub(crate) fn understand_reading(
+        &self,
+        reading: &Reading,
+        utterance: &str,
+        context: &mut Context,
+    ) -> Option<(Understanding, f32)> {
         let asked: Vec<&Request> = reading.requests.iter().filter(|request| asks(request)).collect();
         if let ([], Some(Act::Social(social))) = (asked.as_slice(), reading.requests.last().map(|last| &last.act)) {
             let said = self.understand_said(utterance, &mut context.clone());
             let is_answer = matches!(said, Understanding::Answer { .. });
-            return Some(if is_answer { said } else { Understanding::answer(small_talk(*social)) });
+            let answer = if is_answer { said } else { Understanding::answer(small_talk(*social)) };
+            return Some((answer, 1.0));
         }
         if let [Request { act: Act::Goal(wish), conditions, .. }] = asked.as_slice()
             && conditions.is_empty()
         {
-            return self.wished(wish, context);
+            return self.wished(wish, context).map(|understanding| (understanding, 1.0));
         }
-        let sentences: Vec<String> = asked.iter().filter_map(|request| sentence(request)).collect();
+        let told: Vec<(Request, f32)> = asked.iter().map(|request| self.with_names(request)).collect();
+        let sentences: Vec<String> = told.iter().filter_map(|(request, _)| sentence(request)).collect();
         if sentences.is_empty() {
             return None;
         }
+        let certainty = told.iter().map(|(_, certainty)| certainty).product();
         let understanding = self.understand_said(&sentences.join(". "), context);
         let unknown = asked.iter().find_map(|request| unknown_words(request));
         let is_lost = matches!(understanding, Understanding::Refusal { is_lost: true, .. });
-        (!is_lost).then(|| match unknown {
+        let understanding = match unknown {
             Some(words) => understanding.after(&format!("I do not know how to {words}, so I leave that out.")),
             None => understanding,
-        })
+        };
+        (!is_lost).then_some((understanding, certainty))
+    }
+
+    /// A request with names for what the grammar cannot read of its descriptions, and how certain these names are.
+    fn with_names(&self, request: &Request) -> (Request, f32) {
+        let mut request = request.clone();
+        let mut certainty = 1.0;
+        let (Act::Do(command) | Act::Refrain(command) | Act::Inquire(_, command)) = &mut request.act else {
+            return (request, certainty);
+        };
+        if let Command::Known { form, arguments } = command {
+            for (place, argument) in arguments.iter_mut().enumerate() {
+                if let Some((name, probability)) = self.named(argument, wanted(form.text(), place)) {
+                    *argument = name;
+                    certainty *= probability;
+                }
+            }
+        }
+        (request, certainty)
+    }
+
+    /// The name of what a description means that the grammar cannot read, and how probable that is.
+    fn named(&self, description: &str, affordances: &[Property]) -> Option<(String, f32)> {
+        let (words, _) = self.lexicon.normalise(description);
+        if words.is_empty() || self.reads(&words) {
+            return None;
+        }
+        let likeness = Likeness::builtin();
+        let said = likeness.of(description);
+        let affords = |object: &KnownObject| {
+            let class = self.catalog.class(object.class);
+            affordances.is_empty() || affordances.iter().any(|property| class.has(*property))
+        };
+        let mut things = self.things_by_name();
+        if things.iter().any(|(_, objects)| objects.iter().any(|object| affords(object))) {
+            things.retain(|(_, objects)| objects.iter().any(|object| affords(object)));
+        }
+        let utility = |objects: &[&KnownObject]| {
+            let like = |object: &&KnownObject| likeness.to_class(&said, self.catalog, object.class);
+            objects.iter().map(like).fold(-1.0, f32::max) / SHARPNESS + self.nearness(objects)
+        };
+        let ranked: Vec<(f32, &(String, Vec<&KnownObject>))> =
+            things.iter().map(|thing| (utility(&thing.1), thing)).collect();
+        let (highest, (name, objects)) = *ranked.iter().max_by(|(one, _), (other, _)| one.total_cmp(other))?;
+        let whole: f32 = ranked.iter().map(|(utility, _)| (utility - highest).exp()).sum();
+        let colors = words.iter().filter_map(|word| self.lexicon.colors.exact(std::slice::from_ref(word)));
+        let is_colored =
+            |color: &&String| objects.iter().any(|object| describe::color(self.catalog, object) == **color);
+        let color = colors.filter(|_| objects.len() > 1).find(is_colored);
+        let name = color.map_or_else(|| format!("the {name}"), |color| format!("the {color} {name}"));
+        let unlike = (UNLIKE / SHARPNESS - highest).exp();
+        Some((name, 1.0 / (whole + unlike)))
+    }
+
+    /// Whether the grammar reads a description to its last word.
+    fn reads(&self, words: &[String]) -> bool {
+        let mut reader = Reader::new(self.lexicon, words);
+        let Some(place) = reader.destination() else { return false };
+        let Place::Object(mut phrase) = place else { return reader.is_done() };
+        while let Some((preposition, place)) = reader.place() {
+            phrase.attach(preposition, place);
+        }
+        let is_known = |phrase: &Phrase| phrase.unknown.is_empty();
+        reader.is_done() && is_known(&phrase) && phrase.relations.iter().all(|relation| is_known(&relation.to))
     }
 
     /// What brings a wish about: what the grammar makes of it, or else the goals of the mission that speak of the same things.
@@ -194,19 +238,41 @@ impl Conversation<'_> {
 /// What may stand around the words of a wish for it to be one that the grammar reads.
 const WISHES: [(&str, &str); 4] = [("", ""), ("i want ", ""), ("make ", ""), ("i want it so that ", "")];
 
+/// What a thing must afford to stand at a place of a form.
+fn wanted(form: &str, place: usize) -> &'static [Property] {
+    let begins = |verbs: &[&str]| verbs.iter().any(|verb| form.starts_with(verb));
+    match place {
+        0 if begins(&["open ", "close "]) => &[Property::Openable],
+        0 if begins(&["turn on ", "turn off ", "press "]) => &[Property::Toggleable],
+        0 if begins(&[
+            "pick up ", "put ", "bring ", "give ", "throw ", "drop ", "heat ", "cool ", "cook ", "eat ", "cut ",
+        ]) =>
+        {
+            &[Property::Pickupable]
+        }
+        0 if begins(&["break "]) => &[Property::Breakable],
+        0 if begins(&["fill ", "empty "]) => &[Property::Fillable],
+        1 if begins(&["put X in Y", "put X on Y", "pour ", "heat X in", "cool X in", "cook X in"]) => {
+            &[Property::Receptacle, Property::Fillable]
+        }
+        1 if begins(&["break ", "cut ", "repair ", "clean "]) => &[Property::Pickupable],
+        _ => &[],
+    }
+}
+
 /// Whether it is more than social talk.
-const fn asks(request: &Request) -> bool {
+pub(crate) const fn asks(request: &Request) -> bool {
     !matches!(request.act, Act::Social(_) | Act::None)
 }
 
 /// Whether it tells the robot to stop at once.
-fn stops(request: &Request) -> bool {
+pub(crate) fn stops(request: &Request) -> bool {
     let is_stop = matches!(&request.act, Act::Do(Command::Known { form, .. }) if form.text() == "stop");
     is_stop && request.conditions.is_empty()
 }
 
 /// What is asked for, if it is nothing that the robot knows.
-fn unknown_words(request: &Request) -> Option<&str> {
+pub(crate) fn unknown_words(request: &Request) -> Option<&str> {
     match &request.act {
         Act::Do(Command::Unknown(words)) => Some(words),
         _ => None,
@@ -214,8 +280,8 @@ fn unknown_words(request: &Request) -> Option<&str> {
 }
 
 /// How much was made of an utterance.
-#[derive(Clone, Copy, Eq, Ord, PartialEq, PartialOrd)]
-enum Worth {
+#[derive(Clone, Copy, Debug, Eq, Ord, PartialEq, PartialOrd)]
+pub(crate) enum Worth {
     /// Nothing, or only something without its verb.
     None,
     /// That it cannot be done.
@@ -226,7 +292,7 @@ enum Worth {
     Asked,
 }
 
-const fn worth(understanding: &Understanding) -> Worth {
+pub(crate) const fn worth(understanding: &Understanding) -> Worth {
     match understanding {
         Understanding::Refusal { is_lost: true, .. }
         | Understanding::Question { kind: Clarification::Request | Clarification::Appearance, .. } => Worth::None,
@@ -236,23 +302,8 @@ const fn worth(understanding: &Understanding) -> Worth {
     }
 }
 
-/// How likely a reading must be for its steps to be taken without a question.
-fn chance_to_act(steps: &[Step]) -> f32 {
-    let changes = steps.iter().any(|step| matches!(step.action, Action::Interact { .. } | Action::Place { .. }));
-    if changes { 0.5 } else { 0.4 }
-}
-
-/// Why nothing is done about a reading.
-fn excuse(reading: &Reading) -> Option<String> {
-    if let Some(words) = reading.requests.iter().find_map(unknown_words) {
-        return Some(format!("I do not know how to {words}. {HINT}"));
-    }
-    let is_nothing = reading.requests.iter().all(|request| request.act == Act::None);
-    is_nothing.then(|| format!("That is nothing that I can do. {HINT}"))
-}
-
 /// A request in plain words; nothing, if it is none that the robot knows.
-fn sentence(request: &Request) -> Option<String> {
+pub(crate) fn sentence(request: &Request) -> Option<String> {
     let mut sentence = match &request.act {
         Act::Do(Command::Unknown(_)) => return None,
         Act::Answer(Answer::Any) => "any of them".to_owned(),
@@ -278,7 +329,15 @@ fn sentence(request: &Request) -> Option<String> {
     Some(sentence)
 }
 
-const fn small_talk(social: Social) -> &'static str {
+/// The kind of social talk that a word of the labels names.
+pub(crate) fn social(kind: &str) -> Option<Social> {
+    match Request::parse(&format!("social: {kind}")).ok()?.act {
+        Act::Social(social) => Some(social),
+        _ => None,
+    }
+}
+
+pub(crate) const fn small_talk(social: Social) -> &'static str {
     match social {
         Social::Greeting => "Hello! What can I do for you?",
         Social::Thanks => "You are welcome!",

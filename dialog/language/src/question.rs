@@ -26,6 +26,7 @@ pub(crate) enum QuestionKind {
     /// What is next to it.
     Near,
     Color,
+    Distance,
     Text,
     Look,
     Count,

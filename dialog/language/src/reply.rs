@@ -56,11 +56,16 @@ pub(crate) fn miss(phrase: &Phrase, miss: &Miss, intent: Intent, role: Option<Ro
 }
 
 /// What is said when nothing was understood.
-pub(crate) fn unclear(unknown: &[String]) -> Understanding {
-    let quoted: Vec<String> = unknown.iter().take(3).map(|word| format!("\"{word}\"")).collect();
-    if quoted.is_empty() {
+pub(crate) fn unclear(words: &[String]) -> Understanding {
+    if words.is_empty() {
         return Understanding::lost(format!("I did not understand that. {HINT}"));
     }
+    Understanding::lost(format!("{} What shall I do? {HINT}", unknown(words)))
+}
+
+/// That it does not know these words.
+pub(crate) fn unknown(words: &[String]) -> String {
+    let quoted: Vec<String> = words.iter().take(3).map(|word| format!("\"{word}\"")).collect();
     let noun = if quoted.len() == 1 { "the word" } else { "the words" };
-    Understanding::lost(format!("I do not know {noun} {}. What shall I do? {HINT}", describe::list(&quoted, "and")))
+    format!("I do not know {noun} {}.", describe::list(&quoted, "and"))
 }

