@@ -53,7 +53,7 @@ impl Conversation<'_> {
                 let consent = Consent { may_put_down: true, is_agreed: true };
                 Some(self.plan(clauses, consent, context))
             }
-            Pending::Offer { plans } => {
+            Pending::Offer { plans } | Pending::Guess { plans } => {
                 let chosen = self.chosen_plan(words, is_yes || is(Small::Any), plans)?;
                 Some(self.go(chosen, context))
             }

@@ -85,6 +85,8 @@ pub(crate) enum Pending {
     Search { clauses: Vec<Clause> },
     /// Which of these to do, or whether to do the only one.
     Offer { plans: Vec<Vec<Step>> },
+    /// The same of plans that were only guessed at.
+    Guess { plans: Vec<Vec<Step>> },
 }
 
 /// What a person has agreed to in answers to questions about a request.
@@ -174,6 +176,12 @@ impl Context {
         self.lines.push((by_robot, text.to_owned()));
         let surplus = self.lines.len().saturating_sub(LINES);
         self.lines.drain(..surplus);
+    }
+
+    /// Whether the robot has just asked if what it guessed at was meant.
+    #[must_use]
+    pub const fn has_guessed(&self) -> bool {
+        matches!(self.pending, Some(Pending::Guess { .. }))
     }
 
     /// Takes note of what came of a step: `yes` after a failure then means the remedy that

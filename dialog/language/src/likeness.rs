@@ -16,8 +16,9 @@ static DIRECTIONS: &[u8] = include_bytes!("../data/directions.safetensors");
 
 /// By how much likenesses are divided to be utilities, whose exponentials are in the ratio of probabilities.
 pub(crate) const SHARPNESS: f32 = 0.05;
-/// How like a text is to what it is not like at all.
+/// How like an utterance is to a request that it is not like at all, and a description to a thing.
 pub(crate) const UNLIKE: f32 = 0.3;
+pub(crate) const UNLIKE_THING: f32 = 0.44;
 
 /// The most texts that are kept in mind beside those of the data.
 const MOST_KEPT: usize = 4096;

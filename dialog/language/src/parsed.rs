@@ -14,7 +14,7 @@ use crate::{
     describe, hearing, inquiry,
     intent::Intent,
     known::KnownObject,
-    likeness::{Likeness, SHARPNESS, UNLIKE},
+    likeness::{Likeness, SHARPNESS, UNLIKE_THING},
     phrase::{Phrase, Place, Reader},
     question::{self, QuestionKind},
     tidy,
@@ -166,7 +166,8 @@ impl Conversation<'_> {
             return None;
         }
         let likeness = Likeness::builtin();
-        let said = likeness.of(description);
+        let start = self.lexicon.articles.longest(&words).map_or(0, |(length, ())| length);
+        let said = likeness.of(&words[start.min(words.len() - 1)..].join(" "));
         let affords = |object: &KnownObject| {
             let class = self.catalog.class(object.class);
             affordances.is_empty() || affordances.iter().any(|property| class.has(*property))
@@ -188,7 +189,7 @@ impl Conversation<'_> {
             |color: &&String| objects.iter().any(|object| describe::color(self.catalog, object) == **color);
         let color = colors.filter(|_| objects.len() > 1).find(is_colored);
         let name = color.map_or_else(|| format!("the {name}"), |color| format!("the {color} {name}"));
-        let unlike = (UNLIKE / SHARPNESS - highest).exp();
+        let unlike = (UNLIKE_THING / SHARPNESS - highest).exp();
         Some((name, 1.0 / (whole + unlike)))
     }
 

@@ -4,7 +4,7 @@ use cohabit_cdf::{Action, GoToTarget, ObjectId};
 use serde::{Deserialize, Serialize};
 
 /// What the robot makes of what it was told.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub enum Understanding {
     /// It will do this.
     Plan {

@@ -79,6 +79,7 @@ impl Conversation<'_> {
         let unheard = self.unheard_words(utterance);
         let is_named = matches!(by_grammar, Understanding::Question { kind: Clarification::Appearance, .. });
         let least = match unheard.as_slice() {
+            [] if is_named => UNHEARD,
             [] => TO_PROPOSE,
             _ if is_named => UNHEARD_NAME,
             _ => UNHEARD,
@@ -187,7 +188,7 @@ impl Conversation<'_> {
             [steps] => ask::shall_i(steps, &[]),
             plans => ask::which_plan(plans),
         };
-        context.pending = Some(Pending::Offer { plans });
+        context.pending = Some(Pending::Guess { plans });
         question
     }
 }

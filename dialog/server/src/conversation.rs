@@ -160,8 +160,8 @@ pub struct Memory {
 #[derive(Clone, Debug, Deserialize, Serialize)]
 struct Puzzle {
     turn: u64,
-    /// What the robot says if it does not.
-    refusal: String,
+    /// What the robot itself makes of it, in case that nobody knows better.
+    understanding: Understanding,
 }
 
 /// How something was heard that was said aloud.
@@ -349,15 +349,20 @@ impl Conversation {
             (understood, _) => understood,
         };
         match understood {
-            Understanding::Refusal { is_lost: true, text: refusal } if self.interprets => {
+            understanding if self.interprets && self.is_unclear(&understanding) => {
                 let unclear = self.language.unclear(text, &known, before);
-                self.memory.puzzle = Some(Puzzle { turn, refusal });
+                self.memory.puzzle = Some(Puzzle { turn, understanding });
                 self.say(turn, DialogKind::Reply, LineKind::Say, "One moment, let me think.", &mut reactions);
                 reactions.push(Reaction::Interpret(turn, Box::new(unclear)));
             }
             understanding => self.react(turn, turn, understanding, knowledge, &mut reactions),
         }
         (turn, reactions)
+    }
+
+    /// Whether little was understood, or only guessed at.
+    const fn is_unclear(&self, understanding: &Understanding) -> bool {
+        matches!(understanding, Understanding::Refusal { is_lost: true, .. }) || self.memory.context.has_guessed()
     }
 
     /// Asks whether what was heard was said; a yes means it.
@@ -377,7 +382,7 @@ impl Conversation {
     /// An interpreter made these requests of what was said in a turn, or nothing.
     pub(crate) fn interpreted(&mut self, turn: u64, requests: &[String], knowledge: &Knowledge) -> Vec<Reaction> {
         let mut reactions = Vec::new();
-        let Some(Puzzle { refusal, .. }) = self.memory.puzzle.take_if(|puzzle| puzzle.turn == turn) else {
+        let Some(Puzzle { understanding: own, .. }) = self.memory.puzzle.take_if(|puzzle| puzzle.turn == turn) else {
             return reactions;
         };
         let known = knowledge.known();
@@ -389,10 +394,7 @@ impl Conversation {
                 self.say(turn, DialogKind::Reply, LineKind::Say, &taken, &mut reactions);
                 self.react(turn, turn, understanding, knowledge, &mut reactions);
             }
-            None => {
-                self.say(turn, DialogKind::Reply, LineKind::Problem, &refusal, &mut reactions);
-                reactions.push(Reaction::TurnEnded { turn, end: TurnEnd::Refused });
-            }
+            None => self.react(turn, turn, own, knowledge, &mut reactions),
         }
         reactions
     }
