@@ -90,7 +90,7 @@ impl Conversation<'_> {
         let is_fit = |best: &&Hypothesis| match best.understanding {
             Understanding::Plan { .. } => best.weight >= least && !is_question,
             Understanding::Answer { .. } => best.weight >= least.max(TO_ANSWER),
-            _ => best.weight >= least && unheard.is_empty(),
+            _ => best.weight >= least && unheard.is_empty() && !is_named,
         };
         let best = hypotheses.iter().find(is_fit);
         let Some(best) = best else {
