@@ -12,7 +12,7 @@ use crate::{
     judge::Judge,
     known::{self, Known, KnownObject},
     lexicon::{Lexicon, Pronoun, StateWord},
-    phrase::{Phrase, RelationKind},
+    phrase::{Phrase, Reader, RelationKind},
     question::{Question, QuestionKind},
     reply, report, saying,
     understanding::{Step, Understanding},
@@ -399,9 +399,9 @@ impl Answerer<'_> {
             return Understanding::lost("I do not know what you mean.");
         }
         match asked {
-            Some(state) => self.with_object(&bare, |id| {
+            Some((state, words)) => self.with_object(&bare, |id| {
                 let holds = self.scene.object(id).is_some_and(|object| has_state(object, state));
-                let words = question.rest.last().cloned().unwrap_or_default();
+                let words = words.join(" ");
                 let text = if holds {
                     format!("Yes, {} is {words}.", self.short(id))
                 } else {
@@ -419,16 +419,27 @@ impl Answerer<'_> {
     }
 }
 
-/// The state that the words of a question end with.
-pub(crate) fn asked_state(lexicon: &Lexicon, words: &[String]) -> Option<StateWord> {
-    let named = (0..words.len()).rev().find_map(|at| {
-        let (length, state) = lexicon.states.longest(&words[at..])?;
-        (at + length == words.len()).then_some(*state)
-    });
-    let is_last = |end: &str| words.last().is_some_and(|word| word == end);
-    named
-        .or_else(|| is_last("on").then_some(StateWord::Flag(StateFlag::Toggled, true)))
-        .or_else(|| is_last("off").then_some(StateWord::Flag(StateFlag::Toggled, false)))
+/// The state that a question asks for, which is named after what it asks about: `the fridge open right now`; and its words.
+pub(crate) fn asked_state<'w>(lexicon: &Lexicon, words: &'w [String]) -> Option<(StateWord, &'w [String])> {
+    let named = |at: usize| {
+        let on_or_off = match words[at].as_str() {
+            "on" => Some((1, StateWord::Flag(StateFlag::Toggled, true))),
+            "off" => Some((1, StateWord::Flag(StateFlag::Toggled, false))),
+            _ => None,
+        };
+        lexicon.states.longest(&words[at..]).map(|(length, state)| (length, *state)).or(on_or_off)
+    };
+    let names =
+        |at: usize| lexicon.classes.longest(&words[at..]).is_some() || lexicon.rooms.longest(&words[at..]).is_some();
+    // `on it`
+    let is_place = |end: usize| {
+        Reader { at: end, ..Reader::new(lexicon, words) }.phrase().is_some_and(|phrase| phrase.pronoun.is_some())
+    };
+    let is_last = |end: usize| !is_place(end) && !(end..words.len()).any(names);
+    (0..words.len()).rev().find_map(|at| {
+        let (length, state) = named(at)?;
+        is_last(at + length).then(|| (state, &words[at..at + length]))
+    })
 }
 
 fn empty_handed(text: &str) -> Understanding {

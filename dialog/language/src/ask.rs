@@ -52,7 +52,7 @@ impl Ask<'_> {
     pub(crate) fn instead(self, phrase: &Phrase, candidates: Vec<ObjectId>) -> Understanding {
         let names = describe::apart_from(self.catalog, self.scene, &candidates, phrase);
         let unknown = saying::noun(phrase).filter(|noun| !names.iter().any(|name| describe::is_same(name, noun)));
-        let denied = unknown.map(|_| format!("I do not know of {}. ", saying::said(phrase))).unwrap_or_default();
+        let denied = unknown.map(|_| format!("{UNKNOWN} {}. ", saying::said(phrase))).unwrap_or_default();
         let text = format!("{denied}Do you mean {}?", describe::list(&names, "or"));
         reference(Some(phrase), text, candidates, names)
     }
@@ -110,6 +110,16 @@ impl Ask<'_> {
     }
 }
 
+/// How it begins to say that nothing is as described, and that it has not seen what was.
+const UNKNOWN: &str = "I do not know of";
+const UNSEEN: &str = "I have not seen";
+
+/// Whether it asks because nothing that it knows is as described.
+pub(crate) fn is_mismatch(understanding: &Understanding) -> bool {
+    let Understanding::Question { text, .. } = understanding else { return false };
+    [UNKNOWN, UNSEEN].iter().any(|start| text.starts_with(start))
+}
+
 /// What an answer that names a part tells: the entropy of the parts.
 fn bits(parts: &BTreeMap<String, usize>) -> f32 {
     let all: usize = parts.values().sum();
@@ -157,7 +167,7 @@ pub(crate) fn which_plan(plans: &[Vec<Step>]) -> Understanding {
 /// Where is what nobody has seen?
 pub(crate) fn location(phrase: &Phrase) -> Understanding {
     let unseen = saying::noun(phrase)
-        .map_or_else(|| saying::unresolved(phrase), |_| format!("I have not seen {}.", saying::said(phrase)));
+        .map_or_else(|| saying::unresolved(phrase), |_| format!("{UNSEEN} {}.", saying::said(phrase)));
     let text = format!("{unseen} Where is it, or shall I look around?");
     of_kind(Clarification::Location, saying::noun(phrase).unwrap_or_default(), text, &["look around"])
 }

@@ -179,9 +179,13 @@ impl Planner<'_> {
         match &settled.goal {
             None if settled.is_back => self.put_back(object),
             None if settled.intent == Intent::Bring => {
+                let is_held = self.scene.robot.held == Some(object);
                 self.pick_up(object, self.may_put_down)?;
                 let says = format!("bringing you {}", self.the(object));
-                self.go_to_person(&says);
+                // Where nobody is seen, what is in the hand is brought to where the robot was asked to fetch it.
+                if !self.go_to_person(&says) && is_held && self.go_back().is_ok() {
+                    self.notes.pop();
+                }
                 Ok(())
             }
             None if self.scene.robot.held != Some(object) && settled.intent == Intent::Drop => {

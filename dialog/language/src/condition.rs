@@ -273,6 +273,12 @@ fn with_copula(lexicon: &Lexicon, words: &[String]) -> Vec<String> {
 }
 
 /// Where a condition begins, how many words say so, and whether the request is for when it holds.
+/// Whether something is asked for on a condition.
+pub(crate) fn is_conditional(lexicon: &Lexicon, words: &[String]) -> bool {
+    condition_at(lexicon, words).is_some()
+        || (0..words.len()).any(|at| lexicon.conditions.longest(&words[at..]).is_some())
+}
+
 fn condition_at(lexicon: &Lexicon, words: &[String]) -> Option<(usize, usize, bool)> {
     let ifs = &lexicon.ifs;
     (0..words.len()).find_map(|at| {

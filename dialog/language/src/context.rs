@@ -32,6 +32,9 @@ pub struct Context {
     pub(crate) question: Option<QuestionKind>,
     /// The request that waits until what it names is found.
     pub(crate) search: Option<Search>,
+    /// Whether what was asked for last was found to be so already.
+    #[serde(default)]
+    pub(crate) is_met: bool,
     /// What was said last, the latest last: whether the robot said it, and what.
     #[serde(default)]
     pub(crate) lines: Vec<(bool, String)>,

@@ -227,7 +227,8 @@ impl Conversation<'_> {
             return reply::unclear(&clause::unknown_words(self.lexicon, words));
         }
         if let Some(clauses) = amend::amended(self.lexicon, words, &parts, &context.request) {
-            return self.plan(clauses, Consent::default(), context);
+            // What was taken instead is in the way of what was meant.
+            return self.plan(clauses, Consent { may_put_down: true, ..Consent::default() }, context);
         }
         self.request(words, parts, context)
     }
@@ -405,7 +406,8 @@ impl Conversation<'_> {
         context.focus = planner.focus;
         self.remember_start(&planner.steps, context);
         let text = reply::plan_reply(&planner.steps, &notes);
-        if planner.steps.is_empty() {
+        context.is_met = planner.steps.is_empty();
+        if context.is_met {
             (context.pending, context.search) = (None, None);
             return Understanding::answer(text);
         }

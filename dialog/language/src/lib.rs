@@ -22,6 +22,7 @@
 
 mod acts;
 mod address;
+mod alternatives;
 mod amend;
 mod answer;
 mod ask;
@@ -35,6 +36,7 @@ mod context;
 mod conversation;
 mod describe;
 mod device;
+mod evidence;
 mod floor;
 mod gloss;
 mod ground;
@@ -90,11 +92,14 @@ mod yes_no;
 use std::sync::Arc;
 
 use cohabit_cdf::{Catalog, ObjectId, Status};
-use cohabit_parser::Parser;
+use cohabit_parser::{Parser, Reading, request::Request};
 
 pub use address::{Addressed, Roster};
+pub use alternatives::Alternative;
 pub use confidence::{Doubt, Features, Referent, Referents};
 pub use context::Context;
+pub use evidence::Evidence;
+
 pub use floor::{Floor, FloorPlan};
 pub use interpret::{Interpreter, Unclear};
 pub use known::{Known, KnownGoal, KnownObject, KnownPerson, KnownRobot, within_half_turn};
@@ -179,6 +184,26 @@ impl Language {
         understanding
     }
 
+    /// What these requests mean, which `utterance` is labelled with in a corpus; nothing, where they make no sense in `scene`.
+    #[must_use]
+    pub fn labelled(
+        &self,
+        utterance: &str,
+        requests: &[Request],
+        scene: &Known,
+        context: &mut Context,
+    ) -> Option<Understanding> {
+        let reading = Reading { requests: requests.to_vec(), probability: 1.0 };
+        let understood = self.conversation(scene).understand_reading(&reading, utterance, context);
+        understood.filter(|(_, certainty)| *certainty == 1.0).map(|(understanding, _)| understanding)
+    }
+
+    /// All ways to understand `utterance`, with what speaks for each.
+    #[must_use]
+    pub fn alternatives(&self, utterance: &str, scene: &Known, context: &Context) -> Vec<Alternative> {
+        self.conversation(scene).alternatives(utterance, context)
+    }
+
     /// What is left to do once a plan has ended, other than by being interrupted: a search goes on, and ends in the
     /// request that it is for. Nothing, if no search is under way.
     #[must_use]
@@ -208,6 +233,14 @@ impl Language {
     #[must_use]
     pub fn name(&self, object: ObjectId, scene: &Known) -> String {
         describe::full(&self.catalog, scene, object)
+    }
+
+    /// The scene as these steps are expected to leave it.
+    #[must_use]
+    pub fn expected(&self, scene: &Known, steps: &[Step]) -> Known {
+        let mut then = scene.clone();
+        steps.iter().for_each(|step| imagine::apply(&mut then, &step.action, &self.devices));
+        then
     }
 
     /// What the first referring expression of `utterance` may mean, with features and probabilities; `None` where it has

@@ -9,6 +9,7 @@ use cohabit_parser::{
 use crate::{
     chatter,
     clause::{self, Part},
+    condition,
     context::Context,
     conversation::Conversation,
     describe, hearing, inquiry,
@@ -18,6 +19,7 @@ use crate::{
     phrase::{Phrase, Place, Reader},
     question::{self, QuestionKind},
     tidy,
+    token::MAX_CHARS,
     understanding::{Clarification, Understanding},
 };
 
@@ -56,7 +58,10 @@ impl Conversation<'_> {
         let parts = clause::parts(self.lexicon, self.catalog, &words);
         let is_read = |part: &Part| match part {
             Part::Clause(clause) => {
-                chatter::is_clear(clause) && clause.unknown.is_empty() && !clause.has_stray_noun && !clause.is_wish
+                (chatter::is_clear(clause) || clause.intent == Intent::Impossible)
+                    && clause.unknown.is_empty()
+                    && !clause.has_stray_noun
+                    && !clause.is_wish
             }
             Part::Forbidden(_) => true,
             // `the microwave`
@@ -64,6 +69,16 @@ impl Conversation<'_> {
             _ => false,
         };
         !parts.is_empty() && parts.iter().all(is_read)
+    }
+
+    /// Whether an utterance has any word that somebody knows, and is not too long for one.
+    pub(crate) fn may_be_weighed(&self, utterance: &str) -> bool {
+        let (words, _) = self.lexicon.normalise(utterance);
+        let is_known = |word: &String| {
+            let parser_knows = || self.parser.is_some_and(|parser| parser.knows(word));
+            word.contains(char::is_alphabetic) && (self.lexicon.vocabulary.has(word) || parser_knows())
+        };
+        utterance.chars().nth(MAX_CHARS).is_none() && words.iter().any(is_known)
     }
 
     /// Whether the grammar takes an utterance for a question that it does not read to the last word, or that nothing but its guess speaks for.
@@ -90,8 +105,7 @@ impl Conversation<'_> {
         let (words, _) = self.lexicon.normalise(utterance);
         let words = tidy::tidied(self.lexicon, &words);
         // A condition is read for itself.
-        let (said, _) = self.lexicon.normalise(utterance);
-        if (0..said.len()).any(|at| self.lexicon.conditions.longest(&said[at..]).is_some()) {
+        if condition::is_conditional(self.lexicon, &words) {
             return false;
         }
         let heard =

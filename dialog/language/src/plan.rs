@@ -58,6 +58,8 @@ pub(crate) struct Planner<'a> {
     pub(crate) judge: Judge<'a>,
     pub(crate) scene: Known,
     pub(crate) focus: Focus,
+    /// Where the robot stands before the first step, m.
+    pub(crate) from_m: [f32; 2],
     pub(crate) steps: Vec<Step>,
     /// What the robot should say beyond the steps: what it does unasked, what is done already.
     pub(crate) notes: Vec<String>,

@@ -118,7 +118,7 @@ fn without_existence(words: &[String]) -> Vec<String> {
 }
 
 /// The first thing that the words name.
-fn named(lexicon: &Lexicon, words: &[String]) -> Option<Phrase> {
+pub(crate) fn named(lexicon: &Lexicon, words: &[String]) -> Option<Phrase> {
     (0..words.len()).find_map(|at| {
         let mut reader = Reader::new(lexicon, words);
         reader.at = at;

@@ -53,6 +53,7 @@ pub(crate) fn planner<'a>(
         devices,
         judge,
         scene: scene.clone(),
+        from_m: [scene.robot.position_m[0], scene.robot.position_m[1]],
         begun: (0, focus.clone()),
         focus,
         steps: Vec::new(),

@@ -57,9 +57,10 @@ impl Planner<'_> {
         self.scene.object(object).is_some_and(|object| self.devices.stays_on(object.class))
     }
 
-    /// Goes to where the robot stood before it last set out.
+    /// Goes to where the robot stood before it last set out: for this plan, if it is under way by then.
     pub(crate) fn go_back(&mut self) -> Result<(), Fault> {
-        let Some(start) = self.focus.start_m else {
+        let sets_out = self.scene.robot.position_m[..2] != self.from_m;
+        let Some(start) = sets_out.then_some(self.from_m).or(self.focus.start_m) else {
             return Err(Fault::Cannot("I have not been anywhere else yet. Tell me where to go.".to_owned()));
         };
         self.push(Action::GoTo { target: GoToTarget::Point(start) }, "going back to where I was".to_owned());

@@ -6,6 +6,7 @@ use cohabit_cdf::state::StateFlag;
 use serde::Deserialize;
 
 use crate::{
+    answer::asked_state,
     chatter,
     clause::{self, Clause, Part},
     context::Context,
@@ -15,7 +16,7 @@ use crate::{
     inflect,
     intent::Intent,
     lexicon::Lexicon,
-    question::{self, QuestionKind},
+    question::{self, Question, QuestionKind},
     reading, token,
     understanding::Understanding,
 };
@@ -102,6 +103,11 @@ impl Conversation<'_> {
         match question::read(self.lexicon, asked) {
             Some(question) if question.kind != QuestionKind::Unknown || question.about.is_some() => {
                 self.answer(&question, context)
+            }
+            // `did somebody leave the toaster on`
+            Some(question) if asked_state(self.lexicon, &question.rest).is_some() => {
+                let about = question::named(self.lexicon, &question.rest);
+                self.answer(&Question { kind: QuestionKind::State, about, ..question }, context)
             }
             _ => Understanding::answer("I cannot say. Tell me to do it, and I will try."),
         }

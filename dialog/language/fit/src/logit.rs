@@ -3,8 +3,9 @@
 
 use faer::{Mat, Side, prelude::Solve as _};
 
-/// One choice: the features of each alternative, and which was chosen.
+/// One choice: the features of each alternative, which was chosen, and how much that counts.
 pub struct Choice {
+    pub weight: f64,
     pub alternatives: Vec<Vec<f64>>,
     pub chosen: usize,
 }
@@ -26,7 +27,8 @@ pub fn probabilities(weights: &[f64], alternatives: &[Vec<f64>]) -> Vec<f64> {
 
 /// The mean of minus the logarithm of what was chosen, nats.
 pub fn loss(weights: &[f64], choices: &[Choice]) -> f64 {
-    let of = |choice: &Choice| -probabilities(weights, &choice.alternatives)[choice.chosen].max(1e-300).ln();
+    let of =
+        |choice: &Choice| -choice.weight * probabilities(weights, &choice.alternatives)[choice.chosen].max(1e-300).ln();
     choices.iter().map(of).sum::<f64>() / choices.len().max(1) as f64
 }
 
@@ -72,11 +74,11 @@ fn derivatives(weights: &[f64], choices: &[Choice]) -> (Mat<f64>, Mat<f64>) {
             mean.iter_mut().zip(features).for_each(|(mean, value)| *mean += share * value);
         }
         for (at, (mean, chosen)) in mean.iter().zip(&choice.alternatives[choice.chosen]).enumerate() {
-            gradient[(at, 0)] += mean - chosen;
+            gradient[(at, 0)] += choice.weight * (mean - chosen);
         }
         for (share, features) in shares.iter().zip(&choice.alternatives).filter(|(share, _)| **share > 1e-12) {
             for row in 0..count {
-                let across = share * (features[row] - mean[row]);
+                let across = choice.weight * share * (features[row] - mean[row]);
                 for column in 0..=row {
                     hessian[(row, column)] += across * (features[column] - mean[column]);
                 }

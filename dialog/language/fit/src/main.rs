@@ -67,12 +67,13 @@ impl Case {
 
     /// Which candidate was meant, if one was.
     fn which(&self) -> Option<Choice> {
-        Some(Choice { alternatives: self.candidates.clone(), chosen: self.meant? })
+        Some(Choice { weight: 1.0, alternatives: self.candidates.clone(), chosen: self.meant? })
     }
 
     /// Whether none was.
     fn whether(&self) -> Choice {
         Choice {
+            weight: 1.0,
             alternatives: vec![self.doubt.clone(), vec![0.0; Doubt::COUNT]],
             chosen: usize::from(self.meant.is_some()),
         }

@@ -1,6 +1,7 @@
 //! A small office: a catalogue of two dozen classes, and a robot in the break room that knows it all.
 #![allow(dead_code, missing_docs, clippy::unwrap_used)]
 
+pub mod cases;
 mod plan;
 
 use std::{
