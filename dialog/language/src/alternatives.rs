@@ -19,8 +19,9 @@ use crate::{
     imagine,
     likeness::{Likeness, SHARPNESS},
     parsed::{self, Worth, worth},
-    question, reply, tidy,
+    question, reply,
     understanding::{Step, Understanding},
+    wording::Wording,
 };
 
 /// A way to understand an utterance.
@@ -28,7 +29,7 @@ use crate::{
 pub struct Alternative {
     /// What it would mean.
     pub understanding: Understanding,
-    /// How likely it is the one that is meant.
+    /// How likely it is the one that is meant; 0, until all are known.
     pub probability: f32,
     /// What speaks for it.
     pub evidence: Evidence,
@@ -38,7 +39,8 @@ pub struct Alternative {
 
 /// What is known of an utterance, whatever it means.
 struct Said<'a> {
-    utterance: &'a str,
+    wording: &'a Wording<'a>,
+    readings: Vec<Reading>,
     is_partial: bool,
     is_guessed: bool,
     is_asked: bool,
@@ -77,46 +79,45 @@ struct About {
 const MOST_PARTS: usize = 5;
 
 impl Conversation<'_> {
-    /// All ways to understand it; the one of the grammar alone, if that speaks for itself.
-    pub(crate) fn alternatives(&self, utterance: &str, context: &Context) -> Vec<Alternative> {
-        let mut read = Context { is_met: false, ..context.clone() };
-        let understanding = self.understand_said(utterance, &mut read);
-        if self.speaks_for_itself(utterance, &understanding, &read) {
-            return vec![Alternative { understanding, probability: 1.0, evidence: Evidence::default(), context: read }];
-        }
-        self.alternatives_to(understanding, read, utterance, context)
+    /// What the grammar makes of it.
+    pub(crate) fn read(&self, utterance: &str, context: &Context) -> Alternative {
+        let mut then = context.at_new_utterance();
+        let understanding = self.understand_said(utterance, &mut then);
+        Alternative::new(understanding, then, Evidence::default())
     }
 
-    /// What the grammar makes of it, and all else; the same in several ways counts as one.
+    /// All ways to understand it, the likeliest first; the one of the grammar alone, if that speaks for itself.
+    pub(crate) fn alternatives(&self, utterance: &str, context: &Context) -> Vec<Alternative> {
+        let wording = self.wording(utterance);
+        let by_grammar = self.read(utterance, context);
+        if self.speaks_for_itself(&wording, &by_grammar) {
+            return vec![Alternative { probability: 1.0, ..by_grammar }];
+        }
+        self.alternatives_to(by_grammar, &wording, context)
+    }
+
+    /// What the grammar makes of it, and all else, the likeliest first.
     pub(crate) fn alternatives_to(
         &self,
-        by_grammar: Understanding,
-        read: Context,
-        utterance: &str,
+        by_grammar: Alternative,
+        wording: &Wording<'_>,
         context: &Context,
     ) -> Vec<Alternative> {
-        let readings = self.readings(utterance, context);
-        let said = self.said(utterance, &readings, context);
-        let mut found = self.in_one(by_grammar, read, &readings, &said, context);
+        let said = self.said(wording, context);
+        let mut found = self.in_one(by_grammar, &said, context);
         found.extend(self.in_parts(&said, context));
         self.weighed(found, &said, context)
     }
 
     /// What the grammar makes of it, and the others; but not its parts.
-    fn in_one(
-        &self,
-        by_grammar: Understanding,
-        read: Context,
-        readings: &[Reading],
-        said: &Said<'_>,
-        context: &Context,
-    ) -> Vec<Alternative> {
-        let is_reason = worth(&by_grammar) > Worth::None;
-        let others = readings.iter().enumerate().filter_map(|(at, one)| self.of_reading(one, at == 0, said, context));
-        let mut others: Vec<Alternative> = others.chain(self.of_likeness(said, context)).collect();
+    fn in_one(&self, by_grammar: Alternative, said: &Said<'_>, context: &Context) -> Vec<Alternative> {
+        let is_reason = worth(&by_grammar.understanding) > Worth::None;
+        let read = said.readings.iter().enumerate();
+        let read = read.filter_map(|(at, one)| self.of_reading(one, at == 0, said, context));
+        let mut others: Vec<Alternative> = read.chain(self.of_likeness(said, context)).collect();
         // Why the grammar thinks that it cannot be done says more than why another reading cannot.
         others.retain(|one| !is_reason || worth(&one.understanding) != Worth::Refused);
-        let mut found = vec![of_grammar(by_grammar, read, said)];
+        let mut found = vec![of_grammar(by_grammar, said)];
         found.extend(others);
         let settle = |one: &Alternative| self.of_candidates(one, said).into_iter().chain(self.agreed(one, said));
         let settled: Vec<Alternative> = found.iter().flat_map(settle).collect();
@@ -144,40 +145,39 @@ impl Conversation<'_> {
 
     /// The likeliest way to understand a part of an utterance.
     fn likeliest_of_part(&self, part: &str, context: &Context) -> Option<Alternative> {
-        let mut read = Context { is_met: false, ..context.clone() };
-        let understanding = self.understand_said(part, &mut read);
-        if self.speaks_for_itself(part, &understanding, &read) {
-            return Some(Alternative { understanding, probability: 1.0, evidence: Evidence::default(), context: read });
+        let wording = self.wording(part);
+        let by_grammar = self.read(part, context);
+        if self.speaks_for_itself(&wording, &by_grammar) {
+            return Some(Alternative { probability: 1.0, ..by_grammar });
         }
-        let readings = self.readings(part, context);
-        let said = self.said(part, &readings, context);
-        let found = self.in_one(understanding, read, &readings, &said, context);
+        let said = self.said(&wording, context);
+        let found = self.in_one(by_grammar, &said, context);
         self.weighed(found, &said, context).into_iter().next()
     }
 
-    fn said<'a>(&self, utterance: &'a str, readings: &[Reading], context: &Context) -> Said<'a> {
-        let (words, _) = self.lexicon.normalise(utterance);
-        let tidied = tidy::tidied(self.lexicon, &words);
-        let parts = clause::parts(self.lexicon, self.catalog, &tidied);
+    fn said<'a>(&self, wording: &'a Wording<'a>, context: &Context) -> Said<'a> {
+        let readings = self.readings(wording.utterance, context);
+        let parts = clause::parts(self.lexicon, self.catalog, &wording.tidied);
         let all: f32 = readings.iter().map(|reading| reading.probability).sum::<f32>().max(f32::MIN_POSITIVE);
         let mean = |of: &dyn Fn(&Reading) -> f32| {
             readings.iter().map(|reading| reading.probability * of(reading)).sum::<f32>() / all
         };
         Said {
-            utterance,
-            is_partial: self.leaves_words_out(utterance),
-            is_guessed: self.takes_for_question(utterance),
-            is_asked: utterance.trim_end().ends_with('?') || question::read(self.lexicon, &tidied).is_some(),
+            wording,
+            is_partial: self.leaves_words_out(wording),
+            is_guessed: self.takes_for_question(wording),
+            is_asked: wording.ends_as_question() || question::read(self.lexicon, &wording.tidied).is_some(),
             is_forbidden: parts.iter().any(|part| matches!(part, Part::Forbidden(_))),
-            is_conditional: condition::is_conditional(self.lexicon, &words),
+            is_conditional: condition::is_conditional(self.lexicon, &wording.words),
             is_pending: context.pending.is_some(),
-            unheard: share(self.unheard_words(utterance).len()),
-            length: words.len().min(20) as f32 / 20.0,
-            named: self.names_in(&words),
+            unheard: share(wording.unheard.len()),
+            length: wording.words.len().min(20) as f32 / 20.0,
+            named: self.names_in(&wording.words),
             requests: mean(&|reading| count(&reading.requests)),
             instead: mean(&|reading| f32::from(u8::from(replaces(&reading.requests)))),
             clauses: parts.iter().filter(|part| matches!(part, Part::Clause(_) | Part::Forbidden(_))).count().max(1)
                 as f32,
+            readings,
         }
     }
 
@@ -215,8 +215,8 @@ impl Conversation<'_> {
         if said.is_conditional && reading.requests.iter().all(|request| request.conditions.is_empty()) {
             return None;
         }
-        let mut then = Context { is_met: false, ..context.clone() };
-        let (understanding, certainty) = self.understand_reading(reading, said.utterance, &mut then)?;
+        let mut then = context.at_new_utterance();
+        let (understanding, certainty) = self.understand_reading(reading, said.wording.utterance, &mut then)?;
         let mut evidence = Evidence::default();
         let leaves_out = reading.requests.iter().any(|request| parsed::unknown_words(request).is_some());
         let replies = reading.requests.iter().any(|request| matches!(request.act, Act::Answer(_)));
@@ -227,7 +227,7 @@ impl Conversation<'_> {
         count_requests(&mut evidence, count(&reading.requests), said);
         let kept = if replaces(&reading.requests) { 0.0 } else { said.instead };
         evidence.set(Feature::NotInstead, kept);
-        Some(Alternative { understanding, probability: 0.0, evidence, context: then })
+        Some(Alternative::new(understanding, then, evidence))
     }
 
     fn of_likeness(&self, said: &Said<'_>, context: &Context) -> Vec<Alternative> {
@@ -236,8 +236,8 @@ impl Conversation<'_> {
         if said.is_conditional || said.is_forbidden {
             return found;
         }
-        for (at, likely) in self.likely_requests(said.utterance).into_iter().enumerate() {
-            let mut then = Context { is_met: false, ..context.clone() };
+        for (at, likely) in self.likely_requests(said.wording.utterance).into_iter().enumerate() {
+            let mut then = context.at_new_utterance();
             let understanding = match likely.request.strip_prefix("social: ") {
                 Some(kind) => match parsed::social(kind) {
                     Some(social) => Understanding::answer(parsed::small_talk(social)),
@@ -256,19 +256,18 @@ impl Conversation<'_> {
             evidence.set_if(Feature::LikenessPending, said.is_pending);
             count_requests(&mut evidence, 1.0, said);
             evidence.set(Feature::NotInstead, said.instead);
-            found.push(Alternative { understanding, probability: 0.0, evidence, context: then });
+            found.push(Alternative::new(understanding, then, evidence));
         }
         found
     }
 
     /// What its parts mean one after the other, where each is something to do or nothing to do with it.
     fn in_parts(&self, said: &Said<'_>, context: &Context) -> Option<Alternative> {
-        let (words, _) = self.lexicon.normalise(said.utterance);
-        let parts = clause::segments(self.lexicon, &words);
+        let parts = clause::segments(self.lexicon, &said.wording.words);
         if parts.len() < 2 || parts.len() > MOST_PARTS || said.is_conditional || said.is_forbidden {
             return None;
         }
-        let (mut scene, mut then) = (self.scene.clone(), Context { is_met: false, ..context.clone() });
+        let (mut scene, mut then) = (self.scene.clone(), context.at_new_utterance());
         let (mut steps, mut probability) = (Vec::new(), 1.0);
         for part in parts {
             let there = Conversation { scene: &scene, ..*self };
@@ -292,12 +291,7 @@ impl Conversation<'_> {
         evidence.set(Feature::Parts, probability);
         evidence.set(Feature::NotInstead, said.instead);
         let reply = reply::plan_reply(&steps, &[]);
-        Some(Alternative {
-            understanding: Understanding::Plan { steps, reply },
-            probability: 0.0,
-            evidence,
-            context: then,
-        })
+        Some(Alternative::new(Understanding::Plan { steps, reply }, then, evidence))
     }
 
     /// What is to be done with each thing that one way would have to ask about.
@@ -306,19 +300,15 @@ impl Conversation<'_> {
         if asked.context.pending.is_none() {
             return Vec::new();
         }
-        let chosen = self.likely_candidates(said.utterance, candidates).into_iter().filter_map(|(id, probability)| {
+        let likely = self.likely_candidates(said.wording.utterance, candidates);
+        let chosen = likely.into_iter().filter_map(|(id, probability)| {
             let mut then = asked.context.clone();
             let understanding = self.chosen(id, &mut then);
             let mut evidence = Evidence::default();
             evidence.set(Feature::Candidate, probability * asked.sureness());
             evidence.set_if(Feature::CandidateOnly, candidates.len() == 1);
-            evidence.copy(&asked.evidence);
-            matches!(understanding, Understanding::Plan { .. }).then_some(Alternative {
-                understanding,
-                probability: 0.0,
-                evidence,
-                context: then,
-            })
+            evidence.take_over(&asked.evidence);
+            matches!(understanding, Understanding::Plan { .. }).then(|| Alternative::new(understanding, then, evidence))
         });
         chosen.collect()
     }
@@ -332,8 +322,8 @@ impl Conversation<'_> {
         let mut evidence = Evidence::default();
         evidence.set(Feature::Agreed, asked.sureness());
         evidence.set(Feature::AgreedInstead, asked.sureness() * said.instead);
-        evidence.copy(&asked.evidence);
-        Alternative { understanding, probability: 0.0, evidence, context: then }.into()
+        evidence.take_over(&asked.evidence);
+        Some(Alternative::new(understanding, then, evidence))
     }
 
     /// How likely the words mean each of these, if they mean any.
@@ -357,23 +347,17 @@ impl Conversation<'_> {
         let (understanding, evidence) = (&one.understanding, &mut one.evidence);
         match understanding {
             Understanding::Plan { steps, .. } => {
-                let looks = steps.iter().all(|step| {
-                    matches!(
-                        step.action,
-                        Action::GoTo { .. } | Action::Highlight { .. } | Action::Look { .. } | Action::LookAround
-                    )
-                });
                 evidence.set(Feature::Plan, 1.0);
                 evidence.set_if(Feature::PlanAsked, said.is_asked);
                 evidence.set_if(Feature::PlanForbidden, said.is_forbidden);
                 evidence.set(Feature::PlanUnheard, said.unheard);
                 evidence.set(Feature::Steps, share(steps.len() / 2));
-                evidence.set_if(Feature::Looks, looks);
+                evidence.set_if(Feature::Looks, steps.iter().all(Step::only_looks));
             }
             Understanding::Question { candidates, .. } => {
                 evidence.set(Feature::Question, 1.0);
                 if candidates.len() > 1 {
-                    let likely = self.likely_candidates(said.utterance, candidates);
+                    let likely = self.likely_candidates(said.wording.utterance, candidates);
                     evidence.set(Feature::QuestionDecided, likely.iter().map(|(_, share)| *share).fold(0.0, f32::max));
                     evidence.set(Feature::QuestionOpen, 1.0);
                 }
@@ -438,17 +422,21 @@ impl Conversation<'_> {
 }
 
 impl Alternative {
+    const fn new(understanding: Understanding, context: Context, evidence: Evidence) -> Self {
+        Self { understanding, probability: 0.0, evidence, context }
+    }
+
     /// How sure who found it is of it.
     fn sureness(&self) -> f32 {
         [Feature::Parser, Feature::Likeness, Feature::GrammarQuestion]
-            .map(|feature| self.evidence.get(feature))
-            .into_iter()
-            .fold(0.0, f32::max)
+            .iter()
+            .fold(0.0, |most, feature| self.evidence.get(*feature).max(most))
     }
 }
 
-fn of_grammar(understanding: Understanding, context: Context, said: &Said<'_>) -> Alternative {
-    let mut evidence = Evidence::default();
+/// What the grammar makes of it, with what speaks for that.
+fn of_grammar(by_grammar: Alternative, said: &Said<'_>) -> Alternative {
+    let Alternative { understanding, mut evidence, .. } = by_grammar;
     let [kind, partial] = match &understanding {
         Understanding::Plan { .. } => [Feature::GrammarPlan, Feature::GrammarPlanPartial],
         Understanding::Question { .. } => [Feature::GrammarQuestion, Feature::GrammarQuestionPartial],
@@ -467,7 +455,7 @@ fn of_grammar(understanding: Understanding, context: Context, said: &Said<'_>) -
     );
     count_requests(&mut evidence, said.clauses, said);
     evidence.set(Feature::NotInstead, said.instead);
-    Alternative { understanding, probability: 0.0, evidence, context }
+    Alternative { understanding, evidence, ..by_grammar }
 }
 
 /// How sure parser and likeness are of what is no plan.

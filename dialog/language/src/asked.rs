@@ -7,12 +7,10 @@ use crate::{
     clause::{Clause, Part},
     context::{Consent, Context, Pending, Role, Slot},
     conversation::Conversation,
-    describe,
     ground::{Ground, Miss, Want},
     hearing,
     intent::Intent,
     lexicon::{Direction, Preposition, Pronoun, Side, Small},
-    likeness::{Likeness, SHARPNESS},
     phrase::{Phrase, Place, Reader, Relation},
     plan::Fault,
     question::{self, QuestionKind},
@@ -205,18 +203,8 @@ impl Conversation<'_> {
 
     /// The candidate that the words describe by use or look, if they clearly describe one.
     fn most_like(&self, words: &[String], candidates: &[ObjectId]) -> Option<ObjectId> {
-        let likeness = Likeness::builtin();
-        let said = likeness.of(&words.join(" "));
-        let names = describe::apart(self.catalog, self.scene, candidates);
-        let utility = |(id, name): (&ObjectId, &String)| {
-            let class = self.scene.object(*id)?.class;
-            let like = likeness.to_class(&said, self.catalog, class) + said.likeness(&likeness.of(name));
-            Some((like / (2.0 * SHARPNESS), *id))
-        };
-        let utilities: Vec<(f32, ObjectId)> = candidates.iter().zip(&names).filter_map(utility).collect();
-        let (highest, best) = utilities.iter().copied().max_by(|(one, _), (other, _)| one.total_cmp(other))?;
-        let whole: f32 = utilities.iter().map(|(utility, _)| (utility - highest).exp()).sum();
-        (1.0 / whole > CLEARLY).then_some(best)
+        let likely = self.likely_candidates(&words.join(" "), candidates);
+        likely.into_iter().find(|(_, probability)| *probability > CLEARLY).map(|(id, _)| id)
     }
 
     /// Whether it says where something is, or what: `the purple one` alone is no help.

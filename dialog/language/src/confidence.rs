@@ -173,13 +173,7 @@ impl Weights {
     pub(crate) fn builtin() -> Self {
         let file: WeightFile = toml::from_str(include_str!("../data/confidence.toml"))
             .expect("invariant: the built-in weights parse, which a test holds");
-        let weight = |table: &BTreeMap<String, f32>, name: &str| {
-            *table.get(name).expect("invariant: every feature has a weight, which a test holds")
-        };
-        Self {
-            candidate: Features::NAMES.map(|name| weight(&file.candidate, name)),
-            none: Doubt::NAMES.map(|name| weight(&file.none, name)),
-        }
+        Self { candidate: by_name(&file.candidate, Features::NAMES), none: by_name(&file.none, Doubt::NAMES) }
     }
 
     /// The probabilities of candidates with these features, and of none of them.
@@ -193,7 +187,12 @@ impl Weights {
     }
 }
 
-fn product(weights: &[f32], values: &[f32]) -> f32 {
+/// The weights of these features, in their order.
+pub(crate) fn by_name<const N: usize>(weights: &BTreeMap<String, f32>, names: [&str; N]) -> [f32; N] {
+    names.map(|name| *weights.get(name).expect("invariant: every feature has a weight, which a test holds"))
+}
+
+pub(crate) fn product(weights: &[f32], values: &[f32]) -> f32 {
     weights.iter().zip(values).map(|(weight, value)| weight * value).sum()
 }
 

@@ -170,6 +170,11 @@ impl Focus {
 }
 
 impl Context {
+    /// The same before anything is made of a new utterance.
+    pub(crate) fn at_new_utterance(&self) -> Self {
+        Self { is_met: false, ..self.clone() }
+    }
+
     /// Takes note of what the robot or a person said. [`crate::Language::understand`] notes what it is told and replies; this is for what
     /// else is said, such as that a plan has ended. A line that repeats the last one is not noted twice.
     pub fn note_said(&mut self, by_robot: bool, text: &str) {

@@ -398,7 +398,7 @@ impl Conversation<'_> {
         context: &mut Context,
     ) -> Understanding {
         let notes: Vec<String> = found.into_iter().chain(planner.notes).collect();
-        if self.judge.asking == Asking::Always && !consent.is_agreed && commits(&planner.steps) {
+        if self.judge.asking == Asking::Always && !consent.is_agreed && planner.steps.iter().any(Step::commits) {
             let question = ask::shall_i(&planner.steps, &notes);
             context.pending = Some(Pending::Offer { plans: vec![planner.steps] });
             return question;
@@ -417,7 +417,7 @@ impl Conversation<'_> {
 
     /// Where the robot stands, if it is about to leave.
     pub(crate) fn remember_start(&self, steps: &[Step], context: &mut Context) {
-        if commits(steps) {
+        if steps.iter().any(Step::commits) {
             let [x, y, _] = self.scene.robot.position_m;
             context.focus.start_m = Some([x, y]);
         }
@@ -635,10 +635,4 @@ fn stops(parts: &[Part]) -> bool {
     let mut asked =
         parts.iter().filter_map(|part| if let Part::Clause(clause) = part { Some(clause) } else { None }).peekable();
     asked.peek().is_some() && asked.all(|clause| clause.intent == Intent::Stop)
-}
-
-/// Whether it does more than look and point.
-fn commits(steps: &[Step]) -> bool {
-    use cohabit_cdf::Action::{GoTo, Interact, PickUp, Place};
-    steps.iter().any(|step| matches!(step.action, GoTo { .. } | PickUp { .. } | Place { .. } | Interact { .. }))
 }

@@ -8,6 +8,8 @@ use std::{collections::BTreeMap, sync::LazyLock};
 
 use serde::Deserialize;
 
+use crate::confidence::{by_name, product};
+
 /// What speaks for a way to understand an utterance, and against it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Evidence {
@@ -126,7 +128,7 @@ impl Evidence {
     }
 
     /// Takes over how it goes with what was said, from the way that this one settles.
-    pub(crate) fn copy(&mut self, other: &Self) {
+    pub(crate) fn take_over(&mut self, other: &Self) {
         for feature in [Feature::Fewer, Feature::More, Feature::NotInstead] {
             self.set(feature, other.get(feature));
         }
@@ -182,15 +184,12 @@ impl Weights {
     fn read() -> Self {
         let file: WeightFile = toml::from_str(include_str!("../data/alternatives.toml"))
             .expect("invariant: the built-in weights parse, which a test holds");
-        let weight =
-            |name: &str| *file.evidence.get(name).expect("invariant: all evidence has a weight, which a test holds");
-        Self { values: Evidence::NAMES.map(weight), none: file.none }
+        Self { values: by_name(&file.evidence, Evidence::NAMES), none: file.none }
     }
 
     /// The probabilities of ways with this evidence; what is left to 1 is that of none of them.
     pub(crate) fn probabilities(&self, ways: &[Evidence]) -> Vec<f32> {
-        let utility = |way: &Evidence| way.values.iter().zip(self.values).map(|(value, weight)| value * weight).sum();
-        let utilities: Vec<f32> = ways.iter().map(utility).collect();
+        let utilities: Vec<f32> = ways.iter().map(|way| product(&self.values, &way.values)).collect();
         let highest = utilities.iter().copied().fold(self.none, f32::max);
         let parts: Vec<f32> = utilities.iter().map(|utility| (utility - highest).exp()).collect();
         let whole = parts.iter().sum::<f32>() + (self.none - highest).exp();

@@ -86,13 +86,14 @@ mod undo;
 mod verbless;
 mod weighed;
 mod wish;
+mod wording;
 mod words;
 mod yes_no;
 
 use std::sync::Arc;
 
 use cohabit_cdf::{Catalog, ObjectId, Status};
-use cohabit_parser::{Parser, Reading, request::Request};
+use cohabit_parser::Parser;
 
 pub use address::{Addressed, Roster};
 pub use alternatives::Alternative;
@@ -182,20 +183,6 @@ impl Language {
         context.note_said(false, utterance);
         context.note_said(true, understanding.reply());
         understanding
-    }
-
-    /// What these requests mean, which `utterance` is labelled with in a corpus; nothing, where they make no sense in `scene`.
-    #[must_use]
-    pub fn labelled(
-        &self,
-        utterance: &str,
-        requests: &[Request],
-        scene: &Known,
-        context: &mut Context,
-    ) -> Option<Understanding> {
-        let reading = Reading { requests: requests.to_vec(), probability: 1.0 };
-        let understood = self.conversation(scene).understand_reading(&reading, utterance, context);
-        understood.filter(|(_, certainty)| *certainty == 1.0).map(|(understanding, _)| understanding)
     }
 
     /// All ways to understand `utterance`, with what speaks for each.

@@ -7,19 +7,12 @@ use cohabit_parser::{
 };
 
 use crate::{
-    chatter,
-    clause::{self, Part},
-    condition,
     context::Context,
     conversation::Conversation,
-    describe, hearing, inquiry,
-    intent::Intent,
+    describe,
     known::KnownObject,
     likeness::{Likeness, SHARPNESS, UNLIKE_THING},
     phrase::{Phrase, Place, Reader},
-    question::{self, QuestionKind},
-    tidy,
-    token::MAX_CHARS,
     understanding::{Clarification, Understanding},
 };
 
@@ -42,82 +35,6 @@ impl Conversation<'_> {
         let lines: Vec<Said<'_>> =
             context.lines.iter().map(|(by_robot, text)| Said { by_robot: *by_robot, text }).collect();
         self.parser.map(|parser| parser.parse(utterance, &lines)).unwrap_or_default()
-    }
-
-    /// Whether the grammar reads an utterance to the last word, as one that it knows: requests, or a question, or small talk.
-    pub(crate) fn is_plain(&self, utterance: &str) -> bool {
-        let (words, _) = self.lexicon.normalise(utterance);
-        let words = tidy::tidied(self.lexicon, &words);
-        if !self.small(&words).is_empty() || self.chat(&words).is_some() {
-            return true;
-        }
-        if let Some(question) = question::read(self.lexicon, &words) {
-            let is_known = question.about.as_ref().is_none_or(|about| about.unknown.is_empty());
-            return question.kind != QuestionKind::Unknown && is_known && inquiry::later_sentences(&words).is_empty();
-        }
-        let parts = clause::parts(self.lexicon, self.catalog, &words);
-        let is_read = |part: &Part| match part {
-            Part::Clause(clause) => {
-                (chatter::is_clear(clause) || clause.intent == Intent::Impossible)
-                    && clause.unknown.is_empty()
-                    && !clause.has_stray_noun
-                    && !clause.is_wish
-            }
-            Part::Forbidden(_) => true,
-            // `the microwave`
-            Part::Fragment(phrase) => parts.len() == 1 && phrase.unknown.is_empty(),
-            _ => false,
-        };
-        !parts.is_empty() && parts.iter().all(is_read)
-    }
-
-    /// Whether an utterance has any word that somebody knows, and is not too long for one.
-    pub(crate) fn may_be_weighed(&self, utterance: &str) -> bool {
-        let (words, _) = self.lexicon.normalise(utterance);
-        let is_known = |word: &String| {
-            let parser_knows = || self.parser.is_some_and(|parser| parser.knows(word));
-            word.contains(char::is_alphabetic) && (self.lexicon.vocabulary.has(word) || parser_knows())
-        };
-        utterance.chars().nth(MAX_CHARS).is_none() && words.iter().any(is_known)
-    }
-
-    /// Whether the grammar takes an utterance for a question that it does not read to the last word, or that nothing but its guess speaks for.
-    pub(crate) fn takes_for_question(&self, utterance: &str) -> bool {
-        let (words, _) = self.lexicon.normalise(utterance);
-        let words = tidy::tidied(self.lexicon, &words);
-        question::read(self.lexicon, &words).is_some_and(|question| {
-            let is_known = question.about.as_ref().is_none_or(|about| about.unknown.is_empty());
-            let is_asked = utterance.trim_end().ends_with('?');
-            !is_known || !is_asked || matches!(question.kind, QuestionKind::Unknown)
-        })
-    }
-
-    /// The words that neither grammar nor parser has ever met.
-    pub(crate) fn unheard_words(&self, utterance: &str) -> Vec<String> {
-        let (words, _) = self.lexicon.normalise(utterance);
-        let mut unknown = clause::unknown_words(self.lexicon, &words);
-        unknown.retain(|word| !self.parser.is_some_and(|parser| parser.knows(word)));
-        unknown
-    }
-
-    /// Whether the grammar leaves words of an utterance out.
-    pub(crate) fn leaves_words_out(&self, utterance: &str) -> bool {
-        let (words, _) = self.lexicon.normalise(utterance);
-        let words = tidy::tidied(self.lexicon, &words);
-        // A condition is read for itself.
-        if condition::is_conditional(self.lexicon, &words) {
-            return false;
-        }
-        let heard =
-            hearing::readings(self.lexicon, self.catalog, &words).into_iter().find(|reading| !reading.is_doubtful);
-        let words = heard.map_or(words, |reading| reading.words);
-        clause::parts(self.lexicon, self.catalog, &words).iter().any(|part| match part {
-            Part::Clause(clause) if clause.intent == Intent::Impossible => false,
-            Part::Clause(clause) => !clause.unknown.is_empty() || clause.has_stray_noun || !chatter::is_clear(clause),
-            Part::Unclear(_) => true,
-            Part::Aside(words) => !words.is_empty(),
-            _ => false,
-        })
     }
 
     /// What a reading means; nothing, where it makes no sense in the scene and conversation. What the robot cannot do of it is said.

@@ -199,6 +199,21 @@ impl Step {
             _ => None,
         }
     }
+
+    /// Whether it does more than look and point.
+    pub(crate) const fn commits(&self) -> bool {
+        self.changes() || matches!(self.action, Action::GoTo { .. } | Action::PickUp { .. })
+    }
+
+    /// Whether something else than the robot and its hand is another after it.
+    pub(crate) const fn changes(&self) -> bool {
+        matches!(self.action, Action::Interact { .. } | Action::Place { .. })
+    }
+
+    /// Whether it goes, looks or points, and touches nothing.
+    pub(crate) const fn only_looks(&self) -> bool {
+        matches!(self.action, Action::GoTo { .. } | Action::Highlight { .. } | Action::Look { .. } | Action::LookAround)
+    }
 }
 
 /// One action of a plan.

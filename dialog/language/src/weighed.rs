@@ -1,8 +1,6 @@
 //! What an utterance means, by all that reads it: what speaks for itself is carried out, what is likely enough too; of what is less
 //! likely the robot asks.
 
-use cohabit_cdf::Action;
-
 use crate::{
     alternatives::Alternative,
     answer::HINT,
@@ -12,6 +10,7 @@ use crate::{
     evidence::Feature,
     reply,
     understanding::{Asking, Clarification, Step, Understanding},
+    wording::Wording,
 };
 
 /// How likely steps must be meant for them to be taken without a question, where they change things and where they do not.
@@ -36,49 +35,50 @@ const MOST_PROPOSED: usize = 3;
 impl Conversation<'_> {
     /// What speaks for itself, or what most speaks for.
     pub(crate) fn understand_best(&self, utterance: &str, context: &mut Context) -> Understanding {
-        let mut read = Context { is_met: false, ..context.clone() };
-        let by_grammar = self.understand_said(utterance, &mut read);
-        if self.speaks_for_itself(utterance, &by_grammar, &read) {
-            *context = read;
-            return by_grammar;
+        let wording = self.wording(utterance);
+        let by_grammar = self.read(utterance, context);
+        let asks_for_name =
+            matches!(by_grammar.understanding, Understanding::Question { kind: Clarification::Appearance, .. });
+        if self.speaks_for_itself(&wording, &by_grammar) || asks_for_name && !wording.unheard.is_empty() {
+            *context = by_grammar.context;
+            return by_grammar.understanding;
         }
-        let unheard = self.unheard_words(utterance);
-        let asks_for_name = matches!(by_grammar, Understanding::Question { kind: Clarification::Appearance, .. });
-        if asks_for_name && !unheard.is_empty() {
-            *context = read;
-            return by_grammar;
-        }
-        let mut ways = self.alternatives_to(by_grammar.clone(), read.clone(), utterance, context);
+        let mut alternatives = self.alternatives_to(by_grammar.clone(), &wording, context);
         // A question that the grammar answers is not carried out.
-        if matches!(by_grammar, Understanding::Answer { .. }) && utterance.trim_end().ends_with('?') {
-            ways.retain(|way| !matches!(way.understanding, Understanding::Plan { .. }));
+        if matches!(by_grammar.understanding, Understanding::Answer { .. }) && wording.ends_as_question() {
+            alternatives.retain(|one| !matches!(one.understanding, Understanding::Plan { .. }));
         }
-        if let Some(way) = ways.first().filter(|way| way.is_likely(&unheard)) {
-            *context = way.context.clone();
-            return way.understanding.clone();
+        if let Some(likeliest) = alternatives.first().filter(|one| one.is_likely(&wording.unheard)) {
+            *context = likeliest.context.clone();
+            return likeliest.understanding.clone();
         }
-        if let Some(question) = self.proposed(&ways, &unheard, context) {
+        if let Some(question) = self.proposed(&alternatives, &wording.unheard, context) {
             return question;
         }
-        if matches!(by_grammar, Understanding::Plan { .. }) {
+        if matches!(by_grammar.understanding, Understanding::Plan { .. }) {
             return Understanding::lost(format!("I did not understand that. {HINT}"));
         }
-        *context = read;
-        by_grammar
+        *context = by_grammar.context;
+        by_grammar.understanding
     }
 
     /// Whether what the grammar makes of it needs no other opinion: it reads it to the last word, or knows what it lacks.
-    pub(crate) fn speaks_for_itself(&self, utterance: &str, by_grammar: &Understanding, then: &Context) -> bool {
-        let is_lost = matches!(by_grammar, Understanding::Refusal { is_lost: true, .. });
-        let lacks_lab = matches!(then.pending, Some(Pending::Lab { .. }));
-        self.parser.is_none() || lacks_lab || !self.may_be_weighed(utterance) || !is_lost && self.is_plain(utterance)
+    pub(crate) fn speaks_for_itself(&self, wording: &Wording<'_>, by_grammar: &Alternative) -> bool {
+        let is_lost = matches!(by_grammar.understanding, Understanding::Refusal { is_lost: true, .. });
+        let lacks_lab = matches!(by_grammar.context.pending, Some(Pending::Lab { .. }));
+        self.parser.is_none() || lacks_lab || !self.may_be_weighed(wording) || !is_lost && self.is_plain(wording)
     }
 
     /// Asks which of the likeliest plans is meant, instead of carrying any out; nothing, where none is likely at all.
-    fn proposed(&self, ways: &[Alternative], unheard: &[String], context: &mut Context) -> Option<Understanding> {
+    fn proposed(
+        &self,
+        alternatives: &[Alternative],
+        unheard: &[String],
+        context: &mut Context,
+    ) -> Option<Understanding> {
         let least = if unheard.is_empty() { TO_PROPOSE } else { TO_PROPOSE_UNHEARD };
-        let plans = ways.iter().filter_map(|way| match &way.understanding {
-            Understanding::Plan { steps, .. } if way.probability >= least => Some((way, steps)),
+        let plans = alternatives.iter().filter_map(|one| match &one.understanding {
+            Understanding::Plan { steps, .. } if one.probability >= least => Some((one, steps)),
             _ => None,
         });
         let mut plans = plans.peekable();
@@ -91,7 +91,7 @@ impl Conversation<'_> {
         }
         let least = likeliest.probability * RIVAL;
         let plans: Vec<Vec<Step>> = plans
-            .filter(|(way, _)| way.probability >= least)
+            .filter(|(one, _)| one.probability >= least)
             .take(MOST_PROPOSED)
             .map(|(_, steps)| steps.clone())
             .collect();
@@ -111,7 +111,7 @@ impl Alternative {
             Understanding::Plan { .. } if !unheard.is_empty() => TO_ACT_UNHEARD,
             Understanding::Plan { .. } if self.evidence.get(Feature::MissingAny) > 0.0 => TO_ACT_IN_PART,
             Understanding::Plan { .. } if self.evidence.get(Feature::GrammarPlanReply) > 0.0 => TO_ACT_ON_REPLY,
-            Understanding::Plan { steps, .. } if changes(steps) => TO_CHANGE,
+            Understanding::Plan { steps, .. } if steps.iter().any(Step::changes) => TO_CHANGE,
             Understanding::Plan { .. } => TO_MOVE,
             // What is asked back about a word that it guesses at would only puzzle.
             Understanding::Question { .. } if !unheard.is_empty() => return false,
@@ -119,8 +119,4 @@ impl Alternative {
         };
         self.probability >= least
     }
-}
-
-fn changes(steps: &[Step]) -> bool {
-    steps.iter().any(|step| matches!(step.action, Action::Interact { .. } | Action::Place { .. }))
 }

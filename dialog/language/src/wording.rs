@@ -1,0 +1,104 @@
+//! The words of an utterance, and how much of them the grammar reads.
+
+use crate::{
+    chatter,
+    clause::{self, Part},
+    condition,
+    conversation::Conversation,
+    hearing, inquiry,
+    intent::Intent,
+    question::{self, Question, QuestionKind},
+    tidy,
+    token::MAX_CHARS,
+};
+
+/// An utterance and its words.
+pub(crate) struct Wording<'a> {
+    pub(crate) utterance: &'a str,
+    /// With their spelling repaired.
+    pub(crate) words: Vec<String>,
+    /// Without those that ask for nothing.
+    pub(crate) tidied: Vec<String>,
+    /// The words that neither grammar nor parser has ever met.
+    pub(crate) unheard: Vec<String>,
+}
+
+impl Conversation<'_> {
+    pub(crate) fn wording<'a>(&self, utterance: &'a str) -> Wording<'a> {
+        let (words, _) = self.lexicon.normalise(utterance);
+        let tidied = tidy::tidied(self.lexicon, &words);
+        let mut unheard = clause::unknown_words(self.lexicon, &words);
+        unheard.retain(|word| !self.parser.is_some_and(|parser| parser.knows(word)));
+        Wording { utterance, words, tidied, unheard }
+    }
+
+    /// Whether it has any word that somebody knows, and is not too long.
+    pub(crate) fn may_be_weighed(&self, wording: &Wording<'_>) -> bool {
+        let is_known = |word: &String| {
+            let parser_knows = || self.parser.is_some_and(|parser| parser.knows(word));
+            word.contains(char::is_alphabetic) && (self.lexicon.vocabulary.has(word) || parser_knows())
+        };
+        wording.utterance.chars().nth(MAX_CHARS).is_none() && wording.words.iter().any(is_known)
+    }
+
+    /// Whether the grammar reads it to the last word, as one that it knows: requests, or a question, or small talk.
+    pub(crate) fn is_plain(&self, Wording { tidied, .. }: &Wording<'_>) -> bool {
+        if !self.small(tidied).is_empty() || self.chat(tidied).is_some() {
+            return true;
+        }
+        if let Some(question) = question::read(self.lexicon, tidied) {
+            let is_known = question.kind != QuestionKind::Unknown && knows_what_about(&question);
+            return is_known && inquiry::later_sentences(tidied).is_empty();
+        }
+        let parts = clause::parts(self.lexicon, self.catalog, tidied);
+        let is_read = |part: &Part| match part {
+            Part::Clause(clause) => {
+                (chatter::is_clear(clause) || clause.intent == Intent::Impossible)
+                    && clause.unknown.is_empty()
+                    && !clause.has_stray_noun
+                    && !clause.is_wish
+            }
+            Part::Forbidden(_) => true,
+            // `the microwave`
+            Part::Fragment(phrase) => parts.len() == 1 && phrase.unknown.is_empty(),
+            _ => false,
+        };
+        !parts.is_empty() && parts.iter().all(is_read)
+    }
+
+    /// Whether the grammar takes it for a question that it does not read to the last word, or that nothing but its guess speaks for.
+    pub(crate) fn takes_for_question(&self, wording: &Wording<'_>) -> bool {
+        question::read(self.lexicon, &wording.tidied).is_some_and(|question| {
+            let is_known = question.kind != QuestionKind::Unknown && knows_what_about(&question);
+            !is_known || !wording.ends_as_question()
+        })
+    }
+
+    /// Whether the grammar leaves words out.
+    pub(crate) fn leaves_words_out(&self, Wording { tidied, .. }: &Wording<'_>) -> bool {
+        // A condition is read for itself.
+        if condition::is_conditional(self.lexicon, tidied) {
+            return false;
+        }
+        let heard =
+            hearing::readings(self.lexicon, self.catalog, tidied).into_iter().find(|reading| !reading.is_doubtful);
+        let words = heard.as_ref().map_or(tidied.as_slice(), |reading| &reading.words);
+        clause::parts(self.lexicon, self.catalog, words).iter().any(|part| match part {
+            Part::Clause(clause) if clause.intent == Intent::Impossible => false,
+            Part::Clause(clause) => !clause.unknown.is_empty() || clause.has_stray_noun || !chatter::is_clear(clause),
+            Part::Unclear(_) => true,
+            Part::Aside(words) => !words.is_empty(),
+            _ => false,
+        })
+    }
+}
+
+impl Wording<'_> {
+    pub(crate) fn ends_as_question(&self) -> bool {
+        self.utterance.trim_end().ends_with('?')
+    }
+}
+
+fn knows_what_about(question: &Question) -> bool {
+    question.about.as_ref().is_none_or(|about| about.unknown.is_empty())
+}
