@@ -86,8 +86,9 @@ impl Conversation<'_> {
             let of_thing = of_thing(&name, |property| class.has(property));
             ranked.extend(of_thing.map(|(intent, request)| (utility(&request) + self.fit(intent, &objects), request)));
         }
-        let open = self.scene.goals.iter().filter(|goal| !goal.met);
-        ranked.extend(open.map(|goal| (utility(&goal.text) + IS_GOAL, goal.text.clone())));
+        let mission = Some(&self.scene.mission).filter(|mission| !mission.is_empty());
+        let goals = self.open_goals().chain(mission.map(String::as_str));
+        ranked.extend(goals.map(|goal| (utility(goal) + IS_GOAL, goal.to_owned())));
         ranked.sort_by(|(one, a), (other, b)| other.total_cmp(one).then_with(|| a.cmp(b)));
         let highest = ranked.first().map_or(0.0, |(utility, _)| *utility);
         let unlike = (UNLIKE / SHARPNESS - highest).exp();

@@ -130,7 +130,11 @@ impl Conversation<'_> {
         let mut all: Vec<Alternative> = Vec::with_capacity(found.len());
         for mut one in found.into_iter().filter(|one| !matches!(one.understanding, Understanding::Stop { .. })) {
             self.describe(&mut one, said, context);
-            match all.iter_mut().find(|other| is_same(&other.understanding, &one.understanding)) {
+            let is_known = |other: &&mut Alternative| {
+                is_same(&other.understanding, &one.understanding)
+                    && other.context.later.is_empty() == one.context.later.is_empty()
+            };
+            match all.iter_mut().find(is_known) {
                 Some(known) => known.evidence.join(&one.evidence),
                 None => all.push(one),
             }
@@ -181,7 +185,7 @@ impl Conversation<'_> {
         }
     }
 
-    /// What the words name: things that are in the scene, and rooms.
+    /// What the words name: things, and rooms.
     fn names_in(&self, words: &[String]) -> Vec<Named> {
         let mut named = Vec::new();
         let mut at = 0;
@@ -195,8 +199,12 @@ impl Conversation<'_> {
             let name = match (room, things) {
                 (Some((_, room)), _) if length_of_room >= length => Some(Named::Room(*room)),
                 (_, Some((_, namings))) => {
-                    let classes: Vec<ClassId> = namings.iter().map(|one| one.class).filter(is_in_scene).collect();
-                    (!classes.is_empty()).then_some(Named::Thing(classes))
+                    let mut classes: Vec<ClassId> = namings.iter().map(|one| one.class).collect();
+                    // What has not been seen is meant where nothing that has been is called so.
+                    if classes.iter().any(is_in_scene) {
+                        classes.retain(is_in_scene);
+                    }
+                    Some(Named::Thing(classes))
                 }
                 _ => color,
             };
@@ -243,6 +251,7 @@ impl Conversation<'_> {
                     Some(social) => Understanding::answer(parsed::small_talk(social)),
                     None => continue,
                 },
+                None if likely.request == self.scene.mission => self.pursue(&mut then),
                 None if likely.request == "nothing" => {
                     Understanding::refusal(format!("That is nothing that I can do. {HINT}"))
                 }
@@ -374,6 +383,10 @@ impl Conversation<'_> {
             Understanding::Refusal { .. } => evidence.set(Feature::Refusal, 1.0),
             Understanding::Stop { .. } => {}
         }
+        // What comes later is about more than what is done first.
+        if !one.context.later.is_empty() {
+            return;
+        }
         let about = self.about(understanding);
         let is_missing = |name: &&Named| match name {
             Named::Thing(classes) => !about.classes.iter().any(|class| classes.contains(class)),
@@ -453,13 +466,27 @@ fn of_grammar(by_grammar: Alternative, said: &Said<'_>) -> Alternative {
         Feature::GrammarAnswerGuessed,
         said.is_guessed && matches!(understanding, Understanding::Answer { .. }),
     );
-    count_requests(&mut evidence, said.clauses, said);
+    count_requests(&mut evidence, said.clauses + by_grammar.context.later.len() as f32, said);
     evidence.set(Feature::NotInstead, said.instead);
     Alternative { understanding, evidence, ..by_grammar }
 }
 
-/// How sure parser and likeness are of what is no plan.
+/// The least likelihood that counts.
+const LEAST: f32 = 0.01;
+
+/// Evidence that follows from the rest: how likely it is on a logarithmic scale, and how sure parser and likeness are of what is no plan.
 fn cross(one: &mut Alternative) {
+    let logarithm = |feature| 1.0 - one.evidence.get(feature).clamp(LEAST, 1.0).ln() / LEAST.ln();
+    let [parser, likeness, candidate, parts] =
+        [Feature::Parser, Feature::Likeness, Feature::Candidate, Feature::Parts].map(logarithm);
+    let grammar = [Feature::GrammarPlan, Feature::GrammarQuestion, Feature::GrammarAnswer, Feature::GrammarRefusal];
+    let agreed = logarithm(Feature::Agreed);
+    let grammar = grammar.into_iter().map(|feature| one.evidence.get(feature)).fold(0.0, f32::max);
+    let most = [parser, likeness, candidate, parts, agreed, grammar].into_iter().fold(0.0, f32::max);
+    one.evidence.set(Feature::ParserLog, parser);
+    one.evidence.set(Feature::LikenessLog, likeness);
+    one.evidence.set(Feature::CandidateLog, candidate);
+    one.evidence.set(Feature::Supported, most);
     let [parser, likeness] = match one.understanding {
         Understanding::Question { .. } => [Feature::ParserOfQuestion, Feature::LikenessOfQuestion],
         Understanding::Answer { .. } => [Feature::ParserOfAnswer, Feature::LikenessOfAnswer],

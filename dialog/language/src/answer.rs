@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use cohabit_cdf::{Catalog, Fluid, ObjectId, state::StateFlag};
+use cohabit_cdf::{Catalog, Fluid, ObjectId, Property, state::StateFlag};
 
 use crate::{
     context::{Failure, Focus},
@@ -210,6 +210,15 @@ impl Answerer<'_> {
             *counts.entry(describe::bare(self.catalog, self.scene, object.id)).or_default() += 1;
         }
         let more = counts.len().saturating_sub(LIST);
+        // What people move about comes before what stands where it is.
+        let is_fixed = |name: &String| {
+            !objects.iter().any(|object| {
+                let is_so = describe::bare(self.catalog, self.scene, object.id) == *name;
+                is_so && self.catalog.class(object.class).has(Property::Pickupable)
+            })
+        };
+        let mut counts: Vec<(String, usize)> = counts.into_iter().collect();
+        counts.sort_by_key(|(name, _)| is_fixed(name));
         let mut names: Vec<String> =
             counts.into_iter().take(LIST).map(|(name, count)| describe::counted(&name, count)).collect();
         if more > 0 {
@@ -219,7 +228,17 @@ impl Answerer<'_> {
     }
 
     fn with_object(&self, phrase: &Phrase, then: impl Fn(ObjectId) -> Understanding) -> Understanding {
-        let want = Want::place(Intent::Find, &[], None);
+        self.with_object_that(&[], phrase, then)
+    }
+
+    /// The same, of an object that affords something, where `it` may be any that was spoken of.
+    fn with_object_that(
+        &self,
+        affords: &[Property],
+        phrase: &Phrase,
+        then: impl Fn(ObjectId) -> Understanding,
+    ) -> Understanding {
+        let want = Want::place(Intent::Find, affords, None);
         match self.ground().one(phrase, &want) {
             Ok(id) => then(id),
             Err(Miss::Several(ids) | Miss::Mismatch(ids)) if !ids.is_empty() => then(ids[0]),
@@ -232,7 +251,7 @@ impl Answerer<'_> {
             return Understanding::refusal(saying::unresolved(phrase));
         }
         let said = saying::said(phrase);
-        if self.scene.floor.is_some() && phrase.unknown.is_empty() {
+        if self.scene.floor.is_some() && (phrase.unknown.is_empty() || !phrase.namings.is_empty()) {
             let text = format!("I have not seen {said} yet. Shall I look for it?");
             return crate::ask::confirmation(text);
         }
@@ -399,7 +418,7 @@ impl Answerer<'_> {
             return Understanding::lost("I do not know what you mean.");
         }
         match asked {
-            Some((state, words)) => self.with_object(&bare, |id| {
+            Some((state, words)) => self.with_object_that(may_be(state), &bare, |id| {
                 let holds = self.scene.object(id).is_some_and(|object| has_state(object, state));
                 let words = words.join(" ");
                 let text = if holds {
@@ -416,6 +435,18 @@ impl Answerer<'_> {
             }),
             None => self.place_of(&bare),
         }
+    }
+}
+
+/// What things afford that may be in a state.
+const fn may_be(state: StateWord) -> &'static [Property] {
+    match state {
+        StateWord::Flag(StateFlag::Dirty, _) => &[Property::Dirtyable],
+        StateWord::Flag(StateFlag::Broken, _) => &[Property::Breakable],
+        StateWord::Flag(StateFlag::Opened, _) => &[Property::Openable],
+        StateWord::Flag(StateFlag::Toggled, _) => &[Property::Toggleable, Property::Powerable],
+        StateWord::Filled(_) => &[Property::Fillable],
+        StateWord::Flag(..) => &[],
     }
 }
 

@@ -39,8 +39,11 @@ impl Conversation<'_> {
         let pending = context.pending.take()?;
         let small = self.small(words);
         let is = |kind| small.contains(&kind);
-        let is_command =
-            (small.is_empty() || is(Small::Search)) && parts.iter().any(|part| matches!(part, Part::Clause(_)));
+        // `into the bowl` says where, whatever it would be by itself.
+        let is_place = self.lexicon.prepositions.longest(words).is_some();
+        let is_command = (small.is_empty() || is(Small::Search))
+            && !is_place
+            && parts.iter().any(|part| matches!(part, Part::Clause(_)));
         let is_yes = self.small_at_start(words, Small::Yes) && !is_command;
         let leaves = is(Small::No) || is(Small::Neither) && !matches!(pending, Pending::Which { .. });
         if leaves && !is_command && !matches!(&pending, Pending::Which { candidates, .. } if candidates.len() == 1) {
@@ -72,7 +75,10 @@ impl Conversation<'_> {
             }
             Pending::Look { clauses, slot, consent } => {
                 let open = Open { clauses, slot, consent };
-                if is_command { None } else { self.told_look(words, open, context) }
+                // `into the bowl` names the place that was asked for.
+                let preposition = self.lexicon.prepositions.longest(words).map_or(0, |(length, _)| length);
+                let named = if matches!(slot.role, Role::Place(_)) { &words[preposition..] } else { words };
+                if is_command { None } else { self.told_look(named, open, context) }
             }
             Pending::Which { clauses, slot, candidates, consent } => {
                 let open = Open { clauses, slot, consent };
@@ -88,7 +94,9 @@ impl Conversation<'_> {
             return Some(plans.swap_remove(at));
         }
         let count = i32::try_from(plans.len()).ok()?;
-        let ordinal = self.answer_phrase(&plain(words)).and_then(|phrase| phrase.ordinal);
+        // `the second one, pick it up`
+        let first = words.split(|word| token::is_punctuation(word)).find(|part| !part.is_empty()).unwrap_or_default();
+        let ordinal = self.answer_phrase(&plain(first)).and_then(|phrase| phrase.ordinal);
         let at = match ordinal {
             Some(ordinal) if ordinal < 0 => count + ordinal,
             Some(ordinal) => ordinal - 1,

@@ -1,6 +1,6 @@
 //! Plans with the hand: picking up, putting somewhere, pouring, throwing, breaking.
 
-use cohabit_cdf::{Action, ClassId, ObjectClass, ObjectId, Property, RoomId, Verb};
+use cohabit_cdf::{Action, ClassId, ObjectClass, ObjectId, Property, RoomId, StateFlag, Verb};
 
 use crate::{
     context::Role,
@@ -321,11 +321,29 @@ impl Planner<'_> {
             Some(Goal { place: Place::Object(phrase), role, .. }) => {
                 // `pour it in there`: into what holds it, of all that was spoken of.
                 let takes = if phrase.pronoun.is_some() { &TAKES[1..] } else { TAKES };
-                self.find_one(phrase, &Want::place(Intent::Use, takes, Some(source)), Some(*role))?
+                let target = self.find_one(phrase, &Want::place(Intent::Use, takes, Some(source)), Some(*role))?;
+                self.vessel_with(target)
             }
-            _ => self.nearest_sink()?,
+            _ if settled.is_away => self.nearest_sink()?,
+            _ => self.vessel_spoken_of(source)?,
         };
         self.pour(source, target)
+    }
+
+    /// `over the cereal`: what that was poured into.
+    fn vessel_with(&self, target: ObjectId) -> ObjectId {
+        let is_vessel = TAKES.iter().any(|takes| self.has(target, *takes));
+        let filled = self.scene.objects.iter().find(|object| object.has(StateFlag::Cereal));
+        filled.filter(|_| !is_vessel).map_or(target, |filled| filled.id)
+    }
+
+    /// What was spoken of last that can be filled; a question, if nothing was.
+    fn vessel_spoken_of(&self, source: ObjectId) -> Result<ObjectId, Fault> {
+        let spoken = self.focus.place.iter().chain(&self.focus.recent).copied();
+        let vessel = spoken
+            .filter(|id| *id != source && self.has(*id, Property::Fillable))
+            .find(|id| self.scene.object(*id).is_some_and(|object| object.fluid == cohabit_cdf::Fluid::None));
+        vessel.ok_or_else(|| self.miss(&Phrase::default(), Miss::NoReferent, Intent::Pour, Some(Role::Place(0))))
     }
 
     pub(crate) fn pour(&mut self, source: ObjectId, target: ObjectId) -> Result<(), Fault> {
@@ -355,6 +373,12 @@ impl Planner<'_> {
     }
 
     pub(crate) fn add_throw(&mut self, settled: &Settled) -> Result<(), Fault> {
+        let is_put = settled.goal.as_ref().is_some_and(|goal| {
+            matches!(goal.place, Place::Object(_)) && matches!(goal.preposition, Preposition::In | Preposition::On)
+        });
+        if is_put && self.is_several(settled) {
+            return self.add_places(settled);
+        }
         if settled.goal.is_none() && self.is_several(settled) {
             let want = Want { held_first: false, ..Want::object(settled.intent) };
             let objects = self.find_objects(settled, &want)?;

@@ -3,7 +3,15 @@
 use cohabit_cdf::{Action, GoToTarget, ObjectId, RoomId, Status};
 use serde::{Deserialize, Serialize};
 
-use crate::{clause::Clause, known::Known, question::QuestionKind, search::Search, understanding::Step};
+use crate::{
+    clause::Clause,
+    known::Known,
+    lexicon::Preposition,
+    phrase::{Phrase, Place},
+    question::QuestionKind,
+    search::Search,
+    understanding::{Step, Understanding},
+};
 
 /// How many lines of the dialog are remembered.
 const LINES: usize = 4;
@@ -32,6 +40,10 @@ pub struct Context {
     pub(crate) question: Option<QuestionKind>,
     /// The request that waits until what it names is found.
     pub(crate) search: Option<Search>,
+    /// What is to be done or answered once the plan under way has ended, each as somebody would say it. A goal that is met by then is
+    /// left out.
+    #[serde(default)]
+    pub(crate) later: Vec<String>,
     /// Whether what was asked for last was found to be so already.
     #[serde(default)]
     pub(crate) is_met: bool,
@@ -67,6 +79,9 @@ pub(crate) struct Focus {
     pub(crate) placed: Option<ObjectId>,
     /// Where the robot stood when it last set out, m.
     pub(crate) start_m: Option<[f32; 2]>,
+    /// What was spoken of last, if that has not been seen: what `it` then stands for.
+    #[serde(default)]
+    pub(crate) unseen: Option<Phrase>,
 }
 
 /// A question of the robot's that waits for its answer.
@@ -115,10 +130,22 @@ pub(crate) enum Role {
     Place(usize),
 }
 
+impl Slot {
+    /// A place that was left out gets a phrase, for the answer that says it.
+    pub(crate) fn make_room(self, clauses: &mut [Clause]) {
+        if let (Role::Place(index), Some(clause)) = (self.role, clauses.get_mut(self.clause))
+            && clause.places.len() == index
+        {
+            clause.places.push((Preposition::In, Place::Object(Phrase::default())));
+        }
+    }
+}
+
 impl Focus {
     pub(crate) fn mention(&mut self, object: ObjectId) {
         self.recent.retain(|known| *known != object);
         self.recent.insert(0, object);
+        self.unseen = None;
         self.recent.truncate(MEMORY);
     }
 
@@ -202,6 +229,7 @@ impl Context {
             return;
         }
         self.running.clear();
+        self.later.clear();
         if let Some(search) = self.search.as_mut().filter(|search| search.is_under_way()) {
             search.note_failure(step, status);
             return;
@@ -216,9 +244,18 @@ impl Context {
         self.running = steps.to_vec();
         self.last_plan = steps.to_vec();
         self.request.clear();
+        self.later.clear();
         self.pending = None;
         self.failed = None;
         self.search = None;
+    }
+
+    /// What is to be done later stays so after an understanding that goes on with what was asked for, unless that came to nothing.
+    pub(crate) fn keep(&mut self, later: Vec<String>, understanding: Understanding) -> Understanding {
+        if matches!(understanding, Understanding::Plan { .. } | Understanding::Question { .. }) {
+            self.later = later;
+        }
+        understanding
     }
 
     /// Takes note of a part of a search that is about to be carried out.
@@ -243,7 +280,7 @@ impl Context {
     /// Whether there is more to do after the plan under way: [`crate::Language::carry_on`] knows what.
     #[must_use]
     pub const fn awaits_more(&self) -> bool {
-        self.search.is_some()
+        self.search.is_some() || !self.later.is_empty()
     }
 
     /// Whether the robot is looking for something: how the parts of that end is not worth telling.

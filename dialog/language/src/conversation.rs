@@ -66,6 +66,7 @@ impl Conversation<'_> {
         context.running.clear();
         context.failed = None;
         context.search = None;
+        context.later.clear();
         let then = self.asks_for_anything(rest).then(|| Box::new(self.understand_best(rest, context)));
         Understanding::Stop { reply: STOPS.to_owned(), then }
     }
@@ -135,14 +136,14 @@ impl Conversation<'_> {
         self.understand_words(words, context)
     }
 
-    fn understand_words(&self, words: Vec<String>, context: &mut Context) -> Understanding {
+    pub(crate) fn understand_words(&self, words: Vec<String>, context: &mut Context) -> Understanding {
         let parts = clause::parts(self.lexicon, self.catalog, &words);
         if stops(&parts) {
             return self.stopped("", context);
         }
-        let open = context.pending.clone();
+        let (open, later) = (context.pending.clone(), context.later.clone());
         if let Some(understanding) = self.answer_to_pending(&words, &parts, context) {
-            return understanding;
+            return context.keep(later, understanding);
         }
         if let Some(at) = lab::bare(self.lexicon, &words).filter(|at| !clause::is_forbidden(self.lexicon, &words, *at))
         {
@@ -173,6 +174,9 @@ impl Conversation<'_> {
             return understanding;
         }
         if let Some(understanding) = self.on_condition(words, context) {
+            return understanding;
+        }
+        if let Some(understanding) = self.asked_twice(words, context) {
             return understanding;
         }
         // `when you get a minute, bring me the knife` asks for no time.
@@ -230,6 +234,9 @@ impl Conversation<'_> {
             // What was taken instead is in the way of what was meant.
             return self.plan(clauses, Consent { may_put_down: true, ..Consent::default() }, context);
         }
+        if let Some(understanding) = self.asked_afterwards(words, context) {
+            return understanding;
+        }
         self.request(words, parts, context)
     }
 
@@ -238,26 +245,6 @@ impl Conversation<'_> {
         let object = self.scene.object(id)?;
         let is_carried = self.catalog.class(object.class).has(cohabit_cdf::Property::Pickupable);
         if is_carried { object.parent } else { Some(id) }
-    }
-
-    /// Does what the next goal says, as if the person had said it.
-    fn next_goal(&self, context: &mut Context) -> Understanding {
-        let Some(goal) = self.scene.goals.iter().find(|goal| !goal.met && !goal.text.is_empty()) else {
-            return Understanding::answer("There is nothing left to do that I know of.");
-        };
-        let (words, _) = self.lexicon.normalise(&goal.text);
-        let words = tidy::tidied(self.lexicon, &words);
-        let lost = || {
-            let text = goal.text.trim_end_matches('.');
-            Understanding::lost(format!("The next goal is: {text}. Tell me what to do for it, step by step."))
-        };
-        if self.small(&words).contains(&Small::Goal) {
-            return lost();
-        }
-        match self.understand_words(words, context) {
-            Understanding::Refusal { is_lost: true, .. } | Understanding::Answer { .. } => lost(),
-            understanding => understanding,
-        }
     }
 
     /// Takes back the last plan.
@@ -290,7 +277,7 @@ impl Conversation<'_> {
         clause::unknown_words(self.lexicon, words).iter().filter(|word| !word.contains('_')).count() * 2 > said
     }
 
-    fn request(&self, words: &[String], parts: Vec<Part>, context: &mut Context) -> Understanding {
+    pub(crate) fn request(&self, words: &[String], parts: Vec<Part>, context: &mut Context) -> Understanding {
         context.search = None;
         context.asked = token::sentence(words);
         let mut clauses = Vec::new();
@@ -427,13 +414,18 @@ impl Conversation<'_> {
     pub(crate) fn fault(
         &self,
         fault: Fault,
-        clauses: Vec<Clause>,
+        mut clauses: Vec<Clause>,
         consent: Consent,
         context: &mut Context,
     ) -> Understanding {
+        if let Fault::Miss { slot: Some(slot), .. } = &fault {
+            slot.make_room(&mut clauses);
+        }
         (context.pending, context.search) = (None, None);
         let asks = self.judge.asking != Asking::Never;
         match fault {
+            // What nothing makes was perhaps not to be made.
+            Fault::Need { classes, text } if classes.is_empty() => Understanding::lost(text),
             Fault::Cannot(text) | Fault::Need { text, .. } => Understanding::refusal(text),
             Fault::Offer { text, steps } if asks => {
                 context.pending = Some(Pending::Offer { plans: vec![steps] });
@@ -569,7 +561,9 @@ impl Conversation<'_> {
             );
             return Some(self.go(steps, context));
         }
-        if is(Small::Yes) || is(Small::No) {
+        // `why not?` asks, where the robot did not.
+        let is_why = || question::read(self.lexicon, words).is_some_and(|asked| asked.kind == QuestionKind::Why);
+        if (is(Small::Yes) || is(Small::No)) && !is_why() {
             let failure = context.failed.take();
             return Some(match failure {
                 Some(failure) if is(Small::Yes) => self.mend(&failure, context),
@@ -579,6 +573,9 @@ impl Conversation<'_> {
         }
         if is(Small::Goal) {
             return Some(self.next_goal(context));
+        }
+        if is(Small::Mission) {
+            return Some(self.pursue(context));
         }
         if is(Small::Undo) || self.is_undo(words) {
             return Some(self.undo(context));

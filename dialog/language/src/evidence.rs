@@ -77,6 +77,11 @@ features! {
     /// What another way would ask whether to put something down for; and that likely replaces what was asked before.
     Agreed = "agreed",
     AgreedInstead = "agreed_instead",
+    // The logarithms of how likely these are, from 0 for the least that counts to 1 for what is sure; and the most of them.
+    ParserLog = "parser_log",
+    LikenessLog = "likeness_log",
+    CandidateLog = "candidate_log",
+    Supported = "supported",
     // What it is.
     Plan = "plan",
     PlanAsked = "plan_asked",

@@ -1,6 +1,6 @@
 //! What the robot expects of its own steps, so that the rest of a sentence is understood in the light of its beginning.
 
-use cohabit_cdf::{Action, GoToTarget, ObjectId, Verb, state::StateFlag};
+use cohabit_cdf::{Action, Fluid, GoToTarget, ObjectId, Verb, state::StateFlag};
 
 use crate::{known::Known, process::Devices};
 
@@ -95,7 +95,10 @@ fn interact(scene: &mut Known, verb: Verb, id: ObjectId, devices: &Devices) {
             let on = devices.stays_on(object.class) && !object.has(StateFlag::Toggled);
             object.flags.set(StateFlag::Toggled, on);
         }
-        Verb::Pour => object.fluid = held_fluid.unwrap_or_default(),
+        Verb::Pour => match held_fluid.unwrap_or_default() {
+            Fluid::None => object.flags.set(StateFlag::Cereal, true),
+            fluid => object.fluid = fluid,
+        },
         Verb::Fill => {
             if let Some(object) = held.and_then(|held| scene.object_mut(held)) {
                 object.fluid = cohabit_cdf::Fluid::Water;

@@ -52,6 +52,7 @@ impl Conversation<'_> {
         context.question = Some(question.kind);
         // Only what it has not seen makes it ask back.
         if let (Understanding::Question { .. }, Some(phrase)) = (&answer, &question.about) {
+            context.focus.unseen = Some(phrase.clone());
             context.pending = Some(Pending::Search { clauses: vec![Clause::find(phrase.clone())] });
         }
         if let Understanding::Answer { highlight, .. } = &answer {

@@ -16,6 +16,8 @@ pub struct Known {
     pub robot: KnownRobot,
     /// Every object it knows of.
     pub objects: Vec<KnownObject>,
+    /// What people are asked to get done, in a line; empty, where nobody told.
+    pub mission: String,
     /// The goals that people may read, in their order.
     pub goals: Vec<KnownGoal>,
     /// The floor, as far as what it does not know may be looked for; `None` for who knows everything.

@@ -37,6 +37,8 @@ pub(crate) enum Manner {
     Shift,
     /// As it is, or where it is.
     Leave,
+    /// To be rid of it.
+    Away,
     /// To where it was taken from.
     Back,
     /// In a color, said or not.
@@ -119,6 +121,7 @@ pub(crate) enum Small {
     Undo,
     /// Do what the mission wants next.
     Goal,
+    Mission,
 }
 
 /// The tables.

@@ -14,7 +14,7 @@
 //!
 //! let language = Language::new(Arc::new(Catalog::parse(&[], &[])?));
 //! let robot = KnownRobot { position_m: [0.0; 3], yaw_rad: 0.0, room: RoomId::Lab1, held: None };
-//! let scene = Known { robot, objects: vec![], goals: vec![], floor: None, person: None };
+//! let scene = Known { robot, objects: vec![], mission: String::new(), goals: vec![], floor: None, person: None };
 //! let meant = language.understand("Could you go to the kitchen, please?", &scene, &mut Context::default());
 //! assert!(matches!(meant, Understanding::Plan { steps, .. } if steps.len() == 1));
 //! # Ok::<(), cohabit_cdf::CatalogError>(())
@@ -51,6 +51,7 @@ mod interpret;
 mod judge;
 mod known;
 mod lab;
+mod later;
 mod lexicon;
 mod likeness;
 mod memory;
@@ -192,11 +193,10 @@ impl Language {
     }
 
     /// What is left to do once a plan has ended, other than by being interrupted: a search goes on, and ends in the
-    /// request that it is for. Nothing, if no search is under way.
+    /// request that it is for; then comes what else was asked for. Nothing, if that was all.
     #[must_use]
     pub fn carry_on(&self, scene: &Known, context: &mut Context) -> Option<Understanding> {
-        let search = context.search.take()?;
-        Some(self.conversation(scene).proceed(search, context))
+        self.conversation(scene).carry_on(context)
     }
 
     /// What the robot asks that finds a thing gone from where it remembers it; `yes` then means to look for it, and to go
@@ -213,7 +213,9 @@ impl Language {
     /// from now on.
     #[must_use]
     pub fn choose(&self, object: ObjectId, scene: &Known, context: &mut Context) -> Understanding {
-        self.conversation(scene).chosen(object, context)
+        let later = context.later.clone();
+        let understanding = self.conversation(scene).chosen(object, context);
+        context.keep(later, understanding)
     }
 
     /// What people would call `object` in `scene`: `the red mug on the desk`.

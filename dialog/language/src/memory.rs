@@ -167,7 +167,8 @@ impl Memory {
     pub fn known(&self) -> Option<Known> {
         let robot = self.robot.clone()?;
         let objects = self.things.values().cloned().collect();
-        Some(Known { robot, objects, goals: self.goals.clone(), floor: Some(self.floor.clone()), person: None })
+        let (goals, floor) = (self.goals.clone(), Some(self.floor.clone()));
+        Some(Known { robot, objects, mission: String::new(), goals, floor, person: None })
     }
 
     /// Where what an action is about is remembered to be, m, if it is not there: others moved it while nobody looked.

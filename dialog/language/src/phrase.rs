@@ -304,11 +304,20 @@ impl<'a> Reader<'a> {
 
     /// A preposition and what stands after it.
     pub(crate) fn place(&mut self) -> Option<(Preposition, Place)> {
-        let mut reader = *self;
+        let mut linked = *self;
         // `that has` is a preposition here, `that` a link.
         if self.lexicon.prepositions.longest(self.rest()).is_none_or(|(length, _)| length < 2) {
-            reader.skip(|lexicon| &lexicon.link);
+            linked.skip(|lexicon| &lexicon.link);
         }
+        // `over` is a link in `over on the desk`, and a preposition in `over it`.
+        let (place, end) =
+            [linked, *self].into_iter().find_map(|mut reader| Some((reader.place_here()?, reader.at)))?;
+        self.at = end;
+        Some(place)
+    }
+
+    fn place_here(&mut self) -> Option<(Preposition, Place)> {
+        let mut reader = *self;
         if let Some(side) = reader.side_place() {
             *self = reader;
             return Some((Preposition::At, Place::Side(side)));

@@ -154,8 +154,11 @@ impl Planner<'_> {
         if let Some(Phrase { room: Some(room), .. }) = clause.objects.first().filter(|phrase| phrase.is_empty()) {
             (self.focus.room, self.focus.place) = (Some(*room), None);
         }
-        let found = clause.objects.first().and_then(|phrase| self.ground().one(phrase, &want).ok());
-        let Some(object) = found else { return };
+        let Some(phrase) = clause.objects.first() else { return };
+        let Ok(object) = self.ground().one(phrase, &want) else {
+            self.focus.unseen = Some(phrase.clone()).filter(|phrase| !phrase.namings.is_empty());
+            return;
+        };
         self.focus.mention(object);
         if !self.has(object, Property::Pickupable) {
             self.focus.place = Some(object);
@@ -185,6 +188,9 @@ impl Planner<'_> {
 
     /// Grounds a phrase, and says where it stands if that fails.
     pub(crate) fn find_one(&self, phrase: &Phrase, want: &Want<'_>, role: Option<Role>) -> Result<ObjectId, Fault> {
+        let is_held = want.held_first && self.scene.robot.held.is_some();
+        let is_it = phrase.pronoun == Some(Pronoun::Thing) && !phrase.is_described() && phrase.chosen.is_none();
+        let phrase = self.focus.unseen.as_ref().filter(|_| is_it && !is_held).unwrap_or(phrase);
         let found = match self.ground().one(phrase, want) {
             Ok(id) if self.is_hasty(phrase, id, want.intent) => Err(Miss::Hasty),
             // One that is too doubtful to act on: perhaps the one that is meant is behind its back.

@@ -103,6 +103,7 @@ pub(crate) fn what_for(intent: Intent, role: Option<Role>) -> String {
         Intent::Place | Intent::Bring | Intent::Drop if matches!(role, Some(Role::Place(_))) => {
             "Where shall I put it?".to_owned()
         }
+        Intent::Pour if matches!(role, Some(Role::Place(_))) => "What shall I pour it into?".to_owned(),
         _ if matches!(role, Some(Role::Place(_))) => format!("What shall I {} it with?", intent.verb()),
         _ => format!("What shall I {}?", intent.verb()),
     }

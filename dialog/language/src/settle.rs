@@ -24,6 +24,8 @@ pub(crate) struct Settled {
     pub(crate) is_inserted: bool,
     /// Whether it is to go back to where it was taken from.
     pub(crate) is_back: bool,
+    /// Whether to be rid of it.
+    pub(crate) is_away: bool,
     /// Whether it is to be left, somewhere or as it is.
     pub(crate) is_left: bool,
     /// Whether it was wished for.
@@ -64,6 +66,7 @@ pub(crate) fn settle(planner: &Planner<'_>, clause: &Clause) -> Settled {
         is_left: clause.manner == Some(Manner::Leave),
         is_inserted: clause.manner == Some(Manner::Insert),
         is_back: clause.manner == Some(Manner::Back),
+        is_away: clause.manner == Some(Manner::Away),
     };
     for (index, (preposition, place)) in clause.places.iter().enumerate() {
         let role = Role::Place(index);

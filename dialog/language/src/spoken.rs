@@ -116,7 +116,7 @@ mod tests {
 
     fn scene() -> Known {
         let robot = KnownRobot { position_m: [0.0; 3], yaw_rad: 0.0, room: RoomId::BreakRoom, held: None };
-        Known { robot, objects: vec![], goals: vec![], floor: None, person: None }
+        Known { robot, objects: vec![], mission: String::new(), goals: vec![], floor: None, person: None }
     }
 
     #[test]

@@ -1,6 +1,14 @@
 //! What people say besides what they mean, left out: numbering, hesitation, words said twice, and what they took back.
 
-use crate::{amend, clause, inflect, intent::Intent, lexicon::Lexicon, order, phrase::Reader, token, wish};
+use crate::{
+    amend, clause, inflect,
+    intent::Intent,
+    lexicon::Lexicon,
+    order,
+    phrase::Reader,
+    question::{self, QuestionKind},
+    token, wish,
+};
 
 /// So many words may be said twice in a row.
 const LONGEST_STUTTER: usize = 4;
@@ -43,8 +51,14 @@ fn asked_plainly(lexicon: &Lexicon, words: Vec<String>) -> Vec<String> {
             .rposition(|word| token::is_punctuation(word) || word == "and")
             .map_or(0, |last| last + 1);
         let verb = chunk + clause::leading(lexicon, &words[chunk..at]);
+        // `tell me what is in it` asks.
+        let is_asked =
+            question::read(lexicon, &words[chunk..]).is_some_and(|asked| asked.kind != QuestionKind::Unknown);
         let intents = lexicon.verbs.longest(&words[verb..at]).map_or(&[][..], |(_, intents)| intents.as_slice());
-        is_placed && intents.iter().any(|intent| intent.needs_object()) && !intents.contains(&Intent::Examine)
+        is_placed
+            && !is_asked
+            && intents.iter().any(|intent| intent.needs_object())
+            && !intents.contains(&Intent::Examine)
     };
     for at in 1..words.len().saturating_sub(2) {
         if is_named(&words, at) {

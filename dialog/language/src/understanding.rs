@@ -1,6 +1,6 @@
 //! What came of an utterance.
 
-use cohabit_cdf::{Action, GoToTarget, ObjectId};
+use cohabit_cdf::{Action, GoToTarget, ObjectId, Verb};
 use serde::{Deserialize, Serialize};
 
 /// What the robot makes of what it was told.
@@ -208,6 +208,12 @@ impl Step {
     /// Whether something else than the robot and its hand is another after it.
     pub(crate) const fn changes(&self) -> bool {
         matches!(self.action, Action::Interact { .. } | Action::Place { .. })
+    }
+
+    /// Whether what it changes is not simply put back.
+    pub(crate) const fn is_lasting(&self) -> bool {
+        self.changes()
+            && !matches!(self.action, Action::Place { .. } | Action::Interact { verb: Verb::Open | Verb::Close, .. })
     }
 
     /// Whether it goes, looks or points, and touches nothing.

@@ -4,7 +4,7 @@
 use crate::{
     alternatives::Alternative,
     answer::HINT,
-    ask,
+    ask, condition,
     context::{Context, Pending},
     conversation::Conversation,
     evidence::Feature,
@@ -16,7 +16,7 @@ use crate::{
 /// How likely steps must be meant for them to be taken without a question, where they change things and where they do not.
 const TO_CHANGE: f32 = 0.7;
 const TO_MOVE: f32 = 0.45;
-/// The same where the grammar takes it for the answer to a question of the robot's: what is to be done was said before.
+/// The same where it is taken for the answer to a question of the robot's: what is to be done was said before.
 const TO_ACT_ON_REPLY: f32 = 0.35;
 /// The same where there is a word that nobody ever met, and where something that was named is left out.
 const TO_ACT_UNHEARD: f32 = 0.8;
@@ -44,8 +44,9 @@ impl Conversation<'_> {
             return by_grammar.understanding;
         }
         let mut alternatives = self.alternatives_to(by_grammar.clone(), &wording, context);
-        // A question that the grammar answers is not carried out.
-        if matches!(by_grammar.understanding, Understanding::Answer { .. }) && wording.ends_as_question() {
+        // A question that the grammar answers is not carried out, nor what it leaves because a condition does not hold.
+        let is_open = wording.ends_as_question() || condition::is_conditional(self.lexicon, &wording.words);
+        if matches!(by_grammar.understanding, Understanding::Answer { .. }) && is_open {
             alternatives.retain(|one| !matches!(one.understanding, Understanding::Plan { .. }));
         }
         if let Some(likeliest) = alternatives.first().filter(|one| one.is_likely(&wording.unheard)) {
@@ -89,14 +90,17 @@ impl Conversation<'_> {
                 likeliest.understanding.clone()
             });
         }
-        let least = likeliest.probability * RIVAL;
+        let (least, later) = (likeliest.probability * RIVAL, likeliest.context.later.clone());
         let plans: Vec<Vec<Step>> = plans
             .filter(|(one, _)| one.probability >= least)
             .take(MOST_PROPOSED)
             .map(|(_, steps)| steps.clone())
             .collect();
         let question = match plans.as_slice() {
-            [steps] => ask::shall_i(steps, &[]),
+            [steps] => {
+                context.later = later;
+                ask::shall_i(steps, &[])
+            }
             plans => ask::which_plan(plans),
         };
         context.pending = Some(Pending::Guess { plans });
@@ -110,13 +114,24 @@ impl Alternative {
         let least = match &self.understanding {
             Understanding::Plan { .. } if !unheard.is_empty() => TO_ACT_UNHEARD,
             Understanding::Plan { .. } if self.evidence.get(Feature::MissingAny) > 0.0 => TO_ACT_IN_PART,
-            Understanding::Plan { .. } if self.evidence.get(Feature::GrammarPlanReply) > 0.0 => TO_ACT_ON_REPLY,
-            Understanding::Plan { steps, .. } if steps.iter().any(Step::changes) => TO_CHANGE,
+            Understanding::Plan { .. } if self.is_reply() => TO_ACT_ON_REPLY,
+            Understanding::Plan { steps, .. } if self.is_bold(steps) => TO_CHANGE,
             Understanding::Plan { .. } => TO_MOVE,
             // What is asked back about a word that it guesses at would only puzzle.
             Understanding::Question { .. } if !unheard.is_empty() => return false,
             _ => TO_REPLY,
         };
         self.probability >= least
+    }
+
+    /// Whether it would not simply be undone, or changes what nobody named.
+    fn is_bold(&self, steps: &[Step]) -> bool {
+        let is_named = self.evidence.get(Feature::Unnamed) < 1.0;
+        steps.iter().any(|step| step.is_lasting() || step.changes() && !is_named)
+    }
+
+    /// Whether grammar or parser takes it for the answer to a question of the robot's.
+    fn is_reply(&self) -> bool {
+        [Feature::GrammarPlanReply, Feature::ParserReply].iter().any(|reply| self.evidence.get(*reply) > 0.0)
     }
 }

@@ -4,12 +4,14 @@ use crate::{
     chatter,
     clause::{self, Part},
     condition,
+    context::Context,
     conversation::Conversation,
     hearing, inquiry,
     intent::Intent,
     question::{self, Question, QuestionKind},
     tidy,
     token::MAX_CHARS,
+    understanding::Understanding,
 };
 
 /// An utterance and its words.
@@ -44,6 +46,11 @@ impl Conversation<'_> {
     /// Whether the grammar reads it to the last word, as one that it knows: requests, or a question, or small talk.
     pub(crate) fn is_plain(&self, Wording { tidied, .. }: &Wording<'_>) -> bool {
         if !self.small(tidied).is_empty() || self.chat(tidied).is_some() {
+            return true;
+        }
+        // `did you close the fridge`
+        let answer = self.answered_yes_or_no(tidied, &mut Context::default());
+        if matches!(answer, Some(Understanding::Answer { holds: Some(_), .. })) {
             return true;
         }
         if let Some(question) = question::read(self.lexicon, tidied) {

@@ -79,6 +79,7 @@ struct WordFile {
     again: Words,
     undo: Words,
     do_goal: Words,
+    do_mission: Words,
 }
 
 #[derive(Deserialize)]
@@ -244,6 +245,7 @@ impl Lexicon {
             (Small::Again, &file.again),
             (Small::Undo, &file.undo),
             (Small::Goal, &file.do_goal),
+            (Small::Mission, &file.do_mission),
         ];
         for (small, list) in lists {
             for word in &list.words {

@@ -399,7 +399,7 @@ fn a_carried_object_can_be_anything() {
 fn what_was_told_and_handed_over_is_asked_once() {
     check(
         &[],
-        "I'm supposed to chill the banana but I have no time, can you do it -> ? …
+        "I'm supposed to chill the banana but I have no time, can you do it -> take Banana_01_1, open FridgeUpper_02_1, put FridgeUpper_02_1…
         I have to wash the plate. take care of that for me -> take FoodPlate_01_1, toggle KitchenCounterSink_01_1, clean KitchenCounterSink_01_1
         i was told to scan the hammer so please handle it -> scan Hammer_1
         I was told to scan the hammer, take care of that for me -> scan Hammer_1

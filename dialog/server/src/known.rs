@@ -23,6 +23,7 @@ pub struct Knowledge {
     knows: Knows,
     catalog: Arc<Catalog>,
     body: BodyId,
+    mission: String,
     memory: Memory,
     /// The world as it was when it was last looked at; nobody but the eyes and the hand may know more of it.
     world: Option<Known>,
@@ -38,7 +39,19 @@ impl Knowledge {
     #[must_use]
     pub fn new(knows: Knows, catalog: Arc<Catalog>, layout: &Layout, body: BodyId) -> Self {
         let memory = Memory::new(Arc::new(FloorPlan::new(layout)));
-        Self { knows, catalog, body, memory, world: None, gaze: None, looked_at: 0, speaker: None, person: None }
+        let (mission, world, gaze, speaker, person) = (String::new(), None, None, None, None);
+        Self { knows, catalog, body, mission, memory, world, gaze, looked_at: 0, speaker, person }
+    }
+
+    /// The same, told what people are asked to get done.
+    #[must_use]
+    pub fn with_mission(mut self, mission: &str) -> Self {
+        self.be_told_mission(mission);
+        self
+    }
+
+    pub(crate) fn be_told_mission(&mut self, mission: &str) {
+        mission.clone_into(&mut self.mission);
     }
 
     /// Whether it is time to look again, for a body that looks so now.
@@ -96,7 +109,7 @@ impl Knowledge {
             Knows::Everything => self.world.clone(),
             Knows::Seen => self.memory.known(),
         };
-        known.map(|known| Known { person: self.person, ..known })
+        known.map(|known| Known { mission: self.mission.clone(), person: self.person, ..known })
     }
 
     /// Where the robot believes what it would act on to be, m, if it is wrong: others moved it while it did not look.
@@ -151,7 +164,7 @@ pub fn everything(state: StateView<'_>, body: BodyId) -> Option<Known> {
         .filter(|goal| goal.hidden == 0)
         .map(|goal| KnownGoal { text: goal.description.as_str().to_owned(), met: goal.met == 1 })
         .collect();
-    Some(Known { robot, objects, goals, floor: None, person: None })
+    Some(Known { robot, objects, mission: String::new(), goals, floor: None, person: None })
 }
 
 fn person(state: StateView<'_>, body: BodyId) -> Option<KnownPerson> {

@@ -165,7 +165,8 @@ pub fn serve(
     let (listener, place) = listen(config.listen, journal.past().place.as_ref())?;
     let language = Language::new(Arc::clone(&catalog)).asking(config.asking);
     let interprets = config.interpreter.is_some();
-    let robots = Robots::new(&robots, config.knows, &language, &catalog, &layout, told, interprets);
+    let robots = Robots::new(&robots, config.knows, &language, &catalog, &layout, told, interprets)
+        .with_mission(&mission.goal_text);
     let (puzzles, asked) = interprets.then(interpreter::puzzles).unzip();
     let survey = Arc::new(Survey::new(&*bus, config.questionnaires)?);
     let (tells, plays) = (Arc::clone(&hub), Arc::clone(&hub));

@@ -115,6 +115,14 @@ impl Robots {
         }
     }
 
+    /// The same, told what people are asked to get done.
+    pub fn with_mission(mut self, mission: &str) -> Self {
+        for robot in &mut self.robots {
+            robot.knowledge.be_told_mission(mission);
+        }
+        self
+    }
+
     /// Goes on with these conversations, and knows this again, each of one body.
     pub fn restore(&mut self, conversations: &BTreeMap<u32, Memory>, lessons: &BTreeMap<u32, Lessons>) {
         for robot in &mut self.robots {

@@ -151,7 +151,8 @@ pub fn play(task: &Task, settings: &Settings, language: &Language) -> Result<Pla
     };
     played.load_s = began.elapsed().as_secs_f64();
     played.family = task.family.clone().unwrap_or_else(|| family(&plan.mission));
-    let knowledge = Knowledge::new(settings.knows, Arc::clone(catalog), world.layout(), BodyId(0));
+    let knowledge = Knowledge::new(settings.knows, Arc::clone(catalog), world.layout(), BodyId(0))
+        .with_mission(&plan.mission.goal_text);
     let conversation = Conversation::new(language.clone().asking(settings.asking), 0);
     let mut session = LockStep::new(world, conversation, knowledge);
     if let Some(folder) = &settings.record {

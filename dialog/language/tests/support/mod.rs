@@ -175,6 +175,7 @@ pub fn scene(catalog: &Catalog, marks: &[&str]) -> Known {
     let mut known = Known {
         robot,
         objects: Vec::new(),
+        mission: String::new(),
         goals: vec![
             KnownGoal { text: "Repair the bowl".to_owned(), met: true },
             KnownGoal { text: "Pour milk into the bowl".to_owned(), met: false },

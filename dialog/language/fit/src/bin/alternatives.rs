@@ -35,8 +35,8 @@ const FITTED: [(&str, f64); 7] = [
 const HELD_OUT: &str = "held_out";
 /// What is no request: nothing that is done is right.
 const OFF_DOMAIN: (&str, f64) = ("off_domain", 0.5);
-/// How often the weights are fitted anew, each time to the likeliest of the ways that are right.
-const ROUNDS: usize = 4;
+/// How often the weights are fitted anew, each time to the ways that are right, by how likely they then are (expectation maximisation).
+const ROUNDS: usize = 8;
 
 /// What speaks for each way to understand an utterance, and which of them are right.
 struct Ways {
@@ -78,11 +78,15 @@ impl Ways {
         Some(Self { weight, evidence, right })
     }
 
-    /// The likeliest of those that are right is the one that is meant.
-    fn choice(&self, weights: &[f64]) -> Choice {
+    /// Each of those that are right may be the one that is meant, as likely as it is among them.
+    fn choices(&self, weights: &[f64]) -> impl Iterator<Item = Choice> {
         let shares = logit::probabilities(weights, &self.evidence);
-        let likeliest = self.right.iter().copied().max_by(|one, other| shares[*one].total_cmp(&shares[*other]));
-        Choice { weight: self.weight, alternatives: self.evidence.clone(), chosen: likeliest.unwrap_or(0) }
+        let whole: f64 = self.right.iter().map(|at| shares[*at]).sum();
+        self.right.iter().map(move |at| Choice {
+            weight: self.weight * shares[*at] / whole,
+            alternatives: self.evidence.clone(),
+            chosen: *at,
+        })
     }
 
     /// Whether the likeliest of all is right.
@@ -100,7 +104,7 @@ fn main() {
     fitted.extend(no_requests.filter_map(|said| Ways::off_domain(said, OFF_DOMAIN.1)));
     let mut weights = vec![0.0; Evidence::COUNT + 1];
     for _ in 0..ROUNDS {
-        let choices: Vec<Choice> = fitted.iter().map(|one| one.choice(&weights)).collect();
+        let choices: Vec<Choice> = fitted.iter().flat_map(|one| one.choices(&weights)).collect();
         weights = logit::fit(&choices, weights.len());
     }
     let held_out = ways(HELD_OUT, 1.0);

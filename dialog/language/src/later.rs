@@ -1,0 +1,127 @@
+//! What comes after the plan under way: what is left of the mission, and what was asked about its outcome.
+
+use crate::{
+    chatter,
+    clause::{self, Part},
+    context::Context,
+    conversation::Conversation,
+    describe,
+    lexicon::Small,
+    question::{self, QuestionKind},
+    tidy, token,
+    understanding::Understanding,
+};
+
+impl Conversation<'_> {
+    /// What is left to do once a plan has ended: the search that it is a part of, or what is next.
+    pub(crate) fn carry_on(&self, context: &mut Context) -> Option<Understanding> {
+        let later = context.later.clone();
+        if let Some(search) = context.search.take() {
+            let understanding = self.proceed(search, context);
+            return Some(context.keep(later, understanding));
+        }
+        let is_met = |text: &String| self.scene.goals.iter().any(|goal| goal.met && goal.text == *text);
+        let mut left = later.into_iter().filter(|text| !is_met(text));
+        let next = left.next()?;
+        context.later.clear();
+        let understanding = self.understand_best(&next, context);
+        Some(context.keep(left.collect(), understanding))
+    }
+
+    /// Does what is left of the mission, one goal after the other.
+    pub(crate) fn pursue(&self, context: &mut Context) -> Understanding {
+        let goals: Vec<String> = self.open_goals().map(str::to_owned).collect();
+        let understanding = self.next_goal(context);
+        let Some((_, later)) = goals.split_first().filter(|(_, later)| !later.is_empty()) else { return understanding };
+        match &understanding {
+            Understanding::Plan { .. } | Understanding::Question { .. } => {
+                let named: Vec<String> = goals.iter().map(|goal| goal.trim_end_matches('.').to_owned()).collect();
+                let said = describe::sentence(&format!("I do these one after the other: {}", named.join("; ")));
+                context.keep(later.to_vec(), understanding.after(&said))
+            }
+            _ => understanding,
+        }
+    }
+
+    pub(crate) fn open_goals(&self) -> impl Iterator<Item = &str> {
+        self.scene.goals.iter().filter(|goal| !goal.met && !goal.text.is_empty()).map(|goal| goal.text.as_str())
+    }
+
+    /// Does what the next goal says, as if the person had said it.
+    pub(crate) fn next_goal(&self, context: &mut Context) -> Understanding {
+        let Some(goal) = self.open_goals().next() else {
+            return Understanding::answer("There is nothing left to do that I know of.");
+        };
+        let (words, _) = self.lexicon.normalise(goal);
+        let words = tidy::tidied(self.lexicon, &words);
+        let lost = || {
+            let text = goal.trim_end_matches('.');
+            Understanding::lost(format!("The next goal is: {text}. Tell me what to do for it, step by step."))
+        };
+        let small = self.small(&words);
+        if small.contains(&Small::Goal) || small.contains(&Small::Mission) {
+            return lost();
+        }
+        match self.understand_words(words, context) {
+            Understanding::Refusal { is_lost: true, .. } | Understanding::Answer { .. } => lost(),
+            understanding => understanding,
+        }
+    }
+
+    /// `open the fridge and tell me what is inside`: the question waits until that is done. `the plate, is it clean` only asks.
+    pub(crate) fn asked_afterwards(&self, words: &[String], context: &mut Context) -> Option<Understanding> {
+        let (before, question) = self.breaks(words).find(|(_, after)| self.asks(after))?;
+        let parts = clause::parts(self.lexicon, self.catalog, before);
+        if !parts.iter().any(|part| matches!(part, Part::Clause(clause) if chatter::is_clear(clause))) {
+            parts.iter().for_each(|part| self.mention(part, context));
+            return Some(self.answer(&question::read(self.lexicon, question)?, context));
+        }
+        if !self.is_surely_asked(question) {
+            return None;
+        }
+        let understanding = self.request(before, parts, context);
+        let question = token::sentence(question);
+        if matches!(understanding, Understanding::Answer { .. }) {
+            // It is so already.
+            let answer = self.understand_words(self.lexicon.normalise(&question).0, context);
+            return Some(answer.after(understanding.reply()));
+        }
+        Some(context.keep(vec![question], understanding))
+    }
+
+    /// `is the fridge open and is the microwave on?`: one answer after the other.
+    pub(crate) fn asked_twice(&self, words: &[String], context: &mut Context) -> Option<Understanding> {
+        let (first, second) = self.breaks(words).find(|(before, after)| self.asks(before) && self.asks(after))?;
+        let first = self.answer(&question::read(self.lexicon, first)?, context);
+        if !matches!(first, Understanding::Answer { .. }) {
+            return None;
+        }
+        let second = self
+            .asked_twice(second, context)
+            .or_else(|| Some(self.answer(&question::read(self.lexicon, second)?, context)))?;
+        Some(second.after(first.reply()))
+    }
+
+    /// What is said before and after each pause and each `and`.
+    fn breaks<'w>(&self, words: &'w [String]) -> impl Iterator<Item = (&'w [String], &'w [String])> + use<'w> {
+        let is_break = |word: &String| token::is_punctuation(word) || word == "and";
+        let breaks = words.iter().enumerate().filter(move |(_, word)| is_break(word)).map(|(at, _)| at);
+        breaks
+            .map(|at| (&words[..at], &words[at + 1..]))
+            .filter(|(before, after)| !before.is_empty() && !after.is_empty())
+    }
+
+    /// Whether it is a question that the robot can answer.
+    fn asks(&self, words: &[String]) -> bool {
+        question::read(self.lexicon, words).is_some_and(|question| {
+            question.kind != QuestionKind::Unknown && question.about.is_none_or(|about| about.unknown.is_empty())
+        })
+    }
+
+    /// Whether nothing else can be meant than that it is answered.
+    fn is_surely_asked(&self, words: &[String]) -> bool {
+        let said = &words[clause::leading(self.lexicon, words)..];
+        words.last().is_some_and(|last| last == "?")
+            || [&self.lexicon.tells, &self.lexicon.reports].iter().any(|tells| tells.longest(said).is_some())
+    }
+}

@@ -1,0 +1,150 @@
+//! What is done or answered once a plan has ended: what is left of the mission, a question about the outcome, what has yet to be found.
+
+#![allow(clippy::unwrap_used)]
+
+mod support;
+
+use cohabit_cdf::Status;
+use cohabit_language::{Asking, KnownGoal, Understanding};
+use support::{Talk, text};
+
+/// Says something and carries out all that comes of it; a goal is met once the plan for it has ended. What was done and said, in order.
+fn carried_out(talk: &mut Talk, utterance: &str) -> Vec<String> {
+    let mut next = Some(talk.language.understand(utterance, &talk.scene, &mut talk.context));
+    let mut all = Vec::new();
+    while let Some(understanding) = next {
+        all.push(text(&understanding, &talk.scene));
+        let Understanding::Plan { steps, .. } = understanding else { break };
+        for step in &steps {
+            talk.context.note_outcome(step, Status::ActionSuccessful);
+        }
+        talk.scene = talk.language.expected(&talk.scene, &steps);
+        if let Some(goal) = talk.scene.goals.iter_mut().find(|goal| !goal.met) {
+            goal.met = true;
+        }
+        next = talk.language.carry_on(&talk.scene, &mut talk.context);
+    }
+    all
+}
+
+fn with_goals(mission: &str, goals: &[&str]) -> Talk {
+    let mut talk = Talk::new(&[]);
+    mission.clone_into(&mut talk.scene.mission);
+    talk.scene.goals = goals.iter().map(|text| KnownGoal { text: (*text).to_owned(), met: false }).collect();
+    talk
+}
+
+const CEREAL: [&str; 3] =
+    ["Mend the bowl in the time machine", "Pour cereal into the bowl", "Pour milk over the cereal"];
+
+#[test]
+fn a_wish_that_names_the_mission_has_all_its_goals_done() {
+    for wish in ["can you make me a bowl of cereal", "please do the whole mission", "sort it out"] {
+        let mut talk = with_goals("Make a bowl of cereal with milk", &CEREAL);
+        let done = carried_out(&mut talk, wish);
+        assert_eq!(done.len(), 3, "{wish}: {done:?}");
+        assert!(done[0].contains("put YesterdayMachine_01_1"), "{wish}: {done:?}");
+        assert!(done[1].ends_with("pour Bowl_01_1") && done[1].contains("Cereal_Box_01_1"), "{wish}: {done:?}");
+        assert!(done[2].ends_with("pour Bowl_01_1") && done[2].contains("MilkCarton_01_1"), "{wish}: {done:?}");
+        assert!(!talk.context.awaits_more(), "{wish}");
+    }
+}
+
+#[test]
+fn what_is_going_to_be_done_is_said_first() {
+    let mut talk = with_goals("Make a bowl of cereal with milk", &CEREAL);
+    let understanding = talk.language.understand("do the mission", &talk.scene, &mut talk.context);
+    for goal in CEREAL {
+        assert!(understanding.reply().contains(goal), "{}", understanding.reply());
+    }
+}
+
+#[test]
+fn what_was_to_come_later_is_left_after_a_failure_a_stop_and_another_request() {
+    let start = || {
+        let mut talk = with_goals("Make a bowl of cereal with milk", &CEREAL);
+        let first = talk.language.understand("do the mission", &talk.scene, &mut talk.context);
+        let Understanding::Plan { steps, .. } = first else { panic!("{first:?}") };
+        assert!(talk.context.awaits_more());
+        (talk, steps)
+    };
+    let (mut talk, steps) = start();
+    talk.context.note_outcome(&steps[0], Status::TargetOutOfRange);
+    assert!(!talk.context.awaits_more());
+    let (mut talk, _) = start();
+    let _ = talk.language.understand("stop", &talk.scene, &mut talk.context);
+    assert!(!talk.context.awaits_more());
+    let (mut talk, _) = start();
+    let _ = talk.language.understand("pick up the knife", &talk.scene, &mut talk.context);
+    assert!(!talk.context.awaits_more());
+    let (mut talk, _) = start();
+    let _ = talk.language.understand("what are you holding?", &talk.scene, &mut talk.context);
+    assert!(talk.context.awaits_more(), "a question in between changes nothing");
+}
+
+#[test]
+fn a_question_after_a_request_is_answered_when_that_is_done() {
+    for (said, answer) in [
+        ("open the fridge and tell me what's inside", "= In the fridge there is some milk."),
+        ("take the banana, what are you holding?", "= I am holding the banana."),
+        ("go to the quantum lab and tell me where you are", "= I am in the quantum lab."),
+    ] {
+        let done = carried_out(&mut Talk::new(&[]), said);
+        assert_eq!(done.last().map(String::as_str), Some(answer), "{said}: {done:?}");
+        assert_eq!(done.len(), 2, "{said}: {done:?}");
+    }
+}
+
+#[test]
+fn two_questions_get_two_answers() {
+    for (said, answer) in [
+        ("is the fridge open and is the microwave on?", "= No, the fridge is not open. No, the microwave is not on."),
+        (
+            "where is the milk and where is the cereal?",
+            "= The milk is in the fridge. The cereal box is on the counter top.",
+        ),
+    ] {
+        assert_eq!(carried_out(&mut Talk::new(&[]), said), [answer], "{said}");
+    }
+}
+
+#[test]
+fn a_question_with_words_before_it_is_not_carried_out() {
+    for said in ["nah man the plate, is the plate clean", "the fridge, is it open", "why not?"] {
+        let done = carried_out(&mut Talk::new(&[]), said);
+        assert!(done.len() == 1 && done[0].starts_with('='), "{said}: {done:?}");
+    }
+}
+
+#[test]
+fn nothing_is_poured_away_that_nobody_said_to() {
+    let mut talk = Talk::new(&[]);
+    assert_eq!(talk.say("pour the milk"), "? What shall I pour it into?");
+    assert!(talk.say("into the bowl").ends_with("pour Bowl_01_1"));
+    let mut talk = Talk::new(&[]);
+    let _ = talk.say("grab the bowl");
+    for said in ["pour some milk", "pour the milk over it"] {
+        assert!(talk.say(said).ends_with("pour Bowl_01_1"), "{said}");
+    }
+    for said in ["pour out the milk", "dump the milk"] {
+        assert!(Talk::new(&[]).say(said).ends_with("pour KitchenCounterSink_01_1"), "{said}");
+    }
+}
+
+#[test]
+fn several_things_are_thrown_into_the_same_place() {
+    let done = Talk::new(&[]).say("throw all the fruit in the bin");
+    assert_eq!(done.matches("put TrashCan_01_1").count(), 3, "{done}");
+}
+
+#[test]
+fn a_proposal_is_answered_in_many_words() {
+    for answer in ["aye go on then", "yes please love", "yeah go for it", "yes do", "ok sounds good to me"] {
+        let Talk { language, scene, mut context } = Talk::new(&[]);
+        let language = language.clone().asking(Asking::Always);
+        let asked = language.understand("open the fridge", &scene, &mut context);
+        assert!(matches!(asked, Understanding::Question { .. }), "{asked:?}");
+        let done = language.understand(answer, &scene, &mut context);
+        assert_eq!(text(&done, &scene), "open FridgeLower_02_1", "{answer}");
+    }
+}
