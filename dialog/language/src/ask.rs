@@ -152,16 +152,20 @@ pub(crate) fn confirmation(text: impl Into<String>) -> Understanding {
 /// Whether to carry out a plan.
 pub(crate) fn shall_i(steps: &[Step], notes: &[String]) -> Understanding {
     let notes: Vec<String> = notes.iter().map(|note| describe::sentence(note)).collect();
-    let text = format!("{} I understand: {}. Shall I?", notes.join(" "), reply::plan_in_words(steps));
-    confirmation(text.trim())
+    let question = is_it(&reply::plan_in_words(steps));
+    if notes.is_empty() { question } else { question.after(&notes.join(" ")) }
+}
+
+/// Whether to do what it comes to in these words.
+pub(crate) fn is_it(name: &str) -> Understanding {
+    confirmation(format!("I understand: {name}. Shall I?"))
 }
 
 /// Which of these plans is meant?
-pub(crate) fn which_plan(plans: &[Vec<Step>]) -> Understanding {
-    let names: Vec<String> = plans.iter().map(|steps| reply::plan_in_words(steps)).collect();
-    let text = format!("I am not sure what you mean: {}?", describe::list(&names, "or"));
-    let options: Vec<&str> = names.iter().map(String::as_str).collect();
-    of_kind(Clarification::Confirmation, "", text, &options)
+pub(crate) fn which_plan(names: &[&str]) -> Understanding {
+    let named: Vec<String> = names.iter().map(|name| (*name).to_owned()).collect();
+    let text = format!("I am not sure what you mean: {}?", describe::list(&named, "or"));
+    of_kind(Clarification::Confirmation, "", text, names)
 }
 
 /// Where is what nobody has seen?

@@ -15,7 +15,7 @@ use crate::{
     plan::Fault,
     question::{self, QuestionKind},
     reply, token,
-    understanding::{Step, Understanding},
+    understanding::Understanding,
 };
 
 /// How likely a candidate must be to be clearly the one described.
@@ -54,9 +54,15 @@ impl Conversation<'_> {
                 let consent = Consent { may_put_down: true, is_agreed: true };
                 Some(self.plan(clauses, consent, context))
             }
-            Pending::Offer { plans } | Pending::Guess { plans } => {
-                let chosen = self.chosen_plan(words, is_yes || is(Small::Any), plans)?;
-                Some(self.go(chosen, context))
+            Pending::Offer { mut plans } => {
+                let names: Vec<String> = plans.iter().map(|steps| reply::plan_in_words(steps)).collect();
+                let at = self.chosen_plan(words, is_yes || is(Small::Any), &names)?;
+                Some(self.go(plans.swap_remove(at), context))
+            }
+            Pending::Guess { mut guesses } => {
+                let names: Vec<String> = guesses.iter().map(|guess| guess.name.clone()).collect();
+                let at = self.chosen_plan(words, is_yes || is(Small::Any), &names)?;
+                Some(self.go_as_guessed(guesses.swap_remove(at), context))
             }
             Pending::Search { clauses } if is_yes || is(Small::Search) => {
                 Some(self.plan(clauses, Consent::default(), context))
@@ -87,13 +93,20 @@ impl Conversation<'_> {
         }
     }
 
-    /// The plan that an answer means: `yes`, `the second one`, or what it was called.
-    fn chosen_plan(&self, words: &[String], is_yes: bool, mut plans: Vec<Vec<Step>>) -> Option<Vec<Step>> {
-        let is_called = |steps: &Vec<Step>| self.lexicon.normalise(&reply::plan_in_words(steps)).0 == words;
-        if let Some(at) = plans.iter().position(is_called) {
-            return Some(plans.swap_remove(at));
+    /// One of the plans that the robot asked about, in the very words of its question, as a button has them.
+    pub(crate) fn chosen_by_name(&self, utterance: &str, context: &mut Context) -> Option<Understanding> {
+        let Some(Pending::Guess { guesses }) = &context.pending else { return None };
+        let guess = guesses.iter().find(|guess| guess.name.eq_ignore_ascii_case(utterance.trim()))?.clone();
+        Some(self.go_as_guessed(guess, context))
+    }
+
+    /// Which of the plans of these names an answer means: `yes`, `the second one`, or what it was called.
+    fn chosen_plan(&self, words: &[String], is_yes: bool, names: &[String]) -> Option<usize> {
+        let is_called = |name: &String| plain(&self.lexicon.normalise(name).0) == plain(words);
+        if let Some(at) = names.iter().position(is_called) {
+            return Some(at);
         }
-        let count = i32::try_from(plans.len()).ok()?;
+        let count = i32::try_from(names.len()).ok()?;
         // `the second one, pick it up`
         let first = words.split(|word| token::is_punctuation(word)).find(|part| !part.is_empty()).unwrap_or_default();
         let ordinal = self.answer_phrase(&plain(first)).and_then(|phrase| phrase.ordinal);
@@ -103,8 +116,7 @@ impl Conversation<'_> {
             None if is_yes => 0,
             None => return None,
         };
-        let at = usize::try_from(at).ok().filter(|at| *at < plans.len())?;
-        Some(plans.swap_remove(at))
+        usize::try_from(at).ok().filter(|at| *at < names.len())
     }
 
     /// `yes, do put it down first`.

@@ -9,6 +9,7 @@ use crate::{
     lexicon::Preposition,
     phrase::{Phrase, Place},
     question::QuestionKind,
+    reply,
     search::Search,
     understanding::{Step, Understanding},
 };
@@ -103,8 +104,20 @@ pub(crate) enum Pending {
     Search { clauses: Vec<Clause> },
     /// Which of these to do, or whether to do the only one.
     Offer { plans: Vec<Vec<Step>> },
-    /// The same of plans that were only guessed at.
-    Guess { plans: Vec<Vec<Step>> },
+    /// The same of what was only guessed at.
+    Guess { guesses: Vec<Guess> },
+}
+
+/// A plan that the robot asks about, with what is to follow it.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+pub(crate) struct Guess {
+    /// What it comes to, in words.
+    pub(crate) name: String,
+    pub(crate) steps: Vec<Step>,
+    pub(crate) search: Option<Search>,
+    later: Vec<String>,
+    request: Vec<Clause>,
+    asked: String,
 }
 
 /// What a person has agreed to in answers to questions about a request.
@@ -258,6 +271,22 @@ impl Context {
         understanding
     }
 
+    /// What this conversation is about to do with these steps, to be asked about first.
+    pub(crate) fn guess(&self, steps: &[Step]) -> Guess {
+        let Self { search, later, request, asked, .. } = self.clone();
+        // A search says no more than where it begins: what it is for does.
+        let name =
+            if search.is_some() && !asked.is_empty() { format!("\"{asked}\"") } else { reply::plan_in_words(steps) };
+        Guess { name, steps: steps.to_vec(), search, later, request, asked }
+    }
+
+    /// Takes note that a guess was right, and is about to be carried out.
+    pub(crate) fn begin_guessed(&mut self, guess: Guess) {
+        self.begin(&guess.steps);
+        (self.search, self.later) = (guess.search, guess.later);
+        (self.request, self.asked) = (guess.request, guess.asked);
+    }
+
     /// Takes note of a part of a search that is about to be carried out.
     pub(crate) fn begin_leg(&mut self, steps: &[Step]) {
         self.running = steps.to_vec();
@@ -287,5 +316,24 @@ impl Context {
     #[must_use]
     pub fn is_searching(&self) -> bool {
         self.search.as_ref().is_some_and(Search::is_under_way)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::search::Search;
+
+    #[test]
+    fn what_was_guessed_right_goes_on_as_it_would_have() {
+        let steps = [Step { action: Action::LookAround, says: "looking around".to_owned() }];
+        let mut looking = Context { asked: "mend the mug".to_owned(), ..Context::default() };
+        looking.begin(&steps);
+        (looking.search, looking.later) = (Some(Search::new(Vec::new(), Consent::default())), vec!["stop".to_owned()]);
+        let guess = looking.guess(&steps);
+        assert_eq!(guess.name, "\"mend the mug\"", "what it looks for is said, not that it looks");
+        let mut asked = Context::default();
+        asked.begin_guessed(guess);
+        assert!(asked.search.is_some() && asked.later == ["stop"] && asked.running == steps);
     }
 }

@@ -12,7 +12,7 @@ use crate::{
     chatter,
     clause::{self, Clause, Part},
     confidence::Referents,
-    context::{Consent, Context, Focus, Pending},
+    context::{Consent, Context, Focus, Guess, Pending},
     describe,
     ground::{Ground, Miss, Want},
     habits::Habits,
@@ -48,6 +48,9 @@ pub(crate) struct Conversation<'a> {
 
 impl Conversation<'_> {
     pub(crate) fn understand(&self, utterance: &str, context: &mut Context) -> Understanding {
+        if let Some(understanding) = self.chosen_by_name(utterance, context) {
+            return understanding;
+        }
         if let Some(stop) = stop::find_stop(utterance).filter(|stop| is_heeded(stop.firmness, context)) {
             return self.stopped(&stop.rest, context);
         }
@@ -604,6 +607,16 @@ impl Conversation<'_> {
         let again = std::iter::once(failure.step.clone()).chain(failure.rest.iter().cloned());
         let steps = remedy.map(|remedy| remedy.steps).unwrap_or_default().into_iter().chain(again).collect();
         self.go(steps, context)
+    }
+
+    pub(crate) fn go_as_guessed(&self, guess: Guess, context: &mut Context) -> Understanding {
+        let steps = guess.steps.clone();
+        self.remember_start(&steps, context);
+        if guess.search.is_none() {
+            steps.iter().for_each(|step| context.focus.follow(&step.action));
+        }
+        context.begin_guessed(guess);
+        Understanding::Plan { reply: reply::plan_reply(&steps, &[]), steps }
     }
 
     pub(crate) fn go(&self, steps: Vec<Step>, context: &mut Context) -> Understanding {

@@ -100,6 +100,11 @@ impl Understanding {
         }
     }
 
+    /// Whether more is done than to look and point.
+    pub(crate) fn commits(&self) -> bool {
+        matches!(self, Self::Plan { steps, .. } if steps.iter().any(Step::commits))
+    }
+
     /// Whether it leaves what was asked denied, or open.
     pub(crate) const fn denies(&self) -> bool {
         !matches!(self, Self::Answer { holds: None | Some(true), .. })

@@ -5,7 +5,7 @@ use crate::{
     alternatives::Alternative,
     answer::HINT,
     ask, condition,
-    context::{Context, Pending},
+    context::{Context, Guess, Pending},
     conversation::Conversation,
     evidence::Feature,
     reply,
@@ -49,6 +49,10 @@ impl Conversation<'_> {
         if matches!(by_grammar.understanding, Understanding::Answer { .. }) && is_open {
             alternatives.retain(|one| !matches!(one.understanding, Understanding::Plan { .. }));
         }
+        // Who asks why, who or when wants an answer, whatever it is about.
+        if wording.asks_for_reason() {
+            alternatives.retain(|one| !one.understanding.commits());
+        }
         if let Some(likeliest) = alternatives.first().filter(|one| one.is_likely(&wording.unheard)) {
             *context = likeliest.context.clone();
             return likeliest.understanding.clone();
@@ -90,20 +94,15 @@ impl Conversation<'_> {
                 likeliest.understanding.clone()
             });
         }
-        let (least, later) = (likeliest.probability * RIVAL, likeliest.context.later.clone());
-        let plans: Vec<Vec<Step>> = plans
-            .filter(|(one, _)| one.probability >= least)
-            .take(MOST_PROPOSED)
-            .map(|(_, steps)| steps.clone())
-            .collect();
-        let question = match plans.as_slice() {
-            [steps] => {
-                context.later = later;
-                ask::shall_i(steps, &[])
-            }
-            plans => ask::which_plan(plans),
+        let least = likeliest.probability * RIVAL;
+        let likely = plans.filter(|(one, _)| one.probability >= least).take(MOST_PROPOSED);
+        let guesses: Vec<Guess> = likely.map(|(one, steps)| one.context.guess(steps)).collect();
+        let names: Vec<&str> = guesses.iter().map(|guess| guess.name.as_str()).collect();
+        let question = match names.as_slice() {
+            [name] => ask::is_it(name),
+            names => ask::which_plan(names),
         };
-        context.pending = Some(Pending::Guess { plans });
+        context.pending = Some(Pending::Guess { guesses });
         Some(if unheard.is_empty() { question } else { question.after(&reply::unknown(unheard)) })
     }
 }

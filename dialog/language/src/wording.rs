@@ -10,7 +10,7 @@ use crate::{
     intent::Intent,
     question::{self, Question, QuestionKind},
     tidy,
-    token::MAX_CHARS,
+    token::{self, MAX_CHARS},
     understanding::Understanding,
 };
 
@@ -101,6 +101,14 @@ impl Conversation<'_> {
 }
 
 impl Wording<'_> {
+    /// Whether its last sentence asks why, who or when.
+    pub(crate) fn asks_for_reason(&self) -> bool {
+        let end = self.words.iter().rposition(|word| !token::is_punctuation(word)).unwrap_or_default();
+        let start = self.words[..end].iter().rposition(|word| token::ends_sentence(word)).map_or(0, |at| at + 1);
+        let first = self.words.get(start).map(String::as_str);
+        self.ends_as_question() && matches!(first, Some("why" | "who" | "when"))
+    }
+
     pub(crate) fn ends_as_question(&self) -> bool {
         self.utterance.trim_end().ends_with('?')
     }

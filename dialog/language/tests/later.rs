@@ -148,3 +148,36 @@ fn a_proposal_is_answered_in_many_words() {
         assert_eq!(text(&done, &scene), "open FridgeLower_02_1", "{answer}");
     }
 }
+
+#[test]
+fn what_was_asked_about_is_done_when_it_is_chosen_in_the_same_words() {
+    let mut proposals = 0;
+    for said in include_str!("utterances/newcomers.txt").lines().filter_map(|line| line.split_once(" -> ")).take(150) {
+        let Talk { language, scene, context } = Talk::new(&[]);
+        let mut asked = context.clone();
+        let question = language.understand(said.0, &scene, &mut asked);
+        let Understanding::Question { text: question, candidates, options, .. } = question else { continue };
+        if !question.contains("I am not sure what you mean") || !candidates.is_empty() {
+            continue;
+        }
+        for option in options {
+            let done = language.understand(&option, &scene, &mut asked.clone());
+            assert!(matches!(done, Understanding::Plan { .. }), "{}: {option}: {done:?}", said.0);
+            proposals += 1;
+        }
+    }
+    assert!(proposals > 5, "only {proposals} proposals were made");
+}
+
+#[test]
+fn who_asks_for_a_reason_has_nothing_done() {
+    for said in [
+        "Wonderful! Why does the laser need a tip?",
+        "Why is the milk in the fridge?",
+        "who put the bowl on the table?",
+        "And when would the banana go into the microwave?",
+    ] {
+        let done = Talk::new(&[]).say(said);
+        assert!(done.starts_with(['=', '!', '?']), "{said}: {done}");
+    }
+}
