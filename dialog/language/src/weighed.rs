@@ -37,12 +37,23 @@ impl Conversation<'_> {
     pub(crate) fn understand_best(&self, utterance: &str, context: &mut Context) -> Understanding {
         let wording = self.wording(utterance);
         let by_grammar = self.read(utterance, context);
-        let asks_for_name =
-            matches!(by_grammar.understanding, Understanding::Question { kind: Clarification::Appearance, .. });
-        if self.speaks_for_itself(&wording, &by_grammar) || asks_for_name && !wording.unheard.is_empty() {
+        if self.speaks_for_itself(&wording, &by_grammar) {
             *context = by_grammar.context;
             return by_grammar.understanding;
         }
+        // What has no name that is known may only be guessed at.
+        let unheard = match &by_grammar.understanding {
+            Understanding::Question { kind: Clarification::Appearance, about, .. } => {
+                match wording.unheard.as_slice() {
+                    [] => std::slice::from_ref(about),
+                    _ => {
+                        *context = by_grammar.context;
+                        return by_grammar.understanding;
+                    }
+                }
+            }
+            _ => wording.unheard.as_slice(),
+        };
         let mut alternatives = self.alternatives_to(by_grammar.clone(), &wording, context);
         // A question that the grammar answers is not carried out, nor what it leaves because a condition does not hold.
         let is_open = wording.ends_as_question() || condition::is_conditional(self.lexicon, &wording.words);
@@ -53,11 +64,11 @@ impl Conversation<'_> {
         if wording.asks_for_reason() {
             alternatives.retain(|one| !one.understanding.commits());
         }
-        if let Some(likeliest) = alternatives.first().filter(|one| one.is_likely(&wording.unheard)) {
+        if let Some(likeliest) = alternatives.first().filter(|one| one.is_likely(unheard)) {
             *context = likeliest.context.clone();
             return likeliest.understanding.clone();
         }
-        if let Some(question) = self.proposed(&alternatives, &wording.unheard, context) {
+        if let Some(question) = self.proposed(&alternatives, unheard, context) {
             return question;
         }
         if matches!(by_grammar.understanding, Understanding::Plan { .. }) {
