@@ -127,8 +127,8 @@ impl Alternative {
             Understanding::Plan { .. } if self.is_reply() => TO_ACT_ON_REPLY,
             Understanding::Plan { steps, .. } if self.is_bold(steps) => TO_CHANGE,
             Understanding::Plan { .. } => TO_MOVE,
-            // What is asked back about a word that it guesses at would only puzzle.
-            Understanding::Question { .. } if !unheard.is_empty() => return false,
+            // What is asked back, or said against what was only guessed of a word, would puzzle.
+            Understanding::Question { .. } | Understanding::Refusal { .. } if !unheard.is_empty() => return false,
             _ => TO_REPLY,
         };
         self.probability >= least
