@@ -18,9 +18,9 @@ const TO_CHANGE: f32 = 0.7;
 const TO_MOVE: f32 = 0.45;
 /// The same where it is taken for the answer to a question of the robot's: what is to be done was said before.
 const TO_ACT_ON_REPLY: f32 = 0.35;
-/// The same where there is a word that nobody ever met, and where something that was named is left out.
-const TO_ACT_UNHEARD: f32 = 0.8;
-const TO_ACT_IN_PART: f32 = 0.9;
+/// The same where something that was named is left out.
+const TO_CHANGE_IN_PART: f32 = 0.9;
+const TO_MOVE_IN_PART: f32 = 0.6;
 /// How likely what is said must be the right reply, where nothing is done.
 const TO_REPLY: f32 = 0.3;
 /// How likely steps must be meant to be proposed, where every word is known and where not; and to be taken where nothing may be asked.
@@ -122,16 +122,22 @@ impl Alternative {
     /// Whether it is likely enough to be carried out, or said.
     fn is_likely(&self, unheard: &[String]) -> bool {
         let least = match &self.understanding {
-            Understanding::Plan { .. } if !unheard.is_empty() => TO_ACT_UNHEARD,
-            Understanding::Plan { .. } if self.evidence.get(Feature::MissingAny) > 0.0 => TO_ACT_IN_PART,
-            Understanding::Plan { .. } if self.is_reply() => TO_ACT_ON_REPLY,
-            Understanding::Plan { steps, .. } if self.is_bold(steps) => TO_CHANGE,
-            Understanding::Plan { .. } => TO_MOVE,
+            Understanding::Plan { steps, .. } => match (self.leaves_out_named(), self.is_bold(steps)) {
+                (true, true) => TO_CHANGE_IN_PART,
+                (true, false) => TO_MOVE_IN_PART,
+                _ if unheard.is_empty() && self.is_reply() => TO_ACT_ON_REPLY,
+                (false, true) => TO_CHANGE,
+                (false, false) => TO_MOVE,
+            },
             // What is asked back, or said against what was only guessed of a word, would puzzle.
             Understanding::Question { .. } | Understanding::Refusal { .. } if !unheard.is_empty() => return false,
             _ => TO_REPLY,
         };
         self.probability >= least
+    }
+
+    fn leaves_out_named(&self) -> bool {
+        self.evidence.get(Feature::MissingAny) > 0.0
     }
 
     /// Whether it would not simply be undone, or changes what nobody named.
