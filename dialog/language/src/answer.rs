@@ -5,21 +5,23 @@ use std::collections::BTreeMap;
 use cohabit_cdf::{Catalog, Fluid, ObjectId, Property, state::StateFlag};
 
 use crate::{
-    context::{Failure, Focus},
+    context::Context,
     describe,
+    facts::Facts,
     ground::{self, Ground, Miss, Want, has_state},
     intent::Intent,
     judge::Judge,
     known::{self, Known, KnownObject},
     lexicon::{Lexicon, Pronoun, StateWord},
     phrase::{Phrase, Reader, RelationKind},
+    process::Devices,
     question::{Question, QuestionKind},
     reply, report, saying,
-    understanding::{Step, Understanding},
+    understanding::Understanding,
 };
 
 /// How many things an answer names before it says `and more`.
-const LIST: usize = 8;
+pub(crate) const LIST: usize = 8;
 /// How many neighbours of a thing.
 const NEIGHBOURS: usize = 4;
 
@@ -36,17 +38,12 @@ pub(crate) const HINT: &str =
 pub(crate) struct Answerer<'a> {
     pub(crate) catalog: &'a Catalog,
     pub(crate) lexicon: &'a Lexicon,
+    pub(crate) devices: &'a Devices,
     pub(crate) scene: &'a Known,
-    pub(crate) focus: &'a Focus,
     pub(crate) judge: Judge<'a>,
-    /// The steps under way.
-    pub(crate) running: &'a [Step],
-    /// What failed last.
-    pub(crate) failed: Option<&'a Failure>,
-    /// The last plan, whole.
-    pub(crate) last_plan: &'a [Step],
-    /// What was said that asked for it.
-    pub(crate) asked: &'a str,
+    pub(crate) context: &'a Context,
+    /// How much of a list was told already.
+    pub(crate) told: usize,
 }
 
 impl Answerer<'_> {
@@ -61,15 +58,24 @@ impl Answerer<'_> {
             (QuestionKind::Doing, _) => self.doing(),
             (QuestionKind::Goals, _) => self.goals(),
             (QuestionKind::Options, _) => self.options(),
-            (QuestionKind::HowTo, _) if question.rest.is_empty() => Understanding::answer(EXAMPLES),
-            (QuestionKind::HowTo, _) => {
-                let wish = question.rest.join(" ");
-                Understanding::answer(format!("Tell me \"{wish}\", and I will try."))
-            }
-            (QuestionKind::Why, about) => self.why(about),
+            (QuestionKind::HowTo, _) => Understanding::answer(EXAMPLES),
+            (QuestionKind::Why, about) => self.why(about, question),
+            (QuestionKind::Done, about) => self.done(about),
+            (QuestionKind::Purpose, Some(phrase)) => self.purpose(phrase),
+            (QuestionKind::Danger, about) => self.danger(about),
+            (QuestionKind::Trouble, Some(phrase)) => self.with_object(phrase, |id| self.trouble(id)),
+            (QuestionKind::Owner, Some(phrase)) => self.with_object(phrase, |id| {
+                let place = describe::sentence(&self.place_sentence(id));
+                Understanding::about(format!("I do not know whose it is. {place}"), vec![id])
+            }),
+            (QuestionKind::Holder, Some(phrase)) => self.with_object(phrase, |id| self.holder(id)),
+            (QuestionKind::Which, Some(phrase)) => self.which(phrase),
+            (QuestionKind::Rest, _) => self.goals(),
+            (QuestionKind::Recording, _) => Understanding::whether(true, RECORDED, Vec::new()),
+            (QuestionKind::Time, _) => Understanding::answer("I have no clock, so I cannot tell."),
             (QuestionKind::Seeing, _) => self.seeing(),
-            (QuestionKind::Contents, None) if self.focus.place.is_some() => {
-                self.focus.place.map_or_else(|| Understanding::refusal(HINT), |place| self.contents(place))
+            (QuestionKind::Contents, None) if self.context.focus.place.is_some() => {
+                self.context.focus.place.map_or_else(|| Understanding::refusal(HINT), |place| self.contents(place))
             }
             (QuestionKind::State | QuestionKind::Look | QuestionKind::Unknown | QuestionKind::Where, Some(phrase))
                 if phrase.pronoun == Some(Pronoun::Thing) && phrase.is_any =>
@@ -79,16 +85,23 @@ impl Answerer<'_> {
                     None => self.seeing(),
                 }
             }
-            (QuestionKind::Contents, Some(phrase)) => self.with_object(phrase, |id| self.contents(id)),
+            (QuestionKind::Contents, Some(phrase)) => {
+                self.with_object(phrase, |id| self.contents(id)).as_yes_or_no(question.is_whether)
+            }
             (QuestionKind::Near, Some(phrase)) => self.with_object(phrase, |id| self.neighbours(id)),
             (QuestionKind::Text, phrase) => self.text(phrase),
             (QuestionKind::Color, Some(phrase)) => self.colors(phrase),
             (QuestionKind::Distance, Some(phrase)) => self.with_object(phrase, |id| self.distance(id)),
             (QuestionKind::Count, Some(phrase)) => self.count(phrase),
             (QuestionKind::State, Some(phrase)) => self.state(phrase, question),
-            (QuestionKind::Where | QuestionKind::Look | QuestionKind::Unknown, Some(phrase)) if !phrase.is_empty() => {
-                self.place_of(phrase)
+            (QuestionKind::Where, Some(phrase)) if !phrase.is_empty() => {
+                self.place_of(phrase).as_yes_or_no(question.is_whether)
             }
+            (QuestionKind::Look, Some(phrase)) if !phrase.is_empty() && is_about_presence(&question.rest, phrase) => {
+                self.looks(phrase)
+            }
+            (QuestionKind::Look, Some(phrase)) if !phrase.is_empty() => self.unknown_of(phrase),
+            (QuestionKind::Unknown, Some(phrase)) if !phrase.is_empty() => self.unknown_of(phrase),
             (QuestionKind::Where, Some(phrase)) if phrase.pronoun.is_some() => {
                 Understanding::lost(saying::unresolved(phrase))
             }
@@ -103,7 +116,7 @@ impl Answerer<'_> {
     }
 
     fn ground(&self) -> Ground<'_> {
-        Ground { catalog: self.catalog, scene: self.scene, focus: self.focus, judge: self.judge }
+        Ground { catalog: self.catalog, scene: self.scene, focus: &self.context.focus, judge: self.judge }
     }
 
     fn full(&self, id: ObjectId) -> String {
@@ -139,7 +152,7 @@ impl Answerer<'_> {
     }
 
     fn doing(&self) -> Understanding {
-        Understanding::answer(match self.running.first() {
+        Understanding::answer(match self.context.running.first() {
             Some(step) => format!("I am {}.", step.says),
             None => "I am waiting for you to tell me what to do.".to_owned(),
         })
@@ -168,29 +181,155 @@ impl Answerer<'_> {
         })
     }
 
-    /// Why the last step failed, if it did; or else what the last plan, or what of it was done to an object, was for.
-    fn why(&self, about: Option<&Phrase>) -> Understanding {
-        if let Some(failure) = self.failed {
+    /// Why something is as it is, or why the last step failed, if it did; or else what the last plan, or what of it was done to an
+    /// object, was for.
+    fn why(&self, about: Option<&Phrase>, question: &Question) -> Understanding {
+        if let Some(phrase) = about.filter(|_| asked_state(self.lexicon, &question.rest).is_some()) {
+            return self.with_object(phrase, |id| self.why_so(id));
+        }
+        if let Some(failure) = &self.context.failed {
             let cause = report::cause(failure.status);
             return Understanding::answer(match failure.step.says.as_str() {
                 "" => describe::sentence(cause),
                 says => format!("I did not finish {says}: {cause}."),
             });
         }
-        let Some(last) = self.last_plan.last().filter(|_| !self.asked.is_empty()) else {
-            return Understanding::answer(match self.asked {
-                "" => "Nothing went wrong that I know of. What shall I do?".to_owned(),
+        let Some(last) = self.context.last_plan.last().filter(|_| !self.context.asked.is_empty()) else {
+            return Understanding::answer(match self.context.asked.as_str() {
+                "" => "Nothing went wrong that I know of, and I have done nothing yet.".to_owned(),
                 asked => format!("Because you said \"{asked}\"."),
             });
         };
         let want = Want::place(Intent::Find, &[], None);
         let object = about.and_then(|phrase| self.ground().one(phrase, &want).ok());
-        let step = object.and_then(|id| self.last_plan.iter().find(|step| step.object() == Some(id)));
-        let asked = self.asked;
+        let step = object.and_then(|id| self.context.last_plan.iter().find(|step| step.object() == Some(id)));
+        let asked = &self.context.asked;
         Understanding::answer(match step.filter(|step| *step != last) {
             Some(step) => format!("You said \"{asked}\", and {} was needed for {}.", step.says, last.says),
-            None => format!("You said \"{asked}\", so my plan was {}.", reply::plan_in_words(self.last_plan)),
+            None => format!("You said \"{asked}\", so my plan was {}.", reply::plan_in_words(&self.context.last_plan)),
         })
+    }
+
+    /// Why a thing is as it is: what was done to it.
+    fn why_so(&self, id: ObjectId) -> Understanding {
+        let the = self.short(id);
+        let text = match self.context.deeds.to(id).filter(|deed| deed.step.changes()) {
+            Some(deed) => format!("I did that, since you said \"{}\".", deed.asked),
+            None => format!("I did not do that, as far as I remember: I found {the} so, and do not know why."),
+        };
+        Understanding::about(text, vec![id])
+    }
+
+    /// What it did last, or to a thing.
+    fn done(&self, about: Option<&Phrase>) -> Understanding {
+        let want = Want::place(Intent::Find, &[], None);
+        let deed =
+            about.and_then(|phrase| self.ground().one(phrase, &want).ok()).map(|id| (id, self.context.deeds.to(id)));
+        let failed = self.context.failed.as_ref().filter(|failure| !failure.step.says.is_empty());
+        let failed = failed
+            .map(|failure| format!(" I did not finish {}: {}.", failure.step.says, report::cause(failure.status)));
+        Understanding::answer(match (deed, self.context.deeds.told()) {
+            (Some((id, None)), _) => format!("I did nothing with {} that I remember.", self.short(id)),
+            (Some((_, Some(deed))), _) => describe::sentence(&format!("I {}", deed.in_words())),
+            (None, Some(told)) => describe::sentence(&told) + &failed.unwrap_or_default(),
+            (None, None) => {
+                failed.map_or_else(|| "I have done nothing yet.".to_owned(), |failed| failed.trim().to_owned())
+            }
+        })
+    }
+
+    fn facts(&self) -> Facts<'_> {
+        Facts { catalog: self.catalog, devices: self.devices, scene: self.scene }
+    }
+
+    /// What a thing is for; of what was not seen yet, what its kind is for.
+    fn purpose(&self, phrase: &Phrase) -> Understanding {
+        let want = Want::place(Intent::Find, &[], None);
+        let is_known = self.ground().one(phrase, &want).is_ok();
+        let of_kind = || phrase.namings.iter().find_map(|naming| self.facts().purpose_of_kind(naming.class));
+        match of_kind().filter(|_| !is_known) {
+            Some(text) => Understanding::answer(text),
+            None => {
+                self.with_known(phrase, |object| Understanding::about(self.facts().purpose(object), vec![object.id]))
+            }
+        }
+    }
+
+    /// How things are, and what they are for.
+    fn looks(&self, phrase: &Phrase) -> Understanding {
+        let want = Want::place(Intent::Find, &[], None);
+        match self.ground().plausible(phrase, &want) {
+            Ok(found) if found.len() > 1 => self.place_of(phrase),
+            Ok(_) => self.with_known(phrase, |object| {
+                let facts = self.facts();
+                let purpose = facts.has_use(object).then(|| facts.purpose(object)).unwrap_or_default();
+                let text = describe::sentence(&facts.description(object));
+                Understanding::about(format!("{text} {purpose}").trim(), vec![object.id])
+            }),
+            Err(_) => self.purpose(phrase),
+        }
+    }
+
+    /// What is known of a thing, where that is not what was asked.
+    fn unknown_of(&self, phrase: &Phrase) -> Understanding {
+        self.with_known(phrase, |object| {
+            let known = describe::sentence(&self.facts().description(object));
+            Understanding::about(format!("I do not know that. What I know: {known}"), vec![object.id])
+        })
+    }
+
+    fn danger(&self, about: Option<&Phrase>) -> Understanding {
+        let want = Want::place(Intent::Find, &[], None);
+        let object =
+            about.and_then(|phrase| self.ground().one(phrase, &want).ok()).and_then(|id| self.scene.object(id));
+        let facts = self.facts();
+        let (text, highlight) = match object {
+            Some(object) => {
+                let the = self.short(object.id);
+                let danger = facts.danger(object).unwrap_or_else(|| format!("I know of nothing dangerous about {the}"));
+                let told = facts.written_of(object).unwrap_or_default();
+                (format!("{} {told}", describe::sentence(&danger)).trim().to_owned(), vec![object.id])
+            }
+            None => {
+                let sparking = self.scene.objects.iter().find(|object| object.has(StateFlag::Sparking));
+                let danger = sparking.and_then(|object| Some((facts.danger(object)?, vec![object.id])));
+                let (text, highlight) =
+                    danger.unwrap_or_else(|| ("I know of nothing dangerous here".to_owned(), Vec::new()));
+                (describe::sentence(&text), highlight)
+            }
+        };
+        Understanding::about(text, highlight)
+    }
+
+    fn trouble(&self, id: ObjectId) -> Understanding {
+        let Some(object) = self.scene.object(id) else { return Understanding::refusal(HINT) };
+        let failed = self.context.failed.as_ref().filter(|failure| failure.step.object() == Some(id));
+        let text = match (self.facts().trouble(object), failed) {
+            (Some(wrong), _) => wrong,
+            (None, Some(failure)) => {
+                format!("I did not finish {}: {}", failure.step.says, report::cause(failure.status))
+            }
+            (None, None) => format!("nothing that I can see: {}", self.facts().description(object)),
+        };
+        Understanding::about(describe::sentence(&text), vec![id])
+    }
+
+    fn holder(&self, id: ObjectId) -> Understanding {
+        let is_held = self.scene.robot.held == Some(id);
+        let who = if is_held { "I have it" } else { "Nobody that I know of" };
+        Understanding::about(format!("{who}: {}.", self.place_sentence(id)), vec![id])
+    }
+
+    /// Which of several are as was asked.
+    fn which(&self, phrase: &Phrase) -> Understanding {
+        let all: Vec<ObjectId> = self.scene.objects.iter().map(|object| object.id).collect();
+        match self.ground().narrow(phrase, &all) {
+            found if found.is_empty() => Understanding::whether(false, "None that I know of.", Vec::new()),
+            found => {
+                let names: Vec<String> = found.iter().take(LIST).map(|id| self.full(*id)).collect();
+                Understanding::about(describe::sentence(&describe::list(&names, "and")), found)
+            }
+        }
     }
 
     fn seeing(&self) -> Understanding {
@@ -209,7 +348,7 @@ impl Answerer<'_> {
         for object in objects {
             *counts.entry(describe::bare(self.catalog, self.scene, object.id)).or_default() += 1;
         }
-        let more = counts.len().saturating_sub(LIST);
+        let more = counts.len().saturating_sub(self.told + LIST);
         // What people move about comes before what stands where it is.
         let is_fixed = |name: &String| {
             !objects.iter().any(|object| {
@@ -219,10 +358,17 @@ impl Answerer<'_> {
         };
         let mut counts: Vec<(String, usize)> = counts.into_iter().collect();
         counts.sort_by_key(|(name, _)| is_fixed(name));
-        let mut names: Vec<String> =
-            counts.into_iter().take(LIST).map(|(name, count)| describe::counted(&name, count)).collect();
+        let mut names: Vec<String> = counts
+            .into_iter()
+            .skip(self.told)
+            .take(LIST)
+            .map(|(name, count)| describe::counted(&name, count))
+            .collect();
         if more > 0 {
             names.push(format!("{more} more"));
+        }
+        if names.is_empty() {
+            return "nothing else".to_owned();
         }
         describe::list(&names, "and")
     }
@@ -244,6 +390,12 @@ impl Answerer<'_> {
             Err(Miss::Several(ids) | Miss::Mismatch(ids)) if !ids.is_empty() => then(ids[0]),
             Err(_) => self.unseen(phrase),
         }
+    }
+
+    /// The same with what is known of the object.
+    fn with_known(&self, phrase: &Phrase, then: impl Fn(&KnownObject) -> Understanding) -> Understanding {
+        let of = |id| self.scene.object(id).map_or_else(|| Understanding::refusal(HINT), &then);
+        self.with_object(phrase, of)
     }
 
     fn unseen(&self, phrase: &Phrase) -> Understanding {
@@ -279,7 +431,7 @@ impl Answerer<'_> {
         }
     }
 
-    fn place_sentence(&self, id: ObjectId) -> String {
+    pub(crate) fn place_sentence(&self, id: ObjectId) -> String {
         let place = describe::location(self.catalog, self.scene, id);
         if !place.is_empty() {
             return format!("{} is {place}", self.short(id));
@@ -389,11 +541,11 @@ impl Answerer<'_> {
 
     fn count(&self, phrase: &Phrase) -> Understanding {
         let is_them = phrase.is_many() || phrase.is_one_of_kind();
-        if is_them && self.focus.group.is_empty() {
+        if is_them && self.context.focus.group.is_empty() {
             return Understanding::lost(saying::unresolved(phrase));
         }
         let all: Vec<ObjectId> = match is_them {
-            true => self.focus.group.clone(),
+            true => self.context.focus.group.clone(),
             false => self.scene.objects.iter().map(|object| object.id).collect(),
         };
         let bare = Phrase { pronoun: None, ..phrase.clone() };
@@ -433,9 +585,40 @@ impl Answerer<'_> {
                 let start = if holds { "Yes" } else { "No" };
                 Understanding::whether(holds, format!("{start}, {}.", self.place_sentence(id)), vec![id])
             }),
-            None => self.place_of(&bare),
+            None if is_about_presence(&question.rest, phrase) => self.place_of(&bare),
+            None => self.with_known(&bare, |object| {
+                let known = describe::sentence(&self.facts().description(object));
+                Understanding::about(format!("I cannot tell. What I know: {known}"), vec![object.id])
+            }),
         }
     }
+}
+
+/// What is said of recordings: every session is.
+const RECORDED: &str = "Yes: what is said, and what I see and do, is written into the log of this session.";
+
+/// Whether nothing is asked of a thing but that it is there.
+fn is_about_presence(words: &[String], phrase: &Phrase) -> bool {
+    const PRESENT: [&str; 16] = [
+        "there",
+        "here",
+        "around",
+        "still",
+        "somewhere",
+        "anywhere",
+        "left",
+        "over",
+        "available",
+        "present",
+        "now",
+        "right",
+        "nearby",
+        "any",
+        "the",
+        "about",
+    ];
+    let named: Vec<&str> = phrase.text.split(' ').collect();
+    words.iter().all(|word| PRESENT.contains(&word.as_str()) || named.contains(&word.as_str()))
 }
 
 /// What things afford that may be in a state.

@@ -5,10 +5,11 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     clause::Clause,
+    deeds::Deeds,
     known::Known,
     lexicon::Preposition,
     phrase::{Phrase, Place},
-    question::QuestionKind,
+    question::{Question, QuestionKind},
     reply,
     search::Search,
     understanding::{Step, Understanding},
@@ -39,6 +40,12 @@ pub struct Context {
     /// What was asked last, if nothing was asked for since.
     #[serde(default)]
     pub(crate) question: Option<QuestionKind>,
+    /// What was listed last, and how many of it were named.
+    #[serde(default)]
+    pub(crate) list: Option<(Question, usize)>,
+    /// What it did.
+    #[serde(default)]
+    pub(crate) deeds: Deeds,
     /// The request that waits until what it names is found.
     pub(crate) search: Option<Search>,
     /// What is to be done or answered once the plan under way has ended, each as somebody would say it. A goal that is met by then is
@@ -238,6 +245,7 @@ impl Context {
         let done = self.running.iter().position(|planned| planned.action == step.action);
         let rest = done.map_or_else(Vec::new, |at| self.running.split_off(at + 1));
         if status.is_success() {
+            self.deeds.add(step, &self.asked);
             self.running = rest;
             return;
         }
@@ -275,8 +283,12 @@ impl Context {
     pub(crate) fn guess(&self, steps: &[Step]) -> Guess {
         let Self { search, later, request, asked, .. } = self.clone();
         // A search says no more than where it begins: what it is for does.
-        let name =
-            if search.is_some() && !asked.is_empty() { format!("\"{asked}\"") } else { reply::plan_in_words(steps) };
+        let request_in_words = reply::request_in_words(&request);
+        let name = match (&search, request_in_words.as_str()) {
+            (None, _) => reply::plan_in_words(steps),
+            (Some(_), "") => format!("\"{asked}\""),
+            (Some(_), request) => format!("\"{request}\""),
+        };
         Guess { name, steps: steps.to_vec(), search, later, request, asked }
     }
 

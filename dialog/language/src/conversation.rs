@@ -322,7 +322,7 @@ impl Conversation<'_> {
                 (_, Some(words)) if !words.is_empty() => reply::unclear(&words),
                 (Some(phrase), _) if words.last().is_some_and(|word| word == "?") || goes_on => {
                     let kind = context.question.filter(|_| goes_on).unwrap_or(QuestionKind::Where);
-                    let question = question::Question { kind, rest: words.to_vec(), about: Some(phrase) };
+                    let question = question::Question::new(kind, Some(phrase), words.to_vec());
                     self.answer(&question, context)
                 }
                 (Some(phrase), _) => self.fragment(&phrase, context),

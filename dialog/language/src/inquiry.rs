@@ -1,12 +1,12 @@
 //! What people ask, among what else they say.
 
 use crate::{
-    answer::Answerer,
+    answer::{self, Answerer},
     clause::{Clause, Part},
     context::{Context, Pending},
     conversation::Conversation,
     question::{self, QuestionKind},
-    token,
+    reply, token,
     understanding::Understanding,
 };
 
@@ -35,20 +35,43 @@ impl Conversation<'_> {
         }
     }
 
+    pub(crate) fn answerer<'c>(&'c self, context: &'c Context, told: usize) -> Answerer<'c> {
+        let Self { catalog, lexicon, devices, scene, judge, .. } = *self;
+        Answerer { catalog, lexicon, devices, scene, judge, context, told }
+    }
+
+    /// How something is done: the plan for it, which `yes` then means.
+    fn how_to(&self, wish: Vec<String>, context: &mut Context) -> Understanding {
+        let said = token::sentence(&wish);
+        let mut then = context.clone();
+        then.pending = None;
+        match self.understand_all(wish, &mut then) {
+            Understanding::Plan { steps, .. } => {
+                let guess = then.guess(&steps);
+                let text = format!("By {}. Tell me to, and I do it.", reply::plan_in_words(&steps));
+                context.pending = Some(Pending::Guess { guesses: vec![guess] });
+                Understanding::answer(text)
+            }
+            Understanding::Answer { text, highlight, .. } => Understanding::about(text, highlight),
+            Understanding::Refusal { text, is_lost: false } => Understanding::answer(text),
+            _ => Understanding::answer(format!("Tell me \"{said}\", and I will try.")),
+        }
+    }
+
     /// Answers a question, and remembers what it is about.
     pub(crate) fn answer(&self, question: &question::Question, context: &mut Context) -> Understanding {
-        let answerer = Answerer {
-            catalog: self.catalog,
-            lexicon: self.lexicon,
-            scene: self.scene,
-            focus: &context.focus,
-            judge: self.judge,
-            running: &context.running,
-            failed: context.failed.as_ref(),
-            last_plan: &context.last_plan,
-            asked: &context.asked,
+        if question.kind == QuestionKind::HowTo && !question.rest.is_empty() {
+            return self.how_to(question.rest.clone(), context);
+        }
+        let listed = context.list.take();
+        let (question, told) = match (question.kind, &listed) {
+            (QuestionKind::Rest, Some((listed, told))) => (listed, *told),
+            _ => (question, 0),
         };
-        let answer = answerer.answer(question);
+        let answer = self.answerer(context, told).answer(question);
+        if matches!(question.kind, QuestionKind::Seeing | QuestionKind::Contents) {
+            context.list = Some((question.clone(), told + answer::LIST));
+        }
         context.question = Some(question.kind);
         // Only what it has not seen makes it ask back.
         if let (Understanding::Question { .. }, Some(phrase)) = (&answer, &question.about) {

@@ -6,8 +6,18 @@ use cohabit_cdf::{ClassId, Fluid, RoomId, state::StateFlag};
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    amend::Amends, chatter::Chatter, condition::Conditions, inflect, intent::Intent, misheard::Misheard,
-    question::QuestionKind, sound::Sounding, spelling::Vocabulary, table::PhraseTable, token, wish::Wishes,
+    amend::Amends,
+    chatter::Chatter,
+    condition::Conditions,
+    inflect,
+    intent::Intent,
+    misheard::Misheard,
+    question::{QuestionKind, Shape},
+    sound::Sounding,
+    spelling::Vocabulary,
+    table::PhraseTable,
+    token,
+    wish::Wishes,
     yes_no::YesNo,
 };
 
@@ -66,6 +76,24 @@ pub(crate) enum Preposition {
     For,
     LeftOf,
     RightOf,
+}
+
+impl Preposition {
+    /// How the robot says it.
+    pub(crate) const fn word(self) -> &'static str {
+        match self {
+            Self::In => "in",
+            Self::On => "on",
+            Self::To => "to",
+            Self::At => "at",
+            Self::From => "from",
+            Self::Near => "next to",
+            Self::With => "with",
+            Self::For => "for",
+            Self::LeftOf => "to the left of",
+            Self::RightOf => "to the right of",
+        }
+    }
 }
 
 /// Which of several, by where they are.
@@ -182,6 +210,8 @@ pub(crate) struct Lexicon {
     /// First words of a verb whose last word may stand after the object; that word; the intent.
     pub(crate) separable: Vec<(Vec<String>, String, Intent)>,
     pub(crate) questions: PhraseTable<QuestionKind>,
+    /// Questions by more than their beginning, the first that fits counts.
+    pub(crate) question_shapes: Vec<Shape>,
     /// Replies to what asks for nothing to be done.
     pub(crate) chat: PhraseTable<String>,
     pub(crate) classes: PhraseTable<Vec<Naming>>,

@@ -16,6 +16,9 @@ use crate::{
     understanding::{Clarification, Understanding},
 };
 
+/// How it says what it leaves out.
+pub(crate) const LEAVES_OUT: &str = "I do not know how to do this:";
+
 /// How likely a stop must be for the robot to stop.
 const STOPS: f32 = 0.5;
 
@@ -66,7 +69,7 @@ impl Conversation<'_> {
         let unknown = asked.iter().find_map(|request| unknown_words(request));
         let is_lost = matches!(understanding, Understanding::Refusal { is_lost: true, .. });
         let understanding = match unknown {
-            Some(words) => understanding.after(&format!("I do not know how to {words}, so I leave that out.")),
+            Some(words) => understanding.after(&format!("{LEAVES_OUT} \"{words}\", so I leave that out.")),
             None => understanding,
         };
         (!is_lost).then_some((understanding, certainty))

@@ -3,7 +3,7 @@
 use cohabit_cdf::{Catalog, ClassId, Fluid};
 use serde::Deserialize;
 
-use crate::intent::Intent;
+use crate::{facts::Uses, intent::Intent};
 
 /// One way to get something done.
 #[derive(Clone, Debug)]
@@ -44,6 +44,7 @@ pub(crate) struct Devices {
     is_lit: Vec<ClassId>,
     worked: Vec<(ClassId, Vec<ClassId>)>,
     pub(crate) hammers: Vec<ClassId>,
+    pub(crate) uses: Uses,
 }
 
 #[derive(Deserialize)]
@@ -145,6 +146,7 @@ impl Devices {
                 .filter_map(|entry| Some((catalog.find(&entry.class)?, classes(&entry.by))))
                 .collect(),
             hammers: classes(&file.tools.to_break),
+            uses: Uses::new(catalog),
         }
     }
 
@@ -176,5 +178,15 @@ impl Devices {
     /// The classes that work it, if it is worked by another object.
     pub(crate) fn workers(&self, class: ClassId) -> Option<&[ClassId]> {
         self.worked.iter().find(|(worked, _)| *worked == class).map(|(_, workers)| workers.as_slice())
+    }
+
+    /// The class that it works, if it works another.
+    pub(crate) fn worked_by(&self, worker: ClassId) -> Option<ClassId> {
+        self.worked.iter().find(|(_, workers)| workers.contains(&worker)).map(|(worked, _)| *worked)
+    }
+
+    /// What a cartridge prints.
+    pub(crate) fn printed_by(&self, cartridge: ClassId) -> Option<ClassId> {
+        self.cartridges.iter().find(|(class, _)| *class == cartridge).map(|(_, prints)| *prints)
     }
 }

@@ -36,21 +36,114 @@ pub(crate) enum QuestionKind {
     Options,
     HowTo,
     Why,
+    /// What it did.
+    Done,
+    /// What something is for, or does.
+    Purpose,
+    /// Whether something is dangerous.
+    Danger,
+    /// What is wrong with something.
+    Trouble,
+    /// Whose something is.
+    Owner,
+    /// Who has it.
+    Holder,
+    /// Which of several is so: `which mug is red`.
+    Which,
+    /// What else there is, after a list.
+    Rest,
+    /// Whether the session is recorded.
+    Recording,
+    Time,
+}
+
+impl QuestionKind {
+    /// Whether it may be about nothing that is named.
+    const fn stands_alone(self) -> bool {
+        matches!(self, Self::Done | Self::Danger | Self::Rest | Self::Recording | Self::Time)
+    }
+}
+
+/// How a question may be put that its beginning alone does not tell: `what is … for`.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Shape {
+    kind: QuestionKind,
+    begins: PhraseTable<()>,
+    /// How it ends, if that matters.
+    #[serde(default)]
+    ends: Vec<String>,
+    /// Words any of which is in it, if that matters.
+    #[serde(default)]
+    has: PhraseTable<()>,
+    /// Whether nothing more may be said.
+    #[serde(default)]
+    is_whole: bool,
+}
+
+impl Shape {
+    /// What stands between its beginning and its end, if the words are of this shape.
+    fn between<'w>(&self, lexicon: &Lexicon, words: &'w [String]) -> Option<&'w [String]> {
+        let (begin, ()) = self.begins.longest(words)?;
+        let rest = &words[begin..];
+        let has = |at: usize| self.has.longest(&rest[at..]).is_some();
+        if !self.has.is_empty() && !(0..rest.len()).any(has) {
+            return None;
+        }
+        let is_spare =
+            |word: &String| token::is_punctuation(word) || lexicon.trail.exact(std::slice::from_ref(word)).is_some();
+        if self.ends.is_empty() {
+            return (!self.is_whole || rest.iter().all(is_spare)).then_some(rest);
+        }
+        let cut = |end: &String| {
+            let end = token::words(end);
+            let mut rest = rest;
+            loop {
+                if let Some(between) = rest.strip_suffix(end.as_slice()) {
+                    return Some(between);
+                }
+                rest = rest.split_last().filter(|(last, _)| is_spare(last)).map(|(_, before)| before)?;
+            }
+        };
+        self.ends.iter().find_map(cut)
+    }
 }
 
 /// A question, and what it is about.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 pub(crate) struct Question {
     pub(crate) kind: QuestionKind,
     pub(crate) about: Option<Phrase>,
     /// What follows the start.
     pub(crate) rest: Vec<String>,
+    /// Whether it wants a yes or a no.
+    pub(crate) is_whether: bool,
+}
+
+impl Question {
+    pub(crate) const fn new(kind: QuestionKind, about: Option<Phrase>, rest: Vec<String>) -> Self {
+        Self { kind, about, rest, is_whether: false }
+    }
 }
 
 /// The question that these words ask, if they ask one.
 pub(crate) fn read(lexicon: &Lexicon, words: &[String]) -> Option<Question> {
     let segments = clause::segments(lexicon, words);
     let first = segments.first()?;
+    let question = read_sentence(lexicon, first)?;
+    let is_whether = |(at, _): (usize, usize)| {
+        first
+            .get(at)
+            .is_some_and(|word| matches!(word.as_str(), "is" | "are" | "was" | "were" | "have" | "has" | "did" | "any"))
+    };
+    let is_whether = starts(lexicon, first).into_iter().any(is_whether);
+    Some(Question { is_whether, ..question })
+}
+
+fn read_sentence(lexicon: &Lexicon, first: &[String]) -> Option<Question> {
+    if let Some(question) = shaped(lexicon, first) {
+        return Some(question);
+    }
     let asked = put_plainly(lexicon, first).filter(|asked| {
         start(lexicon, asked).is_some_and(|(kind, _)| !matches!(kind, QuestionKind::Unknown | QuestionKind::Look))
     });
@@ -64,23 +157,23 @@ pub(crate) fn read(lexicon: &Lexicon, words: &[String]) -> Option<Question> {
     if matches!(kind, QuestionKind::Unknown | QuestionKind::Look)
         && (0..rest.len()).any(|at| lexicon.goal_words.longest(&rest[at..]).is_some())
     {
-        return Some(Question { kind: QuestionKind::Goals, about: None, rest });
+        return Some(Question::new(QuestionKind::Goals, None, rest));
     }
     let has = |table: &PhraseTable<()>| (0..rest.len()).any(|at| table.longest(&rest[at..]).is_some());
     if matches!(kind, QuestionKind::Unknown | QuestionKind::Look)
         && has(&lexicon.hand_words)
         && first.iter().any(|word| word == "you" || word == "your")
     {
-        return Some(Question { kind: QuestionKind::Holding, about: None, rest });
+        return Some(Question::new(QuestionKind::Holding, None, rest));
     }
     if matches!(kind, QuestionKind::Unknown | QuestionKind::Look | QuestionKind::Where) && has(&lexicon.text_words) {
         let about = named(lexicon, &rest);
-        return Some(Question { kind: QuestionKind::Text, about, rest });
+        return Some(Question::new(QuestionKind::Text, about, rest));
     }
     if kind == QuestionKind::Unknown
         && let Some(about) = which_holds(lexicon, &rest)
     {
-        return Some(Question { kind: QuestionKind::Where, about: Some(about), rest });
+        return Some(Question::new(QuestionKind::Where, Some(about), rest));
     }
     // `show me where is the mug`
     if kind == QuestionKind::Where {
@@ -93,13 +186,44 @@ pub(crate) fn read(lexicon: &Lexicon, words: &[String]) -> Option<Question> {
         rest = without_existence(&rest);
     }
     let kind = told_by_words(&rest, kind);
-    let at_start = || Reader::new(lexicon, &rest).phrase_with_place();
+    let first = || at_start(lexicon, &rest);
     let about = match kind {
         // `why did you open the fridge`
         QuestionKind::Why => named(lexicon, &rest),
-        _ => at_start().filter(|phrase| !phrase.is_empty()).or_else(|| named(lexicon, &rest)).or_else(at_start),
+        _ => first().filter(|phrase| !phrase.is_empty()).or_else(|| named(lexicon, &rest)).or_else(first),
     };
-    Some(Question { kind, about, rest })
+    Some(Question::new(kind, about, rest))
+}
+
+/// The question that words ask by their shape.
+fn shaped(lexicon: &Lexicon, words: &[String]) -> Option<Question> {
+    starts(lexicon, words).into_iter().find_map(|(at, _)| {
+        lexicon.question_shapes.iter().find_map(|shape| {
+            let between = shape.between(lexicon, &words[at..])?;
+            let rest: Vec<String> = between.iter().filter(|word| !token::is_punctuation(word)).cloned().collect();
+            let about = match shape.kind {
+                QuestionKind::Which => which_is_so(lexicon, &rest),
+                _ => at_start(lexicon, &rest).filter(|phrase| !phrase.is_empty()).or_else(|| named(lexicon, &rest)),
+            };
+            (about.is_some() || shape.kind.stands_alone()).then_some(Question::new(shape.kind, about, rest))
+        })
+    })
+}
+
+/// The phrase that words begin with.
+fn at_start(lexicon: &Lexicon, words: &[String]) -> Option<Phrase> {
+    Reader::new(lexicon, words).phrase_with_place()
+}
+
+/// `mug is red`, `one is the biggest`: the red mug.
+fn which_is_so(lexicon: &Lexicon, words: &[String]) -> Option<Phrase> {
+    let verb = words.iter().position(|word| matches!(word.as_str(), "is" | "are"))?;
+    let is_joint = |word: &&String| !matches!(word.as_str(), "and" | "a" | "an" | "the");
+    let said: Vec<String> = words[verb + 1..].iter().chain(&words[..verb]).filter(is_joint).cloned().collect();
+    let mut reader = Reader::new(lexicon, &said);
+    let phrase = reader.phrase().filter(|phrase| !phrase.is_empty() && phrase.unknown.is_empty())?;
+    let is_told = phrase.color.is_some() || !phrase.states.is_empty();
+    (reader.is_done() && is_told).then_some(phrase)
 }
 
 /// `mugs there are on the table`, of `how many`: the mugs on the table.
@@ -198,25 +322,34 @@ fn which_holds(lexicon: &Lexicon, words: &[String]) -> Option<Phrase> {
     (length == left.len()).then_some(about)
 }
 
-/// Tries the words as they are, then without each polite word at the start: `can you see` must win over `can you`.
-fn start(lexicon: &Lexicon, words: &[String]) -> Option<(QuestionKind, usize)> {
+/// Where a question may begin: at the words as they are, then after each polite word at the start, each with the length of the next
+/// polite words.
+fn starts(lexicon: &Lexicon, words: &[String]) -> Vec<(usize, usize)> {
+    let mut found = Vec::new();
     let mut at = 0;
-    loop {
+    while at < words.len() {
         let rest = &words[at..];
         let lead = lexicon.lead.longest(rest).map_or(0, |(length, ())| length);
         let talk = lexicon.talk.longest(rest).map_or(0, |(length, ())| length);
         let polite = if talk == rest.len() { lead } else { lead.max(talk) };
-        if let Some((length, kind)) = lexicon.questions.longest(rest)
-            && polite < length
-        {
-            return (!is_statement(&words[..at], &rest[0])).then_some((*kind, at + length));
-        }
+        found.push((at, polite));
         match polite {
             1.. => at += polite,
-            0 if rest.first().is_some_and(|word| token::is_punctuation(word)) => at += 1,
-            0 => return None,
+            0 if token::is_punctuation(&rest[0]) => at += 1,
+            0 => break,
         }
     }
+    found
+}
+
+/// What the beginning of a question says of it: `can you see` must win over the polite `can you`.
+fn start(lexicon: &Lexicon, words: &[String]) -> Option<(QuestionKind, usize)> {
+    let longer = |(at, polite): (usize, usize)| {
+        let (length, kind) = lexicon.questions.longest(&words[at..]).filter(|(length, _)| polite < *length)?;
+        Some((at, length, *kind))
+    };
+    let (at, length, kind) = starts(lexicon, words).into_iter().find_map(longer)?;
+    (!is_statement(&words[..at], &words[at])).then_some((kind, at + length))
 }
 
 /// `you are driving me mad`: who speaks so says, and does not ask.

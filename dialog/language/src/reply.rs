@@ -1,18 +1,23 @@
 //! The sentences around a plan: what the robot is about to do, what it must ask, why it cannot.
 
+use cohabit_cdf::{Action, Verb};
+
 use crate::{
     answer::HINT,
+    clause::Clause,
     context::Role,
     describe,
     ground::Miss,
     intent::Intent,
-    phrase::Phrase,
+    phrase::{Phrase, Place},
     saying,
     understanding::{Step, Understanding},
 };
 
-/// How many steps are named before the rest is left to be seen.
-const NAMED: usize = 3;
+/// How many steps are named at most.
+const NAMED: usize = 6;
+/// How many of them name what is only on the way, too.
+const FEW: usize = 4;
 
 /// `OK. The fridge is closed, so I open it first. I am picking up the milk.`
 pub(crate) fn plan_reply(steps: &[Step], notes: &[String]) -> String {
@@ -25,14 +30,57 @@ pub(crate) fn plan_reply(steps: &[Step], notes: &[String]) -> String {
 
 /// `picking up the milk and then putting the milk on the table`
 pub(crate) fn plan_in_words(steps: &[Step]) -> String {
-    let mut says: Vec<String> = steps.iter().map(|step| step.says.clone()).collect();
-    says.dedup();
-    if says.len() > NAMED + 1 {
+    let named = |is_told: &dyn Fn(&Step) -> bool| {
+        let mut says: Vec<String> = steps.iter().filter(|step| is_told(step)).map(|step| step.says.clone()).collect();
+        says.dedup();
+        says
+    };
+    let mut says = named(&|_| true);
+    if says.len() > FEW {
+        // What is opened and closed on the way goes without saying.
+        let is_on_the_way = |step: &Step| {
+            matches!(step.action, Action::Interact { verb: Verb::Open | Verb::Close, .. } | Action::GoTo { .. })
+        };
+        says = Some(named(&|step| !is_on_the_way(step))).filter(|says| !says.is_empty()).unwrap_or(says);
+    }
+    if says.len() > NAMED {
         let last = says.last().cloned();
-        says.truncate(NAMED);
-        says.extend(last);
+        says.truncate(NAMED - 1);
+        says.push("so on".to_owned());
+        return format!("{} until {}", describe::list(&says, "and"), last.unwrap_or_default());
     }
     describe::list(&says, "and then")
+}
+
+/// `find the bowl and then put it on the table`: what is asked for, in plain words.
+pub(crate) fn request_in_words(clauses: &[Clause]) -> String {
+    let asked: Vec<String> =
+        clauses.iter().filter(|clause| clause.intent != Intent::Mention).map(clause_in_words).collect();
+    describe::list(&asked, "and then")
+}
+
+fn clause_in_words(clause: &Clause) -> String {
+    let said = |phrase: &Phrase| if phrase.text.is_empty() { "it".to_owned() } else { phrase.text.clone() };
+    let objects: Vec<String> = clause.objects.iter().map(said).collect();
+    let places = clause.places.iter().filter_map(|(preposition, place)| {
+        Some(match place {
+            Place::Room(room) | Place::Viewpoint(room, _) => format!("{} the {}", preposition.word(), room.name()),
+            Place::Object(phrase) => format!("{} {}", preposition.word(), said(phrase)),
+            Place::Viewpoints(_) | Place::Side(_) | Place::Here => return None,
+        })
+    });
+    let color = clause.color.clone();
+    let words = std::iter::once(clause.intent.verb().to_owned());
+    let words = words.chain([describe::list(&objects, "and")]).chain(color).chain(places);
+    words.filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" ")
+}
+
+/// The names of plans without the steps that all of them begin with.
+pub(crate) fn apart(plans: &[&[Step]]) -> Vec<String> {
+    let first = plans.first().copied().unwrap_or_default();
+    let shared = (0..first.len()).take_while(|at| plans.iter().all(|plan| plan.get(*at) == Some(&first[*at]))).count();
+    let shared = if plans.iter().all(|plan| plan.len() > shared) { shared } else { 0 };
+    plans.iter().map(|plan| plan_in_words(&plan[shared..])).collect()
 }
 
 /// What to say where a phrase found nothing; mismatches and several candidates are questions of their own.

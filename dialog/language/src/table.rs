@@ -60,6 +60,11 @@ impl<T> PhraseTable<T> {
         self.longest
     }
 
+    /// Whether it has no phrase.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.meanings.is_empty()
+    }
+
     /// All phrases.
     pub(crate) fn phrases(&self) -> impl Iterator<Item = &[String]> {
         self.meanings.keys().map(Vec::as_slice)

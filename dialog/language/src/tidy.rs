@@ -19,7 +19,16 @@ pub(crate) fn tidied(lexicon: &Lexicon, words: &[String]) -> Vec<String> {
     let words = without_stutter(&without_tags(without_like(lexicon, without_hesitation(lexicon, words))));
     let words = wish::told_to_take_over(lexicon, words);
     let words = order::in_order(lexicon, &asked_plainly(lexicon, words));
-    amend::without_where(lexicon, without_pause(lexicon, words))
+    without_opening(lexicon, amend::without_where(lexicon, without_pause(lexicon, words)))
+}
+
+/// `right, open the fridge` begins; it does not say where to turn.
+fn without_opening(lexicon: &Lexicon, mut words: Vec<String>) -> Vec<String> {
+    let is_verb = |word: &String| word != "turn" && inflect::is_verb(lexicon, word);
+    if words.len() > 2 && words[0] == "right" && is_verb(&words[1]) {
+        words.remove(0);
+    }
+    words
 }
 
 /// Most words between a kind wish and its `if`.

@@ -3,12 +3,11 @@
 
 use crate::{
     alternatives::Alternative,
-    answer::HINT,
-    ask, condition,
+    ask, clause, condition,
     context::{Context, Guess, Pending},
     conversation::Conversation,
     evidence::Feature,
-    reply,
+    parsed, reply,
     understanding::{Asking, Clarification, Step, Understanding},
     wording::Wording,
 };
@@ -21,8 +20,13 @@ const TO_ACT_ON_REPLY: f32 = 0.35;
 /// The same where something that was named is left out.
 const TO_CHANGE_IN_PART: f32 = 0.9;
 const TO_MOVE_IN_PART: f32 = 0.6;
+/// Below this, what is done is said to be what the robot thinks.
+const SURELY: f32 = 0.7;
 /// How likely what is said must be the right reply, where nothing is done.
 const TO_REPLY: f32 = 0.3;
+/// The same of what is only about things that nobody named, and to propose it.
+const TO_REPLY_UNNAMED: f32 = 0.6;
+const TO_PROPOSE_UNNAMED: f32 = 0.2;
 /// How likely steps must be meant to be proposed, where every word is known and where not; and to be taken where nothing may be asked.
 const TO_PROPOSE: f32 = 0.1;
 const TO_PROPOSE_UNHEARD: f32 = 0.3;
@@ -66,13 +70,13 @@ impl Conversation<'_> {
         }
         if let Some(likeliest) = alternatives.first().filter(|one| one.is_likely(unheard)) {
             *context = likeliest.context.clone();
-            return likeliest.understanding.clone();
+            return likeliest.understood(unheard);
         }
         if let Some(question) = self.proposed(&alternatives, unheard, context) {
             return question;
         }
         if matches!(by_grammar.understanding, Understanding::Plan { .. }) {
-            return Understanding::lost(format!("I did not understand that. {HINT}"));
+            return reply::unclear(&clause::unknown_words(self.lexicon, &wording.words));
         }
         *context = by_grammar.context;
         by_grammar.understanding
@@ -94,7 +98,10 @@ impl Conversation<'_> {
     ) -> Option<Understanding> {
         let least = if unheard.is_empty() { TO_PROPOSE } else { TO_PROPOSE_UNHEARD };
         let plans = alternatives.iter().filter_map(|one| match &one.understanding {
-            Understanding::Plan { steps, .. } if one.probability >= least => Some((one, steps)),
+            Understanding::Plan { steps, .. } => {
+                let least = if one.is_unnamed() { least.max(TO_PROPOSE_UNNAMED) } else { least };
+                (one.probability >= least).then_some((one, steps))
+            }
             _ => None,
         });
         let mut plans = plans.peekable();
@@ -107,7 +114,12 @@ impl Conversation<'_> {
         }
         let least = likeliest.probability * RIVAL;
         let likely = plans.filter(|(one, _)| one.probability >= least).take(MOST_PROPOSED);
-        let guesses: Vec<Guess> = likely.map(|(one, steps)| one.context.guess(steps)).collect();
+        let mut guesses: Vec<Guess> = likely.map(|(one, steps)| one.context.guess(steps)).collect();
+        if guesses.len() > 1 && guesses.iter().all(|guess| guess.search.is_none()) {
+            let plans: Vec<&[Step]> = guesses.iter().map(|guess| guess.steps.as_slice()).collect();
+            let names = reply::apart(&plans);
+            guesses.iter_mut().zip(names).for_each(|(guess, name)| guess.name = name);
+        }
         let names: Vec<&str> = guesses.iter().map(|guess| guess.name.as_str()).collect();
         let question = match names.as_slice() {
             [name] => ask::is_it(name),
@@ -131,19 +143,38 @@ impl Alternative {
             },
             // What is asked back, or said against what was only guessed of a word, would puzzle.
             Understanding::Question { .. } | Understanding::Refusal { .. } if !unheard.is_empty() => return false,
+            Understanding::Answer { highlight, .. } if !highlight.is_empty() && self.is_unnamed() => TO_REPLY_UNNAMED,
             _ => TO_REPLY,
         };
         self.probability >= least
+    }
+
+    /// What is understood, with what it leaves open said before it is done.
+    fn understood(&self, unheard: &[String]) -> Understanding {
+        let is_plan = matches!(self.understanding, Understanding::Plan { .. });
+        let is_said = self.understanding.reply().starts_with(parsed::LEAVES_OUT);
+        let note = match unheard {
+            _ if !is_plan || is_said => return self.understanding.clone(),
+            [_, ..] => format!("{}, but I think that you want this.", reply::unknown(unheard).trim_end_matches('.')),
+            [] if self.leaves_out_named() => "That may not be all that you asked for.".to_owned(),
+            [] if self.probability < SURELY => "I think that you want this.".to_owned(),
+            [] => return self.understanding.clone(),
+        };
+        self.understanding.clone().after(&note)
     }
 
     fn leaves_out_named(&self) -> bool {
         self.evidence.get(Feature::MissingAny) > 0.0
     }
 
+    /// Whether it is only about things that nobody named.
+    fn is_unnamed(&self) -> bool {
+        self.evidence.get(Feature::Unnamed) >= 1.0
+    }
+
     /// Whether it would not simply be undone, or changes what nobody named.
     fn is_bold(&self, steps: &[Step]) -> bool {
-        let is_named = self.evidence.get(Feature::Unnamed) < 1.0;
-        steps.iter().any(|step| step.is_lasting() || step.changes() && !is_named)
+        steps.iter().any(|step| step.is_lasting() || step.changes() && self.is_unnamed())
     }
 
     /// Whether grammar or parser takes it for the answer to a question of the robot's.

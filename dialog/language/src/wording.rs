@@ -30,7 +30,7 @@ impl Conversation<'_> {
         let (words, _) = self.lexicon.normalise(utterance);
         let tidied = tidy::tidied(self.lexicon, &words);
         let mut unheard = clause::unknown_words(self.lexicon, &words);
-        unheard.retain(|word| !self.parser.is_some_and(|parser| parser.knows(word)));
+        unheard.retain(|word| !self.parser.is_some_and(|parser| parser.knows(word)) && !stands_apart(&words, word));
         Wording { utterance, words, tidied, unheard }
     }
 
@@ -112,6 +112,15 @@ impl Wording<'_> {
     pub(crate) fn ends_as_question(&self) -> bool {
         self.utterance.trim_end().ends_with('?')
     }
+}
+
+/// Whether a word is set off from all others, as names and exclamations are: `put it back, habibi`, `arrey no`.
+fn stands_apart(words: &[String], word: &str) -> bool {
+    let is_alone =
+        |segment: &[String]| segment.len() == 1 || segment[0] == word && matches!(segment[1].as_str(), "no" | "yes");
+    let mut segments = words.split(|word| token::is_punctuation(word)).filter(|segment| !segment.is_empty());
+    let is_all = segments.clone().nth(1).is_none() && words.len() == 1;
+    !is_all && segments.all(|segment| !segment.iter().any(|other| other == word) || is_alone(segment))
 }
 
 fn knows_what_about(question: &Question) -> bool {

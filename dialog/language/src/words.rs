@@ -12,7 +12,7 @@ use crate::{
     intent::Intent,
     lexicon::{Direction, Lexicon, Manner, Preposition, Pronoun, Side, Small, StateWord},
     misheard::Misheard,
-    question::QuestionKind,
+    question::{QuestionKind, Shape},
     sound::Sounding,
     spelling::Vocabulary,
     table::PhraseTable,
@@ -128,6 +128,8 @@ struct ChatEntry {
 struct QuestionFile {
     #[serde(rename = "question")]
     questions: Vec<QuestionEntry>,
+    #[serde(rename = "shape")]
+    shapes: Vec<Shape>,
 }
 
 #[derive(Deserialize)]
@@ -284,6 +286,7 @@ impl Lexicon {
         for entry in file.questions {
             entry.starts.iter().for_each(|start| self.questions.insert(start, entry.kind));
         }
+        self.question_shapes = file.shapes;
         let file: ChatFile = parse(include_str!("../data/chat.toml"));
         for entry in file.chat {
             entry.words.iter().for_each(|words| self.chat.insert(words, entry.reply.clone()));

@@ -128,15 +128,33 @@ impl Conversation<'_> {
             *first = inflect::stem(self.lexicon, first)?;
         }
         let (clause, _) = reading::read(self.lexicon, self.catalog, &done)?;
-        let (flag, expected, states) = state_after(&clause)?;
+        let phrase = clause.objects.first()?;
         let ground = Ground { catalog: self.catalog, scene: self.scene, focus: &context.focus, judge: self.judge };
-        let id = ground.one(clause.objects.first()?, &Want::place(Intent::Find, &[], None)).ok()?;
-        let is_so = self.scene.object(id)?.has(flag);
-        let the = describe::short(self.catalog, self.scene, id);
+        let Ok(id) = ground.one(phrase, &Want::place(Intent::Find, &[], None)) else {
+            let is_search = clause.intent == Intent::Find && !phrase.is_empty();
+            return is_search.then(|| Understanding::whether(false, "No, I have not found it yet.", Vec::new()));
+        };
         context.focus.mention(id);
-        let start = if is_so == expected { "Yes" } else { "No" };
-        let state = if is_so { states[0] } else { states[1] };
-        Some(Understanding::whether(is_so == expected, format!("{start}, {the} is {state}."), vec![id]))
+        let the = describe::short(self.catalog, self.scene, id);
+        if let Some((flag, expected, states)) = state_after(&clause) {
+            let is_so = self.scene.object(id)?.has(flag);
+            let start = if is_so == expected { "Yes" } else { "No" };
+            let state = if is_so { states[0] } else { states[1] };
+            return Some(Understanding::whether(is_so == expected, format!("{start}, {the} is {state}."), vec![id]));
+        }
+        let place = self.answerer(context, 0).place_sentence(id);
+        if clause.intent == Intent::Find {
+            return Some(Understanding::whether(true, format!("Yes, {place}."), vec![id]));
+        }
+        if let Some((preposition, place)) = clause.places.first().cloned().filter(|_| clause.intent == Intent::Place) {
+            let mut about = phrase.clone();
+            about.attach(preposition, place);
+            let question = Question::new(QuestionKind::State, Some(about), Vec::new());
+            return Some(self.answer(&question, context));
+        }
+        let did = context.deeds.did(clause.intent, id)?;
+        let start = if did { "Yes, I did" } else { "No, not that I remember" };
+        Some(Understanding::whether(did, format!("{start}: {place}."), vec![id]))
     }
 }
 
@@ -150,6 +168,9 @@ fn state_after(clause: &Clause) -> Option<(StateFlag, bool, [&'static str; 2])> 
         Intent::Break => (StateFlag::Broken, true, ["broken", "whole"]),
         Intent::Repair => (StateFlag::Broken, false, ["broken", "whole"]),
         Intent::Clean => (StateFlag::Dirty, false, ["dirty", "clean"]),
+        Intent::Heat => (StateFlag::Hot, true, ["hot", "not hot"]),
+        Intent::Cool => (StateFlag::Cold, true, ["cold", "not cold"]),
+        Intent::Toast => (StateFlag::Cooked, true, ["toasted", "not toasted"]),
         _ => return None,
     })
 }
