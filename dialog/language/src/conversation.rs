@@ -231,7 +231,7 @@ impl Conversation<'_> {
             return self.answer(&question, context);
         }
         if self.is_foreign(words) {
-            return reply::unclear(&clause::unknown_words(self.lexicon, words));
+            return self.unclear(&clause::unknown_words(self.lexicon, words));
         }
         if let Some(clauses) = amend::amended(self.lexicon, words, &parts, &context.request) {
             // What was taken instead is in the way of what was meant.
@@ -319,21 +319,27 @@ impl Conversation<'_> {
             let mentioned = clauses.into_iter().flat_map(|clause| clause.objects).next();
             return match (fragment.or(mentioned), unclear) {
                 _ if is_forbidden => Understanding::answer("All right, I will not do that."),
-                (_, Some(words)) if !words.is_empty() => reply::unclear(&words),
+                (_, Some(words)) if !words.is_empty() => self.unclear(&words),
                 (Some(phrase), _) if words.last().is_some_and(|word| word == "?") || goes_on => {
                     let kind = context.question.filter(|_| goes_on).unwrap_or(QuestionKind::Where);
                     let question = question::Question::new(kind, Some(phrase), words.to_vec());
                     self.answer(&question, context)
                 }
                 (Some(phrase), _) => self.fragment(&phrase, context),
-                (None, _) => reply::unclear(&aside),
+                (None, _) => self.unclear(&aside),
             };
         }
         // A part with unknown words could change all the rest: better to ask than to do half of it.
         if let Some(words) = unclear.filter(|words| !words.is_empty()) {
-            return reply::unclear(&words);
+            return self.unclear(&words);
         }
         self.plan(clause::joined(clauses), Consent::default(), context)
+    }
+
+    /// That nothing was understood, and the words that nobody ever met.
+    pub(crate) fn unclear(&self, words: &[String]) -> Understanding {
+        let is_met = |word: &&String| self.parser.is_some_and(|parser| parser.knows(word));
+        reply::unclear(&words.iter().filter(|word| !is_met(word)).cloned().collect::<Vec<_>>())
     }
 
     /// `both apples on the plate`, of such as are not on it: there they are to be.

@@ -27,9 +27,12 @@ const TO_REPLY: f32 = 0.3;
 /// The same of what is only about things that nobody named, and to propose it.
 const TO_REPLY_UNNAMED: f32 = 0.6;
 const TO_PROPOSE_UNNAMED: f32 = 0.2;
+/// The same where it asks which one of several is meant, in words some of which nobody ever met.
+const TO_ASK_UNHEARD: f32 = 0.3;
 /// How likely steps must be meant to be proposed, where every word is known and where not; and to be taken where nothing may be asked.
 const TO_PROPOSE: f32 = 0.1;
 const TO_PROPOSE_UNHEARD: f32 = 0.3;
+const TO_PROPOSE_VAGUE: f32 = 0.1;
 const TO_GUESS: f32 = 0.3;
 /// What is proposed beside the likeliest is at least so likely, of that.
 const RIVAL: f32 = 0.4;
@@ -72,11 +75,17 @@ impl Conversation<'_> {
             *context = likeliest.context.clone();
             return likeliest.understood(unheard);
         }
-        if let Some(question) = self.proposed(&alternatives, unheard, context) {
+        let is_vague = matches!(by_grammar.understanding, Understanding::Question { kind: Clarification::Request, .. });
+        let least = match unheard {
+            [] if is_vague => TO_PROPOSE_VAGUE,
+            [] => TO_PROPOSE,
+            _ => TO_PROPOSE_UNHEARD,
+        };
+        if let Some(question) = self.proposed(&alternatives, least, unheard, context) {
             return question;
         }
         if matches!(by_grammar.understanding, Understanding::Plan { .. }) {
-            return reply::unclear(&clause::unknown_words(self.lexicon, &wording.words));
+            return self.unclear(&clause::unknown_words(self.lexicon, &wording.words));
         }
         *context = by_grammar.context;
         by_grammar.understanding
@@ -93,10 +102,10 @@ impl Conversation<'_> {
     fn proposed(
         &self,
         alternatives: &[Alternative],
+        least: f32,
         unheard: &[String],
         context: &mut Context,
     ) -> Option<Understanding> {
-        let least = if unheard.is_empty() { TO_PROPOSE } else { TO_PROPOSE_UNHEARD };
         let plans = alternatives.iter().filter_map(|one| match &one.understanding {
             Understanding::Plan { steps, .. } => {
                 let least = if one.is_unnamed() { least.max(TO_PROPOSE_UNNAMED) } else { least };
@@ -142,7 +151,10 @@ impl Alternative {
                 (false, false) => TO_MOVE,
             },
             // What is asked back, or said against what was only guessed of a word, would puzzle.
+            Understanding::Question { kind: Clarification::Reference, .. } if !unheard.is_empty() => TO_ASK_UNHEARD,
             Understanding::Question { .. } | Understanding::Refusal { .. } if !unheard.is_empty() => return false,
+            // What it says of a thing that it does not know what to do with, it says where it has no guess.
+            Understanding::Question { kind: Clarification::Request, .. } => return false,
             Understanding::Answer { highlight, .. } if !highlight.is_empty() && self.is_unnamed() => TO_REPLY_UNNAMED,
             _ => TO_REPLY,
         };

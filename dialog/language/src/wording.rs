@@ -60,7 +60,7 @@ impl Conversation<'_> {
         let parts = clause::parts(self.lexicon, self.catalog, tidied);
         let is_read = |part: &Part| match part {
             Part::Clause(clause) => {
-                (chatter::is_clear(clause) || clause.intent == Intent::Impossible)
+                (chatter::is_clear(clause) || clause.intent == Intent::Impossible && parts.len() == 1)
                     && clause.unknown.is_empty()
                     && !clause.has_stray_noun
                     && !clause.is_wish
