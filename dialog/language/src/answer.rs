@@ -86,7 +86,7 @@ impl Answerer<'_> {
                 }
             }
             (QuestionKind::Contents, Some(phrase)) => {
-                self.with_object(phrase, |id| self.contents(id)).as_yes_or_no(question.is_whether)
+                self.with_object(phrase, |id| self.contents(id)).with_yes_or_no(question.is_whether)
             }
             (QuestionKind::Near, Some(phrase)) => self.with_object(phrase, |id| self.neighbours(id)),
             (QuestionKind::Text, phrase) => self.text(phrase),
@@ -95,7 +95,7 @@ impl Answerer<'_> {
             (QuestionKind::Count, Some(phrase)) => self.count(phrase),
             (QuestionKind::State, Some(phrase)) => self.state(phrase, question),
             (QuestionKind::Where, Some(phrase)) if !phrase.is_empty() => {
-                self.place_of(phrase).as_yes_or_no(question.is_whether)
+                self.place_of(phrase).with_yes_or_no(question.is_whether)
             }
             (QuestionKind::Look, Some(phrase)) if !phrase.is_empty() && is_about_presence(&question.rest, phrase) => {
                 self.looks(phrase)
@@ -262,7 +262,7 @@ impl Answerer<'_> {
             Ok(found) if found.len() > 1 => self.place_of(phrase),
             Ok(_) => self.with_known(phrase, |object| {
                 let facts = self.facts();
-                let purpose = facts.has_use(object).then(|| facts.purpose(object)).unwrap_or_default();
+                let purpose = if facts.has_use(object) { facts.purpose(object) } else { String::new() };
                 let text = describe::sentence(&facts.description(object));
                 Understanding::about(format!("{text} {purpose}").trim(), vec![object.id])
             }),

@@ -275,3 +275,12 @@ pub(crate) fn sentence(text: &str) -> String {
     let ending = if text.trim_end_matches('"').ends_with(['.', '!', '?']) { "" } else { "." };
     format!("{}{}{ending}", first.to_uppercase(), characters.as_str())
 }
+
+/// A sentence as the rest of another one: with a small letter at its start, unless that begins `I`.
+pub(crate) fn within_sentence(text: &str) -> String {
+    let mut characters = text.chars();
+    match characters.next() {
+        Some(first) if !text.starts_with("I ") => first.to_lowercase().chain(characters).collect(),
+        _ => text.to_owned(),
+    }
+}

@@ -3,6 +3,8 @@
 use cohabit_cdf::{Action, GoToTarget, ObjectId, Verb};
 use serde::{Deserialize, Serialize};
 
+use crate::describe;
+
 /// What the robot makes of what it was told.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub enum Understanding {
@@ -101,17 +103,12 @@ impl Understanding {
     }
 
     /// The same answer with a yes or a no before it, where that was asked and it has none.
-    pub(crate) fn as_yes_or_no(self, is_asked: bool) -> Self {
+    pub(crate) fn with_yes_or_no(self, is_asked: bool) -> Self {
         match self {
             Self::Answer { text, highlight, holds: Some(holds) } if is_asked => {
                 let has_one = text.starts_with("Yes") || text.starts_with("No");
                 let start = if holds { "Yes" } else { "No" };
-                let rest = match text.strip_prefix("The ") {
-                    Some(rest) => format!("the {rest}"),
-                    None if text.starts_with("I ") => text.clone(),
-                    None => text.replacen(char::is_uppercase, &text[..1].to_lowercase(), 1),
-                };
-                let text = if has_one { text } else { format!("{start}, {rest}") };
+                let text = if has_one { text } else { format!("{start}, {}", describe::within_sentence(&text)) };
                 Self::Answer { text, highlight, holds: Some(holds) }
             }
             other => other,
