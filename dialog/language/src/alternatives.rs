@@ -2,24 +2,17 @@
 //! and each of the things that one of these would have to ask about.
 
 use cohabit_cdf::{Action, ClassId, GoToTarget, ObjectId, RoomId};
-use cohabit_parser::{
-    Reading,
-    request::{Act, Relation, Request},
-};
+use cohabit_parser::Reranker;
 
 use crate::{
-    answer::HINT,
     ask,
-    clause::{self, Part},
-    condition,
-    context::{Consent, Context, Pending},
+    context::Context,
     conversation::Conversation,
     describe,
-    evidence::{Evidence, Feature, Weights},
-    imagine,
-    likeness::{Likeness, SHARPNESS},
-    parsed::{self, Worth, worth},
-    question, reply,
+    evidence::{Evidence, Feature, Fit, FitFeature, Weights},
+    parsed::{Worth, worth},
+    readers::of_grammar,
+    said::{Named, Said, share},
     understanding::{Step, Understanding},
     wording::Wording,
 };
@@ -33,38 +26,12 @@ pub struct Alternative {
     pub probability: f32,
     /// What speaks for it.
     pub evidence: Evidence,
+    /// What it comes to, in plain words.
+    pub paraphrase: String,
+    /// What the re-ranker says of it; nothing, if it was too unlikely to be read.
+    pub fit: Option<Fit>,
     /// The conversation after it.
     pub(crate) context: Context,
-}
-
-/// What is known of an utterance, whatever it means.
-struct Said<'a> {
-    wording: &'a Wording<'a>,
-    readings: Vec<Reading>,
-    is_partial: bool,
-    is_guessed: bool,
-    is_asked: bool,
-    is_forbidden: bool,
-    is_conditional: bool,
-    is_pending: bool,
-    /// How many words nobody ever met, of 3 at most.
-    unheard: f32,
-    named: Vec<Named>,
-    /// How many words there are, of 20 at most.
-    length: f32,
-    /// How many requests the parser sees, and how likely one replaces what was asked before.
-    requests: f32,
-    instead: f32,
-    /// How many requests the grammar sees.
-    clauses: f32,
-}
-
-/// What a name may mean.
-#[derive(PartialEq)]
-enum Named {
-    Thing(Vec<ClassId>),
-    Room(RoomId),
-    Color(String),
 }
 
 /// What a way to understand an utterance is about: things, with what they stand on or in, their colors, and rooms.
@@ -75,8 +42,11 @@ struct About {
     colors: Vec<String>,
 }
 
-/// Into how many parts an utterance is taken apart at most.
-const MOST_PARTS: usize = 5;
+/// From which probability on the parser is sure of a reading.
+const SURE_READING: f32 = 0.4;
+
+/// How many ways are read together with what was said.
+const SHORTLIST: usize = 6;
 
 impl Conversation<'_> {
     /// What the grammar makes of it.
@@ -104,9 +74,43 @@ impl Conversation<'_> {
         context: &Context,
     ) -> Vec<Alternative> {
         let said = self.said(wording, context);
+        if self.is_agreed(&by_grammar, &said, context) {
+            return vec![Alternative { probability: 1.0, ..by_grammar }];
+        }
         let mut found = self.in_one(by_grammar, &said, context);
         found.extend(self.in_parts(&said, context));
-        self.weighed(found, &said, context)
+        found.extend(self.of_names(&said, context));
+        self.reranked(self.weighed(found, &said, context), &said, context)
+    }
+
+    /// Whether the parser surely reads the same as the grammar does to the last word: then nobody else is asked.
+    fn is_agreed(&self, by_grammar: &Alternative, said: &Said<'_>, context: &Context) -> bool {
+        let is_clear = said.is_plain && !said.is_forbidden && worth(&by_grammar.understanding) >= Worth::Answered;
+        let first = said.readings.first().filter(|first| is_clear && first.probability > SURE_READING);
+        let reading = first.and_then(|first| self.of_reading(first, true, said, context));
+        reading.is_some_and(|reading| is_same(&reading.understanding, &by_grammar.understanding))
+    }
+
+    /// The likeliest of these read together with what was said; all others behind them.
+    fn reranked(&self, mut ranked: Vec<Alternative>, said: &Said<'_>, context: &Context) -> Vec<Alternative> {
+        if let Some(plain) = ranked.iter().skip(SHORTLIST).position(Alternative::is_plain) {
+            ranked[SHORTLIST - 1..=SHORTLIST + plain].rotate_right(1);
+        }
+        let none = 1.0 - ranked.iter().map(|one| one.probability).sum::<f32>();
+        let mut others = ranked.split_off(SHORTLIST.min(ranked.len()));
+        ranked.iter_mut().for_each(|one| one.paraphrase = self.paraphrase(one));
+        let paraphrases: Vec<&str> = ranked.iter().map(|one| one.paraphrase.as_str()).collect();
+        let scores = Reranker::builtin().scores(said.wording.utterance, &lines(context), &paraphrases);
+        let fits = Fit::of_scores(&scores).into_iter().zip(&ranked);
+        let fits: Vec<Fit> = fits.map(|(fit, one)| one.fit(fit.with_first(one.probability, none), said)).collect();
+        let probabilities = Weights::builtin().fit_probabilities(&fits);
+        for ((one, fit), probability) in ranked.iter_mut().zip(fits).zip(probabilities) {
+            (one.fit, one.probability) = (Some(fit), probability);
+        }
+        others.iter_mut().for_each(|one| one.probability = 0.0);
+        ranked.sort_by(|one, other| other.probability.total_cmp(&one.probability));
+        ranked.extend(others);
+        ranked
     }
 
     /// What the grammar makes of it, and the others; but not its parts.
@@ -148,207 +152,16 @@ impl Conversation<'_> {
     }
 
     /// The likeliest way to understand a part of an utterance.
-    fn likeliest_of_part(&self, part: &str, context: &Context) -> Option<Alternative> {
+    pub(crate) fn likeliest_of_part(&self, part: &str, context: &Context) -> Option<Alternative> {
         let wording = self.wording(part);
         let by_grammar = self.read(part, context);
-        if self.speaks_for_itself(&wording, &by_grammar) {
+        let is_known = worth(&by_grammar.understanding) > Worth::None && self.is_plain(&wording);
+        if is_known || self.speaks_for_itself(&wording, &by_grammar) {
             return Some(Alternative { probability: 1.0, ..by_grammar });
         }
         let said = self.said(&wording, context);
         let found = self.in_one(by_grammar, &said, context);
         self.weighed(found, &said, context).into_iter().next()
-    }
-
-    fn said<'a>(&self, wording: &'a Wording<'a>, context: &Context) -> Said<'a> {
-        let readings = self.readings(wording.utterance, context);
-        let parts = clause::parts(self.lexicon, self.catalog, &wording.tidied);
-        let all: f32 = readings.iter().map(|reading| reading.probability).sum::<f32>().max(f32::MIN_POSITIVE);
-        let mean = |of: &dyn Fn(&Reading) -> f32| {
-            readings.iter().map(|reading| reading.probability * of(reading)).sum::<f32>() / all
-        };
-        Said {
-            wording,
-            is_partial: self.leaves_words_out(wording),
-            is_guessed: self.takes_for_question(wording),
-            is_asked: wording.ends_as_question() || question::read(self.lexicon, &wording.tidied).is_some(),
-            is_forbidden: parts.iter().any(|part| matches!(part, Part::Forbidden(_))),
-            is_conditional: condition::is_conditional(self.lexicon, &wording.words),
-            is_pending: context.pending.is_some(),
-            unheard: share(wording.unheard.len()),
-            length: wording.words.len().min(20) as f32 / 20.0,
-            named: self.names_in(&wording.words),
-            requests: mean(&|reading| count(&reading.requests)),
-            instead: mean(&|reading| f32::from(u8::from(replaces(&reading.requests)))),
-            clauses: parts.iter().filter(|part| matches!(part, Part::Clause(_) | Part::Forbidden(_))).count().max(1)
-                as f32,
-            readings,
-        }
-    }
-
-    /// What the words name: things, and rooms.
-    fn names_in(&self, words: &[String]) -> Vec<Named> {
-        let mut named = Vec::new();
-        let mut at = 0;
-        while at < words.len() {
-            let rest = &words[at..];
-            let is_in_scene = |class: &ClassId| self.scene.objects.iter().any(|object| object.class == *class);
-            let (room, things) = (self.lexicon.rooms.longest(rest), self.lexicon.classes.longest(rest));
-            let length_of_room = room.map_or(0, |(length, _)| length);
-            let length = things.as_ref().map_or(0, |(length, _)| *length);
-            let color = self.lexicon.colors.exact(&rest[..1]).map(|color| Named::Color(color.clone()));
-            let name = match (room, things) {
-                (Some((_, room)), _) if length_of_room >= length => Some(Named::Room(*room)),
-                (_, Some((_, namings))) => {
-                    let mut classes: Vec<ClassId> = namings.iter().map(|one| one.class).collect();
-                    // What has not been seen is meant where nothing that has been is called so.
-                    if classes.iter().any(is_in_scene) {
-                        classes.retain(is_in_scene);
-                    }
-                    Some(Named::Thing(classes))
-                }
-                _ => color,
-            };
-            named.extend(name.filter(|name| !named.contains(name)));
-            at += length.max(length_of_room).max(1);
-        }
-        named
-    }
-
-    fn of_reading(&self, reading: &Reading, is_first: bool, said: &Said<'_>, context: &Context) -> Option<Alternative> {
-        // Stops were heard before.
-        if reading.requests.iter().any(parsed::stops) {
-            return None;
-        }
-        // What is asked only on a condition is not done without it.
-        if said.is_conditional && reading.requests.iter().all(|request| request.conditions.is_empty()) {
-            return None;
-        }
-        let mut then = context.at_new_utterance();
-        let (understanding, certainty) = self.understand_reading(reading, said.wording.utterance, &mut then)?;
-        let mut evidence = Evidence::default();
-        let leaves_out = reading.requests.iter().any(|request| parsed::unknown_words(request).is_some());
-        let replies = reading.requests.iter().any(|request| matches!(request.act, Act::Answer(_)));
-        evidence.set(Feature::Parser, reading.probability * certainty);
-        evidence.set_if(Feature::ParserFirst, is_first);
-        evidence.set_if(Feature::ParserLeftOut, leaves_out);
-        evidence.set_if(Feature::ParserReply, replies && said.is_pending);
-        count_requests(&mut evidence, count(&reading.requests), said);
-        let kept = if replaces(&reading.requests) { 0.0 } else { said.instead };
-        evidence.set(Feature::NotInstead, kept);
-        Some(Alternative::new(understanding, then, evidence))
-    }
-
-    fn of_likeness(&self, said: &Said<'_>, context: &Context) -> Vec<Alternative> {
-        let mut found = Vec::new();
-        // A single plain request would leave a condition out, and likeness does not tell a deed from its contrary.
-        if said.is_conditional || said.is_forbidden {
-            return found;
-        }
-        for (at, likely) in self.likely_requests(said.wording.utterance).into_iter().enumerate() {
-            let mut then = context.at_new_utterance();
-            let understanding = match likely.request.strip_prefix("social: ") {
-                Some(kind) => match parsed::social(kind) {
-                    Some(social) => Understanding::answer(parsed::small_talk(social)),
-                    None => continue,
-                },
-                None if likely.request == self.scene.mission => self.pursue(&mut then),
-                None if likely.request == "nothing" => {
-                    Understanding::refusal(format!("That is nothing that I can do. {HINT}"))
-                }
-                None => as_it_is(self.understand_said(&likely.request, &mut then)),
-            };
-            let mut evidence = Evidence::default();
-            evidence.set(Feature::Likeness, likely.probability);
-            evidence.set_if(Feature::LikenessFirst, at == 0);
-            evidence.set(Feature::LikenessOfSeveral, share((said.requests - 1.0).round() as usize));
-            evidence.set(Feature::LikenessOfLong, said.length);
-            evidence.set_if(Feature::LikenessPending, said.is_pending);
-            count_requests(&mut evidence, 1.0, said);
-            evidence.set(Feature::NotInstead, said.instead);
-            found.push(Alternative::new(understanding, then, evidence));
-        }
-        found
-    }
-
-    /// What its parts mean one after the other, where each is something to do or nothing to do with it.
-    fn in_parts(&self, said: &Said<'_>, context: &Context) -> Option<Alternative> {
-        let parts = clause::segments(self.lexicon, &said.wording.words);
-        if parts.len() < 2 || parts.len() > MOST_PARTS || said.is_conditional || said.is_forbidden {
-            return None;
-        }
-        let (mut scene, mut then) = (self.scene.clone(), context.at_new_utterance());
-        let (mut steps, mut probability) = (Vec::new(), 1.0);
-        for part in parts {
-            let there = Conversation { scene: &scene, ..*self };
-            let likeliest = there.likeliest_of_part(&part.join(" "), &then)?;
-            probability *= likeliest.probability;
-            match likeliest.understanding {
-                Understanding::Plan { steps: next, .. } => {
-                    next.iter().for_each(|step| imagine::apply(&mut scene, &step.action, self.devices));
-                    then = likeliest.context;
-                    steps.extend(next);
-                }
-                Understanding::Answer { holds: None, .. } if !likeliest.context.is_met => {}
-                _ => return None,
-            }
-        }
-        if steps.is_empty() {
-            return None;
-        }
-        then.begin(&steps);
-        let mut evidence = Evidence::default();
-        evidence.set(Feature::Parts, probability);
-        evidence.set(Feature::NotInstead, said.instead);
-        let reply = reply::plan_reply(&steps, &[]);
-        Some(Alternative::new(Understanding::Plan { steps, reply }, then, evidence))
-    }
-
-    /// What is to be done with each thing that one way would have to ask about.
-    fn of_candidates(&self, asked: &Alternative, said: &Said<'_>) -> Vec<Alternative> {
-        let Understanding::Question { candidates, .. } = &asked.understanding else { return Vec::new() };
-        if asked.context.pending.is_none() {
-            return Vec::new();
-        }
-        let likely = self.likely_candidates(said.wording.utterance, candidates);
-        let chosen = likely.into_iter().filter_map(|(id, probability)| {
-            let mut then = asked.context.clone();
-            let understanding = self.chosen(id, &mut then);
-            let mut evidence = Evidence::default();
-            evidence.set(Feature::Candidate, probability * asked.sureness());
-            evidence.set_if(Feature::CandidateOnly, candidates.len() == 1);
-            evidence.take_over(&asked.evidence);
-            matches!(understanding, Understanding::Plan { .. }).then(|| Alternative::new(understanding, then, evidence))
-        });
-        chosen.collect()
-    }
-
-    /// What is to be done with what is in the hand put down first, where one way would ask whether to: who corrects what was taken agrees.
-    fn agreed(&self, asked: &Alternative, said: &Said<'_>) -> Option<Alternative> {
-        let Some(Pending::PutDown { clauses }) = &asked.context.pending else { return None };
-        let mut then = asked.context.clone();
-        let consent = Consent { may_put_down: true, is_agreed: false };
-        let understanding = self.plan(clauses.clone(), consent, &mut then);
-        let mut evidence = Evidence::default();
-        evidence.set(Feature::Agreed, asked.sureness());
-        evidence.set(Feature::AgreedInstead, asked.sureness() * said.instead);
-        evidence.take_over(&asked.evidence);
-        Some(Alternative::new(understanding, then, evidence))
-    }
-
-    /// How likely the words mean each of these, if they mean any.
-    pub(crate) fn likely_candidates(&self, said: &str, candidates: &[ObjectId]) -> Vec<(ObjectId, f32)> {
-        let likeness = Likeness::builtin();
-        let said = likeness.of(said);
-        let names = describe::apart(self.catalog, self.scene, candidates);
-        let utility = |(id, name): (&ObjectId, &String)| {
-            let class = self.scene.object(*id)?.class;
-            let like = likeness.to_class(&said, self.catalog, class) + said.likeness(&likeness.of(name));
-            Some((*id, like / (2.0 * SHARPNESS)))
-        };
-        let utilities: Vec<(ObjectId, f32)> = candidates.iter().zip(&names).filter_map(utility).collect();
-        let highest = utilities.iter().map(|(_, utility)| *utility).fold(f32::NEG_INFINITY, f32::max);
-        let whole: f32 = utilities.iter().map(|(_, utility)| (utility - highest).exp()).sum();
-        utilities.into_iter().map(|(id, utility)| (id, (utility - highest).exp() / whole)).collect()
     }
 
     /// What may be said of a way without knowing who found it.
@@ -435,40 +248,47 @@ impl Conversation<'_> {
 }
 
 impl Alternative {
-    const fn new(understanding: Understanding, context: Context, evidence: Evidence) -> Self {
-        Self { understanding, probability: 0.0, evidence, context }
+    pub(crate) const fn new(understanding: Understanding, context: Context, evidence: Evidence) -> Self {
+        Self { understanding, probability: 0.0, evidence, paraphrase: String::new(), fit: None, context }
+    }
+
+    /// Whether the grammar reads it to the last word.
+    pub(crate) fn is_plain(&self) -> bool {
+        self.evidence.get(Feature::GrammarPlain) > 0.0
+    }
+
+    /// What it is, beside what the re-ranker says of it.
+    fn fit(&self, mut fit: Fit, said: &Said<'_>) -> Fit {
+        let is_plan = matches!(self.understanding, Understanding::Plan { .. });
+        fit.set_if(FitFeature::Plain, self.is_plain());
+        fit.set_if(FitFeature::PlainPlan, self.is_plain() && is_plan);
+        fit.set(FitFeature::PlainLong, self.evidence.get(Feature::GrammarPlainLong));
+        let (kind, score) = match &self.understanding {
+            Understanding::Question { .. } => (FitFeature::Question, Some(FitFeature::ScoreOfQuestion)),
+            Understanding::Answer { .. } => (FitFeature::Answer, Some(FitFeature::ScoreOfAnswer)),
+            Understanding::Refusal { .. } => (FitFeature::Refusal, Some(FitFeature::ScoreOfRefusal)),
+            _ => (FitFeature::Plan, None),
+        };
+        fit.set(kind, 1.0);
+        if let Some(feature) = score {
+            fit.set(feature, fit.get(FitFeature::Score));
+        }
+        fit.set(FitFeature::Missing, self.evidence.get(Feature::MissingAny));
+        fit.set(FitFeature::Unheard, said.unheard);
+        fit
     }
 
     /// How sure who found it is of it.
-    fn sureness(&self) -> f32 {
+    pub(crate) fn sureness(&self) -> f32 {
         [Feature::Parser, Feature::Likeness, Feature::GrammarQuestion]
             .iter()
             .fold(0.0, |most, feature| self.evidence.get(*feature).max(most))
     }
 }
 
-/// What the grammar makes of it, with what speaks for that.
-fn of_grammar(by_grammar: Alternative, said: &Said<'_>) -> Alternative {
-    let Alternative { understanding, mut evidence, .. } = by_grammar;
-    let [kind, partial] = match &understanding {
-        Understanding::Plan { .. } => [Feature::GrammarPlan, Feature::GrammarPlanPartial],
-        Understanding::Question { .. } => [Feature::GrammarQuestion, Feature::GrammarQuestionPartial],
-        Understanding::Answer { .. } => [Feature::GrammarAnswer, Feature::GrammarAnswerPartial],
-        _ => [Feature::GrammarRefusal, Feature::GrammarRefusalPartial],
-    };
-    evidence.set(kind, 1.0);
-    evidence.set_if(partial, said.is_partial);
-    let is_plan = matches!(understanding, Understanding::Plan { .. });
-    evidence.set(Feature::GrammarPlanLong, if is_plan { said.length } else { 0.0 });
-    evidence.set_if(Feature::GrammarPlanReply, is_plan && said.is_pending);
-    evidence.set_if(Feature::GrammarMismatch, ask::is_mismatch(&understanding));
-    evidence.set_if(
-        Feature::GrammarAnswerGuessed,
-        said.is_guessed && matches!(understanding, Understanding::Answer { .. }),
-    );
-    count_requests(&mut evidence, said.clauses + by_grammar.context.later.len() as f32, said);
-    evidence.set(Feature::NotInstead, said.instead);
-    Alternative { understanding, evidence, ..by_grammar }
+/// What was said before.
+pub(crate) fn lines(context: &Context) -> Vec<cohabit_parser::Said<'_>> {
+    context.lines.iter().map(|(by_robot, text)| cohabit_parser::Said { by_robot: *by_robot, text }).collect()
 }
 
 /// The least likelihood that counts.
@@ -497,25 +317,6 @@ fn cross(one: &mut Alternative) {
     one.evidence.set(likeness, one.evidence.get(Feature::Likeness));
 }
 
-/// How many requests fewer or more these are than the parser sees.
-fn count_requests(evidence: &mut Evidence, requests: f32, said: &Said<'_>) {
-    evidence.set(Feature::Fewer, ((said.requests - requests) / 3.0).clamp(0.0, 1.0));
-    evidence.set(Feature::More, ((requests - said.requests) / 3.0).clamp(0.0, 1.0));
-}
-
-/// A count as a share of 3, which stands for many.
-fn share(count: usize) -> f32 {
-    count.min(3) as f32 / 3.0
-}
-
-fn count(requests: &[Request]) -> f32 {
-    requests.iter().filter(|request| parsed::asks(request)).count() as f32
-}
-
-fn replaces(requests: &[Request]) -> bool {
-    requests.iter().any(|request| request.relation == Relation::Instead)
-}
-
 /// Whether two ways come to the same.
 fn is_same(one: &Understanding, other: &Understanding) -> bool {
     match (one, other) {
@@ -535,17 +336,7 @@ fn repeats(understanding: &Understanding, context: &Context) -> bool {
     matches!(understanding, Understanding::Question { text, .. } if asked.is_some_and(|(_, last)| last == text))
 }
 
-/// The answer without its yes or no: what was asked may have been the contrary.
-fn as_it_is(understanding: Understanding) -> Understanding {
-    match &understanding {
-        Understanding::Answer { text, highlight, .. } if without_yes_or_no(text) != *text => {
-            Understanding::about(without_yes_or_no(text), highlight.clone())
-        }
-        _ => understanding,
-    }
-}
-
-fn without_yes_or_no(text: &str) -> String {
+pub(crate) fn without_yes_or_no(text: &str) -> String {
     let rest = text.strip_prefix("Yes, ").or_else(|| text.strip_prefix("No, "));
     rest.map_or_else(|| text.to_owned(), describe::sentence)
 }

@@ -3,8 +3,8 @@
 use cohabit_cdf::ObjectId;
 
 use crate::{
-    ask,
-    clause::{Clause, Part},
+    ask, chatter,
+    clause::{self, Clause, Part},
     context::{Consent, Context, Pending, Role, Slot},
     conversation::Conversation,
     ground::{Ground, Miss, Want},
@@ -36,6 +36,13 @@ impl Conversation<'_> {
         parts: &[Part],
         context: &mut Context,
     ) -> Option<Understanding> {
+        if context.pending.is_some()
+            && let Some((yes, more)) = self.yes_and_more(words)
+        {
+            let understanding = self.answer_to_pending(yes, &[], context)?;
+            let later = context.later.iter().cloned().chain([token::sentence(more)]).collect();
+            return Some(context.keep(later, understanding));
+        }
         let pending = context.pending.take()?;
         let small = self.small(words);
         let is = |kind| small.contains(&kind);
@@ -117,6 +124,15 @@ impl Conversation<'_> {
             None => return None,
         };
         usize::try_from(at).ok().filter(|at| *at < names.len())
+    }
+
+    /// `yes please, and then close the door`: the yes, and what else is to be done.
+    fn yes_and_more<'w>(&self, words: &'w [String]) -> Option<(&'w [String], &'w [String])> {
+        let at = words.iter().position(|word| matches!(word.as_str(), "and" | "then"))?;
+        let (yes, more) = (&words[..at], &words[at + 1..]);
+        let is_yes = self.small(yes).contains(&Small::Yes);
+        let asks = |part: &Part| matches!(part, Part::Clause(clause) if chatter::is_clear(clause));
+        (is_yes && clause::parts(self.lexicon, self.catalog, more).iter().any(asks)).then_some((yes, more))
     }
 
     /// `yes, do put it down first`.

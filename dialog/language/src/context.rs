@@ -233,6 +233,12 @@ impl Context {
         self.lines.drain(..surplus);
     }
 
+    /// What was said last, the latest last: whether the robot said it, and what.
+    #[must_use]
+    pub fn lines(&self) -> &[(bool, String)] {
+        &self.lines
+    }
+
     /// Whether the robot has just asked if what it guessed at was meant.
     #[must_use]
     pub const fn has_guessed(&self) -> bool {

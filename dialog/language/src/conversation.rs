@@ -56,7 +56,7 @@ impl Conversation<'_> {
         }
         // A robot that does nothing need not stop.
         if context.is_busy()
-            && let Some(rest) = self.parsed_stop(utterance, context)
+            && let Some(rest) = self.likely_stop(utterance, context)
         {
             return self.stopped(&rest, context);
         }
@@ -150,7 +150,8 @@ impl Conversation<'_> {
         }
         if let Some(at) = lab::bare(self.lexicon, &words).filter(|at| !clause::is_forbidden(self.lexicon, &words, *at))
         {
-            if let Some(room) = lab::described(self.lexicon, self.scene, &words[at + 1..]) {
+            let furnished = || lab::furnished(self.lexicon, self.catalog, self.scene, &words);
+            if let Some(room) = lab::described(self.lexicon, self.scene, &words[at + 1..]).or_else(furnished) {
                 return self.understand_words(lab::named(&words, at, room), context);
             }
             let guessed = || (self.judge.asking == Asking::Never).then(|| lab::guessed(self.scene));

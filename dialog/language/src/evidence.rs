@@ -1,8 +1,9 @@
 //! What speaks for a way to understand an utterance, and how probable that makes it.
 //!
 //! A conditional logit (McFadden 1974), as for referring expressions (see [`crate::confidence`]): each way has a utility, linear in its
-//! [`Evidence`], and their probabilities are the softmax of these, with one more alternative, that none of them is meant. The weights are
-//! fitted to labelled utterances by `dialog/language/fit`.
+//! [`Evidence`], and their probabilities are the softmax of these, with one more alternative, that none of them is meant. The likeliest are
+//! then read together with what was said, by the re-ranker of `dialog/parser`; a second logit over what that says ([`Fit`]) has the last
+//! word. The weights are fitted to labelled utterances by `dialog/language/fit`.
 
 use std::{collections::BTreeMap, sync::LazyLock};
 
@@ -10,33 +11,53 @@ use serde::Deserialize;
 
 use crate::confidence::{by_name, product};
 
-/// What speaks for a way to understand an utterance, and against it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Evidence {
-    /// By [`Self::NAMES`], in their order.
-    pub values: [f32; Self::COUNT],
-}
-
-/// Declares which evidence there is: each with its name in `data/alternatives.toml`.
+/// Declares a kind of evidence: each with its name in `data/alternatives.toml`.
 macro_rules! features {
-    ($($(#[$doc:meta])* $feature:ident = $name:literal,)*) => {
+    ($(#[$about:meta])* $evidence:ident, $features:ident: $($(#[$doc:meta])* $feature:ident = $name:literal,)*) => {
+        $(#[$about])*
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub struct $evidence {
+            /// By [`Self::NAMES`], in their order.
+            pub values: [f32; Self::COUNT],
+        }
+
         /// Which evidence.
         #[derive(Clone, Copy, Debug)]
-        pub(crate) enum Feature {
+        pub(crate) enum $features {
             $($(#[$doc])* $feature,)*
         }
 
-        impl Evidence {
+        impl $evidence {
             /// Their names.
             pub const NAMES: [&str; Self::COUNT] = [$($name,)*];
 
             /// How many there are.
             pub const COUNT: usize = [$($name,)*].len();
+
+            pub(crate) const fn get(&self, feature: $features) -> f32 {
+                self.values[feature as usize]
+            }
+
+            pub(crate) const fn set(&mut self, feature: $features, value: f32) {
+                self.values[feature as usize] = value;
+            }
+
+            pub(crate) fn set_if(&mut self, feature: $features, holds: bool) {
+                self.set(feature, f32::from(u8::from(holds)));
+            }
+        }
+
+        impl Default for $evidence {
+            fn default() -> Self {
+                Self { values: [0.0; Self::COUNT] }
+            }
         }
     };
 }
 
 features! {
+    /// What speaks for a way to understand an utterance, and against it, before it is read together with what was said.
+    Evidence, Feature:
     // Who takes the utterance for it: what the learned parser gives it, the likeness to plain requests, the grammar.
     Parser = "parser",
     ParserFirst = "parser_first",
@@ -69,8 +90,13 @@ features! {
     GrammarAnswerGuessed = "grammar_answer_guessed",
     GrammarRefusal = "grammar_refusal",
     GrammarRefusalPartial = "grammar_refusal_partial",
+    /// Whether the grammar reads all to the last word.
+    GrammarPlain = "grammar_plain",
+    GrammarPlainLong = "grammar_plain_long",
     /// How likely its parts mean this, each by itself.
     Parts = "parts",
+    /// What the things that were named may be asked for.
+    Names = "names",
     /// How likely the words mean this one of those that another way would ask about, and how that way came about.
     Candidate = "candidate",
     CandidateOnly = "candidate_only",
@@ -113,25 +139,68 @@ features! {
     NotInstead = "not_instead",
 }
 
-impl Default for Evidence {
-    fn default() -> Self {
-        Self { values: [0.0; Self::COUNT] }
+features! {
+    /// What speaks for it once the re-ranker has read it together with what was said.
+    Fit, FitFeature:
+    /// How likely it is by [`Evidence`], and that none of the ways is meant, on a logarithmic scale.
+    First = "first",
+    FirstNone = "first_none",
+    /// The re-ranker's score; its share among all scores; whether it is the highest, and by how much.
+    Score = "score",
+    Share = "share",
+    Best = "best",
+    Lead = "lead",
+    /// What the grammar reads to the last word.
+    Plain = "plain",
+    PlainPlan = "plain_plan",
+    PlainLong = "plain_long",
+    Plan = "plan",
+    Question = "question",
+    Answer = "answer",
+    Refusal = "refusal",
+    ScoreOfQuestion = "score_of_question",
+    ScoreOfAnswer = "score_of_answer",
+    ScoreOfRefusal = "score_of_refusal",
+    /// Whether it leaves out what was named, or has words that nobody ever met.
+    Missing = "missing",
+    Unheard = "unheard",
+}
+
+impl Fit {
+    /// The least probability that counts.
+    const LEAST: f32 = 0.001;
+    /// The highest score that counts.
+    const MOST: f32 = 8.0;
+
+    /// How likely it is by [`Evidence`], and none of the ways.
+    #[must_use]
+    pub fn with_first(mut self, probability: f32, none: f32) -> Self {
+        let logarithm = |probability: f32| 1.0 - probability.clamp(Self::LEAST, 1.0).ln() / Self::LEAST.ln();
+        self.set(FitFeature::First, logarithm(probability));
+        self.set(FitFeature::FirstNone, logarithm(none));
+        self
+    }
+
+    /// What the re-ranker's scores say of each way, and that of none of them, which is 0.
+    pub(crate) fn of_scores(scores: &[f32]) -> Vec<Self> {
+        let bounded: Vec<f32> = scores.iter().map(|score| score.clamp(-Self::MOST, Self::MOST)).collect();
+        let whole: f32 = bounded.iter().map(|score| score.exp()).sum::<f32>() + 1.0;
+        let fit = |at: usize| {
+            let score = bounded[at];
+            let others = bounded.iter().enumerate().filter(|(other, _)| *other != at).map(|(_, score)| *score);
+            let lead = score - others.fold(-Self::MOST, f32::max);
+            let mut fit = Self::default();
+            fit.set(FitFeature::Score, score / Self::MOST);
+            fit.set(FitFeature::Share, score.exp() / whole);
+            fit.set_if(FitFeature::Best, lead > 0.0);
+            fit.set(FitFeature::Lead, (lead / Self::MOST).clamp(0.0, 1.0));
+            fit
+        };
+        (0..scores.len()).map(fit).collect()
     }
 }
 
 impl Evidence {
-    pub(crate) const fn get(&self, feature: Feature) -> f32 {
-        self.values[feature as usize]
-    }
-
-    pub(crate) const fn set(&mut self, feature: Feature, value: f32) {
-        self.values[feature as usize] = value;
-    }
-
-    pub(crate) fn set_if(&mut self, feature: Feature, holds: bool) {
-        self.set(feature, f32::from(u8::from(holds)));
-    }
-
     /// Takes over how it goes with what was said, from the way that this one settles.
     pub(crate) fn take_over(&mut self, other: &Self) {
         for feature in [Feature::Fewer, Feature::More, Feature::NotInstead] {
@@ -167,16 +236,24 @@ impl Evidence {
 /// How much each evidence counts.
 #[derive(Clone, Debug)]
 pub(crate) struct Weights {
-    values: [f32; Evidence::COUNT],
+    first: Logit<{ Evidence::COUNT }>,
+    second: Logit<{ Fit::COUNT }>,
+}
+
+/// A conditional logit with one more alternative, that none is meant.
+#[derive(Clone, Debug)]
+struct Logit<const N: usize> {
+    weights: [f32; N],
     /// The utility of none of the ways.
     none: f32,
 }
 
+/// `data/alternatives.toml`: a weight by the name of each feature, and one of none of the ways.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct WeightFile {
-    none: f32,
     evidence: BTreeMap<String, f32>,
+    fit: BTreeMap<String, f32>,
 }
 
 impl Weights {
@@ -187,14 +264,30 @@ impl Weights {
     }
 
     fn read() -> Self {
-        let file: WeightFile = toml::from_str(include_str!("../data/alternatives.toml"))
+        let WeightFile { evidence, fit } = toml::from_str(include_str!("../data/alternatives.toml"))
             .expect("invariant: the built-in weights parse, which a test holds");
-        Self { values: by_name(&file.evidence, Evidence::NAMES), none: file.none }
+        Self { first: Logit::new(&evidence, Evidence::NAMES), second: Logit::new(&fit, Fit::NAMES) }
     }
 
     /// The probabilities of ways with this evidence; what is left to 1 is that of none of them.
     pub(crate) fn probabilities(&self, ways: &[Evidence]) -> Vec<f32> {
-        let utilities: Vec<f32> = ways.iter().map(|way| product(&self.values, &way.values)).collect();
+        self.first.probabilities(ways.iter().map(|way| &way.values))
+    }
+
+    /// The same of ways that were read together with what was said.
+    pub(crate) fn fit_probabilities(&self, ways: &[Fit]) -> Vec<f32> {
+        self.second.probabilities(ways.iter().map(|way| &way.values))
+    }
+}
+
+impl<const N: usize> Logit<N> {
+    fn new(weights: &BTreeMap<String, f32>, names: [&str; N]) -> Self {
+        let [none] = by_name(weights, ["none"]);
+        Self { weights: by_name(weights, names), none }
+    }
+
+    fn probabilities<'a>(&self, ways: impl Iterator<Item = &'a [f32; N]>) -> Vec<f32> {
+        let utilities: Vec<f32> = ways.map(|way| product(&self.weights, way)).collect();
         let highest = utilities.iter().copied().fold(self.none, f32::max);
         let parts: Vec<f32> = utilities.iter().map(|utility| (utility - highest).exp()).collect();
         let whole = parts.iter().sum::<f32>() + (self.none - highest).exp();

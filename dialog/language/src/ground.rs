@@ -488,7 +488,22 @@ impl<'a> Ground<'a> {
         spoken.retain(is_free);
         let fits = spoken.iter().find(|id| affords(id) && self.suits(want.intent, **id));
         let fitting = fits.or_else(|| spoken.iter().find(|id| affords(id))).copied();
-        fitting.or_else(|| held.filter(|held| affords(held))).or_else(|| spoken.first().copied()).or(held)
+        let fitting = fitting.or_else(|| held.filter(|held| affords(held)));
+        fitting.or_else(|| self.only_one_in_need(want)).or_else(|| spoken.first().copied()).or(held)
+    }
+
+    /// `shut it`, where nothing was spoken of: the only thing in the room that is open.
+    fn only_one_in_need(&self, want: &Want<'_>) -> Option<ObjectId> {
+        if !matches!(want.intent, Intent::Close | Intent::TurnOff | Intent::Repair | Intent::Clean) {
+            return None;
+        }
+        let is_in_need = |object: &&KnownObject| {
+            object.room == self.scene.robot.room
+                && fitting_state(want.intent, object) == Some(true)
+                && want.affordances.iter().any(|affordance| self.catalog.class(object.class).has(*affordance))
+        };
+        let mut in_need = self.scene.objects.iter().filter(is_in_need);
+        in_need.next().filter(|_| in_need.next().is_none()).map(|object| object.id)
     }
 
     /// Whether its state makes sense of the request: one closes what is open.

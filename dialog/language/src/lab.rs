@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use cohabit_cdf::RoomId;
+use cohabit_cdf::{Catalog, Property, RoomId};
 
 use crate::{
     ask,
@@ -93,6 +93,20 @@ pub(crate) fn described(lexicon: &Lexicon, scene: &Known, after: &[String]) -> O
     let end = rest.iter().position(|word| token::is_punctuation(word) || word == "and").unwrap_or(rest.len());
     let is_description = matches!(first.as_str(), "with" | "where" | "that" | "which" | "having" | "containing");
     is_description.then(|| told_by_things(lexicon, scene, &rest[..end])).flatten()
+}
+
+/// The lab that has a piece of furniture, or a machine, that is named somewhere and stands nowhere else: `take it to the lab and put it in the laser`.
+pub(crate) fn furnished(lexicon: &Lexicon, catalog: &Catalog, scene: &Known, words: &[String]) -> Option<RoomId> {
+    (0..words.len()).find_map(|at| {
+        let (_, namings) = lexicon.classes.longest(&words[at..])?;
+        let is_named = |object: &&KnownObject| namings.iter().any(|naming| naming.class == object.class);
+        let mut rooms = scene.objects.iter().filter(is_named).map(|object| {
+            let is_fixed = !catalog.class(object.class).has(Property::Pickupable);
+            here(object.room).filter(|_| is_fixed)
+        });
+        let first = rooms.next()??;
+        rooms.all(|room| room == Some(first)).then_some(first)
+    })
 }
 
 fn told_by_things(lexicon: &Lexicon, scene: &Known, words: &[String]) -> Option<RoomId> {

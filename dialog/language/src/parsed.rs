@@ -2,29 +2,38 @@
 
 use cohabit_cdf::Property;
 use cohabit_parser::{
-    Reading, Said,
+    Reading,
     request::{Act, Answer, Command, Condition, Relation, Request, Social},
 };
 
 use crate::{
+    alternatives::lines,
     context::Context,
     conversation::Conversation,
     describe,
     known::KnownObject,
     likeness::{Likeness, SHARPNESS, UNLIKE_THING},
     phrase::{Phrase, Place, Reader},
+    stop_likeness,
     understanding::{Clarification, Understanding},
 };
 
 /// How it says what it leaves out.
 pub(crate) const LEAVES_OUT: &str = "I do not know how to do this:";
 
-/// How likely a stop must be for the robot to stop.
+/// How likely a stop must be for the robot to stop, by the parser and by what is meant.
 const STOPS: f32 = 0.5;
+const MEANS_STOP: f32 = 0.3;
 
 impl Conversation<'_> {
-    /// What else is asked for, if the parser takes an utterance for a stop.
-    pub(crate) fn parsed_stop(&self, utterance: &str, context: &Context) -> Option<String> {
+    /// What else is asked for, if an utterance is likely a stop by the parser, or by what it means.
+    pub(crate) fn likely_stop(&self, utterance: &str, context: &Context) -> Option<String> {
+        self.parser?;
+        let means_stop = || stop_likeness::probability(&Likeness::builtin().of(utterance)) > MEANS_STOP;
+        self.parsed_stop(utterance, context).or_else(|| means_stop().then(String::new))
+    }
+
+    fn parsed_stop(&self, utterance: &str, context: &Context) -> Option<String> {
         let readings = self.readings(utterance, context);
         let stopping = readings.iter().filter(|reading| reading.requests.iter().any(stops));
         if stopping.clone().map(|reading| reading.probability).sum::<f32>() < STOPS {
@@ -35,9 +44,7 @@ impl Conversation<'_> {
     }
 
     pub(crate) fn readings(&self, utterance: &str, context: &Context) -> Vec<Reading> {
-        let lines: Vec<Said<'_>> =
-            context.lines.iter().map(|(by_robot, text)| Said { by_robot: *by_robot, text }).collect();
-        self.parser.map(|parser| parser.parse(utterance, &lines)).unwrap_or_default()
+        self.parser.map(|parser| parser.parse(utterance, &lines(context))).unwrap_or_default()
     }
 
     /// What a reading means; nothing, where it makes no sense in the scene and conversation. What the robot cannot do of it is said.

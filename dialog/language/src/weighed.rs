@@ -7,19 +7,22 @@ use crate::{
     context::{Context, Guess, Pending},
     conversation::Conversation,
     evidence::Feature,
-    parsed, reply,
+    lab, parsed, reply,
     understanding::{Asking, Clarification, Step, Understanding},
     wording::Wording,
 };
 
 /// How likely steps must be meant for them to be taken without a question, where they change things and where they do not.
-const TO_CHANGE: f32 = 0.7;
-const TO_MOVE: f32 = 0.45;
+const TO_CHANGE: f32 = 0.6;
+const TO_MOVE: f32 = 0.55;
 /// The same where it is taken for the answer to a question of the robot's: what is to be done was said before.
 const TO_ACT_ON_REPLY: f32 = 0.35;
 /// The same where something that was named is left out.
-const TO_CHANGE_IN_PART: f32 = 0.9;
+const TO_CHANGE_IN_PART: f32 = 0.75;
 const TO_MOVE_IN_PART: f32 = 0.6;
+/// How likely what the grammar reads to the last word, as an answer or as a yes-no question must be for nothing else to be asked: most of
+/// that is right.
+const TO_TRUST_EXACT: f32 = 0.08;
 /// Below this, what is done is said to be what the robot thinks.
 const SURELY: f32 = 0.7;
 /// How likely what is said must be the right reply, where nothing is done.
@@ -28,11 +31,11 @@ const TO_REPLY: f32 = 0.3;
 const TO_REPLY_UNNAMED: f32 = 0.6;
 const TO_PROPOSE_UNNAMED: f32 = 0.2;
 /// The same where it asks which one of several is meant, in words some of which nobody ever met.
-const TO_ASK_UNHEARD: f32 = 0.3;
+const TO_ASK_UNHEARD: f32 = 0.6;
 /// How likely steps must be meant to be proposed, where every word is known and where not; and to be taken where nothing may be asked.
 const TO_PROPOSE: f32 = 0.1;
 const TO_PROPOSE_UNHEARD: f32 = 0.3;
-const TO_PROPOSE_VAGUE: f32 = 0.1;
+const TO_PROPOSE_VAGUE: f32 = 0.2;
 const TO_GUESS: f32 = 0.3;
 /// What is proposed beside the likeliest is at least so likely, of that.
 const RIVAL: f32 = 0.4;
@@ -52,6 +55,7 @@ impl Conversation<'_> {
         let unheard = match &by_grammar.understanding {
             Understanding::Question { kind: Clarification::Appearance, about, .. } => {
                 match wording.unheard.as_slice() {
+                    [] if self.parser.is_some_and(|parser| parser.knows(about)) => &[],
                     [] => std::slice::from_ref(about),
                     _ => {
                         *context = by_grammar.context;
@@ -62,6 +66,11 @@ impl Conversation<'_> {
             _ => wording.unheard.as_slice(),
         };
         let mut alternatives = self.alternatives_to(by_grammar.clone(), &wording, context);
+        let is_trusted = |one: &&Alternative| one.is_exact() && one.probability >= TO_TRUST_EXACT;
+        if let Some(trusted) = alternatives.iter().find(|one| alternatives.len() == 1 || is_trusted(one)) {
+            *context = trusted.context.clone();
+            return trusted.understanding.clone();
+        }
         // A question that the grammar answers is not carried out, nor what it leaves because a condition does not hold.
         let is_open = wording.ends_as_question() || condition::is_conditional(self.lexicon, &wording.words);
         if matches!(by_grammar.understanding, Understanding::Answer { .. }) && is_open {
@@ -91,11 +100,14 @@ impl Conversation<'_> {
         by_grammar.understanding
     }
 
-    /// Whether what the grammar makes of it needs no other opinion: it reads it to the last word, or knows what it lacks.
+    /// Whether what the grammar makes of it needs no other opinion: it is a set phrase of small talk, names a lab that the grammar knows to
+    /// tell or to ask for, or could not be weighed.
     pub(crate) fn speaks_for_itself(&self, wording: &Wording<'_>, by_grammar: &Alternative) -> bool {
         let is_lost = matches!(by_grammar.understanding, Understanding::Refusal { is_lost: true, .. });
-        let lacks_lab = matches!(by_grammar.context.pending, Some(Pending::Lab { .. }));
-        self.parser.is_none() || lacks_lab || !self.may_be_weighed(wording) || !is_lost && self.is_plain(wording)
+        let is_exact = !self.small(&wording.tidied).is_empty() || self.chat(&wording.tidied).is_some();
+        let is_of_lab = matches!(by_grammar.context.pending, Some(Pending::Lab { .. }))
+            || lab::here(self.scene.robot.room).is_some() && lab::bare(self.lexicon, &wording.words).is_some();
+        self.parser.is_none() || is_of_lab || !self.may_be_weighed(wording) || !is_lost && is_exact
     }
 
     /// Asks which of the likeliest plans is meant, instead of carrying any out; nothing, where none is likely at all.
@@ -173,6 +185,13 @@ impl Alternative {
             [] => return self.understanding.clone(),
         };
         self.understanding.clone().after(&note)
+    }
+
+    /// Whether the grammar reads it to the last word, as the answer to a question of the robot's, or as a yes-no question.
+    fn is_exact(&self) -> bool {
+        let is_answered = matches!(self.understanding, Understanding::Answer { holds: Some(_), .. });
+        let is_grammars = |feature| self.evidence.get(feature) > 0.0;
+        self.is_plain() || is_grammars(Feature::GrammarPlanReply) || is_answered && is_grammars(Feature::GrammarAnswer)
     }
 
     fn leaves_out_named(&self) -> bool {

@@ -39,7 +39,7 @@ const CEREAL: [&str; 3] =
 
 #[test]
 fn a_wish_that_names_the_mission_has_all_its_goals_done() {
-    for wish in ["can you make me a bowl of cereal", "please do the whole mission", "sort it out"] {
+    for wish in ["can you make me a bowl of cereal", "do the whole mission", "sort it out"] {
         let mut talk = with_goals("Make a bowl of cereal with milk", &CEREAL);
         let done = carried_out(&mut talk, wish);
         assert_eq!(done.len(), 3, "{wish}: {done:?}");

@@ -16,32 +16,36 @@ use std::collections::BTreeMap;
 use cohabit_language::{Clarification, Understanding};
 use support::{
     Talk,
-    cases::{Case, before, cases, found, is_as},
+    cases::{Case, Expected, before, cases, found},
     text,
 };
 
-/// What comes of a case: of its last utterance, after all earlier ones were done; and of each answer that is offered to a question of the
-/// robot's what to do.
-fn outcome(case: &Case<'_>) -> (Understanding, String, Vec<(Understanding, String)>) {
-    let (understanding, text, talk) = said(case);
-    let Understanding::Question { kind: Clarification::Confirmation, candidates, options, .. } = &understanding else {
-        return (understanding, text, Vec::new());
-    };
-    let answers = options.iter().filter(|option| candidates.is_empty() && *option != "no").map(|option| {
-        let mut context = talk.context.clone();
-        let then = talk.language.understand(option, &talk.scene, &mut context);
-        let text = support::text(&then, &talk.scene);
-        (then, text)
-    });
-    let answers = answers.collect();
-    (understanding, text, answers)
+/// What comes of the last utterance of a case, after all earlier ones were done.
+struct Outcome {
+    understanding: Understanding,
+    text: String,
+    is_right: bool,
+    /// Whether an answer that it offers to a question of its own leads to what is right.
+    is_proposed: bool,
 }
 
-fn said(case: &Case<'_>) -> (Understanding, String, Talk) {
+/// Nothing, where it is not known what should come of it.
+fn outcome(case: &Case<'_>) -> Option<Outcome> {
     let mut talk = before(case);
+    let expected = Expected::new(case, &talk)?;
     let understanding = talk.language.understand(case.said.last().unwrap(), &talk.scene, &mut talk.context);
-    let found = found(&understanding, &talk.scene);
-    (understanding, found, talk)
+    let is_right = expected.is_met(&understanding, &talk);
+    let leads_there = |option: &String| {
+        let then = talk.language.understand(option, &talk.scene, &mut talk.context.clone());
+        expected.is_met(&then, &talk)
+    };
+    let is_proposed = match &understanding {
+        Understanding::Question { kind: Clarification::Confirmation, candidates, options, .. } if !is_right => {
+            options.iter().any(|option| (candidates.is_empty() && option != "no") && leads_there(option))
+        }
+        _ => false,
+    };
+    Some(Outcome { text: found(&understanding, &talk.scene), understanding, is_right, is_proposed })
 }
 
 /// What came of a set, by kind.
@@ -59,13 +63,19 @@ struct Counts {
 /// How many cases of a set are understood, printed by kind; what is not understood is printed where it may be looked at.
 fn understood(name: &str, set: &str, is_open: bool) -> (usize, usize) {
     let mut kinds: BTreeMap<&str, Counts> = BTreeMap::new();
+    let mut unlabelled = 0;
     for case in cases(set) {
-        let (understanding, found, answers) = outcome(&case);
-        let is_expected = |understanding: &Understanding, found: &str| {
-            case.expected.iter().any(|expected| is_as(expected, understanding, found))
+        let Some(Outcome { understanding, text, is_right, is_proposed }) = outcome(&case) else {
+            unlabelled += 1;
+            if is_open {
+                println!(
+                    "{}\n    is labelled by what the grammar does not read: {}",
+                    case.said.join(" / "),
+                    case.expected.join(" || ")
+                );
+            }
+            continue;
         };
-        let is_right = is_expected(&understanding, &found);
-        let is_proposed = !is_right && answers.iter().any(|(understanding, found)| is_expected(understanding, found));
         let count = kinds.entry(case.kind).or_default();
         count.right += usize::from(is_right);
         count.proposed += usize::from(is_proposed);
@@ -73,7 +83,7 @@ fn understood(name: &str, set: &str, is_open: bool) -> (usize, usize) {
         count.all += 1;
         if !is_right && is_open {
             println!(
-                "{} {:?}{}\n    wanted {}\n    found  {found}",
+                "{} {:?}{}\n    wanted {}\n    found  {text}",
                 case.said.join(" / "),
                 case.marks,
                 if is_proposed { " PROPOSED" } else { "" },
@@ -87,7 +97,9 @@ fn understood(name: &str, set: &str, is_open: bool) -> (usize, usize) {
     let sum = |count: fn(&Counts) -> usize| kinds.values().map(count).sum::<usize>();
     let (right, proposed) = (sum(|counts| counts.right), sum(|counts| counts.proposed));
     let (all, wrong) = (sum(|counts| counts.all), sum(|counts| counts.wrong));
-    println!("{name}: {right} of {all} understood, {proposed} proposed, {wrong} something else done");
+    println!(
+        "{name}: {right} of {all} understood, {proposed} proposed, {wrong} something else done ({unlabelled} left out)"
+    );
     (right, right + proposed)
 }
 
@@ -111,7 +123,7 @@ fn other_sets_are_measured_too() {
 
 #[test]
 fn most_of_what_was_looked_at_is_understood() {
-    check("seen", include_str!("utterances/seen.txt"), true, [309, 317]);
+    check("seen", include_str!("utterances/seen.txt"), true, [305, 315]);
     check("voices", include_str!("utterances/voices.txt"), true, [698, 732]);
     check("manners", include_str!("utterances/manners.txt"), true, [126, 137]);
     check("spoken", include_str!("utterances/spoken.txt"), true, [62, 62]);
@@ -133,6 +145,7 @@ fn nothing_is_done_about_what_is_no_request() {
 
 #[test]
 fn most_of_what_people_say_is_understood() {
-    check("held out", include_str!("utterances/held_out.txt"), false, [277, 285]);
-    check("strangers", include_str!("utterances/strangers.txt"), false, [378, 428]);
+    check("held out", include_str!("utterances/held_out.txt"), false, [270, 283]);
+    check("strangers", include_str!("utterances/strangers.txt"), false, [376, 436]);
+    check("writer o", include_str!("utterances/writers/o.txt"), false, [152, 168]);
 }

@@ -21,6 +21,7 @@ mod matrix;
 mod meaning;
 mod network;
 pub mod request;
+mod reranker;
 mod search;
 mod source;
 mod symbol;
@@ -29,7 +30,10 @@ mod words;
 
 use std::sync::LazyLock;
 
-pub use crate::meaning::{Direction, Directions, Meaning, NUMBERS};
+pub use crate::{
+    meaning::{Direction, Directions, Meaning, NUMBERS},
+    reranker::Reranker,
+};
 use crate::{network::Network, request::Request, source::Source, symbol::Symbol, tensors::Tensors, words::Vocabulary};
 
 /// A line of the dialog before an utterance.

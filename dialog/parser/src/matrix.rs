@@ -69,9 +69,8 @@ fn to_whole(value: f32) -> i16 {
 /// `sums[r, o] = rows[r] · weights[o]`, both of `length`.
 fn multiply(rows: &[i16], weights: &[i8], length: usize, sums: &mut [i32]) {
     #[cfg(target_arch = "x86_64")]
-    if length.is_multiple_of(x86::LANES) && is_x86_feature_detected!("avx2") {
-        // SAFETY: this processor has the instructions that the function is compiled for.
-        return unsafe { x86::multiply(rows, weights, length, sums) };
+    if x86::multiply(rows, weights, length, sums) {
+        return;
     }
     multiply_one_by_one(rows, weights, length, sums);
 }
@@ -86,72 +85,191 @@ fn multiply_one_by_one(rows: &[i16], weights: &[i8], length: usize, sums: &mut [
     }
 }
 
-/// The same sums, sixteen products at a time.
+/// The same sums, many products at a time: as many as the processor's registers hold.
 #[cfg(target_arch = "x86_64")]
 mod x86 {
     use std::arch::x86_64::{
-        __m128i, __m256i, _mm256_add_epi32, _mm256_cvtepi8_epi16, _mm256_madd_epi16, _mm256_setzero_si256,
+        __m128i, __m256i, __m512i, _mm256_add_epi32, _mm256_cvtepi8_epi16, _mm256_madd_epi16, _mm256_setzero_si256,
+        _mm512_cvtepi8_epi16, _mm512_dpwssd_epi32, _mm512_loadu_si512, _mm512_reduce_add_epi32, _mm512_setzero_si512,
     };
 
-    pub(super) const LANES: usize = 16;
-    /// Rows that are multiplied with two outputs' weights at once: all sums stay in registers.
+    /// Rows, and outputs' weights, that are multiplied with each other at once: all sums stay in registers.
     const ROWS: usize = 4;
 
+    /// Whether this processor has instructions for it, which have then filled in `sums`.
+    pub(super) fn multiply(rows: &[i16], weights: &[i8], length: usize, sums: &mut [i32]) -> bool {
+        let has_512 = || is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512bw");
+        if length.is_multiple_of(__m512i::LANES) && has_512() && is_x86_feature_detected!("avx512vnni") {
+            // SAFETY: this processor has the instructions that the function is compiled for.
+            unsafe { multiply_512(rows, weights, length, sums) };
+        } else if length.is_multiple_of(__m256i::LANES) && is_x86_feature_detected!("avx2") {
+            // SAFETY: as above.
+            unsafe { multiply_256(rows, weights, length, sums) };
+        } else {
+            return false;
+        }
+        true
+    }
+
+    #[target_feature(enable = "avx512f,avx512bw,avx512vnni")]
+    fn multiply_512(rows: &[i16], weights: &[i8], length: usize, sums: &mut [i32]) {
+        // SAFETY: this function is compiled for the instructions of these lanes.
+        unsafe { by_blocks::<__m512i, 4>(rows, weights, length, sums) }
+    }
+
     #[target_feature(enable = "avx2")]
-    pub(super) fn multiply(rows: &[i16], weights: &[i8], length: usize, sums: &mut [i32]) {
+    fn multiply_256(rows: &[i16], weights: &[i8], length: usize, sums: &mut [i32]) {
+        // SAFETY: as above.
+        unsafe { by_blocks::<__m256i, 2>(rows, weights, length, sums) }
+    }
+
+    /// Numbers in one register.
+    ///
+    /// # Safety
+    /// Whoever calls these runs on a processor that has the instructions.
+    trait Lanes: Copy {
+        /// How many 16-bit numbers it holds.
+        const LANES: usize;
+        unsafe fn zero() -> Self;
+        /// The first numbers of a slice that has so many.
+        unsafe fn row(numbers: &[i16]) -> Self;
+        unsafe fn weights(numbers: &[i8]) -> Self;
+        /// Plus the products of both, neighbours together, in 32 bits.
+        unsafe fn plus_products(self, row: Self, weights: Self) -> Self;
+        unsafe fn total(self) -> i32;
+    }
+
+    impl Lanes for __m256i {
+        const LANES: usize = 16;
+
+        #[inline(always)]
+        unsafe fn zero() -> Self {
+            // SAFETY: the caller's.
+            unsafe { _mm256_setzero_si256() }
+        }
+
+        #[inline(always)]
+        unsafe fn row(numbers: &[i16]) -> Self {
+            bytemuck::cast(*numbers.first_chunk::<16>().unwrap_or(&[0; 16]))
+        }
+
+        #[inline(always)]
+        unsafe fn weights(numbers: &[i8]) -> Self {
+            let weights: __m128i = bytemuck::cast(*numbers.first_chunk::<16>().unwrap_or(&[0; 16]));
+            // SAFETY: the caller's.
+            unsafe { _mm256_cvtepi8_epi16(weights) }
+        }
+
+        #[inline(always)]
+        unsafe fn plus_products(self, row: Self, weights: Self) -> Self {
+            // SAFETY: the caller's.
+            unsafe { _mm256_add_epi32(self, _mm256_madd_epi16(row, weights)) }
+        }
+
+        #[inline(always)]
+        unsafe fn total(self) -> i32 {
+            bytemuck::cast::<_, [i32; 8]>(self).iter().sum()
+        }
+    }
+
+    impl Lanes for __m512i {
+        const LANES: usize = 32;
+
+        #[inline(always)]
+        unsafe fn zero() -> Self {
+            // SAFETY: the caller's.
+            unsafe { _mm512_setzero_si512() }
+        }
+
+        #[inline(always)]
+        unsafe fn row(numbers: &[i16]) -> Self {
+            let numbers = numbers.first_chunk::<32>().unwrap_or(&[0; 32]);
+            // SAFETY: as many numbers are read as there are; the instructions are the caller's.
+            unsafe { _mm512_loadu_si512(numbers.as_ptr().cast()) }
+        }
+
+        #[inline(always)]
+        unsafe fn weights(numbers: &[i8]) -> Self {
+            let weights: __m256i = bytemuck::cast(*numbers.first_chunk::<32>().unwrap_or(&[0; 32]));
+            // SAFETY: the caller's.
+            unsafe { _mm512_cvtepi8_epi16(weights) }
+        }
+
+        #[inline(always)]
+        unsafe fn plus_products(self, row: Self, weights: Self) -> Self {
+            // SAFETY: the caller's.
+            unsafe { _mm512_dpwssd_epi32(self, row, weights) }
+        }
+
+        #[inline(always)]
+        unsafe fn total(self) -> i32 {
+            // SAFETY: the caller's.
+            unsafe { _mm512_reduce_add_epi32(self) }
+        }
+    }
+
+    /// The products of rows and outputs' weights, `OUTPUTS` of these at once.
+    #[inline(always)]
+    unsafe fn by_blocks<L: Lanes, const OUTPUTS: usize>(rows: &[i16], weights: &[i8], length: usize, sums: &mut [i32]) {
         let outputs = weights.len() / length;
-        let pairs = weights.chunks_exact(2 * length);
-        let last = pairs.remainder();
         for (rows, sums) in rows.chunks(ROWS * length).zip(sums.chunks_mut(ROWS * outputs)) {
-            for (pair, weights) in pairs.clone().enumerate() {
-                let both = weights.split_at(length);
-                if rows.len() == ROWS * length {
-                    let products = block::<ROWS>(rows, both, length);
+            for (at, weights) in weights.chunks(OUTPUTS * length).enumerate() {
+                let is_whole = weights.len() == OUTPUTS * length;
+                if is_whole && rows.len() == ROWS * length {
+                    // SAFETY: the caller's.
+                    let products = unsafe { block::<L, ROWS, OUTPUTS>(rows, weights, length) };
                     for (sums, products) in sums.chunks_exact_mut(outputs).zip(products) {
-                        sums[2 * pair..2 * pair + 2].copy_from_slice(&products);
+                        sums[OUTPUTS * at..OUTPUTS * (at + 1)].copy_from_slice(&products);
+                    }
+                } else if is_whole {
+                    for (row, sums) in rows.chunks_exact(length).zip(sums.chunks_exact_mut(outputs)) {
+                        // SAFETY: the caller's.
+                        let products = unsafe { block::<L, 1, OUTPUTS>(row, weights, length) };
+                        sums[OUTPUTS * at..OUTPUTS * (at + 1)].copy_from_slice(&products[0]);
                     }
                 } else {
                     for (row, sums) in rows.chunks_exact(length).zip(sums.chunks_exact_mut(outputs)) {
-                        sums[2 * pair..2 * pair + 2].copy_from_slice(&block::<1>(row, both, length)[0]);
+                        for (weights, sum) in weights.chunks_exact(length).zip(&mut sums[OUTPUTS * at..]) {
+                            // SAFETY: the caller's.
+                            *sum = unsafe { block::<L, 1, 1>(row, weights, length) }[0][0];
+                        }
                     }
-                }
-            }
-            if !last.is_empty() {
-                for (row, sums) in rows.chunks_exact(length).zip(sums.chunks_exact_mut(outputs)) {
-                    sums[outputs - 1] = block::<1>(row, (last, last), length)[0][0];
                 }
             }
         }
     }
 
-    /// The products of `N` rows with the weights of two outputs.
-    #[target_feature(enable = "avx2")]
-    #[inline]
-    fn block<const N: usize>(rows: &[i16], weights: (&[i8], &[i8]), length: usize) -> [[i32; 2]; N] {
-        let count = length / LANES;
-        let mut chunks = [[].as_slice(); N];
-        for (chunks, row) in chunks.iter_mut().zip(rows.chunks_exact(length)) {
-            *chunks = &row.as_chunks::<LANES>().0[..count];
-        }
-        let first = &weights.0.as_chunks::<LANES>().0[..count];
-        let second = &weights.1.as_chunks::<LANES>().0[..count];
-        let mut sums = [[_mm256_setzero_si256(); 2]; N];
-        for at in 0..count {
-            let first = _mm256_cvtepi8_epi16(bytemuck::cast::<_, __m128i>(first[at]));
-            let second = _mm256_cvtepi8_epi16(bytemuck::cast::<_, __m128i>(second[at]));
-            for (sums, row) in sums.iter_mut().zip(&chunks) {
-                let row = bytemuck::cast::<_, __m256i>(row[at]);
-                sums[0] = _mm256_add_epi32(sums[0], _mm256_madd_epi16(row, first));
-                sums[1] = _mm256_add_epi32(sums[1], _mm256_madd_epi16(row, second));
+    /// The products of `N` rows with the weights of `M` outputs.
+    #[inline(always)]
+    unsafe fn block<L: Lanes, const N: usize, const M: usize>(
+        rows: &[i16],
+        weights: &[i8],
+        length: usize,
+    ) -> [[i32; M]; N] {
+        // SAFETY: the caller's.
+        unsafe {
+            let mut sums = [[L::zero(); M]; N];
+            for at in (0..length).step_by(L::LANES) {
+                let mut columns = [L::zero(); M];
+                for (column, weights) in columns.iter_mut().zip(weights.chunks_exact(length)) {
+                    *column = L::weights(&weights[at..at + L::LANES]);
+                }
+                for (sums, row) in sums.iter_mut().zip(rows.chunks_exact(length)) {
+                    let row = L::row(&row[at..at + L::LANES]);
+                    for (sum, column) in sums.iter_mut().zip(columns) {
+                        *sum = sum.plus_products(row, column);
+                    }
+                }
             }
-        }
-        let mut totals = [[0; 2]; N];
-        for (totals, sums) in totals.iter_mut().zip(sums) {
-            for (total, sum) in totals.iter_mut().zip(sums) {
-                *total = bytemuck::cast::<_, [i32; 8]>(sum).iter().sum();
+            // No closures here: they would not be compiled for the same instructions.
+            let mut totals = [[0; M]; N];
+            for (totals, sums) in totals.iter_mut().zip(sums) {
+                for (total, sum) in totals.iter_mut().zip(sums) {
+                    *total = sum.total();
+                }
             }
+            totals
         }
-        totals
     }
 }
 
@@ -161,7 +279,7 @@ mod tests {
 
     #[test]
     fn products_are_those_of_plain_loops() {
-        for (rows, outputs, inputs) in [(1, 1, 3), (4, 2, 16), (7, 5, 33), (9, 6, 64)] {
+        for (rows, outputs, inputs) in [(1, 1, 3), (4, 2, 16), (5, 3, 48), (7, 5, 33), (4, 4, 32), (9, 6, 64)] {
             let weights: Vec<i8> = (0..outputs * inputs).map(|i| ((i * 37) % 255) as i8).collect();
             let scales: Vec<f32> = (0..outputs).map(|o| 0.01 * (o + 1) as f32).collect();
             let bias: Vec<f32> = (0..outputs).map(|o| o as f32).collect();

@@ -4,8 +4,13 @@
 //! cargo run --release --manifest-path dialog/language/fit/Cargo.toml --bin alternatives
 //! ```
 //!
-//! What is fitted to are the sets of `dialog/language/tests/utterances` that may be looked at; what it is judged on is held out.
+//! With `-- second` only the second weights are fitted anew, as after a fit of the re-ranker.
+//!
+//! The first weights are fitted to the sets of `dialog/language/tests/utterances` that may be looked at, and to writers whom the re-ranker has
+//! learnt from; the second to other writers, so that they do not rely on a re-ranker that knows the answers. What they are judged on is held out.
 
+#[path = "../all_cores.rs"]
+mod all_cores;
 #[path = "../logit.rs"]
 mod logit;
 #[path = "../../../tests/support/mod.rs"]
@@ -13,46 +18,73 @@ mod support;
 
 use std::{fmt::Write as _, fs, path::Path};
 
-use cohabit_language::{Evidence, Understanding};
+use cohabit_language::{Evidence, Fit, Understanding};
 use support::{
     Talk,
-    cases::{self, Case},
+    cases::{self, Case, Expected},
 };
 
 use crate::logit::Choice;
 
-/// The sets that are fitted to, and how much each of their utterances counts: the grammar was written with some of them in sight, and
-/// reads them better than what it has not met.
-const FITTED: [(&str, f64); 7] = [
+/// The sets that the first weights are fitted to, and how much each of their utterances counts: the grammar was written with some of them
+/// in sight, and reads them better than what it has not met.
+const FIRST: [(&str, f64); 17] = [
     ("newcomers", 1.0),
     ("first_contact", 1.0),
     ("first_contact_again", 1.0),
+    ("writers/e", 1.0),
+    ("writers/f", 1.0),
+    ("writers/g", 1.0),
+    ("writers/h", 1.0),
+    ("writers/i", 1.0),
+    ("writers/j", 1.0),
+    ("writers/k", 1.0),
+    ("writers/l", 1.0),
+    ("writers/m", 1.0),
+    ("writers/n", 1.0),
     ("seen", 0.3),
     ("voices", 0.3),
     ("manners", 0.3),
     ("spoken", 0.3),
 ];
+/// Those that the second weights are fitted to. Of those that the re-ranker has learnt from it has not met what the grammar reads to the last
+/// word.
+const SECOND: [(&str, f64); 8] = [
+    ("writers/a", 1.0),
+    ("writers/b", 1.0),
+    ("writers/c", 1.0),
+    ("writers/d", 1.0),
+    ("seen", 0.7),
+    ("voices", 0.7),
+    ("manners", 0.7),
+    ("spoken", 0.7),
+];
 const HELD_OUT: &str = "held_out";
 /// What is no request: nothing that is done is right.
-const OFF_DOMAIN: (&str, f64) = ("off_domain", 0.5);
+const OFF_DOMAIN: (&str, f64) = ("off_domain", 1.0);
 /// How often the weights are fitted anew, each time to the ways that are right, by how likely they then are (expectation maximisation).
 const ROUNDS: usize = 8;
 
 /// What speaks for each way to understand an utterance, and which of them are right.
 struct Ways {
     weight: f64,
-    evidence: Vec<Vec<f64>>,
+    evidence: Vec<Evidence>,
+    fit: Vec<Option<Fit>>,
+    right: Vec<usize>,
+}
+
+/// Ways as a logit sees them, the last alternative being that none of them is meant.
+struct Alternatives {
+    weight: f64,
+    features: Vec<Vec<f64>>,
     right: Vec<usize>,
 }
 
 impl Ways {
     fn of_case(case: &Case<'_>, weight: f64) -> Option<Self> {
         let talk = cases::before(case);
-        let is_right = |understanding: &Understanding| {
-            let found = cases::found(understanding, &talk.scene);
-            case.expected.iter().any(|expected| cases::is_as(expected, understanding, &found))
-        };
-        Self::new(&talk, case.said.last()?, is_right, weight)
+        let expected = Expected::new(case, &talk)?;
+        Self::new(&talk, case.said.last()?, |understanding| expected.is_met(understanding, &talk), weight)
     }
 
     fn off_domain(said: &str, weight: f64) -> Option<Self> {
@@ -65,54 +97,109 @@ impl Ways {
         if ways.len() == 1 {
             return None;
         }
-        let mut right: Vec<usize> = (0..ways.len()).filter(|at| is_right(&ways[*at].understanding)).collect();
-        let wide = |evidence: &Evidence| evidence.values.iter().copied().map(f64::from).chain([0.0]).collect();
-        let mut evidence: Vec<Vec<f64>> = ways.iter().map(|way| wide(&way.evidence)).collect();
-        // None of them.
-        let mut none = vec![0.0; Evidence::COUNT + 1];
-        none[Evidence::COUNT] = 1.0;
-        if right.is_empty() {
-            right.push(evidence.len());
+        let right = (0..ways.len()).filter(|at| is_right(&ways[*at].understanding)).collect();
+        let (evidence, fit) = ways.iter().map(|way| (way.evidence, way.fit)).unzip();
+        Some(Self { weight, evidence, fit, right })
+    }
+
+    fn first(&self) -> Alternatives {
+        Alternatives::new(self.weight, self.evidence.iter().map(|one| one.values.as_slice()), self.right.clone())
+    }
+
+    /// Those that the re-ranker has read, with how likely they are by the first weights, if these are new.
+    fn second(&self, weights: Option<&[f64]>) -> Alternatives {
+        let mut fits: Vec<Fit> = self.fit.iter().copied().flatten().collect();
+        if let Some(weights) = weights {
+            let shares = logit::probabilities(weights, &self.first().features);
+            let none = shares[shares.len() - 1] as f32;
+            fits.iter_mut().zip(&shares).for_each(|(fit, share)| *fit = fit.with_first(*share as f32, none));
         }
-        evidence.push(none);
-        Some(Self { weight, evidence, right })
+        // These come first.
+        let right = self.right.iter().copied().filter(|at| *at < fits.len()).collect();
+        Alternatives::new(self.weight, fits.iter().map(|fit| fit.values.as_slice()), right)
+    }
+}
+
+impl Alternatives {
+    fn new<'a>(weight: f64, values: impl Iterator<Item = &'a [f32]>, mut right: Vec<usize>) -> Self {
+        let mut features: Vec<Vec<f64>> =
+            values.map(|values| values.iter().copied().map(f64::from).chain([0.0]).collect()).collect();
+        let mut none = vec![0.0; features.first().map_or(1, Vec::len)];
+        *none.last_mut().expect("it has a constant") = 1.0;
+        if right.is_empty() {
+            right.push(features.len());
+        }
+        features.push(none);
+        Self { weight, features, right }
     }
 
     /// Each of those that are right may be the one that is meant, as likely as it is among them.
     fn choices(&self, weights: &[f64]) -> impl Iterator<Item = Choice> {
-        let shares = logit::probabilities(weights, &self.evidence);
+        let shares = logit::probabilities(weights, &self.features);
         let whole: f64 = self.right.iter().map(|at| shares[*at]).sum();
         self.right.iter().map(move |at| Choice {
             weight: self.weight * shares[*at] / whole,
-            alternatives: self.evidence.clone(),
+            alternatives: self.features.clone(),
             chosen: *at,
         })
     }
 
     /// Whether the likeliest of all is right.
     fn is_right(&self, weights: &[f64]) -> bool {
-        let shares = logit::probabilities(weights, &self.evidence);
+        let shares = logit::probabilities(weights, &self.features);
         let likeliest = (0..shares.len() - 1).max_by(|one, other| shares[*one].total_cmp(&shares[*other]));
         likeliest.is_some_and(|likeliest| self.right.contains(&likeliest))
     }
 }
 
 fn main() {
-    let mut fitted: Vec<Ways> = FITTED.iter().flat_map(|(set, weight)| ways(set, *weight)).collect();
-    let off_domain = read(OFF_DOMAIN.0);
-    let no_requests = off_domain.lines().filter(|line| !line.starts_with('#') && !line.is_empty());
-    fitted.extend(no_requests.filter_map(|said| Ways::off_domain(said, OFF_DOMAIN.1)));
-    let mut weights = vec![0.0; Evidence::COUNT + 1];
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../data/alternatives.toml");
+    let mut second: Vec<Ways> = SECOND.iter().flat_map(|(set, weight)| ways(set, *weight)).collect();
+    second.extend(off_domain());
+    let held_out = ways(HELD_OUT, 1.0);
+    let first_weights = match std::env::args().nth(1) {
+        Some(only) if only == "second" => None,
+        _ => Some(fitted_first()),
+    };
+    let of_first = |ways: &[Ways]| ways.iter().map(Ways::first).collect::<Vec<_>>();
+    let of_second = |ways: &[Ways]| -> Vec<Alternatives> {
+        ways.iter().map(|one| one.second(first_weights.as_deref())).collect()
+    };
+    let second_weights = fitted(&of_second(&second));
+    let right = |ways: &[Alternatives], weights: &[f64]| {
+        format!("{} of {}", ways.iter().filter(|one| one.is_right(weights)).count(), ways.len())
+    };
+    if let Some(weights) = &first_weights {
+        let judged = [right(&of_first(&second), weights), right(&of_first(&held_out), weights)];
+        println!("by the first weights the likeliest way is right: {}", judged.join(", held out "));
+    }
+    let judged = [right(&of_second(&second), &second_weights), right(&of_second(&held_out), &second_weights)];
+    println!("by the second weights the likeliest way is right: {}", judged.join(", held out "));
+    let first = match &first_weights {
+        Some(weights) => section("evidence", &Evidence::NAMES, weights),
+        None => {
+            let before = fs::read_to_string(&path).expect("the weights so far");
+            let first = before.split("[evidence]").nth(1).and_then(|rest| rest.split("[fit]").next());
+            format!("[evidence]{}", first.expect("the weights so far have a table of evidence"))
+        }
+    };
+    let text = format!("{}{first}{}", head(&judged), section("fit", &Fit::NAMES, &second_weights));
+    fs::write(path, text).expect("the weights can be written");
+}
+
+fn fitted_first() -> Vec<f64> {
+    let mut first: Vec<Ways> = FIRST.iter().flat_map(|(set, weight)| ways(set, *weight)).collect();
+    first.extend(off_domain());
+    fitted(&first.iter().map(Ways::first).collect::<Vec<_>>())
+}
+
+fn fitted(ways: &[Alternatives]) -> Vec<f64> {
+    let mut weights = vec![0.0; ways[0].features[0].len()];
     for _ in 0..ROUNDS {
-        let choices: Vec<Choice> = fitted.iter().flat_map(|one| one.choices(&weights)).collect();
+        let choices: Vec<Choice> = ways.iter().flat_map(|one| one.choices(&weights)).collect();
         weights = logit::fit(&choices, weights.len());
     }
-    let held_out = ways(HELD_OUT, 1.0);
-    let right = |ways: &[Ways]| ways.iter().filter(|one| one.is_right(&weights)).count();
-    let judged = [right(&fitted), fitted.len(), right(&held_out), held_out.len()];
-    println!("the likeliest way is right: {} of {}, held out {} of {}", judged[0], judged[1], judged[2], judged[3]);
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../data/alternatives.toml");
-    fs::write(path, head(judged) + &table(&weights)).expect("the weights can be written");
+    weights
 }
 
 fn read(set: &str) -> String {
@@ -121,29 +208,39 @@ fn read(set: &str) -> String {
 }
 
 fn ways(set: &str, weight: f64) -> Vec<Ways> {
-    cases::cases(&read(set)).iter().filter_map(|case| Ways::of_case(case, weight)).collect()
+    let text = read(set);
+    all_cores::filter_map(&cases::cases(&text), |case| Ways::of_case(case, weight))
 }
 
-fn head([right, fitted, right_held_out, held_out]: [usize; 4]) -> String {
-    let sets: Vec<String> =
-        FITTED.iter().chain([&OFF_DOMAIN]).map(|(set, weight)| format!("{set} ({weight})")).collect();
+fn off_domain() -> Vec<Ways> {
+    let text = read(OFF_DOMAIN.0);
+    let said: Vec<&str> = text.lines().filter(|line| !line.starts_with('#') && !line.is_empty()).collect();
+    all_cores::filter_map(&said, |said| Ways::off_domain(said, OFF_DOMAIN.1))
+}
+
+fn head([second, held_out]: &[String; 2]) -> String {
+    let named = |sets: &[(&str, f64)]| {
+        sets.iter().map(|(set, weight)| format!("{set} ({weight})")).collect::<Vec<_>>().join(", ")
+    };
     format!(
         "# How much each evidence counts for a way to understand an utterance, in nats per unit of it, and the utility of none of the\n\
-         # ways. `src/evidence.rs` says what the evidence is. Written by\n\
+         # ways: before the re-ranker has read it (evidence), and after (fit). `src/evidence.rs` says what the evidence is. Written by\n\
          #\n\
          #     cargo run --release --manifest-path dialog/language/fit/Cargo.toml --bin alternatives\n\
          #\n\
-         # Fitted, with a ridge of 1, to {fitted} utterances of tests/utterances (and how much each counts):\n\
+         # The first are fitted, with a ridge of 1, to these sets of tests/utterances (and how much each counts):\n\
          # {}.\n\
-         # The likeliest way is right for {right} of these, and for {right_held_out} of {held_out} in {HELD_OUT}.\n\n",
-        sets.join(", ")
+         # The second are fitted to {}:\n\
+         # the likeliest way is right for {second} of these, and for {held_out} of {HELD_OUT}.\n\n",
+        named(&[FIRST.as_slice(), &[OFF_DOMAIN]].concat()),
+        named(&[SECOND.as_slice(), &[OFF_DOMAIN]].concat()),
     )
 }
 
-fn table(weights: &[f64]) -> String {
-    let mut text = format!("none = {:.4}\n\n[evidence]\n", weights[Evidence::COUNT]);
-    for (name, weight) in Evidence::NAMES.iter().zip(weights) {
+fn section(name: &str, names: &[&str], weights: &[f64]) -> String {
+    let mut text = format!("[{name}]\n");
+    for (name, weight) in names.iter().chain(&["none"]).zip(weights) {
         let _ = writeln!(text, "{name} = {weight:.4}");
     }
-    text
+    text + "\n"
 }

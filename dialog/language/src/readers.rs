@@ -1,0 +1,255 @@
+//! The readers of an utterance, each with what it takes it for: the grammar, the learned parser, the likeness to plain requests, its parts, and
+//! the things that it names.
+
+use cohabit_cdf::{ClassId, ObjectId, Property};
+use cohabit_parser::{Reading, request::Act};
+
+use crate::{
+    alternatives::{Alternative, without_yes_or_no},
+    answer::HINT,
+    ask, clause,
+    context::{Consent, Context, Pending},
+    conversation::Conversation,
+    describe,
+    evidence::{Evidence, Feature},
+    imagine,
+    likeness::{Likeness, SHARPNESS},
+    parsed, reply,
+    said::{Mention, Named, Said, count, replaces, share},
+    token,
+    understanding::Understanding,
+};
+
+/// Into how many parts an utterance is taken apart at most.
+const MOST_PARTS: usize = 5;
+/// How many things that are named without a verb are carried at most.
+const MOST_CARRIED: usize = 3;
+
+impl Conversation<'_> {
+    pub(crate) fn of_reading(
+        &self,
+        reading: &Reading,
+        is_first: bool,
+        said: &Said<'_>,
+        context: &Context,
+    ) -> Option<Alternative> {
+        // Stops were heard before.
+        if reading.requests.iter().any(parsed::stops) {
+            return None;
+        }
+        // What is asked only on a condition is not done without it.
+        if said.is_conditional && reading.requests.iter().all(|request| request.conditions.is_empty()) {
+            return None;
+        }
+        let mut then = context.at_new_utterance();
+        let (understanding, certainty) = self.understand_reading(reading, said.wording.utterance, &mut then)?;
+        let mut evidence = Evidence::default();
+        let leaves_out = reading.requests.iter().any(|request| parsed::unknown_words(request).is_some());
+        let replies = reading.requests.iter().any(|request| matches!(request.act, Act::Answer(_)));
+        evidence.set(Feature::Parser, reading.probability * certainty);
+        evidence.set_if(Feature::ParserFirst, is_first);
+        evidence.set_if(Feature::ParserLeftOut, leaves_out);
+        evidence.set_if(Feature::ParserReply, replies && said.is_pending);
+        count_requests(&mut evidence, count(&reading.requests), said);
+        let kept = if replaces(&reading.requests) { 0.0 } else { said.instead };
+        evidence.set(Feature::NotInstead, kept);
+        Some(Alternative::new(understanding, then, evidence))
+    }
+
+    pub(crate) fn of_likeness(&self, said: &Said<'_>, context: &Context) -> Vec<Alternative> {
+        let mut found = Vec::new();
+        // A single plain request would leave a condition out, and likeness does not tell a deed from its contrary.
+        if said.is_conditional || said.is_forbidden {
+            return found;
+        }
+        for (at, likely) in self.likely_requests(said.wording.utterance).into_iter().enumerate() {
+            let mut then = context.at_new_utterance();
+            let understanding = match likely.request.strip_prefix("social: ") {
+                Some(kind) => match parsed::social(kind) {
+                    Some(social) => Understanding::answer(parsed::small_talk(social)),
+                    None => continue,
+                },
+                None if likely.request == self.scene.mission => self.pursue(&mut then),
+                None if likely.request == "nothing" => {
+                    Understanding::refusal(format!("That is nothing that I can do. {HINT}"))
+                }
+                None => as_it_is(self.understand_said(&likely.request, &mut then)),
+            };
+            let mut evidence = Evidence::default();
+            evidence.set(Feature::Likeness, likely.probability);
+            evidence.set_if(Feature::LikenessFirst, at == 0);
+            evidence.set(Feature::LikenessOfSeveral, share((said.requests - 1.0).round() as usize));
+            evidence.set(Feature::LikenessOfLong, said.length);
+            evidence.set_if(Feature::LikenessPending, said.is_pending);
+            count_requests(&mut evidence, 1.0, said);
+            evidence.set(Feature::NotInstead, said.instead);
+            found.push(Alternative::new(understanding, then, evidence));
+        }
+        found
+    }
+
+    /// What its parts mean one after the other, where each is something to do or nothing to do with it: parts that begin with a verb, or all
+    /// that stands between commas.
+    pub(crate) fn in_parts(&self, said: &Said<'_>, context: &Context) -> Vec<Alternative> {
+        if said.is_conditional || said.is_forbidden {
+            return Vec::new();
+        }
+        let words = &said.wording.words;
+        let by_verbs = clause::segments(self.lexicon, words);
+        let is_break = |word: &String| token::is_punctuation(word) || matches!(word.as_str(), "and" | "then");
+        let by_breaks: Vec<&[String]> = words.split(is_break).filter(|part| !part.is_empty()).collect();
+        let ways = if by_breaks.len() == by_verbs.len() { vec![by_verbs] } else { vec![by_verbs, by_breaks] };
+        let is_fit = |parts: &Vec<&[String]>| (2..=MOST_PARTS).contains(&parts.len());
+        ways.into_iter().filter(is_fit).filter_map(|parts| self.one_after_the_other(&parts, said, context)).collect()
+    }
+
+    fn one_after_the_other(&self, parts: &[&[String]], said: &Said<'_>, context: &Context) -> Option<Alternative> {
+        let (mut scene, mut then) = (self.scene.clone(), context.at_new_utterance());
+        let (mut steps, mut probability) = (Vec::new(), 1.0);
+        for part in parts {
+            let there = Conversation { scene: &scene, ..*self };
+            let likeliest = there.likeliest_of_part(&part.join(" "), &then)?;
+            probability *= likeliest.probability;
+            match likeliest.understanding {
+                Understanding::Plan { steps: next, .. } => {
+                    next.iter().for_each(|step| imagine::apply(&mut scene, &step.action, self.devices));
+                    then = likeliest.context;
+                    steps.extend(next);
+                }
+                Understanding::Answer { holds: None, .. } if !likeliest.context.is_met => {}
+                _ => return None,
+            }
+        }
+        if steps.is_empty() {
+            return None;
+        }
+        then.begin(&steps);
+        let mut evidence = Evidence::default();
+        evidence.set(Feature::Parts, probability);
+        evidence.set(Feature::NotInstead, said.instead);
+        let reply = reply::plan_reply(&steps, &[]);
+        Some(Alternative::new(Understanding::Plan { steps, reply }, then, evidence))
+    }
+
+    /// What the things that are named may be asked for without a verb: `mug in the sink`, `golf ball to the reception`.
+    pub(crate) fn of_names(&self, said: &Said<'_>, context: &Context) -> Option<Alternative> {
+        let is_carried = |class: &ClassId| self.catalog.class(*class).has(Property::Pickupable);
+        let holds = |class: &ClassId| self.catalog.class(*class).has(Property::Receptacle) && !is_carried(class);
+        let (mut carried, mut places) = (Vec::new(), Vec::new());
+        for Mention { words, named } in &said.mentions {
+            match named {
+                Named::Room(_) => places.push((words, "bring", "to")),
+                Named::Thing(classes) if classes.iter().any(is_carried) => carried.push(words.as_str()),
+                Named::Thing(classes) if classes.iter().any(holds) => {
+                    let is_closed = classes.iter().any(|class| self.catalog.class(*class).has(Property::Openable));
+                    places.push((words, "put", if is_closed { "in" } else { "on" }));
+                }
+                _ => {}
+            }
+        }
+        if carried.is_empty() && self.scene.robot.held.is_some() {
+            carried.push("it");
+        }
+        let [(place, verb, preposition)] = places.as_slice() else { return None };
+        if said.is_conditional || said.is_forbidden || !(1..=MOST_CARRIED).contains(&carried.len()) {
+            return None;
+        }
+        let requests = carried.iter().map(|thing| format!("{verb} {thing} {preposition} {place}"));
+        let mut then = context.at_new_utterance();
+        let understanding = self.understand_said(&requests.collect::<Vec<_>>().join(". "), &mut then);
+        let mut evidence = Evidence::default();
+        evidence.set(Feature::Names, 1.0);
+        evidence.set(Feature::NotInstead, said.instead);
+        matches!(understanding, Understanding::Plan { .. }).then(|| Alternative::new(understanding, then, evidence))
+    }
+
+    /// What is to be done with each thing that one way would have to ask about.
+    pub(crate) fn of_candidates(&self, asked: &Alternative, said: &Said<'_>) -> Vec<Alternative> {
+        let Understanding::Question { candidates, .. } = &asked.understanding else { return Vec::new() };
+        if asked.context.pending.is_none() {
+            return Vec::new();
+        }
+        let likely = self.likely_candidates(said.wording.utterance, candidates);
+        let chosen = likely.into_iter().filter_map(|(id, probability)| {
+            let mut then = asked.context.clone();
+            let understanding = self.chosen(id, &mut then);
+            let mut evidence = Evidence::default();
+            evidence.set(Feature::Candidate, probability * asked.sureness());
+            evidence.set_if(Feature::CandidateOnly, candidates.len() == 1);
+            evidence.take_over(&asked.evidence);
+            matches!(understanding, Understanding::Plan { .. }).then(|| Alternative::new(understanding, then, evidence))
+        });
+        chosen.collect()
+    }
+
+    /// What is to be done with what is in the hand put down first, where one way would ask whether to: who corrects what was taken agrees.
+    pub(crate) fn agreed(&self, asked: &Alternative, said: &Said<'_>) -> Option<Alternative> {
+        let Some(Pending::PutDown { clauses }) = &asked.context.pending else { return None };
+        let mut then = asked.context.clone();
+        let consent = Consent { may_put_down: true, is_agreed: false };
+        let understanding = self.plan(clauses.clone(), consent, &mut then);
+        let mut evidence = Evidence::default();
+        evidence.set(Feature::Agreed, asked.sureness());
+        evidence.set(Feature::AgreedInstead, asked.sureness() * said.instead);
+        evidence.take_over(&asked.evidence);
+        Some(Alternative::new(understanding, then, evidence))
+    }
+
+    /// How likely the words mean each of these, if they mean any.
+    pub(crate) fn likely_candidates(&self, said: &str, candidates: &[ObjectId]) -> Vec<(ObjectId, f32)> {
+        let likeness = Likeness::builtin();
+        let said = likeness.of(said);
+        let names = describe::apart(self.catalog, self.scene, candidates);
+        let utility = |(id, name): (&ObjectId, &String)| {
+            let class = self.scene.object(*id)?.class;
+            let like = likeness.to_class(&said, self.catalog, class) + said.likeness(&likeness.of(name));
+            Some((*id, like / (2.0 * SHARPNESS)))
+        };
+        let utilities: Vec<(ObjectId, f32)> = candidates.iter().zip(&names).filter_map(utility).collect();
+        let highest = utilities.iter().map(|(_, utility)| *utility).fold(f32::NEG_INFINITY, f32::max);
+        let whole: f32 = utilities.iter().map(|(_, utility)| (utility - highest).exp()).sum();
+        utilities.into_iter().map(|(id, utility)| (id, (utility - highest).exp() / whole)).collect()
+    }
+}
+
+/// What the grammar makes of it, with what speaks for that.
+pub(crate) fn of_grammar(by_grammar: Alternative, said: &Said<'_>) -> Alternative {
+    let Alternative { understanding, mut evidence, .. } = by_grammar;
+    let [kind, partial] = match &understanding {
+        Understanding::Plan { .. } => [Feature::GrammarPlan, Feature::GrammarPlanPartial],
+        Understanding::Question { .. } => [Feature::GrammarQuestion, Feature::GrammarQuestionPartial],
+        Understanding::Answer { .. } => [Feature::GrammarAnswer, Feature::GrammarAnswerPartial],
+        _ => [Feature::GrammarRefusal, Feature::GrammarRefusalPartial],
+    };
+    evidence.set(kind, 1.0);
+    evidence.set_if(partial, said.is_partial);
+    evidence.set_if(Feature::GrammarPlain, said.is_plain);
+    evidence.set(Feature::GrammarPlainLong, if said.is_plain { said.length } else { 0.0 });
+    let is_plan = matches!(understanding, Understanding::Plan { .. });
+    evidence.set(Feature::GrammarPlanLong, if is_plan { said.length } else { 0.0 });
+    evidence.set_if(Feature::GrammarPlanReply, is_plan && said.is_pending);
+    evidence.set_if(Feature::GrammarMismatch, ask::is_mismatch(&understanding));
+    evidence.set_if(
+        Feature::GrammarAnswerGuessed,
+        said.is_guessed && matches!(understanding, Understanding::Answer { .. }),
+    );
+    count_requests(&mut evidence, said.clauses + by_grammar.context.later.len() as f32, said);
+    evidence.set(Feature::NotInstead, said.instead);
+    Alternative { understanding, evidence, ..by_grammar }
+}
+
+/// How many requests fewer or more these are than the parser sees.
+fn count_requests(evidence: &mut Evidence, requests: f32, said: &Said<'_>) {
+    evidence.set(Feature::Fewer, ((said.requests - requests) / 3.0).clamp(0.0, 1.0));
+    evidence.set(Feature::More, ((requests - said.requests) / 3.0).clamp(0.0, 1.0));
+}
+
+/// The answer without its yes or no: what was asked may have been the contrary.
+fn as_it_is(understanding: Understanding) -> Understanding {
+    match &understanding {
+        Understanding::Answer { text, highlight, .. } if without_yes_or_no(text) != *text => {
+            Understanding::about(without_yes_or_no(text), highlight.clone())
+        }
+        _ => understanding,
+    }
+}
