@@ -55,7 +55,7 @@ impl Conversation<'_> {
         let unheard = match &by_grammar.understanding {
             Understanding::Question { kind: Clarification::Appearance, about, .. } => {
                 match wording.unheard.as_slice() {
-                    [] if self.parser.is_some_and(|parser| parser.knows(about)) => &[],
+                    [] if self.lexicon.is_small_word(about) => &[],
                     [] => std::slice::from_ref(about),
                     _ => {
                         *context = by_grammar.context;

@@ -82,8 +82,7 @@ impl Knowledge {
             room: world.robot.room,
             yaw_rad: record.yaw_rad,
             pitch_rad: record.head_pitch_rad,
-            // Where it was put it has looked around.
-            is_around: self.memory.is_empty(),
+            is_around: false,
         };
         if self.knows == Knows::Seen {
             self.memory.take_in(&self.catalog, &world, gaze);
