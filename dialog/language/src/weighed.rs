@@ -25,6 +25,8 @@ const TO_MOVE_IN_PART: f32 = 0.6;
 const TO_TRUST_EXACT: f32 = 0.08;
 /// Below this, what is done is said to be what the robot thinks.
 const SURELY: f32 = 0.7;
+/// The same of things that nobody named, where a name is unknown.
+const TO_TAKE_FOR_UNHEARD: f32 = 0.85;
 /// How likely what is said must be the right reply, where nothing is done.
 const TO_REPLY: f32 = 0.3;
 /// The same of what is only about things that nobody named, and to propose it.
@@ -75,6 +77,14 @@ impl Conversation<'_> {
         let is_open = wording.ends_as_question() || condition::is_conditional(self.lexicon, &wording.words);
         if matches!(by_grammar.understanding, Understanding::Answer { .. }) && is_open {
             alternatives.retain(|one| !matches!(one.understanding, Understanding::Plan { .. }));
+        }
+        // An unknown name is no other thing that is in the hand already; who may not ask does not take it for any other.
+        if !clause::unknown_words(self.lexicon, &wording.words).is_empty() {
+            let may_ask = self.judge.asking != Asking::Never;
+            alternatives.retain(|one| {
+                let is_sure = may_ask || !one.is_unnamed() || one.probability >= TO_TAKE_FOR_UNHEARD;
+                is_sure && (!one.context.is_met || one.is_exact())
+            });
         }
         // Who asks why, who or when wants an answer, whatever it is about.
         if wording.asks_for_reason() {
@@ -155,6 +165,8 @@ impl Alternative {
     /// Whether it is likely enough to be carried out, or said.
     fn is_likely(&self, unheard: &[String]) -> bool {
         let least = match &self.understanding {
+            // What has no known name is no other thing, unless that is most likely.
+            Understanding::Plan { .. } if !unheard.is_empty() && self.is_unnamed() => TO_TAKE_FOR_UNHEARD,
             Understanding::Plan { steps, .. } => match (self.leaves_out_named(), self.is_bold(steps)) {
                 (true, true) => TO_CHANGE_IN_PART,
                 (true, false) => TO_MOVE_IN_PART,
