@@ -9,7 +9,7 @@ use crate::{
     understanding::{Step, Understanding},
 };
 
-/// How many steps are told, and how many words of what is said.
+/// How many steps are told at most.
 const MOST_STEPS: usize = 12;
 
 impl Conversation<'_> {
