@@ -11,9 +11,10 @@ use cohabit_tables::{Cell, Played, Summary, Table, codebook, plain_text, tables,
 const MISSIONS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../cdf/missions");
 const FOLDER: &str = env!("CARGO_TARGET_TMPDIR");
 
-/// The built-in missions by their scripts, of robots that ask like this; and what was counted while they were played.
-fn sessions(asking: Asking) -> Vec<(Played, cohabit_eval::Played)> {
-    let folder = Path::new(FOLDER).join(format!("export-{}", asking.name()));
+/// The built-in missions by their scripts, of robots that ask like this, recorded in a folder of this name; and what was counted while they
+/// were played.
+fn sessions(folder: &str, asking: Asking) -> Vec<(Played, cohabit_eval::Played)> {
+    let folder = Path::new(FOLDER).join(folder);
     let _ = fs::remove_dir_all(&folder);
     fs::create_dir_all(&folder).unwrap();
     let language = Language::new(Arc::new(Catalog::builtin()));
@@ -41,7 +42,7 @@ fn whole(cell: &Cell) -> i64 {
 
 #[test]
 fn tables_hold_what_was_counted_while_sessions_were_played() {
-    let (played, counted): (Vec<_>, Vec<_>) = sessions(Asking::Always).into_iter().unzip();
+    let (played, counted): (Vec<_>, Vec<_>) = sessions("export-counted", Asking::Always).into_iter().unzip();
     let tables = tables(&played);
     let sessions = table(&tables, "sessions");
     let column = |name: &str| sessions.column(name).map(whole).collect::<Vec<_>>();
@@ -92,8 +93,8 @@ fn check_file(table: &Table) {
 
 #[test]
 fn conditions_are_compared_and_fitted() {
-    let never = sessions(Asking::Never);
-    let always = sessions(Asking::Always);
+    let never = sessions("export-never", Asking::Never);
+    let always = sessions("export-always", Asking::Always);
     let mean = |all: &[(Played, cohabit_eval::Played)]| {
         all.iter().map(|(_, counted)| f64::from(counted.questions)).sum::<f64>() / all.len() as f64
     };
