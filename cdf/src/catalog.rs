@@ -1,8 +1,12 @@
 //! The object catalogue: every class of object, what it affords, what people call it and what it looks like.
 
+mod called;
+
 use std::collections::HashMap;
 
 use serde::{Deserialize, Serialize};
+
+pub use called::Called;
 
 use crate::{builtin, model::Model};
 
@@ -146,6 +150,7 @@ pub struct Catalog {
     models: Vec<Model>,
     class_by_id: HashMap<String, ClassId>,
     model_by_class: Vec<usize>,
+    called: Vec<Called>,
 }
 
 #[derive(Deserialize)]
@@ -204,8 +209,13 @@ impl Catalog {
     /// # Errors
     /// [`CatalogError`] names the file and the id.
     pub fn parse(objects: &[(&str, &str)], models: &[(&str, &str)]) -> Result<Self, CatalogError> {
-        let mut catalog =
-            Self { classes: Vec::new(), models: Vec::new(), class_by_id: HashMap::new(), model_by_class: Vec::new() };
+        let mut catalog = Self {
+            classes: Vec::new(),
+            models: Vec::new(),
+            class_by_id: HashMap::new(),
+            model_by_class: Vec::new(),
+            called: Vec::new(),
+        };
         let mut model_by_id = HashMap::new();
         for (file, text) in models {
             for model in read::<ModelFile>(file, text)?.models {
@@ -229,6 +239,7 @@ impl Catalog {
                 catalog.classes.push(class);
             }
         }
+        catalog.called = called::all(&catalog.classes);
         Ok(catalog)
     }
 
@@ -245,6 +256,12 @@ impl Catalog {
     #[must_use]
     pub fn class(&self, id: ClassId) -> &ObjectClass {
         &self.classes[usize::from(id.0)]
+    }
+
+    /// What people call a class.
+    #[must_use]
+    pub fn called(&self, id: ClassId) -> &Called {
+        &self.called[usize::from(id.0)]
     }
 
     /// The class with this id, such as `Bowl_01`.

@@ -1,4 +1,4 @@
-//! A language model puts what the robot does not understand into requests that it does; here one that was recorded.
+//! A language model says what people mean where the robot is not sure, or always; here one that was recorded.
 
 use std::{
     io::{BufRead as _, BufReader, Read as _, Write as _},
@@ -6,6 +6,7 @@ use std::{
     thread,
 };
 
+use cohabit_record::Log;
 use cohabit_tests::{Page, Play};
 use serde_json::Value;
 
@@ -87,6 +88,35 @@ fn a_language_model_proposes_and_the_robot_checks() {
     let refusals = page.chat.iter().filter(|(_, text)| text.contains("I do not know the words")).count();
     assert_eq!(refusals, 2, "{:?}", page.chat);
     play.end().unwrap();
+}
+
+#[test]
+fn a_language_model_is_asked_always_where_it_shall_be_and_what_it_said_is_in_the_log() {
+    let address = model();
+    let environment =
+        [("COHABIT_MODEL_URL", address.as_str()), ("COHABIT_MODEL", "recorded"), ("COHABIT_MODEL_KEY", KEY)];
+    let arguments = ["make_cereal", "--knows", "everything", "--speed", "4", "--model", "always"];
+    let play = Play::start_in(COHABIT, &arguments, &environment).unwrap();
+    let mut page = Page::open(play.authority()).unwrap();
+    for (said, answer) in [
+        // What both take for the same is done without a word about it.
+        ("where is the milk?", "The milk is in the fridge"),
+        ("do robots dream of electric sheep?", "Of full batteries, I suppose."),
+        ("fetch me the whatsit", "Do you mean the spoon?"),
+    ] {
+        page.do_and_wait(said).unwrap();
+        assert!(robot_says(&page, answer), "{said}: {:?}", page.chat);
+    }
+    assert!(!robot_says(&page, "I take that as"), "{:?}", page.chat);
+    let ended = play.end().unwrap();
+    let log = Log::open(&ended.log).unwrap();
+    let notes: Vec<&str> =
+        log.dialog.iter().filter(|entry| entry.kind == "Interpreted").map(|entry| entry.text.as_str()).collect();
+    assert_eq!(notes.len(), 3, "{notes:?}");
+    assert!(notes[0].contains(" ms: ") && notes[0].contains("\"total_tokens\":1321"), "{notes:?}");
+    assert!(notes.iter().all(|note| !note.contains(KEY)), "{notes:?}");
+    let settings = &log.session.settings;
+    assert_eq!((settings["model"].as_str(), settings["model_asked"].as_str()), ("recorded", "always"));
 }
 
 #[test]

@@ -1,13 +1,12 @@
 //! Requests that make sense in a scene, by how like they are to what was said.
 
-use std::sync::LazyLock;
+use std::{collections::HashMap, sync::LazyLock};
 
 use cohabit_cdf::{Property, RoomId};
 use serde::Deserialize;
 
 use crate::{
     conversation::Conversation,
-    describe,
     ground::fitting_state,
     intent::Intent,
     known::KnownObject,
@@ -83,7 +82,7 @@ impl Conversation<'_> {
         for (name, objects) in self.things_by_name() {
             let Some(first) = objects.first() else { continue };
             let class = self.catalog.class(first.class);
-            let of_thing = of_thing(&name, |property| class.has(property));
+            let of_thing = of_thing(name, |property| class.has(property));
             ranked.extend(of_thing.map(|(intent, request)| (utility(&request) + self.fit(intent, &objects), request)));
         }
         let mission = Some(&self.scene.mission).filter(|mission| !mission.is_empty());
@@ -101,14 +100,16 @@ impl Conversation<'_> {
     }
 
     /// The things of the scene, those of one name together.
-    pub(crate) fn things_by_name(&self) -> Vec<(String, Vec<&KnownObject>)> {
-        let mut things: Vec<(String, Vec<&KnownObject>)> = Vec::new();
+    pub(crate) fn things_by_name(&self) -> Vec<(&str, Vec<&KnownObject>)> {
+        let mut things: Vec<(&str, Vec<&KnownObject>)> = Vec::new();
+        let mut places: HashMap<&str, usize> = HashMap::new();
         for object in &self.scene.objects {
-            let name = describe::name(self.catalog, object.class);
-            match things.iter_mut().find(|(known, _)| *known == name) {
-                Some((_, objects)) => objects.push(object),
-                None => things.push((name, vec![object])),
-            }
+            let name = self.catalog.called(object.class).plain.as_str();
+            let place = *places.entry(name).or_insert_with(|| {
+                things.push((name, Vec::new()));
+                things.len() - 1
+            });
+            things[place].1.push(object);
         }
         things
     }

@@ -6,11 +6,13 @@ use cohabit_parser::Reranker;
 
 use crate::{
     ask,
+    clause::Clause,
     context::Context,
     conversation::Conversation,
     describe,
     evidence::{Evidence, Feature, Fit, FitFeature, Weights},
     parsed::{Worth, worth},
+    phrase::{Phrase, Place},
     readers::of_grammar,
     said::{Named, Said, share},
     understanding::{Step, Understanding},
@@ -30,6 +32,8 @@ pub struct Alternative {
     pub paraphrase: String,
     /// What the re-ranker says of it; nothing, if it was too unlikely to be read.
     pub fit: Option<Fit>,
+    /// What was named that it is not about: `the fridge`.
+    pub(crate) leaves_out: Vec<String>,
     /// The conversation after it.
     pub(crate) context: Context,
 }
@@ -80,6 +84,7 @@ impl Conversation<'_> {
         let mut found = self.in_one(by_grammar, &said, context);
         found.extend(self.in_parts(&said, context));
         found.extend(self.of_names(&said, context));
+        found.extend(self.of_previous(&said, context));
         self.reranked(self.weighed(found, &said, context), &said, context)
     }
 
@@ -151,17 +156,17 @@ impl Conversation<'_> {
         all
     }
 
-    /// The likeliest way to understand a part of an utterance.
-    pub(crate) fn likeliest_of_part(&self, part: &str, context: &Context) -> Option<Alternative> {
+    /// The ways to understand a part of an utterance, the likeliest first.
+    pub(crate) fn likely_of_part(&self, part: &str, context: &Context) -> Vec<Alternative> {
         let wording = self.wording(part);
         let by_grammar = self.read(part, context);
         let is_known = worth(&by_grammar.understanding) > Worth::None && self.is_plain(&wording);
         if is_known || self.speaks_for_itself(&wording, &by_grammar) {
-            return Some(Alternative { probability: 1.0, ..by_grammar });
+            return vec![Alternative { probability: 1.0, ..by_grammar }];
         }
         let said = self.said(&wording, context);
         let found = self.in_one(by_grammar, &said, context);
-        self.weighed(found, &said, context).into_iter().next()
+        self.weighed(found, &said, context)
     }
 
     /// What may be said of a way without knowing who found it.
@@ -200,7 +205,11 @@ impl Conversation<'_> {
         if !one.context.later.is_empty() {
             return;
         }
-        let about = self.about(understanding);
+        let mut about = self.about(understanding);
+        // A search does nothing yet with what it looks for.
+        if one.context.search.is_some() {
+            one.context.request.iter().for_each(|clause| about.add_clause(clause));
+        }
         let is_missing = |name: &&Named| match name {
             Named::Thing(classes) => !about.classes.iter().any(|class| classes.contains(class)),
             Named::Room(room) => !about.rooms.contains(room),
@@ -212,6 +221,8 @@ impl Conversation<'_> {
             let missing = said.named.iter().filter(is_missing).count();
             evidence.set(Feature::Missing, share(missing));
             evidence.set_if(Feature::MissingAny, missing > 0);
+            let left_out = said.mentions.iter().filter(|mention| is_missing(&&mention.named));
+            one.leaves_out = left_out.map(|mention| mention.words.clone()).collect();
         }
         let is_named = |class: &&ClassId| {
             said.named.iter().any(|name| matches!(name, Named::Thing(classes) if classes.contains(class)))
@@ -247,9 +258,38 @@ impl Conversation<'_> {
     }
 }
 
+impl About {
+    fn add_clause(&mut self, clause: &Clause) {
+        clause.objects.iter().for_each(|phrase| self.add_phrase(phrase));
+        self.colors.extend(clause.color.clone());
+        for (_, place) in &clause.places {
+            match place {
+                Place::Room(room) | Place::Viewpoint(room, _) => self.rooms.push(*room),
+                Place::Object(phrase) => self.add_phrase(phrase),
+                Place::Viewpoints(_) | Place::Side(_) | Place::Here => {}
+            }
+        }
+    }
+
+    fn add_phrase(&mut self, phrase: &Phrase) {
+        self.classes.extend(phrase.namings.iter().map(|naming| naming.class));
+        self.rooms.extend(phrase.room);
+        self.colors.extend(phrase.color.clone());
+        phrase.relations.iter().for_each(|relation| self.add_phrase(&relation.to));
+    }
+}
+
 impl Alternative {
     pub(crate) const fn new(understanding: Understanding, context: Context, evidence: Evidence) -> Self {
-        Self { understanding, probability: 0.0, evidence, paraphrase: String::new(), fit: None, context }
+        Self {
+            understanding,
+            probability: 0.0,
+            evidence,
+            paraphrase: String::new(),
+            fit: None,
+            leaves_out: Vec::new(),
+            context,
+        }
     }
 
     /// Whether the grammar reads it to the last word.

@@ -235,6 +235,12 @@ pub(crate) fn segments<'a>(lexicon: &Lexicon, words: &'a [String]) -> Vec<&'a [S
     cuts(lexicon, words).into_iter().map(|cut| &words[cut]).collect()
 }
 
+/// The words between all pauses and joints, whatever stands there.
+pub(crate) fn between_breaks(words: &[String]) -> Vec<&[String]> {
+    let is_break = |word: &String| token::is_punctuation(word) || matches!(word.as_str(), "and" | "then");
+    words.split(is_break).filter(|part| !part.is_empty()).collect()
+}
+
 /// Cuts at sentence ends, and at `and` or a comma before a verb.
 fn cuts(lexicon: &Lexicon, words: &[String]) -> Vec<Range<usize>> {
     let mut cuts = Vec::new();

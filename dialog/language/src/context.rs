@@ -58,6 +58,9 @@ pub struct Context {
     /// What was said last, the latest last: whether the robot said it, and what.
     #[serde(default)]
     pub(crate) lines: Vec<(bool, String)>,
+    /// How likely what was understood last is what was meant.
+    #[serde(default)]
+    pub(crate) sureness: f32,
 }
 
 /// A step that failed.
@@ -239,10 +242,10 @@ impl Context {
         &self.lines
     }
 
-    /// Whether the robot has just asked if what it guessed at was meant.
+    /// How likely what [`crate::Language::understand`] understood last is what was meant, from 0 to 1; 0 where it only asks what is.
     #[must_use]
-    pub const fn has_guessed(&self) -> bool {
-        matches!(self.pending, Some(Pending::Guess { .. }))
+    pub const fn sureness(&self) -> f32 {
+        self.sureness
     }
 
     /// Takes note of what came of a step: `yes` after a failure then means the remedy that

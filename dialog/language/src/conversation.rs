@@ -48,19 +48,32 @@ pub(crate) struct Conversation<'a> {
 
 impl Conversation<'_> {
     pub(crate) fn understand(&self, utterance: &str, context: &mut Context) -> Understanding {
+        let (understanding, sureness) = self.understand_surely(utterance, context);
+        let is_lost = matches!(understanding, Understanding::Refusal { is_lost: true, .. });
+        context.sureness = if is_lost { 0.0 } else { sureness };
+        understanding
+    }
+
+    /// The same with how likely it is what was meant.
+    fn understand_surely(&self, utterance: &str, context: &mut Context) -> (Understanding, f32) {
         if let Some(understanding) = self.chosen_by_name(utterance, context) {
-            return understanding;
+            return (understanding, 1.0);
         }
         if let Some(stop) = stop::find_stop(utterance).filter(|stop| is_heeded(stop.firmness, context)) {
-            return self.stopped(&stop.rest, context);
+            return (self.stopped(&stop.rest, context), 1.0);
         }
         // A robot that does nothing need not stop.
         if context.is_busy()
             && let Some(rest) = self.likely_stop(utterance, context)
         {
-            return self.stopped(&rest, context);
+            return (self.stopped(&rest, context), 1.0);
         }
-        self.understand_best(utterance, context)
+        self.understand_weighed(utterance, context)
+    }
+
+    /// What speaks for itself, or what most speaks for.
+    pub(crate) fn understand_best(&self, utterance: &str, context: &mut Context) -> Understanding {
+        self.understand_weighed(utterance, context).0
     }
 
     /// It stops, and then does what else was asked for.
@@ -141,7 +154,8 @@ impl Conversation<'_> {
 
     pub(crate) fn understand_words(&self, words: Vec<String>, context: &mut Context) -> Understanding {
         let parts = clause::parts(self.lexicon, self.catalog, &words);
-        if stops(&parts) {
+        // `why did you stop` asks.
+        if stops(&parts) && question::read(self.lexicon, &words).is_none() {
             return self.stopped("", context);
         }
         let (open, later) = (context.pending.clone(), context.later.clone());

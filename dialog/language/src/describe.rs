@@ -1,7 +1,7 @@
 //! How the robot speaks of objects and places.
 
 use cohabit_cdf::{
-    Catalog, ClassId, Color, Fluid, ObjectId, Property,
+    Called, Catalog, ClassId, Color, Fluid, ObjectId, Property,
     state::{StateFlag, StateFlags},
 };
 
@@ -24,23 +24,9 @@ const TELLING: [(StateFlag, &str, &str); 6] = [
 /// States by which people see a difference before anybody says anything.
 const VISIBLE: [StateFlag; 4] = [StateFlag::Broken, StateFlag::Dirty, StateFlag::Embiggenated, StateFlag::Cereal];
 
-/// The plain name of a class: its readable name in lower case, `TAM` and such kept; `table round small` in the order in which
-/// people say that.
+/// The plain name of a class.
 pub(crate) fn name(catalog: &Catalog, class: ClassId) -> String {
-    let class = catalog.class(class);
-    let name = if class.name.is_empty() { &class.id } else { &class.name };
-    let sorted = |name: &str| {
-        let mut words: Vec<_> = name.split_whitespace().map(str::to_lowercase).collect();
-        words.sort_unstable();
-        words
-    };
-    let is_it = |said: &&String| said.len() == name.len() && sorted(said) == sorted(name);
-    let name = class.words.iter().find(is_it).unwrap_or(name);
-    let lower = |word: &str| {
-        let is_acronym = word.chars().filter(|character| character.is_uppercase()).count() > 1;
-        if is_acronym { word.to_owned() } else { word.to_lowercase() }
-    };
-    name.split_whitespace().map(lower).collect::<Vec<_>>().join(" ")
+    catalog.called(class).plain.clone()
 }
 
 /// The colour an object is called by.
@@ -54,7 +40,7 @@ pub(crate) fn color(catalog: &Catalog, object: &KnownObject) -> String {
 /// Whether two objects look the same to people.
 pub(crate) fn look_alike(catalog: &Catalog, one: &KnownObject, other: &KnownObject) -> bool {
     let visible = |flags: StateFlags| VISIBLE.map(|flag| flags.has(flag));
-    name(catalog, one.class) == name(catalog, other.class)
+    catalog.called(one.class).plain == catalog.called(other.class).plain
         && color(catalog, one) == color(catalog, other)
         && visible(one.flags) == visible(other.flags)
         && one.fluid == other.fluid
@@ -63,25 +49,7 @@ pub(crate) fn look_alike(catalog: &Catalog, one: &KnownObject, other: &KnownObje
 
 /// Whether a word of either class says which it is, as `red computer` and `blue computer` do.
 fn told_by_words(catalog: &Catalog, one: ClassId, other: ClassId) -> bool {
-    one != other && special_name(catalog, one) != special_name(catalog, other)
-}
-
-/// A name of several words that ends in the class's own name: `red computer`.
-fn special_name(catalog: &Catalog, class: ClassId) -> Option<String> {
-    let plain = name(catalog, class);
-    let ending = format!(" {plain}");
-    let words = &catalog.class(class).words;
-    let color = catalog.class(class).color.to_lowercase();
-    let colored = format!("{color} {plain}");
-    let is_shared_word = |word: &String| {
-        let namesakes = catalog.classes().iter().filter(|other| other.name.to_lowercase() == plain);
-        namesakes.filter(|other| other.words.contains(word)).count() > 1
-    };
-    let is_special = |word: &&String| word.ends_with(&ending) && !is_shared_word(word);
-    let is_colored = |word: &&String| **word == colored;
-    let is_shared = catalog.classes().iter().filter(|other| other.name.to_lowercase() == plain).count() > 1;
-    let special = || words.iter().find(is_colored).or_else(|| words.iter().find(is_special)).cloned();
-    if is_shared { special() } else { None }
+    one != other && catalog.called(one).special != catalog.called(other).special
 }
 
 /// `the mug`, or `the red mug` where there is another colour of it.
@@ -92,18 +60,18 @@ pub(crate) fn short(catalog: &Catalog, scene: &Known, id: ObjectId) -> String {
 /// The same without an article.
 pub(crate) fn bare(catalog: &Catalog, scene: &Known, id: ObjectId) -> String {
     let Some(object) = scene.object(id) else { return "thing".to_owned() };
-    let plain = name(catalog, object.class);
-    let rivals = || scene.objects.iter().filter(|other| other.id != id && name(catalog, other.class) == plain);
+    let Called { plain, special } = catalog.called(object.class);
+    let rivals = || scene.objects.iter().filter(|other| other.id != id && catalog.called(other.class).plain == *plain);
     let is_told_by_words = rivals().any(|other| told_by_words(catalog, object.class, other.class));
-    if let Some(special) = special_name(catalog, object.class).filter(|_| is_told_by_words) {
-        return special;
+    if let Some(special) = special.as_ref().filter(|_| is_told_by_words) {
+        return special.clone();
     }
     let color_of = color(catalog, object);
     let has_color = !color_of.is_empty() && !plain.contains(&color_of);
     if has_color && rivals().any(|other| color(catalog, other) != color_of) {
         return format!("{color_of} {plain}");
     }
-    plain
+    plain.clone()
 }
 
 /// `in the fridge`, `on the green desk in the main office`, or nothing for what stands on the floor here.

@@ -51,6 +51,7 @@ mod inquiry;
 mod intent;
 mod interpret;
 mod judge;
+mod kept;
 mod known;
 mod lab;
 mod later;
@@ -109,7 +110,7 @@ pub use context::Context;
 pub use evidence::{Evidence, Fit};
 
 pub use floor::{Floor, FloorPlan};
-pub use interpret::{Interpreter, Unclear};
+pub use interpret::{Consulting, Interpreted, Interpreter, Meant, Unclear};
 pub use known::{Known, KnownGoal, KnownObject, KnownPerson, KnownRobot, within_half_turn};
 pub use memory::{Knows, Lessons, Memory};
 pub use oracle::Oracle;

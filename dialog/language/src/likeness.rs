@@ -1,14 +1,11 @@
 //! What people's own words are like: things told by use and look, hints and wishes, and the requests that would be said plainly.
 
-use std::{
-    collections::{HashMap, hash_map::Entry},
-    sync::{LazyLock, PoisonError, RwLock},
-};
+use std::{collections::HashMap, sync::LazyLock};
 
 use cohabit_cdf::{Catalog, ClassId};
 use cohabit_parser::{Direction, Directions, Meaning};
 
-use crate::describe;
+use crate::kept::Kept;
 
 static THINGS: &str = include_str!("../data/things.txt");
 static HINTS: &str = include_str!("../data/hints.txt");
@@ -20,9 +17,6 @@ pub(crate) const SHARPNESS: f32 = 0.05;
 pub(crate) const UNLIKE: f32 = 0.3;
 pub(crate) const UNLIKE_THING: f32 = 0.44;
 
-/// The most texts that are kept in mind beside those of the data.
-const MOST_KEPT: usize = 4096;
-
 /// How like texts are.
 pub(crate) struct Likeness {
     directions: Directions,
@@ -30,7 +24,7 @@ pub(crate) struct Likeness {
     things: HashMap<&'static str, Vec<Direction>>,
     /// What people say instead of a plain request, by that request.
     hints: HashMap<&'static str, Vec<Direction>>,
-    kept: RwLock<HashMap<String, Direction>>,
+    kept: Kept<Direction>,
 }
 
 impl Likeness {
@@ -45,7 +39,7 @@ impl Likeness {
                 }
                 by_head
             };
-            Likeness { things: by_head(THINGS), hints: by_head(HINTS), kept: RwLock::default(), directions }
+            Likeness { things: by_head(THINGS), hints: by_head(HINTS), kept: Kept::default(), directions }
         });
         &BUILTIN
     }
@@ -55,23 +49,12 @@ impl Likeness {
         if let Some(known) = self.directions.get(text) {
             return known.clone();
         }
-        if let Some(kept) = self.kept.read().unwrap_or_else(PoisonError::into_inner).get(text) {
-            return kept.clone();
-        }
-        let direction = Meaning::builtin().of(text);
-        let mut kept = self.kept.write().unwrap_or_else(PoisonError::into_inner);
-        if kept.len() >= MOST_KEPT {
-            kept.clear();
-        }
-        match kept.entry(text.to_owned()) {
-            Entry::Occupied(known) => known.get().clone(),
-            Entry::Vacant(place) => place.insert(direction).clone(),
-        }
+        self.kept.get(text, || Meaning::builtin().of(text))
     }
 
     /// How like a description is to what things of a class are called, and to how people tell them by use and look.
     pub(crate) fn to_class(&self, said: &Direction, catalog: &Catalog, class: ClassId) -> f32 {
-        let name = describe::name(catalog, class);
+        let name = &catalog.called(class).plain;
         let most_like = |most: Option<f32>, like: f32| Some(most.map_or(like, |most| most.max(like)));
         let words = catalog.class(class).words.iter().map(|word| said.likeness(&self.of(&format!("the {word}"))));
         let called = words.chain([said.likeness(&self.of(&format!("the {name}")))]).fold(-1.0, f32::max);
@@ -96,7 +79,7 @@ mod tests {
     use std::{collections::BTreeSet, fs, path::Path};
 
     use super::*;
-    use crate::acts;
+    use crate::{acts, describe};
 
     /// All texts of the data and of the built-in catalogue whose directions are wanted often.
     fn wanted() -> Vec<String> {

@@ -1,5 +1,7 @@
 //! What the learned parser makes of an utterance, beside what the grammar makes of it.
 
+use std::sync::LazyLock;
+
 use cohabit_cdf::Property;
 use cohabit_parser::{
     Reading,
@@ -8,13 +10,15 @@ use cohabit_parser::{
 
 use crate::{
     alternatives::lines,
+    clause,
     context::Context,
     conversation::Conversation,
     describe,
+    kept::Kept,
     known::KnownObject,
     likeness::{Likeness, SHARPNESS, UNLIKE_THING},
     phrase::{Phrase, Place, Reader},
-    stop_likeness,
+    stop_likeness, token,
     understanding::{Clarification, Understanding},
 };
 
@@ -29,8 +33,13 @@ impl Conversation<'_> {
     /// What else is asked for, if an utterance is likely a stop by the parser, or by what it means.
     pub(crate) fn likely_stop(&self, utterance: &str, context: &Context) -> Option<String> {
         self.parser?;
-        let means_stop = || stop_likeness::probability(&Likeness::builtin().of(utterance)) > MEANS_STOP;
-        self.parsed_stop(utterance, context).or_else(|| means_stop().then(String::new))
+        let means_stop = |text: &str| stop_likeness::probability(&Likeness::builtin().of(text)) > MEANS_STOP;
+        let others = || {
+            let (words, _) = self.lexicon.normalise(utterance);
+            let parts = clause::between_breaks(&words).into_iter().map(token::sentence);
+            parts.filter(|part| !means_stop(part)).collect::<Vec<_>>().join(". ")
+        };
+        self.parsed_stop(utterance, context).or_else(|| means_stop(utterance).then(others))
     }
 
     fn parsed_stop(&self, utterance: &str, context: &Context) -> Option<String> {
@@ -44,7 +53,12 @@ impl Conversation<'_> {
     }
 
     pub(crate) fn readings(&self, utterance: &str, context: &Context) -> Vec<Reading> {
-        self.parser.map(|parser| parser.parse(utterance, &lines(context))).unwrap_or_default()
+        // Parts of an utterance are read more than once.
+        static READ: LazyLock<Kept<Vec<Reading>>> = LazyLock::new(Kept::default);
+        let Some(parser) = self.parser else { return Vec::new() };
+        let lines = lines(context);
+        let before = lines.iter().map(|line| format!("{}{}\n", if line.by_robot { '<' } else { '>' }, line.text));
+        READ.get(&before.chain([utterance.to_owned()]).collect::<String>(), || parser.parse(utterance, &lines))
     }
 
     /// What a reading means; nothing, where it makes no sense in the scene and conversation. What the robot cannot do of it is said.
@@ -121,7 +135,7 @@ impl Conversation<'_> {
             let like = |object: &&KnownObject| likeness.to_class(&said, self.catalog, object.class);
             objects.iter().map(like).fold(-1.0, f32::max) / SHARPNESS + self.nearness(objects)
         };
-        let ranked: Vec<(f32, &(String, Vec<&KnownObject>))> =
+        let ranked: Vec<(f32, &(&str, Vec<&KnownObject>))> =
             things.iter().map(|thing| (utility(&thing.1), thing)).collect();
         let (highest, (name, objects)) = *ranked.iter().max_by(|(one, _), (other, _)| one.total_cmp(other))?;
         let whole: f32 = ranked.iter().map(|(utility, _)| (utility - highest).exp()).sum();

@@ -90,7 +90,7 @@ impl Conversation<'_> {
     }
 
     /// What the words name, and where.
-    fn names_in(&self, words: &[String]) -> Vec<(Range<usize>, Named)> {
+    pub(crate) fn names_in(&self, words: &[String]) -> Vec<(Range<usize>, Named)> {
         let mut named = Vec::new();
         let mut at = 0;
         while at < words.len() {

@@ -252,6 +252,7 @@ impl Conversation<'_> {
             self.remember_start(&steps, context);
         }
         context.begin_leg(&steps);
+        context.request.clone_from(&search.clauses);
         context.search = Some(search);
         Understanding::Plan { steps, reply }
     }

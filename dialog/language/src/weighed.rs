@@ -6,6 +6,7 @@ use crate::{
     ask, clause, condition,
     context::{Context, Guess, Pending},
     conversation::Conversation,
+    describe,
     evidence::Feature,
     lab, parsed, reply,
     understanding::{Asking, Clarification, Step, Understanding},
@@ -16,24 +17,27 @@ use crate::{
 const TO_CHANGE: f32 = 0.6;
 const TO_MOVE: f32 = 0.55;
 /// The same where it is taken for the answer to a question of the robot's: what is to be done was said before.
-const TO_ACT_ON_REPLY: f32 = 0.35;
+const TO_ACT_ON_REPLY: f32 = 0.3;
 /// The same where something that was named is left out.
 const TO_CHANGE_IN_PART: f32 = 0.75;
 const TO_MOVE_IN_PART: f32 = 0.6;
 /// How likely what the grammar reads to the last word, as an answer or as a yes-no question must be for nothing else to be asked: most of
 /// that is right.
-const TO_TRUST_EXACT: f32 = 0.08;
-/// Below this, what is done is said to be what the robot thinks.
+const TO_TRUST_EXACT: f32 = 0.3;
+/// Below this, what is done is said to be what the robot thinks, or what it leaves out is said.
 const SURELY: f32 = 0.7;
+const SURELY_ALL: f32 = 0.9;
+/// How likely what the grammar alone makes of an utterance is meant, where nothing else is asked.
+const UNWEIGHED: f32 = 0.6;
 /// The same of things that nobody named, where a name is unknown.
-const TO_TAKE_FOR_UNHEARD: f32 = 0.85;
+const TO_TAKE_FOR_UNHEARD: f32 = 0.75;
 /// How likely what is said must be the right reply, where nothing is done.
-const TO_REPLY: f32 = 0.3;
+const TO_REPLY: f32 = 0.2;
 /// The same of what is only about things that nobody named, and to propose it.
 const TO_REPLY_UNNAMED: f32 = 0.6;
 const TO_PROPOSE_UNNAMED: f32 = 0.2;
 /// The same where it asks which one of several is meant, in words some of which nobody ever met.
-const TO_ASK_UNHEARD: f32 = 0.6;
+const TO_ASK_UNHEARD: f32 = 0.45;
 /// How likely steps must be meant to be proposed, where every word is known and where not; and to be taken where nothing may be asked.
 const TO_PROPOSE: f32 = 0.1;
 const TO_PROPOSE_UNHEARD: f32 = 0.3;
@@ -45,13 +49,14 @@ const RIVAL: f32 = 0.4;
 const MOST_PROPOSED: usize = 3;
 
 impl Conversation<'_> {
-    /// What speaks for itself, or what most speaks for.
-    pub(crate) fn understand_best(&self, utterance: &str, context: &mut Context) -> Understanding {
+    /// What speaks for itself, or what most speaks for; and how likely it is what was meant.
+    pub(crate) fn understand_weighed(&self, utterance: &str, context: &mut Context) -> (Understanding, f32) {
         let wording = self.wording(utterance);
         let by_grammar = self.read(utterance, context);
         if self.speaks_for_itself(&wording, &by_grammar) {
+            let sureness = if self.parser.is_some() { 1.0 } else { UNWEIGHED };
             *context = by_grammar.context;
-            return by_grammar.understanding;
+            return (by_grammar.understanding, sureness);
         }
         // What has no name that is known may only be guessed at.
         let unheard = match &by_grammar.understanding {
@@ -61,7 +66,7 @@ impl Conversation<'_> {
                     [] => std::slice::from_ref(about),
                     _ => {
                         *context = by_grammar.context;
-                        return by_grammar.understanding;
+                        return (by_grammar.understanding, 0.0);
                     }
                 }
             }
@@ -71,7 +76,7 @@ impl Conversation<'_> {
         let is_trusted = |one: &&Alternative| one.is_exact() && one.probability >= TO_TRUST_EXACT;
         if let Some(trusted) = alternatives.iter().find(|one| alternatives.len() == 1 || is_trusted(one)) {
             *context = trusted.context.clone();
-            return trusted.understanding.clone();
+            return (trusted.understanding.clone(), trusted.probability);
         }
         // A question that the grammar answers is not carried out, nor what it leaves because a condition does not hold.
         let is_open = wording.ends_as_question() || condition::is_conditional(self.lexicon, &wording.words);
@@ -92,7 +97,7 @@ impl Conversation<'_> {
         }
         if let Some(likeliest) = alternatives.first().filter(|one| one.is_likely(unheard)) {
             *context = likeliest.context.clone();
-            return likeliest.understood(unheard);
+            return (likeliest.understood(unheard), likeliest.probability);
         }
         let is_vague = matches!(by_grammar.understanding, Understanding::Question { kind: Clarification::Request, .. });
         let least = match unheard {
@@ -101,13 +106,13 @@ impl Conversation<'_> {
             _ => TO_PROPOSE_UNHEARD,
         };
         if let Some(question) = self.proposed(&alternatives, least, unheard, context) {
-            return question;
+            return (question, 0.0);
         }
         if matches!(by_grammar.understanding, Understanding::Plan { .. }) {
-            return self.unclear(&clause::unknown_words(self.lexicon, &wording.words));
+            return (self.unclear(&clause::unknown_words(self.lexicon, &wording.words)), 0.0);
         }
         *context = by_grammar.context;
-        by_grammar.understanding
+        (by_grammar.understanding, 0.0)
     }
 
     /// Whether what the grammar makes of it needs no other opinion: it is a set phrase of small talk, names a lab that the grammar knows to
@@ -192,7 +197,9 @@ impl Alternative {
         let note = match unheard {
             _ if !is_plan || is_said => return self.understanding.clone(),
             [_, ..] => format!("{}, but I think that you want this.", reply::unknown(unheard).trim_end_matches('.')),
-            [] if self.leaves_out_named() => "That may not be all that you asked for.".to_owned(),
+            [] if self.probability < SURELY_ALL && !self.leaves_out.is_empty() => {
+                format!("I leave out what you said of {}.", describe::list(&self.leaves_out, "and"))
+            }
             [] if self.probability < SURELY => "I think that you want this.".to_owned(),
             [] => return self.understanding.clone(),
         };

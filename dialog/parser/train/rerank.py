@@ -27,8 +27,8 @@ from network import VOCABULARY, WIDTH
 
 SEED = 1
 LAYERS, MOST_CANDIDATE, MOST_PIECES = 4, 70, 190
-#: How many candidates are read of one list, and how many pieces in all of a step.
-MOST_WAYS, PIECES_A_STEP = 10, 5200
+#: How many candidates are read of one list, how many pieces in all of a step, and how many steps are drawn at a time.
+MOST_WAYS, PIECES_A_STEP, STEPS_AHEAD = 10, 5200, 8
 RATE, PRETRAIN_RATE, WARM_UP = 5e-5, 6e-5, 40
 CANDIDATE = 3
 WAYS = corpus.CRATE.parent / "language/fit/ways"
@@ -135,12 +135,10 @@ def train(model, draw, minutes, rate, name):
     optimizer = torch.optim.AdamW([one for one in model.parameters() if one.requires_grad], weight_decay=0.01)
     begun, step, losses = time.monotonic(), 0, []
     model.train()
+    ahead = []
     while (done := (time.monotonic() - begun) / (60 * minutes)) < 1:
-        lists, pieces = [], 0
-        while pieces < PIECES_A_STEP:
-            listed = draw()
-            lists.append(listed)
-            pieces += len(listed.candidates) * (len(listed.words) * 1.2 + 15)
+        ahead = ahead or steps(draw)
+        lists = ahead.pop()
         for group in optimizer.param_groups:
             group["lr"] = rate * min(1, (step + 1) / WARM_UP) * max(0.03, 1 - done)
         with torch.autocast("cpu", dtype=torch.bfloat16):
@@ -152,6 +150,25 @@ def train(model, draw, minutes, rate, name):
         step, losses = step + 1, [*losses[-49:], lost.item()]
         if step % 25 == 0:
             print(f"{name}: step {step}, {100 * done:.0f} %, loss {sum(losses) / len(losses):.3f}", flush=True)
+
+
+def steps(draw):
+    """Some steps of lists, each of such that are about as long: none is padded much."""
+    drawn, pieces = [], 0
+    while pieces < STEPS_AHEAD * PIECES_A_STEP:
+        listed = draw()
+        longest = max(len(row(listed, candidate)[0]) for candidate in listed.candidates)
+        drawn.append((longest, len(drawn), listed))
+        pieces += longest * len(listed.candidates)
+    grouped, rows = [[]], 0
+    for longest, _, listed in sorted(drawn):
+        if grouped[-1] and longest * (rows + len(listed.candidates)) > PIECES_A_STEP:
+            grouped.append([])
+            rows = 0
+        grouped[-1].append(listed)
+        rows += len(listed.candidates)
+    random.Random(len(drawn)).shuffle(grouped)
+    return grouped
 
 
 class Corpus:

@@ -9,7 +9,9 @@ use cohabit_bus::{
     message::{DialogHeader, DialogKind, DialogMessage, PlanStep},
 };
 use cohabit_cdf::{Action, GoToTarget, ObjectId, Status};
-use cohabit_language::{Clarification, Context, Language, Step, Unclear, Understanding, within_half_turn};
+use cohabit_language::{
+    Clarification, Consulting, Context, Language, Meant, Step, Unclear, Understanding, within_half_turn,
+};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -90,8 +92,8 @@ pub struct Conversation {
     language: Language,
     body: u32,
     memory: Memory,
-    /// Whether there is an interpreter.
-    interprets: bool,
+    /// When an interpreter is asked.
+    consulting: Consulting,
 }
 
 /// What the robot asks.
@@ -160,8 +162,9 @@ pub struct Memory {
 #[derive(Clone, Debug, Deserialize, Serialize)]
 struct Puzzle {
     turn: u64,
-    /// What the robot itself makes of it, in case that nobody knows better.
+    /// What the robot itself makes of it, and the conversation then, in case that nobody knows better.
     understanding: Understanding,
+    context: Context,
 }
 
 /// How something was heard that was said aloud.
@@ -187,12 +190,12 @@ const MOST_PLANS: usize = 16;
 impl Conversation {
     /// A conversation in which nothing was said yet.
     pub fn new(language: Language, body: u32) -> Self {
-        Self { language, body, memory: Memory::default(), interprets: false }
+        Self { language, body, memory: Memory::default(), consulting: Consulting::Never }
     }
 
-    /// The same, with an interpreter for what it does not understand: [`Reaction::Interpret`] asks it.
-    pub(crate) fn with_interpreter(self) -> Self {
-        Self { interprets: true, ..self }
+    /// The same, with an interpreter that is asked at these times: [`Reaction::Interpret`] asks it.
+    pub(crate) fn consulting(self, consulting: Consulting) -> Self {
+        Self { consulting, ..self }
     }
 
     /// What it asks, if that is the last that it said.
@@ -342,6 +345,7 @@ impl Conversation {
             return (turn, reactions);
         }
         let text = text.as_str();
+        let context = self.memory.context.clone();
         let understood = match (self.language.understand(text, &known, &mut self.memory.context), aloud) {
             (Understanding::Refusal { is_lost: true, text }, Some(Aloud { raw, .. })) => {
                 Understanding::Refusal { is_lost: true, text: format!("I heard \"{}\". {text}", plainly(raw)) }
@@ -349,20 +353,16 @@ impl Conversation {
             (understood, _) => understood,
         };
         match understood {
-            understanding if self.interprets && self.is_unclear(&understanding) => {
+            understanding if self.consulting.is_asked(&understanding, &self.memory.context) => {
                 let unclear = self.language.unclear(text, &known, before);
-                self.memory.puzzle = Some(Puzzle { turn, understanding });
+                let context = std::mem::replace(&mut self.memory.context, context);
+                self.memory.puzzle = Some(Puzzle { turn, understanding, context });
                 self.say(turn, DialogKind::Reply, LineKind::Say, "One moment, let me think.", &mut reactions);
                 reactions.push(Reaction::Interpret(turn, Box::new(unclear)));
             }
             understanding => self.react(turn, turn, understanding, knowledge, &mut reactions),
         }
         (turn, reactions)
-    }
-
-    /// Whether little was understood, or only guessed at.
-    const fn is_unclear(&self, understanding: &Understanding) -> bool {
-        matches!(understanding, Understanding::Refusal { is_lost: true, .. }) || self.memory.context.has_guessed()
     }
 
     /// Asks whether what was heard was said; a yes means it.
@@ -379,23 +379,33 @@ impl Conversation {
         reactions.push(Reaction::TurnEnded { turn, end: TurnEnd::Asked });
     }
 
-    /// An interpreter made these requests of what was said in a turn, or nothing.
-    pub(crate) fn interpreted(&mut self, turn: u64, requests: &[String], knowledge: &Knowledge) -> Vec<Reaction> {
+    /// What an interpreter takes for meant that was said in a turn, if it knows, and how it came to that, for the log.
+    pub(crate) fn interpreted(
+        &mut self,
+        turn: u64,
+        meant: Option<&Meant>,
+        note: &str,
+        knowledge: &Knowledge,
+    ) -> Vec<Reaction> {
         let mut reactions = Vec::new();
-        let Some(Puzzle { understanding: own, .. }) = self.memory.puzzle.take_if(|puzzle| puzzle.turn == turn) else {
+        let Some(Puzzle { understanding: own, context, .. }) = self.memory.puzzle.take_if(|puzzle| puzzle.turn == turn)
+        else {
             return reactions;
         };
-        let known = knowledge.known();
-        let understanding =
-            known.and_then(|known| self.language.understand_interpreted(requests, &known, &mut self.memory.context));
-        match understanding {
-            Some(understanding) => {
-                let taken = format!("I take that as: \"{}\".", requests.join(", then "));
-                self.say(turn, DialogKind::Reply, LineKind::Say, &taken, &mut reactions);
-                self.react(turn, turn, understanding, knowledge, &mut reactions);
-            }
-            None => self.react(turn, turn, own, knowledge, &mut reactions),
+        reactions.push(self.bus(DialogKind::Interpreted, turn, note));
+        let known = knowledge.known().zip(meant);
+        let understood =
+            known.and_then(|(known, meant)| self.language.understand_meant(meant, &known, &mut self.memory.context));
+        let Some(understanding) = understood else {
+            self.memory.context = context;
+            self.react(turn, turn, own, knowledge, &mut reactions);
+            return reactions;
+        };
+        if let Some(Meant::Do(requests)) = meant.filter(|_| !is_same_plan(&own, &understanding)) {
+            let taken = format!("I take that as: \"{}\".", requests.join(", then "));
+            self.say(turn, DialogKind::Reply, LineKind::Say, &taken, &mut reactions);
         }
+        self.react(turn, turn, understanding, knowledge, &mut reactions);
         reactions
     }
 
@@ -648,6 +658,14 @@ impl Conversation {
     fn bus(&self, kind: DialogKind, turn: u64, text: &str) -> Reaction {
         Reaction::Bus(Box::new(DialogMessage::new(kind, self.body, turn, text)))
     }
+}
+
+/// Whether both are plans of the same actions.
+fn is_same_plan(one: &Understanding, other: &Understanding) -> bool {
+    let (Understanding::Plan { steps: one, .. }, Understanding::Plan { steps: other, .. }) = (one, other) else {
+        return false;
+    };
+    one.iter().map(|step| &step.action).eq(other.iter().map(|step| &step.action))
 }
 
 /// The steps up to the first whose object is not where the robot believes it to be; then to that place, where it finds

@@ -1,5 +1,5 @@
-//! A language model at an OpenAI-compatible address, which puts what the robot did not understand into plain requests. It
-//! proposes words alone: they are understood, grounded and checked like anybody's.
+//! A language model at an OpenAI-compatible address, which says what people mean. It proposes words alone: requests are understood,
+//! grounded and checked like anybody's.
 
 use std::{
     env,
@@ -7,11 +7,12 @@ use std::{
         Weak,
         mpsc::{Receiver, SyncSender, sync_channel},
     },
-    time::Duration,
+    time::{Duration, Instant},
 };
 
 use cohabit_cdf::BodyId;
-use cohabit_language::{Interpreter, Unclear};
+use cohabit_language::{Interpreted, Interpreter, Meant, Unclear};
+use serde::Deserialize;
 use serde_json::{Value, json};
 
 use crate::talk::Talk;
@@ -56,12 +57,14 @@ pub fn puzzles() -> (Puzzles, Receiver<Asked>) {
 /// Answers what is asked, as long as there is a conversation.
 pub fn answer(interpreter: &dyn Interpreter, asked: &Receiver<Asked>, talk: &Weak<Talk>) {
     while let Ok(Asked { body, turn, unclear }) = asked.recv() {
-        let requests = interpreter.interpret(&unclear).unwrap_or_else(|error| {
+        let begun = Instant::now();
+        let Interpreted { meant, note } = interpreter.interpret(&unclear).unwrap_or_else(|error| {
             tracing::warn!("the language model could not be asked: {error}");
-            Vec::new()
+            Interpreted { meant: None, note: error }
         });
+        let note = format!("{} ms: {note}", begun.elapsed().as_millis());
         let Some(talk) = talk.upgrade() else { return };
-        if let Err(error) = talk.note_interpretation(body, turn, &requests) {
+        if let Err(error) = talk.note_interpretation(body, turn, meant.as_ref(), &note) {
             tracing::error!("{error}");
             return;
         }
@@ -100,6 +103,12 @@ impl Endpoint {
         Self::new(&address, model, set("COHABIT_MODEL_KEY")).map(Some)
     }
 
+    /// The model's name.
+    #[must_use]
+    pub fn model(&self) -> &str {
+        &self.model
+    }
+
     fn new(address: &str, model: String, key: Option<String>) -> Result<Self, EndpointError> {
         let address = address.trim().trim_end_matches('/');
         if !address.starts_with("http://") && !address.starts_with("https://") {
@@ -120,53 +129,215 @@ impl Endpoint {
 }
 
 impl Interpreter for Endpoint {
-    fn interpret(&self, unclear: &Unclear) -> Result<Vec<String>, String> {
+    fn interpret(&self, unclear: &Unclear) -> Result<Interpreted, String> {
         let answer = self.ask(&question(&self.model, unclear)).map_err(|error| error.to_string())?;
-        let answer: Value = serde_json::from_slice(&answer).map_err(|error| format!("it answers no JSON: {error}"))?;
-        let content = answer["choices"][0]["message"]["content"].as_str();
-        content.map(requests).ok_or_else(|| "its answer has no `choices[0].message.content`".to_owned())
+        let answer: Answer =
+            serde_json::from_slice(&answer).map_err(|error| format!("its answer is no chat completion: {error}"))?;
+        let message = answer.choices.into_iter().next().ok_or("its answer has no `choices`")?.message;
+        let note = json!({
+            "model": self.model,
+            "content": message.content,
+            "calls": message.tool_calls.iter().map(|call| &call.function.name).zip(message.arguments()).collect::<Vec<_>>(),
+            "usage": answer.usage,
+        });
+        Ok(Interpreted { meant: message.meant(), note: note.to_string() })
     }
+}
+
+/// The part of a chat completion that is read.
+#[derive(Deserialize)]
+struct Answer {
+    choices: Vec<Choice>,
+    #[serde(default)]
+    usage: Value,
+}
+
+#[derive(Deserialize)]
+struct Choice {
+    message: Message,
+}
+
+#[derive(Deserialize)]
+struct Message {
+    #[serde(default)]
+    content: Option<String>,
+    #[serde(default, deserialize_with = "or_none")]
+    tool_calls: Vec<Call>,
+}
+
+#[derive(Deserialize)]
+struct Call {
+    function: Function,
+}
+
+#[derive(Deserialize)]
+struct Function {
+    name: String,
+    /// JSON as text; some servers send it as it is.
+    #[serde(default)]
+    arguments: Value,
+}
+
+/// Servers write no calls as `null` too.
+fn or_none<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<Vec<Call>, D::Error> {
+    Ok(Option::deserialize(deserializer)?.unwrap_or_default())
+}
+
+impl Message {
+    /// What each call is made with.
+    fn arguments(&self) -> impl Iterator<Item = Value> {
+        self.tool_calls.iter().map(|Call { function: Function { arguments, .. } }| match arguments {
+            Value::String(text) => serde_json::from_str(text).unwrap_or_default(),
+            value => value.clone(),
+        })
+    }
+
+    /// What it says by calls, or else in JSON, whatever stands around that: the calls as an object, or an array of requests.
+    fn meant(&self) -> Option<Meant> {
+        let called =
+            self.tool_calls.iter().zip(self.arguments()).flat_map(|(call, arguments)| match &*call.function.name {
+                "do" => strings(&arguments["requests"]).into_iter().map(Part::Request).collect(),
+                "say" => strings(&arguments["text"]).into_iter().map(Part::Say).collect(),
+                "ask" => strings(&arguments["text"]).into_iter().map(Part::Ask).collect(),
+                _ => Vec::new(),
+            });
+        let called = joined(called);
+        called.or_else(|| {
+            let content = self.content.as_deref()?;
+            let of_object = between(content, '{', '}').and_then(|object| {
+                let parts = strings(&object["do"]).into_iter().map(Part::Request);
+                let said = strings(&object["say"]).into_iter().map(Part::Say);
+                joined(parts.chain(said).chain(strings(&object["ask"]).into_iter().map(Part::Ask)))
+            });
+            of_object.or_else(|| joined(strings(&between(content, '[', ']')?).into_iter().map(Part::Request)))
+        })
+    }
+}
+
+/// A part of what a model wants.
+enum Part {
+    Request(String),
+    Say(String),
+    Ask(String),
+}
+
+/// What these come to: what is to be done counts most, what is to be known first more than what is said.
+fn joined(parts: impl Iterator<Item = Part>) -> Option<Meant> {
+    let (mut requests, mut said, mut asked) = (Vec::new(), Vec::new(), Vec::new());
+    for part in parts {
+        match part {
+            Part::Request(request) => requests.push(request),
+            Part::Say(text) => said.push(text),
+            Part::Ask(text) => asked.push(text),
+        }
+    }
+    match (requests.is_empty(), asked.is_empty(), said.is_empty()) {
+        (false, ..) => Some(Meant::Do(requests)),
+        (_, false, _) => Some(Meant::Ask(asked.join(" "))),
+        (.., false) => Some(Meant::Say(said.join(" "))),
+        _ => None,
+    }
+}
+
+/// A text, or several.
+fn strings(value: &Value) -> Vec<String> {
+    match value {
+        Value::String(text) if !text.trim().is_empty() => vec![text.clone()],
+        Value::Array(texts) => texts.iter().filter_map(|text| text.as_str().map(str::to_owned)).collect(),
+        _ => Vec::new(),
+    }
+}
+
+/// The JSON between the first of one character and the last of another.
+fn between(content: &str, first: char, last: char) -> Option<Value> {
+    let (from, to) = content.find(first).zip(content.rfind(last))?;
+    serde_json::from_str(content.get(from..=to)?).ok()
 }
 
 /// What a model is asked.
 fn question(model: &str, unclear: &Unclear) -> Value {
-    let Unclear { utterance, before, things, rooms, held, room } = unclear;
+    let Unclear { utterance, before, things, facts, goals, rooms, held, room } = unclear;
     let things: Vec<&str> = things.iter().take(MOST_THINGS).map(String::as_str).collect();
     let facts = format!(
-        "Rooms: {}. Things: {}. You are in the {room}. In your hand: {}.",
+        "Rooms: {}. Things: {}. What can be carried, and where it is: {}. You are in the {room}. In your hand: {}. Goals of the mission \
+         that are not met: {}.",
         rooms.join(", "),
         things.join(", "),
+        facts.join("; "),
         held.as_deref().unwrap_or("nothing"),
+        if goals.is_empty() { "none that you know of".to_owned() } else { goals.join("; ") },
     );
     let line = |(is_robot, text): &(bool, String)| json!({ "role": if *is_robot { "assistant" } else { "user" }, "content": text });
     let system = json!({ "role": "system", "content": format!("{INSTRUCTIONS}\n{facts}") });
     let utterance = json!({ "role": "user", "content": utterance });
     let messages: Vec<Value> = std::iter::once(system).chain(before.iter().map(line)).chain([utterance]).collect();
-    json!({ "model": model, "messages": messages, "temperature": 0, "max_tokens": 200 })
+    json!({ "model": model, "messages": messages, "tools": tools(), "temperature": 0, "max_tokens": 300 })
 }
 
-/// The requests in what a model wrote: a JSON array of sentences, whatever it wrote around that.
-fn requests(content: &str) -> Vec<String> {
-    let array = content.find('[').zip(content.rfind(']')).and_then(|(from, to)| content.get(from..=to));
-    array.and_then(|array| serde_json::from_str(array).ok()).unwrap_or_default()
+/// What a model may call.
+fn tools() -> Value {
+    let tool = |name: &str, about: &str, argument: &str, schema: Value| {
+        json!({ "type": "function", "function": {
+            "name": name,
+            "description": about,
+            "parameters": { "type": "object", "properties": { argument: schema }, "required": [argument] },
+        } })
+    };
+    let text = json!({ "type": "string" });
+    json!([
+        tool(
+            "do",
+            "Carry out plain requests, one after the other",
+            "requests",
+            json!({ "type": "array", "items": text })
+        ),
+        tool("say", "Say something to the person, where nothing is to be done", "text", text.clone()),
+        tool("ask", "Ask the person what you must know first", "text", text.clone()),
+    ])
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    fn meant(message: Value) -> Option<Meant> {
+        serde_json::from_value::<Message>(message).unwrap().meant()
+    }
+
+    fn requests(all: &[&str]) -> Option<Meant> {
+        Some(Meant::Do(all.iter().map(|request| (*request).to_owned()).collect()))
+    }
+
     #[test]
-    fn requests_are_read_from_whatever_stands_around_them() {
+    fn what_is_meant_is_read_from_whatever_stands_around_it() {
         for (content, expected) in [
-            (r#"["go to the kitchen", "pick up the mug"]"#, &["go to the kitchen", "pick up the mug"][..]),
-            ("Sure!\n```json\n[\"stop\"]\n```", &["stop"]),
-            ("[]", &[]),
-            ("go to the kitchen", &[]),
-            ("] [", &[]),
-            ("[1, 2]", &[]),
+            (r#"["go to the kitchen", "pick up the mug"]"#, requests(&["go to the kitchen", "pick up the mug"])),
+            ("Sure!\n```json\n[\"stop\"]\n```", requests(&["stop"])),
+            (r#"{"do": ["open the fridge"]}"#, requests(&["open the fridge"])),
+            (r#"Here: {"say": "It is cold."}"#, Some(Meant::Say("It is cold.".to_owned()))),
+            (r#"{"ask": "Which one?", "say": "Hm."}"#, Some(Meant::Ask("Which one?".to_owned()))),
+            ("[]", None),
+            ("{}", None),
+            ("go to the kitchen", None),
+            ("] [", None),
+            ("} {", None),
+            ("[1, 2]", None),
         ] {
-            assert_eq!(requests(content), expected, "{content}");
+            assert_eq!(meant(json!({ "content": content })), expected, "{content}");
         }
+    }
+
+    #[test]
+    fn calls_are_read_as_text_and_as_they_are() {
+        let call = |name: &str, arguments: Value| json!({ "id": "1", "type": "function", "function": { "name": name, "arguments": arguments } });
+        let calls = |calls: &[Value]| meant(json!({ "role": "assistant", "content": null, "tool_calls": calls }));
+        let open = call("do", json!(r#"{"requests": ["open the fridge"]}"#));
+        let close = call("do", json!({ "requests": ["close the fridge"] }));
+        assert_eq!(calls(&[open.clone(), close]), requests(&["open the fridge", "close the fridge"]));
+        assert_eq!(calls(&[call("say", json!(r#"{"text": "Hello."}"#)), open]), requests(&["open the fridge"]));
+        assert_eq!(calls(&[call("ask", json!({ "text": "Which one?" }))]), Some(Meant::Ask("Which one?".to_owned())));
+        assert_eq!(calls(&[call("fly", json!("{"))]), None);
+        assert_eq!(meant(json!({ "content": "[]", "tool_calls": null })), None);
     }
 
     #[test]

@@ -50,7 +50,7 @@ use cohabit_bus::{BusError, Pauses, Transport, message::CameraRecord};
 use cohabit_cdf::{Catalog, Layout, Mission};
 use serde_json::{Value, json};
 
-pub use cohabit_language::{Asking, Interpreter, Knows, Language};
+pub use cohabit_language::{Asking, Consulting, Interpreter, Knows, Language};
 pub use cohabit_speech::VoiceSettings;
 pub use conversation::{Asked, Conversation, Reaction, TurnEnd};
 pub use driving::{Drivable, NotDrivable};
@@ -97,8 +97,10 @@ pub struct DialogConfig {
     pub knows: Knows,
     /// When it asks.
     pub asking: Asking,
-    /// Who makes something of what the robot does not understand, if anybody.
+    /// Who else says what people mean, if anybody.
     pub interpreter: Option<Box<dyn Interpreter>>,
+    /// When it is asked.
+    pub consulting: Consulting,
     /// The bodies that people speak to.
     pub robots: Vec<u32>,
     /// What bodies are called, if not by what they are.
@@ -164,10 +166,10 @@ pub fn serve(
     let journal = Journal::open(config.journal.as_deref());
     let (listener, place) = listen(config.listen, journal.past().place.as_ref())?;
     let language = Language::new(Arc::clone(&catalog)).asking(config.asking);
-    let interprets = config.interpreter.is_some();
-    let robots = Robots::new(&robots, config.knows, &language, &catalog, &layout, told, interprets)
+    let consulting = if config.interpreter.is_some() { config.consulting } else { Consulting::Never };
+    let robots = Robots::new(&robots, config.knows, &language, &catalog, &layout, told, consulting)
         .with_mission(&mission.goal_text);
-    let (puzzles, asked) = interprets.then(interpreter::puzzles).unzip();
+    let (puzzles, asked) = config.interpreter.is_some().then(interpreter::puzzles).unzip();
     let survey = Arc::new(Survey::new(&*bus, config.questionnaires)?);
     let (tells, plays) = (Arc::clone(&hub), Arc::clone(&hub));
     let (tell, play) = (move |message: &Value| tells.tell(message), move |piece| plays.play(piece));

@@ -65,7 +65,8 @@ fn said(entry: &DialogEntry, names: Names) -> Option<Told> {
         | DialogKind::StepStarted
         | DialogKind::StepEnded
         | DialogKind::PlanEnded
-        | DialogKind::Spoken => None,
+        | DialogKind::Spoken
+        | DialogKind::Interpreted => None,
     }
 }
 

@@ -7,7 +7,7 @@ use cohabit_bus::{
     message::{BodyRecord, StateView},
 };
 use cohabit_cdf::{BodyId, BodyKind, Catalog, Layout, ObjectId};
-use cohabit_language::{Addressed, Knows, Language, Lessons, Roster};
+use cohabit_language::{Addressed, Consulting, Knows, Language, Lessons, Roster};
 
 use crate::{
     conversation::{Conversation, Memory},
@@ -94,12 +94,9 @@ impl Robots {
         catalog: &Arc<Catalog>,
         layout: &Layout,
         told: BodyNames,
-        interprets: bool,
+        consulting: Consulting,
     ) -> Self {
-        let conversation = |body| {
-            let conversation = Conversation::new(language.clone(), body);
-            if interprets { conversation.with_interpreter() } else { conversation }
-        };
+        let conversation = |body| Conversation::new(language.clone(), body).consulting(consulting);
         let robot = |RobotName { body, .. }: &RobotName| Robot {
             body: *body,
             conversation: conversation(body.0),

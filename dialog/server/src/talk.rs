@@ -16,6 +16,7 @@ use cohabit_bus::{
     monotonic_nanos,
 };
 use cohabit_cdf::{BodyId, Catalog, ObjectId};
+use cohabit_language::Meant;
 use cohabit_speech::Scene;
 use serde_json::Value;
 
@@ -38,6 +39,9 @@ use crate::{
 
 /// What is said for whoever says stop aloud, in whatever words.
 const STOP: &str = "stop";
+/// Why nothing came of an interpreter, for the log.
+const NOT_ASKED: &str = "too much was asked already";
+const NOT_ANSWERED: &str = "the service that asked ended before the answer";
 
 /// The conversations, with their ends on the bus and to the pages. One lock: who speaks first is heard first.
 pub struct Talk {
@@ -246,16 +250,29 @@ impl Talk {
         self.carry_out(&mut inner, body, Heard::AtPage(visitor), reactions)
     }
 
-    /// What an interpreter made of what the robot of a body did not understand in a turn.
-    pub fn note_interpretation(&self, body: BodyId, turn: u64, requests: &[String]) -> Result<(), DialogError> {
+    /// What an interpreter takes for meant that the robot of a body was told in a turn, and how it came to that.
+    pub fn note_interpretation(
+        &self,
+        body: BodyId,
+        turn: u64,
+        meant: Option<&Meant>,
+        note: &str,
+    ) -> Result<(), DialogError> {
         let mut inner = self.lock();
         inner.look()?;
-        self.interpreted(&mut inner, body, turn, requests)
+        self.interpreted(&mut inner, body, turn, meant, note)
     }
 
-    fn interpreted(&self, inner: &mut Inner, body: BodyId, turn: u64, requests: &[String]) -> Result<(), DialogError> {
+    fn interpreted(
+        &self,
+        inner: &mut Inner,
+        body: BodyId,
+        turn: u64,
+        meant: Option<&Meant>,
+        note: &str,
+    ) -> Result<(), DialogError> {
         let Some(robot) = inner.robots.of_body(body) else { return Ok(()) };
-        let reactions = robot.conversation.interpreted(turn, requests, &robot.knowledge);
+        let reactions = robot.conversation.interpreted(turn, meant, note, &robot.knowledge);
         if reactions.is_empty() { Ok(()) } else { self.carry_out(inner, body, Heard::Nothing, reactions) }
     }
 
@@ -264,7 +281,7 @@ impl Talk {
         let mut inner = self.lock();
         let puzzled: Vec<_> =
             inner.robots.iter().filter_map(|one| Some((one.body, one.conversation.puzzled()?))).collect();
-        puzzled.into_iter().try_for_each(|(body, turn)| self.interpreted(&mut inner, body, turn, &[]))
+        puzzled.into_iter().try_for_each(|(body, turn)| self.interpreted(&mut inner, body, turn, None, NOT_ANSWERED))
     }
 
     /// Whether pointing at an object answers what a robot asks.
@@ -472,7 +489,7 @@ impl Talk {
                         .as_ref()
                         .is_some_and(|puzzles| puzzles.ask(Asked { body, turn, unclear: *unclear }));
                     if !is_asked {
-                        self.interpreted(inner, body, turn, &[])?;
+                        self.interpreted(inner, body, turn, None, NOT_ASKED)?;
                     }
                 }
                 Reaction::TurnEnded { turn, end } => {

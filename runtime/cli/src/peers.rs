@@ -14,7 +14,9 @@ use std::{
 use anyhow::Context as _;
 use cohabit_bus::{CameraId, Session, Shm, message::Control};
 use cohabit_cdf::BodyRequest;
-use cohabit_dialog::{Asking, DialogConfig, DialogError, Drivable, Endpoint, HostName, Identity, Knows, Questionnaire};
+use cohabit_dialog::{
+    Asking, Consulting, DialogConfig, DialogError, Drivable, Endpoint, HostName, Identity, Knows, Questionnaire,
+};
 use cohabit_engine::{Appearance, BuildError, CameraPlan, SessionPlan, Simulator};
 use cohabit_record::{Branch, LogError, RecordError, Recorder, SessionFacts};
 use cohabit_render::MeshLibrary;
@@ -265,6 +267,10 @@ pub struct Listening {
     /// When the robot asks: `never`, when it is `unsure`, or `always`, and before it does anything
     #[arg(long, value_name = "WHEN", default_value_t)]
     pub ask: Asking,
+    /// When the language model that COHABIT_MODEL_URL and COHABIT_MODEL name is asked what people mean: `never`, where the
+    /// robot is `unsure`, or `always`
+    #[arg(long, value_name = "WHEN", default_value_t)]
+    pub model: Consulting,
     /// What people are asked on the page, before they play or after: `sus` (System Usability Scale), `tlx` (NASA Task Load
     /// Index), or a file (TOML); as often as needed
     #[arg(long = "questionnaire", value_name = "NAME|FILE")]
@@ -387,6 +393,7 @@ impl Dialog {
             hosts: self.listening.hosts.clone(),
             knows: self.listening.knows,
             asking: self.listening.ask,
+            consulting: self.listening.model,
             interpreter: Endpoint::from_environment().map_err(bad_input)?.map(|model| Box::new(model) as _),
             robots: self.robots.clone(),
             names: self.listening.names.iter().map(|one| (one.body, one.name.clone())).collect(),

@@ -9,7 +9,7 @@ use std::{
 use anyhow::Context as _;
 use cohabit_bus::{CameraId, Session, SessionError, Shm, Topic, message::Plane};
 use cohabit_cdf::BodyRequest;
-use cohabit_dialog::{Questionnaire, begin_after};
+use cohabit_dialog::{Endpoint, Questionnaire, begin_after};
 use cohabit_engine::{CameraPlan, SessionPlan};
 use cohabit_record::{Branch, Log};
 
@@ -191,7 +191,7 @@ impl Play {
         branched: Option<Branch>,
     ) -> Noted {
         let minds = self.minds.iter().map(ToString::to_string).collect::<Vec<_>>().join(" ");
-        let Listening { drive, knows, ask, names, voice, .. } = &self.listening;
+        let Listening { drive, knows, ask, model: model_asked, names, voice, .. } = &self.listening;
         let robots = robots.iter().map(u32::to_string).collect::<Vec<_>>().join(",");
         let settings = [
             ("agents", minds),
@@ -204,8 +204,11 @@ impl Play {
         ];
         let asked = questionnaires.iter().map(|one| one.name.as_str()).collect::<Vec<_>>().join(" ");
         let asked = (!asked.is_empty()).then_some(("questionnaires", asked));
-        let settings =
-            settings.into_iter().chain(asked).chain(voice.settings()).map(|(name, value)| (name.to_owned(), value));
+        let model = Endpoint::from_environment().ok().flatten();
+        let model =
+            model.map(|endpoint| [("model", endpoint.model().to_owned()), ("model_asked", model_asked.to_string())]);
+        let settings = settings.into_iter().chain(asked).chain(model.into_iter().flatten()).chain(voice.settings());
+        let settings = settings.map(|(name, value)| (name.to_owned(), value));
         let names = names.iter().map(|one| (format!("{NAME_OF}{}", one.body), one.name.clone()));
         let settings = settings.chain(names).collect();
         Noted {

@@ -80,13 +80,14 @@ impl Role {
     pub fn dialog(listening: &Listening, robots: &[u32]) -> Self {
         let (listen, port) = (listening.listen.to_string(), listening.port.to_string());
         let (drive, knows) = (listening.drive.to_string(), listening.knows.to_string());
-        let ask = listening.ask.name();
-        let arguments = ["--listen", &listen, "--port", &port, "--drive", &drive, "--knows", &knows, "--ask", ask];
+        let (ask, model) = (listening.ask.name(), listening.model.name());
+        let played = ["--drive", &drive, "--knows", &knows, "--ask", ask, "--model", model];
+        let arguments = ["--listen", &listen, "--port", &port].into_iter().chain(played);
         let names = listening.names.iter().flat_map(|name| ["--name".to_owned(), name.to_string()]);
         let robots = robots.iter().flat_map(|body| ["--robot".to_owned(), body.to_string()]);
         let questionnaires = listening.questionnaires.iter().map(|name| format!("--questionnaire={name}"));
         let hosts = listening.hosts.iter().map(|host| format!("--host={host}"));
-        let arguments = arguments.map(str::to_owned).into_iter().chain(names).chain(robots).chain(questionnaires);
+        let arguments = arguments.map(str::to_owned).chain(names).chain(robots).chain(questionnaires);
         let arguments = arguments.chain(hosts);
         let arguments = arguments.chain(listening.voice.arguments());
         let tls = listening.tls_arguments();

@@ -29,11 +29,13 @@ pub enum DialogKind {
     /// How a turn was spoken: for logs. `stamps` are of other moments: speech began, speech ended, its text was there,
     /// understood, first sound of the answer. The text is what was heard, before it was made sense of.
     Spoken = 9,
+    /// What an interpreter such as a language model said about a turn, and how long it took: for logs.
+    Interpreted = 10,
 }
 
 impl DialogKind {
     /// All kinds.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Utterance,
         Self::Reply,
         Self::Question,
@@ -43,6 +45,7 @@ impl DialogKind {
         Self::PlanEnded,
         Self::Latency,
         Self::Spoken,
+        Self::Interpreted,
     ];
 }
 

@@ -82,7 +82,7 @@ const fn kind(understanding: &Understanding) -> &'static str {
 /// Whether what is done is not simply undone.
 fn lasts(understanding: &Understanding) -> bool {
     let Understanding::Plan { steps, .. } = understanding else { return false };
-    steps.iter().any(|step| {
-        matches!(step.action, Action::Interact { verb, .. } if !matches!(verb, Verb::Open | Verb::Close))
-    })
+    steps
+        .iter()
+        .any(|step| matches!(step.action, Action::Interact { verb, .. } if !matches!(verb, Verb::Open | Verb::Close)))
 }
