@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use cohabit_cdf::{Catalog, Fluid, ObjectId, Property, state::StateFlag};
+use cohabit_cdf::{Catalog, Fluid, ObjectId, Property, RoomId, state::StateFlag};
 
 use crate::{
     context::Context,
@@ -94,6 +94,12 @@ impl Answerer<'_> {
             (QuestionKind::Distance, Some(phrase)) => self.with_object(phrase, |id| self.distance(id)),
             (QuestionKind::Count, Some(phrase)) => self.count(phrase),
             (QuestionKind::State, Some(phrase)) => self.state(phrase, question),
+            (QuestionKind::Where, about)
+                if about.as_ref().is_none_or(|phrase| phrase.namings.is_empty() && phrase.fluid.is_none())
+                    && let Some(room) = self.room_in(&question.rest) =>
+            {
+                Understanding::answer(self.way_to(room))
+            }
             (QuestionKind::Where, Some(phrase)) if !phrase.is_empty() => {
                 self.place_of(phrase).with_yes_or_no(question.is_whether)
             }
@@ -409,6 +415,19 @@ impl Answerer<'_> {
         }
         let text = format!("I have not seen {said}. I can look around if you want.");
         Understanding::whether(false, text, Vec::new())
+    }
+
+    /// The room that words name.
+    fn room_in(&self, words: &[String]) -> Option<RoomId> {
+        (0..words.len()).find_map(|at| self.lexicon.rooms.longest(&words[at..]).map(|(_, room)| *room))
+    }
+
+    fn way_to(&self, room: RoomId) -> String {
+        let name = room.name();
+        if room == self.scene.robot.room {
+            return format!("This is the {name}.");
+        }
+        format!("I know the way to the {name}: say \"go to the {name}\", and I will show you.")
     }
 
     fn place_of(&self, phrase: &Phrase) -> Understanding {

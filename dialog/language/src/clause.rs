@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use cohabit_cdf::{Catalog, Fluid};
+use cohabit_cdf::{Catalog, Fluid, Property};
 use serde::{Deserialize, Serialize};
 
 use crate::{
@@ -228,6 +228,23 @@ pub(crate) fn joined(clauses: Vec<Clause>) -> Vec<Clause> {
         joined.push(clause);
     }
     joined
+}
+
+/// `fill the bowl with cereal`: what can be carried is poured into it.
+pub(crate) fn poured(catalog: &Catalog, mut clause: Clause) -> Clause {
+    let is_carried =
+        |phrase: &Phrase| phrase.namings.iter().any(|naming| catalog.class(naming.class).has(Property::Pickupable));
+    if clause.intent == Intent::Fill
+        && let [filled] = clause.objects.as_slice()
+        && let [(Preposition::With, Place::Object(what))] = clause.places.as_slice()
+        && is_carried(what)
+    {
+        let (filled, what) = (filled.clone(), what.clone());
+        clause.intent = Intent::Pour;
+        clause.objects = vec![what];
+        clause.places = vec![(Preposition::In, Place::Object(filled))];
+    }
+    clause
 }
 
 /// The words between cuts.

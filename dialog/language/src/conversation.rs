@@ -348,6 +348,7 @@ impl Conversation<'_> {
         if let Some(words) = unclear.filter(|words| !words.is_empty()) {
             return self.unclear(&words);
         }
+        let clauses = clauses.into_iter().map(|clause| clause::poured(self.catalog, clause)).collect();
         self.plan(clause::joined(clauses), Consent::default(), context)
     }
 

@@ -65,6 +65,7 @@ mod oracle;
 mod order;
 mod paraphrase;
 mod parsed;
+mod parts;
 mod phrase;
 mod plan;
 mod process;

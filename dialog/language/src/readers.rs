@@ -1,5 +1,5 @@
-//! The readers of an utterance, each with what it takes it for: the grammar, the learned parser, the likeness to plain requests, its parts, and
-//! the things that it names.
+//! The readers of an utterance, each with what it takes it for: the grammar, the learned parser, the likeness to plain requests, and the
+//! things that it names. [`crate::parts`] has its parts.
 
 use std::ops::Range;
 
@@ -10,80 +10,21 @@ use crate::{
     alternatives::{Alternative, without_yes_or_no},
     answer::HINT,
     ask,
-    clause::{self, Part},
     context::{Consent, Context, Pending},
     conversation::Conversation,
     describe,
     evidence::{Evidence, Feature},
-    imagine,
-    known::Known,
     likeness::{Likeness, SHARPNESS},
-    parsed, question, reply,
+    parsed,
     said::{Mention, Named, Said, count, replaces, share},
-    understanding::{Step, Understanding},
+    understanding::Understanding,
 };
 
-/// Into how many parts an utterance is taken apart at most.
-const MOST_PARTS: usize = 6;
-/// How many ways to take a part are followed, and how many ways to take all parts so far.
-const MOST_OF_PART: usize = 2;
-const MOST_SEQUENCES: usize = 2;
 /// How many words name something else than before at most, and how many ways to do so are tried.
 const LONGEST_ELLIPSIS: usize = 9;
 const MOST_REPLACED: usize = 4;
-/// How likely a part asks for nothing, at least.
-const LEAST_SKIPPED: f32 = 0.02;
 /// How many things that are named without a verb are carried at most.
 const MOST_CARRIED: usize = 3;
-
-/// The parts of an utterance so far, one after the other.
-#[derive(Clone)]
-struct Sequence {
-    /// What they come to together, and how likely they are meant so.
-    steps: Vec<Step>,
-    probability: f32,
-    /// The scene and the conversation after them.
-    scene: Known,
-    context: Context,
-    /// What is done or asked first, before all that is left, where that is no plain plan.
-    begun: Option<Understanding>,
-    /// Whether all that is left is to be done later.
-    is_complete: bool,
-}
-
-impl Sequence {
-    const fn new(scene: Known, context: Context) -> Self {
-        Self { steps: Vec::new(), probability: 1.0, scene, context, begun: None, is_complete: false }
-    }
-
-    /// Leaves these texts for later, after what was there to do later.
-    fn complete(&mut self, mut context: Context, later: Vec<String>) {
-        context.later.extend(later);
-        (self.context, self.is_complete) = (context, true);
-    }
-
-    /// All of it as one way to understand the utterance; nothing, where nothing is to be done.
-    fn alternative(self, said: &Said<'_>) -> Option<Alternative> {
-        let Self { steps, probability, mut context, begun, is_complete, .. } = self;
-        let understanding = match begun {
-            Some(understanding) => understanding,
-            None if steps.is_empty() => return None,
-            None => {
-                let mut reply = reply::plan_reply(&steps, &[]);
-                if is_complete {
-                    reply.push_str(&format!(" Then: \"{}\".", context.later.join("; ")));
-                } else {
-                    context.begin(&steps);
-                }
-                Understanding::Plan { steps, reply }
-            }
-        };
-        let mut evidence = Evidence::default();
-        evidence.set(Feature::Parts, probability);
-        evidence.set(Feature::NotInstead, said.instead);
-        Some(Alternative::new(understanding, context, evidence))
-    }
-}
 
 impl Conversation<'_> {
     pub(crate) fn of_reading(
@@ -146,84 +87,6 @@ impl Conversation<'_> {
             found.push(Alternative::new(understanding, then, evidence));
         }
         found
-    }
-
-    /// What its parts mean one after the other: parts that begin with a verb, or all that stands between commas.
-    pub(crate) fn in_parts(&self, said: &Said<'_>, context: &Context) -> Vec<Alternative> {
-        if said.is_conditional {
-            return Vec::new();
-        }
-        let words = &said.wording.words;
-        let by_verbs = clause::segments(self.lexicon, words);
-        let by_breaks = clause::between_breaks(words);
-        let ways = if by_breaks.len() == by_verbs.len() { vec![by_verbs] } else { vec![by_verbs, by_breaks] };
-        // Who forbids something may well forbid what comes after it too.
-        let forbids = |part: &[String]| {
-            let parts = clause::parts(self.lexicon, self.catalog, part);
-            parts.iter().any(|part| matches!(part, Part::Forbidden(_)))
-        };
-        let is_fit = |parts: &Vec<&[String]>| {
-            (2..=MOST_PARTS).contains(&parts.len())
-                && !(said.is_forbidden && parts[..parts.len() - 1].iter().any(|part| forbids(part)))
-        };
-        ways.into_iter().filter(is_fit).flat_map(|parts| self.one_after_the_other(&parts, said, context)).collect()
-    }
-
-    /// The likeliest ways to take its parts one after the other.
-    fn one_after_the_other(&self, parts: &[&[String]], said: &Said<'_>, context: &Context) -> Vec<Alternative> {
-        let parts: Vec<String> = parts.iter().map(|part| part.join(" ")).collect();
-        let mut sequences = vec![Sequence::new(self.scene.clone(), context.at_new_utterance())];
-        for (at, part) in parts.iter().enumerate() {
-            let next = sequences.into_iter().flat_map(|sequence| self.continued(sequence, part, &parts[at + 1..]));
-            sequences = next.collect();
-            sequences.sort_by(|one, other| other.probability.total_cmp(&one.probability));
-            sequences.truncate(MOST_SEQUENCES);
-        }
-        sequences.into_iter().filter_map(|sequence| sequence.alternative(said)).collect()
-    }
-
-    /// A sequence with what the next part may mean: something to do, nothing, or what can only be said once the steps so far are done, as
-    /// all that follows it.
-    fn continued(&self, sequence: Sequence, part: &str, rest: &[String]) -> Vec<Sequence> {
-        if sequence.is_complete {
-            return vec![sequence];
-        }
-        let there = Conversation { scene: &sequence.scene, ..*self };
-        let likely = there.likely_of_part(part, &sequence.context);
-        let skipped = 1.0 - likely.iter().map(|one| one.probability).sum::<f32>();
-        let mut next: Vec<Sequence> = Vec::new();
-        for Alternative { understanding, probability, context, .. } in likely.into_iter().take(MOST_OF_PART) {
-            let mut longer = Sequence { probability: sequence.probability * probability, ..sequence.clone() };
-            let waits = context.search.is_some() || !context.later.is_empty();
-            match understanding {
-                Understanding::Plan { steps, .. } if !waits => {
-                    steps.iter().for_each(|step| imagine::apply(&mut longer.scene, &step.action, self.devices));
-                    longer.context = context;
-                    longer.steps.extend(steps);
-                }
-                Understanding::Answer { .. } if context.is_met || !there.is_asked(part) => {}
-                Understanding::Plan { .. } | Understanding::Question { .. } if longer.steps.is_empty() => {
-                    longer.complete(context, rest.to_vec());
-                    longer.begun = Some(understanding);
-                }
-                Understanding::Plan { .. } | Understanding::Question { .. } | Understanding::Answer { .. } => {
-                    let mut then = longer.context.clone();
-                    then.begin(&longer.steps);
-                    longer.complete(then, [&[part.to_owned()], rest].concat());
-                }
-                Understanding::Refusal { .. } | Understanding::Stop { .. } => continue,
-            }
-            next.push(longer);
-        }
-        // Not all that is said asks for something.
-        next.push(Sequence { probability: sequence.probability * skipped.max(LEAST_SKIPPED), ..sequence });
-        next
-    }
-
-    /// Whether something is asked that is to be answered.
-    fn is_asked(&self, part: &str) -> bool {
-        let wording = self.wording(part);
-        wording.ends_as_question() || question::read(self.lexicon, &wording.tidied).is_some()
     }
 
     /// What the things that are named may be asked for without a verb: `mug in the sink`, `golf ball to the reception`.

@@ -27,6 +27,8 @@ const TO_TRUST_EXACT: f32 = 0.3;
 /// Below this, what is done is said to be what the robot thinks, or what it leaves out is said.
 const SURELY: f32 = 0.7;
 const SURELY_ALL: f32 = 0.9;
+/// How likely what its sentences mean by themselves is meant.
+const BY_SENTENCES: f32 = 0.6;
 /// How likely what the grammar alone makes of an utterance is meant, where nothing else is asked.
 const UNWEIGHED: f32 = 0.6;
 /// The same of things that nobody named, where a name is unknown.
@@ -98,6 +100,10 @@ impl Conversation<'_> {
         if let Some(likeliest) = alternatives.first().filter(|one| one.is_likely(unheard)) {
             *context = likeliest.context.clone();
             return (likeliest.understood(unheard), likeliest.probability);
+        }
+        if let Some((understanding, then)) = self.by_sentences(&wording, context) {
+            *context = then;
+            return (understanding, BY_SENTENCES);
         }
         let is_vague = matches!(by_grammar.understanding, Understanding::Question { kind: Clarification::Request, .. });
         let least = match unheard {

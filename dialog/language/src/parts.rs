@@ -1,0 +1,211 @@
+//! The parts of an utterance: what they mean one after the other, each in the scene and the conversation that those before it lead to.
+
+use crate::{
+    alternatives::Alternative,
+    clause::{self, Part},
+    context::Context,
+    conversation::Conversation,
+    evidence::{Evidence, Feature},
+    imagine,
+    known::Known,
+    question, reply,
+    said::Said,
+    token,
+    understanding::{Step, Understanding},
+    wording::Wording,
+};
+
+/// Into how many parts an utterance is taken apart at most.
+const MOST_PARTS: usize = 6;
+/// How many ways to take a part are followed, and how many ways to take all parts so far.
+const MOST_OF_PART: usize = 2;
+const MOST_SEQUENCES: usize = 2;
+/// How likely a part asks for nothing, at least.
+const LEAST_SKIPPED: f32 = 0.02;
+
+/// The parts of an utterance so far, one after the other.
+#[derive(Clone)]
+struct Sequence {
+    /// What they come to together, and how likely they are meant so.
+    steps: Vec<Step>,
+    probability: f32,
+    /// The scene and the conversation after them.
+    scene: Known,
+    context: Context,
+    /// What is done or asked first, before all that is left, where that is no plain plan.
+    begun: Option<Understanding>,
+    /// Whether all that is left is to be done later.
+    is_complete: bool,
+}
+
+impl Sequence {
+    const fn new(scene: Known, context: Context) -> Self {
+        Self { steps: Vec::new(), probability: 1.0, scene, context, begun: None, is_complete: false }
+    }
+
+    /// Leaves these texts for later, after what was there to do later.
+    fn complete(&mut self, mut context: Context, later: Vec<String>) {
+        context.later.extend(later);
+        (self.context, self.is_complete) = (context, true);
+    }
+
+    /// All of it as one way to understand the utterance; nothing, where nothing is to be done.
+    fn alternative(self, said: &Said<'_>) -> Option<Alternative> {
+        let mut evidence = Evidence::default();
+        evidence.set(Feature::Parts, self.probability);
+        evidence.set(Feature::NotInstead, said.instead);
+        let (understanding, context) = self.understanding()?;
+        Some(Alternative::new(understanding, context, evidence))
+    }
+
+    fn understanding(self) -> Option<(Understanding, Context)> {
+        let Self { steps, mut context, begun, is_complete, .. } = self;
+        let understanding = match begun {
+            Some(understanding) => understanding,
+            None if steps.is_empty() => return None,
+            None => {
+                let mut reply = reply::plan_reply(&steps, &[]);
+                if is_complete {
+                    reply.push_str(&format!(" Then: \"{}\".", context.later.join("; ")));
+                } else {
+                    context.begin(&steps);
+                }
+                Understanding::Plan { steps, reply }
+            }
+        };
+        Some((understanding, context))
+    }
+}
+
+impl Conversation<'_> {
+    /// What its parts mean one after the other: parts that begin with a verb, or all that stands between commas.
+    pub(crate) fn in_parts(&self, said: &Said<'_>, context: &Context) -> Vec<Alternative> {
+        if said.is_conditional {
+            return Vec::new();
+        }
+        let words = &said.wording.words;
+        let by_verbs = clause::segments(self.lexicon, words);
+        let by_breaks = clause::between_breaks(words);
+        let ways = if by_breaks.len() == by_verbs.len() { vec![by_verbs] } else { vec![by_verbs, by_breaks] };
+        // Who forbids something may well forbid what comes after it too.
+        let forbids = |part: &[String]| {
+            let parts = clause::parts(self.lexicon, self.catalog, part);
+            parts.iter().any(|part| matches!(part, Part::Forbidden(_)))
+        };
+        let is_fit = |parts: &Vec<&[String]>| {
+            (2..=MOST_PARTS).contains(&parts.len())
+                && !(said.is_forbidden && parts[..parts.len() - 1].iter().any(|part| forbids(part)))
+        };
+        ways.into_iter().filter(is_fit).flat_map(|parts| self.one_after_the_other(&parts, said, context)).collect()
+    }
+
+    /// The likeliest ways to take its parts one after the other.
+    fn one_after_the_other(&self, parts: &[&[String]], said: &Said<'_>, context: &Context) -> Vec<Alternative> {
+        let parts: Vec<String> = parts.iter().map(|part| part.join(" ")).collect();
+        let mut sequences = vec![Sequence::new(self.scene.clone(), context.at_new_utterance())];
+        for (at, part) in parts.iter().enumerate() {
+            let next = sequences.into_iter().flat_map(|sequence| {
+                let likely = if sequence.is_complete {
+                    Vec::new()
+                } else {
+                    self.after(&sequence).likely_of_part(part, &sequence.context)
+                };
+                self.continued(sequence, part, &parts[at + 1..], likely)
+            });
+            sequences = next.collect();
+            sequences.sort_by(|one, other| other.probability.total_cmp(&one.probability));
+            sequences.truncate(MOST_SEQUENCES);
+        }
+        sequences.into_iter().filter_map(|sequence| sequence.alternative(said)).collect()
+    }
+
+    /// The conversation in the scene that a sequence leads to.
+    fn after<'s>(&'s self, sequence: &'s Sequence) -> Conversation<'s> {
+        Conversation { scene: &sequence.scene, ..*self }
+    }
+
+    /// A sequence with what the next part likely means: something to do, nothing, or what can only be said once the steps so far are
+    /// done, as all that follows it.
+    fn continued(&self, sequence: Sequence, part: &str, rest: &[String], likely: Vec<Alternative>) -> Vec<Sequence> {
+        if sequence.is_complete {
+            return vec![sequence];
+        }
+        let skipped = 1.0 - likely.iter().map(|one| one.probability).sum::<f32>();
+        let mut next: Vec<Sequence> = Vec::new();
+        for Alternative { understanding, probability, context, .. } in likely.into_iter().take(MOST_OF_PART) {
+            let mut longer = Sequence { probability: sequence.probability * probability, ..sequence.clone() };
+            let waits = context.search.is_some() || !context.later.is_empty();
+            match understanding {
+                Understanding::Plan { steps, .. } if !waits => {
+                    steps.iter().for_each(|step| imagine::apply(&mut longer.scene, &step.action, self.devices));
+                    longer.context = context;
+                    longer.steps.extend(steps);
+                }
+                Understanding::Answer { .. } if context.is_met || !self.is_asked(part) => {}
+                Understanding::Plan { .. } | Understanding::Question { .. } if longer.steps.is_empty() => {
+                    longer.complete(context, rest.to_vec());
+                    longer.begun = Some(understanding);
+                }
+                Understanding::Plan { .. } | Understanding::Question { .. } | Understanding::Answer { .. } => {
+                    let mut then = longer.context.clone();
+                    then.begin(&longer.steps);
+                    longer.complete(then, [&[part.to_owned()], rest].concat());
+                }
+                Understanding::Refusal { .. } | Understanding::Stop { .. } => continue,
+            }
+            next.push(longer);
+        }
+        // Not all that is said asks for something.
+        next.push(Sequence { probability: sequence.probability * skipped.max(LEAST_SKIPPED), ..sequence });
+        next
+    }
+
+    /// Whether something is asked that is to be answered.
+    fn is_asked(&self, part: &str) -> bool {
+        let wording = self.wording(part);
+        wording.ends_as_question() || question::read(self.lexicon, &wording.tidied).is_some()
+    }
+
+    /// What the sentences of an utterance mean, each by itself, with what is said of those that nothing is made of; nothing, where that
+    /// is all of them.
+    pub(crate) fn by_sentences(&self, wording: &Wording<'_>, context: &Context) -> Option<(Understanding, Context)> {
+        let ended = wording.words.split_inclusive(|word| token::ends_sentence(word));
+        let sentences: Vec<String> = ended
+            .filter(|words| words.iter().any(|word| !token::is_punctuation(word)))
+            .map(|words| words.join(" "))
+            .collect();
+        if !(2..=MOST_PARTS).contains(&sentences.len()) {
+            return None;
+        }
+        let mut sequence = Sequence::new(self.scene.clone(), context.at_new_utterance());
+        let (mut answers, mut lost) = (Vec::new(), Vec::new());
+        for (at, sentence) in sentences.iter().enumerate() {
+            let there = Conversation { scene: &sequence.scene, ..*self };
+            let mut then = sequence.context.clone();
+            let (understanding, sureness) = there.understand_weighed(sentence, &mut then);
+            let is_asked = || there.is_asked(sentence);
+            match &understanding {
+                Understanding::Answer { text, .. } if sequence.steps.is_empty() && is_asked() => {
+                    answers.push(text.clone())
+                }
+                Understanding::Refusal { .. } => {
+                    lost.push(sentence.trim_end_matches(|end: char| !end.is_alphanumeric()))
+                }
+                Understanding::Question { .. } if sureness == 0.0 => return None,
+                _ => {
+                    let way =
+                        Alternative { probability: 1.0, ..Alternative::new(understanding, then, Evidence::default()) };
+                    let next = self.continued(sequence, sentence, &sentences[at + 1..], vec![way]);
+                    sequence = next.into_iter().next()?;
+                }
+            }
+            if sequence.is_complete {
+                break;
+            }
+        }
+        let (understanding, context) = sequence.understanding()?;
+        let lost = lost.iter().map(|lost| format!("I do not know what to do about \"{lost}\"."));
+        let said: Vec<String> = answers.into_iter().chain(lost).collect();
+        Some((if said.is_empty() { understanding } else { understanding.after(&said.join(" ")) }, context))
+    }
+}
