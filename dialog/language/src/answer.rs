@@ -422,6 +422,13 @@ impl Answerer<'_> {
         (0..words.len()).find_map(|at| self.lexicon.rooms.longest(&words[at..]).map(|(_, room)| *room))
     }
 
+    /// Whether a machine may have made it hot or cold since the robot saw it.
+    fn may_have_changed(&self, id: ObjectId, state: StateWord) -> bool {
+        let is_warmth = matches!(state, StateWord::Flag(StateFlag::Hot | StateFlag::Cold, _));
+        let is_seen = self.scene.robot.held == Some(id) || self.scene.object(id).is_some_and(|object| object.visible);
+        is_warmth && !is_seen
+    }
+
     fn way_to(&self, room: RoomId) -> String {
         let name = room.name();
         if room == self.scene.robot.room {
@@ -594,6 +601,8 @@ impl Answerer<'_> {
                 let words = words.join(" ");
                 let text = if holds {
                     format!("Yes, {} is {words}.", self.short(id))
+                } else if self.may_have_changed(id, state) {
+                    format!("No, {} was not {words} when I last saw it.", self.short(id))
                 } else {
                     format!("No, {} is not {words}.", self.short(id))
                 };

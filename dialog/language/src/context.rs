@@ -322,6 +322,18 @@ impl Context {
         self.pending = Some(Pending::Search { clauses: self.request.clone() });
     }
 
+    /// Whether the robot waits for a yes or a no.
+    pub(crate) fn asks_whether(&self) -> bool {
+        match &self.pending {
+            Some(Pending::Which { candidates, .. }) => candidates.len() == 1,
+            Some(Pending::Offer { plans }) => plans.len() == 1,
+            Some(Pending::Guess { guesses }) => guesses.len() == 1,
+            Some(Pending::PutDown { .. } | Pending::Search { .. }) => true,
+            Some(Pending::Where { .. } | Pending::Look { .. } | Pending::Direction { .. } | Pending::Lab { .. })
+            | None => false,
+        }
+    }
+
     /// Whether a plan or a search is under way.
     pub(crate) const fn is_busy(&self) -> bool {
         !self.running.is_empty() || self.search.is_some()

@@ -70,6 +70,10 @@ impl Conversation<'_> {
     ) -> Option<(Understanding, f32)> {
         let asked: Vec<&Request> = reading.requests.iter().filter(|request| asks(request)).collect();
         if let ([], Some(Act::Social(social))) = (asked.as_slice(), reading.requests.last().map(|last| &last.act)) {
+            // `aye, that's the very one`
+            if matches!(social, Social::Agreement | Social::Praise) && context.asks_whether() {
+                return Some((self.understand_said("yes", context), 1.0));
+            }
             let said = self.understand_said(utterance, &mut context.clone());
             let is_answer = matches!(said, Understanding::Answer { .. });
             let answer = if is_answer { said } else { Understanding::answer(small_talk(*social)) };

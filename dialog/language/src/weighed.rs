@@ -14,16 +14,26 @@ use crate::{
 };
 
 /// How likely steps must be meant for them to be taken without a question, where they change things and where they do not.
-const TO_CHANGE: f32 = 0.6;
-const TO_MOVE: f32 = 0.55;
+const TO_CHANGE: f32 = 0.55;
+const TO_MOVE: f32 = 0.45;
 /// The same where it is taken for the answer to a question of the robot's: what is to be done was said before.
 const TO_ACT_ON_REPLY: f32 = 0.3;
+/// The same in words some of which nobody ever met: an unknown verb changes nothing.
+const TO_CHANGE_UNHEARD: f32 = 0.85;
+const TO_MOVE_UNHEARD: f32 = 0.75;
+/// The same of all that is left of the mission, which is wanted anyway.
+const TO_PURSUE: f32 = 0.15;
 /// The same where something that was named is left out.
 const TO_CHANGE_IN_PART: f32 = 0.75;
-const TO_MOVE_IN_PART: f32 = 0.6;
+const TO_MOVE_IN_PART: f32 = 0.5;
 /// How likely what the grammar reads to the last word, as an answer or as a yes-no question must be for nothing else to be asked: most of
 /// that is right.
-const TO_TRUST_EXACT: f32 = 0.3;
+const TO_TRUST_EXACT: f32 = 0.08;
+/// The same of what has few words, and as an answer: of that nearly all is right.
+const TO_TRUST_SHORT: f32 = 0.02;
+const SHORT: usize = 6;
+/// How likely that is meant, at least.
+const SURE_IF_SHORT: f32 = 0.9;
 /// Below this, what is done is said to be what the robot thinks, or what it leaves out is said.
 const SURELY: f32 = 0.7;
 const SURELY_ALL: f32 = 0.9;
@@ -34,7 +44,9 @@ const UNWEIGHED: f32 = 0.6;
 /// The same of things that nobody named, where a name is unknown.
 const TO_TAKE_FOR_UNHEARD: f32 = 0.75;
 /// How likely what is said must be the right reply, where nothing is done.
-const TO_REPLY: f32 = 0.2;
+const TO_REPLY: f32 = 0.3;
+/// The same in words some of which nobody ever met.
+const TO_REPLY_UNHEARD: f32 = 0.6;
 /// The same of what is only about things that nobody named, and to propose it.
 const TO_REPLY_UNNAMED: f32 = 0.6;
 const TO_PROPOSE_UNNAMED: f32 = 0.2;
@@ -75,10 +87,15 @@ impl Conversation<'_> {
             _ => wording.unheard.as_slice(),
         };
         let mut alternatives = self.alternatives_to(by_grammar.clone(), &wording, context);
-        let is_trusted = |one: &&Alternative| one.is_exact() && one.probability >= TO_TRUST_EXACT;
+        let is_short = wording.words.len() <= SHORT;
+        let is_trusted = |one: &&Alternative| {
+            let least = if is_short || one.is_grammars_reply() { TO_TRUST_SHORT } else { TO_TRUST_EXACT };
+            one.is_exact() && one.probability >= least
+        };
         if let Some(trusted) = alternatives.iter().find(|one| alternatives.len() == 1 || is_trusted(one)) {
             *context = trusted.context.clone();
-            return (trusted.understanding.clone(), trusted.probability);
+            let least = if is_short { SURE_IF_SHORT } else { 0.0 };
+            return (trusted.understanding.clone(), trusted.probability.max(least));
         }
         // A question that the grammar answers is not carried out, nor what it leaves because a condition does not hold.
         let is_open = wording.ends_as_question() || condition::is_conditional(self.lexicon, &wording.words);
@@ -97,13 +114,17 @@ impl Conversation<'_> {
         if wording.asks_for_reason() {
             alternatives.retain(|one| !one.understanding.commits());
         }
-        if let Some(likeliest) = alternatives.first().filter(|one| one.is_likely(unheard)) {
-            *context = likeliest.context.clone();
-            return (likeliest.understood(unheard), likeliest.probability);
-        }
-        if let Some((understanding, then)) = self.by_sentences(&wording, context) {
+        let likeliest = alternatives.first();
+        let likeliest = likeliest.filter(|one| one.is_likely(unheard) || unheard.is_empty() && self.pursues_goals(one));
+        if likeliest.is_none_or(|one| one.probability < SURELY_ALL)
+            && let Some((understanding, then)) = self.by_sentences(&wording, context)
+        {
             *context = then;
             return (understanding, BY_SENTENCES);
+        }
+        if let Some(likeliest) = likeliest {
+            *context = likeliest.context.clone();
+            return (likeliest.understood(unheard), likeliest.probability);
         }
         let is_vague = matches!(by_grammar.understanding, Understanding::Question { kind: Clarification::Request, .. });
         let least = match unheard {
@@ -119,6 +140,14 @@ impl Conversation<'_> {
         }
         *context = by_grammar.context;
         (by_grammar.understanding, 0.0)
+    }
+
+    /// Whether it is a wish to have all done that is left of the mission.
+    fn pursues_goals(&self, one: &Alternative) -> bool {
+        let later = &one.context.later;
+        let is_goal = |text: &String| self.scene.goals.iter().any(|goal| goal.text == *text);
+        let is_plan = matches!(one.understanding, Understanding::Plan { .. });
+        is_plan && !later.is_empty() && later.iter().all(is_goal) && one.probability >= TO_PURSUE
     }
 
     /// Whether what the grammar makes of it needs no other opinion: it is a set phrase of small talk, names a lab that the grammar knows to
@@ -157,6 +186,12 @@ impl Conversation<'_> {
         let least = likeliest.probability * RIVAL;
         let likely = plans.filter(|(one, _)| one.probability >= least).take(MOST_PROPOSED);
         let mut guesses: Vec<Guess> = likely.map(|(one, steps)| one.context.guess(steps)).collect();
+        let mut named: Vec<String> = Vec::new();
+        guesses.retain(|guess| {
+            let is_new = !named.contains(&guess.name);
+            named.push(guess.name.clone());
+            is_new
+        });
         if guesses.len() > 1 && guesses.iter().all(|guess| guess.search.is_none()) {
             let plans: Vec<&[Step]> = guesses.iter().map(|guess| guess.steps.as_slice()).collect();
             let names = reply::apart(&plans);
@@ -178,6 +213,13 @@ impl Alternative {
         let least = match &self.understanding {
             // What has no known name is no other thing, unless that is most likely.
             Understanding::Plan { .. } if !unheard.is_empty() && self.is_unnamed() => TO_TAKE_FOR_UNHEARD,
+            Understanding::Plan { steps, .. } if !unheard.is_empty() => {
+                if self.is_bold(steps) {
+                    TO_CHANGE_UNHEARD
+                } else {
+                    TO_MOVE_UNHEARD
+                }
+            }
             Understanding::Plan { steps, .. } => match (self.leaves_out_named(), self.is_bold(steps)) {
                 (true, true) => TO_CHANGE_IN_PART,
                 (true, false) => TO_MOVE_IN_PART,
@@ -188,6 +230,7 @@ impl Alternative {
             // What is asked back, or said against what was only guessed of a word, would puzzle.
             Understanding::Question { kind: Clarification::Reference, .. } if !unheard.is_empty() => TO_ASK_UNHEARD,
             Understanding::Question { .. } | Understanding::Refusal { .. } if !unheard.is_empty() => return false,
+            Understanding::Answer { .. } if !unheard.is_empty() => TO_REPLY_UNHEARD,
             // What it says of a thing that it does not know what to do with, it says where it has no guess.
             Understanding::Question { kind: Clarification::Request, .. } => return false,
             Understanding::Answer { highlight, .. } if !highlight.is_empty() && self.is_unnamed() => TO_REPLY_UNNAMED,
@@ -202,11 +245,11 @@ impl Alternative {
         let is_said = self.understanding.reply().starts_with(parsed::LEAVES_OUT);
         let note = match unheard {
             _ if !is_plan || is_said => return self.understanding.clone(),
-            [_, ..] => format!("{}, but I think that you want this.", reply::unknown(unheard).trim_end_matches('.')),
+            [_, ..] => format!("{}, but I think you mean this:", reply::unknown(unheard).trim_end_matches('.')),
             [] if self.probability < SURELY_ALL && !self.leaves_out.is_empty() => {
                 format!("I leave out what you said of {}.", describe::list(&self.leaves_out, "and"))
             }
-            [] if self.probability < SURELY => "I think that you want this.".to_owned(),
+            [] if self.probability < SURELY => "If I understand you right:".to_owned(),
             [] => return self.understanding.clone(),
         };
         self.understanding.clone().after(&note)
@@ -215,8 +258,17 @@ impl Alternative {
     /// Whether the grammar reads it to the last word, as the answer to a question of the robot's, or as a yes-no question.
     fn is_exact(&self) -> bool {
         let is_answered = matches!(self.understanding, Understanding::Answer { holds: Some(_), .. });
-        let is_grammars = |feature| self.evidence.get(feature) > 0.0;
-        self.is_plain() || is_grammars(Feature::GrammarPlanReply) || is_answered && is_grammars(Feature::GrammarAnswer)
+        // A deed with a question after it, or several goals.
+        let is_series = self.evidence.get(Feature::GrammarPlan) > 0.0 && !self.context.later.is_empty();
+        self.is_plain()
+            || is_series
+            || self.is_grammars_reply()
+            || is_answered && self.evidence.get(Feature::GrammarAnswer) > 0.0
+    }
+
+    /// Whether the grammar takes it for what is to be done, as an answer to a question of the robot's.
+    fn is_grammars_reply(&self) -> bool {
+        self.evidence.get(Feature::GrammarPlanReply) > 0.0
     }
 
     fn leaves_out_named(&self) -> bool {

@@ -228,3 +228,30 @@ fn small_talk_and_what_to_do_are_answered() {
     check(&[], "> pick up the mug\n? Which…\n> undo\n= There is nothing to undo yet.");
     check(&[], "> where is the microwave?\n= The microwave is on the counter top.\n> go there\ngo Microwave_01_1");
 }
+
+#[test]
+fn what_is_named_next_stands_in_place_of_what_was_named_before() {
+    check(
+        &[],
+        "> what is on the red desk?\n= On the red desk there is a record.\n> and the blue desk?\n= On the blue desk there is a hammer.",
+    );
+}
+
+#[test]
+fn what_is_filled_with_a_thing_has_it_poured_in() {
+    check(&[], "> fill the bowl with cereal\ntake Cereal_Box_01_1, pour Bowl_01_1");
+}
+
+#[test]
+fn it_says_how_a_room_is_found() {
+    check(&[], "> do you know where the robotics lab is?\n= I know the way to the robotics lab…");
+    check(&[], "> where is the main office?\n= I know the way to the main office…");
+    check(&[], "> where is the break room?\n= This is the break room.");
+}
+
+#[test]
+fn why_it_stopped_is_a_question() {
+    let mut talk = Talk::new(&[]);
+    let understanding = talk.language.understand("why did you stop?", &talk.scene, &mut talk.context);
+    assert!(matches!(understanding, Understanding::Answer { .. }), "{understanding:?}");
+}

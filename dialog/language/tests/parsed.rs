@@ -45,3 +45,33 @@ fn nothing_is_guessed_of_words_that_mean_nothing() {
         assert!(!matches!(understanding, Understanding::Plan { .. }), "{said}: {understanding:?}");
     }
 }
+
+#[test]
+fn an_order_among_small_talk_is_carried_out() {
+    for said in [
+        "Oh that is grand, my mother would have loved one of those. Now put the banana in the fridge.",
+        "Braw! Put the banana in the fridge. What a day.",
+    ] {
+        let mut talk = Talk::new(&[]);
+        assert_eq!(talk.say(said), "take Banana_01_1, open FridgeLower_02_1, put FridgeLower_02_1", "{said}");
+    }
+}
+
+#[test]
+fn a_question_and_an_order_both_count() {
+    let mut talk = Talk::new(&["Microwave_01_1 open"]);
+    let understanding =
+        talk.language.understand("is the bowl broken? close the microwave door", &talk.scene, &mut talk.context);
+    let Understanding::Plan { steps, reply } = understanding else { panic!("{understanding:?}") };
+    assert_eq!(steps.len(), 1, "{steps:?}");
+    assert!(reply.contains("the bowl is broken") || reply.contains("closing the microwave"), "{reply}");
+}
+
+#[test]
+fn how_sure_it_is_is_told_apart() {
+    let mut talk = Talk::new(&[]);
+    assert_eq!(talk.say("pick up the banana"), "take Banana_01_1");
+    assert!(talk.context.sureness() > 0.85, "{}", talk.context.sureness());
+    let _ = talk.say("blah blah blah");
+    assert!(talk.context.sureness() < 0.85, "{}", talk.context.sureness());
+}

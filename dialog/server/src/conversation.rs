@@ -401,7 +401,7 @@ impl Conversation {
             self.react(turn, turn, own, knowledge, &mut reactions);
             return reactions;
         };
-        if let Some(Meant::Do(requests)) = meant.filter(|_| !is_same_plan(&own, &understanding)) {
+        if let Some(Meant::Do(requests)) = meant.filter(|_| !is_same(&own, &understanding)) {
             let taken = format!("I take that as: \"{}\".", requests.join(", then "));
             self.say(turn, DialogKind::Reply, LineKind::Say, &taken, &mut reactions);
         }
@@ -660,12 +660,14 @@ impl Conversation {
     }
 }
 
-/// Whether both are plans of the same actions.
-fn is_same_plan(one: &Understanding, other: &Understanding) -> bool {
-    let (Understanding::Plan { steps: one, .. }, Understanding::Plan { steps: other, .. }) = (one, other) else {
-        return false;
-    };
-    one.iter().map(|step| &step.action).eq(other.iter().map(|step| &step.action))
+/// Whether both come to the same: the same actions, or the same answer.
+fn is_same(one: &Understanding, other: &Understanding) -> bool {
+    match (one, other) {
+        (Understanding::Plan { steps: one, .. }, Understanding::Plan { steps: other, .. }) => {
+            one.iter().map(|step| &step.action).eq(other.iter().map(|step| &step.action))
+        }
+        (one, other) => one == other,
+    }
 }
 
 /// The steps up to the first whose object is not where the robot believes it to be; then to that place, where it finds
