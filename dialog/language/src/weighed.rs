@@ -1,6 +1,8 @@
 //! What an utterance means, by all that reads it: what speaks for itself is carried out, what is likely enough too; of what is less
 //! likely the robot asks.
 
+use cohabit_cdf::Action;
+
 use crate::{
     alternatives::Alternative,
     ask, clause, condition,
@@ -14,7 +16,7 @@ use crate::{
 };
 
 /// How likely steps must be meant for them to be taken without a question, where they change things and where they do not.
-const TO_CHANGE: f32 = 0.55;
+const TO_CHANGE: f32 = 0.6;
 const TO_MOVE: f32 = 0.45;
 /// The same where it is taken for the answer to a question of the robot's: what is to be done was said before.
 const TO_ACT_ON_REPLY: f32 = 0.3;
@@ -29,10 +31,9 @@ const TO_MOVE_IN_PART: f32 = 0.5;
 /// How likely what the grammar reads to the last word, as an answer or as a yes-no question must be for nothing else to be asked: most of
 /// that is right.
 const TO_TRUST_EXACT: f32 = 0.08;
-/// The same of what has few words, and as an answer: of that nearly all is right.
+/// The same of up to so many words, and of answers, which nearly all are right; and how likely they are meant, at least.
 const TO_TRUST_SHORT: f32 = 0.02;
 const SHORT: usize = 6;
-/// How likely that is meant, at least.
 const SURE_IF_SHORT: f32 = 0.9;
 /// Below this, what is done is said to be what the robot thinks, or what it leaves out is said.
 const SURELY: f32 = 0.7;
@@ -87,6 +88,10 @@ impl Conversation<'_> {
             _ => wording.unheard.as_slice(),
         };
         let mut alternatives = self.alternatives_to(by_grammar.clone(), &wording, context);
+        // `walk the dog` is no walk.
+        if !clause::unknown_words(self.lexicon, &wording.words).is_empty() {
+            alternatives.retain(|one| !one.only_moves());
+        }
         let is_short = wording.words.len() <= SHORT;
         let is_trusted = |one: &&Alternative| {
             let least = if is_short || one.is_grammars_reply() { TO_TRUST_SHORT } else { TO_TRUST_EXACT };
@@ -269,6 +274,12 @@ impl Alternative {
     /// Whether the grammar takes it for what is to be done, as an answer to a question of the robot's.
     fn is_grammars_reply(&self) -> bool {
         self.evidence.get(Feature::GrammarPlanReply) > 0.0
+    }
+
+    /// Whether it is a move that is about no thing and no place.
+    fn only_moves(&self) -> bool {
+        let moves = |step: &Step| matches!(step.action, Action::Move { .. } | Action::Rotate { .. });
+        matches!(&self.understanding, Understanding::Plan { steps, .. } if steps.iter().all(moves))
     }
 
     fn leaves_out_named(&self) -> bool {

@@ -123,13 +123,13 @@ fn other_sets_are_measured_too() {
 
 #[test]
 fn most_of_what_was_looked_at_is_understood() {
-    check("seen", include_str!("utterances/seen.txt"), true, [302, 316]);
-    check("voices", include_str!("utterances/voices.txt"), true, [685, 726]);
+    check("seen", include_str!("utterances/seen.txt"), true, [305, 316]);
+    check("voices", include_str!("utterances/voices.txt"), true, [688, 726]);
     check("manners", include_str!("utterances/manners.txt"), true, [123, 136]);
     check("spoken", include_str!("utterances/spoken.txt"), true, [62, 62]);
-    check("first contact", include_str!("utterances/first_contact.txt"), true, [134, 159]);
-    check("first contact again", include_str!("utterances/first_contact_again.txt"), true, [154, 168]);
-    check("newcomers", include_str!("utterances/newcomers.txt"), true, [203, 230]);
+    check("first contact", include_str!("utterances/first_contact.txt"), true, [126, 153]);
+    check("first contact again", include_str!("utterances/first_contact_again.txt"), true, [153, 165]);
+    check("newcomers", include_str!("utterances/newcomers.txt"), true, [198, 224]);
 }
 
 #[test]
@@ -145,9 +145,9 @@ fn nothing_is_done_about_what_is_no_request() {
 
 #[test]
 fn most_of_what_people_say_is_understood() {
-    check("held out", include_str!("utterances/held_out.txt"), false, [273, 288]);
-    check("strangers", include_str!("utterances/strangers.txt"), false, [377, 438]);
-    check("writer o", include_str!("utterances/writers/o.txt"), false, [166, 181]);
-    check("writer v", include_str!("utterances/writers/v.txt"), false, [146, 172]);
-    check("writer w", include_str!("utterances/writers/w.txt"), false, [170, 190]);
+    check("held out", include_str!("utterances/held_out.txt"), false, [268, 280]);
+    check("strangers", include_str!("utterances/strangers.txt"), false, [372, 428]);
+    check("writer o", include_str!("utterances/writers/o.txt"), false, [160, 173]);
+    check("writer v", include_str!("utterances/writers/v.txt"), false, [140, 162]);
+    check("writer w", include_str!("utterances/writers/w.txt"), false, [162, 178]);
 }
