@@ -1,12 +1,12 @@
 //! The object catalogue: every class of object, what it affords, what people call it and what it looks like.
 
-mod called;
+mod names;
 
 use std::collections::HashMap;
 
 use serde::{Deserialize, Serialize};
 
-pub use called::Called;
+pub use names::ClassNames;
 
 use crate::{builtin, model::Model};
 
@@ -150,7 +150,7 @@ pub struct Catalog {
     models: Vec<Model>,
     class_by_id: HashMap<String, ClassId>,
     model_by_class: Vec<usize>,
-    called: Vec<Called>,
+    names: Vec<ClassNames>,
 }
 
 #[derive(Deserialize)]
@@ -214,7 +214,7 @@ impl Catalog {
             models: Vec::new(),
             class_by_id: HashMap::new(),
             model_by_class: Vec::new(),
-            called: Vec::new(),
+            names: Vec::new(),
         };
         let mut model_by_id = HashMap::new();
         for (file, text) in models {
@@ -239,7 +239,7 @@ impl Catalog {
                 catalog.classes.push(class);
             }
         }
-        catalog.called = called::all(&catalog.classes);
+        catalog.names = names::of_classes(&catalog.classes);
         Ok(catalog)
     }
 
@@ -258,10 +258,13 @@ impl Catalog {
         &self.classes[usize::from(id.0)]
     }
 
-    /// What people call a class.
+    /// What people call the class at `id`.
+    ///
+    /// # Panics
+    /// When `id` comes from another catalogue.
     #[must_use]
-    pub fn called(&self, id: ClassId) -> &Called {
-        &self.called[usize::from(id.0)]
+    pub fn names(&self, id: ClassId) -> &ClassNames {
+        &self.names[usize::from(id.0)]
     }
 
     /// The class with this id, such as `Bowl_01`.

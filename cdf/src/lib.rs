@@ -24,7 +24,7 @@ mod builtin {
 
 pub use action::{Action, BodyId, GoToTarget, ObjectId, Status, Verb};
 pub use body::{BodyKind, BodyRequest};
-pub use catalog::{Called, Catalog, CatalogError, ClassId, ObjectClass, Property};
+pub use catalog::{Catalog, CatalogError, ClassId, ClassNames, ObjectClass, Property};
 pub use goal::{Expression, Goal, GoalState, InstancePattern, Occasion, Predicate, Relation, StateCondition};
 pub use layout::{Layout, LayoutError, RoomId};
 pub use mission::{Mission, ObjectRequest};

@@ -104,7 +104,7 @@ impl Conversation<'_> {
         let mut things: Vec<(&str, Vec<&KnownObject>)> = Vec::new();
         let mut places: HashMap<&str, usize> = HashMap::new();
         for object in &self.scene.objects {
-            let name = self.catalog.called(object.class).plain.as_str();
+            let name = self.catalog.names(object.class).plain.as_str();
             let place = *places.entry(name).or_insert_with(|| {
                 things.push((name, Vec::new()));
                 things.len() - 1

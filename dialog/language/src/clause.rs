@@ -230,6 +230,11 @@ pub(crate) fn joined(clauses: Vec<Clause>) -> Vec<Clause> {
     joined
 }
 
+/// Whether one of these parts says what is not to be done.
+pub(crate) fn forbid(parts: &[Part]) -> bool {
+    parts.iter().any(|part| matches!(part, Part::Forbidden(_)))
+}
+
 /// `fill the bowl with cereal`: what can be carried is poured into it.
 pub(crate) fn poured(catalog: &Catalog, mut clause: Clause) -> Clause {
     let is_carried =

@@ -1,7 +1,7 @@
 //! How the robot speaks of objects and places.
 
 use cohabit_cdf::{
-    Called, Catalog, ClassId, Color, Fluid, ObjectId, Property,
+    Catalog, ClassId, ClassNames, Color, Fluid, ObjectId, Property,
     state::{StateFlag, StateFlags},
 };
 
@@ -26,7 +26,7 @@ const VISIBLE: [StateFlag; 4] = [StateFlag::Broken, StateFlag::Dirty, StateFlag:
 
 /// The plain name of a class.
 pub(crate) fn name(catalog: &Catalog, class: ClassId) -> String {
-    catalog.called(class).plain.clone()
+    catalog.names(class).plain.clone()
 }
 
 /// The colour an object is called by.
@@ -40,7 +40,7 @@ pub(crate) fn color(catalog: &Catalog, object: &KnownObject) -> String {
 /// Whether two objects look the same to people.
 pub(crate) fn look_alike(catalog: &Catalog, one: &KnownObject, other: &KnownObject) -> bool {
     let visible = |flags: StateFlags| VISIBLE.map(|flag| flags.has(flag));
-    catalog.called(one.class).plain == catalog.called(other.class).plain
+    catalog.names(one.class).plain == catalog.names(other.class).plain
         && color(catalog, one) == color(catalog, other)
         && visible(one.flags) == visible(other.flags)
         && one.fluid == other.fluid
@@ -49,7 +49,7 @@ pub(crate) fn look_alike(catalog: &Catalog, one: &KnownObject, other: &KnownObje
 
 /// Whether a word of either class says which it is, as `red computer` and `blue computer` do.
 fn told_by_words(catalog: &Catalog, one: ClassId, other: ClassId) -> bool {
-    one != other && catalog.called(one).special != catalog.called(other).special
+    one != other && catalog.names(one).special != catalog.names(other).special
 }
 
 /// `the mug`, or `the red mug` where there is another colour of it.
@@ -60,8 +60,8 @@ pub(crate) fn short(catalog: &Catalog, scene: &Known, id: ObjectId) -> String {
 /// The same without an article.
 pub(crate) fn bare(catalog: &Catalog, scene: &Known, id: ObjectId) -> String {
     let Some(object) = scene.object(id) else { return "thing".to_owned() };
-    let Called { plain, special } = catalog.called(object.class);
-    let rivals = || scene.objects.iter().filter(|other| other.id != id && catalog.called(other.class).plain == *plain);
+    let ClassNames { plain, special } = catalog.names(object.class);
+    let rivals = || scene.objects.iter().filter(|other| other.id != id && catalog.names(other.class).plain == *plain);
     let is_told_by_words = rivals().any(|other| told_by_words(catalog, object.class, other.class));
     if let Some(special) = special.as_ref().filter(|_| is_told_by_words) {
         return special.clone();

@@ -353,7 +353,7 @@ impl<'a> Ground<'a> {
             let last = self.focus.recent.first().and_then(|id| self.scene.object(*id));
             return match (last, phrase.pronoun) {
                 (Some(last), Some(Pronoun::One)) => {
-                    self.catalog.called(last.class).plain == self.catalog.called(object.class).plain
+                    self.catalog.names(last.class).plain == self.catalog.names(object.class).plain
                 }
                 (None, Some(Pronoun::One)) if !self.focus.group.is_empty() => self.focus.group.contains(&object.id),
                 _ => phrase.says_something(),

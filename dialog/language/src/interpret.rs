@@ -1,7 +1,7 @@
 //! What people say as somebody else understands it, such as a language model: plain requests, which are understood, grounded and checked
 //! like anybody's, or something to say.
 
-use std::{collections::BTreeSet, fmt, str::FromStr};
+use std::collections::BTreeSet;
 
 use cohabit_cdf::{Property, RoomId};
 
@@ -10,6 +10,7 @@ use crate::{
     context::Context,
     describe,
     known::Known,
+    setting::named_in_a_word,
     understanding::{Clarification, Understanding},
 };
 
@@ -64,20 +65,9 @@ pub enum Consulting {
     Always,
 }
 
+named_in_a_word!(Consulting: Never = "never", Unsure = "unsure", Always = "always");
+
 impl Consulting {
-    /// All settings.
-    pub const ALL: [Self; 3] = [Self::Never, Self::Unsure, Self::Always];
-
-    /// The setting in one word.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Never => "never",
-            Self::Unsure => "unsure",
-            Self::Always => "always",
-        }
-    }
-
     /// Whether somebody else is asked about what was understood so.
     #[must_use]
     pub fn is_asked(self, understanding: &Understanding, context: &Context) -> bool {
@@ -86,21 +76,6 @@ impl Consulting {
             (Self::Unsure, _) => context.sureness() < SURE,
             (Self::Always, _) => true,
         }
-    }
-}
-
-impl fmt::Display for Consulting {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str(self.name())
-    }
-}
-
-impl FromStr for Consulting {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, Self::Err> {
-        let names = || Self::ALL.map(Self::name).join("`, `");
-        Self::ALL.into_iter().find(|one| one.name() == text).ok_or_else(|| format!("one of `{}`", names()))
     }
 }
 

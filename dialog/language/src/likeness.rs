@@ -5,7 +5,7 @@ use std::{collections::HashMap, sync::LazyLock};
 use cohabit_cdf::{Catalog, ClassId};
 use cohabit_parser::{Direction, Directions, Meaning};
 
-use crate::kept::Kept;
+use crate::cache::Cache;
 
 static THINGS: &str = include_str!("../data/things.txt");
 static HINTS: &str = include_str!("../data/hints.txt");
@@ -24,7 +24,7 @@ pub(crate) struct Likeness {
     things: HashMap<&'static str, Vec<Direction>>,
     /// What people say instead of a plain request, by that request.
     hints: HashMap<&'static str, Vec<Direction>>,
-    kept: Kept<Direction>,
+    computed: Cache<Direction>,
 }
 
 impl Likeness {
@@ -39,7 +39,7 @@ impl Likeness {
                 }
                 by_head
             };
-            Likeness { things: by_head(THINGS), hints: by_head(HINTS), kept: Kept::default(), directions }
+            Likeness { things: by_head(THINGS), hints: by_head(HINTS), computed: Cache::default(), directions }
         });
         &BUILTIN
     }
@@ -49,12 +49,12 @@ impl Likeness {
         if let Some(known) = self.directions.get(text) {
             return known.clone();
         }
-        self.kept.get(text, || Meaning::builtin().of(text))
+        self.computed.get_or_insert_with(text, || Meaning::builtin().of(text))
     }
 
     /// How like a description is to what things of a class are called, and to how people tell them by use and look.
     pub(crate) fn to_class(&self, said: &Direction, catalog: &Catalog, class: ClassId) -> f32 {
-        let name = &catalog.called(class).plain;
+        let name = &catalog.names(class).plain;
         let most_like = |most: Option<f32>, like: f32| Some(most.map_or(like, |most| most.max(like)));
         let words = catalog.class(class).words.iter().map(|word| said.likeness(&self.of(&format!("the {word}"))));
         let called = words.chain([said.likeness(&self.of(&format!("the {name}")))]).fold(-1.0, f32::max);

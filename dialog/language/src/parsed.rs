@@ -10,11 +10,11 @@ use cohabit_parser::{
 
 use crate::{
     alternatives::lines,
+    cache::Cache,
     clause,
     context::Context,
     conversation::Conversation,
     describe,
-    kept::Kept,
     known::KnownObject,
     likeness::{Likeness, SHARPNESS, UNLIKE_THING},
     phrase::{Phrase, Place, Reader},
@@ -54,11 +54,13 @@ impl Conversation<'_> {
 
     pub(crate) fn readings(&self, utterance: &str, context: &Context) -> Vec<Reading> {
         // Parts of an utterance are read more than once.
-        static READ: LazyLock<Kept<Vec<Reading>>> = LazyLock::new(Kept::default);
+        static READ: LazyLock<Cache<Vec<Reading>>> = LazyLock::new(Cache::default);
         let Some(parser) = self.parser else { return Vec::new() };
         let lines = lines(context);
         let before = lines.iter().map(|line| format!("{}{}\n", if line.by_robot { '<' } else { '>' }, line.text));
-        READ.get(&before.chain([utterance.to_owned()]).collect::<String>(), || parser.parse(utterance, &lines))
+        READ.get_or_insert_with(&before.chain([utterance.to_owned()]).collect::<String>(), || {
+            parser.parse(utterance, &lines)
+        })
     }
 
     /// What a reading means; nothing, where it makes no sense in the scene and conversation. What the robot cannot do of it is said.

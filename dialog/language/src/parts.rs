@@ -2,13 +2,13 @@
 
 use crate::{
     alternatives::Alternative,
-    clause::{self, Part},
+    clause,
     context::Context,
     conversation::Conversation,
     evidence::{Evidence, Feature},
     imagine,
     known::Known,
-    question, reply,
+    reply,
     said::Said,
     token,
     understanding::{Step, Understanding},
@@ -88,10 +88,7 @@ impl Conversation<'_> {
         let by_breaks = clause::between_breaks(words);
         let ways = if by_breaks.len() == by_verbs.len() { vec![by_verbs] } else { vec![by_verbs, by_breaks] };
         // Who forbids something may well forbid what comes after it too.
-        let forbids = |part: &[String]| {
-            let parts = clause::parts(self.lexicon, self.catalog, part);
-            parts.iter().any(|part| matches!(part, Part::Forbidden(_)))
-        };
+        let forbids = |part: &[String]| clause::forbid(&clause::parts(self.lexicon, self.catalog, part));
         let is_fit = |parts: &Vec<&[String]>| {
             (2..=MOST_PARTS).contains(&parts.len())
                 && !(said.is_forbidden && parts[..parts.len() - 1].iter().any(|part| forbids(part)))
@@ -104,14 +101,7 @@ impl Conversation<'_> {
         let parts: Vec<String> = parts.iter().map(|part| part.join(" ")).collect();
         let mut sequences = vec![Sequence::new(self.scene.clone(), context.at_new_utterance())];
         for (at, part) in parts.iter().enumerate() {
-            let next = sequences.into_iter().flat_map(|sequence| {
-                let likely = if sequence.is_complete {
-                    Vec::new()
-                } else {
-                    self.after(&sequence).likely_of_part(part, &sequence.context)
-                };
-                self.continued(sequence, part, &parts[at + 1..], likely)
-            });
+            let next = sequences.into_iter().flat_map(|sequence| self.continued(sequence, part, &parts[at + 1..]));
             sequences = next.collect();
             sequences.sort_by(|one, other| other.probability.total_cmp(&one.probability));
             sequences.truncate(MOST_SEQUENCES);
@@ -124,46 +114,45 @@ impl Conversation<'_> {
         Conversation { scene: &sequence.scene, ..*self }
     }
 
-    /// A sequence with what the next part likely means: something to do, nothing, or what can only be said once the steps so far are
-    /// done, as all that follows it.
-    fn continued(&self, sequence: Sequence, part: &str, rest: &[String], likely: Vec<Alternative>) -> Vec<Sequence> {
+    /// A sequence with what the next part likely means, or without it; `rest` follows that part.
+    fn continued(&self, sequence: Sequence, part: &str, rest: &[String]) -> Vec<Sequence> {
         if sequence.is_complete {
             return vec![sequence];
         }
+        let likely = self.after(&sequence).likely_of_part(part, &sequence.context);
         let skipped = 1.0 - likely.iter().map(|one| one.probability).sum::<f32>();
-        let mut next: Vec<Sequence> = Vec::new();
-        for Alternative { understanding, probability, context, .. } in likely.into_iter().take(MOST_OF_PART) {
-            let mut longer = Sequence { probability: sequence.probability * probability, ..sequence.clone() };
-            let waits = context.search.is_some() || !context.later.is_empty();
-            match understanding {
-                Understanding::Plan { steps, .. } if !waits => {
-                    steps.iter().for_each(|step| imagine::apply(&mut longer.scene, &step.action, self.devices));
-                    longer.context = context;
-                    longer.steps.extend(steps);
-                }
-                Understanding::Answer { .. } if context.is_met || !self.is_asked(part) => {}
-                Understanding::Plan { .. } | Understanding::Question { .. } if longer.steps.is_empty() => {
-                    longer.complete(context, rest.to_vec());
-                    longer.begun = Some(understanding);
-                }
-                Understanding::Plan { .. } | Understanding::Question { .. } | Understanding::Answer { .. } => {
-                    let mut then = longer.context.clone();
-                    then.begin(&longer.steps);
-                    longer.complete(then, [&[part.to_owned()], rest].concat());
-                }
-                Understanding::Refusal { .. } | Understanding::Stop { .. } => continue,
-            }
-            next.push(longer);
-        }
+        let taken = likely.into_iter().take(MOST_OF_PART).filter_map(|way| self.with(&sequence, way, part, rest));
+        let mut next: Vec<Sequence> = taken.collect();
         // Not all that is said asks for something.
         next.push(Sequence { probability: sequence.probability * skipped.max(LEAST_SKIPPED), ..sequence });
         next
     }
 
-    /// Whether something is asked that is to be answered.
-    fn is_asked(&self, part: &str) -> bool {
-        let wording = self.wording(part);
-        wording.ends_as_question() || question::read(self.lexicon, &wording.tidied).is_some()
+    /// A sequence with one way to take the next part: something to do, nothing, or what can only be said once the steps so far are done,
+    /// as all that follows it. Nothing, where that cannot be done.
+    fn with(&self, sequence: &Sequence, way: Alternative, part: &str, rest: &[String]) -> Option<Sequence> {
+        let Alternative { understanding, probability, context, .. } = way;
+        let mut longer = Sequence { probability: sequence.probability * probability, ..sequence.clone() };
+        let waits = context.search.is_some() || !context.later.is_empty();
+        match understanding {
+            Understanding::Plan { steps, .. } if !waits => {
+                steps.iter().for_each(|step| imagine::apply(&mut longer.scene, &step.action, self.devices));
+                longer.context = context;
+                longer.steps.extend(steps);
+            }
+            Understanding::Answer { .. } if context.is_met || !self.is_question(&self.wording(part)) => {}
+            Understanding::Plan { .. } | Understanding::Question { .. } if longer.steps.is_empty() => {
+                longer.complete(context, rest.to_vec());
+                longer.begun = Some(understanding);
+            }
+            Understanding::Plan { .. } | Understanding::Question { .. } | Understanding::Answer { .. } => {
+                let mut then = longer.context.clone();
+                then.begin(&longer.steps);
+                longer.complete(then, [&[part.to_owned()], rest].concat());
+            }
+            Understanding::Refusal { .. } | Understanding::Stop { .. } => return None,
+        }
+        Some(longer)
     }
 
     /// What the sentences of an utterance mean, each by itself, with what is said of those that nothing is made of; nothing, where that
@@ -180,23 +169,21 @@ impl Conversation<'_> {
         let mut sequence = Sequence::new(self.scene.clone(), context.at_new_utterance());
         let (mut answers, mut lost) = (Vec::new(), Vec::new());
         for (at, sentence) in sentences.iter().enumerate() {
-            let there = Conversation { scene: &sequence.scene, ..*self };
+            let there = self.after(&sequence);
             let mut then = sequence.context.clone();
             let (understanding, sureness) = there.understand_weighed(sentence, &mut then);
-            let is_asked = || there.is_asked(sentence);
+            let is_question = || there.is_question(&there.wording(sentence));
             match &understanding {
-                Understanding::Answer { text, .. } if sequence.steps.is_empty() && is_asked() => {
-                    answers.push(text.clone())
+                Understanding::Answer { text, .. } if sequence.steps.is_empty() && is_question() => {
+                    answers.push(text.clone());
                 }
                 Understanding::Refusal { .. } => {
-                    lost.push(sentence.trim_end_matches(|end: char| !end.is_alphanumeric()))
+                    lost.push(sentence.trim_end_matches(|end: char| !end.is_alphanumeric()));
                 }
                 Understanding::Question { .. } if sureness == 0.0 => return None,
                 _ => {
-                    let way =
-                        Alternative { probability: 1.0, ..Alternative::new(understanding, then, Evidence::default()) };
-                    let next = self.continued(sequence, sentence, &sentences[at + 1..], vec![way]);
-                    sequence = next.into_iter().next()?;
+                    let way = Alternative::new(understanding, then, Evidence::default());
+                    sequence = self.with(&sequence, way, sentence, &sentences[at + 1..]).unwrap_or(sequence);
                 }
             }
             if sequence.is_complete {

@@ -91,7 +91,7 @@ impl Conversation<'_> {
 
     /// What the things that are named may be asked for without a verb: `mug in the sink`, `golf ball to the reception`.
     pub(crate) fn of_names(&self, said: &Said<'_>, context: &Context) -> Option<Alternative> {
-        let is_carried = |class: &ClassId| self.catalog.class(*class).has(Property::Pickupable);
+        let is_carried = |class: &ClassId| self.is_carried(*class);
         let holds = |class: &ClassId| self.catalog.class(*class).has(Property::Receptacle) && !is_carried(class);
         let (mut carried, mut places) = (Vec::new(), Vec::new());
         for Mention { words, named } in &said.mentions {
@@ -113,12 +113,21 @@ impl Conversation<'_> {
             return None;
         }
         let requests = carried.iter().map(|thing| format!("{verb} {thing} {preposition} {place}"));
-        let mut then = context.at_new_utterance();
-        let understanding = self.understand_said(&requests.collect::<Vec<_>>().join(". "), &mut then);
+        let way = self.of_named(&requests.collect::<Vec<_>>().join(". "), said, context);
+        Some(way).filter(|way| matches!(way.understanding, Understanding::Plan { .. }))
+    }
+
+    /// What the grammar makes of a text that was made of what is named.
+    fn of_named(&self, text: &str, said: &Said<'_>, context: &Context) -> Alternative {
         let mut evidence = Evidence::default();
         evidence.set(Feature::Names, 1.0);
         evidence.set(Feature::NotInstead, said.instead);
-        matches!(understanding, Understanding::Plan { .. }).then(|| Alternative::new(understanding, then, evidence))
+        let mut then = context.at_new_utterance();
+        Alternative::new(self.understand_said(text, &mut then), then, evidence)
+    }
+
+    fn is_carried(&self, class: ClassId) -> bool {
+        self.catalog.class(class).has(Property::Pickupable)
     }
 
     /// What was asked before, of what is named now in place of that: `and the blue one?`
@@ -141,22 +150,14 @@ impl Conversation<'_> {
                 }
             }
         }
-        let understood = texts.into_iter().take(MOST_REPLACED).filter_map(|text| {
-            let mut then = context.at_new_utterance();
-            let understanding = self.understand_said(&text, &mut then);
-            let mut evidence = Evidence::default();
-            evidence.set(Feature::Names, 1.0);
-            evidence.set(Feature::NotInstead, said.instead);
-            let is_done = matches!(understanding, Understanding::Plan { .. } | Understanding::Answer { .. });
-            is_done.then(|| Alternative::new(understanding, then, evidence))
-        });
-        understood.collect()
+        let ways = texts.iter().take(MOST_REPLACED).map(|text| self.of_named(text, said, context));
+        ways.filter(|way| matches!(way.understanding, Understanding::Plan { .. } | Understanding::Answer { .. }))
+            .collect()
     }
 
     /// Which of the words at `then`, which name `other`, a name may stand in place of: what is of the same kind.
     fn replaced(&self, name: &Named, other: &Named, words: &[String], then: &Range<usize>) -> Option<Range<usize>> {
-        let is_carried =
-            |classes: &[ClassId]| classes.iter().any(|class| self.catalog.class(*class).has(Property::Pickupable));
+        let is_carried = |classes: &[ClassId]| classes.iter().any(|class| self.is_carried(*class));
         let is_color = |at: usize| self.lexicon.colors.exact(&words[at..=at]).is_some();
         match (name, other) {
             (Named::Thing(one), Named::Thing(other)) if is_carried(one) == is_carried(other) => Some(then.clone()),

@@ -68,8 +68,8 @@ impl Conversation<'_> {
             is_plain: self.is_plain(wording),
             is_partial: self.leaves_words_out(wording),
             is_guessed: self.takes_for_question(wording),
-            is_asked: wording.ends_as_question() || question::read(self.lexicon, &wording.tidied).is_some(),
-            is_forbidden: parts.iter().any(|part| matches!(part, Part::Forbidden(_))),
+            is_asked: self.is_question(wording),
+            is_forbidden: clause::forbid(&parts),
             is_conditional: condition::is_conditional(self.lexicon, &wording.words),
             is_pending: context.pending.is_some(),
             unheard: share(wording.unheard.len()),
@@ -87,6 +87,11 @@ impl Conversation<'_> {
                 as f32,
             readings,
         }
+    }
+
+    /// Whether something is asked that is to be answered.
+    pub(crate) fn is_question(&self, wording: &Wording<'_>) -> bool {
+        wording.ends_as_question() || question::read(self.lexicon, &wording.tidied).is_some()
     }
 
     /// What the words name, and where.

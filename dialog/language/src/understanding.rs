@@ -3,7 +3,7 @@
 use cohabit_cdf::{Action, GoToTarget, ObjectId, Verb};
 use serde::{Deserialize, Serialize};
 
-use crate::describe;
+use crate::{describe, setting::named_in_a_word};
 
 /// What the robot makes of what it was told.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
@@ -177,35 +177,7 @@ pub enum Asking {
     Always,
 }
 
-impl Asking {
-    /// All settings.
-    pub const ALL: [Self; 3] = [Self::Never, Self::Unsure, Self::Always];
-
-    /// The setting in one word.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Never => "never",
-            Self::Unsure => "unsure",
-            Self::Always => "always",
-        }
-    }
-}
-
-impl std::fmt::Display for Asking {
-    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        formatter.write_str(self.name())
-    }
-}
-
-impl std::str::FromStr for Asking {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, Self::Err> {
-        let names = || Self::ALL.map(Self::name).join("`, `");
-        Self::ALL.into_iter().find(|one| one.name() == text).ok_or_else(|| format!("one of `{}`", names()))
-    }
-}
+named_in_a_word!(Asking: Never = "never", Unsure = "unsure", Always = "always");
 
 impl Step {
     /// The object that it is about.

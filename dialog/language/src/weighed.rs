@@ -18,16 +18,18 @@ use crate::{
 /// How likely steps must be meant for them to be taken without a question, where they change things and where they do not.
 const TO_CHANGE: f32 = 0.6;
 const TO_MOVE: f32 = 0.45;
-/// The same where it is taken for the answer to a question of the robot's: what is to be done was said before.
-const TO_ACT_ON_REPLY: f32 = 0.3;
-/// The same in words some of which nobody ever met: an unknown verb changes nothing.
-const TO_CHANGE_UNHEARD: f32 = 0.85;
-const TO_MOVE_UNHEARD: f32 = 0.75;
-/// The same of all that is left of the mission, which is wanted anyway.
-const TO_PURSUE: f32 = 0.15;
 /// The same where something that was named is left out.
 const TO_CHANGE_IN_PART: f32 = 0.75;
 const TO_MOVE_IN_PART: f32 = 0.5;
+/// The same in words some of which nobody ever met: an unknown verb changes nothing.
+const TO_CHANGE_UNHEARD: f32 = 0.85;
+const TO_MOVE_UNHEARD: f32 = 0.75;
+/// The same of things that nobody named, where a name is unknown.
+const TO_TAKE_FOR_UNHEARD: f32 = 0.75;
+/// The same where it is taken for the answer to a question of the robot's: what is to be done was said before.
+const TO_ACT_ON_REPLY: f32 = 0.3;
+/// The same of all that is left of the mission, which is wanted anyway.
+const TO_PURSUE: f32 = 0.15;
 /// How likely what the grammar reads to the last word, as an answer or as a yes-no question must be for nothing else to be asked: most of
 /// that is right.
 const TO_TRUST_EXACT: f32 = 0.08;
@@ -35,33 +37,30 @@ const TO_TRUST_EXACT: f32 = 0.08;
 const TO_TRUST_SHORT: f32 = 0.02;
 const SHORT: usize = 6;
 const SURE_IF_SHORT: f32 = 0.9;
-/// Below this, what is done is said to be what the robot thinks, or what it leaves out is said.
-const SURELY: f32 = 0.7;
-const SURELY_ALL: f32 = 0.9;
-/// How likely what its sentences mean by themselves is meant.
-const BY_SENTENCES: f32 = 0.6;
-/// How likely what the grammar alone makes of an utterance is meant, where nothing else is asked.
-const UNWEIGHED: f32 = 0.6;
-/// The same of things that nobody named, where a name is unknown.
-const TO_TAKE_FOR_UNHEARD: f32 = 0.75;
 /// How likely what is said must be the right reply, where nothing is done.
 const TO_REPLY: f32 = 0.3;
-/// The same in words some of which nobody ever met.
-const TO_REPLY_UNHEARD: f32 = 0.6;
-/// The same of what is only about things that nobody named, and to propose it.
+/// The same of what is only about things that nobody named, and in words some of which nobody ever met.
 const TO_REPLY_UNNAMED: f32 = 0.6;
-const TO_PROPOSE_UNNAMED: f32 = 0.2;
+const TO_REPLY_UNHEARD: f32 = 0.6;
 /// The same where it asks which one of several is meant, in words some of which nobody ever met.
 const TO_ASK_UNHEARD: f32 = 0.45;
-/// How likely steps must be meant to be proposed, where every word is known and where not; and to be taken where nothing may be asked.
+/// How likely steps must be meant to be proposed: where every word is known, where not, where the grammar only finds a thing, and of things
+/// that nobody named; and to be taken where nothing may be asked.
 const TO_PROPOSE: f32 = 0.1;
 const TO_PROPOSE_UNHEARD: f32 = 0.3;
 const TO_PROPOSE_VAGUE: f32 = 0.2;
+const TO_PROPOSE_UNNAMED: f32 = 0.2;
 const TO_GUESS: f32 = 0.3;
 /// What is proposed beside the likeliest is at least so likely, of that.
 const RIVAL: f32 = 0.4;
 /// How many plans are proposed at most.
 const MOST_PROPOSED: usize = 3;
+/// Below these, what is done is said to be what the robot thinks, and what it leaves out is said.
+const SURELY: f32 = 0.7;
+const SURELY_ALL: f32 = 0.9;
+/// How likely that is meant which the sentences of an utterance mean by themselves, and which the grammar alone makes of it.
+const BY_SENTENCES: f32 = 0.6;
+const BY_GRAMMAR: f32 = 0.6;
 
 impl Conversation<'_> {
     /// What speaks for itself, or what most speaks for; and how likely it is what was meant.
@@ -69,7 +68,7 @@ impl Conversation<'_> {
         let wording = self.wording(utterance);
         let by_grammar = self.read(utterance, context);
         if self.speaks_for_itself(&wording, &by_grammar) {
-            let sureness = if self.parser.is_some() { 1.0 } else { UNWEIGHED };
+            let sureness = if self.parser.is_some() { 1.0 } else { BY_GRAMMAR };
             *context = by_grammar.context;
             return (by_grammar.understanding, sureness);
         }
@@ -88,8 +87,10 @@ impl Conversation<'_> {
             _ => wording.unheard.as_slice(),
         };
         let mut alternatives = self.alternatives_to(by_grammar.clone(), &wording, context);
+        let is_alone = alternatives.len() == 1;
+        let unknown = clause::unknown_words(self.lexicon, &wording.words);
         // `walk the dog` is no walk.
-        if !clause::unknown_words(self.lexicon, &wording.words).is_empty() {
+        if !unknown.is_empty() {
             alternatives.retain(|one| !one.only_moves());
         }
         let is_short = wording.words.len() <= SHORT;
@@ -97,7 +98,7 @@ impl Conversation<'_> {
             let least = if is_short || one.is_grammars_reply() { TO_TRUST_SHORT } else { TO_TRUST_EXACT };
             one.is_exact() && one.probability >= least
         };
-        if let Some(trusted) = alternatives.iter().find(|one| alternatives.len() == 1 || is_trusted(one)) {
+        if let Some(trusted) = alternatives.iter().find(|one| is_alone || is_trusted(one)) {
             *context = trusted.context.clone();
             let least = if is_short { SURE_IF_SHORT } else { 0.0 };
             return (trusted.understanding.clone(), trusted.probability.max(least));
@@ -108,7 +109,7 @@ impl Conversation<'_> {
             alternatives.retain(|one| !matches!(one.understanding, Understanding::Plan { .. }));
         }
         // An unknown name is no other thing that is in the hand already; who may not ask does not take it for any other.
-        if !clause::unknown_words(self.lexicon, &wording.words).is_empty() {
+        if !unknown.is_empty() {
             let may_ask = self.judge.asking != Asking::Never;
             alternatives.retain(|one| {
                 let is_sure = may_ask || !one.is_unnamed() || one.probability >= TO_TAKE_FOR_UNHEARD;
@@ -141,7 +142,7 @@ impl Conversation<'_> {
             return (question, 0.0);
         }
         if matches!(by_grammar.understanding, Understanding::Plan { .. }) {
-            return (self.unclear(&clause::unknown_words(self.lexicon, &wording.words)), 0.0);
+            return (self.unclear(&unknown), 0.0);
         }
         *context = by_grammar.context;
         (by_grammar.understanding, 0.0)
@@ -298,6 +299,6 @@ impl Alternative {
 
     /// Whether grammar or parser takes it for the answer to a question of the robot's.
     fn is_reply(&self) -> bool {
-        [Feature::GrammarPlanReply, Feature::ParserReply].iter().any(|reply| self.evidence.get(*reply) > 0.0)
+        self.is_grammars_reply() || self.evidence.get(Feature::ParserReply) > 0.0
     }
 }

@@ -255,3 +255,12 @@ fn why_it_stopped_is_a_question() {
     let understanding = talk.language.understand("why did you stop?", &talk.scene, &mut talk.context);
     assert!(matches!(understanding, Understanding::Answer { .. }), "{understanding:?}");
 }
+
+#[test]
+fn who_agrees_in_other_words_has_said_yes() {
+    check(
+        &["held Hammer_1"],
+        "> pick up the banana\n? I am holding the hammer. Shall I put it down first?\n> aye, that's the very thing I want\n\
+         put TableRound_02_1, take Banana_01_1",
+    );
+}

@@ -194,31 +194,40 @@ impl Message {
 
     /// What it says by calls, or else in JSON, whatever stands around that: the calls as an object, or an array of requests.
     fn meant(&self) -> Option<Meant> {
-        let called =
-            self.tool_calls.iter().zip(self.arguments()).flat_map(|(call, arguments)| match &*call.function.name {
-                "do" => strings(&arguments["requests"]).into_iter().map(Part::Request).collect(),
-                "say" => strings(&arguments["text"]).into_iter().map(Part::Say).collect(),
-                "ask" => strings(&arguments["text"]).into_iter().map(Part::Ask).collect(),
-                _ => Vec::new(),
-            });
-        let called = joined(called);
-        called.or_else(|| {
+        let called = self.tool_calls.iter().zip(self.arguments()).flat_map(|(call, arguments)| {
+            let name = call.function.name.as_str();
+            parts(name, &arguments[if name == DO { "requests" } else { "text" }])
+        });
+        joined(called).or_else(|| {
             let content = self.content.as_deref()?;
-            let of_object = between(content, '{', '}').and_then(|object| {
-                let parts = strings(&object["do"]).into_iter().map(Part::Request);
-                let said = strings(&object["say"]).into_iter().map(Part::Say);
-                joined(parts.chain(said).chain(strings(&object["ask"]).into_iter().map(Part::Ask)))
-            });
-            of_object.or_else(|| joined(strings(&between(content, '[', ']')?).into_iter().map(Part::Request)))
+            let object = between(content, '{', '}').unwrap_or_default();
+            let in_object = [DO, SAY, ASK].into_iter().flat_map(|name| parts(name, &object[name]));
+            joined(in_object).or_else(|| joined(parts(DO, &between(content, '[', ']')?).into_iter()))
         })
     }
 }
+
+/// What a model may call.
+const DO: &str = "do";
+const SAY: &str = "say";
+const ASK: &str = "ask";
 
 /// A part of what a model wants.
 enum Part {
     Request(String),
     Say(String),
     Ask(String),
+}
+
+/// What a call of that name with these texts wants.
+fn parts(name: &str, texts: &Value) -> Vec<Part> {
+    let part = match name {
+        DO => Part::Request,
+        SAY => Part::Say,
+        ASK => Part::Ask,
+        _ => return Vec::new(),
+    };
+    strings(texts).into_iter().map(part).collect()
 }
 
 /// What these come to: what is to be done counts most, what is to be known first more than what is said.
@@ -274,7 +283,7 @@ fn question(model: &str, unclear: &Unclear) -> Value {
     json!({ "model": model, "messages": messages, "tools": tools(), "temperature": 0, "max_tokens": 300 })
 }
 
-/// What a model may call.
+/// These as an OpenAI-compatible server is told of them.
 fn tools() -> Value {
     let tool = |name: &str, about: &str, argument: &str, schema: Value| {
         json!({ "type": "function", "function": {
@@ -291,8 +300,8 @@ fn tools() -> Value {
             "requests",
             json!({ "type": "array", "items": text })
         ),
-        tool("say", "Say something to the person, where nothing is to be done", "text", text.clone()),
-        tool("ask", "Ask the person what you must know first", "text", text.clone()),
+        tool(SAY, "Say something to the person, where nothing is to be done", "text", text.clone()),
+        tool(ASK, "Ask the person what you must know first", "text", text.clone()),
     ])
 }
 

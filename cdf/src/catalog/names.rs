@@ -1,10 +1,12 @@
 //! What people call the classes of a catalogue.
 
+use std::collections::HashMap;
+
 use super::ObjectClass;
 
 /// What people call a class.
-#[derive(Clone, Debug, Default, Eq, PartialEq)]
-pub struct Called {
+#[derive(Clone, Debug)]
+pub struct ClassNames {
     /// Its readable name in lower case, `TAM` and such kept; `table round small` in the order in which people say that.
     pub plain: String,
     /// A name of several words that ends in the plain one, and tells it from other classes of that name: `red computer`.
@@ -12,12 +14,17 @@ pub struct Called {
 }
 
 /// What people call these classes, in their order.
-pub(super) fn all(classes: &[ObjectClass]) -> Vec<Called> {
-    let called = classes.iter().map(|class| {
+pub(super) fn of_classes(classes: &[ObjectClass]) -> Vec<ClassNames> {
+    let mut by_name: HashMap<String, Vec<&ObjectClass>> = HashMap::new();
+    for class in classes {
+        by_name.entry(class.name.to_lowercase()).or_default().push(class);
+    }
+    let names = classes.iter().map(|class| {
         let plain = plain(class);
-        Called { special: special(class, &plain, classes), plain }
+        let namesakes = by_name.get(&plain).map(Vec::as_slice).unwrap_or_default();
+        ClassNames { special: special(class, &plain, namesakes), plain }
     });
-    called.collect()
+    names.collect()
 }
 
 fn plain(class: &ObjectClass) -> String {
@@ -36,8 +43,7 @@ fn plain(class: &ObjectClass) -> String {
     name.split_whitespace().map(lower).collect::<Vec<_>>().join(" ")
 }
 
-fn special(class: &ObjectClass, plain: &str, classes: &[ObjectClass]) -> Option<String> {
-    let namesakes: Vec<&ObjectClass> = classes.iter().filter(|other| other.name.to_lowercase() == plain).collect();
+fn special(class: &ObjectClass, plain: &str, namesakes: &[&ObjectClass]) -> Option<String> {
     if namesakes.len() < 2 {
         return None;
     }
