@@ -107,9 +107,10 @@ impl Conversation<'_> {
         let paraphrases: Vec<&str> = ranked.iter().map(|one| one.paraphrase.as_str()).collect();
         let scores = Reranker::builtin().scores(said.wording.utterance, &lines(context), &paraphrases);
         let fits = Fit::of_scores(&scores).into_iter().zip(&ranked);
-        let fits: Vec<Fit> = fits.map(|(fit, one)| one.fit(fit.with_first(one.probability, none), said)).collect();
+        let fits = fits.map(|(fit, one)| (one.fit(fit.with_first(one.probability, none)), one.evidence));
+        let fits: Vec<(Fit, Evidence)> = fits.collect();
         let probabilities = Weights::builtin().fit_probabilities(&fits);
-        for ((one, fit), probability) in ranked.iter_mut().zip(fits).zip(probabilities) {
+        for ((one, (fit, _)), probability) in ranked.iter_mut().zip(fits).zip(probabilities) {
             (one.fit, one.probability) = (Some(fit), probability);
         }
         others.iter_mut().for_each(|one| one.probability = 0.0);
@@ -178,6 +179,9 @@ impl Conversation<'_> {
                 evidence.set_if(Feature::PlanAsked, said.is_asked);
                 evidence.set_if(Feature::PlanForbidden, said.is_forbidden);
                 evidence.set(Feature::PlanUnheard, said.unheard);
+                evidence.set_if(Feature::PlanUnknown, said.has_unknown);
+                evidence.set_if(Feature::PlanLasting, steps.iter().any(Step::is_lasting));
+                evidence.set_if(Feature::PlanOfMission, self.is_of_mission(&one.context.later));
                 evidence.set(Feature::Steps, share(steps.len() / 2));
                 evidence.set_if(Feature::Looks, steps.iter().all(Step::only_looks));
             }
@@ -197,12 +201,16 @@ impl Conversation<'_> {
                 evidence.set_if(Feature::AnswerWhether, holds.is_some());
                 evidence.set_if(Feature::AnswerAsked, said.is_asked);
                 evidence.set_if(Feature::AnswerIdle, one.context.is_met);
+                evidence.set_if(Feature::AnswerIdleAsked, one.context.is_met && said.is_asked);
+                evidence.set(Feature::AnswerUnheard, said.unheard);
             }
             Understanding::Refusal { .. } => evidence.set(Feature::Refusal, 1.0),
             Understanding::Stop { .. } => {}
         }
         // What comes later is about more than what is done first.
-        if !one.context.later.is_empty() {
+        let later = &one.context.later;
+        evidence.set_if(Feature::Later, !later.is_empty() && !self.is_of_mission(later));
+        if !later.is_empty() {
             return;
         }
         let mut about = self.about(understanding);
@@ -229,8 +237,18 @@ impl Conversation<'_> {
         };
         if !about.classes.is_empty() {
             let named = about.classes.iter().filter(is_named).count();
-            evidence.set(Feature::Unnamed, 1.0 - named as f32 / about.classes.len() as f32);
+            let unnamed = 1.0 - named as f32 / about.classes.len() as f32;
+            evidence.set(Feature::Unnamed, unnamed);
+            evidence.set(Feature::UnnamedUnheard, unnamed * said.unheard);
+            let points = matches!(understanding, Understanding::Answer { highlight, .. } if !highlight.is_empty());
+            evidence.set(Feature::AnswerUnnamed, if points { unnamed } else { 0.0 });
         }
+    }
+
+    /// Whether all that is to be done later is left of the mission.
+    pub(crate) fn is_of_mission(&self, later: &[String]) -> bool {
+        let is_goal = |text: &String| self.scene.goals.iter().any(|goal| goal.text == *text);
+        !later.is_empty() && later.iter().all(is_goal)
     }
 
     fn about(&self, understanding: &Understanding) -> About {
@@ -297,24 +315,15 @@ impl Alternative {
         self.evidence.get(Feature::GrammarPlain) > 0.0
     }
 
-    /// What it is, beside what the re-ranker says of it.
-    fn fit(&self, mut fit: Fit, said: &Said<'_>) -> Fit {
-        let is_plan = matches!(self.understanding, Understanding::Plan { .. });
-        fit.set_if(FitFeature::Plain, self.is_plain());
-        fit.set_if(FitFeature::PlainPlan, self.is_plain() && is_plan);
-        fit.set(FitFeature::PlainLong, self.evidence.get(Feature::GrammarPlainLong));
-        let (kind, score) = match &self.understanding {
-            Understanding::Question { .. } => (FitFeature::Question, Some(FitFeature::ScoreOfQuestion)),
-            Understanding::Answer { .. } => (FitFeature::Answer, Some(FitFeature::ScoreOfAnswer)),
-            Understanding::Refusal { .. } => (FitFeature::Refusal, Some(FitFeature::ScoreOfRefusal)),
-            _ => (FitFeature::Plan, None),
+    /// What the re-ranker says of it, by what it is.
+    fn fit(&self, mut fit: Fit) -> Fit {
+        let feature = match &self.understanding {
+            Understanding::Question { .. } => FitFeature::ScoreOfQuestion,
+            Understanding::Answer { .. } => FitFeature::ScoreOfAnswer,
+            Understanding::Refusal { .. } => FitFeature::ScoreOfRefusal,
+            _ => return fit,
         };
-        fit.set(kind, 1.0);
-        if let Some(feature) = score {
-            fit.set(feature, fit.get(FitFeature::Score));
-        }
-        fit.set(FitFeature::Missing, self.evidence.get(Feature::MissingAny));
-        fit.set(FitFeature::Unheard, said.unheard);
+        fit.set(feature, fit.get(FitFeature::Score));
         fit
     }
 

@@ -2,8 +2,9 @@
 //!
 //! A conditional logit (McFadden 1974), as for referring expressions (see [`crate::confidence`]): each way has a utility, linear in its
 //! [`Evidence`], and their probabilities are the softmax of these, with one more alternative, that none of them is meant. The likeliest are
-//! then read together with what was said, by the re-ranker of `dialog/parser`; a second logit over what that says ([`Fit`]) has the last
-//! word. The weights are fitted to labelled utterances by `dialog/language/fit`.
+//! then read together with what was said, by the re-ranker of `dialog/parser`; a second logit over what that says ([`Fit`]) and the same
+//! evidence has the last word: how likely a way is meant is what becomes of it in such a situation. The weights are fitted to labelled
+//! utterances by `dialog/language/fit`.
 
 use std::{collections::BTreeMap, sync::LazyLock};
 
@@ -93,6 +94,7 @@ features! {
     /// Whether the grammar reads all to the last word.
     GrammarPlain = "grammar_plain",
     GrammarPlainLong = "grammar_plain_long",
+    GrammarPlainShort = "grammar_plain_short",
     /// How likely its parts mean this, each by itself.
     Parts = "parts",
     /// What the things that were named may be asked for.
@@ -113,6 +115,14 @@ features! {
     PlanAsked = "plan_asked",
     PlanForbidden = "plan_forbidden",
     PlanUnheard = "plan_unheard",
+    /// Some of the words are none of the grammar's.
+    PlanUnknown = "plan_unknown",
+    /// What it changes is not simply put back.
+    PlanLasting = "plan_lasting",
+    /// It begins what is left of the mission.
+    PlanOfMission = "plan_of_mission",
+    /// More is to be done later.
+    Later = "later",
     Steps = "steps",
     Looks = "looks",
     Question = "question",
@@ -127,11 +137,16 @@ features! {
     AnswerAsked = "answer_asked",
     /// An answer to a request: that it is done already, or will be left.
     AnswerIdle = "answer_idle",
+    AnswerIdleAsked = "answer_idle_asked",
+    AnswerUnheard = "answer_unheard",
+    /// It is about nothing that was named, though it points at something.
+    AnswerUnnamed = "answer_unnamed",
     Refusal = "refusal",
     // How much it is about what was named.
     Missing = "missing",
     MissingAny = "missing_any",
     Unnamed = "unnamed",
+    UnnamedUnheard = "unnamed_unheard",
     /// How many requests fewer there are than the parser sees.
     Fewer = "fewer",
     More = "more",
@@ -150,20 +165,9 @@ features! {
     Share = "share",
     Best = "best",
     Lead = "lead",
-    /// What the grammar reads to the last word.
-    Plain = "plain",
-    PlainPlan = "plain_plan",
-    PlainLong = "plain_long",
-    Plan = "plan",
-    Question = "question",
-    Answer = "answer",
-    Refusal = "refusal",
     ScoreOfQuestion = "score_of_question",
     ScoreOfAnswer = "score_of_answer",
     ScoreOfRefusal = "score_of_refusal",
-    /// Whether it leaves out what was named, or has words that nobody ever met.
-    Missing = "missing",
-    Unheard = "unheard",
 }
 
 impl Fit {
@@ -233,27 +237,25 @@ impl Evidence {
     }
 }
 
-/// How much each evidence counts.
+/// How much each evidence counts, and the utility of none of the ways.
 #[derive(Clone, Debug)]
 pub(crate) struct Weights {
-    first: Logit<{ Evidence::COUNT }>,
-    second: Logit<{ Fit::COUNT }>,
-}
-
-/// A conditional logit with one more alternative, that none is meant.
-#[derive(Clone, Debug)]
-struct Logit<const N: usize> {
-    weights: [f32; N],
-    /// The utility of none of the ways.
-    none: f32,
+    /// Before the re-ranker has read the ways.
+    first: [f32; Evidence::COUNT],
+    first_none: f32,
+    /// After it.
+    fit: [f32; Fit::COUNT],
+    second: [f32; Evidence::COUNT],
+    second_none: f32,
 }
 
 /// `data/alternatives.toml`: a weight by the name of each feature, and one of none of the ways.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct WeightFile {
-    evidence: BTreeMap<String, f32>,
+    first: BTreeMap<String, f32>,
     fit: BTreeMap<String, f32>,
+    second: BTreeMap<String, f32>,
 }
 
 impl Weights {
@@ -264,35 +266,39 @@ impl Weights {
     }
 
     fn read() -> Self {
-        let WeightFile { evidence, fit } = toml::from_str(include_str!("../data/alternatives.toml"))
+        let WeightFile { first, fit, second } = toml::from_str(include_str!("../data/alternatives.toml"))
             .expect("invariant: the built-in weights parse, which a test holds");
-        Self { first: Logit::new(&evidence, Evidence::NAMES), second: Logit::new(&fit, Fit::NAMES) }
+        let [[first_none], [second_none]] = [&first, &second].map(|weights| by_name(weights, ["none"]));
+        Self {
+            first: by_name(&first, Evidence::NAMES),
+            first_none,
+            fit: by_name(&fit, Fit::NAMES),
+            second: by_name(&second, Evidence::NAMES),
+            second_none,
+        }
     }
 
     /// The probabilities of ways with this evidence; what is left to 1 is that of none of them.
     pub(crate) fn probabilities(&self, ways: &[Evidence]) -> Vec<f32> {
-        self.first.probabilities(ways.iter().map(|way| &way.values))
+        let utilities = ways.iter().map(|evidence| product(&self.first, &evidence.values));
+        shares(&utilities.collect::<Vec<_>>(), self.first_none)
     }
 
     /// The same of ways that were read together with what was said.
-    pub(crate) fn fit_probabilities(&self, ways: &[Fit]) -> Vec<f32> {
-        self.second.probabilities(ways.iter().map(|way| &way.values))
+    pub(crate) fn fit_probabilities(&self, ways: &[(Fit, Evidence)]) -> Vec<f32> {
+        let utility = |(fit, evidence): &(Fit, Evidence)| {
+            product(&self.fit, &fit.values) + product(&self.second, &evidence.values)
+        };
+        shares(&ways.iter().map(utility).collect::<Vec<_>>(), self.second_none)
     }
 }
 
-impl<const N: usize> Logit<N> {
-    fn new(weights: &BTreeMap<String, f32>, names: [&str; N]) -> Self {
-        let [none] = by_name(weights, ["none"]);
-        Self { weights: by_name(weights, names), none }
-    }
-
-    fn probabilities<'a>(&self, ways: impl Iterator<Item = &'a [f32; N]>) -> Vec<f32> {
-        let utilities: Vec<f32> = ways.map(|way| product(&self.weights, way)).collect();
-        let highest = utilities.iter().copied().fold(self.none, f32::max);
-        let parts: Vec<f32> = utilities.iter().map(|utility| (utility - highest).exp()).collect();
-        let whole = parts.iter().sum::<f32>() + (self.none - highest).exp();
-        parts.iter().map(|part| part / whole).collect()
-    }
+/// The softmax of utilities, without that of none of the ways.
+fn shares(utilities: &[f32], none: f32) -> Vec<f32> {
+    let highest = utilities.iter().copied().fold(none, f32::max);
+    let parts: Vec<f32> = utilities.iter().map(|utility| (utility - highest).exp()).collect();
+    let whole = parts.iter().sum::<f32>() + (none - highest).exp();
+    parts.iter().map(|part| part / whole).collect()
 }
 
 #[cfg(test)]

@@ -22,6 +22,8 @@ const MOST_OF_PART: usize = 2;
 const MOST_SEQUENCES: usize = 2;
 /// How likely a part asks for nothing, at least.
 const LEAST_SKIPPED: f32 = 0.02;
+/// How likely the rest is meant where nothing is made of a sentence.
+const IF_LOST: f32 = 0.7;
 
 /// The parts of an utterance so far, one after the other.
 #[derive(Clone)]
@@ -155,9 +157,9 @@ impl Conversation<'_> {
         Some(longer)
     }
 
-    /// What the sentences of an utterance mean, each by itself, with what is said of those that nothing is made of; nothing, where that
-    /// is all of them.
-    pub(crate) fn by_sentences(&self, wording: &Wording<'_>, context: &Context) -> Option<(Understanding, Context)> {
+    /// What the sentences of an utterance mean, each by itself, with what is said of those that nothing is made of, as likely as all of
+    /// them are meant so; nothing, where nothing is made of any.
+    pub(crate) fn by_sentences(&self, wording: &Wording<'_>, context: &Context) -> Option<Alternative> {
         let ended = wording.words.split_inclusive(|word| token::ends_sentence(word));
         let sentences: Vec<String> = ended
             .filter(|words| words.iter().any(|word| !token::is_punctuation(word)))
@@ -168,10 +170,15 @@ impl Conversation<'_> {
         }
         let mut sequence = Sequence::new(self.scene.clone(), context.at_new_utterance());
         let (mut answers, mut lost) = (Vec::new(), Vec::new());
+        let mut probability = 1.0;
         for (at, sentence) in sentences.iter().enumerate() {
             let there = self.after(&sequence);
             let mut then = sequence.context.clone();
             let (understanding, sureness) = there.understand_weighed(sentence, &mut then);
+            probability *= if matches!(understanding, Understanding::Refusal { .. }) { IF_LOST } else { sureness };
+            if probability == 0.0 {
+                return None;
+            }
             let is_question = || there.is_question(&there.wording(sentence));
             match &understanding {
                 Understanding::Answer { text, .. } if sequence.steps.is_empty() && is_question() => {
@@ -180,7 +187,6 @@ impl Conversation<'_> {
                 Understanding::Refusal { .. } => {
                     lost.push(sentence.trim_end_matches(|end: char| !end.is_alphanumeric()));
                 }
-                Understanding::Question { .. } if sureness == 0.0 => return None,
                 _ => {
                     let way = Alternative::new(understanding, then, Evidence::default());
                     sequence = self.with(&sequence, way, sentence, &sentences[at + 1..]).unwrap_or(sequence);
@@ -193,6 +199,7 @@ impl Conversation<'_> {
         let (understanding, context) = sequence.understanding()?;
         let lost = lost.iter().map(|lost| format!("I do not know what to do about \"{lost}\"."));
         let said: Vec<String> = answers.into_iter().chain(lost).collect();
-        Some((if said.is_empty() { understanding } else { understanding.after(&said.join(" ")) }, context))
+        let understanding = if said.is_empty() { understanding } else { understanding.after(&said.join(" ")) };
+        Some(Alternative { probability, ..Alternative::new(understanding, context, Evidence::default()) })
     }
 }

@@ -23,6 +23,8 @@ use crate::{
 /// How many words name something else than before at most, and how many ways to do so are tried.
 const LONGEST_ELLIPSIS: usize = 9;
 const MOST_REPLACED: usize = 4;
+/// Up to how many words are few.
+const SHORT: usize = 6;
 /// How many things that are named without a verb are carried at most.
 const MOST_CARRIED: usize = 3;
 
@@ -231,6 +233,7 @@ pub(crate) fn of_grammar(by_grammar: Alternative, said: &Said<'_>) -> Alternativ
     evidence.set_if(partial, said.is_partial);
     evidence.set_if(Feature::GrammarPlain, said.is_plain);
     evidence.set(Feature::GrammarPlainLong, if said.is_plain { said.length } else { 0.0 });
+    evidence.set_if(Feature::GrammarPlainShort, said.is_plain && said.wording.words.len() <= SHORT);
     let is_plan = matches!(understanding, Understanding::Plan { .. });
     evidence.set(Feature::GrammarPlanLong, if is_plan { said.length } else { 0.0 });
     evidence.set_if(Feature::GrammarPlanReply, is_plan && said.is_pending);

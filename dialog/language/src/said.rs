@@ -30,6 +30,8 @@ pub(crate) struct Said<'a> {
     pub(crate) is_pending: bool,
     /// How many words nobody ever met, of 3 at most.
     pub(crate) unheard: f32,
+    /// Whether some of the words are none of the grammar's.
+    pub(crate) has_unknown: bool,
     pub(crate) named: Vec<Named>,
     pub(crate) mentions: Vec<Mention>,
     /// How many words there are, of 20 at most.
@@ -73,6 +75,7 @@ impl Conversation<'_> {
             is_conditional: condition::is_conditional(self.lexicon, &wording.words),
             is_pending: context.pending.is_some(),
             unheard: share(wording.unheard.len()),
+            has_unknown: !clause::unknown_words(self.lexicon, &wording.words).is_empty(),
             length: wording.words.len().min(20) as f32 / 20.0,
             named: self.names_in(&wording.words).into_iter().fold(Vec::new(), |mut all, (_, name)| {
                 if !all.contains(&name) {

@@ -120,8 +120,12 @@ impl Search {
         self.target.is_some()
     }
 
-    /// A leg could not be walked.
+    /// A leg could not be walked, or not to its end.
     pub(crate) fn note_failure(&mut self, step: &Step, status: Status) {
+        if status == Status::Interrupted {
+            self.take_back(step);
+            return;
+        }
         if let (Action::GoTo { target: GoToTarget::Viewpoint(room, _) }, Status::UnsupportedNavigation) =
             (step.action, status)
         {
@@ -130,6 +134,17 @@ impl Search {
         if let Action::Interact { .. } = step.action {
             self.to_close = None;
         }
+    }
+
+    /// Where it was on its way to when something came between is still to be looked at, and what it was about to close to be closed.
+    fn take_back(&mut self, step: &Step) {
+        if let Some(Spot::Here(_)) = self.tried.pop() {
+            self.looked_m.pop();
+        }
+        self.to_close = match step.action {
+            Action::Interact { verb: Verb::Close, object } => Some(object),
+            _ => None,
+        };
     }
 
     fn look_for(&mut self, target: Target) -> bool {

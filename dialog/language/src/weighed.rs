@@ -15,51 +15,37 @@ use crate::{
     wording::Wording,
 };
 
-/// How likely steps must be meant for them to be taken without a question, where they change things and where they do not.
-const TO_CHANGE: f32 = 0.6;
-const TO_MOVE: f32 = 0.45;
-/// The same where something that was named is left out.
-const TO_CHANGE_IN_PART: f32 = 0.75;
-const TO_MOVE_IN_PART: f32 = 0.5;
-/// The same in words some of which nobody ever met: an unknown verb changes nothing.
+/// How likely steps must be meant for them to be taken without a question: where what they change is not simply put back, where it is, and
+/// where something lasting would be done in words some of which nobody ever met: an unknown verb changes nothing.
+const TO_CHANGE: f32 = 0.7;
+const TO_MOVE: f32 = 0.6;
 const TO_CHANGE_UNHEARD: f32 = 0.85;
 const TO_MOVE_UNHEARD: f32 = 0.75;
-/// The same of things that nobody named, where a name is unknown.
-const TO_TAKE_FOR_UNHEARD: f32 = 0.75;
-/// The same where it is taken for the answer to a question of the robot's: what is to be done was said before.
-const TO_ACT_ON_REPLY: f32 = 0.3;
-/// The same of all that is left of the mission, which is wanted anyway.
-const TO_PURSUE: f32 = 0.15;
-/// How likely what the grammar reads to the last word, as an answer or as a yes-no question must be for nothing else to be asked: most of
-/// that is right.
-const TO_TRUST_EXACT: f32 = 0.08;
-/// The same of up to so many words, and of answers, which nearly all are right; and how likely they are meant, at least.
-const TO_TRUST_SHORT: f32 = 0.02;
-const SHORT: usize = 6;
-const SURE_IF_SHORT: f32 = 0.9;
+/// The same of all that is left of the mission.
+const TO_PURSUE: f32 = 0.1;
 /// How likely what is said must be the right reply, where nothing is done.
-const TO_REPLY: f32 = 0.3;
-/// The same of what is only about things that nobody named, and in words some of which nobody ever met.
-const TO_REPLY_UNNAMED: f32 = 0.6;
-const TO_REPLY_UNHEARD: f32 = 0.6;
-/// The same where it asks which one of several is meant, in words some of which nobody ever met.
-const TO_ASK_UNHEARD: f32 = 0.45;
-/// How likely steps must be meant to be proposed: where every word is known, where not, where the grammar only finds a thing, and of things
-/// that nobody named; and to be taken where nothing may be asked.
-const TO_PROPOSE: f32 = 0.1;
+const TO_REPLY: f32 = 0.2;
+/// The same in words some of which nobody ever met, or about things that nobody named.
+const TO_REPLY_UNSURE: f32 = 0.6;
+/// How likely steps must be meant to be proposed, also in words some of which nobody ever met, and to be taken where nothing may be asked.
+const TO_PROPOSE: f32 = 0.05;
 const TO_PROPOSE_UNHEARD: f32 = 0.3;
-const TO_PROPOSE_VAGUE: f32 = 0.2;
-const TO_PROPOSE_UNNAMED: f32 = 0.2;
 const TO_GUESS: f32 = 0.3;
+/// How likely what the grammar reads to the last word must be meant for nothing else to be asked, and where it is an answer, names a
+/// condition or has few words.
+const TO_TRUST: f32 = 0.08;
+const TO_TRUST_SHORT: f32 = 0.005;
+const SHORT: usize = 6;
+/// How likely the latter is meant, at least.
+const SURE_IF_SHORT: f32 = 0.9;
 /// What is proposed beside the likeliest is at least so likely, of that.
-const RIVAL: f32 = 0.4;
+const RIVAL: f32 = 0.25;
 /// How many plans are proposed at most.
 const MOST_PROPOSED: usize = 3;
 /// Below these, what is done is said to be what the robot thinks, and what it leaves out is said.
 const SURELY: f32 = 0.7;
 const SURELY_ALL: f32 = 0.9;
-/// How likely that is meant which the sentences of an utterance mean by themselves, and which the grammar alone makes of it.
-const BY_SENTENCES: f32 = 0.6;
+/// How likely that is meant which the grammar alone makes of it.
 const BY_GRAMMAR: f32 = 0.6;
 
 impl Conversation<'_> {
@@ -94,8 +80,15 @@ impl Conversation<'_> {
             alternatives.retain(|one| !one.only_moves());
         }
         let is_short = wording.words.len() <= SHORT;
+        let is_conditional = condition::is_conditional(self.lexicon, &wording.words);
+        // `if it is open, close it, otherwise …` leaves nothing.
+        let has_otherwise = condition::has_otherwise(self.lexicon, &wording.words);
+        if has_otherwise {
+            alternatives.retain(|one| !one.context.is_met);
+        }
         let is_trusted = |one: &&Alternative| {
-            let least = if is_short || one.is_grammars_reply() { TO_TRUST_SHORT } else { TO_TRUST_EXACT };
+            let is_sure = is_short || is_conditional || one.is_grammars_reply();
+            let least = if is_sure { TO_TRUST_SHORT } else { TO_TRUST };
             one.is_exact() && one.probability >= least
         };
         if let Some(trusted) = alternatives.iter().find(|one| is_alone || is_trusted(one)) {
@@ -104,41 +97,34 @@ impl Conversation<'_> {
             return (trusted.understanding.clone(), trusted.probability.max(least));
         }
         // A question that the grammar answers is not carried out, nor what it leaves because a condition does not hold.
-        let is_open = wording.ends_as_question() || condition::is_conditional(self.lexicon, &wording.words);
+        let is_open = wording.ends_as_question() || is_conditional && !has_otherwise;
         if matches!(by_grammar.understanding, Understanding::Answer { .. }) && is_open {
             alternatives.retain(|one| !matches!(one.understanding, Understanding::Plan { .. }));
         }
-        // An unknown name is no other thing that is in the hand already; who may not ask does not take it for any other.
+        // An unknown name is no other thing that is in the hand already.
         if !unknown.is_empty() {
-            let may_ask = self.judge.asking != Asking::Never;
-            alternatives.retain(|one| {
-                let is_sure = may_ask || !one.is_unnamed() || one.probability >= TO_TAKE_FOR_UNHEARD;
-                is_sure && (!one.context.is_met || one.is_exact())
-            });
+            alternatives.retain(|one| !one.context.is_met || one.is_plain());
         }
         // Who asks why, who or when wants an answer, whatever it is about.
         if wording.asks_for_reason() {
             alternatives.retain(|one| !one.understanding.commits());
         }
-        let likeliest = alternatives.first();
-        let likeliest = likeliest.filter(|one| one.is_likely(unheard) || unheard.is_empty() && self.pursues_goals(one));
-        if likeliest.is_none_or(|one| one.probability < SURELY_ALL)
-            && let Some((understanding, then)) = self.by_sentences(&wording, context)
-        {
-            *context = then;
-            return (understanding, BY_SENTENCES);
+        let highest = alternatives.first().map_or(0.0, |one| one.probability);
+        let leaves_out = alternatives.first().is_some_and(|one| !one.leaves_out.is_empty());
+        if highest < SURELY_ALL || leaves_out {
+            // They leave nothing out.
+            let is_likely = |one: &Alternative| one.probability > highest || one.probability >= TO_MOVE;
+            let by_sentences = self.by_sentences(&wording, context).filter(is_likely);
+            alternatives.splice(0..0, by_sentences);
         }
-        if let Some(likeliest) = likeliest {
+        let likely = alternatives.first().filter(|one| one.probability >= one.least(unheard));
+        // What is left of the mission is wanted anyway.
+        let pursues = |one: &&Alternative| one.of_mission() && one.probability >= TO_PURSUE && unheard.is_empty();
+        if let Some(likeliest) = likely.or_else(|| alternatives.iter().find(pursues)) {
             *context = likeliest.context.clone();
             return (likeliest.understood(unheard), likeliest.probability);
         }
-        let is_vague = matches!(by_grammar.understanding, Understanding::Question { kind: Clarification::Request, .. });
-        let least = match unheard {
-            [] if is_vague => TO_PROPOSE_VAGUE,
-            [] => TO_PROPOSE,
-            _ => TO_PROPOSE_UNHEARD,
-        };
-        if let Some(question) = self.proposed(&alternatives, least, unheard, context) {
+        if let Some(question) = self.proposed(&alternatives, unheard, context) {
             return (question, 0.0);
         }
         if matches!(by_grammar.understanding, Understanding::Plan { .. }) {
@@ -146,14 +132,6 @@ impl Conversation<'_> {
         }
         *context = by_grammar.context;
         (by_grammar.understanding, 0.0)
-    }
-
-    /// Whether it is a wish to have all done that is left of the mission.
-    fn pursues_goals(&self, one: &Alternative) -> bool {
-        let later = &one.context.later;
-        let is_goal = |text: &String| self.scene.goals.iter().any(|goal| goal.text == *text);
-        let is_plan = matches!(one.understanding, Understanding::Plan { .. });
-        is_plan && !later.is_empty() && later.iter().all(is_goal) && one.probability >= TO_PURSUE
     }
 
     /// Whether what the grammar makes of it needs no other opinion: it is a set phrase of small talk, names a lab that the grammar knows to
@@ -170,15 +148,13 @@ impl Conversation<'_> {
     fn proposed(
         &self,
         alternatives: &[Alternative],
-        least: f32,
         unheard: &[String],
         context: &mut Context,
     ) -> Option<Understanding> {
-        let plans = alternatives.iter().filter_map(|one| match &one.understanding {
-            Understanding::Plan { steps, .. } => {
-                let least = if one.is_unnamed() { least.max(TO_PROPOSE_UNNAMED) } else { least };
-                (one.probability >= least).then_some((one, steps))
-            }
+        let least = if unheard.is_empty() { TO_PROPOSE } else { TO_PROPOSE_UNHEARD };
+        let plans = alternatives.iter().filter(|one| one.probability >= least);
+        let plans = plans.filter_map(|one| match &one.understanding {
+            Understanding::Plan { steps, .. } => Some((one, steps)),
             _ => None,
         });
         let mut plans = plans.peekable();
@@ -214,35 +190,21 @@ impl Conversation<'_> {
 }
 
 impl Alternative {
-    /// Whether it is likely enough to be carried out, or said.
-    fn is_likely(&self, unheard: &[String]) -> bool {
-        let least = match &self.understanding {
-            // What has no known name is no other thing, unless that is most likely.
-            Understanding::Plan { .. } if !unheard.is_empty() && self.is_unnamed() => TO_TAKE_FOR_UNHEARD,
-            Understanding::Plan { steps, .. } if !unheard.is_empty() => {
-                if self.is_bold(steps) {
-                    TO_CHANGE_UNHEARD
-                } else {
-                    TO_MOVE_UNHEARD
-                }
-            }
-            Understanding::Plan { steps, .. } => match (self.leaves_out_named(), self.is_bold(steps)) {
-                (true, true) => TO_CHANGE_IN_PART,
-                (true, false) => TO_MOVE_IN_PART,
-                _ if unheard.is_empty() && self.is_reply() => TO_ACT_ON_REPLY,
-                (false, true) => TO_CHANGE,
-                (false, false) => TO_MOVE,
+    /// How likely it must be meant to be carried out, or said.
+    fn least(&self, unheard: &[String]) -> f32 {
+        let is_known = unheard.is_empty();
+        match &self.understanding {
+            Understanding::Plan { steps, .. } => match (steps.iter().any(Step::is_lasting), is_known) {
+                (true, true) => TO_CHANGE,
+                (true, false) => TO_CHANGE_UNHEARD,
+                (false, true) => TO_MOVE,
+                (false, false) => TO_MOVE_UNHEARD,
             },
-            // What is asked back, or said against what was only guessed of a word, would puzzle.
-            Understanding::Question { kind: Clarification::Reference, .. } if !unheard.is_empty() => TO_ASK_UNHEARD,
-            Understanding::Question { .. } | Understanding::Refusal { .. } if !unheard.is_empty() => return false,
-            Understanding::Answer { .. } if !unheard.is_empty() => TO_REPLY_UNHEARD,
             // What it says of a thing that it does not know what to do with, it says where it has no guess.
-            Understanding::Question { kind: Clarification::Request, .. } => return false,
-            Understanding::Answer { highlight, .. } if !highlight.is_empty() && self.is_unnamed() => TO_REPLY_UNNAMED,
-            _ => TO_REPLY,
-        };
-        self.probability >= least
+            Understanding::Question { kind: Clarification::Request, .. } => f32::INFINITY,
+            _ if is_known && self.evidence.get(Feature::AnswerUnnamed) < 1.0 => TO_REPLY,
+            _ => TO_REPLY_UNSURE,
+        }
     }
 
     /// What is understood, with what it leaves open said before it is done.
@@ -272,6 +234,11 @@ impl Alternative {
             || is_answered && self.evidence.get(Feature::GrammarAnswer) > 0.0
     }
 
+    /// Whether it begins what is left of the mission.
+    fn of_mission(&self) -> bool {
+        self.evidence.get(Feature::PlanOfMission) > 0.0
+    }
+
     /// Whether the grammar takes it for what is to be done, as an answer to a question of the robot's.
     fn is_grammars_reply(&self) -> bool {
         self.evidence.get(Feature::GrammarPlanReply) > 0.0
@@ -281,24 +248,5 @@ impl Alternative {
     fn only_moves(&self) -> bool {
         let moves = |step: &Step| matches!(step.action, Action::Move { .. } | Action::Rotate { .. });
         matches!(&self.understanding, Understanding::Plan { steps, .. } if steps.iter().all(moves))
-    }
-
-    fn leaves_out_named(&self) -> bool {
-        self.evidence.get(Feature::MissingAny) > 0.0
-    }
-
-    /// Whether it is only about things that nobody named.
-    fn is_unnamed(&self) -> bool {
-        self.evidence.get(Feature::Unnamed) >= 1.0
-    }
-
-    /// Whether it would not simply be undone, or changes what nobody named.
-    fn is_bold(&self, steps: &[Step]) -> bool {
-        steps.iter().any(|step| step.is_lasting() || step.changes() && self.is_unnamed())
-    }
-
-    /// Whether grammar or parser takes it for the answer to a question of the robot's.
-    fn is_reply(&self) -> bool {
-        self.is_grammars_reply() || self.evidence.get(Feature::ParserReply) > 0.0
     }
 }

@@ -1,8 +1,10 @@
 //! The words of an utterance, and how much of them the grammar reads.
 
+use cohabit_cdf::ClassId;
+
 use crate::{
     chatter,
-    clause::{self, Part},
+    clause::{self, Clause, Part},
     condition,
     context::Context,
     conversation::Conversation,
@@ -64,6 +66,7 @@ impl Conversation<'_> {
                     && clause.unknown.is_empty()
                     && !clause.has_stray_noun
                     && !clause.is_wish
+                    && !self.prints_nothing(clause)
             }
             Part::Forbidden(_) => true,
             // `the microwave`
@@ -71,6 +74,14 @@ impl Conversation<'_> {
             _ => false,
         };
         !parts.is_empty() && parts.iter().all(is_read)
+    }
+
+    /// Whether it is to make what no cartridge is for: `make us some cereal` rather asks for something else.
+    fn prints_nothing(&self, clause: &Clause) -> bool {
+        let is_printed =
+            |class: ClassId| self.devices.cartridges(class).next().is_some() || self.devices.is_cartridge(class);
+        let mut named = clause.objects.iter().flat_map(|phrase| &phrase.namings).peekable();
+        clause.intent == Intent::Print && named.peek().is_some() && !named.any(|naming| is_printed(naming.class))
     }
 
     /// Whether the grammar takes it for a question that it does not read to the last word, or that nothing but its guess speaks for.

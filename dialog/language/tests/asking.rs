@@ -5,7 +5,10 @@
 mod support;
 
 use cohabit_language::{Asking, Clarification, Context, Understanding};
-use support::Talk;
+use support::{
+    Talk,
+    cases::{before, cases},
+};
 
 /// Lines `> utterance` and `@ instance pointed at`, each followed by what is understood; `…` ends a prefix.
 fn check(asking: Asking, marks: &[&str], script: &str) {
@@ -132,4 +135,26 @@ fn the_oracle_of_the_paper_is_understood() {
         &["without CoffeeMug_Yellow_1", "CoffeeMug_Boss_1 in AP_Prop_Desk_Green_1"],
         "> pick up the blue mug\n? …\n> The mug is to your left on the green desk in the main office. It is closest to viewpoint 3.\ntake CoffeeMug_Boss_1",
     );
+}
+
+/// Whatever people say, a question that comes of it takes each answer that it offers: none is lost, and none leads to the same question.
+#[test]
+fn what_a_question_offers_is_an_answer_to_it() {
+    let sets = [include_str!("utterances/manners.txt"), include_str!("utterances/first_contact.txt")];
+    let mut offered = 0;
+    for case in sets.into_iter().flat_map(cases) {
+        let mut talk = before(&case);
+        let said = case.said.last().unwrap();
+        let asked = talk.language.understand(said, &talk.scene, &mut talk.context);
+        let Understanding::Question { text, options, .. } = asked else { continue };
+        for option in options {
+            offered += 1;
+            match talk.language.understand(&option, &talk.scene, &mut talk.context.clone()) {
+                Understanding::Question { text: again, .. } => assert_ne!(again, text, "{said}: {option}"),
+                Understanding::Refusal { is_lost, text, .. } => assert!(!is_lost, "{said}: {option}: {text}"),
+                _ => {}
+            }
+        }
+    }
+    assert!(offered > 100, "{offered}");
 }

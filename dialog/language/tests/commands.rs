@@ -363,7 +363,6 @@ fn what_is_not_understood_is_said() {
         asdf -> ! …
         put everything on the table -> …
         heat up my lunch -> ? …
-        I think the milk is in the fridge -> ? What shall I do with the milk in the fridge?
         dance -> ! I cannot dance…
         pick it up -> ? What shall I pick up…
         please -> …",
@@ -399,8 +398,7 @@ fn a_carried_object_can_be_anything() {
 fn what_was_told_and_handed_over_is_asked_once() {
     check(
         &[],
-        "I'm supposed to chill the banana but I have no time, can you do it -> take Banana_01_1, open FridgeUpper_02_1, put FridgeUpper_02_1…
-        I have to wash the plate. take care of that for me -> take FoodPlate_01_1, toggle KitchenCounterSink_01_1, clean KitchenCounterSink_01_1
+        "I have to wash the plate. take care of that for me -> take FoodPlate_01_1, toggle KitchenCounterSink_01_1, clean KitchenCounterSink_01_1
         i was told to scan the hammer so please handle it -> scan Hammer_1
         I was told to scan the hammer, take care of that for me -> scan Hammer_1
         I need you to open the microwave -> open Microwave_01_1
@@ -435,7 +433,6 @@ fn names_and_short_words_are_heard_for_what_sounds_like_them() {
     check(
         &[],
         "go to the robotic slab -> go Lab1
-        move forward at tiny bit -> move 0.50
         put the banana on the green desk and the main office -> take Banana_01_1, put AP_Prop_Desk_Green_1
         but the trophy on the red desk -> take Trophy01_1, put AP_Prop_Desk_Red_1",
     );

@@ -206,7 +206,7 @@ fn things_are_put_back_and_steps_taken_back() {
 fn small_talk_and_what_to_do_are_answered() {
     for (said, reply) in [
         ("what can I do?", "= The mission's next goal: Pour milk into the bowl. Tell me where to go…"),
-        ("what am i supposed to do here", "= Still to do: Pour milk into the bowl…"),
+        ("what am i supposed to do here", "= The mission's next goal: Pour milk into the bowl…"),
         ("how are you", "= I am fine…"),
         ("who are you?", "= I am the robot…"),
         ("can you hear me", "= Yes, I hear you…"),

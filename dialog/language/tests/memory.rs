@@ -348,6 +348,27 @@ fn doors_are_opened_only_where_looking_did_not_find_it_and_closed_again() {
 }
 
 #[test]
+fn what_a_question_kept_it_from_looking_into_it_looks_into_afterwards() {
+    let mut robot = Robot::new(&[]);
+    let known = robot.memory.known().unwrap();
+    let looks = robot.language.understand("take the milk from the fridge", &known, &mut robot.context);
+    let Understanding::Plan { steps, .. } = looks else { panic!("{looks:?}") };
+    robot.carry_out(&steps[0]);
+    let known = robot.memory.known().unwrap();
+    let Some(Understanding::Plan { steps, .. }) = robot.language.carry_on(&known, &mut robot.context) else {
+        panic!("it goes on looking");
+    };
+    assert_eq!(step_text(&steps[0], &robot.world), "open FridgeLower_02_1");
+    let asked = robot.language.understand("is the fridge closed now?", &known, &mut robot.context);
+    assert!(matches!(asked, Understanding::Answer { .. }), "{asked:?}");
+    robot.context.note_outcome(&steps[0], Status::Interrupted);
+    let Some(Understanding::Plan { steps, .. }) = robot.language.carry_on(&known, &mut robot.context) else {
+        panic!("it goes on looking");
+    };
+    assert_eq!(step_text(&steps[0], &robot.world), "open FridgeLower_02_1");
+}
+
+#[test]
 fn the_beginning_of_a_request_is_done_before_its_rest_is_looked_for() {
     let mut robot = Robot::new(&[]);
     let (done, _) = robot.say("go to the main office, pick up the hammer and put it on the green desk", 60);

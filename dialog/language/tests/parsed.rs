@@ -38,6 +38,14 @@ fn a_wish_that_names_the_goal_is_carried_out() {
 }
 
 #[test]
+fn who_wants_something_made_that_no_cartridge_is_for_hears_of_none() {
+    for said in ["make us some cereal", "could you make me a bowl of milk"] {
+        let said = Talk::new(&[]).say(said);
+        assert!(!said.contains("cartridge"), "{said}");
+    }
+}
+
+#[test]
 fn nothing_is_guessed_of_words_that_mean_nothing() {
     for said in ["qwertz uiop", "the quick brown fox", "blah blah blah"] {
         let mut talk = Talk::new(&[]);

@@ -4,6 +4,8 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod support;
+
 use std::path::{Path, PathBuf};
 
 use cohabit_language::{Firmness, find_stop, mentions_stop, says_stop};
@@ -120,4 +122,23 @@ fn nothing_breaks_the_recogniser() {
     check("OK, I stop.", false);
     assert!(mentions_stop("OK, I stop.") && !mentions_stop("OK, going to the bus."));
     assert_eq!(find_stop("Stop… ¿puedes abrir la nevera?").unwrap().rest, "puedes abrir la nevera?");
+}
+
+/// How often a robot that is busy hears a stop in lines that begin with `S: `, and in lines that begin with `N: `, which say none.
+#[test]
+#[ignore = "measures the list of wordings that STOPS names"]
+fn other_wordings_are_measured_too() {
+    let path = std::env::var_os("STOPS").map(PathBuf::from).expect("STOPS names a file");
+    let list = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    let mut talk = support::Talk::new(&[]);
+    talk.say("go to the warehouse");
+    let mut heard = |said: &str| {
+        let understanding = talk.language.understand(said, &talk.scene, &mut talk.context.clone());
+        matches!(understanding, cohabit_language::Understanding::Stop { .. })
+    };
+    for (mark, stops) in [("S: ", true), ("N: ", false)] {
+        let said: Vec<&str> = lines(&list).filter_map(|line| line.strip_prefix(mark)).collect();
+        let wrong: Vec<&str> = said.iter().copied().filter(|said| heard(said) != stops).collect();
+        println!("{} of {} right; wrong:\n{}", said.len() - wrong.len(), said.len(), wrong.join("\n"));
+    }
 }

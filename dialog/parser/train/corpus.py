@@ -5,6 +5,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 CRATE = Path(__file__).resolve().parent.parent
+WRITERS = CRATE.parent / "language/tests/utterances/writers"
+#: What writers write where no plain request is meant.
+UNLABELLED = {"?", "social"}
 #: Nothing is ever fitted to these speakers.
 HELD_OUT = {"camille", "gloria", "hiro", "nneka", "stefan"}
 
@@ -70,6 +73,22 @@ def dialog_samples(file):
             read, begin = source(before, utterance)
             yield Sample(file.stem, utterance, before[-MOST_LINES:], content, read, begin)
             before = [*before, (False, utterance)]
+
+
+def written(writers):
+    """Utterances of `dialog/language/tests/utterances/writers`, with each plain request that they may mean."""
+    for writer in writers:
+        for line in (WRITERS / f"{writer}.txt").read_text(encoding="utf-8").splitlines():
+            said, arrow, meant = line.partition(" => ")
+            if not arrow or line.startswith("#"):
+                continue
+            *earlier, utterance = said.split(" / ")
+            before = [(False, one) for one in earlier]
+            read, begin = source(before, utterance)
+            for label in meant.split(" || "):
+                if label not in UNLABELLED:
+                    label = re.sub(r"\b(if|unless|when) ([^,;]+), ", r"\1 \2: ", label.strip())
+                    yield Sample(f"writer {writer}", utterance, before[-MOST_LINES:], label, read, begin)
 
 
 def forms():

@@ -9,6 +9,7 @@ README.md says what it needs.
 import argparse
 import json
 import random
+import re
 import shutil
 import time
 from dataclasses import replace
@@ -25,9 +26,13 @@ from grammar import State
 from letters import ALPHABET, END, START
 
 SEED = 1
+#: A determiner without a thing.
+DANGLING = re.compile(r"\b(?:the|a|an|my)(?: (?:in|on|into|with|to|at)\b|\W*(?:;|$))")
 BATCH, BATCHES_AHEAD = 32, 12
 #: Labels further from what was said are not learnt from.
 MOST_COST = 6.0
+#: How often an utterance of a writer is drawn for one of the corpus.
+WRITERS_SHARE = 3
 ENCODER_RATE, DECODER_RATE, WARM_UP = 8e-5, 6e-4, 200
 CATALOG = corpus.CRATE.parent.parent / "cdf/catalog/objects"
 
@@ -37,6 +42,8 @@ def main():
     options.add_argument("--minutes", type=float, default=60, help="how long to train")
     options.add_argument("--dev", nargs="*", default=[], help="speakers to compare with, and not to learn from")
     options.add_argument("--out", type=Path, default=corpus.CRATE / "model", help="the folder of the model")
+    options.add_argument("--writers", nargs="*", default=[], help="writers of utterances to learn from beside the corpus")
+    options.add_argument("--rate", type=float, default=1.0, help="what the rates of learning are multiplied by")
     options.add_argument("--begin", type=Path, help="a model to begin with, as this program writes them")
     options.add_argument("--device", default="cpu")
     given = options.parse_args()
@@ -44,7 +51,9 @@ def main():
     samples = list(encoded(corpus.samples()))
     unlearnt = corpus.HELD_OUT | set(given.dev)
     trained = [sample for sample in samples if sample.speaker not in unlearnt and sample.letters is not None]
-    print(f"{len(trained)} utterances to learn from", flush=True)
+    written = [one for one in encoded(corpus.written(given.writers)) if one.letters is not None and is_said(one)]
+    print(f"{len(trained)} utterances of the corpus and {len(written)} of writers to learn from", flush=True)
+    trained += written * WRITERS_SHARE
     model = network.Network()
     if given.begin:
         network.take(model, load_file(given.begin))
@@ -66,6 +75,14 @@ def encoded(samples):
         written, cost = letters.encode(sample)
         fits = written is not None and len(written) < MOST_LETTERS and cost < MOST_COST
         yield replace(sample, letters=written if fits else None)
+
+
+def is_said(sample):
+    """Whether a label is made of words that were said: writers name things as the office does, whatever the person calls them."""
+    found = letters.decode(sample.letters, sample.words)
+    if "?" in found:
+        return letters.plain(found) == letters.plain(sample.label)
+    return set(corpus.words(found)) <= set(corpus.words(sample.label)) and not DANGLING.search(found)
 
 
 def thing_names():
@@ -92,7 +109,7 @@ def train(model, augmenter, given):
     for name, parameter in model.named_parameters():
         if parameter.requires_grad:
             parts[name.startswith(of_encoder)].append(parameter)
-    rates = [ENCODER_RATE, DECODER_RATE]
+    rates = [given.rate * ENCODER_RATE, given.rate * DECODER_RATE]
     groups = [{"params": parts[is_encoder], "lr": rate} for is_encoder, rate in zip((True, False), rates, strict=True)]
     optimizer = torch.optim.AdamW(groups, weight_decay=0.05, betas=(0.9, 0.98))
     begun, step, ahead, losses = time.monotonic(), 0, [], []

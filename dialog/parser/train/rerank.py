@@ -27,10 +27,17 @@ from network import VOCABULARY, WIDTH
 
 SEED = 1
 LAYERS, MOST_CANDIDATE, MOST_PIECES = 4, 70, 190
-#: How many candidates are read of one list, how many pieces in all of a step, and how many steps are drawn at a time.
-MOST_WAYS, PIECES_A_STEP, STEPS_AHEAD = 10, 5200, 8
-RATE, PRETRAIN_RATE, WARM_UP = 5e-5, 6e-5, 40
+#: How many pieces are read in a step, and how many steps are drawn at a time.
+PIECES_A_STEP, STEPS_AHEAD = 5200, 8
+RATE, PRETRAIN_RATE, WARM_UP = 8e-5, 6e-5, 40
 CANDIDATE = 3
+#: What may be named in the place of one another: things that are carried and that nothing is done with, colors, rooms.
+NAMES = {
+    "things": "action figure|apple|banana|bowl|burger|cake|candy bar|carrot|circuit board|donut|fan|floppy disk|fork|jelly|laser tip|lever|"
+    "loaf of bread|mug|peanut butter|pear|pie|plate|printer cartridge|radio|record|sandwich|screw driver|soda can|spoon|toast|trophy".split("|"),
+    "colors": "red|green|blue|yellow|black|white|pink|purple|brown|gray".split("|"),
+    "rooms": "break room|main office|small office|robotics lab|quantum lab|warehouse|reception|hallway".split("|"),
+}
 WAYS = corpus.CRATE.parent / "language/fit/ways"
 #: What ways are held out by default: sets that begin so.
 HELD_OUT = ("held_out", "strangers")
@@ -238,7 +245,9 @@ def lists(name):
     for line in (WAYS / f"{name}.jsonl").read_text(encoding="utf-8").splitlines():
         read = json.loads(line)
         words, begin = corpus.source([tuple(one) for one in read["before"]], read["said"])
-        yield Listed(words, begin, [way["words"] for way in read["ways"]], [way["is_right"] for way in read["ways"]], read["weight"])
+        # What the robot would have read with what was said is told in words.
+        ways = [way for way in read["ways"] if way["words"]]
+        yield Listed(words, begin, [way["words"] for way in ways], [way["is_right"] for way in ways], read["weight"])
 
 
 class Lists:
@@ -256,15 +265,29 @@ class Lists:
             self.ahead = self.random.sample(self.lists, len(self.lists))
         listed = self.ahead.pop()
         places = list(range(len(listed.candidates)))
-        if len(places) > MOST_WAYS:
-            # The first are the likeliest.
-            right = [at for at in places if listed.right[at]][:3]
-            others = [at for at in places if at not in right][: MOST_WAYS + 4]
-            places = right + self.random.sample(others, min(len(others), MOST_WAYS - len(right)))
-        words = listed.words
+        self.random.shuffle(places)
+        words, candidates = listed.words, [listed.candidates[at] for at in places]
+        if self.random.random() < 0.5:
+            words, candidates = self.renamed(words, candidates)
+        begin = words.index(corpus.NOW) + 1
         if self.random.random() < 0.3:
-            words = [slip(self.random, word) if at >= listed.begin and self.random.random() < 0.1 else word for at, word in enumerate(words)]
-        return Listed(words, listed.begin, [listed.candidates[at] for at in places], [listed.right[at] for at in places], listed.weight)
+            words = [slip(self.random, word) if at >= begin and self.random.random() < 0.1 else word for at, word in enumerate(words)]
+        return Listed(words, begin, candidates, [listed.right[at] for at in places], listed.weight)
+
+    def renamed(self, words, candidates):
+        """The same with other things, colors and rooms wherever these are named."""
+        text = " ".join(words)
+        other = {}
+        for kind, names in NAMES.items():
+            named = [name for name in names if re.search(rf"\b{name}\b", text)]
+            if kind == "things":
+                others = self.random.sample(names, len(named))
+                other |= dict(zip(named, others, strict=True)) | dict(zip(others, named, strict=True))
+            else:
+                other |= dict(zip(names, self.random.sample(names, len(names)), strict=True))
+        pattern = re.compile(rf"\b(?:{'|'.join(sorted(other, key=len, reverse=True))})\b")
+        rename = lambda text: pattern.sub(lambda match: other[match.group()], text)  # noqa: E731
+        return rename(text).split(), [rename(candidate.lower()) for candidate in candidates]
 
 
 def slip(drawn, word):

@@ -10,32 +10,36 @@ pub const LONGEST_TEXT_CHARS: usize = 2000;
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct Text<const N: usize> {
-    length: u16,
+    /// A `u16` in the machine's own order: as bytes, it leaves no padding behind any `N`.
+    length: [u8; 2],
     bytes: [u8; N],
 }
 
-// SAFETY: `repr(C)` of a `u16` and bytes; all bit patterns are valid, and the assertion below excludes padding.
+// SAFETY: `repr(C)` of bytes alone, so that there is no padding; all bit patterns are valid.
 unsafe impl<const N: usize> Zeroable for Text<N> {}
-// SAFETY: as above; `Text::EVEN` is checked wherever a text is made.
+// SAFETY: as above.
 unsafe impl<const N: usize> Pod for Text<N> {}
 
 impl<const N: usize> Text<N> {
-    const EVEN: () = assert!(N.is_multiple_of(2) && N <= u16::MAX as usize, "an odd length would leave padding");
+    const FITS: () = assert!(N <= u16::MAX as usize, "a longer text has no length");
 
     /// Copies `text`, cut to fit.
     #[must_use]
     pub fn new(text: &str) -> Self {
-        const { Self::EVEN };
+        const { Self::FITS };
         let end = text.floor_char_boundary(N.min(text.len()));
         let mut bytes = [0; N];
         bytes[..end].copy_from_slice(&text.as_bytes()[..end]);
-        Self { length: u16::try_from(end).unwrap_or(0), bytes }
+        Self { length: u16::try_from(end).unwrap_or(0).to_ne_bytes(), bytes }
     }
 
     /// The text; empty if a peer wrote something that is not UTF-8.
     #[must_use]
     pub fn as_str(&self) -> &str {
-        self.bytes.get(..usize::from(self.length)).and_then(|bytes| std::str::from_utf8(bytes).ok()).unwrap_or("")
+        self.bytes
+            .get(..usize::from(u16::from_ne_bytes(self.length)))
+            .and_then(|bytes| std::str::from_utf8(bytes).ok())
+            .unwrap_or("")
     }
 }
 
@@ -72,5 +76,12 @@ mod tests {
     fn nonsense_reads_as_empty() {
         let text: Text<4> = bytemuck::cast([0xffu8; 6]);
         assert_eq!(text.as_str(), "");
+    }
+
+    #[test]
+    fn no_length_leaves_padding() {
+        assert_eq!((size_of::<Text<3>>(), align_of::<Text<3>>()), (5, 1));
+        assert_eq!(Text::<3>::zeroed(), Text::<3>::new(""));
+        assert_eq!(Text::<3>::new("abcd").as_str(), "abc");
     }
 }

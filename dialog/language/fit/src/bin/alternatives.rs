@@ -31,27 +31,16 @@ use crate::logit::Choice;
 
 /// The sets that the first weights are fitted to, and how much each of their utterances counts: the grammar was written with some of them
 /// in sight, and reads them better than what it has not met.
-const FIRST: [(&str, f64); 24] = [
+const FIRST: [(&str, f64); 13] = [
     ("newcomers", 1.0),
     ("first_contact", 1.0),
     ("first_contact_again", 1.0),
-    ("writers/e", 1.0),
-    ("writers/f", 1.0),
-    ("writers/g", 1.0),
-    ("writers/h", 1.0),
-    ("writers/i", 1.0),
-    ("writers/j", 1.0),
-    ("writers/k", 1.0),
-    ("writers/l", 1.0),
-    ("writers/m", 1.0),
-    ("writers/n", 1.0),
-    ("writers/p", 1.0),
-    ("writers/q", 1.0),
-    ("writers/r", 1.0),
-    ("writers/s", 1.0),
-    ("writers/t", 1.0),
-    ("writers/u", 1.0),
-    ("writers/z", 1.0),
+    ("writers/aa", 1.0),
+    ("writers/ac", 1.0),
+    ("writers/ae", 1.0),
+    ("writers/ag", 1.0),
+    ("writers/ai", 1.0),
+    ("writers/ak", 1.0),
     ("seen", 0.3),
     ("voices", 0.3),
     ("manners", 0.3),
@@ -59,13 +48,15 @@ const FIRST: [(&str, f64); 24] = [
 ];
 /// Those that the second weights are fitted to. Of those that the re-ranker has learnt from it has not met what the grammar reads to the last
 /// word.
-const SECOND: [(&str, f64); 9] = [
+const SECOND: [(&str, f64); 11] = [
     ("writers/a", 1.0),
     ("writers/b", 1.0),
     ("writers/c", 1.0),
     ("writers/d", 1.0),
     ("writers/x", 1.0),
     ("writers/y", 1.0),
+    ("writers/al", 1.0),
+    ("writers/am", 1.0),
     ("seen", 0.7),
     ("manners", 0.7),
     ("spoken", 0.7),
@@ -127,7 +118,9 @@ impl Ways {
         }
         // These come first.
         let right = self.right.iter().copied().filter(|at| *at < fits.len()).collect();
-        Alternatives::new(self.weight, fits.iter().map(|fit| fit.values.as_slice()), right)
+        let values: Vec<Vec<f32>> =
+            fits.iter().zip(&self.evidence).map(|(fit, evidence)| [&fit.values[..], &evidence.values[..]].concat()).collect();
+        Alternatives::new(self.weight, values.iter().map(Vec::as_slice), right)
     }
 }
 
@@ -186,14 +179,16 @@ fn main() {
     let judged = [right(&of_second(&second), &second_weights), right(&of_second(&held_out), &second_weights)];
     println!("by the second weights the likeliest way is right: {}", judged.join(", held out "));
     let first = match &first_weights {
-        Some(weights) => section("evidence", &Evidence::NAMES, weights),
+        Some(weights) => section("first", Evidence::NAMES.iter().chain(&["none"]), weights),
         None => {
             let before = fs::read_to_string(&path).expect("the weights so far");
-            let first = before.split("[evidence]").nth(1).and_then(|rest| rest.split("[fit]").next());
-            format!("[evidence]{}", first.expect("the weights so far have a table of evidence"))
+            let first = before.split("[first]").nth(1).and_then(|rest| rest.split("[fit]").next());
+            format!("[first]{}", first.expect("the weights so far have a table of the first"))
         }
     };
-    let text = format!("{}{first}{}", head(&judged), section("fit", &Fit::NAMES, &second_weights));
+    let (fit, second) = second_weights.split_at(Fit::COUNT);
+    let second = section("second", Evidence::NAMES.iter().chain(&["none"]), second);
+    let text = format!("{}{first}{}{second}", head(&judged), section("fit", Fit::NAMES.iter(), fit));
     fs::write(path, text).expect("the weights can be written");
 }
 
@@ -267,7 +262,7 @@ fn head([second, held_out]: &[String; 2]) -> String {
     };
     format!(
         "# How much each evidence counts for a way to understand an utterance, in nats per unit of it, and the utility of none of the\n\
-         # ways: before the re-ranker has read it (evidence), and after (fit). `src/evidence.rs` says what the evidence is. Written by\n\
+         # ways: before the re-ranker has read it (first), and after (fit, second). `src/evidence.rs` says what the evidence is. Written by\n\
          #\n\
          #     cargo run --release --manifest-path dialog/language/fit/Cargo.toml --bin alternatives\n\
          #\n\
@@ -280,9 +275,9 @@ fn head([second, held_out]: &[String; 2]) -> String {
     )
 }
 
-fn section(name: &str, names: &[&str], weights: &[f64]) -> String {
+fn section<'a>(name: &str, names: impl Iterator<Item = &'a &'a str>, weights: &[f64]) -> String {
     let mut text = format!("[{name}]\n");
-    for (name, weight) in names.iter().chain(&["none"]).zip(weights) {
+    for (name, weight) in names.zip(weights) {
         let _ = writeln!(text, "{name} = {weight:.4}");
     }
     text + "\n"
