@@ -132,7 +132,7 @@ fn other_wordings_are_measured_too() {
     let list = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
     let mut talk = support::Talk::new(&[]);
     talk.say("go to the warehouse");
-    let mut heard = |said: &str| {
+    let heard = |said: &str| {
         let understanding = talk.language.understand(said, &talk.scene, &mut talk.context.clone());
         matches!(understanding, cohabit_language::Understanding::Stop { .. })
     };

@@ -348,7 +348,15 @@ impl Conversation {
         let context = self.memory.context.clone();
         let understood = match (self.language.understand(text, &known, &mut self.memory.context), aloud) {
             (Understanding::Refusal { is_lost: true, text }, Some(Aloud { raw, .. })) => {
-                Understanding::Refusal { is_lost: true, text: format!("I heard \"{}\". {text}", plainly(raw)) }
+                Understanding::Refusal { is_lost: true, text: heard(raw, &text) }
+            }
+            // Nobody knows what that is: perhaps it was misheard.
+            (
+                Understanding::Question { kind: Clarification::Appearance, about, text, candidates, options },
+                Some(aloud),
+            ) if candidates.is_empty() => {
+                let text = heard(aloud.raw, &text);
+                Understanding::Question { kind: Clarification::Appearance, about, text, candidates, options }
             }
             (understood, _) => understood,
         };
@@ -696,6 +704,11 @@ const fn goes_on(status: Status) -> bool {
 /// Whether the end of a plan whose last step is this is told; that it stopped or pointed was told before.
 fn worth_telling(step: &Step) -> bool {
     !matches!(step.action, Action::Stop | Action::Highlight { .. }) && !step.says.is_empty()
+}
+
+/// What is said of what was heard and not understood.
+fn heard(raw: &str, text: &str) -> String {
+    format!("I heard \"{}\". {text}", plainly(raw))
 }
 
 #[cfg(test)]
