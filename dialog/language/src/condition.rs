@@ -279,9 +279,9 @@ pub(crate) fn is_conditional(lexicon: &Lexicon, words: &[String]) -> bool {
         || (0..words.len()).any(|at| lexicon.conditions.longest(&words[at..]).is_some())
 }
 
-/// Whether something is asked for in case that a condition does not hold.
+/// Whether words say what is to be done where a condition does not hold.
 pub(crate) fn has_otherwise(lexicon: &Lexicon, words: &[String]) -> bool {
-    is_conditional(lexicon, words) && (0..words.len()).any(|at| lexicon.ifs.otherwise.longest(&words[at..]).is_some())
+    (0..words.len()).any(|at| lexicon.ifs.otherwise.longest(&words[at..]).is_some())
 }
 
 fn condition_at(lexicon: &Lexicon, words: &[String]) -> Option<(usize, usize, bool)> {

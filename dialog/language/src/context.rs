@@ -252,6 +252,12 @@ impl Context {
     /// [`crate::Language::report`] offered.
     pub fn note_outcome(&mut self, step: &Step, status: Status) {
         let done = self.running.iter().position(|planned| planned.action == step.action);
+        // Something else was done in between, such as pointing out what a question is about.
+        if (done.is_none() || status == Status::Interrupted)
+            && let (Some(search), Some(leg)) = (&mut self.search, self.running.get(done.unwrap_or(0)))
+        {
+            search.take_back(leg);
+        }
         let rest = done.map_or_else(Vec::new, |at| self.running.split_off(at + 1));
         if status.is_success() {
             self.deeds.add(step, &self.asked);

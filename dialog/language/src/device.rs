@@ -277,8 +277,7 @@ impl Planner<'_> {
         let mut classes: Vec<ClassId> = printed.collect();
         let all = phrase.namings.iter().map(|naming| naming.class);
         // `print the hammer cartridge`: the cartridge itself was named.
-        let has_cartridge = |class: &ClassId| self.catalog.class(*class).id.starts_with("Printer_Cartridge");
-        classes.extend(all.filter(has_cartridge));
+        classes.extend(all.filter(|class| self.devices.printed_by(*class).is_some()));
         if phrase.namings.is_empty() {
             return self.find_one(phrase, &Want::object(Intent::Print), role);
         }

@@ -160,11 +160,6 @@ impl Devices {
         self.cartridges.iter().filter(move |(_, printed)| *printed == prints).map(|(cartridge, _)| *cartridge)
     }
 
-    /// Whether a class is a cartridge itself.
-    pub(crate) fn is_cartridge(&self, class: ClassId) -> bool {
-        self.cartridges.iter().any(|(cartridge, _)| *cartridge == class)
-    }
-
     /// Whether it runs only with its door shut.
     pub(crate) fn must_be_shut(&self, class: ClassId) -> bool {
         self.shut_to_run.contains(&class)

@@ -120,10 +120,9 @@ impl Search {
         self.target.is_some()
     }
 
-    /// A leg could not be walked, or not to its end.
+    /// A leg could not be walked.
     pub(crate) fn note_failure(&mut self, step: &Step, status: Status) {
         if status == Status::Interrupted {
-            self.take_back(step);
             return;
         }
         if let (Action::GoTo { target: GoToTarget::Viewpoint(room, _) }, Status::UnsupportedNavigation) =
@@ -137,7 +136,7 @@ impl Search {
     }
 
     /// Where it was on its way to when something came between is still to be looked at, and what it was about to close to be closed.
-    fn take_back(&mut self, step: &Step) {
+    pub(crate) fn take_back(&mut self, step: &Step) {
         if let Some(Spot::Here(_)) = self.tried.pop() {
             self.looked_m.pop();
         }

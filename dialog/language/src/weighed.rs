@@ -15,8 +15,8 @@ use crate::{
     wording::Wording,
 };
 
-/// How likely steps must be meant for them to be taken without a question: where what they change is not simply put back, where it is, and
-/// where something lasting would be done in words some of which nobody ever met: an unknown verb changes nothing.
+/// How likely steps must be meant for them to be taken without a question, where what they change is not simply put back and where it is; the
+/// same where nobody ever met some of the words: an unknown verb changes nothing.
 const TO_CHANGE: f32 = 0.7;
 const TO_MOVE: f32 = 0.6;
 const TO_CHANGE_UNHEARD: f32 = 0.85;
@@ -81,15 +81,12 @@ impl Conversation<'_> {
         }
         let is_short = wording.words.len() <= SHORT;
         let is_conditional = condition::is_conditional(self.lexicon, &wording.words);
-        // `if it is open, close it, otherwise …` leaves nothing.
-        let has_otherwise = condition::has_otherwise(self.lexicon, &wording.words);
-        if has_otherwise {
-            alternatives.retain(|one| !one.context.is_met);
-        }
+        // What is to be done otherwise only the grammar knows to take up where the condition does not hold.
+        let has_otherwise = is_conditional && condition::has_otherwise(self.lexicon, &wording.words);
         let is_trusted = |one: &&Alternative| {
             let is_sure = is_short || is_conditional || one.is_grammars_reply();
             let least = if is_sure { TO_TRUST_SHORT } else { TO_TRUST };
-            one.is_exact() && one.probability >= least
+            (one.is_exact() || has_otherwise && one.is_grammars_plan()) && one.probability >= least
         };
         if let Some(trusted) = alternatives.iter().find(|one| is_alone || is_trusted(one)) {
             *context = trusted.context.clone();
@@ -97,7 +94,7 @@ impl Conversation<'_> {
             return (trusted.understanding.clone(), trusted.probability.max(least));
         }
         // A question that the grammar answers is not carried out, nor what it leaves because a condition does not hold.
-        let is_open = wording.ends_as_question() || is_conditional && !has_otherwise;
+        let is_open = wording.ends_as_question() || is_conditional;
         if matches!(by_grammar.understanding, Understanding::Answer { .. }) && is_open {
             alternatives.retain(|one| !matches!(one.understanding, Understanding::Plan { .. }));
         }
@@ -227,7 +224,7 @@ impl Alternative {
     fn is_exact(&self) -> bool {
         let is_answered = matches!(self.understanding, Understanding::Answer { holds: Some(_), .. });
         // A deed with a question after it, or several goals.
-        let is_series = self.evidence.get(Feature::GrammarPlan) > 0.0 && !self.context.later.is_empty();
+        let is_series = self.is_grammars_plan() && !self.context.later.is_empty();
         self.is_plain()
             || is_series
             || self.is_grammars_reply()
@@ -237,6 +234,11 @@ impl Alternative {
     /// Whether it begins what is left of the mission.
     fn of_mission(&self) -> bool {
         self.evidence.get(Feature::PlanOfMission) > 0.0
+    }
+
+    /// Whether the grammar takes it for what is to be done.
+    fn is_grammars_plan(&self) -> bool {
+        self.evidence.get(Feature::GrammarPlan) > 0.0
     }
 
     /// Whether the grammar takes it for what is to be done, as an answer to a question of the robot's.

@@ -78,8 +78,9 @@ impl Conversation<'_> {
 
     /// Whether it is to make what no cartridge is for: `make us some cereal` rather asks for something else.
     fn prints_nothing(&self, clause: &Clause) -> bool {
-        let is_printed =
-            |class: ClassId| self.devices.cartridges(class).next().is_some() || self.devices.is_cartridge(class);
+        let is_printed = |class: ClassId| {
+            self.devices.cartridges(class).next().is_some() || self.devices.printed_by(class).is_some()
+        };
         let mut named = clause.objects.iter().flat_map(|phrase| &phrase.namings).peekable();
         clause.intent == Intent::Print && named.peek().is_some() && !named.any(|naming| is_printed(naming.class))
     }

@@ -349,6 +349,13 @@ fn doors_are_opened_only_where_looking_did_not_find_it_and_closed_again() {
 
 #[test]
 fn what_a_question_kept_it_from_looking_into_it_looks_into_afterwards() {
+    // The step that it was at ends so, or all that is told is that it turned to point something out.
+    let turn = Step { action: Action::Rotate { yaw_rad: 1.0 }, says: String::new() };
+    looks_into_the_fridge_after(|step| (step, Status::Interrupted));
+    looks_into_the_fridge_after(|_| (turn, Status::ActionSuccessful));
+}
+
+fn looks_into_the_fridge_after(comes_between: impl FnOnce(Step) -> (Step, Status)) {
     let mut robot = Robot::new(&[]);
     let known = robot.memory.known().unwrap();
     let looks = robot.language.understand("take the milk from the fridge", &known, &mut robot.context);
@@ -361,7 +368,8 @@ fn what_a_question_kept_it_from_looking_into_it_looks_into_afterwards() {
     assert_eq!(step_text(&steps[0], &robot.world), "open FridgeLower_02_1");
     let asked = robot.language.understand("is the fridge closed now?", &known, &mut robot.context);
     assert!(matches!(asked, Understanding::Answer { .. }), "{asked:?}");
-    robot.context.note_outcome(&steps[0], Status::Interrupted);
+    let (step, status) = comes_between(steps[0].clone());
+    robot.context.note_outcome(&step, status);
     let Some(Understanding::Plan { steps, .. }) = robot.language.carry_on(&known, &mut robot.context) else {
         panic!("it goes on looking");
     };

@@ -51,6 +51,7 @@ fn what_does_not_hold_is_not_carried_out() {
     check(&[], "if the fridge is open, close it", "= The fridge is not open. So I leave that.");
     check(&[], "close the fridge if it's open", "= The fridge is not open. So I leave that.");
     check(&[], "if the fridge is open, close it. otherwise leave it alone", "= The fridge is not open. …");
+    check(&[], "if the fridge is open, close it, otherwise open the microwave", "open Microwave_01_1");
     check(OPEN, "if the fridge is open, close it, otherwise open the microwave", closes);
     check(&[], "turn off the microwave if it is on", "= The microwave is not on. So I leave that.");
     check(&["Microwave_01_1 on"], "turn off the microwave if it is on", "toggle Microwave_01_1");

@@ -31,8 +31,6 @@ RATE, WARM_UP = 4e-5, 50
 SHARPNESS = 0.05
 #: How often a sample is a hint, and a description of a thing.
 HINTS, THINGS = 0.12, 0.2
-#: How often an utterance of a writer is drawn for one of the corpus.
-WRITERS_SHARE = 3
 DATA = corpus.CRATE.parent / "language/data"
 DETERMINER = re.compile(r"(?:the|a|an|my|that|this|those|these|some) ", re.IGNORECASE)
 #: What has no plain request of its own.
@@ -42,8 +40,6 @@ BOUND = re.compile(r"(?:if|unless|when|until|otherwise|answer|tell|goal|do not)\
 def main():
     options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     options.add_argument("--minutes", type=float, default=20, help="how long to train")
-    options.add_argument("--writers", nargs="*", default=[], help="writers of utterances to learn from beside the corpus")
-    options.add_argument("--rate", type=float, default=1.0, help="what the rate of learning is multiplied by")
     options.add_argument("--begin", type=Path, help="a model to begin with, as this program writes them")
     options.add_argument("--out", type=Path, default=corpus.CRATE / "model/meaning.safetensors", help="the model")
     options.add_argument("--seed", type=int, default=SEED)
@@ -52,8 +48,8 @@ def main():
     model = Meaning()
     if given.begin:
         network.take(model, load_file(given.begin))
-    samples = Samples(given.writers, given.seed)
-    train(model, samples, given.minutes, RATE * given.rate)
+    samples = Samples(given.seed)
+    train(model, samples, given.minutes)
     save_file(network.export(model), given.out, metadata={"encoder": str(LAYERS)})
     given.out.chmod(0o644)
     write_reference(model, samples, corpus.CRATE / "tests/likenesses.json")
@@ -96,11 +92,10 @@ def pieces(text):
 class Samples:
     """Draws what is said, the plain request that it means, and another request about the same thing."""
 
-    def __init__(self, writers, seed):
+    def __init__(self, seed):
         self.random = random.Random(seed)
         said = (sample for sample in corpus.samples() if sample.speaker not in corpus.HELD_OUT)
-        of_writers = [*corpus.written(writers)] * WRITERS_SHARE
-        self.pairs = [(one.utterance, request) for one in [*said, *of_writers] if (request := plain(one.label))]
+        self.pairs = [(sample.utterance, request) for sample in said if (request := plain(sample.label))]
         self.things, self.hints = lines(DATA / "things.txt"), lines(DATA / "hints.txt")
         forms = [form for form in letters.FORMS if "#" not in form]
         self.of_one = [form for form in forms if letters.PLACES[form] == 1]
@@ -165,7 +160,7 @@ def lines(file):
     return [tuple(line.split(" | ", 1)) for line in read if " | " in line]
 
 
-def train(model, samples, minutes, rate):
+def train(model, samples, minutes):
     optimizer = torch.optim.AdamW([one for one in model.parameters() if one.requires_grad], weight_decay=0.01)
     begun, step, ahead, losses = time.monotonic(), 0, [], []
     model.train()
@@ -175,7 +170,7 @@ def train(model, samples, minutes, rate):
             ahead = [drawn[at : at + BATCH] for at in range(0, len(drawn), BATCH)]
             samples.random.shuffle(ahead)
         for group in optimizer.param_groups:
-            group["lr"] = rate * min(1, (step + 1) / WARM_UP) * max(0.03, 1 - done)
+            group["lr"] = RATE * min(1, (step + 1) / WARM_UP) * max(0.03, 1 - done)
         loss = contrast(model, ahead.pop())
         optimizer.zero_grad()
         loss.backward()

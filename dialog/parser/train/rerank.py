@@ -286,7 +286,10 @@ class Lists:
             else:
                 other |= dict(zip(names, self.random.sample(names, len(names)), strict=True))
         pattern = re.compile(rf"\b(?:{'|'.join(sorted(other, key=len, reverse=True))})\b")
-        rename = lambda text: pattern.sub(lambda match: other[match.group()], text)  # noqa: E731
+
+        def rename(text):
+            return pattern.sub(lambda match: other[match.group()], text)
+
         return rename(text).split(), [rename(candidate.lower()) for candidate in candidates]
 
 

@@ -295,7 +295,7 @@ fn tools() -> Value {
     let text = json!({ "type": "string" });
     json!([
         tool(
-            "do",
+            DO,
             "Carry out plain requests, one after the other",
             "requests",
             json!({ "type": "array", "items": text })

@@ -8,8 +8,8 @@
 //! With `-- second` only the second weights are fitted anew, as after a fit of the re-ranker.
 //!
 //! The first weights are fitted to the sets of `dialog/language/tests/utterances` that may be looked at, and to writers whom the re-ranker has
-//! learnt from, as `ways` has written them; the second to other writers, so that they do not rely on a re-ranker that knows the answers. What
-//! they are judged on is held out.
+//! learnt from and the parser has not, as `ways` has written them; the second to writers whom neither has, so that they do not rely on a
+//! re-ranker that knows the answers. What they are judged on is held out.
 
 #[path = "../all_cores.rs"]
 mod all_cores;
@@ -118,8 +118,11 @@ impl Ways {
         }
         // These come first.
         let right = self.right.iter().copied().filter(|at| *at < fits.len()).collect();
-        let values: Vec<Vec<f32>> =
-            fits.iter().zip(&self.evidence).map(|(fit, evidence)| [&fit.values[..], &evidence.values[..]].concat()).collect();
+        let values: Vec<Vec<f32>> = fits
+            .iter()
+            .zip(&self.evidence)
+            .map(|(fit, evidence)| [&fit.values[..], &evidence.values[..]].concat())
+            .collect();
         Alternatives::new(self.weight, values.iter().map(Vec::as_slice), right)
     }
 }
