@@ -123,7 +123,10 @@ impl Conversation<'_> {
     fn in_one(&self, by_grammar: Alternative, said: &Said<'_>, context: &Context) -> Vec<Alternative> {
         let is_reason = worth(&by_grammar.understanding) > Worth::None;
         let read = said.readings.iter().enumerate();
-        let read = read.filter_map(|(at, one)| self.of_reading(one, at == 0, said, context));
+        let read = read.flat_map(|(at, one)| {
+            let ways = std::iter::once(one.clone()).chain(self.with_antecedents(one, said));
+            ways.filter_map(move |one| self.of_reading(&one, at == 0, said, context))
+        });
         let mut others: Vec<Alternative> = read.chain(self.of_likeness(said, context)).collect();
         // Why the grammar thinks that it cannot be done says more than why another reading cannot.
         others.retain(|one| !is_reason || worth(&one.understanding) != Worth::Refused);
@@ -370,13 +373,24 @@ fn cross(one: &mut Alternative) {
 fn is_same(one: &Understanding, other: &Understanding) -> bool {
     match (one, other) {
         (Understanding::Plan { steps: one, .. }, Understanding::Plan { steps: other, .. }) => {
-            one.iter().map(|step| &step.action).eq(other.iter().map(|step| &step.action))
+            deeds(one).eq(deeds(other))
         }
         (Understanding::Answer { text: one, highlight, .. }, Understanding::Answer { text, highlight: other, .. }) => {
             highlight == other && without_yes_or_no(one) == without_yes_or_no(text)
         }
         (one, other) => one == other,
     }
+}
+
+/// What these steps come to: who goes to a thing and then takes it, takes it.
+fn deeds(steps: &[Step]) -> impl Iterator<Item = &Action> {
+    let is_on_the_way = |at: usize| match steps[at].action {
+        Action::GoTo { target: GoToTarget::Object(object) } => {
+            steps[at + 1..].iter().any(|step| step.object() == Some(object))
+        }
+        _ => false,
+    };
+    (0..steps.len()).filter(move |at| !is_on_the_way(*at)).map(|at| &steps[at].action)
 }
 
 /// Whether it asks what the robot asked last.

@@ -200,6 +200,9 @@ impl Answerer<'_> {
                 says => format!("I did not finish {says}: {cause}."),
             });
         }
+        if let Some(refused) = &self.context.refused {
+            return Understanding::answer(refused);
+        }
         let Some(last) = self.context.last_plan.last().filter(|_| !self.context.asked.is_empty()) else {
             return Understanding::answer(match self.context.asked.as_str() {
                 "" => "Nothing went wrong that I know of, and I have done nothing yet.".to_owned(),
@@ -209,7 +212,7 @@ impl Answerer<'_> {
         let want = Want::place(Intent::Find, &[], None);
         let object = about.and_then(|phrase| self.ground().one(phrase, &want).ok());
         let step = object.and_then(|id| self.context.last_plan.iter().find(|step| step.object() == Some(id)));
-        let asked = &self.context.asked;
+        let asked = &self.context.planned_for;
         Understanding::answer(match step.filter(|step| *step != last) {
             Some(step) => format!("You said \"{asked}\", and {} was needed for {}.", step.says, last.says),
             None => format!("You said \"{asked}\", so my plan was {}.", reply::plan_in_words(&self.context.last_plan)),

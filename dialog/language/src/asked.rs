@@ -10,6 +10,7 @@ use crate::{
     ground::{Ground, Miss, Want},
     hearing,
     intent::Intent,
+    lab,
     lexicon::{Direction, Preposition, Pronoun, Side, Small},
     phrase::{Phrase, Place, Reader, Relation},
     plan::Fault,
@@ -98,6 +99,34 @@ impl Conversation<'_> {
                 self.told_which(words, is_yes, is_command, &candidates, open, context)
             }
         }
+    }
+
+    /// What is to be done if an answer comes first, and then remarks, or what else is to be done: `the robot one, like I said`.
+    pub(crate) fn answered_first(
+        &self,
+        words: &[String],
+        pending: &Option<Pending>,
+        context: &mut Context,
+    ) -> Option<Understanding> {
+        let end = words.iter().position(|word| token::is_punctuation(word)).filter(|end| *end > 0)?;
+        let (first, rest) = words.split_at(end);
+        let mut then = Context { pending: pending.clone(), ..context.clone() };
+        let understanding = match pending.as_ref()? {
+            Pending::Lab { words: before, at } => {
+                let room = lab::answered(self.lexicon, self.scene, first)?;
+                then.pending = None;
+                self.understand_words(lab::named(before, *at, room), &mut then)
+            }
+            _ => self.answer_to_pending(first, &clause::parts(self.lexicon, self.catalog, first), &mut then)?,
+        };
+        let does = matches!(understanding, Understanding::Plan { .. });
+        if does && self.asks_for_anything(&token::sentence(rest)) && !self.names_in(rest).is_empty() {
+            then.later.push(token::sentence(rest));
+        }
+        does.then(|| {
+            *context = then;
+            understanding
+        })
     }
 
     /// One of the plans that the robot asked about, in the very words of its question, as a button has them.

@@ -8,7 +8,7 @@ use crate::{
     intent::Intent,
     known::KnownObject,
     lexicon::{Naming, Preposition, Pronoun},
-    phrase::{Phrase, Place},
+    phrase::{Phrase, Place, RelationKind},
     plan::{Fault, Planner},
     settle::{Goal, Settled},
     understanding::Step,
@@ -19,6 +19,9 @@ const TABLE_M2: f32 = 0.15;
 
 /// What can take an object: a receptacle, or something to pour into.
 const TAKES: &[Property] = &[Property::Receptacle, Property::Fillable];
+
+/// What is poured though it holds nothing.
+const CEREAL: &str = "Cereal_Box_01";
 
 impl Planner<'_> {
     pub(crate) fn add_pick_up(&mut self, settled: &Settled) -> Result<(), Fault> {
@@ -317,17 +320,32 @@ impl Planner<'_> {
         if !self.has(source, Property::Pickupable) {
             return Err(Fault::Cannot("I have nothing of that to pour. Tell me what to fill first.".to_owned()));
         }
+        if !self.can_be_poured(source) {
+            return Err(Fault::Cannot(format!("I cannot pour {}.", self.the(source))));
+        }
         let target = match &settled.goal {
-            Some(Goal { place: Place::Object(phrase), role, .. }) => {
-                // `pour it in there`: into what holds it, of all that was spoken of.
-                let takes = if phrase.pronoun.is_some() { &TAKES[1..] } else { TAKES };
-                let target = self.find_one(phrase, &Want::place(Intent::Use, takes, Some(source)), Some(*role))?;
-                self.vessel_with(target)
-            }
+            Some(Goal { place: Place::Object(phrase), role, .. }) => self.vessel(phrase, *role, source)?,
             _ if settled.is_away => self.nearest_sink()?,
             _ => self.vessel_spoken_of(source)?,
         };
         self.pour(source, target)
+    }
+
+    /// What a phrase says to pour something into.
+    fn vessel(&self, phrase: &Phrase, role: Role, source: ObjectId) -> Result<ObjectId, Fault> {
+        // `pour it in there`: into what holds it, of all that was spoken of.
+        let takes = if phrase.pronoun.is_some() { &TAKES[1..] } else { TAKES };
+        let want = Want::place(Intent::Use, takes, Some(source));
+        let found = self.find_one(phrase, &want, Some(role)).map(|target| self.vessel_with(target));
+        // `over the cereal in the bowl`: what was poured is no thing any more, but what it is in is.
+        let around = phrase.relations.iter().find(|relation| relation.kind == RelationKind::Inside);
+        found.or_else(|fault| around.map_or(Err(fault), |around| self.find_one(&around.to, &want, Some(role))))
+    }
+
+    /// Whether there is anything to it that flows.
+    fn can_be_poured(&self, source: ObjectId) -> bool {
+        let is_cereal = |known: &KnownObject| Some(known.class) == self.catalog.find(CEREAL);
+        self.has(source, Property::Fillable) || self.scene.object(source).is_some_and(is_cereal)
     }
 
     /// `over the cereal`: what that was poured into.

@@ -35,6 +35,12 @@ pub struct Context {
     /// What was said that asked for something last, in plain words.
     #[serde(default)]
     pub(crate) asked: String,
+    /// What was said that the last plan is for, in plain words.
+    #[serde(default)]
+    pub(crate) planned_for: String,
+    /// Why what was asked for last cannot be done.
+    #[serde(default)]
+    pub(crate) refused: Option<String>,
     /// The request that the last plan is for.
     pub(crate) request: Vec<Clause>,
     /// What was asked last, if nothing was asked for since.
@@ -279,6 +285,8 @@ impl Context {
         self.question = None;
         self.running = steps.to_vec();
         self.last_plan = steps.to_vec();
+        self.planned_for.clone_from(&self.asked);
+        self.refused = None;
         self.request.clear();
         self.later.clear();
         self.pending = None;
@@ -311,7 +319,8 @@ impl Context {
     pub(crate) fn begin_guessed(&mut self, guess: Guess) {
         self.begin(&guess.steps);
         (self.search, self.later) = (guess.search, guess.later);
-        (self.request, self.asked) = (guess.request, guess.asked);
+        (self.request, self.planned_for) = (guess.request, guess.asked.clone());
+        self.asked = guess.asked;
     }
 
     /// Takes note of a part of a search that is about to be carried out.

@@ -64,6 +64,7 @@ impl Conversation<'_> {
         }
         // A robot that does nothing need not stop.
         if context.is_busy()
+            && !stop::denies_stop(utterance)
             && let Some(rest) = self.likely_stop(utterance, context)
         {
             return (self.stopped(&rest, context), 1.0);
@@ -88,7 +89,7 @@ impl Conversation<'_> {
     }
 
     /// Whether there is a request or a question in a text, rather than the reason for a stop.
-    fn asks_for_anything(&self, text: &str) -> bool {
+    pub(crate) fn asks_for_anything(&self, text: &str) -> bool {
         if text.is_empty() || text.chars().nth(MAX_CHARS).is_some() {
             return !text.is_empty();
         }
@@ -161,6 +162,9 @@ impl Conversation<'_> {
         let (open, later) = (context.pending.clone(), context.later.clone());
         if let Some(understanding) = self.answer_to_pending(&words, &parts, context) {
             return context.keep(later, understanding);
+        }
+        if let Some(understanding) = self.answered_first(&words, &open, context) {
+            return understanding;
         }
         if let Some(at) = lab::bare(self.lexicon, &words).filter(|at| !clause::is_forbidden(self.lexicon, &words, *at))
         {

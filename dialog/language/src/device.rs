@@ -208,6 +208,21 @@ impl Planner<'_> {
                 // Water over a plate: it is to be washed.
                 settled.intent = Intent::Clean;
             }
+            // `fill the bowl with it`, of what can be carried
+            if settled.intent == Intent::Fill
+                && let Some((phrase, role)) = &settled.tool
+                && let Ok(source) = self.find_one(phrase, &Want::object(Intent::Pour), Some(*role))
+                && source != object
+                && self.has(source, Property::Pickupable)
+            {
+                self.pour(source, object)?;
+                continue;
+            }
+            let is_once = matches!(settled.intent, Intent::Repair | Intent::Clean | Intent::Heat | Intent::Cool);
+            if is_once && self.brought_about.contains(&(settled.intent, object)) {
+                continue;
+            }
+            self.brought_about.push((settled.intent, object));
             let (process, place) = self.choose_process(&settled)?;
             self.carry_out(&process, object, place, settled.color.as_deref())?;
         }

@@ -552,6 +552,11 @@ impl<'a> Ground<'a> {
         if let Some(spoken) = self.spoken_of_kind(phrase, &described.left) {
             return Ok(spoken);
         }
+        // Nothing but what is in the hand can be poured at once.
+        let is_held = want.intent == Intent::Pour && self.scene.robot.held == Some(best.id);
+        if is_held && phrase.naming(best.class).is_some() {
+            return Ok(best.id);
+        }
         let groups = self.told_apart(&ranked);
         let probability = groups.first().map_or(0.0, |(probability, _)| *probability);
         let rival = groups.get(1).map_or(0.0, |(probability, _)| *probability);

@@ -168,6 +168,8 @@ pub(crate) struct Lexicon {
     pub(crate) degrees: PhraseTable<()>,
     pub(crate) viewpoints: PhraseTable<()>,
     pub(crate) negation: PhraseTable<()>,
+    /// Before the name of what is not meant: `no bread`.
+    pub(crate) denials: PhraseTable<()>,
     /// Openers, fillers and oaths.
     pub(crate) talk: PhraseTable<()>,
     pub(crate) answer_lead: PhraseTable<()>,
@@ -258,12 +260,15 @@ impl Lexicon {
         let replaced = self.rejoined(self.vocabulary.respaced(replaced));
         let mut corrected: Vec<String> = Vec::with_capacity(replaced.len());
         let mut repairs = 0;
-        for word in &replaced {
+        for (at, word) in replaced.iter().enumerate() {
             if let Some(verb) = self.as_request(&corrected, word) {
                 corrected.push(verb);
                 continue;
             }
-            let words = self.vocabulary.correct(word);
+            let words = match self.completed(word, replaced.get(at + 1)) {
+                Some(meant) => vec![meant],
+                None => self.vocabulary.correct(word),
+            };
             // `the mugs`: all of them.
             let is_plural = !self.vocabulary.has(word) && words.len() == 1 && self.classes.exact(&words).is_some();
             if is_plural && self.vocabulary.singular(word).as_ref() == words.first() {
@@ -289,6 +294,15 @@ impl Lexicon {
             .into_iter()
             .map(|word| self.vocabulary.singular(&word).filter(|_| !self.vocabulary.has(&word)).unwrap_or(word))
             .collect()
+    }
+
+    /// What a word is a slip of that makes a name of it and the next one: `bending machine`.
+    fn completed(&self, word: &str, next: Option<&String>) -> Option<String> {
+        if self.vocabulary.has(word) {
+            return None;
+        }
+        let name = [self.vocabulary.nearest(word)?.clone(), next?.clone()];
+        self.classes.exact(&name).is_some().then(|| name[0].clone())
     }
 
     /// `in serted`: a form of a verb with a space in it.

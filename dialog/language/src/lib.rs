@@ -190,6 +190,9 @@ impl Language {
     #[must_use]
     pub fn understand(&self, utterance: &str, scene: &Known, context: &mut Context) -> Understanding {
         let understanding = self.conversation(scene).understand(utterance, context);
+        if let Understanding::Refusal { text, is_lost: false } = &understanding {
+            context.refused = Some(text.clone());
+        }
         context.note_said(false, utterance);
         context.note_said(true, understanding.reply());
         understanding

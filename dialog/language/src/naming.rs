@@ -15,6 +15,9 @@ const NAME_PART: f32 = 0.6;
 /// The same of its other names.
 const WORD_PART: f32 = 0.5;
 
+/// How much the last word of a name means its class, where others are called just that.
+const HEAD: f32 = 0.4;
+
 /// How much the word for a kind of things means a class of that kind.
 const KIND: f32 = 0.3;
 
@@ -35,6 +38,20 @@ impl Lexicon {
         for (alias, classes) in aliases {
             for class in classes.iter().filter_map(|id| catalog.find(id)) {
                 self.name_class(alias, class, 0.9);
+            }
+        }
+        self.add_heads(catalog);
+    }
+
+    /// `that box`: the cereal box too, though other things are called just that. Only what can be carried is meant so.
+    fn add_heads(&mut self, catalog: &Catalog) {
+        for class in (0_u16..).map(ClassId).take(catalog.classes().len()).filter(|class| self.carried.contains(class)) {
+            let words = self.replaced(&token::words(&catalog.class(class).name));
+            let [_, .., head] = words.as_slice() else { continue };
+            let is_name = self.classes.exact(std::slice::from_ref(head)).is_some();
+            let namings = is_name.then(|| self.classes.entry(head));
+            if let Some(namings) = namings.filter(|known| known.iter().all(|one| one.class != class)) {
+                namings.push(Naming { class, weight: HEAD });
             }
         }
     }

@@ -63,6 +63,14 @@ impl Conversation<'_> {
         })
     }
 
+    /// Whether the parser rather sees something that is asked for, or asked.
+    pub(crate) fn parser_sees_request(&self, utterance: &str, context: &Context) -> bool {
+        let readings = self.readings(utterance, context);
+        let all: f32 = readings.iter().map(|reading| reading.probability).sum();
+        let asking = readings.iter().filter(|reading| reading.requests.iter().any(asks));
+        asking.map(|reading| reading.probability).sum::<f32>() * 2.0 >= all
+    }
+
     /// What a reading means; nothing, where it makes no sense in the scene and conversation. What the robot cannot do of it is said.
     pub(crate) fn understand_reading(
         &self,

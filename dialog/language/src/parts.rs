@@ -184,6 +184,8 @@ impl Conversation<'_> {
                 Understanding::Answer { text, .. } if sequence.steps.is_empty() && is_question() => {
                     answers.push(text.clone());
                 }
+                // A remark is none that it fails to carry out.
+                Understanding::Refusal { .. } if !there.parser_sees_request(sentence, &sequence.context) => {}
                 Understanding::Refusal { .. } => {
                     lost.push(sentence.trim_end_matches(|end: char| !end.is_alphanumeric()));
                 }

@@ -68,6 +68,8 @@ pub(crate) struct Planner<'a> {
     /// Whether it has looked around for this request.
     pub(crate) has_looked: bool,
     pub(crate) clause: usize,
+    /// What was done already to which thing: nobody wants it repaired twice.
+    pub(crate) brought_about: Vec<(Intent, ObjectId)>,
     /// The steps, and what was spoken of, when that clause was begun.
     pub(crate) begun: (usize, Focus),
 }

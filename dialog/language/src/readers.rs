@@ -4,7 +4,10 @@
 use std::ops::Range;
 
 use cohabit_cdf::{ClassId, ObjectId, Property};
-use cohabit_parser::{Reading, request::Act};
+use cohabit_parser::{
+    Reading,
+    request::{Act, Command},
+};
 
 use crate::{
     alternatives::{Alternative, without_yes_or_no},
@@ -25,6 +28,8 @@ const LONGEST_ELLIPSIS: usize = 9;
 const MOST_REPLACED: usize = 4;
 /// Up to how many words are few.
 const SHORT: usize = 6;
+/// For how many things that are named a pronoun may stand.
+const MOST_ANTECEDENTS: usize = 2;
 /// How many things that are named without a verb are carried at most.
 const MOST_CARRIED: usize = 3;
 
@@ -57,6 +62,28 @@ impl Conversation<'_> {
         let kept = if replaces(&reading.requests) { 0.0 } else { said.instead };
         evidence.set(Feature::NotInstead, kept);
         Some(Alternative::new(understanding, then, evidence))
+    }
+
+    /// The same with each thing that was named instead of a pronoun: `I think the bowl is broken, can you fix it?`
+    pub(crate) fn with_antecedents(&self, reading: &Reading, said: &Said<'_>) -> Vec<Reading> {
+        let is_pronoun = |argument: &String| self.lexicon.pronouns.exact(&self.lexicon.normalise(argument).0).is_some();
+        let first = reading.requests.iter().position(parsed::asks);
+        let Some(Act::Do(Command::Known { arguments, .. })) = first.map(|at| &reading.requests[at].act) else {
+            return Vec::new();
+        };
+        let Some(place) = arguments.iter().position(is_pronoun) else { return Vec::new() };
+        let is_free =
+            |mention: &&Mention| matches!(mention.named, Named::Thing(_)) && !arguments.contains(&mention.words);
+        let named = said.mentions.iter().filter(is_free).take(MOST_ANTECEDENTS);
+        let replaced = named.filter_map(|mention| {
+            let mut reading = reading.clone();
+            match &mut reading.requests[first?].act {
+                Act::Do(Command::Known { arguments, .. }) => arguments[place].clone_from(&mention.words),
+                _ => return None,
+            }
+            Some(reading)
+        });
+        replaced.collect()
     }
 
     pub(crate) fn of_likeness(&self, said: &Said<'_>, context: &Context) -> Vec<Alternative> {

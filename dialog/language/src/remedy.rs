@@ -61,6 +61,7 @@ pub(crate) fn planner<'a>(
         may_put_down: false,
         has_looked: false,
         clause: 0,
+        brought_about: Vec::new(),
     }
 }
 

@@ -14,6 +14,7 @@ use crate::{
     context::Context,
     conversation::Conversation,
     parsed, question,
+    table::PhraseTable,
     wording::Wording,
 };
 
@@ -105,6 +106,7 @@ impl Conversation<'_> {
             let rest = &words[at..];
             let is_in_scene = |class: &ClassId| self.scene.objects.iter().any(|object| object.class == *class);
             let (room, things) = (self.lexicon.rooms.longest(rest), self.lexicon.classes.longest(rest));
+            let things = things.filter(|(length, _)| !self.is_verb(rest, *length));
             let length_of_room = room.map_or(0, |(length, _)| length);
             let length = things.as_ref().map_or(0, |(length, _)| *length);
             let color = self.lexicon.colors.exact(&rest[..1]).map(|color| Named::Color(color.clone()));
@@ -121,10 +123,25 @@ impl Conversation<'_> {
                 _ => color,
             };
             let end = at + length.max(length_of_room).max(1);
-            named.extend(name.map(|name| (at..end, name)));
+            named.extend(name.filter(|_| !self.is_denied(&words[..at])).map(|name| (at..end, name)));
             at = end;
         }
         named
+    }
+
+    /// Whether the first word is rather what is to be done: `pop it in the microwave`.
+    fn is_verb(&self, words: &[String], length: usize) -> bool {
+        let is_object = |word: &[String]| {
+            self.lexicon.pronouns.exact(word).is_some() || self.lexicon.articles.exact(word).is_some()
+        };
+        length == 1 && self.lexicon.verbs.exact(&words[..1]).is_some() && words.get(1..2).is_some_and(is_object)
+    }
+
+    /// Whether what is named after these words is said not to be meant: `no bread`, `not the milk`.
+    fn is_denied(&self, before: &[String]) -> bool {
+        let is = |table: &PhraseTable<()>, word: &String| table.exact(std::slice::from_ref(word)).is_some();
+        let bare = before.iter().rposition(|word| !is(&self.lexicon.articles, word));
+        bare.is_some_and(|at| is(&self.lexicon.denials, &before[at]))
     }
 
     /// The things and rooms that the words name, each with the color before it.

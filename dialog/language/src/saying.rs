@@ -32,6 +32,9 @@ const DETERMINERS: &[&str] = &[
     "certain",
 ];
 
+/// Whose things are, as it is spelt when its mark is left out.
+const OWNERS: [(&str, &str); 2] = [("managers ", "manager"), ("bosss ", "boss")];
+
 /// Words that stand for things, and name none.
 const PRONOUNS: &[&str] = &[
     "it",
@@ -83,6 +86,9 @@ pub(crate) fn noun_or_thing(phrase: &Phrase) -> &str {
 /// What was said of an object, as something that is not there: `a mug`, `any milk`.
 pub(crate) fn said(phrase: &Phrase) -> String {
     let Some(noun) = noun(phrase) else { return "what you mean".to_owned() };
+    if let Some(owned) = OWNERS.iter().find_map(|(spelt, owner)| Some((owner, noun.strip_prefix(spelt)?))) {
+        return format!("the {}'s {}", owned.0, owned.1);
+    }
     let text = describe::indefinite(noun);
     text.strip_prefix("some ").map_or_else(|| text.clone(), |noun| format!("any {noun}"))
 }

@@ -13,6 +13,9 @@ pub(crate) struct Vocabulary {
     risky_verbs: BTreeSet<String>,
 }
 
+/// Fewest letters of a word that is not taken for a slip of another.
+const SHORTEST_WORD: usize = 4;
+
 impl Vocabulary {
     /// Adds a word that the robot understands.
     pub(crate) fn learn(&mut self, word: &str) {
@@ -75,7 +78,7 @@ impl Vocabulary {
         if let Some(singular) = self.singular(word) {
             return vec![singular];
         }
-        if self.plain.contains(word) || self.ordinary.contains(word) {
+        if self.is_plain(word) || self.is_ordinary(word) {
             return keep();
         }
         if let Some(parts) = self.parts(word).or_else(|| self.run_together(word)) {
@@ -90,6 +93,10 @@ impl Vocabulary {
         let single: String = single.into_iter().collect();
         if word.len() == 3 && self.has(&single) {
             return vec![single];
+        }
+        // What English texts are full of is rarely a slip of something else.
+        if word.len() >= SHORTEST_WORD && cohabit_parser::is_common_word(word) {
+            return keep();
         }
         self.nearest(word).map_or_else(keep, |found| vec![found.clone()])
     }
@@ -172,7 +179,8 @@ impl Vocabulary {
         )
     }
 
-    fn nearest(&self, word: &str) -> Option<&String> {
+    /// The word of which it may be a slip.
+    pub(crate) fn nearest(&self, word: &str) -> Option<&String> {
         let limit = match word.len() {
             0..=2 => return None,
             3 => {

@@ -70,6 +70,19 @@ pub fn mentions_stop(text: &str) -> bool {
     tokens(words, text).iter().any(|token| words.core.contains(&token.word))
 }
 
+/// Whether a text has the word itself in it, and none but what somebody says not to do: "don't stop now."
+#[must_use]
+pub(crate) fn denies_stop(text: &str) -> bool {
+    let words = words();
+    let tokens = tokens(words, text);
+    let clauses = clauses(&tokens);
+    let spelt: Vec<String> = tokens.iter().map(|token| token.word.clone()).collect();
+    let said = Said { words, tokens: &tokens, spelt: &spelt, clauses: &clauses };
+    let all = clauses.iter().flat_map(|clause| clause.words.clone().map(|at| (clause.words.start, at)));
+    let mut stops = all.filter(|(_, at)| words.core.contains(said.word(*at))).peekable();
+    stops.peek().is_some() && stops.all(|(start, at)| said.is_negated(start, at))
+}
+
 /// Words beyond these are not listened to.
 const MOST_WORDS: usize = 400;
 /// Most words of a noun phrase that are looked at.

@@ -45,6 +45,8 @@ const MOST_PROPOSED: usize = 3;
 /// Below these, what is done is said to be what the robot thinks, and what it leaves out is said.
 const SURELY: f32 = 0.7;
 const SURELY_ALL: f32 = 0.9;
+/// What it says before what it is not sure of.
+const UNSURE: &str = "If I understand you right:";
 /// How likely that is meant which the grammar alone makes of it.
 const BY_GRAMMAR: f32 = 0.6;
 
@@ -207,14 +209,14 @@ impl Alternative {
     /// What is understood, with what it leaves open said before it is done.
     fn understood(&self, unheard: &[String]) -> Understanding {
         let is_plan = matches!(self.understanding, Understanding::Plan { .. });
-        let is_said = self.understanding.reply().starts_with(parsed::LEAVES_OUT);
+        let is_said = [parsed::LEAVES_OUT, UNSURE].iter().any(|start| self.understanding.reply().starts_with(start));
         let note = match unheard {
             _ if !is_plan || is_said => return self.understanding.clone(),
             [_, ..] => format!("{}, but I think you mean this:", reply::unknown(unheard).trim_end_matches('.')),
             [] if self.probability < SURELY_ALL && !self.leaves_out.is_empty() => {
                 format!("I leave out what you said of {}.", describe::list(&self.leaves_out, "and"))
             }
-            [] if self.probability < SURELY => "If I understand you right:".to_owned(),
+            [] if self.probability < SURELY => UNSURE.to_owned(),
             [] => return self.understanding.clone(),
         };
         self.understanding.clone().after(&note)
