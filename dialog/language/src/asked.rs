@@ -120,13 +120,28 @@ impl Conversation<'_> {
             _ => self.answer_to_pending(first, &clause::parts(self.lexicon, self.catalog, first), &mut then)?,
         };
         let does = matches!(understanding, Understanding::Plan { .. });
-        if does && self.asks_for_anything(&token::sentence(rest)) && !self.names_in(rest).is_empty() {
-            then.later.push(token::sentence(rest));
+        let more: Vec<String> = clause::segments(self.lexicon, rest)
+            .into_iter()
+            .filter(|part| self.asks_for_more_than_agreed(part))
+            .map(token::sentence)
+            .collect();
+        if !more.is_empty() {
+            then.later.push(more.join(". "));
         }
         does.then(|| {
             *context = then;
             understanding
         })
+    }
+
+    /// Whether a part of an answer asks for what was not agreed to before: `yes, go to it` does not.
+    fn asks_for_more_than_agreed(&self, part: &[String]) -> bool {
+        let is_new = |clause: &Clause| {
+            let goes = matches!(clause.intent, Intent::GoTo | Intent::Travel | Intent::Find | Intent::Look);
+            chatter::is_clear(clause) && (!goes || !self.names_in(part).is_empty())
+        };
+        let parts = clause::parts(self.lexicon, self.catalog, part);
+        parts.iter().any(|part| matches!(part, Part::Clause(clause) if is_new(clause)))
     }
 
     /// One of the plans that the robot asked about, in the very words of its question, as a button has them.

@@ -170,6 +170,9 @@ pub(crate) struct Lexicon {
     pub(crate) negation: PhraseTable<()>,
     /// Before the name of what is not meant: `no bread`.
     pub(crate) denials: PhraseTable<()>,
+    /// What a question begins with that wants to know something, and what makes it a request after all.
+    pub(crate) inquiries: PhraseTable<()>,
+    pub(crate) favours: PhraseTable<()>,
     /// Openers, fillers and oaths.
     pub(crate) talk: PhraseTable<()>,
     pub(crate) answer_lead: PhraseTable<()>,

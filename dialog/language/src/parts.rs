@@ -1,5 +1,7 @@
 //! The parts of an utterance: what they mean one after the other, each in the scene and the conversation that those before it lead to.
 
+use cohabit_cdf::{Action, ObjectId};
+
 use crate::{
     alternatives::Alternative,
     clause,
@@ -111,6 +113,41 @@ impl Conversation<'_> {
         sequences.into_iter().filter_map(|sequence| sequence.alternative(said)).collect()
     }
 
+    /// The utterance without parts that name nothing, or are no requests, of whose words some are in no vocabulary, such as
+    /// `no need to be stingy`; and those of these words that something may be asked in. Nothing, where there are none.
+    pub(crate) fn without_asides(&self, wording: &Wording<'_>, context: &Context) -> Option<(String, Vec<String>)> {
+        if wording.unheard.is_empty() {
+            return None;
+        }
+        let parts: Vec<&[String]> = wording.words.split_inclusive(|word| token::is_punctuation(word)).collect();
+        let asks = |part: &[String]| self.parser_sees_request(&token::sentence(part), context);
+        let stands_for_thing = |word: &String| self.lexicon.pronouns.exact(std::slice::from_ref(word)).is_some();
+        let is_empty = |part: &[String]| self.names_in(part).is_empty() && !part.iter().any(stands_for_thing);
+        let is_unheard = |word: &&String| wording.unheard.contains(word);
+        let is_aside = |part: &&[String]| part.iter().any(|word| is_unheard(&word)) && (is_empty(part) || !asks(part));
+        let (asides, left): (Vec<&[String]>, Vec<&[String]>) = parts.into_iter().partition(is_aside);
+        let asked = asides.iter().filter(|part| asks(part)).flat_map(|part| part.iter().filter(is_unheard));
+        (!asides.is_empty() && left.iter().any(|part| asks(part)))
+            .then(|| (left.concat().join(" "), asked.cloned().collect()))
+    }
+
+    /// What comes first of what is asked for, where only what comes after it is not understood: that is left for later.
+    pub(crate) fn first_of(&self, wording: &Wording<'_>, context: &mut Context) -> Option<(Understanding, f32)> {
+        let parts = clause::segments(self.lexicon, &wording.words);
+        let is_clear = |part: &&[String]| !part.iter().any(|word| wording.unheard.contains(word));
+        let clear = parts.iter().take_while(|part| is_clear(part)).count();
+        if clear == 0 || clear == parts.len() {
+            return None;
+        }
+        let mut then = context.clone();
+        let (understanding, sureness) = self.understand_weighed(&parts[..clear].concat().join(" "), &mut then);
+        matches!(understanding, Understanding::Plan { .. }).then(|| {
+            then.later.push(token::sentence(&parts[clear..].concat()));
+            *context = then;
+            (understanding, sureness)
+        })
+    }
+
     /// The conversation in the scene that a sequence leads to.
     fn after<'s>(&'s self, sequence: &'s Sequence) -> Conversation<'s> {
         Conversation { scene: &sequence.scene, ..*self }
@@ -118,7 +155,9 @@ impl Conversation<'_> {
 
     /// A sequence with what the next part likely means, or without it; `rest` follows that part.
     fn continued(&self, sequence: Sequence, part: &str, rest: &[String]) -> Vec<Sequence> {
-        if sequence.is_complete {
+        // `not on the desk` says what is not meant by what was said before.
+        let first = part.split(' ').next().map(str::to_owned);
+        if sequence.is_complete || self.lexicon.denials.exact(first.as_slice()).is_some() {
             return vec![sequence];
         }
         let likely = self.after(&sequence).likely_of_part(part, &sequence.context);
@@ -141,6 +180,7 @@ impl Conversation<'_> {
                 steps.iter().for_each(|step| imagine::apply(&mut longer.scene, &step.action, self.devices));
                 longer.context = context;
                 longer.steps.extend(steps);
+                drop_returns(&mut longer.steps, self.scene.robot.held);
             }
             Understanding::Answer { .. } if context.is_met || !self.is_question(&self.wording(part)) => {}
             Understanding::Plan { .. } | Understanding::Question { .. } if longer.steps.is_empty() => {
@@ -203,5 +243,22 @@ impl Conversation<'_> {
         let said: Vec<String> = answers.into_iter().chain(lost).collect();
         let understanding = if said.is_empty() { understanding } else { understanding.after(&said.join(" ")) };
         Some(Alternative { probability, ..Alternative::new(understanding, context, Evidence::default()) })
+    }
+}
+
+/// Leaves out where something is put down and taken up again at once; `held` is in the hand before.
+fn drop_returns(steps: &mut Vec<Step>, mut held: Option<ObjectId>) {
+    let mut at = 0;
+    while at + 1 < steps.len() {
+        match (&steps[at].action, &steps[at + 1].action) {
+            (Action::Place { .. }, Action::PickUp { object }) if held == Some(*object) => {
+                steps.drain(at..at + 2);
+                continue;
+            }
+            (Action::PickUp { object }, _) => held = Some(*object),
+            (Action::Place { .. }, _) => held = None,
+            _ => {}
+        }
+        at += 1;
     }
 }

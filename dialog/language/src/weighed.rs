@@ -29,7 +29,7 @@ const TO_REPLY: f32 = 0.2;
 const TO_REPLY_UNSURE: f32 = 0.6;
 /// How likely steps must be meant to be proposed, also in words some of which nobody ever met, and to be taken where nothing may be asked.
 const TO_PROPOSE: f32 = 0.05;
-const TO_PROPOSE_UNHEARD: f32 = 0.3;
+const TO_PROPOSE_UNHEARD: f32 = 0.15;
 const TO_GUESS: f32 = 0.3;
 /// How likely what the grammar reads to the last word must be meant for nothing else to be asked, and where it is an answer, names a
 /// condition or has few words.
@@ -54,6 +54,11 @@ impl Conversation<'_> {
     /// What speaks for itself, or what most speaks for; and how likely it is what was meant.
     pub(crate) fn understand_weighed(&self, utterance: &str, context: &mut Context) -> (Understanding, f32) {
         let wording = self.wording(utterance);
+        if let Some((rest, left_out)) = self.without_asides(&wording, context) {
+            let (understanding, sureness) = self.understand_weighed(&rest, context);
+            let note = reply::unknown(&left_out);
+            return (if left_out.is_empty() { understanding } else { understanding.after(&note) }, sureness);
+        }
         let by_grammar = self.read(utterance, context);
         if self.speaks_for_itself(&wording, &by_grammar) {
             let sureness = if self.parser.is_some() { 1.0 } else { BY_GRAMMAR };
@@ -81,6 +86,10 @@ impl Conversation<'_> {
         if !unknown.is_empty() {
             alternatives.retain(|one| !one.only_moves());
         }
+        // Who only wants to know something wants an answer, whatever it is about.
+        if self.inquires(&wording, context) {
+            alternatives.retain(|one| !one.understanding.commits());
+        }
         let is_short = wording.words.len() <= SHORT;
         let is_conditional = condition::is_conditional(self.lexicon, &wording.words);
         // What is to be done otherwise only the grammar knows to take up where the condition does not hold.
@@ -104,10 +113,6 @@ impl Conversation<'_> {
         if !unknown.is_empty() {
             alternatives.retain(|one| !one.context.is_met || one.is_plain());
         }
-        // Who asks why, who or when wants an answer, whatever it is about.
-        if wording.asks_for_reason() {
-            alternatives.retain(|one| !one.understanding.commits());
-        }
         let highest = alternatives.first().map_or(0.0, |one| one.probability);
         let leaves_out = alternatives.first().is_some_and(|one| !one.leaves_out.is_empty());
         if highest < SURELY_ALL || leaves_out {
@@ -125,6 +130,9 @@ impl Conversation<'_> {
         }
         if let Some(question) = self.proposed(&alternatives, unheard, context) {
             return (question, 0.0);
+        }
+        if let Some(first) = self.first_of(&wording, context) {
+            return first;
         }
         if matches!(by_grammar.understanding, Understanding::Plan { .. }) {
             return (self.unclear(&unknown), 0.0);
@@ -201,6 +209,8 @@ impl Alternative {
             },
             // What it says of a thing that it does not know what to do with, it says where it has no guess.
             Understanding::Question { kind: Clarification::Request, .. } => f32::INFINITY,
+            // Whatever else may be meant says more than that nothing was understood.
+            Understanding::Refusal { is_lost: true, .. } => f32::INFINITY,
             _ if is_known && self.evidence.get(Feature::AnswerUnnamed) < 1.0 => TO_REPLY,
             _ => TO_REPLY_UNSURE,
         }

@@ -36,6 +36,21 @@ impl Conversation<'_> {
         Wording { utterance, words, tidied, unheard }
     }
 
+    /// Whether it only wants to know something: `do you know the way to the lab?`
+    pub(crate) fn inquires(&self, wording: &Wording<'_>, context: &Context) -> bool {
+        if !wording.ends_as_question() {
+            return false;
+        }
+        let (before, last) = wording.last_sentence();
+        let lead = clause::leading(self.lexicon, last).min(last.len());
+        let Some((length, ())) = self.lexicon.inquiries.longest(&last[lead..]) else { return false };
+        let rest = &last[lead + length..];
+        let is_favour = |at: usize| self.lexicon.favours.longest(&rest[at..]).is_some();
+        let is_idiom = self.lexicon.favours.longest(&last[lead..]).is_some();
+        let asks_before = || !before.is_empty() && self.parser_sees_request(&token::sentence(before), context);
+        !is_idiom && !(0..rest.len()).any(is_favour) && !asks_before()
+    }
+
     /// Whether it has any word that somebody knows, and is not too long.
     pub(crate) fn may_be_weighed(&self, wording: &Wording<'_>) -> bool {
         let is_known = |word: &String| {
@@ -113,12 +128,11 @@ impl Conversation<'_> {
 }
 
 impl Wording<'_> {
-    /// Whether its last sentence asks why, who or when.
-    pub(crate) fn asks_for_reason(&self) -> bool {
-        let end = self.words.iter().rposition(|word| !token::is_punctuation(word)).unwrap_or_default();
+    /// What is said before its last sentence, and that sentence.
+    fn last_sentence(&self) -> (&[String], &[String]) {
+        let end = self.words.iter().rposition(|word| !token::is_punctuation(word)).map_or(0, |at| at + 1);
         let start = self.words[..end].iter().rposition(|word| token::ends_sentence(word)).map_or(0, |at| at + 1);
-        let first = self.words.get(start).map(String::as_str);
-        self.ends_as_question() && matches!(first, Some("why" | "who" | "when"))
+        (&self.words[..start], &self.words[start..end])
     }
 
     pub(crate) fn ends_as_question(&self) -> bool {
