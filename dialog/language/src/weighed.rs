@@ -86,10 +86,10 @@ impl Conversation<'_> {
         if !unknown.is_empty() {
             alternatives.retain(|one| !one.only_moves());
         }
-        // Who only wants to know something wants an answer, whatever it is about.
-        if self.inquires(&wording, context) {
-            alternatives.retain(|one| !one.understanding.commits());
-        }
+        // Who only wants to know something wants an answer, whatever it is about: the robot asks before it does any of these.
+        let inquires = self.inquires(&wording, context);
+        let is_held_back = |one: &Alternative| inquires && one.understanding.commits();
+        let (held_back, mut alternatives): (Vec<_>, Vec<_>) = alternatives.into_iter().partition(is_held_back);
         let is_short = wording.words.len() <= SHORT;
         let is_conditional = condition::is_conditional(self.lexicon, &wording.words);
         // What is to be done otherwise only the grammar knows to take up where the condition does not hold.
@@ -128,11 +128,12 @@ impl Conversation<'_> {
             *context = likeliest.context.clone();
             return (likeliest.understood(unheard), likeliest.probability);
         }
-        if let Some(question) = self.proposed(&alternatives, unheard, context) {
-            return (question, 0.0);
-        }
         if let Some(first) = self.first_of(&wording, context) {
             return first;
+        }
+        alternatives.extend(held_back);
+        if let Some(question) = self.proposed(&alternatives, unheard, context) {
+            return (question, 0.0);
         }
         if matches!(by_grammar.understanding, Understanding::Plan { .. }) {
             return (self.unclear(&unknown), 0.0);

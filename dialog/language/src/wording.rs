@@ -41,10 +41,16 @@ impl Conversation<'_> {
         if !wording.ends_as_question() {
             return false;
         }
-        let (before, last) = wording.last_sentence();
-        let lead = clause::leading(self.lexicon, last).min(last.len());
-        let Some((length, ())) = self.lexicon.inquiries.longest(&last[lead..]) else { return false };
-        let rest = &last[lead + length..];
+        // As it was said: `do you know how to …` is often a request, but not for who wants to know it.
+        let words = token::words(wording.utterance);
+        let (before, last) = last_sentence(&words);
+        let starts = [0, clause::leading(self.lexicon, last).min(last.len())];
+        let inquiry = |start: usize| {
+            let (length, ()) = self.lexicon.inquiries.longest(&last[start..])?;
+            Some((start, start + length))
+        };
+        let Some((lead, end)) = starts.into_iter().find_map(inquiry) else { return false };
+        let rest = &last[end..];
         let is_favour = |at: usize| self.lexicon.favours.longest(&rest[at..]).is_some();
         let is_idiom = self.lexicon.favours.longest(&last[lead..]).is_some();
         let asks_before = || !before.is_empty() && self.parser_sees_request(&token::sentence(before), context);
@@ -128,16 +134,16 @@ impl Conversation<'_> {
 }
 
 impl Wording<'_> {
-    /// What is said before its last sentence, and that sentence.
-    fn last_sentence(&self) -> (&[String], &[String]) {
-        let end = self.words.iter().rposition(|word| !token::is_punctuation(word)).map_or(0, |at| at + 1);
-        let start = self.words[..end].iter().rposition(|word| token::ends_sentence(word)).map_or(0, |at| at + 1);
-        (&self.words[..start], &self.words[start..end])
-    }
-
     pub(crate) fn ends_as_question(&self) -> bool {
         self.utterance.trim_end().ends_with('?')
     }
+}
+
+/// What is said before the last sentence, and that sentence.
+fn last_sentence(words: &[String]) -> (&[String], &[String]) {
+    let end = words.iter().rposition(|word| !token::is_punctuation(word)).map_or(0, |at| at + 1);
+    let start = words[..end].iter().rposition(|word| token::ends_sentence(word)).map_or(0, |at| at + 1);
+    (&words[..start], &words[start..end])
 }
 
 /// Whether a word is set off from all others, as names and exclamations are: `put it back, habibi`, `arrey no`.

@@ -264,3 +264,71 @@ fn who_agrees_in_other_words_has_said_yes() {
          put TableRound_02_1, take Banana_01_1",
     );
 }
+
+#[test]
+fn remarks_after_an_answer_leave_it_an_answer() {
+    let milk = "> pick up the milk and take it to the lab\n? Which lab…";
+    check(
+        &["plan OfficeLayout1 BreakRoom"],
+        &format!(
+            "{milk}\n> Well the robot one, like I said. Quantum, heh, I wouldn't know what to do in there.\n\
+             open FridgeLower_02, take MilkCarton_01, go Lab1"
+        ),
+    );
+    check(
+        &[],
+        "> pick up the mug\n? Which…\n> the yellow one, if you would, my hands are full\ntake CoffeeMug_Yellow_1",
+    );
+}
+
+#[test]
+fn a_pronoun_stands_for_what_the_same_sentence_names() {
+    check(
+        &["plan OfficeLayout1 BreakRoom", "add CoffeeMug_Boss on TableRound_02", "CoffeeMug_Boss broken"],
+        "> hey! I wanted coffee but I think the boss's mug is broken, can you get it fixed?\ntake CoffeeMug_Boss, open YesterdayMachine_01…",
+    );
+}
+
+#[test]
+fn what_only_wants_to_be_known_is_not_done() {
+    let answered = |said: &str| {
+        let mut talk = Talk::new(&["plan OfficeLayout1 BreakRoom"]);
+        let found = talk.say(said);
+        assert!(found.starts_with("= ") || found.starts_with("? "), "{said}: {found}");
+    };
+    for said in [
+        "Do you know how to go from here to the robotics lab?",
+        "Can you see the round table from where you are standing?",
+        "Are the lights in here ever switched off?",
+        "Which cabinet did you open first?",
+        "Is somebody going near the freezer to open it at night?",
+    ] {
+        answered(said);
+    }
+    check(&["plan OfficeLayout1 BreakRoom"], "> is it possible to open the fridge?\nopen FridgeLower_02");
+}
+
+#[test]
+fn remarks_in_unknown_words_do_not_lose_a_request() {
+    check(
+        &["plan OfficeLayout1 BreakRoom", "add CoffeeMug_Boss on TableRound_02"],
+        "> Put the boss mug on the counter top, no need to be dillydallying\ntake CoffeeMug_Boss, put KitchenCounterTop_02",
+    );
+    // What comes after is asked about once the rest is done.
+    let mut talk = Talk::new(&["plan OfficeLayout1 BreakRoom", "add CoffeeMug_Boss on TableRound_02"]);
+    assert_eq!(talk.say("open the fridge and then squizzle the boss mug"), "open FridgeLower_02");
+}
+
+#[test]
+fn what_is_said_not_to_be_meant_is_not_meant() {
+    let mut talk = Talk::new(&["plan OfficeLayout1 BreakRoom", "add CoffeeMug_Boss on TableRound_02"]);
+    let found = talk.say("No sir, no bread. The boss's mug, on the round table. Go pick that up.").to_lowercase();
+    assert!(found.contains("boss") && !found.contains("bread"), "{found}");
+}
+
+#[test]
+fn what_flows_is_poured_and_nothing_else() {
+    let scene = ["plan OfficeLayout1 BreakRoom"];
+    check(&scene, "> pour the bread into the sink\n! I cannot pour the loaf of bread.");
+    check(&scene, "> pour the radio into the sink\n! I cannot pour the radio.\n> why not?\n= I cannot pour the radio.");
+}
