@@ -132,6 +132,11 @@ impl Conversation<'_> {
             return first;
         }
         alternatives.extend(held_back);
+        // What sounds like the words that nobody knows is likelier than what is guessed without them.
+        if !unheard.is_empty() && matches!(by_grammar.context.pending, Some(Pending::Offer { .. })) {
+            *context = by_grammar.context;
+            return (by_grammar.understanding, 0.0);
+        }
         if let Some(question) = self.proposed(&alternatives, unheard, context) {
             return (question, 0.0);
         }

@@ -141,11 +141,15 @@ fn mistaken(list: &str) -> [Vec<&str>; 2] {
     })
 }
 
-/// What it made of these at first contact, but for a few.
+/// What it made of these at first contact, but for a few; `first_contact.txt` it is fitted to by now.
 #[test]
 fn most_stops_are_heard_at_first_contact() {
-    let [missed, disturbing] = mistaken(include_str!("stops/first_contact.txt"));
-    assert!(missed.len() <= 53 && disturbing.len() <= 29, "{} missed, {} disturb", missed.len(), disturbing.len());
+    let lists =
+        [(include_str!("stops/first_contact.txt"), 53, 29), (include_str!("stops/first_contact_again.txt"), 69, 24)];
+    for (list, most_missed, most_disturbing) in lists {
+        let [missed, disturbing] = mistaken(list).map(|said| said.len());
+        assert!(missed <= most_missed && disturbing <= most_disturbing, "{missed} missed, {disturbing} disturb");
+    }
 }
 
 /// A list of one's own, in the file that `STOPS` names.

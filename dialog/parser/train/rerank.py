@@ -4,7 +4,7 @@
 
 It learns first from the corpus, where the label of an utterance is to fit better than labels that differ in a word, then from the lists of
 `cargo run --release --manifest-path dialog/language/fit/Cargo.toml --bin ways`: all that the robot could make of an utterance, and which of it
-is right; and beside these from what says stop and what does not. README.md says what it needs.
+is right. README.md says what it needs.
 """
 
 import argparse
@@ -39,9 +39,6 @@ NAMES = {
     "rooms": "break room|main office|small office|robotics lab|quantum lab|warehouse|reception|hallway".split("|"),
 }
 WAYS = corpus.CRATE.parent / "language/fit/ways"
-#: What it scores whether somebody says stop by, as `dialog/language/src/parsed.rs` has it, and how often that is drawn.
-STOP, STOPS_SHARE = "stop what you are doing", 0.15
-STOPS = corpus.CRATE.parent / "language/tests/stops"
 #: What ways are held out by default: sets that begin so.
 HELD_OUT = ("held_out", "strangers")
 
@@ -63,8 +60,6 @@ def main():
     options.add_argument("--pretrain-minutes", type=float, default=10, help="how long to train on the corpus before")
     options.add_argument("--sets", nargs="*", help="the sets to learn from, by name; all but those held out, where none is named")
     options.add_argument("--judge", nargs="*", default=[], help="sets whose share of right choices is printed")
-    options.add_argument("--stops", nargs="*", default=["stops", "others", "first_contact", "speakers"], help="the lists of stops to learn from")
-    options.add_argument("--judge-stops", nargs="*", default=[], help="lists of which is printed what is taken for a stop")
     options.add_argument("--begin", type=Path, help="a model to begin with, as this program writes them")
     options.add_argument("--out", type=Path, default=corpus.CRATE / "model/reranker.safetensors", help="the model")
     given = options.parse_args()
@@ -76,17 +71,11 @@ def main():
         train(model, Corpus(SEED).draw, given.pretrain_minutes, PRETRAIN_RATE, "corpus")
         save(model, given.out)
     if given.minutes:
-        drawn, ways, stops = random.Random(SEED), Lists(given.sets, SEED), Stops(given.stops, SEED)
-
-        def draw():
-            return stops.draw() if drawn.random() < STOPS_SHARE else ways.draw()
-
+        draw = Lists(given.sets, SEED).draw
         train(model, draw, given.minutes, RATE, "lists")
         save(model, given.out)
     for name in given.judge:
         judge(model, name)
-    for name in given.judge_stops:
-        judge_stops(model, name)
     write_reference(model, corpus.CRATE / "tests/scores.json")
 
 
@@ -304,38 +293,6 @@ class Lists:
         return rename(text).split(), [rename(candidate.lower()) for candidate in candidates]
 
 
-def stops(name):
-    """What is said in a list of stops and of what is none, and which it is."""
-    for line in (STOPS / f"{name}.txt").read_text(encoding="utf-8").splitlines():
-        mark, said = line[:3], line[3:]
-        if mark not in ("S: ", "N: "):
-            mark, said = "N: " if name == "others" else "S: ", line.split(" -> ")[0]
-        if said.strip() and not said.startswith("#"):
-            words, begin = corpus.source([], said)
-            yield Listed(words, begin, [STOP], [mark == "S: "])
-
-
-class Stops:
-    """Draws what says stop and what does not, as much of each, half of the latter of the corpus."""
-
-    def __init__(self, names, seed):
-        self.random = random.Random(seed)
-        listed = [one for name in names for one in stops(name)]
-        samples = [sample for sample in corpus.samples() if sample.speaker not in corpus.HELD_OUT]
-        told = [Listed(*corpus.source([], sample.utterance), [STOP], [is_stop(sample.label)]) for sample in samples if sample.label]
-        self.stops = [one for one in listed + told if one.right[0]]
-        self.others = [[one for one in these if not one.right[0]] for these in (listed, told)]
-
-    def draw(self):
-        drawn = self.random.choice(self.stops if self.random.random() < 0.5 else self.random.choice(self.others))
-        words = [slip(self.random, word) if at >= drawn.begin and self.random.random() < 0.03 else word for at, word in enumerate(drawn.words)]
-        return Listed(words, drawn.begin, drawn.candidates, drawn.right)
-
-
-def is_stop(label):
-    return "stop" in plain(label).split("; ")
-
-
 def slip(drawn, word):
     if len(word) < 4 or not word.isalpha():
         return word
@@ -354,17 +311,6 @@ def judge(model, name):
         first += listed.right[0]
         possible += any(listed.right)
     print(f"{name}: the best is right in {right} of {len(judged)}, the first {first}, any {possible}", flush=True)
-
-
-@torch.no_grad()
-def judge_stops(model, name):
-    model.eval()
-    judged = list(stops(name))
-    scores = [float(model([row(listed, STOP)])[0]) for listed in judged]
-    for least in (-1.0, 0.0, 1.0):
-        for is_right in (True, False):
-            own = [score > least for score, listed in zip(scores, judged, strict=True) if listed.right[0] == is_right]
-            print(f"{name}, from {least} on: {sum(own)} of {len(own)} {'stops' if is_right else 'others'} count as stops", flush=True)
 
 
 @torch.no_grad()
