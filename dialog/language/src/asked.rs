@@ -105,13 +105,13 @@ impl Conversation<'_> {
     pub(crate) fn answered_first(
         &self,
         words: &[String],
-        pending: &Option<Pending>,
+        pending: Option<&Pending>,
         context: &mut Context,
     ) -> Option<Understanding> {
         let end = words.iter().position(|word| token::is_punctuation(word)).filter(|end| *end > 0)?;
         let (first, rest) = words.split_at(end);
-        let mut then = Context { pending: pending.clone(), ..context.clone() };
-        let understanding = match pending.as_ref()? {
+        let mut then = Context { pending: pending.cloned(), ..context.clone() };
+        let understanding = match pending? {
             Pending::Lab { words: before, at } => {
                 let room = lab::answered(self.lexicon, self.scene, first)?;
                 then.pending = None;
@@ -119,7 +119,9 @@ impl Conversation<'_> {
             }
             _ => self.answer_to_pending(first, &clause::parts(self.lexicon, self.catalog, first), &mut then)?,
         };
-        let does = matches!(understanding, Understanding::Plan { .. });
+        if !matches!(understanding, Understanding::Plan { .. }) {
+            return None;
+        }
         let more: Vec<String> = clause::segments(self.lexicon, rest)
             .into_iter()
             .filter(|part| self.asks_for_more_than_agreed(part))
@@ -128,10 +130,8 @@ impl Conversation<'_> {
         if !more.is_empty() {
             then.later.push(more.join(". "));
         }
-        does.then(|| {
-            *context = then;
-            understanding
-        })
+        *context = then;
+        Some(understanding)
     }
 
     /// Whether a part of an answer asks for what was not agreed to before: `yes, go to it` does not.

@@ -163,7 +163,7 @@ impl Conversation<'_> {
         if let Some(understanding) = self.answer_to_pending(&words, &parts, context) {
             return context.keep(later, understanding);
         }
-        if let Some(understanding) = self.answered_first(&words, &open, context) {
+        if let Some(understanding) = self.answered_first(&words, open.as_ref(), context) {
             return understanding;
         }
         if let Some(at) = lab::bare(self.lexicon, &words).filter(|at| !clause::is_forbidden(self.lexicon, &words, *at))

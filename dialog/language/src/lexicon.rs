@@ -14,7 +14,7 @@ use crate::{
     misheard::Misheard,
     question::{QuestionKind, Shape},
     sound::Sounding,
-    spelling::Vocabulary,
+    spelling::{self, Vocabulary},
     table::PhraseTable,
     token,
     wish::Wishes,
@@ -299,12 +299,10 @@ impl Lexicon {
             .collect()
     }
 
-    /// What a word is a slip of that makes a name of it and the next one: `bending machine`.
+    /// What a common word is a slip of all the same, as it makes a name of it and the next one: `bending machine`.
     fn completed(&self, word: &str, next: Option<&String>) -> Option<String> {
-        if self.vocabulary.has(word) {
-            return None;
-        }
-        let name = [self.vocabulary.nearest(word)?.clone(), next?.clone()];
+        let next = next.filter(|_| !self.vocabulary.has(word) && spelling::is_common(word))?;
+        let name = [self.vocabulary.nearest(word)?.clone(), next.clone()];
         self.classes.exact(&name).is_some().then(|| name[0].clone())
     }
 

@@ -1,7 +1,5 @@
 //! The parts of an utterance: what they mean one after the other, each in the scene and the conversation that those before it lead to.
 
-use cohabit_cdf::{Action, ObjectId};
-
 use crate::{
     alternatives::Alternative,
     clause,
@@ -180,7 +178,6 @@ impl Conversation<'_> {
                 steps.iter().for_each(|step| imagine::apply(&mut longer.scene, &step.action, self.devices));
                 longer.context = context;
                 longer.steps.extend(steps);
-                drop_returns(&mut longer.steps, self.scene.robot.held);
             }
             Understanding::Answer { .. } if context.is_met || !self.is_question(&self.wording(part)) => {}
             Understanding::Plan { .. } | Understanding::Question { .. } if longer.steps.is_empty() => {
@@ -243,22 +240,5 @@ impl Conversation<'_> {
         let said: Vec<String> = answers.into_iter().chain(lost).collect();
         let understanding = if said.is_empty() { understanding } else { understanding.after(&said.join(" ")) };
         Some(Alternative { probability, ..Alternative::new(understanding, context, Evidence::default()) })
-    }
-}
-
-/// Leaves out where something is put down and taken up again at once; `held` is in the hand before.
-fn drop_returns(steps: &mut Vec<Step>, mut held: Option<ObjectId>) {
-    let mut at = 0;
-    while at + 1 < steps.len() {
-        match (&steps[at].action, &steps[at + 1].action) {
-            (Action::Place { .. }, Action::PickUp { object }) if held == Some(*object) => {
-                steps.drain(at..at + 2);
-                continue;
-            }
-            (Action::PickUp { object }, _) => held = Some(*object),
-            (Action::Place { .. }, _) => held = None,
-            _ => {}
-        }
-        at += 1;
     }
 }

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeSet;
 
+use cohabit_parser::Parser;
+
 /// All words that mean something here, and plain English ones that must not be bent into those.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Vocabulary {
@@ -13,8 +15,8 @@ pub(crate) struct Vocabulary {
     risky_verbs: BTreeSet<String>,
 }
 
-/// Fewest letters of a word that is not taken for a slip of another.
-const SHORTEST_WORD: usize = 4;
+/// Fewest letters of a word that is common enough to be no slip of another.
+const SHORTEST_COMMON: usize = 4;
 
 impl Vocabulary {
     /// Adds a word that the robot understands.
@@ -94,8 +96,7 @@ impl Vocabulary {
         if word.len() == 3 && self.has(&single) {
             return vec![single];
         }
-        // What English texts are full of is rarely a slip of something else.
-        if word.len() >= SHORTEST_WORD && cohabit_parser::is_common_word(word) {
+        if is_common(word) {
             return keep();
         }
         self.nearest(word).map_or_else(keep, |found| vec![found.clone()])
@@ -209,6 +210,11 @@ impl Vocabulary {
 
 /// Words of one or two letters that people run together with others.
 const SHORT: &[&str] = &["a", "go", "to", "up", "on", "in", "it", "at", "of", "my", "me", "is"];
+
+/// Whether English texts are full of a word: then it is rarely a slip of something else.
+pub(crate) fn is_common(word: &str) -> bool {
+    word.len() >= SHORTEST_COMMON && Parser::builtin().knows(word)
+}
 
 /// Whether it has the same letters in another order.
 fn is_swapped(one: &str, other: &str) -> bool {

@@ -194,7 +194,8 @@ impl Step {
 
     /// Whether it does more than look and point.
     pub(crate) const fn commits(&self) -> bool {
-        self.changes() || matches!(self.action, Action::GoTo { .. } | Action::PickUp { .. })
+        let moves = matches!(self.action, Action::GoTo { .. } | Action::Move { .. } | Action::Rotate { .. });
+        self.changes() || moves || matches!(self.action, Action::PickUp { .. })
     }
 
     /// Whether something else than the robot and its hand is another after it.

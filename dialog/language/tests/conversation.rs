@@ -306,6 +306,11 @@ fn what_only_wants_to_be_known_is_not_done() {
         answered(said);
     }
     check(&["plan OfficeLayout1 BreakRoom"], "> is it possible to open the fridge?\nopen FridgeLower_02");
+    // It is no answer to what the robot asked either.
+    let mut talk = Talk::new(&["plan OfficeLayout2 MainOffice", "add DeskFan_New_01 on AP_Prop_Desk_Blue"]);
+    assert!(talk.say("That fan is blowing my score sheets about.").starts_with("? "));
+    let found = talk.say("Do you know how to go from here to the robotics lab?");
+    assert!(found.starts_with("= ") || found.starts_with("? "), "{found}");
 }
 
 #[test]
@@ -331,4 +336,41 @@ fn what_flows_is_poured_and_nothing_else() {
     let scene = ["plan OfficeLayout1 BreakRoom"];
     check(&scene, "> pour the bread into the sink\n! I cannot pour the loaf of bread.");
     check(&scene, "> pour the radio into the sink\n! I cannot pour the radio.\n> why not?\n= I cannot pour the radio.");
+}
+
+#[test]
+fn what_is_in_the_hand_may_be_called_by_the_last_word_of_its_name() {
+    let scene = ["plan OfficeLayout1 BreakRoom"];
+    let mut talk = Talk::new(&scene);
+    talk.scene.robot.held = talk.scene.objects.iter().find(|one| one.instance == "Cereal_Box_01").map(|one| one.id);
+    assert_eq!(talk.say("put that box on the counter top"), "put KitchenCounterTop_02");
+}
+
+#[test]
+fn what_is_filled_with_a_thing_has_that_poured_into_it() {
+    let mut talk = Talk::new(&["plan OfficeLayout1 BreakRoom", "add Bowl_01 on TableRound_02"]);
+    talk.scene.robot.held = talk.scene.objects.iter().find(|one| one.instance == "Cereal_Box_01").map(|one| one.id);
+    assert_eq!(talk.say("fill the bowl on the table with it"), "pour Bowl_01");
+}
+
+#[test]
+fn nothing_is_repaired_twice() {
+    let scene = ["plan OfficeLayout1 BreakRoom", "add Record_01 on TableRound_02", "Record_01 broken"];
+    let once = Talk::new(&scene).say("repair the record");
+    assert_eq!(Talk::new(&scene).say("repair the record and repair the record"), once);
+}
+
+#[test]
+fn a_word_that_is_common_is_no_slip_of_another() {
+    let mut talk = Talk::new(&["plan OfficeLayout1 BreakRoom"]);
+    let found = talk.say("where are the corn flakes?");
+    assert!(found.contains("cereal") && !found.contains("cord"), "{found}");
+}
+
+#[test]
+fn what_is_to_be_done_names_no_thing() {
+    let mut talk = Talk::new(&["plan OfficeLayout1 BreakRoom", "add CoffeeMug_Boss on TableRound_02"]);
+    let said = "Hello love, could you pick up the boss mug and pop it in the microwave for me, please?";
+    let understanding = talk.language.understand(said, &talk.scene, &mut talk.context);
+    assert!(matches!(understanding, Understanding::Plan { .. }) && !understanding.reply().contains("pop"));
 }

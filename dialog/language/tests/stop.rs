@@ -160,3 +160,9 @@ fn other_wordings_are_measured_too() {
     let list = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
     mistaken(&list);
 }
+
+#[test]
+fn who_says_not_to_stop_does_not_stop_it() {
+    let [_, disturbing] = mistaken("N: don't stop now, you are nearly there\nN: dinna stop on my account");
+    assert!(disturbing.is_empty(), "{}", disturbing.join("\n"));
+}

@@ -71,13 +71,6 @@ pub enum ModelError {
     Symbol(String),
 }
 
-/// Whether a word is one that English texts are full of, as one of those that the encoders read whole.
-#[must_use]
-pub fn is_common_word(word: &str) -> bool {
-    static WORDS: LazyLock<Vocabulary> = LazyLock::new(|| Vocabulary::new(VOCABULARY));
-    WORDS.has(word)
-}
-
 /// How many ways to go on are followed at once.
 const BEAM: usize = 4;
 

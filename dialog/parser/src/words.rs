@@ -63,11 +63,6 @@ impl Vocabulary {
     }
 
     /// The pieces of a word: always the longest that fits.
-    /// Whether a word, in small letters, is read whole.
-    pub(crate) fn has(&self, word: &str) -> bool {
-        self.pieces.contains_key(word)
-    }
-
     pub(crate) fn pieces(&self, word: &str) -> Vec<u32> {
         let word: String = word.to_lowercase().replace('’', "'").nfd().filter(|c| !is_combining_mark(*c)).collect();
         let (mark, rest) = word.split_at(usize::from(word.starts_with('\'') && word.len() > 1));
