@@ -2,7 +2,7 @@
 
 use std::{collections::HashMap, sync::LazyLock};
 
-use cohabit_cdf::{Property, RoomId};
+use cohabit_cdf::{ObjectId, Property, RoomId};
 use serde::Deserialize;
 
 use crate::{
@@ -42,6 +42,7 @@ const IN_MISSION: f32 = 0.4;
 const IS_GOAL: f32 = 0.5;
 const STATE_FITS: f32 = 0.5;
 const STATE_IS_SO: f32 = -1.0;
+const SPOKEN_OF: f32 = 2.0;
 /// How many requests are told at most.
 const MOST: usize = 6;
 
@@ -70,8 +71,8 @@ pub(crate) fn others() -> impl Iterator<Item = String> {
 }
 
 impl Conversation<'_> {
-    /// The requests that are most like what was said, the likeliest first.
-    pub(crate) fn likely_requests(&self, utterance: &str) -> Vec<Likely> {
+    /// The requests that are most like what was said, the likeliest first; `spoken_of` is what may be left unnamed in it.
+    pub(crate) fn likely_requests(&self, utterance: &str, spoken_of: &[ObjectId]) -> Vec<Likely> {
         if !utterance.contains(char::is_alphanumeric) {
             return Vec::new();
         }
@@ -83,7 +84,12 @@ impl Conversation<'_> {
             let Some(first) = objects.first() else { continue };
             let class = self.catalog.class(first.class);
             let of_thing = of_thing(name, |property| class.has(property));
-            ranked.extend(of_thing.map(|(intent, request)| (utility(&request) + self.fit(intent, &objects), request)));
+            let is_spoken_of = objects.iter().any(|object| spoken_of.contains(&object.id));
+            let spoken = if is_spoken_of { SPOKEN_OF } else { 0.0 };
+            let utility = |(intent, request): (Option<Intent>, String)| {
+                (utility(&request) + self.fit(intent, &objects) + spoken, request)
+            };
+            ranked.extend(of_thing.map(utility));
         }
         let mission = Some(&self.scene.mission).filter(|mission| !mission.is_empty());
         let goals = self.open_goals().chain(mission.map(String::as_str));

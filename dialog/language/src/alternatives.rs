@@ -1,7 +1,7 @@
 //! All ways to understand an utterance: what the grammar makes of it, what the learned parser does, the plain requests that it is like,
 //! and each of the things that one of these would have to ask about.
 
-use cohabit_cdf::{Action, ClassId, GoToTarget, ObjectId, RoomId};
+use cohabit_cdf::{Action, ClassId, GoToTarget, ObjectId, Property, RoomId, Verb};
 use cohabit_parser::Reranker;
 
 use crate::{
@@ -15,6 +15,7 @@ use crate::{
     phrase::{Phrase, Place},
     readers::of_grammar,
     said::{Named, Said, share},
+    search::Search,
     understanding::{Step, Understanding},
     wording::Wording,
 };
@@ -50,7 +51,7 @@ struct About {
 const SURE_READING: f32 = 0.4;
 
 /// How many ways are read together with what was said.
-const SHORTLIST: usize = 6;
+const SHORTLIST: usize = 8;
 
 impl Conversation<'_> {
     /// What the grammar makes of it.
@@ -63,6 +64,9 @@ impl Conversation<'_> {
     /// All ways to understand it, the likeliest first; the one of the grammar alone, if that speaks for itself.
     pub(crate) fn alternatives(&self, utterance: &str, context: &Context) -> Vec<Alternative> {
         let wording = self.wording(utterance);
+        if let Some(named) = self.with_lab_named(&wording) {
+            return self.alternatives(&named, context);
+        }
         let by_grammar = self.read(utterance, context);
         if self.speaks_for_itself(&wording, &by_grammar) {
             return vec![Alternative { probability: 1.0, ..by_grammar }];
@@ -85,6 +89,11 @@ impl Conversation<'_> {
         found.extend(self.in_parts(&said, context));
         found.extend(self.of_names(&said, context));
         found.extend(self.of_previous(&said, context));
+        found.extend(self.of_others(&said, context));
+        found.extend(self.of_question(&said, context));
+        if self.names_other(&wording.words) {
+            found.retain(|one| !repeats_deeds(&one.understanding, context));
+        }
         self.reranked(self.weighed(found, &said, context), &said, context)
     }
 
@@ -146,9 +155,20 @@ impl Conversation<'_> {
             let is_known = |other: &&mut Alternative| {
                 is_same(&other.understanding, &one.understanding)
                     && other.context.later.is_empty() == one.context.later.is_empty()
+                    && match (&other.context.search, &one.context.search) {
+                        (Some(other), Some(one)) => other.comes_to(one),
+                        (other, one) => other.is_some() == one.is_some(),
+                    }
             };
             match all.iter_mut().find(is_known) {
-                Some(known) => known.evidence.join(&one.evidence),
+                Some(known) => {
+                    known.evidence.join(&one.evidence);
+                    // `repair the bowl` says more than `repair it`.
+                    let says_less = |way: &Alternative| way.context.search.as_ref().is_some_and(Search::has_pronoun);
+                    if says_less(known) && !says_less(&one) {
+                        (known.understanding, known.context) = (one.understanding, one.context);
+                    }
+                }
                 None => all.push(one),
             }
         }
@@ -185,6 +205,7 @@ impl Conversation<'_> {
                 evidence.set_if(Feature::PlanUnknown, said.has_unknown);
                 evidence.set_if(Feature::PlanLasting, steps.iter().any(Step::is_lasting));
                 evidence.set_if(Feature::PlanOfMission, self.is_of_mission(&one.context.later));
+                evidence.set_if(Feature::PlanRepeats, repeats_deeds(understanding, before));
                 evidence.set(Feature::Steps, share(steps.len() / 2));
                 evidence.set_if(Feature::Looks, steps.iter().all(Step::only_looks));
             }
@@ -221,7 +242,14 @@ impl Conversation<'_> {
         if one.context.search.is_some() {
             one.context.request.iter().for_each(|clause| about.add_clause(clause));
         }
+        let opens = matches!(understanding, Understanding::Plan { steps, .. } if steps.iter().any(opens_or_closes));
+        // `close the door` of what it opens.
+        let is_door = |class: &ClassId| {
+            let class = self.catalog.class(*class);
+            class.has(Property::Openable) && !class.has(Property::Receptacle)
+        };
         let is_missing = |name: &&Named| match name {
+            Named::Thing(classes) if opens && classes.iter().all(is_door) => false,
             Named::Thing(classes) => !about.classes.iter().any(|class| classes.contains(class)),
             Named::Room(room) => !about.rooms.contains(room),
             Named::Color(color) => !about.colors.contains(color),
@@ -369,6 +397,10 @@ fn cross(one: &mut Alternative) {
     one.evidence.set(likeness, one.evidence.get(Feature::Likeness));
 }
 
+const fn opens_or_closes(step: &Step) -> bool {
+    matches!(step.action, Action::Interact { verb: Verb::Open | Verb::Close, .. })
+}
+
 /// Whether two ways come to the same.
 fn is_same(one: &Understanding, other: &Understanding) -> bool {
     match (one, other) {
@@ -391,6 +423,11 @@ fn deeds(steps: &[Step]) -> impl Iterator<Item = &Action> {
         _ => false,
     };
     (0..steps.len()).filter(move |at| !is_on_the_way(*at)).map(|at| &steps[at].action)
+}
+
+/// Whether it is what was done just before.
+fn repeats_deeds(understanding: &Understanding, before: &Context) -> bool {
+    matches!(understanding, Understanding::Plan { steps, .. } if deeds(steps).eq(deeds(&before.last_plan)))
 }
 
 /// Whether it asks what the robot asked last.

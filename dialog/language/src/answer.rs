@@ -69,6 +69,13 @@ impl Answerer<'_> {
                 Understanding::about(format!("I do not know whose it is. {place}"), vec![id])
             }),
             (QuestionKind::Holder, Some(phrase)) => self.with_object(phrase, |id| self.holder(id)),
+            (QuestionKind::Origin, Some(phrase)) if !phrase.is_empty() => {
+                self.with_object(phrase, |id| self.origin(id))
+            }
+            (QuestionKind::Origin, _) => match self.context.focus.recent.first() {
+                Some(id) => self.origin(*id),
+                None => Understanding::lost("I cannot tell what you mean. Name it to me, please."),
+            },
             (QuestionKind::Which, Some(phrase)) => self.which(phrase),
             (QuestionKind::Rest, _) => self.goals(),
             (QuestionKind::Recording, _) => Understanding::whether(true, RECORDED, Vec::new()),
@@ -327,6 +334,18 @@ impl Answerer<'_> {
         let is_held = self.scene.robot.held == Some(id);
         let who = if is_held { "I have it" } else { "Nobody that I know of" };
         Understanding::about(format!("{who}: {}.", self.place_sentence(id)), vec![id])
+    }
+
+    /// Where it was taken from, or where it is, if it was not taken.
+    fn origin(&self, id: ObjectId) -> Understanding {
+        let taken = self.context.focus.origins.iter().find(|(taken, _)| *taken == id);
+        match taken {
+            Some((_, from)) => {
+                let text = format!("I took {} from {}.", self.short(id), self.full(*from));
+                Understanding::about(text, vec![*from])
+            }
+            None => Understanding::about(describe::sentence(&self.place_sentence(id)), vec![id]),
+        }
     }
 
     /// Which of several are as was asked.

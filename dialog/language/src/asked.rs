@@ -3,6 +3,7 @@
 use cohabit_cdf::ObjectId;
 
 use crate::{
+    answers::LEAVES,
     ask, chatter,
     clause::{self, Clause, Part},
     context::{Consent, Context, Pending, Role, Slot},
@@ -23,10 +24,10 @@ use crate::{
 const CLEARLY: f32 = 0.6;
 
 /// A request that waits for what one of its phrases means.
-struct Open {
-    clauses: Vec<Clause>,
-    slot: Slot,
-    consent: Consent,
+pub(crate) struct Open {
+    pub(crate) clauses: Vec<Clause>,
+    pub(crate) slot: Slot,
+    pub(crate) consent: Consent,
 }
 
 impl Conversation<'_> {
@@ -55,7 +56,7 @@ impl Conversation<'_> {
         let is_yes = self.small_at_start(words, Small::Yes) && !is_command;
         let leaves = is(Small::No) || is(Small::Neither) && !matches!(pending, Pending::Which { .. });
         if leaves && !is_command && !matches!(&pending, Pending::Which { candidates, .. } if candidates.len() == 1) {
-            return Some(Understanding::answer("All right, I leave it."));
+            return Some(Understanding::answer(LEAVES));
         }
         match pending {
             Pending::PutDown { clauses } if is_yes || self.agrees_to_put_down(words, parts) => {
@@ -216,6 +217,25 @@ impl Conversation<'_> {
         self.plan(open.clauses, Consent { is_agreed: true, ..open.consent }, context)
     }
 
+    /// Carries the request out with all of these, one after the other if they are few.
+    pub(crate) fn settle_all(&self, mut open: Open, objects: &[ObjectId], context: &mut Context) -> Understanding {
+        if objects.len() > ask::ASKED {
+            if let Some(phrase) = phrase_mut(&mut open.clauses, open.slot) {
+                phrase.is_all = true;
+            }
+            return self.plan(open.clauses, open.consent, context);
+        }
+        let with = |object: &ObjectId| {
+            let mut clauses = open.clauses.clone();
+            if let Some(phrase) = phrase_mut(&mut clauses, open.slot) {
+                phrase.chosen = Some(*object);
+            }
+            clauses
+        };
+        let clauses = objects.iter().flat_map(with).collect();
+        self.plan(clauses, Consent { is_agreed: true, may_put_down: true }, context)
+    }
+
     /// Carries the request out with any but these.
     fn settle_without(&self, mut open: Open, objects: &[ObjectId], context: &mut Context) -> Understanding {
         if let Some(phrase) = phrase_mut(&mut open.clauses, open.slot) {
@@ -246,11 +266,7 @@ impl Conversation<'_> {
             return Some(self.settle(open, *first, context));
         }
         if self.is_all(words) {
-            let mut open = open;
-            if let Some(phrase) = phrase_mut(&mut open.clauses, open.slot) {
-                phrase.is_all = true;
-            }
-            return Some(self.plan(open.clauses, open.consent, context));
+            return Some(self.settle_all(open, candidates, context));
         }
         let mut left = self.answered(words, candidates, context);
         let points = self.answer_phrase(&plain(words)).is_some_and(|phrase| phrase.pronoun == Some(Pronoun::Thing));
@@ -595,7 +611,7 @@ pub(crate) fn phrase(clauses: &[Clause], slot: Slot) -> Option<&Phrase> {
     }
 }
 
-fn phrase_mut(clauses: &mut [Clause], slot: Slot) -> Option<&mut Phrase> {
+pub(crate) fn phrase_mut(clauses: &mut [Clause], slot: Slot) -> Option<&mut Phrase> {
     let clause = clauses.get_mut(slot.clause)?;
     match slot.role {
         Role::Object(index) => clause.objects.get_mut(index),

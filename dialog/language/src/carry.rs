@@ -348,6 +348,22 @@ impl Planner<'_> {
         self.has(source, Property::Fillable) || self.scene.object(source).is_some_and(is_cereal)
     }
 
+    /// Whether it is empty, and of the kind of what it is to be poured into: `the bowl into the bowl`.
+    fn is_empty_twin(&self, source: ObjectId, target: ObjectId) -> bool {
+        let [source, target] = [source, target].map(|id| self.scene.object(id));
+        source
+            .zip(target)
+            .is_some_and(|(source, target)| source.class == target.class && source.fluid == cohabit_cdf::Fluid::None)
+    }
+
+    /// Whether it can be filled, or lets what is poured into it run off.
+    fn can_be_poured_into(&self, target: ObjectId) -> bool {
+        let drains = |class| {
+            self.devices.processes.iter().any(|process| process.intent == Intent::Clean && process.at.contains(&class))
+        };
+        self.has(target, Property::Fillable) || self.scene.object(target).is_some_and(|known| drains(known.class))
+    }
+
     /// `over the cereal`: what that was poured into.
     fn vessel_with(&self, target: ObjectId) -> ObjectId {
         let is_vessel = TAKES.iter().any(|takes| self.has(target, *takes));
@@ -365,6 +381,13 @@ impl Planner<'_> {
     }
 
     pub(crate) fn pour(&mut self, source: ObjectId, target: ObjectId) -> Result<(), Fault> {
+        if !self.can_be_poured_into(target) {
+            let (what, into) = (self.the(source), self.the(target));
+            return Err(Fault::Cannot(format!("I cannot pour {what} into {into}.")));
+        }
+        if self.is_empty_twin(source, target) {
+            return Err(Fault::Cannot(format!("There is nothing in {} to pour.", self.the(source))));
+        }
         self.hold(source)?;
         self.open_around(target, false);
         let says = format!("pouring {} into {}", self.the(source), self.the(target));

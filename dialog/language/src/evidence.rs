@@ -99,6 +99,29 @@ features! {
     Parts = "parts",
     /// What the things that were named may be asked for.
     Names = "names",
+    /// The last request with what is named now: in place of something, or besides; how long it is, whether it asks for something by
+    /// itself, and whether the robot waits for an answer.
+    FollowUp = "follow_up",
+    FollowUpReplaced = "follow_up_replaced",
+    FollowUpAdded = "follow_up_added",
+    FollowUpLong = "follow_up_long",
+    FollowUpAsks = "follow_up_asks",
+    FollowUpPending = "follow_up_pending",
+    /// What share it has of all others of the kind that something was done with.
+    FollowUpOther = "follow_up_other",
+    /// It takes what the robot asked about: whether that is only one, how much the words are like it, whether they sound like a yes and a
+    /// no, whether they name something, how long they are, and whether the parser takes them for a request.
+    Reply = "reply",
+    ReplyOnly = "reply_only",
+    ReplyLike = "reply_like",
+    ReplyAgrees = "reply_agrees",
+    ReplyDenies = "reply_denies",
+    ReplyNames = "reply_names",
+    ReplyLong = "reply_long",
+    ReplyAsks = "reply_asks",
+    /// It leaves what the robot asked about, and whether the words sound like a no.
+    ReplyLeaves = "reply_leaves",
+    ReplyLeavesDenied = "reply_leaves_denied",
     /// How likely the words mean this one of those that another way would ask about, and how that way came about.
     Candidate = "candidate",
     CandidateOnly = "candidate_only",
@@ -121,6 +144,8 @@ features! {
     PlanLasting = "plan_lasting",
     /// It begins what is left of the mission.
     PlanOfMission = "plan_of_mission",
+    /// It was done just before.
+    PlanRepeats = "plan_repeats",
     /// More is to be done later.
     Later = "later",
     Steps = "steps",

@@ -609,7 +609,18 @@ impl<'a> Ground<'a> {
                 (Some(one), Some(other)) => one.id == other.id || describe::look_alike(self.catalog, one, other),
                 _ => false,
             };
-        is_same_place && describe::look_alike(self.catalog, one, other)
+        is_same_place && (describe::look_alike(self.catalog, one, other) || self.are_called_alike(one, other))
+    }
+
+    /// Whether each is also called by the name of the other, and of the same color, as the pieces of one worktop are.
+    fn are_called_alike(&self, one: &KnownObject, other: &KnownObject) -> bool {
+        let is_called = |class: ClassId, name: ClassId| {
+            let (class, name) = (self.catalog.class(class), &self.catalog.class(name).name);
+            std::iter::once(&class.name).chain(&class.words).any(|word| word.eq_ignore_ascii_case(name))
+        };
+        let [first, second] = [one, other].map(|object| self.catalog.class(object.class));
+        let is_alike = first.tint.is_some() && first.tint == second.tint && !first.has(Property::Pickupable);
+        is_alike && is_called(one.class, other.class) && is_called(other.class, one.class)
     }
 
     fn doubt(&self, phrase: &Phrase, candidates: &[Features]) -> Doubt {

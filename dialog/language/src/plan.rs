@@ -377,7 +377,9 @@ impl Planner<'_> {
         let [phrase] = settled.objects.as_slice() else { return None };
         let door = self.catalog.find("Door_01")?;
         let is_bare = phrase.color.is_none() && phrase.side.is_none() && phrase.room.is_none() && !phrase.is_all;
-        let is_door = phrase.naming(door).is_some() && is_bare && phrase.relations.is_empty();
+        // `the door on it`
+        let is_of_it = phrase.relations.iter().all(|relation| relation.to.is_bare_pronoun());
+        let is_door = phrase.naming(door).is_some() && is_bare && is_of_it;
         let place = self.focus.place.filter(|place| self.has(*place, Property::Openable))?;
         is_door.then_some(place)
     }

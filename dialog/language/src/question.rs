@@ -48,6 +48,8 @@ pub(crate) enum QuestionKind {
     Owner,
     /// Who has it.
     Holder,
+    /// Where something was before it was taken.
+    Origin,
     /// Which of several is so: `which mug is red`.
     Which,
     /// What else there is, after a list.

@@ -1,8 +1,6 @@
 //! The readers of an utterance, each with what it takes it for: the grammar, the learned parser, the likeness to plain requests, and the
 //! things that it names. [`crate::parts`] has its parts.
 
-use std::ops::Range;
-
 use cohabit_cdf::{ClassId, ObjectId, Property};
 use cohabit_parser::{
     Reading,
@@ -23,9 +21,6 @@ use crate::{
     understanding::Understanding,
 };
 
-/// How many words name something else than before at most, and how many ways to do so are tried.
-const LONGEST_ELLIPSIS: usize = 9;
-const MOST_REPLACED: usize = 4;
 /// Up to how many words are few.
 const SHORT: usize = 6;
 /// For how many things that are named a pronoun may stand.
@@ -92,7 +87,9 @@ impl Conversation<'_> {
         if said.is_conditional || said.is_forbidden {
             return found;
         }
-        for (at, likely) in self.likely_requests(said.wording.utterance).into_iter().enumerate() {
+        for (at, likely) in
+            self.likely_requests(said.wording.utterance, &self.spoken_of(said, context)).into_iter().enumerate()
+        {
             let mut then = context.at_new_utterance();
             let understanding = match likely.request.strip_prefix("social: ") {
                 Some(kind) => match parsed::social(kind) {
@@ -116,6 +113,15 @@ impl Conversation<'_> {
             found.push(Alternative::new(understanding, then, evidence));
         }
         found
+    }
+
+    /// What may be meant without being named, where nothing is: what is in the hand, and what was spoken of last.
+    fn spoken_of(&self, said: &Said<'_>, context: &Context) -> Vec<ObjectId> {
+        if !said.mentions.is_empty() {
+            return Vec::new();
+        }
+        let recent = context.focus.recent.iter().take(MOST_ANTECEDENTS);
+        self.scene.robot.held.iter().chain(recent).copied().collect()
     }
 
     /// What the things that are named may be asked for without a verb: `mug in the sink`, `golf ball to the reception`.
@@ -157,45 +163,6 @@ impl Conversation<'_> {
 
     fn is_carried(&self, class: ClassId) -> bool {
         self.catalog.class(class).has(Property::Pickupable)
-    }
-
-    /// What was asked before, of what is named now in place of that: `and the blue one?`
-    pub(crate) fn of_previous(&self, said: &Said<'_>, context: &Context) -> Vec<Alternative> {
-        let words = &said.wording.words;
-        let before = context.lines.iter().rev().find(|(by_robot, _)| !by_robot);
-        let Some((_, before)) = before.filter(|_| words.len() <= LONGEST_ELLIPSIS) else { return Vec::new() };
-        if said.is_conditional || said.is_forbidden {
-            return Vec::new();
-        }
-        let (before, _) = self.lexicon.normalise(before);
-        let named = self.names_in(&before);
-        let mut texts: Vec<String> = Vec::new();
-        for (now, name) in self.names_in(words) {
-            for (then, other) in &named {
-                let Some(replaced) = self.replaced(&name, other, &before, then) else { continue };
-                let text = [&before[..replaced.start], &words[now.clone()], &before[replaced.end..]].concat().join(" ");
-                if !texts.contains(&text) && words[now.clone()] != before[replaced] {
-                    texts.push(text);
-                }
-            }
-        }
-        let ways = texts.iter().take(MOST_REPLACED).map(|text| self.of_named(text, said, context));
-        ways.filter(|way| matches!(way.understanding, Understanding::Plan { .. } | Understanding::Answer { .. }))
-            .collect()
-    }
-
-    /// Which of the words at `then`, which name `other`, a name may stand in place of: what is of the same kind.
-    fn replaced(&self, name: &Named, other: &Named, words: &[String], then: &Range<usize>) -> Option<Range<usize>> {
-        let is_carried = |classes: &[ClassId]| classes.iter().any(|class| self.is_carried(*class));
-        let is_color = |at: usize| self.lexicon.colors.exact(&words[at..=at]).is_some();
-        match (name, other) {
-            (Named::Thing(one), Named::Thing(other)) if is_carried(one) == is_carried(other) => Some(then.clone()),
-            (Named::Thing(one), Named::Room(_)) if !is_carried(one) => Some(then.clone()),
-            (Named::Room(_), Named::Thing(other)) if !is_carried(other) => Some(then.clone()),
-            (Named::Room(_), Named::Room(_)) | (Named::Color(_), Named::Color(_)) => Some(then.clone()),
-            (Named::Color(_), Named::Thing(_)) if is_color(then.start) => Some(then.start..then.start + 1),
-            _ => None,
-        }
     }
 
     /// What is to be done with each thing that one way would have to ask about.

@@ -16,7 +16,7 @@ use crate::{
     ground::{Ground, Miss, Want},
     intent::Intent,
     known::{Known, KnownObject, distance_m},
-    phrase::{Phrase, RelationKind},
+    phrase::{Phrase, Place, RelationKind},
     plan::Fault,
     remedy, reply, saying, sight,
     understanding::{Asking, Step, Understanding},
@@ -120,6 +120,28 @@ impl Search {
         self.target.is_some()
     }
 
+    /// Whether it looks for the same, to do the same with it; a pronoun may stand for what the other one names.
+    pub(crate) fn comes_to(&self, other: &Self) -> bool {
+        let sought = |search: &Self| search.target.as_ref().map(|target| target.classes.clone());
+        let is_alike = |(one, other): (&Clause, &Clause)| {
+            let (one_named, other_named) = (named(one), named(other));
+            let is_same = |(one, other): (&&Phrase, &&Phrase)| {
+                one.text == other.text || one.is_bare_pronoun() || other.is_bare_pronoun()
+            };
+            one.intent == other.intent
+                && one_named.len() == other_named.len()
+                && one_named.iter().zip(&other_named).all(is_same)
+        };
+        sought(self) == sought(other)
+            && self.clauses.len() == other.clauses.len()
+            && self.clauses.iter().zip(&other.clauses).all(is_alike)
+    }
+
+    /// Whether its words say only `it` of something.
+    pub(crate) fn has_pronoun(&self) -> bool {
+        self.clauses.iter().flat_map(named).any(Phrase::is_bare_pronoun)
+    }
+
     /// A leg could not be walked.
     pub(crate) fn note_failure(&mut self, step: &Step, status: Status) {
         if status == Status::Interrupted {
@@ -158,6 +180,15 @@ impl Search {
         }
         is_new
     }
+}
+
+/// The things that a request names, in the order of its slots.
+fn named(clause: &Clause) -> Vec<&Phrase> {
+    let places = clause.places.iter().filter_map(|(_, place)| match place {
+        Place::Object(phrase) => Some(phrase),
+        _ => None,
+    });
+    clause.objects.iter().chain(places).collect()
 }
 
 impl Conversation<'_> {

@@ -10,7 +10,7 @@ use crate::{
     conversation::Conversation,
     describe,
     evidence::Feature,
-    lab, parsed, reply,
+    lab, parsed, reply, token,
     understanding::{Asking, Clarification, Step, Understanding},
     wording::Wording,
 };
@@ -19,8 +19,13 @@ use crate::{
 /// same where nobody ever met some of the words: an unknown verb changes nothing.
 const TO_CHANGE: f32 = 0.7;
 const TO_MOVE: f32 = 0.6;
-const TO_CHANGE_UNHEARD: f32 = 0.85;
-const TO_MOVE_UNHEARD: f32 = 0.75;
+const TO_CHANGE_UNHEARD: f32 = 0.95;
+const TO_MOVE_UNHEARD: f32 = 0.9;
+/// The same of the only thing that the robot proposed, where the words agree to it, and where they do not deny it.
+const TO_ACCEPT: f32 = 0.1;
+const TO_ACCEPT_UNSAID: f32 = 0.5;
+/// How many words that nobody ever met may be of another language.
+const SEVERAL: usize = 2;
 /// The same of all that is left of the mission.
 const TO_PURSUE: f32 = 0.1;
 /// How likely what is said must be the right reply, where nothing is done.
@@ -59,6 +64,9 @@ impl Conversation<'_> {
             let note = reply::unknown(&left_out);
             return (if left_out.is_empty() { understanding } else { understanding.after(&note) }, sureness);
         }
+        if let Some(named) = self.with_lab_named(&wording) {
+            return self.understand_weighed(&named, context);
+        }
         let by_grammar = self.read(utterance, context);
         if self.speaks_for_itself(&wording, &by_grammar) {
             let sureness = if self.parser.is_some() { 1.0 } else { BY_GRAMMAR };
@@ -71,6 +79,8 @@ impl Conversation<'_> {
                 match wording.unheard.as_slice() {
                     [] if self.lexicon.is_small_word(about) => &[],
                     [] => std::slice::from_ref(about),
+                    // What answers a question may have a remark beside it.
+                    unheard if context.pending.is_some() => unheard,
                     _ => {
                         *context = by_grammar.context;
                         return (by_grammar.understanding, 0.0);
@@ -79,9 +89,15 @@ impl Conversation<'_> {
             }
             _ => wording.unheard.as_slice(),
         };
+        let unknown = clause::unknown_words(self.lexicon, &wording.words);
+        // Of another language nothing is guessed.
+        let said = wording.words.iter().filter(|word| !token::is_punctuation(word)).count();
+        if wording.unheard.len() >= SEVERAL && wording.unheard.len() * 2 >= said {
+            *context = by_grammar.context;
+            return (by_grammar.understanding, 0.0);
+        }
         let mut alternatives = self.alternatives_to(by_grammar.clone(), &wording, context);
         let is_alone = alternatives.len() == 1;
-        let unknown = clause::unknown_words(self.lexicon, &wording.words);
         // `walk the dog` is no walk.
         if !unknown.is_empty() {
             alternatives.retain(|one| !one.only_moves());
@@ -95,7 +111,8 @@ impl Conversation<'_> {
         // What is to be done otherwise only the grammar knows to take up where the condition does not hold.
         let has_otherwise = is_conditional && condition::has_otherwise(self.lexicon, &wording.words);
         let is_trusted = |one: &&Alternative| {
-            let is_sure = is_short || is_conditional || one.is_grammars_reply();
+            let is_plain = context.pending.is_none() || one.is_plain();
+            let is_sure = is_plain && (is_short || one.is_grammars_reply()) || is_conditional;
             let least = if is_sure { TO_TRUST_SHORT } else { TO_TRUST };
             (one.is_exact() || has_otherwise && one.is_grammars_plan()) && one.probability >= least
         };
@@ -118,7 +135,8 @@ impl Conversation<'_> {
         if highest < SURELY_ALL || leaves_out {
             // They leave nothing out.
             let is_likely = |one: &Alternative| one.probability > highest || one.probability >= TO_MOVE;
-            let by_sentences = self.by_sentences(&wording, context).filter(is_likely);
+            let by_sentences = self.by_sentences(&wording, context);
+            let by_sentences = by_sentences.filter(|one| is_likely(one) && !is_held_back(one));
             alternatives.splice(0..0, by_sentences);
         }
         let likely = alternatives.first().filter(|one| one.probability >= one.least(unheard));
@@ -152,9 +170,16 @@ impl Conversation<'_> {
     pub(crate) fn speaks_for_itself(&self, wording: &Wording<'_>, by_grammar: &Alternative) -> bool {
         let is_lost = matches!(by_grammar.understanding, Understanding::Refusal { is_lost: true, .. });
         let is_exact = !self.small(&wording.tidied).is_empty() || self.chat(&wording.tidied).is_some();
-        let is_of_lab = matches!(by_grammar.context.pending, Some(Pending::Lab { .. }))
-            || lab::here(self.scene.robot.room).is_some() && lab::bare(self.lexicon, &wording.words).is_some();
+        let is_of_lab = matches!(by_grammar.context.pending, Some(Pending::Lab { .. }));
         self.parser.is_none() || is_of_lab || !self.may_be_weighed(wording) || !is_lost && is_exact
+    }
+
+    /// The utterance with the name of the lab that the robot is in, where that is what `the lab` means.
+    pub(crate) fn with_lab_named(&self, wording: &Wording<'_>) -> Option<String> {
+        let at = lab::bare(self.lexicon, &wording.words)?;
+        let room = lab::here(self.scene.robot.room)?;
+        let is_told = lab::described(self.lexicon, self.scene, &wording.words[at + 1..]).is_some();
+        (!is_told).then(|| token::sentence(&lab::named(&wording.words, at, room)))
     }
 
     /// Asks which of the likeliest plans is meant, instead of carrying any out; nothing, where none is likely at all.
@@ -207,6 +232,13 @@ impl Alternative {
     fn least(&self, unheard: &[String]) -> f32 {
         let is_known = unheard.is_empty();
         match &self.understanding {
+            Understanding::Plan { .. } if self.is_proposed() => {
+                if self.evidence.get(Feature::ReplyAgrees) > 0.0 {
+                    TO_ACCEPT
+                } else {
+                    TO_ACCEPT_UNSAID
+                }
+            }
             Understanding::Plan { steps, .. } => match (steps.iter().any(Step::is_lasting), is_known) {
                 (true, true) => TO_CHANGE,
                 (true, false) => TO_CHANGE_UNHEARD,
@@ -247,6 +279,11 @@ impl Alternative {
             || is_series
             || self.is_grammars_reply()
             || is_answered && self.evidence.get(Feature::GrammarAnswer) > 0.0
+    }
+
+    /// Whether it is the only thing that the robot proposed, and the words do not deny it.
+    fn is_proposed(&self) -> bool {
+        self.evidence.get(Feature::ReplyOnly) > 0.0 && self.evidence.get(Feature::ReplyDenies) == 0.0
     }
 
     /// Whether it begins what is left of the mission.

@@ -44,17 +44,26 @@ impl Conversation<'_> {
         // As it was said: `do you know how to …` is often a request, but not for who wants to know it.
         let words = token::words(wording.utterance);
         let (before, last) = last_sentence(&words);
+        // `there is a tip for it as well, do you see it?`
+        let pause = last.iter().rposition(|word| word == ",").map_or(0, |at| at + 1);
         let starts = [0, clause::leading(self.lexicon, last).min(last.len())];
         let inquiry = |start: usize| {
             let (length, ()) = self.lexicon.inquiries.longest(&last[start..])?;
             Some((start, start + length))
         };
-        let Some((lead, end)) = starts.into_iter().find_map(inquiry) else { return false };
+        let after_statement = || inquiry(pause).filter(|_| !self.orders(&last[..pause]));
+        let Some((lead, end)) = starts.into_iter().find_map(inquiry).or_else(after_statement) else { return false };
         let rest = &last[end..];
         let is_favour = |at: usize| self.lexicon.favours.longest(&rest[at..]).is_some();
         let is_idiom = self.lexicon.favours.longest(&last[lead..]).is_some();
         let asks_before = || !before.is_empty() && self.parser_sees_request(&token::sentence(before), context);
         !is_idiom && !(0..rest.len()).any(is_favour) && !asks_before()
+    }
+
+    /// Whether these words begin with what is to be done.
+    fn orders(&self, words: &[String]) -> bool {
+        let start = clause::leading(self.lexicon, words).min(words.len());
+        self.lexicon.verbs.longest(&words[start..]).is_some()
     }
 
     /// Whether it has any word that somebody knows, and is not too long.

@@ -5,7 +5,7 @@
 //! cargo run --release --manifest-path dialog/language/fit/Cargo.toml --bin alternatives
 //! ```
 //!
-//! With `-- second` only the second weights are fitted anew, as after a fit of the re-ranker.
+//! With `-- first` only the first weights are fitted anew, as before a fit of the re-ranker; with `-- second` only the second, as after one.
 //!
 //! The first weights are fitted to the sets of `dialog/language/tests/utterances` that may be looked at, and to writers whom the re-ranker has
 //! learnt from and the parser has not, as `ways` has written them; the second to writers whom neither has, so that they do not rely on a
@@ -31,7 +31,7 @@ use crate::logit::Choice;
 
 /// The sets that the first weights are fitted to, and how much each of their utterances counts: the grammar was written with some of them
 /// in sight, and reads them better than what it has not met.
-const FIRST: [(&str, f64); 13] = [
+const FIRST: [(&str, f64); 21] = [
     ("newcomers", 1.0),
     ("first_contact", 1.0),
     ("first_contact_again", 1.0),
@@ -41,6 +41,14 @@ const FIRST: [(&str, f64); 13] = [
     ("writers/ag", 1.0),
     ("writers/ai", 1.0),
     ("writers/ak", 1.0),
+    ("writers/ar", 1.0),
+    ("writers/as", 1.0),
+    ("writers/at", 1.0),
+    ("writers/au", 1.0),
+    ("writers/ax", 1.0),
+    ("writers/ay", 1.0),
+    ("writers/az", 1.0),
+    ("writers/ba", 1.0),
     ("seen", 0.3),
     ("voices", 0.3),
     ("manners", 0.3),
@@ -48,7 +56,7 @@ const FIRST: [(&str, f64); 13] = [
 ];
 /// Those that the second weights are fitted to. Of those that the re-ranker has learnt from it has not met what the grammar reads to the last
 /// word.
-const SECOND: [(&str, f64); 11] = [
+const SECOND: [(&str, f64); 15] = [
     ("writers/a", 1.0),
     ("writers/b", 1.0),
     ("writers/c", 1.0),
@@ -57,6 +65,10 @@ const SECOND: [(&str, f64); 11] = [
     ("writers/y", 1.0),
     ("writers/al", 1.0),
     ("writers/am", 1.0),
+    ("writers/av", 1.0),
+    ("writers/bb", 1.0),
+    ("writers/bd", 1.0),
+    ("writers/be", 1.0),
     ("seen", 0.7),
     ("manners", 0.7),
     ("spoken", 0.7),
@@ -161,13 +173,24 @@ impl Alternatives {
 
 fn main() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../data/alternatives.toml");
+    let only = std::env::args().nth(1);
+    let first_weights = (only.as_deref() != Some("second")).then(fitted_first);
+    let before = fs::read_to_string(&path).expect("the weights so far");
+    let first = match &first_weights {
+        Some(weights) => section("first", Evidence::NAMES.iter().chain(&["none"]), weights),
+        None => {
+            let first = before.split("[first]").nth(1).and_then(|rest| rest.split("[fit]").next());
+            format!("[first]{}", first.expect("the weights so far have a table of the first"))
+        }
+    };
+    if only.as_deref() == Some("first") {
+        let head = before.split("[first]").next().expect("a text begins somewhere");
+        let rest = before.split("[fit]").nth(1).expect("the weights so far have a table of the fit");
+        return fs::write(path, format!("{head}{first}[fit]{rest}")).expect("the weights can be written");
+    }
     let mut second: Vec<Ways> = SECOND.iter().flat_map(|(set, weight)| ways(set, *weight)).collect();
     second.extend(off_domain());
     let held_out = ways(HELD_OUT, 1.0);
-    let first_weights = match std::env::args().nth(1) {
-        Some(only) if only == "second" => None,
-        _ => Some(fitted_first()),
-    };
     let of_first = |ways: &[Ways]| ways.iter().map(Ways::first).collect::<Vec<_>>();
     let of_second =
         |ways: &[Ways]| -> Vec<Alternatives> { ways.iter().map(|one| one.second(first_weights.as_deref())).collect() };
@@ -181,14 +204,6 @@ fn main() {
     }
     let judged = [right(&of_second(&second), &second_weights), right(&of_second(&held_out), &second_weights)];
     println!("by the second weights the likeliest way is right: {}", judged.join(", held out "));
-    let first = match &first_weights {
-        Some(weights) => section("first", Evidence::NAMES.iter().chain(&["none"]), weights),
-        None => {
-            let before = fs::read_to_string(&path).expect("the weights so far");
-            let first = before.split("[first]").nth(1).and_then(|rest| rest.split("[fit]").next());
-            format!("[first]{}", first.expect("the weights so far have a table of the first"))
-        }
-    };
     let (fit, second) = second_weights.split_at(Fit::COUNT);
     let second = section("second", Evidence::NAMES.iter().chain(&["none"]), second);
     let text = format!("{}{first}{}{second}", head(&judged), section("fit", Fit::NAMES.iter(), fit));
