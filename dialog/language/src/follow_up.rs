@@ -214,7 +214,7 @@ impl Conversation<'_> {
                 continue;
             }
             let whole = (free..=at.start).find_map(|start| {
-                let mut reader = Reader::new(self.lexicon, &words[..]);
+                let mut reader = Reader::new(self.lexicon, words);
                 reader.at = start;
                 let phrase = reader.phrase()?;
                 let is_whole = reader.at >= at.end && phrase.unknown.is_empty() && !phrase.namings.is_empty();
@@ -246,8 +246,8 @@ impl Conversation<'_> {
             let (start, end) = match (&name.kind, &other.kind) {
                 // `the blue one` is the same thing in blue.
                 (Kind::Color, Kind::Item | Kind::Container | Kind::Surface | Kind::Fixture) => {
-                    let noun = self.names_in(before).into_iter().map(|(at, _)| at.start);
-                    let noun = noun.filter(|at| other.at.contains(at)).last()?;
+                    let mut noun = self.names_in(before).into_iter().map(|(at, _)| at.start);
+                    let noun = noun.rfind(|at| other.at.contains(at))?;
                     (noun, noun)
                 }
                 (one, two) if one.replaces(two) => (other.at.start, other.at.end),

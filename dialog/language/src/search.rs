@@ -123,18 +123,21 @@ impl Search {
     /// Whether it looks for the same, to do the same with it; a pronoun may stand for what the other one names.
     pub(crate) fn comes_to(&self, other: &Self) -> bool {
         let sought = |search: &Self| search.target.as_ref().map(|target| target.classes.clone());
-        let is_alike = |(one, other): (&Clause, &Clause)| {
+        let (own, others) = (self.deeds(), other.deeds());
+        let is_alike = |(one, other): (&&Clause, &&Clause)| {
             let (one_named, other_named) = (named(one), named(other));
-            let is_same = |(one, other): (&&Phrase, &&Phrase)| {
-                one.text == other.text || one.is_bare_pronoun() || other.is_bare_pronoun()
-            };
             one.intent == other.intent
                 && one_named.len() == other_named.len()
-                && one_named.iter().zip(&other_named).all(is_same)
+                && one_named.iter().zip(&other_named).all(|(one, other)| may_mean_the_same(one, other))
         };
-        sought(self) == sought(other)
-            && self.clauses.len() == other.clauses.len()
-            && self.clauses.iter().zip(&other.clauses).all(is_alike)
+        sought(self) == sought(other) && own.len() == others.len() && own.iter().zip(&others).all(is_alike)
+    }
+
+    /// What it is for, without what only brings the robot there, if there is more to it.
+    fn deeds(&self) -> Vec<&Clause> {
+        let only_goes = |clause: &&Clause| matches!(clause.intent, Intent::GoTo | Intent::Find | Intent::Look);
+        let deeds: Vec<&Clause> = self.clauses.iter().filter(|clause| !only_goes(clause)).collect();
+        if deeds.is_empty() { self.clauses.iter().collect() } else { deeds }
     }
 
     /// Whether its words say only `it` of something.
@@ -180,6 +183,15 @@ impl Search {
         }
         is_new
     }
+}
+
+/// Whether two phrases may mean the same: one is a pronoun, or both name things of one class in the same color.
+fn may_mean_the_same(one: &Phrase, other: &Phrase) -> bool {
+    let shares_class = || one.namings.iter().any(|naming| other.naming(naming.class).is_some());
+    one.text == other.text
+        || one.is_bare_pronoun()
+        || other.is_bare_pronoun()
+        || one.color == other.color && one.room == other.room && shares_class()
 }
 
 /// The things that a request names, in the order of its slots.
