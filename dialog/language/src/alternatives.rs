@@ -153,18 +153,18 @@ impl Conversation<'_> {
         for mut one in found.into_iter().filter(|one| !matches!(one.understanding, Understanding::Stop { .. })) {
             self.describe(&mut one, said, context);
             let is_known = |other: &&mut Alternative| {
-                is_same(&other.understanding, &one.understanding)
-                    && other.context.later.is_empty() == one.context.later.is_empty()
-                    && match (&other.context.search, &one.context.search) {
+                other.context.later.is_empty() == one.context.later.is_empty()
+                    && match (other.begun_search(), one.begun_search()) {
                         (Some(other), Some(one)) => other.comes_to(one),
-                        (other, one) => other.is_some() == one.is_some(),
+                        (None, None) => is_same(&other.understanding, &one.understanding),
+                        _ => false,
                     }
             };
             match all.iter_mut().find(is_known) {
                 Some(known) => {
                     known.evidence.join(&one.evidence);
                     // `repair the bowl` says more than `repair it`.
-                    let says_less = |way: &Alternative| way.context.search.as_ref().is_some_and(Search::has_pronoun);
+                    let says_less = |way: &Alternative| way.begun_search().is_some_and(Search::has_pronoun);
                     if says_less(known) && !says_less(&one) {
                         (known.understanding, known.context) = (one.understanding, one.context);
                     }
@@ -338,6 +338,14 @@ impl Alternative {
             fit: None,
             leaves_out: Vec::new(),
             context,
+        }
+    }
+
+    /// The search that it begins, if it does.
+    const fn begun_search(&self) -> Option<&Search> {
+        match self.understanding {
+            Understanding::Plan { .. } => self.context.search.as_ref(),
+            _ => None,
         }
     }
 

@@ -6,9 +6,10 @@ use crate::{
     asked::Open,
     context::{Consent, Context, Pending},
     conversation::Conversation,
-    evidence::{Evidence, Feature},
+    evidence::{Evidence, Feature, shares},
     lexicon::Small,
-    likeness::Likeness,
+    likeness::{Likeness, SHARPNESS},
+    reply,
     said::Said,
     token,
     understanding::Understanding,
@@ -57,7 +58,7 @@ impl Conversation<'_> {
         };
         match pending {
             Pending::Offer { plans } => {
-                let names: Vec<String> = plans.iter().map(|steps| crate::reply::plan_in_words(steps)).collect();
+                let names: Vec<String> = plans.iter().map(|steps| reply::plan_in_words(steps)).collect();
                 for (steps, like) in plans.iter().zip(likenesses(said, &names)) {
                     take(like, &|then| self.go(steps.clone(), then));
                 }
@@ -69,7 +70,7 @@ impl Conversation<'_> {
                 }
             }
             Pending::Which { clauses, slot, candidates, consent } => {
-                if self.names_all(&said.wording.words) {
+                if self.lexicon.all.occurs_in(&said.wording.words) {
                     let open = || Open { clauses: clauses.clone(), slot: *slot, consent: *consent };
                     take(1.0, &|then| self.settle_all(open(), candidates, then));
                 }
@@ -97,11 +98,6 @@ impl Conversation<'_> {
         found
     }
 
-    /// Whether any words stand for all of several.
-    fn names_all(&self, words: &[String]) -> bool {
-        (0..words.len()).any(|at| self.lexicon.all.longest(&words[at..]).is_some())
-    }
-
     /// That none of it is to be done.
     fn left(&self, tone: &Tone, context: &Context) -> Alternative {
         let mut evidence = Evidence::default();
@@ -118,11 +114,8 @@ impl Conversation<'_> {
             let is = |part: &[String]| self.small(part).iter().any(|small| kinds.contains(small));
             parts().any(is) || words.iter().any(|word| is(std::slice::from_ref(word)))
         };
-        let denies = |at: usize| {
-            let rest = &words[at..];
-            self.lexicon.negation.longest(rest).is_some() || self.lexicon.denials.longest(rest).is_some()
-        };
-        Tone { agrees: has(&[Small::Yes]), denies: has(&[Small::No, Small::Neither]) || (0..words.len()).any(denies) }
+        let denies = || self.lexicon.negation.occurs_in(words) || self.lexicon.denials.occurs_in(words);
+        Tone { agrees: has(&[Small::Yes]), denies: has(&[Small::No, Small::Neither]) || denies() }
     }
 }
 
@@ -133,9 +126,6 @@ pub(crate) const LEAVES: &str = "All right, I leave it.";
 fn likenesses(said: &Said<'_>, names: &[String]) -> Vec<f32> {
     let likeness = Likeness::builtin();
     let of_said = likeness.of(said.wording.utterance);
-    let utilities: Vec<f32> =
-        names.iter().map(|name| of_said.likeness(&likeness.of(name)) / crate::likeness::SHARPNESS).collect();
-    let highest = utilities.iter().copied().fold(f32::NEG_INFINITY, f32::max);
-    let whole: f32 = utilities.iter().map(|utility| (utility - highest).exp()).sum();
-    utilities.into_iter().map(|utility| (utility - highest).exp() / whole).collect()
+    let utilities = names.iter().map(|name| of_said.likeness(&likeness.of(name)) / SHARPNESS);
+    shares(&utilities.collect::<Vec<_>>(), f32::NEG_INFINITY)
 }

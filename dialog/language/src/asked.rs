@@ -210,11 +210,9 @@ impl Conversation<'_> {
     }
 
     /// Carries the request out with this object.
-    fn settle(&self, mut open: Open, object: ObjectId, context: &mut Context) -> Understanding {
-        if let Some(phrase) = phrase_mut(&mut open.clauses, open.slot) {
-            phrase.chosen = Some(object);
-        }
-        self.plan(open.clauses, Consent { is_agreed: true, ..open.consent }, context)
+    fn settle(&self, open: Open, object: ObjectId, context: &mut Context) -> Understanding {
+        let clauses = with_chosen(open.clauses, open.slot, object);
+        self.plan(clauses, Consent { is_agreed: true, ..open.consent }, context)
     }
 
     /// Carries the request out with all of these, one after the other if they are few.
@@ -225,14 +223,7 @@ impl Conversation<'_> {
             }
             return self.plan(open.clauses, open.consent, context);
         }
-        let with = |object: &ObjectId| {
-            let mut clauses = open.clauses.clone();
-            if let Some(phrase) = phrase_mut(&mut clauses, open.slot) {
-                phrase.chosen = Some(*object);
-            }
-            clauses
-        };
-        let clauses = objects.iter().flat_map(with).collect();
+        let clauses = objects.iter().flat_map(|object| with_chosen(open.clauses.clone(), open.slot, *object)).collect();
         self.plan(clauses, Consent { is_agreed: true, may_put_down: true }, context)
     }
 
@@ -611,7 +602,15 @@ pub(crate) fn phrase(clauses: &[Clause], slot: Slot) -> Option<&Phrase> {
     }
 }
 
-pub(crate) fn phrase_mut(clauses: &mut [Clause], slot: Slot) -> Option<&mut Phrase> {
+/// A request with this object meant at a place of it.
+pub(crate) fn with_chosen(mut clauses: Vec<Clause>, slot: Slot, object: ObjectId) -> Vec<Clause> {
+    if let Some(phrase) = phrase_mut(&mut clauses, slot) {
+        phrase.chosen = Some(object);
+    }
+    clauses
+}
+
+fn phrase_mut(clauses: &mut [Clause], slot: Slot) -> Option<&mut Phrase> {
     let clause = clauses.get_mut(slot.clause)?;
     match slot.role {
         Role::Object(index) => clause.objects.get_mut(index),

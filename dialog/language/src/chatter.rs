@@ -116,7 +116,7 @@ fn asks_unclearly(lexicon: &Lexicon, words: &[String]) -> bool {
 /// Whether the talk just before a request says not to do it.
 fn is_forbidden(lexicon: &Lexicon, talk: &[String]) -> bool {
     let start = talk.iter().rposition(|word| token::is_punctuation(word)).map_or(0, |at| at + 1);
-    (start..talk.len()).any(|at| lexicon.negation.longest(&talk[at..]).is_some())
+    lexicon.negation.occurs_in(&talk[start..])
 }
 
 /// The first thing that the talk is about, or else the first room, and how many words that takes.

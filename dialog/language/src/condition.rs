@@ -275,13 +275,12 @@ fn with_copula(lexicon: &Lexicon, words: &[String]) -> Vec<String> {
 /// Where a condition begins, how many words say so, and whether the request is for when it holds.
 /// Whether something is asked for on a condition.
 pub(crate) fn is_conditional(lexicon: &Lexicon, words: &[String]) -> bool {
-    condition_at(lexicon, words).is_some()
-        || (0..words.len()).any(|at| lexicon.conditions.longest(&words[at..]).is_some())
+    condition_at(lexicon, words).is_some() || lexicon.conditions.occurs_in(words)
 }
 
 /// Whether words say what is to be done where a condition does not hold.
 pub(crate) fn has_otherwise(lexicon: &Lexicon, words: &[String]) -> bool {
-    (0..words.len()).any(|at| lexicon.ifs.otherwise.longest(&words[at..]).is_some())
+    lexicon.ifs.otherwise.occurs_in(words)
 }
 
 fn condition_at(lexicon: &Lexicon, words: &[String]) -> Option<(usize, usize, bool)> {

@@ -318,8 +318,8 @@ impl Weights {
     }
 }
 
-/// The softmax of utilities, without that of none of the ways.
-fn shares(utilities: &[f32], none: f32) -> Vec<f32> {
+/// The softmax of utilities, without that of none of them; negative infinity, where one of them must be meant.
+pub(crate) fn shares(utilities: &[f32], none: f32) -> Vec<f32> {
     let highest = utilities.iter().copied().fold(none, f32::max);
     let parts: Vec<f32> = utilities.iter().map(|utility| (utility - highest).exp()).collect();
     let whole = parts.iter().sum::<f32>() + (none - highest).exp();

@@ -33,6 +33,16 @@ struct Name {
     kind: Kind,
 }
 
+/// A request that was made before, with all that it names.
+struct NamedRequest {
+    words: Vec<String>,
+    names: Vec<Name>,
+    /// Where the nouns and colors begin.
+    nouns: Vec<usize>,
+    /// Whether it asks for one thing.
+    is_single: bool,
+}
+
 #[derive(PartialEq)]
 enum Kind {
     /// What can be carried.
@@ -94,16 +104,16 @@ impl Conversation<'_> {
         }
         let mut texts: Vec<(Feature, String)> = Vec::new();
         for before in self.requests_before(context) {
+            let before = self.named_request(before);
             let found = names.iter().flat_map(|name| {
                 let named = words[name.at.clone()].join(" ");
-                let replaced = self.replaced(name, &named, &before).into_iter();
-                let added = self.added(name, &named, &before);
-                let added = added.into_iter().map(|text| (Feature::FollowUpAdded, text));
+                let replaced = before.replaced(name, &named).into_iter();
+                let added = before.added(name, &named).into_iter();
+                let added = added.map(|text| (Feature::FollowUpAdded, text));
                 replaced.map(|text| (Feature::FollowUpReplaced, text)).chain(added).collect::<Vec<_>>()
             });
-            let found: Vec<(Feature, String)> = found.collect();
             for one in found {
-                if texts.iter().all(|(_, text)| *text != one.1) && one.1 != before.join(" ") {
+                if texts.iter().all(|(_, text)| *text != one.1) && one.1 != before.words.join(" ") {
                     texts.push(one);
                 }
             }
@@ -115,7 +125,6 @@ impl Conversation<'_> {
             evidence.set(Feature::FollowUpLong, said.length);
             evidence.set(Feature::FollowUpAsks, said.requests.min(1.0));
             evidence.set_if(Feature::FollowUpPending, said.is_pending);
-            evidence.set(Feature::NotInstead, 0.0);
             let mut then = Context { pending: None, ..context.at_new_utterance() };
             Alternative::new(self.understand_said(&text, &mut then), then, evidence)
         });
@@ -145,10 +154,7 @@ impl Conversation<'_> {
         let others: Vec<(Slot, ObjectId)> = others.collect();
         let share = 1.0 / others.len().max(1) as f32;
         let ways = others.into_iter().take(MOST_OTHERS).map(|(slot, other)| {
-            let mut clauses = context.request.clone();
-            if let Some(phrase) = asked::phrase_mut(&mut clauses, slot) {
-                phrase.chosen = Some(other);
-            }
+            let clauses = asked::with_chosen(context.request.clone(), slot, other);
             let mut evidence = Evidence::default();
             evidence.set(Feature::FollowUp, 1.0);
             evidence.set(Feature::FollowUpOther, share);
@@ -239,30 +245,39 @@ impl Conversation<'_> {
         }
     }
 
+    fn named_request(&self, words: Vec<String>) -> NamedRequest {
+        NamedRequest {
+            nouns: self.names_in(&words).into_iter().map(|(at, _)| at.start).collect(),
+            names: self.names_of(&words),
+            is_single: clause::segments(self.lexicon, &words).len() == 1,
+            words,
+        }
+    }
+}
+
+impl NamedRequest {
     /// The request with this name in place of each that it may stand for.
-    fn replaced(&self, name: &Name, named: &str, before: &[String]) -> Vec<String> {
-        let others = self.names_of(before).into_iter();
-        let replaced = others.filter_map(|other| {
+    fn replaced(&self, name: &Name, named: &str) -> Vec<String> {
+        let replaced = self.names.iter().filter_map(|other| {
             let (start, end) = match (&name.kind, &other.kind) {
                 // `the blue one` is the same thing in blue.
                 (Kind::Color, Kind::Item | Kind::Container | Kind::Surface | Kind::Fixture) => {
-                    let mut noun = self.names_in(before).into_iter().map(|(at, _)| at.start);
-                    let noun = noun.rfind(|at| other.at.contains(at))?;
+                    let noun = self.nouns.iter().copied().rfind(|at| other.at.contains(at))?;
                     (noun, noun)
                 }
                 (one, two) if one.replaces(two) => (other.at.start, other.at.end),
                 _ => return None,
             };
-            Some([&before[..start].join(" "), named, &before[end..].join(" ")].join(" ").trim().to_owned())
+            let (before, after) = (self.words[..start].join(" "), self.words[end..].join(" "));
+            Some([&before, named, &after].join(" ").trim().to_owned())
         });
         replaced.collect()
     }
 
-    /// The request with this name added to the last thing that it asks for.
-    fn added(&self, name: &Name, named: &str, before: &[String]) -> Option<String> {
-        let asks_last = clause::segments(self.lexicon, before).len() == 1;
-        let has_one = self.names_of(before).iter().any(|other| other.kind == name.kind);
-        let text = [&before.join(" "), name.kind.joint(), named].join(" ");
-        (asks_last && !has_one).then(|| text.replace("  ", " "))
+    /// The request with this name added, where it asks for one thing and has none of the kind.
+    fn added(&self, name: &Name, named: &str) -> Option<String> {
+        let has_one = self.names.iter().any(|other| other.kind == name.kind);
+        let text = [&self.words.join(" "), name.kind.joint(), named].join(" ");
+        (self.is_single && !has_one).then(|| text.replace("  ", " "))
     }
 }

@@ -89,8 +89,7 @@ impl Conversation<'_> {
 
     /// Whether the words are a request or a question of their own, and no answer to which lab is meant.
     pub(crate) fn asks_for_more(&self, words: &[String]) -> bool {
-        let names_room = (0..words.len()).any(|at| self.lexicon.rooms.longest(&words[at..]).is_some());
-        if names_room {
+        if self.lexicon.rooms.occurs_in(words) {
             return words.len() >= LONGEST_LAB_ANSWER;
         }
         let asks = |part: &Part| matches!(part, Part::Clause(clause) if chatter::is_clear(clause));

@@ -156,12 +156,10 @@ fn read_sentence(lexicon: &Lexicon, first: &[String]) -> Option<Question> {
     if kind == QuestionKind::Abilities && rest.len() > 2 {
         return None;
     }
-    if matches!(kind, QuestionKind::Unknown | QuestionKind::Look)
-        && (0..rest.len()).any(|at| lexicon.goal_words.longest(&rest[at..]).is_some())
-    {
+    if matches!(kind, QuestionKind::Unknown | QuestionKind::Look) && lexicon.goal_words.occurs_in(&rest) {
         return Some(Question::new(QuestionKind::Goals, None, rest));
     }
-    let has = |table: &PhraseTable<()>| (0..rest.len()).any(|at| table.longest(&rest[at..]).is_some());
+    let has = |table: &PhraseTable<()>| table.occurs_in(&rest);
     if matches!(kind, QuestionKind::Unknown | QuestionKind::Look)
         && has(&lexicon.hand_words)
         && first.iter().any(|word| word == "you" || word == "your")

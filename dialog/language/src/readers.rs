@@ -14,7 +14,7 @@ use crate::{
     context::{Consent, Context, Pending},
     conversation::Conversation,
     describe,
-    evidence::{Evidence, Feature},
+    evidence::{Evidence, Feature, shares},
     likeness::{Likeness, SHARPNESS},
     parsed,
     said::{Mention, Named, Said, count, replaces, share},
@@ -207,10 +207,8 @@ impl Conversation<'_> {
             let like = likeness.to_class(&said, self.catalog, class) + said.likeness(&likeness.of(name));
             Some((*id, like / (2.0 * SHARPNESS)))
         };
-        let utilities: Vec<(ObjectId, f32)> = candidates.iter().zip(&names).filter_map(utility).collect();
-        let highest = utilities.iter().map(|(_, utility)| *utility).fold(f32::NEG_INFINITY, f32::max);
-        let whole: f32 = utilities.iter().map(|(_, utility)| (utility - highest).exp()).sum();
-        utilities.into_iter().map(|(id, utility)| (id, (utility - highest).exp() / whole)).collect()
+        let (known, utilities): (Vec<ObjectId>, Vec<f32>) = candidates.iter().zip(&names).filter_map(utility).unzip();
+        known.into_iter().zip(shares(&utilities, f32::NEG_INFINITY)).collect()
     }
 }
 

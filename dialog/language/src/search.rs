@@ -120,9 +120,8 @@ impl Search {
         self.target.is_some()
     }
 
-    /// Whether it looks for the same, to do the same with it; a pronoun may stand for what the other one names.
+    /// Whether it is to do the same with the same in the end, wherever it begins to look: a pronoun may stand for what the other one names.
     pub(crate) fn comes_to(&self, other: &Self) -> bool {
-        let sought = |search: &Self| search.target.as_ref().map(|target| target.classes.clone());
         let (own, others) = (self.deeds(), other.deeds());
         let is_alike = |(one, other): (&&Clause, &&Clause)| {
             let (one_named, other_named) = (named(one), named(other));
@@ -130,12 +129,13 @@ impl Search {
                 && one_named.len() == other_named.len()
                 && one_named.iter().zip(&other_named).all(|(one, other)| may_mean_the_same(one, other))
         };
-        sought(self) == sought(other) && own.len() == others.len() && own.iter().zip(&others).all(is_alike)
+        own.len() == others.len() && own.iter().zip(&others).all(is_alike)
     }
 
-    /// What it is for, without what only brings the robot there, if there is more to it.
+    /// What it is for, without what only brings the robot there and what is only spoken of, if there is more to it.
     fn deeds(&self) -> Vec<&Clause> {
-        let only_goes = |clause: &&Clause| matches!(clause.intent, Intent::GoTo | Intent::Find | Intent::Look);
+        let only_goes =
+            |clause: &&Clause| matches!(clause.intent, Intent::GoTo | Intent::Find | Intent::Look | Intent::Mention);
         let deeds: Vec<&Clause> = self.clauses.iter().filter(|clause| !only_goes(clause)).collect();
         if deeds.is_empty() { self.clauses.iter().collect() } else { deeds }
     }

@@ -55,6 +55,11 @@ impl<T> PhraseTable<T> {
             .find_map(|length| self.meanings.get(&words[..length]).map(|meaning| (length, meaning)))
     }
 
+    /// Whether any of the phrases stands somewhere in `words`.
+    pub(crate) fn occurs_in(&self, words: &[String]) -> bool {
+        (0..words.len()).any(|at| self.longest(&words[at..]).is_some())
+    }
+
     /// How many words the longest phrase has.
     pub(crate) const fn longest_phrase(&self) -> usize {
         self.longest

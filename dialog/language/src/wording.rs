@@ -54,10 +54,9 @@ impl Conversation<'_> {
         let after_statement = || inquiry(pause).filter(|_| !self.orders(&last[..pause]));
         let Some((lead, end)) = starts.into_iter().find_map(inquiry).or_else(after_statement) else { return false };
         let rest = &last[end..];
-        let is_favour = |at: usize| self.lexicon.favours.longest(&rest[at..]).is_some();
         let is_idiom = self.lexicon.favours.longest(&last[lead..]).is_some();
         let asks_before = || !before.is_empty() && self.parser_sees_request(&token::sentence(before), context);
-        !is_idiom && !(0..rest.len()).any(is_favour) && !asks_before()
+        !is_idiom && !self.lexicon.favours.occurs_in(rest) && !asks_before()
     }
 
     /// Whether these words begin with what is to be done.

@@ -71,7 +71,7 @@ fn what_is_named_next_goes_with_the_last_request() {
     let mut talk = Talk::new(&KITCHEN);
     assert!(does(&mut talk, "put the knife away").contains("Knife_01"));
     let found = does(&mut talk, "in the drawer, I mean");
-    assert!(found.contains("put ") && found.contains("Drawer") || found.contains("drawer"), "{found}");
+    assert!(found.contains("put ") && (found.contains("Drawer") || found.contains("drawer")), "{found}");
 }
 
 #[test]

@@ -315,6 +315,19 @@ fn what_it_asks_the_place_of_it_looks_for_when_told_to() {
 }
 
 #[test]
+fn the_same_search_in_other_words_is_no_other_choice() {
+    for said in [
+        "Hiya pal! There's a hammer on the round table, could you pick that up for me please? Mind yer fingers.",
+        "Just the hammer on the round table, pal",
+        "There should be a hammer on the round table. Could you pick it up for me?",
+    ] {
+        let (_, replies) = Robot::new(&[]).say(said, 1);
+        let is_choice = replies.iter().any(|reply| reply.starts_with("? ") && reply.matches('"').count() > 2);
+        assert!(!is_choice, "{said}: {replies:?}");
+    }
+}
+
+#[test]
 fn a_named_room_is_searched_and_no_other() {
     let mut robot = Robot::new(&[]);
     let (done, _) = robot.say("pick up the trophy in the main office", 60);
