@@ -98,11 +98,18 @@ impl Known {
     /// The object with this id.
     #[must_use]
     pub fn object(&self, id: ObjectId) -> Option<&KnownObject> {
-        self.objects.iter().find(|object| object.id == id)
+        self.place(id).map(|at| &self.objects[at])
     }
 
     pub(crate) fn object_mut(&mut self, id: ObjectId) -> Option<&mut KnownObject> {
-        self.objects.iter_mut().find(|object| object.id == id)
+        self.place(id).map(|at| &mut self.objects[at])
+    }
+
+    /// Where an object is in the list: at its id, if all are known.
+    fn place(&self, id: ObjectId) -> Option<usize> {
+        let is_it = |object: &KnownObject| object.id == id;
+        let at_id = Some(id.0 as usize).filter(|at| self.objects.get(*at).is_some_and(is_it));
+        at_id.or_else(|| self.objects.iter().position(is_it))
     }
 
     /// What stands on or lies in `id`, itself not included.

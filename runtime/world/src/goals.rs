@@ -88,12 +88,34 @@ pub(crate) fn statuses(mission: &Mission, state: &State) -> Vec<GoalStatus> {
         .collect()
 }
 
-/// Whether an object is one that `pattern` means.
-pub(crate) fn is_meant(facts: &Facts<'_>, pattern: &InstancePattern, id: ObjectId) -> bool {
-    let object = facts.object(id);
-    let by_name = pattern.matches(&object.instance) || object.aliases.iter().any(|alias| pattern.matches(alias));
-    // `Carrot_01_*` is any carrot, also one that a machine made and named after itself.
-    by_name || pattern.0.strip_suffix('*').is_some_and(|prefix| prefix.trim_end_matches('_') == facts.class(id).id)
+/// The objects that a pattern means.
+pub(crate) enum Meant<'p> {
+    /// This one.
+    One(&'p str),
+    /// Those whose instance begins so, and those of this class: `Carrot_01_*` is any carrot, also one that a machine made and named after
+    /// itself.
+    Any { prefix: &'p str, class: &'p str },
+}
+
+impl<'p> Meant<'p> {
+    pub(crate) fn new(pattern: &'p InstancePattern) -> Self {
+        match pattern.0.strip_suffix('*') {
+            Some(prefix) => Self::Any { prefix, class: prefix.trim_end_matches('_') },
+            None => Self::One(&pattern.0),
+        }
+    }
+
+    pub(crate) fn is(&self, facts: &Facts<'_>, id: ObjectId) -> bool {
+        let object = facts.object(id);
+        match self {
+            Self::One(instance) => object.is_called(instance),
+            Self::Any { prefix, class } => {
+                object.instance.starts_with(prefix)
+                    || object.aliases.iter().any(|alias| alias.starts_with(prefix))
+                    || facts.class(id).id == *class
+            }
+        }
+    }
 }
 
 /// Facts and the mission whose conditions goals name.
@@ -104,7 +126,8 @@ struct Judge<'a> {
 
 impl Judge<'_> {
     fn meant<'b>(&'b self, pattern: &'b InstancePattern) -> impl Iterator<Item = ObjectId> + 'b {
-        self.facts.state.existing().map(|(id, _)| id).filter(move |id| is_meant(self.facts, pattern, *id))
+        let meant = Meant::new(pattern);
+        self.facts.state.existing().map(|(id, _)| id).filter(move |id| meant.is(self.facts, *id))
     }
 
     fn any(&self, pattern: &InstancePattern, holds: impl Fn(ObjectId) -> bool) -> bool {
@@ -161,7 +184,8 @@ impl Judge<'_> {
     }
 
     fn contains(&self, receptacle: ObjectId, what: &InstancePattern) -> bool {
-        self.facts.contents(receptacle).into_iter().any(|id| is_meant(self.facts, what, id))
+        let meant = Meant::new(what);
+        self.facts.contents(receptacle).into_iter().any(|id| meant.is(self.facts, id))
     }
 
     fn expression_holds(&self, expression: &Expression) -> bool {
@@ -192,7 +216,8 @@ impl Judge<'_> {
     /// Whether that dinosaur was fed; any, if the target is none.
     fn dino_fed(&self, target: &InstancePattern) -> bool {
         let dinosaurs = &self.facts.state.dinosaurs;
-        let known = |id: &ObjectId| is_meant(self.facts, target, *id);
+        let meant = Meant::new(target);
+        let known = |id: &ObjectId| meant.is(self.facts, *id);
         let named = dinosaurs.keys().any(known);
         dinosaurs.iter().any(|(id, dinosaur)| dinosaur.fed && (!named || known(id)))
     }
