@@ -5,9 +5,10 @@ use glam::Vec2;
 
 use crate::{
     body::RADIUS_M,
+    body::ROBOT_HEIGHT_M,
     facts::Facts,
     geometry::{Footprint, direction},
-    navigation::{MARGIN_M, Navigation, WALK_UNDER_M, rings},
+    navigation::{MARGIN_M, Navigation, rings},
 };
 
 /// How far, level, a body stands at most from what it was sent to, m.
@@ -122,18 +123,18 @@ fn standing_places<'a>(facts: &'a Facts<'a>, object: ObjectId) -> impl Iterator<
 pub(crate) struct Sweep(Vec<Footprint>);
 
 impl Sweep {
-    /// That of an object.
-    pub fn of(facts: &Facts<'_>, id: ObjectId) -> Self {
+    /// That of an object, of what reaches lower than `below_m`.
+    pub fn of(facts: &Facts<'_>, id: ObjectId, below_m: f32) -> Self {
         const STAGES: u8 = 8;
         let stages = (0..=STAGES).flat_map(|stage| facts.leaves_at(id, f32::from(stage) / f32::from(STAGES)));
-        Self(stages.filter(|leaf| leaf.low_m < WALK_UNDER_M).map(|leaf| leaf.print).collect())
+        Self(stages.filter(|leaf| leaf.low_m < below_m).map(|leaf| leaf.print).collect())
     }
 
     /// That of all around an object that is still to be opened.
     fn before(facts: &Facts<'_>, object: ObjectId) -> Self {
         let around = std::iter::once(object).chain(facts.state.ancestors(object));
         let shut = around.filter(|id| facts.has(*id, Property::Openable) && !facts.is(*id, StateFlag::Opened));
-        Self(shut.flat_map(|id| Self::of(facts, id).0).collect())
+        Self(shut.flat_map(|id| Self::of(facts, id, ROBOT_HEIGHT_M).0).collect())
     }
 
     /// How far a point is from it, m; far, if nothing swings.

@@ -280,7 +280,7 @@ impl World {
     fn leave_swing(&self, id: BodyId, task: &mut Task, door: ObjectId) {
         let body = &self.state.bodies[id.0 as usize];
         let Some(goal) = task.way().and_then(|way| way.last().copied()) else { return };
-        let sweep = Sweep::of(&self.facts(), door);
+        let sweep = Sweep::of(&self.facts(), door, body.figure().height_m);
         if sweep.distance(body.position) >= body.figure().radius_m {
             return;
         }

@@ -30,10 +30,13 @@ pub(crate) struct Figure {
     pub turn_rad_s: f32,
 }
 
+/// How tall a robot is, m.
+pub(crate) const ROBOT_HEIGHT_M: f32 = 1.4;
+
 /// Walks like an unhurried person, turns 150 degrees a second.
 const ROBOT: Figure = Figure {
     radius_m: RADIUS_M,
-    height_m: 1.4,
+    height_m: ROBOT_HEIGHT_M,
     eye_height_m: 1.3,
     eye_forward_m: 0.1,
     hand_m: Vec3::new(0.42, -0.16, 0.82),

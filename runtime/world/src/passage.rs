@@ -7,7 +7,7 @@ use crate::{
     approach::Sweep,
     body::{Body, Step},
     facts::Facts,
-    navigation::Navigation,
+    navigation::{Navigation, WALK_UNDER_M},
     push::{Push, push},
     swing::LEAF_M,
     world::World,
@@ -72,7 +72,7 @@ impl World {
                 (touched && (between_rooms || !planned))
                     || (between_rooms
                         && is_swinging(&facts, *door)
-                        && enters(&Sweep::of(&facts, *door), from, to, radius))
+                        && enters(&Sweep::of(&facts, *door, WALK_UNDER_M), from, to, radius))
             })
             .map(Obstruction::Leaf)
     }

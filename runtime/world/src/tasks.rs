@@ -306,7 +306,7 @@ impl World {
         steps.push(Step::Face { point: facts.aim_point(object) });
         if matches!(action, Action::Interact { verb: Verb::Open | Verb::Close, .. }) {
             let body = &self.state.bodies[id.0 as usize];
-            let sweep = Sweep::of(&facts, object);
+            let sweep = Sweep::of(&facts, object, body.figure().height_m);
             let beside = (sweep.distance(body.position) < body.figure().radius_m)
                 .then(|| {
                     self.place_clear_of(&sweep, body, |place| {
