@@ -11,6 +11,7 @@ use crate::{
     conversation::Conversation,
     describe,
     evidence::{Evidence, Feature, Fit, FitFeature, Weights},
+    open_goals,
     parsed::{Worth, worth},
     phrase::{Phrase, Place},
     readers::of_grammar,
@@ -29,6 +30,8 @@ pub struct Alternative {
     pub probability: f32,
     /// What speaks for it.
     pub evidence: Evidence,
+    /// What speaks for it whatever the words, nats.
+    pub(crate) prior: f32,
     /// What it comes to, in plain words.
     pub paraphrase: String,
     /// What the re-ranker says of it; nothing, if it was too unlikely to be read.
@@ -116,10 +119,10 @@ impl Conversation<'_> {
         let paraphrases: Vec<&str> = ranked.iter().map(|one| one.paraphrase.as_str()).collect();
         let scores = Reranker::builtin().scores(said.wording.utterance, &lines(context), &paraphrases);
         let fits = Fit::of_scores(&scores).into_iter().zip(&ranked);
-        let fits = fits.map(|(fit, one)| (one.fit(fit.with_first(one.probability, none)), one.evidence));
-        let fits: Vec<(Fit, Evidence)> = fits.collect();
+        let fits = fits.map(|(fit, one)| (one.fit(fit.with_first(one.probability, none)), one.evidence, one.prior));
+        let fits: Vec<(Fit, Evidence, f32)> = fits.collect();
         let probabilities = Weights::builtin().fit_probabilities(&fits);
-        for ((one, (fit, _)), probability) in ranked.iter_mut().zip(fits).zip(probabilities) {
+        for ((one, (fit, ..)), probability) in ranked.iter_mut().zip(fits).zip(probabilities) {
             (one.fit, one.probability) = (Some(fit), probability);
         }
         others.iter_mut().for_each(|one| one.probability = 0.0);
@@ -150,7 +153,10 @@ impl Conversation<'_> {
     /// These with their probabilities, the likeliest first; the same in several ways counts as one.
     fn weighed(&self, found: Vec<Alternative>, said: &Said<'_>, context: &Context) -> Vec<Alternative> {
         let mut all: Vec<Alternative> = Vec::with_capacity(found.len());
-        for mut one in found.into_iter().filter(|one| !matches!(one.understanding, Understanding::Stop { .. })) {
+        let counts = |one: &Alternative| {
+            !matches!(one.understanding, Understanding::Stop { .. }) && !does_twice(&one.understanding)
+        };
+        for mut one in found.into_iter().filter(counts) {
             self.describe(&mut one, said, context);
             let is_known = |other: &&mut Alternative| {
                 other.context.later.is_empty() == one.context.later.is_empty()
@@ -173,7 +179,7 @@ impl Conversation<'_> {
             }
         }
         all.iter_mut().for_each(cross);
-        let evidence: Vec<Evidence> = all.iter().map(|one| one.evidence).collect();
+        let evidence: Vec<(Evidence, f32)> = all.iter().map(|one| (one.evidence, one.prior)).collect();
         let probabilities = Weights::builtin().probabilities(&evidence);
         all.iter_mut().zip(probabilities).for_each(|(one, probability)| one.probability = probability);
         all.sort_by(|one, other| other.probability.total_cmp(&one.probability));
@@ -205,6 +211,10 @@ impl Conversation<'_> {
                 evidence.set_if(Feature::PlanUnknown, said.has_unknown);
                 evidence.set_if(Feature::PlanLasting, steps.iter().any(Step::is_lasting));
                 evidence.set_if(Feature::PlanOfMission, self.is_of_mission(&one.context.later));
+                one.prior = open_goals::prior(&said.goals, steps, &one.context.request);
+                if one.context.search.as_ref().is_some_and(|search| self.seeks_nonsense(search)) {
+                    one.prior = NONSENSE;
+                }
                 evidence.set_if(Feature::PlanRepeats, repeats_deeds(understanding, before));
                 evidence.set(Feature::Steps, share(steps.len() / 2));
                 evidence.set_if(Feature::Looks, steps.iter().all(Step::only_looks));
@@ -334,6 +344,7 @@ impl Alternative {
             understanding,
             probability: 0.0,
             evidence,
+            prior: 0.0,
             paraphrase: String::new(),
             fit: None,
             leaves_out: Vec::new(),
@@ -378,6 +389,9 @@ impl Alternative {
 pub(crate) fn lines(context: &Context) -> Vec<cohabit_parser::Said<'_>> {
     context.lines.iter().map(|(by_robot, text)| cohabit_parser::Said { by_robot: *by_robot, text }).collect()
 }
+
+/// How much less likely it is that somebody names a thing by words that name nothing, nats.
+const NONSENSE: f32 = -2.0;
 
 /// The least likelihood that counts.
 const LEAST: f32 = 0.01;
@@ -431,6 +445,19 @@ fn deeds(steps: &[Step]) -> impl Iterator<Item = &Action> {
         _ => false,
     };
     (0..steps.len()).filter(move |at| !is_on_the_way(*at)).map(|at| &steps[at].action)
+}
+
+/// Whether it does several things and then the same again, such as putting a thing into a machine and taking it out.
+fn does_twice(understanding: &Understanding) -> bool {
+    let Understanding::Plan { steps, .. } = understanding else { return false };
+    let actions: Vec<&Action> = deeds(steps).collect();
+    let takes = |actions: &[&Action]| actions.iter().any(|action| matches!(action, Action::PickUp { .. }));
+    (2..=actions.len() / 2).any(|length| {
+        actions.windows(2 * length).any(|window| {
+            let (first, second) = window.split_at(length);
+            first == second && takes(first)
+        })
+    })
 }
 
 /// Whether it is what was done just before.

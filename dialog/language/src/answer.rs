@@ -12,16 +12,18 @@ use crate::{
     intent::Intent,
     judge::Judge,
     known::{self, Known, KnownObject},
-    lexicon::{Lexicon, Pronoun, StateWord},
+    lexicon::{Lexicon, Pronoun, Side, StateWord},
     phrase::{Phrase, Reader, RelationKind},
     process::Devices,
     question::{Question, QuestionKind},
-    reply, report, saying,
+    reply, report, saying, search,
     understanding::Understanding,
 };
 
 /// How many things an answer names before it says `and more`.
 pub(crate) const LIST: usize = 8;
+/// So many more are named, too, where that is all.
+const LIST_TO_END: usize = 5;
 /// How many neighbours of a thing.
 const NEIGHBOURS: usize = 4;
 
@@ -61,6 +63,7 @@ impl Answerer<'_> {
             (QuestionKind::HowTo, _) => Understanding::answer(EXAMPLES),
             (QuestionKind::Why, about) => self.why(about, question),
             (QuestionKind::Done, about) => self.done(about),
+            (QuestionKind::DoneSoFar, _) => self.done_so_far(),
             (QuestionKind::Purpose, Some(phrase)) => self.purpose(phrase),
             (QuestionKind::Danger, about) => self.danger(about),
             (QuestionKind::Trouble, Some(phrase)) => self.with_object(phrase, |id| self.trouble(id)),
@@ -76,11 +79,20 @@ impl Answerer<'_> {
                 Some(id) => self.origin(*id),
                 None => Understanding::lost("I cannot tell what you mean. Name it to me, please."),
             },
-            (QuestionKind::Which, Some(phrase)) => self.which(phrase),
+            (QuestionKind::Which, Some(phrase)) if phrase.namings.is_empty() && phrase.side == Some(Side::Front) => {
+                self.seeing()
+            }
+            (QuestionKind::Which, Some(phrase)) => self.which(phrase, question),
             (QuestionKind::Rest, _) => self.goals(),
             (QuestionKind::Recording, _) => Understanding::whether(true, RECORDED, Vec::new()),
             (QuestionKind::Time, _) => Understanding::answer("I have no clock, so I cannot tell."),
             (QuestionKind::Seeing, _) => self.seeing(),
+            (QuestionKind::Contents, about)
+                if about.is_none_or(|phrase| phrase.namings.is_empty() && phrase.pronoun.is_none())
+                    && let Some(room) = self.room_in(&question.rest) =>
+            {
+                self.room_contents(room)
+            }
             (QuestionKind::Contents, None) if self.context.focus.place.is_some() => {
                 self.context.focus.place.map_or_else(|| Understanding::refusal(HINT), |place| self.contents(place))
             }
@@ -200,6 +212,9 @@ impl Answerer<'_> {
         if let Some(phrase) = about.filter(|_| asked_state(self.lexicon, &question.rest).is_some()) {
             return self.with_object(phrase, |id| self.why_so(id));
         }
+        if let Some(chosen) = about.and_then(|phrase| self.why_this_one(phrase)) {
+            return chosen;
+        }
         if let Some(failure) = &self.context.failed {
             let cause = report::cause(failure.status);
             return Understanding::answer(match failure.step.says.as_str() {
@@ -239,19 +254,55 @@ impl Answerer<'_> {
     /// What it did last, or to a thing.
     fn done(&self, about: Option<&Phrase>) -> Understanding {
         let want = Want::place(Intent::Find, &[], None);
-        let deed =
-            about.and_then(|phrase| self.ground().one(phrase, &want).ok()).map(|id| (id, self.context.deeds.to(id)));
+        let deed = about
+            .and_then(|phrase| self.ground().one(phrase, &want).ok())
+            .map(|id| (id, self.context.deeds.told_of(id)));
         let failed = self.context.failed.as_ref().filter(|failure| !failure.step.says.is_empty());
         let failed = failed
             .map(|failure| format!(" I did not finish {}: {}.", failure.step.says, report::cause(failure.status)));
         Understanding::answer(match (deed, self.context.deeds.told()) {
             (Some((id, None)), _) => format!("I did nothing with {} that I remember.", self.short(id)),
-            (Some((_, Some(deed))), _) => describe::sentence(&format!("I {}", deed.in_words())),
+            (Some((_, Some(told))), _) => describe::sentence(&told),
             (None, Some(told)) => describe::sentence(&told) + &failed.unwrap_or_default(),
             (None, None) => {
                 failed.map_or_else(|| "I have done nothing yet.".to_owned(), |failed| failed.trim().to_owned())
             }
         })
+    }
+
+    fn done_so_far(&self) -> Understanding {
+        let told = self.context.deeds.all_told();
+        Understanding::answer(
+            told.map_or_else(|| "I have done nothing yet.".to_owned(), |told| describe::sentence(&told)),
+        )
+    }
+
+    /// Why one of several that may be meant was taken; nothing, where there was no choice.
+    fn why_this_one(&self, phrase: &Phrase) -> Option<Understanding> {
+        let want = Want::place(Intent::Find, &[], None);
+        let chosen = self.ground().one(phrase, &want).ok()?;
+        self.context.last_plan.iter().find(|step| step.object() == Some(chosen))?;
+        let is_in = |said: &&&Phrase| self.ground().all(said, &want).is_ok_and(|all| all.contains(&chosen));
+        let named: Vec<&Phrase> = self.context.request.iter().flat_map(search::named).collect();
+        let said = named.iter().filter(|said| said.chosen.is_none()).find(is_in)?;
+        let others: Vec<ObjectId> =
+            self.ground().all(said, &want).ok()?.into_iter().filter(|id| *id != chosen).collect();
+        let in_mission = |id: ObjectId| self.scene.object(id).is_some_and(|object| object.in_mission);
+        let why = match others.as_slice() {
+            [] => return None,
+            others if in_mission(chosen) && !others.iter().any(|other| in_mission(*other)) => {
+                "it is part of the mission"
+            }
+            _ => "that seemed likeliest to me by what was near and what we spoke of",
+        };
+        let names: Vec<String> = others.iter().take(NEIGHBOURS).map(|id| self.short(*id)).collect();
+        let text = format!(
+            "You said \"{}\", which may also be {}; I took {}, since {why}. If you meant another one, tell me which.",
+            said.text,
+            describe::list(&names, "or"),
+            self.short(chosen),
+        );
+        Some(Understanding::about(text, vec![chosen]))
     }
 
     fn facts(&self) -> Facts<'_> {
@@ -349,9 +400,21 @@ impl Answerer<'_> {
     }
 
     /// Which of several are as was asked.
-    fn which(&self, phrase: &Phrase) -> Understanding {
+    fn which(&self, phrase: &Phrase, question: &Question) -> Understanding {
         let all: Vec<ObjectId> = self.scene.objects.iter().map(|object| object.id).collect();
-        match self.ground().narrow(phrase, &all) {
+        let mut found = self.ground().narrow(phrase, &all);
+        // `which shelves do you see there?`
+        if question.rest.iter().any(|word| matches!(word.as_str(), "see" | "here" | "there")) {
+            found.retain(|id| self.scene.object(*id).is_some_and(|object| object.room == self.scene.robot.room));
+        }
+        if phrase.relations.iter().any(|relation| relation.kind == RelationKind::For) {
+            found.retain(|id| self.scene.object(*id).is_some_and(|object| object.works.is_some()));
+        }
+        match self.ground().one(phrase, &Want::place(Intent::Find, &[], None)) {
+            Ok(nearest) if phrase.side.is_some() => found = vec![nearest],
+            _ => {}
+        }
+        match found {
             found if found.is_empty() => Understanding::whether(false, "None that I know of.", Vec::new()),
             found => {
                 let names: Vec<String> = found.iter().take(LIST).map(|id| self.full(*id)).collect();
@@ -376,7 +439,9 @@ impl Answerer<'_> {
         for object in objects {
             *counts.entry(describe::bare(self.catalog, self.scene, object.id)).or_default() += 1;
         }
-        let more = counts.len().saturating_sub(self.told + LIST);
+        let left = counts.len().saturating_sub(self.told);
+        let most = if left <= LIST + LIST_TO_END { left } else { LIST };
+        let more = left - most;
         // What people move about comes before what stands where it is.
         let is_fixed = |name: &String| {
             !objects.iter().any(|object| {
@@ -389,7 +454,7 @@ impl Answerer<'_> {
         let mut names: Vec<String> = counts
             .into_iter()
             .skip(self.told)
-            .take(LIST)
+            .take(most)
             .map(|(name, count)| describe::counted(&name, count))
             .collect();
         if more > 0 {
@@ -494,6 +559,18 @@ impl Answerer<'_> {
             }
         });
         format!("{} is here in the {}, {side}", self.short(id), self.scene.robot.room.name())
+    }
+
+    fn room_contents(&self, room: RoomId) -> Understanding {
+        let there: Vec<&KnownObject> = self.scene.objects.iter().filter(|object| object.room == room).collect();
+        let place = format!("in the {}", room.name());
+        if there.is_empty() {
+            return Understanding::whether(false, format!("I have seen nothing {place} yet."), Vec::new());
+        }
+        let verb = if there.len() > 1 { "are" } else { "is" };
+        let text =
+            format!("{} there {verb} {}.", describe::sentence(&place).trim_end_matches('.'), self.listed(&there));
+        Understanding::whether(true, text, Vec::new())
     }
 
     fn contents(&self, id: ObjectId) -> Understanding {
@@ -613,6 +690,7 @@ impl Answerer<'_> {
         let asked = asked_state(self.lexicon, &question.rest);
         let inside =
             phrase.relations.iter().any(|relation| relation.kind != RelationKind::Has) || phrase.room.is_some();
+        let is_for = phrase.relations.iter().any(|relation| relation.kind == RelationKind::For);
         let bare = Phrase { relations: Vec::new(), room: None, ..phrase.clone() };
         if bare.is_empty() {
             return Understanding::lost("I do not know what you mean.");
@@ -630,17 +708,28 @@ impl Answerer<'_> {
                 };
                 Understanding::whether(holds, text, vec![id])
             }),
+            None if is_for => self.with_known(&bare, |object| {
+                if object.works.is_none() {
+                    return self.cannot_tell(object);
+                }
+                let holds = self.ground().narrow(phrase, &[object.id]) == [object.id];
+                let start = if holds { "Yes" } else { "No, as far as I know" };
+                let text = format!("{start}: {}", describe::within_sentence(&self.facts().purpose(object)));
+                Understanding::whether(holds, text, vec![object.id])
+            }),
             None if inside => self.with_object(&bare, |id| {
                 let holds = self.ground().narrow(phrase, &[id]) == [id];
                 let start = if holds { "Yes" } else { "No" };
                 Understanding::whether(holds, format!("{start}, {}.", self.place_sentence(id)), vec![id])
             }),
             None if is_about_presence(&question.rest, phrase) => self.place_of(&bare),
-            None => self.with_known(&bare, |object| {
-                let known = describe::sentence(&self.facts().description(object));
-                Understanding::about(format!("I cannot tell. What I know: {known}"), vec![object.id])
-            }),
+            None => self.with_known(&bare, |object| self.cannot_tell(object)),
         }
+    }
+
+    fn cannot_tell(&self, object: &KnownObject) -> Understanding {
+        let known = describe::sentence(&self.facts().description(object));
+        Understanding::about(format!("I cannot tell. What I know: {known}"), vec![object.id])
     }
 }
 
@@ -649,7 +738,12 @@ const RECORDED: &str = "Yes: what is said, and what I see and do, is written int
 
 /// Whether nothing is asked of a thing but that it is there.
 fn is_about_presence(words: &[String], phrase: &Phrase) -> bool {
-    const PRESENT: [&str; 16] = [
+    const PRESENT: [&str; 21] = [
+        "among",
+        "it",
+        "them",
+        "that",
+        "those",
         "there",
         "here",
         "around",

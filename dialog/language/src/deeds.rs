@@ -7,8 +7,9 @@ use crate::{describe, intent::Intent, understanding::Step};
 
 /// How many deeds are remembered.
 const MEMORY: usize = 40;
-/// How many deeds an answer tells.
+/// How many deeds an answer tells, and one about all that was done.
 const TOLD: usize = 5;
+const ALL_TOLD: usize = 10;
 
 /// A step that succeeded.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
@@ -80,9 +81,47 @@ impl Deeds {
         Some(format!("I {}", describe::list(&said, "and")))
     }
 
+    /// What it did for all requests, in words: the last that it changed for each, or else the last that it did.
+    pub(crate) fn all_told(&self) -> Option<String> {
+        let of_requests = self.0.chunk_by(|one, next| one.asked == next.asked);
+        let told = of_requests.filter_map(|deeds| deeds.iter().rfind(|deed| deed.step.is_lasting()).or(deeds.last()));
+        let mut said: Vec<String> = told.map(Deed::in_words).collect();
+        said.dedup();
+        let left_out = said.len().saturating_sub(ALL_TOLD);
+        said.drain(..left_out);
+        let start = if left_out > 0 { "Of late" } else { "So far" };
+        (!said.is_empty()).then(|| format!("{start} I {}", describe::list(&said, "and")))
+    }
+
     /// The last deed that changed this thing, or took it or put it away.
     pub(crate) fn to(&self, id: ObjectId) -> Option<&Deed> {
         self.0.iter().rev().find(|deed| deed.step.object() == Some(id))
+    }
+
+    /// What it did with this thing for the last request that was about it, in words; nothing, where it did nothing with it.
+    pub(crate) fn told_of(&self, id: ObjectId) -> Option<String> {
+        let last = self.0.iter().rposition(|deed| deed.step.object() == Some(id))?;
+        let put_away = |deed: &&Deed| matches!(deed.step.action, Action::Place { .. });
+        let later = &self.0[last + 1..];
+        let until =
+            later.iter().position(|deed| deed.step.action == Action::PickUp { object: id }).unwrap_or(later.len());
+        let put = later[..until].iter().find(put_away).filter(|_| self.is_taken(last, id));
+        let first =
+            self.0[..last].iter().rposition(|deed| deed.step.object() == Some(id) && deed.asked == self.0[last].asked);
+        let of_it = first.into_iter().chain([last]).map(|at| &self.0[at]).chain(put);
+        let mut said: Vec<String> = of_it.map(Deed::in_words).collect();
+        said.dedup();
+        Some(format!("I {}", describe::list(&said, "and")))
+    }
+
+    /// Whether this thing was in the hand after that deed.
+    fn is_taken(&self, at: usize, id: ObjectId) -> bool {
+        let held = self.0[..=at].iter().rev().find_map(|deed| match deed.step.action {
+            Action::PickUp { object } => Some(object == id),
+            Action::Place { .. } => Some(false),
+            _ => None,
+        });
+        held == Some(true)
     }
 
     /// Whether it did something of that kind to this thing; nothing, where no deed could tell.

@@ -303,16 +303,16 @@ impl Weights {
         }
     }
 
-    /// The probabilities of ways with this evidence; what is left to 1 is that of none of them.
-    pub(crate) fn probabilities(&self, ways: &[Evidence]) -> Vec<f32> {
-        let utilities = ways.iter().map(|evidence| product(&self.first, &evidence.values));
+    /// The probabilities of ways with this evidence, and what else speaks for each, nats; what is left to 1 is that of none of them.
+    pub(crate) fn probabilities(&self, ways: &[(Evidence, f32)]) -> Vec<f32> {
+        let utilities = ways.iter().map(|(evidence, prior)| product(&self.first, &evidence.values) + prior);
         shares(&utilities.collect::<Vec<_>>(), self.first_none)
     }
 
     /// The same of ways that were read together with what was said.
-    pub(crate) fn fit_probabilities(&self, ways: &[(Fit, Evidence)]) -> Vec<f32> {
-        let utility = |(fit, evidence): &(Fit, Evidence)| {
-            product(&self.fit, &fit.values) + product(&self.second, &evidence.values)
+    pub(crate) fn fit_probabilities(&self, ways: &[(Fit, Evidence, f32)]) -> Vec<f32> {
+        let utility = |(fit, evidence, prior): &(Fit, Evidence, f32)| {
+            product(&self.fit, &fit.values) + product(&self.second, &evidence.values) + prior
         };
         shares(&ways.iter().map(utility).collect::<Vec<_>>(), self.second_none)
     }
@@ -336,9 +336,10 @@ mod tests {
         let mut plan = Evidence::default();
         plan.set(Feature::Parser, 0.9);
         plan.set(Feature::Plan, 1.0);
-        let both = weights.probabilities(&[plan, Evidence::default()]);
+        let both = weights.probabilities(&[(plan, 0.0), (Evidence::default(), 0.0)]);
         assert!(both[0] > both[1] && both.iter().sum::<f32>() < 1.0, "{both:?}");
         assert!(weights.probabilities(&[]).is_empty());
-        assert!(weights.probabilities(&[plan])[0] > both[0]);
+        assert!(weights.probabilities(&[(plan, 0.0)])[0] > both[0]);
+        assert!(weights.probabilities(&[(plan, 1.0), (Evidence::default(), 0.0)])[0] > both[0]);
     }
 }

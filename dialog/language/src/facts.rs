@@ -98,7 +98,7 @@ impl Facts<'_> {
             let printed = describe::indefinite(&describe::name(self.catalog, printed));
             format!("{the} makes the printer print {printed}")
         });
-        let first = works.or(prints).or(does).or(belongs).unwrap_or_else(|| self.affords(object));
+        let first = does.or(works).or(prints).or(belongs).unwrap_or_else(|| self.affords(object));
         let told = self.told_of(object);
         std::iter::once(first).chain(told).map(|text| describe::sentence(&text)).collect::<Vec<_>>().join(" ")
     }

@@ -140,6 +140,9 @@ impl<'a> Ground<'a> {
 
     /// All objects that may well be meant, the likeliest first: for answers about each of them.
     pub(crate) fn plausible(&self, phrase: &Phrase, want: &Want<'_>) -> Result<Vec<ObjectId>, Miss> {
+        if phrase.chosen.is_none() && phrase.is_many() && !self.focus.group.is_empty() {
+            return Ok(self.focus.group.clone());
+        }
         if phrase.chosen.is_some() || phrase.pronoun.is_some() {
             return self.one(phrase, want).map(|one| vec![one]);
         }
@@ -433,6 +436,8 @@ impl<'a> Ground<'a> {
                     || is_fixed && self.scene.objects.iter().any(is_part)
             }
             RelationKind::Has => self.scene.contents(object.id).any(fits),
+            // What works nothing may be for anything.
+            RelationKind::For => object.works.is_none_or(|worked| self.scene.object(worked).is_some_and(fits)),
             RelationKind::LeftOf | RelationKind::RightOf => self.scene.objects.iter().any(|other| {
                 let is_left = self.scene.bearing_rad(object) > self.scene.bearing_rad(other);
                 fits(other)

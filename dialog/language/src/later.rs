@@ -3,7 +3,7 @@
 use crate::{
     chatter,
     clause::{self, Part},
-    context::Context,
+    context::{Context, Pending},
     conversation::Conversation,
     describe,
     lexicon::Small,
@@ -22,10 +22,21 @@ impl Conversation<'_> {
         }
         let is_met = |text: &String| self.scene.goals.iter().any(|goal| goal.met && goal.text == *text);
         let mut left = later.into_iter().filter(|text| !is_met(text));
-        let next = left.next()?;
+        while let Some(next) = left.next() {
+            let mut then = Context { later: Vec::new(), ..context.clone() };
+            let understanding = self.understand_best(&next, &mut then);
+            // Nobody is asked what a remark might want.
+            let is_unclear = matches!(then.pending, Some(Pending::Guess { .. }))
+                || matches!(understanding, Understanding::Refusal { is_lost: true, .. });
+            let names_nothing = || self.names_in(&self.wording(&next).words).is_empty();
+            if is_unclear && (names_nothing() || !self.parser_sees_request(&next, context)) {
+                continue;
+            }
+            *context = then;
+            return Some(context.keep(left.collect(), understanding));
+        }
         context.later.clear();
-        let understanding = self.understand_best(&next, context);
-        Some(context.keep(left.collect(), understanding))
+        None
     }
 
     /// Does what is left of the mission, one goal after the other.

@@ -181,6 +181,7 @@ pub(crate) struct Lexicon {
     pub(crate) people: PhraseTable<()>,
     pub(crate) goal_words: PhraseTable<()>,
     pub(crate) text_words: PhraseTable<()>,
+    pub(crate) control_words: PhraseTable<()>,
     pub(crate) hand_words: PhraseTable<()>,
     pub(crate) motion_spare: PhraseTable<()>,
     pub(crate) reports: PhraseTable<()>,

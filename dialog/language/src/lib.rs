@@ -63,6 +63,7 @@ mod memory;
 mod misheard;
 mod naming;
 mod noun;
+mod open_goals;
 mod oracle;
 mod order;
 mod paraphrase;

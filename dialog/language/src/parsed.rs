@@ -65,10 +65,17 @@ impl Conversation<'_> {
 
     /// Whether the parser rather sees something that is asked for, or asked.
     pub(crate) fn parser_sees_request(&self, utterance: &str, context: &Context) -> bool {
+        self.likely_request(utterance, context) >= 0.5
+    }
+
+    /// How likely the parser takes it for a request; 1, where it takes it for nothing.
+    pub(crate) fn likely_request(&self, utterance: &str, context: &Context) -> f32 {
         let readings = self.readings(utterance, context);
-        let all: f32 = readings.iter().map(|reading| reading.probability).sum();
-        let asking = readings.iter().filter(|reading| reading.requests.iter().any(asks));
-        asking.map(|reading| reading.probability).sum::<f32>() * 2.0 >= all
+        let sum =
+            |readings: &mut dyn Iterator<Item = &Reading>| readings.map(|reading| reading.probability).sum::<f32>();
+        let all = sum(&mut readings.iter());
+        let asking = sum(&mut readings.iter().filter(|reading| reading.requests.iter().any(asks)));
+        if all > 0.0 { asking / all } else { 1.0 }
     }
 
     /// What a reading means; nothing, where it makes no sense in the scene and conversation. What the robot cannot do of it is said.

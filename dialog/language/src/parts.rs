@@ -22,6 +22,8 @@ const MOST_OF_PART: usize = 2;
 const MOST_SEQUENCES: usize = 2;
 /// How likely a part asks for nothing, at least.
 const LEAST_SKIPPED: f32 = 0.02;
+/// How likely the parser must take what is left for later for a request.
+const LEAST_WANTED: f32 = 0.2;
 /// How likely the rest is meant where nothing is made of a sentence.
 const IF_LOST: f32 = 0.7;
 
@@ -172,6 +174,11 @@ impl Conversation<'_> {
     fn with(&self, sequence: &Sequence, way: Alternative, part: &str, rest: &[String]) -> Option<Sequence> {
         let Alternative { understanding, probability, context, .. } = way;
         let mut longer = Sequence { probability: sequence.probability * probability, ..sequence.clone() };
+        // A remark is not left for later.
+        let wants = |part: &&String| {
+            self.likely_request(part, &context) >= LEAST_WANTED || self.is_question(&self.wording(part))
+        };
+        let rest: Vec<String> = rest.iter().filter(wants).cloned().collect();
         let waits = context.search.is_some() || !context.later.is_empty();
         match understanding {
             Understanding::Plan { steps, .. } if !waits => {
@@ -181,13 +188,13 @@ impl Conversation<'_> {
             }
             Understanding::Answer { .. } if context.is_met || !self.is_question(&self.wording(part)) => {}
             Understanding::Plan { .. } | Understanding::Question { .. } if longer.steps.is_empty() => {
-                longer.complete(context, rest.to_vec());
+                longer.complete(context, rest);
                 longer.begun = Some(understanding);
             }
             Understanding::Plan { .. } | Understanding::Question { .. } | Understanding::Answer { .. } => {
                 let mut then = longer.context.clone();
                 then.begin(&longer.steps);
-                longer.complete(then, [&[part.to_owned()], rest].concat());
+                longer.complete(then, [vec![part.to_owned()], rest].concat());
             }
             Understanding::Refusal { .. } | Understanding::Stop { .. } => return None,
         }

@@ -64,6 +64,8 @@ pub(crate) enum RelationKind {
     Near,
     /// Has it on or in itself.
     Has,
+    /// Works it, or is needed for it.
+    For,
     /// Beside it, and farther left as the robot looks at it.
     LeftOf,
     /// Beside it, and farther right as the robot looks at it.
@@ -172,6 +174,7 @@ impl Place {
                     Preposition::Near | Preposition::At => "near",
                     Preposition::With => "with",
                     Preposition::From => "from",
+                    Preposition::For => "for",
                     Preposition::LeftOf => "left of",
                     Preposition::RightOf => "right of",
                     _ => "on",
@@ -310,10 +313,21 @@ impl<'a> Reader<'a> {
             linked.skip(|lexicon| &lexicon.link);
         }
         // `over` is a link in `over on the desk`, and a preposition in `over it`.
-        let (place, end) =
-            [linked, *self].into_iter().find_map(|mut reader| Some((reader.place_here()?, reader.at)))?;
+        let (place, end) = [linked, *self]
+            .into_iter()
+            .find_map(|mut reader| Some((reader.place_here()?, reader.at)))
+            .or_else(|| self.worked(linked))?;
         self.at = end;
         Some(place)
+    }
+
+    /// `that controls the laser`: for the laser; `linked` stands after `that`.
+    fn worked(&self, mut linked: Self) -> Option<((Preposition, Place), usize)> {
+        let (length, ()) = self.lexicon.control_words.longest(linked.rest()).filter(|_| linked.at > self.at)?;
+        linked.at += length;
+        let place =
+            linked.destination().filter(|place| matches!(place, Place::Object(what) if !what.namings.is_empty()))?;
+        Some(((Preposition::For, place), linked.at))
     }
 
     fn place_here(&mut self) -> Option<(Preposition, Place)> {
@@ -544,6 +558,7 @@ impl Phrase {
                 let kind = match preposition {
                     Preposition::Near | Preposition::At => RelationKind::Near,
                     Preposition::With => RelationKind::Has,
+                    Preposition::For => RelationKind::For,
                     Preposition::LeftOf => RelationKind::LeftOf,
                     Preposition::RightOf => RelationKind::RightOf,
                     _ => RelationKind::Inside,

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     clause,
-    lexicon::Lexicon,
+    lexicon::{Lexicon, Preposition, Pronoun},
     phrase::{Phrase, Reader},
     table::PhraseTable,
     token,
@@ -38,6 +38,8 @@ pub(crate) enum QuestionKind {
     Why,
     /// What it did.
     Done,
+    /// All that it did.
+    DoneSoFar,
     /// What something is for, or does.
     Purpose,
     /// Whether something is dangerous.
@@ -62,7 +64,7 @@ pub(crate) enum QuestionKind {
 impl QuestionKind {
     /// Whether it may be about nothing that is named.
     const fn stands_alone(self) -> bool {
-        matches!(self, Self::Done | Self::Danger | Self::Rest | Self::Recording | Self::Time)
+        matches!(self, Self::Done | Self::DoneSoFar | Self::Danger | Self::Rest | Self::Recording | Self::Time)
     }
 }
 
@@ -94,8 +96,11 @@ impl Shape {
         }
         let is_spare =
             |word: &String| token::is_punctuation(word) || lexicon.trail.exact(std::slice::from_ref(word)).is_some();
+        let counts = |word: &String| {
+            token::digits(word).is_some() || lexicon.numbers.exact(std::slice::from_ref(word)).is_some()
+        };
         if self.ends.is_empty() {
-            return (!self.is_whole || rest.iter().all(is_spare)).then_some(rest);
+            return (!self.is_whole || rest.iter().all(|word| is_spare(word) || counts(word))).then_some(rest);
         }
         let cut = |end: &String| {
             let end = token::words(end);
@@ -146,7 +151,11 @@ fn read_sentence(lexicon: &Lexicon, first: &[String]) -> Option<Question> {
     if let Some(question) = shaped(lexicon, first) {
         return Some(question);
     }
-    let asked = put_plainly(lexicon, first).filter(|asked| {
+    let asked = put_plainly(lexicon, first);
+    if let Some(question) = asked.as_ref().and_then(|asked| shaped(lexicon, asked)) {
+        return Some(question);
+    }
+    let asked = asked.filter(|asked| {
         start(lexicon, asked).is_some_and(|(kind, _)| !matches!(kind, QuestionKind::Unknown | QuestionKind::Look))
     });
     let first = asked.as_deref().unwrap_or(first);
@@ -190,9 +199,19 @@ fn read_sentence(lexicon: &Lexicon, first: &[String]) -> Option<Question> {
     let about = match kind {
         // `why did you open the fridge`
         QuestionKind::Why => named(lexicon, &rest),
-        _ => first().filter(|phrase| !phrase.is_empty()).or_else(|| named(lexicon, &rest)).or_else(first),
+        // `is the blue computer the one for the laser`
+        QuestionKind::State if which_works(lexicon, &rest).is_some() => which_works(lexicon, &rest),
+        _ => {
+            let first_said = || first().filter(|phrase| !phrase.is_empty());
+            first_said().or_else(|| named(lexicon, &rest)).or_else(|| owner(&rest)).or_else(first)
+        }
     };
     Some(Question::new(kind, about, rest))
+}
+
+/// Whether words ask a question whose kind more than their beginning tells.
+pub(crate) fn is_shaped(lexicon: &Lexicon, words: &[String]) -> bool {
+    clause::segments(lexicon, words).first().is_some_and(|first| shaped(lexicon, first).is_some())
 }
 
 /// The question that words ask by their shape.
@@ -210,19 +229,50 @@ fn shaped(lexicon: &Lexicon, words: &[String]) -> Option<Question> {
     })
 }
 
+/// `what is its color`, `and their colors`, `colors do they have`: what these stand for.
+fn owner(words: &[String]) -> Option<Phrase> {
+    let (text, pronoun) = words.iter().find_map(|word| match word.as_str() {
+        "its" | "it" => Some(("it", Pronoun::Thing)),
+        "their" | "they" | "them" => Some(("them", Pronoun::Things)),
+        _ => None,
+    })?;
+    Some(Phrase { text: text.to_owned(), pronoun: Some(pronoun), ..Phrase::default() })
+}
+
 /// The phrase that words begin with.
 fn at_start(lexicon: &Lexicon, words: &[String]) -> Option<Phrase> {
     Reader::new(lexicon, words).phrase_with_place()
 }
 
+/// `computer controls the laser`: the computer for the laser.
+fn which_works(lexicon: &Lexicon, words: &[String]) -> Option<Phrase> {
+    let (at, length) = (1..words.len()).find_map(|at| Some((at, lexicon.control_words.longest(&words[at..])?.0)))?;
+    let is_spare = |word: &&String| !matches!(word.as_str(), "is" | "are" | "one");
+    let thing: Vec<String> = words[..at].iter().filter(is_spare).cloned().collect();
+    let mut what = Reader::new(lexicon, &thing).phrase().filter(|phrase| !phrase.namings.is_empty())?;
+    let place = Reader::new(lexicon, &words[at + length..]).destination()?;
+    what.attach(Preposition::For, place);
+    Some(what)
+}
+
+/// `shelves do you see there`: the shelves.
+fn which_seen(lexicon: &Lexicon, words: &[String]) -> Option<Phrase> {
+    let sees = |words: &[String]| matches!(words, [helper, you, see] if matches!(helper.as_str(), "do" | "can") && you == "you" && see == "see");
+    let at = words.windows(3).position(sees)?;
+    Reader::new(lexicon, &words[..at]).phrase().filter(|phrase| !phrase.namings.is_empty())
+}
+
 /// `mug is red`, `one is the biggest`: the red mug.
 fn which_is_so(lexicon: &Lexicon, words: &[String]) -> Option<Phrase> {
+    if let Some(phrase) = which_works(lexicon, words).or_else(|| which_seen(lexicon, words)) {
+        return Some(phrase);
+    }
     let verb = words.iter().position(|word| matches!(word.as_str(), "is" | "are"))?;
     let is_joint = |word: &&String| !matches!(word.as_str(), "and" | "a" | "an" | "the");
     let said: Vec<String> = words[verb + 1..].iter().chain(&words[..verb]).filter(is_joint).cloned().collect();
     let mut reader = Reader::new(lexicon, &said);
     let phrase = reader.phrase().filter(|phrase| !phrase.is_empty() && phrase.unknown.is_empty())?;
-    let is_told = phrase.color.is_some() || !phrase.states.is_empty();
+    let is_told = phrase.color.is_some() || !phrase.states.is_empty() || phrase.side.is_some();
     (reader.is_done() && is_told).then_some(phrase)
 }
 
@@ -254,7 +304,7 @@ pub(crate) fn named(lexicon: &Lexicon, words: &[String]) -> Option<Phrase> {
 fn told_by_words(rest: &[String], kind: QuestionKind) -> QuestionKind {
     let has = |any: &[&str]| rest.iter().any(|word| any.contains(&word.as_str()));
     match kind {
-        QuestionKind::Unknown if has(&["color"]) => QuestionKind::Color,
+        QuestionKind::Unknown | QuestionKind::Look if has(&["color", "colors"]) => QuestionKind::Color,
         QuestionKind::Unknown if has(&["seen", "see", "find", "left", "lies", "stands", "located"]) => {
             QuestionKind::Where
         }
@@ -317,9 +367,11 @@ fn which_holds(lexicon: &Lexicon, words: &[String]) -> Option<Phrase> {
     }
     reader.at += 1;
     let about = reader.phrase().filter(|phrase| !phrase.is_empty() && phrase.unknown.is_empty())?;
-    let left = reader.rest();
-    let (length, _) = lexicon.prepositions.longest(left).filter(|_| !left.is_empty())?;
-    (length == left.len()).then_some(about)
+    let (length, _) = lexicon.prepositions.longest(reader.rest()).filter(|_| !reader.is_done())?;
+    reader.at += length;
+    // `which table is the can on, the round one?`
+    let is_guess = |mut reader: Reader<'_>| reader.phrase().is_some() && reader.is_done();
+    (reader.is_done() || is_guess(reader)).then_some(about)
 }
 
 /// Where a question may begin: at the words as they are, then after each polite word at the start, each with the length of the next

@@ -13,6 +13,7 @@ use crate::{
     condition,
     context::Context,
     conversation::Conversation,
+    open_goals::OpenGoal,
     parsed, question,
     table::PhraseTable,
     wording::Wording,
@@ -42,6 +43,7 @@ pub(crate) struct Said<'a> {
     pub(crate) instead: f32,
     /// How many requests the grammar sees.
     pub(crate) clauses: f32,
+    pub(crate) goals: Vec<OpenGoal>,
 }
 
 /// What a name may mean.
@@ -89,6 +91,7 @@ impl Conversation<'_> {
             instead: mean(&|reading| f32::from(u8::from(replaces(&reading.requests)))),
             clauses: parts.iter().filter(|part| matches!(part, Part::Clause(_) | Part::Forbidden(_))).count().max(1)
                 as f32,
+            goals: self.goals_to_meet(),
             readings,
         }
     }

@@ -16,7 +16,7 @@ use crate::{
     ground::{Ground, Miss, Want},
     intent::Intent,
     known::{Known, KnownObject, distance_m},
-    phrase::{Phrase, Place, RelationKind},
+    phrase::{Phrase, Place, Reader, RelationKind},
     plan::Fault,
     remedy, reply, saying, sight,
     understanding::{Asking, Step, Understanding},
@@ -186,7 +186,7 @@ impl Search {
 }
 
 /// Whether two phrases may mean the same: one is a pronoun, or both name things of one class in the same color.
-fn may_mean_the_same(one: &Phrase, other: &Phrase) -> bool {
+pub(crate) fn may_mean_the_same(one: &Phrase, other: &Phrase) -> bool {
     let shares_class = || one.namings.iter().any(|naming| other.naming(naming.class).is_some());
     one.text == other.text
         || one.is_bare_pronoun()
@@ -195,7 +195,7 @@ fn may_mean_the_same(one: &Phrase, other: &Phrase) -> bool {
 }
 
 /// The things that a request names, in the order of its slots.
-fn named(clause: &Clause) -> Vec<&Phrase> {
+pub(crate) fn named(clause: &Clause) -> Vec<&Phrase> {
     let places = clause.places.iter().filter_map(|(_, place)| match place {
         Place::Object(phrase) => Some(phrase),
         _ => None,
@@ -204,6 +204,20 @@ fn named(clause: &Clause) -> Vec<&Phrase> {
 }
 
 impl Conversation<'_> {
+    /// Whether it is for something in whose description a verb stands: `the milk in close that fridge door`.
+    pub(crate) fn seeks_nonsense(&self, search: &Search) -> bool {
+        let has_verb = |phrase: &Phrase| {
+            let (words, _) = self.lexicon.normalise(&phrase.text);
+            let is_verb = |at: usize| {
+                let is_after = at > 0 && self.lexicon.prepositions.longest(&words[at - 1..at]).is_some();
+                let rest = Reader { at, ..Reader::new(self.lexicon, &words) };
+                is_after && rest.at_verb()
+            };
+            (0..words.len()).any(is_verb)
+        };
+        search.clauses.iter().flat_map(named).any(has_verb)
+    }
+
     /// Goes on with a request: does it, as far as all it names is known, or looks for what is not.
     pub(crate) fn proceed(&self, mut search: Search, context: &mut Context) -> Understanding {
         let mut planner = self.planner(context.focus.clone());

@@ -10,7 +10,7 @@ use crate::{
     conversation::Conversation,
     describe,
     evidence::Feature,
-    lab, parsed, reply, token,
+    lab, open_goals, parsed, question, reply, token,
     understanding::{Asking, Clarification, Step, Understanding},
     wording::Wording,
 };
@@ -21,13 +21,15 @@ const TO_CHANGE: f32 = 0.7;
 const TO_MOVE: f32 = 0.6;
 const TO_CHANGE_UNHEARD: f32 = 0.95;
 const TO_MOVE_UNHEARD: f32 = 0.9;
-/// The same of the only thing that the robot proposed, where the words agree to it, and where they do not deny it.
+/// The same of the only thing that the robot proposed, where the words agree to it, and of what it proposed where they do not deny it.
 const TO_ACCEPT: f32 = 0.1;
 const TO_ACCEPT_UNSAID: f32 = 0.5;
 /// How many words that nobody ever met may be of another language.
 const SEVERAL: usize = 2;
 /// The same of all that is left of the mission.
 const TO_PURSUE: f32 = 0.1;
+/// The same of what brings a goal about that is not met.
+const TO_PURSUE_GOAL: f32 = 0.45;
 /// How likely what is said must be the right reply, where nothing is done.
 const TO_REPLY: f32 = 0.2;
 /// The same in words some of which nobody ever met, or about things that nobody named.
@@ -36,10 +38,13 @@ const TO_REPLY_UNSURE: f32 = 0.6;
 const TO_PROPOSE: f32 = 0.05;
 const TO_PROPOSE_UNHEARD: f32 = 0.15;
 const TO_GUESS: f32 = 0.3;
-/// How likely what the grammar reads to the last word must be meant for nothing else to be asked, and where it is an answer, names a
-/// condition or has few words.
+/// The same of steps where somebody only wants to know something.
+const TO_OFFER: f32 = 0.3;
+/// How likely what the grammar reads to the last word must be meant for nothing else to be asked, and where it is an answer to the robot,
+/// names a condition or has few words, and where it answers who only wants to know something.
 const TO_TRUST: f32 = 0.08;
 const TO_TRUST_SHORT: f32 = 0.005;
+const TO_TRUST_ANSWER: f32 = 0.03;
 const SHORT: usize = 6;
 /// How likely the latter is meant, at least.
 const SURE_IF_SHORT: f32 = 0.9;
@@ -66,6 +71,10 @@ impl Conversation<'_> {
         }
         if let Some(named) = self.with_lab_named(&wording) {
             return self.understand_weighed(&named, context);
+        }
+        if let Some(understood) = self.answered_each(&wording, context).or_else(|| self.told_at_end(&wording, context))
+        {
+            return understood;
         }
         let by_grammar = self.read(utterance, context);
         if self.speaks_for_itself(&wording, &by_grammar) {
@@ -102,18 +111,24 @@ impl Conversation<'_> {
         if !unknown.is_empty() {
             alternatives.retain(|one| !one.only_moves());
         }
-        // Who only wants to know something wants an answer, whatever it is about: the robot asks before it does any of these.
+        // Who only wants to know something wants an answer, whatever it is about.
         let inquires = self.inquires(&wording, context);
         let is_held_back = |one: &Alternative| inquires && one.understanding.commits();
         let (held_back, mut alternatives): (Vec<_>, Vec<_>) = alternatives.into_iter().partition(is_held_back);
+        let is_shaped = question::is_shaped(self.lexicon, &wording.tidied);
         let is_short = wording.words.len() <= SHORT;
         let is_conditional = condition::is_conditional(self.lexicon, &wording.words);
         // What is to be done otherwise only the grammar knows to take up where the condition does not hold.
         let has_otherwise = is_conditional && condition::has_otherwise(self.lexicon, &wording.words);
         let is_trusted = |one: &&Alternative| {
             let is_plain = context.pending.is_none() || one.is_plain();
-            let is_sure = is_plain && (is_short || one.is_grammars_reply()) || is_conditional;
-            let least = if is_sure { TO_TRUST_SHORT } else { TO_TRUST };
+            let is_reply = one.is_grammars_reply() || is_shaped && one.answers();
+            let is_sure = is_plain && (is_short || is_reply) || is_conditional;
+            let least = match () {
+                () if is_sure => TO_TRUST_SHORT,
+                () if is_plain && inquires && one.answers() => TO_TRUST_ANSWER,
+                () => TO_TRUST,
+            };
             (one.is_exact() || has_otherwise && one.is_grammars_plan()) && one.probability >= least
         };
         if let Some(trusted) = alternatives.iter().find(|one| is_alone || is_trusted(one)) {
@@ -149,7 +164,14 @@ impl Conversation<'_> {
         if let Some(first) = self.first_of(&wording, context) {
             return first;
         }
-        alternatives.extend(held_back);
+        // `do you know how to go there?` may well want it done: what is likely enough is asked about.
+        let is_answered = matches!(
+            by_grammar.understanding,
+            Understanding::Answer { .. } | Understanding::Question { kind: Clarification::Confirmation, .. }
+        );
+        if !is_answered {
+            alternatives.extend(held_back.into_iter().filter(|one| one.probability >= TO_OFFER));
+        }
         // What sounds like the words that nobody knows is likelier than what is guessed without them.
         if !unheard.is_empty() && matches!(by_grammar.context.pending, Some(Pending::Offer { .. })) {
             *context = by_grammar.context;
@@ -204,7 +226,10 @@ impl Conversation<'_> {
             });
         }
         let least = likeliest.probability * RIVAL;
-        let likely = plans.filter(|(one, _)| one.probability >= least).take(MOST_PROPOSED);
+        // What is about more that nobody named is no rival.
+        let strays = |one: &Alternative| one.evidence.get(Feature::Unnamed);
+        let is_rival = |one: &Alternative| one.probability >= least && strays(one) <= strays(likeliest);
+        let likely = plans.filter(|(one, _)| is_rival(one)).take(MOST_PROPOSED);
         let mut guesses: Vec<Guess> = likely.map(|(one, steps)| one.context.guess(steps)).collect();
         let mut named: Vec<String> = Vec::new();
         guesses.retain(|guess| {
@@ -233,12 +258,10 @@ impl Alternative {
         let is_known = unheard.is_empty();
         match &self.understanding {
             Understanding::Plan { .. } if self.is_proposed() => {
-                if self.evidence.get(Feature::ReplyAgrees) > 0.0 {
-                    TO_ACCEPT
-                } else {
-                    TO_ACCEPT_UNSAID
-                }
+                let is_only = self.evidence.get(Feature::ReplyOnly) > 0.0;
+                if is_only && self.evidence.get(Feature::ReplyAgrees) > 0.0 { TO_ACCEPT } else { TO_ACCEPT_UNSAID }
             }
+            Understanding::Plan { .. } if is_known && self.meets_goal() => TO_PURSUE_GOAL,
             Understanding::Plan { steps, .. } => match (steps.iter().any(Step::is_lasting), is_known) {
                 (true, true) => TO_CHANGE,
                 (true, false) => TO_CHANGE_UNHEARD,
@@ -281,9 +304,14 @@ impl Alternative {
             || is_answered && self.evidence.get(Feature::GrammarAnswer) > 0.0
     }
 
-    /// Whether it is the only thing that the robot proposed, and the words do not deny it.
+    /// Whether the robot proposed it, and the words do not deny it.
     fn is_proposed(&self) -> bool {
-        self.evidence.get(Feature::ReplyOnly) > 0.0 && self.evidence.get(Feature::ReplyDenies) == 0.0
+        self.evidence.get(Feature::Reply) > 0.0 && self.evidence.get(Feature::ReplyDenies) == 0.0
+    }
+
+    /// Whether it brings about a goal that is not met, with what was named.
+    fn meets_goal(&self) -> bool {
+        self.prior >= open_goals::MEETS && self.evidence.get(Feature::Unnamed) < 1.0
     }
 
     /// Whether it begins what is left of the mission.
@@ -299,6 +327,11 @@ impl Alternative {
     /// Whether the grammar takes it for what is to be done, as an answer to a question of the robot's.
     fn is_grammars_reply(&self) -> bool {
         self.evidence.get(Feature::GrammarPlanReply) > 0.0
+    }
+
+    /// Whether it tells something and does nothing.
+    const fn answers(&self) -> bool {
+        matches!(self.understanding, Understanding::Answer { .. })
     }
 
     /// Whether it is a move that is about no thing and no place.

@@ -38,12 +38,16 @@ impl Conversation<'_> {
 
     /// Whether it only wants to know something: `do you know the way to the lab?`
     pub(crate) fn inquires(&self, wording: &Wording<'_>, context: &Context) -> bool {
-        if !wording.ends_as_question() {
-            return false;
-        }
         // As it was said: `do you know how to …` is often a request, but not for who wants to know it.
         let words = token::words(wording.utterance);
-        let (before, last) = last_sentence(&words);
+        if self.asks_to_be_told(&words) {
+            return true;
+        }
+        let words = asked_before_statement(&words);
+        if words.iter().rev().find(|word| token::ends_sentence(word)).is_none_or(|end| end != "?") {
+            return false;
+        }
+        let (before, last) = last_sentence(words);
         // `there is a tip for it as well, do you see it?`
         let pause = last.iter().rposition(|word| word == ",").map_or(0, |at| at + 1);
         let starts = [0, clause::leading(self.lexicon, last).min(last.len())];
@@ -145,6 +149,13 @@ impl Wording<'_> {
     pub(crate) fn ends_as_question(&self) -> bool {
         self.utterance.trim_end().ends_with('?')
     }
+}
+
+/// Up to a question after which nothing but statements of the speaker follow: `why did you take it? I only asked you to open it`.
+fn asked_before_statement(words: &[String]) -> &[String] {
+    let (before, last) = last_sentence(words);
+    let is_stated = last.first().is_some_and(|first| matches!(first.as_str(), "i" | "we"));
+    if is_stated && before.iter().any(|word| word == "?") { asked_before_statement(before) } else { words }
 }
 
 /// What is said before the last sentence, and that sentence.

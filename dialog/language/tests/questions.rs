@@ -1,0 +1,168 @@
+//! Questions about what the robot sees, did and knows, also several at once and about what was spoken of before.
+
+#![allow(clippy::unwrap_used)]
+
+mod support;
+
+use cohabit_cdf::{Status, Verb};
+use cohabit_language::Understanding;
+use support::Talk;
+
+/// Says these one after the other, does what is to be done, and gives the reply to the last.
+fn replied(marks: &[&str], said: &[&str]) -> String {
+    let mut talk = Talk::new(marks);
+    let mut reply = String::new();
+    for utterance in said {
+        let understanding = talk.language.understand(utterance, &talk.scene, &mut talk.context);
+        reply = understanding.reply().to_owned();
+        if let Understanding::Plan { steps, .. } = &understanding {
+            for step in steps {
+                talk.context.note_outcome(step, Status::ActionSuccessful);
+            }
+            talk.scene = talk.language.expected(&talk.scene, steps);
+        }
+    }
+    reply
+}
+
+#[track_caller]
+fn check(said: &[&str], expected: &str) {
+    let found = replied(&[], said);
+    let is_right = expected.strip_suffix('…').map_or(found == expected, |start| found.starts_with(start));
+    assert!(is_right, "{said:?}\n    wanted {expected}\n    found  {found}");
+}
+
+#[test]
+fn each_of_several_questions_is_answered() {
+    check(&["where are we, and what are you holding?"], "I am in the break room. My hand is empty.");
+    check(&["Hi! Where are we, and what are you holding?"], "I am in the break room. My hand is empty.");
+    check(
+        &["is the fridge open, is the microwave on and where is the milk?"],
+        "No, the fridge is not open. No, the microwave is not on. The milk is in the fridge.",
+    );
+    check(
+        &["how many mugs are there? what colors are they?"],
+        "I know of 2 mugs. The mug is red and the mug is yellow.",
+    );
+    check(&["is the fridge open?"], "No, the fridge is not open.");
+    check(&["what is in the quantum lab?"], "In the quantum lab there are …");
+}
+
+#[test]
+fn they_are_those_of_the_answer_before() {
+    check(&["how many mugs are there?", "what colors are they?"], "The mug is red and the mug is yellow.");
+    check(&["how many mugs are there?", "and what are their colors?"], "The mug is red and the mug is yellow.");
+}
+
+#[test]
+fn what_a_list_leaves_out_can_be_asked_for() {
+    let list = replied(&[], &["what do you see?"]);
+    let left = list.rsplit_once(" and ").and_then(|(_, end)| end.strip_suffix(" more.")).unwrap();
+    for rest in
+        [format!("what are the other {left}?"), format!("and what are the {left} more?"), "what else?".to_owned()]
+    {
+        let more = replied(&[], &["what do you see?", &rest]);
+        assert!(more.starts_with("I see") && more != list, "{rest}: {more}");
+    }
+}
+
+#[test]
+fn what_was_done_is_told() {
+    const DONE: [&str; 3] = ["pick up the banana", "put it on the counter", "go to the main office"];
+    let after = |said: &'static str| [DONE.as_slice(), &[said]].concat();
+    let all = "So far I picked up the ";
+    check(&after("what have you done so far?"), &format!("{all}…"));
+    check(&after("can you give me a summary of what you did?"), "So far I …");
+    check(&after("what did you do just now?"), "I went to the main office.");
+    let with_it = replied(&[], &after("what did you do with the banana?"));
+    assert!(with_it.contains("picked up") && with_it.contains("put the"), "{with_it}");
+}
+
+#[test]
+fn where_a_thing_was_is_told_though_it_was_moved() {
+    let found = ["pick up the hammer", "where was it when you found it?"];
+    check(&found, "I took the hammer from the blue desk…");
+    check(
+        &["pick up the hammer", "take the hammer back to where you found it"],
+        "OK, putting the hammer on the blue desk…",
+    );
+}
+
+#[test]
+fn what_works_a_machine_is_told() {
+    check(&["which computer controls the freeze ray?"], "The blue computer…");
+    check(&["which computer is for the laser?"], "The red computer…");
+    check(&["is the blue computer the one for the freeze ray?"], "Yes: the blue computer switches the freeze ray…");
+    check(&["is the blue computer for the laser?"], "No, as far as I know: …");
+    check(&["turn on the computer that controls the freeze ray"], "OK, turning on the blue computer.");
+    // What works nothing may be for anything.
+    check(&["where is the tip for the laser?"], "The laser tip is …");
+}
+
+#[test]
+fn who_only_wants_to_know_something_is_offered_no_deed() {
+    for said in [
+        "what did the laser hit when you fired it?",
+        "why does the bowl need the time machine?",
+        "where would you put the apple?",
+        "who broke the bowl?",
+        "how heavy is the hammer?",
+    ] {
+        let mut talk = Talk::new(&[]);
+        let understanding = talk.language.understand(said, &talk.scene, &mut talk.context);
+        let is_told = matches!(understanding, Understanding::Answer { .. } | Understanding::Refusal { .. });
+        assert!(is_told, "{said}: {understanding:?}");
+    }
+    check(&["how do I open the fridge?"], "By opening the fridge…");
+    check(&["how does one open the fridge?"], "By opening the fridge…");
+}
+
+#[test]
+fn what_is_left_of_the_mission_is_likelier_meant() {
+    let likelihood = |has_goal: bool| {
+        let mut talk = Talk::new(&[]);
+        if !has_goal {
+            talk.scene.goals.clear();
+        }
+        let ways = talk.language.alternatives("the milk goes with the bowl, you know", &talk.scene, &talk.context);
+        let pours = |steps: &[cohabit_language::Step]| {
+            steps.iter().any(|step| matches!(step.action, cohabit_cdf::Action::Interact { verb: Verb::Pour, .. }))
+        };
+        let meant =
+            ways.iter().filter(|way| matches!(&way.understanding, Understanding::Plan { steps, .. } if pours(steps)));
+        meant.map(|way| way.probability).sum::<f32>()
+    };
+    let [without, with] = [likelihood(false), likelihood(true)];
+    assert!(with > without, "{without} without the goal, {with} with it");
+}
+
+#[test]
+fn what_is_to_be_told_is_told_after_what_is_to_be_done() {
+    check(&["can you tell me where you are and what you are holding?"], "I am in the break room. My hand is empty.");
+    check(&["can you show me where the bowl is?"], "The bowl is on the round table.");
+    check(&["tell me which computer is for the laser"], "The red computer…");
+    let mut talk = Talk::new(&[]);
+    let plan = talk.language.understand(
+        "grab the banana for me, and then tell me what is on the table",
+        &talk.scene,
+        &mut talk.context,
+    );
+    let Understanding::Plan { steps, .. } = plan else { panic!("{plan:?}") };
+    for step in &steps {
+        talk.context.note_outcome(step, Status::ActionSuccessful);
+    }
+    talk.scene = talk.language.expected(&talk.scene, &steps);
+    let told = talk.language.carry_on(&talk.scene, &mut talk.context).unwrap();
+    assert!(told.reply().starts_with("On the round table there are"), "{told:?}");
+}
+
+#[test]
+fn a_question_does_not_agree_to_what_was_proposed() {
+    let mut talk = Talk::new(&[]);
+    let asked = talk.language.understand("the milk goes with the bowl, you know", &talk.scene, &mut talk.context);
+    for said in ["can you tell me what you have done so far?", "what is on the table?", "who broke the bowl?"] {
+        let mut then = talk.context.clone();
+        let found = talk.language.understand(said, &talk.scene, &mut then);
+        assert!(!matches!(found, Understanding::Plan { .. }), "{asked:?}, {said}: {found:?}");
+    }
+}
