@@ -117,6 +117,9 @@ fn a_language_model_is_asked_always_where_it_shall_be_and_what_it_said_is_in_the
     assert!(notes.iter().all(|note| !note.contains(KEY)), "{notes:?}");
     let settings = &log.session.settings;
     assert_eq!((settings["model"].as_str(), settings["model_asked"].as_str()), ("recorded", "always"));
+    assert_eq!(settings["model_address"], format!("{address}/chat/completions"));
+    assert!(settings.contains_key("recognizer") && settings.contains_key("synthesizer"), "{settings:?}");
+    assert!(settings.values().all(|value| !value.contains(KEY)), "{settings:?}");
 }
 
 #[test]

@@ -109,6 +109,16 @@ impl Endpoint {
         &self.model
     }
 
+    /// Where it is asked, without a name, a password and a query that the address may hold.
+    #[must_use]
+    pub fn public_address(&self) -> String {
+        let address = self.address.split(['?', '#']).next().unwrap_or_default();
+        let Some((scheme, rest)) = address.split_once("://") else { return String::new() };
+        let (host, path) = rest.split_once('/').unwrap_or((rest, ""));
+        let host = host.rsplit_once('@').map_or(host, |(_, host)| host);
+        format!("{scheme}://{host}/{path}")
+    }
+
     fn new(address: &str, model: String, key: Option<String>) -> Result<Self, EndpointError> {
         let address = address.trim().trim_end_matches('/');
         if !address.starts_with("http://") && !address.starts_with("https://") {
@@ -364,6 +374,14 @@ mod tests {
         assert_eq!(roles, ["system", "user", "assistant", "user"]);
         assert!(messages[0]["content"].as_str().unwrap().contains("Things: mug."));
         assert_eq!(messages[3]["content"], "gimme some joe");
+    }
+
+    #[test]
+    fn the_address_that_is_noted_holds_no_secret() {
+        let noted = |address: &str| Endpoint::new(address, "any".to_owned(), None).ok().unwrap().public_address();
+        assert_eq!(noted("http://127.0.0.1:11434/v1/"), "http://127.0.0.1:11434/v1/chat/completions");
+        assert_eq!(noted("https://me:secret@host/v1"), "https://host/v1/chat/completions");
+        assert!(!noted("https://host/v1?key=secret").contains("secret"));
     }
 
     #[test]

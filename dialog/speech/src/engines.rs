@@ -50,6 +50,17 @@ impl Source {
     }
 }
 
+impl fmt::Display for Source {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Installed => f.write_str("installed"),
+            Self::Folder(folder) => write!(f, "{}", folder.display()),
+            Self::Wyoming(address) => write!(f, "wyoming://{address}"),
+            Self::Off => f.write_str("off"),
+        }
+    }
+}
+
 fn has_port(address: &str) -> bool {
     address.rsplit_once(':').is_some_and(|(host, port)| !host.is_empty() && port.parse::<u16>().is_ok())
 }

@@ -205,8 +205,13 @@ impl Play {
         let asked = questionnaires.iter().map(|one| one.name.as_str()).collect::<Vec<_>>().join(" ");
         let asked = (!asked.is_empty()).then_some(("questionnaires", asked));
         let model = Endpoint::from_environment().ok().flatten();
-        let model =
-            model.map(|endpoint| [("model", endpoint.model().to_owned()), ("model_asked", model_asked.to_string())]);
+        let model = model.map(|endpoint| {
+            [
+                ("model", endpoint.model().to_owned()),
+                ("model_address", endpoint.public_address()),
+                ("model_asked", model_asked.to_string()),
+            ]
+        });
         let settings = settings.into_iter().chain(asked).chain(model.into_iter().flatten()).chain(voice.settings());
         let settings = settings.map(|(name, value)| (name.to_owned(), value));
         let names = names.iter().map(|one| (format!("{NAME_OF}{}", one.body), one.name.clone()));

@@ -126,11 +126,18 @@ impl VoiceOptions {
     }
 
     /// The same as the log has it.
-    pub fn settings(self) -> [(&'static str, String); 4] {
+    pub fn settings(self) -> [(&'static str, String); 6] {
         let yes_or_no = |is: bool| if is { "yes" } else { "no" }.to_owned();
+        let engines = VoiceSettings::from_env();
+        let [recognizer, synthesizer] = match &engines {
+            Ok(engines) => [engines.recognizer.to_string(), engines.synthesizer.to_string()],
+            Err(error) => [error.to_string(), error.to_string()],
+        };
         [
             ("edit_heard_s", self.edit_heard.to_string()),
+            ("recognizer", recognizer),
             ("record_audio", yes_or_no(self.record_audio)),
+            ("synthesizer", synthesizer),
             ("voice_delay_s", self.voice_delay.to_string()),
             ("voice_errors", self.voice_errors.to_string()),
         ]
