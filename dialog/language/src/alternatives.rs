@@ -17,6 +17,7 @@ use crate::{
     readers::of_grammar,
     said::{Named, Said, share},
     search::Search,
+    token,
     understanding::{Step, Understanding},
     wording::Wording,
 };
@@ -52,6 +53,12 @@ struct About {
 
 /// From which probability on the parser is sure of a reading.
 const SURE_READING: f32 = 0.4;
+
+/// Words besides pauses that part what is asked for from what is said beside it.
+const PARTERS: [&str; 8] = ["because", "cause", "cos", "coz", "before", "so", "but", "until"];
+/// Words that a statement begins with.
+const SUBJECTS: [&str; 14] =
+    ["i", "we", "he", "she", "it", "they", "that", "this", "there", "you", "who", "my", "our", "somebody"];
 
 /// How many ways are read together with what was said.
 const SHORTLIST: usize = 8;
@@ -201,13 +208,14 @@ impl Conversation<'_> {
 
     /// What may be said of a way without knowing who found it.
     fn describe(&self, one: &mut Alternative, said: &Said<'_>, before: &Context) {
+        let unheard = share(self.unheard_about(one, said.wording).len());
         let (understanding, evidence) = (&one.understanding, &mut one.evidence);
         match understanding {
             Understanding::Plan { steps, .. } => {
                 evidence.set(Feature::Plan, 1.0);
                 evidence.set_if(Feature::PlanAsked, said.is_asked);
                 evidence.set_if(Feature::PlanForbidden, said.is_forbidden);
-                evidence.set(Feature::PlanUnheard, said.unheard);
+                evidence.set(Feature::PlanUnheard, unheard);
                 evidence.set_if(Feature::PlanUnknown, said.has_unknown);
                 evidence.set_if(Feature::PlanLasting, steps.iter().any(Step::is_lasting));
                 evidence.set_if(Feature::PlanOfMission, self.is_of_mission(&one.context.later));
@@ -247,11 +255,7 @@ impl Conversation<'_> {
         if !later.is_empty() {
             return;
         }
-        let mut about = self.about(understanding);
-        // A search does nothing yet with what it looks for.
-        if one.context.search.is_some() {
-            one.context.request.iter().for_each(|clause| about.add_clause(clause));
-        }
+        let about = self.about(understanding, &one.context);
         let opens = matches!(understanding, Understanding::Plan { steps, .. } if steps.iter().any(opens_or_closes));
         // `close the door` of what it opens.
         let is_door = |class: &ClassId| {
@@ -260,9 +264,7 @@ impl Conversation<'_> {
         };
         let is_missing = |name: &&Named| match name {
             Named::Thing(classes) if opens && classes.iter().all(is_door) => false,
-            Named::Thing(classes) => !about.classes.iter().any(|class| classes.contains(class)),
-            Named::Room(room) => !about.rooms.contains(room),
-            Named::Color(color) => !about.colors.contains(color),
+            name => !about.has(name),
         };
         let is_done = matches!(understanding, Understanding::Plan { .. } | Understanding::Answer { .. });
         // A condition may name what nothing is done with.
@@ -280,7 +282,7 @@ impl Conversation<'_> {
             let named = about.classes.iter().filter(is_named).count();
             let unnamed = 1.0 - named as f32 / about.classes.len() as f32;
             evidence.set(Feature::Unnamed, unnamed);
-            evidence.set(Feature::UnnamedUnheard, unnamed * said.unheard);
+            evidence.set(Feature::UnnamedUnheard, unnamed * unheard);
             let points = matches!(understanding, Understanding::Answer { highlight, .. } if !highlight.is_empty());
             evidence.set(Feature::AnswerUnnamed, if points { unnamed } else { 0.0 });
         }
@@ -292,7 +294,39 @@ impl Conversation<'_> {
         !later.is_empty() && later.iter().all(is_goal)
     }
 
-    fn about(&self, understanding: &Understanding) -> About {
+    /// The words that nobody ever met which may say something of this way: not those of what is said beside it.
+    pub(crate) fn unheard_about(&self, one: &Alternative, wording: &Wording<'_>) -> Vec<String> {
+        if wording.unheard.is_empty() {
+            return Vec::new();
+        }
+        let about = self.about(&one.understanding, &one.context);
+        let ends = |word: &String| token::is_punctuation(word) || PARTERS.contains(&word.as_str());
+        let part = |part: &[String]| {
+            let named = self.names_in(part);
+            let is_about = named.iter().any(|(_, name)| about.has(name));
+            let stands = |word: &String| self.lexicon.pronouns.exact(std::slice::from_ref(word)).is_some();
+            let first =
+                part.iter().find(|word| !matches!(word.as_str(), "and" | "then" | "so" | "but" | "just" | "now"));
+            let is_statement = first.is_some_and(|first| SUBJECTS.contains(&first.as_str()));
+            let counts = |word: &String| {
+                is_about || Some(word) == first || named.is_empty() && !is_statement && part.iter().any(stands)
+            };
+            let unheard = part.iter().filter(|word| wording.unheard.contains(*word));
+            unheard.filter(|word| counts(word)).cloned().collect::<Vec<_>>()
+        };
+        wording.words.split(ends).flat_map(part).collect()
+    }
+
+    /// What it is about, with what a search looks for, which does nothing yet with that.
+    fn about(&self, understanding: &Understanding, context: &Context) -> About {
+        let mut about = self.about_now(understanding);
+        if context.search.is_some() {
+            context.request.iter().for_each(|clause| about.add_clause(clause));
+        }
+        about
+    }
+
+    fn about_now(&self, understanding: &Understanding) -> About {
         let mut about = About::default();
         let objects: Vec<ObjectId> = match understanding {
             Understanding::Plan { steps, .. } => {
@@ -318,6 +352,14 @@ impl Conversation<'_> {
 }
 
 impl About {
+    fn has(&self, name: &Named) -> bool {
+        match name {
+            Named::Thing(classes) => self.classes.iter().any(|class| classes.contains(class)),
+            Named::Room(room) => self.rooms.contains(room),
+            Named::Color(color) => self.colors.contains(color),
+        }
+    }
+
     fn add_clause(&mut self, clause: &Clause) {
         clause.objects.iter().for_each(|phrase| self.add_phrase(phrase));
         self.colors.extend(clause.color.clone());

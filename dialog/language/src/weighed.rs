@@ -154,6 +154,8 @@ impl Conversation<'_> {
             let by_sentences = by_sentences.filter(|one| is_likely(one) && !is_held_back(one));
             alternatives.splice(0..0, by_sentences);
         }
+        let unheard_here = alternatives.first().map(|one| self.unheard_about(one, &wording)).unwrap_or_default();
+        let unheard = if unheard == wording.unheard.as_slice() { unheard_here.as_slice() } else { unheard };
         let likely = alternatives.first().filter(|one| one.probability >= one.least(unheard));
         // What is left of the mission is wanted anyway.
         let pursues = |one: &&Alternative| one.of_mission() && one.probability >= TO_PURSUE && unheard.is_empty();

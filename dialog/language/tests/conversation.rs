@@ -314,6 +314,18 @@ fn what_only_wants_to_be_known_is_not_done() {
 }
 
 #[test]
+fn unknown_words_of_a_remark_say_nothing_of_a_request() {
+    let reply = |said: &str| {
+        let mut talk = Talk::new(&[]);
+        talk.language.understand(said, &talk.scene, &mut talk.context).reply().to_owned()
+    };
+    let beside = reply("pick up the banana for me please, our wolpertinger would laugh at that");
+    assert_eq!(beside, "OK, picking up the banana.");
+    let within = reply("wolpertinger the banana for me please");
+    assert!(within.contains("wolpertinger"), "{within}");
+}
+
+#[test]
 fn remarks_in_unknown_words_do_not_lose_a_request() {
     check(
         &["plan OfficeLayout1 BreakRoom", "add CoffeeMug_Boss on TableRound_02"],
