@@ -404,7 +404,8 @@ impl Answerer<'_> {
         let all: Vec<ObjectId> = self.scene.objects.iter().map(|object| object.id).collect();
         let mut found = self.ground().narrow(phrase, &all);
         // `which shelves do you see there?`
-        if question.rest.iter().any(|word| matches!(word.as_str(), "see" | "here" | "there")) {
+        let is_here = question.rest.iter().any(|word| matches!(word.as_str(), "see" | "here" | "there"));
+        if is_here {
             found.retain(|id| self.scene.object(*id).is_some_and(|object| object.room == self.scene.robot.room));
         }
         if phrase.relations.iter().any(|relation| relation.kind == RelationKind::For) {
@@ -415,7 +416,11 @@ impl Answerer<'_> {
             _ => {}
         }
         match found {
-            found if found.is_empty() => Understanding::whether(false, "None that I know of.", Vec::new()),
+            found if found.is_empty() => {
+                let text =
+                    if is_here { "None that I have seen here. I can look around." } else { "None that I know of." };
+                Understanding::whether(false, text, Vec::new())
+            }
             found => {
                 let names: Vec<String> = found.iter().take(LIST).map(|id| self.full(*id)).collect();
                 Understanding::about(describe::sentence(&describe::list(&names, "and")), found)

@@ -237,21 +237,23 @@ fn within(words: &[String]) -> &[String] {
     &words[start..end]
 }
 
-/// Words that ask, in the order of a question of its own: `what it has hit` is `what has it hit`, `what you see` `what do you see`.
+/// Words that ask, in the order of a question of its own: `what it has hit` is `what has it hit`, `which shelves you see` is
+/// `which shelves do you see`.
 fn as_question(words: &[String]) -> String {
-    const ASKERS: [&str; 5] = ["what", "where", "why", "when", "how"];
+    const ASKERS: [&str; 6] = ["what", "which", "where", "why", "when", "how"];
     const SUBJECTS: [&str; 6] = ["you", "i", "we", "it", "they", "there"];
     const HELPERS: [&str; 14] =
         ["is", "are", "was", "were", "am", "have", "has", "had", "did", "do", "can", "could", "will", "would"];
-    let asked = match words {
-        [asker, subject, verb, rest @ ..]
-            if ASKERS.contains(&asker.as_str()) && SUBJECTS.contains(&subject.as_str()) =>
-        {
-            let (asker, subject, verb) = (asker.as_str(), subject.as_str(), verb.as_str());
-            let start = if HELPERS.contains(&verb) { [asker, verb, subject, ""] } else { [asker, "do", subject, verb] };
-            let start = start.into_iter().filter(|word| !word.is_empty()).map(str::to_owned);
-            start.chain(rest.iter().cloned()).collect()
+    const LONGEST_ASKER: usize = 4;
+    let is_helper = |word: &String| HELPERS.contains(&word.as_str());
+    let subject = words.iter().take(LONGEST_ASKER).position(|word| SUBJECTS.contains(&word.as_str()));
+    let is_asked = words.first().is_some_and(|asker| ASKERS.contains(&asker.as_str()));
+    let told = subject.filter(|at| is_asked && !words[..*at].iter().any(is_helper));
+    let asked = match told.map(|at| words.split_at(at)) {
+        Some((asker, [subject, verb, rest @ ..])) if is_helper(verb) => {
+            [asker, std::slice::from_ref(verb), std::slice::from_ref(subject), rest].concat()
         }
+        Some((asker, rest @ [_, _, ..])) => [asker, &["do".to_owned()], rest].concat(),
         _ => words.to_vec(),
     };
     format!("{}?", token::sentence(&asked))

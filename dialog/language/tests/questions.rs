@@ -141,6 +141,16 @@ fn what_is_to_be_told_is_told_after_what_is_to_be_done() {
     check(&["can you tell me where you are and what you are holding?"], "I am in the break room. My hand is empty.");
     check(&["can you show me where the bowl is?"], "The bowl is on the round table.");
     check(&["tell me which computer is for the laser"], "The red computer…");
+    check(&["which mugs do you see here?"], "The red mug on the round table and the yellow mug on the round table.");
+    check(
+        &["go to the robotics lab", "what mugs can you see there?"],
+        "None that I have seen here. I can look around.",
+    );
+    check(
+        &["tell me which mugs you see there and what you have in your hand"],
+        "The red mug on the round table and the yellow mug on the round table. My hand is empty.",
+    );
+    check(&["pick up the hammer", "tell me what you have in your hand"], "I am holding the hammer.");
     let mut talk = Talk::new(&[]);
     let plan = talk.language.understand(
         "grab the banana for me, and then tell me what is on the table",
