@@ -222,6 +222,24 @@ fn the_freezer_chills_only_shut_and_with_power() {
 }
 
 #[test]
+fn the_freezer_is_shut_once_it_was_closed() {
+    let wishes = ["FridgeUpper_02_1 emptied", "CanSodaNew_01_1 in FridgeUpper_02_1"];
+    let lines = [
+        "goto FridgeUpper_02_1",
+        "open FridgeUpper_02_1",
+        "wait 120",
+        "goto CanSodaNew_01_1",
+        "pickup CanSodaNew_01_1",
+        "wait 60",
+        "close FridgeUpper_02_1",
+        "wait 120",
+    ];
+    let player = check(&wishes, &lines, OK);
+    let freezer = player.world.objects().find(|object| object.instance == "FridgeUpper_02_1").unwrap();
+    assert!(freezer.opened < 0.01, "the robot stands in the swing of its door: {}", freezer.opened);
+}
+
+#[test]
 fn a_hot_disk_breaks_and_does_nothing_any_more() {
     let wishes = ["Microwave_01_1 emptied", "Floppy_Virus_1 in Microwave_01_1"];
     let mut player = press(&wishes, "Microwave_01_1", OK);

@@ -230,23 +230,6 @@ fn nobody_pushes_a_box_through_somebody() {
 }
 
 #[test]
-fn a_high_door_that_was_closed_is_shut() {
-    let things = r#"
-  { instance = "FridgeUpper_02_1", room = "Reception", at_m = [0.6, 2.5, 1.1] },
-  { instance = "MilkCarton_01_1", room = "Reception", on = "FridgeUpper_02_1", anchor = true },
-"#;
-    let mut play = Play::new(floor(TWO_ROOMS, things, &[], RoomId::Reception));
-    let (freezer, milk) = (play.id("FridgeUpper_02_1"), play.id("MilkCarton_01_1"));
-    play.must(0, to(freezer));
-    play.must(0, act(Verb::Open, freezer));
-    play.must(0, Action::PickUp { object: milk });
-    play.must(0, act(Verb::Close, freezer));
-    play.wait(120);
-    let opened = play.world.object(freezer).unwrap().opened;
-    assert!(opened < 0.01, "the robot stands in the swing of the door: {opened}");
-}
-
-#[test]
 fn reach_and_obstruction_are_real() {
     let things = r#"
   { instance = "Table_Metal_01_1", room = "Hallway", at_m = [3.0, 5.5, 0.0], yaw_deg = 90.0 },
