@@ -305,8 +305,7 @@ impl Conversation<'_> {
             let named = self.names_in(part);
             let is_about = named.iter().any(|(_, name)| about.has(name));
             let stands = |word: &String| self.lexicon.pronouns.exact(std::slice::from_ref(word)).is_some();
-            let first =
-                part.iter().find(|word| !matches!(word.as_str(), "and" | "then" | "so" | "but" | "just" | "now"));
+            let first = part.iter().find(|word| !matches!(word.as_str(), "and" | "then" | "just" | "now"));
             let is_statement = first.is_some_and(|first| SUBJECTS.contains(&first.as_str()));
             let counts = |word: &String| {
                 is_about || Some(word) == first || named.is_empty() && !is_statement && part.iter().any(stands)

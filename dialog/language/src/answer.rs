@@ -339,10 +339,7 @@ impl Answerer<'_> {
 
     /// What is known of a thing, where that is not what was asked.
     fn unknown_of(&self, phrase: &Phrase) -> Understanding {
-        self.with_known(phrase, |object| {
-            let known = describe::sentence(&self.facts().description(object));
-            Understanding::about(format!("I do not know that. What I know: {known}"), vec![object.id])
-        })
+        self.with_known(phrase, |object| self.all_known(object, "I do not know that"))
     }
 
     fn danger(&self, about: Option<&Phrase>) -> Understanding {
@@ -411,9 +408,10 @@ impl Answerer<'_> {
         if phrase.relations.iter().any(|relation| relation.kind == RelationKind::For) {
             found.retain(|id| self.scene.object(*id).is_some_and(|object| object.works.is_some()));
         }
-        match self.ground().one(phrase, &Want::place(Intent::Find, &[], None)) {
-            Ok(nearest) if phrase.side.is_some() => found = vec![nearest],
-            _ => {}
+        if phrase.side.is_some()
+            && let Ok(nearest) = self.ground().one(phrase, &Want::place(Intent::Find, &[], None))
+        {
+            found = vec![nearest];
         }
         match found {
             found if found.is_empty() => {
@@ -733,8 +731,13 @@ impl Answerer<'_> {
     }
 
     fn cannot_tell(&self, object: &KnownObject) -> Understanding {
+        self.all_known(object, "I cannot tell")
+    }
+
+    /// What is known of a thing, after why that is no answer.
+    fn all_known(&self, object: &KnownObject, why: &str) -> Understanding {
         let known = describe::sentence(&self.facts().description(object));
-        Understanding::about(format!("I cannot tell. What I know: {known}"), vec![object.id])
+        Understanding::about(format!("{why}. What I know: {known}"), vec![object.id])
     }
 }
 

@@ -87,7 +87,7 @@ impl Conversation<'_> {
     }
 
     /// What is to be done, and what is to be told after it: `take the can and then tell me what else is on the table`.
-    pub(crate) fn asked_at_end(&self, wording: &Wording<'_>, context: &Context) -> Option<(String, String)> {
+    fn asked_at_end(&self, wording: &Wording<'_>, context: &Context) -> Option<(String, String)> {
         let words = token::words(wording.utterance);
         let (start, from) = self.inquiries_in(&words).into_iter().next_back().filter(|(start, from)| from < start)?;
         let before = within(&words[..from]);

@@ -199,11 +199,11 @@ fn read_sentence(lexicon: &Lexicon, first: &[String]) -> Option<Question> {
     let about = match kind {
         // `why did you open the fridge`
         QuestionKind::Why => named(lexicon, &rest),
-        // `is the blue computer the one for the laser`
-        QuestionKind::State if which_works(lexicon, &rest).is_some() => which_works(lexicon, &rest),
         _ => {
+            // `is the blue computer the one for the laser`
+            let works = which_works(lexicon, &rest).filter(|_| kind == QuestionKind::State);
             let first_said = || first().filter(|phrase| !phrase.is_empty());
-            first_said().or_else(|| named(lexicon, &rest)).or_else(|| owner(&rest)).or_else(first)
+            works.or_else(first_said).or_else(|| named(lexicon, &rest)).or_else(|| owner(&rest)).or_else(first)
         }
     };
     Some(Question::new(kind, about, rest))

@@ -124,10 +124,12 @@ impl Conversation<'_> {
             let is_plain = context.pending.is_none() || one.is_plain();
             let is_reply = one.is_grammars_reply() || is_shaped && one.answers();
             let is_sure = is_plain && (is_short || is_reply) || is_conditional;
-            let least = match () {
-                () if is_sure => TO_TRUST_SHORT,
-                () if is_plain && inquires && one.answers() => TO_TRUST_ANSWER,
-                () => TO_TRUST,
+            let least = if is_sure {
+                TO_TRUST_SHORT
+            } else if is_plain && inquires && one.answers() {
+                TO_TRUST_ANSWER
+            } else {
+                TO_TRUST
             };
             (one.is_exact() || has_otherwise && one.is_grammars_plan()) && one.probability >= least
         };

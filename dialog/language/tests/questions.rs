@@ -5,8 +5,15 @@
 mod support;
 
 use cohabit_cdf::{Status, Verb};
-use cohabit_language::Understanding;
+use cohabit_language::{Step, Understanding};
 use support::Talk;
+
+fn carry_out(talk: &mut Talk, steps: &[Step]) {
+    for step in steps {
+        talk.context.note_outcome(step, Status::ActionSuccessful);
+    }
+    talk.scene = talk.language.expected(&talk.scene, steps);
+}
 
 /// Says these one after the other, does what is to be done, and gives the reply to the last.
 fn replied(marks: &[&str], said: &[&str]) -> String {
@@ -16,10 +23,7 @@ fn replied(marks: &[&str], said: &[&str]) -> String {
         let understanding = talk.language.understand(utterance, &talk.scene, &mut talk.context);
         reply = understanding.reply().to_owned();
         if let Understanding::Plan { steps, .. } = &understanding {
-            for step in steps {
-                talk.context.note_outcome(step, Status::ActionSuccessful);
-            }
-            talk.scene = talk.language.expected(&talk.scene, steps);
+            carry_out(&mut talk, steps);
         }
     }
     reply
@@ -125,7 +129,7 @@ fn what_is_left_of_the_mission_is_likelier_meant() {
             talk.scene.goals.clear();
         }
         let ways = talk.language.alternatives("the milk goes with the bowl, you know", &talk.scene, &talk.context);
-        let pours = |steps: &[cohabit_language::Step]| {
+        let pours = |steps: &[Step]| {
             steps.iter().any(|step| matches!(step.action, cohabit_cdf::Action::Interact { verb: Verb::Pour, .. }))
         };
         let meant =
@@ -158,10 +162,7 @@ fn what_is_to_be_told_is_told_after_what_is_to_be_done() {
         &mut talk.context,
     );
     let Understanding::Plan { steps, .. } = plan else { panic!("{plan:?}") };
-    for step in &steps {
-        talk.context.note_outcome(step, Status::ActionSuccessful);
-    }
-    talk.scene = talk.language.expected(&talk.scene, &steps);
+    carry_out(&mut talk, &steps);
     let told = talk.language.carry_on(&talk.scene, &mut talk.context).unwrap();
     assert!(told.reply().starts_with("On the round table there are"), "{told:?}");
 }

@@ -71,8 +71,8 @@ fn told(message: &Message) -> Event {
 fn shown(facts: &Facts<'_>, movement: &CameraMovement) -> Option<Event> {
     let target = match &movement.view {
         CameraView::Object(pattern) => {
-            let is_meant = goals::Meant::new(pattern);
-            let mut meant = facts.state.existing().map(|(id, _)| id).filter(|id| is_meant.is(facts, *id));
+            let those = goals::Meant::new(pattern);
+            let mut meant = facts.state.existing().map(|(id, _)| id).filter(|id| those.is(facts, *id));
             CameraTarget::Object(meant.next()?)
         }
         CameraView::Room(room) => CameraTarget::Room(*room),
