@@ -15,6 +15,7 @@ const LEVELS: &[(&str, u8, &[&str])] = &[
     ("cohabit-record", 2, &["mcap", "crc32fast", "flate2"]),
     ("cohabit-agent", 2, &[]),
     ("cohabit-language", 2, &[]),
+    ("cohabit-rewriter", 2, &[]),
     ("cohabit-speech", 2, &["ort", "earshot", "rustfft", "sha2", "zip"]),
     ("cohabit-gpu", 3, &["wgpu"]),
     ("cohabit-engine", 3, &[]),

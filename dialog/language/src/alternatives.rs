@@ -465,7 +465,7 @@ const fn opens_or_closes(step: &Step) -> bool {
 }
 
 /// Whether two ways come to the same.
-fn is_same(one: &Understanding, other: &Understanding) -> bool {
+pub(crate) fn is_same(one: &Understanding, other: &Understanding) -> bool {
     match (one, other) {
         (Understanding::Plan { steps: one, .. }, Understanding::Plan { steps: other, .. }) => {
             deeds(one).eq(deeds(other))

@@ -2,7 +2,7 @@
 //! requests.
 
 use cohabit_cdf::{Catalog, ObjectId};
-use cohabit_parser::Parser;
+use cohabit_parser::{Parser, Rewriter};
 
 use crate::{
     amend,
@@ -26,7 +26,7 @@ use crate::{
     plan::{Fault, Planner},
     process::Devices,
     question::{self, QuestionKind},
-    remedy, reply,
+    remedy, reply, rewritten,
     search::Search,
     stop::{self, Firmness},
     tidy,
@@ -44,6 +44,7 @@ pub(crate) struct Conversation<'a> {
     pub(crate) scene: &'a Known,
     pub(crate) judge: Judge<'a>,
     pub(crate) parser: Option<&'a Parser>,
+    pub(crate) rewriter: Option<fn() -> &'static Rewriter>,
 }
 
 impl Conversation<'_> {
@@ -69,7 +70,20 @@ impl Conversation<'_> {
         {
             return (self.stopped(&rest, context), 1.0);
         }
-        self.understand_weighed(utterance, context)
+        self.understand_new(utterance, context)
+    }
+
+    /// What the rewriter surely takes it for, or what most speaks for.
+    fn understand_new(&self, utterance: &str, context: &mut Context) -> (Understanding, f32) {
+        let rewritten = self.rewritten(utterance, context);
+        match rewritten::sure(&rewritten) {
+            Some(sure) => {
+                *context = sure.context.clone();
+                (sure.understanding.clone(), sure.probability)
+            }
+            None if rewritten.is_empty() => self.understand_weighed(utterance, context),
+            None => self.understand_with(utterance, &rewritten, context),
+        }
     }
 
     /// What speaks for itself, or what most speaks for.
@@ -84,7 +98,7 @@ impl Conversation<'_> {
         context.failed = None;
         context.search = None;
         context.later.clear();
-        let then = self.asks_for_anything(rest).then(|| Box::new(self.understand_best(rest, context)));
+        let then = self.asks_for_anything(rest).then(|| Box::new(self.understand_new(rest, context).0));
         Understanding::Stop { reply: STOPS.to_owned(), then }
     }
 

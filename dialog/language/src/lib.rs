@@ -78,6 +78,7 @@ mod reading;
 mod remedy;
 mod reply;
 mod report;
+mod rewritten;
 mod said;
 mod saying;
 mod search;
@@ -106,7 +107,7 @@ mod yes_no;
 use std::sync::Arc;
 
 use cohabit_cdf::{Catalog, ObjectId, Status};
-use cohabit_parser::Parser;
+use cohabit_parser::{Parser, Rewriter};
 
 pub use address::{Addressed, Roster};
 pub use alternatives::Alternative;
@@ -122,7 +123,7 @@ pub use oracle::Oracle;
 pub use sight::Gaze;
 pub use spoken::{SpokenNames, says_stop, says_stop_already};
 pub use stop::{Firmness, Stop, find_stop, mentions_stop};
-pub use understanding::{Asking, Clarification, Step, Understanding};
+pub use understanding::{Asking, Clarification, Effort, Step, Understanding};
 
 use crate::{
     confidence::Weights,
@@ -147,6 +148,7 @@ pub struct Language {
     costs: Arc<Costs>,
     asking: Asking,
     parser: Option<&'static Parser>,
+    rewriter: Option<fn() -> &'static Rewriter>,
 }
 
 impl Language {
@@ -161,6 +163,7 @@ impl Language {
             costs: Arc::new(Costs::new(&catalog)),
             asking: Asking::default(),
             parser: Some(Parser::builtin()),
+            rewriter: None,
             catalog,
         }
     }
@@ -181,6 +184,13 @@ impl Language {
     #[must_use]
     pub fn without_parser(self) -> Self {
         Self { parser: None, ..self }
+    }
+
+    /// The same with a rewriter, for what the grammar does not read to the last word: some tenths of a second each time. It is fetched when it is
+    /// first needed.
+    #[must_use]
+    pub fn with_rewriter(self, rewriter: fn() -> &'static Rewriter) -> Self {
+        Self { rewriter: Some(rewriter), ..self }
     }
 
     /// Whether it asks at all.
@@ -256,7 +266,16 @@ impl Language {
 
     fn conversation<'a>(&'a self, scene: &'a Known) -> Conversation<'a> {
         let Self { catalog, lexicon, devices, habits, .. } = self;
-        Conversation { catalog, lexicon, devices, habits, scene, judge: self.judge(), parser: self.parser }
+        Conversation {
+            catalog,
+            lexicon,
+            devices,
+            habits,
+            scene,
+            judge: self.judge(),
+            parser: self.parser,
+            rewriter: self.rewriter,
+        }
     }
 
     fn judge(&self) -> Judge<'_> {

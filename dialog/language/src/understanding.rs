@@ -179,6 +179,18 @@ pub enum Asking {
 
 named_in_a_word!(Asking: Never = "never", Unsure = "unsure", Always = "always");
 
+/// How much work goes into what people say.
+#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
+pub enum Effort {
+    /// That of the grammar and the parser: some milliseconds to tenths of a second.
+    Fast,
+    /// Also that of the rewriter, of what the grammar does not read to the last word: some tenths of a second more.
+    #[default]
+    Full,
+}
+
+named_in_a_word!(Effort: Fast = "fast", Full = "full");
+
 impl Step {
     /// The object that it is about.
     pub(crate) const fn object(&self) -> Option<ObjectId> {

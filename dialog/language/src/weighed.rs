@@ -10,7 +10,9 @@ use crate::{
     conversation::Conversation,
     describe,
     evidence::Feature,
-    lab, open_goals, parsed, question, reply, token,
+    lab, open_goals, parsed, question, reply,
+    rewritten::pooled,
+    token,
     understanding::{Asking, Clarification, Step, Understanding},
     wording::Wording,
 };
@@ -76,14 +78,26 @@ impl Conversation<'_> {
         {
             return understood;
         }
+        self.understand_with(utterance, &[], context)
+    }
+
+    /// The same of the whole utterance, given what the rewriter takes it for.
+    pub(crate) fn understand_with(
+        &self,
+        utterance: &str,
+        rewritten: &[Alternative],
+        context: &mut Context,
+    ) -> (Understanding, f32) {
+        let wording = self.wording(utterance);
         let by_grammar = self.read(utterance, context);
         if self.speaks_for_itself(&wording, &by_grammar) {
             let sureness = if self.parser.is_some() { 1.0 } else { BY_GRAMMAR };
             *context = by_grammar.context;
             return (by_grammar.understanding, sureness);
         }
-        // What has no name that is known may only be guessed at.
+        // What has no name that is known may only be guessed at; the rewriter knows more names.
         let unheard = match &by_grammar.understanding {
+            _ if !rewritten.is_empty() => &[],
             Understanding::Question { kind: Clarification::Appearance, about, .. } => {
                 match wording.unheard.as_slice() {
                     [] if self.lexicon.is_small_word(about) => &[],
@@ -101,11 +115,11 @@ impl Conversation<'_> {
         let unknown = clause::unknown_words(self.lexicon, &wording.words);
         // Of another language nothing is guessed.
         let said = wording.words.iter().filter(|word| !token::is_punctuation(word)).count();
-        if wording.unheard.len() >= SEVERAL && wording.unheard.len() * 2 >= said {
+        if rewritten.is_empty() && wording.unheard.len() >= SEVERAL && wording.unheard.len() * 2 >= said {
             *context = by_grammar.context;
             return (by_grammar.understanding, 0.0);
         }
-        let mut alternatives = self.alternatives_to(by_grammar.clone(), &wording, context);
+        let mut alternatives = pooled(self.alternatives_to(by_grammar.clone(), &wording, context), rewritten);
         let is_alone = alternatives.len() == 1;
         // `walk the dog` is no walk.
         if !unknown.is_empty() {
@@ -157,7 +171,11 @@ impl Conversation<'_> {
             alternatives.splice(0..0, by_sentences);
         }
         let unheard_here = alternatives.first().map(|one| self.unheard_about(one, &wording)).unwrap_or_default();
-        let unheard = if unheard == wording.unheard.as_slice() { unheard_here.as_slice() } else { unheard };
+        let unheard = if rewritten.is_empty() && unheard == wording.unheard.as_slice() {
+            unheard_here.as_slice()
+        } else {
+            unheard
+        };
         let likely = alternatives.first().filter(|one| one.probability >= one.least(unheard));
         // What is left of the mission is wanted anyway.
         let pursues = |one: &&Alternative| one.of_mission() && one.probability >= TO_PURSUE && unheard.is_empty();
@@ -258,7 +276,7 @@ impl Conversation<'_> {
 
 impl Alternative {
     /// How likely it must be meant to be carried out, or said.
-    fn least(&self, unheard: &[String]) -> f32 {
+    pub(crate) fn least(&self, unheard: &[String]) -> f32 {
         let is_known = unheard.is_empty();
         match &self.understanding {
             Understanding::Plan { .. } if self.is_proposed() => {

@@ -15,10 +15,7 @@ fn carried_out(talk: &mut Talk, utterance: &str) -> Vec<String> {
     while let Some(understanding) = next {
         all.push(text(&understanding, &talk.scene));
         let Understanding::Plan { steps, .. } = understanding else { break };
-        for step in &steps {
-            talk.context.note_outcome(step, Status::ActionSuccessful);
-        }
-        talk.scene = talk.language.expected(&talk.scene, &steps);
+        talk.carry_out(&steps);
         if let Some(goal) = talk.scene.goals.iter_mut().find(|goal| !goal.met) {
             goal.met = true;
         }

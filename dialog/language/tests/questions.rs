@@ -4,16 +4,9 @@
 
 mod support;
 
-use cohabit_cdf::{Status, Verb};
+use cohabit_cdf::Verb;
 use cohabit_language::{Step, Understanding};
 use support::Talk;
-
-fn carry_out(talk: &mut Talk, steps: &[Step]) {
-    for step in steps {
-        talk.context.note_outcome(step, Status::ActionSuccessful);
-    }
-    talk.scene = talk.language.expected(&talk.scene, steps);
-}
 
 /// Says these one after the other, does what is to be done, and gives the reply to the last.
 fn replied(marks: &[&str], said: &[&str]) -> String {
@@ -23,7 +16,7 @@ fn replied(marks: &[&str], said: &[&str]) -> String {
         let understanding = talk.language.understand(utterance, &talk.scene, &mut talk.context);
         reply = understanding.reply().to_owned();
         if let Understanding::Plan { steps, .. } = &understanding {
-            carry_out(&mut talk, steps);
+            talk.carry_out(steps);
         }
     }
     reply
@@ -162,7 +155,7 @@ fn what_is_to_be_told_is_told_after_what_is_to_be_done() {
         &mut talk.context,
     );
     let Understanding::Plan { steps, .. } = plan else { panic!("{plan:?}") };
-    carry_out(&mut talk, &steps);
+    talk.carry_out(&steps);
     let told = talk.language.carry_on(&talk.scene, &mut talk.context).unwrap();
     assert!(told.reply().starts_with("On the round table there are"), "{told:?}");
 }

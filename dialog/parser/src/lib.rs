@@ -22,6 +22,7 @@ mod meaning;
 mod network;
 pub mod request;
 mod reranker;
+mod rewriter;
 mod search;
 mod source;
 mod symbol;
@@ -33,6 +34,7 @@ use std::sync::LazyLock;
 pub use crate::{
     meaning::{Direction, Directions, Meaning, NUMBERS},
     reranker::Reranker,
+    rewriter::{Rewriter, Rewriting},
 };
 use crate::{network::Network, request::Request, source::Source, symbol::Symbol, tensors::Tensors, words::Vocabulary};
 

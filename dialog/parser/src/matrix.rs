@@ -61,7 +61,7 @@ fn round(rows: &[f32], length: usize) -> (Vec<i16>, Vec<f32>) {
 }
 
 /// The nearest whole number of one between -2¹¹ and 2¹¹; halves to even. Adding 1.5 · 2²³ leaves no place for a fraction.
-fn to_whole(value: f32) -> i16 {
+pub(crate) fn to_whole(value: f32) -> i16 {
     const SHIFT: f32 = 12_582_912.0;
     ((value + SHIFT) - SHIFT) as i16
 }

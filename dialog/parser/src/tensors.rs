@@ -4,10 +4,15 @@ use std::collections::HashMap;
 
 use safetensors::{Dtype, SafeTensors};
 
-use crate::{ModelError, matrix::Linear};
+use crate::{
+    ModelError,
+    matrix::{Linear, to_whole},
+};
 
 /// How many embedded numbers share a scale.
 const GROUP: usize = 48;
+/// The largest rounded weight.
+const LARGEST_WEIGHT: f32 = 127.0;
 
 /// The tensors of a model by their names.
 pub(crate) struct Tensors<'a> {
@@ -71,6 +76,22 @@ impl<'a> Tensors<'a> {
             return Err(ModelError::Shape(name.to_owned()));
         }
         Ok(Embedding { packed, scales, width })
+    }
+
+    /// A matrix of numbers of 4 bits, without biases: its rows are rounded again, to 8 bits with one scale.
+    pub(crate) fn packed_linear(&self, name: &str, inputs: usize) -> Result<Linear, ModelError> {
+        let rows = self.embedding(name, inputs)?;
+        let mut weights = Vec::with_capacity(rows.rows() * inputs);
+        let mut scales = Vec::with_capacity(rows.rows());
+        for row in 0..rows.rows() {
+            let values: Vec<f32> = rows.row(row).collect();
+            let largest = values.iter().fold(1e-9_f32, |largest, value| largest.max(value.abs()));
+            let factor = LARGEST_WEIGHT / largest;
+            weights.extend(values.iter().map(|value| to_whole(value * factor) as i8));
+            scales.push(largest / LARGEST_WEIGHT);
+        }
+        let biases = vec![0.0; scales.len()];
+        Ok(Linear::new(weights, scales, biases))
     }
 
     fn bytes(&self, name: &str, kind: Dtype) -> Result<&'a [u8], ModelError> {

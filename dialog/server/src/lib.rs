@@ -50,7 +50,7 @@ use cohabit_bus::{BusError, Pauses, Transport, message::CameraRecord};
 use cohabit_cdf::{Catalog, Layout, Mission};
 use serde_json::{Value, json};
 
-pub use cohabit_language::{Asking, Consulting, Interpreter, Knows, Language};
+pub use cohabit_language::{Asking, Consulting, Effort, Interpreter, Knows, Language};
 pub use cohabit_speech::VoiceSettings;
 pub use conversation::{Asked, Conversation, Reaction, TurnEnd};
 pub use driving::{Drivable, NotDrivable};
@@ -97,6 +97,8 @@ pub struct DialogConfig {
     pub knows: Knows,
     /// When it asks.
     pub asking: Asking,
+    /// How much work goes into what people say.
+    pub effort: Effort,
     /// Who else says what people mean, if anybody.
     pub interpreter: Option<Box<dyn Interpreter>>,
     /// When it is asked.
@@ -138,6 +140,16 @@ pub enum DialogError {
 /// How often the page learns of the world's state.
 const STATE_EVERY: Duration = Duration::from_millis(100);
 
+/// The robot's language.
+#[must_use]
+pub fn language(catalog: Arc<Catalog>, effort: Effort) -> Language {
+    let language = Language::new(catalog);
+    match effort {
+        Effort::Fast => language,
+        Effort::Full => language.with_rewriter(cohabit_rewriter::builtin),
+    }
+}
+
 /// Serves a session until `stop`; `ready` is given the page's address as soon as it can be opened.
 ///
 /// # Errors
@@ -165,7 +177,7 @@ pub fn serve(
     let hub = Arc::new(Hub::new(hello, views, config.on_first_frame));
     let journal = Journal::open(config.journal.as_deref());
     let (listener, place) = listen(config.listen, journal.past().place.as_ref())?;
-    let language = Language::new(Arc::clone(&catalog)).asking(config.asking);
+    let language = language(Arc::clone(&catalog), config.effort).asking(config.asking);
     let consulting = if config.interpreter.is_some() { config.consulting } else { Consulting::Never };
     let robots = Robots::new(&robots, config.knows, &language, &catalog, &layout, told, consulting)
         .with_mission(&mission.goal_text);

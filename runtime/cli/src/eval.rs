@@ -10,7 +10,7 @@ use std::{
 };
 
 use cohabit_cdf::Catalog;
-use cohabit_dialog::{Asking, Knows, Language};
+use cohabit_dialog::{Asking, Effort, Knows, Language};
 use cohabit_eval::{Caps, Played, Report, Settings, Style, Tally, Task, generate, play, pool, read_tasks};
 use indicatif::{ProgressBar, ProgressStyle};
 
@@ -48,6 +48,10 @@ pub struct Eval {
     /// When the robot asks: `never`, when it is `unsure`, or `always`, and before it does anything
     #[arg(long, value_name = "WHEN", default_value_t)]
     ask: Asking,
+    /// How much work goes into what people say: `full`, as in `play`, or `fast`, without the language model that rewrites it in
+    /// plain requests
+    #[arg(long, value_name = "EFFORT", default_value_t)]
+    understanding: Effort,
     /// Write a session log of each mission into this folder
     #[arg(long, value_name = "DIR")]
     record: Option<PathBuf>,
@@ -149,7 +153,7 @@ impl Eval {
         if self.made_up.missions == 0 {
             return Err(bad_input("--missions 0: at least one"));
         }
-        let tasks = generate(self.made_up.missions, self.seed, &language()).map_err(bad_input)?;
+        let tasks = generate(self.made_up.missions, self.seed, &self.language()).map_err(bad_input)?;
         if let Some(path) = &self.made_up.save {
             let mut out = create(path)?;
             tasks.iter().try_for_each(|task| writeln!(out, "{}", task.as_line()))?;
@@ -175,8 +179,13 @@ impl Eval {
         }
     }
 
+    /// The robot's language, of the built-in catalogue.
+    fn language(&self) -> Language {
+        cohabit_dialog::language(Arc::new(Catalog::builtin()), self.understanding)
+    }
+
     fn serve(&self) -> io::Result<()> {
-        let (settings, language) = (self.settings(), language());
+        let (settings, language) = (self.settings(), self.language());
         pool::serve(io::stdin().lock(), io::stdout().lock(), |task| {
             play(task, &settings, &language).map_err(io::Error::other)
         })
@@ -207,11 +216,6 @@ impl Eval {
         let caps = self.caps.map(|caps| caps.0);
         Ok(Report::new(&self.source(), self.seed, caps, workers, wall_s, missions))
     }
-}
-
-/// The robot's language, of the built-in catalogue.
-fn language() -> Language {
-    Language::new(Arc::new(Catalog::builtin()))
 }
 
 fn create(path: &Path) -> anyhow::Result<io::BufWriter<std::fs::File>> {

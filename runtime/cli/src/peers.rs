@@ -15,7 +15,7 @@ use anyhow::Context as _;
 use cohabit_bus::{CameraId, Session, Shm, message::Control};
 use cohabit_cdf::BodyRequest;
 use cohabit_dialog::{
-    Asking, Consulting, DialogConfig, DialogError, Drivable, Endpoint, HostName, Identity, Knows, Questionnaire,
+    Asking, Consulting, DialogConfig, DialogError, Drivable, Effort, Endpoint, HostName, Identity, Knows, Questionnaire,
 };
 use cohabit_engine::{Appearance, BuildError, CameraPlan, SessionPlan, Simulator};
 use cohabit_record::{Branch, LogError, RecordError, Recorder, SessionFacts};
@@ -267,6 +267,10 @@ pub struct Listening {
     /// When the robot asks: `never`, when it is `unsure`, or `always`, and before it does anything
     #[arg(long, value_name = "WHEN", default_value_t)]
     pub ask: Asking,
+    /// How much work goes into what people say: `full`, with a small language model that rewrites it in plain requests, some
+    /// tenths of a second each time, or `fast`, without
+    #[arg(long, value_name = "EFFORT", default_value_t)]
+    pub understanding: Effort,
     /// When the language model that COHABIT_MODEL_URL and COHABIT_MODEL name is asked what people mean: `never`, where the
     /// robot is `unsure`, or `always`
     #[arg(long, value_name = "WHEN", default_value_t)]
@@ -393,6 +397,7 @@ impl Dialog {
             hosts: self.listening.hosts.clone(),
             knows: self.listening.knows,
             asking: self.listening.ask,
+            effort: self.listening.understanding,
             consulting: self.listening.model,
             interpreter: Endpoint::from_environment().map_err(bad_input)?.map(|model| Box::new(model) as _),
             robots: self.robots.clone(),

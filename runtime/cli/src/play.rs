@@ -191,7 +191,7 @@ impl Play {
         branched: Option<Branch>,
     ) -> Noted {
         let minds = self.minds.iter().map(ToString::to_string).collect::<Vec<_>>().join(" ");
-        let Listening { drive, knows, ask, model: model_asked, names, voice, .. } = &self.listening;
+        let Listening { drive, knows, ask, understanding, model: model_asked, names, voice, .. } = &self.listening;
         let robots = robots.iter().map(u32::to_string).collect::<Vec<_>>().join(",");
         let settings = [
             ("agents", minds),
@@ -201,6 +201,7 @@ impl Play {
             ("renderer", self.rendering.to_string()),
             ("robots", robots),
             ("timing", self.timing.to_string()),
+            ("understanding", understanding.to_string()),
         ];
         let asked = questionnaires.iter().map(|one| one.name.as_str()).collect::<Vec<_>>().join(" ");
         let asked = (!asked.is_empty()).then_some(("questionnaires", asked));

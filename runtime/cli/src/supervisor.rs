@@ -80,8 +80,8 @@ impl Role {
     pub fn dialog(listening: &Listening, robots: &[u32]) -> Self {
         let (listen, port) = (listening.listen.to_string(), listening.port.to_string());
         let (drive, knows) = (listening.drive.to_string(), listening.knows.to_string());
-        let (ask, model) = (listening.ask.name(), listening.model.name());
-        let played = ["--drive", &drive, "--knows", &knows, "--ask", ask, "--model", model];
+        let (ask, model, effort) = (listening.ask.name(), listening.model.name(), listening.understanding.name());
+        let played = ["--drive", &drive, "--knows", &knows, "--ask", ask, "--model", model, "--understanding", effort];
         let arguments = ["--listen", &listen, "--port", &port].into_iter().chain(played);
         let names = listening.names.iter().flat_map(|name| ["--name".to_owned(), name.to_string()]);
         let robots = robots.iter().flat_map(|body| ["--robot".to_owned(), body.to_string()]);

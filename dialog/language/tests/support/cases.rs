@@ -4,7 +4,7 @@
 //! `! words`; or `said => plain request || another`, where what the grammar makes of a plain request in the same scene should come of it
 //! (`?` any question, `social` a reply, `none` nothing to be done).
 
-use cohabit_cdf::{Action, GoToTarget, Status, Verb};
+use cohabit_cdf::{Action, GoToTarget, Verb};
 use cohabit_language::{Clarification, Known, KnownObject, Step, Understanding};
 
 use super::{Talk, text};
@@ -174,13 +174,7 @@ pub fn before(case: &Case<'_>) -> Talk {
     let mut talk = Talk::new(&case.marks);
     let Some((_, earlier)) = case.said.split_last() else { return talk };
     for said in earlier {
-        let understanding = talk.language.understand(said, &talk.scene, &mut talk.context);
-        if let Understanding::Plan { steps, .. } = &understanding {
-            for step in steps {
-                talk.context.note_outcome(step, Status::ActionSuccessful);
-            }
-            talk.scene = talk.language.expected(&talk.scene, steps);
-        }
+        talk.say_and_do(said);
     }
     talk
 }

@@ -10,7 +10,7 @@ use std::{
 };
 
 use cohabit_cdf::{
-    Action, Catalog, Color, Fluid, GoToTarget, ObjectId, RoomId,
+    Action, Catalog, Color, Fluid, GoToTarget, ObjectId, RoomId, Status,
     state::{StateFlag, StateFlags},
 };
 use cohabit_language::{Asking, Context, Known, KnownGoal, KnownObject, KnownRobot, Language, Step, Understanding};
@@ -308,11 +308,15 @@ pub fn text(understanding: &Understanding, scene: &Known) -> String {
     }
 }
 
-/// The whole language; with `UNDERSTANDING=grammar` in the environment the grammar alone, to compare.
+/// The language with parser; with `UNDERSTANDING=grammar` in the environment the grammar alone, and with `UNDERSTANDING=rewriter` all of it, to
+/// compare.
 pub fn language(catalog: Arc<Catalog>) -> Language {
     let language = Language::new(catalog);
-    let is_grammar = std::env::var_os("UNDERSTANDING").is_some_and(|which| which == "grammar");
-    if is_grammar { language.without_parser() } else { language }
+    match std::env::var("UNDERSTANDING").as_deref() {
+        Ok("grammar") => language.without_parser(),
+        Ok("rewriter") => language.with_rewriter(cohabit_rewriter::builtin),
+        _ => language,
+    }
 }
 
 /// A conversation in the office.
@@ -346,6 +350,24 @@ impl Talk {
     pub fn choose(&mut self, instance: &str) -> String {
         let object = self.scene.objects.iter().find(|object| object.instance == instance).unwrap().id;
         text(&self.language.choose(object, &self.scene, &mut self.context), &self.scene)
+    }
+
+    /// These steps are done, as far as the language can tell.
+    pub fn carry_out(&mut self, steps: &[Step]) {
+        for step in steps {
+            self.context.note_outcome(step, Status::ActionSuccessful);
+        }
+        self.scene = self.language.expected(&self.scene, steps);
+    }
+
+    /// Says something, and has done what is to be done at once.
+    pub fn say_and_do(&mut self, utterance: &str) -> String {
+        let understanding = self.language.understand(utterance, &self.scene, &mut self.context);
+        let text = text(&understanding, &self.scene);
+        if let Understanding::Plan { steps, .. } = &understanding {
+            self.carry_out(steps);
+        }
+        text
     }
 
     pub fn say(&mut self, utterance: &str) -> String {

@@ -1,0 +1,41 @@
+//! Writes labelled utterances with the lines of the dialog before them, the robot's as it would speak now: what
+//! `dialog/parser/train/rewriter.py` learns from.
+//!
+//! ```text
+//! cargo run --release --manifest-path dialog/language/fit/Cargo.toml --bin contexts
+//! ```
+//!
+//! It writes `contexts/SET.jsonl` for each set of `dialog/language/tests/utterances/writers`, or for those that are named, an utterance a line.
+
+#[path = "../all_cores.rs"]
+mod all_cores;
+#[path = "../../../tests/support/mod.rs"]
+mod support;
+
+use std::{fs, path::Path};
+
+use serde_json::json;
+use support::cases::{self, Case};
+
+fn main() {
+    let named: Vec<String> = std::env::args().skip(1).collect();
+    let folder = |path: &str| Path::new(env!("CARGO_MANIFEST_DIR")).join(path);
+    fs::create_dir_all(folder("contexts")).expect("the folder can be made");
+    let files = fs::read_dir(folder("../tests/utterances/writers")).expect("the sets").flatten();
+    for path in files.map(|file| file.path()).filter(|path| path.extension().is_some_and(|kind| kind == "txt")) {
+        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        if !named.is_empty() && !named.contains(&name) {
+            continue;
+        }
+        let text = fs::read_to_string(&path).expect("a set");
+        let lines = all_cores::filter_map(&cases::cases(&text), |case| Some(format!("{}\n", context(case)?)));
+        println!("{name}: {} utterances", lines.len());
+        fs::write(folder("contexts").join(format!("{name}.jsonl")), lines.concat()).expect("the contexts can be written");
+    }
+}
+
+fn context(case: &Case<'_>) -> Option<serde_json::Value> {
+    let said = case.said.last()?;
+    let before = if case.said.len() > 1 { cases::before(case).context.lines().to_vec() } else { Vec::new() };
+    case.is_plain.then(|| json!({ "before": before, "said": said, "meant": case.expected }))
+}

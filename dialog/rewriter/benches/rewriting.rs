@@ -1,0 +1,31 @@
+//! `cargo bench -p cohabit-rewriter`: how long an utterance takes to rewrite.
+
+use std::time::Instant;
+
+use cohabit_parser::Said;
+
+fn main() {
+    let begun = Instant::now();
+    let rewriter = cohabit_rewriter::builtin();
+    println!("{} {}, one thread", std::env::consts::ARCH, env!("CARGO_PKG_VERSION"));
+    println!("loaded in {:.2} s", begun.elapsed().as_secs_f64());
+    let before = [
+        Said { by_robot: false, text: "pick up the white mug on the counter, would you?" },
+        Said { by_robot: true, text: "OK, picking up the mug. I have the mug." },
+    ];
+    for said in [
+        "turn it on",
+        "could you put it in the microwave for me please, it has gone cold",
+        "Lovely. Pop the mug in there now, careful not to spill it, then shut the door and give it a blast till it's good and hot.",
+    ] {
+        let mut seconds: Vec<f64> = Vec::new();
+        let mut written = String::new();
+        for _ in 0..7 {
+            let begun = Instant::now();
+            written = rewriter.rewrite(said, &before).first().map(|one| one.text.clone()).unwrap_or_default();
+            seconds.push(begun.elapsed().as_secs_f64());
+        }
+        seconds.sort_by(f64::total_cmp);
+        println!("{:.0} ms: {said} => {written}", 1e3 * seconds[seconds.len() / 2]);
+    }
+}

@@ -1,0 +1,49 @@
+//! What the rewriter writes is what the program that fitted it writes.
+#![allow(clippy::unwrap_used, missing_docs)]
+
+use cohabit_parser::Said;
+use serde_json::Value;
+
+/// How far the logarithm of a probability may be from that of the other program, whose sums are less exact.
+const TOLERANCE: f64 = 0.35;
+
+#[test]
+fn rewritings_are_those_of_the_program_that_fitted_it() {
+    let rows: Vec<Value> = serde_json::from_str(include_str!("rewritings.json")).unwrap();
+    assert!(rows.len() >= 40);
+    let mut alike = 0;
+    for row in &rows {
+        let before = row["before"].as_array().unwrap().iter();
+        let before: Vec<Said<'_>> =
+            before.map(|line| Said { by_robot: line[0].as_bool().unwrap(), text: line[1].as_str().unwrap() }).collect();
+        let rewritings = cohabit_rewriter::builtin().rewrite(row["said"].as_str().unwrap(), &before);
+        let wanted = row["text"].as_str().unwrap();
+        let same = rewritings.iter().find(|rewriting| rewriting.text == wanted);
+        let is_close = |probability: f32| {
+            (f64::from(probability).ln() - row["log_probability"].as_f64().unwrap()).abs() < TOLERANCE
+        };
+        if same.is_some_and(|same| is_close(same.probability)) {
+            alike += 1;
+        } else {
+            println!("{}: {wanted} {}, not {rewritings:?}", row["said"], row["log_probability"]);
+        }
+    }
+    // Where two ways are all but as likely, sums in another order may choose the other.
+    assert!(alike * 10 >= rows.len() * 9, "{alike} of {}", rows.len());
+}
+
+#[test]
+fn any_text_is_taken() {
+    let long = "please ".repeat(400);
+    for said in ["", " \n", "?", "\u{0}\u{1F600}", "é", &long] {
+        let before = [Said { by_robot: true, text: &long }, Said { by_robot: false, text: said }];
+        let rewritings = cohabit_rewriter::builtin().rewrite(said, &before);
+        assert!(rewritings.iter().all(|one| (0.0..=1.0).contains(&one.probability)), "{rewritings:?}");
+    }
+}
+
+#[test]
+fn the_same_words_give_the_same_bits() {
+    let rewrite = || cohabit_rewriter::builtin().rewrite("stick the kettle on, would you, and fetch me a mug", &[]);
+    assert_eq!(rewrite(), rewrite());
+}
