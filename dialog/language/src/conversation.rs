@@ -70,19 +70,23 @@ impl Conversation<'_> {
         {
             return (self.stopped(&rest, context), 1.0);
         }
-        self.understand_new(utterance, context)
+        self.understand_whole(utterance, context)
     }
 
-    /// What the rewriter surely takes it for, or what most speaks for.
-    fn understand_new(&self, utterance: &str, context: &mut Context) -> (Understanding, f32) {
-        let rewritten = self.rewritten(utterance, context);
+    /// What the rewriter surely takes a whole utterance for, or what most speaks for.
+    fn understand_whole(&self, utterance: &str, context: &mut Context) -> (Understanding, f32) {
+        if self.rewriter.is_none() {
+            return self.understand_weighed(utterance, context);
+        }
+        let wording = self.wording(utterance);
+        let rewritten = self.rewritten(&wording, context);
         match rewritten::sure(&rewritten) {
             Some(sure) => {
                 *context = sure.context.clone();
                 (sure.understanding.clone(), sure.probability)
             }
             None if rewritten.is_empty() => self.understand_weighed(utterance, context),
-            None => self.understand_with(utterance, &rewritten, context),
+            None => self.understand_weighed_with(&wording, &rewritten, context),
         }
     }
 
@@ -98,7 +102,7 @@ impl Conversation<'_> {
         context.failed = None;
         context.search = None;
         context.later.clear();
-        let then = self.asks_for_anything(rest).then(|| Box::new(self.understand_new(rest, context).0));
+        let then = self.asks_for_anything(rest).then(|| Box::new(self.understand_whole(rest, context).0));
         Understanding::Stop { reply: STOPS.to_owned(), then }
     }
 

@@ -57,10 +57,7 @@ impl Conversation<'_> {
         static READ: LazyLock<Cache<Vec<Reading>>> = LazyLock::new(Cache::default);
         let Some(parser) = self.parser else { return Vec::new() };
         let lines = lines(context);
-        let before = lines.iter().map(|line| format!("{}{}\n", if line.by_robot { '<' } else { '>' }, line.text));
-        READ.get_or_insert_with(&before.chain([utterance.to_owned()]).collect::<String>(), || {
-            parser.parse(utterance, &lines)
-        })
+        READ.get_or_insert_with(&transcript(utterance, &lines), || parser.parse(utterance, &lines))
     }
 
     /// Whether the parser rather sees something that is asked for, or asked.
@@ -91,10 +88,7 @@ impl Conversation<'_> {
             if matches!(social, Social::Agreement | Social::Praise) && context.asks_whether() {
                 return Some((self.understand_said("yes", context), 1.0));
             }
-            let said = self.understand_said(utterance, &mut context.clone());
-            let is_answer = matches!(said, Understanding::Answer { .. });
-            let answer = if is_answer { said } else { Understanding::answer(small_talk(*social)) };
-            return Some((answer, 1.0));
+            return Some((self.reply_to_talk(utterance, *social, context), 1.0));
         }
         if let [Request { act: Act::Goal(wish), conditions, .. }] = asked.as_slice()
             && conditions.is_empty()
@@ -115,6 +109,13 @@ impl Conversation<'_> {
             None => understanding,
         };
         (!is_lost).then_some((understanding, certainty))
+    }
+
+    /// What is said to who asks for nothing: what the grammar knows to say, or what suits such talk.
+    pub(crate) fn reply_to_talk(&self, utterance: &str, social: Social, context: &Context) -> Understanding {
+        let said = self.understand_said(utterance, &mut context.clone());
+        let is_answer = matches!(said, Understanding::Answer { .. });
+        if is_answer { said } else { Understanding::answer(small_talk(social)) }
     }
 
     /// A request with names for what the grammar cannot read of its descriptions, and how certain these names are.
@@ -254,6 +255,12 @@ pub(crate) fn unknown_words(request: &Request) -> Option<&str> {
         Act::Do(Command::Unknown(words)) => Some(words),
         _ => None,
     }
+}
+
+/// An utterance behind the lines before it, as text.
+pub(crate) fn transcript(utterance: &str, lines: &[cohabit_parser::Said<'_>]) -> String {
+    let before = lines.iter().map(|line| format!("{}{}\n", if line.by_robot { '<' } else { '>' }, line.text));
+    before.chain([utterance.to_owned()]).collect()
 }
 
 /// How much was made of an utterance.

@@ -13,7 +13,7 @@ use crate::{
     context::Context,
     conversation::Conversation,
     evidence::Evidence,
-    parsed::{Worth, small_talk, worth},
+    parsed::{Worth, small_talk, transcript, worth},
     token,
     understanding::Understanding,
     wording::Wording,
@@ -28,20 +28,16 @@ const OTHERS: f32 = 0.5;
 
 impl Conversation<'_> {
     /// What the rewriter takes it for, the likeliest first; nothing of what the grammar reads to the last word, or others need not be asked about.
-    pub(crate) fn rewritten(&self, utterance: &str, context: &Context) -> Vec<Alternative> {
-        if self.rewriter.is_none() {
-            return Vec::new();
-        }
-        let wording = self.wording(utterance);
-        let by_grammar = self.read(utterance, context);
-        let is_plain = self.is_plain(&wording) && worth(&by_grammar.understanding) >= Worth::Answered;
+    pub(crate) fn rewritten(&self, wording: &Wording<'_>, context: &Context) -> Vec<Alternative> {
+        let by_grammar = self.read(wording.utterance, context);
+        let is_plain = self.is_plain(wording) && worth(&by_grammar.understanding) >= Worth::Answered;
         // An unknown verb is no deed, and of another language nothing is guessed.
         let said = wording.words.iter().filter(|word| !token::is_punctuation(word)).count();
         let is_strange = !wording.unheard.is_empty() && wording.unheard.len() * STRANGE >= said;
-        if is_plain || is_strange || self.speaks_for_itself(&wording, &by_grammar) {
+        if is_plain || is_strange || self.speaks_for_itself(wording, &by_grammar) {
             return Vec::new();
         }
-        self.ways_of_rewriter(&wording, context)
+        self.ways_of_rewriter(wording, context)
     }
 
     fn ways_of_rewriter(&self, wording: &Wording<'_>, context: &Context) -> Vec<Alternative> {
@@ -88,27 +84,20 @@ impl Conversation<'_> {
 
     /// What is said to who asks for nothing.
     fn small_talk_about(&self, wording: &Wording<'_>, context: &Context) -> Understanding {
-        let said = self.understand_said(wording.utterance, &mut context.clone());
-        if matches!(said, Understanding::Answer { .. }) {
-            return said;
-        }
         let readings = self.readings(wording.utterance, context);
         let requests = readings.iter().flat_map(|reading| &reading.requests);
         let kind = requests.rev().find_map(|request| match request.act {
             Act::Social(social) => Some(social),
             _ => None,
         });
-        Understanding::answer(small_talk(kind.unwrap_or(Social::SmallTalk)))
+        self.reply_to_talk(wording.utterance, kind.unwrap_or(Social::SmallTalk), context)
     }
 
     fn rewritings(&self, utterance: &str, context: &Context) -> Vec<Rewriting> {
         static WRITTEN: LazyLock<Cache<Vec<Rewriting>>> = LazyLock::new(Cache::default);
         let Some(rewriter) = self.rewriter else { return Vec::new() };
         let lines = lines(context);
-        let before = lines.iter().map(|line| format!("{}{}\n", if line.by_robot { '<' } else { '>' }, line.text));
-        WRITTEN.get_or_insert_with(&before.chain([utterance.to_owned()]).collect::<String>(), || {
-            rewriter().rewrite(utterance, &lines)
-        })
+        WRITTEN.get_or_insert_with(&transcript(utterance, &lines), || rewriter().rewrite(utterance, &lines))
     }
 }
 

@@ -78,19 +78,18 @@ impl Conversation<'_> {
         {
             return understood;
         }
-        self.understand_with(utterance, &[], context)
+        self.understand_weighed_with(&wording, &[], context)
     }
 
     /// The same of the whole utterance, given what the rewriter takes it for.
-    pub(crate) fn understand_with(
+    pub(crate) fn understand_weighed_with(
         &self,
-        utterance: &str,
+        wording: &Wording<'_>,
         rewritten: &[Alternative],
         context: &mut Context,
     ) -> (Understanding, f32) {
-        let wording = self.wording(utterance);
-        let by_grammar = self.read(utterance, context);
-        if self.speaks_for_itself(&wording, &by_grammar) {
+        let by_grammar = self.read(wording.utterance, context);
+        if self.speaks_for_itself(wording, &by_grammar) {
             let sureness = if self.parser.is_some() { 1.0 } else { BY_GRAMMAR };
             *context = by_grammar.context;
             return (by_grammar.understanding, sureness);
@@ -119,14 +118,14 @@ impl Conversation<'_> {
             *context = by_grammar.context;
             return (by_grammar.understanding, 0.0);
         }
-        let mut alternatives = pooled(self.alternatives_to(by_grammar.clone(), &wording, context), rewritten);
+        let mut alternatives = pooled(self.alternatives_to(by_grammar.clone(), wording, context), rewritten);
         let is_alone = alternatives.len() == 1;
         // `walk the dog` is no walk.
         if !unknown.is_empty() {
             alternatives.retain(|one| !one.only_moves());
         }
         // Who only wants to know something wants an answer, whatever it is about.
-        let inquires = self.inquires(&wording, context);
+        let inquires = self.inquires(wording, context);
         let is_held_back = |one: &Alternative| inquires && one.understanding.commits();
         let (held_back, mut alternatives): (Vec<_>, Vec<_>) = alternatives.into_iter().partition(is_held_back);
         let is_shaped = question::is_shaped(self.lexicon, &wording.tidied);
@@ -166,11 +165,11 @@ impl Conversation<'_> {
         if highest < SURELY_ALL || leaves_out {
             // They leave nothing out.
             let is_likely = |one: &Alternative| one.probability > highest || one.probability >= TO_MOVE;
-            let by_sentences = self.by_sentences(&wording, context);
+            let by_sentences = self.by_sentences(wording, context);
             let by_sentences = by_sentences.filter(|one| is_likely(one) && !is_held_back(one));
             alternatives.splice(0..0, by_sentences);
         }
-        let unheard_here = alternatives.first().map(|one| self.unheard_about(one, &wording)).unwrap_or_default();
+        let unheard_here = alternatives.first().map(|one| self.unheard_about(one, wording)).unwrap_or_default();
         let unheard = if rewritten.is_empty() && unheard == wording.unheard.as_slice() {
             unheard_here.as_slice()
         } else {
@@ -183,7 +182,7 @@ impl Conversation<'_> {
             *context = likeliest.context.clone();
             return (likeliest.understood(unheard), likeliest.probability);
         }
-        if let Some(first) = self.first_of(&wording, context) {
+        if let Some(first) = self.first_of(wording, context) {
             return first;
         }
         // `do you know how to go there?` may well want it done: what is likely enough is asked about.

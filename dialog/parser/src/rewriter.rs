@@ -110,6 +110,7 @@ impl Rewriter {
         let mut memories: Vec<Memory> = live.iter().map(|_| self.network.begin()).collect();
         for _ in 1..MOST_WRITTEN {
             let best = finished.first().map_or(f32::NEG_INFINITY, |way| way.log_probability);
+            // The likeliest stand first, so that the last ones go.
             live.retain(|(_, way)| way.log_probability > best + LEAST_LOG_RATIO);
             if live.is_empty() || finished.len() >= BEAM {
                 break;

@@ -21,6 +21,7 @@ from safetensors.torch import load_file, save_file
 import corpus
 import language_model
 from language_model import END, LanguageModel
+from rerank import slip
 
 SEED = 1
 BATCH, BATCHES_AHEAD, WARM_UP = 32, 12, 60
@@ -107,7 +108,7 @@ class Samples:
         if not by_words and chance() < 0.12:
             said, label = self.with_another(said, label)
         if chance() < 0.15:
-            said = " ".join(self.slip(word) if chance() < 0.1 else word for word in said.split(" "))
+            said = " ".join(slip(self.random, word) if chance() < 0.1 else word for word in said.split(" "))
         if chance() < 0.15:
             said = re.sub(r"[.,!?;:]", "", said)
         return language_model.prompt(before, said, by_words), [*language_model.tokens(label)[:MOST_WRITTEN], END]
@@ -120,13 +121,6 @@ class Samples:
         pause = self.random.choice([". ", ". ", ", ", ", ", " and ", ". then ", " then ", " ... "])
         asked = [one for one in (label, labels[0]) if one != "social"]
         return said.rstrip(" .") + pause + other, "; ".join(asked) or "social"
-
-    def slip(self, word):
-        if len(word) < 4 or not word.isalpha():
-            return word
-        at = self.random.randrange(1, len(word) - 1)
-        swapped = word[:at] + word[at + 1] + word[at] + word[at + 2 :]
-        return self.random.choice([word[:at] + word[at + 1 :], swapped, word[:at] + word[at] + word[at:]])
 
 
 def train(model, samples, given):

@@ -9,28 +9,24 @@
 
 #[path = "../all_cores.rs"]
 mod all_cores;
+#[path = "../sets.rs"]
+mod sets;
 #[path = "../../../tests/support/mod.rs"]
 mod support;
 
-use std::{fs, path::Path};
+use std::fs;
 
 use serde_json::json;
 use support::cases::{self, Case};
 
 fn main() {
     let named: Vec<String> = std::env::args().skip(1).collect();
-    let folder = |path: &str| Path::new(env!("CARGO_MANIFEST_DIR")).join(path);
-    fs::create_dir_all(folder("contexts")).expect("the folder can be made");
-    let files = fs::read_dir(folder("../tests/utterances/writers")).expect("the sets").flatten();
-    for path in files.map(|file| file.path()).filter(|path| path.extension().is_some_and(|kind| kind == "txt")) {
-        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        if !named.is_empty() && !named.contains(&name) {
-            continue;
-        }
-        let text = fs::read_to_string(&path).expect("a set");
+    let contexts = sets::folder("contexts");
+    fs::create_dir_all(&contexts).expect("the folder can be made");
+    for (name, text) in sets::read(&["../tests/utterances/writers"], &named) {
         let lines = all_cores::filter_map(&cases::cases(&text), |case| Some(format!("{}\n", context(case)?)));
         println!("{name}: {} utterances", lines.len());
-        fs::write(folder("contexts").join(format!("{name}.jsonl")), lines.concat()).expect("the contexts can be written");
+        fs::write(contexts.join(format!("{name}.jsonl")), lines.concat()).expect("the contexts can be written");
     }
 }
 

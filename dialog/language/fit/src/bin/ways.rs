@@ -8,10 +8,12 @@
 
 #[path = "../all_cores.rs"]
 mod all_cores;
+#[path = "../sets.rs"]
+mod sets;
 #[path = "../../../tests/support/mod.rs"]
 mod support;
 
-use std::{fs, path::Path};
+use std::fs;
 
 use cohabit_cdf::{Action, Verb};
 use cohabit_language::{Evidence, Understanding};
@@ -24,22 +26,15 @@ const LOOKED_AT_WEIGHT: f64 = 0.3;
 
 fn main() {
     let named: Vec<String> = std::env::args().skip(1).collect();
-    let folder = |path: &str| Path::new(env!("CARGO_MANIFEST_DIR")).join(path);
-    fs::create_dir_all(folder("ways")).expect("the folder can be made");
-    for sets in ["../tests/utterances", "../tests/utterances/writers"] {
-        let files = fs::read_dir(folder(sets)).expect("the sets").flatten().map(|file| file.path());
-        for path in files.filter(|path| path.extension().is_some_and(|kind| kind == "txt")) {
-            let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-            if name == "off_domain" || !named.is_empty() && !named.contains(&name) {
-                continue;
-            }
-            let text = fs::read_to_string(&path).expect("a set");
-            let weight = if LOOKED_AT.contains(&&*name) { LOOKED_AT_WEIGHT } else { 1.0 };
-            let cases = cases::cases(&text);
-            let lines = all_cores::filter_map(&cases, |case| Some(format!("{}\n", ways(case, weight)?)));
-            println!("{name}: {} utterances", lines.len());
-            fs::write(folder("ways").join(format!("{name}.jsonl")), lines.concat()).expect("the ways can be written");
-        }
+    let folder = sets::folder("ways");
+    fs::create_dir_all(&folder).expect("the folder can be made");
+    let sets = sets::read(&["../tests/utterances", "../tests/utterances/writers"], &named);
+    for (name, text) in sets.into_iter().filter(|(name, _)| name != "off_domain") {
+        let weight = if LOOKED_AT.contains(&&*name) { LOOKED_AT_WEIGHT } else { 1.0 };
+        let cases = cases::cases(&text);
+        let lines = all_cores::filter_map(&cases, |case| Some(format!("{}\n", ways(case, weight)?)));
+        println!("{name}: {} utterances", lines.len());
+        fs::write(folder.join(format!("{name}.jsonl")), lines.concat()).expect("the ways can be written");
     }
 }
 
