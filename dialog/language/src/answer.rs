@@ -166,10 +166,15 @@ impl Answerer<'_> {
     }
 
     fn filling(&self, id: ObjectId) -> String {
-        match self.scene.object(id).map(|object| object.fluid) {
-            Some(Fluid::None) | None => String::new(),
-            Some(fluid) => format!(" with {} in it", fluid.name().to_lowercase()),
+        let Some(object) = self.scene.object(id) else { return String::new() };
+        let mut filling: Vec<String> = Vec::new();
+        if object.has(StateFlag::Cereal) {
+            filling.push("cereal".to_owned());
         }
+        if object.fluid != Fluid::None {
+            filling.push(object.fluid.name().to_lowercase());
+        }
+        if filling.is_empty() { String::new() } else { format!(" with {} in it", describe::list(&filling, "and")) }
     }
 
     fn robot(&self) -> Understanding {
@@ -582,6 +587,9 @@ impl Answerer<'_> {
         let (start, place) = (describe::sentence(preposition), self.short(id));
         let start = start.trim_end_matches('.');
         if inside.is_empty() {
+            if let Some(note) = self.scene.object(id).filter(|object| !object.text.is_empty()) {
+                return self.read_out(note);
+            }
             let filling = self.filling(id);
             if filling.is_empty() {
                 let text = format!("I know of nothing {preposition} {place}.");
@@ -620,6 +628,12 @@ impl Answerer<'_> {
         Understanding::whether(true, text, near.iter().map(|other| other.id).collect())
     }
 
+    fn read_out(&self, note: &KnownObject) -> Understanding {
+        let the = describe::sentence(&self.full(note.id));
+        let text = format!("{} says: \"{}\"", the.trim_end_matches('.'), note.text);
+        Understanding::whether(true, text, vec![note.id])
+    }
+
     fn text(&self, phrase: Option<&Phrase>) -> Understanding {
         let notes = || self.scene.objects.iter().filter(|object| !object.text.is_empty());
         let of_phrase = phrase.filter(|phrase| !phrase.is_empty()).and_then(|phrase| {
@@ -630,11 +644,7 @@ impl Answerer<'_> {
             notes().min_by(|a, b| self.scene.distance_m(a).total_cmp(&self.scene.distance_m(b)).then(a.id.cmp(&b.id)))
         };
         match of_phrase.filter(|object| !object.text.is_empty()).or_else(nearest) {
-            Some(note) => {
-                let the = describe::sentence(&self.full(note.id));
-                let text = format!("{} says: \"{}\"", the.trim_end_matches('.'), note.text);
-                Understanding::whether(true, text, vec![note.id])
-            }
+            Some(note) => self.read_out(note),
             None => {
                 let text = "I know of nothing written here. I can look at a note if you point me to one.";
                 Understanding::whether(false, text, Vec::new())

@@ -114,12 +114,6 @@ impl Ask<'_> {
 const UNKNOWN: &str = "I do not know of";
 const UNSEEN: &str = "I have not seen";
 
-/// Whether it asks because nothing that it knows is as described.
-pub(crate) fn is_mismatch(understanding: &Understanding) -> bool {
-    let Understanding::Question { text, .. } = understanding else { return false };
-    [UNKNOWN, UNSEEN].iter().any(|start| text.starts_with(start))
-}
-
 /// What an answer that names a part tells: the entropy of the parts.
 fn bits(parts: &BTreeMap<String, usize>) -> f32 {
     let all: usize = parts.values().sum();

@@ -3,7 +3,6 @@
 use cohabit_cdf::ObjectId;
 
 use crate::{
-    answers::LEAVES,
     ask, chatter,
     clause::{self, Clause, Part},
     context::{Consent, Context, Pending, Role, Slot},
@@ -20,8 +19,8 @@ use crate::{
     understanding::Understanding,
 };
 
-/// How likely a candidate must be to be clearly the one described.
-const CLEARLY: f32 = 0.6;
+/// What it says that is to do none of what it asked about.
+const LEAVES: &str = "All right, I leave it.";
 
 /// A request that waits for what one of its phrases means.
 pub(crate) struct Open {
@@ -102,6 +101,15 @@ impl Conversation<'_> {
         }
     }
 
+    /// Whether it is an answer to the robot's own question.
+    pub(crate) fn answers(&self, words: &[String], context: &Context) -> bool {
+        let parts = clause::parts(self.lexicon, self.catalog, words);
+        let mut then = context.clone();
+        context.pending.is_some()
+            && (self.answer_to_pending(words, &parts, &mut then).is_some()
+                || self.answered_first(words, context.pending.as_ref(), &mut context.clone()).is_some())
+    }
+
     /// What is to be done if an answer comes first, and then remarks, or what else is to be done: `the robot one, like I said`.
     pub(crate) fn answered_first(
         &self,
@@ -111,7 +119,7 @@ impl Conversation<'_> {
     ) -> Option<Understanding> {
         let end = words.iter().position(|word| token::is_punctuation(word)).filter(|end| *end > 0)?;
         let (first, rest) = words.split_at(end);
-        let mut then = Context { pending: pending.cloned(), ..context.clone() };
+        let mut then = Context { pending: pending.cloned(), later: Vec::new(), ..context.clone() };
         let understanding = match pending? {
             Pending::Lab { words: before, at } => {
                 let room = lab::answered(self.lexicon, self.scene, first)?;
@@ -128,6 +136,8 @@ impl Conversation<'_> {
             .filter(|part| self.asks_for_more_than_agreed(part))
             .map(token::sentence)
             .collect();
+        let own = std::mem::take(&mut then.later);
+        then.later = context.later.iter().cloned().chain(own).collect();
         if !more.is_empty() {
             then.later.push(more.join(". "));
         }
@@ -139,7 +149,7 @@ impl Conversation<'_> {
     fn asks_for_more_than_agreed(&self, part: &[String]) -> bool {
         let is_new = |clause: &Clause| {
             let goes = matches!(clause.intent, Intent::GoTo | Intent::Travel | Intent::Find | Intent::Look);
-            chatter::is_clear(clause) && (!goes || !self.names_in(part).is_empty())
+            chatter::is_clear(clause) && (!goes || self.names_anything(part))
         };
         let parts = clause::parts(self.lexicon, self.catalog, part);
         parts.iter().any(|part| matches!(part, Part::Clause(clause) if is_new(clause)))
@@ -274,9 +284,6 @@ impl Conversation<'_> {
                 .find(|left| left.len() == 1)
                 .unwrap_or_default();
         }
-        if left.is_empty() && !is_command && !self.is_aside(words) && !self.names_another(words) {
-            left.extend(self.most_like(words, candidates));
-        }
         match left.as_slice() {
             [one] => Some(self.settle(open, *one, context)),
             [] if is_command || self.is_aside(words) => None,
@@ -286,12 +293,6 @@ impl Conversation<'_> {
                 Some(self.ask_which(open, candidates.to_vec(), context))
             }
         }
-    }
-
-    /// The candidate that the words describe by use or look, if they clearly describe one.
-    fn most_like(&self, words: &[String], candidates: &[ObjectId]) -> Option<ObjectId> {
-        let likely = self.likely_candidates(&words.join(" "), candidates);
-        likely.into_iter().find(|(_, probability)| *probability > CLEARLY).map(|(id, _)| id)
     }
 
     /// Whether it says where something is, or what: `the purple one` alone is no help.

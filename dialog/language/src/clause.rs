@@ -230,11 +230,6 @@ pub(crate) fn joined(clauses: Vec<Clause>) -> Vec<Clause> {
     joined
 }
 
-/// Whether one of these parts says what is not to be done.
-pub(crate) fn forbid(parts: &[Part]) -> bool {
-    parts.iter().any(|part| matches!(part, Part::Forbidden(_)))
-}
-
 /// `fill the bowl with cereal`: what can be carried is poured into it.
 pub(crate) fn poured(catalog: &Catalog, mut clause: Clause) -> Clause {
     let is_carried =
@@ -255,12 +250,6 @@ pub(crate) fn poured(catalog: &Catalog, mut clause: Clause) -> Clause {
 /// The words between cuts.
 pub(crate) fn segments<'a>(lexicon: &Lexicon, words: &'a [String]) -> Vec<&'a [String]> {
     cuts(lexicon, words).into_iter().map(|cut| &words[cut]).collect()
-}
-
-/// The words between all pauses and joints, whatever stands there.
-pub(crate) fn between_breaks(words: &[String]) -> Vec<&[String]> {
-    let is_break = |word: &String| token::is_punctuation(word) || matches!(word.as_str(), "and" | "then");
-    words.split(is_break).filter(|part| !part.is_empty()).collect()
 }
 
 /// Cuts at sentence ends, and at `and` or a comma before a verb.

@@ -272,17 +272,6 @@ fn with_copula(lexicon: &Lexicon, words: &[String]) -> Vec<String> {
     words.iter().enumerate().flat_map(spelt).collect()
 }
 
-/// Where a condition begins, how many words say so, and whether the request is for when it holds.
-/// Whether something is asked for on a condition.
-pub(crate) fn is_conditional(lexicon: &Lexicon, words: &[String]) -> bool {
-    condition_at(lexicon, words).is_some() || lexicon.conditions.occurs_in(words)
-}
-
-/// Whether words say what is to be done where a condition does not hold.
-pub(crate) fn has_otherwise(lexicon: &Lexicon, words: &[String]) -> bool {
-    lexicon.ifs.otherwise.occurs_in(words)
-}
-
 fn condition_at(lexicon: &Lexicon, words: &[String]) -> Option<(usize, usize, bool)> {
     let ifs = &lexicon.ifs;
     (0..words.len()).find_map(|at| {
@@ -309,4 +298,14 @@ fn trimmed_end(words: &[String]) -> Vec<String> {
     let is_joint = |word: &String| token::is_punctuation(word) || matches!(word.as_str(), "and" | "then" | "but");
     let end = words.iter().rposition(|word| !is_joint(word)).map_or(0, |end| end + 1);
     words[..end].to_vec()
+}
+
+/// Whether something is asked for on a condition.
+pub(crate) fn is_conditional(lexicon: &Lexicon, words: &[String]) -> bool {
+    condition_at(lexicon, words).is_some() || lexicon.conditions.occurs_in(words)
+}
+
+/// Whether words say what is to be done where a condition does not hold.
+pub(crate) fn has_otherwise(lexicon: &Lexicon, words: &[String]) -> bool {
+    lexicon.ifs.otherwise.occurs_in(words)
 }

@@ -302,6 +302,19 @@ impl Context {
         understanding
     }
 
+    /// The same after an answer to `open`, which may have left more for later by itself; a guess has with it what was to follow.
+    pub(crate) fn keep_both(
+        &mut self,
+        later: Vec<String>,
+        open: Option<&Pending>,
+        understanding: Understanding,
+    ) -> Understanding {
+        let own = std::mem::take(&mut self.later);
+        let is_guess = matches!(open, Some(Pending::Guess { .. }));
+        let all = if is_guess { own } else { later.into_iter().chain(own).collect() };
+        self.keep(all, understanding)
+    }
+
     /// What this conversation is about to do with these steps, to be asked about first.
     pub(crate) fn guess(&self, steps: &[Step]) -> Guess {
         let Self { search, later, request, asked, .. } = self.clone();
@@ -335,18 +348,6 @@ impl Context {
         self.search = None;
         self.running.clear();
         self.pending = Some(Pending::Search { clauses: self.request.clone() });
-    }
-
-    /// Whether the robot waits for a yes or a no.
-    pub(crate) fn asks_whether(&self) -> bool {
-        match &self.pending {
-            Some(Pending::Which { candidates, .. }) => candidates.len() == 1,
-            Some(Pending::Offer { plans }) => plans.len() == 1,
-            Some(Pending::Guess { guesses }) => guesses.len() == 1,
-            Some(Pending::PutDown { .. } | Pending::Search { .. }) => true,
-            Some(Pending::Where { .. } | Pending::Look { .. } | Pending::Direction { .. } | Pending::Lab { .. })
-            | None => false,
-        }
     }
 
     /// Whether a plan or a search is under way.

@@ -2,7 +2,6 @@
 //! requests.
 
 use cohabit_cdf::{Catalog, ObjectId};
-use cohabit_parser::{Parser, Rewriter};
 
 use crate::{
     amend,
@@ -26,8 +25,10 @@ use crate::{
     plan::{Fault, Planner},
     process::Devices,
     question::{self, QuestionKind},
-    remedy, reply, rewritten,
+    remedy, reply,
+    rewritten::Rewrite,
     search::Search,
+    spelling,
     stop::{self, Firmness},
     tidy,
     token::{self, MAX_CHARS},
@@ -43,8 +44,7 @@ pub(crate) struct Conversation<'a> {
     pub(crate) habits: &'a Habits,
     pub(crate) scene: &'a Known,
     pub(crate) judge: Judge<'a>,
-    pub(crate) parser: Option<&'a Parser>,
-    pub(crate) rewriter: Option<fn() -> &'static Rewriter>,
+    pub(crate) rewriter: Option<Rewrite>,
 }
 
 impl Conversation<'_> {
@@ -63,40 +63,11 @@ impl Conversation<'_> {
         if let Some(stop) = stop::find_stop(utterance).filter(|stop| is_heeded(stop.firmness, context)) {
             return (self.stopped(&stop.rest, context), 1.0);
         }
-        // A robot that does nothing need not stop.
-        if context.is_busy()
-            && !stop::denies_stop(utterance)
-            && let Some(rest) = self.likely_stop(utterance, context)
-        {
-            return (self.stopped(&rest, context), 1.0);
-        }
         self.understand_whole(utterance, context)
     }
 
-    /// What the rewriter surely takes a whole utterance for, or what most speaks for.
-    fn understand_whole(&self, utterance: &str, context: &mut Context) -> (Understanding, f32) {
-        if self.rewriter.is_none() {
-            return self.understand_weighed(utterance, context);
-        }
-        let wording = self.wording(utterance);
-        let rewritten = self.rewritten(&wording, context);
-        match rewritten::sure(&rewritten) {
-            Some(sure) => {
-                *context = sure.context.clone();
-                (sure.understanding.clone(), sure.probability)
-            }
-            None if rewritten.is_empty() => self.understand_weighed(utterance, context),
-            None => self.understand_weighed_with(&wording, &rewritten, context),
-        }
-    }
-
-    /// What speaks for itself, or what most speaks for.
-    pub(crate) fn understand_best(&self, utterance: &str, context: &mut Context) -> Understanding {
-        self.understand_weighed(utterance, context).0
-    }
-
     /// It stops, and then does what else was asked for.
-    fn stopped(&self, rest: &str, context: &mut Context) -> Understanding {
+    pub(crate) fn stopped(&self, rest: &str, context: &mut Context) -> Understanding {
         context.pending = None;
         context.running.clear();
         context.failed = None;
@@ -165,8 +136,10 @@ impl Conversation<'_> {
             && let Some(room) = lab::answered(self.lexicon, self.scene, &words)
         {
             let words = lab::named(before, *at, room);
-            context.pending = None;
-            return self.understand_words(words, context);
+            let later = std::mem::take(&mut context.later);
+            let open = context.pending.take();
+            let understanding = self.understand_words(words, context);
+            return context.keep_both(later, open.as_ref(), understanding);
         }
         self.understand_words(words, context)
     }
@@ -177,10 +150,12 @@ impl Conversation<'_> {
         if stops(&parts) && question::read(self.lexicon, &words).is_none() {
             return self.stopped("", context);
         }
-        let (open, later) = (context.pending.clone(), context.later.clone());
+        let open = context.pending.clone();
+        let later = std::mem::take(&mut context.later);
         if let Some(understanding) = self.answer_to_pending(&words, &parts, context) {
-            return context.keep(later, understanding);
+            return context.keep_both(later, open.as_ref(), understanding);
         }
+        context.later = later;
         if let Some(understanding) = self.answered_first(&words, open.as_ref(), context) {
             return understanding;
         }
@@ -292,7 +267,10 @@ impl Conversation<'_> {
         if context.last_plan.is_empty() {
             return Understanding::answer("There is nothing to undo yet.");
         }
-        if context.failed.is_some() || !context.running.is_empty() {
+        if !context.running.is_empty() {
+            return self.stopped("", context);
+        }
+        if context.failed.is_some() {
             return Understanding::answer("That was not finished, so I cannot undo it. Tell me what to do instead.");
         }
         let mut planner = self.planner(context.focus.clone());
@@ -319,6 +297,7 @@ impl Conversation<'_> {
 
     pub(crate) fn request(&self, words: &[String], parts: Vec<Part>, context: &mut Context) -> Understanding {
         context.search = None;
+        context.later.clear();
         context.asked = token::sentence(words);
         let mut clauses = Vec::new();
         let mut unclear: Option<Vec<String>> = None;
@@ -370,14 +349,20 @@ impl Conversation<'_> {
         if let Some(words) = unclear.filter(|words| !words.is_empty()) {
             return self.unclear(&words);
         }
+        // `make me a bowl of cereal`: no cartridge is for that, but it is what the mission is about.
+        if let [clause] = clauses.as_slice()
+            && self.prints_nothing(clause)
+            && self.is_of_mission(clause)
+        {
+            return self.pursue(context);
+        }
         let clauses = clauses.into_iter().map(|clause| clause::poured(self.catalog, clause)).collect();
         self.plan(clause::joined(clauses), Consent::default(), context)
     }
 
     /// That nothing was understood, and the words that nobody ever met.
     pub(crate) fn unclear(&self, words: &[String]) -> Understanding {
-        let is_met = |word: &&String| self.parser.is_some_and(|parser| parser.knows(word));
-        reply::unclear(&words.iter().filter(|word| !is_met(word)).cloned().collect::<Vec<_>>())
+        reply::unclear(&words.iter().filter(|word| !spelling::is_english(word)).cloned().collect::<Vec<_>>())
     }
 
     /// `both apples on the plate`, of such as are not on it: there they are to be.

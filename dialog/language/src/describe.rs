@@ -114,6 +114,9 @@ pub(crate) fn place(catalog: &Catalog, scene: &Known, id: ObjectId) -> String {
 /// Whether things are in it or on it.
 pub(crate) fn inside(catalog: &Catalog, class: ClassId) -> &'static str {
     let class = catalog.class(class);
+    if class.has(Property::Fillable) && !class.has(Property::Receptacle) {
+        return "in";
+    }
     let is_enclosed =
         class.receptacle.as_ref().is_some_and(|receptacle| receptacle.enclosed || !receptacle.keys.is_empty());
     let is_hollow = ["Box", "Sink", "Toaster", "Machine", "Maker", "Trash", "Jar", "Printer"]
@@ -197,8 +200,13 @@ const MASS: [&str; 8] = ["milk", "bread", "coffee", "water", "cereal", "toast", 
 
 /// A noun with its indefinite article, or `some` where it takes none.
 pub(crate) fn indefinite(noun: &str) -> String {
-    let is_plural = noun.ends_with('s') && !noun.ends_with("ss");
-    if is_plural || MASS.contains(&noun) {
+    // `milk from the fridge`
+    let is_joint = |word: &&str| ["of", "from", "in", "on", "with", "by", "at", "next", "that"].contains(word);
+    let head = noun.split(' ').take_while(|word| !is_joint(word)).collect::<Vec<_>>().join(" ");
+    let is_plural = head.ends_with('s') && !head.ends_with("ss");
+    if is_plural
+        || MASS.iter().any(|mass| head.strip_suffix(mass).is_some_and(|rest| rest.is_empty() || rest.ends_with(' ')))
+    {
         return format!("some {noun}");
     }
     let article = if noun.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };

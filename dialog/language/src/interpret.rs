@@ -144,6 +144,12 @@ impl Language {
         }
     }
 
+    /// What plain requests mean, with `; ` between them, one after the other; nothing, where the grammar does not read all words of one of them.
+    #[must_use]
+    pub fn understand_plain(&self, requests: &str, scene: &Known, context: &mut Context) -> Option<Understanding> {
+        self.conversation(scene).requested(requests, context)
+    }
+
     /// What these plain requests mean, one after the other.
     fn understand_requests(&self, requests: &[String], scene: &Known, context: &mut Context) -> Option<Understanding> {
         let is_plain = |request: &String| !request.trim().is_empty() && request.chars().count() <= LONGEST_REQUEST;

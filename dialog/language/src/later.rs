@@ -2,7 +2,7 @@
 
 use crate::{
     chatter,
-    clause::{self, Part},
+    clause::{self, Clause, Part},
     context::{Context, Pending},
     conversation::Conversation,
     describe,
@@ -20,23 +20,40 @@ impl Conversation<'_> {
             let understanding = self.proceed(search, context);
             return Some(context.keep(later, understanding));
         }
-        let is_met = |text: &String| self.scene.goals.iter().any(|goal| goal.met && goal.text == *text);
-        let mut left = later.into_iter().filter(|text| !is_met(text));
-        while let Some(next) = left.next() {
-            let mut then = Context { later: Vec::new(), ..context.clone() };
-            let understanding = self.understand_best(&next, &mut then);
-            // Nobody is asked what a remark might want.
-            let is_unclear = matches!(then.pending, Some(Pending::Guess { .. }))
-                || matches!(understanding, Understanding::Refusal { is_lost: true, .. });
-            let names_nothing = || self.names_in(&self.wording(&next).words).is_empty();
-            if is_unclear && (names_nothing() || !self.parser_sees_request(&next, context)) {
-                continue;
-            }
-            *context = then;
-            return Some(context.keep(left.collect(), understanding));
+        // Who is asked something answers first.
+        if context.pending.is_some() {
+            return None;
         }
+        let is_met = |text: &String| self.scene.goals.iter().any(|goal| goal.met && goal.text == *text);
+        let left: Vec<String> = later.into_iter().filter(|text| !is_met(text)).collect();
         context.later.clear();
-        None
+        self.one_after_the_other(left, context, |text, context| self.understand_later(text, context))
+    }
+
+    /// What was left for later; nothing, where it is not understood: nobody is asked what a remark might want.
+    fn understand_later(&self, text: &str, context: &mut Context) -> Option<Understanding> {
+        let wording = self.wording(text);
+        let understanding = if self.reads_all(&wording) {
+            self.understand_said(text, context)
+        } else {
+            self.understand_whole(text, context).0
+        };
+        let is_guess = matches!(context.pending, Some(Pending::Guess { .. }));
+        (!understanding.is_lost() && (!is_guess || self.names_anything(&wording.words))).then_some(understanding)
+    }
+
+    /// Whether the mission, or what is left of it, speaks of the same things.
+    pub(crate) fn is_of_mission(&self, clause: &Clause) -> bool {
+        let is_named = |words: &[String]| {
+            let found = self.lexicon.classes.longest(words);
+            let mut classes = found.into_iter().flat_map(|(_, namings)| namings).map(|naming| naming.class);
+            classes.any(|class| clause.objects.iter().any(|phrase| phrase.naming(class).is_some()))
+        };
+        let names = |text: &str| {
+            let (words, _) = self.lexicon.normalise(text);
+            (0..words.len()).any(|at| is_named(&words[at..]))
+        };
+        self.open_goals().next().is_some() && (names(&self.scene.mission) || self.open_goals().any(names))
     }
 
     /// Does what is left of the mission, one goal after the other.

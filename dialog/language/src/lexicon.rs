@@ -168,11 +168,6 @@ pub(crate) struct Lexicon {
     pub(crate) degrees: PhraseTable<()>,
     pub(crate) viewpoints: PhraseTable<()>,
     pub(crate) negation: PhraseTable<()>,
-    /// Before the name of what is not meant: `no bread`.
-    pub(crate) denials: PhraseTable<()>,
-    /// What a question begins with that wants to know something, and what makes it a request after all.
-    pub(crate) inquiries: PhraseTable<()>,
-    pub(crate) favours: PhraseTable<()>,
     /// Openers, fillers and oaths.
     pub(crate) talk: PhraseTable<()>,
     pub(crate) answer_lead: PhraseTable<()>,
@@ -220,6 +215,8 @@ pub(crate) struct Lexicon {
     pub(crate) question_shapes: Vec<Shape>,
     /// Replies to what asks for nothing to be done.
     pub(crate) chat: PhraseTable<String>,
+    /// Words that tell what kind of talk it is that asks for nothing, and the reply to it; the first that fits counts.
+    pub(crate) talk_kinds: Vec<(PhraseTable<()>, String)>,
     pub(crate) classes: PhraseTable<Vec<Naming>>,
     /// Single words of names of several words: `trash` for the trash can.
     pub(crate) name_parts: PhraseTable<Vec<Naming>>,

@@ -5,7 +5,8 @@
 //!
 //! On the way: words ([`Language::understand`] repairs their spelling) → clauses, each one verb with its objects and
 //! places → referring expressions → objects → steps, every clause grounded on what the steps before it will have
-//! done. What remains open is asked for, and the request waits in the [`Context`] for the answer.
+//! done. What remains open is asked for, and the request waits in the [`Context`] for the answer. What is not said plainly a rewriter
+//! ([`Language::with_rewriter`]) says again in plain requests, which go the same way.
 //!
 //! ```
 //! use std::sync::Arc;
@@ -20,12 +21,9 @@
 //! # Ok::<(), cohabit_cdf::CatalogError>(())
 //! ```
 
-mod acts;
 mod address;
-mod alternatives;
 mod amend;
 mod answer;
-mod answers;
 mod ask;
 mod asked;
 mod cache;
@@ -36,13 +34,12 @@ mod condition;
 mod confidence;
 mod context;
 mod conversation;
+mod decide;
 mod deeds;
 mod describe;
 mod device;
-mod evidence;
 mod facts;
 mod floor;
-mod follow_up;
 mod gloss;
 mod ground;
 mod habits;
@@ -58,28 +55,22 @@ mod known;
 mod lab;
 mod later;
 mod lexicon;
-mod likeness;
 mod memory;
 mod misheard;
 mod naming;
 mod noun;
-mod open_goals;
 mod oracle;
 mod order;
-mod paraphrase;
-mod parsed;
-mod parts;
 mod phrase;
 mod plan;
 mod process;
 mod question;
-mod readers;
 mod reading;
 mod remedy;
 mod reply;
 mod report;
+mod requests;
 mod rewritten;
-mod said;
 mod saying;
 mod search;
 mod setting;
@@ -89,7 +80,6 @@ mod sound;
 mod spelling;
 mod spoken;
 mod stop;
-mod stop_likeness;
 mod swap;
 mod table;
 mod tail;
@@ -98,7 +88,7 @@ mod token;
 mod understanding;
 mod undo;
 mod verbless;
-mod weighed;
+mod way;
 mod wish;
 mod wording;
 mod words;
@@ -107,19 +97,17 @@ mod yes_no;
 use std::sync::Arc;
 
 use cohabit_cdf::{Catalog, ObjectId, Status};
-use cohabit_parser::{Parser, Rewriter};
 
 pub use address::{Addressed, Roster};
-pub use alternatives::Alternative;
 pub use confidence::{Doubt, Features, Referent, Referents};
 pub use context::Context;
-pub use evidence::{Evidence, Fit};
 
 pub use floor::{Floor, FloorPlan};
 pub use interpret::{Consulting, Interpreted, Interpreter, Meant, Unclear};
 pub use known::{Known, KnownGoal, KnownObject, KnownPerson, KnownRobot, within_half_turn};
 pub use memory::{Knows, Lessons, Memory};
 pub use oracle::Oracle;
+pub use rewritten::Rewrite;
 pub use sight::Gaze;
 pub use spoken::{SpokenNames, says_stop, says_stop_already};
 pub use stop::{Firmness, Stop, find_stop, mentions_stop};
@@ -147,8 +135,7 @@ pub struct Language {
     weights: Arc<Weights>,
     costs: Arc<Costs>,
     asking: Asking,
-    parser: Option<&'static Parser>,
-    rewriter: Option<fn() -> &'static Rewriter>,
+    rewriter: Option<Rewrite>,
 }
 
 impl Language {
@@ -162,7 +149,6 @@ impl Language {
             weights: Arc::new(Weights::builtin()),
             costs: Arc::new(Costs::new(&catalog)),
             asking: Asking::default(),
-            parser: Some(Parser::builtin()),
             rewriter: None,
             catalog,
         }
@@ -180,16 +166,16 @@ impl Language {
         Self { asking, ..self }
     }
 
-    /// The same without the learned parser: the grammar alone, to compare.
+    /// The same without a rewriter: the grammar alone.
     #[must_use]
-    pub fn without_parser(self) -> Self {
-        Self { parser: None, ..self }
+    pub fn without_rewriter(self) -> Self {
+        Self { rewriter: None, ..self }
     }
 
     /// The same with a rewriter, for what the grammar does not read to the last word: some tenths of a second each time. It is fetched when it is
     /// first needed.
     #[must_use]
-    pub fn with_rewriter(self, rewriter: fn() -> &'static Rewriter) -> Self {
+    pub fn with_rewriter(self, rewriter: Rewrite) -> Self {
         Self { rewriter: Some(rewriter), ..self }
     }
 
@@ -209,12 +195,6 @@ impl Language {
         context.note_said(false, utterance);
         context.note_said(true, understanding.reply());
         understanding
-    }
-
-    /// All ways to understand `utterance`, with what speaks for each.
-    #[must_use]
-    pub fn alternatives(&self, utterance: &str, scene: &Known, context: &Context) -> Vec<Alternative> {
-        self.conversation(scene).alternatives(utterance, context)
     }
 
     /// What is left to do once a plan has ended, other than by being interrupted: a search goes on, and ends in the
@@ -266,16 +246,7 @@ impl Language {
 
     fn conversation<'a>(&'a self, scene: &'a Known) -> Conversation<'a> {
         let Self { catalog, lexicon, devices, habits, .. } = self;
-        Conversation {
-            catalog,
-            lexicon,
-            devices,
-            habits,
-            scene,
-            judge: self.judge(),
-            parser: self.parser,
-            rewriter: self.rewriter,
-        }
+        Conversation { catalog, lexicon, devices, habits, scene, judge: self.judge(), rewriter: self.rewriter }
     }
 
     fn judge(&self) -> Judge<'_> {

@@ -209,11 +209,6 @@ fn read_sentence(lexicon: &Lexicon, first: &[String]) -> Option<Question> {
     Some(Question::new(kind, about, rest))
 }
 
-/// Whether words ask a question whose kind more than their beginning tells.
-pub(crate) fn is_shaped(lexicon: &Lexicon, words: &[String]) -> bool {
-    clause::segments(lexicon, words).first().is_some_and(|first| shaped(lexicon, first).is_some())
-}
-
 /// The question that words ask by their shape.
 fn shaped(lexicon: &Lexicon, words: &[String]) -> Option<Question> {
     starts(lexicon, words).into_iter().find_map(|(at, _)| {

@@ -9,6 +9,7 @@ use crate::{
     describe,
     ground::Miss,
     intent::Intent,
+    lexicon::Preposition,
     phrase::{Phrase, Place},
     saying,
     understanding::{Step, Understanding},
@@ -61,16 +62,23 @@ pub(crate) fn request_in_words(clauses: &[Clause]) -> String {
 
 fn clause_in_words(clause: &Clause) -> String {
     let said = |phrase: &Phrase| if phrase.text.is_empty() { "it".to_owned() } else { phrase.text.clone() };
+    let verb = clause.intent.verb();
+    // `go to the table`, of who goes to it
+    let word = |preposition: &Preposition| Some(preposition.word()).filter(|word| !verb.ends_with(&format!(" {word}")));
+    let place_of = |preposition: &Preposition, place: String| match word(preposition) {
+        Some(word) => format!("{word} {place}"),
+        None => place,
+    };
     let objects: Vec<String> = clause.objects.iter().map(said).collect();
     let places = clause.places.iter().filter_map(|(preposition, place)| {
         Some(match place {
-            Place::Room(room) | Place::Viewpoint(room, _) => format!("{} the {}", preposition.word(), room.name()),
-            Place::Object(phrase) => format!("{} {}", preposition.word(), said(phrase)),
+            Place::Room(room) | Place::Viewpoint(room, _) => place_of(preposition, format!("the {}", room.name())),
+            Place::Object(phrase) => place_of(preposition, said(phrase)),
             Place::Viewpoints(_) | Place::Side(_) | Place::Here => return None,
         })
     });
     let color = clause.color.clone();
-    let words = std::iter::once(clause.intent.verb().to_owned());
+    let words = std::iter::once(verb.to_owned());
     let words = words.chain([describe::list(&objects, "and")]).chain(color).chain(places);
     words.filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" ")
 }

@@ -16,7 +16,7 @@ use crate::{
     ground::{Ground, Miss, Want},
     intent::Intent,
     known::{Known, KnownObject, distance_m},
-    phrase::{Phrase, Place, Reader, RelationKind},
+    phrase::{Phrase, Place, RelationKind},
     plan::Fault,
     remedy, reply, saying, sight,
     understanding::{Asking, Step, Understanding},
@@ -96,6 +96,26 @@ struct Leg {
 }
 
 impl Search {
+    /// Whether it is to do the same with the same in the end, wherever it begins to look: a pronoun may stand for what the other one names.
+    pub(crate) fn comes_to(&self, other: &Self) -> bool {
+        let (own, others) = (self.deeds(), other.deeds());
+        let is_alike = |(one, other): (&&Clause, &&Clause)| {
+            let (one_named, other_named) = (named(one), named(other));
+            one.intent == other.intent
+                && one_named.len() == other_named.len()
+                && one_named.iter().zip(&other_named).all(|(one, other)| may_mean_the_same(one, other))
+        };
+        own.len() == others.len() && own.iter().zip(&others).all(is_alike)
+    }
+
+    /// What it is for, without what only brings the robot there and what is only spoken of, if there is more to it.
+    pub(crate) fn deeds(&self) -> Vec<&Clause> {
+        let only_goes =
+            |clause: &&Clause| matches!(clause.intent, Intent::GoTo | Intent::Find | Intent::Look | Intent::Mention);
+        let deeds: Vec<&Clause> = self.clauses.iter().filter(|clause| !only_goes(clause)).collect();
+        if deeds.is_empty() { self.clauses.iter().collect() } else { deeds }
+    }
+
     pub(crate) fn new(clauses: Vec<Clause>, consent: Consent) -> Self {
         Self {
             clauses,
@@ -118,31 +138,6 @@ impl Search {
     /// Whether it is under way, and not waiting for the beginning of the request to be done.
     pub(crate) const fn is_under_way(&self) -> bool {
         self.target.is_some()
-    }
-
-    /// Whether it is to do the same with the same in the end, wherever it begins to look: a pronoun may stand for what the other one names.
-    pub(crate) fn comes_to(&self, other: &Self) -> bool {
-        let (own, others) = (self.deeds(), other.deeds());
-        let is_alike = |(one, other): (&&Clause, &&Clause)| {
-            let (one_named, other_named) = (named(one), named(other));
-            one.intent == other.intent
-                && one_named.len() == other_named.len()
-                && one_named.iter().zip(&other_named).all(|(one, other)| may_mean_the_same(one, other))
-        };
-        own.len() == others.len() && own.iter().zip(&others).all(is_alike)
-    }
-
-    /// What it is for, without what only brings the robot there and what is only spoken of, if there is more to it.
-    fn deeds(&self) -> Vec<&Clause> {
-        let only_goes =
-            |clause: &&Clause| matches!(clause.intent, Intent::GoTo | Intent::Find | Intent::Look | Intent::Mention);
-        let deeds: Vec<&Clause> = self.clauses.iter().filter(|clause| !only_goes(clause)).collect();
-        if deeds.is_empty() { self.clauses.iter().collect() } else { deeds }
-    }
-
-    /// Whether its words say only `it` of something.
-    pub(crate) fn has_pronoun(&self) -> bool {
-        self.clauses.iter().flat_map(named).any(Phrase::is_bare_pronoun)
     }
 
     /// A leg could not be walked.
@@ -185,15 +180,6 @@ impl Search {
     }
 }
 
-/// Whether two phrases may mean the same: one is a pronoun, or both name things of one class in the same color.
-pub(crate) fn may_mean_the_same(one: &Phrase, other: &Phrase) -> bool {
-    let shares_class = || one.namings.iter().any(|naming| other.naming(naming.class).is_some());
-    one.text == other.text
-        || one.is_bare_pronoun()
-        || other.is_bare_pronoun()
-        || one.color == other.color && one.room == other.room && shares_class()
-}
-
 /// The things that a request names, in the order of its slots.
 pub(crate) fn named(clause: &Clause) -> Vec<&Phrase> {
     let places = clause.places.iter().filter_map(|(_, place)| match place {
@@ -203,21 +189,16 @@ pub(crate) fn named(clause: &Clause) -> Vec<&Phrase> {
     clause.objects.iter().chain(places).collect()
 }
 
-impl Conversation<'_> {
-    /// Whether it is for something in whose description a verb stands: `the milk in close that fridge door`.
-    pub(crate) fn seeks_nonsense(&self, search: &Search) -> bool {
-        let has_verb = |phrase: &Phrase| {
-            let (words, _) = self.lexicon.normalise(&phrase.text);
-            let is_verb = |at: usize| {
-                let is_after = at > 0 && self.lexicon.prepositions.longest(&words[at - 1..at]).is_some();
-                let rest = Reader { at, ..Reader::new(self.lexicon, &words) };
-                is_after && rest.at_verb()
-            };
-            (0..words.len()).any(is_verb)
-        };
-        search.clauses.iter().flat_map(named).any(has_verb)
-    }
+/// Whether two phrases may mean the same: one is a pronoun, or both name things of one class in the same color.
+fn may_mean_the_same(one: &Phrase, other: &Phrase) -> bool {
+    let shares_class = || one.namings.iter().any(|naming| other.naming(naming.class).is_some());
+    one.text == other.text
+        || one.is_bare_pronoun()
+        || other.is_bare_pronoun()
+        || one.color == other.color && one.room == other.room && shares_class()
+}
 
+impl Conversation<'_> {
     /// Goes on with a request: does it, as far as all it names is known, or looks for what is not.
     pub(crate) fn proceed(&self, mut search: Search, context: &mut Context) -> Understanding {
         let mut planner = self.planner(context.focus.clone());

@@ -1,8 +1,9 @@
 //! The vocabulary, and the repair of words that are not in it.
 
-use std::collections::BTreeSet;
-
-use cohabit_parser::Parser;
+use std::{
+    collections::{BTreeSet, HashSet},
+    sync::LazyLock,
+};
 
 /// All words that mean something here, and plain English ones that must not be bent into those.
 #[derive(Clone, Debug, Default)]
@@ -211,9 +212,15 @@ impl Vocabulary {
 /// Words of one or two letters that people run together with others.
 const SHORT: &[&str] = &["a", "go", "to", "up", "on", "in", "it", "at", "of", "my", "me", "is"];
 
-/// Whether English texts are full of a word: then it is rarely a slip of something else.
+/// Whether English texts are full of a word.
+pub(crate) fn is_english(word: &str) -> bool {
+    static WORDS: LazyLock<HashSet<&str>> = LazyLock::new(|| include_str!("../data/english.txt").lines().collect());
+    WORDS.contains(word)
+}
+
+/// The same of a word that is too long to be a slip of something else.
 pub(crate) fn is_common(word: &str) -> bool {
-    word.len() >= SHORTEST_COMMON && Parser::builtin().knows(word)
+    word.len() >= SHORTEST_COMMON && is_english(word)
 }
 
 /// Whether it has the same letters in another order.

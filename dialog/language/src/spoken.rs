@@ -77,7 +77,7 @@ impl Language {
         if goes_on {
             return false;
         }
-        match self.clone().without_parser().understand(text, scene, &mut context.clone()) {
+        match self.clone().without_rewriter().understand(text, scene, &mut context.clone()) {
             Understanding::Plan { .. } => words.len() > 1 || context.pending.is_some(),
             Understanding::Stop { .. } | Understanding::Answer { .. } => true,
             Understanding::Question { kind, .. } => {

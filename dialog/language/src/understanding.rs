@@ -90,6 +90,11 @@ impl Understanding {
         }
     }
 
+    /// Whether nothing was made of what was said.
+    pub(crate) const fn is_lost(&self) -> bool {
+        matches!(self, Self::Refusal { is_lost: true, .. })
+    }
+
     /// What it says.
     #[must_use]
     pub fn reply(&self) -> &str {
@@ -113,11 +118,6 @@ impl Understanding {
             }
             other => other,
         }
-    }
-
-    /// Whether more is done than to look and point.
-    pub(crate) fn commits(&self) -> bool {
-        matches!(self, Self::Plan { steps, .. } if steps.iter().any(Step::commits))
     }
 
     /// Whether it leaves what was asked denied, or open.
@@ -182,7 +182,7 @@ named_in_a_word!(Asking: Never = "never", Unsure = "unsure", Always = "always");
 /// How much work goes into what people say.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
 pub enum Effort {
-    /// That of the grammar and the parser: some milliseconds to tenths of a second.
+    /// That of the grammar alone: what is said plainly, in a millisecond.
     Fast,
     /// Also that of the rewriter, of what the grammar does not read to the last word: some tenths of a second more.
     #[default]
@@ -219,11 +219,6 @@ impl Step {
     pub(crate) const fn is_lasting(&self) -> bool {
         self.changes()
             && !matches!(self.action, Action::Place { .. } | Action::Interact { verb: Verb::Open | Verb::Close, .. })
-    }
-
-    /// Whether it goes, looks or points, and touches nothing.
-    pub(crate) const fn only_looks(&self) -> bool {
-        matches!(self.action, Action::GoTo { .. } | Action::Highlight { .. } | Action::Look { .. } | Action::LookAround)
     }
 }
 

@@ -39,9 +39,6 @@ struct WordFile {
     degrees: Words,
     viewpoints: Words,
     negation: Words,
-    denials: Words,
-    inquiries: Words,
-    favours: Words,
     talk: Words,
     brings_about: BTreeMap<String, Vec<String>>,
     kinds: BTreeMap<String, Property>,
@@ -119,6 +116,7 @@ struct VerbEntry {
 #[derive(Deserialize)]
 struct ChatFile {
     chat: Vec<ChatEntry>,
+    talk: Vec<ChatEntry>,
 }
 
 #[derive(Deserialize)]
@@ -182,9 +180,6 @@ impl Lexicon {
             (&mut self.degrees, &file.degrees),
             (&mut self.viewpoints, &file.viewpoints),
             (&mut self.negation, &file.negation),
-            (&mut self.denials, &file.denials),
-            (&mut self.inquiries, &file.inquiries),
-            (&mut self.favours, &file.favours),
             (&mut self.talk, &file.talk),
             (&mut self.answer_lead, &file.answer_lead),
             (&mut self.generic, &file.generic),
@@ -299,6 +294,11 @@ impl Lexicon {
         for entry in file.chat {
             entry.words.iter().for_each(|words| self.chat.insert(words, entry.reply.clone()));
         }
+        for entry in file.talk {
+            let mut words = PhraseTable::default();
+            entry.words.iter().for_each(|phrase| words.insert(phrase, ()));
+            self.talk_kinds.push((words, entry.reply));
+        }
     }
 
     fn build_sounds(&mut self) {
@@ -341,7 +341,6 @@ impl Lexicon {
             &self.degrees,
             &self.viewpoints,
             &self.negation,
-            &self.denials,
             &self.answer_lead,
             &self.generic,
             &self.goal_words,

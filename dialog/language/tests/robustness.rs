@@ -29,7 +29,7 @@ proptest! {
     }
 }
 
-// Most of these are weighed, which takes a while.
+// Most of these are rewritten, which takes a while.
 proptest! {
     #![proptest_config(ProptestConfig { cases: 60, failure_persistence: None, ..ProptestConfig::default() })]
 

@@ -1,6 +1,5 @@
-//! What many people say, and what it should mean, written by hand. Most sets are looked at while the language is worked on, and the
-//! weights of its alternatives are fitted to them; of `held_out.txt` and `strangers.txt` only the figures are looked at, so that they say
-//! what other people's words are worth.
+//! What many people say, and what it should mean, written by hand. Some sets are looked at while the language is worked on; of `held_out.txt`,
+//! `strangers.txt` and the writers named here only the figures are looked at, so that they say what other people's words are worth.
 //!
 //! `cargo test -p cohabit-language --test utterances -- --nocapture` prints the figures, and what is wrong
 //! in what may be looked at.
@@ -123,13 +122,16 @@ fn other_sets_are_measured_too() {
 
 #[test]
 fn most_of_what_was_looked_at_is_understood() {
-    check("seen", include_str!("utterances/seen.txt"), true, [305, 319]);
-    check("voices", include_str!("utterances/voices.txt"), true, [701, 744]);
-    check("manners", include_str!("utterances/manners.txt"), true, [128, 143]);
-    check("spoken", include_str!("utterances/spoken.txt"), true, [61, 62]);
-    check("first contact", include_str!("utterances/first_contact.txt"), true, [124, 160]);
-    check("first contact again", include_str!("utterances/first_contact_again.txt"), true, [160, 168]);
-    check("newcomers", include_str!("utterances/newcomers.txt"), true, [204, 231]);
+    check("seen", include_str!("utterances/seen.txt"), true, [304, 312]);
+    check("manners", include_str!("utterances/manners.txt"), true, [131, 134]);
+    check("spoken", include_str!("utterances/spoken.txt"), true, [57, 58]);
+}
+
+#[test]
+fn most_of_what_was_said_at_first_contact_is_understood() {
+    check("first contact", include_str!("utterances/first_contact.txt"), true, [136, 154]);
+    check("first contact again", include_str!("utterances/first_contact_again.txt"), true, [160, 164]);
+    check("newcomers", include_str!("utterances/newcomers.txt"), true, [216, 226]);
 }
 
 #[test]
@@ -145,9 +147,11 @@ fn nothing_is_done_about_what_is_no_request() {
 
 #[test]
 fn most_of_what_people_say_is_understood() {
-    check("held out", include_str!("utterances/held_out.txt"), false, [271, 291]);
-    check("strangers", include_str!("utterances/strangers.txt"), false, [380, 458]);
-    check("writer o", include_str!("utterances/writers/o.txt"), false, [173, 183]);
-    check("writer v", include_str!("utterances/writers/v.txt"), false, [160, 181]);
-    check("writer w", include_str!("utterances/writers/w.txt"), false, [189, 199]);
+    check("held out", include_str!("utterances/held_out.txt"), false, [270, 278]);
+}
+
+#[test]
+fn most_of_what_writers_say_is_understood() {
+    check("writer w", include_str!("utterances/writers/w.txt"), false, [221, 225]);
+    check("writer ck", include_str!("utterances/writers/ck.txt"), false, [117, 134]);
 }

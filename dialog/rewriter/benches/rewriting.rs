@@ -2,16 +2,14 @@
 
 use std::time::Instant;
 
-use cohabit_parser::Said;
-
 fn main() {
     let begun = Instant::now();
     let rewriter = cohabit_rewriter::builtin();
     println!("{} {}, one thread", std::env::consts::ARCH, env!("CARGO_PKG_VERSION"));
     println!("loaded in {:.2} s", begun.elapsed().as_secs_f64());
     let before = [
-        Said { by_robot: false, text: "pick up the white mug on the counter, would you?" },
-        Said { by_robot: true, text: "OK, picking up the mug. I have the mug." },
+        (false, "pick up the white mug on the counter, would you?".to_owned()),
+        (true, "OK, picking up the mug. I have the mug.".to_owned()),
     ];
     for said in [
         "turn it on",

@@ -1,7 +1,7 @@
 //! What the rewriter writes is what the program that fitted it writes.
 #![allow(clippy::unwrap_used, missing_docs)]
 
-use cohabit_parser::Said;
+use cohabit_rewriter::Line;
 use serde_json::Value;
 
 /// How far the logarithm of a probability may be from that of the other program, whose sums are less exact.
@@ -14,8 +14,8 @@ fn rewritings_are_those_of_the_program_that_fitted_it() {
     let mut alike = 0;
     for row in &rows {
         let before = row["before"].as_array().unwrap().iter();
-        let before: Vec<Said<'_>> =
-            before.map(|line| Said { by_robot: line[0].as_bool().unwrap(), text: line[1].as_str().unwrap() }).collect();
+        let before: Vec<Line> =
+            before.map(|line| (line[0].as_bool().unwrap(), line[1].as_str().unwrap().to_owned())).collect();
         let rewritings = cohabit_rewriter::builtin().rewrite(row["said"].as_str().unwrap(), &before);
         let wanted = row["text"].as_str().unwrap();
         let same = rewritings.iter().find(|rewriting| rewriting.text == wanted);
@@ -36,7 +36,7 @@ fn rewritings_are_those_of_the_program_that_fitted_it() {
 fn any_text_is_taken() {
     let long = "please ".repeat(400);
     for said in ["", " \n", "?", "\u{0}\u{1F600}", "é", &long] {
-        let before = [Said { by_robot: true, text: &long }, Said { by_robot: false, text: said }];
+        let before = [(true, long.clone()), (false, said.to_owned())];
         let rewritings = cohabit_rewriter::builtin().rewrite(said, &before);
         assert!(rewritings.iter().all(|one| (0.0..=1.0).contains(&one.probability)), "{rewritings:?}");
     }

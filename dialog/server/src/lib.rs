@@ -146,7 +146,7 @@ pub fn language(catalog: Arc<Catalog>, effort: Effort) -> Language {
     let language = Language::new(catalog);
     match effort {
         Effort::Fast => language,
-        Effort::Full => language.with_rewriter(cohabit_rewriter::builtin),
+        Effort::Full => language.with_rewriter(cohabit_rewriter::rewrite),
     }
 }
 
@@ -177,6 +177,10 @@ pub fn serve(
     let hub = Arc::new(Hub::new(hello, views, config.on_first_frame));
     let journal = Journal::open(config.journal.as_deref());
     let (listener, place) = listen(config.listen, journal.past().place.as_ref())?;
+    if config.effort == Effort::Full {
+        // It takes some tenths of a second to load: who speaks first need not wait for that.
+        std::thread::spawn(cohabit_rewriter::builtin);
+    }
     let language = language(Arc::clone(&catalog), config.effort).asking(config.asking);
     let consulting = if config.interpreter.is_some() { config.consulting } else { Consulting::Never };
     let robots = Robots::new(&robots, config.knows, &language, &catalog, &layout, told, consulting)

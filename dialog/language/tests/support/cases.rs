@@ -99,8 +99,7 @@ impl Wanted {
             _ => {}
         }
         let mut context = talk.context.clone();
-        let grammar = talk.language.clone().without_parser();
-        match grammar.understand(&request.replace("; ", ". "), &talk.scene, &mut context) {
+        match talk.language.understand_plain(request, &talk.scene, &mut context)? {
             Understanding::Plan { steps, .. } => {
                 let end = talk.language.expected(&talk.scene, &steps);
                 Some(Self::Plan(steps, end))

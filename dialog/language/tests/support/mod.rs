@@ -308,14 +308,12 @@ pub fn text(understanding: &Understanding, scene: &Known) -> String {
     }
 }
 
-/// The language with parser; with `UNDERSTANDING=grammar` in the environment the grammar alone, and with `UNDERSTANDING=rewriter` all of it, to
-/// compare.
+/// The language with the rewriter; with `UNDERSTANDING=grammar` in the environment the grammar alone, to compare.
 pub fn language(catalog: Arc<Catalog>) -> Language {
     let language = Language::new(catalog);
     match std::env::var("UNDERSTANDING").as_deref() {
-        Ok("grammar") => language.without_parser(),
-        Ok("rewriter") => language.with_rewriter(cohabit_rewriter::builtin),
-        _ => language,
+        Ok("grammar") => language,
+        _ => language.with_rewriter(cohabit_rewriter::rewrite),
     }
 }
 
@@ -342,7 +340,7 @@ impl Talk {
 
     /// The same, with a robot that asks at other times.
     pub fn asking(marks: &[&str], asking: Asking) -> Self {
-        let language = Box::leak(Box::new(Language::new(catalog()).asking(asking)));
+        let language = Box::leak(Box::new(language(catalog()).asking(asking)));
         Self { language, ..Self::new(marks) }
     }
 

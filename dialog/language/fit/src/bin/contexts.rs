@@ -1,5 +1,5 @@
 //! Writes labelled utterances with the lines of the dialog before them, the robot's as it would speak now: what
-//! `dialog/parser/train/rewriter.py` learns from.
+//! `dialog/rewriter/train/fit.py` learns from.
 //!
 //! ```text
 //! cargo run --release --manifest-path dialog/language/fit/Cargo.toml --bin contexts

@@ -1,0 +1,190 @@
+//! What an utterance means: what the grammar reads to the last word, or what the rewriter makes of it. What is likely enough is carried out; of what
+//! is less likely the robot asks.
+
+use crate::{
+    ask, condition,
+    context::{Context, Guess, Pending},
+    conversation::Conversation,
+    lab, reply, stop, token,
+    understanding::{Asking, Clarification, Step, Understanding},
+    way::Way,
+    wording::Wording,
+};
+
+/// How likely steps must be meant for them to be taken without a question, where what they change is not simply put back and where it is.
+const TO_CHANGE: f32 = 0.7;
+const TO_MOVE: f32 = 0.6;
+/// How likely what is said must be the right reply, where nothing is done.
+const TO_REPLY: f32 = 0.2;
+/// How likely steps must be meant to be proposed, and to be taken where nothing may be asked.
+const TO_PROPOSE: f32 = 0.05;
+const TO_GUESS: f32 = 0.3;
+/// The same of a stop, where the robot is busy: to stop is the lesser mistake.
+const TO_STOP: f32 = 0.2;
+/// What is proposed beside the likeliest is at least so likely, of that.
+const RIVAL: f32 = 0.25;
+/// How many plans are proposed at most.
+const MOST_PROPOSED: usize = 3;
+/// Below this, what is done is said to be what the robot thinks.
+const SURELY: f32 = 0.7;
+const UNSURE: &str = "If I understand you right:";
+/// How likely that is meant of which the grammar leaves words out.
+const BY_GRAMMAR: f32 = 0.7;
+/// One in so many words that nobody ever met is too much to guess at: an unknown verb is no deed, and of another language nothing is guessed.
+const STRANGE: usize = 6;
+/// Up to how many words a refusal, or a question what shall be done, is believed, and an answer to the robot's question is likely nothing else.
+const SHORT: usize = 5;
+const LONGEST_ANSWER: usize = 24;
+/// From how many words on the rewriter is rather right where it is sure and the grammar reads something else, and how sure it must be.
+const LONG: usize = 10;
+const TO_OVERRULE: f32 = 0.7;
+
+/// How much of an utterance the grammar reads.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+enum Reading {
+    /// As much as anybody could.
+    Sure,
+    /// All of it, but it is long: some of it may be meant otherwise.
+    Plain,
+    /// Not all of it.
+    Partial,
+}
+
+impl Conversation<'_> {
+    /// What an utterance means, and how likely it is what was meant.
+    pub(crate) fn understand_whole(&self, utterance: &str, context: &mut Context) -> (Understanding, f32) {
+        let wording = self.wording(utterance);
+        if let Some(named) = self.with_lab_named(&wording) {
+            return self.understand_whole(&named, context);
+        }
+        let by_grammar = self.by_grammar(&wording, context);
+        let reading = self.reading(&wording, &by_grammar, context);
+        if reading == Reading::Sure {
+            return by_grammar.taken(context);
+        }
+        let mut ways = self.rewritten(&wording, context);
+        if stop::denies_stop(utterance) {
+            ways.retain(|way| !way.stops());
+        }
+        // A robot that does nothing need not stop.
+        let stops = |way: &&Way| way.stops() && way.probability >= TO_STOP && context.is_busy();
+        if let Some(stop) = ways.iter().find(stops) {
+            return stop.taken(context);
+        }
+        let least = |way: &Way| if reading == Reading::Plain { way.least().max(TO_OVERRULE) } else { way.least() };
+        if let Some(likeliest) = ways.first().filter(|likeliest| likeliest.probability >= least(likeliest)) {
+            return likeliest.taken(context);
+        }
+        // What the grammar leaves words out of is a guess too.
+        let has_plan = ways.iter().any(|way| way.steps().is_some());
+        let guesses = if has_plan { ways.as_slice() } else { std::slice::from_ref(&by_grammar) };
+        if reading == Reading::Partial
+            && self.rewriter.is_some()
+            && let Some(question) = self.proposed(guesses, context)
+        {
+            return (question, 0.0);
+        }
+        by_grammar.taken(context)
+    }
+
+    /// What the grammar makes of it.
+    fn by_grammar(&self, wording: &Wording<'_>, context: &Context) -> Way {
+        let mut then = context.at_new_utterance();
+        let understanding = self.understand_said(wording.utterance, &mut then);
+        let probability = if self.is_plain(wording) { 1.0 } else { BY_GRAMMAR };
+        Way { understanding, probability, context: then }
+    }
+
+    /// How much of it the grammar reads.
+    fn reading(&self, wording: &Wording<'_>, by_grammar: &Way, context: &Context) -> Reading {
+        let said = wording.words.iter().filter(|word| !token::is_punctuation(word)).count();
+        let asks_for_lab = |context: &Context| matches!(context.pending, Some(Pending::Lab { .. }));
+        let is_of_lab = asks_for_lab(&by_grammar.context) && !asks_for_lab(context);
+        let is_strange = context.pending.is_none() && self.is_strange(wording);
+        let is_too_long = wording.utterance.chars().nth(token::MAX_CHARS).is_some();
+        // What is to be done otherwise only the grammar knows to take up where the condition does not hold.
+        let has_otherwise = by_grammar.is_understood() && condition::has_otherwise(self.lexicon, &wording.words);
+        let is_answer =
+            by_grammar.steps().is_some() && said <= LONGEST_ANSWER && self.answers(&wording.tidied, context);
+        if is_of_lab || is_strange || is_too_long || has_otherwise || is_answer {
+            return Reading::Sure;
+        }
+        // `pour the milk`: where to; `drop it`: nothing is there.
+        let is_known = matches!(
+            by_grammar.understanding,
+            Understanding::Refusal { is_lost: false, .. }
+                | Understanding::Question { kind: Clarification::Request, .. }
+        );
+        // `the other one` is none that was just taken.
+        let is_done = by_grammar.repeats(&context.last_plan) && self.small(&wording.tidied).is_empty();
+        let is_plain = self.is_plain(wording) && !is_done;
+        match is_plain && (by_grammar.is_understood() || is_known && said <= SHORT) {
+            true if said < LONG => Reading::Sure,
+            true => Reading::Plain,
+            false => Reading::Partial,
+        }
+    }
+
+    fn is_strange(&self, wording: &Wording<'_>) -> bool {
+        let said = wording.words.iter().filter(|word| !token::is_punctuation(word)).count();
+        said == 0 || !wording.unheard.is_empty() && wording.unheard.len() * STRANGE >= said
+    }
+
+    /// The utterance with the name of the lab that the robot is in, where that is what `the lab` means.
+    pub(crate) fn with_lab_named(&self, wording: &Wording<'_>) -> Option<String> {
+        let at = lab::bare(self.lexicon, &wording.words)?;
+        let room = lab::here(self.scene.robot.room)?;
+        let is_told = lab::described(self.lexicon, self.scene, &wording.words[at + 1..]).is_some();
+        let mark = if wording.utterance.trim_end().ends_with('?') { "?" } else { "" };
+        (!is_told).then(|| format!("{}{mark}", token::sentence(&lab::named(&wording.words, at, room))))
+    }
+
+    /// Asks which of the likeliest plans is meant, instead of carrying any out; nothing, where none is likely at all.
+    fn proposed(&self, ways: &[Way], context: &mut Context) -> Option<Understanding> {
+        let mut plans = ways.iter().filter_map(|way| Some((way, way.steps()?))).peekable();
+        let (likeliest, _) = *plans.peek().filter(|(way, _)| way.probability >= TO_PROPOSE)?;
+        if self.judge.asking == Asking::Never {
+            return (likeliest.probability >= TO_GUESS).then(|| likeliest.taken(context).0);
+        }
+        let rivals = plans.filter(|(way, _)| way.probability >= likeliest.probability * RIVAL);
+        let mut guesses: Vec<Guess> = Vec::new();
+        for guess in rivals.take(MOST_PROPOSED).map(|(way, steps)| way.context.guess(steps)) {
+            if guesses.iter().all(|other| other.name != guess.name) {
+                guesses.push(guess);
+            }
+        }
+        if guesses.len() > 1 && guesses.iter().all(|guess| guess.search.is_none()) {
+            let plans: Vec<&[Step]> = guesses.iter().map(|guess| guess.steps.as_slice()).collect();
+            let names = reply::apart(&plans);
+            guesses.iter_mut().zip(names).for_each(|(guess, name)| guess.name = name);
+        }
+        let names: Vec<&str> = guesses.iter().map(|guess| guess.name.as_str()).collect();
+        let question = match names.as_slice() {
+            [name] => ask::is_it(name),
+            names => ask::which_plan(names),
+        };
+        context.pending = Some(Pending::Guess { guesses });
+        Some(question)
+    }
+}
+
+impl Way {
+    /// This is what was meant.
+    fn taken(&self, context: &mut Context) -> (Understanding, f32) {
+        *context = self.context.clone();
+        let is_said = self.probability < SURELY && self.steps().is_some();
+        let understanding = self.understanding.clone();
+        (if is_said { understanding.after(UNSURE) } else { understanding }, self.probability)
+    }
+
+    /// How likely it must be meant to be carried out, or said.
+    fn least(&self) -> f32 {
+        match &self.understanding {
+            Understanding::Plan { .. } if self.is_lasting() => TO_CHANGE,
+            Understanding::Plan { .. } | Understanding::Stop { .. } => TO_MOVE,
+            // That it does not know what to do with a thing is worth saying only where there is no guess.
+            Understanding::Question { kind: Clarification::Request, .. } => f32::INFINITY,
+            _ => TO_REPLY,
+        }
+    }
+}

@@ -1,0 +1,244 @@
+"""Fits the rewriter: a language model that writes what an utterance means as plain requests.
+
+    python fit.py --minutes 90                       writes ../rewriter.safetensors and ../tests/rewritings.json
+    python fit.py --minutes 60 --begin ../rewriter.safetensors     goes on with the shipped one
+    python fit.py --minutes 0 --begin MODEL.pt       only writes these, of a model that was kept
+
+It begins as SmolLM2-135M-Instruct and learns from the corpus, from writers of `dialog/language/tests/utterances/writers` and from participants of
+`dialog/language/tests/participants`. README.md says what it needs.
+"""
+
+import argparse
+import json
+import random
+import re
+import time
+from pathlib import Path
+
+import torch
+from safetensors.torch import load_file, save_file
+
+import corpus
+import language_model
+from language_model import END, LanguageModel
+
+SEED = 1
+BATCH, BATCHES_AHEAD, WARM_UP = 32, 12, 60
+MOST_WRITTEN = 70
+#: How often an utterance of the corpus is drawn, whose labels are in the person's own words.
+CORPUS_SHARE = 0.2
+#: How often what is read is the label itself: who speaks plainly is taken at their word.
+PLAIN_SHARE = 0.05
+#: How many times what was said live counts.
+LIVE_COPIES = 3
+CONTEXTS = corpus.CRATE.parent / "language/fit/contexts"
+#: What stands between two parts of a message.
+PAUSES = [". ", ". ", ", ", ", ", " and ", ". then ", ", then ", " ... ", "; ", ". also "]
+#: Labels that are no plain request.
+WITHOUT_REQUEST = {"social", "none", "?"}
+PARTICIPANTS = corpus.CRATE.parent / "language/tests/participants"
+#: Nothing is fitted to these writers and participants: they are to measure with.
+UNSEEN_LIVE = {"oona", "bram", "sofia", "niamh", "piotr"}
+UNSEEN = set("o v w x y al am an ao ap aq av aw bb bc bd be bg bh bi bp bs bv by ca cb ce ck cn".split())
+
+
+def main():
+    options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    options.add_argument("--minutes", type=float, default=90, help="how long to train")
+    options.add_argument("--rate", type=float, default=4e-4, help="the highest rate of learning")
+    options.add_argument("--begin", type=Path, help="a model to go on with, as --out or, with all its bits, --keep writes it")
+    options.add_argument("--keep", type=Path, help="where the model is kept with all its bits")
+    options.add_argument("--compare", nargs="*", default=[], help="writers or participants whose utterances are then rewritten and compared")
+    options.add_argument("--out", type=Path, default=corpus.CRATE / "rewriter.safetensors", help="the model")
+    given = options.parse_args()
+    torch.manual_seed(SEED)
+    model = LanguageModel()
+    if given.begin and given.begin.suffix == ".safetensors":
+        model.take(load_file(given.begin))
+    elif given.begin:
+        model.load_state_dict(torch.load(given.begin))
+    if given.minutes:
+        train(model, Samples(SEED), given)
+    tensors = model.export()
+    save_file(tensors, given.out, metadata={"tokens": "\n".join(language_model.vocabulary()), "layers": str(len(model.layers))})
+    given.out.chmod(0o644)
+    for writer in given.compare:
+        compare(model, writer)
+    write_reference(model, corpus.CRATE / "tests/rewritings.json")
+
+
+def plain(label):
+    """A label of the corpus without what kind of small talk it is, and without the mark of what is none of the known forms."""
+    requests = []
+    for request in label.split("; "):
+        request = "social" if request.startswith("social: ") else request.removeprefix("*")
+        if request != "social" or "social" not in requests:
+            requests.append(request)
+    return "; ".join(requests)
+
+
+def of_corpus():
+    """What was said before, what is said, its labels, and whether they are in the person's own words."""
+    for sample in corpus.samples():
+        if sample.speaker not in corpus.HELD_OUT:
+            yield sample.before, sample.utterance, [plain(sample.label)], True
+
+
+def of_writer(writer):
+    """The same of a writer; with what the robot said, where `contexts` of `dialog/language/fit` wrote that down."""
+    contexts = CONTEXTS / f"{writer}.jsonl"
+    if contexts.exists():
+        for row in map(json.loads, contexts.read_text(encoding="utf-8").splitlines()):
+            yield row["before"], row["said"], [" ".join(label.lower().split()) for label in row["meant"]], False
+        return
+    for line in (corpus.WRITERS / f"{writer}.txt").read_text(encoding="utf-8").splitlines():
+        said, arrow, meant = line.partition(" => ")
+        if arrow and not line.startswith(("#", "[")):
+            *earlier, utterance = said.split(" / ")
+            labels = [" ".join(label.lower().split()) for label in meant.split(" || ")]
+            yield [(False, one) for one in earlier], utterance, labels, False
+
+
+def of_participant(file):
+    """The same of what a participant said to the robot."""
+    before, said = [], ""
+    for line in file.read_text(encoding="utf-8").splitlines():
+        if line.startswith("## "):
+            before = []
+        elif line.startswith("> "):
+            said = line[2:]
+        elif line.startswith("    = "):
+            yield list(before), said, [" ".join(label.lower().split()) for label in line[6:].split(" || ")], False
+            before.append((False, said))
+        elif line.startswith(("    - ", "    ? ", "    ! ")):
+            before.append((True, line[6:].split("   (")[0]))
+
+
+class Samples:
+    """Draws utterances with their labels, and variants of them."""
+
+    def __init__(self, seed):
+        self.random = random.Random(seed)
+        self.corpus = list(of_corpus())
+        writers = sorted(file.stem for file in corpus.WRITERS.glob("*.txt") if file.stem not in UNSEEN)
+        self.written = [sample for writer in writers for sample in of_writer(writer)]
+        participants = sorted(file for file in PARTICIPANTS.glob("*.txt") if file.stem not in UNSEEN_LIVE)
+        self.written += LIVE_COPIES * [sample for file in participants for sample in of_participant(file)]
+        print(f"{len(self.corpus)} utterances of the corpus and {len(self.written)} of writers to learn from", flush=True)
+
+    def draw(self):
+        """The tokens that are read, and those that are to be written."""
+        chance = self.random.random
+        before, said, labels, by_words = self.random.choice(self.corpus if chance() < CORPUS_SHARE else self.written)
+        label = surest(labels)
+        if not by_words and label not in WITHOUT_REQUEST and chance() < PLAIN_SHARE:
+            before, said = [], self.joined(label.split("; "))
+        while not by_words and chance() < 0.15:
+            said, label = self.with_another(said, label)
+        if chance() < 0.15:
+            said = " ".join(slip(self.random, word) if chance() < 0.1 else word for word in said.split(" "))
+        if chance() < 0.15:
+            said = re.sub(r"[.,!?;:]", "", said)
+        return language_model.prompt(before, said, by_words), [*language_model.tokens(label)[:MOST_WRITTEN], END]
+
+    def with_another(self, said, label):
+        """Two utterances in one message."""
+        before, other, labels, _ = self.random.choice(self.written)
+        labels = [label, surest(labels)]
+        if before or {"?", "none"} & set(labels):
+            return said, label
+        asked = [one for one in labels if one != "social"]
+        return self.joined([said, other]), "; ".join(asked) or "social"
+
+    def joined(self, parts):
+        """Parts of a message as one, in one of the ways in which people string them together."""
+        text = parts[0]
+        for part in parts[1:]:
+            pause = " " if text.endswith(("?", "!")) else self.random.choice(PAUSES)
+            text = text.rstrip(" .") + pause + part
+        return text
+
+
+def slip(drawn, word):
+    """A word with a slip of the fingers."""
+    if len(word) < 4 or not word.isalpha():
+        return word
+    at = drawn.randrange(1, len(word) - 1)
+    return drawn.choice([word[:at] + word[at + 1 :], word[:at] + word[at + 1] + word[at] + word[at + 2 :], word[:at] + word[at] + word[at:]])
+
+
+def surest(labels):
+    """One of the labels that an utterance may have, always by the same rule, as what may be written in many ways is written with doubt."""
+    if labels[0] in WITHOUT_REQUEST:
+        return labels[0]
+    return min((label for label in labels if label not in WITHOUT_REQUEST), key=len)
+
+
+def train(model, samples, given):
+    trained = [one for one in model.parameters() if one.requires_grad]
+    optimizer = torch.optim.AdamW(trained, weight_decay=0.01, betas=(0.9, 0.98), fused=True)
+    begun, step, ahead, losses = time.monotonic(), 0, [], []
+    while (done := (time.monotonic() - begun) / (60 * given.minutes)) < 1:
+        if not ahead:
+            # Batches of samples of like length: little of a batch is padding.
+            drawn = sorted((samples.draw() for _ in range(BATCH * BATCHES_AHEAD)), key=lambda one: len(one[0]) + len(one[1]))
+            ahead = [drawn[at : at + BATCH] for at in range(0, len(drawn), BATCH)]
+            samples.random.shuffle(ahead)
+        for group in optimizer.param_groups:
+            group["lr"] = given.rate * min(1, (step + 1) / WARM_UP) * max(0.02, 1 - done)
+        with torch.autocast("cpu", torch.bfloat16):
+            loss = model.loss(*batch(ahead.pop()))
+        optimizer.zero_grad()
+        loss.backward()
+        torch.nn.utils.clip_grad_norm_(trained, 1.0)
+        optimizer.step()
+        step, losses = step + 1, [*losses[-99:], loss.item()]
+        if step % 20 == 0:
+            print(f"step {step}, {100 * done:.0f} %, loss {sum(losses) / len(losses):.3f}", flush=True)
+        if given.keep and step % 200 == 0:
+            torch.save(model.state_dict(), given.keep)
+    if given.keep:
+        torch.save(model.state_dict(), given.keep)
+
+
+def batch(samples):
+    """What is read, and which token is to follow each place; -1, where that is not learnt."""
+    length = max(len(read) + len(written) for read, written in samples) - 1
+    read_rows = torch.zeros(len(samples), length, dtype=torch.long)
+    wanted = torch.full((len(samples), length), -1)
+    for at, (read, written) in enumerate(samples):
+        row = [*read, *written]
+        read_rows[at, : len(row) - 1] = torch.tensor(row[:-1])
+        wanted[at, len(read) - 1 : len(row) - 1] = torch.tensor(written)
+    return read_rows, wanted
+
+
+def key(label):
+    """A label without its articles."""
+    text = re.sub(r"\b(?:the|a|an|my|some)\b", "", label.lower())
+    text = re.sub(r"\bif ([^:;]+): ", r"if \1, ", text)
+    return re.sub(r"[^a-z0-9;?]+", " ", text).replace(" ;", ";").replace(" ?", "?").strip()
+
+
+def compare(model, writer):
+    """How many utterances are rewritten as one of their labels."""
+    live = PARTICIPANTS / f"{writer}.txt"
+    samples = list(of_participant(live) if live.exists() else of_writer(writer))
+    outputs = model.write([language_model.prompt(before, said, False) for before, said, *_ in samples], MOST_WRITTEN)
+    right = sum(key(text) in map(key, labels) for (text, _), (_, _, labels, _) in zip(outputs, samples, strict=True))
+    print(f"{writer}: {right} of {len(samples)} as labelled", flush=True)
+
+
+def write_reference(model, file):
+    """What the model makes of some utterances, for the Rust code to be compared with."""
+    samples = random.Random(SEED).sample([sample for writer in ("bj", "bk", "e", "ax") for sample in of_writer(writer)], 40)
+    outputs = model.write([language_model.prompt(before, said, False) for before, said, *_ in samples], MOST_WRITTEN)
+    rows = []
+    for (before, said, *_), (text, log_probability) in zip(samples, outputs, strict=True):
+        row = {"before": before, "said": said, "text": text, "log_probability": round(log_probability, 3)}
+        rows.append(json.dumps(row, ensure_ascii=False))
+    file.write_text("[\n" + ",\n".join(rows) + "\n]\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
