@@ -103,11 +103,11 @@ impl Conversation<'_> {
 
     /// Whether it is an answer to the robot's own question.
     pub(crate) fn answers(&self, words: &[String], context: &Context) -> bool {
-        let parts = clause::parts(self.lexicon, self.catalog, words);
-        let mut then = context.clone();
-        context.pending.is_some()
-            && (self.answer_to_pending(words, &parts, &mut then).is_some()
-                || self.answered_first(words, context.pending.as_ref(), &mut context.clone()).is_some())
+        let open = context.pending.as_ref();
+        let parts = || clause::parts(self.lexicon, self.catalog, words);
+        open.is_some()
+            && (self.answer_to_pending(words, &parts(), &mut context.clone()).is_some()
+                || self.answered_first(words, open, &mut context.clone()).is_some())
     }
 
     /// What is to be done if an answer comes first, and then remarks, or what else is to be done: `the robot one, like I said`.

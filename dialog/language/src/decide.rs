@@ -57,8 +57,9 @@ impl Conversation<'_> {
         if let Some(named) = self.with_lab_named(&wording) {
             return self.understand_whole(&named, context);
         }
-        let by_grammar = self.by_grammar(&wording, context);
-        let reading = self.reading(&wording, &by_grammar, context);
+        let is_plain = self.is_plain(&wording);
+        let by_grammar = self.by_grammar(&wording, is_plain, context);
+        let reading = self.reading(&wording, is_plain, &by_grammar, context);
         if reading == Reading::Sure {
             return by_grammar.taken(context);
         }
@@ -88,19 +89,19 @@ impl Conversation<'_> {
     }
 
     /// What the grammar makes of it.
-    fn by_grammar(&self, wording: &Wording<'_>, context: &Context) -> Way {
+    fn by_grammar(&self, wording: &Wording<'_>, is_plain: bool, context: &Context) -> Way {
         let mut then = context.at_new_utterance();
         let understanding = self.understand_said(wording.utterance, &mut then);
-        let probability = if self.is_plain(wording) { 1.0 } else { BY_GRAMMAR };
+        let probability = if is_plain { 1.0 } else { BY_GRAMMAR };
         Way { understanding, probability, context: then }
     }
 
     /// How much of it the grammar reads.
-    fn reading(&self, wording: &Wording<'_>, by_grammar: &Way, context: &Context) -> Reading {
-        let said = wording.words.iter().filter(|word| !token::is_punctuation(word)).count();
+    fn reading(&self, wording: &Wording<'_>, is_plain: bool, by_grammar: &Way, context: &Context) -> Reading {
+        let said = wording.length();
         let asks_for_lab = |context: &Context| matches!(context.pending, Some(Pending::Lab { .. }));
         let is_of_lab = asks_for_lab(&by_grammar.context) && !asks_for_lab(context);
-        let is_strange = context.pending.is_none() && self.is_strange(wording);
+        let is_strange = context.pending.is_none() && is_strange(wording);
         let is_too_long = wording.utterance.chars().nth(token::MAX_CHARS).is_some();
         // What is to be done otherwise only the grammar knows to take up where the condition does not hold.
         let has_otherwise = by_grammar.is_understood() && condition::has_otherwise(self.lexicon, &wording.words);
@@ -117,17 +118,11 @@ impl Conversation<'_> {
         );
         // `the other one` is none that was just taken.
         let is_done = by_grammar.repeats(&context.last_plan) && self.small(&wording.tidied).is_empty();
-        let is_plain = self.is_plain(wording) && !is_done;
-        match is_plain && (by_grammar.is_understood() || is_known && said <= SHORT) {
+        match is_plain && !is_done && (by_grammar.is_understood() || is_known && said <= SHORT) {
             true if said < LONG => Reading::Sure,
             true => Reading::Plain,
             false => Reading::Partial,
         }
-    }
-
-    fn is_strange(&self, wording: &Wording<'_>) -> bool {
-        let said = wording.words.iter().filter(|word| !token::is_punctuation(word)).count();
-        said == 0 || !wording.unheard.is_empty() && wording.unheard.len() * STRANGE >= said
     }
 
     /// The utterance with the name of the lab that the robot is in, where that is what `the lab` means.
@@ -166,6 +161,12 @@ impl Conversation<'_> {
         context.pending = Some(Pending::Guess { guesses });
         Some(question)
     }
+}
+
+/// Whether it has no words, or too many that nobody ever met.
+fn is_strange(wording: &Wording<'_>) -> bool {
+    let said = wording.length();
+    said == 0 || !wording.unheard.is_empty() && wording.unheard.len() * STRANGE >= said
 }
 
 impl Way {

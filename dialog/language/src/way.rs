@@ -66,9 +66,7 @@ impl Way {
             _ => None,
         }
     }
-}
 
-impl Way {
     /// Whether what it changes in the end is not simply put back.
     pub(crate) fn is_lasting(&self) -> bool {
         let is_lasting = |clause: &&Clause| {

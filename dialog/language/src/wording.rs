@@ -104,6 +104,13 @@ impl Conversation<'_> {
     }
 }
 
+impl Wording<'_> {
+    /// How many words there are.
+    pub(crate) fn length(&self) -> usize {
+        self.words.iter().filter(|word| !token::is_punctuation(word)).count()
+    }
+}
+
 /// Whether a word is set off from all others, as names and exclamations are: `put it back, habibi`, `arrey no`.
 fn stands_apart(words: &[String], word: &str) -> bool {
     let is_alone =

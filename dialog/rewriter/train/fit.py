@@ -84,19 +84,22 @@ def of_corpus():
             yield sample.before, sample.utterance, [plain(sample.label)], True
 
 
+def labels_of(texts):
+    return [" ".join(text.lower().split()) for text in texts]
+
+
 def of_writer(writer):
     """The same of a writer; with what the robot said, where `contexts` of `dialog/language/fit` wrote that down."""
     contexts = CONTEXTS / f"{writer}.jsonl"
     if contexts.exists():
         for row in map(json.loads, contexts.read_text(encoding="utf-8").splitlines()):
-            yield row["before"], row["said"], [" ".join(label.lower().split()) for label in row["meant"]], False
+            yield row["before"], row["said"], labels_of(row["meant"]), False
         return
     for line in (corpus.WRITERS / f"{writer}.txt").read_text(encoding="utf-8").splitlines():
         said, arrow, meant = line.partition(" => ")
         if arrow and not line.startswith(("#", "[")):
             *earlier, utterance = said.split(" / ")
-            labels = [" ".join(label.lower().split()) for label in meant.split(" || ")]
-            yield [(False, one) for one in earlier], utterance, labels, False
+            yield [(False, one) for one in earlier], utterance, labels_of(meant.split(" || ")), False
 
 
 def of_participant(file):
@@ -108,7 +111,7 @@ def of_participant(file):
         elif line.startswith("> "):
             said = line[2:]
         elif line.startswith("    = "):
-            yield list(before), said, [" ".join(label.lower().split()) for label in line[6:].split(" || ")], False
+            yield list(before), said, labels_of(line[6:].split(" || ")), False
             before.append((False, said))
         elif line.startswith(("    - ", "    ? ", "    ! ")):
             before.append((True, line[6:].split("   (")[0]))

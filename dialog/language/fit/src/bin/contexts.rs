@@ -23,7 +23,7 @@ fn main() {
     let named: Vec<String> = std::env::args().skip(1).collect();
     let contexts = sets::folder("contexts");
     fs::create_dir_all(&contexts).expect("the folder can be made");
-    for (name, text) in sets::read(&["../tests/utterances/writers"], &named) {
+    for (name, text) in sets::read("../tests/utterances/writers", &named) {
         let lines = all_cores::filter_map(&cases::cases(&text), |case| Some(format!("{}\n", context(case)?)));
         println!("{name}: {} utterances", lines.len());
         fs::write(contexts.join(format!("{name}.jsonl")), lines.concat()).expect("the contexts can be written");
