@@ -7,7 +7,7 @@ use std::{
 
 use anyhow::Context as _;
 use cohabit_cdf::Catalog;
-use cohabit_tables::{Played, Summary, codebook, tables, write_csv};
+use cohabit_tables::{NOTEBOOK, Played, Summary, codebook, plots, tables, write_csv};
 
 use crate::{
     failure::bad_input,
@@ -27,11 +27,13 @@ pub struct Export {
     /// How tables are written
     #[arg(long, value_enum, default_value = "csv")]
     format: Format,
-    /// Print success, actions and latencies by condition, with 95 % intervals, and a least-squares fit of each
+    /// Print success, actions and latencies by condition, with 95 % intervals, a fit of each and effect sizes. The fit is a linear
+    /// mixed model where participants have several sessions, else least squares. With --out, plots (SVG) and a script for
+    /// pandas are written too
     #[arg(long)]
     summary: bool,
-    /// The conditions: settings of the sessions, `mission` or `participant`, with commas between; all settings in which
-    /// the sessions differ, if absent
+    /// The conditions: settings of the sessions, `mission` or `participant`, with commas between; `a:b` adds the
+    /// interaction of two; all settings in which the sessions differ, if absent
     #[arg(long, value_name = "CONDITIONS", value_delimiter = ',', requires = "summary")]
     by: Vec<String>,
     /// Print the summary as JSON
@@ -65,6 +67,9 @@ impl Export {
         }
         if self.summary {
             let summary = Summary::new(&played, &self.by).map_err(bad_input)?;
+            if let Some(folder) = &self.out {
+                write_plots(&played, &self.by, folder, self.json)?;
+            }
             if self.json {
                 println!("{}", shown_json(serde_json::to_string_pretty(&summary).context("a summary")?));
             } else {
@@ -84,6 +89,26 @@ fn write(played: &[Played], folder: &Path, quietly: bool) -> anyhow::Result<()> 
         if !quietly {
             println!("{} rows written to {}", table.rows.len(), shown(path.display()));
         }
+    }
+    Ok(())
+}
+
+/// The script that reads the tables.
+const SCRIPT: &str = "analysis.py";
+
+/// Writes a plot of each outcome by these conditions beside the tables, and a script that reads these, unless there is one,
+/// which may have been edited.
+fn write_plots(played: &[Played], by: &[String], folder: &Path, quietly: bool) -> anyhow::Result<()> {
+    let plots = plots(played, by).map_err(bad_input)?;
+    let script = folder.join(SCRIPT);
+    let script = (!script.exists()).then_some((script, NOTEBOOK));
+    let files = plots.iter().map(|plot| (folder.join(&plot.file), plot.svg.as_str()));
+    for (path, text) in files.chain(script) {
+        fs::write(&path, text).map_err(|error| bad_input(format!("{}: {error}", path.display())))?;
+    }
+    if !quietly {
+        let folder = shown(folder.display());
+        println!("{} plots (plot_*.svg) written to {folder}, beside a script for pandas ({SCRIPT})", plots.len());
     }
     Ok(())
 }

@@ -1,18 +1,30 @@
-//! A least-squares fit of an outcome on conditions.
+//! An outcome fitted on conditions: by ordinary least squares where each session is an observation of its own, by a linear
+//! mixed model ([`MixedModel`]) where some participant has several.
 
-use std::collections::BTreeMap;
+mod least_squares;
 
-use faer::{
-    Mat, Side,
-    prelude::{Solve as _, SolveLstsq as _},
-};
+use std::collections::{BTreeMap, BTreeSet};
+
 use serde::Serialize;
-use statrs::distribution::{ContinuousCDF as _, StudentsT};
 
-use crate::interval::t_95;
+use crate::{
+    design::{Conditions, Design, level, numbers, parts},
+    mixed::{Contrast, MixedModel, Ratio, WaldTest},
+};
 
-/// How an outcome depends on the conditions, as a sum of what each does by itself.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+/// One session's outcome.
+#[derive(Clone, Copy, Debug)]
+pub struct Observation<'a> {
+    /// The outcome, in its unit.
+    pub value: f64,
+    /// Whose session it was.
+    pub participant: &'a str,
+    /// What each condition was.
+    pub conditions: &'a BTreeMap<String, String>,
+}
+
+/// How an outcome depends on the conditions, as a sum of what each does by itself and of the interactions asked for.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Fit {
     /// The outcome.
     pub outcome: String,
@@ -20,13 +32,20 @@ pub struct Fit {
     pub unit: &'static str,
     /// Sessions that have it.
     pub sessions: usize,
-    /// The share of its variance that the conditions explain; nothing where it does not vary.
+    /// The share of its variance that the conditions explain; nothing where it does not vary, or of a mixed model.
     pub r_squared: Option<f64>,
+    /// The random intercept of the participants; nothing of least squares.
+    pub random_intercept: Option<RandomIntercept>,
     /// The outcome where all conditions are at their reference, then what each other value adds, or each unit of a number.
     pub terms: Vec<Term>,
+    /// Of each condition that is part of no interaction, and of each interaction: the joint test that it does nothing. With
+    /// treatment coding the terms of a condition that interacts are its effect at the other's reference, so it has none.
+    pub tests: Vec<ConditionTest>,
     /// Conditions that these sessions do not tell apart from those before them.
     pub left_out: Vec<String>,
-    /// Why there is none, if there is none.
+    /// What a reader should know of these data.
+    pub notes: Vec<String>,
+    /// Why there is no fit, if there is none.
     pub reason: Option<String>,
 }
 
@@ -39,221 +58,175 @@ pub struct Term {
     pub estimate: f64,
     /// Its standard error.
     pub standard_error: f64,
+    /// Degrees of freedom: n − p of least squares, Satterthwaite's of a mixed model.
+    pub freedom: f64,
+    /// Estimate by standard error; nothing where there is no error.
+    pub t: Option<f64>,
     /// Its 95 % interval, by Student's t.
     pub interval_95: [f64; 2],
     /// How probable as large an estimate were if it did nothing.
     pub p: f64,
 }
 
-/// A column of the design: what it stands for, and its value in each observation.
-struct Column {
-    name: String,
-    values: Vec<f64>,
+/// Whether a condition does anything.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ConditionTest {
+    /// The condition, or the interaction.
+    pub condition: String,
+    /// The statistic F.
+    pub f: f64,
+    /// Degrees of freedom of the numerator and of the denominator.
+    pub freedom: [f64; 2],
+    /// How probable as large a statistic were if it did nothing.
+    pub p: f64,
 }
 
-/// A column counts as a sum of those before it if so little of it is left beside them.
-const NOTHING_NEW: f64 = 1e-8;
-
-/// What is left of the values beyond this share of them is no more than rounding, and counts as nothing.
-const ROUNDING: f64 = 1e-12;
+/// How participants differ from each other beside the conditions.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RandomIntercept {
+    /// Participants.
+    pub participants: usize,
+    /// Standard deviation of their intercepts, `σ_b`, in the outcome's unit.
+    pub standard_deviation: f64,
+    /// Standard deviation of the residuals, σ, in the outcome's unit.
+    pub residual_standard_deviation: f64,
+    /// The share of the variance that is between participants.
+    pub intraclass_correlation: f64,
+    /// The restricted log-likelihood (REML).
+    pub log_likelihood: f64,
+    /// Whether the search for the ratio of variances converged.
+    pub converged: bool,
+    /// Conditions that vary within participants.
+    pub within: Vec<String>,
+    /// Conditions that vary between participants alone.
+    pub between: Vec<String>,
+}
 
 impl Fit {
-    /// Fits `values`, one an observation, on the conditions that each was observed under.
-    pub(crate) fn new(
-        outcome: &str,
-        unit: &'static str,
-        conditions: &[String],
-        observed: &[(f64, &BTreeMap<String, String>)],
-    ) -> Self {
-        let (columns, left_out) = independent(design(conditions, observed), observed.len());
-        let mut fit = Self {
-            outcome: outcome.to_owned(),
-            unit,
-            sessions: observed.len(),
-            r_squared: None,
-            terms: Vec::new(),
-            left_out,
-            reason: None,
-        };
-        let values: Vec<f64> = observed.iter().map(|(value, _)| *value).collect();
-        if values.len() <= columns.len() {
-            let (count, terms) = (values.len(), columns.len());
-            fit.reason = Some(format!("{count} sessions are too few for {terms} terms"));
-            return fit;
+    /// Fits a linear mixed model with a random intercept for each participant, by REML.
+    #[must_use]
+    pub fn mixed(outcome: &str, unit: &'static str, conditions: &[String], observed: &[Observation<'_>]) -> Self {
+        let own: Vec<&Conditions> = observed.iter().map(|one| one.conditions).collect();
+        let design = Design::new(conditions, &own);
+        let mut fit = Self::empty(outcome, unit, observed.len(), &design);
+        let mains: Vec<&String> = conditions.iter().filter(|name| parts(name, &own).is_none()).collect();
+        fit.notes.extend(note_of_one_level(&mains, observed));
+        let columns: Vec<Vec<f64>> = design.columns.iter().map(|column| column.values.clone()).collect();
+        let values: Vec<f64> = observed.iter().map(|one| one.value).collect();
+        match MixedModel::fit(&columns, &values, &numbered(observed)) {
+            Ok(model) => fit.take(&model, &design, conditions, &own, &within(&mains, observed)),
+            Err(error) => fit.reason = Some(error.to_string()),
         }
-        fit.solve(&columns, &values);
         fit
     }
 
-    fn solve(&mut self, columns: &[Column], values: &[f64]) {
-        let (rows, terms) = (values.len(), columns.len());
-        let design = Mat::from_fn(rows, terms, |row, column| columns[column].values[row]);
-        let target = Mat::from_fn(rows, 1, |row, _| values[row]);
-        let estimates = design.qr().solve_lstsq(&target);
-        let left = &target - &design * &estimates;
-        let nothing = ROUNDING * target.norm_l2();
-        let squares = if left.norm_l2() > nothing { left.squared_norm_l2() } else { 0.0 };
-        let freedom = (rows - terms) as f64;
-        let (Ok(normal), Some(quantile)) = ((design.transpose() * &design).llt(Side::Lower), t_95(freedom)) else {
-            self.reason = Some("the conditions cannot be told apart".to_owned());
-            return;
+    fn empty(outcome: &str, unit: &'static str, sessions: usize, design: &Design) -> Self {
+        Self { outcome: outcome.to_owned(), unit, sessions, left_out: design.left_out.clone(), ..Self::default() }
+    }
+
+    fn take(
+        &mut self,
+        model: &MixedModel,
+        design: &Design,
+        conditions: &[String],
+        own: &[&Conditions],
+        within: &[(String, bool)],
+    ) {
+        self.terms = design
+            .columns
+            .iter()
+            .enumerate()
+            .map(|(place, column)| Term::new(&column.name, &model.effect(place)))
+            .collect();
+        self.tests = condition_tests(design, conditions, own, |places| model.test(places));
+        let named = |wanted: bool| {
+            within.iter().filter(|(_, varies)| *varies == wanted).map(|(name, _)| name.clone()).collect()
         };
-        let covariance = normal.solve(Mat::<f64>::identity(terms, terms));
-        let mean = values.iter().sum::<f64>() / rows as f64;
-        let spread: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
-        self.r_squared = (spread > 0.0).then(|| 1.0 - squares / spread);
-        let term = |(place, column): (usize, &Column)| {
-            let contributed = estimates[(place, 0)] * norm(&column.values);
-            let estimate = if contributed.abs() > nothing { estimates[(place, 0)] } else { 0.0 };
-            let standard_error = (squares / freedom * covariance[(place, place)]).max(0.0).sqrt();
-            let half = quantile * standard_error;
-            let interval_95 = [estimate - half, estimate + half];
-            Term {
-                name: column.name.clone(),
-                estimate,
-                standard_error,
-                interval_95,
-                p: p(estimate / standard_error, freedom),
-            }
-        };
-        self.terms = columns.iter().enumerate().map(term).collect();
+        self.random_intercept = Some(RandomIntercept {
+            participants: model.participants,
+            standard_deviation: model.participant_sd,
+            residual_standard_deviation: model.residual_sd,
+            intraclass_correlation: model.intraclass_correlation(),
+            log_likelihood: model.log_likelihood,
+            converged: model.ratio != Ratio::NotConverged,
+            within: named(true),
+            between: named(false),
+        });
+        self.notes.extend(note_of_ratio(model.ratio).map(str::to_owned));
     }
 }
 
-/// How probable it is that Student's t is as far from 0, either way. Outcomes that fit without an error say for certain
-/// whether a condition does anything.
-fn p(t: f64, freedom: f64) -> f64 {
-    if !t.is_finite() {
-        return if t.is_nan() { 1.0 } else { 0.0 };
-    }
-    StudentsT::new(0.0, 1.0, freedom).map_or(f64::NAN, |distribution| 2.0 * distribution.sf(t.abs()))
-}
-
-/// A column of ones; for each condition that is a number one of its values; for each other one column for every value
-/// but the commonest, its reference.
-fn design(conditions: &[String], observed: &[(f64, &BTreeMap<String, String>)]) -> Vec<Column> {
-    let ones = Column { name: "(at the references)".to_owned(), values: vec![1.0; observed.len()] };
-    let mut columns = vec![ones];
-    for condition in conditions {
-        let values: Vec<&str> = observed.iter().map(|(_, own)| value(own, condition)).collect();
-        let mut counts = BTreeMap::<&str, usize>::new();
-        for value in &values {
-            *counts.entry(value).or_default() += 1;
-        }
-        let numbers: Option<Vec<f64>> = values.iter().map(|value| value.parse().ok()).collect();
-        match numbers.filter(|_| counts.len() > 2) {
-            Some(numbers) => columns.push(Column { name: format!("{condition}, per 1"), values: numbers }),
-            None => columns.extend(dummies(condition, &values, &counts)),
+impl Term {
+    fn new(name: &str, contrast: &Contrast) -> Self {
+        Self {
+            name: name.to_owned(),
+            estimate: contrast.estimate,
+            standard_error: contrast.standard_error,
+            freedom: contrast.freedom,
+            t: Some(contrast.t).filter(|t| t.is_finite()),
+            interval_95: contrast.interval_95,
+            p: contrast.p,
         }
     }
-    columns
 }
 
-fn dummies(condition: &str, values: &[&str], counts: &BTreeMap<&str, usize>) -> Vec<Column> {
-    let most = counts.values().copied().max().unwrap_or(0);
-    let reference = counts.iter().find(|(_, count)| **count == most).map_or("", |(value, _)| value);
-    let others = counts.keys().filter(|value| **value != reference);
-    others
-        .map(|other| Column {
-            name: format!("{condition} {other}, not {reference}"),
-            values: values.iter().map(|value| f64::from(u8::from(value == other))).collect(),
+/// A test of each condition that is part of no other one.
+fn condition_tests(
+    design: &Design,
+    conditions: &[String],
+    own: &[&Conditions],
+    test: impl Fn(&[usize]) -> Option<WaldTest>,
+) -> Vec<ConditionTest> {
+    let interacting: BTreeSet<&str> = conditions.iter().filter_map(|name| parts(name, own)).flatten().collect();
+    let alone = conditions.iter().enumerate().filter(|(_, name)| !interacting.contains(name.as_str()));
+    alone
+        .filter_map(|(place, name)| {
+            let WaldTest { f, freedom, p } = test(&design.columns_of(place))?;
+            Some(ConditionTest { condition: name.clone(), f, freedom, p })
         })
         .collect()
 }
 
-/// What a session's condition is; a dash where it is not noted.
-pub(crate) fn value<'a>(conditions: &'a BTreeMap<String, String>, name: &str) -> &'a str {
-    conditions.get(name).map_or("–", String::as_str)
+const fn note_of_ratio(ratio: Ratio) -> Option<&'static str> {
+    match ratio {
+        Ratio::Interior => None,
+        Ratio::Boundary => Some("participants do not differ more than their own sessions do: this is least squares"),
+        Ratio::NotConverged => Some("the search for the variance of participants did not converge: take it with care"),
+        Ratio::NotRepeated => Some("no participant has two sessions: this is least squares"),
+    }
 }
 
-fn norm(values: &[f64]) -> f64 {
-    values.iter().map(|value| value * value).sum::<f64>().sqrt()
+/// Participants by number, in the order of their names.
+fn numbered(observed: &[Observation<'_>]) -> Vec<usize> {
+    let names: BTreeSet<&str> = observed.iter().map(|one| one.participant).collect();
+    let number: BTreeMap<&str, usize> = names.into_iter().zip(0..).collect();
+    observed.iter().map(|one| number[one.participant]).collect()
 }
 
-/// The columns that are no sums of those before them, and the names of the others (modified Gram–Schmidt).
-fn independent(columns: Vec<Column>, rows: usize) -> (Vec<Column>, Vec<String>) {
-    let (mut kept, mut left_out, mut basis) = (Vec::new(), Vec::new(), Vec::<Vec<f64>>::new());
-    for column in columns {
-        let mut rest = column.values.clone();
-        for direction in &basis {
-            let along: f64 = rest.iter().zip(direction).map(|(a, b)| a * b).sum();
-            rest.iter_mut().zip(direction).for_each(|(value, direction)| *value -= along * direction);
-        }
-        let (whole, new) = (norm(&column.values), norm(&rest));
-        if rows > 0 && new > NOTHING_NEW * whole {
-            basis.push(rest.into_iter().map(|value| value / new).collect());
-            kept.push(column);
-        } else {
-            left_out.push(column.name);
-        }
+/// Of each condition, the levels that each participant met.
+pub(crate) fn met<'a>(condition: &str, observed: &[Observation<'a>]) -> BTreeMap<&'a str, BTreeSet<&'a str>> {
+    let mut met = BTreeMap::<_, BTreeSet<_>>::new();
+    for one in observed {
+        met.entry(one.participant).or_default().insert(level(one.conditions, condition));
     }
-    (kept, left_out)
+    met
 }
 
-#[cfg(test)]
-#[allow(clippy::unwrap_used)]
-mod tests {
-    use super::*;
+/// Whether each condition varies within some participant.
+fn within(conditions: &[&String], observed: &[Observation<'_>]) -> Vec<(String, bool)> {
+    let varies = |name: &String| met(name, observed).values().any(|levels| levels.len() > 1);
+    conditions.iter().map(|name| ((*name).clone(), varies(name))).collect()
+}
 
-    fn conditions(pairs: &[(&str, &str)]) -> BTreeMap<String, String> {
-        pairs.iter().map(|(name, value)| ((*name).to_owned(), (*value).to_owned())).collect()
-    }
-
-    #[test]
-    fn outcomes_without_an_error_are_certain() {
-        let (one, two) = (conditions(&[("ask", "never")]), conditions(&[("ask", "always")]));
-        for (values, p) in [([3.0, 3.0, 3.0, 3.0], 1.0), ([3.0, 3.0, 5.0, 5.0], 0.0)] {
-            let observed = [(values[0], &one), (values[1], &one), (values[2], &two), (values[3], &two)];
-            let fit = Fit::new("actions", "", &["ask".to_owned()], &observed);
-            assert!((fit.terms[1].p - p).abs() < 1e-6, "{fit:?}");
-        }
-    }
-
-    #[test]
-    fn a_line_is_fitted_as_the_literature_has_it() {
-        // Anscombe's first quartet (1973): intercept 3.0001 (standard error 1.1247), slope 0.5001 (0.1179), R² 0.6665.
-        let data = [
-            (8.04, "10"),
-            (6.95, "8"),
-            (7.58, "13"),
-            (8.81, "9"),
-            (8.33, "11"),
-            (9.96, "14"),
-            (7.24, "6"),
-            (4.26, "4"),
-            (10.84, "12"),
-            (4.82, "7"),
-            (5.68, "5"),
-        ];
-        let all: Vec<_> = data.iter().map(|(y, x)| (*y, conditions(&[("x", x)]))).collect();
-        let observed: Vec<_> = all.iter().map(|(y, own)| (*y, own)).collect();
-        let fit = Fit::new("y", "", &["x".to_owned()], &observed);
-        let found: Vec<[f64; 2]> = fit.terms.iter().map(|term| [term.estimate, term.standard_error]).collect();
-        for (found, wanted) in found.iter().flatten().zip([3.0001, 1.1247, 0.5001, 0.1179]) {
-            assert!((found - wanted).abs() < 1e-4, "{found} is not {wanted}");
-        }
-        assert!((fit.r_squared.unwrap() - 0.6665).abs() < 1e-4);
-        assert!((fit.terms[1].p - 0.00217).abs() < 1e-5, "{}", fit.terms[1].p);
-        let [low, high] = fit.terms[1].interval_95;
-        assert!((low - 0.2333).abs() < 1e-3 && (high - 0.7668).abs() < 1e-3, "{low} {high}");
-    }
-
-    #[test]
-    fn what_cannot_be_told_apart_is_left_out_and_too_few_are_not_fitted() {
-        let own = [
-            conditions(&[("ask", "never"), ("group", "a")]),
-            conditions(&[("ask", "never"), ("group", "a")]),
-            conditions(&[("ask", "unsure"), ("group", "b")]),
-            conditions(&[("ask", "unsure"), ("group", "b")]),
-        ];
-        let names = ["ask".to_owned(), "group".to_owned()];
-        let observed: Vec<_> = [1.0, 3.0, 5.0, 7.0].into_iter().zip(&own).collect();
-        let fit = Fit::new("actions", "", &names, &observed);
-        assert_eq!(fit.left_out, ["group b, not a"]);
-        let estimates: Vec<f64> = fit.terms.iter().map(|term| term.estimate).collect();
-        assert!((estimates[0] - 2.0).abs() < 1e-12 && (estimates[1] - 4.0).abs() < 1e-12, "{estimates:?}");
-        assert_eq!(fit.terms[1].name, "ask unsure, not never");
-        let few = Fit::new("actions", "", &names, &observed[1..3]);
-        assert!(few.terms.is_empty() && few.reason.unwrap().contains("2 sessions are too few for 2 terms"));
-    }
+/// Names those who met fewer levels of a condition that varies within participants than others did.
+fn note_of_one_level(conditions: &[&String], observed: &[Observation<'_>]) -> Vec<String> {
+    let own: Vec<&Conditions> = observed.iter().map(|one| one.conditions).collect();
+    let note = |name: &&String| {
+        let met = met(name, observed);
+        let single: Vec<&str> =
+            met.iter().filter(|(_, levels)| levels.len() == 1).map(|(participant, _)| *participant).collect();
+        let is_mixed = numbers(name, &own).is_none() && !single.is_empty() && single.len() < met.len();
+        is_mixed.then(|| format!("met one level of {name} only: {}", single.join(", ")))
+    };
+    conditions.iter().filter_map(note).collect()
 }

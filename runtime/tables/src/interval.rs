@@ -2,12 +2,13 @@
 
 use statrs::distribution::{ContinuousCDF as _, StudentsT};
 
+/// The standard normal distribution's 97.5th percentile.
+const Z: f64 = 1.959_963_984_540_054;
+
 /// The 95 % interval of a share of which `good` of `all` were seen: Wilson's score interval, which keeps within 0 and 1
 /// and holds for few trials too (Wilson 1927).
 #[must_use]
 pub fn wilson_95(good: usize, all: usize) -> [f64; 2] {
-    /// The standard normal distribution's 97.5th percentile.
-    const Z: f64 = 1.959_963_984_540_054;
     if all == 0 {
         return [0.0, 1.0];
     }
@@ -29,8 +30,17 @@ pub fn mean_95(values: &[f64]) -> Option<[f64; 2]> {
     Some([mean - half, mean + half])
 }
 
+/// How probable it is that |t| is as large as this, by Student's t with so many degrees of freedom. Where an estimate has
+/// no error, t is infinite, or undefined if the estimate is 0 too: then 0 and 1.
+pub(crate) fn two_sided_p(t: f64, freedom: f64) -> f64 {
+    if !t.is_finite() {
+        return if t.is_nan() { 1.0 } else { 0.0 };
+    }
+    StudentsT::new(0.0, 1.0, freedom).map_or(1.0, |distribution| 2.0 * distribution.sf(t.abs()))
+}
+
 /// The 97.5th percentile of Student's t with so many degrees of freedom; `None` for none.
-pub fn t_95(freedom: f64) -> Option<f64> {
+pub(crate) fn t_95(freedom: f64) -> Option<f64> {
     Some(StudentsT::new(0.0, 1.0, freedom).ok()?.inverse_cdf(0.975))
 }
 
@@ -47,6 +57,23 @@ mod tests {
         assert!((low - 0.7001).abs() < 1e-4 && (high - 2.4599).abs() < 1e-4, "{low} {high}");
         assert_eq!((mean_95(&[]), mean_95(&[1.0])), (None, None));
     }
+
+    #[test]
+    fn quantiles_of_students_t_are_those_of_scipy() {
+        // scipy.stats.t.ppf(0.975, freedom).
+        for (freedom, quantile) in QUANTILES {
+            let found = t_95(freedom).unwrap();
+            assert!((found - quantile).abs() < 1e-6 * quantile, "{freedom}: {found} is not {quantile}");
+        }
+    }
+
+    const QUANTILES: [(f64, f64); 5] = [
+        (1.0, 12.706_204_736),
+        (1.3, 7.500_529_326),
+        (2.2564, 3.866_471_165),
+        (22.8103, 2.069_609_979),
+        (161.0, 1.974_808_092),
+    ];
 
     #[test]
     fn intervals_are_those_of_the_literature() {

@@ -3,19 +3,26 @@
 //! [`tables`] makes of many [`Played`] sessions one table each of sessions, turns, actions, goals and
 //! answers to questionnaires; a [`Table`] knows
 //! the unit and meaning of each of its columns, which [`codebook`] gathers. [`Summary`] compares conditions: means and
-//! shares with 95 % intervals, and a least-squares fit of each outcome on the conditions. A session is one observation:
-//! turns of one session are no more independent of each other than the person who speaks.
+//! shares with 95 % intervals, a fit of each outcome on the conditions, and effect sizes. Turns of one session are not
+//! independent of each other, so a session is one observation; nor are sessions of one participant, so where participants have
+//! several, the fit is a linear mixed model with a random intercept for each ([`MixedModel`]). [`plots`] draws outcomes by
+//! condition, and [`power`] tells how many participants a planned study needs.
 //!
-//! Nothing here simulates: all is in the logs. This crate never knows rerun, Arrow or files other than CSV.
+//! Nothing here simulates sessions: all is in the logs. This crate never knows rerun, Arrow or files other than CSV.
 
 mod actions;
 mod answers;
 mod codebook;
 mod csv;
+mod design;
+pub mod effect;
 mod fit;
 mod goals;
 mod interval;
+pub mod mixed;
 mod played;
+mod plot;
+pub mod power;
 mod sessions;
 mod summary;
 mod table;
@@ -23,11 +30,16 @@ mod turns;
 
 pub use self::csv::{CsvError, plain_text, write_csv};
 pub use codebook::codebook;
-pub use fit::{Fit, Term};
+pub use fit::{ConditionTest, Fit, Observation, RandomIntercept, Term};
 pub use interval::{mean_95, wilson_95};
+pub use mixed::{MixedError, MixedModel};
 pub use played::{Played, PlayedError};
-pub use summary::{Group, Measure, Summary, SummaryError};
+pub use plot::{Plot, plots};
+pub use summary::{Effect, Group, Measure, Summary, SummaryError};
 pub use table::{Cell, Field, Kind, Table};
+
+/// A Python script that reads the tables from its own folder into pandas, for notebooks.
+pub const NOTEBOOK: &str = include_str!("notebook.py");
 
 /// All tables of these sessions, of one row a session, a turn, an action, a goal, and an answer to a questionnaire.
 #[must_use]

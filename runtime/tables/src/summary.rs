@@ -1,5 +1,8 @@
 //! What sessions say about the conditions they were played under.
 
+pub(crate) mod compared;
+mod effects;
+pub(crate) mod outcomes;
 mod text;
 
 use std::collections::BTreeMap;
@@ -7,24 +10,35 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use crate::{
-    answers,
-    fit::{Fit, value},
+    fit::Fit,
     interval::{mean_95, wilson_95},
     played::Played,
-    sessions::{self, Latency},
 };
+use compared::{Compared, mean};
+pub use effects::Effect;
+use outcomes::Outcome;
 
 /// Outcomes by condition, and how they depend on the conditions.
+///
+/// Where some participant has several sessions, these are not independent: means and intervals are then of participants'
+/// means, and fits have a random intercept for each participant. Else each session is an observation of its own. Success is
+/// fitted as the number 0 or 1, so its terms are differences of shares (a linear probability model).
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Summary {
     /// Sessions.
     pub sessions: usize,
+    /// Participants, where some have several sessions.
+    pub participants: Option<usize>,
     /// The conditions by which they are compared.
     pub conditions: Vec<String>,
     /// All sessions, then those of each combination of the conditions.
     pub groups: Vec<Group>,
-    /// Each outcome on the conditions; nothing where there are none.
+    /// Each outcome on the conditions and the interactions asked for; nothing where there are none.
     pub fits: Vec<Fit>,
+    /// How large the differences between levels are.
+    pub effects: Vec<Effect>,
+    /// What a reader should know of these sessions.
+    pub notes: Vec<String>,
 }
 
 /// Sessions that were played under the same conditions.
@@ -47,9 +61,10 @@ pub struct Measure {
     pub unit: &'static str,
     /// Sessions that have it.
     pub sessions: usize,
-    /// Its mean over those.
+    /// Its mean over those; where participants have several sessions, the mean of their means.
     pub mean: Option<f64>,
-    /// The 95 % interval of the mean: Wilson's of a share, else Student's; nothing where one session has it.
+    /// The 95 % interval of the mean: Wilson's of a share where each participant has one session, or where all are alike, else
+    /// Student's; nothing where that has one observation.
     pub interval_95: Option<[f64; 2]>,
 }
 
@@ -66,151 +81,86 @@ pub enum SummaryError {
     },
 }
 
-/// The condition that is no setting.
-const MISSION: &str = "mission";
-/// The other one.
-const PARTICIPANT: &str = "participant";
-
-/// What comes of a session.
-enum Outcome<'a> {
-    /// A share.
-    Success,
-    /// How many there were.
-    Count(&'static str, fn(&Played) -> usize),
-    /// How long something took.
-    Latency(&'static str, Latency),
-    /// What a questionnaire amounts to, 0 to 100.
-    Score(&'a str),
-}
-
-impl Outcome<'_> {
-    fn name(&self) -> String {
-        match self {
-            Self::Success => "success".to_owned(),
-            Self::Count(name, _) | Self::Latency(name, _) => (*name).to_owned(),
-            Self::Score(questionnaire) => format!("{questionnaire} score"),
-        }
-    }
-
-    const fn unit(&self) -> &'static str {
-        match self {
-            Self::Latency(..) => "ms",
-            Self::Success | Self::Count(..) | Self::Score(_) => "",
-        }
-    }
-
-    fn of(&self, played: &Played) -> Option<f64> {
-        match self {
-            Self::Success => played.success().map(|success| f64::from(u8::from(success))),
-            Self::Count(_, count) => Some(count(played) as f64),
-            Self::Latency(_, which) => played.mean_ms(*which),
-            Self::Score(questionnaire) => played.score(questionnaire),
-        }
-    }
-}
-
-/// All that may come of these sessions.
-fn outcomes(played: &[Played]) -> Vec<Outcome<'_>> {
-    let always = [
-        Outcome::Success,
-        Outcome::Count("actions", |played| played.robots_actions().count()),
-        Outcome::Count("failed actions", Played::failed_actions),
-        Outcome::Count("questions", Played::questions),
-        Outcome::Latency("answered", Latency::Answered),
-        Outcome::Latency("understood", Latency::Understood),
-        Outcome::Latency("moved", Latency::Moved),
-        Outcome::Latency("framed", Latency::Framed),
-        Outcome::Latency("shown", Latency::Shown),
-    ];
-    always.into_iter().chain(answers::scored(played).into_iter().map(Outcome::Score)).collect()
-}
-
-/// All that a session may be compared by.
-fn conditions(played: &Played) -> BTreeMap<String, String> {
-    let session = &played.log.session;
-    let mut all = session.settings.clone();
-    all.insert(MISSION.to_owned(), session.mission_file.clone());
-    all.extend(session.participant.clone().map(|label| (PARTICIPANT.to_owned(), label)));
-    all
-}
-
 impl Summary {
-    /// Compares sessions by these conditions: settings, `mission` or `participant`. By all settings in which they differ,
-    /// if none are given.
+    /// Compares sessions by these conditions: settings, `mission` or `participant`; `a:b` adds the interaction of two. By all
+    /// settings in which they differ, if none are given.
     ///
     /// # Errors
     /// [`SummaryError::Unknown`].
     pub fn new(played: &[Played], by: &[String]) -> Result<Self, SummaryError> {
-        let own: Vec<BTreeMap<String, String>> = played.iter().map(conditions).collect();
-        let names = if by.is_empty() { differing(played, &own) } else { known(by, &own)? };
-        let mut groups = BTreeMap::<Vec<&str>, Vec<&Played>>::new();
-        for (played, own) in played.iter().zip(&own) {
-            groups.entry(names.iter().map(|name| value(own, name)).collect()).or_default().push(played);
-        }
-        let outcomes = outcomes(played);
-        let of_key = |(key, members): (Vec<&str>, Vec<&Played>)| {
-            let conditions = names.iter().cloned().zip(key.into_iter().map(str::to_owned)).collect();
-            Group::new(conditions, &members, &outcomes)
-        };
-        let all = Group::new(BTreeMap::new(), &played.iter().collect::<Vec<_>>(), &outcomes);
-        let each = groups.into_iter().map(of_key).filter(|group| !group.conditions.is_empty());
-        let fit = |outcome: &Outcome<'_>| {
-            let observed: Vec<_> =
-                played.iter().zip(&own).filter_map(|(played, own)| Some((outcome.of(played)?, own))).collect();
-            (!observed.is_empty()).then(|| Fit::new(&outcome.name(), outcome.unit(), &names, &observed))
-        };
-        Ok(Self {
-            sessions: played.len(),
+        Ok(Self::of(&Compared::new(played, by)?))
+    }
+
+    /// The summary of sessions that were read.
+    pub(crate) fn of(compared: &Compared) -> Self {
+        let everybody: Vec<usize> = (0..compared.len()).collect();
+        let all = Group::new(compared, BTreeMap::new(), &everybody);
+        let groups = compared.groups().into_iter().filter(|group| !group.conditions.is_empty());
+        let each = groups.map(|group| Group::new(compared, group.conditions, &group.members));
+        let has_conditions = !compared.conditions.is_empty();
+        Self {
+            sessions: compared.len(),
+            participants: compared.is_repeated.then(|| compared.participants_of(&everybody)),
+            conditions: compared.conditions.clone(),
             groups: std::iter::once(all).chain(each).collect(),
-            fits: if names.is_empty() { Vec::new() } else { outcomes.iter().filter_map(fit).collect() },
-            conditions: names,
-        })
-    }
-}
-
-/// The settings in which sessions differ.
-fn differing(played: &[Played], own: &[BTreeMap<String, String>]) -> Vec<String> {
-    let differs = |name: &&str| own.iter().any(|one| value(one, name) != value(&own[0], name));
-    sessions::settings(played).into_iter().filter(differs).map(str::to_owned).collect()
-}
-
-fn known(by: &[String], own: &[BTreeMap<String, String>]) -> Result<Vec<String>, SummaryError> {
-    let missing = by.iter().find(|name| !own.iter().any(|one| one.contains_key(*name)));
-    match missing {
-        None => Ok(by.to_vec()),
-        Some(name) => {
-            let mut known: Vec<String> = own.iter().flat_map(|one| one.keys().cloned()).collect();
-            known.sort();
-            known.dedup();
-            Err(SummaryError::Unknown { name: name.clone(), known })
+            fits: if has_conditions { fits(compared) } else { Vec::new() },
+            effects: if has_conditions { Effect::all(compared) } else { Vec::new() },
+            notes: notes(compared),
         }
     }
+}
+
+fn fits(compared: &Compared) -> Vec<Fit> {
+    let fit = |outcome: &Outcome| {
+        let observed = compared.observations(outcome);
+        let model = if compared.is_repeated { Fit::mixed } else { Fit::least_squares };
+        (!observed.is_empty()).then(|| model(&outcome.name, outcome.unit, &compared.terms, &observed))
+    };
+    compared.outcomes.iter().filter_map(fit).collect()
+}
+
+fn notes(compared: &Compared) -> Vec<String> {
+    let unnamed = (compared.is_repeated && compared.unnamed > 0)
+        .then(|| format!("{} sessions name no participant: each counts as one of its own", compared.unnamed));
+    unnamed.into_iter().collect()
 }
 
 impl Group {
-    fn new(conditions: BTreeMap<String, String>, members: &[&Played], outcomes: &[Outcome<'_>]) -> Self {
-        let measure = |outcome: &Outcome<'_>| {
-            let values: Vec<f64> = members.iter().filter_map(|played| outcome.of(played)).collect();
-            Measure::new(outcome, &values)
-        };
-        Self { conditions, sessions: members.len(), measures: outcomes.iter().map(measure).collect() }
+    fn new(compared: &Compared, conditions: BTreeMap<String, String>, members: &[usize]) -> Self {
+        let measure = |outcome| Measure::new(compared, outcome, members);
+        Self { conditions, sessions: members.len(), measures: compared.outcomes.iter().map(measure).collect() }
     }
 }
 
 impl Measure {
-    fn new(outcome: &Outcome<'_>, values: &[f64]) -> Self {
-        let sum: f64 = values.iter().sum();
-        let interval_95 = match values.len() {
-            0 => None,
-            count if matches!(outcome, Outcome::Success) => Some(wilson_95(sum as usize, count)),
-            _ => mean_95(values),
-        };
+    fn new(compared: &Compared, outcome: &Outcome, members: &[usize]) -> Self {
+        let values = compared.values(outcome, members);
+        let means: Vec<f64> = values.values().map(|own| mean(own)).collect();
+        let is_single = values.values().all(|own| own.len() == 1);
         Self {
-            outcome: outcome.name(),
-            unit: outcome.unit(),
-            sessions: values.len(),
-            mean: (!values.is_empty()).then(|| sum / values.len() as f64),
-            interval_95,
+            outcome: outcome.name.clone(),
+            unit: outcome.unit,
+            sessions: values.values().map(Vec::len).sum(),
+            mean: (!means.is_empty()).then(|| mean(&means)),
+            interval_95: interval_95(outcome, &means, is_single),
         }
     }
 }
+
+/// The interval of a mean of participants' means, each of a single session or of several. Student's interval of a share has no
+/// width where all participants always succeeded, or never; then participants count as single trials, which is
+/// conservative.
+pub(crate) fn interval_95(outcome: &Outcome, means: &[f64], is_single: bool) -> Option<[f64; 2]> {
+    if !outcome.is_share || means.is_empty() {
+        return mean_95(means);
+    }
+    let is_same = [0.0, 1.0].iter().any(|share| means.iter().all(|value| value == share));
+    if is_single || is_same {
+        return Some(wilson_95(means.iter().filter(|value| **value == 1.0).count(), means.len()));
+    }
+    mean_95(means).map(|limits| limits.map(|limit| limit.clamp(0.0, 1.0)))
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests;

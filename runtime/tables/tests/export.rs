@@ -6,7 +6,7 @@ use std::{fs, path::Path, sync::Arc};
 use cohabit_cdf::Catalog;
 use cohabit_eval::{Settings, play, read_tasks};
 use cohabit_language::{Asking, Language};
-use cohabit_tables::{Cell, Played, Summary, Table, codebook, plain_text, tables, write_csv};
+use cohabit_tables::{Cell, NOTEBOOK, Played, Summary, Table, codebook, plain_text, plots, tables, write_csv};
 
 const MISSIONS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../cdf/missions");
 const FOLDER: &str = env!("CARGO_TARGET_TMPDIR");
@@ -53,6 +53,10 @@ fn tables_hold_what_was_counted_while_sessions_were_played() {
     let success: Vec<_> = sessions.column("success").cloned().collect();
     assert_eq!(success, counted.iter().map(|one| Cell::Flag(one.success)).collect::<Vec<_>>());
     assert!(sessions.column("setting_ask").all(|cell| *cell == Cell::Text("always".to_owned())));
+    let fields: Vec<&str> = sessions.fields.iter().map(|field| &*field.name).collect();
+    for name in NOTEBOOK.lines().find(|line| line.starts_with("outcomes = ")).unwrap().split('"').skip(1).step_by(2) {
+        assert!(fields.contains(&name), "the script reads `{name}`, which no session has");
+    }
     let turns = table(&tables, "turns");
     let asked: i64 = turns.column("question_count").map(whole).sum();
     assert_eq!(asked, column("questions").iter().sum::<i64>(), "each question belongs to a turn");
@@ -61,8 +65,8 @@ fn tables_hold_what_was_counted_while_sessions_were_played() {
     assert_eq!(table(&tables, "actions").rows.len() as i64, done);
     assert_eq!(table(&tables, "goals").rows.len() as i64, column("goals").iter().sum::<i64>());
     let described = codebook(&tables);
-    let fields: usize = tables.iter().map(|table| table.fields.len()).sum();
-    assert_eq!(described.rows.len(), fields + tables.len() + 1, "and the codebook itself");
+    let columns: usize = tables.iter().map(|table| table.fields.len()).sum();
+    assert_eq!(described.rows.len(), columns + tables.len() + 1, "and the codebook itself");
     for table in tables.iter().chain([&described]) {
         check_file(table);
     }
@@ -116,6 +120,10 @@ fn conditions_are_compared_and_fitted() {
     let json = serde_json::to_value(&summary).unwrap();
     assert_eq!(json["groups"][1]["conditions"]["ask"], "always");
     assert_eq!(json["groups"][0]["measures"][0]["outcome"], "success");
+    let plots = plots(&played, &[]).unwrap();
+    let of = |file: &str| &plots.iter().find(|plot| plot.file == file).unwrap().svg;
+    assert_eq!(of("plot_questions.svg").matches("<circle").count(), 6);
+    assert!(of("plot_answered_ms.svg").contains("answered (ms)"), "the unit is that of the table's field");
     let unknown = Summary::new(&played, &["moon".to_owned()]).unwrap_err().to_string();
     assert!(unknown.contains("no session notes `moon`") && unknown.contains("ask, knows, mission"), "{unknown}");
 }

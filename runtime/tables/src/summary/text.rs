@@ -2,37 +2,58 @@
 
 use std::fmt;
 
-use super::{Group, Measure, Summary};
-use crate::fit::Fit;
+use super::{Effect, Group, Measure, Summary};
+use crate::{
+    effect::EffectSize,
+    fit::{Fit, RandomIntercept, Term},
+};
 
 impl fmt::Display for Summary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(
-            f,
-            "{} sessions; means, and in brackets their 95 % intervals (of success Wilson's, else Student's)",
-            self.sessions
-        )?;
-        let labels: Vec<String> = self.groups.iter().map(Group::label).collect();
-        let shown: Vec<&Measure> = self.groups[0].measures.iter().filter(|measure| measure.mean.is_some()).collect();
-        let mut rows = vec![vec![String::new(), "sessions".to_owned()]];
-        rows[0].extend(shown.iter().map(|measure| with_unit(&measure.outcome, measure.unit)));
-        for (group, label) in self.groups.iter().zip(labels) {
-            let own = shown.iter().map(|wanted| {
-                let measure = group.measures.iter().find(|measure| measure.outcome == wanted.outcome);
-                measure.map_or_else(String::new, Measure::cell)
-            });
-            rows.push([label, group.sessions.to_string()].into_iter().chain(own).collect());
+        let sessions = self.sessions;
+        match self.participants {
+            None => writeln!(
+                f,
+                "{sessions} sessions; means, and in brackets their 95 % intervals (of success Wilson's, else Student's)"
+            )?,
+            Some(count) => writeln!(
+                f,
+                "{sessions} sessions of {count} participants; means of participants' means, and in brackets their 95 % intervals\n\
+                 (of success Wilson's where each has one session, else Student's)"
+            )?,
         }
-        write_rows(f, &rows)?;
+        write_groups(f, &self.groups)?;
+        self.notes.iter().try_for_each(|note| writeln!(f, "{note}"))?;
         if self.fits.is_empty() {
             return writeln!(
                 f,
                 "no setting differs between these sessions: there is nothing to fit (--by names conditions)"
             );
         }
-        writeln!(f, "\nleast squares, each outcome on {}", self.conditions.join(" and "))?;
-        self.fits.iter().try_for_each(|fit| write_fit(f, fit))
+        let model = if self.participants.is_some() {
+            "linear mixed model (REML) with a random intercept per participant"
+        } else {
+            "least squares"
+        };
+        writeln!(f, "\n{model}, each outcome on {}", self.conditions.join(" and "))?;
+        self.fits.iter().try_for_each(|fit| write_fit(f, fit))?;
+        write_effects(f, &self.effects)
     }
+}
+
+fn write_groups(f: &mut fmt::Formatter<'_>, groups: &[Group]) -> fmt::Result {
+    let shown: Vec<&Measure> =
+        groups.iter().take(1).flat_map(|all| &all.measures).filter(|measure| measure.mean.is_some()).collect();
+    let mut rows = vec![vec![String::new(), "sessions".to_owned()]];
+    rows[0].extend(shown.iter().map(|measure| with_unit(&measure.outcome, measure.unit)));
+    for group in groups {
+        let own = shown.iter().map(|wanted| {
+            let measure = group.measures.iter().find(|measure| measure.outcome == wanted.outcome);
+            measure.map_or_else(String::new, Measure::cell)
+        });
+        rows.push([group.label(), group.sessions.to_string()].into_iter().chain(own).collect());
+    }
+    write_rows(f, &rows)
 }
 
 fn with_unit(name: &str, unit: &str) -> String {
@@ -56,31 +77,105 @@ impl Measure {
     }
 }
 
-/// With as many digits as tell something.
+/// With as many digits as tell something, and no sign where these are all 0.
 fn number(value: f64) -> String {
-    match value.abs() {
+    let text = match value.abs() {
         size if size >= 100.0 => format!("{value:.0}"),
         size if size >= 10.0 => format!("{value:.1}"),
         _ => format!("{value:.2}"),
-    }
+    };
+    if text == "-0.00" { "0.00".to_owned() } else { text }
 }
 
 fn write_fit(f: &mut fmt::Formatter<'_>, fit: &Fit) -> fmt::Result {
     let explained = fit.r_squared.map_or_else(String::new, |share| format!(", R² {share:.2}"));
     writeln!(f, "\n{}: {} sessions{explained}", with_unit(&fit.outcome, fit.unit), fit.sessions)?;
     if let Some(reason) = &fit.reason {
-        return writeln!(f, "  not fitted: {reason}");
+        writeln!(f, "  not fitted: {reason}")?;
+        return write_notes(f, fit);
     }
-    let row = |term: &crate::fit::Term| {
+    let row = |term: &Term| {
         let [low, high] = term.interval_95.map(number);
-        vec![format!("  {}", term.name), number(term.estimate), format!("({low} – {high})"), p(term.p)]
+        let test = term.t.filter(|_| fit.random_intercept.is_some());
+        let t = test.map_or_else(String::new, |t| format!("t({:.1}) = {}", term.freedom, number(t)));
+        vec![format!("  {}", term.name), number(term.estimate), format!("({low} – {high})"), t, p(term.p)]
     };
-    write_rows(f, &fit.terms.iter().map(row).collect::<Vec<_>>())?;
+    let mut rows: Vec<Vec<String>> = fit.terms.iter().map(row).collect();
+    if rows.iter().all(|row| row[3].is_empty()) {
+        rows.iter_mut().for_each(|row| drop(row.remove(3)));
+    }
+    write_rows(f, &rows)?;
+    // The test of a single term is that of the term.
+    for test in fit.tests.iter().filter(|test| test.freedom[0] > 1.0) {
+        let [numerator, denominator] = test.freedom;
+        writeln!(f, "  {}: F({numerator}, {denominator:.1}) = {}, {}", test.condition, number(test.f), p(test.p))?;
+    }
+    if let Some(random) = &fit.random_intercept {
+        write_random_intercept(f, random)?;
+    }
+    write_notes(f, fit)
+}
+
+fn write_random_intercept(f: &mut fmt::Formatter<'_>, random: &RandomIntercept) -> fmt::Result {
+    writeln!(
+        f,
+        "  {} participants: standard deviation {} between them, {} within; intraclass correlation {:.2}",
+        random.participants,
+        number(random.standard_deviation),
+        number(random.residual_standard_deviation),
+        random.intraclass_correlation
+    )?;
+    let vary = [("within", &random.within), ("between", &random.between)];
+    let vary: Vec<String> = vary
+        .into_iter()
+        .filter(|(_, names)| !names.is_empty())
+        .map(|(how, names)| format!("{how} participants: {}", names.join(", ")))
+        .collect();
+    writeln!(f, "  varies {}", vary.join("; "))
+}
+
+fn write_notes(f: &mut fmt::Formatter<'_>, fit: &Fit) -> fmt::Result {
+    fit.notes.iter().try_for_each(|note| writeln!(f, "  {note}"))?;
     if fit.left_out.is_empty() {
         return Ok(());
     }
     writeln!(f, "  not to be told apart from these: {}", fit.left_out.join("; "))
 }
+
+fn write_effects(f: &mut fmt::Formatter<'_>, effects: &[Effect]) -> fmt::Result {
+    if effects.is_empty() {
+        return Ok(());
+    }
+    writeln!(f, "\neffect sizes, and in brackets their 95 % intervals")?;
+    let used =
+        |symbol: &str| effects.iter().flat_map(|effect| &effect.sizes).any(|size| size.measure.symbol() == symbol);
+    for (symbol, meaning) in LEGEND.into_iter().filter(|(symbol, _)| used(symbol)) {
+        writeln!(f, "  {symbol}: {meaning}")?;
+    }
+    let row = |effect: &Effect| {
+        let size = |size: &EffectSize| {
+            let [low, high] = size.interval_95.map(number);
+            format!("{} {} ({low} – {high})", size.measure.symbol(), number(size.value))
+        };
+        let mut sizes = effect.sizes.iter().map(size);
+        let count = match effect.participants {
+            [pairs, _] if effect.within => format!("n = {pairs}"),
+            [level, reference] => format!("n = {level} + {reference}"),
+        };
+        let compared = format!("{} {}, not {}", effect.condition, effect.level, effect.reference);
+        let [first, second] = [sizes.next(), sizes.next()].map(Option::unwrap_or_default);
+        vec![format!("  {}", effect.outcome), compared, count, first, second]
+    };
+    write_rows(f, &effects.iter().map(row).collect::<Vec<_>>())
+}
+
+/// What the symbols of effect sizes mean.
+const LEGEND: [(&str, &str); 4] = [
+    ("g", "Hedges' g, between participants"),
+    ("d_z", "within participants, by the standard deviation of their differences"),
+    ("d_av", "within participants, by the mean variance of both levels; compares with g"),
+    ("difference", "of shares, by Newcombe's intervals; Student's where a share is of several sessions"),
+];
 
 fn p(p: f64) -> String {
     if p < 0.001 { "p < 0.001".to_owned() } else { format!("p = {p:.3}") }
@@ -92,11 +187,11 @@ fn write_rows(f: &mut fmt::Formatter<'_>, rows: &[Vec<String>]) -> fmt::Result {
     let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
     let widths: Vec<usize> = (0..columns).map(width).collect();
     for row in rows {
-        write!(f, "{:<width$}", row[0], width = widths[0])?;
+        let mut line = format!("{:<width$}", row[0], width = widths[0]);
         for (cell, width) in row.iter().zip(&widths).skip(1) {
-            write!(f, "  {cell:>width$}")?;
+            line += &format!("  {cell:>width$}");
         }
-        writeln!(f)?;
+        writeln!(f, "{}", line.trim_end())?;
     }
     Ok(())
 }
