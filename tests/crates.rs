@@ -23,12 +23,13 @@ const LEVELS: &[(&str, u8, &[&str])] = &[
     ("cohabit-rerun", 4, &["re_sdk", "re_sdk_types", "arrow", "parquet"]),
     ("cohabit-dialog", 4, &["tokio", "axum", "hyper", "hyper-util", "rustls", "tokio-rustls", "rcgen"]),
     ("cohabit-eval", 5, &[]),
+    ("cohabit-study", 5, &[]),
     ("cohabit-python", 5, &["pyo3", "numpy"]),
     ("cohabit", 6, &["clap", "anyhow", "indicatif"]),
 ];
 
-/// Dependencies that others may name too: the log, the page and existing clients speak JSON, tests report errors of all
-/// kinds, and there are two programs.
+/// Dependencies that others may name too: the log, pages and existing clients speak JSON, tests report errors of all
+/// kinds, there are two programs, and a study has routes of its own.
 const SHARED: &[(&str, &[&str])] = &[
     (
         "serde_json",
@@ -38,12 +39,15 @@ const SHARED: &[(&str, &[&str])] = &[
             "cohabit-arena",
             "cohabit-dialog",
             "cohabit-eval",
+            "cohabit-study",
             "cohabit",
             "cohabit-tests",
         ],
     ),
     ("anyhow", &["cohabit-rerun", "cohabit-tests"]),
     ("clap", &["cohabit-rerun"]),
+    ("axum", &["cohabit-study"]),
+    ("tokio", &["cohabit-study"]),
 ];
 
 fn metadata() -> Value {

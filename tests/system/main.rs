@@ -24,6 +24,7 @@ mod searching;
 mod sessions;
 mod several;
 mod soak;
+mod study;
 mod survey;
 mod time;
 mod untrusted;

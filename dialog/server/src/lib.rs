@@ -22,12 +22,13 @@ mod recorded;
 mod robots;
 mod same_user;
 mod screening;
+mod site;
 mod spoken;
 mod survey;
 mod talk;
 mod text;
 mod tls;
-mod token;
+pub mod token;
 mod view;
 mod viewer;
 mod visit;
@@ -58,8 +59,10 @@ pub use hosts::{HostName, NoHost};
 pub use interpreter::{Endpoint, EndpointError};
 pub use journal::begin_after;
 pub use known::Knowledge;
-pub use questionnaire::{Questionnaire, QuestionnaireError};
+pub use limits::ServerLimits;
+pub use questionnaire::{Given, NotAnswered, Questionnaire, QuestionnaireError};
 pub use screening::{ScreeningConfig, screen};
+pub use site::{Framing, Site};
 pub use spoken::meaning;
 pub use tls::{Identity, TlsError};
 pub use voice::VoiceConfig;
@@ -68,7 +71,6 @@ use crate::{
     driving::Drivers,
     hub::Hub,
     journal::{Journal, Place},
-    limits::ServerLimits,
     robots::{BodyNames, RobotName, Robots},
     survey::Survey,
     talk::{Ears, Pages, Talk},
@@ -87,6 +89,8 @@ pub struct DialogConfig {
     pub hosts: Vec<HostName>,
     /// What the page is served with by HTTPS, if it is to be.
     pub identity: Option<Identity>,
+    /// The port of the server of the same host whose pages may show the page within them, if there is one.
+    pub framed_by: Option<u16>,
     /// Where what is said is written down, for the service that takes a dead one's place; nowhere, if absent.
     pub journal: Option<PathBuf>,
     /// The session's cameras.
@@ -222,7 +226,8 @@ pub fn serve(
         let (survey, voice) = (Arc::clone(&survey), Arc::clone(&voice));
         let host = Host::Live(Live { talk: Arc::clone(&talk), drivers, survey, voice });
         let (token, identity, hosts) = (token.into(), config.identity, config.hosts);
-        let service = Service { hub, host, token, admits_own_user: true, identity, hosts, limits };
+        let framing = Framing { framed_by: config.framed_by, frames_ports: false };
+        let service = Service { hub, host, token, admits_own_user: true, identity, hosts, limits, framing };
         let ending = Ending(&ended);
         let served = web::serve(listener, service, &over).map_err(DialogError::Serve);
         drop(ending);

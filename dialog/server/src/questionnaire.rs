@@ -232,7 +232,7 @@ impl Scale {
 }
 
 /// What a page answers to a question.
-#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Given {
     /// A number on a scale, or that of a choice, from 1.
@@ -262,7 +262,7 @@ impl Questionnaire {
     ///
     /// # Errors
     /// [`NotAnswered`], when one is missing or is none.
-    pub(crate) fn answered(&self, person: u32, given: &[Option<Given>]) -> Result<Vec<AnswerMessage>, NotAnswered> {
+    pub fn answered(&self, person: u32, given: &[Option<Given>]) -> Result<Vec<AnswerMessage>, NotAnswered> {
         if given.len() != self.items.len() {
             return Err(NotAnswered(format!("{} answers to {} questions.", given.len(), self.items.len())));
         }

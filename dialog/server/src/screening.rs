@@ -26,7 +26,9 @@ use crate::{
     limits::ServerLimits,
     page,
     recorded::{self, Told},
-    robots, talk, token, until_ended,
+    robots,
+    site::Framing,
+    talk, token, until_ended,
     view::View,
     web::{self, Host, Service},
 };
@@ -121,7 +123,8 @@ pub fn screen(
         ready(&token::page_address(address, false, &token));
         let host = Host::Recorded(Arc::clone(&screening));
         let (hub, hosts, limits) = (Arc::clone(&hub), config.hosts.clone(), ServerLimits::default());
-        let service = Service { hub, host, token: token.into(), admits_own_user: true, identity: None, hosts, limits };
+        let (token, framing) = (token.into(), Framing::default());
+        let service = Service { hub, host, token, admits_own_user: true, identity: None, hosts, limits, framing };
         let served = web::serve(listener, service, &over).map_err(DialogError::Serve);
         ended.store(true, Ordering::Relaxed);
         workers

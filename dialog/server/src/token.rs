@@ -9,6 +9,9 @@ use std::{
 };
 
 /// A fresh token: 128 bits by chance.
+///
+/// # Errors
+/// When the system gives no chance.
 pub fn fresh() -> io::Result<String> {
     let mut bytes = [0u8; 16];
     File::open("/dev/urandom")?.read_exact(&mut bytes)?;
@@ -19,10 +22,16 @@ pub fn fresh() -> io::Result<String> {
 }
 
 /// The address to open.
+#[must_use]
 pub fn page_address(address: SocketAddr, encrypted: bool, token: &str) -> String {
+    format!("{}/?token={token}", site_address(address, encrypted))
+}
+
+/// Where others reach what listens at `address`, without a path.
+#[must_use]
+pub fn site_address(address: SocketAddr, encrypted: bool) -> String {
     let scheme = if encrypted { "https" } else { "http" };
-    let address = reachable(address);
-    format!("{scheme}://{address}/?token={token}")
+    format!("{scheme}://{}", reachable(address))
 }
 
 /// The address at which others reach what listens at `address`, where that is any of this machine's; a machine without a
@@ -48,6 +57,7 @@ fn own_ip(here: &str, there: &str) -> Option<IpAddr> {
 }
 
 /// Whether `given` is the token, compared in constant time.
+#[must_use]
 pub fn admits(token: &str, given: Option<&str>) -> bool {
     let given = given.unwrap_or_default();
     given.len() == token.len() && given.bytes().zip(token.bytes()).fold(0, |differ, (a, b)| differ | (a ^ b)) == 0

@@ -1,24 +1,24 @@
 //! The page's server: a handful of files, a WebSocket, and the newest frame as a picture.
 
-use std::{collections::HashMap, io, net::TcpListener, sync::Arc, time::Duration};
+use std::{collections::HashMap, io, net::TcpListener, sync::Arc};
 
 use axum::{
     Extension, Router,
-    extract::{Query, Request, State, WebSocketUpgrade},
-    http::{HeaderName, HeaderValue, StatusCode, header, uri::Authority},
-    middleware::{self, Next},
+    extract::{Query, State, WebSocketUpgrade},
+    http::{StatusCode, header},
     response::{IntoResponse, Response},
     routing::get,
 };
 
 use crate::{
-    connections::{self, Ends},
+    connections::Ends,
     driving::Drivers,
-    hosts::{HostName, Hosts, Refusal},
+    hosts::HostName,
     hub::Hub,
     limits::{LONGEST_MESSAGE, ServerLimits},
     same_user::is_same_user,
     screening::Screening,
+    site::{Framing, Site},
     survey::Survey,
     talk::Talk,
     tls::Identity,
@@ -47,22 +47,6 @@ const FILES: [(&str, &str, &str); 14] = [
 ];
 const ICON: &str = include_str!("../../web/favicon.svg");
 
-/// Headers of every answer. What is sent is of the type that it says; no address, which may hold the token, is told to
-/// other sites; no other site may show, read or embed any of it.
-fn fixed_headers() -> [(HeaderName, HeaderValue); 5] {
-    [
-        (header::X_CONTENT_TYPE_OPTIONS, HeaderValue::from_static("nosniff")),
-        (header::REFERRER_POLICY, HeaderValue::from_static("no-referrer")),
-        (header::X_FRAME_OPTIONS, HeaderValue::from_static("DENY")),
-        (HeaderName::from_static("cross-origin-opener-policy"), HeaderValue::from_static("same-origin")),
-        (HeaderName::from_static("cross-origin-resource-policy"), HeaderValue::from_static("same-origin")),
-    ]
-}
-/// What the page may load and where it may connect to; a host's socket follows, which older browsers do not take for a
-/// part of `'self'`.
-const POLICY: &str = "default-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'; object-src 'none'; \
-                      connect-src 'self'";
-
 /// What every page has to do with.
 #[derive(Clone)]
 pub struct Service {
@@ -80,6 +64,8 @@ pub struct Service {
     pub limits: ServerLimits,
     /// What it is served with by HTTPS, if it is.
     pub identity: Option<Identity>,
+    /// Whose pages may show the page within them.
+    pub framing: Framing,
 }
 
 /// What pages see: a session that goes on, or one that was recorded.
@@ -106,23 +92,12 @@ pub struct Live {
 
 /// Serves on `listener` until `over`.
 pub fn serve(listener: TcpListener, service: Service, over: &dyn Fn() -> bool) -> io::Result<()> {
-    let (identity, limits) = (service.identity.clone(), service.limits);
-    let hosts = Hosts::new(listener.local_addr()?, identity.is_some(), service.hosts.clone());
-    let router = router(service, hosts);
-    let runtime = tokio::runtime::Builder::new_multi_thread().worker_threads(2).enable_all().build()?;
-    let served = runtime.block_on(async {
-        listener.set_nonblocking(true)?;
-        let listener = tokio::net::TcpListener::from_std(listener)?;
-        tokio::select! {
-            () = connections::serve(listener, identity, router, limits) => Ok(()),
-            () = until(over) => Ok(()),
-        }
-    });
-    runtime.shutdown_timeout(Duration::from_millis(100));
-    served
+    let (identity, limits, framing) = (service.identity.clone(), service.limits, service.framing);
+    let hosts = service.hosts.clone();
+    Site { router: router(service), hosts, identity, limits, framing }.serve(listener, over)
 }
 
-fn router(service: Service, hosts: Hosts) -> Router {
+fn router(service: Service) -> Router {
     let files = FILES
         .into_iter()
         .fold(Router::new(), |router, (path, kind, text)| router.route(path, get(move || file(kind, text))));
@@ -132,40 +107,6 @@ fn router(service: Service, hosts: Hosts) -> Router {
         .route("/frame.jpg", get(frame))
         .route("/ws", get(socket))
         .with_state(service)
-        .layer(middleware::from_fn_with_state(Arc::new(hosts), guard))
-}
-
-/// Stands before every route, also those that do not exist: refuses who asks for another host, or comes from another
-/// site, and gives each answer its headers.
-async fn guard(State(hosts): State<Arc<Hosts>>, request: Request, next: Next) -> Response {
-    match hosts.check(request.uri(), request.headers()) {
-        Ok(host) => with_headers(next.run(request).await, Some(&host)),
-        Err(refusal) => with_headers(refusal.into_response(), None),
-    }
-}
-
-impl IntoResponse for Refusal {
-    fn into_response(self) -> Response {
-        (StatusCode::FORBIDDEN, format!("{self}\n")).into_response()
-    }
-}
-
-fn with_headers(mut response: Response, host: Option<&Authority>) -> Response {
-    let headers = response.headers_mut();
-    headers.extend(fixed_headers());
-    // Policies have no form for addresses of IPv6.
-    let host = host.filter(|host| !host.as_str().starts_with('['));
-    let policy = host.map(|host| HeaderValue::try_from(format!("{POLICY} ws://{host} wss://{host}")));
-    let policy = policy.and_then(Result::ok).unwrap_or(HeaderValue::from_static(POLICY));
-    headers.insert(header::CONTENT_SECURITY_POLICY, policy);
-    headers.entry(header::CACHE_CONTROL).or_insert(HeaderValue::from_static("no-store"));
-    response
-}
-
-async fn until(over: &dyn Fn() -> bool) {
-    while !over() {
-        tokio::time::sleep(Duration::from_millis(20)).await;
-    }
 }
 
 async fn file(kind: &'static str, text: &'static str) -> Response {

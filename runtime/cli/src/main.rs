@@ -18,6 +18,7 @@ mod replay;
 mod rerun;
 mod sessions;
 mod stop;
+mod study;
 mod supervisor;
 mod terminal;
 mod time;
@@ -54,6 +55,8 @@ enum Command {
     Export(export::Export),
     /// Play many missions headless, by what is said in them, and report what came of them
     Eval(eval::Eval),
+    /// Run a study: participants, conditions, consent, sessions, data
+    Study(study::Study),
     /// Say what this machine lacks for a session, and what that costs
     Doctor(doctor::Doctor),
     /// Show a running session live: its ticks, how long their stages take, and its peers
@@ -78,7 +81,7 @@ impl Command {
     /// Has the files of a session, its log among them, readable by this user alone.
     fn keep_files_private(&self) {
         match self {
-            Self::Play(_) | Self::Sim(_) | Self::Agent(_) | Self::Dialog(_) | Self::Record(_) => {
+            Self::Play(_) | Self::Sim(_) | Self::Agent(_) | Self::Dialog(_) | Self::Record(_) | Self::Study(_) => {
                 rustix::process::umask(Mode::RWXG | Mode::RWXO);
             }
             Self::Check(_)
@@ -123,6 +126,7 @@ fn run(asked: Cohabit) -> anyhow::Result<()> {
         Command::Compare(compare) => compare.run(),
         Command::Export(export) => export.run(),
         Command::Eval(eval) => eval.run(),
+        Command::Study(study) => study.run(),
         Command::Doctor(doctor) => doctor.run(),
         Command::Top(top) => top.run(),
         Command::Time(time) => time.run(),

@@ -244,6 +244,9 @@ pub struct Listening {
     /// if it is another one; as often as needed
     #[arg(long = "host", value_name = "NAME[:PORT]")]
     pub hosts: Vec<HostName>,
+    /// The port of the server of the same host whose pages may show the page within them, such as that of a study
+    #[arg(long, value_name = "PORT")]
+    pub framed_by: Option<u16>,
     /// Serve the page by HTTPS: to pages from other machines browsers give a microphone only so. Without a certificate of
     /// yours one is made, which browsers ask about once
     #[arg(long)]
@@ -393,6 +396,7 @@ impl Dialog {
             journal: Some(journal(&Session::new(&self.joining.session).map_err(bad_input)?)),
             cameras: message.cameras,
             identity: self.listening.identity()?,
+            framed_by: self.listening.framed_by,
             listen: SocketAddr::new(self.listening.listen, self.listening.port),
             hosts: self.listening.hosts.clone(),
             knows: self.listening.knows,

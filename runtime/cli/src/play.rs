@@ -34,6 +34,9 @@ pub struct Play {
     /// The session's name; one of its own is made up if absent
     #[arg(long)]
     session: Option<String>,
+    /// The process that this session ends with
+    #[arg(long, hide = true)]
+    supervisor: Option<i32>,
     #[command(flatten)]
     listening: Listening,
     /// The seed of all that is random, where the mission does not fix it; the clock's if absent
@@ -83,6 +86,7 @@ impl Play {
     pub fn run(&self) -> anyhow::Result<()> {
         let began = Instant::now();
         let stop = stop::on_request()?;
+        stop::with_supervisor(self.supervisor)?;
         let seed = self.seed.unwrap_or_else(clock_seed);
         let (plan, before) = self.plan(seed)?;
         MindRequest::check(&self.minds, &plan)?;

@@ -88,7 +88,8 @@ impl Role {
         let questionnaires = listening.questionnaires.iter().map(|name| format!("--questionnaire={name}"));
         let hosts = listening.hosts.iter().map(|host| format!("--host={host}"));
         let arguments = arguments.map(str::to_owned).chain(names).chain(robots).chain(questionnaires);
-        let arguments = arguments.chain(hosts);
+        let framed_by = listening.framed_by.map(|port| format!("--framed-by={port}"));
+        let arguments = arguments.chain(hosts).chain(framed_by);
         let arguments = arguments.chain(listening.voice.arguments());
         let tls = listening.tls_arguments();
         Self { name: "dialog", arguments: arguments.map(OsString::from).chain(tls).collect() }

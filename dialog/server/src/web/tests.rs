@@ -5,7 +5,7 @@ use std::{
     net::{SocketAddr, TcpStream},
     sync::atomic::{AtomicBool, Ordering},
     thread,
-    time::Instant,
+    time::{Duration, Instant},
 };
 
 use cohabit_bus::{CameraId, Local};
@@ -62,6 +62,7 @@ impl Served {
             hosts,
             limits,
             identity: None,
+            framing: Framing::default(),
         };
         let over = Arc::new(AtomicBool::new(false));
         let is_over = Arc::clone(&over);

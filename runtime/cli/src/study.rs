@@ -1,0 +1,264 @@
+//! `cohabit study`: a study from plan to data.
+
+mod program;
+mod sessions;
+
+use std::{
+    io::Write as _,
+    net::{IpAddr, SocketAddr, TcpListener},
+    path::{Path, PathBuf},
+    sync::{
+        Arc, Mutex,
+        atomic::{AtomicBool, Ordering},
+    },
+    thread,
+    time::{SystemTime, UNIX_EPOCH},
+};
+
+use anyhow::Context as _;
+use cohabit_cdf::Catalog;
+use cohabit_dialog::HostName;
+use cohabit_study::{Folder, FolderError, Journal, Progress, Registry, StudyFile, StudyService, address, export, keep};
+use cohabit_tables::{Played, tables};
+
+use crate::{
+    doctor::ensure_room,
+    failure::{bad_input, environment},
+    stop,
+    terminal::{shown, shown_lines},
+};
+use program::ThisProgram;
+use sessions::Sessions;
+
+/// Runs a study: participants, their conditions, their consent, their sessions, and their data
+#[derive(clap::Args)]
+pub struct Study {
+    #[command(subcommand)]
+    command: StudyCommand,
+}
+
+#[derive(clap::Subcommand)]
+enum StudyCommand {
+    /// Say what is wrong in a study's file, and where
+    Check(Check),
+    /// Serve the pages of participants and of the experimenter, and play their sessions
+    Run(Run),
+    /// Remove all data of a participant, and note that it was done
+    Withdraw(Withdraw),
+    /// Write all data as tables with a codebook
+    Export(Export),
+}
+
+#[derive(clap::Args)]
+struct Check {
+    /// The study's file (TOML)
+    #[arg(required_unless_present = "schema")]
+    file: Option<PathBuf>,
+    /// Print the JSON Schema of studies' files, and nothing else
+    #[arg(long, exclusive = true)]
+    schema: bool,
+}
+
+#[derive(clap::Args)]
+struct Run {
+    /// The study's file (TOML)
+    file: PathBuf,
+    /// The folder of all of its data; made, if it is not there
+    #[arg(long, value_name = "DATA")]
+    folder: PathBuf,
+    /// The port of the pages; 0 takes any that is free
+    #[arg(long, default_value_t = 8700)]
+    port: u16,
+    /// The address the pages listen on, such as 0.0.0.0 for other machines
+    #[arg(long, default_value = "127.0.0.1")]
+    listen: IpAddr,
+    /// A name by which browsers may ask for the pages besides those of this machine; as often as needed
+    #[arg(long = "host", value_name = "NAME[:PORT]")]
+    hosts: Vec<HostName>,
+    /// How many sessions are played at a time, while other participants wait; one for two cores, if absent
+    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u16).range(1..))]
+    sessions: Option<u16>,
+}
+
+#[derive(clap::Args)]
+struct Withdraw {
+    /// Who, such as P07
+    participant: String,
+    /// The folder that was given to `cohabit study run`
+    #[arg(long, value_name = "DATA")]
+    folder: PathBuf,
+}
+
+#[derive(clap::Args)]
+struct Export {
+    /// The folder that was given to `cohabit study run`
+    #[arg(long, value_name = "DATA")]
+    folder: PathBuf,
+    /// The folder to write tables into
+    #[arg(long, value_name = "FOLDER")]
+    out: PathBuf,
+}
+
+impl Study {
+    /// Does what is asked for.
+    pub fn run(&self) -> anyhow::Result<()> {
+        match &self.command {
+            StudyCommand::Check(check) => check.run(),
+            StudyCommand::Run(run) => run.run(),
+            StudyCommand::Withdraw(withdraw) => withdraw.run(),
+            StudyCommand::Export(export) => export.run(),
+        }
+    }
+}
+
+/// A study's file, and the study in it.
+fn read(path: &Path) -> anyhow::Result<(StudyFile, cohabit_study::Study)> {
+    let file = StudyFile::read(path).map_err(bad_input)?;
+    let study = file.check(&ThisProgram).map_err(bad_input)?;
+    Ok((file, study))
+}
+
+impl Check {
+    fn run(&self) -> anyhow::Result<()> {
+        let Some(file) = self.file.as_ref().filter(|_| !self.schema) else {
+            // Who reads may have read enough.
+            let _ = writeln!(std::io::stdout().lock(), "{:#}", cohabit_study::schema());
+            return Ok(());
+        };
+        let (_, study) = read(file)?;
+        let count = |kind| study.conditions(kind).len();
+        let (between, within) =
+            (count(cohabit_study::design::FactorKind::Between), count(cohabit_study::design::FactorKind::Within));
+        println!(
+            "{}: can be run: {} between-participants and {} within-participant conditions, {} participants planned",
+            shown(file.display()),
+            between,
+            within,
+            study.participants
+        );
+        Ok(())
+    }
+}
+
+impl Run {
+    fn run(&self) -> anyhow::Result<()> {
+        let stop = stop::on_request()?;
+        let (file, study) = read(&self.file)?;
+        ensure_room()?;
+        let mut files = study.files.clone();
+        files.insert("study.toml".to_owned(), file.text);
+        let folder = Folder::begin(&self.folder, &files).map_err(refused)?;
+        let study_file = Folder::study_file(folder.path());
+        let asked = SocketAddr::new(self.listen, self.port);
+        let listener = TcpListener::bind(asked).map_err(|error| {
+            environment(format!(
+                "serve the study on {asked}: {error}; choose another with `--port` (0 takes any that is free)"
+            ))
+        })?;
+        let listening = listener.local_addr().context("the address of the pages")?;
+        let most_sessions = self.most_sessions();
+        let title = study.title.clone();
+        let registry = Arc::new(Mutex::new(Registry::new(study, folder).map_err(refused)?));
+        let service = StudyService { registry: Arc::clone(&registry), most_sessions };
+        let mut sessions = Sessions::new(study_file.parent().unwrap_or(Path::new(".")), listening, &self.hosts)?;
+        let (doors, site) = (service.doors(), address(listening));
+        println!("Running \"{}\" with data in {}", shown(title), shown(self.folder.display()));
+        println!("Experimenter's page: {site}{}", doors.experimenter);
+        println!("Sign-up link:        {site}{}", doors.sign_up);
+        println!("{most_sessions} at a time play; Ctrl-C ends the study, and the same command goes on with it");
+        thread::scope(|scope| {
+            let (hosts, stop) = (self.hosts.clone(), &stop);
+            let server = scope.spawn(move || {
+                let ending = Ending(stop);
+                let served = service.serve(listener, hosts, &|| stop.load(Ordering::Relaxed));
+                drop(ending);
+                served
+            });
+            // Sessions end with the thread that starts them, so it is the one that lives longest.
+            keep(&registry, &mut sessions, most_sessions, stop);
+            server.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+        })
+        .context("serve the study")?;
+        println!("The study has ended; everybody's place is kept in {}", shown(self.folder.display()));
+        Ok(())
+    }
+
+    fn most_sessions(&self) -> usize {
+        let cores = thread::available_parallelism().map_or(1, usize::from);
+        self.sessions.map_or((cores / 2).max(1), usize::from)
+    }
+}
+
+/// Ends the study when it is dropped: without its pages it cannot go on.
+struct Ending<'a>(&'a AtomicBool);
+
+impl Drop for Ending<'_> {
+    fn drop(&mut self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+}
+
+/// Of what class a folder's error is.
+fn refused(error: FolderError) -> anyhow::Error {
+    match error {
+        FolderError::File { .. } | FolderError::Busy { .. } => environment(error),
+        _ => bad_input(error),
+    }
+}
+
+impl Withdraw {
+    fn run(&self) -> anyhow::Result<()> {
+        let folder = Folder::open(&self.folder).map_err(refused)?;
+        let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+        folder.withdraw(&self.participant, u64::try_from(since.as_millis())?).map_err(refused)?;
+        println!(
+            "All data of {} are removed from {}; that it was done is kept. Tables that were exported elsewhere still have them",
+            shown(&self.participant),
+            shown(self.folder.display())
+        );
+        Ok(())
+    }
+}
+
+impl Export {
+    fn run(&self) -> anyhow::Result<()> {
+        let (_, study) = read(&Folder::study_file(&self.folder))?;
+        let all = self.progress()?;
+        let logs = self.logs()?;
+        let played = Played::open_all(&logs, &Catalog::builtin()).map_err(bad_input)?;
+        std::fs::create_dir_all(&self.out).map_err(|error| bad_input(format!("{}: {error}", self.out.display())))?;
+        let withdrawn = Folder::withdrawals_in(&self.folder).map_err(refused)?;
+        let withdrawn: Vec<String> = withdrawn.into_iter().map(|one| one.participant).collect();
+        for path in export(&study, &all, &withdrawn, tables(&played), &self.out)? {
+            println!("{}", shown(path.display()));
+        }
+        Ok(())
+    }
+
+    /// Where everybody is, also while the study runs.
+    fn progress(&self) -> anyhow::Result<Vec<Progress>> {
+        let paths = files(&self.folder.join("journals"), "jsonl")?;
+        let read = paths.iter().map(|path| Journal::read(path).map_err(bad_input));
+        Ok(read.collect::<anyhow::Result<Vec<_>>>()?.into_iter().flatten().collect())
+    }
+
+    /// The logs that can be read. One that is just begun has nothing in it.
+    fn logs(&self) -> anyhow::Result<Vec<PathBuf>> {
+        let all = files(&self.folder.join("logs"), "mcap")?;
+        let (whole, unread): (Vec<_>, Vec<_>) =
+            all.into_iter().partition(|path| cohabit_record::Log::open(path).is_ok());
+        for path in unread {
+            eprintln!("cohabit: {} cannot be read, and is left out", shown_lines(path.display()));
+        }
+        Ok(whole)
+    }
+}
+
+/// The files of a folder with that ending, in the order of their names.
+fn files(folder: &Path, ending: &str) -> anyhow::Result<Vec<PathBuf>> {
+    let entries = std::fs::read_dir(folder).map_err(|error| bad_input(format!("{}: {error}", folder.display())))?;
+    let paths = entries.flatten().map(|entry| entry.path());
+    let mut found: Vec<PathBuf> = paths.filter(|path| path.extension().is_some_and(|own| own == ending)).collect();
+    found.sort();
+    Ok(found)
+}

@@ -1,0 +1,78 @@
+//! What this program knows of the settings and missions that a study names.
+
+use std::{ffi::OsString, sync::Arc};
+
+use clap::{Parser, error::ErrorKind};
+use cohabit_cdf::Catalog;
+use cohabit_engine::SessionPlan;
+use cohabit_study::Program;
+
+use crate::{mission_file::MissionFile, play::Play};
+
+/// This program.
+pub struct ThisProgram;
+
+/// The command line of `play`, by itself.
+#[derive(Parser)]
+#[command(no_binary_name = true)]
+struct PlayLine {
+    #[command(flatten)]
+    _play: Play,
+}
+
+impl Program for ThisProgram {
+    fn check_arguments(&self, arguments: &[String]) -> Result<(), String> {
+        match PlayLine::try_parse_from(arguments.iter().map(OsString::from)) {
+            Ok(_) => Ok(()),
+            Err(error) if matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) => {
+                Err("this is no setting of a session".to_owned())
+            }
+            Err(error) => Err(said(&error.to_string())),
+        }
+    }
+
+    fn check_mission(&self, name: &str) -> Result<(), String> {
+        let file = MissionFile::find(Some(name)).map_err(|error| format!("{error:#}"))?;
+        let catalog = Arc::new(Catalog::builtin());
+        let plan = SessionPlan::new(&file.name, &file.text, catalog, 0).map_err(|error| error.to_string())?;
+        plan.build().map(drop).map_err(|error| error.to_string())
+    }
+}
+
+/// What clap says of an argument, in one line, without how the program is used.
+fn said(text: &str) -> String {
+    let text = text.trim_start_matches("error: ");
+    let lines =
+        text.lines().map(str::trim).take_while(|line| !line.starts_with("Usage:") && !line.starts_with("For more"));
+    lines.filter(|line| !line.is_empty()).collect::<Vec<_>>().join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn settings_are_those_of_play() {
+        let check = |arguments: &[&str]| {
+            let arguments: Vec<String> = arguments.iter().map(|one| (*one).to_owned()).collect();
+            ThisProgram.check_arguments(&arguments)
+        };
+        assert_eq!(check(&["--ask=never", "--understanding=fast", "--body=person@Lab1", "--lock-step"]), Ok(()));
+        for (arguments, part) in [
+            (&["--ask=sometimes"][..], "sometimes"),
+            (&["--wizard"], "unexpected argument '--wizard'"),
+            (&["--help"], "no setting"),
+            (&["--lock-step", "--speed=2"], "cannot be used with"),
+        ] {
+            let said = check(arguments).expect_err("a wrong argument");
+            assert!(said.contains(part) && !said.contains('\n') && !said.contains("Usage"), "{said}");
+        }
+    }
+
+    #[test]
+    fn missions_are_those_that_can_be_played() {
+        assert_eq!(ThisProgram.check_mission("cold_soda"), Ok(()));
+        let said = ThisProgram.check_mission("warm_soda").expect_err("no mission");
+        assert!(said.contains("there are"), "{said}");
+    }
+}

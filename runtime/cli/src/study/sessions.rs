@@ -1,0 +1,260 @@
+//! Sessions of a study: each is a `cohabit play` of its own, which ends with the study.
+
+use std::{
+    ffi::OsString,
+    io::{BufRead as _, BufReader, Read},
+    net::SocketAddr,
+    os::unix::process::CommandExt as _,
+    path::{Path, PathBuf},
+    process::{Child, Command, Stdio},
+    sync::mpsc::{self, Receiver, TryRecvError},
+    thread,
+    time::{Duration, Instant},
+};
+
+use anyhow::Context as _;
+use cohabit_bus::{
+    BusError, Inbox, Session, Shm, Topic,
+    message::{self, EventKind, EventMessage},
+};
+use cohabit_dialog::HostName;
+use cohabit_record::Log;
+use cohabit_study::{Ending, Look, PageAddress, Player, Playing, Wanted};
+use rustix::process::{Pid, Signal, kill_process};
+
+use crate::terminal::shown;
+
+/// This very program, also when its file was replaced since it was started.
+const THIS_PROGRAM: &str = "/proc/self/exe";
+/// How long a session may take to end when asked; then its supervisor is killed, with which all of it ends.
+const GRACE: Duration = Duration::from_secs(12);
+
+/// Starts sessions.
+pub struct Sessions {
+    /// Where names of files in the study start from.
+    folder: PathBuf,
+    listening: SocketAddr,
+    hosts: Vec<String>,
+}
+
+impl Sessions {
+    /// For a study in that folder whose pages are served there.
+    pub fn new(folder: &Path, listening: SocketAddr, hosts: &[HostName]) -> anyhow::Result<Self> {
+        let folder = folder.canonicalize().with_context(|| folder.display().to_string())?;
+        // Each page has a port of its own: a name is one at any.
+        let name =
+            |host: &HostName| host.to_string().rsplit_once(':').map_or(host.to_string(), |(name, _)| name.to_owned());
+        Ok(Self { folder, listening, hosts: hosts.iter().map(name).collect() })
+    }
+
+    fn command(&self, wanted: &Wanted, session: &str, point: Option<&Point>) -> Command {
+        let mut command = Command::new(THIS_PROGRAM);
+        command
+            .arg0("cohabit")
+            .args(["play", "--session", session, "--port", "0"])
+            .args(["--supervisor", &std::process::id().to_string()])
+            .args(["--listen", &self.listening.ip().to_string()])
+            .args(["--framed-by", &self.listening.port().to_string()])
+            .args(["--participant", &wanted.participant])
+            .arg("--log")
+            .arg(&wanted.log)
+            .args(self.hosts.iter().map(|host| format!("--host={host}")));
+        let world = |argument: &&String| ["--seed=", "--body="].iter().any(|flag| argument.starts_with(flag));
+        match point {
+            Some(point) => command.arg(&point.argument).args(wanted.arguments.iter().filter(|one| !world(one))),
+            // A seed among the arguments counts, which the study gives none then.
+            None if wanted.arguments.iter().any(|one| one.starts_with("--seed=")) => {
+                command.args(&wanted.arguments).arg(&wanted.mission)
+            }
+            None => command.args(&wanted.arguments).args(["--seed", &wanted.seed.to_string(), &wanted.mission]),
+        };
+        command
+            .current_dir(&self.folder)
+            .stdin(Stdio::null())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            // Ctrl-C reaches the study alone, which then ends its sessions in order.
+            .process_group(0);
+        command
+    }
+}
+
+impl Player for Sessions {
+    fn start(&mut self, wanted: &Wanted) -> Result<Box<dyn Playing>, String> {
+        let session = format!("s{}-{}", std::process::id(), wanted.name);
+        let point = wanted.before.iter().find_map(|log| Point::at_end_of(log));
+        let spawned = self.command(wanted, &session, point.as_ref()).spawn();
+        let mut child = spawned.map_err(|error| format!("start a session: {error}"))?;
+        let (sender, lines) = mpsc::channel();
+        if let Some(out) = child.stdout.take() {
+            let sender = sender.clone();
+            relay(out, move |line| drop(sender.send(line)));
+        }
+        if let Some(errors) = child.stderr.take() {
+            let name = wanted.name.clone();
+            relay(errors, move |line| {
+                eprintln!("{name}: {}", shown(&line));
+                drop(sender.send(line));
+            });
+        }
+        let over = point.and_then(|point| point.over);
+        let last_line = String::new();
+        Ok(Box::new(PlayedSession { child, session, lines, last_line, page: None, events: None, over, ends_by: None }))
+    }
+}
+
+/// Where a session goes on from.
+struct Point {
+    /// The argument of `play` that says so.
+    argument: OsString,
+    /// How its mission had ended there, if it had.
+    over: Option<Ending>,
+}
+
+impl Point {
+    /// The end of what a log holds, if it can be read.
+    fn at_end_of(log: &Path) -> Option<Self> {
+        let read = Log::open(log).ok()?;
+        let tick = read.ticks.last()?.tick;
+        let mut argument = OsString::from("--branch=");
+        argument.push(log);
+        argument.push(format!("@tick:{tick}"));
+        let over = read.events.iter().find_map(|event| match event.kind.as_str() {
+            "MissionComplete" => Some(Ending::Complete),
+            "MissionFailed" => Some(Ending::Failed),
+            _ => None,
+        });
+        Some(Self { argument, over })
+    }
+}
+
+/// Hands on what a process says, line by line.
+fn relay(out: impl Read + Send + 'static, tell: impl Fn(String) + Send + 'static) {
+    thread::spawn(move || BufReader::new(out).lines().map_while(Result::ok).for_each(tell));
+}
+
+/// A session that is played.
+struct PlayedSession {
+    child: Child,
+    session: String,
+    lines: Receiver<String>,
+    /// What it said last, which says why it ended.
+    last_line: String,
+    page: Option<PageAddress>,
+    events: Option<Inbox>,
+    /// How its mission had ended before it began, if it goes on from such a point.
+    over: Option<Ending>,
+    /// When it is killed, if it was asked to end.
+    ends_by: Option<Instant>,
+}
+
+impl PlayedSession {
+    fn hear(&mut self) {
+        loop {
+            match self.lines.try_recv() {
+                Ok(line) => {
+                    if let Some(page) = page_address(&line) {
+                        self.page = Some(page);
+                    }
+                    self.last_line = line;
+                }
+                Err(TryRecvError::Empty | TryRecvError::Disconnected) => return,
+            }
+        }
+    }
+
+    /// How its mission has ended, if it has.
+    fn ending(&mut self) -> Result<Option<Ending>, BusError> {
+        if self.events.is_none() {
+            let Ok(session) = Session::new(&self.session) else { return Ok(None) };
+            self.events = Some(Inbox::new(&Shm::join(&session)?, Topic::Events)?);
+        }
+        let Some(events) = &mut self.events else { return Ok(None) };
+        while let Some((_, event)) = events.next(|sample| message::read::<EventMessage>(sample.payload()))? {
+            match event.kind() {
+                Some(EventKind::MissionComplete) => return Ok(Some(Ending::Complete)),
+                Some(EventKind::MissionFailed) => return Ok(Some(Ending::Failed)),
+                _ => {}
+            }
+        }
+        Ok(None)
+    }
+
+    fn signal(&self, signal: Signal) {
+        if let Some(pid) = i32::try_from(self.child.id()).ok().and_then(Pid::from_raw) {
+            let _ = kill_process(pid, signal);
+        }
+    }
+}
+
+/// The page that a line of `play` tells of.
+fn page_address(line: &str) -> Option<PageAddress> {
+    let address = line.split_whitespace().find(|word| word.starts_with("http"))?;
+    let (site, token) = address.split_once("/?token=")?;
+    let port = site.rsplit_once(':')?.1.parse().ok()?;
+    Some(PageAddress { port, token: token.to_owned() })
+}
+
+impl Playing for PlayedSession {
+    fn look(&mut self) -> Look {
+        self.hear();
+        match self.child.try_wait() {
+            Ok(None) => {}
+            Ok(Some(status)) => return Look::Gone(format!("{status}: {}", self.last_line)),
+            Err(error) => return Look::Gone(error.to_string()),
+        }
+        if self.ends_by.is_some_and(|at| at <= Instant::now()) {
+            self.signal(Signal::KILL);
+        }
+        let Some(page) = self.page.clone() else { return Look::Starting };
+        if let Some(ending) = self.over {
+            return Look::Over(ending);
+        }
+        match self.ending() {
+            Ok(Some(ending)) => Look::Over(ending),
+            Ok(None) => Look::Open(page),
+            Err(error) => {
+                eprintln!("cohabit: {}: {}", self.session, shown(error));
+                self.events = None;
+                Look::Open(page)
+            }
+        }
+    }
+
+    fn end(&mut self) {
+        // What is left on its bus keeps it from being wiped.
+        self.events = None;
+        self.signal(Signal::TERM);
+        self.ends_by = Some(Instant::now() + GRACE);
+    }
+}
+
+impl Drop for PlayedSession {
+    fn drop(&mut self) {
+        if matches!(self.child.try_wait(), Ok(None)) {
+            let _ = self.child.kill();
+            let _ = self.child.wait();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pages_are_read_from_what_play_says() {
+        let page = |port, token: &str| Some(PageAddress { port, token: token.to_owned() });
+        for (line, expected) in [
+            (
+                "Open http://127.0.0.1:40123/?token=ab12  (ready after 0.50 s; Ctrl-C ends the session)",
+                page(40123, "ab12"),
+            ),
+            ("The page is back at http://[::1]:9/?token=x", page(9, "x")),
+            ("Playing \"Make cereal\" (make_cereal.json)", None),
+            ("see http://example.org", None),
+        ] {
+            assert_eq!(page_address(line), expected, "{line}");
+        }
+    }
+}

@@ -1,0 +1,134 @@
+//! Who meets which conditions, in which order, with which missions: a function of the study and a participant's place.
+
+use crate::{
+    chance::{Chance, Purpose},
+    design::{Assignment, Block, Condition, FactorKind, MissionOrder, Missions, Study, merged},
+    plan::{Plan, PlannedMission, Step},
+    square,
+};
+
+/// What the participant at a place, from 1, does. The same study and place give the same plan.
+///
+/// - A block of participants (`block_size`) has each between-participants condition equally often, in random order.
+/// - Of those with one between-participants condition, each consecutive group of as many as a square has rows takes all
+///   rows of a Latin square, in random order, its conditions labelled at random.
+/// - Missions stand in the order that the block of missions says; the first ones are played under the first condition, and
+///   so on.
+#[must_use]
+pub fn assign(study: &Study, place: u32) -> Plan {
+    let between = study.conditions(FactorKind::Between);
+    let seat = Seat::new(study, place, between.len());
+    let condition = &between[seat.condition];
+    let mut steps = Vec::new();
+    for (number, block) in study.blocks.iter().enumerate() {
+        match block {
+            Block::Questionnaires(names) => steps.extend(names.iter().map(|name| asked(name, None))),
+            Block::Mission { mission, settings, limits, .. } => steps.push(Step::Mission(PlannedMission {
+                block: number,
+                mission: mission.clone(),
+                within: Vec::new(),
+                settings: merged(&[&study.settings, &condition.settings, settings]),
+                limits: *limits,
+            })),
+            Block::Missions(missions) => add_missions(&mut steps, study, number, missions, condition, &seat),
+            Block::Break { limit_s, .. } => steps.push(Step::Break { block: number, limit_s: *limit_s }),
+        }
+    }
+    Plan { place, between: condition.choices.clone(), steps }
+}
+
+fn asked(name: &str, about: Option<usize>) -> Step {
+    Step::Questionnaire { name: name.to_owned(), about }
+}
+
+/// Where a participant is in the design.
+struct Seat {
+    place: u64,
+    /// The number of the between-participants condition.
+    condition: usize,
+    /// How many participants before have the same one.
+    before: usize,
+}
+
+impl Seat {
+    fn new(study: &Study, place: u32, conditions: usize) -> Self {
+        let index = place.max(1) as usize - 1;
+        let each = (study.block_size / conditions).max(1);
+        let size = each * conditions;
+        let (block, within) = (index / size, index % size);
+        let order = Chance::new(study.seed, Purpose::Between, block as u64).order(size);
+        let condition = |slot: &usize| slot / each;
+        let own = condition(&order[within]);
+        let before = block * each + order[..within].iter().filter(|slot| condition(slot) == own).count();
+        Self { place: u64::from(place), condition: own, before }
+    }
+
+    /// A number for what is drawn once for the `group`-th group of participants with this between-participants condition.
+    fn group(&self, group: usize) -> u64 {
+        (self.condition as u64) << 32 | group as u64
+    }
+}
+
+/// The order of the within-participant conditions, and the number of the group of participants that share a square.
+fn order(study: &Study, seat: &Seat, conditions: usize) -> (Vec<usize>, usize) {
+    let rows = match study.assignment {
+        Assignment::LatinSquare => square::latin(conditions),
+        Assignment::BalancedLatinSquare => square::balanced(conditions),
+        Assignment::BlockRandom => {
+            return (Chance::new(study.seed, Purpose::Conditions, seat.place).order(conditions), seat.before);
+        }
+    };
+    let (group, row) = (seat.before / rows.len(), seat.before % rows.len());
+    let mut chance = Chance::new(study.seed, Purpose::Conditions, seat.group(group));
+    let (labels, order) = (chance.order(conditions), chance.order(rows.len()));
+    (rows[order[row]].iter().map(|condition| labels[*condition]).collect(), group)
+}
+
+/// The missions in the order in which they are played.
+fn sequence<'a>(study: &'a Study, order: MissionOrder, seat: &Seat, group: usize) -> Vec<&'a str> {
+    let mut missions: Vec<&str> = study.missions.iter().map(String::as_str).collect();
+    match order {
+        MissionOrder::Fixed => {}
+        MissionOrder::Random => Chance::new(study.seed, Purpose::Missions, seat.place).shuffle(&mut missions),
+        // Within a group of participants each mission keeps its position, and meets all conditions; over as many groups as
+        // there are missions it moves through all positions.
+        MissionOrder::Balanced => {
+            let count = missions.len().max(1);
+            Chance::new(study.seed, Purpose::Missions, seat.group(group / count)).shuffle(&mut missions);
+            missions.rotate_left(group % count);
+        }
+    }
+    missions
+}
+
+fn add_missions(
+    steps: &mut Vec<Step>,
+    study: &Study,
+    block: usize,
+    asked_for: &Missions,
+    between: &Condition,
+    seat: &Seat,
+) {
+    let within = study.conditions(FactorKind::Within);
+    let (order, group) = order(study, seat, within.len());
+    let missions = sequence(study, asked_for.order, seat, group);
+    let each = (missions.len() / within.len()).max(1);
+    for (index, mission) in missions.iter().enumerate() {
+        let condition = &within[order[(index / each).min(order.len() - 1)]];
+        let step = steps.len();
+        steps.push(Step::Mission(PlannedMission {
+            block,
+            mission: (*mission).to_owned(),
+            within: condition.choices.clone(),
+            settings: merged(&[&study.settings, &between.settings, &condition.settings]),
+            limits: asked_for.limits,
+        }));
+        steps.extend(asked_for.after_mission.iter().map(|name| asked(name, Some(step))));
+        if (index + 1).is_multiple_of(each) {
+            steps.extend(asked_for.after_condition.iter().map(|name| asked(name, Some(step))));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,144 @@
+//! Assignments are balanced, and follow from seed and place.
+
+use std::collections::BTreeMap;
+
+use proptest::prelude::*;
+
+use super::*;
+use crate::design::{Factor, Level, Setting, Settings};
+
+fn factor(name: &str, kind: FactorKind, levels: usize) -> Factor {
+    let level = |number: usize| Level {
+        name: format!("{name}{number}"),
+        settings: Settings::from([(name.to_owned(), Setting::Value(number.to_string()))]),
+    };
+    Factor { name: name.to_owned(), kind, levels: (0..levels).map(level).collect() }
+}
+
+fn study(seed: u64, assignment: Assignment, [between, within, each]: [usize; 3], order: MissionOrder) -> Study {
+    Study {
+        title: "T".to_owned(),
+        contact: "C".to_owned(),
+        seed,
+        participants: 1,
+        assignment,
+        block_size: between,
+        missions: (0..within * each).map(|number| format!("m{number}")).collect(),
+        settings: Settings::new(),
+        information: Default::default(),
+        consent: Default::default(),
+        consents: Vec::new(),
+        factors: vec![factor("b", FactorKind::Between, between), factor("w", FactorKind::Within, within)],
+        blocks: vec![Block::Missions(Missions {
+            order,
+            after_mission: vec!["tlx".to_owned()],
+            after_condition: vec!["sus".to_owned()],
+            ..Missions::default()
+        })],
+        debriefing: None,
+        completion: None,
+        questionnaires: Vec::new(),
+        files: BTreeMap::new(),
+    }
+}
+
+fn played(plan: &Plan) -> Vec<(String, String)> {
+    let of_step = |step: &Step| match step {
+        Step::Mission(mission) => Some((mission.mission.clone(), mission.within[0].level.clone())),
+        _ => None,
+    };
+    plan.steps.iter().filter_map(of_step).collect()
+}
+
+fn count<T: Ord>(all: impl IntoIterator<Item = T>) -> BTreeMap<T, usize> {
+    all.into_iter().fold(BTreeMap::new(), |mut counts, one| {
+        *counts.entry(one).or_default() += 1;
+        counts
+    })
+}
+
+fn is_even<T: Ord>(counts: &BTreeMap<T, usize>, entries: usize) -> bool {
+    counts.len() == entries && counts.values().max() == counts.values().min()
+}
+
+const SQUARES: [Assignment; 2] = [Assignment::LatinSquare, Assignment::BalancedLatinSquare];
+
+proptest! {
+    #[test]
+    fn between_conditions_differ_by_one_at_most(seed: u64, between in 1_usize..6, people in 1_u32..40) {
+        let study = study(seed, Assignment::BlockRandom, [between, 1, 1], MissionOrder::Fixed);
+        let counts = count((1..=people).map(|place| assign(&study, place).between));
+        let fewest = if counts.len() < between { 0 } else { counts.values().copied().min().unwrap_or(0) };
+        prop_assert!(counts.values().all(|found| found - fewest <= 1), "{counts:?}");
+    }
+
+    #[test]
+    fn larger_blocks_have_each_condition_as_often(seed: u64, between in 2_usize..5, each in 1_usize..5) {
+        let mut study = study(seed, Assignment::BlockRandom, [between, 1, 1], MissionOrder::Fixed);
+        study.block_size = between * each;
+        let people = u32::try_from(study.block_size * 2).unwrap();
+        let counts = count((1..=people).map(|place| assign(&study, place).between));
+        prop_assert!(is_even(&counts, between), "{counts:?}");
+    }
+
+    #[test]
+    fn each_participant_meets_each_condition_and_mission_as_often(
+        seed: u64, place in 1_u32..500, within in 1_usize..6, each in 1_usize..4, order in 0_usize..3
+    ) {
+        let order = [MissionOrder::Fixed, MissionOrder::Random, MissionOrder::Balanced][order];
+        for assignment in SQUARES.into_iter().chain([Assignment::BlockRandom]) {
+            let study = study(seed, assignment, [2, within, each], order);
+            let plan = assign(&study, place);
+            let played = played(&plan);
+            prop_assert!(is_even(&count(played.iter().map(|(mission, _)| mission)), within * each));
+            prop_assert!(is_even(&count(played.iter().map(|(_, level)| level)), within));
+            // A condition's missions are played one after the other.
+            prop_assert!(played.chunks(each).all(|chunk| chunk.iter().all(|one| one.1 == chunk[0].1)));
+            let questions = plan.steps.iter().filter(|step| matches!(step, Step::Questionnaire { .. })).count();
+            prop_assert_eq!(questions, within * each + within);
+            prop_assert_eq!(&plan, &assign(&study, place));
+        }
+    }
+
+    #[test]
+    fn squares_are_balanced_within_each_between_condition(
+        seed: u64, between in 1_usize..4, within in 2_usize..6, groups in 1_usize..3
+    ) {
+        for assignment in SQUARES {
+            let study = study(seed, assignment, [between, within, 1], MissionOrder::Balanced);
+            let rows = if assignment == Assignment::LatinSquare { within } else { square::balanced(within).len() };
+            let people = u32::try_from(between * rows * groups).unwrap();
+            let plans: Vec<_> = (1..=people).map(|place| assign(&study, place)).collect();
+            let positions = plans.iter().flat_map(|plan| {
+                let levels = played(plan).into_iter().map(|(_, level)| level).enumerate();
+                levels.map(|at| (plan.between.clone(), at))
+            });
+            prop_assert!(is_even(&count(positions), between * within * within));
+            // Each mission meets each condition as often.
+            prop_assert!(is_even(&count(plans.iter().flat_map(played)), within * within));
+            if assignment == Assignment::BalancedLatinSquare {
+                let pairs = plans.iter().flat_map(|plan| {
+                    let levels: Vec<_> = played(plan).into_iter().map(|(_, level)| level).collect();
+                    levels.windows(2).map(|pair| (pair[0].clone(), pair[1].clone())).collect::<Vec<_>>()
+                });
+                prop_assert!(is_even(&count(pairs), within * (within - 1)));
+            }
+        }
+    }
+}
+
+#[test]
+fn settings_follow_from_conditions() {
+    let study = study(3, Assignment::LatinSquare, [2, 3, 1], MissionOrder::Fixed);
+    for place in 1..7 {
+        let plan = assign(&study, place);
+        for step in &plan.steps {
+            let Step::Mission(mission) = step else { continue };
+            for choice in plan.between.iter().chain(&mission.within) {
+                let value = choice.level.trim_start_matches(&*choice.factor);
+                assert_eq!(mission.settings[&choice.factor], Setting::Value(value.to_owned()));
+            }
+        }
+    }
+    assert_ne!(assign(&study, 1), assign(&Study { seed: 4, ..study.clone() }, 1));
+}

@@ -1,0 +1,287 @@
+//! Reads `study.toml`, and says all that is wrong in it.
+
+mod blocks;
+mod whole;
+
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    fs,
+    path::{Component, Path, PathBuf},
+};
+
+use cohabit_cdf::mission::{Pointer, Problems};
+use cohabit_dialog::Questionnaire;
+use toml::{Spanned, de::DeTable};
+
+use crate::{
+    design::{Completion, Factor, Level, Settings, Sheet, Study, arguments},
+    findings::Findings,
+    shape::STUDY,
+    written::{self, Words, Written, WrittenFactor, WrittenSettings, WrittenSheet},
+};
+
+/// What only the program knows of what a study names.
+pub trait Program {
+    /// Finds out whether `cohabit play` takes these arguments.
+    ///
+    /// # Errors
+    /// What is wrong with them.
+    fn check_arguments(&self, arguments: &[String]) -> Result<(), String>;
+
+    /// Finds out whether there is such a mission, and it can be played.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    fn check_mission(&self, name: &str) -> Result<(), String>;
+}
+
+/// Why a study cannot be run.
+#[derive(Debug, thiserror::Error)]
+pub enum StudyError {
+    /// Its file cannot be read.
+    #[error("{file}: {source}")]
+    File {
+        /// The file.
+        file: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// Things are wrong in it.
+    #[error("{0}")]
+    Problems(Problems),
+}
+
+/// Flags of `play` that the study's server itself sets for each session, or that would part its page from the study's.
+const OWN_FLAGS: [&str; 12] = [
+    "branch",
+    "framed-by",
+    "host",
+    "listen",
+    "log",
+    "participant",
+    "port",
+    "session",
+    "supervisor",
+    "tls",
+    "tls-certificate",
+    "tls-key",
+];
+
+/// A study's file with its text.
+#[derive(Clone, Debug)]
+pub struct StudyFile {
+    /// As its user named it.
+    pub path: PathBuf,
+    /// Its text.
+    pub text: String,
+}
+
+impl StudyFile {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// [`StudyError::File`].
+    pub fn read(path: &Path) -> Result<Self, StudyError> {
+        let failed = |source| StudyError::File { file: path.to_owned(), source };
+        Ok(Self { path: path.to_owned(), text: fs::read_to_string(path).map_err(failed)? })
+    }
+
+    /// The folder that names of files in it start from.
+    #[must_use]
+    pub fn folder(&self) -> &Path {
+        self.path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."))
+    }
+
+    /// Checks all of it.
+    ///
+    /// # Errors
+    /// [`StudyError::Problems`], each with its place.
+    pub fn check(&self, program: &dyn Program) -> Result<Study, StudyError> {
+        let name = self.path.display().to_string();
+        let mut findings = Findings::new(&name, &self.text);
+        let (document, errors) = DeTable::parse_recoverable(&self.text);
+        for error in &errors {
+            let remedy = "see https://toml.io for how it is written";
+            findings.add(error.span().unwrap_or_default(), &Pointer::default(), error.message(), remedy);
+        }
+        if errors.is_empty() {
+            findings.check_table(document.get_ref(), &(0..0), STUDY, &Pointer::default());
+        }
+        // What is wrong with its shape may leave nothing that could be looked at further.
+        let study = toml::from_str(&self.text).ok().map(|written: Written| {
+            let mut check = Checking::new(&mut findings, program, self.folder());
+            check.study(written)
+        });
+        match study {
+            Some(study) if findings.is_empty() => Ok(study),
+            _ => Err(StudyError::Problems(findings.into_problems())),
+        }
+    }
+}
+
+struct Checking<'a, 'f> {
+    findings: &'a mut Findings<'f>,
+    program: &'a dyn Program,
+    folder: &'a Path,
+    /// The questionnaires that were found so far.
+    asked: Vec<Questionnaire>,
+    /// The files that were read so far.
+    files: BTreeMap<String, String>,
+}
+
+impl<'a, 'f> Checking<'a, 'f> {
+    fn new(findings: &'a mut Findings<'f>, program: &'a dyn Program, folder: &'a Path) -> Self {
+        Self { findings, program, folder, asked: Vec::new(), files: BTreeMap::new() }
+    }
+}
+
+impl Checking<'_, '_> {
+    fn study(&mut self, written: Written) -> Study {
+        let root = Pointer::default();
+        let blocks = self.blocks(&written.block, &root.key("block"));
+        let participants = written.participants.as_ref();
+        if let Some(none) = participants.filter(|count| *count.get_ref() == 0) {
+            self.findings.add(none.span(), &root.key("participants"), "nobody takes part", "plan one at least");
+        }
+        let mut study = Study {
+            information: self.sheet(&written.information, &root.key("information")),
+            consent: self.sheet(&written.consent, &root.key("consent")),
+            consents: words(&written.consent.required),
+            settings: self.settings(&written.settings, &root.key("settings")),
+            factors: self.factors(&written.factor, &root.key("factor")),
+            completion: self.completion(&written),
+            missions: written.missions.as_ref().map(|missions| words(missions.get_ref())).unwrap_or_default(),
+            assignment: written.assignment.as_ref().map(|assignment| *assignment.get_ref()).unwrap_or_default(),
+            block_size: 1,
+            debriefing: blocks.debriefing,
+            blocks: blocks.all,
+            questionnaires: std::mem::take(&mut self.asked),
+            files: BTreeMap::new(),
+            participants: participants.map_or(1, |count| *count.get_ref()),
+            title: written.title.clone(),
+            contact: written.contact.clone(),
+            seed: written.seed,
+        };
+        self.whole(&mut study, &written);
+        study.files = std::mem::take(&mut self.files);
+        study
+    }
+
+    fn sheet(&mut self, sheet: &WrittenSheet, at: &Pointer) -> Sheet {
+        Sheet { version: sheet.version.clone(), text: self.text(sheet.file.as_ref(), at).unwrap_or_default() }
+    }
+
+    /// The text of a Markdown file.
+    fn text(&mut self, file: Option<&Spanned<String>>, at: &Pointer) -> Option<String> {
+        let file = file?;
+        let text = self.file(file, &at.key("file"))?;
+        if text.trim().is_empty() {
+            let remedy = "write what participants are to read into that file";
+            self.findings.add(file.span(), &at.key("file"), format!("`{}` is empty", file.get_ref()), remedy);
+        }
+        Some(text)
+    }
+
+    /// The text of a file in the study's folder, which is kept with the study's data.
+    fn file(&mut self, name: &Spanned<String>, at: &Pointer) -> Option<String> {
+        let is_within = |name: &str| Path::new(name).components().all(|part| matches!(part, Component::Normal(_)));
+        let problem = match fs::read_to_string(self.folder.join(name.get_ref())) {
+            Ok(text) if is_within(name.get_ref()) => {
+                self.files.insert(name.get_ref().clone(), text.clone());
+                return Some(text);
+            }
+            Ok(_) => "it lies outside the folder of the study".to_owned(),
+            Err(error) => error.to_string(),
+        };
+        let remedy = format!("name a file that lies in {}, or in a folder in there", self.folder.display());
+        self.findings.add(name.span(), at, format!("`{}`: {problem}", name.get_ref()), remedy);
+        None
+    }
+
+    fn settings(&mut self, settings: &WrittenSettings, at: &Pointer) -> Settings {
+        for (name, value) in settings {
+            let place = at.key(name.get_ref());
+            if OWN_FLAGS.contains(&name.get_ref().as_str()) {
+                let message = format!("`{}` is not a study's to set", name.get_ref());
+                self.findings.add(name.span(), &place, message, "leave it out");
+                continue;
+            }
+            let own = Settings::from([(name.get_ref().clone(), written::setting(value.get_ref()))]);
+            if let Err(problem) = self.program.check_arguments(&arguments(&own)) {
+                let remedy = "write flags of `cohabit play` without their dashes: `cohabit play --help` lists them";
+                self.findings.add(name.span(), &place, problem, remedy);
+            }
+        }
+        written::settings(settings)
+    }
+
+    fn factors(&mut self, factors: &[Spanned<WrittenFactor>], at: &Pointer) -> Vec<Factor> {
+        let mut names = BTreeSet::new();
+        let mut all = Vec::new();
+        for (index, factor) in factors.iter().enumerate() {
+            let (place, span) = (at.item(index), factor.span());
+            let factor = factor.get_ref();
+            let name = self.name(factor.name.as_ref(), &mut names, &place);
+            if (1..2).contains(&factor.level.len()) {
+                let remedy = "add another `[[factor.level]]`, or move its settings to `[settings]`";
+                self.findings.add(span, &place, "a factor with one level", remedy);
+            }
+            let mut levels = BTreeSet::new();
+            let level = |(index, level): (usize, &Spanned<written::WrittenLevel>)| {
+                let place = place.key("level").item(index);
+                let name = self.name(level.get_ref().name.as_ref(), &mut levels, &place);
+                Level { name, settings: self.settings(&level.get_ref().settings, &place.key("settings")) }
+            };
+            let levels = factor.level.iter().enumerate().map(level).collect();
+            all.push(Factor { name, kind: factor.kind, levels });
+        }
+        all
+    }
+
+    /// A name that columns of tables can have, and that none before has.
+    fn name(&mut self, name: Option<&Spanned<String>>, before: &mut BTreeSet<String>, at: &Pointer) -> String {
+        let Some(name) = name else { return String::new() };
+        let text = name.get_ref();
+        if !text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_') {
+            let message = format!("`{text}` cannot be the name of a column");
+            self.findings.add(name.span(), &at.key("name"), message, "write letters, digits and _ alone");
+        }
+        if !before.insert(text.clone()) {
+            let message = format!("`{text}` is there twice");
+            self.findings.add(name.span(), &at.key("name"), message, "give it a name of its own");
+        }
+        text.clone()
+    }
+
+    fn completion(&mut self, written: &Written) -> Option<Completion> {
+        match (&written.completion_code, &written.return_url) {
+            (Some(code), None) => Some(Completion::Code(code.get_ref().clone())),
+            (None, Some(url)) => {
+                if !["https://", "http://"].iter().any(|scheme| url.get_ref().starts_with(scheme)) {
+                    let message = format!("`{}` is no address of a page", url.get_ref());
+                    self.findings.add(
+                        url.span(),
+                        &Pointer::default().key("return_url"),
+                        message,
+                        "begin it with https://",
+                    );
+                }
+                Some(Completion::Return(url.get_ref().clone()))
+            }
+            (Some(_), Some(url)) => {
+                let remedy = "keep one of them";
+                let message = "participants get a completion code or a return address, not both";
+                self.findings.add(url.span(), &Pointer::default().key("return_url"), message, remedy);
+                None
+            }
+            (None, None) => None,
+        }
+    }
+}
+
+fn words(all: &Words) -> Vec<String> {
+    all.iter().map(|word| word.get_ref().clone()).collect()
+}
+
+#[cfg(test)]
+mod tests;

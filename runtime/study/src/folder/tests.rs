@@ -1,0 +1,67 @@
+//! A folder has one study, one holder, and nothing of who has withdrawn.
+
+use super::*;
+use crate::{plan::Plan, progress::Event, scratch::Scratch};
+
+fn study(text: &str) -> BTreeMap<String, String> {
+    [("study.toml", text), ("sheets/information.md", "Read.")].map(|(name, text)| (name.into(), text.into())).into()
+}
+
+fn with_participants(scratch: &Scratch) -> Folder {
+    let folder = Folder::begin(&scratch.path("data"), &study("a study")).unwrap();
+    let mut links = folder.links().unwrap();
+    for place in [1, 12] {
+        let plan = Plan { place, between: Vec::new(), steps: Vec::new() };
+        let agreed = Event::Consented { version: "1".into(), ticked: 0 };
+        Journal::begin(&folder.journal_path(place), &plan, &agreed, 0).unwrap();
+        let participant = pseudonym(place);
+        let consent = Consent { participant: participant.clone(), at_ms: 0, version: "1".into(), agreed: Vec::new() };
+        folder.keep_consent(place, &consent).unwrap();
+        fs::write(folder.log_path(&format!("{participant}-00-1")), "log").unwrap();
+        folder.note(&Note { at_ms: 1, participant: Some(participant), text: "hesitates".into() }).unwrap();
+        links.participants.insert(place, format!("token {place}"));
+    }
+    folder.note(&Note { at_ms: 2, participant: None, text: "it rains".into() }).unwrap();
+    links.save(&folder.links_path()).unwrap();
+    folder
+}
+
+/// All that files in a folder hold, and their names.
+fn contents(path: &Path) -> String {
+    let mut all = String::new();
+    for entry in fs::read_dir(path).unwrap().flatten() {
+        all += &format!("{}\n", entry.path().display());
+        all += &if entry.path().is_dir() { contents(&entry.path()) } else { fs::read_to_string(entry.path()).unwrap() };
+    }
+    all
+}
+
+#[test]
+fn who_withdraws_leaves_nothing_but_that() {
+    let scratch = Scratch::new("withdraw");
+    let folder = with_participants(&scratch);
+    folder.withdraw("P12", 77).unwrap();
+    let left = contents(folder.path());
+    let of_them: Vec<_> = left.lines().filter(|line| line.contains("P12") || line.contains("token 12")).collect();
+    assert_eq!(of_them, ["{\"participant\":\"P12\",\"at_ms\":77}"], "{left}");
+    assert!(left.contains("P01-00-1.mcap") && left.contains("it rains") && left.contains("token 1"));
+    let error = folder.withdraw("P12", 78).unwrap_err().to_string();
+    assert!(error.contains("nothing of `P12`: those in it are P01"), "{error}");
+    assert_eq!(folder.withdrawals().unwrap().len(), 1);
+}
+
+#[test]
+fn a_folder_has_one_study_and_one_holder() {
+    let scratch = Scratch::new("folder");
+    let path = scratch.path("data");
+    let folder = with_participants(&scratch);
+    assert!(matches!(Folder::open(&path), Err(FolderError::Busy { .. })));
+    drop(folder);
+    assert!(matches!(Folder::begin(&path, &study("another")), Err(FolderError::OtherStudy { .. })));
+    let folder = Folder::begin(&path, &study("a study")).unwrap();
+    assert_eq!(folder.places().unwrap(), [1, 12]);
+    drop(folder);
+    fs::set_permissions(&path, fs::Permissions::from_mode(0o755)).unwrap();
+    assert!(matches!(Folder::begin(&path, &study("a study")), Err(FolderError::Open { .. })));
+    assert!(matches!(Folder::open(&scratch.path("none")), Err(FolderError::NoStudy { .. })));
+}

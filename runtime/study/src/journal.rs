@@ -1,0 +1,233 @@
+//! The journal of one participant: a JSON line an event, on the disk before anything follows from it.
+//!
+//! The first line holds the participant's plan, which is never drawn again. A line that was cut off by a crash was not
+//! carried out, and is dropped.
+
+use std::{
+    fs::{File, OpenOptions},
+    io::{self, Read as _, Seek as _, SeekFrom, Write as _},
+    os::unix::fs::OpenOptionsExt as _,
+    path::{Path, PathBuf},
+};
+
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    plan::Plan,
+    progress::{Event, Progress},
+};
+
+/// Why a journal cannot be read or written.
+#[derive(Debug, thiserror::Error)]
+pub enum JournalError {
+    /// The system refuses it.
+    #[error("{path}: {source}")]
+    File {
+        /// The journal.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+    /// A line is none of a journal.
+    #[error("{path}:{line}: {reason}; the lines before it are intact: mend or remove this one")]
+    Line {
+        /// The journal.
+        path: PathBuf,
+        /// Which, from 1.
+        line: usize,
+        /// What is wrong with it.
+        reason: String,
+    },
+}
+
+/// A line.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+struct Line {
+    at_ms: u64,
+    #[serde(flatten)]
+    what: What,
+}
+
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+enum What {
+    Enrolled(Plan),
+    Event(Event),
+}
+
+/// An open journal.
+#[derive(Debug)]
+pub struct Journal {
+    path: PathBuf,
+    file: File,
+    /// How long it is, in bytes.
+    length: u64,
+}
+
+impl Journal {
+    /// Begins the journal of a participant who agrees to take part.
+    ///
+    /// # Errors
+    /// [`JournalError::File`], also if there is one already; where none could be begun, none is left.
+    pub fn begin(path: &Path, plan: &Plan, agreed: &Event, at_ms: u64) -> Result<Self, JournalError> {
+        let failed = |source| JournalError::File { path: path.to_owned(), source };
+        let file = OpenOptions::new().read(true).write(true).create_new(true).mode(0o600).open(path).map_err(failed)?;
+        let mut journal = Self { path: path.to_owned(), file, length: 0 };
+        let enrolled = Line { at_ms, what: What::Enrolled(plan.clone()) };
+        let written = journal.write(&enrolled).and_then(|()| journal.append(agreed, at_ms));
+        // The file's name, too, outlasts a crash.
+        let kept = written
+            .and_then(|()| path.parent().map_or(Ok(()), |folder| File::open(folder)?.sync_all()).map_err(failed));
+        if let Err(error) = kept {
+            let _ = std::fs::remove_file(path);
+            return Err(error);
+        }
+        Ok(journal)
+    }
+
+    /// Opens a journal; gives where its participant is. `None` if it was cut off before they had agreed.
+    ///
+    /// # Errors
+    /// [`JournalError`].
+    pub fn open(path: &Path) -> Result<Option<(Self, Progress)>, JournalError> {
+        let failed = |source| JournalError::File { path: path.to_owned(), source };
+        let mut file = OpenOptions::new().read(true).write(true).open(path).map_err(failed)?;
+        let mut bytes = Vec::new();
+        file.read_to_end(&mut bytes).map_err(failed)?;
+        let whole = bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |at| at + 1);
+        let progress = restored(path, &bytes[..whole])?;
+        let mut journal = Self { path: path.to_owned(), file, length: whole as u64 };
+        journal.cut().map_err(failed)?;
+        Ok(progress.filter(Progress::has_consented).map(|progress| (journal, progress)))
+    }
+
+    /// Where its participant is, by a journal that somebody else may be writing.
+    ///
+    /// # Errors
+    /// [`JournalError`].
+    pub fn read(path: &Path) -> Result<Option<Progress>, JournalError> {
+        let bytes = std::fs::read(path).map_err(|source| JournalError::File { path: path.to_owned(), source })?;
+        let whole = bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |at| at + 1);
+        Ok(restored(path, &bytes[..whole])?.filter(Progress::has_consented))
+    }
+
+    /// Writes an event down; it is on the disk when this is back.
+    ///
+    /// # Errors
+    /// [`JournalError::File`]; the event is not in it then.
+    pub fn append(&mut self, event: &Event, at_ms: u64) -> Result<(), JournalError> {
+        self.write(&Line { at_ms, what: What::Event(event.clone()) })
+    }
+
+    fn write(&mut self, line: &Line) -> Result<(), JournalError> {
+        let written = serde_json::to_vec(line).map_err(io::Error::from).and_then(|mut bytes| {
+            bytes.push(b'\n');
+            self.file.write_all(&bytes)?;
+            self.file.sync_data()?;
+            Ok(bytes.len() as u64)
+        });
+        match written {
+            Ok(bytes) => {
+                self.length += bytes;
+                Ok(())
+            }
+            Err(source) => {
+                // What came of a part of it, such as on a full disk, is taken back.
+                if let Err(error) = self.cut() {
+                    tracing::error!("{}: {error}", self.path.display());
+                }
+                Err(JournalError::File { path: self.path.clone(), source })
+            }
+        }
+    }
+
+    /// Drops what is behind the last whole line.
+    fn cut(&mut self) -> io::Result<()> {
+        self.file.set_len(self.length)?;
+        self.file.seek(SeekFrom::Start(self.length)).map(drop)
+    }
+}
+
+fn restored(path: &Path, bytes: &[u8]) -> Result<Option<Progress>, JournalError> {
+    let mut progress: Option<Progress> = None;
+    for (number, line) in (1..).zip(bytes.split_inclusive(|byte| *byte == b'\n')) {
+        let failed = |reason: String| JournalError::Line { path: path.to_owned(), line: number, reason };
+        let line: Line = serde_json::from_slice(line).map_err(|error| failed(error.to_string()))?;
+        match (line.what, &mut progress) {
+            (What::Enrolled(plan), None) => {
+                let mut enrolled = Progress::new(plan);
+                enrolled.step(&Event::Read, line.at_ms).map_err(|refused| failed(refused.to_string()))?;
+                progress = Some(enrolled);
+            }
+            (What::Event(event), Some(progress)) => {
+                progress.step(&event, line.at_ms).map_err(|refused| failed(refused.to_string()))?;
+            }
+            (What::Enrolled(_), Some(_)) => return Err(failed("a second plan".to_owned())),
+            (What::Event(_), None) => return Err(failed("no plan stands before it".to_owned())),
+        }
+    }
+    Ok(progress)
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use std::fs;
+
+    use super::*;
+    use crate::{
+        plan::Step,
+        progress::{Doing, Phase},
+        scratch::Scratch,
+    };
+
+    fn plan() -> Plan {
+        let step = Step::Break { block: 0, limit_s: Some(1.5) };
+        Plan { place: 7, between: Vec::new(), steps: vec![step.clone(), step] }
+    }
+
+    fn consented() -> Event {
+        Event::Consented { version: "2".to_owned(), ticked: 1 }
+    }
+
+    #[test]
+    fn who_is_killed_goes_on_after_the_last_whole_line() {
+        let folder = Scratch::new("journal");
+        let path = folder.path("P07.jsonl");
+        let mut journal = Journal::begin(&path, &plan(), &consented(), 1).unwrap();
+        assert!(Journal::begin(&path, &plan(), &consented(), 1).is_err(), "a place is taken once");
+        journal.append(&Event::GoesOn, 3).unwrap();
+        let whole = fs::read(&path).unwrap();
+        let last = whole[..whole.len() - 1].iter().rposition(|byte| *byte == b'\n').unwrap() + 1;
+        for cut in last..=whole.len() {
+            fs::write(&path, &whole[..cut]).unwrap();
+            let (mut journal, progress) = Journal::open(&path).unwrap().unwrap();
+            let step = usize::from(cut == whole.len());
+            assert_eq!(progress.phase(), &Phase::At(step, Doing::Ready), "{cut}");
+            assert_eq!(progress.plan(), &plan());
+            journal.append(&Event::GoesOn, 4).unwrap();
+            assert_eq!(Journal::read(&path).unwrap().unwrap().done().len(), step + 1);
+        }
+    }
+
+    #[test]
+    fn a_line_that_cannot_be_is_named() {
+        let folder = Scratch::new("journal-wrong");
+        let path = folder.path("P07.jsonl");
+        Journal::begin(&path, &plan(), &consented(), 1).unwrap();
+        let whole = fs::read_to_string(&path).unwrap();
+        for (line, part) in
+            [("nonsense\n", ":3: expected"), ("{\"at_ms\":5,\"event\":\"started\"}\n", ":3: The study is at")]
+        {
+            fs::write(&path, format!("{whole}{line}")).unwrap();
+            let error = Journal::open(&path).map(drop).unwrap_err().to_string();
+            assert!(error.contains(part) && error.contains("P07.jsonl"), "{error}");
+        }
+        // Who was cut off before they had agreed has not.
+        let (enrolled, _) = whole.split_once('\n').unwrap();
+        for text in [String::new(), format!("{enrolled}\n")] {
+            fs::write(&path, text).unwrap();
+            assert!(Journal::open(&path).unwrap().is_none() && Journal::read(&path).unwrap().is_none());
+        }
+    }
+}

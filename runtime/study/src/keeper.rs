@@ -1,0 +1,250 @@
+//! Looks after sessions: starts those that are due, ends those that are over, starts dead ones again, and keeps the tables.
+
+use std::{
+    path::PathBuf,
+    sync::{
+        Mutex, MutexGuard, PoisonError,
+        atomic::{AtomicBool, Ordering},
+    },
+    thread,
+    time::{Duration, Instant},
+};
+
+use crate::{
+    design::arguments,
+    plan::{Step, pseudonym},
+    progress::{Ending, Event, Phase},
+    registry::{Live, Registry, StudyFault, now_ms},
+    session::{Look, Player, Wanted, session_name},
+    tables,
+};
+
+/// How often everything is looked at.
+const LOOK_EVERY: Duration = Duration::from_millis(100);
+/// How often time played is written down, s: so much of it is lost with a killed server.
+const SAVE_EVERY_S: f64 = 5.0;
+/// So long the end of a mission is seen before the participant goes on.
+const ENDING_SEEN: Duration = Duration::from_secs(4);
+/// How often tables are written anew.
+const TABLES_EVERY: Duration = Duration::from_secs(1);
+/// After this a session that could not be started, or died, is started again.
+const RETRY_AFTER: Duration = Duration::from_secs(1);
+/// A session whose page is not there by then is started anew.
+const LONGEST_START: Duration = Duration::from_secs(120);
+/// A session goes on from where one of so many tries before it was.
+const TRIES_BEFORE: usize = 2;
+/// How long sessions may take to end when the study ends.
+const GRACE: Duration = Duration::from_secs(15);
+
+/// Looks after the sessions of a study until `stop`; then ends them. It has to be the thread that starts them.
+pub fn keep(registry: &Mutex<Registry>, player: &mut dyn Player, most_sessions: usize, stop: &AtomicBool) {
+    let mut tables_at = Instant::now();
+    while !stop.load(Ordering::Relaxed) {
+        let mut state = lock(registry);
+        state.look_after(player, most_sessions);
+        if state.has_news && tables_at <= Instant::now() {
+            state.has_news = false;
+            tables_at = Instant::now() + TABLES_EVERY;
+            write_tables(&state);
+        }
+        drop(state);
+        thread::sleep(LOOK_EVERY);
+    }
+    let mut state = lock(registry);
+    state.interrupt_all();
+    write_tables(&state);
+    let deadline = Instant::now() + GRACE;
+    while !state.ending.is_empty() && Instant::now() < deadline {
+        state.bury();
+        drop(state);
+        thread::sleep(LOOK_EVERY);
+        state = lock(registry);
+    }
+    // Whoever does not end is ended.
+    state.ending.clear();
+}
+
+/// A study's state; what a panic left of it is whole, since changes are written down before they are made.
+pub(crate) fn lock(registry: &Mutex<Registry>) -> MutexGuard<'_, Registry> {
+    registry.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+fn write_tables(state: &Registry) {
+    let all = state.participants.values().map(|participant| participant.progress.clone());
+    let written = tables::write(&state.study, &all.collect::<Vec<_>>(), &state.folder);
+    if let Err(error) = written {
+        tracing::error!("{error}");
+    }
+}
+
+/// What was told of a participant's session.
+enum News {
+    Over(Ending),
+    Interrupted(String),
+}
+
+impl Registry {
+    fn look_after(&mut self, player: &mut dyn Player, most_sessions: usize) {
+        self.bury();
+        for place in self.participants.keys().copied().collect::<Vec<_>>() {
+            if let Some(news) = self.look_at(place) {
+                self.take(place, news);
+            }
+            self.end_break(place);
+            self.remove_withdrawn(place);
+        }
+        let running = |state: &Self| state.participants.values().filter(|one| one.live.is_some()).count();
+        for place in self.queue() {
+            let may_start = self
+                .participants
+                .get(&place)
+                .is_some_and(|one| one.is_here() && one.retry_at.is_none_or(|at| at <= Instant::now()));
+            if may_start && running(self) + self.to_start.len() + self.ending.len() < most_sessions {
+                self.note(place, &Event::Started);
+            }
+        }
+        for (place, attempt) in std::mem::take(&mut self.to_start) {
+            self.start(place, attempt, player);
+        }
+    }
+
+    /// Drops sessions that have ended.
+    fn bury(&mut self) {
+        self.ending.retain_mut(|playing| !matches!(playing.look(), Look::Gone(_)));
+    }
+
+    /// What is new of a participant's session. Time counts while its page is there, and the participant's too.
+    fn look_at(&mut self, place: u32) -> Option<News> {
+        let participant = self.participants.get_mut(&place)?;
+        let (is_here, left_s) = (participant.is_here(), participant.progress.left_s());
+        let live = participant.live.as_mut()?;
+        let now = Instant::now();
+        match live.playing.look() {
+            Look::Starting if live.looked.elapsed() > LONGEST_START => {
+                return Some(News::Interrupted("its page does not come".to_owned()));
+            }
+            Look::Starting => return None,
+            Look::Gone(reason) => return Some(News::Interrupted(reason)),
+            Look::Over(ending) => {
+                live.over.get_or_insert((ending, now));
+            }
+            Look::Open(page) => {
+                let is_new = live.page.replace(page).is_none();
+                live.looked = if is_new { now } else { live.looked };
+            }
+        }
+        if is_here && live.over.is_none() {
+            live.unsaved_s += (now - live.looked).min(LOOK_EVERY * 10).as_secs_f64();
+        }
+        live.looked = now;
+        if let Some((ending, at)) = live.over {
+            return (at.elapsed() >= ENDING_SEEN).then_some(News::Over(ending));
+        }
+        if left_s.is_some_and(|left| left <= live.unsaved_s) {
+            return Some(News::Over(Ending::TimeUp));
+        }
+        if live.unsaved_s >= SAVE_EVERY_S {
+            self.save_played(place);
+        }
+        None
+    }
+
+    /// Writes down how long a participant has played.
+    pub(crate) fn save_played(&mut self, place: u32) {
+        let live = self.participants.get_mut(&place).and_then(|participant| participant.live.as_mut());
+        let seconds = live.map_or(0.0, |live| std::mem::take(&mut live.unsaved_s));
+        if seconds > 0.0 {
+            self.note(place, &Event::Played { seconds });
+        }
+    }
+
+    fn take(&mut self, place: u32, news: News) {
+        self.save_played(place);
+        match news {
+            News::Over(ending) => self.note(place, &Event::Over { ending }),
+            News::Interrupted(reason) => {
+                tracing::warn!("{}: the session ended before its time: {reason}", pseudonym(place));
+                self.note(place, &Event::Interrupted { reason });
+                if let Some(participant) = self.participants.get_mut(&place) {
+                    participant.retry_at = Some(Instant::now() + RETRY_AFTER);
+                }
+            }
+        }
+    }
+
+    /// Has something happen to a participant; that it cannot is told to the experimenter's terminal.
+    fn note(&mut self, place: u32, event: &Event) {
+        match self.apply(place, event) {
+            Ok(()) => {}
+            Err(StudyFault::Journal(error)) => tracing::error!("{error}"),
+            Err(StudyFault::Folder(error)) => tracing::error!("{error}"),
+            Err(error) => tracing::error!("{}: {error}", pseudonym(place)),
+        }
+    }
+
+    fn start(&mut self, place: u32, attempt: u32, player: &mut dyn Player) {
+        let Some(participant) = self.participants.get(&place) else { return };
+        let Some((step, mission, _)) = participant.progress.mission() else { return };
+        let name = session_name(place, step, attempt);
+        let wanted = Wanted {
+            participant: pseudonym(place),
+            mission: mission.mission.clone(),
+            arguments: arguments(&mission.settings),
+            log: self.folder.log_path(&name),
+            before: self.before(place, step, attempt),
+            seed: self.study.seed,
+            name,
+        };
+        match player.start(&wanted) {
+            Ok(playing) => {
+                let live = Live { playing, page: None, looked: Instant::now(), unsaved_s: 0.0, over: None };
+                if let Some(participant) = self.participants.get_mut(&place) {
+                    participant.live = Some(live);
+                }
+            }
+            Err(reason) => self.take(place, News::Interrupted(reason)),
+        }
+    }
+
+    /// The logs of the last tries. One that cannot be gone on from leaves none, so after a few a mission begins anew.
+    fn before(&self, place: u32, step: usize, attempt: u32) -> Vec<PathBuf> {
+        let tries = (1..attempt).rev().take(TRIES_BEFORE);
+        let logs = tries.map(|attempt| self.folder.log_path(&session_name(place, step, attempt)));
+        logs.filter(|log| log.is_file()).collect()
+    }
+
+    fn end_break(&mut self, place: u32) {
+        let Some(participant) = self.participants.get(&place) else { return };
+        let progress = &participant.progress;
+        if let Some((_, Step::Break { limit_s: Some(limit), .. }, _)) = progress.step_now() {
+            let rested_s = now_ms().saturating_sub(progress.since_ms()) as f64 / 1000.0;
+            if rested_s >= *limit {
+                self.note(place, &Event::GoesOn);
+            }
+        }
+    }
+
+    /// Removes what is kept of somebody who has withdrawn, once no session is left that could write.
+    fn remove_withdrawn(&mut self, place: u32) {
+        let is_withdrawn = |one: &crate::registry::Participant| *one.progress.phase() == Phase::Withdrawn;
+        if self.ending.is_empty()
+            && self.participants.get(&place).is_some_and(is_withdrawn)
+            && let Err(error) = self.remove(place)
+        {
+            tracing::error!("{error}");
+        }
+    }
+
+    /// The study ends: sessions are asked to, and are started again when it goes on.
+    fn interrupt_all(&mut self) {
+        for place in self.participants.keys().copied().collect::<Vec<_>>() {
+            self.save_played(place);
+            if self.participants.get(&place).is_some_and(|one| one.live.is_some()) {
+                self.note(place, &Event::Interrupted { reason: "the study's server ended".to_owned() });
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

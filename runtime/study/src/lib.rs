@@ -1,0 +1,64 @@
+//! A study from plan to data: participants, their conditions, their consent, and their sessions.
+//!
+//! [`StudyFile::check`] reads `study.toml`, and says all that is wrong in it. [`assign()`] says what the participant at a
+//! place does: a pure function of study and place. [`Progress`] is where one participant is: a pure state machine, whose
+//! events a [`Journal`] holds. [`Registry`] has all participants of a study that runs; [`StudyService`] serves their pages,
+//! and [`keep`] their sessions. [`Folder`] is where all of it is written down.
+//!
+//! - Nothing of a person is written down before they agree; their consent is kept apart from their data.
+//! - An event is on the disk before anything follows from it. Whoever is killed, and whenever: the participant goes on
+//!   where they were, under the conditions that were written down when they enrolled.
+//! - A participant's page learns nothing about conditions.
+//! - A mission runs as a session of its own, whose page the participant's page shows within it. How sessions are played
+//!   this crate does not know: it asks a [`Player`].
+//!
+//! The smallest study that ships, from its file to its tables:
+//!
+//! ```text
+//! cohabit study check runtime/study/studies/clarification.toml
+//! cohabit study run runtime/study/studies/clarification.toml --folder data
+//! cohabit study export --folder data --out tables
+//! ```
+//!
+//! In: `study.toml`, whose keys are a table (`shape.rs`; `cohabit study check --schema` prints it), with the Markdown files
+//! and questionnaires that it names. Out: the study's [`Folder`].
+//!
+//! This crate never knows the world's rules, the bus of a session, or how processes are started.
+
+mod assign;
+mod chance;
+mod check;
+pub mod design;
+mod findings;
+mod folder;
+mod journal;
+mod keeper;
+mod links;
+mod markdown;
+mod pages;
+mod plan;
+mod progress;
+mod registry;
+mod schema;
+#[cfg(test)]
+mod scratch;
+mod session;
+mod shape;
+pub mod square;
+mod tables;
+mod web;
+mod written;
+
+pub use assign::assign;
+pub use check::{Program, StudyError, StudyFile};
+pub use design::Study;
+pub use folder::{Consent, Folder, FolderError, Note, Withdrawal};
+pub use journal::{Journal, JournalError};
+pub use keeper::keep;
+pub use plan::{Plan, PlannedMission, Step, pseudonym};
+pub use progress::{Doing, Done, Effect, Ending, Event, Phase, Progress, Refused};
+pub use registry::{Registry, StudyFault};
+pub use schema::schema;
+pub use session::{Look, PageAddress, Player, Playing, Wanted};
+pub use tables::{TablesError, export};
+pub use web::{Doors, StudyService, address};

@@ -1,0 +1,91 @@
+//! The tokens of a study's pages: who was given a link may use it, and nobody else. They lie in a file of the owner alone.
+
+use std::{
+    collections::BTreeMap,
+    fs,
+    io::{self, Write as _},
+    os::unix::fs::OpenOptionsExt as _,
+    path::Path,
+};
+
+use cohabit_dialog::token;
+use serde::{Deserialize, Serialize};
+
+/// All tokens of a study.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+pub struct Links {
+    /// Of the experimenter's page.
+    pub experimenter: String,
+    /// Of the sign-up page.
+    pub sign_up: String,
+    /// Of each participant, by place.
+    pub participants: BTreeMap<u32, String>,
+}
+
+impl Links {
+    /// Those in a file; new ones, if it is not there.
+    ///
+    /// # Errors
+    /// Of the file system, or when the file holds something else.
+    pub fn open(path: &Path) -> io::Result<Self> {
+        match fs::read(path) {
+            Ok(bytes) => Ok(serde_json::from_slice(&bytes)?),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => {
+                let links =
+                    Self { experimenter: token::fresh()?, sign_up: token::fresh()?, participants: BTreeMap::new() };
+                links.save(path)?;
+                Ok(links)
+            }
+            Err(error) => Err(error),
+        }
+    }
+
+    /// Keeps them in a file.
+    ///
+    /// # Errors
+    /// Of the file system; the file is then as it was.
+    pub fn save(&self, path: &Path) -> io::Result<()> {
+        write_whole(path, &serde_json::to_vec_pretty(self)?)
+    }
+
+    /// The place of the participant with a token.
+    #[must_use]
+    pub fn place(&self, given: &str) -> Option<u32> {
+        let own = self.participants.iter().find(|(_, token)| token::admits(token, Some(given)));
+        own.map(|(place, _)| *place)
+    }
+}
+
+/// Writes a file for this user alone, whole or not at all.
+pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let new = path.with_extension("new");
+    let mut file = fs::OpenOptions::new().write(true).create(true).truncate(true).mode(0o600).open(&new)?;
+    file.write_all(bytes)?;
+    file.sync_all()?;
+    fs::rename(&new, path)
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use std::os::unix::fs::PermissionsExt as _;
+
+    use super::*;
+    use crate::scratch::Scratch;
+
+    #[test]
+    fn links_are_kept_and_are_nobody_elses() {
+        let folder = Scratch::new("links");
+        let path = folder.path("links.json");
+        let mut links = Links::open(&path).unwrap();
+        links.participants.insert(3, token::fresh().unwrap());
+        links.save(&path).unwrap();
+        assert_eq!(fs::metadata(&path).unwrap().permissions().mode() & 0o777, 0o600);
+        let again = Links::open(&path).unwrap();
+        assert_eq!((&again.experimenter, again.participants.len()), (&links.experimenter, 1));
+        assert_eq!(again.place(&links.participants[&3]), Some(3));
+        assert_eq!(again.place(""), None);
+        fs::write(&path, "{").unwrap();
+        assert!(Links::open(&path).is_err(), "links that are lost are not made anew in silence");
+    }
+}

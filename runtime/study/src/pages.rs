@@ -1,0 +1,157 @@
+//! What pages show, as JSON. A participant's page learns nothing about conditions.
+
+use serde_json::{Value, json};
+
+use crate::{
+    design::{Block, Study},
+    markdown::html,
+    plan::{Plan, Step, pseudonym},
+    progress::{Doing, Phase},
+    registry::{Participant, Registry, Who},
+    tables::{levels, progress_name},
+};
+
+impl Registry {
+    /// What somebody's page shows.
+    pub(crate) fn page(&self, who: Who) -> Value {
+        let mut page = match who {
+            Who::Withdrawn => json!({ "page": "withdrawn" }),
+            Who::Newcomer(index) => self.newcomers_page(self.newcomers.get(index).is_some_and(|one| one.has_read)),
+            Who::Participant(place) => match self.participants.get(&place) {
+                Some(participant) => self.participants_page(participant),
+                None => json!({ "page": "withdrawn" }),
+            },
+        };
+        page["title"] = json!(self.study.title);
+        page["contact"] = json!(self.study.contact);
+        page
+    }
+
+    fn newcomers_page(&self, has_read: bool) -> Value {
+        let study = &self.study;
+        if has_read {
+            let consent = &study.consent;
+            return json!({
+                "page": "consent", "html": html(&consent.text), "version": consent.version, "required": study.consents,
+            });
+        }
+        json!({ "page": "information", "html": html(&study.information.text) })
+    }
+
+    fn participants_page(&self, participant: &Participant) -> Value {
+        let progress = &participant.progress;
+        let Some((index, step, doing)) = progress.step_now() else {
+            return match progress.phase() {
+                Phase::Finished => finished(&self.study),
+                Phase::Excluded => json!({ "page": "excluded" }),
+                _ => json!({ "page": "withdrawn" }),
+            };
+        };
+        let mut page = match (step, doing) {
+            (Step::Questionnaire { name, .. }, _) => {
+                json!({ "page": "questionnaire", "questionnaire": self.study.questionnaire(name) })
+            }
+            (Step::Break { block, limit_s }, _) => {
+                let rested_s = crate::registry::now_ms().saturating_sub(progress.since_ms()) as f64 / 1000.0;
+                let left_s = limit_s.map(|limit| (limit - rested_s).max(0.0));
+                json!({ "page": "break", "html": self.text(*block), "left_s": left_s })
+            }
+            (Step::Mission(mission), Doing::Ready) => json!({
+                "page": "ready",
+                "html": self.text(mission.block),
+                "limit_s": mission.limits.limit_s,
+                "skip_after_s": mission.limits.skip_after_s,
+            }),
+            (Step::Mission(_), Doing::Queued { .. }) => {
+                let ahead = self.queue().iter().position(|place| *place == progress.plan().place);
+                json!({ "page": "waiting", "ahead": ahead })
+            }
+            (Step::Mission(_), Doing::Playing) => played(participant),
+        };
+        page["step"] = json!(index + 1);
+        page["steps"] = json!(progress.plan().steps.len());
+        page
+    }
+
+    /// What participants read in a block.
+    fn text(&self, block: usize) -> String {
+        match self.study.blocks.get(block) {
+            Some(Block::Mission { text, .. } | Block::Break { text, .. }) => html(text),
+            Some(Block::Missions(missions)) => html(&missions.text),
+            Some(Block::Questionnaires(_)) | None => String::new(),
+        }
+    }
+
+    /// What the experimenter's page shows, `running` of at most `most` sessions being played.
+    pub(crate) fn overview(&self, most: usize) -> Value {
+        let running = self.participants.values().filter(|one| one.live.is_some()).count();
+        let places = self.links.participants.keys().chain(self.participants.keys());
+        let places: std::collections::BTreeSet<u32> = places.copied().collect();
+        json!({
+            "title": self.study.title,
+            "planned": self.study.participants,
+            "sign_up": format!("/sign-up/{}", self.links.sign_up),
+            "sessions": { "running": running, "most": most },
+            "participants": places.into_iter().map(|place| self.row(place)).collect::<Vec<_>>(),
+            "notes": self.notes,
+        })
+    }
+
+    fn row(&self, place: u32) -> Value {
+        let link = self.links.participants.get(&place).map(|token| format!("/p/{token}"));
+        let mut row = json!({ "participant": pseudonym(place), "link": link });
+        let Some(participant) = self.participants.get(&place) else {
+            row["progress"] = json!("not begun");
+            return row;
+        };
+        let progress = &participant.progress;
+        row["between"] = json!(levels(&progress.plan().between));
+        row["order"] = json!(within_levels(progress.plan()));
+        row["progress"] = json!(progress_name(progress));
+        row["done"] = json!(progress.done().len());
+        row["steps"] = json!(progress.plan().steps.len());
+        row["since_ms"] = json!(progress.since_ms());
+        row["away_s"] = json!(participant.seen.map(|seen| seen.elapsed().as_secs()));
+        if let Some((_, mission, _)) = progress.mission() {
+            row["mission"] = json!(mission.mission);
+            row["now"] = json!(levels(&mission.within));
+            row["played_s"] = json!(progress.played_s() + participant.live.as_ref().map_or(0.0, |live| live.unsaved_s));
+        }
+        row
+    }
+}
+
+/// The within-participant conditions in their order, each once.
+fn within_levels(plan: &Plan) -> Vec<String> {
+    let mut all: Vec<String> = Vec::new();
+    for step in &plan.steps {
+        if let Step::Mission(mission) = step
+            && !mission.within.is_empty()
+        {
+            all.push(levels(&mission.within));
+        }
+    }
+    all.dedup();
+    all
+}
+
+fn finished(study: &Study) -> Value {
+    let text = study.debriefing.as_deref().map(html);
+    json!({ "page": "finished", "html": text, "completion": study.completion })
+}
+
+fn played(participant: &Participant) -> Value {
+    let live = participant.live.as_ref();
+    let Some(page) = live.and_then(|live| live.page.as_ref()) else { return json!({ "page": "starting" }) };
+    let unsaved_s = live.map_or(0.0, |live| live.unsaved_s);
+    let progress = &participant.progress;
+    let is_over = live.is_some_and(|live| live.over.is_some());
+    let rest = |seconds: Option<f64>| seconds.map(|seconds| (seconds - unsaved_s).max(0.0));
+    json!({
+        "page": "mission",
+        "session": { "port": page.port, "token": page.token },
+        "is_over": is_over,
+        "left_s": rest(progress.left_s()),
+        "skip_in_s": rest(progress.skip_in_s()),
+    })
+}

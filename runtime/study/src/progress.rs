@@ -1,0 +1,337 @@
+//! Where one participant is: a pure state machine, which a journal of its events restores.
+//!
+//! Information → consent → the steps of their plan → finished; or withdrawn, or excluded. A mission is first ready, then
+//! queued until a session is free, then played. Nothing here reads a clock: events come with their time.
+
+use cohabit_dialog::Given;
+use serde::{Deserialize, Serialize};
+
+use crate::plan::{Plan, PlannedMission, Step};
+
+/// Where a participant is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Progress {
+    plan: Plan,
+    phase: Phase,
+    /// What was done so far, a step each.
+    done: Vec<Done>,
+    /// When the present step began, ms since 1970.
+    since_ms: u64,
+    /// How long the present mission was played, s.
+    played_s: f64,
+    /// How often its session was started.
+    attempts: u32,
+}
+
+/// What a participant is about.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Phase {
+    /// Reads what the study is about.
+    Information,
+    /// Is asked to agree.
+    Consent,
+    /// Does a step of the plan.
+    At(usize, Doing),
+    /// Has done all.
+    Finished,
+    /// Takes no part any more.
+    Withdrawn,
+    /// Was excluded by the experimenter.
+    Excluded,
+}
+
+/// How far a step has come.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum Doing {
+    /// It waits for the participant: a questionnaire, a break, or a mission that can begin.
+    Ready,
+    /// A mission waits for a session; first in line, if its session had ended too early.
+    Queued {
+        /// Whether it was played before.
+        again: bool,
+    },
+    /// A mission is played.
+    Playing,
+}
+
+/// Something that happens to a participant.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Event {
+    /// They have read the information.
+    Read,
+    /// They agree.
+    Consented {
+        /// The version of the consent form.
+        version: String,
+        /// How many boxes they ticked.
+        ticked: usize,
+    },
+    /// They do not agree.
+    Declined,
+    /// They answer a questionnaire.
+    Answered {
+        /// Its name.
+        questionnaire: String,
+        /// An answer to each question.
+        answers: Vec<Option<Given>>,
+    },
+    /// They want to begin a mission, or go on after a break.
+    GoesOn,
+    /// Their mission's session is started.
+    Started,
+    /// Their mission was played on.
+    Played {
+        /// For so long, s.
+        seconds: f64,
+    },
+    /// Their mission's session ended before its time.
+    Interrupted {
+        /// Why.
+        reason: String,
+    },
+    /// Their mission is over.
+    Over {
+        /// How.
+        ending: Ending,
+    },
+    /// They take no part any more.
+    Withdrew,
+    /// They are excluded.
+    Excluded {
+        /// Why.
+        reason: String,
+    },
+}
+
+/// How a mission ends.
+#[derive(Clone, Copy, Debug, Deserialize, Eq, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Ending {
+    /// All of its goals are met.
+    Complete,
+    /// Its goals cannot be met any more.
+    Failed,
+    /// Its time is up.
+    TimeUp,
+    /// The participant skipped it.
+    Skipped,
+    /// The experimenter ended it.
+    Stopped,
+}
+
+impl Ending {
+    /// As tables have it.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Complete => "complete",
+            Self::Failed => "failed",
+            Self::TimeUp => "time_up",
+            Self::Skipped => "skipped",
+            Self::Stopped => "stopped",
+        }
+    }
+}
+
+/// What follows from an event, once it is written down.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum Effect {
+    /// The session of the present mission is started, for the so-manieth time.
+    StartSession {
+        /// Which time, from 1.
+        attempt: u32,
+    },
+    /// The session that runs is ended.
+    EndSession,
+    /// All that is kept of the participant is removed.
+    RemoveData,
+}
+
+/// A step that was done.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Done {
+    /// Which.
+    pub step: usize,
+    /// When it began, ms since 1970.
+    pub began_ms: u64,
+    /// When it ended, ms since 1970.
+    pub ended_ms: u64,
+    /// Of a mission: how it ended.
+    pub ending: Option<Ending>,
+    /// Of a mission: how long it was played, s.
+    pub played_s: f64,
+    /// Of a mission: how often its session was started.
+    pub attempts: u32,
+    /// Of a questionnaire: the answers.
+    pub answers: Vec<Option<Given>>,
+}
+
+/// Why an event cannot happen now, for the person who caused it.
+#[derive(Clone, Debug, Eq, PartialEq, thiserror::Error)]
+#[error("{0}")]
+pub struct Refused(&'static str);
+
+const OUT_OF_TURN: Refused = Refused("The study is at another place by now; please reload the page.");
+
+impl Progress {
+    /// Somebody who has just come.
+    #[must_use]
+    pub fn new(plan: Plan) -> Self {
+        Self { plan, phase: Phase::Information, done: Vec::new(), since_ms: 0, played_s: 0.0, attempts: 0 }
+    }
+
+    /// What they do.
+    #[must_use]
+    pub const fn plan(&self) -> &Plan {
+        &self.plan
+    }
+
+    /// Where they are.
+    #[must_use]
+    pub const fn phase(&self) -> &Phase {
+        &self.phase
+    }
+
+    /// What they have done.
+    #[must_use]
+    pub fn done(&self) -> &[Done] {
+        &self.done
+    }
+
+    /// When the present step began, ms since 1970.
+    #[must_use]
+    pub const fn since_ms(&self) -> u64 {
+        self.since_ms
+    }
+
+    /// How long the present mission was played, s.
+    #[must_use]
+    pub const fn played_s(&self) -> f64 {
+        self.played_s
+    }
+
+    /// The present step.
+    #[must_use]
+    pub fn step_now(&self) -> Option<(usize, &Step, Doing)> {
+        match self.phase {
+            Phase::At(index, doing) => Some((index, self.plan.steps.get(index)?, doing)),
+            _ => None,
+        }
+    }
+
+    /// The mission that they are at.
+    #[must_use]
+    pub fn mission(&self) -> Option<(usize, &PlannedMission, Doing)> {
+        match self.step_now()? {
+            (index, Step::Mission(mission), doing) => Some((index, mission, doing)),
+            _ => None,
+        }
+    }
+
+    /// Whether anything of theirs may be written down.
+    #[must_use]
+    pub const fn has_consented(&self) -> bool {
+        !matches!(self.phase, Phase::Information | Phase::Consent)
+    }
+
+    /// How long until the mission may be skipped, s; `None` if it may not, 0 if it may now.
+    #[must_use]
+    pub fn skip_in_s(&self) -> Option<f64> {
+        let (_, mission, _) = self.mission()?;
+        Some((mission.limits.skip_after_s? - self.played_s).max(0.0))
+    }
+
+    /// How long the mission may still be played, s.
+    #[must_use]
+    pub fn left_s(&self) -> Option<f64> {
+        let (_, mission, _) = self.mission()?;
+        Some((mission.limits.limit_s? - self.played_s).max(0.0))
+    }
+
+    /// Takes an event in; gives what follows from it. `at_ms` is its time, ms since 1970.
+    ///
+    /// # Errors
+    /// [`Refused`]; nothing has changed then.
+    pub fn step(&mut self, event: &Event, at_ms: u64) -> Result<Vec<Effect>, Refused> {
+        match (&self.phase, event) {
+            (Phase::Information, Event::Read) => self.phase = Phase::Consent,
+            (Phase::Consent, Event::Declined) => self.phase = Phase::Information,
+            (Phase::Consent, Event::Consented { .. }) => self.begin(0, at_ms),
+            (Phase::Withdrawn, _) => return Err(Refused("You have withdrawn from this study.")),
+            (_, Event::Withdrew) => {
+                let effects = self.end_session();
+                self.phase = Phase::Withdrawn;
+                return Ok([effects, vec![Effect::RemoveData]].concat());
+            }
+            (Phase::At(..) | Phase::Finished, Event::Excluded { .. }) => {
+                let effects = self.end_session();
+                self.phase = Phase::Excluded;
+                return Ok(effects);
+            }
+            (Phase::At(index, doing), event) => return self.step_at(*index, *doing, event, at_ms),
+            _ => return Err(OUT_OF_TURN),
+        }
+        Ok(Vec::new())
+    }
+
+    fn step_at(&mut self, index: usize, doing: Doing, event: &Event, at_ms: u64) -> Result<Vec<Effect>, Refused> {
+        match (self.plan.steps.get(index), doing, event) {
+            (Some(Step::Questionnaire { name, .. }), _, Event::Answered { questionnaire, answers })
+                if name == questionnaire =>
+            {
+                self.complete(index, None, answers.clone(), at_ms);
+            }
+            (Some(Step::Break { .. }), _, Event::GoesOn) => self.complete(index, None, Vec::new(), at_ms),
+            (Some(Step::Mission(_)), Doing::Ready, Event::GoesOn) => {
+                self.phase = Phase::At(index, Doing::Queued { again: false });
+            }
+            (Some(Step::Mission(_)), Doing::Queued { .. }, Event::Started) => {
+                self.attempts += 1;
+                self.phase = Phase::At(index, Doing::Playing);
+                return Ok(vec![Effect::StartSession { attempt: self.attempts }]);
+            }
+            (Some(Step::Mission(_)), Doing::Playing, Event::Played { seconds }) => self.played_s += seconds,
+            (Some(Step::Mission(_)), Doing::Playing, Event::Interrupted { .. }) => {
+                self.phase = Phase::At(index, Doing::Queued { again: true });
+                return Ok(vec![Effect::EndSession]);
+            }
+            (Some(Step::Mission(_)), Doing::Playing, Event::Over { ending }) => {
+                return self.over(index, *ending, at_ms);
+            }
+            // The experimenter may end what has not begun.
+            (Some(Step::Mission(_)), _, Event::Over { ending: Ending::Stopped }) => {
+                self.complete(index, Some(Ending::Stopped), Vec::new(), at_ms);
+            }
+            _ => return Err(OUT_OF_TURN),
+        }
+        Ok(Vec::new())
+    }
+
+    fn over(&mut self, index: usize, ending: Ending, at_ms: u64) -> Result<Vec<Effect>, Refused> {
+        if ending == Ending::Skipped && self.skip_in_s() != Some(0.0) {
+            return Err(Refused("This mission cannot be skipped yet."));
+        }
+        self.complete(index, Some(ending), Vec::new(), at_ms);
+        Ok(vec![Effect::EndSession])
+    }
+
+    fn end_session(&self) -> Vec<Effect> {
+        if matches!(self.phase, Phase::At(_, Doing::Playing)) { vec![Effect::EndSession] } else { Vec::new() }
+    }
+
+    fn complete(&mut self, step: usize, ending: Option<Ending>, answers: Vec<Option<Given>>, at_ms: u64) {
+        let (played_s, attempts) = (self.played_s, self.attempts);
+        let done = Done { step, began_ms: self.since_ms, ended_ms: at_ms, ending, played_s, attempts, answers };
+        self.done.push(done);
+        self.begin(step + 1, at_ms);
+    }
+
+    fn begin(&mut self, step: usize, at_ms: u64) {
+        (self.since_ms, self.played_s, self.attempts) = (at_ms, 0.0, 0);
+        self.phase = if step < self.plan.steps.len() { Phase::At(step, Doing::Ready) } else { Phase::Finished };
+    }
+}
+
+#[cfg(test)]
+mod tests;

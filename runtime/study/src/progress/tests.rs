@@ -1,0 +1,136 @@
+//! Whatever happens in whatever order, nobody loses their place.
+
+use proptest::prelude::*;
+
+use super::*;
+use crate::design::{Limits, Settings};
+
+fn mission(skip_after_s: Option<f64>) -> Step {
+    Step::Mission(PlannedMission {
+        block: 0,
+        mission: "make_cereal".to_owned(),
+        within: Vec::new(),
+        settings: Settings::new(),
+        limits: Limits { limit_s: Some(60.0), skip_after_s },
+    })
+}
+
+fn plan() -> Plan {
+    let asked = Step::Questionnaire { name: "sus".to_owned(), about: None };
+    Plan {
+        place: 1,
+        between: Vec::new(),
+        steps: vec![mission(Some(10.0)), asked, Step::Break { block: 1, limit_s: None }, mission(None)],
+    }
+}
+
+fn consented() -> Event {
+    Event::Consented { version: "1".to_owned(), ticked: 2 }
+}
+
+fn answered() -> Event {
+    Event::Answered { questionnaire: "sus".to_owned(), answers: vec![Some(Given::Value(3)), None] }
+}
+
+fn over(ending: Ending) -> Event {
+    Event::Over { ending }
+}
+
+fn interrupted() -> Event {
+    Event::Interrupted { reason: "signal 9".to_owned() }
+}
+
+/// All effects of these events, one a second.
+fn run(progress: &mut Progress, events: &[Event]) -> Vec<Effect> {
+    let step = |(second, event): (u64, &Event)| progress.step(event, second * 1000).unwrap();
+    (1..).zip(events).flat_map(step).collect()
+}
+
+#[test]
+fn a_participant_does_one_step_after_the_other() {
+    let mut progress = Progress::new(plan());
+    assert!(!progress.has_consented());
+    assert_eq!(run(&mut progress, &[Event::Read, consented()]), []);
+    assert_eq!(progress.phase(), &Phase::At(0, Doing::Ready));
+    let effects = run(&mut progress, &[Event::GoesOn, Event::Started, Event::Played { seconds: 4.0 }, interrupted()]);
+    assert_eq!(effects, [Effect::StartSession { attempt: 1 }, Effect::EndSession]);
+    assert_eq!(progress.phase(), &Phase::At(0, Doing::Queued { again: true }));
+    assert_eq!(run(&mut progress, &[Event::Started]), [Effect::StartSession { attempt: 2 }]);
+    assert!(progress.step(&over(Ending::Skipped), 0).is_err(), "10 s are not over");
+    run(&mut progress, &[Event::Played { seconds: 6.0 }]);
+    assert_eq!((progress.skip_in_s(), progress.left_s()), (Some(0.0), Some(50.0)));
+    assert_eq!(run(&mut progress, &[over(Ending::Skipped)]), [Effect::EndSession]);
+    let done = &progress.done()[0];
+    assert_eq!((done.ending, done.played_s, done.attempts), (Some(Ending::Skipped), 10.0, 2));
+    assert!(progress.step(&Event::GoesOn, 0).is_err(), "a questionnaire is not passed over");
+    run(&mut progress, &[answered(), Event::GoesOn, Event::GoesOn, Event::Started]);
+    assert_eq!(progress.skip_in_s(), None);
+    assert!(progress.step(&over(Ending::Skipped), 0).is_err());
+    run(&mut progress, &[over(Ending::Complete)]);
+    assert_eq!((progress.phase(), progress.done().len()), (&Phase::Finished, 4));
+    assert_eq!(run(&mut progress, &[Event::Withdrew]), [Effect::RemoveData], "also afterwards");
+}
+
+#[test]
+fn who_withdraws_or_is_excluded_while_playing_ends_the_session() {
+    let mut playing = Progress::new(plan());
+    run(&mut playing, &[Event::Read, consented(), Event::GoesOn, Event::Started]);
+    let mut excluded = playing.clone();
+    assert_eq!(run(&mut playing, &[Event::Withdrew]), [Effect::EndSession, Effect::RemoveData]);
+    assert!(playing.step(&Event::GoesOn, 0).is_err_and(|refused| refused.to_string().contains("withdrawn")));
+    let reason = "did not listen".to_owned();
+    assert_eq!(run(&mut excluded, &[Event::Excluded { reason }]), [Effect::EndSession]);
+    assert!(excluded.step(&Event::Started, 0).is_err());
+}
+
+#[test]
+fn who_does_not_agree_is_asked_again_when_they_come_back() {
+    let mut progress = Progress::new(plan());
+    run(&mut progress, &[Event::Read, Event::Declined, Event::Read]);
+    assert_eq!(progress.phase(), &Phase::Consent);
+    assert!(!progress.has_consented());
+    assert!(progress.step(&Event::Read, 0).is_err());
+}
+
+fn any_event() -> impl Strategy<Value = Event> {
+    let endings = [Ending::Complete, Ending::Failed, Ending::TimeUp, Ending::Skipped, Ending::Stopped];
+    prop_oneof![
+        Just(Event::Read),
+        Just(consented()),
+        Just(answered()),
+        Just(Event::GoesOn),
+        Just(Event::GoesOn),
+        Just(Event::Started),
+        (0.0..20.0).prop_map(|seconds| Event::Played { seconds }),
+        Just(interrupted()),
+        proptest::sample::select(endings.to_vec()).prop_map(over),
+    ]
+}
+
+proptest! {
+    #[test]
+    fn what_is_refused_changes_nothing_and_what_is_not_is_restored(events in proptest::collection::vec(any_event(), 0..80)) {
+        let mut progress = Progress::new(plan());
+        let mut kept = Vec::new();
+        for (at, event) in (1..).zip(&events) {
+            let before = progress.clone();
+            let ran = |progress: &Progress| matches!(progress.phase(), Phase::At(_, Doing::Playing));
+            match progress.step(event, at) {
+                Ok(effects) => {
+                    prop_assert_eq!(effects.contains(&Effect::EndSession), ran(&before) && !ran(&progress));
+                    kept.push((at, event.clone()));
+                }
+                Err(_) => prop_assert_eq!(&before, &progress),
+            }
+            // Steps are done in order, each once.
+            let steps: Vec<usize> = progress.done().iter().map(|done| done.step).collect();
+            prop_assert_eq!(steps, (0..progress.done().len()).collect::<Vec<_>>());
+        }
+        let mut again = Progress::new(plan());
+        for (at, event) in kept {
+            let text = serde_json::to_string(&event).unwrap();
+            again.step(&serde_json::from_str(&text).unwrap(), at).unwrap();
+        }
+        prop_assert_eq!(again, progress);
+    }
+}

@@ -1,0 +1,313 @@
+//! All participants of a study that runs: who they are, where they are, and what happens to them, written down first.
+
+use std::{
+    collections::{BTreeMap, VecDeque},
+    time::{Duration, Instant, SystemTime, UNIX_EPOCH},
+};
+
+use cohabit_dialog::token;
+
+use crate::{
+    assign::assign,
+    design::Study,
+    folder::{Consent, Folder, FolderError, Note},
+    journal::{Journal, JournalError},
+    links::Links,
+    plan::pseudonym,
+    progress::{Doing, Effect, Ending, Event, Phase, Progress, Refused},
+    session::{PageAddress, Playing},
+};
+
+/// People who opened the sign-up link and have not agreed yet; the oldest go first.
+const MOST_NEWCOMERS: usize = 1000;
+/// Whose page was not heard of for so long is away: five times what a page waits between two questions.
+pub(crate) const AWAY_AFTER: Duration = Duration::from_secs(10);
+
+/// Why something did not happen, for the person who asked for it.
+#[derive(Debug, thiserror::Error)]
+pub enum StudyFault {
+    /// It cannot happen now.
+    #[error(transparent)]
+    Refused(#[from] Refused),
+    /// It cannot happen, with what to tell the person.
+    #[error("{0}")]
+    NotNow(String),
+    /// It could not be written down.
+    #[error("This could not be saved; please try again, or tell the experimenter.")]
+    Journal(#[from] JournalError),
+    /// The folder failed.
+    #[error("This could not be saved; please try again, or tell the experimenter.")]
+    Folder(#[from] FolderError),
+}
+
+/// Somebody who has agreed to take part.
+pub(crate) struct Participant {
+    pub progress: Progress,
+    journal: Journal,
+    /// When their page was last heard of.
+    pub seen: Option<Instant>,
+    /// The session that they play.
+    pub live: Option<Live>,
+    /// When a session may be started for them again.
+    pub retry_at: Option<Instant>,
+    /// When they came into the queue: a count.
+    pub queued: u64,
+}
+
+/// A session that is played.
+pub(crate) struct Live {
+    pub playing: Box<dyn Playing>,
+    /// Where its page is, once there is one.
+    pub page: Option<PageAddress>,
+    /// When it was last looked at.
+    pub looked: Instant,
+    /// Time played that is not written down yet, s.
+    pub unsaved_s: f64,
+    /// How its mission ended, and when.
+    pub over: Option<(Ending, Instant)>,
+}
+
+/// Somebody who has not agreed yet: nothing of theirs is written down.
+pub(crate) struct Newcomer {
+    pub token: String,
+    /// The place of the link, if it is one that the experimenter gave out.
+    place: Option<u32>,
+    pub has_read: bool,
+}
+
+/// Who has a token.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub(crate) enum Who {
+    /// A participant, by place.
+    Participant(u32),
+    /// Somebody who has not agreed yet, by index.
+    Newcomer(usize),
+    /// Somebody whose data were removed.
+    Withdrawn,
+}
+
+/// All participants of a study.
+pub struct Registry {
+    pub(crate) study: Study,
+    pub(crate) folder: Folder,
+    pub(crate) links: Links,
+    pub(crate) participants: BTreeMap<u32, Participant>,
+    pub(crate) newcomers: VecDeque<Newcomer>,
+    pub(crate) notes: Vec<Note>,
+    /// The tokens of those who have withdrawn since the server started.
+    withdrawn: Vec<String>,
+    /// Sessions that were asked to end.
+    pub(crate) ending: Vec<Box<dyn Playing>>,
+    /// Sessions that are to be started, with the attempt's number.
+    pub(crate) to_start: Vec<(u32, u32)>,
+    /// Whether tables are older than what happened.
+    pub(crate) has_news: bool,
+    queued: u64,
+}
+
+impl Registry {
+    /// Everybody where the journals of a folder say. Whose session was running waits for another one.
+    ///
+    /// # Errors
+    /// [`FolderError`].
+    pub fn new(study: Study, folder: Folder) -> Result<Self, FolderError> {
+        let (links, notes, journals) = (folder.links()?, folder.notes()?, folder.journals()?);
+        let mut registry = Self {
+            study,
+            folder,
+            links,
+            participants: BTreeMap::new(),
+            newcomers: VecDeque::new(),
+            notes,
+            withdrawn: Vec::new(),
+            ending: Vec::new(),
+            to_start: Vec::new(),
+            has_news: true,
+            queued: 0,
+        };
+        for (journal, progress) in journals {
+            let place = progress.plan().place;
+            let was_playing = matches!(progress.phase(), Phase::At(_, Doing::Playing));
+            let participant = Participant { progress, journal, seen: None, live: None, retry_at: None, queued: 0 };
+            registry.participants.insert(place, participant);
+            if was_playing {
+                let reason = "the study's server was started again".to_owned();
+                match registry.apply(place, &Event::Interrupted { reason }) {
+                    Err(StudyFault::Journal(error)) => return Err(error.into()),
+                    Err(StudyFault::Folder(error)) => return Err(error),
+                    // That it was refused cannot be: it was played.
+                    Err(StudyFault::Refused(_) | StudyFault::NotNow(_)) | Ok(()) => {}
+                }
+            }
+        }
+        Ok(registry)
+    }
+
+    /// Who has a token. The holder of a link that was given out is a newcomer from now on, until they agree.
+    pub(crate) fn who(&mut self, given: &str) -> Option<Who> {
+        if self.withdrawn.iter().any(|token| token::admits(token, Some(given))) {
+            return Some(Who::Withdrawn);
+        }
+        let place = self.links.place(given);
+        if let Some(place) = place.filter(|place| self.participants.contains_key(place)) {
+            return Some(Who::Participant(place));
+        }
+        let known = self.newcomers.iter().position(|one| token::admits(&one.token, Some(given)));
+        known.or_else(|| place.map(|_| self.add_newcomer(given.to_owned(), place))).map(Who::Newcomer)
+    }
+
+    /// A token for somebody who signs up.
+    pub(crate) fn sign_up(&mut self) -> Result<String, StudyFault> {
+        self.check_room()?;
+        let token = token::fresh().map_err(|error| StudyFault::NotNow(error.to_string()))?;
+        self.add_newcomer(token.clone(), None);
+        Ok(token)
+    }
+
+    fn add_newcomer(&mut self, token: String, place: Option<u32>) -> usize {
+        if self.newcomers.len() >= MOST_NEWCOMERS {
+            self.newcomers.pop_front();
+        }
+        self.newcomers.push_back(Newcomer { token, place, has_read: false });
+        self.newcomers.len() - 1
+    }
+
+    /// Says when all planned places are taken: those of people who take part, and of links that were given out.
+    fn check_room(&self) -> Result<(), StudyFault> {
+        let is_out = |place: &u32| {
+            self.participants
+                .get(place)
+                .is_some_and(|one| matches!(one.progress.phase(), Phase::Excluded | Phase::Withdrawn))
+        };
+        let taken = self.links.participants.keys().filter(|place| !is_out(place)).count();
+        if taken < self.study.participants as usize {
+            return Ok(());
+        }
+        Err(StudyFault::NotNow(format!(
+            "This study has all the participants that it needs. Thank you! ({})",
+            self.study.contact
+        )))
+    }
+
+    /// A place for the next participant, with a link of its own.
+    pub(crate) fn reserve(&mut self, token: Option<String>) -> Result<u32, StudyFault> {
+        let withdrawn = self.folder.withdrawals()?;
+        let withdrawn = withdrawn.iter().filter_map(|one| crate::plan::place_of(&one.participant));
+        let taken = self.links.participants.keys().chain(self.participants.keys()).copied().chain(withdrawn);
+        let place = taken.max().unwrap_or(0) + 1;
+        let token = match token {
+            Some(token) => token,
+            None => token::fresh().map_err(|error| StudyFault::NotNow(error.to_string()))?,
+        };
+        let mut links = self.links.clone();
+        links.participants.insert(place, token);
+        let path = self.folder.links_path();
+        links.save(&path).map_err(|source| FolderError::File { path, source })?;
+        self.links = links;
+        self.has_news = true;
+        Ok(place)
+    }
+
+    /// A newcomer agrees: they get their place, and their plan. All of this is written down before they go on, their
+    /// consent first, so that there are no data without it.
+    pub(crate) fn enrol(&mut self, index: usize, version: &str, ticked: usize) -> Result<(), StudyFault> {
+        let Some(newcomer) = self.newcomers.get(index) else { return Ok(()) };
+        let consents = self.study.consents.clone();
+        if version != self.study.consent.version || ticked != consents.len() {
+            return Err(StudyFault::NotNow("Please tick all boxes, or leave the study.".to_owned()));
+        }
+        let place = match newcomer.place {
+            Some(place) => place,
+            None => {
+                self.check_room()?;
+                self.reserve(Some(newcomer.token.clone()))?
+            }
+        };
+        let at_ms = now_ms();
+        let participant = pseudonym(place);
+        let consent = Consent { participant, at_ms, version: version.to_owned(), agreed: consents };
+        self.folder.keep_consent(place, &consent)?;
+        let plan = assign(&self.study, place);
+        let agreed = Event::Consented { version: version.to_owned(), ticked };
+        let journal = Journal::begin(&self.folder.journal_path(place), &plan, &agreed, at_ms)?;
+        let mut progress = Progress::new(plan);
+        progress.step(&Event::Read, at_ms)?;
+        progress.step(&agreed, at_ms)?;
+        let seen = Some(Instant::now());
+        self.participants.insert(place, Participant { progress, journal, seen, live: None, retry_at: None, queued: 0 });
+        self.newcomers.remove(index);
+        self.has_news = true;
+        Ok(())
+    }
+
+    /// Has something happen to a participant: it is written down, and then what follows from it is done.
+    ///
+    /// # Errors
+    /// [`StudyFault`]; nothing has changed then.
+    pub(crate) fn apply(&mut self, place: u32, event: &Event) -> Result<(), StudyFault> {
+        let Some(participant) = self.participants.get_mut(&place) else {
+            return Err(StudyFault::NotNow("Nobody of that name takes part.".to_owned()));
+        };
+        let (mut next, at_ms) = (participant.progress.clone(), now_ms());
+        let effects = next.step(event, at_ms)?;
+        participant.journal.append(event, at_ms)?;
+        participant.progress = next;
+        self.has_news = true;
+        if matches!(participant.progress.phase(), Phase::At(_, Doing::Queued { .. })) {
+            self.queued += 1;
+            participant.queued = self.queued;
+        }
+        for effect in effects {
+            match effect {
+                Effect::StartSession { attempt } => self.to_start.push((place, attempt)),
+                Effect::EndSession => self.end_session(place),
+                // As soon as the session has ended, which may still write.
+                Effect::RemoveData => {}
+            }
+        }
+        Ok(())
+    }
+
+    fn end_session(&mut self, place: u32) {
+        self.to_start.retain(|(waiting, _)| *waiting != place);
+        let live = self.participants.get_mut(&place).and_then(|participant| participant.live.take());
+        if let Some(mut live) = live {
+            live.playing.end();
+            self.ending.push(live.playing);
+        }
+    }
+
+    /// Removes all data of a participant who has withdrawn, and whose session has ended.
+    pub(crate) fn remove(&mut self, place: u32) -> Result<(), StudyFault> {
+        self.folder.withdraw(&pseudonym(place), now_ms())?;
+        self.participants.remove(&place);
+        self.withdrawn.extend(self.links.participants.remove(&place));
+        self.notes = self.folder.notes()?;
+        self.has_news = true;
+        Ok(())
+    }
+
+    /// Those who wait for a session, in the order in which they get one: whose session had ended too early comes first.
+    pub(crate) fn queue(&self) -> Vec<u32> {
+        let waits = |(place, one): (&u32, &Participant)| match one.progress.phase() {
+            Phase::At(_, Doing::Queued { again }) => Some((!again, one.queued, *place)),
+            _ => None,
+        };
+        let mut waiting: Vec<_> = self.participants.iter().filter_map(waits).collect();
+        waiting.sort_unstable();
+        waiting.into_iter().map(|(.., place)| place).collect()
+    }
+}
+
+impl Participant {
+    /// Whether their page was heard of a moment ago.
+    pub(crate) fn is_here(&self) -> bool {
+        self.seen.is_some_and(|seen| seen.elapsed() < AWAY_AFTER)
+    }
+}
+
+/// The time now, ms since 1970.
+pub(crate) fn now_ms() -> u64 {
+    let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+    u64::try_from(since.as_millis()).unwrap_or(u64::MAX)
+}

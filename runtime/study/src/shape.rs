@@ -1,0 +1,156 @@
+//! The keys of `study.toml`, as a table: what it is checked by, and what its JSON Schema is made of.
+
+/// A key of a table.
+#[derive(Clone, Copy, Debug)]
+pub struct Key {
+    /// Its name.
+    pub name: &'static str,
+    /// What it holds.
+    pub kind: Kind,
+    /// Whether it must be there.
+    pub required: bool,
+    /// What it means, for the schema and for remedies.
+    pub meaning: &'static str,
+}
+
+/// What a key holds.
+#[derive(Clone, Copy, Debug)]
+pub enum Kind {
+    /// Text that is not empty.
+    Text,
+    /// A list of such texts.
+    Texts,
+    /// A whole number from 0 to so many.
+    Whole(u64),
+    /// A number of minutes above 0.
+    Minutes,
+    /// One of these words.
+    OneOf(&'static [&'static str]),
+    /// Flags of `cohabit play`, each with a text, a number, true or false, or a list of these.
+    Settings,
+    /// A table with these keys.
+    Table(&'static [Key]),
+    /// A list of tables with these keys.
+    Tables(&'static [Key]),
+}
+
+const fn required(name: &'static str, kind: Kind, meaning: &'static str) -> Key {
+    Key { name, kind, required: true, meaning }
+}
+
+const fn optional(name: &'static str, kind: Kind, meaning: &'static str) -> Key {
+    Key { name, kind, required: false, meaning }
+}
+
+/// The largest whole number that JSON holds exactly.
+const LARGEST_SEED: u64 = (1 << 53) - 1;
+/// More people than a study of a lab has.
+const MOST_PARTICIPANTS: u64 = 10_000;
+/// The longest block of a random assignment.
+const LARGEST_BLOCK: u64 = 1_000;
+
+/// The whole file.
+pub const STUDY: &[Key] = &[
+    required("title", Kind::Text, "what participants read above each page"),
+    required("contact", Kind::Text, "whom participants can ask, such as a name and an address"),
+    required("seed", Kind::Whole(LARGEST_SEED), "the seed of the assignment and of all worlds"),
+    required(
+        "participants",
+        Kind::Whole(MOST_PARTICIPANTS),
+        "how many participants are planned; the sign-up link admits no more",
+    ),
+    optional(
+        "assignment",
+        Kind::OneOf(&["latin_square", "balanced_latin_square", "block_random"]),
+        "how the order of within-participant conditions is assigned; block_random, if absent",
+    ),
+    optional(
+        "block_size",
+        Kind::Whole(LARGEST_BLOCK),
+        "participants of a block in which each between-participants condition is as frequent; as many as there are, if absent",
+    ),
+    optional(
+        "missions",
+        Kind::Texts,
+        "the missions of the block of kind `missions`: names of built-in missions, or files",
+    ),
+    optional("settings", Kind::Settings, "flags of `cohabit play` for all sessions"),
+    optional("completion_code", Kind::Text, "what participants are given at the end, to show that they took part"),
+    optional("return_url", Kind::Text, "where participants are led back to at the end"),
+    required("information", Kind::Table(SHEET), "what participants read first"),
+    required("consent", Kind::Table(CONSENT), "what participants agree to"),
+    optional("factor", Kind::Tables(FACTOR), "a factor of the design"),
+    required("block", Kind::Tables(BLOCK), "what participants do, in order"),
+];
+
+const SHEET: &[Key] = &[
+    required("file", Kind::Text, "a Markdown file, from the folder of the study"),
+    required("version", Kind::Text, "the version of its text"),
+];
+
+const CONSENT: &[Key] = &[
+    required("file", Kind::Text, "a Markdown file, from the folder of the study"),
+    required("version", Kind::Text, "the version of its text, for the consent records"),
+    required("required", Kind::Texts, "the sentences that participants have to agree to, a checkbox each"),
+];
+
+const FACTOR: &[Key] = &[
+    required("name", Kind::Text, "what it is called in tables: letters, digits and _"),
+    required("kind", Kind::OneOf(&["between", "within"]), "whether a participant meets one of its levels, or all"),
+    required("level", Kind::Tables(LEVEL), "its levels, two or more"),
+];
+
+const LEVEL: &[Key] = &[
+    required("name", Kind::Text, "what it is called in tables: letters, digits and _"),
+    required("settings", Kind::Settings, "the flags of `cohabit play` that make it"),
+];
+
+const BLOCK: &[Key] = &[
+    required("kind", Kind::OneOf(&["questionnaire", "mission", "missions", "break", "debriefing"]), "what is done"),
+    optional("questionnaires", Kind::Texts, "of a questionnaire block: names of questionnaires that ship, or files"),
+    optional("mission", Kind::Text, "of a mission block: the mission"),
+    optional("settings", Kind::Settings, "of a mission block: flags of `cohabit play` for it"),
+    optional(
+        "order",
+        Kind::OneOf(&["fixed", "random", "balanced"]),
+        "of a missions block: in what order; balanced has each mission meet each condition, and stand at each position, as often",
+    ),
+    optional(
+        "minutes",
+        Kind::Minutes,
+        "of missions: the most that one is played; of a break: the longest that it lasts",
+    ),
+    optional("skip_after_minutes", Kind::Minutes, "of missions: when participants may skip one"),
+    optional("after_mission", Kind::Texts, "of a missions block: questionnaires after each mission"),
+    optional(
+        "after_condition",
+        Kind::Texts,
+        "of a missions block: questionnaires after the last mission of each within-participant condition",
+    ),
+    optional("file", Kind::Text, "of a mission, a break or a debriefing: a Markdown file with what participants read"),
+];
+
+/// The keys of each kind of block besides `kind`: those that it must have, and those that it may have.
+pub const KEYS_OF_BLOCKS: [(&str, &[&str], &[&str]); 5] = [
+    ("questionnaire", &["questionnaires"], &[]),
+    ("mission", &["mission"], &["settings", "minutes", "skip_after_minutes", "file"]),
+    ("missions", &[], &["order", "minutes", "skip_after_minutes", "after_mission", "after_condition", "file"]),
+    ("break", &[], &["minutes", "file"]),
+    ("debriefing", &["file"], &[]),
+];
+
+impl Kind {
+    /// What is to be written.
+    pub fn wanted(self) -> String {
+        match self {
+            Self::Text => "a text in quotation marks, not empty".to_owned(),
+            Self::Texts => "a list of texts, such as [\"one\", \"two\"]".to_owned(),
+            Self::Whole(most) => format!("a whole number from 0 to {most}"),
+            Self::Minutes => "a number of minutes above 0".to_owned(),
+            Self::OneOf(words) => format!("one of \"{}\"", words.join("\", \"")),
+            Self::Settings => "a table of flags of `cohabit play`, such as { ask = \"never\" }".to_owned(),
+            Self::Table(_) => "a table".to_owned(),
+            Self::Tables(_) => "tables, each below a head in double brackets".to_owned(),
+        }
+    }
+}

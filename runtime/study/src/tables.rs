@@ -1,0 +1,274 @@
+//! A study's own tables: participants, missions and answers; and the columns that tell of the tables of logs under which
+//! conditions their sessions were played.
+
+use std::{borrow::Cow, collections::BTreeMap, path::PathBuf};
+
+use cohabit_bus::message::AnswerKind;
+use cohabit_tables::{
+    Cell, CsvError, Field,
+    Kind::{Flag, Real, Text, Whole},
+    Table, codebook, write_csv,
+};
+
+use crate::{
+    design::{Choice, FactorKind, Study},
+    folder::{Folder, FolderError},
+    plan::{Plan, Step, pseudonym},
+    progress::{Doing, Done, Phase, Progress},
+    session::{session_name, step_of},
+};
+
+/// Why a study's tables could not be written.
+#[derive(Debug, thiserror::Error)]
+pub enum TablesError {
+    /// A table cannot be written.
+    #[error(transparent)]
+    Csv(#[from] CsvError),
+    /// The folder cannot be read.
+    #[error(transparent)]
+    Folder(#[from] FolderError),
+}
+
+/// Writes the tables of participants and answers into the study's folder.
+///
+/// # Errors
+/// [`TablesError`].
+pub fn write(study: &Study, all: &[Progress], folder: &Folder) -> Result<(), TablesError> {
+    let withdrawn: Vec<String> = folder.withdrawals()?.into_iter().map(|one| one.participant).collect();
+    for table in [participants(study, all, &withdrawn), answers(study, all)] {
+        write_csv(&table, folder.path())?;
+    }
+    Ok(())
+}
+
+/// Writes all tables of a study into another folder, with those of its logs and a codebook; gives their paths.
+///
+/// # Errors
+/// [`TablesError`].
+pub fn export(
+    study: &Study,
+    all: &[Progress],
+    withdrawn: &[String],
+    mut of_logs: Vec<Table>,
+    out: &std::path::Path,
+) -> Result<Vec<PathBuf>, TablesError> {
+    add_conditions(study, all, &mut of_logs);
+    let own = [participants(study, all, withdrawn), missions(study, all), answers(study, all)];
+    let tables: Vec<Table> = own.into_iter().chain(of_logs).collect();
+    let codebook = codebook(&tables);
+    let written = tables.iter().chain([&codebook]).map(|table| write_csv(table, out));
+    Ok(written.collect::<Result<_, _>>()?)
+}
+
+fn field(name: impl Into<Cow<'static, str>>, kind: cohabit_tables::Kind, unit: &'static str, meaning: &str) -> Field {
+    Field { name: name.into(), kind, unit, meaning: meaning.to_owned().into() }
+}
+
+fn text(text: impl Into<String>) -> Cell {
+    let text = text.into();
+    if text.is_empty() { Cell::Nothing } else { Cell::Text(text) }
+}
+
+fn whole(number: impl TryInto<i64>) -> Cell {
+    number.try_into().map_or(Cell::Nothing, Cell::Whole)
+}
+
+/// A column for each factor of these kinds.
+fn factor_fields(study: &Study, kinds: &[FactorKind]) -> Vec<Field> {
+    let of_kind = study.factors.iter().filter(|factor| kinds.contains(&factor.kind));
+    of_kind.map(|factor| field(format!("factor_{}", factor.name), Text, "", "the level of this factor")).collect()
+}
+
+fn factor_cells(study: &Study, kinds: &[FactorKind], choices: &[Choice]) -> Vec<Cell> {
+    let of_kind = study.factors.iter().filter(|factor| kinds.contains(&factor.kind));
+    let level = |name: &str| choices.iter().find(|choice| choice.factor == name);
+    of_kind.map(|factor| level(&factor.name).map_or(Cell::Nothing, |choice| text(&choice.level))).collect()
+}
+
+const BOTH: [FactorKind; 2] = [FactorKind::Between, FactorKind::Within];
+
+fn participants(study: &Study, all: &[Progress], withdrawn: &[String]) -> Table {
+    let fields = [
+        field("participant", Text, "", "what the participant is called"),
+        field("place", Whole, "", "their place in the order of all, from 1"),
+    ];
+    let more = [
+        field("missions", Text, "", "their missions in order, each with the levels of within-participant factors"),
+        field("progress", Text, "", "where they are: the kind of step, or finished, excluded, withdrawn"),
+        field("steps_done", Whole, "", "steps of their plan that they have done"),
+        field("steps", Whole, "", "steps of their plan"),
+        field("consented_ms", Whole, "ms", "wall time at which they agreed to take part, since 1970"),
+        field("last_ms", Whole, "ms", "wall time at which their last step ended, since 1970"),
+    ];
+    let between = factor_fields(study, &[FactorKind::Between]);
+    let count = fields.len() + between.len() + more.len();
+    let gone = |name: &String| {
+        let mut row = vec![Cell::Nothing; count];
+        row[0] = text(name);
+        row[count - more.len() + 1] = text("withdrawn");
+        row
+    };
+    let rows = all.iter().map(|progress| participant(study, progress));
+    let rows = rows.chain(withdrawn.iter().map(gone)).collect();
+    let fields = fields.into_iter().chain(between).chain(more.clone()).collect();
+    Table { name: "participants", meaning: "a participant of the study", fields, rows }
+}
+
+fn participant(study: &Study, progress: &Progress) -> Vec<Cell> {
+    let (plan, done) = (progress.plan(), progress.done());
+    let first = [text(pseudonym(plan.place)), whole(plan.place)];
+    let more = [
+        text(missions_of(plan)),
+        text(progress_name(progress)),
+        whole(done.len()),
+        whole(plan.steps.len()),
+        done.first().map_or_else(|| whole(progress.since_ms()), |done| whole(done.began_ms)),
+        done.last().map_or(Cell::Nothing, |done| whole(done.ended_ms)),
+    ];
+    let between = factor_cells(study, &[FactorKind::Between], &plan.between);
+    first.into_iter().chain(between).chain(more).collect()
+}
+
+/// Such as `make_cereal (ask=never), cold_soda (ask=always)`.
+fn missions_of(plan: &Plan) -> String {
+    let of_step = |step: &Step| match step {
+        Step::Mission(mission) if mission.within.is_empty() => Some(mission.mission.clone()),
+        Step::Mission(mission) => Some(format!("{} ({})", mission.mission, levels(&mission.within))),
+        _ => None,
+    };
+    plan.steps.iter().filter_map(of_step).collect::<Vec<_>>().join(", ")
+}
+
+/// Such as `ask=never voice=off`.
+#[must_use]
+pub(crate) fn levels(choices: &[Choice]) -> String {
+    choices.iter().map(|choice| format!("{}={}", choice.factor, choice.level)).collect::<Vec<_>>().join(" ")
+}
+
+/// Where somebody is, in a word.
+pub(crate) fn progress_name(progress: &Progress) -> &'static str {
+    match (progress.phase(), progress.step_now()) {
+        (Phase::Information, _) => "information",
+        (Phase::Consent, _) => "consent",
+        (Phase::Finished, _) => "finished",
+        (Phase::Withdrawn, _) => "withdrawn",
+        (Phase::Excluded, _) => "excluded",
+        (_, Some((_, Step::Questionnaire { .. }, _))) => "questionnaire",
+        (_, Some((_, Step::Break { .. }, _))) => "break",
+        (_, Some((_, _, Doing::Queued { .. }))) => "waiting",
+        (_, Some((_, _, Doing::Playing))) => "mission",
+        _ => "ready",
+    }
+}
+
+fn missions(study: &Study, all: &[Progress]) -> Table {
+    let first = [
+        field("participant", Text, "", "what the participant is called"),
+        field("step", Whole, "", "which step of their plan, from 1"),
+    ];
+    let more = [
+        field("mission", Text, "", "the mission, as the study names it"),
+        field("ending", Text, "", "how it ended: complete, failed, time_up, skipped, or stopped by the experimenter"),
+        field("played_s", Real, "s", "how long its page was there with the participant"),
+        field("sessions", Text, "", "its sessions in order, as in the table of sessions: more than one, if one died"),
+        field("began_ms", Whole, "ms", "wall time at which the step began, since 1970"),
+        field("ended_ms", Whole, "ms", "wall time at which it ended, since 1970"),
+    ];
+    let row = |progress: &Progress, done: &Done| {
+        let plan = progress.plan();
+        let Some(Step::Mission(mission)) = plan.steps.get(done.step) else { return None };
+        let sessions: Vec<_> =
+            (1..=done.attempts).map(|attempt| session_name(plan.place, done.step, attempt)).collect();
+        let first = [text(pseudonym(plan.place)), whole(done.step + 1)];
+        let more = [
+            text(&mission.mission),
+            done.ending.map_or(Cell::Nothing, |ending| text(ending.name())),
+            Cell::Real(done.played_s),
+            text(sessions.join(" ")),
+            whole(done.began_ms),
+            whole(done.ended_ms),
+        ];
+        let factors = factor_cells(study, &BOTH, &plan.choices(done.step));
+        Some(first.into_iter().chain(factors).chain(more).collect())
+    };
+    let rows = all.iter().flat_map(|progress| progress.done().iter().filter_map(move |done| row(progress, done)));
+    let fields = first.into_iter().chain(factor_fields(study, &BOTH)).chain(more).collect();
+    Table { name: "missions", meaning: "a mission that a participant played", fields, rows: rows.collect() }
+}
+
+fn answers(study: &Study, all: &[Progress]) -> Table {
+    let first = [
+        field("participant", Text, "", "what the participant is called"),
+        field("step", Whole, "", "which step of their plan, from 1"),
+    ];
+    let more = [
+        field("mission", Text, "", "the mission that was played before, if it is about one"),
+        field("questionnaire", Text, "", "the questionnaire"),
+        field("item", Whole, "", "which of its questions, from 1"),
+        field("question", Text, "", "what was asked"),
+        field("kind", Text, "", "how it was answered: on a Scale, by a Choice, or in Words"),
+        field("value", Whole, "", "the number on the scale, or that of the choice, from 1"),
+        field("least", Whole, "", "the scale's lowest number"),
+        field("most", Whole, "", "the scale's highest number"),
+        field("reversed", Flag, "", "whether a high number means little of what the questionnaire measures"),
+        field("text", Text, "", "the words, or what was chosen says"),
+        field("at_ms", Whole, "ms", "wall time at which it was answered, since 1970"),
+    ];
+    let rows = all
+        .iter()
+        .flat_map(|progress| progress.done().iter().flat_map(move |done| answer_rows(study, progress.plan(), done)));
+    let fields = first.into_iter().chain(factor_fields(study, &BOTH)).chain(more).collect();
+    let meaning = "a participant's answer to a question that the study asked between missions";
+    Table { name: "answers", meaning, fields, rows: rows.collect() }
+}
+
+fn answer_rows(study: &Study, plan: &Plan, done: &Done) -> Vec<Vec<Cell>> {
+    let Some(Step::Questionnaire { name, about }) = plan.steps.get(done.step) else { return Vec::new() };
+    let asked = study.questionnaire(name);
+    // What was taken was checked; it is the questionnaire that may be another one by now.
+    let messages = asked.and_then(|asked| asked.answered(plan.place, &done.answers).ok()).unwrap_or_default();
+    let mission = match about.and_then(|about| plan.steps.get(about)) {
+        Some(Step::Mission(mission)) => text(&mission.mission),
+        _ => Cell::Nothing,
+    };
+    let factors = factor_cells(study, &BOTH, &plan.choices(done.step));
+    let row = |message: &cohabit_bus::message::AnswerMessage| {
+        let kind = message.kind();
+        let of_scale = |cell: Cell| if kind == Some(AnswerKind::Scale) { cell } else { Cell::Nothing };
+        let first = [text(pseudonym(plan.place)), whole(done.step + 1)];
+        let more = [
+            mission.clone(),
+            text(name),
+            whole(message.item),
+            text(message.question.as_str()),
+            kind.map_or(Cell::Nothing, |kind| text(format!("{kind:?}"))),
+            if kind == Some(AnswerKind::Words) { Cell::Nothing } else { whole(message.value) },
+            of_scale(whole(message.least)),
+            of_scale(whole(message.most)),
+            of_scale(Cell::Flag(message.reversed != 0)),
+            text(message.text.as_str()),
+            whole(done.ended_ms),
+        ];
+        first.into_iter().chain(factors.clone()).chain(more).collect()
+    };
+    messages.iter().map(row).collect()
+}
+
+/// Adds to tables of logs, by the name of the session, which step it was and the levels of all factors.
+fn add_conditions(study: &Study, all: &[Progress], tables: &mut [Table]) {
+    let plans: BTreeMap<u32, &Plan> = all.iter().map(|progress| (progress.plan().place, progress.plan())).collect();
+    for table in tables {
+        let Some(column) = table.fields.iter().position(|field| field.name == "session") else { continue };
+        table.fields.push(field("step", Whole, "", "which step of the participant's plan it belongs to, from 1"));
+        table.fields.extend(factor_fields(study, &BOTH));
+        for row in &mut table.rows {
+            let of = match &row[column] {
+                Cell::Text(session) => step_of(session),
+                _ => None,
+            };
+            let of = of.and_then(|(place, step)| Some((*plans.get(&place)?, step)));
+            row.push(of.map_or(Cell::Nothing, |(_, step)| whole(step + 1)));
+            row.extend(factor_cells(study, &BOTH, &of.map(|(plan, step)| plan.choices(step)).unwrap_or_default()));
+        }
+    }
+}

@@ -1,0 +1,325 @@
+//! The study's server: a page for participants, a page for the experimenter, and what they ask for, by plain HTTP.
+
+use std::{
+    io,
+    net::{SocketAddr, TcpListener},
+    sync::{Arc, Mutex},
+    time::Instant,
+};
+
+use axum::{
+    Json, Router,
+    extract::{Path, State},
+    http::{StatusCode, header},
+    response::{IntoResponse, Redirect, Response},
+    routing::{get, post},
+};
+use cohabit_dialog::{Framing, HostName, ServerLimits, Site, token};
+use serde::Deserialize;
+use serde_json::{Value, json};
+
+use crate::{
+    folder::Note,
+    keeper::lock,
+    plan::place_of,
+    progress::{Ending, Event},
+    registry::{Registry, StudyFault, Who, now_ms},
+};
+
+const SCRIPT: &str = "text/javascript; charset=utf-8";
+const HTML: &str = "text/html; charset=utf-8";
+/// The pages' files: path, media type, text.
+const FILES: [(&str, &str, &str); 7] = [
+    ("/study.js", SCRIPT, include_str!("../web/study.js")),
+    ("/forms.js", SCRIPT, include_str!("../web/forms.js")),
+    ("/server.js", SCRIPT, include_str!("../web/server.js")),
+    ("/dom.js", SCRIPT, include_str!("../web/dom.js")),
+    ("/experimenter.js", SCRIPT, include_str!("../web/experimenter.js")),
+    ("/study.css", "text/css; charset=utf-8", include_str!("../web/study.css")),
+    ("/favicon.svg", "image/svg+xml", include_str!("../../../dialog/web/favicon.svg")),
+];
+const STUDY_PAGE: &str = include_str!("../web/study.html");
+const EXPERIMENTER_PAGE: &str = include_str!("../web/experimenter.html");
+const STRANGER_PAGE: &str = include_str!("../web/stranger.html");
+/// The longest note of the experimenter's, and the longest reason, in characters.
+const LONGEST_NOTE: usize = 2000;
+
+/// What the server has to do with.
+#[derive(Clone)]
+pub struct StudyService {
+    /// The participants.
+    pub registry: Arc<Mutex<Registry>>,
+    /// How many sessions there may be at a time.
+    pub most_sessions: usize,
+}
+
+/// Where a study is found: paths behind the server's address.
+#[derive(Clone, Debug, Eq, PartialEq)]
+pub struct Doors {
+    /// The experimenter's page.
+    pub experimenter: String,
+    /// Where participants sign up.
+    pub sign_up: String,
+}
+
+impl StudyService {
+    /// Where its pages are.
+    #[must_use]
+    pub fn doors(&self) -> Doors {
+        let links = lock(&self.registry).links.clone();
+        Doors {
+            experimenter: format!("/experimenter/{}", links.experimenter),
+            sign_up: format!("/sign-up/{}", links.sign_up),
+        }
+    }
+
+    /// Serves on `listener` until `over`, also as `hosts` besides those of this machine.
+    ///
+    /// # Errors
+    /// Of the network.
+    pub fn serve(self, listener: TcpListener, hosts: Vec<HostName>, over: &dyn Fn() -> bool) -> io::Result<()> {
+        let framing = Framing { frames_ports: true, ..Framing::default() };
+        let router = router(self);
+        Site { router, hosts, identity: None, limits: ServerLimits::default(), framing }.serve(listener, over)
+    }
+}
+
+/// The address of what listens there, for people.
+#[must_use]
+pub fn address(listening: SocketAddr) -> String {
+    token::site_address(listening, false)
+}
+
+fn router(service: StudyService) -> Router {
+    let files = FILES
+        .into_iter()
+        .fold(Router::new(), |router, (path, kind, text)| router.route(path, get(move || file(kind, text))));
+    files
+        .route("/sign-up/{token}", get(sign_up))
+        .route("/p/{token}", get(participant))
+        .route("/p/{token}/state", get(state))
+        .route("/p/{token}/event", post(event))
+        .route("/experimenter/{token}", get(experimenter))
+        .route("/experimenter/{token}/state", get(overview))
+        .route("/experimenter/{token}/command", post(command))
+        .fallback(|| async { stranger() })
+        .with_state(service)
+}
+
+async fn file(kind: &'static str, text: &'static str) -> Response {
+    ([(header::CONTENT_TYPE, kind), (header::CACHE_CONTROL, "no-cache")], text).into_response()
+}
+
+fn page(text: &'static str) -> Response {
+    ([(header::CONTENT_TYPE, HTML)], text).into_response()
+}
+
+fn stranger() -> Response {
+    (StatusCode::NOT_FOUND, page(STRANGER_PAGE)).into_response()
+}
+
+/// Does something with the study, away from the threads that serve: what is written down takes its time.
+async fn with_study(
+    service: StudyService,
+    work: impl FnOnce(&mut Registry, usize) -> Response + Send + 'static,
+) -> Response {
+    let most = service.most_sessions;
+    let done = tokio::task::spawn_blocking(move || work(&mut lock(&service.registry), most)).await;
+    done.unwrap_or_else(|_| StatusCode::INTERNAL_SERVER_ERROR.into_response())
+}
+
+/// What did not happen, for the page; what the experimenter must know of it goes to the terminal.
+fn told(fault: &StudyFault) -> Value {
+    match fault {
+        StudyFault::Journal(error) => tracing::error!("{error}"),
+        StudyFault::Folder(error) => tracing::error!("{error}"),
+        StudyFault::Refused(_) | StudyFault::NotNow(_) => {}
+    }
+    json!(fault.to_string())
+}
+
+async fn sign_up(State(service): State<StudyService>, Path(given): Path<String>) -> Response {
+    with_study(service, move |registry, _| {
+        if !token::admits(&registry.links.sign_up, Some(&given)) {
+            return stranger();
+        }
+        match registry.sign_up() {
+            Ok(token) => Redirect::to(&format!("/p/{token}")).into_response(),
+            Err(fault) => (StatusCode::CONFLICT, format!("{fault}\n")).into_response(),
+        }
+    })
+    .await
+}
+
+async fn participant(State(service): State<StudyService>, Path(given): Path<String>) -> Response {
+    with_study(service, move |registry, _| match registry.who(&given) {
+        Some(_) => page(STUDY_PAGE),
+        None => stranger(),
+    })
+    .await
+}
+
+async fn state(State(service): State<StudyService>, Path(given): Path<String>) -> Response {
+    with_study(service, move |registry, _| match registry.who(&given) {
+        Some(who) => Json(seen(registry, who)).into_response(),
+        None => StatusCode::NOT_FOUND.into_response(),
+    })
+    .await
+}
+
+/// What a page shows, which was just heard of.
+fn seen(registry: &mut Registry, who: Who) -> Value {
+    if let Who::Participant(place) = who
+        && let Some(participant) = registry.participants.get_mut(&place)
+    {
+        participant.seen = Some(Instant::now());
+    }
+    registry.page(who)
+}
+
+/// What a participant's page may cause. `step` is the one that it showed, so that what is sent twice counts once.
+#[derive(Deserialize)]
+struct Sent {
+    step: Option<usize>,
+    event: Event,
+}
+
+async fn event(State(service): State<StudyService>, Path(given): Path<String>, Json(sent): Json<Sent>) -> Response {
+    with_study(service, move |registry, _| {
+        let Some(who) = registry.who(&given) else { return StatusCode::NOT_FOUND.into_response() };
+        let problem = match who {
+            Who::Withdrawn => None,
+            Who::Newcomer(index) => newcomers_event(registry, index, &sent.event).err(),
+            Who::Participant(place) => participants_event(registry, place, &sent).err(),
+        };
+        let who = registry.who(&given).unwrap_or(Who::Withdrawn);
+        let mut page = seen(registry, who);
+        page["problem"] = problem.as_ref().map_or(Value::Null, told);
+        Json(page).into_response()
+    })
+    .await
+}
+
+fn newcomers_event(registry: &mut Registry, index: usize, event: &Event) -> Result<(), StudyFault> {
+    match event {
+        Event::Consented { version, ticked } => return registry.enrol(index, version, *ticked),
+        Event::Read | Event::Declined => {
+            if let Some(newcomer) = registry.newcomers.get_mut(index) {
+                newcomer.has_read = matches!(event, Event::Read);
+            }
+        }
+        // Of people who have not agreed nothing is kept that could be removed.
+        _ => {}
+    }
+    Ok(())
+}
+
+fn participants_event(registry: &mut Registry, place: u32, sent: &Sent) -> Result<(), StudyFault> {
+    let Some(participant) = registry.participants.get(&place) else { return Ok(()) };
+    let now = participant.progress.step_now().map(|(index, ..)| index + 1);
+    if !matches!(sent.event, Event::Withdrew) && sent.step != now {
+        // It was sent twice, or from another window.
+        return Ok(());
+    }
+    match &sent.event {
+        Event::Answered { questionnaire, answers } => {
+            let asked = registry.study.questionnaire(questionnaire);
+            let checked = asked.map(|asked| asked.answered(place, answers));
+            if let Some(Err(problem)) = checked {
+                return Err(StudyFault::NotNow(problem.to_string()));
+            }
+        }
+        Event::GoesOn | Event::Withdrew => {}
+        Event::Over { ending: Ending::Skipped } => registry.save_played(place),
+        // All else happens without their doing.
+        _ => return Ok(()),
+    }
+    registry.apply(place, &sent.event)
+}
+
+async fn experimenter(State(service): State<StudyService>, Path(given): Path<String>) -> Response {
+    with_study(service, move |registry, _| {
+        if token::admits(&registry.links.experimenter, Some(&given)) { page(EXPERIMENTER_PAGE) } else { stranger() }
+    })
+    .await
+}
+
+async fn overview(State(service): State<StudyService>, Path(given): Path<String>) -> Response {
+    with_study(service, move |registry, most| {
+        if !token::admits(&registry.links.experimenter, Some(&given)) {
+            return StatusCode::NOT_FOUND.into_response();
+        }
+        Json(registry.overview(most)).into_response()
+    })
+    .await
+}
+
+/// What the experimenter may cause.
+#[derive(Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum Command {
+    /// A link for the next participant.
+    Reserve,
+    /// A note, about somebody or nobody.
+    Note { participant: Option<String>, text: String },
+    /// Somebody's mission is over.
+    EndMission { participant: String },
+    /// Somebody takes no part any more; their data stay.
+    Exclude { participant: String, reason: String },
+    /// Somebody's data are removed.
+    Withdraw { participant: String },
+}
+
+async fn command(
+    State(service): State<StudyService>,
+    Path(given): Path<String>,
+    Json(command): Json<Command>,
+) -> Response {
+    with_study(service, move |registry, most| {
+        if !token::admits(&registry.links.experimenter, Some(&given)) {
+            return StatusCode::NOT_FOUND.into_response();
+        }
+        let problem = registry.obey(command).err();
+        let mut page = registry.overview(most);
+        page["problem"] = problem.as_ref().map_or(Value::Null, told);
+        Json(page).into_response()
+    })
+    .await
+}
+
+impl Registry {
+    fn obey(&mut self, command: Command) -> Result<(), StudyFault> {
+        let place = |name: &str| {
+            place_of(name).ok_or_else(|| StudyFault::NotNow(format!("Nobody is called {}.", name.escape_debug())))
+        };
+        match command {
+            Command::Reserve => self.reserve(None).map(drop),
+            Command::Note { participant, text } => {
+                if let Some(name) = &participant {
+                    place(name)?;
+                }
+                let note = Note { at_ms: now_ms(), participant, text: short(&text)? };
+                self.folder.note(&note)?;
+                self.notes.push(note);
+                Ok(())
+            }
+            Command::EndMission { participant } => {
+                let place = place(&participant)?;
+                self.save_played(place);
+                self.apply(place, &Event::Over { ending: Ending::Stopped })
+            }
+            Command::Exclude { participant, reason } => {
+                self.apply(place(&participant)?, &Event::Excluded { reason: short(&reason)? })
+            }
+            Command::Withdraw { participant } => self.apply(place(&participant)?, &Event::Withdrew),
+        }
+    }
+}
+
+fn short(text: &str) -> Result<String, StudyFault> {
+    let text = text.trim();
+    if (1..=LONGEST_NOTE).contains(&text.chars().count()) {
+        return Ok(text.to_owned());
+    }
+    Err(StudyFault::NotNow(format!("Please write 1 to {LONGEST_NOTE} characters.")))
+}

@@ -1,0 +1,129 @@
+//! `study.toml` as it stands in its file. What is wrong with its shape was said before: here what is missing is empty.
+
+use std::collections::BTreeMap;
+
+use serde::Deserialize;
+use toml::Spanned;
+
+use crate::design::{Assignment, FactorKind, MissionOrder, Setting, Settings};
+
+/// Words with their places in the text.
+pub(crate) type Words = Vec<Spanned<String>>;
+
+/// Flags with their places in the text.
+pub(crate) type WrittenSettings = BTreeMap<Spanned<String>, Spanned<toml::Value>>;
+
+#[derive(Default, Deserialize)]
+#[serde(default)]
+pub(crate) struct Written {
+    pub title: String,
+    pub contact: String,
+    pub seed: u64,
+    pub participants: Option<Spanned<u32>>,
+    pub assignment: Option<Spanned<Assignment>>,
+    pub block_size: Option<Spanned<usize>>,
+    pub missions: Option<Spanned<Words>>,
+    pub settings: WrittenSettings,
+    pub completion_code: Option<Spanned<String>>,
+    pub return_url: Option<Spanned<String>>,
+    pub information: WrittenSheet,
+    pub consent: WrittenSheet,
+    pub factor: Vec<Spanned<WrittenFactor>>,
+    pub block: Vec<Spanned<WrittenBlock>>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(default)]
+pub(crate) struct WrittenSheet {
+    pub file: Option<Spanned<String>>,
+    pub version: String,
+    pub required: Words,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(default)]
+pub(crate) struct WrittenFactor {
+    pub name: Option<Spanned<String>>,
+    pub kind: FactorKind,
+    pub level: Vec<Spanned<WrittenLevel>>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(default)]
+pub(crate) struct WrittenLevel {
+    pub name: Option<Spanned<String>>,
+    pub settings: WrittenSettings,
+}
+
+#[derive(Clone, Copy, Debug, Default, Deserialize, Eq, PartialEq)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum BlockKind {
+    #[default]
+    Questionnaire,
+    Mission,
+    Missions,
+    Break,
+    Debriefing,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(default)]
+pub(crate) struct WrittenBlock {
+    pub kind: BlockKind,
+    pub questionnaires: Option<Words>,
+    pub mission: Option<Spanned<String>>,
+    pub settings: Option<WrittenSettings>,
+    pub order: Option<MissionOrder>,
+    pub minutes: Option<Spanned<f64>>,
+    pub skip_after_minutes: Option<Spanned<f64>>,
+    pub after_mission: Option<Words>,
+    pub after_condition: Option<Words>,
+    pub file: Option<Spanned<String>>,
+}
+
+impl BlockKind {
+    pub(crate) const fn name(self) -> &'static str {
+        match self {
+            Self::Questionnaire => "questionnaire",
+            Self::Mission => "mission",
+            Self::Missions => "missions",
+            Self::Break => "break",
+            Self::Debriefing => "debriefing",
+        }
+    }
+}
+
+impl WrittenBlock {
+    /// The keys that it has besides its kind.
+    pub(crate) fn keys(&self) -> Vec<&'static str> {
+        let all = [
+            ("questionnaires", self.questionnaires.is_some()),
+            ("mission", self.mission.is_some()),
+            ("settings", self.settings.is_some()),
+            ("order", self.order.is_some()),
+            ("minutes", self.minutes.is_some()),
+            ("skip_after_minutes", self.skip_after_minutes.is_some()),
+            ("after_mission", self.after_mission.is_some()),
+            ("after_condition", self.after_condition.is_some()),
+            ("file", self.file.is_some()),
+        ];
+        all.into_iter().filter_map(|(name, is_there)| is_there.then_some(name)).collect()
+    }
+}
+
+/// The settings themselves.
+pub(crate) fn settings(written: &WrittenSettings) -> Settings {
+    written.iter().map(|(name, value)| (name.get_ref().clone(), setting(value.get_ref()))).collect()
+}
+
+pub(crate) fn setting(value: &toml::Value) -> Setting {
+    match value {
+        toml::Value::Boolean(is_on) => Setting::Switch(*is_on),
+        toml::Value::Array(values) => Setting::Values(values.iter().map(text).collect()),
+        other => Setting::Value(text(other)),
+    }
+}
+
+fn text(value: &toml::Value) -> String {
+    value.as_str().map_or_else(|| value.to_string(), str::to_owned)
+}

@@ -1,0 +1,140 @@
+// The experimenter's page: where everybody is, under which conditions, and what was noted.
+
+import { byId, button, clock, element } from "./dom.js";
+import { follow, tell } from "./server.js";
+
+/** After this, s, somebody's page is said to be silent. */
+const SILENT_S = 10;
+
+let state = { participants: [], notes: [], sign_up: "" };
+/** What the rows were built of, so that they are built anew only when they differ and the focus stays. */
+let built = "";
+
+function show(next) {
+  if (next.page === "unknown") return;
+  state = next;
+  byId("title").textContent = state.title;
+  document.title = `${state.title} – experimenter`;
+  byId("sessions").textContent = `${state.sessions.running} of ${state.sessions.most} sessions`;
+  const begun = state.participants.filter((one) => one.progress !== "not begun").length;
+  byId("caption").textContent = `${begun} of ${state.planned} planned participants have begun`;
+  showRows();
+  showNotes();
+}
+
+async function order(command) {
+  byId("problem").textContent = await tell("command", command);
+}
+
+function showRows() {
+  const form = state.participants.map(({ participant, progress, mission }) => [participant, progress, mission]);
+  if (JSON.stringify(form) !== built) {
+    built = JSON.stringify(form);
+    byId("rows").replaceChildren(...state.participants.map(rowOf));
+    showAbout();
+  }
+  state.participants.forEach((one, index) => fill(byId("rows").children[index], one));
+}
+
+function rowOf(one) {
+  const name = element("th", "", one.participant);
+  name.scope = "row";
+  const cells = Array.from({ length: 6 }, () => element("td"));
+  return element("tr", "", name, ...cells, element("td", "buttons", ...actionsOf(one)));
+}
+
+function fill(row, one) {
+  const steps = one.steps === undefined ? "" : `${one.done} of ${one.steps}`;
+  const now = one.mission ? [one.mission, one.now, one.played_s ? clock(one.played_s) : ""].filter(Boolean).join(" · ") : "";
+  const texts = [one.progress, steps, one.between ?? "", (one.order ?? []).join(" → "), now, pageOf(one)];
+  texts.forEach((text, index) => {
+    const cell = row.children[index + 1];
+    if (cell.textContent !== text) cell.textContent = text;
+  });
+  row.classList.toggle("alarm", isSilent(one));
+}
+
+const isOut = ({ progress }) => ["not begun", "finished", "excluded", "withdrawn"].includes(progress);
+const isSilent = (one) => !isOut(one) && (one.away_s === null || one.away_s > SILENT_S);
+
+function pageOf(one) {
+  if (isOut(one)) return "";
+  if (one.away_s === null) return "not open";
+  return one.away_s > SILENT_S ? `silent for ${clock(one.away_s)}` : "open";
+}
+
+function actionsOf(one) {
+  const { participant } = one;
+  const labelled = (made, text) => {
+    made.setAttribute("aria-label", `${text}: ${participant}`);
+    return made;
+  };
+  const made = [];
+  if (one.link) made.push(labelled(button("quiet", "Copy link", (event) => copy(event.target, one.link)), "Copy link"));
+  if (["ready", "waiting", "mission"].includes(one.progress)) {
+    made.push(labelled(button("quiet", "End mission", () => confirm(`End ${participant}'s mission?`) && order({ end_mission: { participant } })), "End mission"));
+  }
+  if (!["not begun", "excluded", "withdrawn"].includes(one.progress)) {
+    made.push(
+      labelled(button("quiet", "Exclude", () => {
+        const reason = prompt(`Why is ${participant} excluded? Their data stay.`);
+        if (reason) order({ exclude: { participant, reason } });
+      }), "Exclude"),
+      labelled(button("danger", "Withdraw", () => confirm(`Delete all data of ${participant}? This cannot be undone.`) && order({ withdraw: { participant } })), "Withdraw"),
+    );
+  }
+  return made;
+}
+
+async function copy(from, path) {
+  const before = from.textContent;
+  try {
+    await navigator.clipboard.writeText(location.origin + path);
+    from.textContent = "Copied";
+  } catch {
+    prompt("Copy this link:", location.origin + path);
+  }
+  setTimeout(() => { from.textContent = before; }, 1500);
+}
+
+function showAbout() {
+  const chosen = byId("note-about").value;
+  const options = state.participants.map(({ participant }) => {
+    const option = element("option", "", participant);
+    option.value = participant;
+    return option;
+  });
+  byId("note-about").replaceChildren(byId("note-about").firstElementChild, ...options);
+  byId("note-about").value = chosen;
+}
+
+function showNotes() {
+  const list = byId("notes");
+  if (list.childElementCount === state.notes.length) return;
+  const rows = state.notes.map(({ at_ms, participant, text }) => {
+    const at = element("time", "soft", new Date(at_ms).toLocaleTimeString());
+    at.dateTime = new Date(at_ms).toISOString();
+    return element("li", "", at, " ", element("b", "", participant ?? "Study"), " ", text);
+  });
+  list.replaceChildren(...rows.reverse());
+}
+
+byId("note-form").addEventListener("submit", async (event) => {
+  event.preventDefault();
+  const participant = byId("note-about").value || null;
+  await order({ note: { participant, text: byId("note-text").value } });
+  if (!byId("problem").textContent) byId("note-text").value = "";
+});
+
+document.addEventListener("keydown", (event) => {
+  if (event.key !== "/" || event.target.matches("input, select, textarea")) return;
+  event.preventDefault();
+  byId("note-text").focus();
+});
+
+byId("reserve").addEventListener("click", () => order("reserve"));
+byId("copy-sign-up").addEventListener("click", (event) => copy(event.target, state.sign_up));
+
+follow(show, (isLost) => {
+  byId("offline").hidden = !isLost;
+});

@@ -1,0 +1,111 @@
+// Questionnaires as forms, one question after the other.
+
+import { element } from "./dom.js";
+
+/** Scales with more places than these are sliders. */
+const MOST_BUTTONS = 11;
+
+/** The form of a questionnaire; `send` is given the answers, and gives what is wrong with them. */
+export function questionnaireForm({ items }, send) {
+  const form = element("form", "questions");
+  form.noValidate = true;
+  form.autocomplete = "off";
+  const fields = items.map(fieldOf);
+  const list = element("ol", "items", ...fields.map(({ row }) => row));
+  const problem = element("p", "problem");
+  problem.role = "alert";
+  const submit = element("button", "chief", "Send and go on");
+  submit.type = "submit";
+  form.append(list, problem, element("div", "actions", submit));
+  form.addEventListener("submit", async (event) => {
+    event.preventDefault();
+    const answers = fields.map(({ read }) => read());
+    const missing = fields.findIndex(({ optional }, index) => !optional && answers[index] === null);
+    fields.forEach(({ group }, index) => group.toggleAttribute("data-missing", index === missing));
+    if (missing >= 0) {
+      problem.textContent = `Question ${missing + 1} has no answer yet.`;
+      fields[missing].group.querySelector("input, textarea").focus();
+      return;
+    }
+    submit.disabled = true;
+    problem.textContent = await send(answers);
+    submit.disabled = false;
+  });
+  return form;
+}
+
+function fieldOf(item, index) {
+  const group = element("fieldset", "item");
+  const legend = element("legend", "", item.ask);
+  if (item.optional) legend.append(element("span", "soft", " (optional)"));
+  const { controls, read } = item.scale ? scaleOf(item.scale, index) : item.choice ? choiceOf(item.choice, index) : wordsOf(item.ask);
+  group.append(legend, ...controls);
+  return { row: element("li", "", group), group, optional: item.optional, read };
+}
+
+function scaleOf(scale, index) {
+  const places = (scale.most - scale.least) / scale.step + 1;
+  return places > MOST_BUTTONS ? sliderOf(scale) : buttonsOf(scale, places, index);
+}
+
+function endsOf({ left, right, least, most }) {
+  return element("div", "ends", element("span", "", left || String(least)), element("span", "", right || String(most)));
+}
+
+function buttonsOf(scale, places, index) {
+  const values = Array.from({ length: places }, (_, at) => scale.least + at * scale.step);
+  const name = (value, at) => {
+    const end = at === 0 ? scale.left : at === places - 1 ? scale.right : "";
+    return end ? `${value}, ${end}` : String(value);
+  };
+  const row = element("div", "places", ...values.map((value, at) => radio(index, value, String(value), name(value, at))));
+  return { controls: [row, endsOf(scale)], read: () => chosen(row) };
+}
+
+function choiceOf(choices, index) {
+  const column = element("div", "choices", ...choices.map((text, at) => radio(index, at + 1, text)));
+  return { controls: [column], read: () => chosen(column) };
+}
+
+function radio(index, value, text, name) {
+  const input = element("input");
+  Object.assign(input, { type: "radio", name: `item-${index}`, value });
+  if (name) input.setAttribute("aria-label", name);
+  return element("label", "radio", input, element("span", "", text));
+}
+
+function chosen(group) {
+  const input = group.querySelector("input:checked");
+  return input ? { value: Number(input.value) } : null;
+}
+
+/** A slider that has no value before it is touched. */
+function sliderOf(scale) {
+  const input = element("input", "untouched");
+  const middle = scale.least + scale.step * Math.round((scale.most - scale.least) / scale.step / 2);
+  Object.assign(input, { type: "range", min: scale.least, max: scale.most, step: scale.step, value: middle });
+  const about = (text) => input.setAttribute("aria-valuetext", text);
+  input.setAttribute("aria-label", `From ${scale.left || scale.least} to ${scale.right || scale.most}`);
+  about("not answered yet");
+  const touch = () => {
+    input.classList.remove("untouched");
+    about(input.value);
+  };
+  for (const kind of ["input", "pointerup"]) input.addEventListener(kind, touch);
+  // Who means the middle presses Space or Enter on it.
+  input.addEventListener("keydown", (event) => {
+    if (event.key === " " || event.key === "Enter") {
+      event.preventDefault();
+      touch();
+    }
+  });
+  const read = () => (input.classList.contains("untouched") ? null : { value: Number(input.value) });
+  return { controls: [input, endsOf(scale)], read };
+}
+
+function wordsOf(ask) {
+  const area = element("textarea", "words");
+  area.rows = 3;
+  area.setAttribute("aria-label", ask);
+  return { controls: [area], read: () => (area.value.trim() ? { text: area.value.trim() } : null) };
+}

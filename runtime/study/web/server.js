@@ -1,0 +1,63 @@
+// What the page asks the study's server, and tells it. Lost connections are tried again for ever.
+
+const ASK_EVERY_MS = 1000;
+const GIVE_UP_MS = 8000;
+
+const here = location.pathname.replace(/\/$/, "");
+let listen = () => {};
+let onLost = () => {};
+let timer = null;
+let isOver = false;
+/** What was asked last: older answers do not count. */
+let count = 0;
+
+async function ask(path, body) {
+  const request = { signal: AbortSignal.timeout(GIVE_UP_MS) };
+  if (body !== undefined) {
+    Object.assign(request, { method: "POST", body: JSON.stringify(body), headers: { "content-type": "application/json" } });
+  }
+  const answer = await fetch(`${here}/${path}`, request);
+  if (answer.status === 404) return { page: "unknown" };
+  if (!answer.ok) throw new Error(`status ${answer.status}`);
+  return answer.json();
+}
+
+async function refresh() {
+  const number = ++count;
+  try {
+    const state = await ask("state");
+    onLost(false);
+    if (number === count) listen(state);
+  } catch {
+    onLost(true);
+  }
+  clearTimeout(timer);
+  if (!isOver) timer = setTimeout(refresh, ASK_EVERY_MS);
+}
+
+/** Has `show` called with what the server says, again and again, and `lost` with whether it cannot be reached. */
+export function follow(show, lost) {
+  listen = show;
+  onLost = lost;
+  refresh();
+}
+
+/** Asks no more. */
+export function endFollowing() {
+  isOver = true;
+  clearTimeout(timer);
+}
+
+/** Tells the server something; gives what is wrong with it, in words, or nothing. */
+export async function tell(path, body) {
+  const number = ++count;
+  try {
+    const state = await ask(path, body);
+    onLost(false);
+    if (number === count) listen(state);
+    return state.problem ?? "";
+  } catch {
+    onLost(true);
+    return "There is no connection at the moment; please try again in a while.";
+  }
+}

@@ -1,0 +1,189 @@
+// A participant's page: shows what the study's server says that it is time for.
+
+import { byId, button, clock, element, whileOf } from "./dom.js";
+import { questionnaireForm } from "./forms.js";
+import { endFollowing, follow, tell } from "./server.js";
+
+/** Pages after which nothing follows. */
+const LAST = ["finished", "withdrawn", "excluded", "unknown"];
+
+/** What is shown, so that it is built once; and how it takes in what changes. */
+let shown = "";
+let update = () => {};
+let step = null;
+
+const send = (event) => tell("event", { step, event });
+
+function show(state) {
+  const key = JSON.stringify([state.page, state.step, state.session]);
+  step = state.step ?? null;
+  if (key !== shown) {
+    shown = key;
+    build(state);
+  }
+  update(state);
+  showBar(state);
+  if (LAST.includes(state.page)) endFollowing();
+}
+
+function build(state) {
+  update = () => {};
+  document.body.dataset.page = state.page;
+  document.title = state.title ?? "Study";
+  const parts = (PAGES[state.page] ?? PAGES.unknown)(state);
+  byId("content").replaceChildren(...parts);
+  const heading = byId("content").querySelector("h1");
+  if (heading) {
+    heading.tabIndex = -1;
+    heading.focus({ preventScroll: true });
+  }
+  scrollTo(0, 0);
+}
+
+function showBar(state) {
+  byId("bar-title").textContent = state.title ?? "";
+  byId("bar-step").textContent = state.step ? `Step ${state.step} of ${state.steps}` : "";
+  const isTimed = state.page === "mission" && !state.is_over && state.left_s !== null;
+  byId("bar-time").textContent = isTimed ? `${clock(state.left_s)} left` : "";
+  const mayLeave = Boolean(state.step) || state.page === "finished";
+  byId("leave").hidden = !mayLeave;
+  byId("skip").hidden = !(state.page === "mission" && state.skip_in_s === 0 && !state.is_over);
+}
+
+const heading = (text) => element("h1", "", text);
+
+/** A text that the server made from Markdown; all that was HTML in it is escaped. */
+function sheet(html) {
+  const made = element("div", "sheet");
+  made.innerHTML = html ?? "";
+  return made;
+}
+
+/** A button that tells the server something once. */
+function going(text, event) {
+  const problem = element("p", "problem");
+  problem.role = "alert";
+  const made = button("chief", text, async () => {
+    made.disabled = true;
+    problem.textContent = await send(event());
+    made.disabled = false;
+  });
+  return element("div", "actions", made, problem);
+}
+
+const PAGES = {
+  information: ({ html }) => [heading("About this study"), sheet(html), going("I have read this", () => "read")],
+
+  consent({ html, required, version }) {
+    const form = element("form", "consent");
+    const boxes = required.map((text) => {
+      const box = element("input");
+      box.type = "checkbox";
+      box.required = true;
+      form.append(element("label", "check", box, element("span", "", text)));
+      return box;
+    });
+    const agree = element("button", "chief", "I agree to take part");
+    agree.type = "submit";
+    const problem = element("p", "problem");
+    problem.role = "alert";
+    form.append(problem, element("div", "actions", button("quiet", "I do not agree", () => send("declined")), agree));
+    form.addEventListener("submit", async (event) => {
+      event.preventDefault();
+      agree.disabled = true;
+      problem.textContent = await send({ consented: { version, ticked: boxes.filter((box) => box.checked).length } });
+      agree.disabled = false;
+    });
+    return [heading("Your consent"), sheet(html), form];
+  },
+
+  questionnaire({ questionnaire }) {
+    const about = element("p", "soft", questionnaire.about);
+    const answer = (answers) => send({ answered: { questionnaire: questionnaire.name, answers } });
+    return [heading(questionnaire.title), about, questionnaireForm(questionnaire, answer)];
+  },
+
+  ready({ html, limit_s, skip_after_s }) {
+    const lines = [];
+    if (limit_s !== null) lines.push(`You have ${whileOf(limit_s)}.`);
+    if (skip_after_s !== null) lines.push(`After ${whileOf(skip_after_s)} you may skip it.`);
+    return [heading("Your next mission"), sheet(html), element("p", "", lines.join(" ")), going("Begin", () => "goes_on")];
+  },
+
+  waiting() {
+    const place = element("p", "", "");
+    place.role = "status";
+    update = ({ ahead }) => {
+      const text = ahead ? `${ahead} ${ahead === 1 ? "person is" : "people are"} before you.` : "You are next.";
+      if (place.textContent !== text) place.textContent = text;
+    };
+    return [heading("Please wait"), element("p", "", "All robots are busy at the moment. Your mission begins by itself."), place];
+  },
+
+  starting() {
+    const text = element("p", "", "The robot is getting ready. This takes a few seconds.");
+    text.role = "status";
+    return [heading("One moment, please"), text];
+  },
+
+  mission({ session }) {
+    const frame = element("iframe", "session");
+    frame.title = "The robot, and what you tell it";
+    frame.allow = "microphone; autoplay";
+    frame.src = `${location.protocol}//${location.hostname}:${session.port}/?token=${session.token}`;
+    const over = element("p", "over", "This mission is over. The study goes on in a moment.");
+    over.role = "status";
+    over.hidden = true;
+    update = ({ is_over }) => {
+      over.hidden = !is_over;
+    };
+    return [element("h1", "unseen", "Mission"), over, frame];
+  },
+
+  break({ html }) {
+    const left = element("p", "soft", "");
+    update = ({ left_s }) => {
+      left.textContent = left_s === null ? "" : `The study goes on by itself in ${clock(left_s)}.`;
+    };
+    return [heading("A break"), sheet(html), left, going("Go on now", () => "goes_on")];
+  },
+
+  finished({ html, completion }) {
+    const parts = [heading("Thank you")];
+    if (html) parts.push(sheet(html));
+    else parts.push(element("p", "", "You have done all of it. You may close this page."));
+    if (completion?.code) {
+      const code = element("output", "code", completion.code);
+      parts.push(element("p", "", "Your completion code: ", code));
+    }
+    if (completion?.return) {
+      const link = element("a", "chief", "Go back to where you came from");
+      link.href = completion.return;
+      parts.push(element("p", "actions", link));
+    }
+    return parts;
+  },
+
+  withdrawn: ({ contact }) => [
+    heading("You have stopped taking part"),
+    element("p", "", `All data of yours in this study are deleted. You may close this page. If you have questions, ask ${contact}.`),
+  ],
+
+  excluded: ({ contact }) => [
+    heading("The study ends here for you"),
+    element("p", "", `Thank you for taking part. If you have questions, ask ${contact}.`),
+  ],
+
+  unknown: () => [
+    heading("This link is not known any more"),
+    element("p", "", "Please open the link that you were given once more."),
+  ],
+};
+
+byId("skip").addEventListener("click", () => send({ over: { ending: "skipped" } }));
+byId("leave").addEventListener("click", () => byId("leave-card").showModal());
+byId("leave-now").addEventListener("click", () => send("withdrew"));
+
+follow(show, (isLost) => {
+  byId("offline").hidden = !isLost;
+});
