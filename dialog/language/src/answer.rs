@@ -1,10 +1,9 @@
 //! Answers to questions about the world, the mission and the robot itself.
 
-use std::collections::BTreeMap;
-
 use cohabit_cdf::{Catalog, Fluid, ObjectId, Property, RoomId, state::StateFlag};
 
 use crate::{
+    contents,
     context::Context,
     describe,
     facts::Facts,
@@ -18,12 +17,9 @@ use crate::{
     question::{Question, QuestionKind},
     reply, report, saying, search,
     understanding::Understanding,
+    yes_no,
 };
 
-/// How many things an answer names before it says `and more`.
-pub(crate) const LIST: usize = 8;
-/// So many more are named, too, where that is all.
-const LIST_TO_END: usize = 5;
 /// How many neighbours of a thing.
 const NEIGHBOURS: usize = 4;
 
@@ -230,19 +226,27 @@ impl Answerer<'_> {
         if let Some(refused) = &self.context.refused {
             return Understanding::answer(refused);
         }
-        let Some(last) = self.context.last_plan.last().filter(|_| !self.context.asked.is_empty()) else {
-            return Understanding::answer(match self.context.asked.as_str() {
-                "" => "Nothing went wrong that I know of, and I have done nothing yet.".to_owned(),
-                asked => format!("Because you said \"{asked}\"."),
-            });
-        };
+        let deed = yes_no::deed_asked_about(self.lexicon, self.catalog, &question.rest).map(|clause| clause.intent);
         let want = Want::place(Intent::Find, &[], None);
         let object = about.and_then(|phrase| self.ground().one(phrase, &want).ok());
+        if let Some(why) = self.context.deeds.why(deed, object) {
+            return Understanding::answer(format!("{why}."));
+        }
+        let Some(last) = self.context.last_plan.last().filter(|_| !self.context.reason.is_empty()) else {
+            return Understanding::answer(match self.context.reason.as_str() {
+                "" => "Nothing went wrong that I know of, and I have done nothing yet.".to_owned(),
+                reason => format!("Because {reason}."),
+            });
+        };
         let step = object.and_then(|id| self.context.last_plan.iter().find(|step| step.object() == Some(id)));
-        let asked = &self.context.planned_for;
+        let reason = &self.context.planned_for;
         Understanding::answer(match step.filter(|step| *step != last) {
-            Some(step) => format!("You said \"{asked}\", and {} was needed for {}.", step.says, last.says),
-            None => format!("You said \"{asked}\", so my plan was {}.", reply::plan_in_words(&self.context.last_plan)),
+            Some(step) => format!("Because {reason}, and {} was needed for {}.", step.says, last.says),
+            None => format!(
+                "Because {reason}: my plan was {}{}.",
+                reply::plan_in_words(&self.context.last_plan),
+                self.context.deeds.goals_of(reason)
+            ),
         })
     }
 
@@ -250,7 +254,7 @@ impl Answerer<'_> {
     fn why_so(&self, id: ObjectId) -> Understanding {
         let the = self.short(id);
         let text = match self.context.deeds.to(id).filter(|deed| deed.step.changes()) {
-            Some(deed) => format!("I did that, since you said \"{}\".", deed.asked),
+            Some(deed) => format!("I did that, since {}.", deed.reason),
             None => format!("I did not do that, as far as I remember: I found {the} so, and do not know why."),
         };
         Understanding::about(text, vec![id])
@@ -425,7 +429,7 @@ impl Answerer<'_> {
                 Understanding::whether(false, text, Vec::new())
             }
             found => {
-                let names: Vec<String> = found.iter().take(LIST).map(|id| self.full(*id)).collect();
+                let names: Vec<String> = found.iter().take(contents::LIST).map(|id| self.full(*id)).collect();
                 Understanding::about(describe::sentence(&describe::list(&names, "and")), found)
             }
         }
@@ -443,35 +447,7 @@ impl Answerer<'_> {
     }
 
     fn listed(&self, objects: &[&KnownObject]) -> String {
-        let mut counts: BTreeMap<String, usize> = BTreeMap::new();
-        for object in objects {
-            *counts.entry(describe::bare(self.catalog, self.scene, object.id)).or_default() += 1;
-        }
-        let left = counts.len().saturating_sub(self.told);
-        let most = if left <= LIST + LIST_TO_END { left } else { LIST };
-        let more = left - most;
-        // What people move about comes before what stands where it is.
-        let is_fixed = |name: &String| {
-            !objects.iter().any(|object| {
-                let is_so = describe::bare(self.catalog, self.scene, object.id) == *name;
-                is_so && self.catalog.class(object.class).has(Property::Pickupable)
-            })
-        };
-        let mut counts: Vec<(String, usize)> = counts.into_iter().collect();
-        counts.sort_by_key(|(name, _)| is_fixed(name));
-        let mut names: Vec<String> = counts
-            .into_iter()
-            .skip(self.told)
-            .take(most)
-            .map(|(name, count)| describe::counted(&name, count))
-            .collect();
-        if more > 0 {
-            names.push(format!("{more} more"));
-        }
-        if names.is_empty() {
-            return "nothing else".to_owned();
-        }
-        describe::list(&names, "and")
+        contents::listed(self.catalog, self.scene, objects, self.told)
     }
 
     fn with_object(&self, phrase: &Phrase, then: impl Fn(ObjectId) -> Understanding) -> Understanding {
@@ -535,7 +511,7 @@ impl Answerer<'_> {
     fn place_of(&self, phrase: &Phrase) -> Understanding {
         let want = Want::place(Intent::Find, &[], None);
         let Ok(found) = self.ground().plausible(phrase, &want) else { return self.elsewhere(phrase) };
-        let places: Vec<String> = found.iter().take(LIST).map(|id| self.place_sentence(*id)).collect();
+        let places: Vec<String> = found.iter().take(contents::LIST).map(|id| self.place_sentence(*id)).collect();
         Understanding::whether(true, describe::sentence(&describe::list(&places, "and")), found)
     }
 
@@ -545,7 +521,8 @@ impl Answerer<'_> {
         let want = Want::place(Intent::Find, &[], None);
         match self.ground().plausible(&bare, &want) {
             Ok(found) if bare != *phrase && !found.is_empty() => {
-                let places: Vec<String> = found.iter().take(LIST).map(|id| self.place_sentence(*id)).collect();
+                let places: Vec<String> =
+                    found.iter().take(contents::LIST).map(|id| self.place_sentence(*id)).collect();
                 Understanding::whether(false, format!("No, but {}.", describe::list(&places, "and")), found)
             }
             _ => self.unseen(phrase),
@@ -582,24 +559,19 @@ impl Answerer<'_> {
     }
 
     fn contents(&self, id: ObjectId) -> Understanding {
-        let inside: Vec<&KnownObject> = self.scene.contents(id).collect();
-        let preposition = self.scene.object(id).map_or("in", |object| describe::inside(self.catalog, object.class));
-        let (start, place) = (describe::sentence(preposition), self.short(id));
-        let start = start.trim_end_matches('.');
-        if inside.is_empty() {
-            if let Some(note) = self.scene.object(id).filter(|object| !object.text.is_empty()) {
-                return self.read_out(note);
-            }
-            let filling = self.filling(id);
-            if filling.is_empty() {
-                let text = format!("I know of nothing {preposition} {place}.");
-                return Understanding::whether(false, text, Vec::new());
-            }
+        if let Some(text) = contents::inside(self.catalog, self.scene, id, self.told) {
+            let highlight = self.scene.contents(id).map(|object| object.id).collect();
+            return Understanding::whether(true, describe::sentence(&text), highlight);
+        }
+        if let Some(note) = self.scene.object(id).filter(|object| !object.text.is_empty()) {
+            return self.read_out(note);
+        }
+        let (filling, place) = (self.filling(id), self.short(id));
+        if !filling.is_empty() {
             return Understanding::whether(true, format!("It is {place}{filling}."), Vec::new());
         }
-        let highlight = inside.iter().map(|object| object.id).collect();
-        let verb = if inside.len() > 1 { "are" } else { "is" };
-        Understanding::whether(true, format!("{start} {place} there {verb} {}.", self.listed(&inside)), highlight)
+        let preposition = self.scene.object(id).map_or("in", |object| describe::inside(self.catalog, object.class));
+        Understanding::whether(false, format!("I know of nothing {preposition} {place}."), Vec::new())
     }
 
     /// What is next to a thing, the nearest first.
@@ -660,7 +632,7 @@ impl Answerer<'_> {
                 Understanding::about(describe::sentence(&self.color_sentence(id)), vec![id])
             });
         };
-        let mut said: Vec<String> = found.iter().take(LIST).map(|id| self.color_sentence(*id)).collect();
+        let mut said: Vec<String> = found.iter().take(contents::LIST).map(|id| self.color_sentence(*id)).collect();
         said.dedup();
         Understanding::about(describe::sentence(&describe::list(&said, "and")), found)
     }

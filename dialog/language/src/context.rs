@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::{
     clause::Clause,
     deeds::Deeds,
+    describe,
     known::Known,
     lexicon::Preposition,
     phrase::{Phrase, Place},
@@ -32,10 +33,10 @@ pub struct Context {
     pub(crate) last_plan: Vec<Step>,
     /// What failed last, with what was to follow it.
     pub(crate) failed: Option<Failure>,
-    /// What was said that asked for something last, in plain words.
+    /// Why what was asked for last is done: `you asked me to open the fridge`, `you said "thirsty"`.
     #[serde(default)]
-    pub(crate) asked: String,
-    /// What was said that the last plan is for, in plain words.
+    pub(crate) reason: String,
+    /// Why the last plan was made.
     #[serde(default)]
     pub(crate) planned_for: String,
     /// Why what was asked for last cannot be done.
@@ -58,6 +59,9 @@ pub struct Context {
     /// left out.
     #[serde(default)]
     pub(crate) later: Vec<String>,
+    /// What was answered before what is to be done is told.
+    #[serde(default)]
+    pub(crate) answered: String,
     /// Whether what was asked for last was found to be so already.
     #[serde(default)]
     pub(crate) is_met: bool,
@@ -133,7 +137,7 @@ pub(crate) struct Guess {
     pub(crate) search: Option<Search>,
     later: Vec<String>,
     request: Vec<Clause>,
-    asked: String,
+    reason: String,
 }
 
 /// What a person has agreed to in answers to questions about a request.
@@ -228,7 +232,7 @@ impl Focus {
 impl Context {
     /// The same before anything is made of a new utterance.
     pub(crate) fn at_new_utterance(&self) -> Self {
-        Self { is_met: false, ..self.clone() }
+        Self { is_met: false, answered: String::new(), ..self.clone() }
     }
 
     /// Takes note of what the robot or a person said. [`crate::Language::understand`] notes what it is told and replies; this is for what
@@ -254,6 +258,11 @@ impl Context {
         self.sureness
     }
 
+    /// What the robot did last has met the goals that are met now and were not before.
+    pub(crate) fn credit_goals(&mut self, scene: &Known) {
+        self.deeds.credit(scene.goals.iter().filter(|goal| goal.met).map(|goal| goal.text.as_str()));
+    }
+
     /// Takes note of what came of a step: `yes` after a failure then means the remedy that
     /// [`crate::Language::report`] offered.
     pub fn note_outcome(&mut self, step: &Step, status: Status) {
@@ -266,7 +275,7 @@ impl Context {
         }
         let rest = done.map_or_else(Vec::new, |at| self.running.split_off(at + 1));
         if status.is_success() {
-            self.deeds.add(step, &self.asked);
+            self.deeds.add(step, &self.reason);
             self.running = rest;
             return;
         }
@@ -285,7 +294,7 @@ impl Context {
         self.question = None;
         self.running = steps.to_vec();
         self.last_plan = steps.to_vec();
-        self.planned_for.clone_from(&self.asked);
+        self.planned_for.clone_from(&self.reason);
         self.refused = None;
         self.request.clear();
         self.later.clear();
@@ -317,23 +326,22 @@ impl Context {
 
     /// What this conversation is about to do with these steps, to be asked about first.
     pub(crate) fn guess(&self, steps: &[Step]) -> Guess {
-        let Self { search, later, request, asked, .. } = self.clone();
+        let Self { search, later, request, reason, .. } = self.clone();
         // A search says no more than where it begins: what it is for does.
-        let request_in_words = reply::request_in_words(&request);
-        let name = match (&search, request_in_words.as_str()) {
-            (None, _) => reply::plan_in_words(steps),
-            (Some(_), "") => format!("\"{asked}\""),
-            (Some(_), request) => format!("\"{request}\""),
-        };
-        Guess { name, steps: steps.to_vec(), search, later, request, asked }
+        let sought = search.as_ref().map(|_| reply::request_in_words(&request)).filter(|request| !request.is_empty());
+        let is_done_first = search.as_ref().is_none_or(|search| !search.is_under_way());
+        let first = (is_done_first || sought.is_none()).then(|| reply::plan_in_words(steps));
+        let then = sought.iter().chain(&later).map(|text| format!("\"{text}\""));
+        let name = describe::list(&first.into_iter().chain(then).collect::<Vec<_>>(), "and then");
+        Guess { name, steps: steps.to_vec(), search, later, request, reason }
     }
 
     /// Takes note that a guess was right, and is about to be carried out.
     pub(crate) fn begin_guessed(&mut self, guess: Guess) {
         self.begin(&guess.steps);
         (self.search, self.later) = (guess.search, guess.later);
-        (self.request, self.planned_for) = (guess.request, guess.asked.clone());
-        self.asked = guess.asked;
+        (self.request, self.planned_for) = (guess.request, guess.reason.clone());
+        self.reason = guess.reason;
     }
 
     /// Takes note of a part of a search that is about to be carried out.
@@ -376,13 +384,15 @@ mod tests {
     #[test]
     fn what_was_guessed_right_goes_on_as_it_would_have() {
         let steps = [Step { action: Action::LookAround, says: "looking around".to_owned() }];
-        let mut looking = Context { asked: "mend the mug".to_owned(), ..Context::default() };
+        let mut looking = Context { reason: "you asked me to mend the mug".to_owned(), ..Context::default() };
         looking.begin(&steps);
         (looking.search, looking.later) = (Some(Search::new(Vec::new(), Consent::default())), vec!["stop".to_owned()]);
+        looking.request = vec![Clause::find(Phrase { text: "the mug".to_owned(), ..Phrase::default() })];
         let guess = looking.guess(&steps);
-        assert_eq!(guess.name, "\"mend the mug\"", "what it looks for is said, not that it looks");
+        assert_eq!(guess.name, "looking around, \"find the mug\" and then \"stop\"", "all that is to follow is named");
         let mut asked = Context::default();
         asked.begin_guessed(guess);
+        assert_eq!(asked.planned_for, "you asked me to mend the mug");
         assert!(asked.search.is_some() && asked.later == ["stop"] && asked.running == steps);
     }
 }

@@ -29,7 +29,7 @@ use crate::{
     rewritten::Rewrite,
     search::Search,
     spelling,
-    stop::{self, Firmness},
+    stop::{self, Firmness, Stop},
     tidy,
     token::{self, MAX_CHARS},
     understanding::{Asking, Step, Understanding},
@@ -60,7 +60,7 @@ impl Conversation<'_> {
         if let Some(understanding) = self.chosen_by_name(utterance, context) {
             return (understanding, 1.0);
         }
-        if let Some(stop) = stop::find_stop(utterance).filter(|stop| is_heeded(stop.firmness, context)) {
+        if let Some(stop) = stop::find_stop(utterance).filter(|stop| is_heeded(stop, context)) {
             return (self.stopped(&stop.rest, context), 1.0);
         }
         self.understand_whole(utterance, context)
@@ -298,7 +298,7 @@ impl Conversation<'_> {
     pub(crate) fn request(&self, words: &[String], parts: Vec<Part>, context: &mut Context) -> Understanding {
         context.search = None;
         context.later.clear();
-        context.asked = token::sentence(words);
+        context.reason = format!("you said \"{}\"", token::sentence(words));
         let mut clauses = Vec::new();
         let mut unclear: Option<Vec<String>> = None;
         let (mut fragment, mut aside) = (None, Vec::new());
@@ -405,6 +405,10 @@ impl Conversation<'_> {
     }
 
     pub(crate) fn plan(&self, clauses: Vec<Clause>, consent: Consent, context: &mut Context) -> Understanding {
+        let request = reply::request_in_words(&clauses);
+        if !request.is_empty() {
+            context.reason = format!("you asked me to {request}");
+        }
         self.proceed(Search::new(clauses, consent), context)
     }
 
@@ -659,12 +663,12 @@ impl Conversation<'_> {
 /// What it says when it stops.
 const STOPS: &str = "OK, I stop.";
 
-/// Whether a stop is meant as one: "leave it" may answer the robot's question, and "never mind" says nothing to a robot that
-/// does nothing.
-fn is_heeded(firmness: Firmness, context: &Context) -> bool {
-    match firmness {
+/// Whether a stop is meant as one: "leave it" may answer the robot's question, and "that's plenty" and "never mind" say nothing to a
+/// robot that does nothing.
+fn is_heeded(stop: &Stop, context: &Context) -> bool {
+    match stop.firmness {
         Firmness::Firm => true,
-        Firmness::Weak => context.pending.is_none(),
+        Firmness::Weak => context.pending.is_none() && (context.is_busy() || stop.is_plain),
         Firmness::Dismissal => context.pending.is_none() && context.is_busy(),
     }
 }

@@ -14,6 +14,8 @@ use crate::{
 /// How likely steps must be meant for them to be taken without a question, where what they change is not simply put back and where it is.
 const TO_CHANGE: f32 = 0.7;
 const TO_MOVE: f32 = 0.6;
+/// The same where nothing but the robot itself is moved.
+const TO_LOOK: f32 = 0.45;
 /// How likely what is said must be the right reply, where nothing is done.
 const TO_REPLY: f32 = 0.2;
 /// How likely steps must be meant to be proposed, and to be taken where nothing may be asked.
@@ -75,6 +77,13 @@ impl Conversation<'_> {
         let least = |way: &Way| if reading == Reading::Plain { way.least().max(TO_OVERRULE) } else { way.least() };
         if let Some(likeliest) = ways.first().filter(|likeliest| likeliest.probability >= least(likeliest)) {
             return likeliest.taken(context);
+        }
+        if reading == Reading::Partial
+            && let Some((begun, more)) = begun(&ways)
+        {
+            let (understanding, probability) = begun.taken(context);
+            let left = format!("I am not sure about {more}: tell me if you want that, too.");
+            return (understanding.before(&left), probability);
         }
         // What the grammar leaves words out of is a guess too.
         let has_plan = ways.iter().any(|way| way.steps().is_some());
@@ -138,10 +147,16 @@ impl Conversation<'_> {
     fn proposed(&self, ways: &[Way], context: &mut Context) -> Option<Understanding> {
         let mut plans = ways.iter().filter_map(|way| Some((way, way.steps()?))).peekable();
         let (likeliest, _) = *plans.peek().filter(|(way, _)| way.probability >= TO_PROPOSE)?;
-        if self.judge.asking == Asking::Never {
+        // Who is asked about it and says it again means it.
+        let may_ask = self.judge.asking != Asking::Never && !likeliest.is_asked_about(context);
+        if !may_ask {
             return (likeliest.probability >= TO_GUESS).then(|| likeliest.taken(context).0);
         }
-        let rivals = plans.filter(|(way, _)| way.probability >= likeliest.probability * RIVAL);
+        let is_rival = |way: &Way| {
+            let is_part = likeliest.beyond(way).is_some() || way.beyond(likeliest).is_some();
+            way.probability >= likeliest.probability * RIVAL && !is_part
+        };
+        let rivals = plans.filter(|(way, _)| is_rival(way));
         let mut guesses: Vec<Guess> = Vec::new();
         for guess in rivals.take(MOST_PROPOSED).map(|(way, steps)| way.context.guess(steps)) {
             if guesses.iter().all(|other| other.name != guess.name) {
@@ -159,8 +174,23 @@ impl Conversation<'_> {
             names => ask::which_plan(names),
         };
         context.pending = Some(Pending::Guess { guesses });
-        Some(question)
+        Some(match likeliest.context.answered.as_str() {
+            "" => question,
+            answered => question.after(answered),
+        })
     }
+}
+
+/// A plan that several ways begin with, together likely enough to be carried out, and what they may go on with.
+fn begun(ways: &[Way]) -> Option<(Way, String)> {
+    ways.iter().find_map(|way| {
+        let (longer, more): (Vec<&Way>, Vec<String>) =
+            ways.iter().filter_map(|other| Some((other, other.beyond(way)?))).unzip();
+        // The square is the share of the rewriter's mass.
+        let squares = longer.into_iter().chain([way]).map(|one| one.probability * one.probability);
+        let begun = Way { probability: squares.sum::<f32>().sqrt(), ..way.clone() };
+        (begun.probability >= begun.least()).then_some((begun, more.into_iter().next()?))
+    })
 }
 
 /// Whether it has no words, or too many that nobody ever met.
@@ -182,6 +212,7 @@ impl Way {
     fn least(&self) -> f32 {
         match &self.understanding {
             Understanding::Plan { .. } if self.is_lasting() => TO_CHANGE,
+            Understanding::Plan { .. } if self.only_looks() => TO_LOOK,
             Understanding::Plan { .. } | Understanding::Stop { .. } => TO_MOVE,
             // That it does not know what to do with a thing is worth saying only where there is no guess.
             Understanding::Question { kind: Clarification::Request, .. } => f32::INFINITY,

@@ -1,6 +1,6 @@
 //! What the robot did, as it remembers it: for questions about that.
 
-use cohabit_cdf::{Action, GoToTarget, ObjectId, Verb};
+use cohabit_cdf::{Action, ObjectId, Verb};
 use serde::{Deserialize, Serialize};
 
 use crate::{describe, intent::Intent, understanding::Step};
@@ -10,13 +10,18 @@ const MEMORY: usize = 40;
 /// How many deeds an answer tells, and one about all that was done.
 const TOLD: usize = 5;
 const ALL_TOLD: usize = 10;
+/// How many of earlier requests are told behind those for the last one.
+const EARLIER: usize = 4;
 
 /// A step that succeeded.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub(crate) struct Deed {
     pub(crate) step: Step,
-    /// What was said that asked for it.
-    pub(crate) asked: String,
+    /// Why: `you asked me to open the fridge`.
+    pub(crate) reason: String,
+    /// The goals of the mission that were met by then, and not before.
+    #[serde(default)]
+    pub(crate) goals: Vec<String>,
 }
 
 /// All that it remembers to have done, the latest last.
@@ -61,36 +66,59 @@ impl Deed {
 }
 
 impl Deeds {
-    pub(crate) fn add(&mut self, step: &Step, asked: &str) {
+    pub(crate) fn add(&mut self, step: &Step, reason: &str) {
         if !step.commits() || step.says.is_empty() {
             return;
         }
-        self.0.push(Deed { step: step.clone(), asked: asked.to_owned() });
+        self.0.push(Deed { step: step.clone(), reason: reason.to_owned(), goals: Vec::new() });
         let surplus = self.0.len().saturating_sub(MEMORY);
         self.0.drain(..surplus);
     }
 
-    /// What it did for the last request, in words: `I opened the fridge and picked up the milk`; nothing, where it did nothing yet.
+    /// The last deed has met what goals are met now and were not before.
+    pub(crate) fn credit<'g>(&mut self, met: impl Iterator<Item = &'g str>) {
+        let is_new = |goal: &&str| !self.0.iter().any(|deed| deed.goals.iter().any(|known| known == goal));
+        let new: Vec<String> = met.filter(is_new).map(str::to_owned).collect();
+        if let Some(last) = self.0.last_mut() {
+            last.goals.extend(new);
+        }
+    }
+
+    /// What it did for the last request, in words, and before: `I opened the fridge and picked up the milk. Before that I closed the door`;
+    /// nothing, where it did nothing yet.
     pub(crate) fn told(&self) -> Option<String> {
         let last = self.0.last()?;
-        let same = self.0.iter().rev().take_while(|deed| deed.asked == last.asked).count();
-        let mut said: Vec<String> = self.0[self.0.len() - same..].iter().map(Deed::in_words).collect();
-        said.dedup();
-        let left_out = said.len().saturating_sub(TOLD);
-        said.drain(..left_out);
-        Some(format!("I {}", describe::list(&said, "and")))
+        let same = self.0.iter().rev().take_while(|deed| deed.reason == last.reason).count();
+        let (earlier, of_last) = self.0.split_at(self.0.len() - same);
+        let told = format!("I {}", listed(of_last.iter(), TOLD));
+        let before = listed(main_deeds(earlier), EARLIER);
+        Some(if before.is_empty() { told } else { format!("{told}. Before that I {before}") })
+    }
+
+    /// Why it did something of that kind last, to this thing or with it where one is named, and what goals that met; nothing, where no deed
+    /// could tell.
+    pub(crate) fn why(&self, intent: Option<Intent>, id: Option<ObjectId>) -> Option<String> {
+        let is_about = |deed: &&Deed| id.is_none_or(|id| self.is_about(deed, id));
+        let is_of_kind = |deed: &&Deed| intent.is_some_and(|intent| is_of(&deed.step.action, intent));
+        let of_kind = self.0.iter().rfind(|deed| is_of_kind(deed) && is_about(deed));
+        let deed = of_kind.or_else(|| self.0.iter().rfind(|deed| id.is_some() && is_about(deed)))?;
+        Some(format!("I {}, since {}{}", deed.in_words(), deed.reason, self.goals_of(&deed.reason)))
+    }
+
+    /// What goals deeds of this reason met, as a sentence to follow another one; empty, where they met none.
+    pub(crate) fn goals_of(&self, reason: &str) -> String {
+        let of_reason = self.0.iter().rev().skip_while(|deed| deed.reason != reason);
+        let goals = of_reason.take_while(|deed| deed.reason == reason).flat_map(|deed| &deed.goals);
+        let mut goals: Vec<&str> = goals.map(|goal| goal.trim_end_matches('.')).collect();
+        goals.reverse();
+        if goals.is_empty() { String::new() } else { format!(". The mission wanted it: {}", goals.join("; ")) }
     }
 
     /// What it did for all requests, in words: the last that it changed for each, or else the last that it did.
     pub(crate) fn all_told(&self) -> Option<String> {
-        let of_requests = self.0.chunk_by(|one, next| one.asked == next.asked);
-        let told = of_requests.filter_map(|deeds| deeds.iter().rfind(|deed| deed.step.is_lasting()).or(deeds.last()));
-        let mut said: Vec<String> = told.map(Deed::in_words).collect();
-        said.dedup();
-        let left_out = said.len().saturating_sub(ALL_TOLD);
-        said.drain(..left_out);
-        let start = if left_out > 0 { "Of late" } else { "So far" };
-        (!said.is_empty()).then(|| format!("{start} I {}", describe::list(&said, "and")))
+        let start = if main_deeds(&self.0).count() > ALL_TOLD { "Of late" } else { "So far" };
+        let told = listed(main_deeds(&self.0), ALL_TOLD);
+        (!told.is_empty()).then(|| format!("{start} I {told}"))
     }
 
     /// The last deed that changed this thing, or took it or put it away.
@@ -106,8 +134,9 @@ impl Deeds {
         let until =
             later.iter().position(|deed| deed.step.action == Action::PickUp { object: id }).unwrap_or(later.len());
         let put = later[..until].iter().find(put_away).filter(|_| self.is_taken(last, id));
-        let first =
-            self.0[..last].iter().rposition(|deed| deed.step.object() == Some(id) && deed.asked == self.0[last].asked);
+        let first = self.0[..last]
+            .iter()
+            .rposition(|deed| deed.step.object() == Some(id) && deed.reason == self.0[last].reason);
         let of_it = first.into_iter().chain([last]).map(|at| &self.0[at]).chain(put);
         let mut said: Vec<String> = of_it.map(Deed::in_words).collect();
         said.dedup();
@@ -116,36 +145,32 @@ impl Deeds {
 
     /// Whether this thing was in the hand after that deed.
     fn is_taken(&self, at: usize, id: ObjectId) -> bool {
-        let held = self.0[..=at].iter().rev().find_map(|deed| match deed.step.action {
-            Action::PickUp { object } => Some(object == id),
-            Action::Place { .. } => Some(false),
-            _ => None,
-        });
-        held == Some(true)
+        held_after(&self.0[..=at]) == Some(id)
     }
 
-    /// Whether it did something of that kind to this thing; nothing, where no deed could tell.
+    /// Whether a deed was done to this thing, or with it in the hand.
+    fn is_about(&self, deed: &Deed, id: ObjectId) -> bool {
+        let before = self.0.iter().position(|other| std::ptr::eq(other, deed)).map_or(&[][..], |at| &self.0[..at]);
+        deed.step.object() == Some(id) || deed.step.changes() && held_after(before) == Some(id)
+    }
+
+    /// Whether it did something of that kind to this thing or with it; nothing, where no deed could tell.
     pub(crate) fn did(&self, intent: Intent, id: ObjectId) -> Option<bool> {
-        let interacted = |wanted: Verb| {
-            let is_it = |deed: &Deed| matches!(deed.step.action, Action::Interact { verb, object } if verb == wanted && object == id);
-            self.0.iter().any(is_it)
-        };
-        let taken = || self.0.iter().position(|deed| deed.step.action == Action::PickUp { object: id });
-        Some(match intent {
-            Intent::PickUp | Intent::Bring => taken().is_some(),
-            Intent::Place | Intent::Drop => taken()
-                .is_some_and(|at| self.0[at..].iter().any(|deed| matches!(deed.step.action, Action::Place { .. }))),
-            Intent::GoTo => {
-                let gone = Action::GoTo { target: GoToTarget::Object(id) };
-                self.0.iter().any(|deed| deed.step.action == gone || deed.step.object() == Some(id))
-            }
-            Intent::Scan => interacted(Verb::Scan),
-            Intent::Examine => interacted(Verb::Examine),
-            Intent::Throw => interacted(Verb::Throw),
-            Intent::Pour => interacted(Verb::Pour),
-            Intent::Toggle | Intent::Use => interacted(Verb::Toggle),
-            _ => return None,
-        })
+        const TOLD_BY_DEEDS: [Intent; 11] = [
+            Intent::PickUp,
+            Intent::Bring,
+            Intent::Place,
+            Intent::Drop,
+            Intent::GoTo,
+            Intent::Scan,
+            Intent::Examine,
+            Intent::Throw,
+            Intent::Pour,
+            Intent::Toggle,
+            Intent::Use,
+        ];
+        let did = |deed: &Deed| is_of(&deed.step.action, intent) && self.is_about(deed, id);
+        TOLD_BY_DEEDS.contains(&intent).then(|| self.0.iter().any(did))
     }
 }
 
@@ -154,6 +179,56 @@ fn past(says: &str) -> String {
     let (first, rest) = says.split_once(' ').unwrap_or((says, ""));
     let done = PAST.iter().find(|(doing, _)| *doing == first).map_or(first, |(_, done)| done);
     format!("{done} {rest}").trim_end().to_owned()
+}
+
+/// What deeds came to, the last few, in words.
+fn listed<'d>(deeds: impl Iterator<Item = &'d Deed>, most: usize) -> String {
+    let mut said: Vec<String> = deeds.map(Deed::in_words).collect();
+    said.dedup();
+    let left_out = said.len().saturating_sub(most);
+    said.drain(..left_out);
+    describe::list(&said, "and")
+}
+
+/// What it changed last for each request, or else did last.
+fn main_deeds(deeds: &[Deed]) -> impl Iterator<Item = &Deed> {
+    let of_requests = deeds.chunk_by(|one, next| one.reason == next.reason);
+    of_requests.filter_map(|deeds| deeds.iter().rfind(|deed| deed.step.is_lasting()).or(deeds.last()))
+}
+
+/// Whether an action is what such a request comes to.
+fn is_of(action: &Action, intent: Intent) -> bool {
+    let verb = match action {
+        Action::PickUp { .. } => return matches!(intent, Intent::PickUp | Intent::Bring),
+        Action::Place { .. } => return matches!(intent, Intent::Place | Intent::Drop | Intent::Bring),
+        Action::GoTo { .. } => return matches!(intent, Intent::GoTo | Intent::Travel | Intent::Find),
+        Action::Rotate { .. } => return intent == Intent::Turn,
+        Action::Interact { verb, .. } => verb,
+        _ => return false,
+    };
+    match intent {
+        Intent::Open => *verb == Verb::Open,
+        Intent::Close => *verb == Verb::Close,
+        Intent::Break => *verb == Verb::Break,
+        Intent::Scan => *verb == Verb::Scan,
+        Intent::Pour => *verb == Verb::Pour,
+        Intent::Throw => *verb == Verb::Throw,
+        Intent::Fill => *verb == Verb::Fill,
+        Intent::Clean => *verb == Verb::Clean,
+        Intent::Examine | Intent::LookIn => *verb == Verb::Examine,
+        Intent::Toggle | Intent::TurnOn | Intent::TurnOff | Intent::Use => *verb == Verb::Toggle,
+        _ => false,
+    }
+}
+
+/// What is in the hand after deeds.
+fn held_after(deeds: &[Deed]) -> Option<ObjectId> {
+    let held = |deed: &Deed| match deed.step.action {
+        Action::PickUp { object } => Some(Some(object)),
+        Action::Place { .. } => Some(None),
+        _ => None,
+    };
+    deeds.iter().rev().find_map(held).flatten()
 }
 
 #[cfg(test)]
@@ -176,10 +251,16 @@ mod tests {
         deeds.add(&step(Action::Interact { verb: Verb::Open, object: fridge }, "opening the fridge"), "get the milk");
         deeds.add(&step(Action::LookAround, "looking around"), "get the milk");
         deeds.add(&step(Action::PickUp { object: milk }, "picking up the milk"), "get the milk");
-        assert_eq!(deeds.told().as_deref(), Some("I opened the fridge and picked up the milk"));
+        deeds.credit(["Take the milk."].into_iter());
+        deeds.credit(["Take the milk."].into_iter());
+        let told = "I opened the fridge and picked up the milk. Before that I opened the door";
+        assert_eq!(deeds.told().as_deref(), Some(told));
+        let why = "I picked up the milk, since get the milk. The mission wanted it: Take the milk";
+        assert_eq!(deeds.why(Some(Intent::PickUp), Some(milk)).as_deref(), Some(why));
+        assert_eq!(deeds.why(Some(Intent::Pour), None), None);
         assert_eq!(deeds.did(Intent::PickUp, milk), Some(true));
         assert_eq!(deeds.did(Intent::Place, milk), Some(false));
-        assert_eq!(deeds.to(fridge).map(|deed| deed.asked.as_str()), Some("get the milk"));
+        assert_eq!(deeds.to(fridge).map(|deed| deed.reason.as_str()), Some("get the milk"));
     }
 
     #[test]

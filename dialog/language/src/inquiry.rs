@@ -1,8 +1,9 @@
 //! What people ask, among what else they say.
 
 use crate::{
-    answer::{self, Answerer},
+    answer::Answerer,
     clause::{Clause, Part},
+    contents,
     context::{Context, Pending},
     conversation::Conversation,
     question::{self, QuestionKind},
@@ -76,7 +77,7 @@ impl Conversation<'_> {
         };
         let answer = self.answerer(context, told).answer(question);
         if matches!(question.kind, QuestionKind::Seeing | QuestionKind::Contents) {
-            context.list = Some((question.clone(), told + answer::LIST));
+            context.list = Some((question.clone(), told + contents::LIST));
         }
         context.question = Some(question.kind);
         // Only what it has not seen makes it ask back.

@@ -29,6 +29,8 @@ pub(crate) enum Intent {
     Fill,
     Clean,
     Examine,
+    /// To look at what is in or on something, which is opened for it.
+    LookIn,
     Throw,
     Highlight,
     Heat,
@@ -86,6 +88,7 @@ impl Intent {
                 | Self::Fill
                 | Self::Clean
                 | Self::Examine
+                | Self::LookIn
                 | Self::Find
                 | Self::Highlight
                 | Self::Heat
@@ -161,6 +164,7 @@ impl Intent {
             Self::Fill => "fill",
             Self::Clean => "clean",
             Self::Examine => "look at",
+            Self::LookIn => "look in",
             Self::Throw => "throw",
             Self::Highlight => "show",
             Self::Heat => "heat",

@@ -32,6 +32,7 @@ mod chatter;
 mod clause;
 mod condition;
 mod confidence;
+mod contents;
 mod context;
 mod conversation;
 mod decide;
@@ -63,6 +64,7 @@ mod oracle;
 mod order;
 mod phrase;
 mod plan;
+mod prior;
 mod process;
 mod question;
 mod reading;
@@ -188,6 +190,7 @@ impl Language {
     /// What `utterance` means in `scene`, given the conversation so far. Any text is taken; none panics.
     #[must_use]
     pub fn understand(&self, utterance: &str, scene: &Known, context: &mut Context) -> Understanding {
+        context.credit_goals(scene);
         let understanding = self.conversation(scene).understand(utterance, context);
         if let Understanding::Refusal { text, is_lost: false } = &understanding {
             context.refused = Some(text.clone());
@@ -201,6 +204,7 @@ impl Language {
     /// request that it is for; then comes what else was asked for. Nothing, if that was all.
     #[must_use]
     pub fn carry_on(&self, scene: &Known, context: &mut Context) -> Option<Understanding> {
+        context.credit_goals(scene);
         self.conversation(scene).carry_on(context)
     }
 

@@ -119,6 +119,12 @@ impl Memory {
         }
     }
 
+    /// Whether nothing was seen yet.
+    #[must_use]
+    pub fn is_blank(&self) -> bool {
+        self.things.is_empty()
+    }
+
     /// Takes in what is seen of `world`, in which all is that there is.
     pub fn take_in(&mut self, catalog: &Catalog, world: &Known, gaze: Gaze) {
         let put_away = self.robot.as_ref().and_then(|robot| robot.held).filter(|held| world.robot.held != Some(*held));

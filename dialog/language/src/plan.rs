@@ -145,6 +145,7 @@ impl Planner<'_> {
             Intent::Use => self.add_use(&settled),
             Intent::Scan => self.add_simple(&settled, Verb::Scan, "scanning"),
             Intent::Examine => self.add_simple(&settled, Verb::Examine, "looking at"),
+            Intent::LookIn => self.add_look_in(&settled),
             Intent::Highlight => self.add_highlight(&settled),
             _ => self.add_process(&settled),
         }
@@ -337,6 +338,16 @@ impl Planner<'_> {
     fn add_simple(&mut self, settled: &Settled, verb: Verb, participle: &str) -> Result<(), Fault> {
         for object in self.find_objects(settled, &Want::object(settled.intent))? {
             self.interact(verb, object, participle);
+        }
+        Ok(())
+    }
+
+    fn add_look_in(&mut self, settled: &Settled) -> Result<(), Fault> {
+        for object in self.find_objects(settled, &Want::object(settled.intent))? {
+            self.open_around(object, true);
+            let preposition =
+                self.scene.object(object).map_or("in", |object| describe::inside(self.catalog, object.class));
+            self.interact(Verb::Examine, object, &format!("looking {preposition}"));
         }
         Ok(())
     }

@@ -20,9 +20,14 @@ const NAMED: usize = 6;
 /// How many of them name what is only on the way, too.
 const FEW: usize = 4;
 
-/// `OK. The fridge is closed, so I open it first. I am picking up the milk.`
+/// `The fridge is closed, so I open it first. OK, picking up the milk.`
 pub(crate) fn plan_reply(steps: &[Step], notes: &[String]) -> String {
-    let mut parts: Vec<String> = notes.iter().map(|note| describe::sentence(note)).collect();
+    let mut parts: Vec<String> = Vec::new();
+    for note in notes.iter().map(|note| describe::sentence(note)) {
+        if !parts.contains(&note) {
+            parts.push(note);
+        }
+    }
     if !steps.is_empty() {
         parts.push(describe::sentence(&format!("OK, {}", plan_in_words(steps))));
     }
@@ -61,7 +66,11 @@ pub(crate) fn request_in_words(clauses: &[Clause]) -> String {
 }
 
 fn clause_in_words(clause: &Clause) -> String {
-    let said = |phrase: &Phrase| if phrase.text.is_empty() { "it".to_owned() } else { phrase.text.clone() };
+    // Words have lost their apostrophes: no other one ends like `boss's`.
+    let said = |phrase: &Phrase| match phrase.text.as_str() {
+        "" => "it".to_owned(),
+        text => text.replace("sss ", "ss's "),
+    };
     let verb = clause.intent.verb();
     // `go to the table`, of who goes to it
     let word = |preposition: &Preposition| Some(preposition.word()).filter(|word| !verb.ends_with(&format!(" {word}")));

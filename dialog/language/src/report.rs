@@ -2,7 +2,7 @@
 
 use cohabit_cdf::{Action, Catalog, GoToTarget, ObjectId, Status, Verb, state::StateFlag};
 
-use crate::{describe, known::Known, process::Devices, understanding::Step};
+use crate::{contents, describe, known::Known, process::Devices, understanding::Step};
 
 /// What is said after success: what is so now.
 pub(crate) fn success(catalog: &Catalog, devices: &Devices, scene: &Known, step: &Step, status: Status) -> String {
@@ -24,7 +24,7 @@ pub(crate) fn success(catalog: &Catalog, devices: &Devices, scene: &Known, step:
         },
         Action::GoTo { target: GoToTarget::Object(object) } => format!("I am at {}", the(object)),
         Action::GoTo { .. } => "I am there".to_owned(),
-        Action::Interact { verb, object } => interaction(&the(object), devices, scene, step, verb, object),
+        Action::Interact { verb, object } => interaction(&the(object), catalog, devices, scene, step, verb, object),
         Action::Highlight { object } => format!("this is {}", describe::full(catalog, scene, object)),
         Action::LookAround => "I have looked around".to_owned(),
         Action::Stop => "I have stopped".to_owned(),
@@ -39,7 +39,15 @@ fn preposition(catalog: &Catalog, scene: &Known, id: ObjectId) -> &'static str {
     scene.object(id).map_or("on", |object| describe::inside(catalog, object.class))
 }
 
-fn interaction(the: &str, devices: &Devices, scene: &Known, step: &Step, verb: Verb, object: ObjectId) -> String {
+fn interaction(
+    the: &str,
+    catalog: &Catalog,
+    devices: &Devices,
+    scene: &Known,
+    step: &Step,
+    verb: Verb,
+    object: ObjectId,
+) -> String {
     match verb {
         Verb::Open => format!("{the} is open"),
         Verb::Close => format!("{the} is closed"),
@@ -52,7 +60,8 @@ fn interaction(the: &str, devices: &Devices, scene: &Known, step: &Step, verb: V
         Verb::Clean => "it is clean now".to_owned(),
         Verb::Examine => match scene.object(object).filter(|object| !object.text.is_empty()) {
             Some(object) => format!("it says: \"{}\"", object.text),
-            None => format!("I have had a close look at {the}"),
+            None => contents::inside(catalog, scene, object, 0)
+                .unwrap_or_else(|| format!("I have had a close look at {the}")),
         },
     }
 }

@@ -45,8 +45,9 @@ impl Conversation<'_> {
                 _ => {
                     *context = then;
                     context.later.extend(texts);
+                    context.answered = said.join(" ");
                     let is_first = said.is_empty();
-                    return Some(if is_first { understanding } else { understanding.after(&said.join(" ")) });
+                    return Some(if is_first { understanding } else { understanding.after(&context.answered) });
                 }
             }
         }

@@ -36,6 +36,7 @@ impl Conversation<'_> {
                 None => ways.push(way),
             }
         }
+        self.weigh(&mut ways, wording, context);
         // What it gives a probability of p is right about as often as √p, by writers that it was not fitted to: others may have said it otherwise.
         ways.iter_mut().for_each(|way| way.probability = way.probability.sqrt());
         ways.sort_by(|one, other| other.probability.total_cmp(&one.probability));

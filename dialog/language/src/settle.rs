@@ -49,7 +49,13 @@ const fn has_goal(intent: Intent) -> bool {
 const fn has_tool(intent: Intent) -> bool {
     !matches!(
         intent,
-        Intent::Place | Intent::Bring | Intent::PickUp | Intent::Find | Intent::Highlight | Intent::Examine
+        Intent::Place
+            | Intent::Bring
+            | Intent::PickUp
+            | Intent::Find
+            | Intent::Highlight
+            | Intent::Examine
+            | Intent::LookIn
     )
 }
 

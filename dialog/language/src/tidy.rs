@@ -67,7 +67,7 @@ fn asked_plainly(lexicon: &Lexicon, words: Vec<String>) -> Vec<String> {
         is_placed
             && !is_asked
             && intents.iter().any(|intent| intent.needs_object())
-            && !intents.contains(&Intent::Examine)
+            && !intents.iter().any(|intent| matches!(intent, Intent::Examine | Intent::LookIn))
     };
     for at in 1..words.len().saturating_sub(2) {
         if is_named(&words, at) {

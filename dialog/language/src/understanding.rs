@@ -90,6 +90,16 @@ impl Understanding {
         }
     }
 
+    /// The same plan or answer, with something else said after it.
+    pub(crate) fn before(self, said: &str) -> Self {
+        let joined = |text: String| format!("{text} {said}");
+        match self {
+            Self::Plan { steps, reply } => Self::Plan { steps, reply: joined(reply) },
+            Self::Answer { text, highlight, holds } => Self::Answer { text: joined(text), highlight, holds },
+            other => other,
+        }
+    }
+
     /// Whether nothing was made of what was said.
     pub(crate) const fn is_lost(&self) -> bool {
         matches!(self, Self::Refusal { is_lost: true, .. })
@@ -217,8 +227,8 @@ impl Step {
 
     /// Whether what it changes is not simply put back.
     pub(crate) const fn is_lasting(&self) -> bool {
-        self.changes()
-            && !matches!(self.action, Action::Place { .. } | Action::Interact { verb: Verb::Open | Verb::Close, .. })
+        let Action::Interact { verb, .. } = self.action else { return false };
+        !matches!(verb, Verb::Open | Verb::Close | Verb::Examine | Verb::Scan)
     }
 }
 

@@ -1,12 +1,14 @@
 //! A way to understand an utterance.
 
-use cohabit_cdf::{Action, GoToTarget};
+use cohabit_cdf::{Action, GoToTarget, Verb};
 
 use crate::{
     clause::Clause,
-    context::Context,
+    context::{Context, Pending},
     describe,
     intent::Intent,
+    reply,
+    search::Search,
     understanding::{Clarification, Step, Understanding},
 };
 
@@ -50,9 +52,53 @@ impl Way {
         )
     }
 
+    /// Whether the robot has just asked whether to do this.
+    pub(crate) fn is_asked_about(&self, context: &Context) -> bool {
+        let (Some(Pending::Guess { guesses }), Some(steps)) = (&context.pending, self.steps()) else { return false };
+        guesses.iter().any(|guess| match (&guess.search, &self.context.search) {
+            (Some(one), Some(other)) => one.comes_to(other),
+            (None, None) => deeds(&guess.steps).eq(deeds(steps)),
+            _ => false,
+        })
+    }
+
+    /// Whether it does what another one does, or a part of that.
+    pub(crate) fn leads_to(&self, goal: &Self) -> bool {
+        let (Some(own), Some(others)) = (self.steps(), goal.steps()) else { return false };
+        match (&self.context.search, &goal.context.search) {
+            (Some(one), Some(other)) => return one.comes_to(other),
+            (None, None) => {}
+            _ => return false,
+        }
+        let wanted: Vec<&Action> = deeds(others).collect();
+        let own: Vec<&Action> = deeds(own).collect();
+        let is_whole = wanted.last().is_some_and(|last| own.contains(last));
+        is_whole || !own.is_empty() && own.iter().all(|action| wanted.contains(action))
+    }
+
     /// Whether it does the same again.
     pub(crate) fn repeats(&self, before: &[Step]) -> bool {
         self.steps().is_some_and(|steps| !steps.is_empty() && deeds(steps).eq(deeds(before)))
+    }
+
+    /// What it does and another one does not that begins in the same way, in words; nothing, where it does not go on from that one.
+    pub(crate) fn beyond(&self, other: &Self) -> Option<String> {
+        let (steps, begun) = (self.steps()?, other.steps()?);
+        let looks = |way: &Self| way.context.search.as_ref().is_some_and(Search::is_under_way);
+        if looks(self) || other.context.search.is_some() {
+            return None;
+        }
+        let begins = deeds(begun).count();
+        if !deeds(steps).take(begins).eq(deeds(begun)) {
+            return None;
+        }
+        let last = deeds(steps).skip(begins).count();
+        let more = (last > 0).then(|| reply::plan_in_words(&steps[steps.len() - last..]));
+        let sought = self.context.search.as_ref().map(|_| reply::request_in_words(&self.context.request));
+        let later = self.context.later.strip_prefix(other.context.later.as_slice())?;
+        let after = sought.iter().chain(later).map(|text| format!("\"{text}\""));
+        let rest: Vec<String> = more.into_iter().chain(after).collect();
+        (!rest.is_empty()).then(|| describe::list(&rest, "and then"))
     }
 
     pub(crate) const fn stops(&self) -> bool {
@@ -67,6 +113,23 @@ impl Way {
         }
     }
 
+    /// Whether nothing is other after it than where the robot is, and what it knows.
+    pub(crate) fn only_looks(&self) -> bool {
+        let looks = |step: &Step| match step.action {
+            Action::Interact { verb, .. } => matches!(verb, Verb::Examine | Verb::Scan),
+            Action::PickUp { .. } | Action::Place { .. } => false,
+            _ => true,
+        };
+        let is_asked = |clause: &&Clause| {
+            matches!(
+                clause.intent,
+                Intent::Examine | Intent::Find | Intent::GoTo | Intent::LookAround | Intent::Mention | Intent::Travel
+            )
+        };
+        let is_sought = self.context.search.as_ref().is_none_or(|search| search.deeds().iter().all(is_asked));
+        is_sought && self.context.later.is_empty() && self.steps().is_some_and(|steps| steps.iter().all(looks))
+    }
+
     /// Whether what it changes in the end is not simply put back.
     pub(crate) fn is_lasting(&self) -> bool {
         let is_lasting = |clause: &&Clause| {
@@ -75,13 +138,17 @@ impl Way {
                 Intent::Bring
                     | Intent::Close
                     | Intent::Drop
+                    | Intent::Examine
                     | Intent::Find
                     | Intent::GoTo
                     | Intent::Look
+                    | Intent::LookIn
+                    | Intent::LookAround
                     | Intent::Mention
                     | Intent::Open
                     | Intent::PickUp
                     | Intent::Place
+                    | Intent::Scan
                     | Intent::Travel
                     | Intent::Turn
             )

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use cohabit_cdf::state::StateFlag;
+use cohabit_cdf::{Catalog, state::StateFlag};
 use serde::Deserialize;
 
 use crate::{
@@ -60,6 +60,24 @@ fn sentences(words: &[String]) -> Vec<&[String]> {
     sentences.filter(|sentence| sentence.iter().any(|word| !token::is_punctuation(word))).collect()
 }
 
+/// `did you close the fridge`: what the robot may have done.
+pub(crate) fn deed_asked_about(lexicon: &Lexicon, catalog: &Catalog, asked: &[String]) -> Option<Clause> {
+    let words = &lexicon.yes_no;
+    let [helper, subject, done @ ..] = asked else { return None };
+    let is_asked = words.past.contains(helper) || words.perfect.contains(helper);
+    if !is_asked || subject != "you" && subject != "we" {
+        return None;
+    }
+    let skipped = done.iter().take_while(|word| words.between.contains(*word)).count();
+    let mut done = done[skipped..].to_vec();
+    let is_verb = lexicon.verbs.longest(&done).is_some();
+    let first = done.first_mut()?;
+    if !is_verb && !inflect::is_verb(lexicon, first) {
+        *first = inflect::stem(lexicon, first)?;
+    }
+    reading::read(lexicon, catalog, &done).map(|(clause, _)| clause)
+}
+
 impl Conversation<'_> {
     /// The answer to a question among what was said that would otherwise be carried out; nothing, where there is none.
     pub(crate) fn answered_yes_or_no(&self, words: &[String], context: &mut Context) -> Option<Understanding> {
@@ -115,19 +133,7 @@ impl Conversation<'_> {
 
     /// `did you close the fridge`: whether it is closed now.
     fn whether_done(&self, asked: &[String], context: &mut Context) -> Option<Understanding> {
-        let words = &self.lexicon.yes_no;
-        if !words.past.contains(&asked[0]) && !words.perfect.contains(&asked[0])
-            || asked.get(1).is_none_or(|subject| subject != "you" && subject != "we")
-        {
-            return None;
-        }
-        let skipped = asked[2..].iter().take_while(|word| words.between.contains(*word)).count();
-        let mut done = asked[2 + skipped..].to_vec();
-        let first = done.first_mut()?;
-        if !inflect::is_verb(self.lexicon, first) {
-            *first = inflect::stem(self.lexicon, first)?;
-        }
-        let (clause, _) = reading::read(self.lexicon, self.catalog, &done)?;
+        let clause = deed_asked_about(self.lexicon, self.catalog, asked)?;
         let phrase = clause.objects.first()?;
         let ground = Ground { catalog: self.catalog, scene: self.scene, focus: &context.focus, judge: self.judge };
         let Ok(id) = ground.one(phrase, &Want::place(Intent::Find, &[], None)) else {

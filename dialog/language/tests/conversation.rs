@@ -223,7 +223,7 @@ fn small_talk_and_what_to_do_are_answered() {
     }
     check(
         &[],
-        "> bring me the milk\nopen FridgeLower_02_1, take MilkCarton_01_1\n> why did you do that?\n= You said \"bring me the milk\", so my plan was opening…\n> why did you open the fridge?\n= You said \"bring me the milk\", and opening the fridge was needed for picking up the milk.",
+        "> bring me the milk\nopen FridgeLower_02_1, take MilkCarton_01_1\n> why did you do that?\n= Because you asked me to pick up the milk: my plan was opening…\n> why did you open the fridge?\n= Because you asked me to pick up the milk, and opening the fridge was needed for picking up the milk.",
     );
     check(&[], "> pick up the mug\n? Which…\n> undo\n= There is nothing to undo yet.");
     check(&[], "> where is the microwave?\n= The microwave is on the counter top.\n> go there\ngo Microwave_01_1");

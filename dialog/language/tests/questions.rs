@@ -68,7 +68,15 @@ fn what_was_done_is_told() {
     let after = |said: &'static str| [DONE.as_slice(), &[said]].concat();
     let all = "So far I picked up the ";
     check(&after("what have you done so far?"), &format!("{all}…"));
-    check(&after("what did you do just now?"), "I went to the main office.");
+    check(
+        &after("what did you do just now?"),
+        "I went to the main office. Before that I picked up the banana and put…",
+    );
+    check(
+        &after("why did you put the banana on the counter?"),
+        "I put the banana on the counter top, since you asked me to put it…",
+    );
+    check(&after("why did you turn left?"), "Because you asked me to go to the main office…");
     let with_it = replied(&[], &after("what did you do with the banana?"));
     assert!(with_it.contains("picked up") && with_it.contains("put the"), "{with_it}");
 }

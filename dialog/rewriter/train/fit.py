@@ -4,8 +4,8 @@
     python fit.py --minutes 60 --begin ../rewriter.safetensors     goes on with the shipped one
     python fit.py --minutes 0 --begin MODEL.pt       only writes these, of a model that was kept
 
-It begins as SmolLM2-135M-Instruct and learns from the corpus, from writers of `dialog/language/tests/utterances/writers` and from participants of
-`dialog/language/tests/participants`. README.md says what it needs.
+It begins as SmolLM2-135M-Instruct and learns from the corpus and its talks, from writers of `dialog/language/tests/utterances/writers` and from
+participants of `dialog/language/tests/participants`. README.md says what it needs.
 """
 
 import argparse
@@ -29,16 +29,18 @@ MOST_WRITTEN = 70
 CORPUS_SHARE = 0.2
 #: How often what is read is the label itself: who speaks plainly is taken at their word.
 PLAIN_SHARE = 0.05
-#: How many times what was said live counts.
-LIVE_COPIES = 3
+#: How many times what is said in a whole talk with the robot counts.
+TALK_COPIES = 3
 CONTEXTS = corpus.CRATE.parent / "language/fit/contexts"
 #: What stands between two parts of a message.
 PAUSES = [". ", ". ", ", ", ", ", " and ", ". then ", ", then ", " ... ", "; ", ". also "]
 #: Labels that are no plain request.
 WITHOUT_REQUEST = {"social", "none", "?"}
+#: Talks with the robot, message by message: as they happened, and as writers made them up.
 PARTICIPANTS = corpus.CRATE.parent / "language/tests/participants"
-#: Nothing is fitted to these writers and participants: they are to measure with.
-UNSEEN_LIVE = {"oona", "bram", "sofia", "niamh", "piotr"}
+TALKS = [*sorted(PARTICIPANTS.glob("*.txt")), *sorted((corpus.CRATE / "corpus/talks").glob("*.txt"))]
+#: Nothing is fitted to these talks and writers: they are to measure with.
+UNSEEN_TALKS = {"oona", "bram", "sofia", "niamh", "piotr", "winifred", "bernard"}
 UNSEEN = set("o v w x y al am an ao ap aq av aw bb bc bd be bg bh bi bp bs bv by ca cb ce ck cn".split())
 
 
@@ -48,7 +50,7 @@ def main():
     options.add_argument("--rate", type=float, default=4e-4, help="the highest rate of learning")
     options.add_argument("--begin", type=Path, help="a model to go on with, as --out or, with all its bits, --keep writes it")
     options.add_argument("--keep", type=Path, help="where the model is kept with all its bits")
-    options.add_argument("--compare", nargs="*", default=[], help="writers or participants whose utterances are then rewritten and compared")
+    options.add_argument("--compare", nargs="*", default=[], help="writers or talks whose utterances are then rewritten and compared")
     options.add_argument("--out", type=Path, default=corpus.CRATE / "rewriter.safetensors", help="the model")
     given = options.parse_args()
     torch.manual_seed(SEED)
@@ -102,8 +104,8 @@ def of_writer(writer):
             yield [(False, one) for one in earlier], utterance, labels_of(meant.split(" || ")), False
 
 
-def of_participant(file):
-    """The same of what a participant said to the robot."""
+def of_talk(file):
+    """The same of what somebody said to the robot in a whole talk."""
     before, said = [], ""
     for line in file.read_text(encoding="utf-8").splitlines():
         if line.startswith("## "):
@@ -125,8 +127,8 @@ class Samples:
         self.corpus = list(of_corpus())
         writers = sorted(file.stem for file in corpus.WRITERS.glob("*.txt") if file.stem not in UNSEEN)
         self.written = [sample for writer in writers for sample in of_writer(writer)]
-        participants = sorted(file for file in PARTICIPANTS.glob("*.txt") if file.stem not in UNSEEN_LIVE)
-        self.written += LIVE_COPIES * [sample for file in participants for sample in of_participant(file)]
+        talks = [file for file in TALKS if file.stem not in UNSEEN_TALKS]
+        self.written += TALK_COPIES * [sample for file in talks for sample in of_talk(file)]
         print(f"{len(self.corpus)} utterances of the corpus and {len(self.written)} of writers to learn from", flush=True)
 
     def draw(self):
@@ -225,8 +227,8 @@ def key(label):
 
 def compare(model, writer):
     """How many utterances are rewritten as one of their labels."""
-    live = PARTICIPANTS / f"{writer}.txt"
-    samples = list(of_participant(live) if live.exists() else of_writer(writer))
+    talk = next((file for file in TALKS if file.stem == writer), None)
+    samples = list(of_talk(talk) if talk else of_writer(writer))
     outputs = model.write([language_model.prompt(before, said, False) for before, said, *_ in samples], MOST_WRITTEN)
     right = sum(key(text) in map(key, labels) for (text, _), (_, _, labels, _) in zip(outputs, samples, strict=True))
     print(f"{writer}: {right} of {len(samples)} as labelled", flush=True)

@@ -82,7 +82,8 @@ impl Knowledge {
             room: world.robot.room,
             yaw_rad: record.yaw_rad,
             pitch_rad: record.head_pitch_rad,
-            is_around: false,
+            // It has stood here for a while when somebody first speaks to it.
+            is_around: self.memory.is_blank(),
         };
         if self.knows == Knows::Seen {
             self.memory.take_in(&self.catalog, &world, gaze);

@@ -1,0 +1,79 @@
+//! What the robot does, and asks, of readings none of which is likely enough.
+#![allow(clippy::unwrap_used)]
+
+mod support;
+
+use cohabit_language::{Language, Understanding};
+use support::{Talk, catalog};
+
+/// What a rewriter would write, each with its probability; the words themselves mean nothing.
+const WRITTEN: &[(&str, &[(&str, f32)])] = &[
+    (
+        "sing that bowl a merry tune tonight",
+        &[("open the microwave", 0.3), ("open the microwave; put the bowl in the microwave", 0.25)],
+    ),
+    ("sing that plate a merry tune tonight", &[("pick up the plate", 0.1), ("turn on the toaster", 0.1)]),
+    ("the plate, sing it a merry tune, I said", &[("pick up the plate", 0.15), ("turn on the toaster", 0.05)]),
+    ("sing me a merry tune of fridges tonight", &[("is the fridge open?; turn on the microwave", 0.2)]),
+    (
+        "sing with the milk and the bowl tonight",
+        &[("pour the milk into the bowl", 0.2), ("put the milk on the counter", 0.1)],
+    ),
+    ("sing our bowl a happier tune tonight", &[("pour the milk into the bowl", 0.25)]),
+    ("sing our plate a happier tune tonight", &[("break the plate", 0.25)]),
+];
+
+fn written(said: &str, _: &[(bool, String)]) -> Vec<(String, f32)> {
+    let found = WRITTEN.iter().find(|(utterance, _)| *utterance == said).map_or(&[][..], |(_, written)| written);
+    found.iter().map(|(text, probability)| ((*text).to_owned(), *probability)).collect()
+}
+
+fn talk() -> Talk {
+    talk_in(&[])
+}
+
+fn talk_in(marks: &[&str]) -> Talk {
+    let language = Box::leak(Box::new(Language::new(catalog()).with_rewriter(written)));
+    Talk { language, ..Talk::new(marks) }
+}
+
+#[test]
+fn what_all_readings_begin_with_is_done() {
+    let mut talk = talk();
+    let understanding = talk.language.understand("sing that bowl a merry tune tonight", &talk.scene, &mut talk.context);
+    let Understanding::Plan { steps, reply } = understanding else { panic!("{understanding:?}") };
+    assert_eq!(steps.len(), 1, "{reply}");
+    assert!(reply.starts_with("OK, opening the microwave. I am not sure about picking up the bowl"), "{reply}");
+}
+
+#[test]
+fn what_is_said_again_is_not_asked_about_again() {
+    let mut talk = talk();
+    let asked = talk.say("sing that plate a merry tune tonight");
+    assert!(asked.starts_with("? ") && asked.contains("plate") && asked.contains("toaster"), "{asked}");
+    let done = talk.say("the plate, sing it a merry tune, I said");
+    assert!(done.starts_with("take FoodPlate_01"), "{done}");
+}
+
+#[test]
+fn what_was_asked_beside_an_order_is_answered_though_the_order_is_asked_about() {
+    let asked = talk().say("sing me a merry tune of fridges tonight");
+    assert!(
+        asked.starts_with("? No, the fridge is not open.") && asked.contains("turning on the microwave"),
+        "{asked}"
+    );
+}
+
+#[test]
+fn what_meets_a_goal_of_the_mission_is_likelier_meant() {
+    let done = talk().say("sing our bowl a happier tune tonight");
+    assert!(done.contains("pour"), "{done}");
+    let asked = talk().say("sing our plate a happier tune tonight");
+    assert!(asked.starts_with("? "), "{asked}");
+}
+
+#[test]
+fn what_is_so_already_is_hardly_meant() {
+    let asked = talk_in(&["Bowl_01_1 milk"]).say("sing with the milk and the bowl tonight");
+    assert!(asked.starts_with("? ") && asked.contains("putting the milk on the counter"), "{asked}");
+}
