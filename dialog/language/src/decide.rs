@@ -74,6 +74,9 @@ impl Conversation<'_> {
         if let Some(stop) = ways.iter().find(stops) {
             return stop.taken(context);
         }
+        if let Some(settled) = settled(&ways) {
+            return settled.taken(context);
+        }
         let least = |way: &Way| if reading == Reading::Plain { way.least().max(TO_OVERRULE) } else { way.least() };
         if let Some(likeliest) = ways.first().filter(|likeliest| likeliest.probability >= least(likeliest)) {
             return likeliest.taken(context);
@@ -179,6 +182,18 @@ impl Conversation<'_> {
             answered => question.after(answered),
         })
     }
+}
+
+/// The plan of a way beside which the likeliest only asks which thing is meant: other words for the same leave no doubt.
+fn settled(ways: &[Way]) -> Option<Way> {
+    let (asking, others) = ways.split_first()?;
+    if !matches!(asking.understanding, Understanding::Question { kind: Clarification::Reference, .. }) {
+        return None;
+    }
+    let plan = others.iter().find(|way| way.steps().is_some())?;
+    let probability = plan.probability.hypot(asking.probability);
+    let settled = Way { probability, ..plan.clone() };
+    (plan.probability >= TO_GUESS && probability >= settled.least()).then_some(settled)
 }
 
 /// A plan that several ways begin with, together likely enough to be carried out, and what they may go on with.

@@ -37,9 +37,11 @@ impl Conversation<'_> {
                     said.push(without_offer(asked));
                 }
                 Understanding::Answer { text: reply, .. } | Understanding::Refusal { text: reply, is_lost: false }
-                    if !is_last =>
+                    if !is_last || said.contains(reply) =>
                 {
-                    said.push(reply.clone());
+                    if !said.contains(reply) {
+                        said.push(reply.clone());
+                    }
                     *context = then;
                 }
                 _ => {

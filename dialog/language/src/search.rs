@@ -166,6 +166,10 @@ impl Search {
         };
     }
 
+    fn is_for(&self, target: &Target) -> bool {
+        self.target.as_ref().is_some_and(|before| !before.is_hasty && before.classes == target.classes)
+    }
+
     fn look_for(&mut self, target: Target) -> bool {
         let is_same = |before: &Target| before.classes == target.classes && before.is_hasty == target.is_hasty;
         let is_new = !self.target.as_ref().is_some_and(is_same);
@@ -224,6 +228,11 @@ impl Conversation<'_> {
             }
             return self.fault(fault, search.clauses, search.consent, context);
         };
+        // What was looked for and is seen now is found, wherever else one might be.
+        if target.is_hasty && search.is_for(&target) {
+            search.looked_m.push(self.stands().1);
+            return self.proceed(search, context);
+        }
         let (done, focus) = planner.begun;
         if done > 0 && search.legs < MOST_LEGS {
             // What comes before is done first: the search begins where that leads.

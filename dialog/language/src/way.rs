@@ -26,7 +26,9 @@ pub(crate) struct Way {
 impl Way {
     /// Whether it comes to the same as another one.
     pub(crate) fn is_same(&self, other: &Self) -> bool {
+        // Where one looks for a thing may differ by what was said of where it is.
         let is_same = match (&self.understanding, &other.understanding) {
+            (Understanding::Plan { .. }, Understanding::Plan { .. }) if self.looks() && other.looks() => true,
             (Understanding::Plan { steps: one, .. }, Understanding::Plan { steps: other, .. }) => {
                 deeds(one).eq(deeds(other))
             }
@@ -41,6 +43,11 @@ impl Way {
             (one, other) => one.is_none() == other.is_none(),
         };
         is_same && seeks_same && self.context.later == other.context.later
+    }
+
+    /// Whether it begins by looking for something.
+    fn looks(&self) -> bool {
+        self.context.search.as_ref().is_some_and(Search::is_under_way)
     }
 
     /// Whether something is to be done, told or known first, rather than that it was not understood or cannot be done.
@@ -84,8 +91,7 @@ impl Way {
     /// What it does and another one does not that begins in the same way, in words; nothing, where it does not go on from that one.
     pub(crate) fn beyond(&self, other: &Self) -> Option<String> {
         let (steps, begun) = (self.steps()?, other.steps()?);
-        let looks = |way: &Self| way.context.search.as_ref().is_some_and(Search::is_under_way);
-        if looks(self) || other.context.search.is_some() {
+        if self.looks() || other.context.search.is_some() {
             return None;
         }
         let begins = deeds(begun).count();

@@ -16,8 +16,8 @@ const WRITTEN: &[(&str, &[(&str, f32)])] = &[
     ("the plate, sing it a merry tune, I said", &[("pick up the plate", 0.15), ("turn on the toaster", 0.05)]),
     ("sing me a merry tune of fridges tonight", &[("is the fridge open?; turn on the microwave", 0.2)]),
     (
-        "sing with the milk and the bowl tonight",
-        &[("pour the milk into the bowl", 0.2), ("put the milk on the counter", 0.1)],
+        "sing me one more merry tune tonight",
+        &[("pour the cereal box into the bowl", 0.2), ("put the cereal box on the green desk", 0.1)],
     ),
     ("sing our bowl a happier tune tonight", &[("pour the milk into the bowl", 0.25)]),
     ("sing our plate a happier tune tonight", &[("break the plate", 0.25)]),
@@ -74,6 +74,6 @@ fn what_meets_a_goal_of_the_mission_is_likelier_meant() {
 
 #[test]
 fn what_is_so_already_is_hardly_meant() {
-    let asked = talk_in(&["Bowl_01_1 milk"]).say("sing with the milk and the bowl tonight");
-    assert!(asked.starts_with("? ") && asked.contains("putting the milk on the counter"), "{asked}");
+    let asked = talk_in(&["Bowl_01_1 cereal"]).say("sing me one more merry tune tonight");
+    assert!(asked.starts_with("? ") && asked.contains("putting the cereal box on the green desk"), "{asked}");
 }

@@ -265,6 +265,7 @@ pub(crate) fn set(object: &mut KnownObject, mark: &str) {
         "text" => return object.text = "The bowl must be mended first.".to_owned(),
         "open" => StateFlag::Opened,
         "broken" => StateFlag::Broken,
+        "cereal" => StateFlag::Cereal,
         "dirty" => StateFlag::Dirty,
         "on" => StateFlag::Toggled,
         "locked" => StateFlag::Locked,
