@@ -18,7 +18,9 @@ use std::{
 use anyhow::Context as _;
 use cohabit_cdf::Catalog;
 use cohabit_dialog::HostName;
-use cohabit_study::{Folder, FolderError, Journal, Progress, Registry, StudyFile, StudyService, address, export, keep};
+use cohabit_study::{
+    Cycle, Folder, FolderError, Journal, Progress, Registry, StudyFile, StudyService, address, export, keep,
+};
 use cohabit_tables::{Played, tables};
 
 use crate::{
@@ -136,6 +138,11 @@ impl Check {
             within,
             study.participants
         );
+        let cycle = Cycle::of(&study);
+        println!("One full cycle of the assignment takes {cycle}");
+        if let Some(note) = cycle.note(study.participants) {
+            println!("note: {note}");
+        }
         Ok(())
     }
 }
@@ -208,7 +215,7 @@ fn refused(error: FolderError) -> anyhow::Error {
 
 impl Withdraw {
     fn run(&self) -> anyhow::Result<()> {
-        let folder = Folder::open(&self.folder).map_err(refused)?;
+        let folder = Folder::open(&self.folder).map_err(not_now)?;
         let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
         folder.withdraw(&self.participant, u64::try_from(since.as_millis())?).map_err(refused)?;
         println!(
@@ -220,6 +227,16 @@ impl Withdraw {
     }
 }
 
+/// Why nobody's data can be removed by this command; of a study that runs, with what removes them meanwhile.
+fn not_now(error: FolderError) -> anyhow::Error {
+    match error {
+        FolderError::Busy { .. } => {
+            environment(format!("{error}, or use the Withdraw button on the experimenter's page while the study runs"))
+        }
+        other => refused(other),
+    }
+}
+
 impl Export {
     fn run(&self) -> anyhow::Result<()> {
         let (_, study) = read(&Folder::study_file(&self.folder))?;
@@ -228,8 +245,9 @@ impl Export {
         let played = Played::open_all(&logs, &Catalog::builtin()).map_err(bad_input)?;
         std::fs::create_dir_all(&self.out).map_err(|error| bad_input(format!("{}: {error}", self.out.display())))?;
         let withdrawn = Folder::withdrawals_in(&self.folder).map_err(refused)?;
+        let notes = Folder::notes_in(&self.folder).map_err(refused)?;
         let withdrawn: Vec<String> = withdrawn.into_iter().map(|one| one.participant).collect();
-        for path in export(&study, &all, &withdrawn, tables(&played), &self.out)? {
+        for path in export(&study, &all, &withdrawn, &notes, tables(&played), &self.out)? {
             println!("{}", shown(path.display()));
         }
         Ok(())
@@ -261,4 +279,18 @@ fn files(folder: &Path, ending: &str) -> anyhow::Result<Vec<PathBuf>> {
     let mut found: Vec<PathBuf> = paths.filter(|path| path.extension().is_some_and(|own| own == ending)).collect();
     found.sort();
     Ok(found)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn who_withdraws_while_the_study_runs_has_a_button() {
+        let said = not_now(FolderError::Busy { path: PathBuf::from("data") }).to_string();
+        assert!(
+            said.contains("data is in use") && said.contains("Withdraw button on the experimenter's page"),
+            "{said}"
+        );
+    }
 }

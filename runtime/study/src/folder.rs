@@ -267,7 +267,15 @@ impl Folder {
     /// # Errors
     /// [`FolderError::File`].
     pub fn notes(&self) -> Result<Vec<Note>, FolderError> {
-        lines(&self.path.join("notes.jsonl"))
+        Self::notes_in(&self.path)
+    }
+
+    /// The same of a folder that somebody else may hold.
+    ///
+    /// # Errors
+    /// [`FolderError::File`].
+    pub fn notes_in(path: &Path) -> Result<Vec<Note>, FolderError> {
+        lines(&path.join("notes.jsonl"))
     }
 
     /// Whose data were removed.

@@ -28,6 +28,7 @@
 mod assign;
 mod chance;
 mod check;
+mod cycle;
 pub mod design;
 mod findings;
 mod folder;
@@ -51,6 +52,7 @@ mod written;
 
 pub use assign::assign;
 pub use check::{Program, StudyError, StudyFile};
+pub use cycle::Cycle;
 pub use design::Study;
 pub use folder::{Consent, Folder, FolderError, Note, Withdrawal};
 pub use journal::{Journal, JournalError};

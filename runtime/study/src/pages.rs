@@ -7,7 +7,7 @@ use crate::{
     markdown::html,
     plan::{Plan, Step, pseudonym},
     progress::{Doing, Phase},
-    registry::{Participant, Registry, Who},
+    registry::{Participant, Reading, Registry, Who},
     tables::{levels, progress_name},
 };
 
@@ -16,7 +16,9 @@ impl Registry {
     pub(crate) fn page(&self, who: Who) -> Value {
         let mut page = match who {
             Who::Withdrawn => json!({ "page": "withdrawn" }),
-            Who::Newcomer(index) => self.newcomers_page(self.newcomers.get(index).is_some_and(|one| one.has_read)),
+            Who::Newcomer(index) => {
+                self.newcomers_page(self.newcomers.get(index).map_or(Reading::Information, |one| one.reading))
+            }
             Who::Participant(place) => match self.participants.get(&place) {
                 Some(participant) => self.participants_page(participant),
                 None => json!({ "page": "withdrawn" }),
@@ -27,15 +29,15 @@ impl Registry {
         page
     }
 
-    fn newcomers_page(&self, has_read: bool) -> Value {
-        let study = &self.study;
-        if has_read {
-            let consent = &study.consent;
-            return json!({
-                "page": "consent", "html": html(&consent.text), "version": consent.version, "required": study.consents,
-            });
+    fn newcomers_page(&self, reading: Reading) -> Value {
+        let Study { information, consent, consents, .. } = &self.study;
+        match reading {
+            Reading::Information => json!({ "page": "information", "html": html(&information.text) }),
+            Reading::Consent => json!({
+                "page": "consent", "html": html(&consent.text), "version": consent.version, "required": consents,
+            }),
+            Reading::Declined => json!({ "page": "declined" }),
         }
-        json!({ "page": "information", "html": html(&study.information.text) })
     }
 
     fn participants_page(&self, participant: &Participant) -> Value {

@@ -72,7 +72,18 @@ pub(crate) struct Newcomer {
     pub token: String,
     /// The place of the link, if it is one that the experimenter gave out.
     place: Option<u32>,
-    pub has_read: bool,
+    pub reading: Reading,
+}
+
+/// What a newcomer's page shows.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub(crate) enum Reading {
+    /// What the study is about.
+    Information,
+    /// The consent form.
+    Consent,
+    /// That nothing of theirs was recorded, since they do not agree.
+    Declined,
 }
 
 /// Who has a token.
@@ -168,7 +179,7 @@ impl Registry {
         if self.newcomers.len() >= MOST_NEWCOMERS {
             self.newcomers.pop_front();
         }
-        self.newcomers.push_back(Newcomer { token, place, has_read: false });
+        self.newcomers.push_back(Newcomer { token, place, reading: Reading::Information });
         self.newcomers.len() - 1
     }
 

@@ -1,4 +1,4 @@
-//! A study's own tables: participants, missions and answers; and the columns that tell of the tables of logs under which
+//! A study's own tables: participants, missions, answers and notes; and the columns that tell of the tables of logs under which
 //! conditions their sessions were played.
 
 use std::{borrow::Cow, collections::BTreeMap, path::PathBuf};
@@ -12,8 +12,8 @@ use cohabit_tables::{
 
 use crate::{
     design::{Choice, FactorKind, Study},
-    folder::{Folder, FolderError},
-    plan::{Plan, Step, pseudonym},
+    folder::{Folder, FolderError, Note},
+    plan::{Plan, Step, place_of, pseudonym},
     progress::{Doing, Done, Phase, Progress},
     session::{session_name, step_of},
 };
@@ -49,11 +49,12 @@ pub fn export(
     study: &Study,
     all: &[Progress],
     withdrawn: &[String],
+    noted: &[Note],
     mut of_logs: Vec<Table>,
     out: &std::path::Path,
 ) -> Result<Vec<PathBuf>, TablesError> {
     add_conditions(study, all, &mut of_logs);
-    let own = [participants(study, all, withdrawn), missions(study, all), answers(study, all)];
+    let own = [participants(study, all, withdrawn), missions(study, all), answers(study, all), notes(noted)];
     let tables: Vec<Table> = own.into_iter().chain(of_logs).collect();
     let codebook = codebook(&tables);
     let written = tables.iter().chain([&codebook]).map(|table| write_csv(table, out));
@@ -254,6 +255,26 @@ fn answer_rows(study: &Study, plan: &Plan, done: &Done) -> Vec<Vec<Cell>> {
     messages.iter().map(row).collect()
 }
 
+fn notes(all: &[Note]) -> Table {
+    let fields = vec![
+        field("at_ms", Whole, "ms", "wall time at which it was written, since 1970"),
+        field(
+            "participant",
+            Text,
+            "",
+            "what the participant that it is about is called; nothing if it is about the study",
+        ),
+        field("place", Whole, "", "that participant's place in the order of all, from 1"),
+        field("text", Text, "", "the note"),
+    ];
+    let row = |note: &Note| {
+        let about = note.participant.as_deref();
+        let place = about.and_then(place_of);
+        vec![whole(note.at_ms), about.map_or(Cell::Nothing, text), place.map_or(Cell::Nothing, whole), text(&note.text)]
+    };
+    Table { name: "notes", meaning: "a note of the experimenter's", fields, rows: all.iter().map(row).collect() }
+}
+
 /// Adds to tables of logs, by the name of the session, which step it was and the levels of all factors.
 fn add_conditions(study: &Study, all: &[Progress], tables: &mut [Table]) {
     let plans: BTreeMap<u32, &Plan> = all.iter().map(|progress| (progress.plan().place, progress.plan())).collect();
@@ -270,5 +291,29 @@ fn add_conditions(study: &Study, all: &[Progress], tables: &mut [Table]) {
             row.push(of.map_or(Cell::Nothing, |(_, step)| whole(step + 1)));
             row.extend(factor_cells(study, &BOTH, &of.map(|(plan, step)| plan.choices(step)).unwrap_or_default()));
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn notes_are_about_somebody_or_about_the_study() {
+        let note = |participant: Option<&str>, text: &str| Note {
+            at_ms: 5,
+            participant: participant.map(str::to_owned),
+            text: text.to_owned(),
+        };
+        let table = notes(&[note(Some("P12"), "looks bored"), note(None, "the lab is cold")]);
+        let words = |text: &str| Cell::Text(text.to_owned());
+        assert_eq!(
+            table.rows,
+            [
+                vec![Cell::Whole(5), words("P12"), Cell::Whole(12), words("looks bored")],
+                vec![Cell::Whole(5), Cell::Nothing, Cell::Nothing, words("the lab is cold")],
+            ]
+        );
+        assert!(table.rows.iter().all(|row| row.len() == table.fields.len()));
     }
 }

@@ -21,9 +21,10 @@ use serde_json::{Value, json};
 use crate::{
     folder::Note,
     keeper::lock,
+    markdown::escaped,
     plan::place_of,
     progress::{Ending, Event},
-    registry::{Registry, StudyFault, Who, now_ms},
+    registry::{Reading, Registry, StudyFault, Who, now_ms},
 };
 
 const SCRIPT: &str = "text/javascript; charset=utf-8";
@@ -102,7 +103,7 @@ fn router(service: StudyService) -> Router {
         .route("/experimenter/{token}", get(experimenter))
         .route("/experimenter/{token}/state", get(overview))
         .route("/experimenter/{token}/command", post(command))
-        .fallback(|| async { stranger() })
+        .fallback(nowhere)
         .with_state(service)
 }
 
@@ -114,8 +115,17 @@ fn page(text: &'static str) -> Response {
     ([(header::CONTENT_TYPE, HTML)], text).into_response()
 }
 
-fn stranger() -> Response {
-    (StatusCode::NOT_FOUND, page(STRANGER_PAGE)).into_response()
+/// The page of those whose link is not known, with whom to ask.
+fn stranger(contact: &str) -> Response {
+    (StatusCode::NOT_FOUND, [(header::CONTENT_TYPE, HTML)], strangers_page(contact)).into_response()
+}
+
+fn strangers_page(contact: &str) -> String {
+    STRANGER_PAGE.replace("{contact}", &escaped(contact))
+}
+
+async fn nowhere(State(service): State<StudyService>) -> Response {
+    with_study(service, |registry, _| stranger(&registry.study.contact)).await
 }
 
 /// Does something with the study, away from the threads that serve: what is written down takes its time.
@@ -141,7 +151,7 @@ fn told(fault: &StudyFault) -> Value {
 async fn sign_up(State(service): State<StudyService>, Path(given): Path<String>) -> Response {
     with_study(service, move |registry, _| {
         if !token::admits(&registry.links.sign_up, Some(&given)) {
-            return stranger();
+            return stranger(&registry.study.contact);
         }
         match registry.sign_up() {
             Ok(token) => Redirect::to(&format!("/p/{token}")).into_response(),
@@ -154,7 +164,7 @@ async fn sign_up(State(service): State<StudyService>, Path(given): Path<String>)
 async fn participant(State(service): State<StudyService>, Path(given): Path<String>) -> Response {
     with_study(service, move |registry, _| match registry.who(&given) {
         Some(_) => page(STUDY_PAGE),
-        None => stranger(),
+        None => stranger(&registry.study.contact),
     })
     .await
 }
@@ -200,16 +210,16 @@ async fn event(State(service): State<StudyService>, Path(given): Path<String>, J
     .await
 }
 
-fn newcomers_event(registry: &mut Registry, index: usize, event: &Event) -> Result<(), StudyFault> {
-    match event {
+pub(crate) fn newcomers_event(registry: &mut Registry, index: usize, event: &Event) -> Result<(), StudyFault> {
+    let reading = match event {
         Event::Consented { version, ticked } => return registry.enrol(index, version, *ticked),
-        Event::Read | Event::Declined => {
-            if let Some(newcomer) = registry.newcomers.get_mut(index) {
-                newcomer.has_read = matches!(event, Event::Read);
-            }
-        }
+        Event::Read => Reading::Consent,
+        Event::Declined => Reading::Declined,
         // Of people who have not agreed nothing is kept that could be removed.
-        _ => {}
+        _ => return Ok(()),
+    };
+    if let Some(newcomer) = registry.newcomers.get_mut(index) {
+        newcomer.reading = reading;
     }
     Ok(())
 }
@@ -239,7 +249,11 @@ fn participants_event(registry: &mut Registry, place: u32, sent: &Sent) -> Resul
 
 async fn experimenter(State(service): State<StudyService>, Path(given): Path<String>) -> Response {
     with_study(service, move |registry, _| {
-        if token::admits(&registry.links.experimenter, Some(&given)) { page(EXPERIMENTER_PAGE) } else { stranger() }
+        if token::admits(&registry.links.experimenter, Some(&given)) {
+            page(EXPERIMENTER_PAGE)
+        } else {
+            stranger(&registry.study.contact)
+        }
     })
     .await
 }
@@ -322,4 +336,15 @@ fn short(text: &str) -> Result<String, StudyFault> {
         return Ok(text.to_owned());
     }
     Err(StudyFault::NotNow(format!("Please write 1 to {LONGEST_NOTE} characters.")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn whose_link_is_not_known_reads_whom_to_ask() {
+        let page = strangers_page("Ada <ada@example.org>");
+        assert!(page.contains("Ada &lt;ada@example.org&gt;") && !page.contains("{contact}"), "{page}");
+    }
 }

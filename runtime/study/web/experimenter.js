@@ -71,7 +71,7 @@ function actionsOf(one) {
   };
   const made = [];
   if (one.link) made.push(labelled(button("quiet", "Copy link", (event) => copy(event.target, one.link)), "Copy link"));
-  if (["ready", "waiting", "mission"].includes(one.progress)) {
+  if (one.progress === "mission") {
     made.push(labelled(button("quiet", "End mission", () => confirm(`End ${participant}'s mission?`) && order({ end_mission: { participant } })), "End mission"));
   }
   if (!["not begun", "excluded", "withdrawn"].includes(one.progress)) {
@@ -80,6 +80,10 @@ function actionsOf(one) {
         const reason = prompt(`Why is ${participant} excluded? Their data stay.`);
         if (reason) order({ exclude: { participant, reason } });
       }), "Exclude"),
+    );
+  }
+  if (!["not begun", "withdrawn"].includes(one.progress)) {
+    made.push(
       labelled(button("danger", "Withdraw", () => confirm(`Delete all data of ${participant}? This cannot be undone.`) && order({ withdraw: { participant } })), "Withdraw"),
     );
   }

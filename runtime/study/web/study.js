@@ -12,9 +12,18 @@ let shown = "";
 let update = () => {};
 let step = null;
 
+/**
+ * What is left of a page when the server no longer knows its link. Links of participants are forgotten only when they
+ * withdraw, be it while the server was away; those of people who have not agreed yet, whenever it is started.
+ */
+let kept = { takesPart: false };
+
 const send = (event) => tell("event", { step, event });
 
-function show(state) {
+function show(answer) {
+  const state = answer.page === "unknown" ? { ...kept, page: kept.takesPart ? "withdrawn" : "unknown" } : answer;
+  const takesPart = kept.takesPart || Boolean(state.step) || state.page === "finished";
+  kept = { title: state.title, contact: state.contact, takesPart };
   const key = JSON.stringify([state.page, state.step, state.session]);
   step = state.step ?? null;
   if (key !== shown) {
@@ -47,6 +56,7 @@ function showBar(state) {
   byId("bar-time").textContent = isTimed ? `${clock(state.left_s)} left` : "";
   const mayLeave = Boolean(state.step) || state.page === "finished";
   byId("leave").hidden = !mayLeave;
+  byId("contact").textContent = state.contact ? `Questions about this study? Contact: ${state.contact}` : "";
   byId("skip").hidden = !(state.page === "mission" && state.skip_in_s === 0 && !state.is_over);
 }
 
@@ -96,6 +106,12 @@ const PAGES = {
     });
     return [heading("Your consent"), sheet(html), form];
   },
+
+  declined: () => [
+    heading("You do not take part"),
+    element("p", "", "Thank you. Nothing of yours was recorded. You can close this page."),
+    element("div", "actions", button("quiet", "Back to the consent form", () => send("read"))),
+  ],
 
   questionnaire({ questionnaire }) {
     const about = element("p", "soft", questionnaire.about);
@@ -164,14 +180,14 @@ const PAGES = {
     return parts;
   },
 
-  withdrawn: ({ contact }) => [
+  withdrawn: () => [
     heading("You have stopped taking part"),
-    element("p", "", `All data of yours in this study are deleted. You may close this page. If you have questions, ask ${contact}.`),
+    element("p", "", "Nothing of yours in this study is kept. You can close this page."),
   ],
 
-  excluded: ({ contact }) => [
+  excluded: () => [
     heading("The study ends here for you"),
-    element("p", "", `Thank you for taking part. If you have questions, ask ${contact}.`),
+    element("p", "", "Thank you for taking part. You can close this page."),
   ],
 
   unknown: () => [

@@ -12,7 +12,7 @@ use crate::{
     },
 };
 
-const FIELDS: [Field; 23] = [
+const FIELDS: [Field; 24] = [
     Field::new("session", Text, "", "the session, by the name of its log"),
     Field::new("participant", Text, "", "what the participant is called in the study"),
     Field::new("mission", Text, "", "the mission's file"),
@@ -20,7 +20,8 @@ const FIELDS: [Field; 23] = [
     Field::new("seed", Text, "", "the seed of all that was random"),
     Field::new("program", Text, "", "the version of the program that recorded it"),
     Field::new("began_ns", Whole, "ns", "wall time of its first tick, since 1970"),
-    Field::new("duration_s", Real, "s", "simulated time"),
+    Field::new("duration_s", Real, "s", "simulated time; a session that goes on from another one contains its time"),
+    Field::new("branched_s", Real, "s", "simulated time at which it goes on from another one; nothing if from none"),
     Field::new("problems", Text, "", "what its log lacks, line by line: what follows is then of what is left"),
     Field::new("success", Flag, "", "whether every goal was met"),
     Field::new("goals", Whole, "", "goals of the mission"),
@@ -86,6 +87,7 @@ fn row(played: &Played) -> Vec<Cell> {
         Cell::text(&session.program),
         Cell::maybe(played.log.ticks.first(), |tick| Cell::whole(tick.wall_nanos)),
         Cell::Real(seconds(played.ticks())),
+        Cell::maybe(session.branched.as_ref(), |branch| Cell::Real(seconds(branch.tick))),
         Cell::text(played.log.problems().join("\n")),
         Cell::maybe(played.success(), Cell::Flag),
         Cell::whole(played.goals.len()),

@@ -53,6 +53,7 @@ fn tables_hold_what_was_counted_while_sessions_were_played() {
     let success: Vec<_> = sessions.column("success").cloned().collect();
     assert_eq!(success, counted.iter().map(|one| Cell::Flag(one.success)).collect::<Vec<_>>());
     assert!(sessions.column("setting_ask").all(|cell| *cell == Cell::Text("always".to_owned())));
+    assert!(sessions.column("branched_s").all(|cell| *cell == Cell::Nothing), "none goes on from another one");
     let fields: Vec<&str> = sessions.fields.iter().map(|field| &*field.name).collect();
     for name in NOTEBOOK.lines().find(|line| line.starts_with("outcomes = ")).unwrap().split('"').skip(1).step_by(2) {
         assert!(fields.contains(&name), "the script reads `{name}`, which no session has");

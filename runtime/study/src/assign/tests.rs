@@ -5,7 +5,10 @@ use std::collections::BTreeMap;
 use proptest::prelude::*;
 
 use super::*;
-use crate::design::{Factor, Level, Setting, Settings};
+use crate::{
+    cycle::Cycle,
+    design::{Factor, Level, Setting, Settings},
+};
 
 fn factor(name: &str, kind: FactorKind, levels: usize) -> Factor {
     let level = |number: usize| Level {
@@ -125,6 +128,39 @@ proptest! {
             }
         }
     }
+}
+
+proptest! {
+    #[test]
+    fn a_full_cycle_balances_conditions_missions_and_their_positions(
+        seed: u64, between in 1_usize..3, within in 1_usize..4, each in 1_usize..3, blocks in 1_usize..4
+    ) {
+        for assignment in SQUARES {
+            let mut study = study(seed, assignment, [between, within, each], MissionOrder::Balanced);
+            study.block_size = between * blocks;
+            let missions = within * each;
+            let people = u32::try_from(Cycle::of(&study).participants()).unwrap();
+            let met = (1..=people).flat_map(|place| {
+                let plan = assign(&study, place);
+                let played = played(&plan).into_iter().enumerate();
+                played.map(move |at| (plan.between.clone(), at)).collect::<Vec<_>>()
+            });
+            prop_assert!(is_even(&count(met), between * missions * missions * within));
+        }
+    }
+}
+
+#[test]
+fn cycles_are_of_what_is_balanced() {
+    let check = |assignment, counts, order, block_size, expected| {
+        let study = Study { block_size, ..study(1, assignment, counts, order) };
+        assert_eq!(Cycle::of(&study).participants(), expected, "{assignment:?} {counts:?} {order:?} {block_size}");
+    };
+    check(Assignment::BalancedLatinSquare, [1, 3, 1], MissionOrder::Balanced, 1, 18);
+    check(Assignment::BalancedLatinSquare, [1, 3, 1], MissionOrder::Fixed, 1, 6);
+    check(Assignment::LatinSquare, [2, 3, 2], MissionOrder::Balanced, 2, 36);
+    check(Assignment::LatinSquare, [2, 2, 1], MissionOrder::Random, 6, 12);
+    check(Assignment::BlockRandom, [2, 3, 1], MissionOrder::Fixed, 4, 4);
 }
 
 #[test]

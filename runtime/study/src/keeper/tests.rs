@@ -10,6 +10,7 @@ use crate::{
     registry::Who,
     scratch::Scratch,
     session::{PageAddress, Playing},
+    web::newcomers_event,
 };
 
 struct Anything;
@@ -165,8 +166,12 @@ fn nothing_is_written_down_before_consent() {
     let registry = case.registry();
     let token = registry.sign_up().unwrap();
     let Some(Who::Newcomer(index)) = registry.who(&token) else { panic!("a newcomer") };
-    registry.newcomers[index].has_read = true;
-    assert_eq!(registry.page(Who::Newcomer(index))["page"], "consent");
+    // Who does not agree reads that nothing of theirs was recorded, and may come back to the form.
+    for (event, page) in [(Event::Read, "consent"), (Event::Declined, "declined"), (Event::Read, "consent")] {
+        newcomers_event(registry, index, &event).unwrap();
+        assert_eq!(registry.page(Who::Newcomer(index))["page"], page);
+        assert_eq!(registry.page(Who::Newcomer(index))["contact"], "us");
+    }
     assert!(registry.enrol(index, "1", 2).is_err(), "another version of the form");
     assert!(registry.enrol(index, "2", 1).is_err(), "a box that is not ticked");
     assert_eq!(files(&data), before);
