@@ -95,6 +95,16 @@ impl Conversation<'_> {
         }
     }
 
+    /// Whether it is nothing but a plain request with a plain condition.
+    pub(crate) fn is_plain_conditional(&self, words: &[String], context: &Context) -> bool {
+        self.conditional(&with_copula(self.lexicon, words), context).is_some_and(|said| {
+            said.before.is_empty()
+                && said.after.is_empty()
+                && self.question_of(&said.condition, &said.request).is_some()
+                && self.reads_all(&self.wording(&token::sentence(&said.request)))
+        })
+    }
+
     fn clauses(&self, words: &[String]) -> Vec<Clause> {
         let parts = clause::parts(self.lexicon, self.catalog, words);
         parts.into_iter().filter_map(|part| if let Part::Clause(clause) = part { Some(clause) } else { None }).collect()

@@ -69,7 +69,10 @@ impl Conversation<'_> {
         if stop::denies_stop(utterance) {
             ways.retain(|way| !way.stops());
         }
-        // A robot that does nothing need not stop.
+        // A robot that does nothing, and asks nothing, need not stop.
+        if !context.is_busy() && context.pending.is_none() {
+            ways.retain(|way| !matches!(way.understanding, Understanding::Stop { then: None, .. }));
+        }
         let stops = |way: &&Way| way.stops() && way.probability >= TO_STOP && context.is_busy();
         if let Some(stop) = ways.iter().find(stops) {
             return stop.taken(context);
@@ -117,9 +120,10 @@ impl Conversation<'_> {
         let is_too_long = wording.utterance.chars().nth(token::MAX_CHARS).is_some();
         // What is to be done otherwise only the grammar knows to take up where the condition does not hold.
         let has_otherwise = by_grammar.is_understood() && condition::has_otherwise(self.lexicon, &wording.words);
+        let is_conditional = by_grammar.is_understood() && self.is_plain_conditional(&wording.tidied, context);
         let is_answer =
             by_grammar.steps().is_some() && said <= LONGEST_ANSWER && self.answers(&wording.tidied, context);
-        if is_of_lab || is_strange || is_too_long || has_otherwise || is_answer {
+        if is_of_lab || is_strange || is_too_long || has_otherwise || is_conditional || is_answer {
             return Reading::Sure;
         }
         // `pour the milk`: where to; `drop it`: nothing is there.
