@@ -570,7 +570,7 @@ impl Answerer<'_> {
         if !filling.is_empty() {
             return Understanding::whether(true, format!("It is {place}{filling}."), Vec::new());
         }
-        let preposition = self.scene.object(id).map_or("in", |object| describe::inside(self.catalog, object.class));
+        let preposition = describe::preposition(self.catalog, self.scene, id);
         Understanding::whether(false, format!("I know of nothing {preposition} {place}."), Vec::new())
     }
 

@@ -120,7 +120,7 @@ impl Planner<'_> {
     }
 
     pub(crate) fn preposition(&self, receptacle: ObjectId) -> &'static str {
-        self.scene.object(receptacle).map_or("on", |object| crate::describe::inside(self.catalog, object.class))
+        crate::describe::preposition(self.catalog, &self.scene, receptacle)
     }
 
     /// What a thing is to be put into that nobody said where: what takes only such things, or else what was spoken of.

@@ -33,12 +33,13 @@ pub(crate) fn listed(catalog: &Catalog, scene: &Known, objects: &[&KnownObject],
     if names.is_empty() { "nothing else".to_owned() } else { describe::list(&names, "and") }
 }
 
-/// `In the fridge there are a milk and an apple`; nothing, where nothing is known to be there.
+/// `in the fridge there are a milk and an apple`; nothing, where nothing is known to be there.
 pub(crate) fn inside(catalog: &Catalog, scene: &Known, id: ObjectId, told: usize) -> Option<String> {
     let inside: Vec<&KnownObject> = scene.contents(id).collect();
-    let place = describe::short(catalog, scene, id);
-    let preposition = scene.object(id).map_or("in", |object| describe::inside(catalog, object.class));
+    if inside.is_empty() {
+        return None;
+    }
     let verb = if inside.len() > 1 { "are" } else { "is" };
-    let list = listed(catalog, scene, &inside, told);
-    (!inside.is_empty()).then(|| describe::within_sentence(&format!("{preposition} {place} there {verb} {list}")))
+    let (preposition, place) = (describe::preposition(catalog, scene, id), describe::short(catalog, scene, id));
+    Some(format!("{preposition} {place} there {verb} {}", listed(catalog, scene, &inside, told)))
 }

@@ -138,9 +138,7 @@ impl Deeds {
             .iter()
             .rposition(|deed| deed.step.object() == Some(id) && deed.reason == self.0[last].reason);
         let of_it = first.into_iter().chain([last]).map(|at| &self.0[at]).chain(put);
-        let mut said: Vec<String> = of_it.map(Deed::in_words).collect();
-        said.dedup();
-        Some(format!("I {}", describe::list(&said, "and")))
+        Some(format!("I {}", listed(of_it, TOLD)))
     }
 
     /// Whether this thing was in the hand after that deed.
@@ -169,7 +167,11 @@ impl Deeds {
             Intent::Toggle,
             Intent::Use,
         ];
-        let did = |deed: &Deed| is_of(&deed.step.action, intent) && self.is_about(deed, id);
+        // Who did anything to a thing went there.
+        let did = |deed: &Deed| match intent {
+            Intent::GoTo => deed.step.object() == Some(id),
+            _ => is_of(&deed.step.action, intent) && self.is_about(deed, id),
+        };
         TOLD_BY_DEEDS.contains(&intent).then(|| self.0.iter().any(did))
     }
 }
@@ -260,6 +262,7 @@ mod tests {
         assert_eq!(deeds.why(Some(Intent::Pour), None), None);
         assert_eq!(deeds.did(Intent::PickUp, milk), Some(true));
         assert_eq!(deeds.did(Intent::Place, milk), Some(false));
+        assert_eq!(deeds.did(Intent::GoTo, fridge), Some(true), "who opened it was there");
         assert_eq!(deeds.to(fridge).map(|deed| deed.reason.as_str()), Some("get the milk"));
     }
 

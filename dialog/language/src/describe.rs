@@ -125,6 +125,11 @@ pub(crate) fn inside(catalog: &Catalog, class: ClassId) -> &'static str {
     if is_enclosed || is_hollow { "in" } else { "on" }
 }
 
+/// How what a thing carries lies: in it or on it.
+pub(crate) fn preposition(catalog: &Catalog, scene: &Known, id: ObjectId) -> &'static str {
+    scene.object(id).map_or("on", |object| inside(catalog, object.class))
+}
+
 /// `the milk in the fridge`.
 pub(crate) fn full(catalog: &Catalog, scene: &Known, id: ObjectId) -> String {
     let location = location(catalog, scene, id);

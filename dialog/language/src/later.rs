@@ -75,13 +75,17 @@ impl Conversation<'_> {
         self.scene.goals.iter().filter(|goal| !goal.met && !goal.text.is_empty()).map(|goal| goal.text.as_str())
     }
 
+    /// What a goal says, as if the person had said it.
+    pub(crate) fn words_of_goal(&self, goal: &str) -> Vec<String> {
+        tidy::tidied(self.lexicon, &self.lexicon.normalise(goal).0)
+    }
+
     /// Does what the next goal says, as if the person had said it.
     pub(crate) fn next_goal(&self, context: &mut Context) -> Understanding {
         let Some(goal) = self.open_goals().next() else {
             return Understanding::answer("There is nothing left to do that I know of.");
         };
-        let (words, _) = self.lexicon.normalise(goal);
-        let words = tidy::tidied(self.lexicon, &words);
+        let words = self.words_of_goal(goal);
         let lost = || {
             let text = goal.trim_end_matches('.');
             Understanding::lost(format!("The next goal is: {text}. Tell me what to do for it, step by step."))

@@ -345,9 +345,7 @@ impl Planner<'_> {
     fn add_look_in(&mut self, settled: &Settled) -> Result<(), Fault> {
         for object in self.find_objects(settled, &Want::object(settled.intent))? {
             self.open_around(object, true);
-            let preposition =
-                self.scene.object(object).map_or("in", |object| describe::inside(self.catalog, object.class));
-            self.interact(Verb::Examine, object, &format!("looking {preposition}"));
+            self.interact(Verb::Examine, object, &format!("looking {}", self.preposition(object)));
         }
         Ok(())
     }

@@ -3,7 +3,7 @@
 use cohabit_cdf::{Action, Verb};
 
 use crate::{
-    context::Context, conversation::Conversation, imagine, known::Known, tidy, understanding::Step, way::Way,
+    context::Context, conversation::Conversation, imagine, known::Known, understanding::Step, way::Way,
     wording::Wording,
 };
 
@@ -20,7 +20,7 @@ impl Conversation<'_> {
     pub(crate) fn weigh(&self, ways: &mut [Way], wording: &Wording<'_>, context: &Context) {
         // Who forbids something may well mean what is open.
         let is_denied = self.lexicon.negation.occurs_in(&wording.words);
-        let goals: Vec<Way> = self.goals_as_ways(context);
+        let goals: Vec<Way> = if is_denied { Vec::new() } else { self.goals_as_ways(context) };
         let unknown = 1.0 - ways.iter().map(|way| way.probability).sum::<f32>().min(1.0);
         for way in ways.iter_mut() {
             let for_goal = match goals.iter().position(|goal| way.leads_to(goal)) {
@@ -61,8 +61,7 @@ impl Conversation<'_> {
     fn goals_as_ways(&self, context: &Context) -> Vec<Way> {
         let goals = self.open_goals().map(|goal| {
             let mut then = Context { pending: None, ..context.at_new_utterance() };
-            let (words, _) = self.lexicon.normalise(goal);
-            let understanding = self.understand_words(tidy::tidied(self.lexicon, &words), &mut then);
+            let understanding = self.understand_words(self.words_of_goal(goal), &mut then);
             Way { understanding, probability: 1.0, context: then }
         });
         goals.filter(|way| way.steps().is_some()).collect()

@@ -13,7 +13,9 @@ pub(crate) fn success(catalog: &Catalog, devices: &Devices, scene: &Known, step:
     let text = match step.action {
         Action::PickUp { object } => format!("I have {}", the(object)),
         Action::Place { receptacle } => match scene.contents(receptacle).last() {
-            Some(_) => format!("done, it is {} {} now", preposition(catalog, scene, receptacle), the(receptacle)),
+            Some(_) => {
+                format!("done, it is {} {} now", describe::preposition(catalog, scene, receptacle), the(receptacle))
+            }
             None => "done".to_owned(),
         },
         Action::GoTo { target: GoToTarget::Room(room) } => format!("I am in the {}", room.name()),
@@ -33,10 +35,6 @@ pub(crate) fn success(catalog: &Catalog, devices: &Devices, scene: &Known, step:
         Action::Move { .. } | Action::Rotate { .. } | Action::Look { .. } => format!("I am done {}", step.says),
     };
     describe::sentence(&text)
-}
-
-fn preposition(catalog: &Catalog, scene: &Known, id: ObjectId) -> &'static str {
-    scene.object(id).map_or("on", |object| describe::inside(catalog, object.class))
 }
 
 fn interaction(

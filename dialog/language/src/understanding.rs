@@ -78,26 +78,23 @@ impl Understanding {
 
     /// The same, said after something else.
     pub(crate) fn after(self, said: &str) -> Self {
-        let joined = |text: String| format!("{said} {text}");
-        match self {
-            Self::Plan { steps, reply } => Self::Plan { steps, reply: joined(reply) },
-            Self::Question { kind, about, text, candidates, options } => {
-                Self::Question { kind, about, text: joined(text), candidates, options }
-            }
-            Self::Answer { text, highlight, holds } => Self::Answer { text: joined(text), highlight, holds },
-            Self::Refusal { text, is_lost } => Self::Refusal { text: joined(text), is_lost },
-            Self::Stop { reply, then } => Self::Stop { reply: joined(reply), then },
-        }
+        self.saying(|text| format!("{said} {text}"))
     }
 
-    /// The same plan or answer, with something else said after it.
+    /// The same, with something else said after it.
     pub(crate) fn before(self, said: &str) -> Self {
-        let joined = |text: String| format!("{text} {said}");
-        match self {
-            Self::Plan { steps, reply } => Self::Plan { steps, reply: joined(reply) },
-            Self::Answer { text, highlight, holds } => Self::Answer { text: joined(text), highlight, holds },
-            other => other,
-        }
+        self.saying(|text| format!("{text} {said}"))
+    }
+
+    /// The same with another reply.
+    fn saying(mut self, other: impl FnOnce(&str) -> String) -> Self {
+        let (Self::Plan { reply: text, .. }
+        | Self::Question { text, .. }
+        | Self::Answer { text, .. }
+        | Self::Refusal { text, .. }
+        | Self::Stop { reply: text, .. }) = &mut self;
+        *text = other(text);
+        self
     }
 
     /// Whether nothing was made of what was said.
