@@ -61,7 +61,8 @@ impl Answerer<'_> {
             (QuestionKind::Done, about) => self.done(about),
             (QuestionKind::DoneSoFar, _) => self.done_so_far(),
             (QuestionKind::Purpose, Some(phrase)) => self.purpose(phrase),
-            (QuestionKind::Danger, about) => self.danger(about),
+            (QuestionKind::Danger, about) => self.danger(about, question),
+            (QuestionKind::People, _) => self.people(),
             (QuestionKind::Trouble, Some(phrase)) => self.with_object(phrase, |id| self.trouble(id)),
             (QuestionKind::Owner, Some(phrase)) => self.with_object(phrase, |id| {
                 let place = describe::sentence(&self.place_sentence(id));
@@ -351,27 +352,30 @@ impl Answerer<'_> {
         self.with_known(phrase, |object| self.all_known(object, "I do not know that"))
     }
 
-    fn danger(&self, about: Option<&Phrase>) -> Understanding {
+    /// Who is with the robot: it knows of nobody but who speaks to it.
+    fn people(&self) -> Understanding {
+        match self.scene.person.filter(|person| person.room == self.scene.robot.room) {
+            Some(_) => Understanding::whether(true, "You are here with me. I see nobody else.", Vec::new()),
+            None => Understanding::whether(false, "I see nobody here.", Vec::new()),
+        }
+    }
+
+    fn danger(&self, about: Option<&Phrase>, question: &Question) -> Understanding {
         let want = Want::place(Intent::Find, &[], None);
         let object =
             about.and_then(|phrase| self.ground().one(phrase, &want).ok()).and_then(|id| self.scene.object(id));
         let facts = self.facts();
-        let (text, highlight) = match object {
-            Some(object) => {
-                let the = self.short(object.id);
-                let danger = facts.danger(object).unwrap_or_else(|| format!("I know of nothing dangerous about {the}"));
-                let told = facts.written_of(object).unwrap_or_default();
-                (format!("{} {told}", describe::sentence(&danger)).trim().to_owned(), vec![object.id])
-            }
-            None => {
-                let sparking = self.scene.objects.iter().find(|object| object.has(StateFlag::Sparking));
-                let danger = sparking.and_then(|object| Some((facts.danger(object)?, vec![object.id])));
-                let (text, highlight) =
-                    danger.unwrap_or_else(|| ("I know of nothing dangerous here".to_owned(), Vec::new()));
-                (describe::sentence(&text), highlight)
-            }
+        let sparking = || self.scene.objects.iter().find(|object| object.has(StateFlag::Sparking));
+        let (danger, object) = match object.or_else(sparking) {
+            Some(object) => (facts.danger(object), Some(object)),
+            None => (None, None),
         };
-        Understanding::about(text, highlight)
+        let is_so = danger.is_some() != question.asks_for_safety();
+        let of = object.map_or_else(|| "here".to_owned(), |object| format!("about {}", self.short(object.id)));
+        let danger = danger.unwrap_or_else(|| format!("I know of nothing dangerous {of}"));
+        let told = object.and_then(|object| facts.written_of(object)).unwrap_or_default();
+        let text = format!("{} {told}", describe::sentence(&danger));
+        Understanding::whether(is_so, text.trim(), object.map(|object| object.id).into_iter().collect())
     }
 
     fn trouble(&self, id: ObjectId) -> Understanding {

@@ -78,7 +78,10 @@ impl Planner<'_> {
     pub(crate) fn pick_up(&mut self, object: ObjectId, may_put_down: bool) -> Result<(), Fault> {
         match self.scene.robot.held {
             Some(held) if held == object => {
-                self.notes.push(format!("I already have {}", self.the(object)));
+                // What it takes for a request before this one goes without saying.
+                if self.steps.is_empty() {
+                    self.notes.push(format!("I already have {}", self.the(object)));
+                }
                 return Ok(());
             }
             _ if !self.has(object, Property::Pickupable) => {

@@ -221,7 +221,11 @@ impl Conversation<'_> {
                 let is_placed = |phrase: &Phrase| !phrase.relations.is_empty() || phrase.room.is_some();
                 asked_state(self.lexicon, &question.rest).is_some() || question.about.as_ref().is_some_and(is_placed)
             }
-            QuestionKind::Where | QuestionKind::Holding | QuestionKind::Contents => true,
+            QuestionKind::Where
+            | QuestionKind::Holding
+            | QuestionKind::Contents
+            | QuestionKind::Danger
+            | QuestionKind::People => true,
             _ => false,
         };
         can_tell.then_some((question, is_negated))
@@ -233,7 +237,7 @@ impl Conversation<'_> {
         let mut condition: Vec<String> =
             condition.iter().filter(|word| !token::is_punctuation(word)).cloned().collect();
         let before = condition.len();
-        condition.retain(|word| word != "not");
+        condition.retain(|word| !matches!(word.as_str(), "not" | "no"));
         let is_negated = before == condition.len() + 1;
         condition.retain(|word| !words.adverbs.contains(word));
         if words.own.longest(&condition).is_some() {
@@ -313,9 +317,4 @@ fn trimmed_end(words: &[String]) -> Vec<String> {
 /// Whether something is asked for on a condition.
 pub(crate) fn is_conditional(lexicon: &Lexicon, words: &[String]) -> bool {
     condition_at(lexicon, words).is_some() || lexicon.conditions.occurs_in(words)
-}
-
-/// Whether words say what is to be done where a condition does not hold.
-pub(crate) fn has_otherwise(lexicon: &Lexicon, words: &[String]) -> bool {
-    lexicon.ifs.otherwise.occurs_in(words)
 }

@@ -62,6 +62,9 @@ pub struct Context {
     /// What was answered before what is to be done is told.
     #[serde(default)]
     pub(crate) answered: String,
+    /// What was asked about and may be otherwise than when the robot last saw it.
+    #[serde(default)]
+    pub(crate) unwatched: Option<ObjectId>,
     /// Whether what was asked for last was found to be so already.
     #[serde(default)]
     pub(crate) is_met: bool,
@@ -232,7 +235,7 @@ impl Focus {
 impl Context {
     /// The same before anything is made of a new utterance.
     pub(crate) fn at_new_utterance(&self) -> Self {
-        Self { is_met: false, answered: String::new(), ..self.clone() }
+        Self { is_met: false, answered: String::new(), unwatched: None, ..self.clone() }
     }
 
     /// Takes note of what the robot or a person said. [`crate::Language::understand`] notes what it is told and replies; this is for what

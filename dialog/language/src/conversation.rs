@@ -49,10 +49,11 @@ pub(crate) struct Conversation<'a> {
 
 impl Conversation<'_> {
     pub(crate) fn understand(&self, utterance: &str, context: &mut Context) -> Understanding {
+        context.unwatched = None;
         let (understanding, sureness) = self.understand_surely(utterance, context);
         let is_lost = matches!(understanding, Understanding::Refusal { is_lost: true, .. });
         context.sureness = if is_lost { 0.0 } else { sureness };
-        understanding
+        self.with_a_look(utterance, understanding, context)
     }
 
     /// The same with how likely it is what was meant.
@@ -407,7 +408,7 @@ impl Conversation<'_> {
     pub(crate) fn plan(&self, clauses: Vec<Clause>, consent: Consent, context: &mut Context) -> Understanding {
         let request = reply::request_in_words(&clauses);
         if !request.is_empty() {
-            context.reason = format!("you asked me to {request}");
+            context.reason = format!("{}{request}", reply::ASKED_TO);
         }
         self.proceed(Search::new(clauses, consent), context)
     }
@@ -468,6 +469,14 @@ impl Conversation<'_> {
                 ask::confirmation(text)
             }
             Fault::Offer { text, .. } => Understanding::refusal(text),
+            // To put down what it holds is little, and easily undone.
+            Fault::HandFull { held, .. }
+                if self.scene.robot.held == Some(held)
+                    && !consent.may_put_down
+                    && self.judge.asking != Asking::Always =>
+            {
+                self.proceed(Search::new(clauses, Consent { may_put_down: true, ..consent }), context)
+            }
             Fault::HandFull { held, .. } => {
                 context.pending = Some(Pending::PutDown { clauses });
                 // What is asked for before may have it take that first.

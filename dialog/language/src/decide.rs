@@ -2,17 +2,19 @@
 //! is less likely the robot asks.
 
 use crate::{
-    ask, condition,
+    ask,
     context::{Context, Guess, Pending},
     conversation::Conversation,
-    lab, reply, stop, token,
+    lab,
+    lexicon::Pronoun,
+    reply, stop, token,
     understanding::{Asking, Clarification, Step, Understanding},
     way::Way,
     wording::Wording,
 };
 
 /// How likely steps must be meant for them to be taken without a question, where what they change is not simply put back and where it is.
-const TO_CHANGE: f32 = 0.7;
+const TO_CHANGE: f32 = 0.75;
 const TO_MOVE: f32 = 0.6;
 /// The same where nothing but the robot itself is moved.
 const TO_LOOK: f32 = 0.45;
@@ -37,8 +39,11 @@ const STRANGE: usize = 6;
 /// Up to how many words a refusal, or a question what shall be done, is believed, and an answer to the robot's question is likely nothing else.
 const SHORT: usize = 5;
 const LONGEST_ANSWER: usize = 24;
-/// From how many words on the rewriter is rather right where it is sure and the grammar reads something else, and how sure it must be.
+/// From how many words on the rewriter may be right where the grammar reads something else, from how many on it rather is, and how sure it must be
+/// for the one and the other.
+const SOME: usize = 4;
 const LONG: usize = 10;
+const TO_OVERRULE_SHORT: f32 = 0.94;
 const TO_OVERRULE: f32 = 0.7;
 
 /// How much of an utterance the grammar reads.
@@ -46,7 +51,7 @@ const TO_OVERRULE: f32 = 0.7;
 enum Reading {
     /// As much as anybody could.
     Sure,
-    /// All of it, but it is long: some of it may be meant otherwise.
+    /// All of it, but it is no mere word or two: some of it may be meant otherwise.
     Plain,
     /// Not all of it.
     Partial,
@@ -80,7 +85,17 @@ impl Conversation<'_> {
         if let Some(settled) = settled(&ways) {
             return settled.taken(context);
         }
-        let least = |way: &Way| if reading == Reading::Plain { way.least().max(TO_OVERRULE) } else { way.least() };
+        let to_overrule = match reading {
+            Reading::Plain if wording.length() < LONG => TO_OVERRULE_SHORT,
+            Reading::Plain => TO_OVERRULE,
+            _ => 0.0,
+        };
+        let least = |way: &Way| way.least().max(to_overrule);
+        // Questions have more shades than plain ones: of what is short, only another deed is rather meant.
+        let is_short = reading == Reading::Plain && wording.length() < LONG;
+        if is_short {
+            ways.retain(|way| way.steps().is_some());
+        }
         if let Some(likeliest) = ways.first().filter(|likeliest| likeliest.probability >= least(likeliest)) {
             return likeliest.taken(context);
         }
@@ -118,12 +133,10 @@ impl Conversation<'_> {
         let is_of_lab = asks_for_lab(&by_grammar.context) && !asks_for_lab(context);
         let is_strange = context.pending.is_none() && is_strange(wording);
         let is_too_long = wording.utterance.chars().nth(token::MAX_CHARS).is_some();
-        // What is to be done otherwise only the grammar knows to take up where the condition does not hold.
-        let has_otherwise = by_grammar.is_understood() && condition::has_otherwise(self.lexicon, &wording.words);
         let is_conditional = by_grammar.is_understood() && self.is_plain_conditional(&wording.tidied, context);
         let is_answer =
             by_grammar.steps().is_some() && said <= LONGEST_ANSWER && self.answers(&wording.tidied, context);
-        if is_of_lab || is_strange || is_too_long || has_otherwise || is_conditional || is_answer {
+        if is_of_lab || is_strange || is_too_long || is_conditional || is_answer {
             return Reading::Sure;
         }
         // `pour the milk`: where to; `drop it`: nothing is there.
@@ -134,8 +147,15 @@ impl Conversation<'_> {
         );
         // `the other one` is none that was just taken.
         let is_done = by_grammar.repeats(&context.last_plan) && self.small(&wording.tidied).is_empty();
+        // What `it` is the rewriter has from what was said alone.
+        let is_it = |at: usize| {
+            matches!(self.lexicon.pronouns.longest(&wording.tidied[at..]), Some((_, Pronoun::Thing | Pronoun::Things)))
+        };
+        let speaks_of_it = (0..wording.tidied.len()).any(is_it);
         match is_plain && !is_done && (by_grammar.is_understood() || is_known && said <= SHORT) {
-            true if said < LONG => Reading::Sure,
+            true if said < SOME || said < LONG && (speaks_of_it || !by_grammar.changes_or_asks_which()) => {
+                Reading::Sure
+            }
             true => Reading::Plain,
             false => Reading::Partial,
         }
@@ -225,6 +245,12 @@ impl Way {
         let is_said = self.probability < SURELY && self.steps().is_some();
         let understanding = self.understanding.clone();
         (if is_said { understanding.after(UNSURE) } else { understanding }, self.probability)
+    }
+
+    /// Whether it would change anything, or asks which thing is meant.
+    fn changes_or_asks_which(&self) -> bool {
+        matches!(self.understanding, Understanding::Question { kind: Clarification::Reference, .. })
+            || self.steps().is_some() && !self.only_looks()
     }
 
     /// How likely it must be meant to be carried out, or said.

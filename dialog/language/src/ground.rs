@@ -217,7 +217,7 @@ impl<'a> Ground<'a> {
             return Err(if phrase.is_empty() && !phrase.says_something() { Miss::Unknown } else { Miss::Unseen });
         }
         keep_if_any(&mut base, |object| Some(object.id) != want.exclude);
-        self.keep_affording(&mut base, want);
+        self.keep_affording(phrase, &mut base, want);
         let mut left = base.clone();
         left.retain(|object| self.is_as_said(phrase, object));
         if let Some(color) = &phrase.color {
@@ -335,7 +335,7 @@ impl<'a> Ground<'a> {
     }
 
     /// Drops what does not afford what is wanted, unless nothing does.
-    fn keep_affording(&self, base: &mut Vec<&KnownObject>, want: &Want<'_>) {
+    fn keep_affording(&self, phrase: &Phrase, base: &mut Vec<&KnownObject>, want: &Want<'_>) {
         if !want.classes.is_empty() {
             keep_if_any(base, |object| want.classes.contains(&object.class));
         }
@@ -345,7 +345,9 @@ impl<'a> Ground<'a> {
                 want.affordances.iter().any(|affordance| class.has(*affordance))
             });
         }
-        if want.intent == Intent::PickUp {
+        // `pick up another mug`
+        let is_another = phrase.is_any || phrase.side == Some(Side::Other);
+        if want.intent == Intent::PickUp && is_another {
             keep_if_any(base, |object| Some(object.id) != self.scene.robot.held);
         }
     }

@@ -1,11 +1,17 @@
 //! What people ask, among what else they say.
 
+use cohabit_cdf::{ObjectId, Property, StateFlag};
+
 use crate::{
-    answer::Answerer,
+    answer::{Answerer, asked_state},
     clause::{Clause, Part},
     contents,
-    context::{Context, Pending},
+    context::{Consent, Context, Pending},
     conversation::Conversation,
+    intent::Intent,
+    known::KnownObject,
+    lexicon::StateWord,
+    phrase::Phrase,
     question::{self, QuestionKind},
     reply, token,
     understanding::Understanding,
@@ -65,6 +71,42 @@ impl Conversation<'_> {
         }
     }
 
+    /// What is near, and may be warmer or colder than it was when the robot last saw it.
+    fn unwatched(&self, question: &question::Question, answer: &Understanding) -> Option<ObjectId> {
+        let state = asked_state(self.lexicon, &question.rest).map(|(state, _)| state)?;
+        let is_warmth = matches!(state, StateWord::Flag(StateFlag::Hot | StateFlag::Cold, _));
+        let Understanding::Answer { highlight, .. } = answer else { return None };
+        let [id] = highlight.as_slice() else { return None };
+        let object = self.scene.object(*id)?;
+        let is_near = object.room == self.scene.robot.room && self.scene.robot.held != Some(*id);
+        let is_open = |outer: &KnownObject| {
+            !self.catalog.class(outer.class).has(Property::Openable) || outer.has(StateFlag::Opened)
+        };
+        let is_unseen = is_near && !object.visible && self.scene.ancestors(*id).all(is_open);
+        (question.kind == QuestionKind::State && is_warmth && is_unseen).then_some(*id)
+    }
+
+    /// Looks first at what was asked about, where all that was said only asks; the answer comes after that.
+    pub(crate) fn with_a_look(
+        &self,
+        utterance: &str,
+        understanding: Understanding,
+        context: &mut Context,
+    ) -> Understanding {
+        let Some(id) = context.unwatched.take().filter(|_| matches!(understanding, Understanding::Answer { .. }))
+        else {
+            return understanding;
+        };
+        let phrase = Phrase { chosen: Some(id), ..Phrase::default() };
+        let mut then = context.clone();
+        let look = self.plan(vec![Clause::about(Intent::Examine, "look at", phrase)], Consent::default(), &mut then);
+        if !matches!(look, Understanding::Plan { .. }) {
+            return understanding;
+        }
+        *context = then;
+        context.keep(vec![utterance.to_owned()], look.after("I have not looked at it since."))
+    }
+
     /// Answers a question, and remembers what it is about.
     pub(crate) fn answer(&self, question: &question::Question, context: &mut Context) -> Understanding {
         if question.kind == QuestionKind::HowTo && !question.rest.is_empty() {
@@ -80,6 +122,7 @@ impl Conversation<'_> {
             context.list = Some((question.clone(), told + contents::LIST));
         }
         context.question = Some(question.kind);
+        context.unwatched = self.unwatched(question, &answer);
         // Only what it has not seen makes it ask back.
         if let (Understanding::Question { .. }, Some(phrase)) = (&answer, &question.about) {
             context.focus.unseen = Some(phrase.clone());

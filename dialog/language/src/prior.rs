@@ -29,6 +29,7 @@ impl Conversation<'_> {
                 None => 1.0,
             };
             way.probability *= match way.steps() {
+                None if way.context.is_met => IN_VAIN,
                 Some(steps) if self.is_in_vain(steps) => IN_VAIN,
                 _ if is_denied => 1.0,
                 _ if way.is_asked_about(context) => ASKED_ABOUT,

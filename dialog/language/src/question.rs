@@ -59,12 +59,17 @@ pub(crate) enum QuestionKind {
     /// Whether the session is recorded.
     Recording,
     Time,
+    /// Who is there.
+    People,
 }
 
 impl QuestionKind {
     /// Whether it may be about nothing that is named.
     const fn stands_alone(self) -> bool {
-        matches!(self, Self::Done | Self::DoneSoFar | Self::Danger | Self::Rest | Self::Recording | Self::Time)
+        matches!(
+            self,
+            Self::Done | Self::DoneSoFar | Self::Danger | Self::Rest | Self::Recording | Self::Time | Self::People
+        )
     }
 }
 
@@ -130,6 +135,11 @@ pub(crate) struct Question {
 impl Question {
     pub(crate) const fn new(kind: QuestionKind, about: Option<Phrase>, rest: Vec<String>) -> Self {
         Self { kind, about, rest, is_whether: false }
+    }
+
+    /// Whether it asks for safety, and not for danger.
+    pub(crate) fn asks_for_safety(&self) -> bool {
+        self.rest.iter().any(|word| matches!(word.as_str(), "safe" | "harmless"))
     }
 }
 

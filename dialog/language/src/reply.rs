@@ -15,6 +15,10 @@ use crate::{
     understanding::{Step, Understanding},
 };
 
+/// Why something is done: who says it so plainly that there is nothing to interpret has asked for it.
+pub(crate) const ASKED_TO: &str = "you asked me to ";
+pub(crate) const UNDERSTOOD_TO: &str = "I understood that I should ";
+
 /// How many steps are named at most.
 const NAMED: usize = 6;
 /// How many of them name what is only on the way, too.

@@ -4,9 +4,11 @@ use std::sync::LazyLock;
 
 use crate::{
     cache::Cache,
-    clause,
+    chatter,
+    clause::{self, Part},
     context::Context,
     conversation::Conversation,
+    reply,
     understanding::{Clarification, Understanding},
     way::Way,
     wording::Wording,
@@ -16,20 +18,27 @@ use crate::{
 /// them, each with its probability, best first. `social` is talk that asks for nothing, `none` what is nothing to a robot, `?` what nobody could tell.
 pub type Rewrite = fn(&str, &[(bool, String)]) -> Vec<(String, f32)>;
 
+/// How likely the others are at most where the grammar does not read the likeliest: enough to be proposed.
+const DOUBTFUL: f32 = 0.4;
 /// What is said to who asks for nothing.
 const SEEN: &str = "I see. Tell me when there is something to do.";
 const AGREED: &str = "OK.";
 
 impl Conversation<'_> {
-    /// What the rewriter takes an utterance for, the likeliest first; nothing, where the likeliest is none that the grammar reads, such as a name
-    /// that nobody knows: others are mere guesses then.
+    /// What the rewriter takes an utterance for, the likeliest first; nothing, where the likeliest names something that nobody
+    /// knows: others are mere guesses then.
     pub(crate) fn rewritten(&self, wording: &Wording<'_>, context: &Context) -> Vec<Way> {
-        let mut ways: Vec<Way> = Vec::new();
+        let (mut ways, mut is_doubtful) = (Vec::<Way>::new(), false);
         for (at, (text, probability)) in self.rewritings(wording.utterance, context).iter().enumerate() {
             let way = match self.of_rewriting(text, *probability, wording, context) {
                 Some(way) => way,
-                None if at == 0 => return self.asked_about(text, *probability, context).into_iter().collect(),
-                None => continue,
+                None if at == 0 && self.names_unknown(text) => {
+                    return self.asked_about(text, *probability, context).into_iter().collect();
+                }
+                None => {
+                    is_doubtful |= at == 0;
+                    continue;
+                }
             };
             match ways.iter_mut().find(|other| other.is_same(&way)) {
                 Some(other) => other.probability += way.probability,
@@ -38,9 +47,18 @@ impl Conversation<'_> {
         }
         self.weigh(&mut ways, wording, context);
         // What it gives a probability of p is right about as often as √p, by writers that it was not fitted to: others may have said it otherwise.
-        ways.iter_mut().for_each(|way| way.probability = way.probability.sqrt());
+        let most = if is_doubtful { DOUBTFUL } else { 1.0 };
+        ways.iter_mut().for_each(|way| way.probability = way.probability.sqrt().min(most));
         ways.sort_by(|one, other| other.probability.total_cmp(&one.probability));
         ways
+    }
+
+    /// Whether plain requests name something that nobody knows.
+    fn names_unknown(&self, text: &str) -> bool {
+        let wording = self.wording(text);
+        let parts = clause::parts(self.lexicon, self.catalog, &wording.tidied);
+        !wording.unheard.is_empty()
+            || parts.iter().any(|part| matches!(part, Part::Clause(clause) if !chatter::is_clear(clause)))
     }
 
     /// What the robot asks about plain requests that it does not know all words of, such as what a thing looks like.
@@ -53,7 +71,7 @@ impl Conversation<'_> {
 
     fn of_rewriting(&self, text: &str, probability: f32, wording: &Wording<'_>, context: &Context) -> Option<Way> {
         let mut then = context.at_new_utterance();
-        let understanding = match text {
+        let understanding = match asking(text).as_str() {
             "?" => return None,
             "none" => Understanding::answer(AGREED),
             "social" => self.reply_to_talk(wording),
@@ -68,6 +86,7 @@ impl Conversation<'_> {
                 }
             }
         };
+        then.reason = then.reason.replacen(reply::ASKED_TO, reply::UNDERSTOOD_TO, 1);
         Some(Way { understanding, probability, context: then })
     }
 
@@ -85,6 +104,13 @@ impl Conversation<'_> {
         let lines = context.lines();
         WRITTEN.get_or_insert_with(&transcript(utterance, lines), || rewrite(utterance, lines))
     }
+}
+
+/// Plain requests without talk beside them.
+fn asking(text: &str) -> String {
+    let asks = |request: &&str| !matches!(*request, "social" | "none");
+    let requests: Vec<&str> = text.split("; ").filter(asks).collect();
+    if requests.is_empty() { text.to_owned() } else { requests.join("; ") }
 }
 
 /// An utterance behind the lines before it, as text.

@@ -159,7 +159,7 @@ fn placing() {
         deliver the bowl to the green desk -> put AP_Prop_Desk_Green_1
         bring it to the quantum lab -> go Lab2
         put the bowl in the fridge and close it -> open FridgeLower_02_1, put FridgeLower_02_1, close FridgeLower_02_1
-        pick up the banana -> ? I am holding the bowl. Shall I put it down first?
+        pick up the banana -> put TableRound_02_1, take Banana_01_1
         put the cereal in the fridge -> put KitchenCounterTop_02_1, take Cereal_Box_01_1, open FridgeLower_02_1, put FridgeLower_02_1
         throw it away -> put TrashCan_01_1
         throw the bowl at the robot arm -> throw RoboticArm_01_1

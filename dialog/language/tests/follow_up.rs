@@ -11,7 +11,7 @@ const KITCHEN: [&str; 3] =
 
 /// Questions of the robot's: in which scene, after what, and what a yes does first, where it may be answered with one.
 const QUESTIONS: [(&[&str], &[&str], Option<&str>); 2] =
-    [(&KITCHEN, &["pick up the knife", "pick up the banana"], Some("put ")), (&KITCHEN, &["bring me a bowl"], None)];
+    [(&KITCHEN, &["pick up the banana and pick up the knife"], Some("take ")), (&KITCHEN, &["bring me a bowl"], None)];
 
 #[test]
 fn answers_are_taken_as_answers() {

@@ -154,10 +154,11 @@ fn what_was_asked_about_is_done_when_it_is_chosen_in_the_same_words() {
         let mut asked = context.clone();
         let question = language.understand(said.0, &scene, &mut asked);
         let Understanding::Question { text: question, candidates, options, .. } = question else { continue };
-        if !question.contains("I am not sure what you mean") || !candidates.is_empty() {
+        let is_proposal = question.contains("I am not sure what you mean") || question.contains("I understand: ");
+        if !is_proposal || !candidates.is_empty() {
             continue;
         }
-        for option in options {
+        for option in options.into_iter().filter(|option| option != "no") {
             let done = language.understand(&option, &scene, &mut asked.clone());
             assert!(matches!(done, Understanding::Plan { .. }), "{}: {option}: {done:?}", said.0);
             proposals += 1;

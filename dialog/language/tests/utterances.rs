@@ -26,6 +26,8 @@ struct Outcome {
     is_right: bool,
     /// Whether an answer that it offers to a question of its own leads to what is right.
     is_proposed: bool,
+    /// How likely the robot took it to be what was meant.
+    sureness: f32,
 }
 
 /// Nothing, where it is not known what should come of it.
@@ -33,7 +35,7 @@ fn outcome(case: &Case<'_>) -> Option<Outcome> {
     let mut talk = before(case);
     let expected = Expected::new(case, &talk)?;
     let understanding = talk.language.understand(case.said.last().unwrap(), &talk.scene, &mut talk.context);
-    let is_right = expected.is_met(&understanding, &talk);
+    let (sureness, is_right) = (talk.context.sureness(), expected.is_met(&understanding, &talk));
     let leads_there = |option: &String| {
         let then = talk.language.understand(option, &talk.scene, &mut talk.context.clone());
         expected.is_met(&then, &talk)
@@ -44,7 +46,7 @@ fn outcome(case: &Case<'_>) -> Option<Outcome> {
         }
         _ => false,
     };
-    Some(Outcome { text: found(&understanding, &talk.scene), understanding, is_right, is_proposed })
+    Some(Outcome { text: found(&understanding, &talk.scene), understanding, is_right, is_proposed, sureness })
 }
 
 /// What came of a set, by kind.
@@ -63,8 +65,10 @@ struct Counts {
 fn understood(name: &str, set: &str, is_open: bool) -> (usize, usize) {
     let mut kinds: BTreeMap<&str, Counts> = BTreeMap::new();
     let mut unlabelled = 0;
+    // Of plans: how many were right, and how many there were, by tenths of sureness.
+    let mut calibration: BTreeMap<u8, (usize, usize)> = BTreeMap::new();
     for case in cases(set) {
-        let Some(Outcome { understanding, text, is_right, is_proposed }) = outcome(&case) else {
+        let Some(Outcome { understanding, text, is_right, is_proposed, sureness }) = outcome(&case) else {
             unlabelled += 1;
             if is_open {
                 println!(
@@ -75,6 +79,10 @@ fn understood(name: &str, set: &str, is_open: bool) -> (usize, usize) {
             }
             continue;
         };
+        if matches!(understanding, Understanding::Plan { .. }) {
+            let (right, all) = calibration.entry((sureness * 10.0) as u8).or_default();
+            (*right, *all) = (*right + usize::from(is_right), *all + 1);
+        }
         let count = kinds.entry(case.kind).or_default();
         count.right += usize::from(is_right);
         count.proposed += usize::from(is_proposed);
@@ -93,6 +101,13 @@ fn understood(name: &str, set: &str, is_open: bool) -> (usize, usize) {
     for (kind, Counts { right, proposed, wrong, all }) in &kinds {
         println!("{right:4} of {all:3}, {proposed:3} proposed, {wrong:3} something else done  {kind}");
     }
+    for (tenth, (right, all)) in &calibration {
+        println!(
+            "{right:4} of {all:3} plans right where it was sure by {:.1} to {:.1}",
+            tenth_of(*tenth),
+            tenth_of(tenth + 1)
+        );
+    }
     let sum = |count: fn(&Counts) -> usize| kinds.values().map(count).sum::<usize>();
     let (right, proposed) = (sum(|counts| counts.right), sum(|counts| counts.proposed));
     let (all, wrong) = (sum(|counts| counts.all), sum(|counts| counts.wrong));
@@ -100,6 +115,10 @@ fn understood(name: &str, set: &str, is_open: bool) -> (usize, usize) {
         "{name}: {right} of {all} understood, {proposed} proposed, {wrong} something else done ({unlabelled} left out)"
     );
     (right, right + proposed)
+}
+
+fn tenth_of(tenth: u8) -> f32 {
+    f32::from(tenth) / 10.0
 }
 
 /// Finds that as many cases of a set are understood, and understood or proposed, as were when this was written, but for a few; raise the
