@@ -19,8 +19,16 @@ const SPEECH = 2;
 /** What tests and curious people may read. */
 window.cohabit = { frames: 0, state: null, latency: null, view: null, seen: null, driving: null, aim: null, marks: [], sounds: [], voice: {}, loseMicrophone };
 
-function takeHello({ session, mission, map, views, drivable, robots, questionnaires, replay, voice, longest_text: longestText }) {
+/** What a session's page may leave out, as for participants of a study. */
+const PARTS = ["figures", "microphone", "score"];
+
+function leaveOut(hidden = []) {
+  for (const part of PARTS) document.body.classList.toggle(`no-${part}`, hidden.includes(part));
+}
+
+function takeHello({ session, mission, map, views, drivable, robots, questionnaires, replay, voice, hidden, longest_text: longestText }) {
   greeted();
+  leaveOut(hidden);
   limitTexts(longestText);
   byId("session").textContent = replay ? `${session} · recorded` : session;
   document.title = mission.title ? `${mission.title} · Cohabit` : "Cohabit";

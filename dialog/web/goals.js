@@ -77,8 +77,9 @@ function showEnding({ ending, goals, score: points }) {
   if (banner.hidden) return;
   const met = goals.filter((goal) => goal.met).length;
   byId("banner-title").textContent = ending === "complete" ? "Mission complete" : "Mission failed";
-  const reached = goals.length === 1 ? "" : `${met} of ${goals.length} goals · `;
-  byId("banner-text").textContent = `${reached}score ${points.toLocaleString("en")}`;
+  const reached = goals.length === 1 ? [] : [`${met} of ${goals.length} goals`];
+  const scored = document.body.classList.contains("no-score") ? [] : [`score ${points.toLocaleString("en")}`];
+  byId("banner-text").textContent = [...reached, ...scored].join(" · ");
   byId("sparks").replaceChildren(...(ending === "complete" && !calm.matches ? sparks() : []));
   endDoing();
 }
@@ -112,5 +113,15 @@ export function collapseGoals(forWhile) {
   if (!forWhile) wereOpen = false;
 }
 
+/** On a narrow page the goals stand above the conversation, where nothing covers them; else in the picture. */
+function placeGoals() {
+  if (narrow.matches) document.querySelector(".talk").before(byId("goals"));
+  else byId("view").after(byId("goals"));
+}
+
 byId("goals-toggle").addEventListener("click", () => expandGoals(byId("goals").classList.contains("collapsed")));
-narrow.addEventListener("change", () => expandGoals(!narrow.matches));
+narrow.addEventListener("change", () => {
+  placeGoals();
+  expandGoals(!narrow.matches);
+});
+placeGoals();

@@ -222,8 +222,13 @@ export function takeVoice(voice) {
   show();
 }
 
+/** What is wrong, and for whom the machine is, what to do about it. */
+function lack(what, remedy) {
+  return document.body.classList.contains("no-figures") ? what : `${what} ${remedy}`;
+}
+
 function tellLack() {
-  note("This session cannot hear yet. On its machine, run: cohabit voice install. Then start it anew. You can type meanwhile.");
+  note(lack("This session cannot hear. You can type.", "For voice, run on its machine: cohabit voice install. Then start it anew."));
   byId("hearing").title = engines?.lacks.join("\n") ?? "";
 }
 
@@ -387,7 +392,7 @@ function recall() {
 /** A session has greeted this page. */
 export function greetVoice(voice) {
   byId("voice-bar").hidden = !voice;
-  mic.hidden = !voice;
+  for (const listens of [mic, byId("open-mic")]) listens.hidden = !voice?.has_microphone;
   isRecorded = Boolean(voice?.is_recorded);
   hushed = 0;
   engines = null;
@@ -432,5 +437,5 @@ byId("open-mic").addEventListener("click", () => {
 byId("aloud").addEventListener("click", () => {
   audio();
   speakAloud(!settings.aloud);
-  if (settings.aloud && engines?.speaks === false && !window.speechSynthesis?.getVoices().length) toast("Neither the session nor this browser has a voice: on the session's machine, run cohabit voice install.");
+  if (settings.aloud && engines?.speaks === false && !window.speechSynthesis?.getVoices().length) toast(lack("Neither the session nor this browser has a voice.", "On the session's machine, run: cohabit voice install."));
 });

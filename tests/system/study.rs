@@ -1,5 +1,8 @@
 //! A study from its file to its data: two participants, pages, a killed session, a killed server, a withdrawal.
 
+mod pages;
+mod practice;
+
 use std::{
     fs,
     io::{BufRead as _, BufReader, Read as _, Write as _},
@@ -10,7 +13,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use cohabit_tests::{Browser, Page, Scratch, Tab, run};
+use cohabit_tests::{Page, Scratch, run};
 use rustix::process::{Pid, Signal, kill_process};
 use serde_json::{Value, json};
 
@@ -39,6 +42,7 @@ version = "1"
 file = "sheet.md"
 version = "3"
 required = ["I am 18 or older.", "I agree."]
+optional = [{ text = "I may be heard.", audio = true }]
 
 [[factor]]
 name = "ask"
@@ -68,6 +72,17 @@ kind = "break"
 [[block]]
 kind = "debriefing"
 file = "sheet.md"
+
+[[probe]]
+questionnaire = "annoyed.toml"
+at = "question_asked"
+"#;
+
+const ANNOYED: &str = r#"
+title = "A question"
+[[item]]
+ask = "How annoying was that?"
+scale = { least = 1, most = 5, left = "Not at all", right = "Very" }
 "#;
 
 const SHORT: &str = r#"
@@ -92,9 +107,16 @@ struct Server {
 
 impl Server {
     fn start(scratch: &Scratch, port: &str) -> Self {
+        Self::start_with(scratch, port, &[])
+    }
+
+    /// The same with more arguments.
+    fn start_with(scratch: &Scratch, port: &str, arguments: &[&str]) -> Self {
         let child = Command::new(COHABIT)
             .args(["study", "run", &scratch.path("study.toml"), "--folder", &scratch.path("data"), "--port", port])
             .args(["--sessions", "2"])
+            .args(arguments)
+            .env("XDG_DATA_HOME", scratch.path("home"))
             .stdin(Stdio::null())
             .stdout(Stdio::piped())
             .spawn()
@@ -102,7 +124,7 @@ impl Server {
         let mut server = Self { child, host: String::new(), experimenter: String::new(), sign_up: String::new() };
         let mut lines = BufReader::new(server.child.stdout.take().unwrap()).lines().map_while(Result::ok);
         for line in lines.by_ref() {
-            let Some((_, address)) = line.split_once("http://") else { continue };
+            let Some((_, address)) = line.split_once("://") else { continue };
             let (host, path) = address.split_once('/').unwrap();
             host.clone_into(&mut server.host);
             if line.starts_with("Experimenter") {
@@ -215,7 +237,7 @@ impl Person {
     fn agree(&self, server: &Server) {
         assert_eq!(self.state(server)["page"], "information");
         assert_eq!(self.tell(server, &json!("read"))["page"], "consent");
-        let agreed = self.tell(server, &json!({ "consented": { "version": "3", "ticked": 2 } }));
+        let agreed = self.tell(server, &json!({ "consented": { "version": "3", "ticked": [0, 1] } }));
         assert_eq!((&agreed["page"], &agreed["problem"]), (&json!("ready"), &Value::Null), "{agreed}");
     }
 
@@ -256,6 +278,7 @@ fn study(test: &str) -> Scratch {
     let _ = scratch.write("study.toml", STUDY);
     let _ = scratch.write("sheet.md", "# What this is about\n\nYou talk to a **robot**.");
     let _ = scratch.write("short.toml", SHORT);
+    let _ = scratch.write("annoyed.toml", ANNOYED);
     scratch
 }
 
@@ -277,6 +300,21 @@ fn everybody_ends_in_the_conditions_they_were_assigned_whatever_is_killed() {
     }
     let assigned = conditions(&server);
     assert_ne!(assigned[0][0], assigned[1][0], "one of each between-participants condition");
+
+    // Who was asked something by the robot is asked about that, while the mission goes on.
+    for (person, condition) in people.iter().zip(&assigned) {
+        if !condition[2].contains("ask=always") {
+            assert!(person.state(&server)["probe"].is_null());
+            continue;
+        }
+        let deadline = Instant::now() + WATCHDOG;
+        while person.state(&server)["probe"]["item"]["ask"] != "How annoying was that?" {
+            assert!(Instant::now() < deadline, "nothing is asked");
+            thread::park_timeout(Duration::from_millis(50));
+        }
+        let answered = json!({ "probe_answered": { "probe": 0, "answer": { "value": 5 } } });
+        assert!(person.tell(&server, &answered)["probe"].is_null());
+    }
 
     // A session that is killed is started again in the same condition.
     let before = people[0].wait_for(&server, "mission")["session"].clone();
@@ -390,13 +428,16 @@ fn studies_are_checked_with_places_and_the_one_that_ships_can_be_run() {
     assert_eq!(schema["properties"]["seed"]["type"], "integer");
     let scratch = study("study-check");
     let wrong = STUDY.replace("ask = \"never\"", "ask = \"rarely\"").replace("cold_soda", "warm_soda");
+    // A value of the wrong kind keeps nothing else from being looked at.
+    let wrong = wrong.replace("minutes = 5", "minutes = \"five\"");
     let wrong = scratch.write("wrong.toml", &wrong);
     for arguments in [vec!["study", "check", &wrong], vec!["study", "run", &wrong, "--folder", &scratch.path("data")]] {
         let checked = run(COHABIT, &arguments).unwrap();
         let said = String::from_utf8_lossy(&checked.stderr).into_owned();
         assert_eq!(checked.status.code(), Some(2), "{said}");
         assert!(said.contains("wrong.toml:7:") && said.contains("warm_soda"), "{said}");
-        assert!(said.contains("wrong.toml:26:") && said.contains("rarely"), "{said}");
+        assert!(said.contains("wrong.toml:27:") && said.contains("rarely"), "{said}");
+        assert!(said.contains("`minutes` cannot be this string"), "{said}");
     }
     assert!(!fs::exists(scratch.path("data")).unwrap());
 }
@@ -421,61 +462,4 @@ fn links_let_in_and_nothing_else_does() {
     let second = second.unwrap();
     assert_eq!(second.status.code(), Some(4), "{}", String::from_utf8_lossy(&second.stderr));
     server.end();
-}
-
-/// Clicks the chief button of the page, once it is there.
-fn go_on(tab: &mut Tab, text: &str) {
-    let button =
-        format!("[...document.querySelectorAll('#content button.chief')].find((one) => one.textContent === '{text}')");
-    tab.wait_until(&format!("{button} !== undefined && !{button}.disabled")).unwrap();
-    tab.evaluate(&format!("{button}.click()")).unwrap();
-}
-
-#[test]
-#[cfg_attr(not(browser), ignore = "needs a browser")]
-fn a_person_takes_part_in_a_browser() {
-    let scratch = study("study-browser");
-    let server = Server::start(&scratch, "0");
-    let browser = Browser::start().unwrap();
-    let mut tab = browser.open(&format!("http://{}{}", server.host, server.sign_up), 390, 844).unwrap();
-    go_on(&mut tab, "I have read this");
-    tab.wait_until("document.querySelectorAll('.check input').length === 2").unwrap();
-    tab.evaluate("document.querySelectorAll('.check input').forEach((box) => box.click())").unwrap();
-    go_on(&mut tab, "I agree to take part");
-    go_on(&mut tab, "Begin");
-    tab.wait_until("document.querySelector('iframe.session') !== null").unwrap();
-    assert_eq!(tab.evaluate("document.documentElement.scrollWidth <= 390").unwrap(), json!(true));
-    // The session's page is there within the study's: it says that it has shown a frame, and no policy forbade it.
-    tab.wait_until("!document.querySelector('#skip').hidden").unwrap();
-    tab.call("Page.reload", &json!({})).unwrap();
-    tab.wait_until("document.querySelector('iframe.session') !== null && !document.querySelector('#skip').hidden")
-        .unwrap();
-    tab.evaluate("document.querySelector('#skip').click()").unwrap();
-    tab.wait_until("document.querySelectorAll('.item').length === 2").unwrap();
-    go_on(&mut tab, "Send and go on");
-    tab.wait_until("document.querySelector('.problem').textContent === 'Question 1 has no answer yet.'").unwrap();
-    assert_eq!(tab.evaluate("document.activeElement.type").unwrap(), json!("radio"));
-    tab.evaluate("document.querySelectorAll('.places input')[3].click()").unwrap();
-    go_on(&mut tab, "Send and go on");
-    tab.wait_until("document.querySelector('h1').textContent === 'Your next mission'").unwrap();
-
-    let mut lab = browser.open(&format!("http://{}{}", server.host, server.experimenter), 1280, 800).unwrap();
-    lab.wait_until("document.querySelector('#rows tr td')?.textContent === 'ready'").unwrap();
-    let type_note = "document.querySelector('#note-text').focus()";
-    lab.evaluate(type_note).unwrap();
-    lab.type_and_enter("took her time").unwrap();
-    lab.wait_until("document.querySelector('#notes li')?.textContent.includes('took her time')").unwrap();
-
-    // Who stops is asked once more, and then nothing is left.
-    tab.evaluate("document.querySelector('#leave').click()").unwrap();
-    tab.wait_until("document.querySelector('#leave-card').open").unwrap();
-    tab.evaluate("document.querySelector('#leave-card .danger').click()").unwrap();
-    tab.wait_until("document.querySelector('h1').textContent === 'You have stopped taking part'").unwrap();
-    // The session's page does not take the focus from the study's: the browser says so.
-    let problems = tab.problems().iter().chain(lab.problems());
-    let problems: Vec<_> = problems.filter(|one| !one.starts_with("Blocked autofocusing")).collect();
-    assert_eq!(problems, [] as [&str; 0]);
-    drop((tab, lab, browser));
-    server.end();
-    assert!(!fs::exists(scratch.path("data/journals/P01.jsonl")).unwrap());
 }

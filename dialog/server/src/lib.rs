@@ -8,6 +8,7 @@ mod connections;
 mod conversation;
 mod driving;
 mod frames;
+mod hidden;
 mod hosts;
 mod hub;
 mod interpreter;
@@ -55,6 +56,7 @@ pub use cohabit_language::{Asking, Consulting, Effort, Interpreter, Knows, Langu
 pub use cohabit_speech::VoiceSettings;
 pub use conversation::{Asked, Conversation, Reaction, TurnEnd};
 pub use driving::{Drivable, NotDrivable};
+pub use hidden::{Hidden, NotHidden};
 pub use hosts::{HostName, NoHost};
 pub use interpreter::{Endpoint, EndpointError};
 pub use journal::begin_after;
@@ -115,6 +117,8 @@ pub struct DialogConfig {
     pub questionnaires: Vec<Questionnaire>,
     /// How people are heard, and robots speak.
     pub voice: VoiceConfig,
+    /// What the page leaves out.
+    pub hidden: Vec<Hidden>,
     /// Called once, when a page says that it has shown a frame.
     pub on_first_frame: Box<dyn Fn() + Send + Sync>,
 }
@@ -176,7 +180,10 @@ pub fn serve(
     let mut hello = page::hello(&config.session, &mission, &layout, &catalog, &views, drivers.bodies(), &robots);
     hello["questionnaires"] = json!(config.questionnaires);
     hello["longest_text"] = json!(limits::LONGEST_TEXT_CHARS);
-    hello["voice"] = config.voice.json();
+    hello["hidden"] = json!(config.hidden.iter().map(|part| part.name()).collect::<Vec<_>>());
+    let has_microphone = !config.hidden.contains(&Hidden::Microphone);
+    let voice = VoiceConfig { has_microphone, ..config.voice };
+    hello["voice"] = voice.json();
     let views = views.into_iter().map(|view| View::new(view.camera)).collect();
     let hub = Arc::new(Hub::new(hello, views, config.on_first_frame));
     let journal = Journal::open(config.journal.as_deref());
@@ -193,7 +200,7 @@ pub fn serve(
     let survey = Arc::new(Survey::new(&*bus, config.questionnaires)?);
     let (tells, plays) = (Arc::clone(&hub), Arc::clone(&hub));
     let (tell, play) = (move |message: &Value| tells.tell(message), move |piece| plays.play(piece));
-    let voice = Voice::new(Arc::clone(&bus), config.voice, tell, play);
+    let voice = Voice::new(Arc::clone(&bus), voice, tell, play);
     let pages = Pages { hub: Arc::clone(&hub), drivers: Arc::clone(&drivers), voice: Arc::clone(&voice) };
     let talk = Talk::new(&*bus, catalog, robots, puzzles, pages, journal)?;
     let ears = Ears::new(&*bus)?;

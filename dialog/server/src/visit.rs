@@ -429,6 +429,9 @@ impl Visit {
 
     /// Listens to the page's microphone from now on.
     fn begin_listening(&mut self, rate: u32, held: bool) -> Result<(), String> {
+        if !self.live.voice.config.has_microphone {
+            return Err("This session hears no microphone: please type.".to_owned());
+        }
         if self.hearing.is_none() {
             let Live { voice, talk, .. } = &self.live;
             let at = EarAt {

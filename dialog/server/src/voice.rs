@@ -40,18 +40,32 @@ pub struct VoiceConfig {
     pub edit: Duration,
     /// Whether the session's log holds what people say aloud: they are told.
     pub is_recorded: bool,
+    /// Whether pages have a microphone.
+    pub has_microphone: bool,
 }
 
 impl VoiceConfig {
     /// As a session has it if nothing is said, with these engines.
     #[must_use]
     pub fn new(settings: Result<VoiceSettings, String>) -> Self {
-        Self { settings, errors: 0.0, seed: 0, delay: Duration::ZERO, edit: Duration::ZERO, is_recorded: false }
+        Self {
+            settings,
+            errors: 0.0,
+            seed: 0,
+            delay: Duration::ZERO,
+            edit: Duration::ZERO,
+            is_recorded: false,
+            has_microphone: true,
+        }
     }
 
     /// What pages are told of it.
     pub fn json(&self) -> Value {
-        json!({ "edit_ms": self.edit.as_millis() as u64, "is_recorded": self.is_recorded })
+        json!({
+            "edit_ms": self.edit.as_millis() as u64,
+            "is_recorded": self.is_recorded,
+            "has_microphone": self.has_microphone,
+        })
     }
 }
 

@@ -22,6 +22,7 @@ mod study;
 mod supervisor;
 mod terminal;
 mod time;
+mod tls;
 mod top;
 mod voice;
 

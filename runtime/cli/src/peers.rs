@@ -2,7 +2,7 @@
 
 use std::{
     ffi::OsString,
-    fmt, fs,
+    fmt,
     io::Write as _,
     net::{IpAddr, SocketAddr},
     path::PathBuf,
@@ -15,7 +15,7 @@ use anyhow::Context as _;
 use cohabit_bus::{CameraId, Session, Shm, message::Control};
 use cohabit_cdf::BodyRequest;
 use cohabit_dialog::{
-    Asking, Consulting, DialogConfig, DialogError, Drivable, Effort, Endpoint, HostName, Identity, Knows, Questionnaire,
+    Asking, Consulting, DialogConfig, DialogError, Drivable, Effort, Endpoint, Hidden, HostName, Knows, Questionnaire,
 };
 use cohabit_engine::{Appearance, BuildError, CameraPlan, SessionPlan, Simulator};
 use cohabit_record::{Branch, LogError, RecordError, Recorder, SessionFacts};
@@ -30,7 +30,8 @@ use crate::{
     minds::MindKind,
     mission_file::MissionFile,
     rendering::Rendering,
-    rerun, sessions, stop,
+    rerun, stop,
+    tls::Tls,
     voice::VoiceOptions,
 };
 
@@ -247,16 +248,11 @@ pub struct Listening {
     /// The port of the server of the same host whose pages may show the page within them, such as that of a study
     #[arg(long, value_name = "PORT")]
     pub framed_by: Option<u16>,
-    /// Serve the page by HTTPS: to pages from other machines browsers give a microphone only so. Without a certificate of
-    /// yours one is made, which browsers ask about once
-    #[arg(long)]
-    pub tls: bool,
-    /// The certificate to serve the page with by HTTPS, with those that lead to it (PEM)
-    #[arg(long, value_name = "FILE", requires = "tls_key")]
-    pub tls_certificate: Option<PathBuf>,
-    /// Its private key (PEM)
-    #[arg(long, value_name = "FILE", requires = "tls_certificate")]
-    pub tls_key: Option<PathBuf>,
+    #[command(flatten)]
+    pub tls: Tls,
+    /// What the page leaves out: `figures` for developers, the `microphone`, or the `score`; as often as needed
+    #[arg(long, value_name = "PART")]
+    pub hide: Vec<Hidden>,
     /// Whom people may drive from the page: the avatars of `people`, `all` bodies, which robots' minds then hand over for
     /// so long, or `none`
     #[arg(long, default_value_t)]
@@ -324,46 +320,6 @@ impl fmt::Display for BodyName {
 }
 
 impl Listening {
-    /// What the page is served with by HTTPS, if it is to be.
-    pub fn identity(&self) -> anyhow::Result<Option<Identity>> {
-        match (&self.tls_certificate, &self.tls_key) {
-            (Some(certificate), Some(key)) => Identity::read(certificate, key).map(Some).map_err(bad_input),
-            _ if self.tls => {
-                let host = fs::read_to_string("/proc/sys/kernel/hostname").unwrap_or_default();
-                let host = Some(host.trim()).filter(|host| !host.is_empty());
-                let names = ["localhost", "127.0.0.1", "::1"].into_iter().chain(host).map(str::to_owned);
-                let names: Vec<_> = names.chain([self.listen.to_string()]).collect();
-                Ok(Some(Identity::own(&sessions::data_folder().join("tls"), &names)?))
-            }
-            _ => Ok(None),
-        }
-    }
-
-    /// What people should know before they open the page.
-    pub fn notice(&self, identity: Option<&Identity>) -> Option<String> {
-        match identity {
-            Some(identity) if self.tls_certificate.is_none() => Some(format!(
-                "Browsers will warn of the page's certificate, which was made here. It is the right one if its SHA-256 is\n{}",
-                identity.fingerprint
-            )),
-            None if !self.listen.is_loopback() => Some(
-                "What is said on the page can be read on the way, and browsers give it no microphone: `--tls` mends both"
-                    .to_owned(),
-            ),
-            _ => None,
-        }
-    }
-
-    /// The same as arguments of another process.
-    pub fn tls_arguments(&self) -> Vec<OsString> {
-        let file = |name: &str, path: &Option<PathBuf>| {
-            path.iter().flat_map(|path| [OsString::from(name), path.into()]).collect::<Vec<_>>()
-        };
-        let own = self.tls.then(|| "--tls".into());
-        let files = [file("--tls-certificate", &self.tls_certificate), file("--tls-key", &self.tls_key)];
-        own.into_iter().chain(files.concat()).collect()
-    }
-
     /// What people are asked.
     pub fn questionnaires(&self) -> anyhow::Result<Vec<Questionnaire>> {
         let found: Vec<_> = self
@@ -395,7 +351,7 @@ impl Dialog {
             session: self.joining.session.clone(),
             journal: Some(journal(&Session::new(&self.joining.session).map_err(bad_input)?)),
             cameras: message.cameras,
-            identity: self.listening.identity()?,
+            identity: self.listening.tls.identity(self.listening.listen)?,
             framed_by: self.listening.framed_by,
             listen: SocketAddr::new(self.listening.listen, self.listening.port),
             hosts: self.listening.hosts.clone(),
@@ -409,6 +365,7 @@ impl Dialog {
             drivable: self.listening.drive,
             questionnaires: self.listening.questionnaires()?,
             voice: self.listening.voice.config(message.header.seed),
+            hidden: self.listening.hide.clone(),
             on_first_frame: Box::new(|| tell_supervisor("shown")),
         };
         let ready = |address: &str| tell_supervisor(&format!("page {address}"));

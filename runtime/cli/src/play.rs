@@ -95,7 +95,8 @@ impl Play {
         self.rendering.check()?;
         self.watching.check()?;
         let questionnaires = self.listening.questionnaires()?;
-        if let Some(notice) = self.listening.notice(self.listening.identity()?.as_ref()) {
+        let Listening { tls, listen, .. } = &self.listening;
+        if let Some(notice) = tls.notice(*listen, tls.identity(*listen)?.as_ref()) {
             println!("{notice}");
         }
         for name in Session::wipe_dead() {
@@ -195,7 +196,8 @@ impl Play {
         branched: Option<Branch>,
     ) -> Noted {
         let minds = self.minds.iter().map(ToString::to_string).collect::<Vec<_>>().join(" ");
-        let Listening { drive, knows, ask, understanding, model: model_asked, names, voice, .. } = &self.listening;
+        let Listening { drive, knows, ask, understanding, model: model_asked, names, voice, hide, .. } =
+            &self.listening;
         let robots = robots.iter().map(u32::to_string).collect::<Vec<_>>().join(",");
         let settings = [
             ("agents", minds),
@@ -209,6 +211,7 @@ impl Play {
         ];
         let asked = questionnaires.iter().map(|one| one.name.as_str()).collect::<Vec<_>>().join(" ");
         let asked = (!asked.is_empty()).then_some(("questionnaires", asked));
+        let hidden = hide.iter().map(|part| (part.name(), "hidden".to_owned()));
         let model = Endpoint::from_environment().ok().flatten();
         let model = model.map(|endpoint| {
             [
@@ -217,7 +220,8 @@ impl Play {
                 ("model_asked", model_asked.to_string()),
             ]
         });
-        let settings = settings.into_iter().chain(asked).chain(model.into_iter().flatten()).chain(voice.settings());
+        let settings =
+            settings.into_iter().chain(asked).chain(hidden).chain(model.into_iter().flatten()).chain(voice.settings());
         let settings = settings.map(|(name, value)| (name.to_owned(), value));
         let names = names.iter().map(|one| (format!("{NAME_OF}{}", one.body), one.name.clone()));
         let settings = settings.chain(names).collect();

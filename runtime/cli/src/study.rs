@@ -1,9 +1,11 @@
 //! `cohabit study`: a study from plan to data.
 
+mod ports;
 mod program;
 mod sessions;
 
 use std::{
+    ffi::OsStr,
     io::Write as _,
     net::{IpAddr, SocketAddr, TcpListener},
     path::{Path, PathBuf},
@@ -19,7 +21,7 @@ use anyhow::Context as _;
 use cohabit_cdf::Catalog;
 use cohabit_dialog::HostName;
 use cohabit_study::{
-    Cycle, Folder, FolderError, Journal, Progress, Registry, StudyFile, StudyService, address, export, keep,
+    Cycle, Folder, FolderError, Journal, Progress, Registry, StudyFile, StudyService, export, is_practice, keep,
 };
 use cohabit_tables::{Played, tables};
 
@@ -28,9 +30,11 @@ use crate::{
     failure::{bad_input, environment},
     stop,
     terminal::{shown, shown_lines},
+    tls::Tls,
 };
+use ports::{PortRange, Ports};
 use program::ThisProgram;
-use sessions::Sessions;
+use sessions::{Served, Sessions};
 
 /// Runs a study: participants, their conditions, their consent, their sessions, and their data
 #[derive(clap::Args)]
@@ -77,6 +81,12 @@ struct Run {
     /// A name by which browsers may ask for the pages besides those of this machine; as often as needed
     #[arg(long = "host", value_name = "NAME[:PORT]")]
     hosts: Vec<HostName>,
+    #[command(flatten)]
+    tls: Tls,
+    /// The ports of the pages of sessions, which other machines have to reach, too, such as 8701-8708: one for each session
+    /// at a time; any that are free, if absent
+    #[arg(long, value_name = "FIRST-LAST")]
+    session_ports: Option<PortRange>,
     /// How many sessions are played at a time, while other participants wait; one for two cores, if absent
     #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u16).range(1..))]
     sessions: Option<u16>,
@@ -99,6 +109,9 @@ struct Export {
     /// The folder to write tables into
     #[arg(long, value_name = "FOLDER")]
     out: PathBuf,
+    /// Have sessions and missions for practice in the tables, too, marked as such
+    #[arg(long)]
+    practice: bool,
 }
 
 impl Study {
@@ -151,6 +164,7 @@ impl Run {
     fn run(&self) -> anyhow::Result<()> {
         let stop = stop::on_request()?;
         let (file, study) = read(&self.file)?;
+        let (most_sessions, identity) = (self.most_sessions()?, self.tls.identity(self.listen)?);
         ensure_room()?;
         let mut files = study.files.clone();
         files.insert("study.toml".to_owned(), file.text);
@@ -163,12 +177,20 @@ impl Run {
             ))
         })?;
         let listening = listener.local_addr().context("the address of the pages")?;
-        let most_sessions = self.most_sessions();
+        if let Some(notice) = self.tls.notice(self.listen, identity.as_ref()) {
+            println!("{notice}");
+        }
         let title = study.title.clone();
         let registry = Arc::new(Mutex::new(Registry::new(study, folder).map_err(refused)?));
         let service = StudyService { registry: Arc::clone(&registry), most_sessions };
-        let mut sessions = Sessions::new(study_file.parent().unwrap_or(Path::new(".")), listening, &self.hosts)?;
-        let (doors, site) = (service.doors(), address(listening));
+        let served = Served {
+            listening,
+            hosts: self.hosts.clone(),
+            tls: self.tls.clone(),
+            ports: self.session_ports.clone().map(Ports::new),
+        };
+        let (doors, site) = (service.doors(), served.site(identity.is_some()));
+        let mut sessions = Sessions::new(study_file.parent().unwrap_or(Path::new(".")), served)?;
         println!("Running \"{}\" with data in {}", shown(title), shown(self.folder.display()));
         println!("Experimenter's page: {site}{}", doors.experimenter);
         println!("Sign-up link:        {site}{}", doors.sign_up);
@@ -177,7 +199,7 @@ impl Run {
             let (hosts, stop) = (self.hosts.clone(), &stop);
             let server = scope.spawn(move || {
                 let ending = Ending(stop);
-                let served = service.serve(listener, hosts, &|| stop.load(Ordering::Relaxed));
+                let served = service.serve(listener, hosts, identity, &|| stop.load(Ordering::Relaxed));
                 drop(ending);
                 served
             });
@@ -190,9 +212,16 @@ impl Run {
         Ok(())
     }
 
-    fn most_sessions(&self) -> usize {
+    fn most_sessions(&self) -> anyhow::Result<usize> {
         let cores = thread::available_parallelism().map_or(1, usize::from);
-        self.sessions.map_or((cores / 2).max(1), usize::from)
+        let most = self.sessions.map_or((cores / 2).max(1), usize::from);
+        match &self.session_ports {
+            Some(ports) if ports.count() < most => Err(bad_input(format!(
+                "`--session-ports {ports}` are {} for {most} sessions at a time: give more, or fewer `--sessions`",
+                ports.count()
+            ))),
+            _ => Ok(most),
+        }
     }
 }
 
@@ -241,13 +270,13 @@ impl Export {
     fn run(&self) -> anyhow::Result<()> {
         let (_, study) = read(&Folder::study_file(&self.folder))?;
         let all = self.progress()?;
-        let logs = self.logs()?;
+        let logs = self.logs(&all)?;
         let played = Played::open_all(&logs, &Catalog::builtin()).map_err(bad_input)?;
         std::fs::create_dir_all(&self.out).map_err(|error| bad_input(format!("{}: {error}", self.out.display())))?;
         let withdrawn = Folder::withdrawals_in(&self.folder).map_err(refused)?;
         let notes = Folder::notes_in(&self.folder).map_err(refused)?;
         let withdrawn: Vec<String> = withdrawn.into_iter().map(|one| one.participant).collect();
-        for path in export(&study, &all, &withdrawn, &notes, tables(&played), &self.out)? {
+        for path in export(&study, &all, &withdrawn, &notes, tables(&played), self.practice, &self.out)? {
             println!("{}", shown(path.display()));
         }
         Ok(())
@@ -260,9 +289,13 @@ impl Export {
         Ok(read.collect::<anyhow::Result<Vec<_>>>()?.into_iter().flatten().collect())
     }
 
-    /// The logs that can be read. One that is just begun has nothing in it.
-    fn logs(&self) -> anyhow::Result<Vec<PathBuf>> {
-        let all = files(&self.folder.join("logs"), "mcap")?;
+    /// The logs that can be read, but for those of practice if that is left out. One that is just begun has nothing in it.
+    fn logs(&self, progress: &[Progress]) -> anyhow::Result<Vec<PathBuf>> {
+        let mut all = files(&self.folder.join("logs"), "mcap")?;
+        let is_practice = |path: &PathBuf| {
+            path.file_stem().and_then(OsStr::to_str).is_some_and(|session| is_practice(progress, session))
+        };
+        all.retain(|path| self.practice || !is_practice(path));
         let (whole, unread): (Vec<_>, Vec<_>) =
             all.into_iter().partition(|path| cohabit_record::Log::open(path).is_ok());
         for path in unread {

@@ -89,9 +89,10 @@ impl Role {
         let hosts = listening.hosts.iter().map(|host| format!("--host={host}"));
         let arguments = arguments.map(str::to_owned).chain(names).chain(robots).chain(questionnaires);
         let framed_by = listening.framed_by.map(|port| format!("--framed-by={port}"));
-        let arguments = arguments.chain(hosts).chain(framed_by);
+        let hidden = listening.hide.iter().map(|part| format!("--hide={part}"));
+        let arguments = arguments.chain(hosts).chain(framed_by).chain(hidden);
         let arguments = arguments.chain(listening.voice.arguments());
-        let tls = listening.tls_arguments();
+        let tls = listening.tls.arguments();
         Self { name: "dialog", arguments: arguments.map(OsString::from).chain(tls).collect() }
     }
 

@@ -2,8 +2,9 @@
 
 use crate::{
     chance::{Chance, Purpose},
-    design::{Assignment, Block, Condition, FactorKind, MissionOrder, Missions, Study, merged},
+    design::{Assignment, Block, Condition, FactorKind, MissionOrder, Missions, Study},
     plan::{Plan, PlannedMission, Step},
+    settings::Settings,
     square,
 };
 
@@ -23,14 +24,18 @@ pub fn assign(study: &Study, place: u32) -> Plan {
     for (number, block) in study.blocks.iter().enumerate() {
         match block {
             Block::Questionnaires(names) => steps.extend(names.iter().map(|name| asked(name, None))),
-            Block::Mission { mission, settings, limits, .. } => steps.push(Step::Mission(PlannedMission {
+            Block::Mission { mission, is_practice, limits, .. } => steps.push(Step::Mission(PlannedMission {
                 block: number,
                 mission: mission.clone(),
+                is_practice: *is_practice,
                 within: Vec::new(),
-                settings: merged(&[&study.settings, &condition.settings, settings]),
+                settings: study.settings_of(block, condition, &Condition::default()),
                 limits: *limits,
             })),
-            Block::Missions(missions) => add_missions(&mut steps, study, number, missions, condition, &seat),
+            Block::Missions(missions) => {
+                let settings = |within: &Condition| study.settings_of(block, condition, within);
+                add_missions(&mut steps, study, (number, missions), &seat, &settings);
+            }
             Block::Break { limit_s, .. } => steps.push(Step::Break { block: number, limit_s: *limit_s }),
         }
     }
@@ -104,10 +109,9 @@ fn sequence<'a>(study: &'a Study, order: MissionOrder, seat: &Seat, group: usize
 fn add_missions(
     steps: &mut Vec<Step>,
     study: &Study,
-    block: usize,
-    asked_for: &Missions,
-    between: &Condition,
+    (block, asked_for): (usize, &Missions),
     seat: &Seat,
+    settings: &dyn Fn(&Condition) -> Settings,
 ) {
     let within = study.conditions(FactorKind::Within);
     let (order, group) = order(study, seat, within.len());
@@ -119,8 +123,9 @@ fn add_missions(
         steps.push(Step::Mission(PlannedMission {
             block,
             mission: (*mission).to_owned(),
+            is_practice: false,
             within: condition.choices.clone(),
-            settings: merged(&[&study.settings, &between.settings, &condition.settings]),
+            settings: settings(condition),
             limits: asked_for.limits,
         }));
         steps.extend(asked_for.after_mission.iter().map(|name| asked(name, Some(step))));

@@ -1,23 +1,30 @@
 //! Reads `study.toml`, and says all that is wrong in it.
 
 mod blocks;
+mod probes;
 mod whole;
 
 use std::{
     collections::{BTreeMap, BTreeSet},
     fs,
+    ops::Range,
     path::{Component, Path, PathBuf},
 };
 
 use cohabit_cdf::mission::{Pointer, Problems};
 use cohabit_dialog::Questionnaire;
-use toml::{Spanned, de::DeTable};
+use serde::Deserialize as _;
+use toml::{
+    Spanned,
+    de::{DeTable, Deserializer},
+};
 
 use crate::{
-    design::{Completion, Factor, Level, Settings, Sheet, Study, arguments},
+    design::{Completion, ConsentBox, Factor, Level, Sheet, Study},
     findings::Findings,
+    settings::{OF_PAGES, RECORD_AUDIO, Setting, Settings, arguments},
     shape::STUDY,
-    written::{self, Words, Written, WrittenFactor, WrittenSettings, WrittenSheet},
+    written::{self, Words, Written, WrittenBox, WrittenFactor, WrittenSettings, WrittenSheet},
 };
 
 /// What only the program knows of what a study names.
@@ -52,9 +59,10 @@ pub enum StudyError {
 }
 
 /// Flags of `play` that the study's server itself sets for each session, or that would part its page from the study's.
-const OWN_FLAGS: [&str; 12] = [
+const OWN_FLAGS: [&str; 13] = [
     "branch",
     "framed-by",
+    "hide",
     "host",
     "listen",
     "log",
@@ -92,30 +100,25 @@ impl StudyFile {
         self.path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."))
     }
 
-    /// Checks all of it.
+    /// Checks all of it, and tells all that is wrong at once: what is none of its key's values is left out, and the rest looked
+    /// at.
     ///
     /// # Errors
     /// [`StudyError::Problems`], each with its place.
     pub fn check(&self, program: &dyn Program) -> Result<Study, StudyError> {
         let name = self.path.display().to_string();
         let mut findings = Findings::new(&name, &self.text);
-        let (document, errors) = DeTable::parse_recoverable(&self.text);
+        let (mut document, errors) = DeTable::parse_recoverable(&self.text);
         for error in &errors {
-            let remedy = "see https://toml.io for how it is written";
-            findings.add(error.span().unwrap_or_default(), &Pointer::default(), error.message(), remedy);
+            findings.add_syntax(error.span().unwrap_or_default(), error.message());
         }
-        if errors.is_empty() {
-            findings.check_table(document.get_ref(), &(0..0), STUDY, &Pointer::default());
-        }
-        // What is wrong with its shape may leave nothing that could be looked at further.
-        let study = toml::from_str(&self.text).ok().map(|written: Written| {
-            let mut check = Checking::new(&mut findings, program, self.folder());
-            check.study(written)
+        findings.check_table(document.get_mut(), &(0..0), STUDY, &Pointer::default());
+        let written = Written::deserialize(Deserializer::from(document)).unwrap_or_else(|error| {
+            findings.add_syntax(error.span().unwrap_or_default(), error.message());
+            Written::default()
         });
-        match study {
-            Some(study) if findings.is_empty() => Ok(study),
-            _ => Err(StudyError::Problems(findings.into_problems())),
-        }
+        let study = Checking::new(&mut findings, program, self.folder()).study(&written);
+        if findings.is_empty() { Ok(study) } else { Err(StudyError::Problems(findings.into_problems())) }
     }
 }
 
@@ -127,29 +130,33 @@ struct Checking<'a, 'f> {
     asked: Vec<Questionnaire>,
     /// The files that were read so far.
     files: BTreeMap<String, String>,
+    /// Where the study keeps what people say, if it does.
+    keeps_audio: Option<(Range<usize>, Pointer)>,
 }
 
 impl<'a, 'f> Checking<'a, 'f> {
     fn new(findings: &'a mut Findings<'f>, program: &'a dyn Program, folder: &'a Path) -> Self {
-        Self { findings, program, folder, asked: Vec::new(), files: BTreeMap::new() }
+        Self { findings, program, folder, asked: Vec::new(), files: BTreeMap::new(), keeps_audio: None }
     }
 }
 
 impl Checking<'_, '_> {
-    fn study(&mut self, written: Written) -> Study {
+    fn study(&mut self, written: &Written) -> Study {
         let root = Pointer::default();
         let blocks = self.blocks(&written.block, &root.key("block"));
         let participants = written.participants.as_ref();
         if let Some(none) = participants.filter(|count| *count.get_ref() == 0) {
             self.findings.add(none.span(), &root.key("participants"), "nobody takes part", "plan one at least");
         }
+        let probes = self.probes(&written.probe, &root.key("probe"));
         let mut study = Study {
+            probes,
             information: self.sheet(&written.information, &root.key("information")),
             consent: self.sheet(&written.consent, &root.key("consent")),
-            consents: words(&written.consent.required),
+            consents: boxes(&written.consent),
             settings: self.settings(&written.settings, &root.key("settings")),
             factors: self.factors(&written.factor, &root.key("factor")),
-            completion: self.completion(&written),
+            completion: self.completion(written),
             missions: written.missions.as_ref().map(|missions| words(missions.get_ref())).unwrap_or_default(),
             assignment: written.assignment.as_ref().map(|assignment| *assignment.get_ref()).unwrap_or_default(),
             block_size: 1,
@@ -162,7 +169,7 @@ impl Checking<'_, '_> {
             contact: written.contact.clone(),
             seed: written.seed,
         };
-        self.whole(&mut study, &written);
+        self.whole(&mut study, written, &blocks.places);
         study.files = std::mem::take(&mut self.files);
         study
     }
@@ -198,21 +205,36 @@ impl Checking<'_, '_> {
         None
     }
 
+    /// Those of the settings that can be.
     fn settings(&mut self, settings: &WrittenSettings, at: &Pointer) -> Settings {
-        for (name, value) in settings {
-            let place = at.key(name.get_ref());
-            if OWN_FLAGS.contains(&name.get_ref().as_str()) {
-                let message = format!("`{}` is not a study's to set", name.get_ref());
-                self.findings.add(name.span(), &place, message, "leave it out");
-                continue;
+        let all = settings.iter().map(|(name, value)| (name, written::setting(value.get_ref())));
+        all.filter(|(name, setting)| self.is_setting(name, setting, &at.key(name.get_ref())))
+            .map(|(name, setting)| (name.get_ref().clone(), setting))
+            .collect()
+    }
+
+    fn is_setting(&mut self, name: &Spanned<String>, setting: &Setting, at: &Pointer) -> bool {
+        let text = name.get_ref().as_str();
+        let (problem, remedy) = if OWN_FLAGS.contains(&text) {
+            (format!("`{text}` is not a study's to set"), "leave it out")
+        } else if OF_PAGES.contains(&text) {
+            if matches!(setting, Setting::Switch(_)) {
+                return true;
             }
-            let own = Settings::from([(name.get_ref().clone(), written::setting(value.get_ref()))]);
-            if let Err(problem) = self.program.check_arguments(&arguments(&own)) {
-                let remedy = "write flags of `cohabit play` without their dashes: `cohabit play --help` lists them";
-                self.findings.add(name.span(), &place, problem, remedy);
+            (format!("`{text}` is shown to participants, or is not"), "write true or false")
+        } else {
+            if text == RECORD_AUDIO && *setting == Setting::Switch(true) {
+                self.keeps_audio.get_or_insert((name.span(), at.clone()));
             }
-        }
-        written::settings(settings)
+            let own = Settings::from([(text.to_owned(), setting.clone())]);
+            let Err(problem) = self.program.check_arguments(&arguments(&own)) else { return true };
+            (
+                problem,
+                "write flags of `cohabit play` without their dashes (`cohabit play --help` lists them), or `score` or `clock`",
+            )
+        };
+        self.findings.add(name.span(), at, problem, remedy);
+        false
     }
 
     fn factors(&mut self, factors: &[Spanned<WrittenFactor>], at: &Pointer) -> Vec<Factor> {
@@ -277,6 +299,18 @@ impl Checking<'_, '_> {
             (None, None) => None,
         }
     }
+}
+
+/// The boxes of the consent form, those that have to be ticked first.
+fn boxes(consent: &WrittenSheet) -> Vec<ConsentBox> {
+    let of = |all: &[WrittenBox], is_required: bool| -> Vec<ConsentBox> {
+        let one = |written: &WrittenBox| match written {
+            WrittenBox::Sentence(text) => ConsentBox { text: text.clone(), is_required, audio: false },
+            WrittenBox::Marked { text, audio } => ConsentBox { text: text.clone(), is_required, audio: *audio },
+        };
+        all.iter().map(one).collect()
+    };
+    [of(&consent.required, true), of(&consent.optional, false)].concat()
 }
 
 fn words(all: &Words) -> Vec<String> {

@@ -5,8 +5,13 @@ use std::collections::BTreeMap;
 use cohabit_dialog::Questionnaire;
 use serde::{Deserialize, Serialize};
 
+use crate::{
+    probe::Probe,
+    settings::{Settings, merged},
+};
+
 /// A study.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Study {
     /// What participants read above each page.
     pub title: String,
@@ -28,12 +33,14 @@ pub struct Study {
     pub information: Sheet,
     /// What they agree to.
     pub consent: Sheet,
-    /// The sentences that they have to agree to.
-    pub consents: Vec<String>,
+    /// The boxes of the consent form.
+    pub consents: Vec<ConsentBox>,
     /// The factors of the design.
     pub factors: Vec<Factor>,
     /// What is done, in order.
     pub blocks: Vec<Block>,
+    /// Questions during missions.
+    pub probes: Vec<Probe>,
     /// What participants read at the end, in Markdown.
     pub debriefing: Option<String>,
     /// What shows that somebody took part.
@@ -51,6 +58,17 @@ pub struct Sheet {
     pub version: String,
     /// Markdown.
     pub text: String,
+}
+
+/// A box of the consent form.
+#[derive(Clone, Debug, Eq, PartialEq)]
+pub struct ConsentBox {
+    /// What participants agree to.
+    pub text: String,
+    /// Whether they have to, in order to take part.
+    pub is_required: bool,
+    /// Whether who agrees to it may be heard by a microphone.
+    pub audio: bool,
 }
 
 /// How the order of within-participant conditions is assigned.
@@ -102,10 +120,12 @@ pub struct Level {
 pub enum Block {
     /// Questionnaires, by name, one after the other.
     Questionnaires(Vec<String>),
-    /// One mission outside the within-participant conditions, such as a practice.
+    /// One mission outside the within-participant conditions.
     Mission {
         /// Which.
         mission: String,
+        /// Whether it is for practice: under no condition at all, and no data of the study's question.
+        is_practice: bool,
         /// Its own settings.
         settings: Settings,
         /// How long.
@@ -129,6 +149,8 @@ pub enum Block {
 pub struct Missions {
     /// In what order.
     pub order: MissionOrder,
+    /// Its own settings.
+    pub settings: Settings,
     /// How long each lasts.
     pub limits: Limits,
     /// Questionnaires after each mission.
@@ -171,39 +193,6 @@ pub enum Completion {
     Return(String),
 }
 
-/// Flags of `cohabit play`, by name.
-pub type Settings = BTreeMap<String, Setting>;
-
-/// The value of a flag.
-#[derive(Clone, Debug, Deserialize, Eq, PartialEq, Serialize)]
-#[serde(untagged)]
-pub enum Setting {
-    /// Whether it is there.
-    Switch(bool),
-    /// Its value.
-    Value(String),
-    /// Its values, one after the other.
-    Values(Vec<String>),
-}
-
-/// These settings with others on top.
-#[must_use]
-pub fn merged(all: &[&Settings]) -> Settings {
-    all.iter().flat_map(|settings| settings.iter().map(|(name, value)| (name.clone(), value.clone()))).collect()
-}
-
-/// The same as arguments of `cohabit play`.
-#[must_use]
-pub fn arguments(settings: &Settings) -> Vec<String> {
-    let of_flag = |(name, setting): (&String, &Setting)| match setting {
-        Setting::Switch(false) => Vec::new(),
-        Setting::Switch(true) => vec![format!("--{name}")],
-        Setting::Value(value) => vec![format!("--{name}={value}")],
-        Setting::Values(values) => values.iter().map(|value| format!("--{name}={value}")).collect(),
-    };
-    settings.iter().flat_map(of_flag).collect()
-}
-
 /// A factor's level that somebody meets.
 #[derive(Clone, Debug, Deserialize, Eq, Ord, PartialEq, PartialOrd, Serialize)]
 pub struct Choice {
@@ -242,6 +231,20 @@ impl Study {
         })
     }
 
+    /// The settings of a session of a block, under a condition of each kind. Those of levels count more than those of the
+    /// block of missions, which they are compared in; all others count less than a block's own.
+    #[must_use]
+    pub fn settings_of(&self, block: &Block, between: &Condition, within: &Condition) -> Settings {
+        match block {
+            Block::Mission { is_practice: true, settings, .. } => merged(&[&self.settings, settings]),
+            Block::Mission { settings, .. } => merged(&[&self.settings, &between.settings, settings]),
+            Block::Missions(missions) => {
+                merged(&[&self.settings, &missions.settings, &between.settings, &within.settings])
+            }
+            Block::Questionnaires(_) | Block::Break { .. } => Settings::new(),
+        }
+    }
+
     /// The questionnaire of that name.
     #[must_use]
     pub fn questionnaire(&self, name: &str) -> Option<&Questionnaire> {
@@ -255,23 +258,5 @@ impl Study {
             Block::Missions(missions) => Some(missions),
             _ => None,
         })
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn settings_are_flags() {
-        let settings = Settings::from([
-            ("ask".to_owned(), Setting::Value("never".to_owned())),
-            ("body".to_owned(), Setting::Values(vec!["person".to_owned(), "robot@Lab1".to_owned()])),
-            ("lock-step".to_owned(), Setting::Switch(false)),
-            ("tls".to_owned(), Setting::Switch(true)),
-        ]);
-        assert_eq!(arguments(&settings), ["--ask=never", "--body=person", "--body=robot@Lab1", "--tls"]);
-        let over = Settings::from([("ask".to_owned(), Setting::Value("always".to_owned()))]);
-        assert_eq!(arguments(&merged(&[&settings, &over]))[0], "--ask=always");
     }
 }

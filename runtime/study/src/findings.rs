@@ -1,6 +1,6 @@
 //! What is wrong in a study's file, gathered with its place in the text; and the walk that holds the file against its shape.
 
-use std::ops::Range;
+use std::{mem, ops::Range};
 
 use cohabit_cdf::mission::{Pointer, Problem, Problems, Severity};
 use toml::{
@@ -15,12 +15,16 @@ pub(crate) struct Findings<'a> {
     file: &'a str,
     text: &'a str,
     problems: Vec<Problem>,
+    /// What cannot be looked at further: values that are none, and keys that are missing.
+    unread: Vec<Pointer>,
+    /// Whether the text could not be read to its end: then what is not there may be missing or not.
+    is_partial: bool,
 }
 
 impl<'a> Findings<'a> {
     /// None yet.
     pub(crate) fn new(file: &'a str, text: &'a str) -> Self {
-        Self { file, text, problems: Vec::new() }
+        Self { file, text, problems: Vec::new(), unread: Vec::new(), is_partial: false }
     }
 
     /// Notes what is wrong at `span`, in bytes of the text, and what to do about it.
@@ -41,9 +45,20 @@ impl<'a> Findings<'a> {
         });
     }
 
+    /// Notes what is wrong with the way in which the text is written.
+    pub(crate) fn add_syntax(&mut self, span: Range<usize>, message: &str) {
+        self.is_partial = true;
+        self.add(span, &Pointer::default(), message, "see https://toml.io for how it is written");
+    }
+
     /// Whether there is none.
     pub(crate) fn is_empty(&self) -> bool {
         self.problems.is_empty()
+    }
+
+    /// Whether what stands at a place, or should, could not be read, so that nothing follows from what is left.
+    pub(crate) fn is_unread(&self, at: &Pointer) -> bool {
+        self.unread.contains(at)
     }
 
     /// All of them, in the order of the text.
@@ -53,54 +68,96 @@ impl<'a> Findings<'a> {
         Problems(self.problems)
     }
 
-    /// Holds a table against its keys.
-    pub(crate) fn check_table(&mut self, table: &DeTable<'_>, span: &Range<usize>, keys: &[Key], at: &Pointer) {
-        for (name, value) in table {
-            let place = at.key(name.get_ref());
-            match keys.iter().find(|key| key.name == name.get_ref()) {
-                Some(key) => self.check_value(value, key, &place),
-                None => {
-                    let known: Vec<&str> = keys.iter().map(|key| key.name).collect();
-                    let message = format!("there is no key `{}` here", name.get_ref());
-                    self.add(name.span(), &place, message, format!("the keys are {}", known.join(", ")));
-                }
-            }
+    /// Holds a table against its keys, and takes out of it what is none of their values.
+    pub(crate) fn check_table(&mut self, table: &mut DeTable<'_>, span: &Range<usize>, keys: &[Key], at: &Pointer) {
+        for key in keys.iter().filter(|key| !table.contains_key(key.name)) {
+            self.is_missing(key, span, at);
         }
-        for key in keys.iter().filter(|key| key.required && !table.keys().any(|name| name.get_ref() == key.name)) {
+        let entries = mem::take(table).into_iter().filter_map(|(name, mut value)| {
+            let place = at.key(name.get_ref());
+            let Some(key) = keys.iter().find(|key| key.name == name.get_ref()) else {
+                let known: Vec<&str> = keys.iter().map(|key| key.name).collect();
+                let message = format!("there is no key `{}` here", name.get_ref());
+                self.add(name.span(), &place, message, format!("the keys are {}", known.join(", ")));
+                return None;
+            };
+            let is_right = self.check_value(&mut value, key, &place);
+            if !is_right {
+                self.unread.push(place);
+            }
+            is_right.then_some((name, value))
+        });
+        *table = entries.collect();
+    }
+
+    fn is_missing(&mut self, key: &Key, span: &Range<usize>, at: &Pointer) {
+        if key.required || self.is_partial {
+            self.unread.push(at.key(key.name));
+        }
+        if key.required && !self.is_partial {
             let remedy = format!("add {}: {}", key.kind.wanted(), key.meaning);
             self.add(span.clone(), at, format!("`{}` is missing", key.name), remedy);
         }
     }
 
-    fn check_value(&mut self, value: &Spanned<DeValue<'_>>, key: &Key, at: &Pointer) {
-        match (key.kind, value.get_ref()) {
-            (Kind::Table(keys), DeValue::Table(table)) => self.check_table(table, &value.span(), keys, at),
-            (Kind::Tables(keys), DeValue::Array(list)) if !list.is_empty() => {
-                for (index, item) in list.iter().enumerate() {
-                    match item.get_ref() {
-                        DeValue::Table(table) => self.check_table(table, &item.span(), keys, &at.item(index)),
-                        _ => self.is_other(item, key, &at.item(index)),
-                    }
-                }
+    /// Whether a value is one of a key; all that is wrong in it is noted.
+    fn check_value(&mut self, value: &mut Spanned<DeValue<'_>>, key: &Key, at: &Pointer) -> bool {
+        let span = value.span();
+        match (key.kind, value.get_mut()) {
+            (Kind::Table(keys), DeValue::Table(table)) => self.check_table(table, &span, keys, at),
+            (Kind::Tables(_), DeValue::Array(list)) if list.is_empty() => {
+                self.is_other(span, "empty list", key, at);
+                return false;
             }
-            (Kind::Settings, DeValue::Table(table)) => {
-                for (name, setting) in table.iter().filter(|(_, setting)| !is_setting(setting.get_ref())) {
-                    let remedy = "write a text, a number, true or false, or a list of these";
-                    self.add(setting.span(), &at.key(name.get_ref()), "this is no value of a flag", remedy);
-                }
+            (Kind::Tables(_) | Kind::Boxes(_) | Kind::Texts, DeValue::Array(list)) => {
+                return self.check_items(list, key, at);
             }
-            (Kind::Texts, DeValue::Array(list)) => {
-                let texts = |item: &&Spanned<DeValue<'_>>| !item.get_ref().as_str().is_some_and(is_text);
-                list.iter().filter(texts).for_each(|item| self.is_other(item, key, at));
-            }
+            (Kind::Settings, DeValue::Table(table)) => self.check_settings(table, at),
             (kind, value) if is_of(kind, value) => {}
-            _ => self.is_other(value, key, at),
+            (_, other) => {
+                let kind = other.type_str();
+                self.is_other(span, kind, key, at);
+                return false;
+            }
         }
+        true
     }
 
-    fn is_other(&mut self, value: &Spanned<DeValue<'_>>, key: &Key, at: &Pointer) {
-        let message = format!("`{}` cannot be this {}", key.name, value.get_ref().type_str());
-        self.add(value.span(), at, message, format!("write {}", key.kind.wanted()));
+    /// Whether all items of a list are what its key says: texts, tables, or both.
+    fn check_items(&mut self, list: &mut [Spanned<DeValue<'_>>], key: &Key, at: &Pointer) -> bool {
+        let mut are_right = true;
+        for (index, item) in list.iter_mut().enumerate() {
+            let (span, place) = (item.span(), at.item(index));
+            match (key.kind, item.get_mut()) {
+                (Kind::Tables(keys) | Kind::Boxes(keys), DeValue::Table(table)) => {
+                    self.check_table(table, &span, keys, &place);
+                }
+                (Kind::Boxes(_) | Kind::Texts, DeValue::String(text)) if is_text(text) => {}
+                (_, other) => {
+                    let kind = other.type_str();
+                    self.is_other(span, kind, key, &place);
+                    are_right = false;
+                }
+            }
+        }
+        are_right
+    }
+
+    fn check_settings(&mut self, table: &mut DeTable<'_>, at: &Pointer) {
+        let entries = mem::take(table).into_iter().filter(|(name, setting)| {
+            let is_right = is_setting(setting.get_ref());
+            if !is_right {
+                let remedy = "write a text, a number, true or false, or a list of these";
+                self.add(setting.span(), &at.key(name.get_ref()), "this is no value of a flag", remedy);
+            }
+            is_right
+        });
+        *table = entries.collect();
+    }
+
+    fn is_other(&mut self, span: Range<usize>, kind: &str, key: &Key, at: &Pointer) {
+        let message = format!("`{}` cannot be this {kind}", key.name);
+        self.add(span, at, message, format!("write {}", key.kind.wanted()));
     }
 }
 
@@ -121,6 +178,7 @@ fn is_of(kind: Kind, value: &DeValue<'_>) -> bool {
             text.and_then(|text| text.parse().ok()).is_some_and(|minutes: f64| minutes > 0.0 && minutes.is_finite())
         }
         Kind::OneOf(words) => value.as_str().is_some_and(|word| words.contains(&word)),
+        Kind::Switch => value.is_bool(),
         _ => false,
     }
 }

@@ -4,9 +4,9 @@
 //! |---|---|
 //! | `study/` | the study as it was when the first participant came: `study.toml`, and the files that it names |
 //! | `participants.csv`, `answers.csv` | tables, written anew from the journals |
-//! | `journals/P01.jsonl` | what happened to a participant, an event a line |
+//! | `journals/P01.jsonl` | what happened to a participant, an event a line; what they filled in before they sent it, too |
 //! | `logs/P01-03-1.mcap` | sessions: participant, step, and which try |
-//! | `consent/P01.json` | to which version of the form they agreed, and when |
+//! | `consent/P01.json` | to which version of the form they agreed, to which of its sentences, and when |
 //! | `private/links.json` | the tokens of all pages |
 //! | `notes.jsonl`, `withdrawn.jsonl` | the experimenter's notes; whose data were removed, and when |
 
@@ -93,6 +93,9 @@ pub struct Consent {
     pub version: String,
     /// What they agreed to.
     pub agreed: Vec<String>,
+    /// What they did not agree to, and need not.
+    #[serde(default)]
+    pub declined: Vec<String>,
 }
 
 /// What the experimenter noted.

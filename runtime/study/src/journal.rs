@@ -1,7 +1,8 @@
 //! The journal of one participant: a JSON line an event, on the disk before anything follows from it.
 //!
 //! The first line holds the participant's plan, which is never drawn again. A line that was cut off by a crash was not
-//! carried out, and is dropped.
+//! carried out, and is dropped. What somebody fills in of a questionnaire before they send it is in it, too; tables never
+//! hold that.
 
 use std::{
     fs::{File, OpenOptions},
@@ -187,7 +188,7 @@ mod tests {
     }
 
     fn consented() -> Event {
-        Event::Consented { version: "2".to_owned(), ticked: 1 }
+        Event::Consented { version: "2".to_owned(), ticked: vec![0], audio: false }
     }
 
     #[test]

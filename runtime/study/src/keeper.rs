@@ -11,11 +11,12 @@ use std::{
 };
 
 use crate::{
-    design::arguments,
     plan::{Step, pseudonym},
+    probe::{self, Happening},
     progress::{Ending, Event, Phase},
     registry::{Live, Registry, StudyFault, now_ms},
     session::{Look, Player, Wanted, session_name},
+    settings::session_arguments,
     tables,
 };
 
@@ -143,10 +144,24 @@ impl Registry {
         if left_s.is_some_and(|left| left <= live.unsaved_s) {
             return Some(News::Over(Ending::TimeUp));
         }
-        if live.unsaved_s >= SAVE_EVERY_S {
+        let (unsaved_s, happened) = (live.unsaved_s, live.playing.happened());
+        if unsaved_s >= SAVE_EVERY_S {
             self.save_played(place);
         }
+        self.ask_probe(place, &happened);
         None
+    }
+
+    /// Asks a participant what is due now, if something is. Nothing is asked during practice.
+    fn ask_probe(&mut self, place: u32, happened: &[Happening]) {
+        let Some(participant) = self.participants.get(&place).filter(|one| one.is_here()) else { return };
+        let progress = &participant.progress;
+        let played_s = progress.played_s() + participant.live.as_ref().map_or(0.0, |live| live.unsaved_s);
+        let is_practice = progress.mission().is_none_or(|(_, mission, _)| mission.is_practice);
+        let due = probe::due(&self.study.probes, progress.probed(), happened, played_s).filter(|_| !is_practice);
+        if let Some(probe) = due {
+            self.note(place, &Event::Probed { probe });
+        }
     }
 
     /// Writes down how long a participant has played.
@@ -189,7 +204,7 @@ impl Registry {
         let wanted = Wanted {
             participant: pseudonym(place),
             mission: mission.mission.clone(),
-            arguments: arguments(&mission.settings),
+            arguments: session_arguments(&mission.settings, participant.progress.agrees_to_audio()),
             log: self.folder.log_path(&name),
             before: self.before(place, step, attempt),
             seed: self.study.seed,

@@ -9,6 +9,12 @@
 //! - An event is on the disk before anything follows from it. Whoever is killed, and whenever: the participant goes on
 //!   where they were, under the conditions that were written down when they enrolled.
 //! - A participant's page learns nothing about conditions.
+//! - Nobody is heard by a microphone who did not tick a box of the consent form that is about that: the session takes no sound,
+//!   and keeps none.
+//! - Score and clock are shown to participants only where a setting says so; figures for developers never are.
+//! - A practice is played under no condition, and exported tables leave it out.
+//! - A probe is asked once in a mission, while it goes on, and no other one before it is answered.
+//! - What is filled in of a questionnaire is kept as it is typed, and is no answer before it is sent.
 //! - A mission runs as a session of its own, whose page the participant's page shows within it. How sessions are played
 //!   this crate does not know: it asks a [`Player`].
 //!
@@ -38,12 +44,14 @@ mod links;
 mod markdown;
 mod pages;
 mod plan;
+mod probe;
 mod progress;
 mod registry;
 mod schema;
 #[cfg(test)]
 mod scratch;
 mod session;
+pub mod settings;
 mod shape;
 pub mod square;
 mod tables;
@@ -58,9 +66,10 @@ pub use folder::{Consent, Folder, FolderError, Note, Withdrawal};
 pub use journal::{Journal, JournalError};
 pub use keeper::keep;
 pub use plan::{Plan, PlannedMission, Step, pseudonym};
+pub use probe::{Happening, Moment, Probe, Probed};
 pub use progress::{Doing, Done, Effect, Ending, Event, Phase, Progress, Refused};
 pub use registry::{Registry, StudyFault};
 pub use schema::schema;
 pub use session::{Look, PageAddress, Player, Playing, Wanted};
-pub use tables::{TablesError, export};
+pub use tables::{TablesError, export, is_practice};
 pub use web::{Doors, StudyService, address};

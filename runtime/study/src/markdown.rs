@@ -1,119 +1,45 @@
-//! The Markdown of information sheets, consent forms and debriefings as HTML: headings, paragraphs, lists, strong and
-//! emphasised words, code, and links. All else is text; no HTML of the file's own gets through.
+//! The Markdown of information sheets, consent forms and debriefings as HTML. No HTML of the file's own gets through: it is
+//! shown as the text that it is. Links lead to pages and mail alone, and pictures are their descriptions.
 
-/// The same text as HTML. Headings begin at the second level: the page has one above them.
+use pulldown_cmark::{CodeBlockKind, Event, HeadingLevel, Options, Parser, Tag, TagEnd, html::push_html};
+
+/// Where a link may lead.
+const SCHEMES: [&str; 3] = ["https://", "http://", "mailto:"];
+
+/// The same text (CommonMark) as HTML. Headings begin at the second level: the page has one above them.
 #[must_use]
 pub fn html(markdown: &str) -> String {
+    let mut is_in_link = false;
+    let events = Parser::new_ext(markdown, Options::empty()).filter_map(|event| shown(event, &mut is_in_link));
     let mut html = String::new();
-    let mut lines = markdown.lines().peekable();
-    while let Some(line) = lines.next() {
-        let Some(block) = Block::of(line) else { continue };
-        let mut items = vec![block.text(line)];
-        // What follows without an empty line, and begins no other block, goes on with the same item.
-        while let Some(next) =
-            lines.peek().filter(|next| !next.trim().is_empty() && !matches!(block, Block::Heading(_)))
-        {
-            let text = match Block::of(next) {
-                Some(other) if other == block && block != Block::Paragraph => {
-                    items.push(other.text(next));
-                    lines.next();
-                    continue;
-                }
-                Some(Block::Paragraph) => next.trim(),
-                _ => break,
-            };
-            if let Some(item) = items.last_mut() {
-                item.push(' ');
-                item.push_str(text);
-            }
-            lines.next();
-        }
-        html += &block.html(&items);
-    }
+    push_html(&mut html, events);
     html
 }
 
-/// What a line begins.
-#[derive(Clone, Copy, Debug, Eq, PartialEq)]
-enum Block {
-    Heading(usize),
-    Bullets,
-    Numbers,
-    Paragraph,
-}
-
-impl Block {
-    fn of(line: &str) -> Option<Self> {
-        let line = line.trim();
-        let hashes = line.chars().take_while(|c| *c == '#').count();
-        let digits = line.chars().take_while(char::is_ascii_digit).count();
-        match line {
-            "" => None,
-            _ if (1..=6).contains(&hashes) && line[hashes..].starts_with(' ') => Some(Self::Heading(hashes)),
-            _ if line.starts_with("- ") || line.starts_with("* ") => Some(Self::Bullets),
-            _ if digits > 0 && line[digits..].starts_with(". ") => Some(Self::Numbers),
-            _ => Some(Self::Paragraph),
+/// What is shown of a piece of the text; links do not lie in each other, so it is enough to know whether one is open.
+fn shown<'a>(event: Event<'a>, is_in_link: &mut bool) -> Option<Event<'a>> {
+    Some(match event {
+        Event::Html(text) | Event::InlineHtml(text) => Event::Text(text),
+        Event::Start(Tag::HtmlBlock) => Event::Start(Tag::Paragraph),
+        Event::End(TagEnd::HtmlBlock) => Event::End(TagEnd::Paragraph),
+        Event::Start(Tag::Image { .. }) | Event::End(TagEnd::Image) => return None,
+        Event::Start(Tag::Link { dest_url, .. }) => {
+            *is_in_link = SCHEMES.iter().any(|scheme| dest_url.starts_with(scheme));
+            let open = format!("<a href=\"{}\" target=\"_blank\" rel=\"noreferrer\">", escaped(&dest_url));
+            is_in_link.then(|| Event::InlineHtml(open.into()))?
         }
-    }
-
-    /// What a line of it says.
-    fn text(self, line: &str) -> String {
-        let line = line.trim();
-        let mark = match self {
-            Self::Heading(hashes) => hashes,
-            Self::Bullets => 1,
-            Self::Numbers => line.find('.').map_or(0, |at| at + 1),
-            Self::Paragraph => 0,
-        };
-        line[mark..].trim().to_owned()
-    }
-
-    fn html(self, items: &[String]) -> String {
-        let all =
-            |tag: &str| -> String { items.iter().map(|item| format!("<{tag}>{}</{tag}>", inline(item))).collect() };
-        match self {
-            Self::Heading(hashes) => all(&format!("h{}", (hashes + 1).min(6))),
-            Self::Bullets => format!("<ul>{}</ul>", all("li")),
-            Self::Numbers => format!("<ol>{}</ol>", all("li")),
-            Self::Paragraph => all("p"),
+        Event::End(TagEnd::Link) => std::mem::take(is_in_link).then(|| Event::InlineHtml("</a>".into()))?,
+        Event::Start(Tag::Heading { level, .. }) => {
+            Event::Start(Tag::Heading { level: below(level), id: None, classes: Vec::new(), attrs: Vec::new() })
         }
-    }
+        Event::End(TagEnd::Heading(level)) => Event::End(TagEnd::Heading(below(level))),
+        Event::Start(Tag::CodeBlock(_)) => Event::Start(Tag::CodeBlock(CodeBlockKind::Indented)),
+        other => other,
+    })
 }
 
-/// Marks within a line, longest first, and their tags.
-const MARKS: [(&str, &str); 3] = [("**", "strong"), ("*", "em"), ("`", "code")];
-
-fn inline(text: &str) -> String {
-    let mut html = String::new();
-    let mut rest = text;
-    while let Some(c) = rest.chars().next() {
-        if let Some((made, after)) = marked(rest).or_else(|| link(rest)) {
-            html += &made;
-            rest = after;
-        } else {
-            html += &escaped(&rest[..c.len_utf8()]);
-            rest = &rest[c.len_utf8()..];
-        }
-    }
-    html
-}
-
-/// What stands between two marks at the beginning, and what is behind it.
-fn marked(text: &str) -> Option<(String, &str)> {
-    let (mark, tag) = MARKS.into_iter().find(|(mark, _)| text.starts_with(mark))?;
-    let (inner, after) = text[mark.len()..].split_once(mark)?;
-    let is_marked = !inner.is_empty() && !inner.starts_with(' ') && !inner.ends_with(' ');
-    let made = if tag == "code" { escaped(inner) } else { inline(inner) };
-    is_marked.then(|| (format!("<{tag}>{made}</{tag}>"), after))
-}
-
-/// `[text](address)` at the beginning, and what is behind it. Addresses are of pages and of mail alone.
-fn link(text: &str) -> Option<(String, &str)> {
-    let (words, rest) = text.strip_prefix('[')?.split_once("](")?;
-    let (address, after) = rest.split_once(')')?;
-    let is_safe = ["https://", "http://", "mailto:"].iter().any(|scheme| address.starts_with(scheme));
-    let made = format!("<a href=\"{}\" target=\"_blank\" rel=\"noreferrer\">{}</a>", escaped(address), inline(words));
-    (is_safe && !words.contains('[')).then_some((made, after))
+fn below(level: HeadingLevel) -> HeadingLevel {
+    HeadingLevel::try_from(level as usize + 1).unwrap_or(level)
 }
 
 /// Text as HTML has it.
@@ -131,22 +57,24 @@ mod tests {
     #[test]
     fn what_sheets_are_written_in_becomes_html() {
         for (markdown, expected) in [
-            ("# Robots\n\nYou talk\nto one.", "<h2>Robots</h2><p>You talk to one.</p>"),
-            (
-                "- one\n- *two*\n  more\n\n1. a\n2. b",
-                "<ul><li>one</li><li><em>two</em> more</li></ul><ol><li>a</li><li>b</li></ol>",
-            ),
-            (
-                "**You** may `stop` <now> & leave.",
-                "<p><strong>You</strong> may <code>stop</code> &lt;now&gt; &amp; leave.</p>",
-            ),
+            ("# Robots\n\nYou talk\nto one.", "<h2>Robots</h2>\n<p>You talk\nto one.</p>\n"),
+            ("- one\n- *two*\n  more\n", "<ul>\n<li>one</li>\n<li><em>two</em>\nmore</li>\n</ul>\n"),
+            ("1. a\n   - b\n2. c", "<ol>\n<li>a\n<ul>\n<li>b</li>\n</ul>\n</li>\n<li>c</li>\n</ol>\n"),
+            ("**You** may `stop` & leave.", "<p><strong>You</strong> may <code>stop</code> &amp; leave.</p>\n"),
+            ("A <b>bold</b> word", "<p>A &lt;b&gt;bold&lt;/b&gt; word</p>\n"),
+            ("<script>\nalert(1)\n</script>", "<p>&lt;script&gt;\nalert(1)\n&lt;/script&gt;</p>\n"),
             (
                 "Ask [us](mailto:lab@example.org).",
-                "<p>Ask <a href=\"mailto:lab@example.org\" target=\"_blank\" rel=\"noreferrer\">us</a>.</p>",
+                "<p>Ask <a href=\"mailto:lab@example.org\" target=\"_blank\" rel=\"noreferrer\">us</a>.</p>\n",
             ),
-            ("[x](javascript:alert(1))", "<p>[x](javascript:alert(1))</p>"),
-            ("2 * 3 * 4 and a*", "<p>2 * 3 * 4 and a*</p>"),
-            ("Text\n# Head\nmore", "<p>Text</p><h2>Head</h2><p>more</p>"),
+            (
+                "[*x*](https://a.org/?b=1&c=\"2\")",
+                "<p><a href=\"https://a.org/?b=1&amp;c=&quot;2&quot;\" target=\"_blank\" rel=\"noreferrer\"><em>x</em></a></p>\n",
+            ),
+            ("[x](javascript:alert(1)) <javascript:y>", "<p>x javascript:y</p>\n"),
+            ("![a robot](robot.png)", "<p>a robot</p>\n"),
+            ("2 * 3 * 4 and a*", "<p>2 * 3 * 4 and a*</p>\n"),
+            ("###### Head\nmore", "<h6>Head</h6>\n<p>more</p>\n"),
         ] {
             assert_eq!(html(markdown), expected, "{markdown}");
         }
@@ -154,12 +82,15 @@ mod tests {
 
     proptest! {
         #[test]
-        fn no_tag_of_the_file_gets_through(text in "[<>a-z*`#\\[\\]()&\"' \n.1-]{0,80}") {
+        fn no_tag_of_the_file_gets_through(text in "[<>a-z!*`#\\[\\]()&\"' \n.1/:-]{0,80}") {
+            const OWN: [&str; 17] = [
+                "h2", "h3", "h4", "h5", "h6", "p", "ul", "ol", "li", "strong", "em", "code", "pre", "a", "hr", "br", "blockquote",
+            ];
             let html = html(&text);
-            let own = ["h2", "h3", "h4", "h5", "h6", "p", "ul", "ol", "li", "strong", "em", "code", "a"];
             for part in html.split('<').skip(1) {
                 let tag = part.trim_start_matches('/');
-                prop_assert!(own.iter().any(|own| tag.strip_prefix(own).is_some_and(|rest| rest.starts_with(['>', ' ']))), "{html}");
+                let is_own = |own: &&str| tag.strip_prefix(*own).is_some_and(|rest| rest.starts_with(['>', ' ']));
+                prop_assert!(OWN.iter().any(is_own), "{html}");
             }
         }
     }

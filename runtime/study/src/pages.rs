@@ -3,11 +3,12 @@
 use serde_json::{Value, json};
 
 use crate::{
-    design::{Block, Study},
+    design::{Block, ConsentBox, Study},
     markdown::html,
-    plan::{Plan, Step, pseudonym},
-    progress::{Doing, Phase},
+    plan::{Plan, PlannedMission, Step, pseudonym},
+    progress::{Doing, Phase, Progress},
     registry::{Participant, Reading, Registry, Who},
+    settings::{CLOCK, is_on},
     tables::{levels, progress_name},
 };
 
@@ -34,7 +35,8 @@ impl Registry {
         match reading {
             Reading::Information => json!({ "page": "information", "html": html(&information.text) }),
             Reading::Consent => json!({
-                "page": "consent", "html": html(&consent.text), "version": consent.version, "required": consents,
+                "page": "consent", "html": html(&consent.text), "version": consent.version,
+                "boxes": consents.iter().map(shown_box).collect::<Vec<_>>(),
             }),
             Reading::Declined => json!({ "page": "declined" }),
         }
@@ -51,7 +53,8 @@ impl Registry {
         };
         let mut page = match (step, doing) {
             (Step::Questionnaire { name, .. }, _) => {
-                json!({ "page": "questionnaire", "questionnaire": self.study.questionnaire(name) })
+                let asked = self.study.questionnaire(name);
+                json!({ "page": "questionnaire", "questionnaire": asked, "draft": progress.draft() })
             }
             (Step::Break { block, limit_s }, _) => {
                 let rested_s = crate::registry::now_ms().saturating_sub(progress.since_ms()) as f64 / 1000.0;
@@ -68,11 +71,24 @@ impl Registry {
                 let ahead = self.queue().iter().position(|place| *place == progress.plan().place);
                 json!({ "page": "waiting", "ahead": ahead })
             }
-            (Step::Mission(_), Doing::Playing) => played(participant),
+            (Step::Mission(mission), Doing::Playing) => {
+                let mut page = played(participant, mission);
+                page["probe"] = self.open_probe(progress);
+                page
+            }
         };
         page["step"] = json!(index + 1);
         page["steps"] = json!(progress.plan().steps.len());
         page
+    }
+
+    /// What a participant is asked during a mission and has not answered yet.
+    fn open_probe(&self, progress: &Progress) -> Value {
+        let open = progress.probed().iter().find(|one| one.answer.is_none());
+        let probe = open.and_then(|open| Some((open.probe, self.study.probes.get(open.probe)?)));
+        let item = probe
+            .and_then(|(number, probe)| Some((number, self.study.questionnaire(&probe.questionnaire)?.items.first()?)));
+        item.map_or(Value::Null, |(number, item)| json!({ "number": number, "item": item }))
     }
 
     /// What participants read in a block.
@@ -137,12 +153,17 @@ fn within_levels(plan: &Plan) -> Vec<String> {
     all
 }
 
+fn shown_box(one: &ConsentBox) -> Value {
+    json!({ "text": one.text, "is_required": one.is_required })
+}
+
 fn finished(study: &Study) -> Value {
     let text = study.debriefing.as_deref().map(html);
     json!({ "page": "finished", "html": text, "completion": study.completion })
 }
 
-fn played(participant: &Participant) -> Value {
+/// The session of a mission. How much time is left is told only if the study shows a clock.
+fn played(participant: &Participant, mission: &PlannedMission) -> Value {
     let live = participant.live.as_ref();
     let Some(page) = live.and_then(|live| live.page.as_ref()) else { return json!({ "page": "starting" }) };
     let unsaved_s = live.map_or(0.0, |live| live.unsaved_s);
@@ -151,9 +172,9 @@ fn played(participant: &Participant) -> Value {
     let rest = |seconds: Option<f64>| seconds.map(|seconds| (seconds - unsaved_s).max(0.0));
     json!({
         "page": "mission",
-        "session": { "port": page.port, "token": page.token },
+        "session": { "port": page.port, "token": page.token, "has_microphone": progress.agrees_to_audio() },
         "is_over": is_over,
-        "left_s": rest(progress.left_s()),
+        "left_s": rest(progress.left_s().filter(|_| is_on(&mission.settings, CLOCK))),
         "skip_in_s": rest(progress.skip_in_s()),
     })
 }

@@ -2,7 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::design::{Choice, Limits, Settings};
+use crate::{
+    design::{Choice, Limits},
+    settings::Settings,
+};
 
 /// What one participant does. It is written down when they enrol and never drawn again.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
@@ -44,6 +47,9 @@ pub struct PlannedMission {
     pub block: usize,
     /// The mission, as the study names it.
     pub mission: String,
+    /// Whether it is for practice, which tables leave out.
+    #[serde(default)]
+    pub is_practice: bool,
     /// The level of each within-participant factor; none outside the block of missions.
     pub within: Vec<Choice>,
     /// All settings of its session.
@@ -66,10 +72,17 @@ pub fn place_of(pseudonym: &str) -> Option<u32> {
 }
 
 impl Plan {
-    /// The levels of all factors under which a step is done.
+    /// Whether a step is a mission for practice.
+    #[must_use]
+    pub fn is_practice(&self, step: usize) -> bool {
+        matches!(self.steps.get(step), Some(Step::Mission(PlannedMission { is_practice: true, .. })))
+    }
+
+    /// The levels of all factors under which a step is done; a practice is done under none.
     #[must_use]
     pub fn choices(&self, step: usize) -> Vec<Choice> {
         let within = match self.steps.get(step) {
+            Some(Step::Mission(mission)) if mission.is_practice => return Vec::new(),
             Some(Step::Mission(mission)) => mission.within.clone(),
             Some(Step::Questionnaire { about: Some(about), .. }) if *about < step => return self.choices(*about),
             _ => Vec::new(),

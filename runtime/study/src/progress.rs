@@ -6,7 +6,10 @@
 use cohabit_dialog::Given;
 use serde::{Deserialize, Serialize};
 
-use crate::plan::{Plan, PlannedMission, Step};
+use crate::{
+    plan::{Plan, PlannedMission, Step},
+    probe::Probed,
+};
 
 /// Where a participant is.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,7 +24,18 @@ pub struct Progress {
     played_s: f64,
     /// How often its session was started.
     attempts: u32,
+    /// Whether they agreed to be heard by a microphone.
+    agrees_to_audio: bool,
+    /// What they have filled in of the present questionnaire so far: no answers yet.
+    draft: Vec<Option<Given>>,
+    /// How often they have changed it.
+    drafts: usize,
+    /// What they were asked during the present mission.
+    probed: Vec<Probed>,
 }
+
+/// A questionnaire's draft is kept so often: more changes than a person makes, and a bound for a page that runs wild.
+const MOST_DRAFTS: usize = 2000;
 
 /// What a participant is about.
 #[derive(Clone, Debug, PartialEq)]
@@ -64,11 +78,21 @@ pub enum Event {
     Consented {
         /// The version of the consent form.
         version: String,
-        /// How many boxes they ticked.
-        ticked: usize,
+        /// The boxes that they ticked, by number, from 0.
+        ticked: Vec<usize>,
+        /// Whether one of them is about being heard: as the study's form has it, whatever a page says.
+        #[serde(default)]
+        audio: bool,
     },
     /// They do not agree.
     Declined,
+    /// They have filled in some of a questionnaire.
+    Drafted {
+        /// Its name.
+        questionnaire: String,
+        /// What stands in each question so far.
+        answers: Vec<Option<Given>>,
+    },
     /// They answer a questionnaire.
     Answered {
         /// Its name.
@@ -84,6 +108,18 @@ pub enum Event {
     Played {
         /// For so long, s.
         seconds: f64,
+    },
+    /// They are asked something during their mission.
+    Probed {
+        /// Which of the study's probes.
+        probe: usize,
+    },
+    /// They answer that.
+    ProbeAnswered {
+        /// Which of the study's probes.
+        probe: usize,
+        /// The answer.
+        answer: Option<Given>,
     },
     /// Their mission's session ended before its time.
     Interrupted {
@@ -165,6 +201,8 @@ pub struct Done {
     pub attempts: u32,
     /// Of a questionnaire: the answers.
     pub answers: Vec<Option<Given>>,
+    /// Of a mission: what was asked meanwhile.
+    pub probed: Vec<Probed>,
 }
 
 /// Why an event cannot happen now, for the person who caused it.
@@ -178,7 +216,18 @@ impl Progress {
     /// Somebody who has just come.
     #[must_use]
     pub fn new(plan: Plan) -> Self {
-        Self { plan, phase: Phase::Information, done: Vec::new(), since_ms: 0, played_s: 0.0, attempts: 0 }
+        Self {
+            plan,
+            phase: Phase::Information,
+            done: Vec::new(),
+            since_ms: 0,
+            played_s: 0.0,
+            attempts: 0,
+            agrees_to_audio: false,
+            draft: Vec::new(),
+            drafts: 0,
+            probed: Vec::new(),
+        }
     }
 
     /// What they do.
@@ -209,6 +258,24 @@ impl Progress {
     #[must_use]
     pub const fn played_s(&self) -> f64 {
         self.played_s
+    }
+
+    /// Whether they agreed to be heard by a microphone.
+    #[must_use]
+    pub const fn agrees_to_audio(&self) -> bool {
+        self.agrees_to_audio
+    }
+
+    /// What stands in each question of the present questionnaire so far; nothing, if they have not begun.
+    #[must_use]
+    pub fn draft(&self) -> &[Option<Given>] {
+        &self.draft
+    }
+
+    /// What they were asked during the present mission.
+    #[must_use]
+    pub fn probed(&self) -> &[Probed] {
+        &self.probed
     }
 
     /// The present step.
@@ -257,7 +324,10 @@ impl Progress {
         match (&self.phase, event) {
             (Phase::Information, Event::Read) => self.phase = Phase::Consent,
             (Phase::Consent, Event::Declined) => self.phase = Phase::Information,
-            (Phase::Consent, Event::Consented { .. }) => self.begin(0, at_ms),
+            (Phase::Consent, Event::Consented { audio, .. }) => {
+                self.agrees_to_audio = *audio;
+                self.begin(0, at_ms);
+            }
             (Phase::Withdrawn, _) => return Err(Refused("You have withdrawn from this study.")),
             (_, Event::Withdrew) => {
                 let effects = self.end_session();
@@ -277,6 +347,15 @@ impl Progress {
 
     fn step_at(&mut self, index: usize, doing: Doing, event: &Event, at_ms: u64) -> Result<Vec<Effect>, Refused> {
         match (self.plan.steps.get(index), doing, event) {
+            (Some(Step::Questionnaire { name, .. }), _, Event::Drafted { questionnaire, answers })
+                if name == questionnaire =>
+            {
+                if self.drafts >= MOST_DRAFTS {
+                    return Err(Refused("What you fill in is no longer kept before you send it."));
+                }
+                self.drafts += 1;
+                self.draft.clone_from(answers);
+            }
             (Some(Step::Questionnaire { name, .. }), _, Event::Answered { questionnaire, answers })
                 if name == questionnaire =>
             {
@@ -292,6 +371,17 @@ impl Progress {
                 return Ok(vec![Effect::StartSession { attempt: self.attempts }]);
             }
             (Some(Step::Mission(_)), Doing::Playing, Event::Played { seconds }) => self.played_s += seconds,
+            (Some(Step::Mission(_)), Doing::Playing, Event::Probed { probe }) => {
+                if self.probed.iter().any(|one| one.probe == *probe || one.answer.is_none()) {
+                    return Err(OUT_OF_TURN);
+                }
+                self.probed.push(Probed { probe: *probe, asked_ms: at_ms, answer: None });
+            }
+            (Some(Step::Mission(_)), Doing::Playing, Event::ProbeAnswered { probe, answer }) => {
+                let is_open = |one: &&mut Probed| one.probe == *probe && one.answer.is_none();
+                let open = self.probed.iter_mut().find(is_open).ok_or(OUT_OF_TURN)?;
+                open.answer = Some((at_ms, answer.clone()));
+            }
             (Some(Step::Mission(_)), Doing::Playing, Event::Interrupted { .. }) => {
                 self.phase = Phase::At(index, Doing::Queued { again: true });
                 return Ok(vec![Effect::EndSession]);
@@ -322,13 +412,15 @@ impl Progress {
 
     fn complete(&mut self, step: usize, ending: Option<Ending>, answers: Vec<Option<Given>>, at_ms: u64) {
         let (played_s, attempts) = (self.played_s, self.attempts);
-        let done = Done { step, began_ms: self.since_ms, ended_ms: at_ms, ending, played_s, attempts, answers };
+        let probed = std::mem::take(&mut self.probed);
+        let done = Done { step, began_ms: self.since_ms, ended_ms: at_ms, ending, played_s, attempts, answers, probed };
         self.done.push(done);
         self.begin(step + 1, at_ms);
     }
 
     fn begin(&mut self, step: usize, at_ms: u64) {
         (self.since_ms, self.played_s, self.attempts) = (at_ms, 0.0, 0);
+        (self.draft, self.drafts) = (Vec::new(), 0);
         self.phase = if step < self.plan.steps.len() { Phase::At(step, Doing::Ready) } else { Phase::Finished };
     }
 }

@@ -9,7 +9,7 @@ use cohabit_dialog::token;
 
 use crate::{
     assign::assign,
-    design::Study,
+    design::{ConsentBox, Study},
     folder::{Consent, Folder, FolderError, Note},
     journal::{Journal, JournalError},
     links::Links,
@@ -221,12 +221,20 @@ impl Registry {
 
     /// A newcomer agrees: they get their place, and their plan. All of this is written down before they go on, their
     /// consent first, so that there are no data without it.
-    pub(crate) fn enrol(&mut self, index: usize, version: &str, ticked: usize) -> Result<(), StudyFault> {
+    pub(crate) fn enrol(&mut self, index: usize, version: &str, ticked: &[usize]) -> Result<(), StudyFault> {
         let Some(newcomer) = self.newcomers.get(index) else { return Ok(()) };
-        let consents = self.study.consents.clone();
-        if version != self.study.consent.version || ticked != consents.len() {
-            return Err(StudyFault::NotNow("Please tick all boxes, or leave the study.".to_owned()));
+        let numbered = self.study.consents.iter().enumerate();
+        let (agreed, declined): (Vec<_>, Vec<_>) = numbered.partition(|(number, _)| ticked.contains(number));
+        if version != self.study.consent.version || declined.iter().any(|(_, one)| one.is_required) {
+            return Err(StudyFault::NotNow(
+                "Please tick all boxes that are not optional, or leave the study.".to_owned(),
+            ));
         }
+        let audio = agreed.iter().any(|(_, one)| one.audio);
+        let ticked = agreed.iter().map(|(number, _)| *number).collect();
+        let text = |(_, one): (usize, &ConsentBox)| one.text.clone();
+        let texts = |boxes: Vec<(usize, &ConsentBox)>| boxes.into_iter().map(text).collect::<Vec<_>>();
+        let (agreed, declined) = (texts(agreed), texts(declined));
         let place = match newcomer.place {
             Some(place) => place,
             None => {
@@ -236,10 +244,10 @@ impl Registry {
         };
         let at_ms = now_ms();
         let participant = pseudonym(place);
-        let consent = Consent { participant, at_ms, version: version.to_owned(), agreed: consents };
+        let consent = Consent { participant, at_ms, version: version.to_owned(), agreed, declined };
         self.folder.keep_consent(place, &consent)?;
         let plan = assign(&self.study, place);
-        let agreed = Event::Consented { version: version.to_owned(), ticked };
+        let agreed = Event::Consented { version: version.to_owned(), ticked, audio };
         let journal = Journal::begin(&self.folder.journal_path(place), &plan, &agreed, at_ms)?;
         let mut progress = Progress::new(plan);
         progress.step(&Event::Read, at_ms)?;

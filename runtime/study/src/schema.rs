@@ -29,6 +29,8 @@ fn value(kind: Kind) -> Value {
     match kind {
         Kind::Text => text,
         Kind::Texts => json!({ "type": "array", "items": text }),
+        Kind::Boxes(keys) => json!({ "type": "array", "items": { "anyOf": [text, table(keys)] } }),
+        Kind::Switch => json!({ "type": "boolean" }),
         Kind::Whole(most) => json!({ "type": "integer", "minimum": 0, "maximum": most }),
         Kind::Minutes => json!({ "type": "number", "exclusiveMinimum": 0 }),
         Kind::OneOf(words) => json!({ "enum": words }),

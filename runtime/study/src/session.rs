@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::{plan::pseudonym, progress::Ending};
+use crate::{plan::pseudonym, probe::Happening, progress::Ending};
 
 /// A session that is to be played.
 #[derive(Clone, Debug, Eq, PartialEq)]
@@ -58,6 +58,9 @@ pub trait Player: Send {
 pub trait Playing: Send {
     /// How it is.
     fn look(&mut self) -> Look;
+
+    /// What has happened in it since it was last looked at.
+    fn happened(&mut self) -> Vec<Happening>;
 
     /// Asks it to end; it is [`Look::Gone`] soon.
     fn end(&mut self);

@@ -20,13 +20,17 @@ pub enum Kind {
     Text,
     /// A list of such texts.
     Texts,
+    /// A list of boxes of a consent form, each a text, or a table with these keys.
+    Boxes(&'static [Key]),
+    /// True or false.
+    Switch,
     /// A whole number from 0 to so many.
     Whole(u64),
     /// A number of minutes above 0.
     Minutes,
     /// One of these words.
     OneOf(&'static [&'static str]),
-    /// Flags of `cohabit play`, each with a text, a number, true or false, or a list of these.
+    /// Settings, most of them flags of `cohabit play`, each with a text, a number, true or false, or a list of these.
     Settings,
     /// A table with these keys.
     Table(&'static [Key]),
@@ -74,13 +78,28 @@ pub const STUDY: &[Key] = &[
         Kind::Texts,
         "the missions of the block of kind `missions`: names of built-in missions, or files",
     ),
-    optional("settings", Kind::Settings, "flags of `cohabit play` for all sessions"),
+    optional(
+        "settings",
+        Kind::Settings,
+        "settings of all sessions: flags of `cohabit play`; and `score` and `clock`, true if participants are to see them",
+    ),
     optional("completion_code", Kind::Text, "what participants are given at the end, to show that they took part"),
     optional("return_url", Kind::Text, "where participants are led back to at the end"),
     required("information", Kind::Table(SHEET), "what participants read first"),
     required("consent", Kind::Table(CONSENT), "what participants agree to"),
     optional("factor", Kind::Tables(FACTOR), "a factor of the design"),
     required("block", Kind::Tables(BLOCK), "what participants do, in order"),
+    optional("probe", Kind::Tables(PROBE), "a question that is asked during missions, once in each, while they go on"),
+];
+
+const PROBE: &[Key] = &[
+    required("questionnaire", Kind::Text, "a questionnaire of one item: one that ships, or a file"),
+    required(
+        "at",
+        Kind::OneOf(&["goal_met", "action_failed", "question_asked", "minutes"]),
+        "when it is asked; minutes: when the mission was played for so long",
+    ),
+    optional("minutes", Kind::Minutes, "of a probe at minutes: after how many"),
 ];
 
 const SHEET: &[Key] = &[
@@ -91,7 +110,17 @@ const SHEET: &[Key] = &[
 const CONSENT: &[Key] = &[
     required("file", Kind::Text, "a Markdown file, from the folder of the study"),
     required("version", Kind::Text, "the version of its text, for the consent records"),
-    required("required", Kind::Texts, "the sentences that participants have to agree to, a checkbox each"),
+    required("required", Kind::Boxes(BOX), "the sentences that participants have to agree to, a checkbox each"),
+    optional("optional", Kind::Boxes(BOX), "the sentences that participants may agree to, a checkbox each"),
+];
+
+const BOX: &[Key] = &[
+    required("text", Kind::Text, "the sentence"),
+    optional(
+        "audio",
+        Kind::Switch,
+        "whether it is about being heard: only who ticks such a box has a microphone; all others type",
+    ),
 ];
 
 const FACTOR: &[Key] = &[
@@ -102,14 +131,18 @@ const FACTOR: &[Key] = &[
 
 const LEVEL: &[Key] = &[
     required("name", Kind::Text, "what it is called in tables: letters, digits and _"),
-    required("settings", Kind::Settings, "the flags of `cohabit play` that make it"),
+    required("settings", Kind::Settings, "the settings that make it, as those of all sessions"),
 ];
 
 const BLOCK: &[Key] = &[
-    required("kind", Kind::OneOf(&["questionnaire", "mission", "missions", "break", "debriefing"]), "what is done"),
+    required(
+        "kind",
+        Kind::OneOf(&["questionnaire", "practice", "mission", "missions", "break", "debriefing"]),
+        "what is done; a practice is a mission under no condition, and tables leave it out",
+    ),
     optional("questionnaires", Kind::Texts, "of a questionnaire block: names of questionnaires that ship, or files"),
-    optional("mission", Kind::Text, "of a mission block: the mission"),
-    optional("settings", Kind::Settings, "of a mission block: flags of `cohabit play` for it"),
+    optional("mission", Kind::Text, "of a mission or a practice: the mission"),
+    optional("settings", Kind::Settings, "of missions: settings of this block, as those of all sessions"),
     optional(
         "order",
         Kind::OneOf(&["fixed", "random", "balanced"]),
@@ -127,14 +160,19 @@ const BLOCK: &[Key] = &[
         Kind::Texts,
         "of a missions block: questionnaires after the last mission of each within-participant condition",
     ),
-    optional("file", Kind::Text, "of a mission, a break or a debriefing: a Markdown file with what participants read"),
+    optional("file", Kind::Text, "of missions, a break or a debriefing: a Markdown file with what participants read"),
 ];
 
 /// The keys of each kind of block besides `kind`: those that it must have, and those that it may have.
-pub const KEYS_OF_BLOCKS: [(&str, &[&str], &[&str]); 5] = [
+pub const KEYS_OF_BLOCKS: [(&str, &[&str], &[&str]); 6] = [
     ("questionnaire", &["questionnaires"], &[]),
+    ("practice", &["mission"], &["settings", "minutes", "skip_after_minutes", "file"]),
     ("mission", &["mission"], &["settings", "minutes", "skip_after_minutes", "file"]),
-    ("missions", &[], &["order", "minutes", "skip_after_minutes", "after_mission", "after_condition", "file"]),
+    (
+        "missions",
+        &[],
+        &["order", "settings", "minutes", "skip_after_minutes", "after_mission", "after_condition", "file"],
+    ),
     ("break", &[], &["minutes", "file"]),
     ("debriefing", &["file"], &[]),
 ];
@@ -145,10 +183,14 @@ impl Kind {
         match self {
             Self::Text => "a text in quotation marks, not empty".to_owned(),
             Self::Texts => "a list of texts, such as [\"one\", \"two\"]".to_owned(),
+            Self::Boxes(_) => {
+                "a list of sentences, or of tables such as { text = \"I may be heard.\", audio = true }".to_owned()
+            }
+            Self::Switch => "true or false".to_owned(),
             Self::Whole(most) => format!("a whole number from 0 to {most}"),
             Self::Minutes => "a number of minutes above 0".to_owned(),
             Self::OneOf(words) => format!("one of \"{}\"", words.join("\", \"")),
-            Self::Settings => "a table of flags of `cohabit play`, such as { ask = \"never\" }".to_owned(),
+            Self::Settings => "a table of settings, such as { ask = \"never\" }".to_owned(),
             Self::Table(_) => "a table".to_owned(),
             Self::Tables(_) => "tables, each below a head in double brackets".to_owned(),
         }

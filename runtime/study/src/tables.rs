@@ -14,6 +14,7 @@ use crate::{
     design::{Choice, FactorKind, Study},
     folder::{Folder, FolderError, Note},
     plan::{Plan, Step, place_of, pseudonym},
+    probe::Probed,
     progress::{Doing, Done, Phase, Progress},
     session::{session_name, step_of},
 };
@@ -41,7 +42,15 @@ pub fn write(study: &Study, all: &[Progress], folder: &Folder) -> Result<(), Tab
     Ok(())
 }
 
-/// Writes all tables of a study into another folder, with those of its logs and a codebook; gives their paths.
+/// Whether a session of that name was for practice.
+#[must_use]
+pub fn is_practice(all: &[Progress], session: &str) -> bool {
+    let Some((place, step)) = step_of(session) else { return false };
+    all.iter().any(|progress| progress.plan().place == place && progress.plan().is_practice(step))
+}
+
+/// Writes all tables of a study into another folder, with those of its logs and a codebook; gives their paths. Missions for
+/// practice are in none, but `with_practice`.
 ///
 /// # Errors
 /// [`TablesError`].
@@ -51,10 +60,13 @@ pub fn export(
     withdrawn: &[String],
     noted: &[Note],
     mut of_logs: Vec<Table>,
+    with_practice: bool,
     out: &std::path::Path,
 ) -> Result<Vec<PathBuf>, TablesError> {
     add_conditions(study, all, &mut of_logs);
-    let own = [participants(study, all, withdrawn), missions(study, all), answers(study, all), notes(noted)];
+    let missions = missions(study, all, with_practice);
+    let probes = probes(study, all, with_practice);
+    let own = [participants(study, all, withdrawn), missions, answers(study, all), probes, notes(noted)];
     let tables: Vec<Table> = own.into_iter().chain(of_logs).collect();
     let codebook = codebook(&tables);
     let written = tables.iter().chain([&codebook]).map(|table| write_csv(table, out));
@@ -94,7 +106,12 @@ fn participants(study: &Study, all: &[Progress], withdrawn: &[String]) -> Table 
         field("place", Whole, "", "their place in the order of all, from 1"),
     ];
     let more = [
-        field("missions", Text, "", "their missions in order, each with the levels of within-participant factors"),
+        field(
+            "missions",
+            Text,
+            "",
+            "their missions in order, each with the levels of within-participant factors, or that it is for practice",
+        ),
         field("progress", Text, "", "where they are: the kind of step, or finished, excluded, withdrawn"),
         field("steps_done", Whole, "", "steps of their plan that they have done"),
         field("steps", Whole, "", "steps of their plan"),
@@ -130,9 +147,10 @@ fn participant(study: &Study, progress: &Progress) -> Vec<Cell> {
     first.into_iter().chain(between).chain(more).collect()
 }
 
-/// Such as `make_cereal (ask=never), cold_soda (ask=always)`.
+/// Such as `laser_lab (practice), make_cereal (ask=never), cold_soda (ask=always)`.
 fn missions_of(plan: &Plan) -> String {
     let of_step = |step: &Step| match step {
+        Step::Mission(mission) if mission.is_practice => Some(format!("{} (practice)", mission.mission)),
         Step::Mission(mission) if mission.within.is_empty() => Some(mission.mission.clone()),
         Step::Mission(mission) => Some(format!("{} ({})", mission.mission, levels(&mission.within))),
         _ => None,
@@ -162,12 +180,18 @@ pub(crate) fn progress_name(progress: &Progress) -> &'static str {
     }
 }
 
-fn missions(study: &Study, all: &[Progress]) -> Table {
+/// What practice is called in tables.
+fn practice_field() -> Field {
+    field("practice", Flag, "", "whether it was for practice: under no condition")
+}
+
+fn missions(study: &Study, all: &[Progress], with_practice: bool) -> Table {
     let first = [
         field("participant", Text, "", "what the participant is called"),
         field("step", Whole, "", "which step of their plan, from 1"),
     ];
     let more = [
+        practice_field(),
         field("mission", Text, "", "the mission, as the study names it"),
         field("ending", Text, "", "how it ended: complete, failed, time_up, skipped, or stopped by the experimenter"),
         field("played_s", Real, "s", "how long its page was there with the participant"),
@@ -178,10 +202,14 @@ fn missions(study: &Study, all: &[Progress]) -> Table {
     let row = |progress: &Progress, done: &Done| {
         let plan = progress.plan();
         let Some(Step::Mission(mission)) = plan.steps.get(done.step) else { return None };
+        if mission.is_practice && !with_practice {
+            return None;
+        }
         let sessions: Vec<_> =
             (1..=done.attempts).map(|attempt| session_name(plan.place, done.step, attempt)).collect();
         let first = [text(pseudonym(plan.place)), whole(done.step + 1)];
         let more = [
+            Cell::Flag(mission.is_practice),
             text(&mission.mission),
             done.ending.map_or(Cell::Nothing, |ending| text(ending.name())),
             Cell::Real(done.played_s),
@@ -255,6 +283,68 @@ fn answer_rows(study: &Study, plan: &Plan, done: &Done) -> Vec<Vec<Cell>> {
     messages.iter().map(row).collect()
 }
 
+/// What participants answered during missions.
+pub(crate) fn probes(study: &Study, all: &[Progress], with_practice: bool) -> Table {
+    let first = [
+        field("participant", Text, "", "what the participant is called"),
+        field("step", Whole, "", "which step of their plan, from 1"),
+    ];
+    let more = [
+        field("mission", Text, "", "the mission that was played"),
+        field("questionnaire", Text, "", "the questionnaire"),
+        field("at", Text, "", "when it is asked: goal_met, action_failed, question_asked, or after some minutes"),
+        field("question", Text, "", "what was asked"),
+        field("value", Whole, "", "the number on the scale, or that of the choice, from 1"),
+        field("text", Text, "", "the words, or what was chosen says"),
+        field("asked_ms", Whole, "ms", "wall time at which it was asked, since 1970"),
+        field("answered_ms", Whole, "ms", "wall time at which it was answered, since 1970; nothing, if it was not"),
+    ];
+    let of_done = |progress: &Progress, done: &Done| -> Vec<Vec<Cell>> {
+        let plan = progress.plan();
+        let Some(Step::Mission(mission)) = plan.steps.get(done.step) else { return Vec::new() };
+        if mission.is_practice && !with_practice {
+            return Vec::new();
+        }
+        let factors = factor_cells(study, &BOTH, &plan.choices(done.step));
+        let first = [text(pseudonym(plan.place)), whole(done.step + 1)];
+        let row = |probed: &Probed| {
+            let more = probe_cells(study, &mission.mission, plan.place, probed)?;
+            Some(first.iter().chain(&factors).cloned().chain(more).collect())
+        };
+        done.probed.iter().filter_map(row).collect()
+    };
+    let rows = all.iter().flat_map(|progress| progress.done().iter().flat_map(move |done| of_done(progress, done)));
+    let rows = rows.collect();
+    let fields = first.into_iter().chain(factor_fields(study, &BOTH)).chain(more).collect();
+    Table {
+        name: "probes",
+        meaning: "a question that a participant was asked while a mission was played",
+        fields,
+        rows,
+    }
+}
+
+fn probe_cells(study: &Study, mission: &str, place: u32, probed: &Probed) -> Option<[Cell; 8]> {
+    let probe = study.probes.get(probed.probe)?;
+    let asked = study.questionnaire(&probe.questionnaire)?;
+    let (answered_ms, given) = probed.answer.clone().unzip();
+    let message = asked.answered(place, &[given.flatten()]).ok().and_then(|messages| messages.into_iter().next());
+    let kind = message.as_ref().and_then(cohabit_bus::message::AnswerMessage::kind);
+    Some([
+        text(mission),
+        text(&asked.name),
+        text(probe.at.name()),
+        asked.items.first().map_or(Cell::Nothing, |item| text(&item.ask)),
+        message
+            .as_ref()
+            .filter(|_| kind != Some(AnswerKind::Words))
+            .map_or(Cell::Nothing, |message| whole(message.value)),
+        message.as_ref().map_or(Cell::Nothing, |message| text(message.text.as_str())),
+        whole(probed.asked_ms),
+        answered_ms.map_or(Cell::Nothing, whole),
+    ])
+}
+
 fn notes(all: &[Note]) -> Table {
     let fields = vec![
         field("at_ms", Whole, "ms", "wall time at which it was written, since 1970"),
@@ -275,12 +365,13 @@ fn notes(all: &[Note]) -> Table {
     Table { name: "notes", meaning: "a note of the experimenter's", fields, rows: all.iter().map(row).collect() }
 }
 
-/// Adds to tables of logs, by the name of the session, which step it was and the levels of all factors.
+/// Adds to tables of logs, by the name of the session, which step it was, whether for practice, and the levels of all factors.
 fn add_conditions(study: &Study, all: &[Progress], tables: &mut [Table]) {
     let plans: BTreeMap<u32, &Plan> = all.iter().map(|progress| (progress.plan().place, progress.plan())).collect();
     for table in tables {
         let Some(column) = table.fields.iter().position(|field| field.name == "session") else { continue };
         table.fields.push(field("step", Whole, "", "which step of the participant's plan it belongs to, from 1"));
+        table.fields.push(practice_field());
         table.fields.extend(factor_fields(study, &BOTH));
         for row in &mut table.rows {
             let of = match &row[column] {
@@ -289,6 +380,7 @@ fn add_conditions(study: &Study, all: &[Progress], tables: &mut [Table]) {
             };
             let of = of.and_then(|(place, step)| Some((*plans.get(&place)?, step)));
             row.push(of.map_or(Cell::Nothing, |(_, step)| whole(step + 1)));
+            row.push(of.map_or(Cell::Nothing, |(plan, step)| Cell::Flag(plan.is_practice(step))));
             row.extend(factor_cells(study, &BOTH, &of.map(|(plan, step)| plan.choices(step)).unwrap_or_default()));
         }
     }
@@ -297,6 +389,12 @@ fn add_conditions(study: &Study, all: &[Progress], tables: &mut [Table]) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{
+        design::Limits,
+        plan::PlannedMission,
+        progress::{Ending, Event},
+        settings::Settings,
+    };
 
     #[test]
     fn notes_are_about_somebody_or_about_the_study() {
@@ -315,5 +413,37 @@ mod tests {
             ]
         );
         assert!(table.rows.iter().all(|row| row.len() == table.fields.len()));
+    }
+
+    #[test]
+    fn practice_is_marked_and_left_out() {
+        let mission = |name: &str, is_practice: bool| {
+            Step::Mission(PlannedMission {
+                block: 0,
+                mission: name.to_owned(),
+                is_practice,
+                within: Vec::new(),
+                settings: Settings::new(),
+                limits: Limits::default(),
+            })
+        };
+        let steps = vec![mission("laser_lab", true), mission("cold_soda", false)];
+        let mut progress = Progress::new(Plan { place: 7, between: Vec::new(), steps });
+        let agreed = Event::Consented { version: "1".to_owned(), ticked: Vec::new(), audio: false };
+        let over = Event::Over { ending: Ending::Complete };
+        let played = [Event::GoesOn, Event::Started, over];
+        let events = [Event::Read, agreed].into_iter().chain(played.clone()).chain(played);
+        events.for_each(|event| drop(progress.step(&event, 0).expect("a possible event")));
+        let all = [progress];
+        assert!(is_practice(&all, "P07-01-2") && !is_practice(&all, "P07-02-1"));
+        assert!(!is_practice(&all, "P08-01-1") && !is_practice(&all, "play-3"));
+        assert_eq!(missions_of(all[0].plan()), "laser_lab (practice), cold_soda");
+        let of = |with_practice| {
+            let table = missions(&Study::default(), &all, with_practice);
+            let column = table.fields.iter().position(|field| field.name == "practice").expect("a column");
+            table.rows.iter().map(|row| row[column].clone()).collect::<Vec<_>>()
+        };
+        assert_eq!(of(false), [Cell::Flag(false)]);
+        assert_eq!(of(true), [Cell::Flag(true), Cell::Flag(false)]);
     }
 }

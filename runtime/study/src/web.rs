@@ -14,7 +14,7 @@ use axum::{
     response::{IntoResponse, Redirect, Response},
     routing::{get, post},
 };
-use cohabit_dialog::{Framing, HostName, ServerLimits, Site, token};
+use cohabit_dialog::{Framing, Given, HostName, Identity, ServerLimits, Site, token};
 use serde::Deserialize;
 use serde_json::{Value, json};
 
@@ -44,6 +44,8 @@ const EXPERIMENTER_PAGE: &str = include_str!("../web/experimenter.html");
 const STRANGER_PAGE: &str = include_str!("../web/stranger.html");
 /// The longest note of the experimenter's, and the longest reason, in characters.
 const LONGEST_NOTE: usize = 2000;
+/// The longest text that is kept of a questionnaire before it is sent: the longest answer in any script, and a half more.
+const LONGEST_DRAFT_BYTES: usize = 12_000;
 
 /// What the server has to do with.
 #[derive(Clone)]
@@ -74,21 +76,27 @@ impl StudyService {
         }
     }
 
-    /// Serves on `listener` until `over`, also as `hosts` besides those of this machine.
+    /// Serves on `listener` until `over`, also as `hosts` besides those of this machine; by HTTPS with an `identity`.
     ///
     /// # Errors
     /// Of the network.
-    pub fn serve(self, listener: TcpListener, hosts: Vec<HostName>, over: &dyn Fn() -> bool) -> io::Result<()> {
+    pub fn serve(
+        self,
+        listener: TcpListener,
+        hosts: Vec<HostName>,
+        identity: Option<Identity>,
+        over: &dyn Fn() -> bool,
+    ) -> io::Result<()> {
         let framing = Framing { frames_ports: true, ..Framing::default() };
         let router = router(self);
-        Site { router, hosts, identity: None, limits: ServerLimits::default(), framing }.serve(listener, over)
+        Site { router, hosts, identity, limits: ServerLimits::default(), framing }.serve(listener, over)
     }
 }
 
 /// The address of what listens there, for people.
 #[must_use]
-pub fn address(listening: SocketAddr) -> String {
-    token::site_address(listening, false)
+pub fn address(listening: SocketAddr, is_encrypted: bool) -> String {
+    token::site_address(listening, is_encrypted)
 }
 
 fn router(service: StudyService) -> Router {
@@ -189,9 +197,9 @@ fn seen(registry: &mut Registry, who: Who) -> Value {
 
 /// What a participant's page may cause. `step` is the one that it showed, so that what is sent twice counts once.
 #[derive(Deserialize)]
-struct Sent {
-    step: Option<usize>,
-    event: Event,
+pub(crate) struct Sent {
+    pub step: Option<usize>,
+    pub event: Event,
 }
 
 async fn event(State(service): State<StudyService>, Path(given): Path<String>, Json(sent): Json<Sent>) -> Response {
@@ -212,7 +220,7 @@ async fn event(State(service): State<StudyService>, Path(given): Path<String>, J
 
 pub(crate) fn newcomers_event(registry: &mut Registry, index: usize, event: &Event) -> Result<(), StudyFault> {
     let reading = match event {
-        Event::Consented { version, ticked } => return registry.enrol(index, version, *ticked),
+        Event::Consented { version, ticked, .. } => return registry.enrol(index, version, ticked),
         Event::Read => Reading::Consent,
         Event::Declined => Reading::Declined,
         // Of people who have not agreed nothing is kept that could be removed.
@@ -224,7 +232,7 @@ pub(crate) fn newcomers_event(registry: &mut Registry, index: usize, event: &Eve
     Ok(())
 }
 
-fn participants_event(registry: &mut Registry, place: u32, sent: &Sent) -> Result<(), StudyFault> {
+pub(crate) fn participants_event(registry: &mut Registry, place: u32, sent: &Sent) -> Result<(), StudyFault> {
     let Some(participant) = registry.participants.get(&place) else { return Ok(()) };
     let now = participant.progress.step_now().map(|(index, ..)| index + 1);
     if !matches!(sent.event, Event::Withdrew) && sent.step != now {
@@ -239,12 +247,39 @@ fn participants_event(registry: &mut Registry, place: u32, sent: &Sent) -> Resul
                 return Err(StudyFault::NotNow(problem.to_string()));
             }
         }
+        Event::Drafted { questionnaire, answers } => {
+            let items = registry.study.questionnaire(questionnaire).map(|asked| asked.items.len());
+            if items != Some(answers.len()) || participant.progress.draft() == answers.as_slice() {
+                return Ok(());
+            }
+            check_draft(answers)?;
+        }
+        Event::ProbeAnswered { probe, answer } => {
+            let asked =
+                registry.study.probes.get(*probe).and_then(|probe| registry.study.questionnaire(&probe.questionnaire));
+            let Some(asked) = asked else { return Ok(()) };
+            asked
+                .answered(place, std::slice::from_ref(answer))
+                .map_err(|problem| StudyFault::NotNow(problem.to_string()))?;
+        }
         Event::GoesOn | Event::Withdrew => {}
         Event::Over { ending: Ending::Skipped } => registry.save_played(place),
         // All else happens without their doing.
         _ => return Ok(()),
     }
     registry.apply(place, &sent.event)
+}
+
+/// Finds out whether what somebody has filled in so far is short enough to be kept.
+fn check_draft(answers: &[Option<Given>]) -> Result<(), StudyFault> {
+    let bytes = |given: &Given| match given {
+        Given::Text(text) => text.len(),
+        Given::Value(_) => 0,
+    };
+    if answers.iter().flatten().all(|given| bytes(given) <= LONGEST_DRAFT_BYTES) {
+        return Ok(());
+    }
+    Err(StudyFault::NotNow("This text is too long.".to_owned()))
 }
 
 async fn experimenter(State(service): State<StudyService>, Path(given): Path<String>) -> Response {

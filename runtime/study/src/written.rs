@@ -5,7 +5,10 @@ use std::collections::BTreeMap;
 use serde::Deserialize;
 use toml::Spanned;
 
-use crate::design::{Assignment, FactorKind, MissionOrder, Setting, Settings};
+use crate::{
+    design::{Assignment, FactorKind, MissionOrder},
+    settings::Setting,
+};
 
 /// Words with their places in the text.
 pub(crate) type Words = Vec<Spanned<String>>;
@@ -30,6 +33,15 @@ pub(crate) struct Written {
     pub consent: WrittenSheet,
     pub factor: Vec<Spanned<WrittenFactor>>,
     pub block: Vec<Spanned<WrittenBlock>>,
+    pub probe: Vec<Spanned<WrittenProbe>>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(default)]
+pub(crate) struct WrittenProbe {
+    pub questionnaire: Option<Spanned<String>>,
+    pub at: Option<Spanned<String>>,
+    pub minutes: Option<Spanned<f64>>,
 }
 
 #[derive(Default, Deserialize)]
@@ -37,7 +49,21 @@ pub(crate) struct Written {
 pub(crate) struct WrittenSheet {
     pub file: Option<Spanned<String>>,
     pub version: String,
-    pub required: Words,
+    pub required: Vec<WrittenBox>,
+    pub optional: Vec<WrittenBox>,
+}
+
+/// A box of the consent form: its sentence, or that with what it is about.
+#[derive(Deserialize)]
+#[serde(untagged)]
+pub(crate) enum WrittenBox {
+    Sentence(String),
+    Marked {
+        #[serde(default)]
+        text: String,
+        #[serde(default)]
+        audio: bool,
+    },
 }
 
 #[derive(Default, Deserialize)]
@@ -61,6 +87,7 @@ pub(crate) enum BlockKind {
     #[default]
     Questionnaire,
     Mission,
+    Practice,
     Missions,
     Break,
     Debriefing,
@@ -86,6 +113,7 @@ impl BlockKind {
         match self {
             Self::Questionnaire => "questionnaire",
             Self::Mission => "mission",
+            Self::Practice => "practice",
             Self::Missions => "missions",
             Self::Break => "break",
             Self::Debriefing => "debriefing",
@@ -111,11 +139,7 @@ impl WrittenBlock {
     }
 }
 
-/// The settings themselves.
-pub(crate) fn settings(written: &WrittenSettings) -> Settings {
-    written.iter().map(|(name, value)| (name.get_ref().clone(), setting(value.get_ref()))).collect()
-}
-
+/// The setting itself.
 pub(crate) fn setting(value: &toml::Value) -> Setting {
     match value {
         toml::Value::Boolean(is_on) => Setting::Switch(*is_on),

@@ -5,18 +5,32 @@ import { element } from "./dom.js";
 /** Scales with more places than these are sliders. */
 const MOST_BUTTONS = 11;
 
-/** The form of a questionnaire; `send` is given the answers, and gives what is wrong with them. */
-export function questionnaireForm({ items }, send) {
+/** So long nobody changes anything before what was filled in is kept, and before that is tried again, ms. */
+const KEEP_AFTER_MS = 600;
+const KEEP_AGAIN_MS = 4000;
+
+/** Keeps at once what was filled in. */
+let keepNow = () => {};
+addEventListener("pagehide", () => keepNow(true));
+
+/**
+ * The form of a questionnaire, filled in as it was left. `send` is given the answers, and gives what is wrong with them; `keep`
+ * is given what was filled in so far, and gives whether that is kept.
+ */
+export function questionnaireForm({ items }, draft, send, keep) {
   const form = element("form", "questions");
   form.noValidate = true;
   form.autocomplete = "off";
   const fields = items.map(fieldOf);
+  fields.forEach(({ write }, index) => draft[index] && write(draft[index]));
   const list = element("ol", "items", ...fields.map(({ row }) => row));
   const problem = element("p", "problem");
   problem.role = "alert";
   const submit = element("button", "chief", "Send and go on");
   submit.type = "submit";
-  form.append(list, problem, element("div", "actions", submit));
+  const hint = element("p", "soft", "What you fill in is kept while you go, also if you reload this page. It counts once you send it.");
+  form.append(list, hint, problem, element("div", "actions", submit));
+  keepUpWith(form, () => fields.map(({ read }) => read()), keep);
   form.addEventListener("submit", async (event) => {
     event.preventDefault();
     const answers = fields.map(({ read }) => read());
@@ -34,13 +48,61 @@ export function questionnaireForm({ items }, send) {
   return form;
 }
 
+/** One question, which is asked while something else goes on. `send` is given the answer, and gives what is wrong with it. */
+export function probeForm(item, send) {
+  const form = element("form", "probe");
+  form.noValidate = true;
+  form.autocomplete = "off";
+  const { group, read, optional } = fieldOf(item, 0);
+  const problem = element("p", "problem");
+  problem.role = "alert";
+  const submit = element("button", "chief", "Send");
+  submit.type = "submit";
+  form.append(element("p", "soft", "A question in between. The mission goes on meanwhile."), group, problem, element("div", "actions", submit));
+  form.addEventListener("submit", async (event) => {
+    event.preventDefault();
+    const answer = read();
+    if (answer === null && !optional) {
+      problem.textContent = "Please answer the question.";
+      return;
+    }
+    submit.disabled = true;
+    problem.textContent = await send(answer);
+    submit.disabled = false;
+  });
+  return form;
+}
+
+/** Has what is filled in kept by and by, one time after the other. */
+function keepUpWith(form, read, keep) {
+  let kept = JSON.stringify(read());
+  let timer = 0;
+  let isKeeping = false;
+  const soon = (ms) => {
+    clearTimeout(timer);
+    timer = setTimeout(() => keepNow(false), ms);
+  };
+  keepNow = async (isLast) => {
+    const answers = read();
+    const now = JSON.stringify(answers);
+    if (!form.isConnected || now === kept || (isKeeping && !isLast)) return;
+    isKeeping = true;
+    const isKept = await keep(answers, isLast);
+    isKeeping = false;
+    if (isKept) kept = now;
+    if (JSON.stringify(read()) !== kept) soon(isKept ? KEEP_AFTER_MS : KEEP_AGAIN_MS);
+  };
+  form.addEventListener("input", () => soon(KEEP_AFTER_MS));
+  form.addEventListener("change", () => soon(0));
+}
+
 function fieldOf(item, index) {
   const group = element("fieldset", "item");
   const legend = element("legend", "", item.ask);
   if (item.optional) legend.append(element("span", "soft", " (optional)"));
-  const { controls, read } = item.scale ? scaleOf(item.scale, index) : item.choice ? choiceOf(item.choice, index) : wordsOf(item.ask);
+  const { controls, read, write } = item.scale ? scaleOf(item.scale, index) : item.choice ? choiceOf(item.choice, index) : wordsOf(item.ask);
   group.append(legend, ...controls);
-  return { row: element("li", "", group), group, optional: item.optional, read };
+  return { row: element("li", "", group), group, optional: item.optional, read, write };
 }
 
 function scaleOf(scale, index) {
@@ -59,12 +121,12 @@ function buttonsOf(scale, places, index) {
     return end ? `${value}, ${end}` : String(value);
   };
   const row = element("div", "places", ...values.map((value, at) => radio(index, value, String(value), name(value, at))));
-  return { controls: [row, endsOf(scale)], read: () => chosen(row) };
+  return { controls: [row, endsOf(scale)], read: () => chosen(row), write: (given) => choose(row, given) };
 }
 
 function choiceOf(choices, index) {
   const column = element("div", "choices", ...choices.map((text, at) => radio(index, at + 1, text)));
-  return { controls: [column], read: () => chosen(column) };
+  return { controls: [column], read: () => chosen(column), write: (given) => choose(column, given) };
 }
 
 function radio(index, value, text, name) {
@@ -77,6 +139,11 @@ function radio(index, value, text, name) {
 function chosen(group) {
   const input = group.querySelector("input:checked");
   return input ? { value: Number(input.value) } : null;
+}
+
+function choose(group, { value }) {
+  const input = [...group.querySelectorAll("input")].find((one) => one.value === String(value));
+  if (input) input.checked = true;
 }
 
 /** A slider that has no value before it is touched. */
@@ -100,12 +167,19 @@ function sliderOf(scale) {
     }
   });
   const read = () => (input.classList.contains("untouched") ? null : { value: Number(input.value) });
-  return { controls: [input, endsOf(scale)], read };
+  const write = ({ value }) => {
+    input.value = value;
+    touch();
+  };
+  return { controls: [input, endsOf(scale)], read, write };
 }
 
 function wordsOf(ask) {
   const area = element("textarea", "words");
   area.rows = 3;
   area.setAttribute("aria-label", ask);
-  return { controls: [area], read: () => (area.value.trim() ? { text: area.value.trim() } : null) };
+  const write = ({ text }) => {
+    area.value = text ?? "";
+  };
+  return { controls: [area], read: () => (area.value.trim() ? { text: area.value.trim() } : null), write };
 }

@@ -11,10 +11,10 @@ let isOver = false;
 /** What was asked last: older answers do not count. */
 let count = 0;
 
-async function ask(path, body) {
+async function ask(path, body, keepalive = false) {
   const request = { signal: AbortSignal.timeout(GIVE_UP_MS) };
   if (body !== undefined) {
-    Object.assign(request, { method: "POST", body: JSON.stringify(body), headers: { "content-type": "application/json" } });
+    Object.assign(request, { method: "POST", body: JSON.stringify(body), headers: { "content-type": "application/json" }, keepalive });
   }
   const answer = await fetch(`${here}/${path}`, request);
   if (answer.status === 404) return { page: "unknown" };
@@ -59,5 +59,15 @@ export async function tell(path, body) {
   } catch {
     onLost(true);
     return "There is no connection at the moment; please try again in a while.";
+  }
+}
+
+/** Tells the server something that nobody waits for, also when the page is about to go; whether it was taken in. */
+export async function tellQuietly(path, body, isLast) {
+  try {
+    const state = await ask(path, body, isLast);
+    return state.page !== "unknown" && !state.problem;
+  } catch {
+    return false;
   }
 }

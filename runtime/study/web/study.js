@@ -1,8 +1,8 @@
 // A participant's page: shows what the study's server says that it is time for.
 
 import { byId, button, clock, element, whileOf } from "./dom.js";
-import { questionnaireForm } from "./forms.js";
-import { endFollowing, follow, tell } from "./server.js";
+import { probeForm, questionnaireForm } from "./forms.js";
+import { endFollowing, follow, tell, tellQuietly } from "./server.js";
 
 /** Pages after which nothing follows. */
 const LAST = ["finished", "withdrawn", "excluded", "unknown"];
@@ -57,7 +57,7 @@ function showBar(state) {
   const mayLeave = Boolean(state.step) || state.page === "finished";
   byId("leave").hidden = !mayLeave;
   byId("contact").textContent = state.contact ? `Questions about this study? Contact: ${state.contact}` : "";
-  byId("skip").hidden = !(state.page === "mission" && state.skip_in_s === 0 && !state.is_over);
+  if (state.page !== "mission" || state.is_over) byId("skip-card").close();
 }
 
 const heading = (text) => element("h1", "", text);
@@ -84,13 +84,14 @@ function going(text, event) {
 const PAGES = {
   information: ({ html }) => [heading("About this study"), sheet(html), going("I have read this", () => "read")],
 
-  consent({ html, required, version }) {
+  consent({ html, boxes: asked, version }) {
     const form = element("form", "consent");
-    const boxes = required.map((text) => {
+    const boxes = asked.map(({ text, is_required: isRequired }) => {
       const box = element("input");
       box.type = "checkbox";
-      box.required = true;
-      form.append(element("label", "check", box, element("span", "", text)));
+      box.required = isRequired;
+      const words = element("span", "", text, ...(isRequired ? [] : [element("span", "soft", " (optional)")]));
+      form.append(element("label", "check", box, words));
       return box;
     });
     const agree = element("button", "chief", "I agree to take part");
@@ -101,7 +102,8 @@ const PAGES = {
     form.addEventListener("submit", async (event) => {
       event.preventDefault();
       agree.disabled = true;
-      problem.textContent = await send({ consented: { version, ticked: boxes.filter((box) => box.checked).length } });
+      const ticked = boxes.flatMap((box, number) => (box.checked ? [number] : []));
+      problem.textContent = await send({ consented: { version, ticked } });
       agree.disabled = false;
     });
     return [heading("Your consent"), sheet(html), form];
@@ -113,16 +115,18 @@ const PAGES = {
     element("div", "actions", button("quiet", "Back to the consent form", () => send("read"))),
   ],
 
-  questionnaire({ questionnaire }) {
+  questionnaire({ questionnaire, draft }) {
     const about = element("p", "soft", questionnaire.about);
-    const answer = (answers) => send({ answered: { questionnaire: questionnaire.name, answers } });
-    return [heading(questionnaire.title), about, questionnaireForm(questionnaire, answer)];
+    const { name } = questionnaire;
+    const answer = (answers) => send({ answered: { questionnaire: name, answers } });
+    const keep = (answers, isLast) => tellQuietly("event", { step, event: { drafted: { questionnaire: name, answers } } }, isLast);
+    return [heading(questionnaire.title), about, questionnaireForm(questionnaire, draft, answer, keep)];
   },
 
   ready({ html, limit_s, skip_after_s }) {
     const lines = [];
-    if (limit_s !== null) lines.push(`You have ${whileOf(limit_s)}.`);
-    if (skip_after_s !== null) lines.push(`After ${whileOf(skip_after_s)} you may skip it.`);
+    if (limit_s !== null) lines.push(`It lasts ${whileOf(limit_s)} at most.`);
+    if (skip_after_s !== null) lines.push(`After ${whileOf(skip_after_s)} you may skip it, if you like.`);
     return [heading("Your next mission"), sheet(html), element("p", "", lines.join(" ")), going("Begin", () => "goes_on")];
   },
 
@@ -145,15 +149,27 @@ const PAGES = {
   mission({ session }) {
     const frame = element("iframe", "session");
     frame.title = "The robot, and what you tell it";
-    frame.allow = "microphone; autoplay";
+    frame.allow = session.has_microphone ? "microphone; autoplay" : "autoplay";
     frame.src = `${location.protocol}//${location.hostname}:${session.port}/?token=${session.token}`;
     const over = element("p", "over", "This mission is over. The study goes on in a moment.");
     over.role = "status";
     over.hidden = true;
-    update = ({ is_over }) => {
-      over.hidden = !is_over;
+    const skip = button("quiet", "Skip this mission", () => byId("skip-card").showModal());
+    skip.id = "skip";
+    const offer = element("div", "offer", element("p", "", "If you are stuck, you may go on without finishing this mission."), skip);
+    const probes = element("div", "probes");
+    probes.role = "status";
+    let asked = null;
+    update = ({ is_over: isOver, skip_in_s: skipInS, probe }) => {
+      over.hidden = !isOver;
+      offer.hidden = isOver || skipInS !== 0;
+      const number = isOver ? null : (probe?.number ?? null);
+      if (number === asked) return;
+      asked = number;
+      const answer = (given) => send({ probe_answered: { probe: number, answer: given } });
+      probes.replaceChildren(...(number === null ? [] : [probeForm(probe.item, answer)]));
     };
-    return [element("h1", "unseen", "Mission"), over, frame];
+    return [element("h1", "unseen", "Mission"), over, offer, frame, probes];
   },
 
   break({ html }) {
@@ -181,7 +197,7 @@ const PAGES = {
   },
 
   withdrawn: () => [
-    heading("You have stopped taking part"),
+    heading("You have left the study"),
     element("p", "", "Nothing of yours in this study is kept. You can close this page."),
   ],
 
@@ -196,7 +212,7 @@ const PAGES = {
   ],
 };
 
-byId("skip").addEventListener("click", () => send({ over: { ending: "skipped" } }));
+byId("skip-now").addEventListener("click", () => send({ over: { ending: "skipped" } }));
 byId("leave").addEventListener("click", () => byId("leave-card").showModal());
 byId("leave-now").addEventListener("click", () => send("withdrew"));
 

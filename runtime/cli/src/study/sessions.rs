@@ -15,50 +15,62 @@ use std::{
 use anyhow::Context as _;
 use cohabit_bus::{
     BusError, Inbox, Session, Shm, Topic,
-    message::{self, EventKind, EventMessage},
+    message::{self, DialogKind, DialogView, EventKind, EventMessage},
 };
+use cohabit_cdf::Status;
 use cohabit_dialog::HostName;
 use cohabit_record::Log;
-use cohabit_study::{Ending, Look, PageAddress, Player, Playing, Wanted};
+use cohabit_study::{Ending, Happening, Look, PageAddress, Player, Playing, Wanted, address};
 use rustix::process::{Pid, Signal, kill_process};
 
-use crate::terminal::shown;
+use super::ports::{Ports, Taken};
+use crate::{terminal::shown, tls::Tls};
 
 /// This very program, also when its file was replaced since it was started.
 const THIS_PROGRAM: &str = "/proc/self/exe";
 /// How long a session may take to end when asked; then its supervisor is killed, with which all of it ends.
 const GRACE: Duration = Duration::from_secs(12);
 
+/// How the pages of the study are served, and those of its sessions beside them.
+pub struct Served {
+    /// Where the study's own are.
+    pub listening: SocketAddr,
+    /// The names that both are asked for by, besides those of this machine.
+    pub hosts: Vec<HostName>,
+    /// What both are served with.
+    pub tls: Tls,
+    /// The ports of sessions; any, if absent.
+    pub ports: Option<Ports>,
+}
+
 /// Starts sessions.
 pub struct Sessions {
     /// Where names of files in the study start from.
     folder: PathBuf,
-    listening: SocketAddr,
-    hosts: Vec<String>,
+    served: Served,
 }
 
 impl Sessions {
     /// For a study in that folder whose pages are served there.
-    pub fn new(folder: &Path, listening: SocketAddr, hosts: &[HostName]) -> anyhow::Result<Self> {
-        let folder = folder.canonicalize().with_context(|| folder.display().to_string())?;
-        // Each page has a port of its own: a name is one at any.
-        let name =
-            |host: &HostName| host.to_string().rsplit_once(':').map_or(host.to_string(), |(name, _)| name.to_owned());
-        Ok(Self { folder, listening, hosts: hosts.iter().map(name).collect() })
+    pub fn new(folder: &Path, served: Served) -> anyhow::Result<Self> {
+        Ok(Self { folder: folder.canonicalize().with_context(|| folder.display().to_string())?, served })
     }
 
-    fn command(&self, wanted: &Wanted, session: &str, point: Option<&Point>) -> Command {
+    fn command(&self, wanted: &Wanted, session: &str, port: u16, point: Option<&Point>) -> Command {
+        let Served { listening, hosts, tls, .. } = &self.served;
         let mut command = Command::new(THIS_PROGRAM);
         command
             .arg0("cohabit")
-            .args(["play", "--session", session, "--port", "0"])
+            .args(["play", "--session", session, "--port", &port.to_string()])
             .args(["--supervisor", &std::process::id().to_string()])
-            .args(["--listen", &self.listening.ip().to_string()])
-            .args(["--framed-by", &self.listening.port().to_string()])
+            .args(["--listen", &listening.ip().to_string()])
+            .args(["--framed-by", &listening.port().to_string()])
+            .args(tls.arguments())
             .args(["--participant", &wanted.participant])
             .arg("--log")
             .arg(&wanted.log)
-            .args(self.hosts.iter().map(|host| format!("--host={host}")));
+            // Each page has a port of its own: a name is one at any.
+            .args(hosts.iter().map(|host| format!("--host={}", parts(host).0)));
         let world = |argument: &&String| ["--seed=", "--body="].iter().any(|flag| argument.starts_with(flag));
         match point {
             Some(point) => command.arg(&point.argument).args(wanted.arguments.iter().filter(|one| !world(one))),
@@ -79,11 +91,31 @@ impl Sessions {
     }
 }
 
+/// A host's name, and its port if it has one.
+fn parts(host: &HostName) -> (String, Option<u16>) {
+    let text = host.to_string();
+    let with_port = text.rsplit_once(':').and_then(|(name, port)| Some((name.to_owned(), Some(port.parse().ok()?))));
+    with_port.unwrap_or((text, None))
+}
+
+impl Served {
+    /// The address of the study's own pages, for people: by the first name that they are asked for by, if there is one, since
+    /// that is the one of the certificate or of the proxy.
+    pub fn site(&self, is_encrypted: bool) -> String {
+        const HTTPS: u16 = 443;
+        let Some((name, port)) = self.hosts.first().map(parts) else { return address(self.listening, is_encrypted) };
+        let port = port.unwrap_or(self.listening.port());
+        if is_encrypted || port == HTTPS { format!("https://{name}:{port}") } else { format!("http://{name}:{port}") }
+    }
+}
+
 impl Player for Sessions {
     fn start(&mut self, wanted: &Wanted) -> Result<Box<dyn Playing>, String> {
         let session = format!("s{}-{}", std::process::id(), wanted.name);
         let point = wanted.before.iter().find_map(|log| Point::at_end_of(log));
-        let spawned = self.command(wanted, &session, point.as_ref()).spawn();
+        let port = self.served.ports.as_ref().map(|ports| ports.take(self.served.listening.ip())).transpose()?;
+        let number = port.as_ref().map_or(0, Taken::number);
+        let spawned = self.command(wanted, &session, number, point.as_ref()).spawn();
         let mut child = spawned.map_err(|error| format!("start a session: {error}"))?;
         let (sender, lines) = mpsc::channel();
         if let Some(out) = child.stdout.take() {
@@ -99,7 +131,18 @@ impl Player for Sessions {
         }
         let over = point.and_then(|point| point.over);
         let last_line = String::new();
-        Ok(Box::new(PlayedSession { child, session, lines, last_line, page: None, events: None, over, ends_by: None }))
+        Ok(Box::new(PlayedSession {
+            child,
+            session,
+            _port: port,
+            lines,
+            last_line,
+            page: None,
+            heard: None,
+            happened: Vec::new(),
+            over,
+            ends_by: None,
+        }))
     }
 }
 
@@ -137,11 +180,16 @@ fn relay(out: impl Read + Send + 'static, tell: impl Fn(String) + Send + 'static
 struct PlayedSession {
     child: Child,
     session: String,
+    /// The port of its page, which is nobody else's meanwhile.
+    _port: Option<Taken>,
     lines: Receiver<String>,
     /// What it said last, which says why it ended.
     last_line: String,
     page: Option<PageAddress>,
-    events: Option<Inbox>,
+    /// What its bus tells of the world, and of what is said.
+    heard: Option<[Inbox; 2]>,
+    /// What has happened and was not asked for yet.
+    happened: Vec<Happening>,
     /// How its mission had ended before it began, if it goes on from such a point.
     over: Option<Ending>,
     /// When it is killed, if it was asked to end.
@@ -163,17 +211,26 @@ impl PlayedSession {
         }
     }
 
-    /// How its mission has ended, if it has.
+    /// How its mission has ended, if it has; what else happened is kept.
     fn ending(&mut self) -> Result<Option<Ending>, BusError> {
-        if self.events.is_none() {
+        if self.heard.is_none() {
             let Ok(session) = Session::new(&self.session) else { return Ok(None) };
-            self.events = Some(Inbox::new(&Shm::join(&session)?, Topic::Events)?);
+            let bus = Shm::join(&session)?;
+            self.heard = Some([Inbox::new(&bus, Topic::Events)?, Inbox::new(&bus, Topic::Dialog)?]);
         }
-        let Some(events) = &mut self.events else { return Ok(None) };
+        let Some([events, dialog]) = &mut self.heard else { return Ok(None) };
+        let kind = |view: DialogView<'_>| view.header.kind();
+        while let Some((_, kind)) = dialog.next(|sample| DialogView::new(sample.payload()).map(kind))? {
+            self.happened.extend((kind == Some(DialogKind::Question)).then_some(Happening::QuestionAsked));
+        }
         while let Some((_, event)) = events.next(|sample| message::read::<EventMessage>(sample.payload()))? {
             match event.kind() {
                 Some(EventKind::MissionComplete) => return Ok(Some(Ending::Complete)),
                 Some(EventKind::MissionFailed) => return Ok(Some(Ending::Failed)),
+                Some(EventKind::GoalMet) => self.happened.push(Happening::GoalMet),
+                Some(EventKind::Outcome) if event.turn > 0 && event.status().is_some_and(Status::is_failure) => {
+                    self.happened.push(Happening::ActionFailed);
+                }
                 _ => {}
             }
         }
@@ -215,15 +272,19 @@ impl Playing for PlayedSession {
             Ok(None) => Look::Open(page),
             Err(error) => {
                 eprintln!("cohabit: {}: {}", self.session, shown(error));
-                self.events = None;
+                self.heard = None;
                 Look::Open(page)
             }
         }
     }
 
+    fn happened(&mut self) -> Vec<Happening> {
+        std::mem::take(&mut self.happened)
+    }
+
     fn end(&mut self) {
         // What is left on its bus keeps it from being wiped.
-        self.events = None;
+        self.heard = None;
         self.signal(Signal::TERM);
         self.ends_by = Some(Instant::now() + GRACE);
     }
@@ -241,6 +302,19 @@ impl Drop for PlayedSession {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn people_are_told_the_name_that_the_certificate_is_for() {
+        let site = |hosts: &[&str], is_encrypted: bool| {
+            let hosts = hosts.iter().map(|host| host.parse().expect("a host")).collect();
+            let listening = SocketAddr::from(([127, 0, 0, 1], 8700));
+            Served { listening, hosts, tls: Tls::default(), ports: None }.site(is_encrypted)
+        };
+        assert_eq!(site(&[], false), "http://127.0.0.1:8700");
+        assert_eq!(site(&["study.example.org", "lab"], true), "https://study.example.org:8700");
+        assert_eq!(site(&["study.example.org:443"], false), "https://study.example.org:443");
+        assert_eq!(site(&["[::1]"], false), "http://[::1]:8700");
+    }
 
     #[test]
     fn pages_are_read_from_what_play_says() {

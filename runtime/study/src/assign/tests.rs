@@ -7,7 +7,8 @@ use proptest::prelude::*;
 use super::*;
 use crate::{
     cycle::Cycle,
-    design::{Factor, Level, Setting, Settings},
+    design::{Factor, Level, Limits},
+    settings::{Setting, merged},
 };
 
 fn factor(name: &str, kind: FactorKind, levels: usize) -> Factor {
@@ -27,10 +28,6 @@ fn study(seed: u64, assignment: Assignment, [between, within, each]: [usize; 3],
         assignment,
         block_size: between,
         missions: (0..within * each).map(|number| format!("m{number}")).collect(),
-        settings: Settings::new(),
-        information: Default::default(),
-        consent: Default::default(),
-        consents: Vec::new(),
         factors: vec![factor("b", FactorKind::Between, between), factor("w", FactorKind::Within, within)],
         blocks: vec![Block::Missions(Missions {
             order,
@@ -38,10 +35,7 @@ fn study(seed: u64, assignment: Assignment, [between, within, each]: [usize; 3],
             after_condition: vec!["sus".to_owned()],
             ..Missions::default()
         })],
-        debriefing: None,
-        completion: None,
-        questionnaires: Vec::new(),
-        files: BTreeMap::new(),
+        ..Study::default()
     }
 }
 
@@ -177,4 +171,32 @@ fn settings_follow_from_conditions() {
         }
     }
     assert_ne!(assign(&study, 1), assign(&Study { seed: 4, ..study.clone() }, 1));
+}
+
+#[test]
+fn a_practice_is_under_no_condition_and_a_blocks_settings_give_way_to_levels_alone() {
+    let mut study = study(3, Assignment::LatinSquare, [2, 2, 1], MissionOrder::Fixed);
+    let own = |name: &str, value: &str| Settings::from([(name.to_owned(), Setting::Value(value.to_owned()))]);
+    let one = |is_practice: bool| Block::Mission {
+        mission: "m0".to_owned(),
+        is_practice,
+        settings: own("common", "own"),
+        limits: Limits::default(),
+        text: String::new(),
+    };
+    study.settings = merged(&[&own("common", "all"), &own("knows", "seen")]);
+    if let Block::Missions(missions) = &mut study.blocks[0] {
+        missions.settings = merged(&[&own("w", "block"), &own("common", "block")]);
+    }
+    study.blocks = [vec![one(true), one(false)], study.blocks].concat();
+    let plan = assign(&study, 1);
+    let [Step::Mission(practice), Step::Mission(mission), Step::Mission(compared), ..] = &plan.steps[..] else {
+        panic!("three missions")
+    };
+    assert_eq!(practice.settings, merged(&[&own("common", "own"), &own("knows", "seen")]));
+    assert_eq!((plan.choices(0), plan.choices(1)), (Vec::new(), plan.between.clone()));
+    assert!(mission.settings.contains_key("b") && mission.settings["common"] == own("common", "own")["common"]);
+    assert_eq!(compared.settings["common"], own("common", "block")["common"]);
+    assert_ne!(compared.settings["w"], own("w", "block")["w"]);
+    assert!(plan.is_practice(0) && !plan.is_practice(1) && !plan.is_practice(2));
 }

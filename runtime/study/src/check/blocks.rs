@@ -17,6 +17,8 @@ use crate::{
 #[derive(Default)]
 pub(super) struct Blocks {
     pub(super) all: Vec<Block>,
+    /// Where each of them stands in the text.
+    pub(super) places: Vec<(Range<usize>, Pointer)>,
     pub(super) debriefing: Option<String>,
 }
 
@@ -26,6 +28,10 @@ impl Checking<'_, '_> {
         for (index, block) in blocks.iter().enumerate() {
             let (place, span) = (at.item(index), block.span());
             let block = block.get_ref();
+            // What nobody knows the kind of has no keys that it should have.
+            if self.findings.is_unread(&place.key("kind")) {
+                continue;
+            }
             self.keys(block, &span, &place);
             if block.kind == BlockKind::Debriefing {
                 if index + 1 < blocks.len() {
@@ -37,10 +43,11 @@ impl Checking<'_, '_> {
             let is_second = |one: &Block| matches!(one, Block::Missions(_)) && block.kind == BlockKind::Missions;
             if found.all.iter().any(is_second) {
                 let remedy = "put all missions into one, or name single ones in blocks of kind \"mission\"";
-                self.findings.add(span, &place, "a second block of missions", remedy);
+                self.findings.add(span.clone(), &place, "a second block of missions", remedy);
             }
             let block = self.block(block, &place);
             found.all.push(block);
+            found.places.push((span, place));
         }
         found
     }
@@ -50,7 +57,9 @@ impl Checking<'_, '_> {
         let kind = block.kind.name();
         let Some((_, must, may)) = KEYS_OF_BLOCKS.iter().find(|(name, ..)| *name == kind) else { return };
         let keys = block.keys();
-        for key in must.iter().filter(|key| !keys.contains(key)) {
+        let is_read = |key: &&&str| !self.findings.is_unread(&at.key(key));
+        let missing: Vec<_> = must.iter().filter(|key| !keys.contains(key)).filter(is_read).collect();
+        for key in missing {
             let message = format!("a block of kind \"{kind}\" lacks `{key}`");
             self.findings.add(span.clone(), at, message, format!("add `{key}`"));
         }
@@ -64,20 +73,23 @@ impl Checking<'_, '_> {
     fn block(&mut self, block: &WrittenBlock, at: &Pointer) -> Block {
         let limits = self.limits(block, at);
         let text = self.text(block.file.as_ref(), at).unwrap_or_default();
+        let settings = block.settings.as_ref().map(|settings| self.settings(settings, &at.key("settings")));
+        let settings = settings.unwrap_or_default();
         match block.kind {
             BlockKind::Questionnaire | BlockKind::Debriefing => {
                 Block::Questionnaires(self.questionnaires(block.questionnaires.as_ref(), &at.key("questionnaires")))
             }
-            BlockKind::Mission => {
-                let settings = block.settings.as_ref().map(|settings| self.settings(settings, &at.key("settings")));
+            BlockKind::Mission | BlockKind::Practice => {
                 if let Some(mission) = &block.mission {
                     self.mission(mission, &at.key("mission"));
                 }
                 let mission = block.mission.as_ref().map(|name| name.get_ref().clone()).unwrap_or_default();
-                Block::Mission { mission, settings: settings.unwrap_or_default(), limits, text }
+                let is_practice = block.kind == BlockKind::Practice;
+                Block::Mission { mission, is_practice, settings, limits, text }
             }
             BlockKind::Missions => Block::Missions(Missions {
                 order: block.order.unwrap_or_default(),
+                settings,
                 limits,
                 after_mission: self.questionnaires(block.after_mission.as_ref(), &at.key("after_mission")),
                 after_condition: self.questionnaires(block.after_condition.as_ref(), &at.key("after_condition")),
@@ -102,23 +114,26 @@ impl Checking<'_, '_> {
 
     /// Finds questionnaires; gives their names.
     fn questionnaires(&mut self, names: Option<&Words>, at: &Pointer) -> Vec<String> {
-        let mut found = Vec::new();
-        for (index, name) in names.into_iter().flatten().enumerate() {
-            let path = self.beside(name, &at.item(index));
-            match Questionnaire::find(&path) {
-                Ok(questionnaire) => {
-                    found.push(questionnaire.name.clone());
-                    if !self.asked.contains(&questionnaire) {
-                        self.asked.push(questionnaire);
-                    }
+        let numbered = names.into_iter().flatten().enumerate();
+        numbered.filter_map(|(index, name)| Some(self.questionnaire(name, &at.item(index))?.name)).collect()
+    }
+
+    /// Finds a questionnaire.
+    pub(super) fn questionnaire(&mut self, name: &Spanned<String>, at: &Pointer) -> Option<Questionnaire> {
+        let path = self.beside(name, at);
+        match Questionnaire::find(&path) {
+            Ok(questionnaire) => {
+                if !self.asked.contains(&questionnaire) {
+                    self.asked.push(questionnaire.clone());
                 }
-                Err(error) => {
-                    let remedy = "name one that ships, or a file from the folder of the study";
-                    self.findings.add(name.span(), &at.item(index), error.to_string(), remedy);
-                }
+                Some(questionnaire)
+            }
+            Err(error) => {
+                let remedy = "name one that ships, or a file from the folder of the study";
+                self.findings.add(name.span(), at, error.to_string(), remedy);
+                None
             }
         }
-        found
     }
 
     /// Where a file of that name is, if there is one; else the name, which may be one of those that ship.

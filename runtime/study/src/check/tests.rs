@@ -2,9 +2,10 @@
 
 use super::*;
 use crate::{
-    design::{FactorKind, Limits},
+    design::{Block, FactorKind, Limits},
     schema,
     scratch::Scratch,
+    settings::is_on,
 };
 
 /// A program that knows two flags and two missions.
@@ -12,7 +13,8 @@ struct Stub;
 
 impl Program for Stub {
     fn check_arguments(&self, arguments: &[String]) -> Result<(), String> {
-        let is_known = |one: &&String| ["--ask=never", "--ask=always", "--paused"].contains(&one.as_str());
+        let known = ["--ask=never", "--ask=always", "--paused", "--record-audio"];
+        let is_known = |one: &&String| known.contains(&one.as_str());
         match arguments.iter().find(|one| !is_known(one)) {
             Some(other) => Err(format!("unexpected argument `{other}`")),
             None if arguments.len() > 1 => Err("one at a time".to_owned()),
@@ -74,6 +76,16 @@ kind = "debriefing"
 file = "sheet.md"
 "#;
 
+/// The same with a practice, boxes that need not be ticked, and what pages show.
+fn larger() -> String {
+    let boxes = "required = [\"I agree.\"]\noptional = [\"Tell me.\", { text = \"Hear me.\", audio = true }]";
+    let practice =
+        "[[block]]\nkind = \"practice\"\nmission = \"soda\"\nsettings = { record-audio = true, score = true }\n\n";
+    let text =
+        STUDY.replacen("required = [\"I agree.\"]", boxes, 1).replacen("[[block]]", &format!("{practice}[[block]]"), 1);
+    text.replacen("minutes = 0.5", "minutes = 0.5\nsettings = { clock = true }", 1)
+}
+
 fn check(name: &str, text: &str) -> Result<Study, String> {
     let scratch = Scratch::new(&format!("check-{name}"));
     let _ = scratch.write("sheet.md", "# Robots\n");
@@ -94,6 +106,16 @@ fn a_study_is_read() {
     let asked: Vec<_> = study.questionnaires.iter().map(|one| one.name.as_str()).collect();
     assert_eq!(asked, ["tlx", "after", "sus"]);
     assert_eq!(study.files.keys().collect::<Vec<_>>(), ["after.toml", "sheet.md"]);
+}
+
+#[test]
+fn boxes_practice_and_what_pages_show_are_read() {
+    let study = check("larger", &larger()).unwrap();
+    let boxes: Vec<_> = study.consents.iter().map(|one| (one.text.as_str(), one.is_required, one.audio)).collect();
+    assert_eq!(boxes, [("I agree.", true, false), ("Tell me.", false, false), ("Hear me.", false, true)]);
+    let Block::Mission { is_practice: true, settings, .. } = &study.blocks[0] else { panic!("a practice") };
+    assert!(is_on(settings, "score") && is_on(settings, "record-audio"));
+    assert!(is_on(&study.missions_block().unwrap().settings, "clock"));
 }
 
 #[test]
@@ -124,7 +146,7 @@ fn what_is_wrong_is_said_with_its_place_and_a_remedy() {
         ("name = \"ask\"", "name = \"ask policy\"", "cannot be the name of a column; write letters"),
         ("skip_after_minutes = 0.25", "skip_after_minutes = 0.5", "it is never reached; make it less than `minutes`"),
         ("minutes = 1\n", "minutes = 0\n", "write a number of minutes above 0"),
-        ("kind = \"break\"", "kind = \"pause\"", "write one of \"questionnaire\", \"mission\""),
+        ("kind = \"break\"", "kind = \"pause\"", "write one of \"questionnaire\", \"practice\""),
         (
             "kind = \"break\"",
             "kind = \"break\"\norder = \"random\"",
@@ -153,6 +175,35 @@ fn what_is_wrong_is_said_with_its_place_and_a_remedy() {
         ("contact", "settings = { paused = true }\ncontact", "the settings of ask = never do not go together"),
         ("contact", "contact = \"x\"\ncontact", "duplicate key"),
         (
+            "[[factor]]",
+            "[[probe]]\nquestionnaire = \"sus\"\nat = \"goal_met\"\n\n[[factor]]",
+            "/probe/0/questionnaire: `sus` has 10 questions; name a questionnaire of one item",
+        ),
+        (
+            "[[factor]]",
+            "[[probe]]\nquestionnaire = \"after.toml\"\nat = \"minutes\"\n\n[[factor]]",
+            "/probe/0/at: after how many minutes?; add `minutes`",
+        ),
+        (
+            "[[factor]]",
+            "[[probe]]\nquestionnaire = \"after.toml\"\nat = \"goal_met\"\nminutes = 2\n\n[[factor]]",
+            "leave it out, or write at = \"minutes\"",
+        ),
+        ("contact", "settings = { score = \"yes\" }\ncontact", "/settings/score: `score` is shown to participants, or"),
+        ("contact", "settings = { hide = \"score\" }\ncontact", "`hide` is not a study's to set"),
+        (
+            "contact",
+            "settings = { record-audio = true }\ncontact",
+            "no box of the consent form asks for that; add { text",
+        ),
+        ("[\"I agree.\"]", "[{ audio = true }]", "/consent/required/0: `text` is missing; add a text"),
+        (
+            "[\"I agree.\"]",
+            "[{ text = \"I agree.\", audio = 1 }]",
+            "`audio` cannot be this integer; write true or false",
+        ),
+        ("[\"I agree.\"]", "[1]", "write a list of sentences, or of tables such as { text"),
+        (
             "kind = \"questionnaire\"\nquestionnaires = [\"sus\"]",
             "kind = \"debriefing\"\nfile = \"sheet.md\"",
             "move it to the end",
@@ -176,13 +227,57 @@ fn all_problems_are_said_in_the_order_of_the_text() {
 }
 
 #[test]
+fn one_look_finds_what_is_wrong_with_the_file_its_keys_its_settings_and_its_missions() {
+    let wrong = larger()
+        .replacen("contact = \"lab@example.org\"", "contact = \"lab@example.org\" x", 1)
+        .replacen("title = \"A study\"", "title = 3", 1)
+        .replacen("seed = 1", "sed = 1", 1)
+        .replacen("\"cereal\"]", "\"tea\"]", 1)
+        .replacen("audio = true }]", "audio = 1 }]", 1)
+        .replacen("ask = \"always\"", "ask = \"often\", paused = true", 1)
+        .replacen("minutes = 0.5", "minutes = \"x\"", 1)
+        .replacen("clock = true", "clock = 5", 1)
+        .replacen("[\"sus\"]", "[\"nos\"]", 1);
+    let said = check("once", &wrong).unwrap_err();
+    let parts = [
+        "study.toml:3:",
+        "/title: `title` cannot be this integer",
+        "there is no key `sed`",
+        "there is no mission tea",
+        "`audio` cannot be this integer",
+        "/factor/0/level/1/settings/ask: unexpected",
+        "`minutes` cannot be this string",
+        "`clock` is shown to participants",
+        "nos",
+    ];
+    for part in parts {
+        assert!(said.contains(part), "no `{part}` in {said}");
+    }
+    assert_eq!(said.lines().count(), parts.len(), "nothing is said that only follows from something else: {said}");
+}
+
+#[test]
+fn what_follows_from_something_that_is_wrong_is_not_said() {
+    for (right, instead) in [
+        ("[\"soda\", \"cereal\"]", "3"),
+        ("kind = \"within\"", "kind = \"inside\""),
+        ("kind = \"missions\"", "kind = \"many\""),
+        ("kind = \"break\"", "kind = 7"),
+        ("questionnaires = [\"sus\"]", "questionnaires = 4"),
+    ] {
+        let said = check("follows", &STUDY.replacen(right, instead, 1)).unwrap_err();
+        assert_eq!(said.lines().count(), 1, "{instead}: {said}");
+    }
+}
+
+#[test]
 fn the_schema_says_the_same() {
     let schema = schema();
     let valid = |text: &str| {
         let value: serde_json::Value = toml::from_str(text).unwrap();
         jsonschema::is_valid(&schema, &value)
     };
-    assert!(valid(STUDY));
+    assert!(valid(STUDY) && valid(&larger()));
     for (right, instead) in
         [("seed = 1", ""), ("seed = 1", "seed = -1"), ("seed = 1", "seed = 1\nsed = 2"), ("\"within\"", "\"in\"")]
     {

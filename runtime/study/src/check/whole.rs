@@ -1,24 +1,60 @@
 //! What concerns several parts of a study: missions, conditions and their assignment.
 
-use std::collections::BTreeSet;
+use std::{collections::BTreeSet, ops::Range};
 
 use cohabit_cdf::mission::Pointer;
 use toml::Spanned;
 
 use super::Checking;
 use crate::{
-    design::{Assignment, Choice, FactorKind, Study, arguments, merged},
-    written::{BlockKind, Written},
+    design::{Assignment, Block, Choice, Condition, FactorKind, Study},
+    settings::arguments,
+    written::{BlockKind, Written, WrittenSheet},
 };
 
 impl Checking<'_, '_> {
     /// What concerns the whole of it.
-    pub(super) fn whole(&mut self, study: &mut Study, written: &Written) {
-        self.missions(study, written);
-        self.assignment(study, written);
+    pub(super) fn whole(&mut self, study: &mut Study, written: &Written, blocks: &[(Range<usize>, Pointer)]) {
+        self.each_mission(written);
+        let root = Pointer::default();
+        let knows_factors = self.knows_all(&root.key("factor"), written.factor.len(), &["kind", "level"]);
+        let knows_blocks = self.knows_all(&root.key("block"), written.block.len(), &["kind"]);
+        if knows_factors && knows_blocks && !self.findings.is_unread(&root.key("missions")) {
+            self.missions(study, written);
+        }
+        if knows_factors && knows_blocks {
+            self.assignment(study, written);
+        }
         self.names(study, written);
-        study.block_size = self.block_size(study, written);
-        self.combinations(study, written);
+        study.block_size = if knows_factors { self.block_size(study, written) } else { 1 };
+        self.combinations(study, written, blocks);
+        self.audio(study, &written.consent);
+    }
+
+    /// Whether each table of a list could be read as far as these keys go.
+    fn knows_all(&self, list: &Pointer, count: usize, keys: &[&str]) -> bool {
+        let unread = |index: usize| keys.iter().any(|key| self.findings.is_unread(&list.item(index).key(key)));
+        !self.findings.is_unread(list) && !(0..count).any(unread)
+    }
+
+    /// Says when what people say is kept, and nobody is asked whether they may be heard.
+    fn audio(&mut self, study: &Study, written: &WrittenSheet) {
+        let Some((span, place)) = self.keeps_audio.take() else { return };
+        let consent = Pointer::default().key("consent");
+        let boxes = [("required", written.required.len()), ("optional", written.optional.len())];
+        let knows_boxes = boxes.iter().all(|(key, count)| self.knows_all(&consent.key(key), *count, &["audio"]));
+        if knows_boxes && !self.findings.is_unread(&consent) && !study.consents.iter().any(|one| one.audio) {
+            let message = "what people say is kept, and no box of the consent form asks for that";
+            let remedy = "add { text = \"What I say may be recorded.\", audio = true } to `required` or `optional` of `[consent]`";
+            self.findings.add(span, &place, message, remedy);
+        }
+    }
+
+    fn each_mission(&mut self, written: &Written) {
+        let place = Pointer::default().key("missions");
+        for (index, mission) in written.missions.iter().flat_map(|missions| missions.get_ref()).enumerate() {
+            self.mission(mission, &place.item(index));
+        }
     }
 
     fn missions(&mut self, study: &Study, written: &Written) {
@@ -26,9 +62,6 @@ impl Checking<'_, '_> {
         let block = written.block.iter().find(|block| block.get_ref().kind == BlockKind::Missions);
         match (&written.missions, block) {
             (Some(missions), Some(_)) => {
-                for (index, mission) in missions.get_ref().iter().enumerate() {
-                    self.mission(mission, &place.item(index));
-                }
                 let (count, conditions) = (study.missions.len(), study.conditions(FactorKind::Within).len());
                 if count == 0 || !count.is_multiple_of(conditions) {
                     let message = format!("{count} missions for {conditions} within-participant conditions");
@@ -85,22 +118,37 @@ impl Checking<'_, '_> {
         (*size.get_ref()).max(1)
     }
 
-    /// Whether `play` takes the settings of each combination of levels, which it may not though it takes each flag alone.
-    fn combinations(&mut self, study: &Study, written: &Written) {
-        if !self.findings.is_empty() {
-            return;
-        }
-        let span = written.factor.first().map_or(0..0, Spanned::span);
-        for between in study.conditions(FactorKind::Between) {
-            for within in study.conditions(FactorKind::Within) {
-                let settings = merged(&[&study.settings, &between.settings, &within.settings]);
-                if let Err(problem) = self.program.check_arguments(&arguments(&settings)) {
-                    let level = |choice: &Choice| format!("{} = {}", choice.factor, choice.level);
-                    let levels: Vec<_> = between.choices.iter().chain(&within.choices).map(level).collect();
-                    let message = format!("the settings of {} do not go together: {problem}", levels.join(", "));
-                    self.findings.add(span.clone(), &Pointer::default().key("factor"), message, "change one of them");
-                }
+    /// Whether `play` takes the settings of each session, which it may not though it takes each flag alone.
+    fn combinations(&mut self, study: &Study, written: &Written, blocks: &[(Range<usize>, Pointer)]) {
+        let factors = written.factor.first().map(|factor| (factor.span(), Pointer::default().key("factor")));
+        for (block, place) in study.blocks.iter().zip(blocks) {
+            for (between, within) in conditions(study, block) {
+                let settings = study.settings_of(block, &between, &within);
+                let Err(problem) = self.program.check_arguments(&arguments(&settings)) else { continue };
+                let level = |choice: &Choice| format!("{} = {}", choice.factor, choice.level);
+                let levels: Vec<_> = between.choices.iter().chain(&within.choices).map(level).collect();
+                let of = if levels.is_empty() { "this block".to_owned() } else { levels.join(", ") };
+                let (span, pointer) = factors.as_ref().filter(|_| !levels.is_empty()).unwrap_or(place);
+                let message = format!("the settings of {of} do not go together: {problem}");
+                self.findings.add(span.clone(), pointer, message, "change one of them");
             }
         }
+    }
+}
+
+/// The conditions, of both kinds, under which the sessions of a block are played.
+fn conditions(study: &Study, block: &Block) -> Vec<(Condition, Condition)> {
+    let of = |kind| study.conditions(kind);
+    match block {
+        Block::Mission { is_practice: true, .. } => vec![(Condition::default(), Condition::default())],
+        Block::Mission { .. } => {
+            of(FactorKind::Between).into_iter().map(|between| (between, Condition::default())).collect()
+        }
+        Block::Missions(_) => {
+            let within = of(FactorKind::Within);
+            let with_all = |between: Condition| within.clone().into_iter().map(move |one| (between.clone(), one));
+            of(FactorKind::Between).into_iter().flat_map(with_all).collect()
+        }
+        Block::Questionnaires(_) | Block::Break { .. } => Vec::new(),
     }
 }

@@ -12,10 +12,12 @@ fn with_participants(scratch: &Scratch) -> Folder {
     let mut links = folder.links().unwrap();
     for place in [1, 12] {
         let plan = Plan { place, between: Vec::new(), steps: Vec::new() };
-        let agreed = Event::Consented { version: "1".into(), ticked: 0 };
+        let agreed = Event::Consented { version: "1".into(), ticked: Vec::new(), audio: false };
         Journal::begin(&folder.journal_path(place), &plan, &agreed, 0).unwrap();
         let participant = pseudonym(place);
-        let consent = Consent { participant: participant.clone(), at_ms: 0, version: "1".into(), agreed: Vec::new() };
+        let none = Vec::new;
+        let version = "1".into();
+        let consent = Consent { participant: participant.clone(), at_ms: 0, version, agreed: none(), declined: none() };
         folder.keep_consent(place, &consent).unwrap();
         fs::write(folder.log_path(&format!("{participant}-00-1")), "log").unwrap();
         folder.note(&Note { at_ms: 1, participant: Some(participant), text: "hesitates".into() }).unwrap();

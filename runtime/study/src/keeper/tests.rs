@@ -2,6 +2,8 @@
 
 use std::{fs, path::Path, sync::Arc};
 
+use cohabit_dialog::Given;
+
 use super::*;
 use crate::{
     check::{Program, StudyFile},
@@ -10,7 +12,7 @@ use crate::{
     registry::Who,
     scratch::Scratch,
     session::{PageAddress, Playing},
-    web::newcomers_event,
+    web::{Sent, newcomers_event, participants_event},
 };
 
 struct Anything;
@@ -33,16 +35,16 @@ participants = 3
 assignment = "latin_square"
 missions = ["one", "two"]
 information = { file = "sheet.md", version = "1" }
-consent = { file = "sheet.md", version = "2", required = ["Yes.", "Indeed."] }
+consent = { file = "sheet.md", version = "2", required = ["Yes.", "Indeed."], optional = [{ text = "Hear me.", audio = true }] }
 factor = [{ name = "ask", kind = "within", level = [
-    { name = "never", settings = { ask = "never" } }, { name = "always", settings = { ask = "always" } },
+    { name = "never", settings = { ask = "never" } }, { name = "always", settings = { ask = "always", clock = true } },
 ] }]
-block = [{ kind = "missions", minutes = 5 }]
+block = [{ kind = "missions", minutes = 5, settings = { record-audio = true } }, { kind = "questionnaire", questionnaires = ["tlx"] }]
 "#;
 
 /// Sessions that are what a test says.
 #[derive(Clone, Default)]
-struct Stage(Arc<Mutex<Vec<(Wanted, Look)>>>);
+struct Stage(Arc<Mutex<Vec<(Wanted, Look)>>>, Arc<Mutex<Vec<Happening>>>);
 
 struct Act {
     stage: Stage,
@@ -82,6 +84,10 @@ impl Playing for Act {
         self.stage.0.lock().unwrap()[self.number].1.clone()
     }
 
+    fn happened(&mut self) -> Vec<Happening> {
+        std::mem::take(&mut *self.stage.1.lock().unwrap())
+    }
+
     fn end(&mut self) {
         self.stage.set(self.number, Look::Gone("as asked".to_owned()));
     }
@@ -116,12 +122,17 @@ impl Case {
         self.registry.as_mut().unwrap()
     }
 
-    /// Somebody who signs up and agrees; their place.
+    /// Somebody who signs up and agrees to what they have to; their place.
     fn enrol(&mut self) -> u32 {
+        self.enrol_with(&[0, 1])
+    }
+
+    /// The same with these boxes ticked.
+    fn enrol_with(&mut self, ticked: &[usize]) -> u32 {
         let registry = self.registry();
         let token = registry.sign_up().unwrap();
         let Some(Who::Newcomer(index)) = registry.who(&token) else { panic!("a newcomer") };
-        registry.enrol(index, "2", 2).unwrap();
+        registry.enrol(index, "2", ticked).unwrap();
         let Some(Who::Participant(place)) = registry.who(&token) else { panic!("a participant") };
         place
     }
@@ -172,10 +183,15 @@ fn nothing_is_written_down_before_consent() {
         assert_eq!(registry.page(Who::Newcomer(index))["page"], page);
         assert_eq!(registry.page(Who::Newcomer(index))["contact"], "us");
     }
-    assert!(registry.enrol(index, "1", 2).is_err(), "another version of the form");
-    assert!(registry.enrol(index, "2", 1).is_err(), "a box that is not ticked");
+    assert!(registry.enrol(index, "1", &[0, 1]).is_err(), "another version of the form");
+    for ticked in [&[][..], &[1], &[0, 2], &[1, 2, 3]] {
+        assert!(registry.enrol(index, "2", ticked).is_err(), "a box that is not ticked");
+    }
     assert_eq!(files(&data), before);
-    registry.enrol(index, "2", 2).unwrap();
+    registry.enrol(index, "2", &[1, 0]).unwrap();
+    let consent = fs::read_to_string(data.join("consent/P01.json")).unwrap();
+    let consent: crate::folder::Consent = serde_json::from_str(&consent).unwrap();
+    assert_eq!((consent.agreed.len(), consent.declined), (2, vec!["Hear me.".to_owned()]));
     let new: Vec<_> = files(&data).into_iter().filter(|name| !before.contains(name)).collect();
     assert_eq!(new, ["P01.json", "P01.jsonl"]);
 }
@@ -195,6 +211,103 @@ fn sessions_are_as_many_as_may_be_and_others_wait() {
     // A place more than planned is none.
     case.enrol();
     assert!(case.registry().sign_up().is_err());
+}
+
+#[test]
+fn who_agrees_to_be_heard_is_and_nobody_else() {
+    let mut case = Case::new("audio");
+    for (ticked, is_heard) in [(&[0, 1, 2][..], true), (&[0, 1], false)] {
+        let place = case.enrol_with(ticked);
+        case.apply(place, &Event::GoesOn);
+        case.look_after(2);
+        case.look_after(2);
+        let arguments = case.stage.arguments(case.stage.names().len() - 1);
+        let has = |flag: &str| arguments.iter().any(|one| one == flag);
+        assert_eq!((has("--record-audio"), has("--hide=microphone")), (is_heard, !is_heard), "{arguments:?}");
+        let page = case.registry().page(Who::Participant(place));
+        assert_eq!(page["session"]["has_microphone"], is_heard);
+    }
+    // What was agreed to outlasts the server.
+    case.start_again();
+    assert!(case.registry().participants[&1].progress.agrees_to_audio());
+    assert!(!case.registry().participants[&2].progress.agrees_to_audio());
+}
+
+#[test]
+fn a_clock_is_shown_where_a_setting_says_so_and_the_score_nowhere_else() {
+    let mut case = Case::new("clock");
+    let place = case.enrol();
+    for step in 0..2 {
+        case.apply(place, &Event::GoesOn);
+        case.look_after(1);
+        case.look_after(1);
+        let arguments = case.stage.arguments(step);
+        let page = case.registry().page(Who::Participant(place));
+        assert_eq!(page["page"], "mission");
+        assert_eq!(page["left_s"].is_number(), arguments.contains(&"--ask=always".to_owned()), "{page}");
+        assert!(arguments.contains(&"--hide=score".to_owned()), "{arguments:?}");
+        assert!(!arguments.iter().any(|one| one.contains("clock")), "{arguments:?}");
+        case.apply(place, &Event::Over { ending: Ending::Complete });
+    }
+}
+
+#[test]
+fn what_was_filled_in_is_there_again_and_counts_for_nothing() {
+    let mut case = Case::new("draft");
+    let place = case.enrol();
+    for _ in 0..2 {
+        case.apply(place, &Event::GoesOn);
+        case.look_after(1);
+        case.apply(place, &Event::Over { ending: Ending::Complete });
+    }
+    let page = |case: &mut Case| case.registry().page(Who::Participant(place));
+    assert_eq!(page(&mut case)["draft"], serde_json::json!([]));
+    let answers = || vec![Some(Given::Value(5)), None, None, None, None, None];
+    let sent = |answers: Vec<Option<Given>>| Sent {
+        step: Some(3),
+        event: Event::Drafted { questionnaire: "tlx".to_owned(), answers },
+    };
+    participants_event(case.registry(), place, &sent(answers())).unwrap();
+    participants_event(case.registry(), place, &sent(answers())).unwrap();
+    participants_event(case.registry(), place, &sent(vec![None])).unwrap();
+    let long = [vec![Some(Given::Text("x".repeat(20_000)))], answers()[1..].to_vec()].concat();
+    assert!(participants_event(case.registry(), place, &sent(long)).is_err());
+    let journal = fs::read_to_string(case.scratch.path("data/journals/P01.jsonl")).unwrap();
+    assert_eq!(journal.matches("drafted").count(), 1, "what is sent twice is kept once, and no more than a form holds");
+    case.start_again();
+    assert_eq!(page(&mut case)["draft"][0], serde_json::json!({ "value": 5 }));
+    assert_eq!(case.phase(place), Phase::At(2, Doing::Ready));
+    let done = case.registry().participants[&place].progress.done().len();
+    assert_eq!(done, 2);
+}
+
+#[test]
+fn a_probe_comes_when_it_is_due_and_its_answer_is_in_the_tables() {
+    let mut case = Case::new("probe");
+    let probe = "\n[[probe]]\nquestionnaire = 'trust.toml'\nat = 'goal_met'\n";
+    let _ = case.scratch.write("trust.toml", "title = 'T'\n[[item]]\nask = 'Trust?'\nscale = { least = 1, most = 5 }");
+    let _ = case.scratch.write("study.toml", &format!("{STUDY}{probe}"));
+    case.start_again();
+    let place = case.enrol();
+    case.apply(place, &Event::GoesOn);
+    case.look_after(1);
+    case.look_after(1);
+    let page = |case: &mut Case| case.registry().page(Who::Participant(place))["probe"].clone();
+    assert!(page(&mut case).is_null());
+    case.stage.1.lock().unwrap().push(Happening::GoalMet);
+    case.look_after(1);
+    let shown = page(&mut case);
+    assert_eq!((&shown["number"], &shown["item"]["ask"]), (&serde_json::json!(0), &serde_json::json!("Trust?")));
+    let sent =
+        |value| Sent { step: Some(1), event: Event::ProbeAnswered { probe: 0, answer: Some(Given::Value(value)) } };
+    assert!(participants_event(case.registry(), place, &sent(9)).is_err(), "no place of the scale");
+    participants_event(case.registry(), place, &sent(4)).unwrap();
+    assert!(page(&mut case).is_null());
+    case.apply(place, &Event::Over { ending: Ending::Complete });
+    let registry = case.registry();
+    let all = [registry.participants[&place].progress.clone()];
+    let rows = tables::probes(&registry.study, &all, false).rows;
+    assert!(rows.len() == 1 && rows[0].contains(&cohabit_tables::Cell::Whole(4)), "{rows:?}");
 }
 
 #[test]
@@ -239,7 +352,7 @@ fn time_is_up_when_it_was_played() {
     case.look_after(1);
     case.look_after(1);
     case.apply(place, &Event::Played { seconds: 299.9 });
-    assert!(case.registry().page(Who::Participant(place))["left_s"].as_f64().unwrap() <= 0.2);
+    assert!(case.registry().participants[&place].progress.left_s().unwrap() <= 0.2);
     case.registry().participants.get_mut(&place).unwrap().live.as_mut().unwrap().unsaved_s = 0.2;
     case.look_after(1);
     assert_eq!(case.phase(place), Phase::At(1, Doing::Ready));

@@ -3,12 +3,13 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::design::{Limits, Settings};
+use crate::{design::Limits, settings::Settings};
 
 fn mission(skip_after_s: Option<f64>) -> Step {
     Step::Mission(PlannedMission {
         block: 0,
         mission: "make_cereal".to_owned(),
+        is_practice: false,
         within: Vec::new(),
         settings: Settings::new(),
         limits: Limits { limit_s: Some(60.0), skip_after_s },
@@ -25,7 +26,11 @@ fn plan() -> Plan {
 }
 
 fn consented() -> Event {
-    Event::Consented { version: "1".to_owned(), ticked: 2 }
+    Event::Consented { version: "1".to_owned(), ticked: vec![0, 1], audio: true }
+}
+
+fn drafted(value: i32) -> Event {
+    Event::Drafted { questionnaire: "sus".to_owned(), answers: vec![Some(Given::Value(value)), None] }
 }
 
 fn answered() -> Event {
@@ -72,6 +77,45 @@ fn a_participant_does_one_step_after_the_other() {
 }
 
 #[test]
+fn a_draft_is_kept_until_it_is_answered_and_is_no_answer() {
+    let mut progress = Progress::new(plan());
+    assert!(!progress.agrees_to_audio());
+    run(&mut progress, &[Event::Read, consented(), Event::GoesOn, Event::Started]);
+    assert!(progress.agrees_to_audio());
+    assert!(progress.step(&drafted(1), 0).is_err(), "no questionnaire is asked yet");
+    run(&mut progress, &[over(Ending::Complete), drafted(1), drafted(2)]);
+    assert_eq!(progress.draft(), [Some(Given::Value(2)), None]);
+    assert_eq!((progress.done().len(), progress.phase()), (1, &Phase::At(1, Doing::Ready)));
+    for _ in 2..MOST_DRAFTS {
+        run(&mut progress, &[drafted(3)]);
+    }
+    assert!(progress.step(&drafted(4), 0).is_err(), "a page that runs wild fills no disk");
+    run(&mut progress, &[answered()]);
+    assert_eq!((progress.draft().len(), progress.done()[1].answers.len()), (0, 2));
+}
+
+#[test]
+fn a_probe_is_asked_and_answered_while_a_mission_is_played() {
+    let mut progress = Progress::new(plan());
+    let (asked, answered) =
+        (Event::Probed { probe: 1 }, Event::ProbeAnswered { probe: 1, answer: Some(Given::Value(4)) });
+    run(&mut progress, &[Event::Read, consented(), Event::GoesOn]);
+    assert!(progress.step(&asked, 0).is_err(), "nothing is played yet");
+    run(&mut progress, &[Event::Started]);
+    assert!(progress.step(&answered, 0).is_err(), "nothing was asked");
+    run(&mut progress, std::slice::from_ref(&asked));
+    assert!(progress.step(&Event::Probed { probe: 2 }, 0).is_err(), "one at a time");
+    // A session that dies takes no question with it.
+    run(&mut progress, &[interrupted(), Event::Started, answered.clone()]);
+    assert!(progress.step(&asked, 0).is_err() && progress.step(&answered, 0).is_err(), "once");
+    run(&mut progress, &[Event::Probed { probe: 2 }, over(Ending::Complete)]);
+    let probed = &progress.done()[0].probed;
+    assert_eq!((probed.len(), probed[0].probe, &probed[1].answer), (2, 1, &None));
+    assert_eq!(probed[0].answer.as_ref().map(|(_, answer)| answer), Some(&Some(Given::Value(4))));
+    assert!(progress.probed().is_empty());
+}
+
+#[test]
 fn who_withdraws_or_is_excluded_while_playing_ends_the_session() {
     let mut playing = Progress::new(plan());
     run(&mut playing, &[Event::Read, consented(), Event::GoesOn, Event::Started]);
@@ -98,11 +142,14 @@ fn any_event() -> impl Strategy<Value = Event> {
         Just(Event::Read),
         Just(consented()),
         Just(answered()),
+        (1..5).prop_map(drafted),
         Just(Event::GoesOn),
         Just(Event::GoesOn),
         Just(Event::Started),
         (0.0..20.0).prop_map(|seconds| Event::Played { seconds }),
         Just(interrupted()),
+        (0_usize..3).prop_map(|probe| Event::Probed { probe }),
+        (0_usize..3).prop_map(|probe| Event::ProbeAnswered { probe, answer: Some(Given::Value(1)) }),
         proptest::sample::select(endings.to_vec()).prop_map(over),
     ]
 }
