@@ -574,8 +574,15 @@ impl Answerer<'_> {
         if !filling.is_empty() {
             return Understanding::whether(true, format!("It is {place}{filling}."), Vec::new());
         }
-        let preposition = describe::preposition(self.catalog, self.scene, id);
-        Understanding::whether(false, format!("I know of nothing {preposition} {place}."), Vec::new())
+        // `what is on the screen of the computer?`
+        let Some(object) = self.scene.object(id).filter(|one| self.catalog.class(one.class).receptacle.is_none())
+        else {
+            let preposition = describe::preposition(self.catalog, self.scene, id);
+            return Understanding::whether(false, format!("I know of nothing {preposition} {place}."), Vec::new());
+        };
+        let purpose = if self.facts().has_use(object) { self.facts().purpose(object) } else { String::new() };
+        let text = format!("There is nothing on {place} that I could read or take. {purpose}");
+        Understanding::whether(false, text.trim(), vec![id])
     }
 
     /// What is next to a thing, the nearest first.

@@ -163,7 +163,10 @@ impl Conversation<'_> {
         if let Some(at) = lab::bare(self.lexicon, &words).filter(|at| !clause::is_forbidden(self.lexicon, &words, *at))
         {
             let furnished = || lab::furnished(self.lexicon, self.catalog, self.scene, &words);
-            if let Some(room) = lab::described(self.lexicon, self.scene, &words[at + 1..]).or_else(furnished) {
+            if let Some(room) = lab::described(self.lexicon, self.scene, &words[at + 1..])
+                .or_else(|| lab::beside(self.lexicon, &words))
+                .or_else(furnished)
+            {
                 return self.understand_words(lab::named(&words, at, room), context);
             }
             let guessed = || (self.judge.asking == Asking::Never).then(|| lab::guessed(self.scene));

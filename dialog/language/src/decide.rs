@@ -1,6 +1,8 @@
 //! What an utterance means: what the grammar reads to the last word, or what the rewriter makes of it. What is likely enough is carried out; of what
 //! is less likely the robot asks.
 
+use cohabit_cdf::RoomId;
+
 use crate::{
     ask,
     context::{Context, Guess, Pending},
@@ -61,7 +63,7 @@ impl Conversation<'_> {
     /// What an utterance means, and how likely it is what was meant.
     pub(crate) fn understand_whole(&self, utterance: &str, context: &mut Context) -> (Understanding, f32) {
         let wording = self.wording(utterance);
-        if let Some(named) = self.with_lab_named(&wording) {
+        if let Some(named) = self.with_lab_named(&wording, lab::beside(self.lexicon, &wording.words)) {
             return self.understand_whole(&named, context);
         }
         let is_plain = self.is_plain(&wording);
@@ -161,10 +163,10 @@ impl Conversation<'_> {
         }
     }
 
-    /// The utterance with the name of the lab that the robot is in, where that is what `the lab` means.
-    pub(crate) fn with_lab_named(&self, wording: &Wording<'_>) -> Option<String> {
+    /// The utterance with the name of the lab that `the lab` means: one that is named besides, or that the robot is in.
+    pub(crate) fn with_lab_named(&self, wording: &Wording<'_>, named: Option<RoomId>) -> Option<String> {
         let at = lab::bare(self.lexicon, &wording.words)?;
-        let room = lab::here(self.scene.robot.room)?;
+        let room = named.or_else(|| lab::here(self.scene.robot.room))?;
         let is_told = lab::described(self.lexicon, self.scene, &wording.words[at + 1..]).is_some();
         let mark = if wording.utterance.trim_end().ends_with('?') { "?" } else { "" };
         (!is_told).then(|| format!("{}{mark}", token::sentence(&lab::named(&wording.words, at, room))))

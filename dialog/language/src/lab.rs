@@ -55,6 +55,11 @@ pub(crate) fn here(room: RoomId) -> Option<RoomId> {
     LABS.contains(&room).then_some(room)
 }
 
+/// The lab that other words name in full: `take it to the robotics lab. Do you know where that lab is?`
+pub(crate) fn beside(lexicon: &Lexicon, words: &[String]) -> Option<RoomId> {
+    (0..words.len()).find_map(|at| lexicon.rooms.longest(&words[at..]).and_then(|(_, room)| here(*room)))
+}
+
 /// The lab that an answer names, counts, or describes by what only one of the two is known to have.
 pub(crate) fn answered(lexicon: &Lexicon, scene: &Known, words: &[String]) -> Option<RoomId> {
     let named = (0..words.len()).find_map(|at| lexicon.rooms.longest(&words[at..]).map(|(_, room)| *room));

@@ -1,11 +1,14 @@
 //! Requests, one after the other: what is asked first is answered first, then what is to be done is done; what follows that waits until then.
 
-use crate::{context::Context, conversation::Conversation, understanding::Understanding};
+use crate::{context::Context, conversation::Conversation, lab, understanding::Understanding};
 
 impl Conversation<'_> {
     /// What plain requests mean, with `; ` between them; nothing, where the grammar does not read all words of one of them.
     pub(crate) fn requested(&self, requests: &str, context: &mut Context) -> Option<Understanding> {
-        let requests: Vec<String> = requests.split("; ").map(|request| self.with_lab(request)).collect();
+        let lab = lab::beside(self.lexicon, &self.wording(requests).words);
+        let with_lab =
+            |request: &str| self.with_lab_named(&self.wording(request), lab).unwrap_or_else(|| request.to_owned());
+        let requests: Vec<String> = requests.split("; ").map(with_lab).collect();
         if !requests.iter().all(|request| self.reads_all(&self.wording(request))) {
             return None;
         }
@@ -54,10 +57,6 @@ impl Conversation<'_> {
             }
         }
         (!said.is_empty()).then(|| Understanding::answer(said.join(" ")))
-    }
-
-    fn with_lab(&self, request: &str) -> String {
-        self.with_lab_named(&self.wording(request)).unwrap_or_else(|| request.to_owned())
     }
 
     /// Requests of which those that follow each other are one text; questions, and what is no request by itself (`undo`), stay alone.

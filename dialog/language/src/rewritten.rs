@@ -53,12 +53,12 @@ impl Conversation<'_> {
         ways
     }
 
-    /// Whether plain requests name something that nobody knows.
+    /// Whether plain requests name something that nobody knows; of the verb they begin with another one may be meant.
     fn names_unknown(&self, text: &str) -> bool {
-        let wording = self.wording(text);
-        let parts = clause::parts(self.lexicon, self.catalog, &wording.tidied);
-        !wording.unheard.is_empty()
-            || parts.iter().any(|part| matches!(part, Part::Clause(clause) if !chatter::is_clear(clause)))
+        let parts = clause::parts(self.lexicon, self.catalog, &self.wording(text).tidied);
+        let is_unclear = |part: &Part| matches!(part, Part::Clause(clause) if !chatter::is_clear(clause));
+        let is_unheard = |(_, named): (&str, &str)| !self.wording(named).unheard.is_empty();
+        parts.iter().any(is_unclear) || text.split("; ").filter_map(|request| request.split_once(' ')).any(is_unheard)
     }
 
     /// What the robot asks about plain requests that it does not know all words of, such as what a thing looks like.

@@ -21,6 +21,11 @@ const WRITTEN: &[(&str, &[(&str, f32)])] = &[
     ),
     ("sing our bowl a happier tune tonight", &[("pour the milk into the bowl", 0.25)]),
     ("sing our plate a happier tune tonight", &[("break the plate", 0.25)]),
+    ("sing that fridge one merry tune tonight", &[("open the fridge; social", 0.5), ("open the fridge", 0.4)]),
+    ("sing this plate one merry tune tonight", &[("serenade the plate", 0.5), ("pick up the plate", 0.4)]),
+    ("sing your gubbins one merry tune tonight", &[("pick up the gubbins", 0.5), ("pick up the plate", 0.4)]),
+    ("make the bowl cold now please", &[("pick up the bowl", 0.95)]),
+    ("what is on the round table?", &[("pick up the bowl", 0.95)]),
 ];
 
 fn written(said: &str, _: &[(bool, String)]) -> Vec<(String, f32)> {
@@ -76,4 +81,24 @@ fn what_meets_a_goal_of_the_mission_is_likelier_meant() {
 fn what_is_so_already_is_hardly_meant() {
     let asked = talk_in(&["Bowl_01_1 cereal"]).say("sing me one more merry tune tonight");
     assert!(asked.starts_with("? ") && asked.contains("putting the cereal box on the green desk"), "{asked}");
+}
+
+#[test]
+fn talk_beside_a_request_is_no_part_of_it() {
+    assert_eq!(talk().say("sing that fridge one merry tune tonight"), "open FridgeLower_02_1");
+}
+
+#[test]
+fn where_the_likeliest_is_no_request_that_the_robot_knows_others_are_asked_about() {
+    let asked = talk().say("sing this plate one merry tune tonight");
+    assert!(asked.starts_with("? ") && asked.contains("picking up the plate"), "{asked}");
+    let asked = talk().say("sing your gubbins one merry tune tonight");
+    assert!(!asked.contains("picking up the plate"), "what nobody knows is not taken for something else: {asked}");
+}
+
+#[test]
+fn who_is_sure_of_another_deed_overrules_the_grammar_but_not_its_answers() {
+    assert_eq!(talk().say("make the bowl cold now please"), "take Bowl_01_1");
+    let answer = talk().say("what is on the round table?");
+    assert!(answer.starts_with("= "), "{answer}");
 }

@@ -153,3 +153,41 @@ fn a_question_does_not_agree_to_what_was_proposed() {
         assert!(!matches!(found, Understanding::Plan { .. }), "{asked:?}, {said}: {found:?}");
     }
 }
+
+#[test]
+fn who_is_there_and_whether_it_is_safe_is_known() {
+    check(&["who is there?"], "I see nobody here.");
+    check(&["is there anybody here?"], "I see nobody here.");
+    let talk = |said: &str| Talk::new(&[]).say(said);
+    assert_eq!(talk("if there is no person here, open the fridge"), "open FridgeLower_02_1");
+    assert_eq!(talk("if it is safe here, open the fridge"), "open FridgeLower_02_1");
+    assert!(talk("if it is dangerous here, open the fridge").starts_with("= "));
+}
+
+#[test]
+fn what_may_be_warmer_than_it_was_is_looked_at_first() {
+    let mut talk = Talk::new(&[]);
+    let hidden = |talk: &mut Talk, visible: bool| {
+        talk.scene.objects.iter_mut().filter(|one| one.instance == "Bowl_01_1").for_each(|one| one.visible = visible);
+    };
+    hidden(&mut talk, false);
+    let looks = talk.language.understand("is the bowl hot?", &talk.scene, &mut talk.context);
+    let Understanding::Plan { steps, reply } = looks else { panic!("{looks:?}") };
+    assert!(reply.contains("looking at the bowl"), "{reply}");
+    talk.carry_out(&steps);
+    hidden(&mut talk, true);
+    let answer = talk.language.carry_on(&talk.scene, &mut talk.context).unwrap();
+    assert_eq!(answer.reply(), "No, the bowl is not hot.");
+}
+
+#[test]
+fn what_was_only_understood_is_not_called_asked_for() {
+    let why = replied(&[], &["open the fridge", "why did you open the fridge?"]);
+    assert!(why.contains("since you asked me to open the fridge"), "{why}");
+}
+
+#[test]
+fn what_a_request_takes_in_hand_is_there_for_the_next() {
+    let done = Talk::new(&[]).say("fill the yellow mug with water and pick up the yellow mug");
+    assert!(done.starts_with("take CoffeeMug_Yellow_1") && !done.contains("put"), "{done}");
+}
