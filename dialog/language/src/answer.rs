@@ -498,7 +498,7 @@ impl Answerer<'_> {
     }
 
     /// Whether a machine may have made it hot or cold since the robot saw it.
-    fn may_have_changed(&self, id: ObjectId, state: StateWord) -> bool {
+    pub(crate) fn may_have_changed(&self, id: ObjectId, state: StateWord) -> bool {
         let is_warmth = matches!(state, StateWord::Flag(StateFlag::Hot | StateFlag::Cold, _));
         let is_seen = self.scene.robot.held == Some(id) || self.scene.object(id).is_some_and(|object| object.visible);
         is_warmth && !is_seen
@@ -575,14 +575,18 @@ impl Answerer<'_> {
             return Understanding::whether(true, format!("It is {place}{filling}."), Vec::new());
         }
         // `what is on the screen of the computer?`
-        let Some(object) = self.scene.object(id).filter(|one| self.catalog.class(one.class).receptacle.is_none())
-        else {
-            let preposition = describe::preposition(self.catalog, self.scene, id);
-            return Understanding::whether(false, format!("I know of nothing {preposition} {place}."), Vec::new());
-        };
-        let purpose = if self.facts().has_use(object) { self.facts().purpose(object) } else { String::new() };
-        let text = format!("There is nothing on {place} that I could read or take. {purpose}");
-        Understanding::whether(false, text.trim(), vec![id])
+        let carries = |object: &&KnownObject| self.catalog.class(object.class).receptacle.is_some();
+        match self.scene.object(id).filter(|object| !carries(object)) {
+            Some(object) => {
+                let purpose = if self.facts().has_use(object) { self.facts().purpose(object) } else { String::new() };
+                let text = format!("There is nothing on {place} that I could read or take. {purpose}");
+                Understanding::whether(false, text.trim(), vec![id])
+            }
+            None => {
+                let preposition = describe::preposition(self.catalog, self.scene, id);
+                Understanding::whether(false, format!("I know of nothing {preposition} {place}."), Vec::new())
+            }
+        }
     }
 
     /// What is next to a thing, the nearest first.

@@ -7,9 +7,7 @@ use crate::{
     ask,
     context::{Context, Guess, Pending},
     conversation::Conversation,
-    lab,
-    lexicon::Pronoun,
-    reply, stop, token,
+    lab, reply, stop, tail, token,
     understanding::{Asking, Clarification, Step, Understanding},
     way::Way,
     wording::Wording,
@@ -53,10 +51,23 @@ const TO_OVERRULE: f32 = 0.7;
 enum Reading {
     /// As much as anybody could.
     Sure,
-    /// All of it, but it is no mere word or two: some of it may be meant otherwise.
-    Plain,
+    /// All of it, some words: it may be meant otherwise.
+    Short,
+    /// All of it, but it is long: some of it is rather meant otherwise.
+    Long,
     /// Not all of it.
     Partial,
+}
+
+impl Reading {
+    /// How likely another reading must be meant to count instead.
+    const fn to_overrule(self) -> f32 {
+        match self {
+            Self::Short => TO_OVERRULE_SHORT,
+            Self::Long => TO_OVERRULE,
+            Self::Sure | Self::Partial => 0.0,
+        }
+    }
 }
 
 impl Conversation<'_> {
@@ -87,17 +98,11 @@ impl Conversation<'_> {
         if let Some(settled) = settled(&ways) {
             return settled.taken(context);
         }
-        let to_overrule = match reading {
-            Reading::Plain if wording.length() < LONG => TO_OVERRULE_SHORT,
-            Reading::Plain => TO_OVERRULE,
-            _ => 0.0,
-        };
-        let least = |way: &Way| way.least().max(to_overrule);
         // Questions have more shades than plain ones: of what is short, only another deed is rather meant.
-        let is_short = reading == Reading::Plain && wording.length() < LONG;
-        if is_short {
+        if reading == Reading::Short {
             ways.retain(|way| way.steps().is_some());
         }
+        let least = |way: &Way| way.least().max(reading.to_overrule());
         if let Some(likeliest) = ways.first().filter(|likeliest| likeliest.probability >= least(likeliest)) {
             return likeliest.taken(context);
         }
@@ -151,14 +156,15 @@ impl Conversation<'_> {
         let is_done = by_grammar.repeats(&context.last_plan) && self.small(&wording.tidied).is_empty();
         // What `it` is the rewriter has from what was said alone.
         let is_it = |at: usize| {
-            matches!(self.lexicon.pronouns.longest(&wording.tidied[at..]), Some((_, Pronoun::Thing | Pronoun::Things)))
+            self.lexicon.pronouns.longest(&wording.tidied[at..]).is_some_and(|(_, pronoun)| tail::is_thing(*pronoun))
         };
         let speaks_of_it = (0..wording.tidied.len()).any(is_it);
         match is_plain && !is_done && (by_grammar.is_understood() || is_known && said <= SHORT) {
             true if said < SOME || said < LONG && (speaks_of_it || !by_grammar.changes_or_asks_which()) => {
                 Reading::Sure
             }
-            true => Reading::Plain,
+            true if said < LONG => Reading::Short,
+            true => Reading::Long,
             false => Reading::Partial,
         }
     }

@@ -1,6 +1,6 @@
 //! What people ask, among what else they say.
 
-use cohabit_cdf::{ObjectId, Property, StateFlag};
+use cohabit_cdf::ObjectId;
 
 use crate::{
     answer::{Answerer, asked_state},
@@ -9,8 +9,7 @@ use crate::{
     context::{Consent, Context, Pending},
     conversation::Conversation,
     intent::Intent,
-    known::KnownObject,
-    lexicon::StateWord,
+    memory,
     phrase::Phrase,
     question::{self, QuestionKind},
     reply, token,
@@ -71,19 +70,14 @@ impl Conversation<'_> {
         }
     }
 
-    /// What is near, and may be warmer or colder than it was when the robot last saw it.
-    fn unwatched(&self, question: &question::Question, answer: &Understanding) -> Option<ObjectId> {
-        let state = asked_state(self.lexicon, &question.rest).map(|(state, _)| state)?;
-        let is_warmth = matches!(state, StateWord::Flag(StateFlag::Hot | StateFlag::Cold, _));
+    /// What is near and in the open, and may be warmer or colder than it was when the robot last saw it.
+    fn unwatched(&self, question: &question::Question, answer: &Understanding, context: &Context) -> Option<ObjectId> {
         let Understanding::Answer { highlight, .. } = answer else { return None };
         let [id] = highlight.as_slice() else { return None };
-        let object = self.scene.object(*id)?;
-        let is_near = object.room == self.scene.robot.room && self.scene.robot.held != Some(*id);
-        let is_open = |outer: &KnownObject| {
-            !self.catalog.class(outer.class).has(Property::Openable) || outer.has(StateFlag::Opened)
-        };
-        let is_unseen = is_near && !object.visible && self.scene.ancestors(*id).all(is_open);
-        (question.kind == QuestionKind::State && is_warmth && is_unseen).then_some(*id)
+        let (state, _) = asked_state(self.lexicon, &question.rest).filter(|_| question.kind == QuestionKind::State)?;
+        let is_near = self.scene.object(*id)?.room == self.scene.robot.room;
+        let is_shut_in = self.scene.ancestors(*id).any(|outer| memory::is_shut(self.catalog, outer));
+        (is_near && !is_shut_in && self.answerer(context, 0).may_have_changed(*id, state)).then_some(*id)
     }
 
     /// Looks first at what was asked about, where all that was said only asks; the answer comes after that.
@@ -122,7 +116,7 @@ impl Conversation<'_> {
             context.list = Some((question.clone(), told + contents::LIST));
         }
         context.question = Some(question.kind);
-        context.unwatched = self.unwatched(question, &answer);
+        context.unwatched = self.unwatched(question, &answer, context);
         // Only what it has not seen makes it ask back.
         if let (Understanding::Question { .. }, Some(phrase)) = (&answer, &question.about) {
             context.focus.unseen = Some(phrase.clone());

@@ -285,7 +285,7 @@ impl Memory {
 }
 
 /// Whether nothing in it can be seen.
-fn is_shut(catalog: &Catalog, object: &KnownObject) -> bool {
+pub(crate) fn is_shut(catalog: &Catalog, object: &KnownObject) -> bool {
     let class = catalog.class(object.class);
     let is_enclosed = class.receptacle.as_ref().is_some_and(|receptacle| receptacle.enclosed);
     is_enclosed && class.has(Property::Openable) && !object.has(StateFlag::Opened)

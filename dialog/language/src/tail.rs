@@ -92,7 +92,7 @@ pub(crate) fn read_tail(reader: &mut Reader<'_>, clause: &mut Clause) {
     }
 }
 
-const fn is_thing(pronoun: Pronoun) -> bool {
+pub(crate) const fn is_thing(pronoun: Pronoun) -> bool {
     matches!(pronoun, Pronoun::Thing | Pronoun::Things)
 }
 

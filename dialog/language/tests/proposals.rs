@@ -24,6 +24,7 @@ const WRITTEN: &[(&str, &[(&str, f32)])] = &[
     ("sing that fridge one merry tune tonight", &[("open the fridge; social", 0.5), ("open the fridge", 0.4)]),
     ("sing this plate one merry tune tonight", &[("serenade the plate", 0.5), ("pick up the plate", 0.4)]),
     ("sing your gubbins one merry tune tonight", &[("pick up the gubbins", 0.5), ("pick up the plate", 0.4)]),
+    ("sing those fridges one merry tune tonight", &[("open the fridge", 0.9)]),
     ("make the bowl cold now please", &[("pick up the bowl", 0.95)]),
     ("what is on the round table?", &[("pick up the bowl", 0.95)]),
 ];
@@ -101,4 +102,12 @@ fn who_is_sure_of_another_deed_overrules_the_grammar_but_not_its_answers() {
     assert_eq!(talk().say("make the bowl cold now please"), "take Bowl_01_1");
     let answer = talk().say("what is on the round table?");
     assert!(answer.starts_with("= "), "{answer}");
+}
+
+#[test]
+fn what_was_only_understood_is_not_called_asked_for() {
+    let mut talk = talk();
+    let _ = talk.say_and_do("sing those fridges one merry tune tonight");
+    let why = talk.say("why did you open the fridge?");
+    assert!(why.contains("since I understood that I should open the fridge"), "{why}");
 }

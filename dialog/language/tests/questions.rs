@@ -181,7 +181,7 @@ fn what_may_be_warmer_than_it_was_is_looked_at_first() {
 }
 
 #[test]
-fn what_was_only_understood_is_not_called_asked_for() {
+fn what_was_asked_for_is_called_so() {
     let why = replied(&[], &["open the fridge", "why did you open the fridge?"]);
     assert!(why.contains("since you asked me to open the fridge"), "{why}");
 }

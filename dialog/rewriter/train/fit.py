@@ -24,7 +24,7 @@ from language_model import END, LanguageModel
 
 SEED = 1
 BATCH, BATCHES_AHEAD, WARM_UP = 32, 12, 60
-#: Rows of a batch are as long as a multiple of this: for each new length PyTorch keeps memory.
+#: The length of rows of a batch is a multiple of this, so that memory is asked for in few sizes.
 LENGTH_STEP = 16
 MOST_WRITTEN = 70
 #: How often an utterance of the corpus is drawn, whose labels are in the person's own words.
@@ -150,7 +150,7 @@ class Samples:
             said = " ".join(slip(self.random, word) if chance() < 0.1 else word for word in said.split(" "))
         if chance() < 0.15:
             said = re.sub(r"[.,!?;:]", "", said)
-        return language_model.prompt(before, said, by_words), written(label)
+        return language_model.prompt(before, said, by_words), to_write(label)
 
     def with_another(self, said, label):
         """Two utterances in one message."""
@@ -218,7 +218,7 @@ def train(model, samples, given):
 def loss_of_unseen(model):
     """The loss, a token, of the talks that nothing is fitted to."""
     talks = [sample for file in TALKS if file.stem in UNSEEN_TALKS for sample in of_talk(file)]
-    pairs = [(language_model.prompt(before, said, False), written(surest(labels))) for before, said, labels, _ in talks]
+    pairs = [(language_model.prompt(before, said, False), to_write(surest(labels))) for before, said, labels, _ in talks]
     pairs.sort(key=lambda pair: len(pair[0]))
     groups = [pairs[at : at + BATCH] for at in range(0, len(pairs), BATCH)]
     with torch.autocast("cpu", torch.bfloat16):
@@ -226,7 +226,8 @@ def loss_of_unseen(model):
     return sum(loss * count for loss, count in losses) / sum(count for _, count in losses)
 
 
-def written(label):
+def to_write(label):
+    """The tokens of a label."""
     return [*language_model.tokens(label)[:MOST_WRITTEN], END]
 
 

@@ -180,16 +180,24 @@ pub(crate) fn progress_name(progress: &Progress) -> &'static str {
     }
 }
 
+/// Which step of a participant's plan a row is about.
+fn step_fields() -> [Field; 2] {
+    [
+        field("participant", Text, "", "what the participant is called"),
+        field("step", Whole, "", "which step of their plan, from 1"),
+    ]
+}
+
+fn step_cells(plan: &Plan, done: &Done) -> [Cell; 2] {
+    [text(pseudonym(plan.place)), whole(done.step + 1)]
+}
+
 /// What practice is called in tables.
 fn practice_field() -> Field {
     field("practice", Flag, "", "whether it was for practice: under no condition")
 }
 
 fn missions(study: &Study, all: &[Progress], with_practice: bool) -> Table {
-    let first = [
-        field("participant", Text, "", "what the participant is called"),
-        field("step", Whole, "", "which step of their plan, from 1"),
-    ];
     let more = [
         practice_field(),
         field("mission", Text, "", "the mission, as the study names it"),
@@ -207,7 +215,7 @@ fn missions(study: &Study, all: &[Progress], with_practice: bool) -> Table {
         }
         let sessions: Vec<_> =
             (1..=done.attempts).map(|attempt| session_name(plan.place, done.step, attempt)).collect();
-        let first = [text(pseudonym(plan.place)), whole(done.step + 1)];
+        let first = step_cells(plan, done);
         let more = [
             Cell::Flag(mission.is_practice),
             text(&mission.mission),
@@ -221,15 +229,11 @@ fn missions(study: &Study, all: &[Progress], with_practice: bool) -> Table {
         Some(first.into_iter().chain(factors).chain(more).collect())
     };
     let rows = all.iter().flat_map(|progress| progress.done().iter().filter_map(move |done| row(progress, done)));
-    let fields = first.into_iter().chain(factor_fields(study, &BOTH)).chain(more).collect();
+    let fields = step_fields().into_iter().chain(factor_fields(study, &BOTH)).chain(more).collect();
     Table { name: "missions", meaning: "a mission that a participant played", fields, rows: rows.collect() }
 }
 
 fn answers(study: &Study, all: &[Progress]) -> Table {
-    let first = [
-        field("participant", Text, "", "what the participant is called"),
-        field("step", Whole, "", "which step of their plan, from 1"),
-    ];
     let more = [
         field("mission", Text, "", "the mission that was played before, if it is about one"),
         field("questionnaire", Text, "", "the questionnaire"),
@@ -246,7 +250,7 @@ fn answers(study: &Study, all: &[Progress]) -> Table {
     let rows = all
         .iter()
         .flat_map(|progress| progress.done().iter().flat_map(move |done| answer_rows(study, progress.plan(), done)));
-    let fields = first.into_iter().chain(factor_fields(study, &BOTH)).chain(more).collect();
+    let fields = step_fields().into_iter().chain(factor_fields(study, &BOTH)).chain(more).collect();
     let meaning = "a participant's answer to a question that the study asked between missions";
     Table { name: "answers", meaning, fields, rows: rows.collect() }
 }
@@ -264,7 +268,7 @@ fn answer_rows(study: &Study, plan: &Plan, done: &Done) -> Vec<Vec<Cell>> {
     let row = |message: &cohabit_bus::message::AnswerMessage| {
         let kind = message.kind();
         let of_scale = |cell: Cell| if kind == Some(AnswerKind::Scale) { cell } else { Cell::Nothing };
-        let first = [text(pseudonym(plan.place)), whole(done.step + 1)];
+        let first = step_cells(plan, done);
         let more = [
             mission.clone(),
             text(name),
@@ -285,10 +289,6 @@ fn answer_rows(study: &Study, plan: &Plan, done: &Done) -> Vec<Vec<Cell>> {
 
 /// What participants answered during missions.
 pub(crate) fn probes(study: &Study, all: &[Progress], with_practice: bool) -> Table {
-    let first = [
-        field("participant", Text, "", "what the participant is called"),
-        field("step", Whole, "", "which step of their plan, from 1"),
-    ];
     let more = [
         field("mission", Text, "", "the mission that was played"),
         field("questionnaire", Text, "", "the questionnaire"),
@@ -306,7 +306,7 @@ pub(crate) fn probes(study: &Study, all: &[Progress], with_practice: bool) -> Ta
             return Vec::new();
         }
         let factors = factor_cells(study, &BOTH, &plan.choices(done.step));
-        let first = [text(pseudonym(plan.place)), whole(done.step + 1)];
+        let first = step_cells(plan, done);
         let row = |probed: &Probed| {
             let more = probe_cells(study, &mission.mission, plan.place, probed)?;
             Some(first.iter().chain(&factors).cloned().chain(more).collect())
@@ -315,7 +315,7 @@ pub(crate) fn probes(study: &Study, all: &[Progress], with_practice: bool) -> Ta
     };
     let rows = all.iter().flat_map(|progress| progress.done().iter().flat_map(move |done| of_done(progress, done)));
     let rows = rows.collect();
-    let fields = first.into_iter().chain(factor_fields(study, &BOTH)).chain(more).collect();
+    let fields = step_fields().into_iter().chain(factor_fields(study, &BOTH)).chain(more).collect();
     Table {
         name: "probes",
         meaning: "a question that a participant was asked while a mission was played",
