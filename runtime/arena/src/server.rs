@@ -129,10 +129,11 @@ impl Office<'_> {
                     Ok(Some(message)) => {
                         client.note(Phase::Answered);
                         let answer = self.arena().answer(&message, std::mem::take(&mut first));
+                        // Before it can see the answer, so that who was answered first also thinks for longest.
+                        client.note(Phase::Thinking);
                         if let Some(answer) = answer {
                             self.send(&mut stream, &answer)?;
                         }
-                        client.note(Phase::Thinking);
                         whole_by = None;
                     }
                     Ok(None) => break,
