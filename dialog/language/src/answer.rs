@@ -3,16 +3,17 @@
 use cohabit_cdf::{Catalog, Fluid, ObjectId, Property, RoomId, state::StateFlag};
 
 use crate::{
+    claim::{Filling, asked_state, is_about_presence},
     contents,
     context::Context,
     describe,
     facts::Facts,
-    ground::{self, Ground, Miss, Want, has_state},
+    ground::{self, Ground, Miss, Want},
     intent::Intent,
     judge::Judge,
     known::{self, Known, KnownObject},
-    lexicon::{Lexicon, Pronoun, Side, StateWord},
-    phrase::{Phrase, Reader, RelationKind},
+    lexicon::{Lexicon, Pronoun, Side},
+    phrase::{Phrase, RelationKind},
     process::Devices,
     question::{Question, QuestionKind},
     reply, report, saying, search,
@@ -51,7 +52,10 @@ impl Answerer<'_> {
         match (question.kind, about) {
             (QuestionKind::Holding, Some(phrase)) if !phrase.is_empty() => self.whether_holding(phrase),
             (QuestionKind::Holding, _) => self.holding(),
-            (QuestionKind::Robot, _) => self.robot(),
+            (QuestionKind::Robot, _) => match self.room_in(&question.rest) {
+                Some(room) if question.is_whether => self.whether_in(room),
+                _ => self.robot(),
+            },
             (QuestionKind::Abilities, _) => Understanding::answer(EXAMPLES),
             (QuestionKind::Doing, _) => self.doing(),
             (QuestionKind::Goals, _) => self.goals(),
@@ -90,13 +94,22 @@ impl Answerer<'_> {
             {
                 self.room_contents(room)
             }
+            (QuestionKind::Contents, about)
+                if about.is_none_or(|phrase| phrase.namings.is_empty())
+                    && self.lexicon.yes_no.says_floor(&question.rest) =>
+            {
+                self.on_floor()
+            }
             (QuestionKind::Contents, None) if self.context.focus.place.is_some() => {
                 self.context.focus.place.map_or_else(|| Understanding::refusal(HINT), |place| self.contents(place))
             }
             (QuestionKind::State | QuestionKind::Look | QuestionKind::Unknown | QuestionKind::Where, Some(phrase))
-                if phrase.pronoun == Some(Pronoun::Thing) && phrase.is_any =>
+                if phrase.pronoun == Some(Pronoun::Thing) && (phrase.is_any || self.is_about_any_thing(question)) =>
             {
                 match phrase.relations.first() {
+                    None if let Some((state, words)) = asked_state(self.lexicon, &question.rest) => {
+                        self.all_in_state(state, words, question.is_whether)
+                    }
                     Some(relation) => self.with_object(&relation.to, |id| self.contents(id)),
                     None => self.seeing(),
                 }
@@ -108,8 +121,19 @@ impl Answerer<'_> {
             (QuestionKind::Text, phrase) => self.text(phrase),
             (QuestionKind::Color, Some(phrase)) => self.colors(phrase),
             (QuestionKind::Distance, Some(phrase)) => self.with_object(phrase, |id| self.distance(id)),
-            (QuestionKind::Count, Some(phrase)) => self.count(phrase),
-            (QuestionKind::State, Some(phrase)) => self.state(phrase, question),
+            (QuestionKind::Count | QuestionKind::Where, Some(phrase))
+                if let Some(filling) = Filling::named(self.lexicon, phrase)
+                    && (question.kind == QuestionKind::Count || question.is_whether)
+                    && let Some(answer) = self.filled(phrase, filling) =>
+            {
+                if question.is_whether {
+                    answer
+                } else {
+                    answer.without_yes()
+                }
+            }
+            (QuestionKind::Count, Some(phrase)) => self.count(phrase, question),
+            (QuestionKind::State, Some(phrase)) => self.claim(phrase, question),
             (QuestionKind::Where, about)
                 if about.as_ref().is_none_or(|phrase| phrase.namings.is_empty() && phrase.fluid.is_none())
                     && let Some(room) = self.room_in(&question.rest) =>
@@ -119,8 +143,16 @@ impl Answerer<'_> {
             (QuestionKind::Where, Some(phrase)) if !phrase.is_empty() => {
                 self.place_of(phrase).with_yes_or_no(question.is_whether)
             }
-            (QuestionKind::Look, Some(phrase)) if !phrase.is_empty() && is_about_presence(&question.rest, phrase) => {
+            (QuestionKind::Look, Some(phrase))
+                if !phrase.is_empty() && is_about_presence(self.lexicon, &question.rest, phrase) =>
+            {
                 self.looks(phrase)
+            }
+            (QuestionKind::Look | QuestionKind::Unknown, Some(phrase))
+                if question.is_whether
+                    && let Some(answer) = self.claim_told(phrase, question) =>
+            {
+                answer
             }
             (QuestionKind::Look, Some(phrase)) if !phrase.is_empty() => self.unknown_of(phrase),
             (QuestionKind::Unknown, Some(phrase)) if !phrase.is_empty() => self.unknown_of(phrase),
@@ -137,15 +169,15 @@ impl Answerer<'_> {
         }
     }
 
-    fn ground(&self) -> Ground<'_> {
+    pub(crate) fn ground(&self) -> Ground<'_> {
         Ground { catalog: self.catalog, scene: self.scene, focus: &self.context.focus, judge: self.judge }
     }
 
-    fn full(&self, id: ObjectId) -> String {
+    pub(crate) fn full(&self, id: ObjectId) -> String {
         describe::full(self.catalog, self.scene, id)
     }
 
-    fn short(&self, id: ObjectId) -> String {
+    pub(crate) fn short(&self, id: ObjectId) -> String {
         describe::short(self.catalog, self.scene, id)
     }
 
@@ -163,7 +195,12 @@ impl Answerer<'_> {
     }
 
     fn filling(&self, id: ObjectId) -> String {
-        let Some(object) = self.scene.object(id) else { return String::new() };
+        self.fillings(id).map_or_else(String::new, |filling| format!(" with {filling} in it"))
+    }
+
+    /// What was poured into a thing, if anything.
+    pub(crate) fn fillings(&self, id: ObjectId) -> Option<String> {
+        let object = self.scene.object(id)?;
         let mut filling: Vec<String> = Vec::new();
         if object.has(StateFlag::Cereal) {
             filling.push("cereal".to_owned());
@@ -171,11 +208,22 @@ impl Answerer<'_> {
         if object.fluid != Fluid::None {
             filling.push(object.fluid.name().to_lowercase());
         }
-        if filling.is_empty() { String::new() } else { format!(" with {} in it", describe::list(&filling, "and")) }
+        (!filling.is_empty()).then(|| describe::list(&filling, "and"))
     }
 
     fn robot(&self) -> Understanding {
         Understanding::answer(format!("I am in the {}.", self.scene.robot.room.name()))
+    }
+
+    /// `is there any thing in the fridge`.
+    fn is_about_any_thing(&self, question: &Question) -> bool {
+        question.is_whether && self.lexicon.generic.longest(&question.rest).is_some()
+    }
+
+    fn whether_in(&self, room: RoomId) -> Understanding {
+        let here = self.scene.robot.room;
+        let start = if here == room { "Yes" } else { "No" };
+        Understanding::whether(here == room, format!("{start}, I am in the {}.", here.name()), Vec::new())
     }
 
     fn doing(&self) -> Understanding {
@@ -315,7 +363,7 @@ impl Answerer<'_> {
         Some(Understanding::about(text, vec![chosen]))
     }
 
-    fn facts(&self) -> Facts<'_> {
+    pub(crate) fn facts(&self) -> Facts<'_> {
         Facts { catalog: self.catalog, devices: self.devices, scene: self.scene }
     }
 
@@ -454,12 +502,12 @@ impl Answerer<'_> {
         contents::listed(self.catalog, self.scene, objects, self.told)
     }
 
-    fn with_object(&self, phrase: &Phrase, then: impl Fn(ObjectId) -> Understanding) -> Understanding {
+    pub(crate) fn with_object(&self, phrase: &Phrase, then: impl Fn(ObjectId) -> Understanding) -> Understanding {
         self.with_object_that(&[], phrase, then)
     }
 
     /// The same, of an object that affords something, where `it` may be any that was spoken of.
-    fn with_object_that(
+    pub(crate) fn with_object_that(
         &self,
         affords: &[Property],
         phrase: &Phrase,
@@ -474,12 +522,12 @@ impl Answerer<'_> {
     }
 
     /// The same with what is known of the object.
-    fn with_known(&self, phrase: &Phrase, then: impl Fn(&KnownObject) -> Understanding) -> Understanding {
+    pub(crate) fn with_known(&self, phrase: &Phrase, then: impl Fn(&KnownObject) -> Understanding) -> Understanding {
         let of = |id| self.scene.object(id).map_or_else(|| Understanding::refusal(HINT), &then);
         self.with_object(phrase, of)
     }
 
-    fn unseen(&self, phrase: &Phrase) -> Understanding {
+    pub(crate) fn unseen(&self, phrase: &Phrase) -> Understanding {
         if saying::noun(phrase).is_none() {
             return Understanding::refusal(saying::unresolved(phrase));
         }
@@ -497,13 +545,6 @@ impl Answerer<'_> {
         (0..words.len()).find_map(|at| self.lexicon.rooms.longest(&words[at..]).map(|(_, room)| *room))
     }
 
-    /// Whether a machine may have made it hot or cold since the robot saw it.
-    pub(crate) fn may_have_changed(&self, id: ObjectId, state: StateWord) -> bool {
-        let is_warmth = matches!(state, StateWord::Flag(StateFlag::Hot | StateFlag::Cold, _));
-        let is_seen = self.scene.robot.held == Some(id) || self.scene.object(id).is_some_and(|object| object.visible);
-        is_warmth && !is_seen
-    }
-
     fn way_to(&self, room: RoomId) -> String {
         let name = room.name();
         if room == self.scene.robot.room {
@@ -512,7 +553,7 @@ impl Answerer<'_> {
         format!("I know the way to the {name}: say \"go to the {name}\", and I will show you.")
     }
 
-    fn place_of(&self, phrase: &Phrase) -> Understanding {
+    pub(crate) fn place_of(&self, phrase: &Phrase) -> Understanding {
         let want = Want::place(Intent::Find, &[], None);
         let Ok(found) = self.ground().plausible(phrase, &want) else { return self.elsewhere(phrase) };
         let places: Vec<String> = found.iter().take(contents::LIST).map(|id| self.place_sentence(*id)).collect();
@@ -536,7 +577,7 @@ impl Answerer<'_> {
     pub(crate) fn place_sentence(&self, id: ObjectId) -> String {
         let place = describe::location(self.catalog, self.scene, id);
         if !place.is_empty() {
-            return format!("{} is {place}", self.short(id));
+            return format!("{} {} {place}", self.short(id), describe::is(&self.short(id)));
         }
         let side = self.scene.object(id).map_or("", |object| {
             let bearing = self.scene.bearing_rad(object);
@@ -547,7 +588,8 @@ impl Answerer<'_> {
                 _ => "to my right",
             }
         });
-        format!("{} is here in the {}, {side}", self.short(id), self.scene.robot.room.name())
+        let the = self.short(id);
+        format!("{the} {} here in the {}, {side}", describe::is(&the), self.scene.robot.room.name())
     }
 
     fn room_contents(&self, room: RoomId) -> Understanding {
@@ -562,6 +604,21 @@ impl Answerer<'_> {
         Understanding::whether(true, text, Vec::new())
     }
 
+    /// What lies about on the floor of this room.
+    fn on_floor(&self) -> Understanding {
+        let lies = |object: &&KnownObject| {
+            let is_carried = self.catalog.class(object.class).has(Property::Pickupable);
+            is_carried && object.parent.is_none() && object.room == self.scene.robot.room
+        };
+        let there: Vec<&KnownObject> = self.scene.objects.iter().filter(lies).collect();
+        let ids = there.iter().map(|object| object.id).collect();
+        let verb = if there.len() > 1 { "are" } else { "is" };
+        match there.is_empty() {
+            true => Understanding::whether(false, "I see nothing on the floor here but furniture.", ids),
+            false => Understanding::whether(true, format!("On the floor there {verb} {}.", self.listed(&there)), ids),
+        }
+    }
+
     fn contents(&self, id: ObjectId) -> Understanding {
         if let Some(text) = contents::inside(self.catalog, self.scene, id, self.told) {
             let highlight = self.scene.contents(id).map(|object| object.id).collect();
@@ -570,9 +627,16 @@ impl Answerer<'_> {
         if let Some(note) = self.scene.object(id).filter(|object| !object.text.is_empty()) {
             return self.read_out(note);
         }
-        let (filling, place) = (self.filling(id), self.short(id));
-        if !filling.is_empty() {
-            return Understanding::whether(true, format!("It is {place}{filling}."), Vec::new());
+        let place = self.short(id);
+        if let Some(filling) = self.fillings(id) {
+            return Understanding::whether(true, format!("There is {filling} in {place}."), vec![id]);
+        }
+        let is_vessel = |object: &KnownObject| {
+            let class = self.catalog.class(object.class);
+            class.has(Property::Fillable) && class.has(Property::Pickupable)
+        };
+        if self.scene.object(id).is_some_and(is_vessel) {
+            return Understanding::whether(false, describe::sentence(&format!("{place} is empty")), vec![id]);
         }
         // `what is on the screen of the computer?`
         let carries = |object: &&KnownObject| self.catalog.class(object.class).receptacle.is_some();
@@ -627,10 +691,18 @@ impl Answerer<'_> {
             let want = Want::place(Intent::Find, &[], None);
             self.ground().one(phrase, &want).ok().and_then(|id| self.scene.object(id))
         });
+        if let Some(object) = of_phrase.filter(|object| object.text.is_empty()) {
+            // `what does the scale show?`
+            if self.scene.contents(object.id).next().is_some() {
+                return self.contents(object.id);
+            }
+            let text = format!("I see nothing written on {} that I could read.", self.short(object.id));
+            return Understanding::whether(false, text, vec![object.id]);
+        }
         let nearest = || {
             notes().min_by(|a, b| self.scene.distance_m(a).total_cmp(&self.scene.distance_m(b)).then(a.id.cmp(&b.id)))
         };
-        match of_phrase.filter(|object| !object.text.is_empty()).or_else(nearest) {
+        match of_phrase.or_else(nearest) {
             Some(note) => self.read_out(note),
             None => {
                 let text = "I know of nothing written here. I can look at a note if you point me to one.";
@@ -654,7 +726,8 @@ impl Answerer<'_> {
 
     fn color_sentence(&self, id: ObjectId) -> String {
         let Some(object) = self.scene.object(id) else { return String::new() };
-        format!("the {} is {}", describe::name(self.catalog, object.class), describe::color(self.catalog, object))
+        let name = describe::name(self.catalog, object.class);
+        format!("the {name} {} {}", describe::is(&name), describe::color(self.catalog, object))
     }
 
     fn distance(&self, id: ObjectId) -> Understanding {
@@ -664,7 +737,7 @@ impl Answerer<'_> {
         Understanding::about(describe::sentence(&text), vec![id])
     }
 
-    fn count(&self, phrase: &Phrase) -> Understanding {
+    fn count(&self, phrase: &Phrase, question: &Question) -> Understanding {
         let is_them = phrase.is_many() || phrase.is_one_of_kind();
         if is_them && self.context.focus.group.is_empty() {
             return Understanding::lost(saying::unresolved(phrase));
@@ -674,7 +747,12 @@ impl Answerer<'_> {
             false => self.scene.objects.iter().map(|object| object.id).collect(),
         };
         let bare = Phrase { pronoun: None, ..phrase.clone() };
-        let found = self.ground().narrow(if is_them { &bare } else { phrase }, &all);
+        let mut found = self.ground().narrow(if is_them { &bare } else { phrase }, &all);
+        // `how many mugs are empty`
+        let state = asked_state(self.lexicon, &question.rest).filter(|(state, _)| !phrase.states.contains(state));
+        if let Some((state, _)) = state {
+            found.retain(|id| self.scene.object(*id).is_some_and(|object| self.is_so(object, state)));
+        }
         let noun = saying::noun_or_thing(phrase);
         let text = match found.len() {
             0 => format!("I know of no {noun}."),
@@ -685,54 +763,8 @@ impl Answerer<'_> {
         Understanding::whether(!found.is_empty(), text, found)
     }
 
-    /// `is the fridge open`, `is the milk in the fridge`, `is the mug broken`.
-    fn state(&self, phrase: &Phrase, question: &Question) -> Understanding {
-        let asked = asked_state(self.lexicon, &question.rest);
-        let inside =
-            phrase.relations.iter().any(|relation| relation.kind != RelationKind::Has) || phrase.room.is_some();
-        let is_for = phrase.relations.iter().any(|relation| relation.kind == RelationKind::For);
-        let bare = Phrase { relations: Vec::new(), room: None, ..phrase.clone() };
-        if bare.is_empty() {
-            return Understanding::lost("I do not know what you mean.");
-        }
-        match asked {
-            Some((state, words)) => self.with_object_that(may_be(state), &bare, |id| {
-                let holds = self.scene.object(id).is_some_and(|object| has_state(object, state));
-                let words = words.join(" ");
-                let text = if holds {
-                    format!("Yes, {} is {words}.", self.short(id))
-                } else if self.may_have_changed(id, state) {
-                    format!("No, {} was not {words} when I last saw it.", self.short(id))
-                } else {
-                    format!("No, {} is not {words}.", self.short(id))
-                };
-                Understanding::whether(holds, text, vec![id])
-            }),
-            None if is_for => self.with_known(&bare, |object| {
-                if object.works.is_none() {
-                    return self.cannot_tell(object);
-                }
-                let holds = self.ground().narrow(phrase, &[object.id]) == [object.id];
-                let start = if holds { "Yes" } else { "No, as far as I know" };
-                let text = format!("{start}: {}", describe::within_sentence(&self.facts().purpose(object)));
-                Understanding::whether(holds, text, vec![object.id])
-            }),
-            None if inside => self.with_object(&bare, |id| {
-                let holds = self.ground().narrow(phrase, &[id]) == [id];
-                let start = if holds { "Yes" } else { "No" };
-                Understanding::whether(holds, format!("{start}, {}.", self.place_sentence(id)), vec![id])
-            }),
-            None if is_about_presence(&question.rest, phrase) => self.place_of(&bare),
-            None => self.with_known(&bare, |object| self.cannot_tell(object)),
-        }
-    }
-
-    fn cannot_tell(&self, object: &KnownObject) -> Understanding {
-        self.all_known(object, "I cannot tell")
-    }
-
     /// What is known of a thing, after why that is no answer.
-    fn all_known(&self, object: &KnownObject, why: &str) -> Understanding {
+    pub(crate) fn all_known(&self, object: &KnownObject, why: &str) -> Understanding {
         let known = describe::sentence(&self.facts().description(object));
         Understanding::about(format!("{why}. What I know: {known}"), vec![object.id])
     }
@@ -740,70 +772,6 @@ impl Answerer<'_> {
 
 /// What is said of recordings: every session is.
 const RECORDED: &str = "Yes: what is said, and what I see and do, is written into the log of this session.";
-
-/// Whether nothing is asked of a thing but that it is there.
-fn is_about_presence(words: &[String], phrase: &Phrase) -> bool {
-    const PRESENT: [&str; 21] = [
-        "among",
-        "it",
-        "them",
-        "that",
-        "those",
-        "there",
-        "here",
-        "around",
-        "still",
-        "somewhere",
-        "anywhere",
-        "left",
-        "over",
-        "available",
-        "present",
-        "now",
-        "right",
-        "nearby",
-        "any",
-        "the",
-        "about",
-    ];
-    let named: Vec<&str> = phrase.text.split(' ').collect();
-    words.iter().all(|word| PRESENT.contains(&word.as_str()) || named.contains(&word.as_str()))
-}
-
-/// What things afford that may be in a state.
-const fn may_be(state: StateWord) -> &'static [Property] {
-    match state {
-        StateWord::Flag(StateFlag::Dirty, _) => &[Property::Dirtyable],
-        StateWord::Flag(StateFlag::Broken, _) => &[Property::Breakable],
-        StateWord::Flag(StateFlag::Opened, _) => &[Property::Openable],
-        StateWord::Flag(StateFlag::Toggled, _) => &[Property::Toggleable, Property::Powerable],
-        StateWord::Filled(_) => &[Property::Fillable],
-        StateWord::Flag(..) => &[],
-    }
-}
-
-/// The state that a question asks for, which is named after what it asks about: `the fridge open right now`; and its words.
-pub(crate) fn asked_state<'w>(lexicon: &Lexicon, words: &'w [String]) -> Option<(StateWord, &'w [String])> {
-    let named = |at: usize| {
-        let on_or_off = match words[at].as_str() {
-            "on" => Some((1, StateWord::Flag(StateFlag::Toggled, true))),
-            "off" => Some((1, StateWord::Flag(StateFlag::Toggled, false))),
-            _ => None,
-        };
-        lexicon.states.longest(&words[at..]).map(|(length, state)| (length, *state)).or(on_or_off)
-    };
-    let names =
-        |at: usize| lexicon.classes.longest(&words[at..]).is_some() || lexicon.rooms.longest(&words[at..]).is_some();
-    // `on it`
-    let is_place = |end: usize| {
-        Reader { at: end, ..Reader::new(lexicon, words) }.phrase().is_some_and(|phrase| phrase.pronoun.is_some())
-    };
-    let is_last = |end: usize| !is_place(end) && !(end..words.len()).any(names);
-    (0..words.len()).rev().find_map(|at| {
-        let (length, state) = named(at)?;
-        is_last(at + length).then(|| (state, &words[at..at + length]))
-    })
-}
 
 fn empty_handed(text: &str) -> Understanding {
     Understanding::whether(false, text, Vec::new())

@@ -7,15 +7,13 @@ use std::collections::BTreeSet;
 use serde::Deserialize;
 
 use crate::{
-    answer::asked_state,
-    ask, chatter,
+    ask, chatter, claim,
     clause::{self, Clause, Part},
     context::{Context, Pending},
     conversation::Conversation,
     lexicon::Lexicon,
-    phrase::Phrase,
     question::{self, Question, QuestionKind},
-    table::PhraseTable,
+    table::{self, PhraseTable},
     token,
     understanding::{Asking, Understanding},
 };
@@ -24,7 +22,7 @@ use crate::{
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Conditions {
-    holds: PhraseTable<()>,
+    pub(crate) holds: PhraseTable<()>,
     fails: PhraseTable<()>,
     asks: BTreeSet<String>,
     courtesies: PhraseTable<()>,
@@ -33,6 +31,10 @@ pub(crate) struct Conditions {
     otherwise: PhraseTable<()>,
     pronouns: BTreeSet<String>,
     adverbs: BTreeSet<String>,
+    #[serde(deserialize_with = "table::of_meanings")]
+    becomes: PhraseTable<String>,
+    nobody: PhraseTable<()>,
+    pub(crate) negations: BTreeSet<String>,
 }
 
 /// A request that depends on something.
@@ -49,7 +51,7 @@ struct Conditional {
 }
 
 /// Whether a condition holds.
-enum Truth {
+pub(crate) enum Truth {
     Holds,
     /// It does not: what the robot says to that.
     Fails(String),
@@ -68,11 +70,7 @@ impl Conversation<'_> {
         let is_there = condition.first().is_some_and(|word| word == "there");
         match self.truth(&condition, &request, holds, context) {
             Truth::Holds => {
-                // What the condition is about is what `it` stands for.
-                if let Some((question, _)) = self.question_of(&condition, &request) {
-                    let _ = self.answer(&question, context);
-                    (context.pending, context.question) = (None, None);
-                }
+                self.speak_of(&condition, &request, context);
                 Some(self.understand_all(said(request), context))
             }
             Truth::Unknown if is_there && holds => Some(self.understand_all(said(request), context)),
@@ -95,6 +93,14 @@ impl Conversation<'_> {
         }
     }
 
+    /// What a condition is about is what `it` stands for after it.
+    pub(crate) fn speak_of(&self, condition: &[String], request: &[String], context: &mut Context) {
+        if let Some((question, _)) = self.question_of(condition, request) {
+            let _ = self.answer(&question, context);
+            (context.pending, context.question) = (None, None);
+        }
+    }
+
     /// Whether it is nothing but a plain request with a plain condition.
     pub(crate) fn is_plain_conditional(&self, words: &[String], context: &Context) -> bool {
         self.conditional(&with_copula(self.lexicon, words), context).is_some_and(|said| {
@@ -110,7 +116,7 @@ impl Conversation<'_> {
         parts.into_iter().filter_map(|part| if let Part::Clause(clause) = part { Some(clause) } else { None }).collect()
     }
 
-    fn is_request(&self, words: &[String]) -> bool {
+    pub(crate) fn is_request(&self, words: &[String]) -> bool {
         self.clauses(words).iter().any(chatter::is_clear)
     }
 
@@ -193,7 +199,7 @@ impl Conversation<'_> {
     }
 
     /// Whether a condition of a request is as it has to be.
-    fn truth(&self, condition: &[String], request: &[String], holds: bool, context: &Context) -> Truth {
+    pub(crate) fn truth(&self, condition: &[String], request: &[String], holds: bool, context: &Context) -> Truth {
         let asked = |condition: &[String]| {
             let (question, is_negated) = self.question_of(condition, request)?;
             match self.answer(&question, &mut context.clone()) {
@@ -212,15 +218,12 @@ impl Conversation<'_> {
     }
 
     /// The question whether a condition holds, and whether it is denied.
-    fn question_of(&self, condition: &[String], request: &[String]) -> Option<(Question, bool)> {
+    pub(crate) fn question_of(&self, condition: &[String], request: &[String]) -> Option<(Question, bool)> {
         let (asked, is_negated) = self.as_question(condition, request)?;
         let question = question::read(self.lexicon, &asked)?;
         let can_tell = match question.kind {
             // Where a thing is says nothing of whether it is heavy.
-            QuestionKind::State => {
-                let is_placed = |phrase: &Phrase| !phrase.relations.is_empty() || phrase.room.is_some();
-                asked_state(self.lexicon, &question.rest).is_some() || question.about.as_ref().is_some_and(is_placed)
-            }
+            QuestionKind::State => claim::can_be_told(self.lexicon, &question),
             QuestionKind::Where
             | QuestionKind::Holding
             | QuestionKind::Contents
@@ -236,9 +239,22 @@ impl Conversation<'_> {
         let words = &self.lexicon.ifs;
         let mut condition: Vec<String> =
             condition.iter().filter(|word| !token::is_punctuation(word)).cloned().collect();
+        let nobody = (0..condition.len()).find_map(|at| Some((at, words.nobody.longest(&condition[at..])?.0)));
+        if let Some((at, length)) = nobody {
+            condition.splice(at..at + length, ["anybody".to_owned()]);
+        }
         let before = condition.len();
         condition.retain(|word| !matches!(word.as_str(), "not" | "no"));
-        let is_negated = before == condition.len() + 1;
+        let is_negated = (before == condition.len() + 1) != nobody.is_some();
+        // `the microwave stops`: it is done then.
+        let becomes = (1..condition.len()).find_map(|at| {
+            let (length, state) = words.becomes.longest(&condition[at..])?;
+            (at + length == condition.len()).then_some((at, state))
+        });
+        if let Some((at, state)) = becomes {
+            let state = state.split(' ').map(str::to_owned);
+            condition.splice(at.., std::iter::once("is".to_owned()).chain(state));
+        }
         condition.retain(|word| !words.adverbs.contains(word));
         if words.own.longest(&condition).is_some() {
             let are = ["are", "you", "holding"].map(str::to_owned);

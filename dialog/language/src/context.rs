@@ -14,6 +14,7 @@ use crate::{
     reply,
     search::Search,
     understanding::{Step, Understanding},
+    waiting::Awaited,
 };
 
 /// How many lines of the dialog are remembered.
@@ -59,6 +60,9 @@ pub struct Context {
     /// left out.
     #[serde(default)]
     pub(crate) later: Vec<String>,
+    /// What is done after a wait.
+    #[serde(default)]
+    pub(crate) awaited: Option<Awaited>,
     /// What was answered before what is to be done is told.
     #[serde(default)]
     pub(crate) answered: String,
@@ -364,6 +368,12 @@ impl Context {
     /// Whether a plan or a search is under way.
     pub(crate) const fn is_busy(&self) -> bool {
         !self.running.is_empty() || self.search.is_some()
+    }
+
+    /// Whether something is put off: [`crate::Language::wake`] knows when it is done.
+    #[must_use]
+    pub const fn awaits(&self) -> bool {
+        self.awaited.is_some()
     }
 
     /// Whether there is more to do after the plan under way: [`crate::Language::carry_on`] knows what.

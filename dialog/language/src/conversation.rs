@@ -61,7 +61,9 @@ impl Conversation<'_> {
         if let Some(understanding) = self.chosen_by_name(utterance, context) {
             return (understanding, 1.0);
         }
-        if let Some(stop) = stop::find_stop(utterance).filter(|stop| is_heeded(stop, context)) {
+        if let Some(stop) = stop::find_stop(utterance).filter(|stop| is_heeded(stop, context))
+            && (context.is_busy() || !self.is_wait(&self.lexicon.normalise(utterance).0))
+        {
             return (self.stopped(&stop.rest, context), 1.0);
         }
         self.understand_whole(utterance, context)
@@ -73,6 +75,7 @@ impl Conversation<'_> {
         context.running.clear();
         context.failed = None;
         context.search = None;
+        context.awaited = None;
         context.later.clear();
         let then = self.asks_for_anything(rest).then(|| Box::new(self.understand_whole(rest, context).0));
         Understanding::Stop { reply: STOPS.to_owned(), then }
@@ -99,6 +102,9 @@ impl Conversation<'_> {
             return Understanding::refusal("That is too much for me at once. Please say it in a few short sentences.");
         }
         let (words, repairs) = self.lexicon.normalise(utterance);
+        if let Some(understanding) = self.waits(&words, context) {
+            return understanding;
+        }
         let words = tidy::tidied(self.lexicon, &words);
         let this = Self { judge: Judge { repairs, ..self.judge }, ..*self };
         // What a recogniser took for other words is best told from those words, not from repaired ones.
@@ -681,7 +687,7 @@ fn is_heeded(stop: &Stop, context: &Context) -> bool {
     match stop.firmness {
         Firmness::Firm => true,
         Firmness::Weak => context.pending.is_none() && (context.is_busy() || stop.is_plain),
-        Firmness::Dismissal => context.pending.is_none() && context.is_busy(),
+        Firmness::Dismissal => context.pending.is_none() && (context.is_busy() || context.awaits()),
     }
 }
 

@@ -143,7 +143,8 @@ impl Conversation<'_> {
         let is_conditional = by_grammar.is_understood() && self.is_plain_conditional(&wording.tidied, context);
         let is_answer =
             by_grammar.steps().is_some() && said <= LONGEST_ANSWER && self.answers(&wording.tidied, context);
-        if is_of_lab || is_strange || is_too_long || is_conditional || is_answer {
+        let is_wait = by_grammar.is_understood() && self.is_plain_wait(&wording.words);
+        if is_of_lab || is_strange || is_too_long || is_conditional || is_answer || is_wait {
             return Reading::Sure;
         }
         // `pour the milk`: where to; `drop it`: nothing is there.

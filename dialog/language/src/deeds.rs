@@ -1,6 +1,6 @@
 //! What the robot did, as it remembers it: for questions about that.
 
-use cohabit_cdf::{Action, ObjectId, Verb};
+use cohabit_cdf::{Action, GoToTarget, ObjectId, RoomId, Verb};
 use serde::{Deserialize, Serialize};
 
 use crate::{describe, intent::Intent, understanding::Step};
@@ -152,28 +152,34 @@ impl Deeds {
         deed.step.object() == Some(id) || deed.step.changes() && held_after(before) == Some(id)
     }
 
-    /// Whether it did something of that kind to this thing or with it; nothing, where no deed could tell.
-    pub(crate) fn did(&self, intent: Intent, id: ObjectId) -> Option<bool> {
-        const TOLD_BY_DEEDS: [Intent; 11] = [
-            Intent::PickUp,
-            Intent::Bring,
-            Intent::Place,
-            Intent::Drop,
-            Intent::GoTo,
-            Intent::Scan,
-            Intent::Examine,
-            Intent::Throw,
-            Intent::Pour,
-            Intent::Toggle,
-            Intent::Use,
-        ];
-        // Who did anything to a thing went there.
+    /// Whether it did something of that kind to this thing or with it.
+    pub(crate) fn did(&self, intent: Intent, id: ObjectId) -> bool {
+        // Who did anything to a thing went there, and touched it.
         let did = |deed: &Deed| match intent {
             Intent::GoTo => deed.step.object() == Some(id),
-            _ => is_of(&deed.step.action, intent) && self.is_about(deed, id),
+            _ => is_of_step(&deed.step, intent) && self.is_about(deed, id),
         };
-        TOLD_BY_DEEDS.contains(&intent).then(|| self.0.iter().any(did))
+        self.0.iter().any(did)
     }
+
+    /// Whether it went to this room.
+    pub(crate) fn went_to(&self, room: RoomId) -> bool {
+        let went = |deed: &Deed| match deed.step.action {
+            Action::GoTo { target: GoToTarget::Room(to) | GoToTarget::Viewpoint(to, _) } => to == room,
+            _ => false,
+        };
+        self.0.iter().any(went)
+    }
+}
+
+/// Whether a step is what such a request comes to; to switch is one action, whichever way.
+fn is_of_step(step: &Step, intent: Intent) -> bool {
+    let other_way = match intent {
+        Intent::TurnOn => "turning off",
+        Intent::TurnOff => "turning on",
+        _ => return is_of(&step.action, intent),
+    };
+    is_of(&step.action, intent) && !step.says.starts_with(other_way)
 }
 
 /// `opening the fridge` → `opened the fridge`.
@@ -217,7 +223,7 @@ fn is_of(action: &Action, intent: Intent) -> bool {
         Intent::Throw => *verb == Verb::Throw,
         Intent::Fill => *verb == Verb::Fill,
         Intent::Clean => *verb == Verb::Clean,
-        Intent::Examine | Intent::LookIn => *verb == Verb::Examine,
+        Intent::Examine | Intent::LookIn | Intent::LookUnder => *verb == Verb::Examine,
         Intent::Toggle | Intent::TurnOn | Intent::TurnOff | Intent::Use => *verb == Verb::Toggle,
         _ => false,
     }
@@ -260,9 +266,9 @@ mod tests {
         let why = "I picked up the milk, since get the milk. The mission wanted it: Take the milk";
         assert_eq!(deeds.why(Some(Intent::PickUp), Some(milk)).as_deref(), Some(why));
         assert_eq!(deeds.why(Some(Intent::Pour), None), None);
-        assert_eq!(deeds.did(Intent::PickUp, milk), Some(true));
-        assert_eq!(deeds.did(Intent::Place, milk), Some(false));
-        assert_eq!(deeds.did(Intent::GoTo, fridge), Some(true), "who opened it was there");
+        assert!(deeds.did(Intent::PickUp, milk));
+        assert!(!deeds.did(Intent::Place, milk));
+        assert!(deeds.did(Intent::GoTo, fridge), "who opened it was there");
         assert_eq!(deeds.to(fridge).map(|deed| deed.reason.as_str()), Some("get the milk"));
     }
 

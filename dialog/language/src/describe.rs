@@ -191,6 +191,27 @@ const fn contents(fluid: Fluid) -> &'static str {
     }
 }
 
+/// Whether a name is of several things: `the glass doors`, not `the stack of papers`.
+fn is_plural(name: &str) -> bool {
+    let head = name.split(" of ").next().unwrap_or(name);
+    head.ends_with('s') && !head.ends_with("ss")
+}
+
+/// `is` or `are`, after a name.
+pub(crate) fn is(name: &str) -> &'static str {
+    if is_plural(name) { "are" } else { "is" }
+}
+
+/// `was` or `were`, after a name.
+pub(crate) fn was(name: &str) -> &'static str {
+    if is_plural(name) { "were" } else { "was" }
+}
+
+/// What stands for a name: `it` or `them`.
+pub(crate) fn it(name: &str) -> &'static str {
+    if is_plural(name) { "them" } else { "it" }
+}
+
 /// `a, b and c`; `last` is the word before the last one.
 pub(crate) fn list(items: &[String], last: &str) -> String {
     match items {

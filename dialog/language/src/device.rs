@@ -218,6 +218,16 @@ impl Planner<'_> {
                 self.pour(source, object)?;
                 continue;
             }
+            let is_big = self.scene.object(object).is_some_and(|object| object.has(StateFlag::Embiggenated));
+            if settled.intent == Intent::Resize && is_big {
+                self.notes.push(format!("{} is big already", self.the(object)));
+                continue;
+            }
+            if settled.intent == Intent::Shrink && !is_big {
+                let text =
+                    format!("{} has its usual size, and no machine that I know of makes it smaller.", self.the(object));
+                return Err(Fault::Cannot(crate::describe::sentence(&text)));
+            }
             let is_once = matches!(settled.intent, Intent::Repair | Intent::Clean | Intent::Heat | Intent::Cool);
             if is_once && self.brought_about.contains(&(settled.intent, object)) {
                 continue;

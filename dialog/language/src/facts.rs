@@ -199,15 +199,23 @@ impl Facts<'_> {
         let place = describe::location(self.catalog, self.scene, object.id);
         let place = if place.is_empty() { format!("here in the {}", object.room.name()) } else { place };
         if said.is_empty() {
-            return format!("the {bare} is {place}");
+            return format!("the {bare} {} {place}", describe::is(&bare));
         }
-        format!("the {bare} is {}; it is {place}", describe::list(&said, "and"))
+        let (is, said) = (describe::is(&bare), describe::list(&said, "and"));
+        let they = if is == "are" { "they" } else { "it" };
+        format!("the {bare} {is} {said}; {they} {is} {place}")
+    }
+
+    /// Whether it is broken: its state says so, or its class, which is of broken things.
+    pub(crate) fn is_broken(&self, object: &KnownObject) -> bool {
+        object.has(StateFlag::Broken) || self.catalog.class(object.class).name.to_lowercase().contains("broken")
     }
 
     /// What is wrong with it, as far as can be seen.
     pub(crate) fn trouble(&self, object: &KnownObject) -> Option<String> {
-        let wrong = WRONGS.iter().filter(|(flag, _)| object.has(*flag)).map(|(_, wrong)| (*wrong).to_owned());
         let class = self.catalog.class(object.class);
+        let is_so = |flag| if flag == StateFlag::Broken { self.is_broken(object) } else { object.has(flag) };
+        let wrong = WRONGS.iter().filter(|(flag, _)| is_so(*flag)).map(|(_, wrong)| (*wrong).to_owned());
         // Where nothing has power, nobody told.
         let is_told = self.scene.objects.iter().any(|other| other.has(StateFlag::Powered));
         let has_no_power = is_told && class.has(Property::Powerable) && !object.has(StateFlag::Powered);

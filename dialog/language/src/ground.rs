@@ -10,7 +10,7 @@ use crate::{
     intent::Intent,
     judge::Judge,
     known::{self, Known, KnownObject},
-    lexicon::{Pronoun, Side, StateWord},
+    lexicon::{Naming, Pronoun, Side, StateWord},
     phrase::{Phrase, Relation, RelationKind},
     understanding::Asking,
 };
@@ -37,6 +37,8 @@ const WORSE_NAME: f32 = 0.2;
 const VAGUE_NAME: f32 = 0.6;
 
 /// How near `next to` is, m.
+/// By how much the volume of what was made bigger is taken to grow.
+const ENLARGED: f32 = 4.0;
 pub(crate) const NEAR_M: f32 = 1.5;
 
 /// What is nearer to something than others by more than this is the one that is next to it, m.
@@ -437,7 +439,7 @@ impl<'a> Ground<'a> {
                     || is_fixed && self.scene.objects.iter().any(|other| object.works == Some(other.id) && fits(other))
                     || is_fixed && self.scene.objects.iter().any(is_part)
             }
-            RelationKind::Has => self.scene.contents(object.id).any(fits),
+            RelationKind::Has => self.has_poured(object, &relation.to) || self.scene.contents(object.id).any(fits),
             // What works nothing may be for anything.
             RelationKind::For => object.works.is_none_or(|worked| self.scene.object(worked).is_some_and(fits)),
             RelationKind::LeftOf | RelationKind::RightOf => self.scene.objects.iter().any(|other| {
@@ -453,6 +455,13 @@ impl<'a> Ground<'a> {
                     && known::distance_m(other.position_m, object.position_m) < NEAR_M
             }),
         }
+    }
+
+    /// Whether what a phrase names was poured into an object: `the mug with coffee`.
+    fn has_poured(&self, object: &KnownObject, phrase: &Phrase) -> bool {
+        let is_cereal = |naming: &Naming| self.catalog.class(naming.class).name.contains("Cereal");
+        phrase.fluid.is_some_and(|fluid| fluid != Fluid::None && object.fluid == fluid)
+            || object.has(StateFlag::Cereal) && phrase.namings.iter().any(is_cereal)
     }
 
     /// Whether an object could be the one a relation speaks of.
@@ -538,9 +547,22 @@ impl<'a> Ground<'a> {
             Side::Middle => near.get(near.len() / 2).copied(),
             Side::Nearest => near.iter().min_by(by_distance).copied(),
             Side::Farthest => near.iter().max_by(by_distance).copied(),
+            Side::Biggest | Side::Smallest => return self.by_size(left, phrase.side == Some(Side::Biggest)),
             Side::Front | Side::Behind | Side::Other => None,
         };
         picked.map(|object| object.id)
+    }
+
+    /// The biggest or the smallest, where one alone is.
+    fn by_size(&self, left: &[&KnownObject], is_biggest: bool) -> Option<ObjectId> {
+        let size = |object: &KnownObject| {
+            let volume: f32 = self.catalog.class(object.class).size_m.iter().product();
+            let larger = if object.has(StateFlag::Embiggenated) { ENLARGED } else { 1.0 };
+            if is_biggest { volume * larger } else { -volume * larger }
+        };
+        let best = left.iter().max_by(|one, other| size(one).total_cmp(&size(other)))?;
+        let is_alone = left.iter().filter(|object| size(object) >= size(best)).count() == 1;
+        is_alone.then_some(best.id)
     }
 
     /// The likeliest candidate, or all between which it would cost too much to guess.

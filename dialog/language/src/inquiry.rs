@@ -3,7 +3,8 @@
 use cohabit_cdf::ObjectId;
 
 use crate::{
-    answer::{Answerer, asked_state},
+    answer::Answerer,
+    claim::asked_state,
     clause::{Clause, Part},
     contents,
     context::{Consent, Context, Pending},

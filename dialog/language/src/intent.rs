@@ -31,6 +31,8 @@ pub(crate) enum Intent {
     Examine,
     /// To look at what is in or on something, which is opened for it.
     LookIn,
+    /// To look at what lies under it or behind it.
+    LookUnder,
     Throw,
     Highlight,
     Heat,
@@ -41,6 +43,7 @@ pub(crate) enum Intent {
     Toast,
     Carrot,
     Resize,
+    Shrink,
     Brew,
     Swap,
     Use,
@@ -61,7 +64,7 @@ impl Intent {
             | Self::Cool
             | Self::Repair
             | Self::Swap => &[Property::Pickupable],
-            Self::Print | Self::Toast | Self::Carrot | Self::Resize | Self::Color | Self::Clean => {
+            Self::Print | Self::Toast | Self::Carrot | Self::Resize | Self::Shrink | Self::Color | Self::Clean => {
                 &[Property::Pickupable]
             }
             Self::Open | Self::Close => &[Property::Openable],
@@ -89,6 +92,7 @@ impl Intent {
                 | Self::Clean
                 | Self::Examine
                 | Self::LookIn
+                | Self::LookUnder
                 | Self::Find
                 | Self::Highlight
                 | Self::Heat
@@ -115,6 +119,7 @@ impl Intent {
                 | Self::Toast
                 | Self::Carrot
                 | Self::Resize
+                | Self::Shrink
                 | Self::Brew
         )
     }
@@ -136,6 +141,7 @@ impl Intent {
                 | Self::Toast
                 | Self::Carrot
                 | Self::Resize
+                | Self::Shrink
                 | Self::Brew
         )
     }
@@ -165,6 +171,7 @@ impl Intent {
             Self::Clean => "clean",
             Self::Examine => "look at",
             Self::LookIn => "look in",
+            Self::LookUnder => "look under",
             Self::Throw => "throw",
             Self::Highlight => "show",
             Self::Heat => "heat",
@@ -174,7 +181,8 @@ impl Intent {
             Self::Print => "print",
             Self::Toast => "toast",
             Self::Carrot => "turn into a carrot",
-            Self::Resize => "resize",
+            Self::Resize => "make bigger",
+            Self::Shrink => "make smaller",
             Self::Brew => "make coffee in",
             Self::Swap => "swap",
             Self::Use => "use",

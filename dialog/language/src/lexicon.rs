@@ -17,6 +17,7 @@ use crate::{
     spelling::{self, Vocabulary},
     table::PhraseTable,
     token,
+    waiting::WaitingWords,
     wish::Wishes,
     yes_no::YesNo,
 };
@@ -106,6 +107,8 @@ pub(crate) enum Side {
     Behind,
     Nearest,
     Farthest,
+    Biggest,
+    Smallest,
     Middle,
     Other,
 }
@@ -233,6 +236,7 @@ pub(crate) struct Lexicon {
     pub(crate) amends: Amends,
     pub(crate) chatter: Chatter,
     pub(crate) ifs: Conditions,
+    pub(crate) waiting: WaitingWords,
     pub(crate) yes_no: YesNo,
     /// How the words sound that may be taken for others.
     pub(crate) sounds: Sounding,

@@ -29,6 +29,7 @@ mod asked;
 mod cache;
 mod carry;
 mod chatter;
+mod claim;
 mod clause;
 mod condition;
 mod confidence;
@@ -40,6 +41,7 @@ mod deeds;
 mod describe;
 mod device;
 mod facts;
+mod faithful;
 mod floor;
 mod gloss;
 mod ground;
@@ -90,6 +92,7 @@ mod token;
 mod understanding;
 mod undo;
 mod verbless;
+mod waiting;
 mod way;
 mod wish;
 mod wording;
@@ -206,6 +209,15 @@ impl Language {
     pub fn carry_on(&self, scene: &Known, context: &mut Context) -> Option<Understanding> {
         context.credit_goals(scene);
         self.conversation(scene).carry_on(context)
+    }
+
+    /// Goes on with what was put off, if its time has come or what it waits for is so; nothing before that, or while there is something else to
+    /// do. To be called now and then while [`Context::awaits`] holds, with the time, s, by any clock: the wait begins with the first call.
+    #[must_use]
+    pub fn wake(&self, now_s: f64, scene: &Known, context: &mut Context) -> Option<Understanding> {
+        let understanding = self.conversation(scene).wake(now_s, context)?;
+        context.note_said(true, understanding.reply());
+        Some(understanding)
     }
 
     /// What the robot asks that finds a thing gone from where it remembers it; `yes` then means to look for it, and to go

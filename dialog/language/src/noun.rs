@@ -176,7 +176,34 @@ impl<'a> Reader<'a> {
         {
             return step(self, length);
         }
+        // `the managers mug`: what this word says of things elsewhere, it does not say here.
+        if noun == 0 && self.is_after_article() && lexicon.classes.longest(&rest[1..]).is_some() {
+            phrase.unknown.push(rest[0].clone());
+            return step(self, 1);
+        }
         false
+    }
+
+    /// Whether the next word is the last of its phrase.
+    fn ends_phrase(&self) -> bool {
+        let after = self.rest().get(1..).unwrap_or_default();
+        let ends = |word: &String| token::is_punctuation(word) || matches!(word.as_str(), "and" | "then" | "to");
+        after.first().is_none_or(ends) || self.lexicon.prepositions.longest(after).is_some()
+    }
+
+    /// Whether nothing but a noun or what describes it can follow: after `the`, and where no preposition stands.
+    fn is_after_article(&self) -> bool {
+        let lexicon = self.lexicon;
+        let is_article = |at: usize| {
+            let before = &self.words[at - 1..at];
+            lexicon.articles.exact(before).is_some() && lexicon.pronouns.exact(before).is_none()
+        };
+        let is_other = lexicon.prepositions.longest(self.rest()).is_some()
+            || lexicon.pronouns.longest(self.rest()).is_some()
+            || lexicon.generic.longest(self.rest()).is_some()
+            || lexicon.rooms.longest(self.rest()).is_some()
+            || self.rest().first().is_none_or(|word| token::is_punctuation(word) || word.contains('_'));
+        self.at > 0 && is_article(self.at) && !is_other
     }
 
     /// `the two apples`, `2 of those mugs`: how many, and how many words say so.
@@ -270,6 +297,10 @@ impl<'a> Reader<'a> {
             self.at += length;
         } else if !lexicon.vocabulary.has(word) && !token::is_punctuation(word) {
             self.unknown_head(phrase);
+        } else if self.at_verb() && self.is_after_article() && self.ends_phrase() {
+            // `the sponge in the sink`: no thing that it knows, and no verb here.
+            phrase.unknown.push(word.clone());
+            self.at += 1;
         }
     }
 

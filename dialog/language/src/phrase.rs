@@ -345,6 +345,10 @@ impl<'a> Reader<'a> {
             *self = reader;
             return Some((Preposition::In, Place::Here));
         }
+        if let Some(room) = reader.of_room() {
+            *self = reader;
+            return Some((Preposition::In, Place::Room(room)));
+        }
         let (length, preposition) = reader.lexicon.prepositions.longest(reader.rest())?;
         reader.at += length;
         if preposition == &Preposition::On && reader.is_done() {
@@ -353,6 +357,20 @@ impl<'a> Reader<'a> {
         let place = reader.destination()?;
         *self = reader;
         Some((*preposition, place))
+    }
+
+    /// `the door of the break room`: which room.
+    fn of_room(&mut self) -> Option<RoomId> {
+        let mut reader = *self;
+        reader.at += usize::from(reader.next_is("of"));
+        if reader.at == self.at {
+            return None;
+        }
+        reader.skip(|lexicon| &lexicon.articles);
+        let (length, room) = reader.lexicon.rooms.longest(reader.rest())?;
+        reader.at += length;
+        *self = reader;
+        Some(*room)
     }
 
     /// A room, a viewpoint, or an object.

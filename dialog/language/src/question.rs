@@ -149,9 +149,9 @@ pub(crate) fn read(lexicon: &Lexicon, words: &[String]) -> Option<Question> {
     let first = segments.first()?;
     let question = read_sentence(lexicon, first)?;
     let is_whether = |(at, _): (usize, usize)| {
-        first
-            .get(at)
-            .is_some_and(|word| matches!(word.as_str(), "is" | "are" | "was" | "were" | "have" | "has" | "did" | "any"))
+        first.get(at).is_some_and(|word| {
+            matches!(word.as_str(), "is" | "are" | "was" | "were" | "have" | "has" | "did" | "does" | "any")
+        })
     };
     let is_whether = starts(lexicon, first).into_iter().any(is_whether);
     Some(Question { is_whether, ..question })
@@ -271,6 +271,13 @@ fn which_seen(lexicon: &Lexicon, words: &[String]) -> Option<Phrase> {
 fn which_is_so(lexicon: &Lexicon, words: &[String]) -> Option<Phrase> {
     if let Some(phrase) = which_works(lexicon, words).or_else(|| which_seen(lexicon, words)) {
         return Some(phrase);
+    }
+    // `mug has coffee in it`: the mug with coffee in it.
+    if let Some(verb) = words.iter().position(|word| matches!(word.as_str(), "has" | "have" | "contains" | "contain")) {
+        let mut said = words.to_vec();
+        "with".clone_into(&mut said[verb]);
+        let mut reader = Reader::new(lexicon, &said);
+        return reader.phrase_with_place().filter(|phrase| reader.is_done() && phrase.is_described());
     }
     let verb = words.iter().position(|word| matches!(word.as_str(), "is" | "are"))?;
     let is_joint = |word: &&String| !matches!(word.as_str(), "and" | "a" | "an" | "the");

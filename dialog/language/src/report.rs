@@ -4,6 +4,9 @@ use cohabit_cdf::{Action, Catalog, GoToTarget, ObjectId, Status, Verb, state::St
 
 use crate::{contents, describe, known::Known, process::Devices, understanding::Step};
 
+/// How a step that looks under a thing or behind it is called.
+pub(crate) const LOOKS_UNDER: &str = "looking under";
+
 /// What is said after success: what is so now.
 pub(crate) fn success(catalog: &Catalog, devices: &Devices, scene: &Known, step: &Step, status: Status) -> String {
     let the = |id: ObjectId| describe::short(catalog, scene, id);
@@ -56,6 +59,10 @@ fn interaction(
         Verb::Throw => format!("I have thrown it at {the}"),
         Verb::Fill => "it is full now".to_owned(),
         Verb::Clean => "it is clean now".to_owned(),
+        Verb::Examine if step.says.starts_with(LOOKS_UNDER) => match contents::under(catalog, scene, object) {
+            Some(found) => found,
+            None => format!("I see nothing under {the} or behind it"),
+        },
         Verb::Examine => match scene.object(object).filter(|object| !object.text.is_empty()) {
             Some(object) => format!("it says: \"{}\"", object.text),
             None => contents::inside(catalog, scene, object, 0)

@@ -9,7 +9,10 @@ impl Conversation<'_> {
         let with_lab =
             |request: &str| self.with_lab_named(&self.wording(request), lab).unwrap_or_else(|| request.to_owned());
         let requests: Vec<String> = requests.split("; ").map(with_lab).collect();
-        if !requests.iter().all(|request| self.reads_all(&self.wording(request))) {
+        let reads: Vec<bool> = requests.iter().map(|request| self.reads_all(&self.wording(request))).collect();
+        let is_lost = |(request, is_read): (&String, &bool)| !is_read && !is_question(request);
+        // A question that it cannot answer takes nothing from what else was said.
+        if !reads.contains(&true) || requests.iter().zip(&reads).any(is_lost) {
             return None;
         }
         let mut then = context.at_new_utterance();
@@ -38,6 +41,18 @@ impl Conversation<'_> {
                 // Whether to look for what was only asked about is not worth a question where more is asked for.
                 Understanding::Question { text: asked, .. } if !is_last && is_question(&text) => {
                     said.push(without_offer(asked));
+                }
+                Understanding::Refusal { is_lost: true, .. }
+                    if is_question(&text) && (!is_last || !said.is_empty()) =>
+                {
+                    said.push(format!("I do not know the answer to \"{text}\"."));
+                }
+                // What follows waits, too.
+                Understanding::Answer { .. } if then.awaited.is_some() && then.awaited != context.awaited => {
+                    *context = then;
+                    context.awaited.iter_mut().for_each(|awaited| awaited.then.extend(texts.by_ref()));
+                    let is_first = said.is_empty();
+                    return Some(if is_first { understanding } else { understanding.after(&said.join(" ")) });
                 }
                 Understanding::Answer { text: reply, .. } | Understanding::Refusal { text: reply, is_lost: false }
                     if !is_last || said.contains(reply) =>

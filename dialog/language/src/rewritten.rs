@@ -8,6 +8,7 @@ use crate::{
     clause::{self, Part},
     context::Context,
     conversation::Conversation,
+    faithful::Heard,
     reply,
     understanding::{Clarification, Understanding},
     way::Way,
@@ -29,11 +30,14 @@ impl Conversation<'_> {
     /// knows: others are mere guesses then.
     pub(crate) fn rewritten(&self, wording: &Wording<'_>, context: &Context) -> Vec<Way> {
         let (mut ways, mut is_doubtful) = (Vec::<Way>::new(), false);
+        let heard = Heard::new(self.lexicon, wording.utterance, context.lines());
         for (at, (text, probability)) in self.rewritings(wording.utterance, context).iter().enumerate() {
-            let way = match self.of_rewriting(text, *probability, wording, context) {
+            let text = &self.without_invention(text, &heard);
+            let probability = probability * self.polarity(text, &heard);
+            let way = match self.of_rewriting(text, probability, wording, context) {
                 Some(way) => way,
                 None if at == 0 && self.names_unknown(text) => {
-                    return self.asked_about(text, *probability, context).into_iter().collect();
+                    return self.asked_about(text, probability, context).into_iter().collect();
                 }
                 None => {
                     is_doubtful |= at == 0;

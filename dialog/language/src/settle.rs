@@ -56,6 +56,7 @@ const fn has_tool(intent: Intent) -> bool {
             | Intent::Highlight
             | Intent::Examine
             | Intent::LookIn
+            | Intent::LookUnder
     )
 }
 

@@ -28,6 +28,16 @@ impl<'de> Deserialize<'de> for PhraseTable<()> {
     }
 }
 
+/// A table from phrases, each with its meaning: for serde's `deserialize_with`.
+pub(crate) fn of_meanings<'de, D: Deserializer<'de>, T: Deserialize<'de>>(
+    deserializer: D,
+) -> Result<PhraseTable<T>, D::Error> {
+    let mut table = PhraseTable::default();
+    let meanings = BTreeMap::<String, T>::deserialize(deserializer)?;
+    meanings.into_iter().for_each(|(phrase, meaning)| table.insert(&phrase, meaning));
+    Ok(table)
+}
+
 impl<T> PhraseTable<T> {
     /// Gives `phrase` a meaning, in place of an earlier one.
     pub(crate) fn insert(&mut self, phrase: &str, meaning: T) {

@@ -86,6 +86,15 @@ impl Understanding {
         self.saying(|text| format!("{text} {said}"))
     }
 
+    /// The same to a question that wants no yes or no.
+    pub(crate) fn without_yes(self) -> Self {
+        let plain = |text: &str| {
+            let bare = text.strip_prefix("Yes, ").or_else(|| text.strip_prefix("No, ")).unwrap_or(text);
+            describe::sentence(bare)
+        };
+        self.saying(plain)
+    }
+
     /// The same with another reply.
     fn saying(mut self, other: impl FnOnce(&str) -> String) -> Self {
         let (Self::Plan { reply: text, .. }

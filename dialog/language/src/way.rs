@@ -129,7 +129,13 @@ impl Way {
         let is_asked = |clause: &&Clause| {
             matches!(
                 clause.intent,
-                Intent::Examine | Intent::Find | Intent::GoTo | Intent::LookAround | Intent::Mention | Intent::Travel
+                Intent::Examine
+                    | Intent::Find
+                    | Intent::GoTo
+                    | Intent::LookAround
+                    | Intent::LookUnder
+                    | Intent::Mention
+                    | Intent::Travel
             )
         };
         let is_sought = self.context.search.as_ref().is_none_or(|search| search.deeds().iter().all(is_asked));
@@ -149,6 +155,7 @@ impl Way {
                     | Intent::GoTo
                     | Intent::Look
                     | Intent::LookIn
+                    | Intent::LookUnder
                     | Intent::LookAround
                     | Intent::Mention
                     | Intent::Open

@@ -76,6 +76,9 @@ impl Conversation<'_> {
 
     /// Whether the grammar knows all words of a plain request, although it may make something of it by a rule of thumb: `make coffee`.
     pub(crate) fn reads_all(&self, wording: &Wording<'_>) -> bool {
+        if self.is_wait(&wording.words) {
+            return true;
+        }
         if self.is_plain(wording) || condition::is_conditional(self.lexicon, &wording.tidied) {
             return true;
         }

@@ -150,6 +150,7 @@ impl Lexicon {
             amends: parse(include_str!("../data/amends.toml")),
             chatter: parse(include_str!("../data/chatter.toml")),
             ifs: parse(include_str!("../data/conditions.toml")),
+            waiting: parse(include_str!("../data/waiting.toml")),
             yes_no: parse(include_str!("../data/yes_no.toml")),
             ..Self::default()
         };

@@ -2,12 +2,12 @@
 
 use std::collections::BTreeSet;
 
-use cohabit_cdf::{Catalog, state::StateFlag};
+use cohabit_cdf::{Catalog, RoomId, state::StateFlag};
 use serde::Deserialize;
 
 use crate::{
-    answer::asked_state,
     chatter,
+    claim::asked_state,
     clause::{self, Clause, Part},
     context::Context,
     conversation::Conversation,
@@ -16,8 +16,11 @@ use crate::{
     inflect,
     intent::Intent,
     lexicon::Lexicon,
+    phrase::Place,
     question::{self, Question, QuestionKind},
-    reading, token,
+    reading,
+    table::PhraseTable,
+    token,
     understanding::Understanding,
 };
 
@@ -35,6 +38,45 @@ pub(crate) struct YesNo {
     things: BTreeSet<String>,
     passive: BTreeSet<String>,
     between: BTreeSet<String>,
+    filler: PhraseTable<()>,
+    sound: PhraseTable<()>,
+    unsound: PhraseTable<()>,
+    done: PhraseTable<()>,
+    floor: BTreeSet<String>,
+    pub(crate) cereals: BTreeSet<String>,
+}
+
+impl YesNo {
+    /// Whether words add nothing to what is claimed: `still there`.
+    pub(crate) fn is_filler(&self, words: &[String]) -> bool {
+        let mut left = words;
+        while let Some((length, ())) = self.filler.longest(left) {
+            left = &left[length..];
+        }
+        left.is_empty()
+    }
+
+    /// Whether words are of the floor.
+    pub(crate) fn says_floor(&self, words: &[String]) -> bool {
+        words.iter().any(|word| self.floor.contains(word))
+    }
+
+    /// Whether words end by saying that something has come to its end.
+    pub(crate) fn says_done(&self, words: &[String]) -> bool {
+        let ends = |at: usize| {
+            self.done.longest(&words[at..]).is_some_and(|(length, ())| self.is_filler(&words[at + length..]))
+        };
+        (1..words.len()).any(ends)
+    }
+
+    /// Whether words end by saying that something works as it should, or that it does not.
+    pub(crate) fn soundness(&self, words: &[String]) -> Option<bool> {
+        let ends = |table: &PhraseTable<()>, at: usize| {
+            table.longest(&words[at..]).is_some_and(|(length, ())| self.is_filler(&words[at + length..]))
+        };
+        (1..words.len())
+            .find_map(|at| ends(&self.sound, at).then_some(true).or_else(|| ends(&self.unsound, at).then_some(false)))
+    }
 }
 
 /// Where the question that a sentence asks begins, if it wants a yes or a no and requests nothing.
@@ -118,6 +160,9 @@ impl Conversation<'_> {
         if let Some(answer) = self.whether_done(asked, context) {
             return answer;
         }
+        if let Some(answer) = self.whether_touched(asked, context) {
+            return answer;
+        }
         match question::read(self.lexicon, asked) {
             Some(question) if question.kind != QuestionKind::Unknown || question.about.is_some() => {
                 self.answer(&question, context)
@@ -131,9 +176,14 @@ impl Conversation<'_> {
         }
     }
 
-    /// `did you close the fridge`: whether it is closed now.
+    /// `did you close the fridge`: whether it did, as it remembers, and how things are now.
     fn whether_done(&self, asked: &[String], context: &mut Context) -> Option<Understanding> {
         let clause = deed_asked_about(self.lexicon, self.catalog, asked)?;
+        if let Some(room) =
+            clause.places.iter().find_map(|(_, place)| room_of(place)).filter(|_| clause.objects.is_empty())
+        {
+            return Some(self.whether_been(room, context));
+        }
         let phrase = clause.objects.first()?;
         let ground = Ground { catalog: self.catalog, scene: self.scene, focus: &context.focus, judge: self.judge };
         let Ok(id) = ground.one(phrase, &Want::place(Intent::Find, &[], None)) else {
@@ -141,26 +191,66 @@ impl Conversation<'_> {
             return is_search.then(|| Understanding::whether(false, "No, I have not found it yet.", Vec::new()));
         };
         context.focus.mention(id);
-        let the = describe::short(self.catalog, self.scene, id);
-        if let Some((flag, expected, states)) = state_after(&clause) {
-            let is_so = self.scene.object(id)?.has(flag);
-            let start = if is_so == expected { "Yes" } else { "No" };
-            let state = if is_so { states[0] } else { states[1] };
-            return Some(Understanding::whether(is_so == expected, format!("{start}, {the} is {state}."), vec![id]));
-        }
         let place = self.answerer(context, 0).place_sentence(id);
         if clause.intent == Intent::Find {
             return Some(Understanding::whether(true, format!("Yes, {place}."), vec![id]));
         }
-        if let Some((preposition, place)) = clause.places.first().cloned().filter(|_| clause.intent == Intent::Place) {
-            let mut about = phrase.clone();
-            about.attach(preposition, place);
-            let question = Question::new(QuestionKind::State, Some(about), Vec::new());
-            return Some(self.answer(&question, context));
+        let state = state_after(&clause);
+        let is_so = |(flag, expected, _): &(StateFlag, bool, _)| {
+            self.scene.object(id).is_some_and(|object| object.has(*flag)) == *expected
+        };
+        let did =
+            context.deeds.did(clause.intent, id) || state.as_ref().is_some_and(is_so) && context.deeds.to(id).is_some();
+        let stated = state.map(|state| {
+            let (_, expected, states) = state;
+            let the = describe::short(self.catalog, self.scene, id);
+            let state = if is_so(&state) == expected { states[0] } else { states[1] };
+            format!("{the} {} {state}", describe::is(&the))
+        });
+        let is_put = clause.intent == Intent::Place && !clause.places.is_empty();
+        let text = match (did, stated) {
+            (true, Some(stated)) => format!("Yes, I did: {stated}."),
+            (false, Some(stated)) if state.as_ref().is_some_and(is_so) => format!("No, but {stated}."),
+            (false, Some(stated)) => format!("No, {stated}."),
+            (true, None) => format!("Yes, I did: {place}."),
+            (false, None) if is_put => format!("No, {place}."),
+            (false, None) => format!("No, not that I remember: {place}."),
+        };
+        Some(Understanding::whether(did, text, vec![id]))
+    }
+
+    /// `did you touch the plant`: what it did with it, whatever that verb means.
+    fn whether_touched(&self, asked: &[String], context: &mut Context) -> Option<Understanding> {
+        let words = &self.lexicon.yes_no;
+        let [helper, subject, done @ ..] = asked else { return None };
+        if !words.past.contains(helper) || subject != "you" {
+            return None;
         }
-        let did = context.deeds.did(clause.intent, id)?;
-        let start = if did { "Yes, I did" } else { "No, not that I remember" };
-        Some(Understanding::whether(did, format!("{start}: {place}."), vec![id]))
+        let question = Question::new(QuestionKind::Done, question::named(self.lexicon, done), Vec::new());
+        let ground = Ground { catalog: self.catalog, scene: self.scene, focus: &context.focus, judge: self.judge };
+        let id = ground.one(question.about.as_ref()?, &Want::place(Intent::Find, &[], None)).ok()?;
+        let has_touched = context.deeds.told_of(id).is_some();
+        let answer = self.answer(&question, context);
+        Some(Understanding::whether(has_touched, answer.reply(), vec![id]))
+    }
+
+    /// `did you go to the hallway`.
+    fn whether_been(&self, room: RoomId, context: &Context) -> Understanding {
+        let is_here = self.scene.robot.room == room;
+        let (been, name) = (is_here || context.deeds.went_to(room), room.name());
+        let text = match (is_here, been) {
+            (true, _) => format!("Yes, I am in the {name}."),
+            (false, true) => format!("Yes, I was in the {name}."),
+            (false, false) => format!("No, not that I remember: I am in the {}.", self.scene.robot.room.name()),
+        };
+        Understanding::whether(been, text, Vec::new())
+    }
+}
+
+const fn room_of(place: &Place) -> Option<RoomId> {
+    match place {
+        Place::Room(room) | Place::Viewpoint(room, _) => Some(*room),
+        _ => None,
     }
 }
 

@@ -179,3 +179,100 @@ fn who_asks_for_a_reason_has_nothing_done() {
         assert!(done.starts_with(['=', '!', '?']), "{said}: {done}");
     }
 }
+
+/// Wakes a robot that waits, at this time; what it says or does then.
+fn woken(talk: &mut Talk, now_s: f64) -> Option<String> {
+    // What was written down and read again waits for the same.
+    talk.context = serde_json::from_str(&serde_json::to_string(&talk.context).unwrap()).unwrap();
+    let understanding = talk.language.wake(now_s, &talk.scene, &mut talk.context)?;
+    if let cohabit_language::Understanding::Plan { steps, .. } = &understanding {
+        talk.carry_out(steps);
+    }
+    Some(support::text(&understanding, &talk.scene))
+}
+
+#[test]
+fn a_time_is_waited_for() {
+    for said in [
+        "wait 10 seconds, then open the fridge",
+        "wait for ten seconds and open the fridge",
+        "in 10 seconds, open the fridge",
+        "open the fridge in ten seconds",
+        "wait 10 seconds; open the fridge",
+    ] {
+        let mut talk = Talk::new(&[]);
+        assert_eq!(talk.say(said), "= I wait for 10 seconds. Then I go on.", "{said}");
+        assert!(talk.context.awaits());
+        assert_eq!(woken(&mut talk, 100.0), None, "{said}: the wait begins");
+        assert_eq!(woken(&mut talk, 109.0), None, "{said}");
+        assert_eq!(woken(&mut talk, 110.0).as_deref(), Some("open FridgeLower_02_1"), "{said}");
+        assert!(!talk.context.awaits());
+        assert_eq!(woken(&mut talk, 200.0), None, "{said}: once");
+    }
+    let mut talk = Talk::new(&[]);
+    assert_eq!(talk.say("wait 2 minutes"), "= I wait for 2 minutes.");
+    woken(&mut talk, 0.0);
+    assert_eq!(woken(&mut talk, 120.0).as_deref(), Some("= 2 minutes are over."));
+}
+
+#[test]
+fn what_is_to_be_so_is_waited_for() {
+    for said in [
+        "when the fridge is open, go to the main office",
+        "once the fridge is open go to the main office",
+        "go to the main office as soon as the fridge is open",
+        "wait until the fridge is open, then go to the main office",
+    ] {
+        let mut talk = Talk::new(&[]);
+        assert_eq!(talk.say(said), "= I wait until the fridge is open. Then I go on.", "{said}");
+        assert_eq!(woken(&mut talk, 0.0), None, "{said}");
+        talk.scene = Talk::new(&["FridgeLower_02_1 open"]).scene;
+        assert_eq!(woken(&mut talk, 1.0).as_deref(), Some("go MainOffice"), "{said}");
+        assert_eq!(Talk::new(&["FridgeLower_02_1 open"]).say(said), "go MainOffice", "{said}: it is so already");
+    }
+    let mut talk = Talk::new(&[]);
+    talk.say("when the fridge is open, go to the main office");
+    woken(&mut talk, 0.0);
+    let given_up = woken(&mut talk, 601.0).unwrap();
+    assert_eq!(
+        given_up,
+        "= I have waited for 10 minutes, and it is not so yet that the fridge is open. I do not wait any longer."
+    );
+    assert!(!talk.context.awaits());
+}
+
+#[test]
+fn what_follows_a_wait_waits_too() {
+    let mut talk = Talk::new(&[]);
+    let first = talk.say_and_do("open the fridge, wait 5 seconds, then close it");
+    assert_eq!(first, "open FridgeLower_02_1");
+    let then = talk.language.carry_on(&talk.scene, &mut talk.context).unwrap();
+    assert_eq!(then.reply(), "I wait for 5 seconds. Then I go on.");
+    woken(&mut talk, 0.0);
+    assert_eq!(woken(&mut talk, 5.0).as_deref(), Some("close FridgeLower_02_1"));
+}
+
+#[test]
+fn a_stop_ends_a_wait() {
+    for said in ["stop", "never mind", "forget it"] {
+        let mut talk = Talk::new(&[]);
+        talk.say("wait 10 seconds, then open the fridge");
+        talk.say(said);
+        assert!(!talk.context.awaits(), "{said}");
+    }
+    let mut talk = Talk::new(&[]);
+    talk.say_and_do("go to the main office");
+    assert_eq!(talk.say("wait"), "stop!", "a wait without a time");
+    // A question between leaves it.
+    let mut talk = Talk::new(&[]);
+    talk.say("wait 10 seconds, then open the fridge");
+    talk.say("where is the milk?");
+    assert!(talk.context.awaits());
+}
+
+#[test]
+fn when_somebody_has_time_is_no_time() {
+    let check = |said: &str, expected: &str| assert_eq!(Talk::new(&[]).say(said), expected, "{said}");
+    check("when you get a minute, open the fridge", "open FridgeLower_02_1");
+    check("when you are done, open the fridge", "open FridgeLower_02_1");
+}

@@ -25,6 +25,11 @@ const WRITTEN: &[(&str, &[(&str, f32)])] = &[
     ("sing this plate one merry tune tonight", &[("serenade the plate", 0.5), ("pick up the plate", 0.4)]),
     ("sing your gubbins one merry tune tonight", &[("pick up the gubbins", 0.5), ("pick up the plate", 0.4)]),
     ("sing those fridges one merry tune tonight", &[("open the fridge", 0.9)]),
+    ("sing to that bowl about blue skies", &[("pick up the red bowl", 0.9)]),
+    (
+        "sing to see if the fridge is locked, and if it is not, open it",
+        &[("if the fridge is locked, open the fridge", 0.6), ("if the fridge is not locked, open the fridge", 0.3)],
+    ),
     ("make the bowl cold now please", &[("pick up the bowl", 0.95)]),
     ("what is on the round table?", &[("pick up the bowl", 0.95)]),
 ];
@@ -110,4 +115,11 @@ fn what_was_only_understood_is_not_called_asked_for() {
     let _ = talk.say_and_do("sing those fridges one merry tune tonight");
     let why = talk.say("why did you open the fridge?");
     assert!(why.contains("since I understood that I should open the fridge"), "{why}");
+}
+
+#[test]
+fn what_nobody_said_is_left_out_and_a_not_is_kept() {
+    // There is no red bowl, and nobody spoke of one.
+    assert_eq!(talk().say("sing to that bowl about blue skies"), "take Bowl_01_1");
+    assert_eq!(talk().say("sing to see if the fridge is locked, and if it is not, open it"), "open FridgeLower_02_1");
 }

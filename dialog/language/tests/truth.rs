@@ -18,7 +18,13 @@ fn check(marks: &[&str], said: &str, expected: &str) {
 fn questions_are_answered_and_not_carried_out() {
     const OPEN: &[&str] = &["FridgeLower_02_1 open"];
     check(OPEN, "did you close the fridge?", "= No, the fridge is open.");
-    check(&[], "did you close the fridge", "= Yes, the fridge is closed.");
+    check(&[], "did you close the fridge", "= No, but the fridge is closed.");
+    check(&[], "did you go to the main office?", "= No, not that I remember: I am in the break room.");
+    check(&[], "did you touch the trophy?", "= I did nothing with the trophy that I remember.");
+    let mut talk = Talk::new(&[]);
+    talk.say_and_do("open the fridge");
+    assert_eq!(talk.say("did you open the fridge?"), "= Yes, I did: the fridge is open.");
+    assert_eq!(talk.say("did you close the fridge?"), "= No, the fridge is open.");
     check(OPEN, "thanks! did you close the fridge?", "= No, …");
     check(OPEN, "have you already closed the fridge?", "= No, the fridge is open.");
     check(&[], "did you turn on the microwave?", "= No, the microwave is off.");
@@ -139,4 +145,55 @@ fn a_stop_is_done_before_what_else_is_said() {
     check("stop! what are you holding?", "= My hand is empty.");
     check("stop and open the fridge", "open FridgeLower_02_1");
     check("never mind", "");
+}
+
+#[test]
+fn what_is_in_a_vessel_is_known() {
+    const COFFEE: &[&str] = &["CoffeeMug_Boss_1 coffee", "without CoffeeMug_Yellow_1"];
+    check(COFFEE, "is there coffee in the mug?", "= Yes, there is coffee in the mug.");
+    check(COFFEE, "is there any coffee left in the mug?", "= Yes, there is coffee in the mug…");
+    check(COFFEE, "does the mug still have coffee in it?", "= Yes, there is coffee in the mug.");
+    check(COFFEE, "is there milk in the mug?", "= No, there is no milk in the mug: there is coffee in it.");
+    check(COFFEE, "is the mug full of coffee?", "= Yes, there is coffee in the mug.");
+    check(COFFEE, "what is in the mug?", "= There is coffee in the mug.");
+    check(COFFEE, "how much coffee is in the mug?", "= There is coffee in the mug.");
+    check(COFFEE, "if there is coffee in the mug, open the fridge", "open FridgeLower_02_1");
+    check(
+        COFFEE,
+        "if there is no coffee in the mug, open the fridge",
+        "= There is coffee in the mug. So I leave that.",
+    );
+    check(&["Bowl_01_1 cereal"], "is there cereal in the bowl?", "= Yes, there is cereal in the bowl.");
+    check(&[], "is there cereal in the bowl?", "= No, there is no cereal in the bowl: it is empty.");
+    check(&[], "is the milk in the fridge?", "= Yes, the milk is in the fridge.");
+    check(&[], "is the fridge empty?", "= No, the fridge is not empty.");
+    check(&["CoffeeMug_Boss_1 coffee"], "pick up the mug with coffee", "take CoffeeMug_Boss_1");
+    check(&["CoffeeMug_Boss_1 coffee"], "which mug has coffee in it?", "= The red mug on the round table.");
+}
+
+#[test]
+fn what_is_said_of_all_is_so_of_all() {
+    const ONE: &[&str] = &["CoffeeMug_Boss_1 coffee"];
+    check(&[], "are both mugs empty?", "= Yes, they are all empty.");
+    check(ONE, "are both mugs empty?", "= No, the red mug on the round table is not empty.");
+    check(ONE, "how many mugs are empty?", "= I know of one: the yellow mug on the round table.");
+    check(&[], "is anything broken?", "= Yes: the bowl on the round table.");
+    check(&["Bowl_01_1 in FridgeLower_02_1"], "is the bowl red?", "= No, the bowl is white.");
+    check(&[], "is the yellow mug green?", "= No, the mug is yellow.");
+    check(&[], "does the bowl work?", "= No, there is something wrong with the bowl: it is broken.");
+    check(&[], "does the microwave work?", "= Yes, I see nothing wrong with the microwave.");
+    check(&[], "are you in the break room?", "= Yes, I am in the break room.");
+    check(&[], "are you in the main office?", "= No, I am in the break room.");
+}
+
+#[test]
+fn nobody_is_nobody() {
+    check(&[], "if nobody is here, open the fridge", "open FridgeLower_02_1");
+    check(&[], "if there is somebody here, open the fridge", "= I see nobody here. So I leave that.");
+}
+
+#[test]
+fn a_noun_that_nobody_taught_is_asked_about() {
+    check(&[], "pick up the sponge in the sink", "? I do not know what \"sponge\" is. What does it look like?");
+    check(&[], "look under the table", "examine TableRound_02_1");
 }
