@@ -14,6 +14,7 @@ fn main() {
     for (name, folder, ending) in [
         ("OBJECTS", "catalog/objects", "toml"),
         ("MODELS", "catalog/models", "toml"),
+        ("TABLE", "catalog/table", "toml"),
         ("LAYOUTS", "layouts", "toml"),
         ("MISSIONS", "missions", "json"),
     ] {

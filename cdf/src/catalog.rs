@@ -1,12 +1,14 @@
 //! The object catalogue: every class of object, what it affords, what people call it and what it looks like.
 
 mod names;
+pub mod table;
 
 use std::collections::HashMap;
 
 use serde::{Deserialize, Serialize};
 
 pub use names::ClassNames;
+use table::{ActionTable, TableError};
 
 use crate::{builtin, model::Model};
 
@@ -151,6 +153,7 @@ pub struct Catalog {
     class_by_id: HashMap<String, ClassId>,
     model_by_class: Vec<usize>,
     names: Vec<ClassNames>,
+    table: ActionTable,
 }
 
 #[derive(Deserialize)]
@@ -201,7 +204,8 @@ impl Catalog {
     /// Never: the tests parse the same text.
     #[must_use]
     pub fn builtin() -> Self {
-        Self::parse(builtin::OBJECTS, builtin::MODELS).expect("invariant: the built-in catalogue parses")
+        let catalog = Self::parse(builtin::OBJECTS, builtin::MODELS).expect("invariant: the built-in catalogue parses");
+        catalog.with_table(builtin::TABLE).expect("invariant: the built-in table parses")
     }
 
     /// Builds a catalogue from `(file name, text)` of object files and of model files.
@@ -215,6 +219,7 @@ impl Catalog {
             class_by_id: HashMap::new(),
             model_by_class: Vec::new(),
             names: Vec::new(),
+            table: ActionTable::default(),
         };
         let mut model_by_id = HashMap::new();
         for (file, text) in models {
@@ -241,6 +246,27 @@ impl Catalog {
         }
         catalog.names = names::of_classes(&catalog.classes);
         Ok(catalog)
+    }
+
+    /// The same with a table of actions and devices, from `(file name, text)`.
+    ///
+    /// # Errors
+    /// [`TableError`] names the file and what is wrong in it.
+    pub fn with_table(mut self, files: &[(&str, &str)]) -> Result<Self, TableError> {
+        self.table = ActionTable::parse(files, &|class| self.find(class).is_some())?;
+        Ok(self)
+    }
+
+    /// The project's own table, as `(file name, text)`: what others are put beside, or in the place of.
+    #[must_use]
+    pub fn builtin_table() -> &'static [(&'static str, &'static str)] {
+        builtin::TABLE
+    }
+
+    /// What can be done to things, and what devices do; empty, unless a table was given.
+    #[must_use]
+    pub fn table(&self) -> &ActionTable {
+        &self.table
     }
 
     /// All classes, in the order of their [`ClassId`]s.

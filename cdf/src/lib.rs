@@ -16,6 +16,7 @@ pub mod mission;
 pub mod model;
 pub mod semantic;
 pub mod state;
+pub mod symbolic;
 
 /// The project's own data files, as `(file name, text)`.
 mod builtin {
@@ -24,7 +25,10 @@ mod builtin {
 
 pub use action::{Action, BodyId, GoToTarget, ObjectId, Status, Verb};
 pub use body::{BodyKind, BodyRequest};
-pub use catalog::{Catalog, CatalogError, ClassId, ClassNames, ObjectClass, Property};
+pub use catalog::{
+    Catalog, CatalogError, ClassId, ClassNames, ObjectClass, Property,
+    table::{self, ActionKind, ActionTable},
+};
 pub use goal::{Expression, Goal, GoalState, InstancePattern, Occasion, Predicate, Relation, StateCondition};
 pub use layout::{Layout, LayoutError, RoomId};
 pub use mission::{Mission, ObjectRequest};

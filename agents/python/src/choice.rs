@@ -2,7 +2,7 @@
 
 use std::f32::consts::PI;
 
-use cohabit_cdf::{Action, GoToTarget, ObjectClass, ObjectId, Property, RoomId, Verb};
+use cohabit_cdf::{Action, ActionKind, Catalog, GoToTarget, ObjectClass, ObjectId, RoomId, Verb};
 use pyo3::prelude::*;
 
 use crate::{action::PyAction, error::bad_argument};
@@ -90,22 +90,19 @@ impl Choice {
         })
     }
 
-    /// Whether things of that class afford it to somebody who holds `held`. The world may refuse it all the same: what is
-    /// locked affords opening.
-    pub fn is_afforded(self, class: &ObjectClass, held: Option<&ObjectClass>) -> bool {
+    /// Whether things of that class afford it to somebody who holds `held`, by the table of actions. The world may refuse it
+    /// all the same: what is locked affords opening.
+    pub fn is_afforded(self, catalog: &Catalog, class: &ObjectClass, held: Option<&ObjectClass>) -> bool {
+        self.kind().is_none_or(|kind| catalog.table().affords(kind, class, held))
+    }
+
+    /// What it does to an object, if it is done to one.
+    const fn kind(self) -> Option<ActionKind> {
         match self {
-            Self::PickUp => held.is_none() && class.has(Property::Pickupable),
-            Self::Place => held.is_some() && class.has(Property::Receptacle),
-            Self::Interact(verb) => match verb {
-                Verb::Open | Verb::Close => class.has(Property::Openable),
-                Verb::Toggle => class.has(Property::Toggleable),
-                Verb::Break => held.is_some() && class.has(Property::Breakable),
-                Verb::Clean => class.has(Property::Dirtyable) || held.is_some_and(|held| held.has(Property::Dirtyable)),
-                Verb::Fill => held.is_some_and(|held| held.has(Property::Fillable)),
-                Verb::Pour | Verb::Throw => held.is_some(),
-                Verb::Scan | Verb::Examine => true,
-            },
-            _ => true,
+            Self::PickUp => Some(ActionKind::PickUp),
+            Self::Place => Some(ActionKind::Place),
+            Self::Interact(verb) => Some(ActionKind::of_verb(verb)),
+            _ => None,
         }
     }
 }

@@ -159,7 +159,9 @@ impl Sensed {
                 continue;
             }
             for (object, afforded) in objects.iter().zip(row) {
-                *afforded = i8::from(class(object.class).is_some_and(|class| choice.is_afforded(class, held)));
+                *afforded = i8::from(
+                    class(object.class).is_some_and(|class| choice.is_afforded(library::catalog(), class, held)),
+                );
             }
         }
         Some(sensed)

@@ -7,7 +7,8 @@ use std::collections::BTreeMap;
 
 use cohabit_bus::message::{BodyRecord, DialogKind, DialogMessage, NONE};
 use cohabit_cdf::{
-    Action, BodyKind, Catalog, ObjectClass, ObjectId, Property, RoomId, SemanticClass, Status, catalog::Stands,
+    Action, ActionTable, BodyKind, Catalog, ObjectClass, ObjectId, Property, RoomId, SemanticClass, Status,
+    catalog::Stands,
 };
 
 use crate::{
@@ -137,7 +138,9 @@ impl Helper {
             }
             When::Knows(wanted) => {
                 let before = self.tick.saturating_sub(LEFT_ALONE);
-                let thing = self.nearest(own, |thing, class| thing.since <= before && is_wanted(wanted, thing, class));
+                let thing = self.nearest(own, |thing, class| {
+                    thing.since <= before && is_wanted(wanted, thing, class, self.catalog.table())
+                });
                 // Its hand may be full because it knows of no table yet.
                 let can = own.held == NONE || wanted.lies != Lies::OnTheFloor;
                 thing.filter(|_| can).is_some_and(|thing| self.handle(rule, thing, deeds))
@@ -251,7 +254,7 @@ impl Helper {
     }
 }
 
-fn is_wanted(wanted: &Wanted, thing: &Remembered, class: &ObjectClass) -> bool {
+fn is_wanted(wanted: &Wanted, thing: &Remembered, class: &ObjectClass, table: &ActionTable) -> bool {
     let lies_so = match wanted.lies {
         Lies::Anywhere => !class.has(Property::Pickupable),
         Lies::OnTheFloor => {
@@ -259,7 +262,7 @@ fn is_wanted(wanted: &Wanted, thing: &Remembered, class: &ObjectClass) -> bool {
             thing.record.parent == NONE && thing.record.position_m[2] < FLOOR_M && !stands_there
         }
     };
-    lies_so && wanted.classes.hold(&class.id) && wanted.condition.holds(class, flags(&thing.record))
+    lies_so && wanted.classes.hold(&class.id, table) && wanted.condition.holds(class, flags(&thing.record))
 }
 
 /// Whether a person is so near, or so near ahead, that a body must not move on.

@@ -3,17 +3,17 @@
 use std::sync::Arc;
 
 use cohabit_bus::message::NONE;
-use cohabit_cdf::{Action, Catalog, ClassId, GoToTarget, ObjectId, RoomId};
+use cohabit_cdf::{Action, ActionKind, Catalog, ClassId, GoToTarget, ObjectId, RoomId};
 use rand_chacha::{
     ChaCha8Rng,
     rand_core::{Rng, SeedableRng},
 };
 
 use crate::{
-    affordance::{AFFORDANCES, DANGEROUS, Handling},
+    affordance::Known,
     agent::{Agent, Deed, Heard, Now, Senses, TICKS_PER_SECOND},
     errand::{Errand, Progress},
-    memory::{Memory, flags},
+    memory::Memory,
 };
 
 /// It looks so often while it waits or walks, in ticks.
@@ -109,10 +109,10 @@ impl Random {
                 Some(Action::GoTo { target: GoToTarget::Object(self.one_of(&known)?) })
             }
             Habit::Handle => {
-                let hand_full = now.own.is_some_and(|own| own.held != NONE);
-                let ways = self.ways(hand_full);
-                let (object, handling) = self.one_of(&ways)?;
-                Some(handling.on(object))
+                let held = now.own.map(|own| own.held).filter(|held| *held != NONE);
+                let ways = self.ways(held.map(ObjectId));
+                let (object, kind) = self.one_of(&ways)?;
+                Some(kind.on(object))
             }
             Habit::Turn => Some(Action::Rotate { yaw_rad: tenths(self.below(50)) - 2.5 }),
             Habit::LookUpOrDown => Some(Action::Look { pitch_rad: tenths(self.below(11)) - 0.5 }),
@@ -129,20 +129,10 @@ impl Random {
     }
 
     /// All that can be done to them.
-    fn ways(&self, hand_full: bool) -> Vec<(ObjectId, Handling)> {
-        let mut ways = Vec::new();
-        for (id, class) in self.recent() {
-            let class = self.catalog.class(class);
-            let Some(thing) = self.memory.thing(id).filter(|_| !DANGEROUS.contains(&class.id.as_str())) else {
-                continue;
-            };
-            let fits = AFFORDANCES.iter().filter(|affordance| {
-                affordance.hand_full.is_none_or(|full| full == hand_full)
-                    && affordance.of.holds(class, flags(&thing.record))
-            });
-            ways.extend(fits.map(|affordance| (id, affordance.handling)));
-        }
-        ways
+    fn ways(&self, held: Option<ObjectId>) -> Vec<(ObjectId, ActionKind)> {
+        let known = Known { memory: &self.memory, catalog: &self.catalog, held };
+        let afforded = |id| known.afforded(id).into_iter().map(move |kind| (id, kind));
+        self.recent().flat_map(|(id, _)| afforded(id)).collect()
     }
 
     fn live(&mut self, now: &Now<'_>, deeds: &mut Vec<Deed>) {

@@ -1,12 +1,13 @@
 //! What a thing affords to who stands before it with something in hand, or nothing: what a person at the controls is
-//! offered. Derived from the catalogue's properties and the thing's state; the world alone rules what comes of it.
+//! offered. What is possible is read from the table of actions; the world alone rules what comes of it.
 
 use cohabit_bus::message::{NONE, NoteRecord, ObjectRecord, StateView};
+pub use cohabit_cdf::ActionKind as Deed;
 use cohabit_cdf::{
-    Action, Catalog, ClassId, Fluid, ObjectClass, ObjectId, Property, Verb,
+    Catalog, ClassId, Fluid, ObjectClass, ObjectId, Property,
+    catalog::table::View,
     state::{StateFlag, StateFlags},
 };
-use serde::Deserialize;
 
 /// How far a hand reaches, level, m; a little less than the world allows, since what is measured here is older.
 const REACH_M: f32 = 1.55;
@@ -17,74 +18,17 @@ const THROW_M: f32 = 5.5;
 /// Most that is offered at once.
 const MOST: usize = 5;
 
-/// What a hand does, as pages name it.
-#[derive(Clone, Copy, Debug, Deserialize, Eq, PartialEq)]
-#[serde(rename_all = "snake_case")]
-pub enum Deed {
-    PickUp,
-    Place,
-    Open,
-    Close,
-    Break,
-    Scan,
-    Pour,
-    Toggle,
-    Throw,
-    Fill,
-    Clean,
-    Examine,
+/// Whether it takes more than a look or a throw.
+pub const fn is_of_the_hand(deed: Deed) -> bool {
+    !matches!(deed, Deed::Scan | Deed::Examine | Deed::Throw)
 }
 
-impl Deed {
-    /// Its name on the wire.
-    const fn name(self) -> &'static str {
-        match self {
-            Self::PickUp => "pick_up",
-            Self::Place => "place",
-            Self::Open => "open",
-            Self::Close => "close",
-            Self::Break => "break",
-            Self::Scan => "scan",
-            Self::Pour => "pour",
-            Self::Toggle => "toggle",
-            Self::Throw => "throw",
-            Self::Fill => "fill",
-            Self::Clean => "clean",
-            Self::Examine => "examine",
-        }
-    }
-
-    /// The command that does it to an object.
-    pub const fn action(self, object: ObjectId) -> Action {
-        let verb = match self {
-            Self::PickUp => return Action::PickUp { object },
-            Self::Place => return Action::Place { receptacle: object },
-            Self::Open => Verb::Open,
-            Self::Close => Verb::Close,
-            Self::Break => Verb::Break,
-            Self::Scan => Verb::Scan,
-            Self::Pour => Verb::Pour,
-            Self::Toggle => Verb::Toggle,
-            Self::Throw => Verb::Throw,
-            Self::Fill => Verb::Fill,
-            Self::Clean => Verb::Clean,
-            Self::Examine => Verb::Examine,
-        };
-        Action::Interact { verb, object }
-    }
-
-    /// Whether it takes more than a look or a throw.
-    pub const fn is_of_the_hand(self) -> bool {
-        !matches!(self, Self::Scan | Self::Examine | Self::Throw)
-    }
-
-    /// How near one has to be, m.
-    const fn within_m(self) -> f32 {
-        match self {
-            Self::Scan | Self::Examine => LOOK_CLOSELY_M,
-            Self::Throw => THROW_M,
-            _ => REACH_M,
-        }
+/// How near one has to be, m.
+const fn within_m(deed: Deed) -> f32 {
+    match deed {
+        Deed::Scan | Deed::Examine => LOOK_CLOSELY_M,
+        Deed::Throw => THROW_M,
+        _ => REACH_M,
     }
 }
 
@@ -108,144 +52,170 @@ impl Affordance {
     }
 }
 
-/// What tools do: what is held, what it needs of a thing, the state that it leaves, and how it is said.
-const TOOLS: [(&str, Property, StateFlag, Deed, &str); 3] = [
-    ("Hammer", Property::Breakable, StateFlag::Broken, Deed::Break, "Break"),
-    ("Knife_01", Property::Cuttable, StateFlag::Cut, Deed::Break, "Cut"),
-    ("Cereal_Box_01", Property::Fillable, StateFlag::Cereal, Deed::Pour, "Pour cereal in"),
-];
-
-/// A thing with its class and state.
-struct Thing<'a> {
-    record: &'a ObjectRecord,
-    class: &'a ObjectClass,
-    flags: StateFlags,
+/// The state that everybody hears, as the table of actions asks about it for one body. How far things are is told apart.
+struct Seen<'a> {
+    state: StateView<'a>,
+    catalog: &'a Catalog,
+    held: Option<ObjectId>,
 }
 
-impl<'a> Thing<'a> {
-    fn new(record: &'a ObjectRecord, catalog: &'a Catalog) -> Option<Self> {
-        let known = usize::from(record.class) < catalog.classes().len();
-        known.then(|| Self { record, class: catalog.class(ClassId(record.class)), flags: StateFlags(record.flags) })
+impl<'a> Seen<'a> {
+    fn record(&self, id: ObjectId) -> Option<&'a ObjectRecord> {
+        let record = self.state.objects.iter().find(|record| record.object == id.0)?;
+        (usize::from(record.class) < self.catalog.classes().len()).then_some(record)
     }
 
-    fn has(&self, property: Property) -> bool {
-        self.class.has(property)
+    fn of(&self, id: ObjectId, read: impl Fn(&ObjectRecord) -> u32) -> Option<ObjectId> {
+        self.record(id).map(read).filter(|other| *other != NONE).map(ObjectId)
     }
 
-    fn is(&self, flag: StateFlag) -> bool {
-        self.flags.has(flag)
+    /// The name of the rule by which a body could do it, were it near enough.
+    fn rule(&self, deed: Deed, id: ObjectId) -> Option<&'a str> {
+        let judgement = self.catalog.table().judge(self, deed, id)?;
+        judgement.is_allowed().then_some(judgement.rule.name.as_str())
     }
 
-    fn is_filled(&self) -> bool {
-        u32::from(self.record.fluid) != Fluid::None as u32
-    }
-
-    fn is_shut(&self) -> bool {
-        let enclosed = self.class.receptacle.as_ref().is_some_and(|kind| kind.enclosed);
-        enclosed && self.has(Property::Openable) && !self.is(StateFlag::Opened)
-    }
-
-    /// Whether water comes from it.
-    fn is_tap(&self) -> bool {
-        [Property::Toggleable, Property::Fillable, Property::Receptacle].into_iter().all(|property| self.has(property))
-            && !self.has(Property::Powerable)
-    }
-
-    /// Whether it would take another thing, as far as can be seen.
-    fn takes(&self, other: &Self) -> bool {
-        let Some(kind) = &self.class.receptacle else { return false };
-        let keyed = kind.keys.is_empty() || kind.keys.contains(&other.class.id);
-        keyed && !kind.refuses.contains(&other.class.id) && !self.is_shut()
+    fn is_tap(&self, id: ObjectId) -> bool {
+        self.class(id).id == self.catalog.table().basin()
     }
 
     /// How far its outline, seen from above, is from a point on the floor, m.
-    fn distance_m(&self, from_m: [f32; 3]) -> f32 {
-        let [x, y, z, w] = self.record.rotation;
+    fn distance_m(&self, record: &ObjectRecord, from_m: [f32; 3]) -> f32 {
+        let [x, y, z, w] = record.rotation;
+        let size_m = self.class(ObjectId(record.object)).size_m;
         let yaw = (2.0 * (w * z + x * y)).atan2(1.0 - 2.0 * (y * y + z * z));
-        let [dx, dy] = [from_m[0] - self.record.position_m[0], from_m[1] - self.record.position_m[1]];
+        let [dx, dy] = [from_m[0] - record.position_m[0], from_m[1] - record.position_m[1]];
         let (sin, cos) = yaw.sin_cos();
-        let ahead = ((dx * cos + dy * sin).abs() - self.class.size_m[0] / 2.0).max(0.0);
-        let aside = ((dy * cos - dx * sin).abs() - self.class.size_m[1] / 2.0).max(0.0);
+        let ahead = ((dx * cos + dy * sin).abs() - size_m[0] / 2.0).max(0.0);
+        let aside = ((dy * cos - dx * sin).abs() - size_m[1] / 2.0).max(0.0);
         ahead.hypot(aside)
+    }
+}
+
+impl View for Seen<'_> {
+    fn catalog(&self) -> &Catalog {
+        self.catalog
+    }
+
+    fn exists(&self, id: ObjectId) -> bool {
+        self.record(id).is_some()
+    }
+
+    fn class(&self, id: ObjectId) -> &ObjectClass {
+        self.catalog.class(self.record(id).map_or(ClassId(0), |record| ClassId(record.class)))
+    }
+
+    fn is(&self, id: ObjectId, flag: StateFlag) -> bool {
+        self.record(id).is_some_and(|record| StateFlags(record.flags).has(flag))
+    }
+
+    fn fluid(&self, id: ObjectId) -> Fluid {
+        let fluid = self.record(id).map_or(0, |record| record.fluid);
+        Fluid::ALL.get(usize::from(fluid)).copied().unwrap_or_default()
+    }
+
+    fn held(&self) -> Option<ObjectId> {
+        self.held
+    }
+
+    fn parent(&self, id: ObjectId) -> Option<ObjectId> {
+        self.of(id, |record| record.parent).filter(|parent| self.exists(*parent))
+    }
+
+    fn children(&self, id: ObjectId) -> Vec<ObjectId> {
+        let all = self.state.objects.iter().filter(|record| record.parent == id.0);
+        all.map(|record| ObjectId(record.object)).collect()
+    }
+
+    fn is_in_another_hand(&self, id: ObjectId) -> bool {
+        self.held != Some(id) && self.of(id, |record| record.held_by).is_some()
+    }
+
+    fn machine(&self, id: ObjectId) -> Option<ObjectId> {
+        self.of(id, |record| record.works).filter(|machine| self.exists(*machine))
+    }
+
+    fn basin(&self) -> Option<ObjectId> {
+        let mut all = self.state.objects.iter().map(|record| ObjectId(record.object));
+        all.find(|id| self.is_tap(*id))
     }
 }
 
 /// What an object affords to a body, the most obvious first, and whether it has to come nearer for any of it.
 pub fn afforded(state: StateView<'_>, body: u32, object: ObjectId, catalog: &Catalog) -> (Vec<Affordance>, bool) {
-    let find = |index: u32| state.objects.iter().find(|record| record.object == index);
-    let body = state.bodies.iter().find(|record| record.body == body);
-    let (Some(body), Some(thing)) = (body, find(object.0).and_then(|record| Thing::new(record, catalog))) else {
+    let Some(body) = state.bodies.iter().find(|record| record.body == body) else { return (Vec::new(), false) };
+    let mut seen = Seen { state, catalog, held: None };
+    let Some(record) = seen.record(object).filter(|record| record.held_by == NONE) else {
         return (Vec::new(), false);
     };
-    let held = (body.held != NONE).then(|| find(body.held)).flatten();
-    let held = held.and_then(|record| Thing::new(record, catalog));
-    if thing.record.held_by != NONE {
-        return (Vec::new(), false);
-    }
+    seen.held = (body.held != NONE).then_some(ObjectId(body.held)).filter(|held| seen.exists(*held));
     let note = state.notes.iter().find(|note| note.object == object.0);
-    let mut all = match &held {
-        Some(held) => with(held, &thing, catalog),
-        None => with_empty_hand(&thing),
+    let mut all = match seen.held.and_then(|held| seen.record(held)) {
+        Some(held) => with(&seen, held, object),
+        None => with_empty_hand(&seen, object),
     };
-    all.extend(by_itself(&thing, note));
-    if held.is_some() {
+    all.extend(by_itself(&seen, object, note));
+    if seen.held.is_some() {
         all.push(Affordance::new(Deed::Throw, "Throw at it"));
     }
     all.push(Affordance::new(Deed::Scan, "Scan"));
-    let distance_m = thing.distance_m(body.position_m);
-    let (mut near, far): (Vec<_>, Vec<_>) = all.into_iter().partition(|one| distance_m <= one.deed.within_m());
+    let distance_m = seen.distance_m(record, body.position_m);
+    let (mut near, far): (Vec<_>, Vec<_>) = all.into_iter().partition(|one| distance_m <= within_m(one.deed));
     near.truncate(MOST);
-    (near, far.iter().any(|one| one.deed.within_m() == REACH_M))
+    (near, far.iter().any(|one| within_m(one.deed) == REACH_M))
 }
 
-fn with_empty_hand(thing: &Thing<'_>) -> Vec<Affordance> {
-    let takes = thing.has(Property::Pickupable);
+fn with_empty_hand(seen: &Seen<'_>, object: ObjectId) -> Vec<Affordance> {
+    let takes = seen.class(object).has(Property::Pickupable);
     takes.then(|| Affordance::new(Deed::PickUp, "Pick up")).into_iter().collect()
 }
 
 /// What can be done to a thing with what is held.
-fn with(held: &Thing<'_>, thing: &Thing<'_>, catalog: &Catalog) -> Vec<Affordance> {
+fn with(seen: &Seen<'_>, held: &ObjectRecord, object: ObjectId) -> Vec<Affordance> {
+    let name = crate::page::name(held, seen.catalog).to_lowercase();
     let mut all = Vec::new();
-    let name = crate::page::name(held.record, catalog).to_lowercase();
-    for (class, property, leaves, deed, says) in TOOLS {
-        if held.class.id == class && thing.has(property) && !thing.is(leaves) && !thing.is_tap() {
-            all.push(Affordance::new(deed, says));
-        }
+    match seen.rule(Deed::Break, object) {
+        Some("cut") => all.push(Affordance::new(Deed::Break, "Cut")),
+        Some(_) => all.push(Affordance::new(Deed::Break, "Break")),
+        None => {}
     }
-    if thing.is_tap() && thing.is(StateFlag::Toggled) {
-        if held.has(Property::Dirtyable) && held.is(StateFlag::Dirty) {
-            all.push(Affordance::new(Deed::Clean, format!("Wash the {name}")));
-        }
-        if held.has(Property::Fillable) && !held.is_filled() {
-            all.push(Affordance::new(Deed::Fill, format!("Fill the {name}")));
-        }
+    let is_tap = seen.is_tap(object);
+    // Clean things can be washed, too; nobody is offered that.
+    let is_dirty = StateFlags(held.flags).has(StateFlag::Dirty);
+    if is_tap && is_dirty && seen.rule(Deed::Clean, object).is_some() {
+        all.push(Affordance::new(Deed::Clean, format!("Wash the {name}")));
     }
-    if held.is_filled() && thing.has(Property::Fillable) && !thing.is_filled() {
-        let says = if thing.is_tap() { format!("Empty the {name}") } else { "Pour in".to_owned() };
-        all.push(Affordance::new(Deed::Pour, says));
+    if is_tap && seen.rule(Deed::Fill, object).is_some() {
+        all.push(Affordance::new(Deed::Fill, format!("Fill the {name}")));
     }
-    if thing.takes(held) {
+    match seen.rule(Deed::Pour, object) {
+        Some("pour cereal") => all.push(Affordance::new(Deed::Pour, "Pour cereal in")),
+        Some("pour away") => all.push(Affordance::new(Deed::Pour, format!("Empty the {name}"))),
+        Some(_) => all.push(Affordance::new(Deed::Pour, "Pour in")),
+        None => {}
+    }
+    if seen.rule(Deed::Place, object).is_some() {
         all.push(Affordance::new(Deed::Place, format!("Put the {name} here")));
     }
     all
 }
 
 /// What can be done whatever is held.
-fn by_itself(thing: &Thing<'_>, note: Option<&NoteRecord>) -> Vec<Affordance> {
+fn by_itself(seen: &Seen<'_>, object: ObjectId, note: Option<&NoteRecord>) -> Vec<Affordance> {
+    let class = seen.class(object);
+    let is_possible = |deed| seen.catalog.table().affords(deed, class, None);
     let mut all = Vec::new();
     if note.is_some() {
         all.push(Affordance::new(Deed::Examine, "Read"));
     }
-    // A tap has no door, whatever the catalogue says of its cupboard below.
-    if thing.has(Property::Openable) {
-        let opened = thing.is(StateFlag::Opened);
+    if is_possible(Deed::Open) {
+        let opened = seen.is(object, StateFlag::Opened);
         all.push(if opened { Affordance::new(Deed::Close, "Close") } else { Affordance::new(Deed::Open, "Open") });
     }
-    if thing.has(Property::Toggleable) {
-        let says = if thing.is(StateFlag::Toggled) { "Switch off" } else { "Switch on" };
-        let toggle = Affordance::new(Deed::Toggle, says);
-        let at = if thing.is_tap() { 0 } else { all.len() };
-        all.insert(at, toggle);
+    if is_possible(Deed::Toggle) {
+        let says = if seen.is(object, StateFlag::Toggled) { "Switch off" } else { "Switch on" };
+        let at = if seen.is_tap(object) { 0 } else { all.len() };
+        all.insert(at, Affordance::new(Deed::Toggle, says));
     }
     if note.is_none() {
         all.push(Affordance::new(Deed::Examine, "Look closely"));
@@ -336,14 +306,8 @@ mod tests {
 
     #[test]
     fn a_key_goes_where_it_belongs() {
-        let catalog = Catalog::builtin();
-        let locks = catalog.classes().iter().filter_map(|class| Some((class, class.receptacle.as_ref()?)));
-        let (lock, kind) = locks.into_iter().find(|(_, kind)| !kind.keys.is_empty() && !kind.enclosed).unwrap();
-        let offers = |held: &str| {
-            let (lock, held) = (record(&catalog, 1, &lock.id, &[], 0.0), record(&catalog, 2, held, &[], 0.0));
-            Thing::new(&lock, &catalog).unwrap().takes(&Thing::new(&held, &catalog).unwrap())
-        };
-        assert!(offers(&kind.keys[0]) && !offers("Bowl_01"), "{}", lock.id);
+        check(Some("Laser_Tip"), "Laser", &[], &["Put the laser tip here", "Look closely", "Throw at it", "Scan"]);
+        check(Some("Bowl_01"), "Laser", &[], &["Look closely", "Throw at it", "Scan"]);
     }
 
     #[test]

@@ -270,8 +270,9 @@ impl Driver {
 
     /// Does something to an object.
     pub fn act(&mut self, deed: Deed, object: ObjectId) -> Result<(), BusError> {
-        if self.is_driving() {
-            let command = self.act_on(deed.action(object))?;
+        // Pages walk by keys.
+        if self.is_driving() && deed != Deed::GoTo {
+            let command = self.act_on(deed.on(object))?;
             self.acting = Some((command, Instant::now()));
         }
         Ok(())

@@ -9,6 +9,7 @@ mod eval;
 mod export;
 mod failure;
 mod gallery;
+mod generate;
 mod minds;
 mod mission_file;
 mod peers;
@@ -56,6 +57,8 @@ enum Command {
     Export(export::Export),
     /// Play many missions headless, by what is said in them, and report what came of them
     Eval(eval::Eval),
+    /// Make missions from a specification, each with a plan that solves it
+    Generate(generate::Generate),
     /// Run a study: participants, conditions, consent, sessions, data
     Study(study::Study),
     /// Say what this machine lacks for a session, and what that costs
@@ -90,6 +93,7 @@ impl Command {
             | Self::Compare(_)
             | Self::Export(_)
             | Self::Eval(_)
+            | Self::Generate(_)
             | Self::Doctor(_)
             | Self::Top(_)
             | Self::Time(_)
@@ -127,6 +131,7 @@ fn run(asked: Cohabit) -> anyhow::Result<()> {
         Command::Compare(compare) => compare.run(),
         Command::Export(export) => export.run(),
         Command::Eval(eval) => eval.run(),
+        Command::Generate(generate) => generate.run(),
         Command::Study(study) => study.run(),
         Command::Doctor(doctor) => doctor.run(),
         Command::Top(top) => top.run(),

@@ -49,6 +49,22 @@ fn places(surface: &Surface) -> impl Iterator<Item = Vec3> + '_ {
     })
 }
 
+/// Whether something that stands somewhere between the anchors of a receptacle takes the anchor of that number.
+pub(crate) fn covers(facts: &Facts<'_>, id: ObjectId, receptacle: ObjectId, index: u16) -> bool {
+    let scale = facts.object(receptacle).scale;
+    let (Support::On { local, .. }, Some(anchor)) =
+        (&facts.object(id).support, anchors(facts, receptacle).get(usize::from(index)).copied())
+    else {
+        return false;
+    };
+    is_covered(anchor.local(scale).position, local.position, radius(facts, id))
+}
+
+/// Whether something at `from` of this radius takes an anchor at `at`.
+fn is_covered(at: Vec3, from: Vec3, radius: f32) -> bool {
+    (from.z - at.z).abs() < 0.1 && from.truncate().distance(at.truncate()) < radius
+}
+
 /// The anchors where nothing stands, in order.
 pub(crate) fn free_anchors(facts: &Facts<'_>, receptacle: ObjectId) -> Vec<Anchor> {
     let scale = facts.object(receptacle).scale;
@@ -67,7 +83,7 @@ pub(crate) fn free_anchors(facts: &Facts<'_>, receptacle: ObjectId) -> Vec<Ancho
             !taken.iter().any(|(index, from, radius)| match index {
                 Some(index) => *index == anchor.index,
                 // What the layout put somewhere between anchors takes those that it covers.
-                None => (from.z - at.z).abs() < 0.1 && from.truncate().distance(at.truncate()) < *radius,
+                None => is_covered(at, *from, *radius),
             })
         })
         .collect()

@@ -60,6 +60,7 @@ mod snapshot;
 mod state;
 mod story;
 mod swing;
+mod symbols;
 mod tasks;
 mod works;
 mod world;

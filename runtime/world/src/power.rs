@@ -11,9 +11,6 @@ pub(crate) fn is_fed(state: &State, circuit: Option<i32>) -> bool {
     circuit.is_some_and(|circuit| state.circuits.get(&circuit).copied().unwrap_or(true))
 }
 
-/// Switches that stay where they were put when the power goes; everything else goes off, and stays off.
-const STAY: [&str; 5] = ["LightSwitch_01", "FuseBox_01", "FuseBox_02", "Broken_Cord_01", "CableFrayed_01"];
-
 /// Cuts or feeds a circuit; returns what changed by it.
 ///
 /// What sparks stops as the power goes, and machines stop; what is overloaded works again as the power comes back.
@@ -30,7 +27,8 @@ pub(crate) fn feed(catalog: &Catalog, state: &mut State, circuit: i32, fed: bool
             object.flags.set(StateFlag::Powered, fed);
             if fed {
                 object.flags.set(StateFlag::Overloaded, false);
-            } else if !STAY.contains(&class.id.as_str()) {
+            } else if !catalog.table().device(&class.id).stays_without_power {
+                // Some switches stay where they were put; everything else goes off, and stays off.
                 object.flags.set(StateFlag::Toggled, false);
                 object.run = None;
             }

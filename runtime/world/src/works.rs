@@ -10,21 +10,31 @@ pub(crate) mod portal;
 mod recipes;
 mod vending;
 
-use cohabit_cdf::{ClassId, Color, ObjectId};
+use cohabit_cdf::{
+    Catalog, ClassId, Color, ObjectId,
+    catalog::table::{Change, Device, Over, Scope},
+};
 use serde::{Deserialize, Serialize};
 
 pub use self::lab::EMBIGGEN;
 pub(crate) use self::{
-    kitchen::{can_brew, freeze, is_beans},
-    lab::{cartridge, product_anchor},
-    vending::{behind_glass, is_slot, tray_anchor, vended},
+    kitchen::is_beans,
+    vending::{behind_glass, is_slot, vended},
 };
-use crate::{anchors::fitting_anchors, effect::Effect, effect::Spot, facts::Facts};
+use crate::{
+    anchors::fitting_anchors,
+    effect::{Effect, Spot},
+    facts::Facts,
+    power::lacks_power,
+    rules::Observer,
+};
 
-/// Ticks from the start of a machine to its effect: a quarter of a second.
-pub(crate) const EFFECT_TICKS: u64 = 15;
-/// Ticks that a machine stays on for a moment: two seconds.
-pub(crate) const MOMENT_TICKS: u64 = 120;
+const TICKS_A_SECOND: f32 = 60.0;
+
+/// Ticks from the start of a machine to its effect, and to its end.
+pub(crate) fn ticks(device: &Device) -> [u64; 2] {
+    [device.work_s, device.moment_s].map(|seconds| (seconds * TICKS_A_SECOND).round() as u64)
+}
 
 /// What a machine does.
 #[derive(Clone, Copy, Debug, Deserialize, Eq, PartialEq, Serialize)]
@@ -53,6 +63,34 @@ pub(crate) enum Work {
     Embiggen,
     /// The object at this slot falls into the tray.
     Vend(u16),
+    /// The work of this number in the table, which is none of those above.
+    Listed(u16),
+}
+
+impl Work {
+    /// The work of that name in the table.
+    pub fn named(catalog: &Catalog, name: &str) -> Self {
+        match name {
+            "heat" => Self::Heat,
+            "toast" => Self::Toast,
+            "chill" => Self::Chill,
+            "yesterday" => Self::Yesterday,
+            "carrot" => Self::Carrot,
+            "print" => Self::Print,
+            "brew" => Self::Brew,
+            "unbrew" => Self::Unbrew,
+            "paint red" => Self::Paint(Color::Red),
+            "paint green" => Self::Paint(Color::Green),
+            "paint blue" => Self::Paint(Color::Blue),
+            "embiggen" => Self::Embiggen,
+            _ => {
+                let slot = name.strip_prefix("vend ").and_then(|slot| slot.parse().ok());
+                let listed = || catalog.table().works().iter().position(|work| work.name == name);
+                let listed = || listed().and_then(|index| u16::try_from(index).ok());
+                slot.map(Self::Vend).or_else(|| listed().map(Self::Listed)).unwrap_or(Self::Nothing)
+            }
+        }
+    }
 }
 
 /// A machine at work for a moment.
@@ -88,15 +126,56 @@ pub(crate) fn effects(facts: &Facts<'_>, machine: ObjectId, work: Work, site: Ob
         Work::Paint(color) => direct().map(|id| Effect::Paint(id, color)).collect(),
         Work::Embiggen => direct().flat_map(|id| lab::embiggen(facts, id)).collect(),
         Work::Vend(slot) => vending::vend(facts, machine, site, slot),
+        Work::Listed(index) => listed(facts, index, site),
     }
 }
 
-/// What follows once a circuit is fed again: freezers chill, computers read the disks that are in them.
+/// What a work that the table alone knows changes at `site`.
+fn listed(facts: &Facts<'_>, index: u16, site: ObjectId) -> Vec<Effect> {
+    let Some(work) = facts.catalog.table().works().get(usize::from(index)) else { return Vec::new() };
+    let observer = Observer { facts, body: None };
+    let things = match work.over {
+        Over::Contents => facts.contents(site),
+        Over::Inside => facts.held_in(site),
+        Over::Machine => vec![site],
+    };
+    let change = |thing: ObjectId| {
+        let scope = Scope { it: None, thing: Some(thing), machine: Some(site) };
+        let changes = scope.changes(&observer, &work.effects);
+        changes.into_iter().flat_map(move |change| thing_effects(facts, change, thing)).collect::<Vec<_>>()
+    };
+    things.into_iter().flat_map(change).collect()
+}
+
+/// What a change of the table does to a thing in a machine.
+fn thing_effects(facts: &Facts<'_>, change: &Change, thing: ObjectId) -> Vec<Effect> {
+    let spot =
+        || facts.object(thing).parent().map(|parent| Spot::Anchor { parent, anchor: lab::anchor_of(facts, thing) });
+    match change {
+        Change::Set(_, flag, value) => vec![Effect::Set(thing, *flag, *value)],
+        Change::Fill(_, fluid) => vec![Effect::Fill(thing, *fluid)],
+        Change::Paint(_, color) => vec![Effect::Paint(thing, *color)],
+        Change::Remove(_) => vec![Effect::Remove(thing)],
+        Change::Resize(_) => lab::embiggen(facts, thing).to_vec(),
+        Change::Restore(_) => spot().map_or_else(Vec::new, |spot| lab::yesterday(facts, thing, spot)),
+        _ => Vec::new(),
+    }
+}
+
+/// What something does to its contents once it is shut, or about to be, and has power.
+pub(crate) fn settle(facts: &Facts<'_>, id: ObjectId) -> Vec<Effect> {
+    match &facts.catalog.table().device(&facts.class(id).id).shut_work {
+        Some(work) if !lacks_power(facts, id) => effects(facts, id, Work::named(facts.catalog, work), id),
+        _ => Vec::new(),
+    }
+}
+
+/// What follows once a circuit is fed again: what is shut does its work, computers read the disks that are in them.
 pub(crate) fn on_power(facts: &Facts<'_>, circuit: i32) -> Vec<Effect> {
     let fed = facts.state.existing().filter(|(_, object)| object.circuit == Some(circuit)).map(|(id, _)| id);
     fed.flat_map(|id| {
-        let chilled = if facts.is_shut(id) { freeze(facts, id) } else { Vec::new() };
-        chilled.into_iter().chain(disk::read_all(facts, id))
+        let settled = if facts.is_shut(id) { settle(facts, id) } else { Vec::new() };
+        settled.into_iter().chain(disk::read_all(facts, id))
     })
     .collect()
 }

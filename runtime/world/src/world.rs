@@ -27,7 +27,7 @@ use crate::{
     snapshot::{self, SnapshotError},
     state::{State, ids},
     story,
-    works::{self, EFFECT_TICKS, MOMENT_TICKS, portal},
+    works::{self, portal},
 };
 
 /// Length of a tick, ns: 60 ticks a second.
@@ -192,11 +192,12 @@ impl World {
             let dead = power::lacks_power(&facts, id)
                 || run.drives.is_some_and(|driven| power::lacks_power(&facts, driven))
                 || !facts.is(id, StateFlag::Toggled);
-            if !dead && tick == run.since + EFFECT_TICKS {
+            let [effect, end] = works::ticks(self.catalog.table().device(&facts.class(id).id));
+            if !dead && tick == run.since + effect {
                 let effects = works::effects(&facts, id, run.work, run.site);
                 self.changes(events).apply(effects);
             }
-            if dead || tick >= run.since + MOMENT_TICKS {
+            if dead || tick >= run.since + end {
                 self.state.at_mut(id).run = None;
                 let off = std::iter::once(id).chain(run.drives);
                 let effects = off.map(|id| crate::effect::Effect::Set(id, StateFlag::Toggled, false)).collect();

@@ -1,8 +1,6 @@
 //! What a helper does when: a table, of which the first rule that applies wins.
 
-use cohabit_cdf::{Property, StateFlag, Verb};
-
-use crate::affordance::{Condition, Handling};
+use cohabit_cdf::{ActionKind, ActionTable, ObjectClass, Property, StateFlag, StateFlags};
 
 /// One rule.
 pub(super) struct Rule {
@@ -31,6 +29,23 @@ pub(super) struct Wanted {
     pub classes: Classes,
 }
 
+/// What holds of a thing.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Condition {
+    /// Its class affords this.
+    pub property: Property,
+    /// The state that it is in, if any is asked for. What sparks is left alone: to touch it is deadly.
+    pub is: Option<StateFlag>,
+}
+
+impl Condition {
+    /// Whether it holds.
+    pub fn holds(&self, class: &ObjectClass, flags: StateFlags) -> bool {
+        let is_so = self.is.is_none_or(|flag| flags.has(flag));
+        class.has(self.property) && is_so && !flags.has(StateFlag::Sparking)
+    }
+}
+
 /// Where a thing lies.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Lies {
@@ -42,15 +57,19 @@ pub(super) enum Lies {
 /// Which classes are meant.
 pub(super) enum Classes {
     AllBut(&'static [&'static str]),
-    Only(&'static [&'static str]),
+    /// What stays on until somebody switches it off, and is not needed when nobody is there; lights and circuits are.
+    StayOn,
 }
 
 impl Classes {
-    /// Whether a class is.
-    pub fn hold(&self, class: &str) -> bool {
+    /// Whether a class is, by the table of devices.
+    pub fn hold(&self, class: &str, table: &ActionTable) -> bool {
         match self {
             Self::AllBut(classes) => !classes.contains(&class),
-            Self::Only(classes) => classes.contains(&class),
+            Self::StayOn => {
+                let device = table.device(class);
+                device.stays_on() && !device.stays_without_power && !device.dangerous
+            }
         }
     }
 }
@@ -63,24 +82,13 @@ pub(super) enum Then {
     /// Put what is held on a table.
     PutDown,
     /// Handle the thing.
-    Handle(Handling),
+    Handle(ActionKind),
     /// See how things are elsewhere.
     Roam,
 }
 
 /// What stands open as it should: the doors of rooms, and what is opened once and for all.
 const MAY_BE_OPEN: &[&str] = &["Door_01", "CandyBar_01", "MilkCarton_01"];
-/// What stays on until somebody switches it off, and is not needed when nobody is there. Lights and circuits are.
-const STAYS_ON: &[&str] = &[
-    "KitchenCounterSink_01",
-    "RoboticArm_01",
-    "TeslaCoil",
-    "TAMPrototypeHead_01",
-    "V_Monitor_Gravity",
-    "V_Monitor_Portal",
-    "ForkLift",
-    "Radio_01",
-];
 /// Where things that lay on the floor are put.
 pub(super) const TABLES: &[&str] = &[
     "AP_Prop_Desk_Blue",
@@ -101,35 +109,35 @@ pub(super) const TABLES: &[&str] = &[
 
 /// The rules, the first one first.
 pub(super) const RULES: &[Rule] = {
-    use StateFlag::{Opened, Sparking, Toggled};
+    use StateFlag::{Opened, Toggled};
     &[
         Rule { when: When::PersonInTheWay, then: Then::Wait, says: "After you." },
         Rule { when: When::HandFull, then: Then::PutDown, says: "I put this on the {}." },
         Rule {
             when: When::Knows(Wanted {
-                condition: Condition { property: Property::Openable, has: &[Opened], lacks: &[Sparking] },
+                condition: Condition { property: Property::Openable, is: Some(Opened) },
                 lies: Lies::Anywhere,
                 classes: Classes::AllBut(MAY_BE_OPEN),
             }),
-            then: Then::Handle(Handling::Do(Verb::Close)),
+            then: Then::Handle(ActionKind::Close),
             says: "I close the {}.",
         },
         Rule {
             when: When::Knows(Wanted {
-                condition: Condition { property: Property::Toggleable, has: &[Toggled], lacks: &[Sparking] },
+                condition: Condition { property: Property::Toggleable, is: Some(Toggled) },
                 lies: Lies::Anywhere,
-                classes: Classes::Only(STAYS_ON),
+                classes: Classes::StayOn,
             }),
-            then: Then::Handle(Handling::Do(Verb::Toggle)),
+            then: Then::Handle(ActionKind::Toggle),
             says: "I switch the {} off.",
         },
         Rule {
             when: When::Knows(Wanted {
-                condition: Condition { property: Property::Pickupable, has: &[], lacks: &[Sparking] },
+                condition: Condition { property: Property::Pickupable, is: None },
                 lies: Lies::OnTheFloor,
                 classes: Classes::AllBut(&[]),
             }),
-            then: Then::Handle(Handling::PickUp),
+            then: Then::Handle(ActionKind::PickUp),
             says: "The {} does not belong on the floor.",
         },
         Rule { when: When::Always, then: Then::Roam, says: "" },
@@ -145,13 +153,27 @@ mod tests {
     #[test]
     fn every_class_that_is_named_is_in_the_catalogue_and_affords_what_is_done_to_it() {
         let catalog = Catalog::builtin();
-        for (classes, property) in
-            [(MAY_BE_OPEN, Property::Openable), (STAYS_ON, Property::Toggleable), (TABLES, Property::Receptacle)]
-        {
+        for (classes, property) in [(MAY_BE_OPEN, Property::Openable), (TABLES, Property::Receptacle)] {
             for class in classes {
                 let id = catalog.find(class).unwrap_or_else(|| panic!("{class}"));
                 assert!(catalog.class(id).has(property), "{class}");
             }
+        }
+    }
+
+    #[test]
+    fn what_stays_on_follows_from_the_table() {
+        let catalog = Catalog::builtin();
+        for (class, expected) in [
+            ("KitchenCounterSink_01", true),
+            ("Radio_01", true),
+            ("V_Monitor_Gravity", true),
+            ("LightSwitch_01", false),
+            ("Microwave_01", false),
+            ("CableFrayed_01", false),
+            ("FuseBox_01_Lever", false),
+        ] {
+            assert_eq!(Classes::StayOn.hold(class, catalog.table()), expected, "{class}");
         }
     }
 

@@ -134,9 +134,7 @@ fn sink_and_target(scene: &Scene<'_>, object: ObjectId, what: &str) -> Result<(O
         let name = facts.name(object);
         return refuse(Status::ObjectNotPickedUp, format!("{name} has to be in my hand or in the sink to be {what}"));
     }
-    let sinks = facts.state.existing().map(|(id, _)| id).filter(|id| facts.class(*id).id == SINK);
-    let near = sinks.into_iter().find(|sink| scene.touch(*sink).is_ok());
-    near.map_or_else(
+    scene.basin().map_or_else(
         || refuse(Status::TargetOutOfRange, "there is no sink in reach: I have to go to one first"),
         |sink| Ok((sink, object)),
     )

@@ -108,14 +108,14 @@ fn names_of(facts: &Facts<'_>, classes: &[String]) -> String {
 }
 
 /// The anchors that a hand can put something at.
-fn open_anchors(facts: &Facts<'_>, receptacle: ObjectId) -> Vec<Anchor> {
+pub(super) fn open_anchors(facts: &Facts<'_>, receptacle: ObjectId) -> Vec<Anchor> {
     let mut free = free_anchors(facts, receptacle);
     free.retain(|anchor| !works::is_slot(facts, receptacle, anchor.index));
     free
 }
 
 /// The free anchor for what is held: its own where a receptacle is keyed, else the nearest roomy one.
-fn best_anchor(scene: &Scene<'_>, receptacle: ObjectId, held: ObjectId) -> Option<Anchor> {
+pub(super) fn best_anchor(scene: &Scene<'_>, receptacle: ObjectId, held: ObjectId) -> Option<Anchor> {
     let facts = scene.facts;
     if let Some(anchors) = keyed_anchors(facts, receptacle, &facts.class(held).id) {
         return anchors.first().copied();

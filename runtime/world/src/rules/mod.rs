@@ -2,18 +2,26 @@
 //!
 //! Nothing here changes anything; `apply` does. One file a family of commands.
 
-mod device;
 mod fluid;
 mod hand;
 mod opening;
 mod toggle;
 mod tool;
+mod view;
 
-pub(crate) use hand::keyed_anchors;
+pub(crate) use self::{
+    hand::keyed_anchors,
+    opening::is_doorway_clear,
+    toggle::{doors_of_buttons, works},
+    view::Observer,
+};
 
-use cohabit_cdf::{Action, BodyId, ObjectId, StateFlag, Status, Verb};
+use cohabit_cdf::{
+    Action, ActionKind, BodyId, ObjectId, StateFlag, Status, Verb,
+    catalog::table::{Judgement, Scope, Term},
+};
 
-use crate::{effect::Effect, facts::Facts, reach::Barrier, report::SoundKind, works};
+use crate::{effect::Effect, facts::Facts, reach::Barrier, report::SoundKind, works as machines};
 
 /// How far a hand reaches, level, m.
 pub(crate) const REACH_M: f32 = 1.6;
@@ -107,7 +115,44 @@ struct Scene<'a> {
     body: BodyId,
 }
 
-impl Scene<'_> {
+impl<'a> Scene<'a> {
+    /// What the table says of an action, or the refusal that it comes to.
+    fn check(&self, action: ActionKind, object: ObjectId) -> Result<Judgement<'a>, Ruling> {
+        let observer = Observer { facts: self.facts, body: Some(self.body) };
+        let Some(judgement) = self.facts.catalog.table().judge(&observer, action, object) else {
+            return refuse(Status::UnsupportedAction, "the table of actions has no rule for that");
+        };
+        let Some(need) = judgement.lack else { return Ok(judgement) };
+        if need.is_of_access() {
+            // Of what is in the way more can be said than a table knows.
+            match action {
+                ActionKind::Scan | ActionKind::Examine => self.near(object, LOOK_CLOSELY_M)?,
+                _ => self.touch(object)?,
+            }
+        }
+        refuse(need.status, self.told(&need.words, object))
+    }
+
+    /// Words of the table, with the names of those that they mean.
+    fn told(&self, words: &str, object: ObjectId) -> String {
+        let observer = Observer { facts: self.facts, body: Some(self.body) };
+        let scope = Scope::of(object);
+        Term::ALL.into_iter().fold(words.to_owned(), |words, term| {
+            let mark = format!("{{{}}}", term.name());
+            match scope.get(&observer, term).filter(|_| words.contains(&mark)) {
+                Some(id) => words.replace(&mark, &self.facts.name(id)),
+                None => words,
+            }
+        })
+    }
+
+    /// A sink that the hand reaches.
+    fn basin(&self) -> Option<ObjectId> {
+        let sinks = self.facts.state.existing().map(|(id, _)| id);
+        let basin = self.facts.catalog.table().basin();
+        sinks.filter(|id| self.facts.class(*id).id == basin).find(|sink| self.touch(*sink).is_ok())
+    }
+
     /// What the body holds.
     fn held(&self) -> Option<ObjectId> {
         self.facts.state.bodies[self.body.0 as usize].held
@@ -123,7 +168,7 @@ impl Scene<'_> {
     fn touch(&self, object: ObjectId) -> Result<(), Ruling> {
         self.near(object, REACH_M)?;
         let facts = self.facts;
-        if let Some(machine) = works::behind_glass(facts, object) {
+        if let Some(machine) = machines::behind_glass(facts, object) {
             let detail = format!(
                 "{} is behind the glass of {}: its button brings it out",
                 facts.name(object),

@@ -30,17 +30,21 @@ pub(super) fn close(scene: &Scene<'_>, object: ObjectId) -> Verdict {
     }
     clear_doorway(facts, object)?;
     let mut effects = vec![Effect::Set(object, StateFlag::Opened, false), Effect::sound(SoundKind::Close, object)];
-    effects.extend(works::freeze(facts, object));
+    effects.extend(works::settle(facts, object));
     Ok(Ruling::done(format!("I closed {name}"), effects))
 }
 
 /// Refuses to close a door on somebody.
 pub(super) fn clear_doorway(facts: &Facts<'_>, door: ObjectId) -> Result<(), Ruling> {
-    let in_the_way = facts.floor.gaps.iter().find(|gap| gap.door_object == Some(door)).is_some_and(|gap| {
-        facts.state.bodies.iter().any(|body| gap.print.distance(body.position) < crate::body::RADIUS_M)
-    });
-    if in_the_way {
+    if !is_doorway_clear(facts, door) {
         return refuse(Status::TargetInaccessible, "somebody stands in the doorway: it has to be clear first");
     }
     Ok(())
+}
+
+/// Whether nobody stands in the doorway of a door; what is no door between rooms has none.
+pub(crate) fn is_doorway_clear(facts: &Facts<'_>, door: ObjectId) -> bool {
+    facts.floor.gaps.iter().find(|gap| gap.door_object == Some(door)).is_none_or(|gap| {
+        !facts.state.bodies.iter().any(|body| gap.print.distance(body.position) < crate::body::RADIUS_M)
+    })
 }

@@ -7,12 +7,10 @@ use crate::{
     anchors::free_anchors,
     effect::{Effect, Spot},
     facts::Facts,
-    power::lacks_power,
     report::SoundKind,
 };
 
 const BEANS: &str = "CoffeeBeans_01";
-const FREEZER: &str = "FridgeUpper_02";
 
 /// What gets hot is no longer cold; a floppy disk breaks.
 pub(crate) fn heat(facts: &Facts<'_>, id: ObjectId) -> Vec<Effect> {
@@ -38,20 +36,6 @@ pub(super) fn chill(facts: &Facts<'_>, id: ObjectId) -> Vec<Effect> {
         return Vec::new();
     }
     vec![Effect::Set(id, StateFlag::Cold, true), Effect::Set(id, StateFlag::Hot, false)]
-}
-
-/// A freezer that is shut, or about to be, and has power chills what is in it; nothing else does.
-pub(crate) fn freeze(facts: &Facts<'_>, id: ObjectId) -> Vec<Effect> {
-    if facts.class(id).id != FREEZER || lacks_power(facts, id) {
-        return Vec::new();
-    }
-    facts.contents(id).into_iter().flat_map(|content| chill(facts, content)).collect()
-}
-
-/// Whether a coffee maker has water or beans to make coffee of.
-pub(crate) fn can_brew(facts: &Facts<'_>, maker: ObjectId) -> bool {
-    let filled = |id: ObjectId| facts.object(id).fluid != Fluid::None;
-    filled(maker) || facts.contents(maker).into_iter().any(|id| filled(id) || is_beans(facts, id))
 }
 
 /// Whether it is a bag of coffee beans.

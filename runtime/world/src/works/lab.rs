@@ -58,7 +58,7 @@ pub(super) fn anchor_of(facts: &Facts<'_>, id: ObjectId) -> u16 {
 }
 
 /// The class that a printer prints: what somebody put in counts before what it came with.
-pub(crate) fn cartridge(facts: &Facts<'_>, printer: ObjectId) -> Option<ClassId> {
+pub(super) fn cartridge(facts: &Facts<'_>, printer: ObjectId) -> Option<ClassId> {
     let loaded = facts.state.children(printer).filter_map(|child| {
         let object = facts.object(child);
         let by_class = recipes::printed(facts.catalog, object.class)?;
@@ -68,7 +68,7 @@ pub(crate) fn cartridge(facts: &Facts<'_>, printer: ObjectId) -> Option<ClassId>
 }
 
 /// The anchor of a printer where its product comes out: the last free one.
-pub(crate) fn product_anchor(facts: &Facts<'_>, printer: ObjectId) -> Option<Anchor> {
+pub(super) fn product_anchor(facts: &Facts<'_>, printer: ObjectId) -> Option<Anchor> {
     free_anchors(facts, printer).pop()
 }
 

@@ -123,15 +123,19 @@ fn to_the_future(facts: &Facts<'_>, object: ObjectId) -> Vec<Effect> {
     .collect()
 }
 
-/// Whether the dinosaur at `dino` eats that.
-fn eats(facts: &Facts<'_>, dino: ObjectId, food: ObjectId) -> bool {
+/// Whether the dinosaur at `dino` eats such things.
+pub(crate) fn likes(facts: &Facts<'_>, dino: ObjectId, food: ObjectId) -> bool {
     let Some(dinosaur) = facts.state.dinosaurs.get(&dino) else { return false };
-    let liked = match &dinosaur.food {
+    match &dinosaur.food {
         None => facts.has(food, Property::Eatable),
         Some(DinoFood::Class(class)) => facts.class(food).id == *class,
         Some(DinoFood::Instance(instance)) => facts.object(food).is_called(instance),
-    };
-    liked && !facts.is(food, StateFlag::Eaten)
+    }
+}
+
+/// Whether the dinosaur at `dino` eats that, as it is.
+fn eats(facts: &Facts<'_>, dino: ObjectId, food: ObjectId) -> bool {
+    likes(facts, dino, food) && !facts.is(food, StateFlag::Eaten)
 }
 
 /// The dinosaur at `dino` is fed; of what can be eaten something is left, all else is gone.

@@ -14,14 +14,12 @@ use crate::{
     report::SoundKind,
 };
 
-const VENDING: &str = "VendingMachine_01";
-
 /// The anchors of a machine that are slots; none for what does not vend.
 fn slots(facts: &Facts<'_>, machine: ObjectId) -> Range<usize> {
     let class = facts.class(machine);
     let surfaces = class.receptacle.as_ref().map_or(&[][..], |kind| &kind.surfaces);
     match surfaces {
-        [_, .., last] if class.id == VENDING => {
+        [_, .., last] if facts.catalog.table().device(&class.id).slots => {
             let total = anchors(facts, machine).len();
             total.saturating_sub((last.anchors[0] * last.anchors[1]) as usize)..total
         }

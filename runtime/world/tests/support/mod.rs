@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, dead_code)]
 
+pub mod chance;
 pub mod play;
 pub mod script;
 pub mod sound;

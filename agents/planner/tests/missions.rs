@@ -1,0 +1,241 @@
+//! Missions solved from their goals alone: nothing is said, and the plan is carried out in a world.
+
+#![allow(clippy::unwrap_used)]
+
+use std::{path::PathBuf, sync::Arc, time::Instant};
+
+use cohabit_cdf::{ActionKind, Catalog, Layout, mission::read_mission};
+use cohabit_planner::{Limits, Plan, PlanError, plan};
+use cohabit_world::{Action, BodyId, Input, Status, World};
+use serde_json::{Value, json};
+
+const ME: BodyId = BodyId(0);
+/// No command takes longer: one simulated minute.
+const LONGEST_TICKS: u32 = 3600;
+const TICKS_A_SECOND: f32 = 60.0;
+
+fn reference(file: &str) -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared/arena").join(file)
+}
+
+fn world(catalog: &Arc<Catalog>, id: &str, text: &str) -> World {
+    let checked = read_mission(id, text, catalog).unwrap_or_else(|problems| panic!("{id}: {}", problems.0[0]));
+    let mission = checked.mission;
+    let layout = Layout::builtin(&mission.layout).unwrap_or_else(|_| Layout::builtin("OfficeLayout1").unwrap());
+    World::new(Arc::clone(catalog), Arc::new(layout), Arc::new(mission), 11).unwrap()
+}
+
+fn planned(world: &World) -> Result<Plan, PlanError> {
+    let met: Vec<bool> = world.goals().iter().map(|goal| goal.met).collect();
+    plan(&world.symbols(ME), world.mission(), &met, &Limits::default())
+}
+
+fn run(world: &mut World, action: Action) -> (Status, String) {
+    let command = world.tick() + 1;
+    let mut inputs = vec![Input { command, body: ME, action }];
+    for _ in 0..LONGEST_TICKS {
+        let report = world.step(&inputs);
+        inputs.clear();
+        if let Some(outcome) = report.outcomes.into_iter().find(|outcome| outcome.command == command) {
+            return (outcome.status, outcome.detail);
+        }
+    }
+    panic!("{action:?} never came to an outcome");
+}
+
+/// Carries a plan out; what went wrong, if anything.
+fn carry_out(world: &mut World, plan: &Plan) -> Result<(), String> {
+    for step in &plan.steps {
+        let (status, detail) = run(world, step.action);
+        if !status.is_success() {
+            return Err(format!("{}: {status:?}: {detail}", told(world, step.action)));
+        }
+        for _ in 0..step.wait_ticks(TICKS_A_SECOND) {
+            world.step(&[]);
+        }
+    }
+    world.step(&[]);
+    let open: Vec<i64> = world.goals().iter().filter(|goal| !goal.met).map(|goal| goal.id).collect();
+    let steps: Vec<String> = plan.steps.iter().map(|step| told(world, step.action)).collect();
+    if open.is_empty() { Ok(()) } else { Err(format!("goals {open:?} are not met after {steps:?}")) }
+}
+
+fn told(world: &World, action: Action) -> String {
+    let name = |id| world.object(id).map_or("?", |view| view.instance).to_owned();
+    ActionKind::of(&action).map_or_else(|| format!("{action:?}"), |(kind, id)| format!("{} {}", kind.name(), name(id)))
+}
+
+/// Plans, and carries that out.
+fn solve(world: &mut World) -> Result<Plan, String> {
+    let plan = planned(world).map_err(|error| error.to_string())?;
+    carry_out(world, &plan)?;
+    Ok(plan)
+}
+
+#[test]
+#[cfg_attr(not(reference_data), ignore = "needs the reference data in ../shared/arena")]
+fn real_missions_are_solved_from_their_goals() {
+    let catalog = Arc::new(Catalog::builtin());
+    let text = std::fs::read_to_string(reference("missions-dev.jsonl")).unwrap();
+    let (mut times, mut unsolved, mut deeds) = (Vec::new(), Vec::new(), 0);
+    for line in text.lines() {
+        let mission: Value = serde_json::from_str(line).unwrap();
+        let id = mission["id"].as_str().unwrap();
+        let mut world = world(&catalog, id, &mission["cdf"].to_string());
+        let started = Instant::now();
+        let plan = planned(&world);
+        times.push(started.elapsed());
+        let result = plan.map_err(|error| error.to_string()).and_then(|plan| {
+            deeds += plan.deeds();
+            carry_out(&mut world, &plan)
+        });
+        unsolved.extend(result.err().map(|why| format!("{id}: {why}")));
+    }
+    times.sort();
+    let at = |share: f64| times[((times.len() - 1) as f64 * share) as usize];
+    println!(
+        "{} of {} missions solved, {deeds} deeds; planning: median {:?}, p99 {:?}, longest {:?}",
+        times.len() - unsolved.len(),
+        times.len(),
+        at(0.5),
+        at(0.99),
+        at(1.0)
+    );
+    assert!(unsolved.is_empty(), "unsolved:\n{}", unsolved.join("\n"));
+}
+
+#[test]
+#[cfg_attr(not(reference_data), ignore = "needs the reference data in ../shared/arena")]
+fn the_missions_of_the_reference_are_solved() {
+    let catalog = Arc::new(Catalog::builtin());
+    let mut solved = 0;
+    for entry in std::fs::read_dir(reference("cdf")).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_name().unwrap().to_string_lossy().into_owned();
+        let mut world = world(&catalog, &name, &std::fs::read_to_string(&path).unwrap());
+        let result = solve(&mut world);
+        assert!(result.is_ok(), "{name}: {}", result.unwrap_err());
+        solved += 1;
+    }
+    assert!(solved > 0);
+}
+
+#[test]
+fn the_missions_of_the_project_are_solved() {
+    let catalog = Arc::new(Catalog::builtin());
+    for (name, text) in cohabit_cdf::mission::builtin() {
+        let mut world = world(&catalog, name, text);
+        let result = solve(&mut world);
+        assert!(result.is_ok(), "{name}: {}", result.unwrap_err());
+    }
+}
+
+/// A mission in the break room with these objects, and one goal.
+fn mission(objects: &[Value], instance: &str, state: &str) -> String {
+    let all: Vec<Value> = objects.to_vec();
+    json!({
+        "task_description": "", "goal_text": "one",
+        "scene": {
+            "floor_plan": "1", "scene_id": "one", "roomLocation": ["BreakRoom"], "required_objects": all,
+            "layoutOverride": "OfficeLayout1",
+        },
+        "task_goals": [{
+            "goal_id": 4, "description": "Get it done", "object_states": [{ instance: state }],
+            "object_states_relation": "and", "preconditions": [],
+            "visibility": { "isHidden": false, "activationInteractable": "ALWAYS UNLOCKED", "stickyNoteIndex": 0 },
+            "canReset": false,
+        }],
+        "stateconditions": [],
+    })
+    .to_string()
+}
+
+fn object(name: &str, states: &[(&str, &str)]) -> Value {
+    let states: Vec<Value> = states.iter().map(|(key, value)| json!({ *key: value })).collect();
+    json!({ "name": name, "state": states, "roomLocation": ["BreakRoom"] })
+}
+
+#[test]
+fn goals_of_many_kinds_are_reached() {
+    let catalog = Arc::new(Catalog::builtin());
+    for (objects, instance, state) in [
+        (vec![object("CoffeeMug_Boss_1", &[])], "CoffeeMug_Boss_1", "isHot=true"),
+        (vec![object("Bowl_01_1", &[])], "Bowl_01_1", "isFilled=Water"),
+        (vec![object("Bowl_01_1", &[("isBroken", "true")])], "Bowl_01_1", "isBroken=false"),
+        (vec![object("FoodPlate_01_1", &[("isDirty", "true")])], "FoodPlate_01_1", "isDirty=false"),
+        (vec![object("BreadLoaf_1", &[]), object("Knife_01_1", &[])], "BreadSlice_01_*", "isPickedUp=true"),
+        (vec![object("Apple_1", &[])], "Carrot_01_*", "isPickedUp=true"),
+        (vec![object("CoffeeMug_Boss_1", &[])], "CoffeeMug_Boss_1", "isEmbiggenated=true"),
+        (vec![object("CoffeeMug_Boss_1", &[])], "CoffeeMug_Boss_1", "isCold=true"),
+        (vec![object("Bowl_01_1", &[]), object("Cereal_Box_01_1", &[])], "Bowl_01_1", "ContainsCereal=true"),
+        (vec![object("CoffeeMug_Boss_1", &[]), object("CoffeeBeans_01_1", &[])], "CoffeeMug_Boss_1", "isFilled=Coffee"),
+        (vec![], "Computer_Monitor_01_1", "isScanned=true"),
+        (vec![], "VendingMachine_01_B4_Button_*", "isUsed=true"),
+        (vec![object("Floppy_Virus_1", &[])], "Computer_Monitor_01_1", "isInfected=true"),
+        (vec![object("Bowl_01_1", &[]), object("Hammer_1", &[])], "Bowl_01_1", "isBroken=true"),
+    ] {
+        let mut world = world(&catalog, instance, &mission(&objects, instance, state));
+        let result = solve(&mut world);
+        assert!(result.is_ok(), "{instance} {state}: {}", result.unwrap_err());
+    }
+}
+
+#[test]
+fn what_cannot_be_is_said_with_its_reason() {
+    let catalog = Arc::new(Catalog::builtin());
+    let without = |class: &str| object(&format!("{class}_1"), &[("Blacklist", "true")]);
+    for (objects, instance, state, reason) in [
+        (vec![object("Bowl_01_1", &[])], "Bowl_01_1", "isSparking=true", "nothing here makes the bowl be sparking"),
+        (
+            vec![
+                object("CoffeeMug_Boss_1", &[]),
+                object("FridgeUpper_02_1", &[("isLocked", "true")]),
+                object("V_Monitor_FreezeRay_1", &[("Blacklist", "true")]),
+                without("FuseBox_01"),
+            ],
+            "CoffeeMug_Boss_1",
+            "isCold=true",
+            "is locked: it does not open by hand",
+        ),
+    ] {
+        let world = world(&catalog, instance, &mission(&objects, instance, state));
+        match planned(&world) {
+            Err(PlanError::Unreachable { goal: 4, description, reason: found }) => {
+                assert_eq!(description, "Get it done");
+                assert!(found.contains(reason), "{found}");
+            }
+            other => panic!("{instance} {state}: {other:?}"),
+        }
+    }
+}
+
+/// A bin that dirties what is in it, if it is not empty: no code knows of it.
+const LAB: &str = r#"
+[[device]]
+class = ["TrashCan_01"]
+always = true
+needs = [["it is occupied", "ActionExecutionError", "{it} is empty: something has to be put in first"]]
+press = ["run it"]
+work = "soil"
+moment_s = 4.0
+
+[[work]]
+name = "soil"
+over = "contents"
+effects = [{ if = ["thing affords DIRTYABLE"], do = ["set thing Dirty"] }]
+"#;
+
+#[test]
+fn a_device_of_the_table_alone_is_planned_with_and_works() {
+    let files: Vec<_> = Catalog::builtin_table().iter().copied().chain([("lab.toml", LAB)]).collect();
+    let catalog = Arc::new(Catalog::builtin().with_table(&files).unwrap());
+    let text = mission(
+        &[object("FoodPlate_01_1", &[("isDirty", "false"), ("Unique", "true")])],
+        "FoodPlate_01_1",
+        "isDirty=true",
+    );
+    let mut world = world(&catalog, "soil", &text);
+    let plan = solve(&mut world).unwrap();
+    let last = plan.steps.last().map(|step| told(&world, step.action)).unwrap();
+    assert!(last.starts_with("toggle TrashCan_01"), "{last}");
+}

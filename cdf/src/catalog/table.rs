@@ -1,0 +1,426 @@
+//! The table of actions and devices: what each needs, what it changes, how it is refused; as data, checked once.
+//!
+//! Whoever has to know what can be done reads it here: [`View`] evaluates it over any state that can answer for its
+//! things, [`crate::symbolic`] predicts with it.
+
+mod affords;
+mod change;
+mod condition;
+mod file;
+mod kind;
+mod view;
+
+use std::collections::BTreeMap;
+
+use serde::Deserialize;
+
+pub use self::{
+    change::{Change, Effect},
+    condition::{ClassPattern, Condition, Content, Range, Term, Test},
+    kind::ActionKind,
+    view::{Judgement, Scope, View, takes},
+};
+use self::{condition::Test as T, file::Reader};
+use crate::{action::Status, state::StateFlag};
+
+/// Something that must hold, and what is answered where it does not.
+#[derive(Clone, Debug, Eq, PartialEq)]
+pub struct Need {
+    /// One of these must hold.
+    pub any: Vec<Condition>,
+    /// The answer if none does.
+    pub status: Status,
+    /// The same for people, in the words of who acts; `{it}`, `{held}`, … stand for names.
+    pub words: String,
+}
+
+impl Need {
+    /// Whether it is about getting at the thing, not about the thing.
+    #[must_use]
+    pub fn is_of_access(&self) -> bool {
+        self.any.iter().all(|condition| {
+            let of_place = matches!(
+                condition.test,
+                T::Exists | T::Free | T::Uncovered | T::Within(_) | T::Accessible | T::BehindGlass
+            );
+            condition.term == Term::It && (of_place || condition.test == T::Is(StateFlag::Sparking))
+        })
+    }
+}
+
+/// One way of an action.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rule {
+    /// What it is called.
+    pub name: String,
+    /// The action that it is of.
+    pub action: ActionKind,
+    /// When it is this rule that counts.
+    pub when: Vec<Condition>,
+    /// What people say for it.
+    pub words: Vec<String>,
+    /// What it needs, in order.
+    pub needs: Vec<Need>,
+    /// What it changes.
+    pub effects: Vec<Effect>,
+    /// What is to be said although it was done.
+    pub but: Vec<Need>,
+}
+
+/// Where the work of a device is done.
+#[derive(Clone, Copy, Debug, Default, Deserialize, Eq, PartialEq)]
+#[serde(rename_all = "snake_case")]
+pub enum Site {
+    /// In itself.
+    #[default]
+    It,
+    /// In what it works.
+    Machine,
+    /// In what its machine aims at.
+    Target,
+}
+
+/// A class of devices.
+#[derive(Clone, Debug, PartialEq)]
+#[allow(clippy::struct_excessive_bools)]
+pub struct Device {
+    /// The classes.
+    pub classes: Vec<String>,
+    /// The classes that it works, where a floor plan does not say which object.
+    pub works: Vec<String>,
+    /// The classes that it aims at, the same.
+    pub aims: Vec<String>,
+    /// The classes that work it, if its own switch does not.
+    pub worked_by: Vec<String>,
+    /// What a press needs beyond the rule.
+    pub needs: Vec<Need>,
+    /// What a press changes beyond the rule.
+    pub press: Vec<Effect>,
+    /// The name of the work it does when it runs.
+    pub work: Option<String>,
+    /// Where it does that.
+    pub at: Site,
+    /// The name of the work it does while it is shut and has power.
+    pub shut_work: Option<String>,
+    /// Whether a press is answered although the class affords none.
+    pub answers_always: bool,
+    /// Whether it keeps its state when the power goes.
+    pub stays_without_power: bool,
+    /// Whether it is live, or frees a room of power.
+    pub dangerous: bool,
+    /// Whether it sounds like an alarm.
+    pub alarm: bool,
+    /// Whether its machine sounds like a ray.
+    pub ray: bool,
+    /// Whether the places of its last surface are slots behind glass.
+    pub slots: bool,
+    /// From the press to its work, s.
+    pub work_s: f32,
+    /// How long it is on, s.
+    pub moment_s: f32,
+}
+
+impl Device {
+    /// Whether it stays on when switched on.
+    #[must_use]
+    pub fn stays_on(&self) -> bool {
+        self.press.iter().flat_map(|effect| &effect.changes).any(|change| matches!(change, Change::Flip(..)))
+    }
+}
+
+/// To which things a work is done.
+#[derive(Clone, Copy, Debug, Deserialize, Eq, PartialEq)]
+#[serde(rename_all = "snake_case")]
+pub enum Over {
+    /// To all in it, at any depth.
+    Contents,
+    /// To what is directly in it.
+    Inside,
+    /// To the machine itself.
+    Machine,
+}
+
+/// What a machine does.
+#[derive(Clone, Debug, Eq, PartialEq)]
+pub struct Work {
+    /// What it is called.
+    pub name: String,
+    /// To which things.
+    pub over: Over,
+    /// What it changes about each of them.
+    pub effects: Vec<Effect>,
+}
+
+/// Why a table could not be read.
+#[derive(Debug, thiserror::Error)]
+pub enum TableError {
+    /// The text is not the TOML expected.
+    #[error("{file}: {source}")]
+    Syntax {
+        /// Which file.
+        file: String,
+        /// Where and what.
+        source: Box<toml::de::Error>,
+    },
+    /// A condition, a change or a name of shared needs does not exist.
+    #[error("{file}: {reason}; the README beside the table lists what there is")]
+    Text {
+        /// Which file.
+        file: String,
+        /// What is wrong.
+        reason: String,
+    },
+    /// A press cannot change that: it sets, fills, paints, flips, runs, feeds, turns or swings.
+    #[error("{file}: the device `{device}` changes on a press what no press can: {change:?}; make it a work")]
+    NoPress {
+        /// Which file.
+        file: String,
+        /// The first class of the device.
+        device: String,
+        /// The change.
+        change: Change,
+    },
+    /// It names a class that the catalogue does not have.
+    #[error("{file}: `{class}` is no class of the catalogue")]
+    NoClass {
+        /// Which file.
+        file: String,
+        /// The id.
+        class: String,
+    },
+    /// A device does a work that no file has.
+    #[error("{file}: the device `{device}` does `{work}`, which no work is called")]
+    NoWork {
+        /// Which file.
+        file: String,
+        /// The first class of the device.
+        device: String,
+        /// The name.
+        work: String,
+    },
+}
+
+/// All rules, devices, works and recipes.
+#[derive(Clone, Debug)]
+pub struct ActionTable {
+    rules: Vec<Rule>,
+    devices: Vec<Device>,
+    device_by_class: BTreeMap<String, usize>,
+    works: Vec<Work>,
+    plain: Device,
+    basin: String,
+    slice: BTreeMap<String, String>,
+    prints: BTreeMap<String, String>,
+    yesterday: BTreeMap<String, String>,
+}
+
+/// An empty table: nothing can be done, and what is switched flips.
+impl Default for ActionTable {
+    fn default() -> Self {
+        let flip = Effect { when: Vec::new(), changes: vec![Change::Flip(Term::It, None)] };
+        let plain = Device {
+            classes: Vec::new(),
+            works: Vec::new(),
+            aims: Vec::new(),
+            worked_by: Vec::new(),
+            needs: Vec::new(),
+            press: vec![flip],
+            work: None,
+            at: Site::It,
+            shut_work: None,
+            answers_always: false,
+            stays_without_power: false,
+            dangerous: false,
+            alarm: false,
+            ray: false,
+            slots: false,
+            work_s: 0.0,
+            moment_s: 0.0,
+        };
+        Self {
+            rules: Vec::new(),
+            devices: Vec::new(),
+            device_by_class: BTreeMap::new(),
+            works: Vec::new(),
+            plain,
+            basin: String::new(),
+            slice: BTreeMap::new(),
+            prints: BTreeMap::new(),
+            yesterday: BTreeMap::new(),
+        }
+    }
+}
+
+impl ActionTable {
+    /// Reads a table from `(file name, text)`; `is_class` says which classes there are. A later file's device takes the
+    /// place of an earlier one of the same class.
+    ///
+    /// # Errors
+    /// [`TableError`] names the file and what is wrong in it.
+    pub fn parse(files: &[(&str, &str)], is_class: &dyn Fn(&str) -> bool) -> Result<Self, TableError> {
+        let read: Vec<_> =
+            files.iter().map(|(file, text)| Ok((*file, file::read(file, text)?))).collect::<Result<_, _>>()?;
+        let times = read.iter().find_map(|(_, file)| file.times);
+        let times = times.unwrap_or(file::Times { work_s: 0.25, moment_s: 2.0 });
+        let mut table = Self::default();
+        (table.plain.work_s, table.plain.moment_s) = (times.work_s, times.moment_s);
+        for (file, read) in &read {
+            let reader = Reader { file, times };
+            table.rules.extend(reader.rules(read)?);
+            table.works.extend(reader.works(read)?);
+            for device in reader.devices(read)? {
+                for class in &device.classes {
+                    table.device_by_class.insert(class.clone(), table.devices.len());
+                }
+                table.devices.push(device);
+            }
+            if let Some(basin) = &read.basin {
+                table.basin.clone_from(basin);
+            }
+            table.slice.extend(read.slice.clone());
+            table.prints.extend(read.prints.clone());
+            table.yesterday.extend(read.yesterday.clone());
+            table.check(file, is_class)?;
+        }
+        for (file, _) in &read {
+            table.check_works(file)?;
+        }
+        Ok(table)
+    }
+
+    /// All rules, in the order in which they are tried.
+    #[must_use]
+    pub fn rules(&self) -> &[Rule] {
+        &self.rules
+    }
+
+    /// All devices.
+    #[must_use]
+    pub fn devices(&self) -> &[Device] {
+        &self.devices
+    }
+
+    /// The device of a class; one that flips, if no entry has it.
+    #[must_use]
+    pub fn device(&self, class: &str) -> &Device {
+        self.device_by_class.get(class).map_or(&self.plain, |index| &self.devices[*index])
+    }
+
+    /// Whether a class has an entry of its own.
+    #[must_use]
+    pub fn is_device(&self, class: &str) -> bool {
+        self.device_by_class.contains_key(class)
+    }
+
+    /// The work of that name.
+    #[must_use]
+    pub fn work(&self, name: &str) -> Option<&Work> {
+        self.works.iter().find(|work| work.name == name)
+    }
+
+    /// All works.
+    #[must_use]
+    pub fn works(&self) -> &[Work] {
+        &self.works
+    }
+
+    /// The class where water runs.
+    #[must_use]
+    pub fn basin(&self) -> &str {
+        &self.basin
+    }
+
+    /// The class of what comes off when that class is cut.
+    #[must_use]
+    pub fn slice(&self, class: &str) -> Option<&str> {
+        self.slice.get(class).map(String::as_str)
+    }
+
+    /// The class that a cartridge of that class prints by itself; none for what is no cartridge.
+    #[must_use]
+    pub fn prints(&self, class: &str) -> Option<&str> {
+        self.prints.get(class).map(String::as_str)
+    }
+
+    /// The class that things of that class were of yesterday.
+    #[must_use]
+    pub fn yesterday(&self, class: &str) -> Option<&str> {
+        self.yesterday.get(class).map(String::as_str)
+    }
+
+    /// Cartridges, with what they print.
+    pub fn cartridges(&self) -> impl Iterator<Item = (&str, &str)> {
+        self.prints.iter().map(|(from, to)| (from.as_str(), to.as_str()))
+    }
+
+    /// All classes that the table names.
+    fn classes(&self) -> Vec<String> {
+        let conditions = |needs: &[Need], effects: &[Effect], when: &[Condition]| {
+            let needs = needs.iter().flat_map(|need| need.any.clone());
+            let effects = effects.iter().flat_map(|effect| effect.when.clone());
+            needs.chain(effects).chain(when.iter().cloned()).filter_map(class_of).collect::<Vec<_>>()
+        };
+        let changes = |effects: &[Effect]| {
+            let changes = effects.iter().flat_map(|effect| effect.changes.clone());
+            changes
+                .filter_map(|change| match change {
+                    Change::Spawn(_, class) | Change::Become(_, class) => Some(class),
+                    _ => None,
+                })
+                .collect::<Vec<_>>()
+        };
+        let mut all = Vec::new();
+        for rule in &self.rules {
+            all.extend(conditions(&rule.needs, &rule.effects, &rule.when));
+            all.extend(changes(&rule.effects));
+        }
+        for device in &self.devices {
+            all.extend(conditions(&device.needs, &device.press, &[]));
+            all.extend(changes(&device.press));
+            all.extend(
+                [&device.classes, &device.works, &device.aims, &device.worked_by].into_iter().flatten().cloned(),
+            );
+        }
+        for work in &self.works {
+            all.extend(conditions(&[], &work.effects, &[]));
+            all.extend(changes(&work.effects));
+        }
+        for recipe in [&self.slice, &self.prints, &self.yesterday] {
+            all.extend(recipe.iter().flat_map(|(from, to)| [from.clone(), to.clone()]));
+        }
+        all.extend((!self.basin.is_empty()).then(|| self.basin.clone()));
+        all
+    }
+
+    fn check(&self, file: &str, is_class: &dyn Fn(&str) -> bool) -> Result<(), TableError> {
+        let unknown = self.classes().into_iter().find(|class| !class.ends_with('*') && !is_class(class));
+        unknown.map_or(Ok(()), |class| Err(TableError::NoClass { file: file.to_owned(), class }))
+    }
+
+    fn check_works(&self, file: &str) -> Result<(), TableError> {
+        for device in &self.devices {
+            let changes = device.press.iter().flat_map(|effect| &effect.changes);
+            if let Some(change) = changes.into_iter().find(|change| !change.is_of_a_press()) {
+                let name = device.classes.first().cloned().unwrap_or_default();
+                return Err(TableError::NoPress { file: file.to_owned(), device: name, change: change.clone() });
+            }
+        }
+        let names = |device: &Device| [device.work.clone(), device.shut_work.clone()].into_iter().flatten();
+        let of_devices = self.devices.iter().flat_map(|device| names(device).map(move |work| (device, work)));
+        let missing = of_devices.into_iter().find(|(_, work)| self.work(work).is_none());
+        missing.map_or(Ok(()), |(device, work)| {
+            let device = device.classes.first().cloned().unwrap_or_default();
+            Err(TableError::NoWork { file: file.to_owned(), device, work })
+        })
+    }
+}
+
+/// The class that a condition names.
+fn class_of(condition: Condition) -> Option<String> {
+    match condition.test {
+        T::IsA(ClassPattern(class))
+        | T::HoldsA(ClassPattern(class))
+        | T::Contains(Content::Class(ClassPattern(class))) => Some(class),
+        _ => None,
+    }
+}

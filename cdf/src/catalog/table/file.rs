@@ -1,0 +1,238 @@
+//! The table's files as they are written, and how their texts become conditions and changes.
+
+use std::collections::BTreeMap;
+
+use serde::Deserialize;
+
+use super::{
+    ActionKind, Device, Need, Rule, Site, TableError, Work,
+    change::{Change, Effect},
+    condition::Condition,
+};
+use crate::action::Status;
+
+/// One file: any part of the table.
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct TableFile {
+    pub basin: Option<String>,
+    #[serde(default)]
+    shared: BTreeMap<String, Vec<RawNeed>>,
+    #[serde(default, rename = "rule")]
+    rules: Vec<RawRule>,
+    #[serde(default, rename = "device")]
+    devices: Vec<RawDevice>,
+    #[serde(default, rename = "work")]
+    works: Vec<RawWork>,
+    pub times: Option<Times>,
+    #[serde(default)]
+    pub slice: BTreeMap<String, String>,
+    #[serde(default)]
+    pub prints: BTreeMap<String, String>,
+    #[serde(default)]
+    pub yesterday: BTreeMap<String, String>,
+}
+
+/// How long machines run, unless their entry says so.
+#[derive(Clone, Copy, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Times {
+    pub work_s: f32,
+    pub moment_s: f32,
+}
+
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum RawNeed {
+    Shared(String),
+    One(OneOrMany, Status, String),
+}
+
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum OneOrMany {
+    One(String),
+    Many(Vec<String>),
+}
+
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum RawEffect {
+    Always(String),
+    If {
+        #[serde(rename = "if")]
+        when: Vec<String>,
+        #[serde(rename = "do")]
+        changes: Vec<String>,
+    },
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawRule {
+    name: String,
+    action: ActionKind,
+    #[serde(default)]
+    when: Vec<String>,
+    #[serde(default)]
+    words: Vec<String>,
+    #[serde(default)]
+    needs: Vec<RawNeed>,
+    #[serde(default)]
+    effects: Vec<RawEffect>,
+    #[serde(default)]
+    but: Vec<RawNeed>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+#[allow(clippy::struct_excessive_bools)]
+struct RawDevice {
+    class: Vec<String>,
+    #[serde(default)]
+    works: Vec<String>,
+    #[serde(default)]
+    aims: Vec<String>,
+    #[serde(default)]
+    worked_by: Vec<String>,
+    #[serde(default)]
+    needs: Vec<RawNeed>,
+    #[serde(default)]
+    press: Vec<RawEffect>,
+    work: Option<String>,
+    #[serde(default)]
+    at: Site,
+    shut_work: Option<String>,
+    #[serde(default)]
+    always: bool,
+    #[serde(default)]
+    stays: bool,
+    #[serde(default)]
+    dangerous: bool,
+    #[serde(default)]
+    alarm: bool,
+    #[serde(default)]
+    ray: bool,
+    #[serde(default)]
+    slots: bool,
+    work_s: Option<f32>,
+    moment_s: Option<f32>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawWork {
+    name: String,
+    over: super::Over,
+    effects: Vec<RawEffect>,
+}
+
+/// Reads one file's text.
+pub(super) fn read(file: &str, text: &str) -> Result<TableFile, TableError> {
+    toml::from_str(text).map_err(|source| TableError::Syntax { file: file.to_owned(), source: Box::new(source) })
+}
+
+/// What is read of one file, with its name for errors.
+pub(super) struct Reader<'a> {
+    pub file: &'a str,
+    pub times: Times,
+}
+
+impl Reader<'_> {
+    pub fn rules(&self, read: &TableFile) -> Result<Vec<Rule>, TableError> {
+        let rule = |raw: &RawRule| {
+            Ok(Rule {
+                name: raw.name.clone(),
+                action: raw.action,
+                when: self.conditions(&raw.when)?,
+                words: raw.words.clone(),
+                needs: self.needs(&raw.needs, &read.shared, 0)?,
+                effects: self.effects(&raw.effects)?,
+                but: self.needs(&raw.but, &read.shared, 0)?,
+            })
+        };
+        read.rules.iter().map(rule).collect()
+    }
+
+    pub fn devices(&self, read: &TableFile) -> Result<Vec<Device>, TableError> {
+        let device = |raw: &RawDevice| {
+            Ok(Device {
+                classes: raw.class.clone(),
+                works: raw.works.clone(),
+                aims: raw.aims.clone(),
+                worked_by: raw.worked_by.clone(),
+                needs: self.needs(&raw.needs, &read.shared, 0)?,
+                press: self.effects(&raw.press)?,
+                work: raw.work.clone(),
+                at: raw.at,
+                shut_work: raw.shut_work.clone(),
+                answers_always: raw.always,
+                stays_without_power: raw.stays,
+                dangerous: raw.dangerous,
+                alarm: raw.alarm,
+                ray: raw.ray,
+                slots: raw.slots,
+                work_s: raw.work_s.unwrap_or(self.times.work_s),
+                moment_s: raw.moment_s.unwrap_or(self.times.moment_s),
+            })
+        };
+        read.devices.iter().map(device).collect()
+    }
+
+    pub fn works(&self, read: &TableFile) -> Result<Vec<Work>, TableError> {
+        let work =
+            |raw: &RawWork| Ok(Work { name: raw.name.clone(), over: raw.over, effects: self.effects(&raw.effects)? });
+        read.works.iter().map(work).collect()
+    }
+
+    fn needs(
+        &self,
+        raw: &[RawNeed],
+        shared: &BTreeMap<String, Vec<RawNeed>>,
+        depth: u32,
+    ) -> Result<Vec<Need>, TableError> {
+        /// Shared needs of shared needs; more is a circle.
+        const DEEPEST: u32 = 8;
+        let mut needs = Vec::new();
+        for need in raw {
+            match need {
+                RawNeed::Shared(name) => {
+                    let list = shared.get(name).filter(|_| depth < DEEPEST);
+                    let list = list.ok_or_else(|| self.text(format!("there are no shared needs `{name}`")))?;
+                    needs.extend(self.needs(list, shared, depth + 1)?);
+                }
+                RawNeed::One(conditions, status, words) => {
+                    let texts = match conditions {
+                        OneOrMany::One(text) => std::slice::from_ref(text),
+                        OneOrMany::Many(texts) => texts,
+                    };
+                    needs.push(Need { any: self.conditions(texts)?, status: *status, words: words.clone() });
+                }
+            }
+        }
+        Ok(needs)
+    }
+
+    fn effects(&self, raw: &[RawEffect]) -> Result<Vec<Effect>, TableError> {
+        let effect = |raw: &RawEffect| match raw {
+            RawEffect::Always(text) => Ok(Effect { when: Vec::new(), changes: vec![self.change(text)?] }),
+            RawEffect::If { when, changes } => Ok(Effect {
+                when: self.conditions(when)?,
+                changes: changes.iter().map(|text| self.change(text)).collect::<Result<_, _>>()?,
+            }),
+        };
+        raw.iter().map(effect).collect()
+    }
+
+    fn conditions(&self, texts: &[String]) -> Result<Vec<Condition>, TableError> {
+        texts.iter().map(|text| text.parse().map_err(|reason| self.text(reason))).collect()
+    }
+
+    fn change(&self, text: &str) -> Result<Change, TableError> {
+        text.parse().map_err(|reason| self.text(reason))
+    }
+
+    fn text(&self, reason: String) -> TableError {
+        TableError::Text { file: self.file.to_owned(), reason }
+    }
+}

@@ -1,0 +1,91 @@
+//! `cohabit generate`: missions by the thousand, each solved before it is written.
+
+use std::{
+    fs,
+    io::{self, Write as _},
+    path::PathBuf,
+    sync::Arc,
+    time::Instant,
+};
+
+use cohabit_cdf::Catalog;
+use cohabit_generate::{Order, Spec};
+use indicatif::{ProgressBar, ProgressStyle};
+
+use crate::{
+    failure::{bad_input, environment},
+    terminal::shown,
+};
+
+/// Makes missions from a specification. Each is checked, solved by the planner and played once; a line has the mission, its plan,
+/// how difficult it is, and a certificate: the digest of the world in which the plan met all goals.
+#[derive(clap::Args)]
+pub struct Generate {
+    /// A specification (TOML), or `builtin`: the twelve types of Alexa Arena's data set, and twelve more
+    #[arg(default_value = "builtin")]
+    spec: String,
+    /// How many missions to make
+    #[arg(long, value_name = "N", default_value_t = 240)]
+    count: usize,
+    /// The seed: the same one makes the same missions
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Write the missions to this file, a line each
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+    /// Threads; one for each core if not given. They do not change what is made
+    #[arg(long, value_name = "N")]
+    workers: Option<usize>,
+}
+
+impl Generate {
+    /// Makes them all. The file appears once it is whole.
+    pub fn run(&self) -> anyhow::Result<()> {
+        let catalog = Arc::new(Catalog::builtin());
+        let spec = self.spec(&catalog)?;
+        let workers = self.workers.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from));
+        let order = Order { count: self.count, seed: self.seed, workers: workers.max(1) };
+        let part = self.out.with_extension("part");
+        let failed = |error: io::Error| environment(format!("{}: {error}", part.display()));
+        let mut out = io::BufWriter::new(fs::File::create(&part).map_err(failed)?);
+        let bar = ProgressBar::new(self.count as u64).with_style(
+            ProgressStyle::with_template("{bar:30} {pos}/{len} made, {elapsed} ({eta} left)")
+                .unwrap_or_else(|_| ProgressStyle::default_bar()),
+        );
+        let (began, mut written) = (Instant::now(), Ok(()));
+        let made = cohabit_generate::generate(&spec, &catalog, order, &mut |mission| {
+            if written.is_ok() {
+                written = writeln!(out, "{}", mission.as_line());
+            }
+            bar.inc(1);
+        });
+        bar.finish_and_clear();
+        let whole = made.map_err(bad_input).and_then(|given_up| {
+            written.and_then(|()| out.flush()).map_err(failed)?;
+            Ok(given_up)
+        });
+        let given_up = match whole {
+            Ok(given_up) => given_up,
+            Err(error) => {
+                // Nobody takes a part for the whole.
+                let _ = fs::remove_file(&part);
+                return Err(error);
+            }
+        };
+        fs::rename(&part, &self.out).map_err(failed)?;
+        for (kind, missed) in given_up {
+            println!("{}: {} given up, the last because {}", shown(kind), missed.count, shown(missed.reason));
+        }
+        let seconds = began.elapsed().as_secs_f64();
+        println!("{} missions in {seconds:.1} s: {}", self.count, self.out.display());
+        Ok(())
+    }
+
+    fn spec(&self, catalog: &Catalog) -> anyhow::Result<Spec> {
+        if self.spec == "builtin" {
+            return Ok(Spec::builtin(catalog));
+        }
+        let text = fs::read_to_string(&self.spec).map_err(|error| bad_input(format!("{}: {error}", self.spec)))?;
+        Spec::parse(&self.spec, &text, catalog).map_err(bad_input)
+    }
+}

@@ -1,0 +1,112 @@
+//! Certificates: a mission read as any other, solved by the planner, its plan carried out in a world.
+
+use std::{sync::Arc, time::Duration};
+
+use cohabit_cdf::{ActionKind, Catalog, GoToTarget, Layout, mission::read_mission};
+use cohabit_planner::{Limits, Plan, plan};
+use cohabit_world::{Action, BodyId, Input, World};
+use serde::Serialize;
+
+/// The body that does it.
+const BODY: BodyId = BodyId(0);
+/// No command takes longer: two simulated minutes.
+const LONGEST_TICKS: u32 = 60 * 120;
+const TICKS_A_SECOND: f32 = 60.0;
+
+/// No limit of time: what is made must not depend on the machine.
+const LIMITS: Limits = Limits { states: 400, time: Duration::MAX };
+
+/// One step of a plan, by name.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PlannedStep {
+    /// What is done.
+    pub action: &'static str,
+    /// To which instance.
+    pub object: String,
+    /// How people say it.
+    #[serde(skip)]
+    pub(crate) said: String,
+}
+
+/// That a mission can be solved, and how.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Certificate {
+    /// The seed of what the mission leaves to chance.
+    pub seed: u64,
+    /// The digest of the world at the tick at which all goals were met, in hexadecimal.
+    pub digest: String,
+    /// That tick.
+    pub ticks: u64,
+    /// The score at it.
+    pub score: u32,
+    /// The plan.
+    #[serde(skip)]
+    pub plan: Vec<PlannedStep>,
+    /// Rooms that the plan leads to.
+    #[serde(skip)]
+    pub rooms: usize,
+    /// States that the planner looked at.
+    #[serde(skip)]
+    pub expanded: usize,
+}
+
+/// Reads, solves and plays a mission.
+///
+/// # Errors
+/// Why it cannot be read, laid out, solved or played, in words.
+pub fn certify(id: &str, cdf: &str, catalog: &Arc<Catalog>, seed: u64) -> Result<Certificate, String> {
+    let checked = read_mission(id, cdf, catalog).map_err(|problems| problems.to_string())?;
+    let layout = Layout::builtin(&checked.mission.layout).map_err(|error| error.to_string())?;
+    let world = World::new(Arc::clone(catalog), Arc::new(layout), Arc::new(checked.mission), seed);
+    let mut world = world.map_err(|error| error.to_string())?;
+    // What is met as the mission begins is met before anybody plans.
+    world.step(&[]);
+    let met: Vec<bool> = world.goals().iter().map(|goal| goal.met).collect();
+    let planned = plan(&world.symbols(BODY), world.mission(), &met, &LIMITS);
+    let planned = planned.map_err(|error| error.to_string())?;
+    let (steps, rooms) = carry_out(&mut world, &planned)?;
+    if world.finished().is_none() {
+        let open = world.goals().iter().filter(|goal| !goal.met).count();
+        return Err(format!("{open} goals are open after the plan"));
+    }
+    let digest = world.digest().iter().map(|byte| format!("{byte:02x}")).collect();
+    let (ticks, score) = (world.tick(), world.score());
+    Ok(Certificate { seed, digest, ticks, score, plan: steps, rooms, expanded: planned.expanded })
+}
+
+fn carry_out(world: &mut World, plan: &Plan) -> Result<(Vec<PlannedStep>, usize), String> {
+    let mut steps = Vec::new();
+    let mut rooms = std::collections::BTreeSet::new();
+    for step in &plan.steps {
+        steps.extend(named(world, step.action));
+        run(world, step.action)?;
+        rooms.extend(world.body(BODY).map(|body| body.room));
+        for _ in 0..step.wait_ticks(TICKS_A_SECOND).max(1) {
+            if world.finished().is_none() {
+                world.step(&[]);
+            }
+        }
+    }
+    Ok((steps, rooms.len()))
+}
+
+fn run(world: &mut World, action: Action) -> Result<(), String> {
+    let command = world.tick() + 1;
+    let mut inputs = vec![Input { command, body: BODY, action }];
+    for _ in 0..LONGEST_TICKS {
+        let report = world.step(&inputs);
+        inputs.clear();
+        if let Some(outcome) = report.outcomes.iter().find(|outcome| outcome.command == command) {
+            return if outcome.status.is_success() { Ok(()) } else { Err(outcome.detail.clone()) };
+        }
+    }
+    Err(format!("{action:?} never came to an end"))
+}
+
+fn named(world: &World, action: Action) -> Option<PlannedStep> {
+    let (kind, id) = ActionKind::of(&action)?;
+    let view = world.object(id)?;
+    let said = crate::instructions::said(world, kind, id);
+    debug_assert!(!matches!(action, Action::GoTo { target: GoToTarget::Room(_) }));
+    Some(PlannedStep { action: kind.name(), object: view.instance.to_owned(), said })
+}

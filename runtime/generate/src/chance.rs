@@ -1,0 +1,32 @@
+//! Draws that follow from a seed alone.
+
+use rand_chacha::{
+    ChaCha8Rng,
+    rand_core::{Rng as _, SeedableRng as _},
+};
+
+/// A source of draws.
+pub(crate) struct Chance(ChaCha8Rng);
+
+impl Chance {
+    pub fn new(seed: u64, stream: u64) -> Self {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        rng.set_stream(stream);
+        Self(rng)
+    }
+
+    /// A number below `count`; 0 where that is 0.
+    pub fn below(&mut self, count: usize) -> usize {
+        if count == 0 { 0 } else { (self.0.next_u64() % count as u64) as usize }
+    }
+
+    /// True in that share of all draws.
+    pub fn is(&mut self, share: f64) -> bool {
+        ((self.0.next_u64() >> 11) as f64 / (1_u64 << 53) as f64) < share
+    }
+
+    /// One of them, if there is any.
+    pub fn pick<'a, T>(&mut self, from: &'a [T]) -> Option<&'a T> {
+        from.get(self.below(from.len()))
+    }
+}

@@ -1,0 +1,236 @@
+//! A mission in the making: what stands where, what is wanted of it, as a mission file.
+
+use std::collections::BTreeMap;
+
+use cohabit_cdf::{Catalog, Color, Layout, ObjectClass, Property, RoomId, catalog::Stands, layout::Placement};
+use serde_json::{Map, Value, json};
+
+use crate::{
+    chance::Chance,
+    spec::{MissionType, Pools, VarKind, VarSpec},
+};
+
+/// The doors of every floor plan.
+const DOORS: u32 = 7;
+/// Where people leave and look for things: not in the way of every door.
+const ROOMS: [RoomId; 7] = [
+    RoomId::BreakRoom,
+    RoomId::MainOffice,
+    RoomId::SmallOffice,
+    RoomId::Lab1,
+    RoomId::Lab2,
+    RoomId::Reception,
+    RoomId::Warehouse,
+];
+
+/// What was decided so far.
+pub(crate) struct Draft<'a> {
+    chance: &'a mut Chance,
+    catalog: &'a Catalog,
+    layout: &'a Layout,
+    pools: &'a Pools,
+    vars: BTreeMap<String, String>,
+    objects: Vec<Value>,
+    conditions: Vec<Value>,
+    numbers: BTreeMap<String, u32>,
+}
+
+impl<'a> Draft<'a> {
+    pub fn new(catalog: &'a Catalog, layout: &'a Layout, pools: &'a Pools, chance: &'a mut Chance) -> Self {
+        let (vars, objects, conditions, numbers) = Default::default();
+        Self { chance, catalog, layout, pools, vars, objects, conditions, numbers }
+    }
+
+    /// A mission file of a type; none where chance has chosen what does not go together.
+    pub fn draw(mut self, kind: &MissionType) -> Option<Value> {
+        for var in &kind.vars {
+            let instance = self.var(var)?;
+            self.vars.insert(var.name.clone(), instance);
+        }
+        for _ in 0..self.chance.below(self.pools.distractors + 1) {
+            let class = self.carried(&[Property::Pickupable], &[])?;
+            self.put(&class, &[], &[])?;
+        }
+        let goals = kind.goals.iter().enumerate().map(|(number, goal)| self.goal(number, goal, kind.then));
+        let goals: Vec<Value> = goals.collect::<Option<_>>()?;
+        let start = ROOMS[self.chance.below(ROOMS.len())];
+        Some(self.finish(&kind.name, start, goals))
+    }
+
+    fn var(&mut self, var: &VarSpec) -> Option<String> {
+        match var.kind {
+            VarKind::Surface => self.surface(),
+            VarKind::Device => self.device(|class| {
+                (var.class.is_empty() || var.class.contains(&class.id))
+                    && var.affords.iter().all(|one| class.has(*one))
+                    && !var.without.iter().any(|one| class.has(*one))
+                    && !class.name.is_empty()
+            }),
+            VarKind::Thing => {
+                let class = self.class_of(var)?;
+                let instance = self.put(&class, &var.state, &var.inside)?;
+                if self.chance.is(self.pools.doubles) {
+                    self.put(&class, &var.state, &[])?;
+                }
+                Some(instance)
+            }
+        }
+    }
+
+    fn class_of(&mut self, var: &VarSpec) -> Option<String> {
+        if let Some(of) = &var.key_of {
+            let device = self.catalog.class_of_instance(self.vars.get(of)?)?;
+            let keys = &self.catalog.class(device).receptacle.as_ref()?.keys;
+            return self.chance.pick(keys).cloned();
+        }
+        if var.class.is_empty() {
+            self.carried(&var.affords, &var.without)
+        } else {
+            self.chance.pick(&var.class).cloned()
+        }
+    }
+
+    /// A class of things to carry.
+    fn carried(&mut self, affords: &[Property], without: &[Property]) -> Option<String> {
+        let is_fit = |class: &&ObjectClass| {
+            class.has(Property::Pickupable)
+                && affords.iter().all(|one| class.has(*one))
+                && !without.iter().any(|one| class.has(*one))
+                && !class.name.is_empty()
+                && !is_debris(class)
+        };
+        let fit: Vec<&str> = self.catalog.classes().iter().filter(is_fit).map(|class| class.id.as_str()).collect();
+        self.chance.pick(&fit).map(|class| (*class).to_owned())
+    }
+
+    /// Puts a thing somewhere.
+    fn put(&mut self, class: &str, state: &[String], inside: &[String]) -> Option<String> {
+        let (place, how) = if inside.is_empty() {
+            (self.surface()?, "on")
+        } else {
+            (self.device(|class| inside.contains(&class.id))?, "in")
+        };
+        let number = self.numbers.entry(class.to_owned()).or_default();
+        *number += 1;
+        let instance = format!("{class}_{number}");
+        let mut states: Vec<Value> =
+            state.iter().filter_map(|state| state.split_once('=')).map(|(key, value)| json!({ key: value })).collect();
+        if *number == 1 {
+            // What the floor plan has of it would be meant as well.
+            states.push(json!({ "Unique": "true" }));
+        }
+        self.objects.push(json!({ "name": instance, "state": states, "location": [{ place: how }] }));
+        Some(instance)
+    }
+
+    /// Something of the floor plan that can be told from all else in its room.
+    fn device(&mut self, is_fit: impl Fn(&ObjectClass) -> bool) -> Option<String> {
+        let class_of = |placement: &Placement| {
+            self.catalog.class_of_instance(&placement.instance).map(|class| self.catalog.class(class))
+        };
+        let looks = |placement: &Placement| class_of(placement).map(|class| (&class.name, &class.color));
+        let all = &self.layout.placements;
+        let is_alone = |placement: &&Placement| {
+            let like = |other: &&Placement| other.room == placement.room && looks(other) == looks(placement);
+            all.iter().filter(like).count() == 1
+        };
+        let fit: Vec<String> = all
+            .iter()
+            .filter(|placement| ROOMS.contains(&placement.room))
+            .filter(|placement| class_of(placement).is_some_and(&is_fit))
+            .filter(is_alone)
+            .map(|placement| placement.instance.clone())
+            .collect();
+        self.chance.pick(&fit).cloned()
+    }
+
+    /// Open furniture with room on it.
+    fn surface(&mut self) -> Option<String> {
+        self.device(|class| {
+            let is_open = class.receptacle.as_ref().is_some_and(|place| !place.enclosed && place.keys.is_empty());
+            let is_machine =
+                [Property::Powerable, Property::Toggleable, Property::Usable].iter().any(|one| class.has(*one));
+            is_open && !is_machine && class.stands == Stands::OnFloor && class.id != "TrashCan_01"
+        })
+    }
+
+    fn goal(&mut self, number: usize, goal: &str, then: bool) -> Option<Value> {
+        let states: Option<Vec<Value>> = goal.split(" and ").map(|state| self.goal_state(state)).collect();
+        let before: Vec<usize> = if then && number > 0 { vec![number - 1] } else { Vec::new() };
+        Some(json!({
+            "goal_id": number,
+            "description": "",
+            "object_states": states?,
+            "object_states_relation": "and",
+            "preconditions": before,
+            "visibility": { "isHidden": false, "activationInteractable": "ALWAYS UNLOCKED", "stickyNoteIndex": 0 },
+            "canReset": false,
+        }))
+    }
+
+    fn goal_state(&mut self, state: &str) -> Option<Value> {
+        let (of, state) = state.split_once(' ')?;
+        let of = of.trim_end_matches(':');
+        let instance = self.vars.get(of).cloned().unwrap_or_else(|| of.to_owned());
+        let (key, value) = state.split_once('=')?;
+        if key == "color" {
+            return self.color(&instance, value);
+        }
+        let value = self.vars.get(value).cloned().unwrap_or_else(|| value.to_owned());
+        Some(json!({ instance: format!("{key}={value}") }))
+    }
+
+    /// That a thing has a colour is a condition of the mission's own.
+    fn color(&mut self, instance: &str, value: &str) -> Option<Value> {
+        let drawn = *self.chance.pick(&[Color::Red, Color::Green, Color::Blue])?;
+        let color = Color::from_name(value).unwrap_or(drawn);
+        let name = format!("HasColor{}", self.conditions.len());
+        self.conditions.push(json!({
+            "stateName": name,
+            "context": instance,
+            "expression": { "ColorMetaDataChange": { "target": instance, "colorvalue": color.name(), "message": "" } },
+        }));
+        Some(json!({ instance: format!("{name}=true") }))
+    }
+
+    fn finish(self, name: &str, start: RoomId, goals: Vec<Value>) -> Value {
+        let doors =
+            (1..=DOORS).map(|number| json!({ "name": format!("Door_01_{number}"), "state": [{ "isOpen": "true" }] }));
+        let objects: Vec<Value> = self.objects.into_iter().chain(doors).map(whole).collect();
+        let messages =
+            json!({ "task_beginning": [], "task_procedure": [], "task_ending": [], "object_conditions": [] });
+        json!({
+            "task_description": "",
+            "goal_text": name,
+            "game_id": "3",
+            "scene": {
+                "floor_plan": "1",
+                "scene_id": name,
+                "simbot_init": [],
+                "roomLocation": [start.id()],
+                "required_objects": objects,
+                "sticky_notes": [],
+                "blacklisted_layouts": null,
+                "layoutOverride": self.layout.id,
+                "completelyRandomVisual": false,
+            },
+            "task_goals": goals,
+            "stateconditions": self.conditions,
+            "game_interactions": { "camera_movements": messages, "game_messages": messages },
+        })
+    }
+}
+
+/// An object's request with the fields that were left out.
+fn whole(object: Value) -> Value {
+    let mut whole = json!({ "name": "", "state": [], "location": [], "roomLocation": [], "colors": [] });
+    if let (Value::Object(all), Value::Object(some)) = (&mut whole, object) {
+        all.extend::<Map<String, Value>>(some);
+    }
+    whole
+}
+
+/// What is left of another thing is called like it: nobody sends for it.
+fn is_debris(class: &ObjectClass) -> bool {
+    ["Broken", "Crushed", "Toast_", "Slice", "Lid"].iter().any(|part| class.id.contains(part))
+}

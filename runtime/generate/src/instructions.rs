@@ -1,0 +1,36 @@
+//! What people would say for the steps of a plan: one plain sentence each.
+
+use cohabit_cdf::{ActionKind, ObjectId, StateFlag};
+use cohabit_world::{BodyId, World};
+
+/// One step, as an instruction.
+pub(crate) fn said(world: &World, kind: ActionKind, id: ObjectId) -> String {
+    let name = |id: ObjectId| {
+        let class = world.object(id).map(|view| world.catalog().class(view.class));
+        class.map_or_else(|| "thing".to_owned(), |class| class.name.to_lowercase())
+    };
+    let held = world.body(BodyId(0)).and_then(|body| body.held).map(name);
+    let held = held.unwrap_or_else(|| "thing".to_owned());
+    let it = name(id);
+    let is_on = world.object(id).is_some_and(|view| view.flags.has(StateFlag::Toggled));
+    let is_enclosed = world
+        .object(id)
+        .is_some_and(|view| world.catalog().class(view.class).receptacle.as_ref().is_some_and(|kind| kind.enclosed));
+    match kind {
+        ActionKind::GoTo => format!("go to the {it}"),
+        ActionKind::PickUp => format!("pick up the {it}"),
+        ActionKind::Place if is_enclosed => format!("put the {held} in the {it}"),
+        ActionKind::Place => format!("put the {held} on the {it}"),
+        ActionKind::Open => format!("open the {it}"),
+        ActionKind::Close => format!("close the {it}"),
+        ActionKind::Break => format!("break the {it}"),
+        ActionKind::Scan => format!("scan the {it}"),
+        ActionKind::Pour => format!("pour the {held} into the {it}"),
+        ActionKind::Toggle if is_on => format!("turn off the {it}"),
+        ActionKind::Toggle => format!("turn on the {it}"),
+        ActionKind::Throw => format!("throw the {held} at the {it}"),
+        ActionKind::Fill => format!("fill the {held}"),
+        ActionKind::Clean => format!("clean the {held}"),
+        ActionKind::Examine => format!("look at the {it}"),
+    }
+}
