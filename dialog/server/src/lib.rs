@@ -62,7 +62,9 @@ pub use interpreter::{Endpoint, EndpointError};
 pub use journal::begin_after;
 pub use known::Knowledge;
 pub use limits::ServerLimits;
-pub use questionnaire::{Given, NotAnswered, Questionnaire, QuestionnaireError};
+pub use questionnaire::{
+    Form, Given, Item, NotAnswered, Questionnaire, QuestionnaireError, Scale, When, questionnaire_text,
+};
 pub use screening::{ScreeningConfig, screen};
 pub use site::{Framing, Site};
 pub use spoken::meaning;

@@ -3,7 +3,8 @@
 //! A questionnaire is a TOML file: a `title`, what it is `about`, `when` it is asked (`"before"` or `"after"`), and an
 //! `[[item]]` a question. What an item asks (`ask`) is answered on a `scale`, by a `choice` of several, or in `words =
 //! true`; one without any of them has the `scale` of the file. An item may be `optional`, and one on a scale `reversed`:
-//! a high number then means little of what the questionnaire measures.
+//! a high number then means little of what the questionnaire measures. Its `citation`, `licence` and `[[score]]`s, and an
+//! item's `label` and `attention`, are for the tables of studies, which score answers; pages pass them over.
 
 use std::{fmt, fs, path::Path};
 
@@ -11,14 +12,20 @@ use cohabit_bus::{
     Text,
     message::{AnswerKind, AnswerMessage},
 };
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Serialize, de::IgnoredAny};
 
 use crate::text;
 
 /// Those that ship, by name.
-const BUILT_IN: [(&str, &str); 2] = [
+const BUILT_IN: [(&str, &str); 8] = [
     ("sus", include_str!("../data/questionnaires/sus.toml")),
     ("tlx", include_str!("../data/questionnaires/tlx.toml")),
+    ("tlx_weighted", include_str!("../data/questionnaires/tlx_weighted.toml")),
+    ("godspeed", include_str!("../data/questionnaires/godspeed.toml")),
+    ("rosas", include_str!("../data/questionnaires/rosas.toml")),
+    ("trust", include_str!("../data/questionnaires/trust.toml")),
+    ("ueq_s", include_str!("../data/questionnaires/ueq_s.toml")),
+    ("pssuq", include_str!("../data/questionnaires/pssuq.toml")),
 ];
 
 /// The most questions of one, the most places of a scale, and the most that can be chosen from.
@@ -124,6 +131,12 @@ struct Written {
     about: String,
     #[serde(default)]
     when: When,
+    #[serde(rename = "citation")]
+    _citation: Option<IgnoredAny>,
+    #[serde(rename = "licence")]
+    _licence: Option<IgnoredAny>,
+    #[serde(rename = "score")]
+    _scores: Option<IgnoredAny>,
     scale: Option<Scale>,
     #[serde(default)]
     item: Vec<WrittenItem>,
@@ -133,6 +146,10 @@ struct Written {
 #[serde(deny_unknown_fields)]
 struct WrittenItem {
     ask: String,
+    #[serde(rename = "label")]
+    _label: Option<IgnoredAny>,
+    #[serde(rename = "attention")]
+    _attention: Option<IgnoredAny>,
     scale: Option<Scale>,
     choice: Option<Vec<String>>,
     #[serde(default)]
@@ -143,13 +160,19 @@ struct WrittenItem {
     reversed: bool,
 }
 
+/// The text of the questionnaire of that name, if one ships.
+#[must_use]
+pub fn questionnaire_text(name: &str) -> Option<&'static str> {
+    BUILT_IN.iter().find(|(known, _)| *known == name).map(|(_, text)| *text)
+}
+
 impl Questionnaire {
     /// The questionnaire of that name, or of that file.
     ///
     /// # Errors
     /// [`QuestionnaireError`].
     pub fn find(name: &str) -> Result<Self, QuestionnaireError> {
-        if let Some((name, text)) = BUILT_IN.iter().find(|(known, _)| *known == name) {
+        if let Some(text) = questionnaire_text(name) {
             return Self::read(name, name, text);
         }
         let failed = |reason| QuestionnaireError { file: name.to_owned(), reason };
@@ -171,7 +194,7 @@ impl Questionnaire {
 
 impl Written {
     fn named(self, name: &str) -> Result<Questionnaire, String> {
-        let Self { title, about, when, scale, item } = self;
+        let Self { title, about, when, scale, item, .. } = self;
         if name.is_empty() || name.len() > LONGEST_NAME {
             return Err(format!("its file's name is what it is called in tables: 1 to {LONGEST_NAME} bytes, please"));
         }
@@ -188,7 +211,7 @@ impl Written {
 
 impl WrittenItem {
     fn checked(self, usual: Option<&Scale>) -> Result<Item, String> {
-        let Self { ask, scale, choice, words, optional, reversed } = self;
+        let Self { ask, scale, choice, words, optional, reversed, .. } = self;
         if ask.trim().is_empty() || ask.len() > LONGEST_QUESTION {
             return Err(format!("`ask` is {} bytes long: 1 to {LONGEST_QUESTION}, please", ask.len()));
         }
@@ -325,7 +348,7 @@ mod tests {
     #[test]
     fn those_that_ship_can_be_asked() {
         let items = BUILT_IN.map(|(name, _)| Questionnaire::find(name).map(|found| found.items.len()));
-        assert_eq!(items, [Ok(10), Ok(6)]);
+        assert_eq!(items, [10, 6, 21, 24, 18, 12, 8, 16].map(Ok));
     }
 
     #[test]

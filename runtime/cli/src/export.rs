@@ -12,6 +12,7 @@ use cohabit_tables::{NOTEBOOK, Played, Summary, codebook, plots, tables, write_c
 use crate::{
     failure::bad_input,
     rerun,
+    study::without_practice,
     terminal::{shown, shown_json, shown_lines},
 };
 
@@ -36,6 +37,9 @@ pub struct Export {
     /// interaction of two; all settings in which the sessions differ, if absent
     #[arg(long, value_name = "CONDITIONS", value_delimiter = ',', requires = "summary")]
     by: Vec<String>,
+    /// Keep sessions for practice, too, which are left out of a study's folder of logs
+    #[arg(long)]
+    practice: bool,
     /// Print the summary as JSON
     #[arg(long, requires = "summary")]
     json: bool,
@@ -53,7 +57,7 @@ enum Format {
 impl Export {
     /// Writes and prints what is asked for.
     pub fn run(&self) -> anyhow::Result<()> {
-        let logs = logs(&self.logs)?;
+        let logs = logs(&self.logs, self.practice)?;
         if let (Some(folder), Format::Parquet) = (&self.out, self.format) {
             rerun::tables(&logs, folder)?;
             if !self.summary {
@@ -113,8 +117,8 @@ fn write_plots(played: &[Played], by: &[String], folder: &Path, quietly: bool) -
     Ok(())
 }
 
-/// The logs themselves, and those in folders, in the order of their names.
-fn logs(paths: &[PathBuf]) -> anyhow::Result<Vec<PathBuf>> {
+/// The logs themselves, and those in folders, in the order of their names; of folders of studies without those of practice.
+fn logs(paths: &[PathBuf], with_practice: bool) -> anyhow::Result<Vec<PathBuf>> {
     let mut all = Vec::new();
     for path in paths {
         if !path.is_dir() {
@@ -129,6 +133,17 @@ fn logs(paths: &[PathBuf]) -> anyhow::Result<Vec<PathBuf>> {
             return Err(bad_input(format!("{}: there are no session logs (*.mcap) in it", path.display())));
         }
         own.sort();
+        if !with_practice {
+            let count = own.len();
+            own = without_practice(path, own)?;
+            if own.len() < count {
+                let left_out = count - own.len();
+                eprintln!(
+                    "cohabit: {left_out} of {count} sessions in {} are for practice, and left out; --practice keeps them",
+                    shown(path.display())
+                );
+            }
+        }
         all.append(&mut own);
     }
     Ok(all)

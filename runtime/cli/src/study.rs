@@ -1,11 +1,17 @@
 //! `cohabit study`: a study from plan to data.
 
+mod data;
+mod plan;
 mod ports;
 mod program;
+mod report;
 mod sessions;
+mod simulate;
+mod speakers;
+mod synthetic_log;
+mod wishes;
 
 use std::{
-    ffi::OsStr,
     io::Write as _,
     net::{IpAddr, SocketAddr, TcpListener},
     path::{Path, PathBuf},
@@ -20,21 +26,23 @@ use std::{
 use anyhow::Context as _;
 use cohabit_cdf::Catalog;
 use cohabit_dialog::HostName;
-use cohabit_study::{
-    Cycle, Folder, FolderError, Journal, Progress, Registry, StudyFile, StudyService, export, is_practice, keep,
-};
+use cohabit_study::{Cycle, Folder, FolderError, Records, Registry, StudyFile, StudyService, export, keep};
 use cohabit_tables::{Played, tables};
 
 use crate::{
     doctor::ensure_room,
     failure::{bad_input, environment},
     stop,
-    terminal::{shown, shown_lines},
+    terminal::shown,
     tls::Tls,
 };
+pub use data::without_practice;
+use plan::Plan;
 use ports::{PortRange, Ports};
 use program::ThisProgram;
+use report::Report;
 use sessions::{Served, Sessions};
+use simulate::Simulate;
 
 /// Runs a study: participants, their conditions, their consent, their sessions, and their data
 #[derive(clap::Args)]
@@ -47,12 +55,18 @@ pub struct Study {
 enum StudyCommand {
     /// Say what is wrong in a study's file, and where
     Check(Check),
+    /// Say how many participants an effect needs to be found, by simulation
+    Plan(Plan),
     /// Serve the pages of participants and of the experimenter, and play their sessions
     Run(Run),
+    /// Play the whole study with simulated people, before anybody comes
+    Simulate(Simulate),
     /// Remove all data of a participant, and note that it was done
     Withdraw(Withdraw),
     /// Write all data as tables with a codebook
     Export(Export),
+    /// Write the methods sheet: what a paper has to say of how the study was run
+    Report(Report),
 }
 
 #[derive(clap::Args)]
@@ -119,9 +133,12 @@ impl Study {
     pub fn run(&self) -> anyhow::Result<()> {
         match &self.command {
             StudyCommand::Check(check) => check.run(),
+            StudyCommand::Plan(plan) => plan.run(),
             StudyCommand::Run(run) => run.run(),
+            StudyCommand::Simulate(simulate) => simulate.run(),
             StudyCommand::Withdraw(withdraw) => withdraw.run(),
             StudyCommand::Export(export) => export.run(),
+            StudyCommand::Report(report) => report.run(),
         }
     }
 }
@@ -151,6 +168,11 @@ impl Check {
             within,
             study.participants
         );
+        if let Some(minimisation) = &study.minimisation {
+            let names: Vec<&str> = minimisation.covariates.iter().map(|covariate| covariate.name.as_str()).collect();
+            println!("Between-participants conditions are assigned by minimisation over {}", shown(names.join(", ")));
+            return Ok(());
+        }
         let cycle = Cycle::of(&study);
         println!("One full cycle of the assignment takes {cycle}");
         if let Some(note) = cycle.note(study.participants) {
@@ -269,54 +291,32 @@ fn not_now(error: FolderError) -> anyhow::Error {
 impl Export {
     fn run(&self) -> anyhow::Result<()> {
         let (_, study) = read(&Folder::study_file(&self.folder))?;
-        let all = self.progress()?;
-        let logs = self.logs(&all)?;
+        let records = Records::read(study, &self.folder).map_err(refused)?;
+        let logs = data::logs(&self.folder, &records.progress, self.practice)?;
         let played = Played::open_all(&logs, &Catalog::builtin()).map_err(bad_input)?;
         std::fs::create_dir_all(&self.out).map_err(|error| bad_input(format!("{}: {error}", self.out.display())))?;
-        let withdrawn = Folder::withdrawals_in(&self.folder).map_err(refused)?;
-        let notes = Folder::notes_in(&self.folder).map_err(refused)?;
-        let withdrawn: Vec<String> = withdrawn.into_iter().map(|one| one.participant).collect();
-        for path in export(&study, &all, &withdrawn, &notes, tables(&played), self.practice, &self.out)? {
+        for path in export(&records, tables(&played), self.practice, &self.out)? {
             println!("{}", shown(path.display()));
         }
         Ok(())
     }
-
-    /// Where everybody is, also while the study runs.
-    fn progress(&self) -> anyhow::Result<Vec<Progress>> {
-        let paths = files(&self.folder.join("journals"), "jsonl")?;
-        let read = paths.iter().map(|path| Journal::read(path).map_err(bad_input));
-        Ok(read.collect::<anyhow::Result<Vec<_>>>()?.into_iter().flatten().collect())
-    }
-
-    /// The logs that can be read, but for those of practice if that is left out. One that is just begun has nothing in it.
-    fn logs(&self, progress: &[Progress]) -> anyhow::Result<Vec<PathBuf>> {
-        let mut all = files(&self.folder.join("logs"), "mcap")?;
-        let is_practice = |path: &PathBuf| {
-            path.file_stem().and_then(OsStr::to_str).is_some_and(|session| is_practice(progress, session))
-        };
-        all.retain(|path| self.practice || !is_practice(path));
-        let (whole, unread): (Vec<_>, Vec<_>) =
-            all.into_iter().partition(|path| cohabit_record::Log::open(path).is_ok());
-        for path in unread {
-            eprintln!("cohabit: {} cannot be read, and is left out", shown_lines(path.display()));
-        }
-        Ok(whole)
-    }
-}
-
-/// The files of a folder with that ending, in the order of their names.
-fn files(folder: &Path, ending: &str) -> anyhow::Result<Vec<PathBuf>> {
-    let entries = std::fs::read_dir(folder).map_err(|error| bad_input(format!("{}: {error}", folder.display())))?;
-    let paths = entries.flatten().map(|entry| entry.path());
-    let mut found: Vec<PathBuf> = paths.filter(|path| path.extension().is_some_and(|own| own == ending)).collect();
-    found.sort();
-    Ok(found)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn studies_that_ship_can_be_run() {
+        let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../study/studies"));
+        let entries = std::fs::read_dir(folder).expect("studies ship").map(|entry| entry.expect("a file").path());
+        let studies: Vec<PathBuf> = entries.filter(|path| path.extension().is_some_and(|own| own == "toml")).collect();
+        assert_eq!(studies.len(), 3, "{studies:?}");
+        for path in studies {
+            let checked = read(&path);
+            assert!(checked.is_ok(), "{}: {:#}", path.display(), checked.err().expect("an error"));
+        }
+    }
 
     #[test]
     fn who_withdraws_while_the_study_runs_has_a_button() {

@@ -1,8 +1,11 @@
 //! Who meets which conditions, in which order, with which missions: a function of the study and a participant's place.
 
+use std::collections::BTreeMap;
+
 use crate::{
-    chance::{Chance, Purpose},
-    design::{Assignment, Block, Condition, FactorKind, MissionOrder, Missions, Study},
+    chance::{Purpose, chance},
+    design::{Assignment, Block, Condition, FactorKind, Minimisation, MissionOrder, Missions, Study},
+    minimise::minimise,
     plan::{Plan, PlannedMission, Step},
     settings::Settings,
     square,
@@ -18,7 +21,47 @@ use crate::{
 #[must_use]
 pub fn assign(study: &Study, place: u32) -> Plan {
     let between = study.conditions(FactorKind::Between);
-    let seat = Seat::new(study, place, between.len());
+    plan(study, &between, &Seat::new(study, place, between.len()))
+}
+
+/// What a participant does before a condition is assigned that depends on what they answer.
+#[must_use]
+pub fn begin(study: &Study, place: u32) -> Plan {
+    let asks = |block: &Block| {
+        let mut questionnaires = study.minimisation.iter().flat_map(Minimisation::questionnaires);
+        matches!(block, Block::Questionnaires(names) if questionnaires.any(|asked| names.iter().any(|name| name == asked)))
+    };
+    let until = study.blocks.iter().rposition(asks).map_or(0, |last| last + 1);
+    let mut steps = Vec::new();
+    for (number, block) in study.blocks[..until].iter().enumerate() {
+        match block {
+            Block::Questionnaires(names) => steps.extend(names.iter().map(|name| asked(name, None))),
+            Block::Break { limit_s, .. } => steps.push(Step::Break { block: number, limit_s: *limit_s }),
+            // None stands there: the study was checked.
+            Block::Mission { .. } | Block::Missions(_) => {}
+        }
+    }
+    Plan { place, steps, awaits_assignment: true, ..Plan::default() }
+}
+
+/// What the participant at a place does whose levels of covariates are these, by minimisation among all who have a condition.
+#[must_use]
+pub fn assign_among(
+    study: &Study,
+    minimisation: &Minimisation,
+    place: u32,
+    covariates: BTreeMap<String, String>,
+    others: &[&Plan],
+) -> Plan {
+    let between = study.conditions(FactorKind::Between);
+    let choices: Vec<_> = between.iter().map(|condition| condition.choices.clone()).collect();
+    let condition = minimise((minimisation, study.seed), &choices, (place, &covariates), others);
+    let before = others.iter().filter(|plan| plan.between == choices[condition]).count();
+    let seat = Seat { place: u64::from(place), condition, before };
+    Plan { covariates, ..plan(study, &between, &seat) }
+}
+
+fn plan(study: &Study, between: &[Condition], seat: &Seat) -> Plan {
     let condition = &between[seat.condition];
     let mut steps = Vec::new();
     for (number, block) in study.blocks.iter().enumerate() {
@@ -34,12 +77,13 @@ pub fn assign(study: &Study, place: u32) -> Plan {
             })),
             Block::Missions(missions) => {
                 let settings = |within: &Condition| study.settings_of(block, condition, within);
-                add_missions(&mut steps, study, (number, missions), &seat, &settings);
+                add_missions(&mut steps, study, (number, missions), seat, &settings);
             }
             Block::Break { limit_s, .. } => steps.push(Step::Break { block: number, limit_s: *limit_s }),
         }
     }
-    Plan { place, between: condition.choices.clone(), steps }
+    let place = u32::try_from(seat.place).unwrap_or(u32::MAX);
+    Plan { place, between: condition.choices.clone(), steps, ..Plan::default() }
 }
 
 fn asked(name: &str, about: Option<usize>) -> Step {
@@ -61,7 +105,7 @@ impl Seat {
         let each = (study.block_size / conditions).max(1);
         let size = each * conditions;
         let (block, within) = (index / size, index % size);
-        let order = Chance::new(study.seed, Purpose::Between, block as u64).order(size);
+        let order = chance(study.seed, Purpose::Between, block as u64).order(size);
         let condition = |slot: &usize| slot / each;
         let own = condition(&order[within]);
         let before = block * each + order[..within].iter().filter(|slot| condition(slot) == own).count();
@@ -80,12 +124,12 @@ fn order(study: &Study, seat: &Seat, conditions: usize) -> (Vec<usize>, usize) {
         Assignment::LatinSquare => square::latin(conditions),
         Assignment::BalancedLatinSquare => square::balanced(conditions),
         Assignment::BlockRandom => {
-            return (Chance::new(study.seed, Purpose::Conditions, seat.place).order(conditions), seat.before);
+            return (chance(study.seed, Purpose::Conditions, seat.place).order(conditions), seat.before);
         }
     };
     let (group, row) = (seat.before / rows.len(), seat.before % rows.len());
-    let mut chance = Chance::new(study.seed, Purpose::Conditions, seat.group(group));
-    let (labels, order) = (chance.order(conditions), chance.order(rows.len()));
+    let mut drawn = chance(study.seed, Purpose::Conditions, seat.group(group));
+    let (labels, order) = (drawn.order(conditions), drawn.order(rows.len()));
     (rows[order[row]].iter().map(|condition| labels[*condition]).collect(), group)
 }
 
@@ -94,12 +138,12 @@ fn sequence<'a>(study: &'a Study, order: MissionOrder, seat: &Seat, group: usize
     let mut missions: Vec<&str> = study.missions.iter().map(String::as_str).collect();
     match order {
         MissionOrder::Fixed => {}
-        MissionOrder::Random => Chance::new(study.seed, Purpose::Missions, seat.place).shuffle(&mut missions),
+        MissionOrder::Random => chance(study.seed, Purpose::Missions, seat.place).shuffle(&mut missions),
         // Within a group of participants each mission keeps its position, and meets all conditions; over as many groups as
         // there are missions it moves through all positions.
         MissionOrder::Balanced => {
             let count = missions.len().max(1);
-            Chance::new(study.seed, Purpose::Missions, seat.group(group / count)).shuffle(&mut missions);
+            chance(study.seed, Purpose::Missions, seat.group(group / count)).shuffle(&mut missions);
             missions.rotate_left(group % count);
         }
     }

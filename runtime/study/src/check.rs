@@ -1,6 +1,7 @@
 //! Reads `study.toml`, and says all that is wrong in it.
 
 mod blocks;
+mod minimisation;
 mod probes;
 mod whole;
 
@@ -22,6 +23,7 @@ use toml::{
 use crate::{
     design::{Completion, ConsentBox, Factor, Level, Sheet, Study},
     findings::Findings,
+    instrument::Instrument,
     settings::{OF_PAGES, RECORD_AUDIO, Setting, Settings, arguments},
     shape::STUDY,
     written::{self, Words, Written, WrittenBox, WrittenFactor, WrittenSettings, WrittenSheet},
@@ -128,6 +130,8 @@ struct Checking<'a, 'f> {
     folder: &'a Path,
     /// The questionnaires that were found so far.
     asked: Vec<Questionnaire>,
+    /// What is known of them, by name.
+    instruments: BTreeMap<String, Instrument>,
     /// The files that were read so far.
     files: BTreeMap<String, String>,
     /// Where the study keeps what people say, if it does.
@@ -136,7 +140,15 @@ struct Checking<'a, 'f> {
 
 impl<'a, 'f> Checking<'a, 'f> {
     fn new(findings: &'a mut Findings<'f>, program: &'a dyn Program, folder: &'a Path) -> Self {
-        Self { findings, program, folder, asked: Vec::new(), files: BTreeMap::new(), keeps_audio: None }
+        Self {
+            findings,
+            program,
+            folder,
+            asked: Vec::new(),
+            instruments: BTreeMap::new(),
+            files: BTreeMap::new(),
+            keeps_audio: None,
+        }
     }
 }
 
@@ -149,13 +161,16 @@ impl Checking<'_, '_> {
             self.findings.add(none.span(), &root.key("participants"), "nobody takes part", "plan one at least");
         }
         let probes = self.probes(&written.probe, &root.key("probe"));
+        let factors = self.factors(&written.factor, &root.key("factor"));
+        let minimisation = self.minimisation(written.minimisation.as_ref(), &factors, &blocks);
         let mut study = Study {
             probes,
+            minimisation,
             information: self.sheet(&written.information, &root.key("information")),
             consent: self.sheet(&written.consent, &root.key("consent")),
             consents: boxes(&written.consent),
             settings: self.settings(&written.settings, &root.key("settings")),
-            factors: self.factors(&written.factor, &root.key("factor")),
+            factors,
             completion: self.completion(written),
             missions: written.missions.as_ref().map(|missions| words(missions.get_ref())).unwrap_or_default(),
             assignment: written.assignment.as_ref().map(|assignment| *assignment.get_ref()).unwrap_or_default(),
@@ -163,6 +178,7 @@ impl Checking<'_, '_> {
             debriefing: blocks.debriefing,
             blocks: blocks.all,
             questionnaires: std::mem::take(&mut self.asked),
+            instruments: std::mem::take(&mut self.instruments),
             files: BTreeMap::new(),
             participants: participants.map_or(1, |count| *count.get_ref()),
             title: written.title.clone(),

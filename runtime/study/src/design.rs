@@ -6,6 +6,7 @@ use cohabit_dialog::Questionnaire;
 use serde::{Deserialize, Serialize};
 
 use crate::{
+    instrument::Instrument,
     probe::Probe,
     settings::{Settings, merged},
 };
@@ -25,6 +26,8 @@ pub struct Study {
     pub assignment: Assignment,
     /// Participants of a block in which each between-participants condition is as frequent.
     pub block_size: usize,
+    /// How between-participants conditions are assigned, if not in blocks.
+    pub minimisation: Option<Minimisation>,
     /// The missions of the block of missions.
     pub missions: Vec<String>,
     /// Settings of all sessions.
@@ -47,6 +50,8 @@ pub struct Study {
     pub completion: Option<Completion>,
     /// The questionnaires that blocks ask, each once.
     pub questionnaires: Vec<Questionnaire>,
+    /// What is known of these, by their names.
+    pub instruments: BTreeMap<String, Instrument>,
     /// The texts of all files that it names, by their names.
     pub files: BTreeMap<String, String>,
 }
@@ -82,6 +87,45 @@ pub enum Assignment {
     /// At random for each participant.
     #[default]
     BlockRandom,
+}
+
+/// How between-participants conditions are assigned by what participants are like.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Minimisation {
+    /// What they are to be spread by.
+    pub covariates: Vec<Covariate>,
+    /// How probable it is that somebody gets a condition that spreads best, 0.5 to 1.
+    pub certainty: f64,
+}
+
+/// Something that participants differ in.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Covariate {
+    /// What it is called in tables.
+    pub name: String,
+    /// How it is known.
+    pub from: CovariateSource,
+}
+
+/// How a covariate is known.
+#[derive(Clone, Debug, PartialEq)]
+pub enum CovariateSource {
+    /// From a parameter of the link by which somebody comes.
+    Link {
+        /// Its name.
+        parameter: String,
+        /// Its values.
+        levels: Vec<String>,
+    },
+    /// From an answer that is given before any condition.
+    Answer {
+        /// The questionnaire.
+        questionnaire: String,
+        /// Which of its items, from 0.
+        item: usize,
+        /// Where a scale is cut into levels, each from there on.
+        cuts: Vec<i32>,
+    },
 }
 
 /// A factor.
@@ -249,6 +293,12 @@ impl Study {
     #[must_use]
     pub fn questionnaire(&self, name: &str) -> Option<&Questionnaire> {
         self.questionnaires.iter().find(|one| one.name == name)
+    }
+
+    /// What is known of the questionnaire of that name.
+    #[must_use]
+    pub fn instrument(&self, name: &str) -> Option<&Instrument> {
+        self.instruments.get(name)
     }
 
     /// The block of missions, if there is one.

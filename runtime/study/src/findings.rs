@@ -94,10 +94,20 @@ impl<'a> Findings<'a> {
         if key.required || self.is_partial {
             self.unread.push(at.key(key.name));
         }
-        if key.required && !self.is_partial {
+        if key.required && !(self.is_partial && self.mentions(key.name)) {
             let remedy = format!("add {}: {}", key.kind.wanted(), key.meaning);
             self.add(span.clone(), at, format!("`{}` is missing", key.name), remedy);
         }
+    }
+
+    /// Whether the text has such a key anywhere, be it where it cannot be read.
+    fn mentions(&self, key: &str) -> bool {
+        let is_word = |letter: char| letter.is_alphanumeric() || letter == '_' || letter == '-';
+        let is_key = |at: usize| {
+            let (before, after) = (&self.text[..at], self.text[at + key.len()..].trim_start_matches([' ', '"']));
+            !before.ends_with(is_word) && after.starts_with(['=', ']', '.'])
+        };
+        self.text.match_indices(key).any(|(at, _)| is_key(at))
     }
 
     /// Whether a value is one of a key; all that is wrong in it is noted.
@@ -172,15 +182,25 @@ fn is_of(kind: Kind, value: &DeValue<'_>) -> bool {
             let whole = value.as_integer().and_then(|number| u64::from_str_radix(number.as_str(), number.radix()).ok());
             whole.is_some_and(|number| number <= most)
         }
-        Kind::Minutes => {
-            let text = value.as_integer().map(|number| number.as_str());
-            let text = text.or_else(|| value.as_float().map(|number| number.as_str()));
-            text.and_then(|text| text.parse().ok()).is_some_and(|minutes: f64| minutes > 0.0 && minutes.is_finite())
-        }
+        Kind::Minutes => number(value).is_some_and(|minutes| minutes > 0.0),
+        Kind::Share => number(value).is_some_and(|share| (0.0..=1.0).contains(&share)),
+        Kind::Numbers => value.as_array().is_some_and(|list| list.iter().all(|item| is_whole(item.get_ref()))),
         Kind::OneOf(words) => value.as_str().is_some_and(|word| words.contains(&word)),
         Kind::Switch => value.is_bool(),
         _ => false,
     }
+}
+
+/// A finite number, whole or not.
+fn number(value: &DeValue<'_>) -> Option<f64> {
+    let text = value.as_integer().map(|number| number.as_str());
+    let text = text.or_else(|| value.as_float().map(|number| number.as_str()))?;
+    text.parse().ok().filter(|number: &f64| number.is_finite())
+}
+
+fn is_whole(value: &DeValue<'_>) -> bool {
+    let whole = value.as_integer().map(|number| i32::from_str_radix(number.as_str(), number.radix()));
+    whole.is_some_and(|whole| whole.is_ok())
 }
 
 fn is_setting(value: &DeValue<'_>) -> bool {

@@ -9,6 +9,9 @@
 //! | `consent/P01.json` | to which version of the form they agreed, to which of its sentences, and when |
 //! | `private/links.json` | the tokens of all pages |
 //! | `notes.jsonl`, `withdrawn.jsonl` | the experimenter's notes; whose data were removed, and when |
+//! | `synthetic.json` | only after a dry run: that programs played all participants, with the seed |
+
+mod error;
 
 use std::{
     collections::BTreeMap,
@@ -20,67 +23,14 @@ use std::{
 
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 
+pub use error::FolderError;
+
 use crate::{
-    journal::{Journal, JournalError},
+    journal::Journal,
     links::{Links, write_whole},
     plan::{place_of, pseudonym},
     progress::Progress,
 };
-
-/// Why a study's folder cannot be used.
-#[derive(Debug, thiserror::Error)]
-pub enum FolderError {
-    /// The system refuses something in it.
-    #[error("{path}: {source}")]
-    File {
-        /// What.
-        path: PathBuf,
-        /// Why.
-        source: io::Error,
-    },
-    /// Other users can reach it.
-    #[error("{path} can be reached by other users: chmod 700 {path}, or choose another folder")]
-    Open {
-        /// The folder.
-        path: PathBuf,
-    },
-    /// The study was another one when its first participant came.
-    #[error(
-        "{path} holds data of another study: {file} was another one when the first participant came (see {path}/study); \
-         choose another folder, or put it back as it was"
-    )]
-    OtherStudy {
-        /// The folder.
-        path: PathBuf,
-        /// What differs.
-        file: String,
-    },
-    /// It is in use.
-    #[error("{path} is in use by another `cohabit study`: end that one first")]
-    Busy {
-        /// The folder.
-        path: PathBuf,
-    },
-    /// There is no study in it.
-    #[error("{path} holds no study: name the folder that was given to `cohabit study run`")]
-    NoStudy {
-        /// The folder.
-        path: PathBuf,
-    },
-    /// Nobody of that name takes part.
-    #[error("{path} holds nothing of `{pseudonym}`: those in it are {known}")]
-    NoParticipant {
-        /// The folder.
-        path: PathBuf,
-        /// Who was asked for.
-        pseudonym: String,
-        /// Who is there.
-        known: String,
-    },
-    /// A journal cannot be read.
-    #[error(transparent)]
-    Journal(#[from] JournalError),
-}
 
 /// A consent.
 #[derive(Clone, Debug, Deserialize, Eq, PartialEq, Serialize)]
@@ -122,7 +72,17 @@ pub struct Withdrawal {
 #[derive(Debug)]
 pub struct Folder {
     path: PathBuf,
+    is_synthetic: bool,
     _lock: File,
+}
+
+/// A line of a file, or all of it, with a mark if it is of a dry run.
+#[derive(Serialize)]
+struct Marked<'a, T> {
+    #[serde(flatten)]
+    what: &'a T,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    synthetic: Option<bool>,
 }
 
 const PARTS: [&str; 5] = ["journals", "logs", "consent", "private", STUDY];
@@ -130,6 +90,8 @@ const PARTS: [&str; 5] = ["journals", "logs", "consent", "private", STUDY];
 const STUDY: &str = "study";
 /// Tables that are written anew from the journals.
 const TABLES: [&str; 2] = ["participants.csv", "answers.csv"];
+/// What says that a folder is of a dry run.
+const SYNTHETIC: &str = "synthetic.json";
 
 impl Folder {
     /// Takes a folder for a study with these files, by name; makes it, if it is not there.
@@ -137,6 +99,38 @@ impl Folder {
     /// # Errors
     /// [`FolderError`].
     pub fn begin(path: &Path, study: &BTreeMap<String, String>) -> Result<Self, FolderError> {
+        if Self::is_synthetic_in(path) {
+            return Err(FolderError::Synthetic { path: path.to_owned() });
+        }
+        Self::take(path, study)
+    }
+
+    /// Takes a folder for a dry run of a study with these files; makes it. Nothing may be in it. What is known of the run, such
+    /// as its seed, is kept.
+    ///
+    /// # Errors
+    /// [`FolderError`].
+    pub fn begin_synthetic(
+        path: &Path,
+        study: &BTreeMap<String, String>,
+        run: &impl Serialize,
+    ) -> Result<Self, FolderError> {
+        if Self::is_synthetic_in(path) {
+            return Err(FolderError::Synthetic { path: path.to_owned() });
+        }
+        make(path)?;
+        if !names(path)?.is_empty() {
+            return Err(FolderError::NotEmpty { path: path.to_owned() });
+        }
+        // First of all, so that nothing is ever in it without.
+        let mark = path.join(SYNTHETIC);
+        let bytes = serde_json::to_vec_pretty(&Marked { what: run, synthetic: Some(true) });
+        write_whole(&mark, &bytes.map_err(|error| failed(&mark, error.into()))?)
+            .map_err(|source| failed(&mark, source))?;
+        Self::take(path, study)
+    }
+
+    fn take(path: &Path, study: &BTreeMap<String, String>) -> Result<Self, FolderError> {
         make(path)?;
         let path = path.canonicalize().map_err(|source| failed(path, source))?;
         PARTS.iter().try_for_each(|part| make(&path.join(part)))?;
@@ -178,7 +172,7 @@ impl Folder {
         let opened = OpenOptions::new().write(true).create(true).truncate(false).mode(0o600).open(&file);
         let lock = opened.map_err(|source| failed(&file, source))?;
         match lock.try_lock() {
-            Ok(()) => Ok(Self { path: path.to_owned(), _lock: lock }),
+            Ok(()) => Ok(Self { path: path.to_owned(), is_synthetic: Self::is_synthetic_in(path), _lock: lock }),
             Err(fs::TryLockError::WouldBlock) => Err(FolderError::Busy { path: path.to_owned() }),
             Err(fs::TryLockError::Error(source)) => Err(failed(&file, source)),
         }
@@ -190,13 +184,29 @@ impl Folder {
         &self.path
     }
 
+    /// Whether programs played those whose data are in it.
+    #[must_use]
+    pub const fn is_synthetic(&self) -> bool {
+        self.is_synthetic
+    }
+
+    /// The same of a folder that somebody else may hold.
+    #[must_use]
+    pub fn is_synthetic_in(path: &Path) -> bool {
+        path.join(SYNTHETIC).exists()
+    }
+
+    fn marked<'a, T>(&self, what: &'a T) -> Marked<'a, T> {
+        Marked { what, synthetic: self.is_synthetic.then_some(true) }
+    }
+
     /// The tokens of all pages.
     ///
     /// # Errors
     /// [`FolderError::File`].
     pub fn links(&self) -> Result<Links, FolderError> {
         let path = self.links_path();
-        Links::open(&path).map_err(|source| failed(&path, source))
+        Links::open(&path, self.is_synthetic).map_err(|source| failed(&path, source))
     }
 
     /// Where the tokens are kept.
@@ -228,6 +238,21 @@ impl Folder {
         Ok(places)
     }
 
+    /// The journals of a folder that somebody else may hold, in the order of places.
+    ///
+    /// # Errors
+    /// [`FolderError::File`], [`FolderError::NoStudy`].
+    pub fn journals_in(path: &Path) -> Result<Vec<PathBuf>, FolderError> {
+        let journals = path.join("journals");
+        if !journals.is_dir() {
+            return Err(FolderError::NoStudy { path: path.to_owned() });
+        }
+        let of_place = |name: &String| place_of(name.strip_suffix(".jsonl")?);
+        let mut places: Vec<u32> = names(&journals)?.iter().filter_map(of_place).collect();
+        places.sort_unstable();
+        Ok(places.into_iter().map(|place| journals.join(format!("{}.jsonl", pseudonym(place)))).collect())
+    }
+
     /// All journals, opened to be carried on with. Those of people who had not agreed yet go.
     ///
     /// # Errors
@@ -249,7 +274,7 @@ impl Folder {
     /// [`FolderError::File`].
     pub fn keep_consent(&self, place: u32, consent: &Consent) -> Result<(), FolderError> {
         let path = self.consent_path(place);
-        let bytes = serde_json::to_vec_pretty(consent).map_err(|error| failed(&path, error.into()))?;
+        let bytes = serde_json::to_vec_pretty(&self.marked(consent)).map_err(|error| failed(&path, error.into()))?;
         write_whole(&path, &bytes).map_err(|source| failed(&path, source))
     }
 
@@ -348,7 +373,7 @@ impl Folder {
     fn append(&self, name: &str, line: &impl Serialize) -> Result<(), FolderError> {
         let path = self.path.join(name);
         let write = || {
-            let mut bytes = serde_json::to_vec(line)?;
+            let mut bytes = serde_json::to_vec(&self.marked(line))?;
             bytes.push(b'\n');
             let mut file = OpenOptions::new().append(true).create(true).mode(0o600).open(&path)?;
             file.write_all(&bytes)?;
@@ -362,7 +387,7 @@ impl Folder {
         let write = || {
             let mut bytes = Vec::new();
             for line in lines {
-                serde_json::to_writer(&mut bytes, line)?;
+                serde_json::to_writer(&mut bytes, &self.marked(line))?;
                 bytes.push(b'\n');
             }
             write_whole(&path, &bytes)

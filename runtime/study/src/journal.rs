@@ -29,6 +29,23 @@ pub enum JournalError {
         /// Why.
         source: io::Error,
     },
+    /// Another version wrote it.
+    #[error(
+        "{path}: it is a journal of format {format}, written by {program}, and this is cohabit {own} with format {own_format}: go on \
+         with the version that the study was begun with, or export its data with that one"
+    )]
+    OtherVersion {
+        /// The journal.
+        path: PathBuf,
+        /// Its format.
+        format: u32,
+        /// What wrote it.
+        program: String,
+        /// The version of this program.
+        own: &'static str,
+        /// The format that this program writes.
+        own_format: u32,
+    },
     /// A line is none of a journal.
     #[error("{path}:{line}: {reason}; the lines before it are intact: mend or remove this one")]
     Line {
@@ -41,12 +58,26 @@ pub enum JournalError {
     },
 }
 
+/// The format that is written: 2 since journals say so, and by which version they were begun.
+const FORMAT: u32 = 2;
+const VERSION: &str = env!("CARGO_PKG_VERSION");
+
 /// A line.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 struct Line {
     at_ms: u64,
     #[serde(flatten)]
     what: What,
+    /// Of the first line.
+    #[serde(flatten)]
+    writer: Option<Writer>,
+}
+
+/// What wrote a journal.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+struct Writer {
+    format: u32,
+    program: String,
 }
 
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
@@ -74,7 +105,8 @@ impl Journal {
         let failed = |source| JournalError::File { path: path.to_owned(), source };
         let file = OpenOptions::new().read(true).write(true).create_new(true).mode(0o600).open(path).map_err(failed)?;
         let mut journal = Self { path: path.to_owned(), file, length: 0 };
-        let enrolled = Line { at_ms, what: What::Enrolled(plan.clone()) };
+        let writer = Some(Writer { format: FORMAT, program: VERSION.to_owned() });
+        let enrolled = Line { at_ms, what: What::Enrolled(plan.clone()), writer };
         let written = journal.write(&enrolled).and_then(|()| journal.append(agreed, at_ms));
         // The file's name, too, outlasts a crash.
         let kept = written
@@ -117,7 +149,7 @@ impl Journal {
     /// # Errors
     /// [`JournalError::File`]; the event is not in it then.
     pub fn append(&mut self, event: &Event, at_ms: u64) -> Result<(), JournalError> {
-        self.write(&Line { at_ms, what: What::Event(event.clone()) })
+        self.write(&Line { at_ms, what: What::Event(event.clone()), writer: None })
     }
 
     fn write(&mut self, line: &Line) -> Result<(), JournalError> {
@@ -149,7 +181,26 @@ impl Journal {
     }
 }
 
+/// What wrote a journal, by its first line. The first format did not say.
+fn writer(bytes: &[u8]) -> Writer {
+    let first = bytes.split(|byte| *byte == b'\n').next().unwrap_or_default();
+    serde_json::from_slice(first).unwrap_or_else(|_| Writer { format: 1, program: "an earlier version".to_owned() })
+}
+
+/// Where a participant is. What cannot be read of another format is for the version that wrote it.
 fn restored(path: &Path, bytes: &[u8]) -> Result<Option<Progress>, JournalError> {
+    let Writer { format, program } = writer(bytes);
+    let read = if format > FORMAT { None } else { Some(restored_lines(path, bytes)) };
+    match read {
+        Some(Ok(progress)) => Ok(progress),
+        Some(Err(error)) if format == FORMAT || bytes.is_empty() => Err(error),
+        _ => {
+            Err(JournalError::OtherVersion { path: path.to_owned(), format, program, own: VERSION, own_format: FORMAT })
+        }
+    }
+}
+
+fn restored_lines(path: &Path, bytes: &[u8]) -> Result<Option<Progress>, JournalError> {
     let mut progress: Option<Progress> = None;
     for (number, line) in (1..).zip(bytes.split_inclusive(|byte| *byte == b'\n')) {
         let failed = |reason: String| JournalError::Line { path: path.to_owned(), line: number, reason };
@@ -184,7 +235,7 @@ mod tests {
 
     fn plan() -> Plan {
         let step = Step::Break { block: 0, limit_s: Some(1.5) };
-        Plan { place: 7, between: Vec::new(), steps: vec![step.clone(), step] }
+        Plan { place: 7, steps: vec![step.clone(), step], ..Plan::default() }
     }
 
     fn consented() -> Event {
@@ -224,6 +275,20 @@ mod tests {
             let error = Journal::open(&path).map(drop).unwrap_err().to_string();
             assert!(error.contains(part) && error.contains("P07.jsonl"), "{error}");
         }
+        // What another version wrote is for that one.
+        let (first, rest) = whole.split_once('\n').unwrap();
+        let later = first.replace("\"format\":2", "\"format\":3").replace(VERSION, "9.9.9");
+        let earlier = first.replace("\"format\":2", "\"form\":2").replace("\"place\"", "\"seat\"");
+        for (first, part) in
+            [(later, "format 3, written by 9.9.9"), (earlier, "format 1, written by an earlier version")]
+        {
+            fs::write(&path, format!("{first}\n{rest}")).unwrap();
+            let error = Journal::read(&path).unwrap_err().to_string();
+            assert!(error.contains(part) && error.contains("go on with the version"), "{error}");
+        }
+        let unsaid = first.replace("\"format\":2", "\"form\":2");
+        fs::write(&path, format!("{unsaid}\n{rest}")).unwrap();
+        assert!(Journal::read(&path).unwrap().is_some(), "what can be read of an earlier version is");
         // Who was cut off before they had agreed has not.
         let (enrolled, _) = whole.split_once('\n').unwrap();
         for text in [String::new(), format!("{enrolled}\n")] {

@@ -14,7 +14,7 @@ use crate::{
     plan::{Step, pseudonym},
     probe::{self, Happening},
     progress::{Ending, Event, Phase},
-    registry::{Live, Registry, StudyFault, now_ms},
+    registry::{Live, Registry, StudyFault},
     session::{Look, Player, Wanted, session_name},
     settings::session_arguments,
     tables,
@@ -232,7 +232,7 @@ impl Registry {
         let Some(participant) = self.participants.get(&place) else { return };
         let progress = &participant.progress;
         if let Some((_, Step::Break { limit_s: Some(limit), .. }, _)) = progress.step_now() {
-            let rested_s = now_ms().saturating_sub(progress.since_ms()) as f64 / 1000.0;
+            let rested_s = self.clock.now_ms().saturating_sub(progress.since_ms()) as f64 / 1000.0;
             if rested_s >= *limit {
                 self.note(place, &Event::GoesOn);
             }

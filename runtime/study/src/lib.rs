@@ -3,11 +3,14 @@
 //! [`StudyFile::check`] reads `study.toml`, and says all that is wrong in it. [`assign()`] says what the participant at a
 //! place does: a pure function of study and place. [`Progress`] is where one participant is: a pure state machine, whose
 //! events a [`Journal`] holds. [`Registry`] has all participants of a study that runs; [`StudyService`] serves their pages,
-//! and [`keep`] their sessions. [`Folder`] is where all of it is written down.
+//! and [`keep`] their sessions. [`Folder`] is where all of it is written down. [`simulate()`] plays a whole study with simulated
+//! people; [`report()`] writes its methods sheet; an [`Instrument`] scores a questionnaire's answers.
 //!
 //! - Nothing of a person is written down before they agree; their consent is kept apart from their data.
 //! - An event is on the disk before anything follows from it. Whoever is killed, and whenever: the participant goes on
 //!   where they were, under the conditions that were written down when they enrolled.
+//! - A condition that depends on what somebody answers first is assigned once they have, and written down then.
+//! - What programs played is marked so in every file, and is never in one folder with what people did.
 //! - A participant's page learns nothing about conditions.
 //! - Nobody is heard by a microphone who did not tick a box of the consent form that is about that: the session takes no sound,
 //!   and keeps none.
@@ -22,6 +25,7 @@
 //!
 //! ```text
 //! cohabit study check runtime/study/studies/clarification.toml
+//! cohabit study simulate runtime/study/studies/clarification.toml --folder dry-run
 //! cohabit study run runtime/study/studies/clarification.toml --folder data
 //! cohabit study export --folder data --out tables
 //! ```
@@ -38,21 +42,26 @@ mod cycle;
 pub mod design;
 mod findings;
 mod folder;
+mod instrument;
 mod journal;
 mod keeper;
 mod links;
 mod markdown;
+mod minimise;
 mod pages;
 mod plan;
 mod probe;
 mod progress;
+mod records;
 mod registry;
+mod report;
 mod schema;
 #[cfg(test)]
 mod scratch;
 mod session;
 pub mod settings;
 mod shape;
+mod simulate;
 pub mod square;
 mod tables;
 mod web;
@@ -63,13 +72,20 @@ pub use check::{Program, StudyError, StudyFile};
 pub use cycle::Cycle;
 pub use design::Study;
 pub use folder::{Consent, Folder, FolderError, Note, Withdrawal};
+pub use instrument::{Instrument, Score, Scoring};
 pub use journal::{Journal, JournalError};
 pub use keeper::keep;
 pub use plan::{Plan, PlannedMission, Step, pseudonym};
 pub use probe::{Happening, Moment, Probe, Probed};
 pub use progress::{Doing, Done, Effect, Ending, Event, Phase, Progress, Refused};
+pub use records::Records;
 pub use registry::{Registry, StudyFault};
+pub use report::{Apparatus, report};
 pub use schema::schema;
 pub use session::{Look, PageAddress, Player, Playing, Wanted};
-pub use tables::{TablesError, export, is_practice};
+pub use simulate::{
+    Answering, DryRun, Leaving, People, PeopleError, Shift, SimulateError, Simulated, SimulatedMission,
+    SimulatedPlayer, SimulatedSession, Speaking, simulate,
+};
+pub use tables::{DataPackageError, TablesError, all as all_tables, export, is_practice};
 pub use web::{Doors, StudyService, address};

@@ -20,19 +20,22 @@ pub struct Links {
     pub sign_up: String,
     /// Of each participant, by place.
     pub participants: BTreeMap<u32, String>,
+    /// Whether they are of a dry run, which nobody opens.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub synthetic: bool,
 }
 
 impl Links {
-    /// Those in a file; new ones, if it is not there.
+    /// Those in a file; new ones, if it is not there, which are perhaps of a dry run.
     ///
     /// # Errors
     /// Of the file system, or when the file holds something else.
-    pub fn open(path: &Path) -> io::Result<Self> {
+    pub fn open(path: &Path, synthetic: bool) -> io::Result<Self> {
         match fs::read(path) {
             Ok(bytes) => Ok(serde_json::from_slice(&bytes)?),
             Err(error) if error.kind() == io::ErrorKind::NotFound => {
-                let links =
-                    Self { experimenter: token::fresh()?, sign_up: token::fresh()?, participants: BTreeMap::new() };
+                let (experimenter, sign_up) = (token::fresh()?, token::fresh()?);
+                let links = Self { experimenter, sign_up, participants: BTreeMap::new(), synthetic };
                 links.save(path)?;
                 Ok(links)
             }
@@ -77,15 +80,15 @@ mod tests {
     fn links_are_kept_and_are_nobody_elses() {
         let folder = Scratch::new("links");
         let path = folder.path("links.json");
-        let mut links = Links::open(&path).unwrap();
+        let mut links = Links::open(&path, false).unwrap();
         links.participants.insert(3, token::fresh().unwrap());
         links.save(&path).unwrap();
         assert_eq!(fs::metadata(&path).unwrap().permissions().mode() & 0o777, 0o600);
-        let again = Links::open(&path).unwrap();
+        let again = Links::open(&path, false).unwrap();
         assert_eq!((&again.experimenter, again.participants.len()), (&links.experimenter, 1));
         assert_eq!(again.place(&links.participants[&3]), Some(3));
         assert_eq!(again.place(""), None);
         fs::write(&path, "{").unwrap();
-        assert!(Links::open(&path).is_err(), "links that are lost are not made anew in silence");
+        assert!(Links::open(&path, false).is_err(), "links that are lost are not made anew in silence");
     }
 }

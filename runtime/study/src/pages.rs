@@ -48,6 +48,7 @@ impl Registry {
             return match progress.phase() {
                 Phase::Finished => finished(&self.study),
                 Phase::Excluded => json!({ "page": "excluded" }),
+                Phase::Assigning => json!({ "page": "starting" }),
                 _ => json!({ "page": "withdrawn" }),
             };
         };
@@ -57,7 +58,7 @@ impl Registry {
                 json!({ "page": "questionnaire", "questionnaire": asked, "draft": progress.draft() })
             }
             (Step::Break { block, limit_s }, _) => {
-                let rested_s = crate::registry::now_ms().saturating_sub(progress.since_ms()) as f64 / 1000.0;
+                let rested_s = self.clock.now_ms().saturating_sub(progress.since_ms()) as f64 / 1000.0;
                 let left_s = limit_s.map(|limit| (limit - rested_s).max(0.0));
                 json!({ "page": "break", "html": self.text(*block), "left_s": left_s })
             }

@@ -1,5 +1,7 @@
 //! What one participant does, step by step, and under which conditions.
 
+use std::collections::BTreeMap;
+
 use serde::{Deserialize, Serialize};
 
 use crate::{
@@ -7,11 +9,21 @@ use crate::{
     settings::Settings,
 };
 
-/// What one participant does. It is written down when they enrol and never drawn again.
-#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+/// What one participant does. It is written down when they enrol and never drawn again; where their condition depends on what
+/// they answer first, it is so once they have.
+#[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]
 pub struct Plan {
     /// The participant's place in the order of all, from 1.
     pub place: u32,
+    /// Whether nobody takes part: a program plays them.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub is_synthetic: bool,
+    /// Whether the condition is assigned after these steps, and more steps follow then.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub awaits_assignment: bool,
+    /// The level of each covariate that the condition was assigned by.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub covariates: BTreeMap<String, String>,
     /// The level of each between-participants factor.
     pub between: Vec<Choice>,
     /// What is done, in order.

@@ -42,15 +42,47 @@ pub struct Probed {
     pub answer: Option<(u64, Option<Given>)>,
 }
 
+/// What a moment is called that comes with time.
+const MINUTES: &str = "minutes";
+
+impl Happening {
+    const ALL: [Self; 3] = [Self::GoalMet, Self::ActionFailed, Self::QuestionAsked];
+
+    const fn name(self) -> &'static str {
+        match self {
+            Self::GoalMet => "goal_met",
+            Self::ActionFailed => "action_failed",
+            Self::QuestionAsked => "question_asked",
+        }
+    }
+
+    /// The one that is called so; nothing, if it is no happening.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|one| one.name() == name)
+    }
+}
+
 impl Moment {
+    /// The names of all moments.
+    pub const NAMES: [&'static str; 4] =
+        [Happening::ALL[0].name(), Happening::ALL[1].name(), Happening::ALL[2].name(), MINUTES];
+
     /// As a study's file and tables have it.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
-            Self::Happens(Happening::GoalMet) => "goal_met",
-            Self::Happens(Happening::ActionFailed) => "action_failed",
-            Self::Happens(Happening::QuestionAsked) => "question_asked",
-            Self::Played(_) => "minutes",
+            Self::Happens(happening) => happening.name(),
+            Self::Played(_) => MINUTES,
+        }
+    }
+
+    /// After how long it is, s, if that is what it depends on.
+    #[must_use]
+    pub const fn played_s(self) -> Option<f64> {
+        match self {
+            Self::Played(seconds) => Some(seconds),
+            Self::Happens(_) => None,
         }
     }
 

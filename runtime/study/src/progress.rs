@@ -44,6 +44,8 @@ pub enum Phase {
     Information,
     /// Is asked to agree.
     Consent,
+    /// Waits for a condition, which is assigned at once.
+    Assigning,
     /// Does a step of the plan.
     At(usize, Doing),
     /// Has done all.
@@ -99,6 +101,11 @@ pub enum Event {
         questionnaire: String,
         /// An answer to each question.
         answers: Vec<Option<Given>>,
+    },
+    /// Their condition is assigned.
+    Assigned {
+        /// What they do: what they have done, and all the rest.
+        plan: Box<Plan>,
     },
     /// They want to begin a mission, or go on after a break.
     GoesOn,
@@ -178,6 +185,8 @@ pub enum Effect {
         /// Which time, from 1.
         attempt: u32,
     },
+    /// A condition is assigned.
+    Assign,
     /// The session that runs is ended.
     EndSession,
     /// All that is kept of the participant is removed.
@@ -334,7 +343,14 @@ impl Progress {
                 self.phase = Phase::Withdrawn;
                 return Ok([effects, vec![Effect::RemoveData]].concat());
             }
-            (Phase::At(..) | Phase::Finished, Event::Excluded { .. }) => {
+            (Phase::Assigning, Event::Assigned { plan })
+                if plan.place == self.plan.place && plan.steps.starts_with(&self.plan.steps) =>
+            {
+                let step = self.plan.steps.len();
+                self.plan = (**plan).clone();
+                self.begin(step, at_ms);
+            }
+            (Phase::At(..) | Phase::Assigning | Phase::Finished, Event::Excluded { .. }) => {
                 let effects = self.end_session();
                 self.phase = Phase::Excluded;
                 return Ok(effects);
@@ -395,7 +411,7 @@ impl Progress {
             }
             _ => return Err(OUT_OF_TURN),
         }
-        Ok(Vec::new())
+        Ok(if self.phase == Phase::Assigning { vec![Effect::Assign] } else { Vec::new() })
     }
 
     fn over(&mut self, index: usize, ending: Ending, at_ms: u64) -> Result<Vec<Effect>, Refused> {
@@ -421,7 +437,11 @@ impl Progress {
     fn begin(&mut self, step: usize, at_ms: u64) {
         (self.since_ms, self.played_s, self.attempts) = (at_ms, 0.0, 0);
         (self.draft, self.drafts) = (Vec::new(), 0);
-        self.phase = if step < self.plan.steps.len() { Phase::At(step, Doing::Ready) } else { Phase::Finished };
+        self.phase = match self.plan.awaits_assignment {
+            _ if step < self.plan.steps.len() => Phase::At(step, Doing::Ready),
+            true => Phase::Assigning,
+            false => Phase::Finished,
+        };
     }
 }
 

@@ -8,12 +8,13 @@ use std::{
 use cohabit_dialog::token;
 
 use crate::{
-    assign::assign,
-    design::{ConsentBox, Study},
+    assign::{assign, assign_among, begin},
+    design::{ConsentBox, CovariateSource, Minimisation, Study},
     folder::{Consent, Folder, FolderError, Note},
     journal::{Journal, JournalError},
     links::Links,
-    plan::pseudonym,
+    minimise::level_of,
+    plan::{Plan, Step, pseudonym},
     progress::{Doing, Effect, Ending, Event, Phase, Progress, Refused},
     session::{PageAddress, Playing},
 };
@@ -73,6 +74,8 @@ pub(crate) struct Newcomer {
     /// The place of the link, if it is one that the experimenter gave out.
     place: Option<u32>,
     pub reading: Reading,
+    /// The parameters of their link that the study asks for.
+    parameters: BTreeMap<String, String>,
 }
 
 /// What a newcomer's page shows.
@@ -97,8 +100,31 @@ pub(crate) enum Who {
     Withdrawn,
 }
 
+/// Where the times of events are from.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Clock {
+    /// This machine.
+    Wall,
+    /// A dry run, ms since 1970.
+    Simulated(u64),
+}
+
+impl Clock {
+    /// The time now, ms since 1970.
+    pub(crate) fn now_ms(self) -> u64 {
+        match self {
+            Self::Wall => {
+                let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+                u64::try_from(since.as_millis()).unwrap_or(u64::MAX)
+            }
+            Self::Simulated(at_ms) => at_ms,
+        }
+    }
+}
+
 /// All participants of a study.
 pub struct Registry {
+    pub(crate) clock: Clock,
     pub(crate) study: Study,
     pub(crate) folder: Folder,
     pub(crate) links: Links,
@@ -124,6 +150,7 @@ impl Registry {
     pub fn new(study: Study, folder: Folder) -> Result<Self, FolderError> {
         let (links, notes, journals) = (folder.links()?, folder.notes()?, folder.journals()?);
         let mut registry = Self {
+            clock: Clock::Wall,
             study,
             folder,
             links,
@@ -136,8 +163,10 @@ impl Registry {
             has_news: true,
             queued: 0,
         };
+        let mut unassigned = Vec::new();
         for (journal, progress) in journals {
             let place = progress.plan().place;
+            unassigned.extend((*progress.phase() == Phase::Assigning).then_some(place));
             let was_playing = matches!(progress.phase(), Phase::At(_, Doing::Playing));
             let participant = Participant { progress, journal, seen: None, live: None, retry_at: None, queued: 0 };
             registry.participants.insert(place, participant);
@@ -149,6 +178,13 @@ impl Registry {
                     // That it was refused cannot be: it was played.
                     Err(StudyFault::Refused(_) | StudyFault::NotNow(_)) | Ok(()) => {}
                 }
+            }
+        }
+        for place in unassigned {
+            match registry.assign(place) {
+                Err(StudyFault::Journal(error)) => return Err(error.into()),
+                Err(StudyFault::Folder(error)) => return Err(error),
+                Err(StudyFault::Refused(_) | StudyFault::NotNow(_)) | Ok(()) => {}
             }
         }
         Ok(registry)
@@ -179,8 +215,69 @@ impl Registry {
         if self.newcomers.len() >= MOST_NEWCOMERS {
             self.newcomers.pop_front();
         }
-        self.newcomers.push_back(Newcomer { token, place, reading: Reading::Information });
+        self.newcomers.push_back(Newcomer { token, place, reading: Reading::Information, parameters: BTreeMap::new() });
         self.newcomers.len() - 1
+    }
+
+    /// Keeps what a newcomer's link tells of what the study assigns conditions by, until they agree.
+    pub(crate) fn tell(&mut self, index: usize, parameters: &BTreeMap<String, String>) {
+        let Some(minimisation) = &self.study.minimisation else { return };
+        let is_asked = |name: &String| {
+            let is_it =
+                |from: &CovariateSource| matches!(from, CovariateSource::Link { parameter, .. } if parameter == name);
+            minimisation.covariates.iter().any(|covariate| is_it(&covariate.from))
+        };
+        if let Some(newcomer) = self.newcomers.get_mut(index) {
+            newcomer.parameters.extend(
+                parameters.iter().filter(|(name, _)| is_asked(name)).map(|(name, value)| (name.clone(), value.clone())),
+            );
+        }
+    }
+
+    /// What somebody does who agrees, as far as it can be known.
+    fn plan(&self, place: u32, parameters: &BTreeMap<String, String>) -> Plan {
+        let plan = match &self.study.minimisation {
+            None => assign(&self.study, place),
+            Some(minimisation) => {
+                let covariates = minimisation.told_by_link(parameters);
+                if minimisation.questionnaires().next().is_some() {
+                    Plan { covariates, ..begin(&self.study, place) }
+                } else {
+                    assign_among(&self.study, minimisation, place, covariates, &self.assigned())
+                }
+            }
+        };
+        Plan { is_synthetic: self.folder.is_synthetic(), ..plan }
+    }
+
+    /// The plans of all who have a condition.
+    fn assigned(&self) -> Vec<&Plan> {
+        self.participants.values().map(|one| one.progress.plan()).filter(|plan| !plan.awaits_assignment).collect()
+    }
+
+    /// Assigns a condition to somebody who has answered what it depends on.
+    fn assign(&mut self, place: u32) -> Result<(), StudyFault> {
+        let (Some(minimisation), Some(participant)) = (&self.study.minimisation, self.participants.get(&place)) else {
+            return Ok(());
+        };
+        let covariates = self.covariates(minimisation, &participant.progress);
+        let plan = assign_among(&self.study, minimisation, place, covariates, &self.assigned());
+        let plan = Box::new(Plan { is_synthetic: self.folder.is_synthetic(), ..plan });
+        self.apply(place, &Event::Assigned { plan })
+    }
+
+    /// The levels of somebody's covariates, by their link and by what they have answered.
+    fn covariates(&self, minimisation: &Minimisation, progress: &Progress) -> BTreeMap<String, String> {
+        let mut levels = progress.plan().covariates.clone();
+        for covariate in &minimisation.covariates {
+            let CovariateSource::Answer { questionnaire, item, cuts } = &covariate.from else { continue };
+            let is_it = |step: usize| matches!(progress.plan().steps.get(step), Some(Step::Questionnaire { name, .. }) if name == questionnaire);
+            let done = progress.done().iter().find(|done| is_it(done.step));
+            let given = done.and_then(|done| done.answers.get(*item)?.as_ref());
+            let asked = self.study.questionnaire(questionnaire).and_then(|asked| asked.items.get(*item));
+            levels.extend(asked.map(|asked| (covariate.name.clone(), level_of(asked, cuts, given))));
+        }
+        levels
     }
 
     /// Says when all planned places are taken: those of people who take part, and of links that were given out.
@@ -235,6 +332,7 @@ impl Registry {
         let text = |(_, one): (usize, &ConsentBox)| one.text.clone();
         let texts = |boxes: Vec<(usize, &ConsentBox)>| boxes.into_iter().map(text).collect::<Vec<_>>();
         let (agreed, declined) = (texts(agreed), texts(declined));
+        let parameters = newcomer.parameters.clone();
         let place = match newcomer.place {
             Some(place) => place,
             None => {
@@ -242,11 +340,11 @@ impl Registry {
                 self.reserve(Some(newcomer.token.clone()))?
             }
         };
-        let at_ms = now_ms();
+        let at_ms = self.clock.now_ms();
         let participant = pseudonym(place);
         let consent = Consent { participant, at_ms, version: version.to_owned(), agreed, declined };
         self.folder.keep_consent(place, &consent)?;
-        let plan = assign(&self.study, place);
+        let plan = self.plan(place, &parameters);
         let agreed = Event::Consented { version: version.to_owned(), ticked, audio };
         let journal = Journal::begin(&self.folder.journal_path(place), &plan, &agreed, at_ms)?;
         let mut progress = Progress::new(plan);
@@ -267,7 +365,7 @@ impl Registry {
         let Some(participant) = self.participants.get_mut(&place) else {
             return Err(StudyFault::NotNow("Nobody of that name takes part.".to_owned()));
         };
-        let (mut next, at_ms) = (participant.progress.clone(), now_ms());
+        let (mut next, at_ms) = (participant.progress.clone(), self.clock.now_ms());
         let effects = next.step(event, at_ms)?;
         participant.journal.append(event, at_ms)?;
         participant.progress = next;
@@ -280,6 +378,7 @@ impl Registry {
             match effect {
                 Effect::StartSession { attempt } => self.to_start.push((place, attempt)),
                 Effect::EndSession => self.end_session(place),
+                Effect::Assign => self.assign(place)?,
                 // As soon as the session has ended, which may still write.
                 Effect::RemoveData => {}
             }
@@ -298,7 +397,7 @@ impl Registry {
 
     /// Removes all data of a participant who has withdrawn, and whose session has ended.
     pub(crate) fn remove(&mut self, place: u32) -> Result<(), StudyFault> {
-        self.folder.withdraw(&pseudonym(place), now_ms())?;
+        self.folder.withdraw(&pseudonym(place), self.clock.now_ms())?;
         self.participants.remove(&place);
         self.withdrawn.extend(self.links.participants.remove(&place));
         self.notes = self.folder.notes()?;
@@ -323,10 +422,4 @@ impl Participant {
     pub(crate) fn is_here(&self) -> bool {
         self.seen.is_some_and(|seen| seen.elapsed() < AWAY_AFTER)
     }
-}
-
-/// The time now, ms since 1970.
-pub(crate) fn now_ms() -> u64 {
-    let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
-    u64::try_from(since.as_millis()).unwrap_or(u64::MAX)
 }

@@ -33,6 +33,8 @@ fn value(kind: Kind) -> Value {
         Kind::Switch => json!({ "type": "boolean" }),
         Kind::Whole(most) => json!({ "type": "integer", "minimum": 0, "maximum": most }),
         Kind::Minutes => json!({ "type": "number", "exclusiveMinimum": 0 }),
+        Kind::Share => json!({ "type": "number", "minimum": 0, "maximum": 1 }),
+        Kind::Numbers => json!({ "type": "array", "items": { "type": "integer" } }),
         Kind::OneOf(words) => json!({ "enum": words }),
         Kind::Settings => {
             let one = json!({ "type": ["string", "number", "boolean"] });

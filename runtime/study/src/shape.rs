@@ -1,5 +1,7 @@
 //! The keys of `study.toml`, as a table: what it is checked by, and what its JSON Schema is made of.
 
+use crate::probe::Moment;
+
 /// A key of a table.
 #[derive(Clone, Copy, Debug)]
 pub struct Key {
@@ -28,6 +30,10 @@ pub enum Kind {
     Whole(u64),
     /// A number of minutes above 0.
     Minutes,
+    /// A number from 0 to 1.
+    Share,
+    /// A list of whole numbers.
+    Numbers,
     /// One of these words.
     OneOf(&'static [&'static str]),
     /// Settings, most of them flags of `cohabit play`, each with a text, a number, true or false, or a list of these.
@@ -50,6 +56,8 @@ const fn optional(name: &'static str, kind: Kind, meaning: &'static str) -> Key 
 const LARGEST_SEED: u64 = (1 << 53) - 1;
 /// More people than a study of a lab has.
 const MOST_PARTICIPANTS: u64 = 10_000;
+/// More questions than a questionnaire has.
+const LARGEST_ITEM: u64 = 100;
 /// The longest block of a random assignment.
 const LARGEST_BLOCK: u64 = 1_000;
 
@@ -74,6 +82,11 @@ pub const STUDY: &[Key] = &[
         "participants of a block in which each between-participants condition is as frequent; as many as there are, if absent",
     ),
     optional(
+        "minimisation",
+        Kind::Table(MINIMISATION),
+        "how between-participants conditions are assigned by what participants are like, instead of in blocks (Pocock and Simon 1975)",
+    ),
+    optional(
         "missions",
         Kind::Texts,
         "the missions of the block of kind `missions`: names of built-in missions, or files",
@@ -94,12 +107,30 @@ pub const STUDY: &[Key] = &[
 
 const PROBE: &[Key] = &[
     required("questionnaire", Kind::Text, "a questionnaire of one item: one that ships, or a file"),
-    required(
-        "at",
-        Kind::OneOf(&["goal_met", "action_failed", "question_asked", "minutes"]),
-        "when it is asked; minutes: when the mission was played for so long",
-    ),
+    required("at", Kind::OneOf(&Moment::NAMES), "when it is asked; minutes: when the mission was played for so long"),
     optional("minutes", Kind::Minutes, "of a probe at minutes: after how many"),
+];
+
+const MINIMISATION: &[Key] = &[
+    required("covariate", Kind::Tables(COVARIATE), "what participants differ in, and are to be spread by"),
+    optional(
+        "certainty",
+        Kind::Share,
+        "how probable it is that somebody gets a condition that spreads best, 0.5 to 1; 0.8, if absent",
+    ),
+];
+
+const COVARIATE: &[Key] = &[
+    required("name", Kind::Text, "what it is called in tables: letters, digits and _"),
+    optional("parameter", Kind::Text, "of one known from the link by which somebody comes: the parameter's name"),
+    optional("levels", Kind::Texts, "of one known from the link: the values; all others count as `other`"),
+    optional("questionnaire", Kind::Text, "of one known from an answer: a questionnaire before the first mission"),
+    optional("item", Kind::Whole(LARGEST_ITEM), "of one known from an answer: which question, from 1"),
+    optional(
+        "cuts",
+        Kind::Numbers,
+        "of an answer on a scale: where it is cut into levels; each number is one, if absent",
+    ),
 ];
 
 const SHEET: &[Key] = &[
@@ -189,6 +220,8 @@ impl Kind {
             Self::Switch => "true or false".to_owned(),
             Self::Whole(most) => format!("a whole number from 0 to {most}"),
             Self::Minutes => "a number of minutes above 0".to_owned(),
+            Self::Share => "a number from 0 to 1".to_owned(),
+            Self::Numbers => "a list of whole numbers, such as [3, 5]".to_owned(),
             Self::OneOf(words) => format!("one of \"{}\"", words.join("\", \"")),
             Self::Settings => "a table of settings, such as { ask = \"never\" }".to_owned(),
             Self::Table(_) => "a table".to_owned(),

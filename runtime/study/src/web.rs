@@ -1,6 +1,7 @@
 //! The study's server: a page for participants, a page for the experimenter, and what they ask for, by plain HTTP.
 
 use std::{
+    collections::BTreeMap,
     io,
     net::{SocketAddr, TcpListener},
     sync::{Arc, Mutex},
@@ -9,7 +10,7 @@ use std::{
 
 use axum::{
     Json, Router,
-    extract::{Path, State},
+    extract::{Path, Query, State},
     http::{StatusCode, header},
     response::{IntoResponse, Redirect, Response},
     routing::{get, post},
@@ -24,7 +25,7 @@ use crate::{
     markdown::escaped,
     plan::place_of,
     progress::{Ending, Event},
-    registry::{Reading, Registry, StudyFault, Who, now_ms},
+    registry::{Reading, Registry, StudyFault, Who},
 };
 
 const SCRIPT: &str = "text/javascript; charset=utf-8";
@@ -156,22 +157,43 @@ fn told(fault: &StudyFault) -> Value {
     json!(fault.to_string())
 }
 
-async fn sign_up(State(service): State<StudyService>, Path(given): Path<String>) -> Response {
+/// The parameters of a link, such as a site that recruits people passes them.
+type Parameters = Query<BTreeMap<String, String>>;
+
+async fn sign_up(
+    State(service): State<StudyService>,
+    Path(given): Path<String>,
+    Query(parameters): Parameters,
+) -> Response {
     with_study(service, move |registry, _| {
         if !token::admits(&registry.links.sign_up, Some(&given)) {
             return stranger(&registry.study.contact);
         }
         match registry.sign_up() {
-            Ok(token) => Redirect::to(&format!("/p/{token}")).into_response(),
+            Ok(token) => {
+                if let Some(Who::Newcomer(index)) = registry.who(&token) {
+                    registry.tell(index, &parameters);
+                }
+                Redirect::to(&format!("/p/{token}")).into_response()
+            }
             Err(fault) => (StatusCode::CONFLICT, format!("{fault}\n")).into_response(),
         }
     })
     .await
 }
 
-async fn participant(State(service): State<StudyService>, Path(given): Path<String>) -> Response {
+async fn participant(
+    State(service): State<StudyService>,
+    Path(given): Path<String>,
+    Query(parameters): Parameters,
+) -> Response {
     with_study(service, move |registry, _| match registry.who(&given) {
-        Some(_) => page(STUDY_PAGE),
+        Some(who) => {
+            if let Who::Newcomer(index) = who {
+                registry.tell(index, &parameters);
+            }
+            page(STUDY_PAGE)
+        }
         None => stranger(&registry.study.contact),
     })
     .await
@@ -347,7 +369,7 @@ impl Registry {
                 if let Some(name) = &participant {
                     place(name)?;
                 }
-                let note = Note { at_ms: now_ms(), participant, text: short(&text)? };
+                let note = Note { at_ms: self.clock.now_ms(), participant, text: short(&text)? };
                 self.folder.note(&note)?;
                 self.notes.push(note);
                 Ok(())

@@ -25,6 +25,7 @@ pub(crate) struct Written {
     pub participants: Option<Spanned<u32>>,
     pub assignment: Option<Spanned<Assignment>>,
     pub block_size: Option<Spanned<usize>>,
+    pub minimisation: Option<Spanned<WrittenMinimisation>>,
     pub missions: Option<Spanned<Words>>,
     pub settings: WrittenSettings,
     pub completion_code: Option<Spanned<String>>,
@@ -34,6 +35,24 @@ pub(crate) struct Written {
     pub factor: Vec<Spanned<WrittenFactor>>,
     pub block: Vec<Spanned<WrittenBlock>>,
     pub probe: Vec<Spanned<WrittenProbe>>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(default)]
+pub(crate) struct WrittenMinimisation {
+    pub certainty: Option<Spanned<f64>>,
+    pub covariate: Vec<Spanned<WrittenCovariate>>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(default)]
+pub(crate) struct WrittenCovariate {
+    pub name: Option<Spanned<String>>,
+    pub parameter: Option<Spanned<String>>,
+    pub levels: Option<Words>,
+    pub questionnaire: Option<Spanned<String>>,
+    pub item: Option<Spanned<usize>>,
+    pub cuts: Option<Vec<Spanned<i32>>>,
 }
 
 #[derive(Default, Deserialize)]

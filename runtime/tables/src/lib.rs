@@ -12,6 +12,7 @@
 
 mod actions;
 mod answers;
+mod chance;
 mod codebook;
 mod csv;
 mod design;
@@ -29,6 +30,7 @@ mod table;
 mod turns;
 
 pub use self::csv::{CsvError, plain_text, write_csv};
+pub use chance::Chance;
 pub use codebook::codebook;
 pub use fit::{ConditionTest, Fit, Observation, RandomIntercept, Term};
 pub use interval::{mean_95, wilson_95};

@@ -9,6 +9,7 @@ use toml::Spanned;
 use super::Checking;
 use crate::{
     design::{Block, Limits, Missions},
+    instrument::Instrument,
     shape::KEYS_OF_BLOCKS,
     written::{BlockKind, Words, WrittenBlock},
 };
@@ -121,10 +122,11 @@ impl Checking<'_, '_> {
     /// Finds a questionnaire.
     pub(super) fn questionnaire(&mut self, name: &Spanned<String>, at: &Pointer) -> Option<Questionnaire> {
         let path = self.beside(name, at);
-        match Questionnaire::find(&path) {
-            Ok(questionnaire) => {
+        match Instrument::find(&path) {
+            Ok((questionnaire, instrument)) => {
                 if !self.asked.contains(&questionnaire) {
                     self.asked.push(questionnaire.clone());
+                    self.instruments.insert(questionnaire.name.clone(), instrument);
                 }
                 Some(questionnaire)
             }

@@ -35,16 +35,11 @@ impl Checking<'_, '_> {
     fn moment(&mut self, probe: &WrittenProbe, at: &Pointer) -> Option<Moment> {
         const SECONDS: f64 = 60.0;
         let written = probe.at.as_ref()?;
-        let happening = match written.get_ref().as_str() {
-            "goal_met" => Happening::GoalMet,
-            "action_failed" => Happening::ActionFailed,
-            "question_asked" => Happening::QuestionAsked,
-            _ => {
-                if probe.minutes.is_none() && !self.findings.is_unread(&at.key("minutes")) {
-                    self.findings.add(written.span(), &at.key("at"), "after how many minutes?", "add `minutes`");
-                }
-                return Some(Moment::Played(probe.minutes.as_ref()?.get_ref() * SECONDS));
+        let Some(happening) = Happening::named(written.get_ref()) else {
+            if probe.minutes.is_none() && !self.findings.is_unread(&at.key("minutes")) {
+                self.findings.add(written.span(), &at.key("at"), "after how many minutes?", "add `minutes`");
             }
+            return Some(Moment::Played(probe.minutes.as_ref()?.get_ref() * SECONDS));
         };
         if let Some(minutes) = &probe.minutes {
             let remedy = "leave it out, or write at = \"minutes\"";

@@ -189,6 +189,26 @@ fn what_is_wrong_is_said_with_its_place_and_a_remedy() {
             "[[probe]]\nquestionnaire = \"after.toml\"\nat = \"goal_met\"\nminutes = 2\n\n[[factor]]",
             "leave it out, or write at = \"minutes\"",
         ),
+        (
+            "[[factor]]",
+            "[minimisation]\ncertainty = 0.2\n[[minimisation.covariate]]\nname = \"a\"\nparameter = \"a\"\n\n[[factor]]",
+            "/minimisation/certainty: with a certainty of 0.2 conditions would not be balanced; write a number from 0.5",
+        ),
+        (
+            "[[factor]]",
+            "[minimisation]\n[[minimisation.covariate]]\nname = \"a\"\nparameter = \"a\"\n\n[[factor]]",
+            "/minimisation: there are no between-participants conditions to assign; give a factor the kind",
+        ),
+        (
+            "[[factor]]",
+            "[minimisation]\n[[minimisation.covariate]]\nname = \"a\"\n\n[[factor]]",
+            "a covariate is known from a link or from an answer; write `parameter`",
+        ),
+        (
+            "[[factor]]",
+            "[minimisation]\n[[minimisation.covariate]]\nname = \"a\"\nquestionnaire = \"sus\"\nitem = 1\n\n[[factor]]",
+            "`sus` is not asked before the first mission",
+        ),
         ("contact", "settings = { score = \"yes\" }\ncontact", "/settings/score: `score` is shown to participants, or"),
         ("contact", "settings = { hide = \"score\" }\ncontact", "`hide` is not a study's to set"),
         (
@@ -242,6 +262,7 @@ fn one_look_finds_what_is_wrong_with_the_file_its_keys_its_settings_and_its_miss
     let parts = [
         "study.toml:3:",
         "/title: `title` cannot be this integer",
+        "`seed` is missing; add",
         "there is no key `sed`",
         "there is no mission tea",
         "`audio` cannot be this integer",
@@ -283,4 +304,47 @@ fn the_schema_says_the_same() {
     {
         assert!(!valid(&STUDY.replacen(right, instead, 1)), "{instead}");
     }
+}
+
+#[test]
+fn covariates_are_items_that_are_answered_before_any_mission() {
+    let with = |keys: &str| {
+        let minimisation = format!(
+            "[minimisation]\n[[minimisation.covariate]]\nname = \"load\"\n{keys}\n\n[[factor]]\nname = \"group\"\nkind = \"between\"\n\
+             level = [{{ name = \"a\", settings = {{ ask = \"never\" }} }}, {{ name = \"b\", settings = {{ ask = \"always\" }} }}]\n\n[[block]]\nkind = \"questionnaire\"\nquestionnaires = [\"tlx\"]\n"
+        );
+        let (head, rest) = STUDY.split_once("[[factor]]").unwrap();
+        let (_, blocks) = rest.split_once("[[block]]").unwrap();
+        check(
+            "covariates",
+            &format!(
+                "{}\n{minimisation}\n[[block]]{blocks}",
+                head.replace("assignment = \"balanced_latin_square\"\n", "")
+            ),
+        )
+    };
+    let study = with("questionnaire = \"tlx\"\nitem = 1\ncuts = [30, 60]").unwrap();
+    let minimisation = study.minimisation.unwrap();
+    assert_eq!(minimisation.questionnaires().collect::<Vec<_>>(), ["tlx"]);
+    for (keys, part) in [
+        ("questionnaire = \"tlx\"\nitem = 7", "`tlx` has no item 7: it has 6, from 1"),
+        ("questionnaire = \"tlx\"", "`tlx` has no item 0"),
+        ("questionnaire = \"tlx\"\nitem = 1\ncuts = [60, 30]", "these are no cuts of a scale from 0 to 100"),
+        ("questionnaire = \"tlx\"\nitem = 1\ncuts = [0]", "these are no cuts"),
+        (
+            "questionnaire = \"tlx\"\nitem = 1\ncuts = [1.5]",
+            "`cuts` cannot be this array; write a list of whole numbers",
+        ),
+    ] {
+        let said = with(keys).unwrap_err();
+        assert!(said.contains(part), "no `{part}` in {said}");
+    }
+}
+
+#[test]
+fn keys_that_are_missing_are_said_beside_what_cannot_be_read() {
+    let said =
+        check("partial", &STUDY.replacen("seed = 1\n", "", 1).replacen("participants = 4", "participants = 4 4", 1));
+    let said = said.unwrap_err();
+    assert!(said.contains("`seed` is missing") && !said.contains("`participants` is missing"), "{said}");
 }

@@ -110,6 +110,10 @@ impl Checking<'_, '_> {
     fn block_size(&mut self, study: &Study, written: &Written) -> usize {
         let conditions = study.conditions(FactorKind::Between).len();
         let Some(size) = &written.block_size else { return conditions };
+        if written.minimisation.is_some() {
+            let message = "conditions are assigned by minimisation, not in blocks";
+            self.findings.add(size.span(), &Pointer::default().key("block_size"), message, "leave one of them out");
+        }
         if *size.get_ref() == 0 || !size.get_ref().is_multiple_of(conditions) {
             let message = format!("a block of {} for {conditions} between-participants conditions", size.get_ref());
             let remedy = format!("write {conditions}, or a multiple of it");

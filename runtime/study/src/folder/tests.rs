@@ -11,7 +11,7 @@ fn with_participants(scratch: &Scratch) -> Folder {
     let folder = Folder::begin(&scratch.path("data"), &study("a study")).unwrap();
     let mut links = folder.links().unwrap();
     for place in [1, 12] {
-        let plan = Plan { place, between: Vec::new(), steps: Vec::new() };
+        let plan = Plan { place, ..Plan::default() };
         let agreed = Event::Consented { version: "1".into(), ticked: Vec::new(), audio: false };
         Journal::begin(&folder.journal_path(place), &plan, &agreed, 0).unwrap();
         let participant = pseudonym(place);

@@ -1,6 +1,6 @@
 //! Participants keep their places and conditions, whatever dies.
 
-use std::{fs, path::Path, sync::Arc};
+use std::{collections::BTreeMap, fs, path::Path, sync::Arc};
 
 use cohabit_dialog::Given;
 
@@ -101,9 +101,13 @@ struct Case {
 
 impl Case {
     fn new(name: &str) -> Self {
+        Self::of(name, STUDY)
+    }
+
+    fn of(name: &str, study: &str) -> Self {
         let scratch = Scratch::new(&format!("keeper-{name}"));
         let _ = scratch.write("sheet.md", "Read this.");
-        let _ = scratch.write("study.toml", STUDY);
+        let _ = scratch.write("study.toml", study);
         let mut case = Self { scratch, stage: Stage::default(), registry: None };
         case.start_again();
         case
@@ -306,7 +310,7 @@ fn a_probe_comes_when_it_is_due_and_its_answer_is_in_the_tables() {
     case.apply(place, &Event::Over { ending: Ending::Complete });
     let registry = case.registry();
     let all = [registry.participants[&place].progress.clone()];
-    let rows = tables::probes(&registry.study, &all, false).rows;
+    let rows = tables::probes::table(&registry.study, &all, false).rows;
     assert!(rows.len() == 1 && rows[0].contains(&cohabit_tables::Cell::Whole(4)), "{rows:?}");
 }
 
@@ -399,4 +403,65 @@ fn a_participants_page_learns_nothing_about_conditions() {
     }
     let row = case.registry().overview(1).to_string();
     assert!(row.contains("ask=never") && row.contains("ask=always"), "the experimenter's learns all: {row}");
+}
+
+const MINIMISED: &str = r#"
+title = "A study"
+contact = "us"
+seed = 5
+participants = 40
+missions = ["one"]
+information = { file = "sheet.md", version = "1" }
+consent = { file = "sheet.md", version = "2", required = ["Yes.", "Indeed."] }
+minimisation = { certainty = 1, covariate = [
+    { name = "load", questionnaire = "tlx", item = 1, cuts = [50] }, { name = "site", parameter = "at", levels = ["lab"] },
+] }
+factor = [{ name = "ask", kind = "between", level = [
+    { name = "never", settings = { ask = "never" } }, { name = "always", settings = { ask = "always" } },
+] }]
+block = [{ kind = "questionnaire", questionnaires = ["tlx"] }, { kind = "missions" }]
+"#;
+
+#[test]
+fn a_condition_that_depends_on_answers_is_assigned_when_these_are_there_and_outlasts_a_crash() {
+    let mut case = Case::of("minimised", MINIMISED);
+    let mut counts = BTreeMap::<(String, String), [usize; 2]>::new();
+    for number in 0..20_u32 {
+        let registry = case.registry();
+        let token = registry.sign_up().unwrap();
+        let Some(Who::Newcomer(index)) = registry.who(&token) else { panic!("a newcomer") };
+        let parameters = BTreeMap::from([("at".to_owned(), "lab".to_owned()), ("name".to_owned(), "Ada".to_owned())]);
+        registry.tell(index, &if number % 3 == 0 { parameters } else { BTreeMap::new() });
+        registry.enrol(index, "2", &[0, 1]).unwrap();
+        let Some(Who::Participant(place)) = registry.who(&token) else { panic!("a participant") };
+        let plan = registry.participants[&place].progress.plan();
+        assert!(plan.awaits_assignment && plan.between.is_empty() && plan.steps.len() == 1, "{plan:?}");
+        if number == 7 {
+            case.start_again();
+        }
+        let load = if number % 2 == 0 { 20 } else { 80 };
+        let answers = [load, 5, 5, 5, 5, 5].map(|value| Some(Given::Value(value))).to_vec();
+        case.apply(place, &Event::Answered { questionnaire: "tlx".to_owned(), answers });
+        let progress = case.registry().participants[&place].progress.clone();
+        assert_eq!(progress.phase(), &Phase::At(1, Doing::Ready), "{progress:?}");
+        let plan = progress.plan();
+        assert!(!format!("{plan:?}").contains("Ada"), "nothing else of a link is kept");
+        let arm = usize::from(plan.between[0].level == "always");
+        for (name, level) in &plan.covariates {
+            counts.entry((name.clone(), level.clone())).or_default()[arm] += 1;
+        }
+    }
+    assert_eq!(counts.len(), 4, "{counts:?}");
+    assert!(counts.values().all(|[one, other]| one.abs_diff(*other) <= 2), "{counts:?}");
+    // Who was cut off between the answer and the condition gets it when the study goes on.
+    let before: Vec<_> = case.registry().participants.values().map(|one| one.progress.plan().between.clone()).collect();
+    let path = case.registry().folder.journal_path(20);
+    let whole = fs::read_to_string(&path).unwrap();
+    let cut =
+        whole.lines().filter(|line| !line.contains("\"assigned\"")).map(|line| format!("{line}\n")).collect::<String>();
+    assert!(cut.len() < whole.len());
+    fs::write(&path, cut).unwrap();
+    case.start_again();
+    let after: Vec<_> = case.registry().participants.values().map(|one| one.progress.plan().between.clone()).collect();
+    assert_eq!(before, after);
 }

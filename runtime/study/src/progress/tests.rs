@@ -20,8 +20,8 @@ fn plan() -> Plan {
     let asked = Step::Questionnaire { name: "sus".to_owned(), about: None };
     Plan {
         place: 1,
-        between: Vec::new(),
         steps: vec![mission(Some(10.0)), asked, Step::Break { block: 1, limit_s: None }, mission(None)],
+        ..Plan::default()
     }
 }
 

@@ -1,11 +1,7 @@
 //! Outcomes of a simulated study.
 
-use rand_chacha::{
-    ChaCha8Rng,
-    rand_core::{Rng as _, SeedableRng as _},
-};
-
 use super::{Design, Effect, Varies};
+use crate::chance::Chance;
 
 /// A study of so many participants, whose outcomes are drawn again and again.
 #[derive(Clone, Debug)]
@@ -50,48 +46,14 @@ impl Study {
 
     /// The outcomes of one simulation, drawn participant by participant.
     pub fn outcomes(&self, seed: u64, simulation: u32) -> Vec<f64> {
-        let mut normal = Normal::new(seed, u64::from(simulation));
+        let mut chance = Chance::new(seed, u64::from(simulation));
         let (mut last, mut intercept) = (None, 0.0);
         let one = |(participant, mean): (&usize, &f64)| {
             if last.replace(*participant) != Some(*participant) {
-                intercept = self.participant_sd * normal.draw();
+                intercept = self.participant_sd * chance.normal();
             }
-            mean + intercept + self.residual_sd * normal.draw()
+            mean + intercept + self.residual_sd * chance.normal()
         };
         self.participants.iter().zip(&self.means).map(one).collect()
-    }
-}
-
-/// Draws from the standard normal distribution, by Marsaglia's polar method (Marsaglia and Bray 1964).
-struct Normal {
-    random: ChaCha8Rng,
-    spare: Option<f64>,
-}
-
-impl Normal {
-    fn new(seed: u64, stream: u64) -> Self {
-        let mut random = ChaCha8Rng::seed_from_u64(seed);
-        random.set_stream(stream);
-        Self { random, spare: None }
-    }
-
-    /// Uniform in −1 to 1.
-    fn uniform(&mut self) -> f64 {
-        (self.random.next_u64() >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-    }
-
-    fn draw(&mut self) -> f64 {
-        if let Some(spare) = self.spare.take() {
-            return spare;
-        }
-        loop {
-            let (a, b) = (self.uniform(), self.uniform());
-            let square = a * a + b * b;
-            if square > 0.0 && square < 1.0 {
-                let factor = (-2.0 * square.ln() / square).sqrt();
-                self.spare = Some(b * factor);
-                return a * factor;
-            }
-        }
     }
 }

@@ -1,0 +1,248 @@
+//! One simulated person's way through a study: everything that happens to them, with its time. Nothing is written down here.
+
+use std::path::PathBuf;
+
+use crate::{
+    design::{Limits, Study},
+    folder::Folder,
+    plan::{Plan, PlannedMission, Step, pseudonym},
+    probe::{self, Happening},
+    progress::{Ending, Event, Progress},
+    session::session_name,
+    settings::Settings,
+    simulate::{
+        SimulateError,
+        people::Speaking,
+        person::{Leaves, Person},
+    },
+};
+
+/// So long somebody sees the end of a mission.
+const ENDING_SEEN_S: f64 = 4.0;
+/// So long somebody rests, if nothing says how long.
+const REST_S: f64 = 30.0;
+/// So long somebody takes to notice that they are stuck, and to find the button that skips.
+const GIVES_UP_AFTER_S: f64 = 10.0;
+
+/// A mission that a simulated person plays.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SimulatedMission {
+    /// What its session is called.
+    pub name: String,
+    /// The participant's pseudonym.
+    pub participant: String,
+    /// The mission, as the study names it.
+    pub mission: String,
+    /// The settings of its session.
+    pub settings: Settings,
+    /// The seed of its world, and of who speaks in it.
+    pub seeds: [u64; 2],
+    /// How they speak, with the time that this person takes for a line.
+    pub speaking: Speaking,
+    /// Whether they give it up halfway.
+    pub gives_up: bool,
+    /// The longest that it is played, s: what would come after that is cut off.
+    pub ends_by_s: Option<f64>,
+    /// When it begins, ms since 1970.
+    pub began_ms: u64,
+    /// Where it is recorded.
+    pub log: PathBuf,
+}
+
+/// What came of it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SimulatedSession {
+    /// For how long it was played, s.
+    pub played_s: f64,
+    /// How it ended, if it did before the person gave up.
+    pub ending: Option<Ending>,
+    /// What happened, and after how long, s; in order.
+    pub happened: Vec<(f64, Happening)>,
+}
+
+/// Plays missions with simulated people.
+pub trait SimulatedPlayer: Sync {
+    /// Plays one, as fast as it can; the same one comes out the same. Its log has the times that it would have.
+    ///
+    /// # Errors
+    /// Why it cannot be played.
+    fn play(&self, wanted: &SimulatedMission) -> Result<SimulatedSession, String>;
+}
+
+/// What everybody's way has in common.
+pub(super) struct Setting<'a> {
+    pub study: &'a Study,
+    pub speaking: &'a Speaking,
+    pub logs: &'a Folder,
+    pub player: &'a dyn SimulatedPlayer,
+}
+
+/// What happens to one person.
+pub(super) struct Walk<'a> {
+    setting: &'a Setting<'a>,
+    person: &'a Person<'a>,
+    progress: Progress,
+    at_ms: u64,
+    events: Vec<(u64, Event)>,
+}
+
+impl<'a> Walk<'a> {
+    /// The way of somebody from where they are.
+    pub fn new(setting: &'a Setting<'a>, person: &'a Person<'a>, progress: Progress) -> Self {
+        let at_ms = progress.since_ms();
+        Self { setting, person, progress, at_ms, events: Vec::new() }
+    }
+
+    /// Goes on to the end, or until they leave, or until a condition has to be assigned.
+    pub fn run(mut self) -> Result<Vec<(u64, Event)>, SimulateError> {
+        let steps = self.progress.plan().steps.len();
+        while let Some((index, step, _)) = self.progress.step_now() {
+            let step = step.clone();
+            match self.person.leaves_at(index, steps).filter(|_| !self.progress.plan().awaits_assignment) {
+                Some(Leaves::Stops) => break,
+                Some(Leaves::Withdraws) => self.happens(Event::Withdrew)?,
+                Some(Leaves::IsExcluded) => self.happens(Event::Excluded { reason: "as simulated".to_owned() })?,
+                None => self.step(index, &step)?,
+            }
+        }
+        Ok(self.events)
+    }
+
+    fn happens(&mut self, event: Event) -> Result<(), SimulateError> {
+        let participant = pseudonym(self.progress.plan().place);
+        let refused = |refused| SimulateError::Refused { participant, event: format!("{event:?}"), refused };
+        self.progress.step(&event, self.at_ms).map_err(refused)?;
+        self.events.push((self.at_ms, event));
+        Ok(())
+    }
+
+    fn passes(&mut self, seconds: f64) {
+        self.at_ms += (seconds * 1000.0).round() as u64;
+    }
+
+    fn step(&mut self, index: usize, step: &Step) -> Result<(), SimulateError> {
+        match step {
+            Step::Questionnaire { name, .. } => self.questionnaire(index, name),
+            Step::Break { limit_s, .. } => {
+                self.passes(limit_s.map_or(REST_S, |limit| limit.min(REST_S)));
+                self.happens(Event::GoesOn)
+            }
+            Step::Mission(mission) => self.mission(index, mission),
+        }
+    }
+
+    fn questionnaire(&mut self, index: usize, name: &str) -> Result<(), SimulateError> {
+        let under = self.progress.plan().choices(index);
+        let answers = self.person.answers(self.setting.study, name, index, &under);
+        self.passes(self.person.answering_s(answers.len()));
+        self.happens(Event::Answered { questionnaire: name.to_owned(), answers })
+    }
+
+    fn mission(&mut self, index: usize, mission: &PlannedMission) -> Result<(), SimulateError> {
+        self.passes(self.person.answering_s(1));
+        self.happens(Event::GoesOn)?;
+        self.happens(Event::Started)?;
+        let session = self.play(index, mission)?;
+        let (ending, played_s) = ending(&session, mission.limits);
+        self.probes(index, mission, &session, played_s)?;
+        let left_s = played_s - self.progress.played_s();
+        self.plays(left_s)?;
+        self.passes(if matches!(ending, Ending::Complete | Ending::Failed) { ENDING_SEEN_S } else { 0.0 });
+        self.happens(Event::Over { ending })
+    }
+
+    fn play(&self, index: usize, mission: &PlannedMission) -> Result<SimulatedSession, SimulateError> {
+        let Setting { study, speaking, logs, player } = self.setting;
+        let Plan { place, .. } = *self.progress.plan();
+        let name = session_name(place, index, 1);
+        let wanted = SimulatedMission {
+            participant: pseudonym(place),
+            mission: mission.mission.clone(),
+            settings: mission.settings.clone(),
+            seeds: [study.seed, self.person.speaker(index)],
+            speaking: Speaking { line_s: self.person.line_s(), ..(*speaking).clone() },
+            gives_up: self.person.gives_up(index),
+            ends_by_s: mission.limits.limit_s,
+            began_ms: self.at_ms,
+            log: logs.log_path(&name),
+            name,
+        };
+        player.play(&wanted).map_err(|reason| SimulateError::Session { session: wanted.name, reason })
+    }
+
+    /// They play on for so long.
+    fn plays(&mut self, seconds: f64) -> Result<(), SimulateError> {
+        if seconds <= 0.0 {
+            return Ok(());
+        }
+        self.passes(seconds);
+        self.happens(Event::Played { seconds })
+    }
+
+    /// They are asked what is due, when it is, and answer at once.
+    fn probes(
+        &mut self,
+        index: usize,
+        mission: &PlannedMission,
+        session: &SimulatedSession,
+        played_s: f64,
+    ) -> Result<(), SimulateError> {
+        let study = self.setting.study;
+        if mission.is_practice || study.probes.is_empty() {
+            return Ok(());
+        }
+        let clocks = study.probes.iter().filter_map(|probe| probe.at.played_s()).map(|at| (at, None));
+        let happenings = session.happened.iter().map(|(at, what)| (*at, Some(*what)));
+        let mut moments: Vec<_> = clocks.chain(happenings).filter(|(at, _)| *at < played_s).collect();
+        moments.sort_by(|(one, _), (other, _)| one.total_cmp(other));
+        for (at_s, what) in moments {
+            let happened: Vec<Happening> = what.into_iter().collect();
+            let Some(probe) = probe::due(&study.probes, self.progress.probed(), &happened, at_s) else { continue };
+            self.plays(at_s - self.progress.played_s())?;
+            self.happens(Event::Probed { probe })?;
+            let name = &study.probes[probe].questionnaire;
+            // Another draw than that of the mission itself, and of the other probes.
+            let draws = (index + 1) << 8 | probe;
+            let answers = self.person.answers(study, name, draws, &self.progress.plan().choices(index));
+            self.happens(Event::ProbeAnswered { probe, answer: answers.into_iter().next().flatten() })?;
+        }
+        Ok(())
+    }
+}
+
+/// How a mission ends, and for how long it was played, s.
+fn ending(session: &SimulatedSession, limits: Limits) -> (Ending, f64) {
+    let within = |at: f64| limits.limit_s.is_none_or(|limit| at < limit);
+    if let Some(ending) = session.ending.filter(|_| within(session.played_s)) {
+        return (ending, session.played_s);
+    }
+    let given_up = session.played_s + GIVES_UP_AFTER_S;
+    match (limits.skip_after_s.map(|skip| skip.max(given_up)), limits.limit_s) {
+        (Some(skipped), _) if within(skipped) => (Ending::Skipped, skipped),
+        (_, Some(limit)) => (Ending::TimeUp, limit),
+        _ => (Ending::Stopped, given_up),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn missions_end_as_they_would_for_people() {
+        let session = |played_s: f64, ending| SimulatedSession { played_s, ending, happened: Vec::new() };
+        let done = Some(Ending::Complete);
+        for (session, limit_s, skip_after_s, expected) in [
+            (session(50.0, done), Some(60.0), Some(20.0), (Ending::Complete, 50.0)),
+            (session(60.0, done), Some(60.0), None, (Ending::TimeUp, 60.0)),
+            (session(15.0, None), Some(60.0), Some(20.0), (Ending::Skipped, 25.0)),
+            (session(5.0, None), Some(60.0), Some(20.0), (Ending::Skipped, 20.0)),
+            (session(55.0, None), Some(60.0), Some(20.0), (Ending::TimeUp, 60.0)),
+            (session(15.0, None), Some(60.0), None, (Ending::TimeUp, 60.0)),
+            (session(15.0, None), None, None, (Ending::Stopped, 25.0)),
+        ] {
+            let limits = Limits { limit_s, skip_after_s };
+            assert_eq!(ending(&session, limits), expected, "{session:?} {limits:?}");
+        }
+    }
+}

@@ -1,0 +1,56 @@
+//! The table of what answers to questionnaires amount to.
+
+use cohabit_tables::{
+    Cell,
+    Kind::{Real, Text, Whole},
+    Table,
+};
+
+use super::{BOTH, factor_cells, factor_fields, field, step_cells, step_fields, text, whole};
+use crate::{
+    design::Study,
+    plan::{Plan, Step},
+    progress::{Done, Progress},
+};
+
+pub(super) fn table(study: &Study, all: &[Progress]) -> Table {
+    let more = [
+        field("mission", Text, "", "the mission that was played before, if it is about one"),
+        field("questionnaire", Text, "", "the questionnaire"),
+        field("score", Text, "", "what the number is called"),
+        field("value", Real, "", "the number; nothing if no question of it was answered"),
+        field("meaning", Text, "", "what it means, with its range"),
+        field("checks_failed", Whole, "", "attention checks of the questionnaire that were not answered rightly"),
+    ];
+    let rows =
+        all.iter().flat_map(|progress| progress.done().iter().flat_map(move |done| rows(study, progress.plan(), done)));
+    let fields = step_fields().into_iter().chain(factor_fields(study, &BOTH)).chain(more).collect();
+    let meaning = "what a participant's answers to a questionnaire between missions amount to";
+    Table { name: "scores", meaning, fields, rows: rows.collect() }
+}
+
+fn rows(study: &Study, plan: &Plan, done: &Done) -> Vec<Vec<Cell>> {
+    let Some(Step::Questionnaire { name, about }) = plan.steps.get(done.step) else { return Vec::new() };
+    let (Some(asked), Some(instrument)) = (study.questionnaire(name), study.instrument(name)) else {
+        return Vec::new();
+    };
+    let mission = match about.and_then(|about| plan.steps.get(about)) {
+        Some(Step::Mission(mission)) => text(&mission.mission),
+        _ => Cell::Nothing,
+    };
+    let failed = |(item, given): (usize, &Option<_>)| instrument.is_attentive(item, given.as_ref()) == Some(false);
+    let failed = done.answers.iter().enumerate().filter(|one| failed(*one)).count();
+    let factors = factor_cells(study, &BOTH, &plan.choices(done.step));
+    let row = |score: &crate::instrument::Score| {
+        let more = [
+            mission.clone(),
+            text(name),
+            text(&score.name),
+            instrument.score(score, asked, &done.answers).map_or(Cell::Nothing, Cell::Real),
+            text(&score.meaning),
+            whole(failed),
+        ];
+        step_cells(plan, done).into_iter().chain(factors.clone()).chain(more).collect()
+    };
+    instrument.scores.iter().map(row).collect()
+}
