@@ -384,7 +384,7 @@ impl Planner<'_> {
     }
 
     pub(crate) fn pour(&mut self, source: ObjectId, target: ObjectId) -> Result<(), Fault> {
-        if !self.can_be_poured_into(target) {
+        if source == target || !self.can_be_poured_into(target) {
             let (what, into) = (self.the(source), self.the(target));
             return Err(Fault::Cannot(format!("I cannot pour {what} into {into}.")));
         }

@@ -186,7 +186,12 @@ impl Answerer<'_> {
     fn is_in_state(&self, id: ObjectId, state: StateWord, words: &[String]) -> Understanding {
         let holds = self.scene.object(id).is_some_and(|object| self.is_so(object, state));
         let (the, words) = (self.short(id), words.join(" "));
-        let text = if holds {
+        let is_lit = self.scene.object(id).is_some_and(|object| self.devices.is_lit(object.class));
+        let is_switched = matches!(state, StateWord::Flag(StateFlag::Toggled, _));
+        let text = if is_switched && is_lit {
+            let state = if holds { "" } else { "not " };
+            format!("{the} is {state}{words}: it runs for a moment only, and its screen stays lit")
+        } else if holds {
             format!("{the} {} {words}", describe::is(&the))
         } else if self.may_have_changed(id, state) {
             format!("{the} {} not {words} when I last saw {}", describe::was(&the), describe::it(&the))

@@ -63,6 +63,9 @@ pub struct Context {
     /// What is done after a wait.
     #[serde(default)]
     pub(crate) awaited: Option<Awaited>,
+    /// What it waited for last, in words.
+    #[serde(default)]
+    pub(crate) waited: Option<String>,
     /// What was answered before what is to be done is told.
     #[serde(default)]
     pub(crate) answered: String,

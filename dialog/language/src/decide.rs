@@ -110,6 +110,10 @@ impl Conversation<'_> {
             && let Some((begun, more)) = begun(&ways)
         {
             let (understanding, probability) = begun.taken(context);
+            // Nobody wants a question that they never asked.
+            if more.contains('?') {
+                return (understanding, probability);
+            }
             let left = format!("I am not sure about {more}: tell me if you want that, too.");
             return (understanding.before(&left), probability);
         }
@@ -203,6 +207,13 @@ impl Conversation<'_> {
             let plans: Vec<&[Step]> = guesses.iter().map(|guess| guess.steps.as_slice()).collect();
             let names = reply::apart(&plans);
             guesses.iter_mut().zip(names).for_each(|(guess, name)| guess.name = name);
+            // What is called alike nobody can choose between.
+            let mut told: Vec<String> = Vec::new();
+            guesses.retain(|guess| {
+                let is_new = !told.contains(&guess.name);
+                told.push(guess.name.clone());
+                is_new
+            });
         }
         let names: Vec<&str> = guesses.iter().map(|guess| guess.name.as_str()).collect();
         let question = match names.as_slice() {

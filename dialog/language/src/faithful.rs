@@ -5,9 +5,9 @@ use std::collections::BTreeSet;
 
 use cohabit_cdf::Property;
 
-use crate::{conversation::Conversation, lexicon::Lexicon, token};
+use crate::{conversation::Conversation, lexicon::Lexicon, token, yes_no};
 
-/// How likely a condition is meant the other way round than was said.
+/// How likely what was said is meant the other way round, or a question is a request.
 const TURNED_ROUND: f32 = 0.2;
 
 /// What was said, and before.
@@ -17,6 +17,8 @@ pub(crate) struct Heard {
     is_denied: bool,
     /// Whether anything was.
     has_denial: bool,
+    /// Whether all that was said asks how things are: `is the bowl clean?`.
+    only_asks: bool,
 }
 
 impl Heard {
@@ -25,6 +27,7 @@ impl Heard {
         let before = lines.iter().flat_map(|(_, line)| lexicon.normalise(line).0);
         Self {
             is_denied: denies_condition(lexicon, &said),
+            only_asks: only_asks(lexicon, &said),
             has_denial: said.iter().any(|word| lexicon.ifs.negations.contains(word)),
             words: said.iter().cloned().chain(before).collect(),
         }
@@ -52,7 +55,7 @@ impl Conversation<'_> {
         kept.collect::<Vec<_>>().join(" ")
     }
 
-    /// How likely a condition is as it was said, by what it denies alone.
+    /// How likely it is what was said, by what its conditions deny, and by whether it asks what was asked.
     pub(crate) fn polarity(&self, text: &str, heard: &Heard) -> f32 {
         let conditions: Vec<Vec<String>> = text
             .split("; ")
@@ -62,10 +65,19 @@ impl Conversation<'_> {
         let denies = |words: &Vec<String>| words.iter().any(|word| self.lexicon.ifs.negations.contains(word));
         let is_said = |words: &Vec<String>| words.last().is_some_and(|last| heard.words.contains(last));
         let (denied, claimed): (Vec<_>, Vec<_>) = conditions.into_iter().partition(denies);
+        let asks = |request: &str| request.ends_with('?') || request.starts_with("if ");
+        let turns_to_deed = heard.only_asks && !text.split("; ").any(asks) && !matches!(text, "social" | "none" | "?");
         let adds = !heard.has_denial && !denied.is_empty();
         let drops = heard.is_denied && denied.is_empty() && claimed.iter().any(is_said);
-        if adds || drops { TURNED_ROUND } else { 1.0 }
+        if adds || drops || turns_to_deed { TURNED_ROUND } else { 1.0 }
     }
+}
+
+/// Whether every sentence wants a yes or a no, and requests nothing.
+fn only_asks(lexicon: &Lexicon, words: &[String]) -> bool {
+    let mut sentences =
+        words.split(|word| token::ends_sentence(word)).filter(|sentence| !sentence.is_empty()).peekable();
+    sentences.peek().is_some() && sentences.all(|sentence| yes_no::asked_at(lexicon, sentence).is_some())
 }
 
 /// `if it is not`, `if not`, `unless`.

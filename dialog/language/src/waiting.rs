@@ -3,6 +3,7 @@
 //!
 //! Whoever holds the conversation calls [`crate::Language::wake`] now and then, with how long it has waited; until then nothing is done.
 
+use cohabit_cdf::ObjectId;
 use serde::{Deserialize, Serialize};
 
 use crate::{
@@ -78,6 +79,17 @@ impl Conversation<'_> {
         }
     }
 
+    /// `did you wait?`: what it waited for last.
+    pub(crate) fn whether_waited(&self, done: &[String], context: &Context) -> Option<Understanding> {
+        self.lexicon.waiting.waits.longest(done)?;
+        let text = match (&context.waited, &context.awaited) {
+            (_, Some(_)) => "Yes, I am waiting now.".to_owned(),
+            (Some(waited), None) => format!("Yes, I waited {waited}."),
+            (None, None) => "No, I have waited for nothing.".to_owned(),
+        };
+        Some(Understanding::whether(context.waited.is_some() || context.awaits(), text, Vec::new()))
+    }
+
     /// Whether a text says how long to wait, or for what, and so is no stop.
     pub(crate) fn is_wait(&self, words: &[String]) -> bool {
         self.said_of_waiting(words).is_some()
@@ -105,6 +117,10 @@ impl Conversation<'_> {
             return None;
         }
         context.awaited = None;
+        context.waited = Some(match &until {
+            Until::Seconds(_) => format!("for {}", until.in_words()),
+            Until::So(_) => format!("until {}", until.in_words()),
+        });
         if !is_due {
             let text = format!("I have waited for {} minutes, and it is not so yet that", LONGEST_S / 60.0);
             return Some(Understanding::answer(format!("{text} {}. I do not wait any longer.", until.in_words())));
@@ -130,11 +146,12 @@ impl Conversation<'_> {
                 Truth::Holds if then.is_empty() => {
                     return Some(Understanding::answer(describe::sentence(&until.in_words())));
                 }
-                Truth::Holds => {
+                Truth::Fails(_) | Truth::Unknown if then.is_empty() || self.can_watch(claim, &then, context) => {}
+                // What it does not see may be so by now.
+                Truth::Holds | Truth::Fails(_) | Truth::Unknown => {
                     self.speak_of(claim, &then, context);
                     return Some(self.understand_all(then, context));
                 }
-                Truth::Fails(_) | Truth::Unknown => {}
             }
         }
         let words = until.in_words();
@@ -223,6 +240,18 @@ impl Conversation<'_> {
         }
         let claim = self.claim(claim, then)?;
         Some(Said { before: Vec::new(), until: Until::So(claim), then: then.to_vec() })
+    }
+
+    /// Whether the robot would see it become so: it sees what that is about.
+    fn can_watch(&self, claim: &[String], request: &[String], context: &Context) -> bool {
+        let Some((question, _)) = self.question_of(claim, request) else { return false };
+        let answer = self.answer(&question, &mut context.clone());
+        let Understanding::Answer { highlight, .. } = answer else { return false };
+        let is_seen = |id: &ObjectId| {
+            let is_held = self.scene.robot.held == Some(*id);
+            is_held || self.scene.object(*id).is_some_and(|object| object.visible && !object.is_hidden)
+        };
+        highlight.iter().all(is_seen)
     }
 
     /// A claim that the robot can tell.

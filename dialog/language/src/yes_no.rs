@@ -178,6 +178,13 @@ impl Conversation<'_> {
 
     /// `did you close the fridge`: whether it did, as it remembers, and how things are now.
     fn whether_done(&self, asked: &[String], context: &mut Context) -> Option<Understanding> {
+        if let [helper, subject, done @ ..] = asked
+            && self.lexicon.yes_no.past.contains(helper)
+            && subject == "you"
+            && let Some(waited) = self.whether_waited(done, context)
+        {
+            return Some(waited);
+        }
         let clause = deed_asked_about(self.lexicon, self.catalog, asked)?;
         if let Some(room) =
             clause.places.iter().find_map(|(_, place)| room_of(place)).filter(|_| clause.objects.is_empty())

@@ -213,6 +213,8 @@ fn a_time_is_waited_for() {
     assert_eq!(talk.say("wait 2 minutes"), "= I wait for 2 minutes.");
     woken(&mut talk, 0.0);
     assert_eq!(woken(&mut talk, 120.0).as_deref(), Some("= 2 minutes are over."));
+    assert_eq!(talk.say("did you wait?"), "= Yes, I waited for 2 minutes.");
+    assert_eq!(Talk::new(&[]).say("did you wait?"), "= No, I have waited for nothing.");
 }
 
 #[test]
@@ -239,6 +241,16 @@ fn what_is_to_be_so_is_waited_for() {
         "= I have waited for 10 minutes, and it is not so yet that the fridge is open. I do not wait any longer."
     );
     assert!(!talk.context.awaits());
+}
+
+#[test]
+fn what_is_not_seen_is_not_waited_for() {
+    const SHUT_IN: &[&str] = &["Bowl_01_1 in FridgeLower_02_1"];
+    let mut talk = Talk::new(SHUT_IN);
+    talk.scene.objects.iter_mut().filter(|object| object.instance == "Bowl_01_1").for_each(|object| {
+        (object.visible, object.is_hidden) = (false, true);
+    });
+    assert_eq!(talk.say("when the bowl is hot, take it out"), "open FridgeLower_02_1, take Bowl_01_1");
 }
 
 #[test]

@@ -594,6 +594,24 @@ impl Conversation {
         true
     }
 
+    /// Whether something was put off that [`Self::wake`] goes on with.
+    #[must_use]
+    pub const fn awaits(&self) -> bool {
+        self.memory.context.awaits()
+    }
+
+    /// Goes on with what was put off, once its time has come, s, or what it waits for is so.
+    pub fn wake(&mut self, now_s: f64, knowledge: &Knowledge) -> Vec<Reaction> {
+        let mut reactions = Vec::new();
+        let Some(known) = knowledge.known().filter(|_| self.awaits()) else { return reactions };
+        if let Some(understanding) = self.language.wake(now_s, &known, &mut self.memory.context) {
+            let turn = self.memory.turns;
+            self.memory.turns += 1;
+            self.react(turn, self.memory.turns, understanding, knowledge, &mut reactions);
+        }
+        reactions
+    }
+
     /// Says that a thing is not where it was, and forgets that it is there; asks whether to look for it.
     fn miss(&mut self, turn: u64, id: ObjectId, knowledge: &mut Knowledge, reactions: &mut Vec<Reaction>) -> bool {
         let Some(known) = knowledge.known() else { return false };
@@ -811,6 +829,18 @@ mod tests {
         assert_eq!(says(&reactions), "OK, I stop. My hand is empty.");
         let ends = reactions.iter().filter(|reaction| matches!(reaction, Reaction::TurnEnded { .. })).count();
         assert_eq!(ends, 1);
+    }
+
+    #[test]
+    fn what_is_put_off_is_done_when_its_time_has_come() {
+        let (mut conversation, knowledge) = (conversation(), knowledge());
+        let (_, reactions) = conversation.hear("wait 10 seconds, then go to the main office", &knowledge);
+        assert!(!plans(&reactions) && conversation.awaits(), "{}", says(&reactions));
+        assert!(conversation.wake(100.0, &knowledge).is_empty() && conversation.wake(109.9, &knowledge).is_empty());
+        let reactions = conversation.wake(110.0, &knowledge);
+        assert!(plans(&reactions) && !conversation.awaits());
+        assert_eq!(says(&reactions), "10 seconds are over. OK, going to the main office.");
+        assert!(conversation.wake(500.0, &knowledge).is_empty());
     }
 
     #[test]

@@ -37,6 +37,10 @@ use crate::{
     voice::{Audience, Voice},
 };
 
+/// How often a robot that waits for something looks whether it is so, ticks.
+const WAKES_EVERY: u64 = 15;
+/// The time of a tick, s.
+const TICK_S: f64 = 1.0 / 60.0;
 /// What is said for whoever says stop aloud, in whatever words.
 const STOP: &str = "stop";
 /// Why nothing came of an interpreter, for the log.
@@ -76,6 +80,8 @@ struct Inner {
     newest: Option<Sample>,
     /// The body that was spoken to last.
     spoken_to: BodyId,
+    /// The tick at which those who wait for something looked last.
+    woke_at: u64,
     /// The visitors who are there, and how many pages each has open.
     present: BTreeMap<u32, usize>,
 }
@@ -114,6 +120,7 @@ impl Talk {
             states: Inbox::new(bus, Topic::State)?,
             newest: None,
             spoken_to: BodyId(0),
+            woke_at: 0,
             present: BTreeMap::new(),
         };
         inner.tell_again()?;
@@ -274,6 +281,28 @@ impl Talk {
         let Some(robot) = inner.robots.of_body(body) else { return Ok(()) };
         let reactions = robot.conversation.interpreted(turn, meant, note, &robot.knowledge);
         if reactions.is_empty() { Ok(()) } else { self.carry_out(inner, body, Heard::Nothing, reactions) }
+    }
+
+    /// Has robots go on with what they were told to do later, if it is time.
+    fn wake(&self, inner: &mut Inner) -> Result<(), DialogError> {
+        let tick = inner.newest.as_ref().map_or(0, |sample| sample.envelope().tick);
+        let is_due = tick >= inner.woke_at.saturating_add(WAKES_EVERY);
+        if !is_due || !inner.robots.iter().any(|robot| robot.conversation.awaits()) {
+            return Ok(());
+        }
+        inner.woke_at = tick;
+        inner.look()?;
+        #[allow(clippy::cast_precision_loss, reason = "a session is no 10^15 ticks long")]
+        let now_s = tick as f64 * TICK_S;
+        let woken: Vec<(BodyId, Vec<Reaction>)> = inner
+            .robots
+            .iter_mut()
+            .map(|robot| (robot.body, robot.conversation.wake(now_s, &robot.knowledge)))
+            .collect();
+        for (body, reactions) in woken.into_iter().filter(|(_, reactions)| !reactions.is_empty()) {
+            self.carry_out(inner, body, Heard::Nothing, reactions)?;
+        }
+        Ok(())
     }
 
     /// Gives up on what a service before this one asked an interpreter.
@@ -687,7 +716,7 @@ fn aimed(things: &[Thing], body: u32, state: StateView<'_>, catalog: &Catalog) -
             (record, afforded, far)
         })
         .collect();
-    let is_handled = |afforded: &[Affordance]| afforded.iter().any(|one| one.deed.is_of_the_hand());
+    let is_handled = |afforded: &[Affordance]| afforded.iter().any(|one| affordances::is_of_the_hand(one.deed));
     let best = seen.iter().find(|(_, afforded, _)| is_handled(afforded)).or_else(|| seen.first());
     match best {
         Some((record, afforded, far)) => {
@@ -777,6 +806,7 @@ pub fn show_state(talk: &Talk, survey: &Survey, every: Duration, over: &dyn Fn()
         let mut inner = talk.lock();
         let shown = talk.show_state(&mut inner);
         pass_over(shown.and_then(|()| inner.look_by_and_by()))?;
+        pass_over(talk.wake(&mut inner))?;
         inner.dialog.update()?;
         drop(inner);
         survey.update()?;
