@@ -314,7 +314,9 @@ mod tests {
         assert_eq!(studies.len(), 3, "{studies:?}");
         for path in studies {
             let checked = read(&path);
-            assert!(checked.is_ok(), "{}: {:#}", path.display(), checked.err().expect("an error"));
+            if let Err(error) = checked {
+                panic!("{}: {error:#}", path.display());
+            }
         }
     }
 
