@@ -195,6 +195,29 @@ pub enum Expression {
     },
 }
 
+impl Expression {
+    /// Has `visit` take all objects that it names, in its order.
+    pub fn for_each_named(&self, visit: &mut impl FnMut(&InstancePattern)) {
+        match self {
+            Self::And(parts) | Self::Or(parts) => parts.iter().for_each(|part| part.for_each_named(visit)),
+            Self::Not(inner) => inner.for_each_named(visit),
+            Self::Contains { target, contains } => {
+                visit(target);
+                visit(contains);
+            }
+            Self::Flag { target, .. }
+            | Self::FilledWith { target, .. }
+            | Self::FilledWithAny { target }
+            | Self::CanBeSeen { target, .. }
+            | Self::InRange { target, .. }
+            | Self::HasColor { target, .. }
+            | Self::DinoFed { target, .. }
+            | Self::IsReceptacle { target, .. }
+            | Self::IsFull { target, .. } => visit(target),
+        }
+    }
+}
+
 impl fmt::Display for InstancePattern {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.0)

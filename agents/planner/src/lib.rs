@@ -1,7 +1,7 @@
 //! A planner for the goals of a mission: symbolic state and goals in, actions out, or the goal that cannot be reached
 //! and why.
 //!
-//! The table of actions and devices is grounded to the things that matter for the goals ([`problem`] is what comes of
+//! The table of actions and devices is grounded to the things that matter for the goals (the module `problem` is what comes of
 //! that), and searched greedily, best first, by the length of a plan that ignores what actions undo. A device or an
 //! action that the table has is planned with: nothing here knows one by name. It knows no geometry: a plan goes to each
 //! thing before it acts on it, and waits for each machine that it sets going.

@@ -8,7 +8,7 @@ use cohabit_cdf::{
         Stands,
         table::{Change, Content, Need, Test, View as _, takes},
     },
-    goal::{Expression, InstancePattern, Predicate},
+    goal::{InstancePattern, Predicate},
     symbolic::{Place, SymbolicState},
 };
 
@@ -40,35 +40,15 @@ pub(crate) fn named(mission: &Mission) -> BTreeSet<String> {
             }
             Predicate::Condition(name, _) => {
                 if let Some(condition) = mission.condition(name, &state.instance.0) {
-                    walk(&condition.expression, &mut all);
+                    condition.expression.for_each_named(&mut |pattern| {
+                        all.insert(pattern.0.clone());
+                    });
                 }
             }
             _ => {}
         }
     }
     all
-}
-
-fn walk(expression: &Expression, all: &mut BTreeSet<String>) {
-    match expression {
-        Expression::And(parts) | Expression::Or(parts) => parts.iter().for_each(|part| walk(part, all)),
-        Expression::Not(inner) => walk(inner, all),
-        Expression::Contains { target, contains } => {
-            all.insert(target.0.clone());
-            all.insert(contains.0.clone());
-        }
-        Expression::Flag { target, .. }
-        | Expression::FilledWith { target, .. }
-        | Expression::FilledWithAny { target }
-        | Expression::CanBeSeen { target, .. }
-        | Expression::InRange { target, .. }
-        | Expression::HasColor { target, .. }
-        | Expression::DinoFed { target, .. }
-        | Expression::IsReceptacle { target, .. }
-        | Expression::IsFull { target, .. } => {
-            all.insert(target.0.clone());
-        }
-    }
 }
 
 /// Whether a pattern means something of these names and that class: any carrot is meant by `Carrot_01_*`.

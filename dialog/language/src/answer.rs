@@ -575,9 +575,9 @@ impl Answerer<'_> {
     }
 
     pub(crate) fn place_sentence(&self, id: ObjectId) -> String {
-        let place = describe::location(self.catalog, self.scene, id);
+        let (place, the) = (describe::location(self.catalog, self.scene, id), self.short(id));
         if !place.is_empty() {
-            return format!("{} {} {place}", self.short(id), describe::is(&self.short(id)));
+            return format!("{the} {} {place}", describe::is(&the));
         }
         let side = self.scene.object(id).map_or("", |object| {
             let bearing = self.scene.bearing_rad(object);
@@ -588,7 +588,6 @@ impl Answerer<'_> {
                 _ => "to my right",
             }
         });
-        let the = self.short(id);
         format!("{the} {} here in the {}, {side}", describe::is(&the), self.scene.robot.room.name())
     }
 

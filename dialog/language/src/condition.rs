@@ -11,6 +11,7 @@ use crate::{
     clause::{self, Clause, Part},
     context::{Context, Pending},
     conversation::Conversation,
+    describe,
     lexicon::Lexicon,
     question::{self, Question, QuestionKind},
     table::{self, PhraseTable},
@@ -126,23 +127,23 @@ impl Conversation<'_> {
         let start = words[..at].iter().rposition(|word| token::ends_sentence(word)).map_or(0, |end| end + 1);
         let end = words[at..].iter().position(|word| token::ends_sentence(word)).map_or(words.len(), |end| at + end);
         let mut conditional = Conditional {
-            before: trimmed(&words[..start]),
-            after: trimmed(&words[end..]),
+            before: trimmed(&words[..start]).to_vec(),
+            after: trimmed(&words[end..]).to_vec(),
             condition: Vec::new(),
             holds,
             request: Vec::new(),
             otherwise: Vec::new(),
         };
-        let (first, rest) = (trimmed(&words[start..at]), &words[at + length..end]);
+        let (first, rest) = (trimmed(&words[start..at]).to_vec(), &words[at + length..end]);
         let (rest, mut otherwise) = self.parted(rest);
         let is_first = !self.is_request(&first);
         let split = if is_first {
-            self.split(&rest, &trimmed_end(&first), holds, context)?
+            self.split(&rest, trimmed_end(&first), holds, context)?
         } else {
             let comma = rest.iter().position(|word| word == ",").unwrap_or(rest.len());
             let next = (1..comma).find(|at| rest[*at] == "and" && self.is_request(&rest[at + 1..comma]));
             let end = next.unwrap_or(comma);
-            let more = trimmed(&rest[end..]);
+            let more = trimmed(&rest[end..]).to_vec();
             if !more.is_empty() {
                 conditional.after = [more, conditional.after]
                     .into_iter()
@@ -157,8 +158,8 @@ impl Conversation<'_> {
         {
             let end =
                 conditional.after.iter().position(|word| token::ends_sentence(word)).unwrap_or(conditional.after.len());
-            otherwise = trimmed(&conditional.after[length..end]);
-            conditional.after = trimmed(&conditional.after[end..]);
+            otherwise = trimmed(&conditional.after[length..end]).to_vec();
+            conditional.after = trimmed(&conditional.after[end..]).to_vec();
         }
         (conditional.condition, conditional.request, conditional.otherwise) = (split.0, split.1, otherwise);
         self.is_request(&conditional.request).then_some(conditional)
@@ -173,7 +174,7 @@ impl Conversation<'_> {
     fn parted(&self, words: &[String]) -> (Vec<String>, Vec<String>) {
         let found = (1..words.len()).find_map(|at| Some((at, self.otherwise_at(&words[at..])?)));
         let Some((at, length)) = found else { return (words.to_vec(), Vec::new()) };
-        (trimmed(&words[..at]), trimmed(&words[at + length..]))
+        (trimmed(&words[..at]).to_vec(), trimmed(&words[at + length..]).to_vec())
     }
 
     /// A condition and the request after it: at a comma or `then`, or else where the one makes sense and the other too.
@@ -184,7 +185,7 @@ impl Conversation<'_> {
         holds: bool,
         context: &Context,
     ) -> Option<(Vec<String>, Vec<String>)> {
-        let request = |at: usize| [lead, &trimmed(&words[at..])].concat();
+        let request = |at: usize| [lead, trimmed(&words[at..])].concat();
         let told = words.iter().position(|word| word == "," || word == "then").filter(|at| *at > 0);
         if let Some(at) = told {
             return self.is_request(&request(at + 1)).then(|| (words[..at].to_vec(), request(at + 1)));
@@ -209,10 +210,7 @@ impl Conversation<'_> {
         };
         match asked(condition) {
             Some((_, is_so)) if is_so == holds => Truth::Holds,
-            Some((text, _)) => {
-                let text = text.strip_prefix("No, ").or_else(|| text.strip_prefix("Yes, ")).unwrap_or(&text).to_owned();
-                Truth::Fails(crate::describe::sentence(&text))
-            }
+            Some((text, _)) => Truth::Fails(describe::without_yes(&text)),
             None => Truth::Unknown,
         }
     }
@@ -318,16 +316,19 @@ fn condition_at(lexicon: &Lexicon, words: &[String]) -> Option<(usize, usize, bo
     })
 }
 
-fn trimmed(words: &[String]) -> Vec<String> {
-    let is_joint = |word: &String| token::is_punctuation(word) || matches!(word.as_str(), "and" | "then" | "but");
+/// Without the words at both ends that only join.
+pub(crate) fn trimmed(words: &[String]) -> &[String] {
     let start = words.iter().position(|word| !is_joint(word)).unwrap_or(words.len());
     trimmed_end(&words[start..])
 }
 
-fn trimmed_end(words: &[String]) -> Vec<String> {
-    let is_joint = |word: &String| token::is_punctuation(word) || matches!(word.as_str(), "and" | "then" | "but");
+fn trimmed_end(words: &[String]) -> &[String] {
     let end = words.iter().rposition(|word| !is_joint(word)).map_or(0, |end| end + 1);
-    words[..end].to_vec()
+    &words[..end]
+}
+
+fn is_joint(word: &str) -> bool {
+    token::is_punctuation(word) || matches!(word, "and" | "then" | "but")
 }
 
 /// Whether something is asked for on a condition.

@@ -197,6 +197,11 @@ fn is_plural(name: &str) -> bool {
     head.ends_with('s') && !head.ends_with("ss")
 }
 
+/// What an answer says beside its yes or no, as a sentence.
+pub(crate) fn without_yes(text: &str) -> String {
+    sentence(text.strip_prefix("Yes, ").or_else(|| text.strip_prefix("No, ")).unwrap_or(text))
+}
+
 /// `is` or `are`, after a name.
 pub(crate) fn is(name: &str) -> &'static str {
     if is_plural(name) { "are" } else { "is" }

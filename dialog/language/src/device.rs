@@ -4,6 +4,7 @@ use cohabit_cdf::{Action, ClassId, Fluid, ObjectId, Property, Verb, state::State
 
 use crate::{
     context::Role,
+    describe,
     ground::{Miss, Want},
     intent::Intent,
     phrase::{Phrase, Place},
@@ -226,7 +227,7 @@ impl Planner<'_> {
             if settled.intent == Intent::Shrink && !is_big {
                 let text =
                     format!("{} has its usual size, and no machine that I know of makes it smaller.", self.the(object));
-                return Err(Fault::Cannot(crate::describe::sentence(&text)));
+                return Err(Fault::Cannot(describe::sentence(&text)));
             }
             let is_once = matches!(settled.intent, Intent::Repair | Intent::Clean | Intent::Heat | Intent::Cool);
             if is_once && self.brought_about.contains(&(settled.intent, object)) {

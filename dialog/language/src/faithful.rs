@@ -9,9 +9,11 @@ use crate::{conversation::Conversation, lexicon::Lexicon, token, yes_no};
 
 /// How likely what was said is meant the other way round, or a question is a request.
 const TURNED_ROUND: f32 = 0.2;
+/// Within so many words after `if` its `not` is said.
+const CLAUSE: usize = 6;
 
-/// What was said, and before.
-pub(crate) struct Heard {
+/// What a rewriting was made of: what was said, and before.
+pub(crate) struct Source {
     words: BTreeSet<String>,
     /// Whether a condition was denied: `if it is not`.
     is_denied: bool,
@@ -21,13 +23,12 @@ pub(crate) struct Heard {
     only_asks: bool,
 }
 
-impl Heard {
-    pub(crate) fn new(lexicon: &Lexicon, utterance: &str, lines: &[(bool, String)]) -> Self {
-        let (said, _) = lexicon.normalise(utterance);
+impl Source {
+    pub(crate) fn new(lexicon: &Lexicon, said: &[String], lines: &[(bool, String)]) -> Self {
         let before = lines.iter().flat_map(|(_, line)| lexicon.normalise(line).0);
         Self {
-            is_denied: denies_condition(lexicon, &said),
-            only_asks: only_asks(lexicon, &said),
+            is_denied: denies_condition(lexicon, said),
+            only_asks: only_asks(lexicon, said),
             has_denial: said.iter().any(|word| lexicon.ifs.negations.contains(word)),
             words: said.iter().cloned().chain(before).collect(),
         }
@@ -37,7 +38,7 @@ impl Heard {
 impl Conversation<'_> {
     /// Plain requests without the colours of things that nobody named: `the red mug` where no red was spoken of. Devices may be called
     /// by theirs.
-    pub(crate) fn without_invention(&self, text: &str, heard: &Heard) -> String {
+    pub(crate) fn without_invention(&self, text: &str, source: &Source) -> String {
         let words: Vec<&str> = text.split(' ').collect();
         let lexicon = self.lexicon;
         let is_carried = |rest: &[&str]| {
@@ -49,26 +50,26 @@ impl Conversation<'_> {
         };
         let is_invented = |at: usize| {
             let color = [words[at].to_owned()];
-            lexicon.colors.exact(&color).is_some() && !heard.words.contains(words[at]) && is_carried(&words[at + 1..])
+            lexicon.colors.exact(&color).is_some() && !source.words.contains(words[at]) && is_carried(&words[at + 1..])
         };
         let kept = (0..words.len()).filter(|at| !is_invented(*at)).map(|at| words[at]);
         kept.collect::<Vec<_>>().join(" ")
     }
 
     /// How likely it is what was said, by what its conditions deny, and by whether it asks what was asked.
-    pub(crate) fn polarity(&self, text: &str, heard: &Heard) -> f32 {
+    pub(crate) fn faithfulness(&self, text: &str, source: &Source) -> f32 {
         let conditions: Vec<Vec<String>> = text
             .split("; ")
             .filter_map(|request| request.strip_prefix("if "))
             .map(|request| token::words(request.split(',').next().unwrap_or(request)))
             .collect();
         let denies = |words: &Vec<String>| words.iter().any(|word| self.lexicon.ifs.negations.contains(word));
-        let is_said = |words: &Vec<String>| words.last().is_some_and(|last| heard.words.contains(last));
+        let is_said = |words: &Vec<String>| words.last().is_some_and(|last| source.words.contains(last));
         let (denied, claimed): (Vec<_>, Vec<_>) = conditions.into_iter().partition(denies);
         let asks = |request: &str| request.ends_with('?') || request.starts_with("if ");
-        let turns_to_deed = heard.only_asks && !text.split("; ").any(asks) && !matches!(text, "social" | "none" | "?");
-        let adds = !heard.has_denial && !denied.is_empty();
-        let drops = heard.is_denied && denied.is_empty() && claimed.iter().any(is_said);
+        let turns_to_deed = source.only_asks && !text.split("; ").any(asks) && !matches!(text, "social" | "none" | "?");
+        let adds = !source.has_denial && !denied.is_empty();
+        let drops = source.is_denied && denied.is_empty() && claimed.iter().any(is_said);
         if adds || drops || turns_to_deed { TURNED_ROUND } else { 1.0 }
     }
 }
@@ -89,6 +90,3 @@ fn denies_condition(lexicon: &Lexicon, words: &[String]) -> bool {
         words[start..end.min(start + CLAUSE)].iter().any(|word| lexicon.ifs.negations.contains(word))
     })
 }
-
-/// Within so many words after `if` its `not` is said.
-const CLAUSE: usize = 6;

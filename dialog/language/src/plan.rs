@@ -14,7 +14,7 @@ use crate::{
     lexicon::{Direction, Manner, Preposition, Pronoun, Side},
     phrase::{Phrase, Place},
     process::Devices,
-    saying, search,
+    report, saying, search,
     settle::{self, Settled},
     understanding::{Asking, Step},
 };
@@ -146,7 +146,7 @@ impl Planner<'_> {
             Intent::Scan => self.add_simple(&settled, Verb::Scan, "scanning"),
             Intent::Examine => self.add_simple(&settled, Verb::Examine, "looking at"),
             Intent::LookIn => self.add_look_in(&settled),
-            Intent::LookUnder => self.add_simple(&settled, Verb::Examine, crate::report::LOOKS_UNDER),
+            Intent::LookUnder => self.add_simple(&settled, Verb::Examine, report::LOOKS_UNDER),
             Intent::Highlight => self.add_highlight(&settled),
             _ => self.add_process(&settled),
         }

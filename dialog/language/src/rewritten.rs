@@ -8,7 +8,7 @@ use crate::{
     clause::{self, Part},
     context::Context,
     conversation::Conversation,
-    faithful::Heard,
+    faithful::Source,
     reply,
     understanding::{Clarification, Understanding},
     way::Way,
@@ -30,10 +30,10 @@ impl Conversation<'_> {
     /// knows: others are mere guesses then.
     pub(crate) fn rewritten(&self, wording: &Wording<'_>, context: &Context) -> Vec<Way> {
         let (mut ways, mut is_doubtful) = (Vec::<Way>::new(), false);
-        let heard = Heard::new(self.lexicon, wording.utterance, context.lines());
+        let source = Source::new(self.lexicon, &wording.words, context.lines());
         for (at, (text, probability)) in self.rewritings(wording.utterance, context).iter().enumerate() {
-            let text = &self.without_invention(text, &heard);
-            let probability = probability * self.polarity(text, &heard);
+            let text = &self.without_invention(text, &source);
+            let probability = probability * self.faithfulness(text, &source);
             let way = match self.of_rewriting(text, probability, wording, context) {
                 Some(way) => way,
                 None if at == 0 && self.names_unknown(text) => {

@@ -88,11 +88,7 @@ impl Understanding {
 
     /// The same to a question that wants no yes or no.
     pub(crate) fn without_yes(self) -> Self {
-        let plain = |text: &str| {
-            let bare = text.strip_prefix("Yes, ").or_else(|| text.strip_prefix("No, ")).unwrap_or(text);
-            describe::sentence(bare)
-        };
-        self.saying(plain)
+        self.saying(describe::without_yes)
     }
 
     /// The same with another reply.

@@ -1,13 +1,13 @@
 //! What is done later: at a time, or once something is so. "Wait ten seconds, then close it", "when the mug is full, bring it to me",
 //! "wait until the light is off".
 //!
-//! Whoever holds the conversation calls [`crate::Language::wake`] now and then, with how long it has waited; until then nothing is done.
+//! Whoever holds the conversation calls [`crate::Language::wake`] now and then, with the time; until then nothing is done.
 
 use cohabit_cdf::ObjectId;
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    condition::Truth,
+    condition::{Truth, trimmed},
     context::Context,
     conversation::Conversation,
     describe,
@@ -56,7 +56,8 @@ pub(crate) struct Awaited {
 
 /// The parts of what was said.
 struct Said {
-    before: Vec<String>,
+    /// Which of its words begins the wait: what is said before is done before.
+    at: usize,
     until: Until,
     then: Vec<String>,
 }
@@ -64,19 +65,16 @@ struct Said {
 impl Conversation<'_> {
     /// What was said, if anything of it is to be done later.
     pub(crate) fn waits(&self, words: &[String], context: &mut Context) -> Option<Understanding> {
-        let Said { before, until, then } = self.said_of_waiting(words)?;
+        let Said { at, until, then } = self.said_of_waiting(words)?;
+        let before = trimmed(&words[..at]);
         if before.is_empty() {
-            return self.wait_for(until, &then, context);
+            return Some(self.wait_for(until, &then, context));
         }
-        let left = token::sentence(&words[words.len() - self.length_after(words, &before)..]);
-        let understanding = self.understand_all(tidy::tidied(self.lexicon, &before), context);
-        match understanding {
-            Understanding::Answer { ref text, .. } => {
-                let said = text.clone();
-                Some(self.wait_for(until, &then, context)?.after(&said))
-            }
-            _ => Some(context.keep(vec![left], understanding)),
-        }
+        let understanding = self.understand_all(tidy::tidied(self.lexicon, before), context);
+        Some(match &understanding {
+            Understanding::Answer { text, .. } => self.wait_for(until, &then, context).after(text),
+            _ => context.keep(vec![token::sentence(&words[at..])], understanding),
+        })
     }
 
     /// `did you wait?`: what it waited for last.
@@ -98,7 +96,7 @@ impl Conversation<'_> {
     /// The same, of one whose other words the grammar reads.
     pub(crate) fn is_plain_wait(&self, words: &[String]) -> bool {
         let reads = |part: &[String]| part.is_empty() || self.reads_all(&self.wording(&token::sentence(part)));
-        self.said_of_waiting(words).is_some_and(|said| reads(&said.before) && reads(&said.then))
+        self.said_of_waiting(words).is_some_and(|said| reads(trimmed(&words[..said.at])) && reads(&said.then))
     }
 
     /// Goes on with what was put off, if its time has come: nothing before that, or while there is something else to do.
@@ -117,21 +115,25 @@ impl Conversation<'_> {
             return None;
         }
         context.awaited = None;
+        let words = until.in_words();
+        let longest = Until::Seconds(LONGEST_S).in_words();
         context.waited = Some(match &until {
-            Until::Seconds(_) => format!("for {}", until.in_words()),
-            Until::So(_) => format!("until {}", until.in_words()),
+            Until::Seconds(_) => format!("for {words}"),
+            Until::So(_) if is_due => format!("until {words}"),
+            Until::So(_) => format!("for {longest}"),
         });
         if !is_due {
-            let text = format!("I have waited for {} minutes, and it is not so yet that", LONGEST_S / 60.0);
-            return Some(Understanding::answer(format!("{text} {}. I do not wait any longer.", until.in_words())));
+            let text =
+                format!("I have waited for {longest}, and it is not so yet that {words}. I do not wait any longer.");
+            return Some(Understanding::answer(text));
         }
         let go_on = |text: &str, context: &mut Context| {
             let understanding = self.understand_said(text, context);
             (!understanding.is_lost()).then_some(understanding)
         };
         let since = match &until {
-            Until::Seconds(_) => format!("{} are over.", describe::sentence(&until.in_words()).trim_end_matches('.')),
-            Until::So(_) => describe::sentence(&until.in_words()),
+            Until::Seconds(_) => format!("{words} are over."),
+            Until::So(_) => describe::sentence(&words),
         };
         match self.one_after_the_other(then, context, go_on) {
             Some(understanding) => Some(understanding.after(&since)),
@@ -139,18 +141,18 @@ impl Conversation<'_> {
         }
     }
 
-    fn wait_for(&self, until: Until, then: &[String], context: &mut Context) -> Option<Understanding> {
+    fn wait_for(&self, until: Until, then: &[String], context: &mut Context) -> Understanding {
         let then = tidy::tidied(self.lexicon, then);
         if let Until::So(claim) = &until {
             match self.truth(claim, &then, true, context) {
                 Truth::Holds if then.is_empty() => {
-                    return Some(Understanding::answer(describe::sentence(&until.in_words())));
+                    return Understanding::answer(describe::sentence(&until.in_words()));
                 }
                 Truth::Fails(_) | Truth::Unknown if then.is_empty() || self.can_watch(claim, &then, context) => {}
                 // What it does not see may be so by now.
                 Truth::Holds | Truth::Fails(_) | Truth::Unknown => {
                     self.speak_of(claim, &then, context);
-                    return Some(self.understand_all(then, context));
+                    return self.understand_all(then, context);
                 }
             }
         }
@@ -159,10 +161,12 @@ impl Conversation<'_> {
             Until::Seconds(_) => format!("I wait for {words}."),
             Until::So(_) => format!("I wait until {words}."),
         };
-        let text = if then.is_empty() { text } else { format!("{} Then I go on.", text) };
-        let then = if then.is_empty() { Vec::new() } else { vec![token::sentence(&then)] };
+        let (text, then) = match then.is_empty() {
+            true => (text, Vec::new()),
+            false => (format!("{text} Then I go on."), vec![token::sentence(&then)]),
+        };
         context.awaited = Some(Awaited { until, then, since_s: None });
-        Some(Understanding::answer(text))
+        Understanding::answer(text)
     }
 
     fn said_of_waiting(&self, words: &[String]) -> Option<Said> {
@@ -172,7 +176,7 @@ impl Conversation<'_> {
         };
         let said = (0..words.len()).filter(begins).find_map(|at| {
             let (until, then) = self.timed(&words[at..]).or_else(|| self.awaits(&words[at..]))?;
-            Some(Said { before: trimmed(&words[..at]).to_vec(), until, then })
+            Some(Said { at, until, then })
         });
         said.or_else(|| self.put_last(words))
     }
@@ -227,7 +231,7 @@ impl Conversation<'_> {
             self.lexicon.waiting.delays.longest(&words[at..])?;
             let (until, rest) = self.timed(&words[at..])?;
             let then = trimmed(&words[..at]);
-            (rest.is_empty() && self.is_request(then)).then(|| Said { before: Vec::new(), until, then: then.to_vec() })
+            (rest.is_empty() && self.is_request(then)).then(|| Said { at: 0, until, then: then.to_vec() })
         });
         if delayed.is_some() {
             return delayed;
@@ -239,7 +243,7 @@ impl Conversation<'_> {
             return None;
         }
         let claim = self.claim(claim, then)?;
-        Some(Said { before: Vec::new(), until: Until::So(claim), then: then.to_vec() })
+        Some(Said { at: 0, until: Until::So(claim), then: then.to_vec() })
     }
 
     /// Whether the robot would see it become so: it sees what that is about.
@@ -261,14 +265,6 @@ impl Conversation<'_> {
         let is_claim = !(1..words.len()).any(goes_on) && self.question_of(words, request).is_some();
         is_claim.then(|| words.to_vec())
     }
-
-    /// How many words what was said has beyond its beginning.
-    fn length_after(&self, words: &[String], before: &[String]) -> usize {
-        let starts = (0..words.len()).find(|at| words[*at..].starts_with(before)).unwrap_or(0);
-        let rest = &words[starts + before.len()..];
-        let joints = rest.len() - trimmed(rest).len();
-        rest.len() - joints
-    }
 }
 
 impl Until {
@@ -285,12 +281,4 @@ impl Until {
             Self::Seconds(seconds) => format!("{seconds} seconds"),
         }
     }
-}
-
-/// Without the words that only join.
-fn trimmed(words: &[String]) -> &[String] {
-    let is_joint = |word: &String| token::is_punctuation(word) || matches!(word.as_str(), "and" | "then" | "but");
-    let start = words.iter().position(|word| !is_joint(word)).unwrap_or(words.len());
-    let end = words.iter().rposition(|word| !is_joint(word)).map_or(start, |end| end + 1);
-    &words[start..end.max(start)]
 }

@@ -63,19 +63,21 @@ impl YesNo {
 
     /// Whether words end by saying that something has come to its end.
     pub(crate) fn says_done(&self, words: &[String]) -> bool {
-        let ends = |at: usize| {
-            self.done.longest(&words[at..]).is_some_and(|(length, ())| self.is_filler(&words[at + length..]))
-        };
-        (1..words.len()).any(ends)
+        self.is_last_of(words, &self.done)
     }
 
     /// Whether words end by saying that something works as it should, or that it does not.
     pub(crate) fn soundness(&self, words: &[String]) -> Option<bool> {
-        let ends = |table: &PhraseTable<()>, at: usize| {
-            table.longest(&words[at..]).is_some_and(|(length, ())| self.is_filler(&words[at + length..]))
-        };
+        if self.is_last_of(words, &self.unsound) {
+            return Some(false);
+        }
+        self.is_last_of(words, &self.sound).then_some(true)
+    }
+
+    /// Whether words say something and end with one of these phrases.
+    fn is_last_of(&self, words: &[String], phrases: &PhraseTable<()>) -> bool {
         (1..words.len())
-            .find_map(|at| ends(&self.sound, at).then_some(true).or_else(|| ends(&self.unsound, at).then_some(false)))
+            .any(|at| phrases.longest(&words[at..]).is_some_and(|(length, ())| self.is_filler(&words[at + length..])))
     }
 }
 

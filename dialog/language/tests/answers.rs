@@ -125,63 +125,63 @@ fn talk(room: &str, draws: &mut Draws) -> Talk {
     talk
 }
 
-#[test]
-fn what_is_asked_of_a_state_is_answered_truly() {
-    let mut draws = Draws(1);
-    let (mut asked, mut wrong) = (0, Vec::new());
+/// Has `check` ask in all rooms about every claim of every thing with a name of its own: the name, the verb after it, the claim, and
+/// whether it is so. How often it asked, and what was wrong.
+fn of_all_claims(
+    seed: u64,
+    check: impl Fn(&Talk, &str, &str, &str, bool) -> Vec<Result<(), String>>,
+) -> (usize, Vec<String>) {
+    let mut draws = Draws(seed);
+    let mut found = Vec::new();
     for room in ROOMS {
         let talk = talk(room, &mut draws);
         for (id, name) in named(&talk) {
-            let object = talk.scene.object(id).unwrap().clone();
-            for (claim, is_so) in claims(&talk, &object) {
-                let be = if name.ends_with('s') && !name.ends_with("ss") { "are" } else { "is" };
-                for (said, expected) in [
-                    (format!("{be} the {name} {claim}?"), is_so),
-                    (format!("tell me whether the {name} {be} {claim}"), is_so),
-                ] {
-                    asked += 1;
-                    let found = answer(&talk, &said);
-                    let holds = if let Understanding::Answer { holds, .. } = &found { *holds } else { None };
-                    let begins = if expected { "Yes" } else { "No" };
-                    if holds != Some(expected) || !found.reply().starts_with(begins) {
-                        wrong.push(format!("{said} wanted {begins}, found {}", found.reply()));
-                    }
-                }
+            let be = if name.ends_with('s') && !name.ends_with("ss") { "are" } else { "is" };
+            for (claim, is_so) in claims(&talk, talk.scene.object(id).unwrap()) {
+                found.extend(check(&talk, &name, be, &claim, is_so));
             }
         }
     }
+    (found.len(), found.into_iter().filter_map(Result::err).collect())
+}
+
+fn holds(understanding: &Understanding) -> Option<bool> {
+    if let Understanding::Answer { holds, .. } = understanding { *holds } else { None }
+}
+
+#[test]
+fn what_is_asked_of_a_state_is_answered_truly() {
+    let (asked, wrong) = of_all_claims(1, |talk, name, be, claim, is_so| {
+        let begins = if is_so { "Yes" } else { "No" };
+        let check = |said: String| {
+            let found = answer(talk, &said);
+            let is_right = holds(&found) == Some(is_so) && found.reply().starts_with(begins);
+            is_right.then_some(()).ok_or_else(|| format!("{said} wanted {begins}, found {}", found.reply()))
+        };
+        [format!("{be} the {name} {claim}?"), format!("tell me whether the {name} {be} {claim}")].map(check).into()
+    });
     assert!(asked > 500, "only {asked} questions");
     assert!(wrong.is_empty(), "{} of {asked} wrong:\n{}", wrong.len(), wrong.join("\n"));
 }
 
 #[test]
 fn conditions_hold_where_they_do() {
-    let mut draws = Draws(2);
-    let (mut asked, mut wrong) = (0, Vec::new());
-    for room in ROOMS {
-        let talk = talk(room, &mut draws);
-        for (id, name) in named(&talk) {
-            let object = talk.scene.object(id).unwrap().clone();
-            for (claim, is_so) in claims(&talk, &object) {
-                let be = if name.ends_with('s') && !name.ends_with("ss") { "are" } else { "is" };
-                let cases = [
-                    (format!("if the {name} {be} {claim}, go to the warehouse"), is_so),
-                    (format!("if the {name} {be} not {claim}, go to the warehouse"), !is_so),
-                    (format!("unless the {name} {be} {claim}, go to the warehouse"), !is_so),
-                    (format!("go to the warehouse if the {name} {be} {claim}"), is_so),
-                ];
-                for (said, goes) in cases {
-                    asked += 1;
-                    let found = answer(&talk, &said);
-                    if matches!(found, Understanding::Plan { .. }) != goes
-                        || matches!(found, Understanding::Question { .. } | Understanding::Refusal { .. })
-                    {
-                        wrong.push(format!("{said} should {}go: {}", if goes { "" } else { "not " }, found.reply()));
-                    }
-                }
-            }
-        }
-    }
+    let (asked, wrong) = of_all_claims(2, |talk, name, be, claim, is_so| {
+        let check = |(said, goes): (String, bool)| {
+            let found = answer(talk, &said);
+            let is_right = matches!(found, Understanding::Plan { .. }) == goes
+                && !matches!(found, Understanding::Question { .. } | Understanding::Refusal { .. });
+            let not = if goes { "" } else { "not " };
+            is_right.then_some(()).ok_or_else(|| format!("{said} should {not}go: {}", found.reply()))
+        };
+        let cases = [
+            (format!("if the {name} {be} {claim}, go to the warehouse"), is_so),
+            (format!("if the {name} {be} not {claim}, go to the warehouse"), !is_so),
+            (format!("unless the {name} {be} {claim}, go to the warehouse"), !is_so),
+            (format!("go to the warehouse if the {name} {be} {claim}"), is_so),
+        ];
+        cases.map(check).into()
+    });
     assert!(asked > 1000, "only {asked} conditions");
     assert!(wrong.is_empty(), "{} of {asked} wrong:\n{}", wrong.len(), wrong.join("\n"));
 }
@@ -207,8 +207,7 @@ fn where_things_are_is_answered_truly() {
                 for said in [format!("is the {name} on the {place}?"), format!("is there a {name} in the {place}?")] {
                     asked += 1;
                     let found = answer(&talk, &said);
-                    let holds = if let Understanding::Answer { holds, .. } = &found { *holds } else { None };
-                    if holds != Some(expected) {
+                    if holds(&found) != Some(expected) {
                         wrong.push(format!("{said} wanted {expected}, found {}", found.reply()));
                     }
                 }

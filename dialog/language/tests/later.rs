@@ -241,6 +241,7 @@ fn what_is_to_be_so_is_waited_for() {
         "= I have waited for 10 minutes, and it is not so yet that the fridge is open. I do not wait any longer."
     );
     assert!(!talk.context.awaits());
+    assert_eq!(talk.say("did you wait?"), "= Yes, I waited for 10 minutes.");
 }
 
 #[test]

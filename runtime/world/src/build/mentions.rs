@@ -53,22 +53,6 @@ impl Names {
     }
 
     fn expression(&mut self, expression: &Expression) {
-        match expression {
-            Expression::And(all) | Expression::Or(all) => all.iter().for_each(|inner| self.expression(inner)),
-            Expression::Not(inner) => self.expression(inner),
-            Expression::Contains { target, contains } => {
-                self.pattern(target);
-                self.pattern(contains);
-            }
-            Expression::Flag { target, .. }
-            | Expression::FilledWith { target, .. }
-            | Expression::FilledWithAny { target }
-            | Expression::CanBeSeen { target, .. }
-            | Expression::InRange { target, .. }
-            | Expression::HasColor { target, .. }
-            | Expression::DinoFed { target, .. }
-            | Expression::IsReceptacle { target, .. }
-            | Expression::IsFull { target, .. } => self.pattern(target),
-        }
+        expression.for_each_named(&mut |pattern| self.pattern(pattern));
     }
 }
