@@ -257,6 +257,13 @@ impl Catalog {
         Ok(self)
     }
 
+    /// The same with the table of another catalogue; what that says of classes that this one lacks counts for nothing.
+    #[must_use]
+    pub fn with_table_of(mut self, other: &Self) -> Self {
+        self.table = other.table.clone();
+        self
+    }
+
     /// The project's own table, as `(file name, text)`: what others are put beside, or in the place of.
     #[must_use]
     pub fn builtin_table() -> &'static [(&'static str, &'static str)] {

@@ -11,7 +11,7 @@ use crate::{
     ground::{Want, has_state},
     intent::Intent,
     known::KnownObject,
-    lexicon::{Lexicon, StateWord},
+    lexicon::{Lexicon, Pronoun, StateWord},
     phrase::{Phrase, Reader, RelationKind},
     question::Question,
     saying,
@@ -31,6 +31,8 @@ enum Claim<'q> {
     Done,
     /// It works something, or is needed for it.
     For,
+    /// It is what else is named: `the red thing the laser tip`.
+    Same(Phrase),
     /// It is where the phrase says.
     Placed,
     /// It is there at all.
@@ -113,6 +115,9 @@ impl<'q> Claim<'q> {
         if has(RelationKind::For) {
             return Self::For;
         }
+        if let Some(other) = named(lexicon, left) {
+            return Self::Same(other);
+        }
         let is_placed = phrase.relations.iter().any(|one| one.kind != RelationKind::Has) || phrase.room.is_some();
         match () {
             () if is_placed && is_told => Self::Placed,
@@ -169,6 +174,7 @@ impl Answerer<'_> {
                 let text = format!("{start}: {}", describe::within_sentence(&self.facts().purpose(object)));
                 Understanding::whether(holds, text, vec![object.id])
             }),
+            Claim::Same(other) => self.is_same(phrase, &other),
             Claim::Placed => self.with_object(&bare, |id| {
                 let holds = self.ground().narrow(phrase, &[id]) == [id];
                 self.told(holds, &self.place_sentence(id), id)
@@ -181,6 +187,20 @@ impl Answerer<'_> {
     fn told(&self, holds: bool, text: &str, id: ObjectId) -> Understanding {
         let start = if holds { "Yes" } else { "No" };
         Understanding::whether(holds, format!("{start}, {text}."), vec![id])
+    }
+
+    /// Whether what is described is what is named; or where the latter is, if nothing is known that fits the description.
+    fn is_same(&self, described: &Phrase, named: &Phrase) -> Understanding {
+        let want = Want::place(Intent::Find, &[], None);
+        let Ok(id) = self.ground().one(described, &want) else { return self.place_of(named) };
+        if self.ground().narrow(named, &[id]) == [id] {
+            return self.told(true, &format!("that is {}", self.full(id)), id);
+        }
+        let instead = match self.ground().one(named, &want) {
+            Ok(other) => format!(", and {}", self.place_sentence(other)),
+            Err(_) => String::new(),
+        };
+        self.told(false, &format!("that is {}{instead}", self.short(id)), id)
     }
 
     fn is_in_state(&self, id: ObjectId, state: StateWord, words: &[String]) -> Understanding {
@@ -349,6 +369,14 @@ impl Answerer<'_> {
 pub(crate) fn can_be_told(lexicon: &Lexicon, question: &Question) -> bool {
     let is_told = |phrase| !matches!(Claim::read(lexicon, phrase, &question.rest), Claim::Untold | Claim::Present);
     question.about.as_ref().is_some_and(is_told)
+}
+
+/// What words name, if they do nothing else.
+fn named(lexicon: &Lexicon, words: &[String]) -> Option<Phrase> {
+    let mut reader = Reader::new(lexicon, words);
+    let phrase = reader.phrase_with_place()?;
+    let is_name = !phrase.namings.is_empty() || phrase.pronoun == Some(Pronoun::Thing) && !phrase.is_bare_pronoun();
+    (is_name && lexicon.yes_no.is_filler(reader.rest())).then_some(phrase)
 }
 
 /// `the hammer red`: whether a colour is the last that is said.

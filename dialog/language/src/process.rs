@@ -1,6 +1,10 @@
-//! What it takes to heat, cool, clean, repair and so on: the table of devices, with its class names resolved.
+//! What it takes to heat, cool, clean, repair and so on: what the language needs of the table of actions and devices, with class names
+//! resolved.
 
-use cohabit_cdf::{Catalog, ClassId, Fluid};
+use cohabit_cdf::{
+    ActionTable, Catalog, ClassId, Fluid, Property,
+    table::{Change, Device, Site, Term, Test},
+};
 use serde::Deserialize;
 
 use crate::{facts::Uses, intent::Intent};
@@ -9,8 +13,11 @@ use crate::{facts::Uses, intent::Intent};
 #[derive(Clone, Debug)]
 pub(crate) struct Process {
     pub(crate) intent: Intent,
+    /// Where the object goes.
     pub(crate) at: Vec<ClassId>,
+    /// Other things by which people name that.
     pub(crate) also: Vec<ClassId>,
+    /// What sets it off; the place itself, or what a colour chooses, if this is empty.
     pub(crate) start: Vec<ClassId>,
     pub(crate) steps: Vec<Act>,
     pub(crate) fluid: Option<Fluid>,
@@ -36,6 +43,7 @@ pub(crate) enum Act {
 #[derive(Clone, Debug)]
 pub(crate) struct Devices {
     pub(crate) processes: Vec<Process>,
+    /// The names of colours, and what gives them.
     buttons: Vec<(String, ClassId)>,
     cartridges: Vec<(ClassId, ClassId)>,
     shut_to_run: Vec<ClassId>,
@@ -50,24 +58,20 @@ pub(crate) struct Devices {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct File {
-    process: Vec<ProcessEntry>,
-    button: Vec<Button>,
-    cartridge: Vec<Cartridge>,
-    doors: Doors,
-    running: Running,
-    worked: Vec<Worked>,
-    tools: Tools,
+    way: Vec<WayEntry>,
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct ProcessEntry {
+struct WayEntry {
     intent: Intent,
+    #[serde(default)]
+    work: Option<String>,
+    #[serde(default)]
+    leaves: bool,
+    #[serde(default)]
     at: Vec<String>,
     #[serde(default)]
-    also: Vec<String>,
-    #[serde(default)]
-    start: Vec<String>,
     steps: Vec<Act>,
     #[serde(default)]
     fluid: Option<String>,
@@ -75,77 +79,37 @@ struct ProcessEntry {
     object: Vec<String>,
 }
 
-#[derive(Deserialize)]
-struct Button {
-    color: String,
-    class: String,
-}
-
-#[derive(Deserialize)]
-struct Cartridge {
-    class: String,
-    prints: String,
-}
-
-#[derive(Deserialize)]
-struct Doors {
-    shut_to_run: Vec<String>,
-}
-
-#[derive(Deserialize)]
-struct Running {
-    stays_on: Vec<String>,
-    lit: Vec<String>,
-}
-
-#[derive(Deserialize)]
-struct Worked {
-    class: String,
-    by: Vec<String>,
-}
-
-#[derive(Deserialize)]
-struct Tools {
-    #[serde(rename = "break")]
-    to_break: Vec<String>,
-}
-
 impl Devices {
-    /// The built-in table, as far as the catalogue has its classes.
+    /// What the catalogue's table says, and the built-in ways to what people ask for.
     pub(crate) fn new(catalog: &Catalog) -> Self {
         let file: File = toml::from_str(include_str!("../data/processes.toml"))
             .expect("invariant: the built-in table parses, the tests load it");
-        let classes = |ids: &[String]| -> Vec<ClassId> { ids.iter().filter_map(|id| catalog.find(id)).collect() };
-        let processes = file.process.iter().map(|entry| Process {
-            intent: entry.intent,
-            at: classes(&entry.at),
-            also: classes(&entry.also),
-            start: classes(&entry.start),
-            steps: entry.steps.clone(),
-            fluid: entry.fluid.as_deref().and_then(Fluid::from_name),
-            object: classes(&entry.object),
-        });
+        let table = catalog.table();
+        let known = |ids: &[String]| of_ids(catalog, ids);
+        let of_class = |fits: &dyn Fn(ClassId, &Device) -> bool| -> Vec<ClassId> {
+            let classes = (0..).map(ClassId).zip(catalog.classes());
+            classes.filter(|(id, class)| fits(*id, table.device(&class.id))).map(|(id, _)| id).collect()
+        };
+        let has = |class: ClassId, property| catalog.class(class).has(property);
         Self {
-            processes: processes.collect(),
-            buttons: file
-                .button
-                .into_iter()
-                .filter_map(|button| Some((button.color, catalog.find(&button.class)?)))
+            processes: file.way.iter().flat_map(|way| way.processes(catalog)).collect(),
+            buttons: buttons(table).filter_map(|(color, class)| Some((color, catalog.find(class)?))).collect(),
+            cartridges: table
+                .cartridges()
+                .filter_map(|(cartridge, prints)| Some((catalog.find(cartridge)?, catalog.find(prints)?)))
                 .collect(),
-            cartridges: file
-                .cartridge
+            shut_to_run: of_class(&|class, device| has(class, Property::Openable) && works_in_itself(device)),
+            stays_on: of_class(&|_, device| device.stays_on()),
+            is_lit: of_class(&|class, device| {
+                has(class, Property::Powerable) && !device.works.is_empty() && !device.stays_on()
+            }),
+            worked: table
+                .devices()
                 .iter()
-                .filter_map(|entry| Some((catalog.find(&entry.class)?, catalog.find(&entry.prints)?)))
+                .filter(|device| !device.worked_by.is_empty())
+                .flat_map(|device| known(&device.classes).into_iter().map(|class| (class, known(&device.worked_by))))
                 .collect(),
-            shut_to_run: classes(&file.doors.shut_to_run),
-            stays_on: classes(&file.running.stays_on),
-            is_lit: classes(&file.running.lit),
-            worked: file
-                .worked
-                .iter()
-                .filter_map(|entry| Some((catalog.find(&entry.class)?, classes(&entry.by))))
-                .collect(),
-            hammers: classes(&file.tools.to_break),
+            hammers: of_class(&|class, _| is_tool(table, &catalog.class(class).id, "break")),
             uses: Uses::new(catalog),
         }
     }
@@ -189,4 +153,96 @@ impl Devices {
     pub(crate) fn printed_by(&self, cartridge: ClassId) -> Option<ClassId> {
         self.cartridges.iter().find(|(class, _)| *class == cartridge).map(|(_, prints)| *prints)
     }
+}
+
+impl WayEntry {
+    /// One process for each place where it is done.
+    fn processes(&self, catalog: &Catalog) -> Vec<Process> {
+        let Some(work) = &self.work else {
+            let at = of_ids(catalog, &self.at);
+            return vec![self.process(catalog, at, [Vec::new(), Vec::new()], self.steps.clone())];
+        };
+        let table = catalog.table();
+        let mut doers: Vec<&Device> = table.devices().iter().filter(|device| does(device, work)).collect();
+        doers.sort_by_key(|device| device.at != Site::It);
+        let mut processes: Vec<Process> = Vec::new();
+        for device in doers {
+            let at = of_ids(catalog, &places(table, device));
+            let (machines, classes) = (of_ids(catalog, &device.works), of_ids(catalog, &device.classes));
+            if let Some(other) = processes.iter_mut().find(|process| process.at == at) {
+                // Which of several sets it off is to be said.
+                (other.also, other.start) = (Vec::new(), Vec::new());
+                continue;
+            }
+            let by = match device.at {
+                Site::It => [Vec::new(), Vec::new()],
+                Site::Machine => [classes.clone(), classes],
+                Site::Target => [[machines, classes.clone()].concat(), classes],
+            };
+            let is_openable = at.iter().any(|class| catalog.class(*class).has(Property::Openable));
+            processes.push(self.process(catalog, at, by, self.steps_at(device, is_openable)));
+        }
+        processes
+    }
+
+    fn steps_at(&self, device: &Device, is_openable: bool) -> Vec<Act> {
+        let mut steps = vec![Act::Hold];
+        steps.extend(is_openable.then_some(Act::Open));
+        steps.push(Act::Place);
+        steps.extend(is_openable.then_some(Act::Close));
+        steps.extend(device.work.is_some().then_some(Act::Start));
+        if !self.leaves {
+            steps.extend(is_openable.then_some(Act::Open));
+            steps.push(Act::Take);
+        }
+        steps
+    }
+
+    fn process(&self, catalog: &Catalog, at: Vec<ClassId>, [also, start]: [Vec<ClassId>; 2], steps: Vec<Act>) -> Process {
+        let fluid = self.fluid.as_deref().and_then(Fluid::from_name);
+        Process { intent: self.intent, at, also, start, steps, fluid, object: of_ids(catalog, &self.object) }
+    }
+}
+
+fn of_ids(catalog: &Catalog, ids: &[String]) -> Vec<ClassId> {
+    ids.iter().filter_map(|id| catalog.find(id)).collect()
+}
+
+/// Whether it does a work, or one kind of it: `paint red` is a kind of `paint`.
+fn does(device: &Device, work: &str) -> bool {
+    let is_it = |name: &String| name.split(' ').next() == Some(work);
+    device.work.iter().chain(&device.shut_work).any(is_it)
+}
+
+/// The classes in or on which a device does its work.
+fn places(table: &ActionTable, device: &Device) -> Vec<String> {
+    match device.at {
+        Site::It => device.classes.clone(),
+        Site::Machine => device.works.clone(),
+        Site::Target => device.works.iter().flat_map(|machine| table.device(machine).aims.clone()).collect(),
+    }
+}
+
+fn works_in_itself(device: &Device) -> bool {
+    device.work.is_some() && device.at == Site::It
+}
+
+/// The names of colours, and the classes that paint what is in their machine so.
+fn buttons(table: &ActionTable) -> impl Iterator<Item = (String, &str)> {
+    table.devices().iter().flat_map(|device| {
+        let work = device.work.as_ref().and_then(|work| table.work(work));
+        let changes = work.into_iter().flat_map(|work| &work.effects).flat_map(|effect| &effect.changes);
+        let colors = changes.filter_map(|change| match change {
+            Change::Paint(_, color) => Some(color.name().to_lowercase()),
+            _ => None,
+        });
+        colors.flat_map(|color| device.classes.iter().map(move |class| (color.clone(), class.as_str())))
+    })
+}
+
+/// Whether the hand must hold a thing of that class for what a rule does.
+fn is_tool(table: &ActionTable, class: &str, rule: &str) -> bool {
+    let needs = table.rules().iter().filter(|one| one.name == rule).flat_map(|rule| &rule.needs);
+    let is_it = |test: &Test| matches!(test, Test::IsA(pattern) if pattern.matches(class));
+    needs.flat_map(|need| &need.any).any(|one| !one.negated && one.term == Term::Held && is_it(&one.test))
 }

@@ -161,7 +161,8 @@ pub fn catalog() -> Arc<Catalog> {
         }
     }
     let model = "[[model]]\nid = \"box\"\n[[model.part]]\nshape = \"box\"\nsize = [0.5, 0.5, 0.5]\n";
-    Arc::new(Catalog::parse(&[("objects.toml", &text)], &[("models.toml", model)]).unwrap())
+    let catalog = Catalog::parse(&[("objects.toml", &text)], &[("models.toml", model)]).unwrap();
+    Arc::new(catalog.with_table_of(&Catalog::builtin()))
 }
 
 /// The office, changed by `marks` such as `FridgeLower_02_1 open`, `held Bowl_01_1`, `at Lab1 10 8`.
