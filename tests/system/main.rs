@@ -29,6 +29,7 @@ mod survey;
 mod time;
 mod untrusted;
 mod voice;
+mod wizard;
 
 /// The binary under test.
 const COHABIT: &str = env!("CARGO_BIN_EXE_cohabit");

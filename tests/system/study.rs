@@ -2,6 +2,7 @@
 
 mod pages;
 mod practice;
+mod wizard;
 
 use std::{
     fs,

@@ -2,6 +2,10 @@
 //!
 //! Pure: the newest knowledge comes in with every call, and what is to be sent comes out.
 
+mod hearing;
+mod held;
+mod reaction;
+
 use std::collections::{BTreeMap, VecDeque};
 
 use cohabit_bus::{
@@ -9,83 +13,18 @@ use cohabit_bus::{
     message::{DialogHeader, DialogKind, DialogMessage, PlanStep},
 };
 use cohabit_cdf::{Action, GoToTarget, ObjectId, Status};
-use cohabit_language::{
-    Clarification, Consulting, Context, Language, Meant, Step, Unclear, Understanding, within_half_turn,
-};
+use cohabit_language::{Clarification, Consulting, Context, Language, Step, Understanding, within_half_turn};
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
 
-use crate::known::Knowledge;
-use crate::page::{self, Answer, Line, LineKind, Speaker};
-use crate::spoken::{Reading, Spoken};
-
-/// What the conversation wants done.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Reaction {
-    /// To the bus.
-    Bus(Box<DialogMessage>),
-    /// To the chat of all pages.
-    Chat(Line),
-    /// To all pages, not kept.
-    Page(Value),
-    /// To an interpreter: what is not understood in this turn.
-    Interpret(u64, Box<Unclear>),
-    /// The turn is over: show the state as it is, then say so.
-    TurnEnded {
-        /// Which.
-        turn: u64,
-        /// How.
-        end: TurnEnd,
-    },
-}
-
-/// How a turn ended.
-#[derive(Clone, Copy, Debug, Eq, PartialEq)]
-pub enum TurnEnd {
-    /// The robot did all that was asked.
-    Done,
-    /// The robot answered.
-    Answered,
-    /// The robot asks, and waits for an answer.
-    Asked,
-    /// A step failed.
-    Failed,
-    /// The robot did not understand, or will not.
-    Refused,
-    /// Something else was asked for meanwhile.
-    Interrupted,
-}
-
-impl Reaction {
-    /// The line of chat, if it is one.
-    pub const fn line(&self) -> Option<&Line> {
-        match self {
-            Self::Chat(line) => Some(line),
-            _ => None,
-        }
-    }
-}
-
-impl TurnEnd {
-    /// In one word, for the page and for reports.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Done => "done",
-            Self::Answered => "answered",
-            Self::Asked => "asked",
-            Self::Failed => "failed",
-            Self::Refused => "refused",
-            Self::Interrupted => "interrupted",
-        }
-    }
-
-    /// Whether it is what the person wanted.
-    #[must_use]
-    pub const fn is_success(self) -> bool {
-        matches!(self, Self::Done | Self::Answered)
-    }
-}
+use crate::{
+    known::Knowledge,
+    page::{self, Answer, Line, LineKind, Speaker},
+    wizard::Holding,
+};
+pub(crate) use hearing::Aloud;
+use hearing::{Puzzle, Words};
+use held::Held;
+pub use reaction::{Reaction, TurnEnd};
 
 /// A conversation with the robot of one body.
 pub struct Conversation {
@@ -94,6 +33,8 @@ pub struct Conversation {
     memory: Memory,
     /// When an interpreter is asked.
     consulting: Consulting,
+    /// What is held back.
+    holding: Holding,
 }
 
 /// What the robot asks.
@@ -134,11 +75,14 @@ struct Plan {
     /// What the robot will find gone at its end.
     #[serde(default)]
     missing: Option<ObjectId>,
+    /// Whether a wizard ordered it: people are told nothing of it.
+    #[serde(default)]
+    is_silent: bool,
 }
 
 impl Plan {
     fn new(turn: u64, steps: Vec<Step>) -> Self {
-        Self { turn, steps, told_end: false, missing: None }
+        Self { turn, steps, told_end: false, missing: None, is_silent: false }
     }
 }
 
@@ -156,24 +100,12 @@ pub struct Memory {
     puzzle: Option<Puzzle>,
     /// What was heard, and is not trusted: a yes means it.
     unsure: Option<String>,
-}
-
-/// Words that an interpreter may make something of.
-#[derive(Clone, Debug, Deserialize, Serialize)]
-struct Puzzle {
-    turn: u64,
-    /// What the robot itself makes of it, and the conversation then, in case that nobody knows better.
-    understanding: Understanding,
-    context: Context,
-}
-
-/// How something was heard that was said aloud.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Aloud<'a> {
-    /// What it sounds like by itself.
-    pub raw: &'a str,
-    /// Whether the robot asks before it does it.
-    pub is_doubtful: bool,
+    /// What was understood and is not answered yet.
+    held: Option<Box<Held>>,
+    /// What was said since, and is not understood yet.
+    waiting: VecDeque<Words>,
+    /// Since when nothing is held back that was before, ns of the monotonic clock.
+    free_since_nanos: u64,
 }
 
 /// So many lines tell an interpreter what it is about.
@@ -190,12 +122,17 @@ const MOST_PLANS: usize = 16;
 impl Conversation {
     /// A conversation in which nothing was said yet.
     pub fn new(language: Language, body: u32) -> Self {
-        Self { language, body, memory: Memory::default(), consulting: Consulting::Never }
+        Self { language, body, memory: Memory::default(), consulting: Consulting::Never, holding: Holding::default() }
     }
 
     /// The same, with an interpreter that is asked at these times: [`Reaction::Interpret`] asks it.
     pub(crate) fn consulting(self, consulting: Consulting) -> Self {
         Self { consulting, ..self }
+    }
+
+    /// The same, with answers held back so.
+    pub(crate) fn holding(self, holding: Holding) -> Self {
+        Self { holding, ..self }
     }
 
     /// What it asks, if that is the last that it said.
@@ -251,49 +188,6 @@ impl Conversation {
         Some(self.plan_message(*turn, &plan.steps))
     }
 
-    /// Somebody said something. Gives the turn's number and what follows.
-    pub fn hear(&mut self, text: &str, knowledge: &Knowledge) -> (u64, Vec<Reaction>) {
-        self.hear_called(text, text, knowledge)
-    }
-
-    /// The same, of which `text` is said to this robot: all but its name.
-    pub(crate) fn hear_called(&mut self, said: &str, text: &str, knowledge: &Knowledge) -> (u64, Vec<Reaction>) {
-        self.hear_as(said, text, None, knowledge)
-    }
-
-    /// The same, said aloud: what is not trusted is asked about, and what is not understood is told as it was heard.
-    pub(crate) fn hear_aloud(
-        &mut self,
-        said: &str,
-        text: &str,
-        aloud: Aloud<'_>,
-        knowledge: &Knowledge,
-    ) -> (u64, Vec<Reaction>) {
-        self.hear_as(said, text, Some(aloud), knowledge)
-    }
-
-    /// Which reading of what was said aloud is meant, and whether it is to be asked about first; `called` takes the robot's name
-    /// out of one.
-    pub(crate) fn reading(
-        &self,
-        spoken: &Spoken,
-        called: &dyn Fn(&str) -> String,
-        knowledge: &Knowledge,
-    ) -> Option<Reading> {
-        let known = knowledge.known()?;
-        let meant = |text: &str| self.language.understand(text, &known, &mut self.memory.context.clone());
-        let consents = |text: &str| self.memory.unsure.is_some() && self.language.consent(text, &known).is_some();
-        let reading = spoken.reading(|text| {
-            let text = called(text);
-            if consents(&text) {
-                Understanding::Answer { text, highlight: Vec::new(), holds: Some(true) }
-            } else {
-                meant(&text)
-            }
-        })?;
-        Some(Reading { is_doubtful: reading.is_doubtful && self.language.may_ask(), ..reading })
-    }
-
     /// Whether what was said so far is a whole sentence.
     pub(crate) fn is_whole(&self, text: &str, knowledge: &Knowledge) -> bool {
         let known = knowledge.known();
@@ -305,130 +199,6 @@ impl Conversation {
         &self.language
     }
 
-    fn hear_as(
-        &mut self,
-        said: &str,
-        text: &str,
-        aloud: Option<Aloud<'_>>,
-        knowledge: &Knowledge,
-    ) -> (u64, Vec<Reaction>) {
-        self.memory.turns += 1;
-        let turn = self.memory.turns;
-        let mut reactions = vec![
-            self.bus(DialogKind::Utterance, turn, said),
-            Reaction::Chat(Line::new(Speaker::Person, LineKind::Say, turn, said)),
-        ];
-        let Some(known) = knowledge.known() else {
-            self.say(turn, DialogKind::Reply, LineKind::Problem, "I am not there yet; one moment.", &mut reactions);
-            reactions.push(Reaction::TurnEnded { turn, end: TurnEnd::Refused });
-            return (turn, reactions);
-        };
-        self.leave_puzzle(&mut reactions);
-        let before = self.memory.said.iter().cloned().collect();
-        self.note_line(false, text);
-        let mut text = text.to_owned();
-        if let Some(unsure) = self.memory.unsure.take() {
-            match self.language.consent(&text, &known) {
-                Some(true) => text = unsure,
-                Some(false) => {
-                    self.memory.asked = None;
-                    let again = "All right. Please say it once more, or type it.";
-                    self.say(turn, DialogKind::Reply, LineKind::Say, again, &mut reactions);
-                    reactions.push(Reaction::TurnEnded { turn, end: TurnEnd::Answered });
-                    return (turn, reactions);
-                }
-                None => {}
-            }
-        }
-        if aloud.is_some_and(|aloud| aloud.is_doubtful) {
-            self.ask_what_was_heard(turn, &text, &mut reactions);
-            return (turn, reactions);
-        }
-        let text = text.as_str();
-        let context = self.memory.context.clone();
-        let understood = match (self.language.understand(text, &known, &mut self.memory.context), aloud) {
-            (Understanding::Refusal { is_lost: true, text }, Some(Aloud { raw, .. })) => {
-                Understanding::Refusal { is_lost: true, text: heard(raw, &text) }
-            }
-            // Nobody knows what that is: perhaps it was misheard.
-            (
-                Understanding::Question { kind: Clarification::Appearance, about, text, candidates, options },
-                Some(aloud),
-            ) if candidates.is_empty() => {
-                let text = heard(aloud.raw, &text);
-                Understanding::Question { kind: Clarification::Appearance, about, text, candidates, options }
-            }
-            (understood, _) => understood,
-        };
-        match understood {
-            understanding if self.consulting.is_asked(&understanding, &self.memory.context) => {
-                let unclear = self.language.unclear(text, &known, before);
-                let context = std::mem::replace(&mut self.memory.context, context);
-                self.memory.puzzle = Some(Puzzle { turn, understanding, context });
-                self.say(turn, DialogKind::Reply, LineKind::Say, "One moment, let me think.", &mut reactions);
-                reactions.push(Reaction::Interpret(turn, Box::new(unclear)));
-            }
-            understanding => self.react(turn, turn, understanding, knowledge, &mut reactions),
-        }
-        (turn, reactions)
-    }
-
-    /// Asks whether what was heard was said; a yes means it.
-    fn ask_what_was_heard(&mut self, turn: u64, text: &str, reactions: &mut Vec<Reaction>) {
-        let question = format!("I am not sure I heard that right: \"{}\". Shall I do that?", plainly(text));
-        self.memory.unsure = Some(text.to_owned());
-        self.note_line(true, &question);
-        let asked = Asked { kind: Clarification::Confirmation, candidates: Vec::new() };
-        let mut line = Line::new(Speaker::Robot, LineKind::Question, turn, question);
-        line.answers = asked.answers(vec!["yes".to_owned(), "no".to_owned()]);
-        self.memory.asked = Some(asked);
-        reactions.push(self.bus(DialogKind::Question, turn, &line.text));
-        reactions.push(Reaction::Chat(line));
-        reactions.push(Reaction::TurnEnded { turn, end: TurnEnd::Asked });
-    }
-
-    /// What an interpreter takes for meant that was said in a turn, if it knows, and how it came to that, for the log.
-    pub(crate) fn interpreted(
-        &mut self,
-        turn: u64,
-        meant: Option<&Meant>,
-        note: &str,
-        knowledge: &Knowledge,
-    ) -> Vec<Reaction> {
-        let mut reactions = Vec::new();
-        let Some(Puzzle { understanding: own, context, .. }) = self.memory.puzzle.take_if(|puzzle| puzzle.turn == turn)
-        else {
-            return reactions;
-        };
-        reactions.push(self.bus(DialogKind::Interpreted, turn, note));
-        let known = knowledge.known().zip(meant);
-        let understood =
-            known.and_then(|(known, meant)| self.language.understand_meant(meant, &known, &mut self.memory.context));
-        let Some(understanding) = understood else {
-            self.memory.context = context;
-            self.react(turn, turn, own, knowledge, &mut reactions);
-            return reactions;
-        };
-        if let Some(Meant::Do(requests)) = meant.filter(|_| !is_same(&own, &understanding)) {
-            let taken = format!("I take that as: \"{}\".", requests.join(", then "));
-            self.say(turn, DialogKind::Reply, LineKind::Say, &taken, &mut reactions);
-        }
-        self.react(turn, turn, understanding, knowledge, &mut reactions);
-        reactions
-    }
-
-    /// The turn that an interpreter was asked about and has not answered yet.
-    pub(crate) fn puzzled(&self) -> Option<u64> {
-        self.memory.puzzle.as_ref().map(|puzzle| puzzle.turn)
-    }
-
-    /// Something else is said meanwhile.
-    fn leave_puzzle(&mut self, reactions: &mut Vec<Reaction>) {
-        if let Some(Puzzle { turn, .. }) = self.memory.puzzle.take() {
-            reactions.push(Reaction::TurnEnded { turn, end: TurnEnd::Interrupted });
-        }
-    }
-
     fn note_line(&mut self, is_robot: bool, text: &str) {
         if is_robot {
             self.memory.context.note_said(true, text);
@@ -437,24 +207,6 @@ impl Conversation {
         while self.memory.said.len() > LINES_BEFORE {
             self.memory.said.pop_front();
         }
-    }
-
-    /// Somebody points at an object, as an answer or to speak of it. Gives the turn's number and what follows.
-    pub fn choose(&mut self, object: ObjectId, knowledge: &Knowledge) -> (u64, Vec<Reaction>) {
-        let known = knowledge.known();
-        let Some(known) = known.filter(|known| known.object(object).is_some()) else {
-            return self.hear("this one", knowledge);
-        };
-        self.memory.turns += 1;
-        let turn = self.memory.turns;
-        let text = self.language.name(object, &known);
-        let mut reactions = vec![
-            self.bus(DialogKind::Utterance, turn, &text),
-            Reaction::Chat(Line::new(Speaker::Person, LineKind::Say, turn, text)),
-        ];
-        let understanding = self.language.choose(object, &known, &mut self.memory.context);
-        self.react(turn, turn, understanding, knowledge, &mut reactions);
-        (turn, reactions)
     }
 
     /// Says and does what was understood in `turn`; what is to be done is the plan of that number.
@@ -528,6 +280,18 @@ impl Conversation {
 
     /// The agent told something about a plan.
     pub fn follow(&mut self, header: &DialogHeader, knowledge: &mut Knowledge) -> Vec<Reaction> {
+        let is_silent = self.is_silent(header.turn);
+        let mut reactions = self.follow_plan(header, knowledge);
+        if is_silent {
+            reactions = self.unsaid(header.turn, reactions);
+        }
+        if matches!(header.kind(), Some(DialogKind::StepEnded | DialogKind::PlanEnded)) {
+            self.propose_again(knowledge, &mut reactions);
+        }
+        reactions
+    }
+
+    fn follow_plan(&mut self, header: &DialogHeader, knowledge: &mut Knowledge) -> Vec<Reaction> {
         let mut reactions = Vec::new();
         let number = header.turn;
         let (Some(kind), Some(plan)) = (header.kind(), self.memory.plans.get_mut(&number)) else { return reactions };
@@ -608,6 +372,7 @@ impl Conversation {
             let turn = self.memory.turns;
             self.memory.turns += 1;
             self.react(turn, self.memory.turns, understanding, knowledge, &mut reactions);
+            self.propose_again(knowledge, &mut reactions);
         }
         reactions
     }
@@ -709,11 +474,6 @@ fn to_where_it_was(mut steps: Vec<Step>, knowledge: &Knowledge) -> (Vec<Step>, O
     (steps, Some(id))
 }
 
-/// What was heard, to be quoted.
-fn plainly(heard: &str) -> &str {
-    heard.trim().trim_end_matches(['.', '!', ','])
-}
-
 /// Whether a plan that ended so may be followed by more.
 const fn goes_on(status: Status) -> bool {
     !matches!(status, Status::Interrupted | Status::KilledByHazard)
@@ -724,132 +484,6 @@ fn worth_telling(step: &Step) -> bool {
     !matches!(step.action, Action::Stop | Action::Highlight { .. }) && !step.says.is_empty()
 }
 
-/// What is said of what was heard and not understood.
-fn heard(raw: &str, text: &str) -> String {
-    format!("I heard \"{}\". {text}", plainly(raw))
-}
-
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
-mod tests {
-    use std::sync::Arc;
-
-    use cohabit_bus::message::{BodyRecord, NONE, StateParts, StateView};
-    use cohabit_cdf::{BodyId, Catalog, Layout, RoomId};
-    use cohabit_language::Knows;
-    use cohabit_speech::Recognition;
-
-    use super::*;
-
-    /// What a robot knows that stands in an empty break room.
-    fn knowledge() -> Knowledge {
-        let (catalog, layout) = (Arc::new(Catalog::builtin()), Layout::builtin("OfficeLayout1").unwrap());
-        let room = RoomId::ALL.iter().position(|room| *room == RoomId::BreakRoom).unwrap() as u32;
-        let body = BodyRecord { room, held: NONE, position_m: [4.0, 10.0, 0.0], ..BodyRecord::default() };
-        let parts = StateParts { bodies: vec![body], ..StateParts::default() };
-        let mut bytes = vec![0_u64; parts.bytes().div_ceil(8)];
-        let bytes = &mut bytemuck::cast_slice_mut(&mut bytes)[..parts.bytes()];
-        parts.write(bytes);
-        let mut knowledge = Knowledge::new(Knows::Everything, catalog, &layout, BodyId(0));
-        knowledge.look(StateView::new(bytes).unwrap(), 1);
-        knowledge
-    }
-
-    fn conversation() -> Conversation {
-        Conversation::new(Language::new(Arc::new(Catalog::builtin())), 0)
-    }
-
-    fn says(reactions: &[Reaction]) -> String {
-        let lines = reactions.iter().filter_map(Reaction::line).filter(|line| line.from == Speaker::Robot);
-        lines.map(|line| line.text.clone()).collect::<Vec<_>>().join(" ")
-    }
-
-    fn plans(reactions: &[Reaction]) -> bool {
-        let is_plan = |reaction: &Reaction| matches!(reaction, Reaction::Bus(message) if message.header.kind() == Some(DialogKind::Plan));
-        reactions.iter().any(is_plan)
-    }
-
-    const DOUBTED: Aloud<'_> = Aloud { raw: "go to the main office", is_doubtful: true };
-
-    #[test]
-    fn what_is_doubted_is_asked_about_and_a_yes_means_it() {
-        let (mut conversation, knowledge) = (conversation(), knowledge());
-        let said = "go to the main office";
-        let (_, reactions) = conversation.hear_aloud(said, said, DOUBTED, &knowledge);
-        assert!(!plans(&reactions));
-        assert!(says(&reactions).contains("\"go to the main office\". Shall I do that?"), "{}", says(&reactions));
-        let question =
-            reactions.iter().filter_map(Reaction::line).find(|line| line.kind == LineKind::Question).unwrap();
-        assert_eq!(question.answers.iter().map(|answer| answer.text.as_str()).collect::<Vec<_>>(), ["yes", "no"]);
-        // A yes that is heard makes sense, though no question of the language's waits for it.
-        let yes = Spoken { heard: Recognition::trusted("yes", 0.3), ..Spoken::default() };
-        let reading = conversation.reading(&yes, &str::to_owned, &knowledge).unwrap();
-        assert!(!reading.is_doubtful);
-        let (_, reactions) = conversation.hear("yes", &knowledge);
-        assert!(plans(&reactions), "{}", says(&reactions));
-    }
-
-    #[test]
-    fn what_was_not_said_is_not_done() {
-        let (mut conversation, knowledge) = (conversation(), knowledge());
-        let said = "go to the main office";
-        conversation.hear_aloud(said, said, DOUBTED, &knowledge);
-        let (_, reactions) = conversation.hear("no", &knowledge);
-        assert!(!plans(&reactions) && says(&reactions).contains("once more"), "{}", says(&reactions));
-        // Nor later.
-        let (_, reactions) = conversation.hear("yes", &knowledge);
-        assert!(!plans(&reactions), "{}", says(&reactions));
-        // Something else is what it is.
-        conversation.hear_aloud(said, said, DOUBTED, &knowledge);
-        let (_, reactions) = conversation.hear("go to the reception", &knowledge);
-        assert!(plans(&reactions) && says(&reactions).contains("reception"), "{}", says(&reactions));
-    }
-
-    #[test]
-    fn a_stop_is_carried_out_before_what_else_was_said() {
-        let (mut conversation, knowledge) = (conversation(), knowledge());
-        let actions = |reactions: &[Reaction]| -> Vec<Vec<Action>> {
-            let messages = reactions.iter().filter_map(|reaction| match reaction {
-                Reaction::Bus(message) if message.header.kind() == Some(DialogKind::Plan) => Some(message),
-                _ => None,
-            });
-            messages
-                .map(|message| message.steps.iter().map(|step| Action::try_from(step.action).unwrap()).collect())
-                .collect()
-        };
-        conversation.hear("go to the main office", &knowledge);
-        let (_, reactions) = conversation.hear("Arre stop stop, go to the reception", &knowledge);
-        let [steps] = &actions(&reactions)[..] else { panic!("one plan: {reactions:?}") };
-        assert!(matches!(steps[..], [Action::Stop, Action::GoTo { .. }]), "{steps:?}");
-        assert!(says(&reactions).starts_with("OK, I stop. OK, going to the reception"), "{}", says(&reactions));
-        // What asks for no motion does not keep it from stopping.
-        conversation.hear("go to the main office", &knowledge);
-        let (_, reactions) = conversation.hear("stop! what are you holding?", &knowledge);
-        assert_eq!(actions(&reactions), [[Action::Stop]]);
-        assert_eq!(says(&reactions), "OK, I stop. My hand is empty.");
-        let ends = reactions.iter().filter(|reaction| matches!(reaction, Reaction::TurnEnded { .. })).count();
-        assert_eq!(ends, 1);
-    }
-
-    #[test]
-    fn what_is_put_off_is_done_when_its_time_has_come() {
-        let (mut conversation, knowledge) = (conversation(), knowledge());
-        let (_, reactions) = conversation.hear("wait 10 seconds, then go to the main office", &knowledge);
-        assert!(!plans(&reactions) && conversation.awaits(), "{}", says(&reactions));
-        assert!(conversation.wake(100.0, &knowledge).is_empty() && conversation.wake(109.9, &knowledge).is_empty());
-        let reactions = conversation.wake(110.0, &knowledge);
-        assert!(plans(&reactions) && !conversation.awaits());
-        assert_eq!(says(&reactions), "10 seconds are over. OK, going to the main office.");
-        assert!(conversation.wake(500.0, &knowledge).is_empty());
-    }
-
-    #[test]
-    fn what_is_not_known_is_repeated_as_it_was_heard() {
-        let (mut conversation, knowledge) = (conversation(), knowledge());
-        let aloud = Aloud { raw: "Blorp the zargle.", is_doubtful: false };
-        let (_, reactions) = conversation.hear_aloud("blorp the zargle", "blorp the zargle", aloud, &knowledge);
-        assert!(says(&reactions).starts_with("I heard \"Blorp the zargle\". "), "{}", says(&reactions));
-        let (_, reactions) = conversation.hear("blorp the zargle", &knowledge);
-        assert!(!says(&reactions).contains("I heard"), "who types knows what they typed");
-    }
-}
+mod tests;

@@ -31,6 +31,8 @@ pub struct Hub {
     /// The objects that the robot asks about, in the order of their numbers.
     marked: Mutex<Arc<[ObjectId]>>,
     messages: broadcast::Sender<Arc<str>>,
+    /// What the pages of wizards are told besides.
+    for_wizards: broadcast::Sender<Arc<str>>,
     /// What robots say aloud, piece by piece, for pages that hear it.
     sounds: broadcast::Sender<Arc<Vec<u8>>>,
     /// The cameras that pages can look through, the usual one first.
@@ -119,6 +121,7 @@ impl Hub {
             state: Mutex::default(),
             marked: Mutex::default(),
             messages: broadcast::Sender::new(MESSAGES_KEPT),
+            for_wizards: broadcast::Sender::new(MESSAGES_KEPT),
             sounds: broadcast::Sender::new(SOUNDS_KEPT),
             views: views.into_iter().map(Arc::new).collect(),
             seats: Mutex::default(),
@@ -134,13 +137,29 @@ impl Hub {
     ) -> Option<(Vec<String>, broadcast::Receiver<Arc<str>>, Visit)> {
         let (number, given_away) = lock(&self.seats).take(limits.most_pages, limits.first_word)?;
         let visit = Visit { hub: Arc::clone(self), number, given_away };
+        let (first, receiver) = self.attend();
+        Some((first, receiver, visit))
+    }
+
+    /// What a page is to be told first, and what comes after. A wizard's page, which takes no seat from others, is told no less.
+    pub fn attend(&self) -> (Vec<String>, broadcast::Receiver<Arc<str>>) {
         // The lines stay locked until the page listens, so that none is missed or told twice.
         let lines = lock(&self.lines);
         let receiver = self.messages.subscribe();
         let mut first = vec![self.hello.clone()];
         first.extend(lines.iter().cloned());
         first.extend(lock(&self.state).clone());
-        Some((first, receiver, visit))
+        (first, receiver)
+    }
+
+    /// What the pages of wizards are told besides, from now on.
+    pub fn for_wizards(&self) -> broadcast::Receiver<Arc<str>> {
+        self.for_wizards.subscribe()
+    }
+
+    /// Tells wizards something that nobody else learns.
+    pub fn tell_wizards(&self, message: &Value) {
+        let _ = self.for_wizards.send(message.to_string().into());
     }
 
     /// Tells all pages a line of chat, and keeps it.

@@ -63,6 +63,15 @@ impl Latency {
         self.heard.clear();
     }
 
+    /// A turn that was held back is answered now: it is the newest, if it was not.
+    pub fn answered(&mut self, turn: u64, received: u64, now: u64) {
+        if turn == self.now.turn {
+            self.now.understood = now;
+        } else {
+            self.begin(turn, received, now);
+        }
+    }
+
     /// The newest turn was spoken, from when until when, its text was there then, and it sounded like this.
     pub fn spoken(&mut self, speech: [u64; 3], heard: &str) -> Moments {
         self.now.speech = speech;
@@ -134,6 +143,20 @@ mod tests {
             [1_000_000, 2_000_000, 3_000_000, 5_000_000, 6_000_000]
         );
         assert_eq!(latency.drawn(3, 7_000_000), None);
+    }
+
+    #[test]
+    fn what_is_held_back_is_understood_when_it_is_answered() {
+        let mut latency = Latency::default();
+        latency.begin(3, 1_000_000, 2_000_000);
+        latency.spoken([400_000, 500_000, 600_000], "go");
+        latency.answered(3, 1_000_000, 9_000_000);
+        assert_eq!(
+            (latency.now.understood, latency.now.speech, latency.heard.as_str()),
+            (9_000_000, [400_000, 500_000, 600_000], "go")
+        );
+        latency.answered(5, 4_000_000, 9_000_000);
+        assert_eq!((latency.now.turn, latency.now.received), (5, 4_000_000));
     }
 
     #[test]

@@ -4,6 +4,7 @@
 //! and recorded, by all. It never knows the world's insides.
 
 mod affordances;
+mod alarm;
 mod connections;
 mod conversation;
 mod driving;
@@ -23,6 +24,7 @@ mod recorded;
 mod robots;
 mod same_user;
 mod screening;
+mod seat;
 mod site;
 mod spoken;
 mod survey;
@@ -35,6 +37,7 @@ mod viewer;
 mod visit;
 mod voice;
 mod web;
+mod wizard;
 
 use std::{
     collections::BTreeMap,
@@ -70,6 +73,7 @@ pub use site::{Framing, Site};
 pub use spoken::meaning;
 pub use tls::{Identity, TlsError};
 pub use voice::VoiceConfig;
+pub use wizard::{Holding, MOMENT, NotOfWizard, OnTimeout, Phrase, WizardSettings};
 
 use crate::{
     driving::Drivers,
@@ -80,7 +84,7 @@ use crate::{
     talk::{Ears, Pages, Talk},
     view::View,
     voice::Voice,
-    web::{Host, Live, Service},
+    web::{Host, Live, Seat, Service},
 };
 
 /// Settings of a dialog service.
@@ -121,6 +125,8 @@ pub struct DialogConfig {
     pub voice: VoiceConfig,
     /// What the page leaves out.
     pub hidden: Vec<Hidden>,
+    /// What robots hold back, and who decides of it.
+    pub holding: Holding,
     /// Called once, when a page says that it has shown a frame.
     pub on_first_frame: Box<dyn Fn() + Send + Sync>,
 }
@@ -160,7 +166,15 @@ pub fn language(catalog: Arc<Catalog>, effort: Effort) -> Language {
     }
 }
 
-/// Serves a session until `stop`; `ready` is given the page's address as soon as it can be opened.
+/// Where the pages of a session can be opened.
+pub struct Addresses {
+    /// That of the people who speak with the robot.
+    pub page: String,
+    /// That of the wizard, if one takes part.
+    pub wizard: Option<String>,
+}
+
+/// Serves a session until `stop`; `ready` is given the pages' addresses as soon as they can be opened.
 ///
 /// # Errors
 /// [`DialogError`].
@@ -171,7 +185,7 @@ pub fn serve(
     catalog: Arc<Catalog>,
     config: DialogConfig,
     stop: &AtomicBool,
-    ready: impl FnOnce(&str),
+    ready: impl FnOnce(&Addresses),
 ) -> Result<(), DialogError> {
     let bodies = talk::wait_for_world(&*bus, &|| stop.load(Ordering::Relaxed))?;
     let told = BodyNames::new(&bodies, &config.names);
@@ -197,6 +211,7 @@ pub fn serve(
     let language = language(Arc::clone(&catalog), config.effort).asking(config.asking);
     let consulting = if config.interpreter.is_some() { config.consulting } else { Consulting::Never };
     let robots = Robots::new(&robots, config.knows, &language, &catalog, &layout, told, consulting)
+        .holding(&config.holding)
         .with_mission(&mission.goal_text);
     let (puzzles, asked) = config.interpreter.is_some().then(interpreter::puzzles).unzip();
     let survey = Arc::new(Survey::new(&*bus, config.questionnaires)?);
@@ -207,7 +222,8 @@ pub fn serve(
     let talk = Talk::new(&*bus, catalog, robots, puzzles, pages, journal)?;
     let ears = Ears::new(&*bus)?;
     talk.serve_at(place.clone());
-    let Place { address, token } = place;
+    let Place { address, token, wizard } = place;
+    let seat = config.holding.wizard.as_ref().map(|_| Seat::new(&wizard, &config.holding));
     let ended = AtomicBool::new(false);
     let over = || stop.load(Ordering::Relaxed) || ended.load(Ordering::Relaxed);
     talk.wait_until_it_sees(&*bus, &over)?;
@@ -223,6 +239,9 @@ pub fn serve(
             scope.spawn(|| until_ended(&ended, || talk::show_state(&talk, &survey, STATE_EVERY, &over))),
             scope.spawn(|| until_ended(&ended, || voice.pass_on(&over))),
         ];
+        if config.holding.holds() {
+            workers.push(scope.spawn(|| until_ended(&ended, || talk.keep_time(&over))));
+        }
         for view in (0..=u8::MAX).zip(&hub.views) {
             let (bus, talk, over, ended) = (&*bus, &talk, &over, &ended);
             let shown = move |shown| talk.note_frame(shown);
@@ -230,13 +249,17 @@ pub fn serve(
                 scope.spawn(move || until_ended(ended, || frames::relay(bus, view, Pauses::default(), &shown, over))),
             );
         }
-        ready(&token::page_address(address, config.identity.is_some(), &token));
+        let is_encrypted = config.identity.is_some();
+        ready(&Addresses {
+            page: token::page_address(address, is_encrypted, &token),
+            wizard: seat.as_ref().map(|_| token::wizard_address(address, is_encrypted, &wizard)),
+        });
         let (hub, limits) = (Arc::clone(&hub), ServerLimits::default());
         let (survey, voice) = (Arc::clone(&survey), Arc::clone(&voice));
         let host = Host::Live(Live { talk: Arc::clone(&talk), drivers, survey, voice });
         let (token, identity, hosts) = (token.into(), config.identity, config.hosts);
         let framing = Framing { framed_by: config.framed_by, frames_ports: false };
-        let service = Service { hub, host, token, admits_own_user: true, identity, hosts, limits, framing };
+        let service = Service { hub, host, token, seat, admits_own_user: true, identity, hosts, limits, framing };
         let ending = Ending(&ended);
         let served = web::serve(listener, service, &over).map_err(DialogError::Serve);
         drop(ending);
@@ -257,9 +280,9 @@ fn listen(address: SocketAddr, before: Option<&Place>) -> Result<(TcpListener, P
         }
     }
     let listener = TcpListener::bind(address).map_err(|source| DialogError::Listen { address, source })?;
-    let token = token::fresh().map_err(DialogError::Serve)?;
+    let (token, wizard) = (token::fresh().map_err(DialogError::Serve)?, token::fresh().map_err(DialogError::Serve)?);
     let address = listener.local_addr().map_err(DialogError::Serve)?;
-    Ok((listener, Place { address, token }))
+    Ok((listener, Place { address, token, wizard }))
 }
 
 /// Runs one of the service's loops; if it fails or panics, all end.

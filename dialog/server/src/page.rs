@@ -18,6 +18,7 @@ use crate::{
     latency::Moments,
     robots::RobotName,
     text::{in_lines, in_one_line},
+    wizard::{Holding, LONGEST_SAYING, Proposal},
 };
 
 /// Who says a line of chat.
@@ -397,6 +398,34 @@ pub fn heard(number: u64, text: &str, edit_ms: u128) -> Value {
 /// What came of what was being said at a page: `said`, or `nothing`.
 pub fn hearing(state: &str) -> Value {
     json!({ "type": "hearing", "state": state, "text": "" })
+}
+
+/// What a robot holds back, for a wizard; nothing, if it holds back nothing.
+pub fn proposal(body: u32, proposal: Option<&Proposal>) -> Value {
+    json!({ "type": "proposal", "body": body, "proposal": proposal })
+}
+
+/// What a robot would say of something that a wizard ordered.
+pub fn unsaid(body: u32, text: &str) -> Value {
+    json!({ "type": "unsaid", "body": body, "text": text })
+}
+
+/// How a wizard takes part, for their page.
+pub fn seat(holding: &Holding) -> Value {
+    let wizard = holding.wizard.as_ref();
+    json!({
+        "type": "seat",
+        "delay_ms": holding.delay.as_millis() as u64,
+        "timeout_ms": wizard.and_then(|wizard| wizard.timeout).map(|timeout| timeout.as_millis() as u64),
+        "on_timeout": wizard.map(|wizard| wizard.on_timeout.name()),
+        "phrases": wizard.map(|wizard| wizard.phrases.as_slice()).unwrap_or_default(),
+        "longest_saying": LONGEST_SAYING,
+    })
+}
+
+/// What came of a wizard's decision: what is wrong with it, if anything.
+pub fn decided(problem: Option<&str>) -> Value {
+    json!({ "type": "decided", "problem": problem })
 }
 
 /// A page's microphone is not listened to any more.

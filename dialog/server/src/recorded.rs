@@ -66,7 +66,8 @@ fn said(entry: &DialogEntry, names: Names) -> Option<Told> {
         | DialogKind::StepEnded
         | DialogKind::PlanEnded
         | DialogKind::Spoken
-        | DialogKind::Interpreted => None,
+        | DialogKind::Interpreted
+        | DialogKind::Decided => None,
     }
 }
 

@@ -12,6 +12,7 @@ use cohabit_language::{Addressed, Consulting, Knows, Language, Lessons, Roster};
 use crate::{
     conversation::{Conversation, Memory},
     known::Knowledge,
+    wizard::Holding,
 };
 
 /// Who spoke to a robot so lately still speaks to it, wherever it went.
@@ -110,6 +111,13 @@ impl Robots {
             spoken: BTreeMap::new(),
             asked_last: 0,
         }
+    }
+
+    /// The same, with their answers held back so.
+    pub fn holding(mut self, holding: &Holding) -> Self {
+        let held = |robot: Robot| Robot { conversation: robot.conversation.holding(holding.clone()), ..robot };
+        self.robots = self.robots.into_iter().map(held).collect();
+        self
     }
 
     /// The same, told what people are asked to get done.

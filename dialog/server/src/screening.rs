@@ -124,7 +124,8 @@ pub fn screen(
         let host = Host::Recorded(Arc::clone(&screening));
         let (hub, hosts, limits) = (Arc::clone(&hub), config.hosts.clone(), ServerLimits::default());
         let (token, framing) = (token.into(), Framing::default());
-        let service = Service { hub, host, token, admits_own_user: true, identity: None, hosts, limits, framing };
+        let (identity, seat) = (None, None);
+        let service = Service { hub, host, token, seat, admits_own_user: true, identity, hosts, limits, framing };
         let served = web::serve(listener, service, &over).map_err(DialogError::Serve);
         ended.store(true, Ordering::Relaxed);
         workers

@@ -1,5 +1,7 @@
 //! The conversation on the bus: what pages say goes in, what agents and the world tell comes back.
 
+mod held;
+
 use std::{
     collections::BTreeMap,
     sync::{Arc, Mutex, MutexGuard, PoisonError},
@@ -23,6 +25,7 @@ use serde_json::Value;
 use crate::{
     DialogError,
     affordances::{self, Affordance},
+    alarm::Alarm,
     conversation::{self, Aloud, Reaction},
     driving::Drivers,
     frames::Shown,
@@ -59,6 +62,8 @@ pub struct Talk {
     voice: Arc<Voice>,
     /// What robots were named.
     names: Vec<String>,
+    /// When something that is held back is answered without anybody's doing.
+    alarm: Alarm,
 }
 
 /// All by which a conversation has to do with pages.
@@ -124,7 +129,9 @@ impl Talk {
             present: BTreeMap::new(),
         };
         inner.tell_again()?;
-        Ok(Arc::new(Self { inner: Mutex::new(inner), hub, drivers, catalog, interpreter, voice, names }))
+        let alarm = Alarm::default();
+        alarm.set(inner.due());
+        Ok(Arc::new(Self { inner: Mutex::new(inner), hub, drivers, catalog, interpreter, voice, names, alarm }))
     }
 
     /// Waits until this conversation sees the world, or until `over`: who is let in then is understood at once.
@@ -180,7 +187,7 @@ impl Talk {
         for (nth, body) in bodies.into_iter().enumerate() {
             inner.listen_to(visitor, body)?;
             let Some(robot) = inner.robots.of_body(body) else { continue };
-            let (turn, mut reactions) = robot.conversation.hear_called(said, &text, &robot.knowledge);
+            let (turn, mut reactions) = robot.conversation.hear_called(said, &text, received_nanos, &robot.knowledge);
             reactions.retain(|reaction| nth == 0 || is_shown_to_all(reaction));
             inner.latency.begin(turn, received_nanos, monotonic_nanos());
             self.carry_out(&mut inner, body, Heard::AtPage(visitor), reactions)?;
@@ -206,7 +213,8 @@ impl Talk {
         for (nth, body) in bodies.into_iter().enumerate() {
             inner.listen_to(visitor, body)?;
             let Some(robot) = inner.robots.of_body(body) else { continue };
-            let (turn, mut reactions) = robot.conversation.hear_aloud(&said, &text, aloud, &robot.knowledge);
+            let (turn, mut reactions) =
+                robot.conversation.hear_aloud(&said, &text, aloud, meant_nanos, &robot.knowledge);
             reactions.retain(|reaction| nth == 0 || is_shown_to_all(reaction));
             inner.latency.begin(turn, meant_nanos, monotonic_nanos());
             let speech = [spoken.began_nanos, spoken.ended_nanos, spoken.text_nanos];
@@ -252,7 +260,7 @@ impl Talk {
         };
         inner.listen_to(visitor, body)?;
         let Some(robot) = inner.robots.of_body(body) else { return Ok(()) };
-        let (turn, reactions) = robot.conversation.choose(object, &robot.knowledge);
+        let (turn, reactions) = robot.conversation.choose(object, received_nanos, &robot.knowledge);
         inner.latency.begin(turn, received_nanos, monotonic_nanos());
         self.carry_out(&mut inner, body, Heard::AtPage(visitor), reactions)
     }
@@ -502,8 +510,14 @@ impl Talk {
             lines: reactions.iter().filter_map(Reaction::line).cloned().collect(),
             conversations: BTreeMap::from([(body.0, memory)]),
         });
+        let proposes = reactions.contains(&Reaction::Proposes);
         for reaction in reactions {
             match reaction {
+                Reaction::Proposes => {}
+                Reaction::ForWizard(text) => self.hub.tell_wizards(&page::unsaid(body.0, &text)),
+                Reaction::Answers { turn, received_nanos } => {
+                    inner.latency.answered(turn, received_nanos, monotonic_nanos());
+                }
                 Reaction::Bus(message) => inner.publish(&message)?,
                 Reaction::Chat(line) => {
                     self.hub.say(&line);
@@ -529,6 +543,10 @@ impl Talk {
         }
         self.hub.mark(inner.numbered().map(|asked| asked.candidates.as_slice()).unwrap_or_default());
         inner.journal.told();
+        if let Some(robot) = inner.robots.look_at(body).filter(|_| proposes) {
+            self.hub.tell_wizards(&held::proposed(robot, monotonic_nanos()));
+        }
+        self.alarm.set(inner.due());
         Ok(())
     }
 }
@@ -626,6 +644,12 @@ impl Inner {
     /// What is asked of which the answers are numbered.
     fn numbered(&self) -> Option<&conversation::Asked> {
         self.robots.asking()?.conversation.asked().filter(|asked| asked.candidates.len() > 1)
+    }
+
+    /// When something that is held back is answered without anybody's doing.
+    fn due(&self) -> Option<u64> {
+        let now_nanos = monotonic_nanos();
+        self.robots.iter().filter_map(|robot| robot.conversation.due(now_nanos)).min()
     }
 
     fn refresh(&mut self) -> Result<(), DialogError> {

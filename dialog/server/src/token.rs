@@ -27,6 +27,12 @@ pub fn page_address(address: SocketAddr, encrypted: bool, token: &str) -> String
     format!("{}/?token={token}", site_address(address, encrypted))
 }
 
+/// The address that a wizard opens.
+#[must_use]
+pub fn wizard_address(address: SocketAddr, encrypted: bool, token: &str) -> String {
+    format!("{}/wizard?token={token}", site_address(address, encrypted))
+}
+
 /// Where others reach what listens at `address`, without a path.
 #[must_use]
 pub fn site_address(address: SocketAddr, encrypted: bool) -> String {

@@ -9,6 +9,7 @@ use axum::{
     response::{IntoResponse, Response},
     routing::get,
 };
+use serde_json::Value;
 
 use crate::{
     connections::Ends,
@@ -16,20 +17,26 @@ use crate::{
     hosts::HostName,
     hub::Hub,
     limits::{LONGEST_MESSAGE, ServerLimits},
+    page,
     same_user::is_same_user,
     screening::Screening,
+    seat,
     site::{Framing, Site},
     survey::Survey,
     talk::Talk,
     tls::Identity,
     token, viewer, visit,
     voice::Voice,
+    wizard::Holding,
 };
 
 const INDEX: &str = include_str!("../../web/index.html");
+const SEAT: &str = include_str!("../../web/wizard.html");
+const HTML_TYPE: &str = "text/html; charset=utf-8";
+const STYLE_TYPE: &str = "text/css; charset=utf-8";
 const SCRIPT_TYPE: &str = "text/javascript; charset=utf-8";
 /// The page's other files: path, media type, text.
-const FILES: [(&str, &str, &str); 14] = [
+const FILES: [(&str, &str, &str); 16] = [
     ("/app.js", SCRIPT_TYPE, include_str!("../../web/app.js")),
     ("/dom.js", SCRIPT_TYPE, include_str!("../../web/dom.js")),
     ("/driving.js", SCRIPT_TYPE, include_str!("../../web/driving.js")),
@@ -43,7 +50,10 @@ const FILES: [(&str, &str, &str); 14] = [
     ("/view.js", SCRIPT_TYPE, include_str!("../../web/view.js")),
     ("/microphone.js", SCRIPT_TYPE, include_str!("../../web/microphone.js")),
     ("/voice.js", SCRIPT_TYPE, include_str!("../../web/voice.js")),
-    ("/style.css", "text/css; charset=utf-8", include_str!("../../web/style.css")),
+    ("/style.css", STYLE_TYPE, include_str!("../../web/style.css")),
+    // They are there in every session, so that nobody learns from them whether a wizard takes part.
+    ("/wizard.css", STYLE_TYPE, include_str!("../../web/wizard.css")),
+    ("/wizard.js", SCRIPT_TYPE, include_str!("../../web/wizard.js")),
 ];
 const ICON: &str = include_str!("../../web/favicon.svg");
 
@@ -56,6 +66,8 @@ pub struct Service {
     pub host: Host,
     /// What lets a page in.
     pub token: Arc<str>,
+    /// The wizard's seat, if a wizard takes part.
+    pub seat: Option<Seat>,
     /// Whether the user who runs the session is let in on this machine without the token, too.
     pub admits_own_user: bool,
     /// The hosts that it is served as, besides those of this machine.
@@ -66,6 +78,31 @@ pub struct Service {
     pub identity: Option<Identity>,
     /// Whose pages may show the page within them.
     pub framing: Framing,
+}
+
+/// The wizard's seat of a session.
+#[derive(Clone)]
+pub struct Seat {
+    /// What lets a wizard in, and nobody else, the user who runs the session neither.
+    token: Arc<str>,
+    /// What their page is told of how they take part.
+    told: Arc<Value>,
+}
+
+impl Seat {
+    /// A seat behind that token.
+    pub fn new(token: &str, holding: &Holding) -> Self {
+        Self { token: token.into(), told: Arc::new(page::seat(holding)) }
+    }
+}
+
+/// Whose page somebody asks for, or opens.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+enum Role {
+    /// That of somebody who speaks with the robot, or looks at what was recorded.
+    Participant,
+    /// The wizard's.
+    Wizard,
 }
 
 /// What pages see: a session that goes on, or one that was recorded.
@@ -103,6 +140,7 @@ fn router(service: Service) -> Router {
         .fold(Router::new(), |router, (path, kind, text)| router.route(path, get(move || file(kind, text))));
     files
         .route("/", get(index))
+        .route("/wizard", get(wizard))
         .route("/favicon.svg", get(|| file("image/svg+xml", ICON)))
         .route("/frame.jpg", get(frame))
         .route("/ws", get(socket))
@@ -115,25 +153,42 @@ async fn file(kind: &'static str, text: &'static str) -> Response {
 
 type Parameters = Query<HashMap<String, String>>;
 
-fn refused(service: &Service, parameters: &Parameters, ends: Ends) -> Option<Response> {
+/// Whose page a token opens, if any; without one, the user who runs the session is a participant.
+fn role(service: &Service, parameters: &Parameters, ends: Ends) -> Option<Role> {
     let given = parameters.get("token").map(String::as_str);
+    if service.seat.as_ref().is_some_and(|seat| token::admits(&seat.token, given)) {
+        return Some(Role::Wizard);
+    }
     let is_own_user = || service.admits_own_user && is_same_user(ends.client, ends.server);
-    let admitted = token::admits(&service.token, given) || given.is_none() && is_own_user();
-    (!admitted).then(|| {
-        (StatusCode::FORBIDDEN, "This session asks for its token: open the address that was printed when it started.\n")
-            .into_response()
-    })
+    (token::admits(&service.token, given) || given.is_none() && is_own_user()).then_some(Role::Participant)
+}
+
+/// The refusal of who asks for the page of a role and has another one or none: the same, whether a wizard takes part or not.
+fn refused(service: &Service, parameters: &Parameters, ends: Ends, wanted: Role) -> Option<Response> {
+    (role(service, parameters, ends) != Some(wanted)).then(refusal)
+}
+
+fn refusal() -> Response {
+    (StatusCode::FORBIDDEN, "This session asks for its token: open the address that was printed when it started.\n")
+        .into_response()
 }
 
 async fn index(State(service): State<Service>, Extension(ends): Extension<Ends>, parameters: Parameters) -> Response {
-    if let Some(refusal) = refused(&service, &parameters, ends) {
+    if let Some(refusal) = refused(&service, &parameters, ends, Role::Participant) {
         return refusal;
     }
-    ([(header::CONTENT_TYPE, "text/html; charset=utf-8")], INDEX).into_response()
+    ([(header::CONTENT_TYPE, HTML_TYPE)], INDEX).into_response()
+}
+
+async fn wizard(State(service): State<Service>, Extension(ends): Extension<Ends>, parameters: Parameters) -> Response {
+    if let Some(refusal) = refused(&service, &parameters, ends, Role::Wizard) {
+        return refusal;
+    }
+    ([(header::CONTENT_TYPE, HTML_TYPE)], SEAT).into_response()
 }
 
 async fn frame(State(service): State<Service>, Extension(ends): Extension<Ends>, parameters: Parameters) -> Response {
-    if let Some(refusal) = refused(&service, &parameters, ends) {
+    if let Some(refusal) = refused(&service, &parameters, ends, Role::Participant) {
         return refusal;
     }
     match service.hub.views.first().and_then(|view| view.newest()) {
@@ -148,16 +203,17 @@ async fn socket(
     parameters: Parameters,
     upgrade: WebSocketUpgrade,
 ) -> Response {
-    if let Some(refusal) = refused(&service, &parameters, ends) {
-        return refusal;
-    }
+    let Some(role) = role(&service, &parameters, ends) else { return refusal() };
     // A page keeps its key when it connects again; one that has none is somebody new.
     let key = parameters.get("visitor").and_then(|key| key.parse().ok()).unwrap_or_else(cohabit_bus::monotonic_nanos);
-    let Service { hub, host, limits, .. } = service;
+    let Service { hub, host, limits, seat, .. } = service;
     upgrade.max_message_size(LONGEST_MESSAGE).on_upgrade(move |socket| async move {
-        match host {
-            Host::Live(live) => visit::converse(hub, live, socket, key, limits).await,
-            Host::Recorded(screening) => viewer::watch(hub, screening, socket, limits).await,
+        match (host, role, seat) {
+            (Host::Live(live), Role::Wizard, Some(seat)) => {
+                seat::decide(hub, live.talk, seat.told, socket, limits).await;
+            }
+            (Host::Live(live), ..) => visit::converse(hub, live, socket, key, limits).await,
+            (Host::Recorded(screening), ..) => viewer::watch(hub, screening, socket, limits).await,
         }
     })
 }

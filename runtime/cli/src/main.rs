@@ -26,6 +26,7 @@ mod time;
 mod tls;
 mod top;
 mod voice;
+mod wizard;
 
 use std::{ffi::OsString, io::IsTerminal as _, process::ExitCode};
 
@@ -46,7 +47,7 @@ struct Cohabit {
 #[derive(Subcommand)]
 enum Command {
     /// Play a mission: starts all that a session needs, and prints the address of its page
-    Play(play::Play),
+    Play(Box<play::Play>),
     /// Say what is wrong in mission files, and where
     Check(check::Check),
     /// Re-simulate a recorded session and compare it tick by tick

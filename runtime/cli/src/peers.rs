@@ -15,7 +15,8 @@ use anyhow::Context as _;
 use cohabit_bus::{CameraId, Session, Shm, message::Control};
 use cohabit_cdf::BodyRequest;
 use cohabit_dialog::{
-    Asking, Consulting, DialogConfig, DialogError, Drivable, Effort, Endpoint, Hidden, HostName, Knows, Questionnaire,
+    Addresses, Asking, Consulting, DialogConfig, DialogError, Drivable, Effort, Endpoint, Hidden, HostName, Knows,
+    Questionnaire,
 };
 use cohabit_engine::{Appearance, BuildError, CameraPlan, SessionPlan, Simulator};
 use cohabit_record::{Branch, LogError, RecordError, Recorder, SessionFacts};
@@ -33,6 +34,7 @@ use crate::{
     rerun, stop,
     tls::Tls,
     voice::VoiceOptions,
+    wizard::WizardOptions,
 };
 
 /// What all peers of a session are told.
@@ -279,6 +281,8 @@ pub struct Listening {
     #[arg(long = "questionnaire", value_name = "NAME|FILE")]
     pub questionnaires: Vec<String>,
     #[command(flatten)]
+    pub wizard: WizardOptions,
+    #[command(flatten)]
     pub voice: VoiceOptions,
 }
 
@@ -366,9 +370,16 @@ impl Dialog {
             questionnaires: self.listening.questionnaires()?,
             voice: self.listening.voice.config(message.header.seed),
             hidden: self.listening.hide.clone(),
+            holding: self.listening.wizard.holding(),
             on_first_frame: Box::new(|| tell_supervisor("shown")),
         };
-        let ready = |address: &str| tell_supervisor(&format!("page {address}"));
+        let ready = |addresses: &Addresses| {
+            // Whoever reads what the supervisor says knows the seat when they know the page.
+            if let Some(address) = &addresses.wizard {
+                tell_supervisor(&format!("wizard {address}"));
+            }
+            tell_supervisor(&format!("page {}", addresses.page));
+        };
         cohabit_dialog::serve(Arc::new(bus), mission, layout, catalog, config, &stop, ready).map_err(
             |error| match error {
                 DialogError::Listen { .. } => environment(error),

@@ -196,7 +196,7 @@ impl Play {
         branched: Option<Branch>,
     ) -> Noted {
         let minds = self.minds.iter().map(ToString::to_string).collect::<Vec<_>>().join(" ");
-        let Listening { drive, knows, ask, understanding, model: model_asked, names, voice, hide, .. } =
+        let Listening { drive, knows, ask, understanding, model: model_asked, names, voice, hide, wizard, .. } =
             &self.listening;
         let robots = robots.iter().map(u32::to_string).collect::<Vec<_>>().join(",");
         let settings = [
@@ -222,6 +222,7 @@ impl Play {
         });
         let settings =
             settings.into_iter().chain(asked).chain(hidden).chain(model.into_iter().flatten()).chain(voice.settings());
+        let settings = settings.chain(wizard.settings());
         let settings = settings.map(|(name, value)| (name.to_owned(), value));
         let names = names.iter().map(|one| (format!("{NAME_OF}{}", one.body), one.name.clone()));
         let settings = settings.chain(names).collect();

@@ -168,6 +168,9 @@ impl Check {
             within,
             study.participants
         );
+        if let Some(note) = study.wizard_note() {
+            println!("note: {note}");
+        }
         if let Some(minimisation) = &study.minimisation {
             let names: Vec<&str> = minimisation.covariates.iter().map(|covariate| covariate.name.as_str()).collect();
             println!("Between-participants conditions are assigned by minimisation over {}", shown(names.join(", ")));
@@ -216,6 +219,9 @@ impl Run {
         println!("Running \"{}\" with data in {}", shown(title), shown(self.folder.display()));
         println!("Experimenter's page: {site}{}", doors.experimenter);
         println!("Sign-up link:        {site}{}", doors.sign_up);
+        if let Some(wizard) = &doors.wizard {
+            println!("Wizard's seat:       {site}{wizard}");
+        }
         println!("{most_sessions} at a time play; Ctrl-C ends the study, and the same command goes on with it");
         thread::scope(|scope| {
             let (hosts, stop) = (self.hosts.clone(), &stop);
@@ -311,7 +317,7 @@ mod tests {
         let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../study/studies"));
         let entries = std::fs::read_dir(folder).expect("studies ship").map(|entry| entry.expect("a file").path());
         let studies: Vec<PathBuf> = entries.filter(|path| path.extension().is_some_and(|own| own == "toml")).collect();
-        assert_eq!(studies.len(), 3, "{studies:?}");
+        assert_eq!(studies.len(), 4, "{studies:?}");
         for path in studies {
             let checked = read(&path);
             if let Err(error) = checked {

@@ -91,7 +91,7 @@ impl Role {
         let framed_by = listening.framed_by.map(|port| format!("--framed-by={port}"));
         let hidden = listening.hide.iter().map(|part| format!("--hide={part}"));
         let arguments = arguments.chain(hosts).chain(framed_by).chain(hidden);
-        let arguments = arguments.chain(listening.voice.arguments());
+        let arguments = arguments.chain(listening.voice.arguments()).chain(listening.wizard.arguments());
         let tls = listening.tls.arguments();
         Self { name: "dialog", arguments: arguments.map(OsString::from).chain(tls).collect() }
     }
@@ -363,6 +363,7 @@ fn relay(out: ChildStdout, told: &Told, works: &AtomicBool) {
                     println!("Open {address}  (ready after {seconds:.2} s; Ctrl-C ends the session)");
                 }
             }
+            Some(("wizard", address)) => println!("Wizard's seat: {address}"),
             Some(("recording", _)) => works.store(true, Ordering::Relaxed),
             None if line == "shown" => {
                 if !told.frame.swap(true, Ordering::Relaxed) {

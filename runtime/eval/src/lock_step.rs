@@ -196,7 +196,12 @@ impl LockStep {
             match reaction {
                 Reaction::Bus(message) => self.pass_on(&message)?,
                 Reaction::TurnEnded { turn, end } => self.noted.turns.push((turn, end)),
-                Reaction::Chat(_) | Reaction::Page(_) | Reaction::Interpret(..) => {}
+                Reaction::Chat(_)
+                | Reaction::Page(_)
+                | Reaction::Interpret(..)
+                | Reaction::Proposes
+                | Reaction::ForWizard(_)
+                | Reaction::Answers { .. } => {}
             }
         }
         Ok(())

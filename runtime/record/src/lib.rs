@@ -33,6 +33,7 @@
 
 mod carry_on;
 mod copies;
+mod decision;
 pub mod entry;
 mod film;
 mod log;
@@ -46,6 +47,7 @@ mod turns;
 mod writer;
 
 pub use carry_on::Written;
+pub use decision::{DecisionOutcome, Proposed, WizardDecision};
 pub use entry::{
     AnswerEntry, Branch, DialogEntry, EventEntry, GapEntry, InputEntry, OfferEntry, SessionEntry, SessionFacts,
     TickEntry,

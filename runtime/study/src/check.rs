@@ -4,6 +4,7 @@ mod blocks;
 mod minimisation;
 mod probes;
 mod whole;
+mod wizard;
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -24,7 +25,7 @@ use crate::{
     design::{Completion, ConsentBox, Factor, Level, Sheet, Study},
     findings::Findings,
     instrument::Instrument,
-    settings::{OF_PAGES, RECORD_AUDIO, Setting, Settings, arguments},
+    settings::{OF_PAGES, RECORD_AUDIO, Setting, Settings, WIZARD, arguments},
     shape::STUDY,
     written::{self, Words, Written, WrittenBox, WrittenFactor, WrittenSettings, WrittenSheet},
 };
@@ -136,6 +137,8 @@ struct Checking<'a, 'f> {
     files: BTreeMap<String, String>,
     /// Where the study keeps what people say, if it does.
     keeps_audio: Option<(Range<usize>, Pointer)>,
+    /// Whether each setting could be read that says whether a wizard takes part.
+    knows_wizards: bool,
 }
 
 impl<'a, 'f> Checking<'a, 'f> {
@@ -148,6 +151,7 @@ impl<'a, 'f> Checking<'a, 'f> {
             instruments: BTreeMap::new(),
             files: BTreeMap::new(),
             keeps_audio: None,
+            knows_wizards: true,
         }
     }
 }
@@ -162,9 +166,11 @@ impl Checking<'_, '_> {
         }
         let probes = self.probes(&written.probe, &root.key("probe"));
         let factors = self.factors(&written.factor, &root.key("factor"));
+        let wizard = self.wizard(written.wizard.as_ref());
         let minimisation = self.minimisation(written.minimisation.as_ref(), &factors, &blocks);
         let mut study = Study {
             probes,
+            wizard,
             minimisation,
             information: self.sheet(&written.information, &root.key("information")),
             consent: self.sheet(&written.consent, &root.key("consent")),
@@ -233,6 +239,8 @@ impl Checking<'_, '_> {
         let text = name.get_ref().as_str();
         let (problem, remedy) = if OWN_FLAGS.contains(&text) {
             (format!("`{text}` is not a study's to set"), "leave it out")
+        } else if text.starts_with("wizard-") || text.starts_with("wizard_") {
+            (format!("`{text}` is the same in all sessions"), "write it into `[wizard]`, without its first word")
         } else if OF_PAGES.contains(&text) {
             if matches!(setting, Setting::Switch(_)) {
                 return true;
@@ -244,6 +252,7 @@ impl Checking<'_, '_> {
             }
             let own = Settings::from([(text.to_owned(), setting.clone())]);
             let Err(problem) = self.program.check_arguments(&arguments(&own)) else { return true };
+            self.knows_wizards &= text != WIZARD;
             (
                 problem,
                 "write flags of `cohabit play` without their dashes (`cohabit play --help` lists them), or `score` or `clock`",

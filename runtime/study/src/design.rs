@@ -1,14 +1,14 @@
 //! A study as it was checked: its texts, factors, blocks and settings.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
-use cohabit_dialog::Questionnaire;
+use cohabit_dialog::{OnTimeout, Phrase, Questionnaire};
 use serde::{Deserialize, Serialize};
 
 use crate::{
     instrument::Instrument,
     probe::Probe,
-    settings::{Settings, merged},
+    settings::{Settings, has_wizard, merged, response_delay_ms},
 };
 
 /// A study.
@@ -44,6 +44,8 @@ pub struct Study {
     pub blocks: Vec<Block>,
     /// Questions during missions.
     pub probes: Vec<Probe>,
+    /// How a wizard takes part in the sessions that have one.
+    pub wizard: Wizard,
     /// What participants read at the end, in Markdown.
     pub debriefing: Option<String>,
     /// What shows that somebody took part.
@@ -54,6 +56,19 @@ pub struct Study {
     pub instruments: BTreeMap<String, Instrument>,
     /// The texts of all files that it names, by their names.
     pub files: BTreeMap<String, String>,
+}
+
+/// How a wizard takes part.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Wizard {
+    /// How long they may take to decide, s; as long as they like, if absent.
+    pub timeout_s: Option<f64>,
+    /// What follows then.
+    pub on_timeout: OnTimeout,
+    /// What the robot says then, if that is what follows and it is not the usual.
+    pub moment: Option<String>,
+    /// What they can have the robot say by a key.
+    pub phrases: Vec<Phrase>,
 }
 
 /// A text with its version.
@@ -289,6 +304,51 @@ impl Study {
         }
     }
 
+    /// The settings of all sessions of participants: those of each block under each of its conditions.
+    #[must_use]
+    pub fn all_settings(&self) -> Vec<Settings> {
+        let of_block = |block: &Block| {
+            let all = conditions_of(self, block);
+            all.into_iter().map(|(between, within)| self.settings_of(block, &between, &within)).collect::<Vec<_>>()
+        };
+        self.blocks.iter().flat_map(of_block).collect()
+    }
+
+    /// Whether a wizard takes part in any session.
+    #[must_use]
+    pub fn has_wizard(&self) -> bool {
+        self.all_settings().iter().any(has_wizard)
+    }
+
+    /// What is to be known of the conditions with a wizard and without before anybody comes, if anything: whether latencies tell them
+    /// apart.
+    #[must_use]
+    pub fn wizard_note(&self) -> Option<String> {
+        let all = self.all_settings();
+        let delays = |wizard: bool| -> BTreeSet<u64> {
+            all.iter().filter(|settings| has_wizard(settings) == wizard).map(response_delay_ms).collect()
+        };
+        let (with, without) = (delays(true), delays(false));
+        if with.is_empty() || without.is_empty() {
+            return None;
+        }
+        if with != without {
+            let listed = |all: &BTreeSet<u64>| all.iter().map(u64::to_string).collect::<Vec<_>>().join(" and ");
+            return Some(format!(
+                "answers come {} ms after the words with a wizard and {} ms without: set `response-delay-ms` alike in both, so that \
+                 participants cannot tell them apart by it",
+                listed(&with),
+                listed(&without)
+            ));
+        }
+        let is_slower = with.iter().all(|delay| *delay == 0);
+        is_slower.then(|| {
+            "a wizard takes longer than the robot alone: set `response-delay-ms`, such as 3000, in both conditions, so that \
+             participants cannot tell them apart by it"
+                .to_owned()
+        })
+    }
+
     /// The questionnaire of that name.
     #[must_use]
     pub fn questionnaire(&self, name: &str) -> Option<&Questionnaire> {
@@ -308,5 +368,22 @@ impl Study {
             Block::Missions(missions) => Some(missions),
             _ => None,
         })
+    }
+}
+
+/// The conditions, of both kinds, under which the sessions of a block are played.
+pub(crate) fn conditions_of(study: &Study, block: &Block) -> Vec<(Condition, Condition)> {
+    let of = |kind| study.conditions(kind);
+    match block {
+        Block::Mission { is_practice: true, .. } => vec![(Condition::default(), Condition::default())],
+        Block::Mission { .. } => {
+            of(FactorKind::Between).into_iter().map(|between| (between, Condition::default())).collect()
+        }
+        Block::Missions(_) => {
+            let within = of(FactorKind::Within);
+            let with_all = |between: Condition| within.clone().into_iter().map(move |one| (between.clone(), one));
+            of(FactorKind::Between).into_iter().flat_map(with_all).collect()
+        }
+        Block::Questionnaires(_) | Block::Break { .. } => Vec::new(),
     }
 }

@@ -8,7 +8,7 @@ use toml::{
     de::{DeTable, DeValue},
 };
 
-use crate::shape::{Key, Kind};
+use crate::shape::{Key, Kind, LONGEST_SECONDS};
 
 /// Problems of one file.
 pub(crate) struct Findings<'a> {
@@ -183,6 +183,7 @@ fn is_of(kind: Kind, value: &DeValue<'_>) -> bool {
             whole.is_some_and(|number| number <= most)
         }
         Kind::Minutes => number(value).is_some_and(|minutes| minutes > 0.0),
+        Kind::Seconds => number(value).is_some_and(|seconds| seconds > 0.0 && seconds <= LONGEST_SECONDS),
         Kind::Share => number(value).is_some_and(|share| (0.0..=1.0).contains(&share)),
         Kind::Numbers => value.as_array().is_some_and(|list| list.iter().all(|item| is_whole(item.get_ref()))),
         Kind::OneOf(words) => value.as_str().is_some_and(|word| words.contains(&word)),

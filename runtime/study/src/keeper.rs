@@ -204,7 +204,7 @@ impl Registry {
         let wanted = Wanted {
             participant: pseudonym(place),
             mission: mission.mission.clone(),
-            arguments: session_arguments(&mission.settings, participant.progress.agrees_to_audio()),
+            arguments: session_arguments(&mission.settings, participant.progress.agrees_to_audio(), &self.study.wizard),
             log: self.folder.log_path(&name),
             before: self.before(place, step, attempt),
             seed: self.study.seed,

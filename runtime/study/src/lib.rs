@@ -11,7 +11,8 @@
 //!   where they were, under the conditions that were written down when they enrolled.
 //! - A condition that depends on what somebody answers first is assigned once they have, and written down then.
 //! - What programs played is marked so in every file, and is never in one folder with what people did.
-//! - A participant's page learns nothing about conditions.
+//! - A participant's page learns nothing about conditions, nor whether a wizard takes part; who has the wizard's link is led to the seats of
+//!   sessions, and to nothing else.
 //! - Nobody is heard by a microphone who did not tick a box of the consent form that is about that: the session takes no sound,
 //!   and keeps none.
 //! - Score and clock are shown to participants only where a setting says so; figures for developers never are.

@@ -16,6 +16,9 @@ use serde::{Deserialize, Serialize};
 pub struct Links {
     /// Of the experimenter's page.
     pub experimenter: String,
+    /// Of the wizard's page; made when it is first needed.
+    #[serde(default)]
+    pub wizard: String,
     /// Of the sign-up page.
     pub sign_up: String,
     /// Of each participant, by place.
@@ -32,10 +35,18 @@ impl Links {
     /// Of the file system, or when the file holds something else.
     pub fn open(path: &Path, synthetic: bool) -> io::Result<Self> {
         match fs::read(path) {
-            Ok(bytes) => Ok(serde_json::from_slice(&bytes)?),
+            Ok(bytes) => {
+                let mut links: Self = serde_json::from_slice(&bytes)?;
+                // An earlier version had no wizards.
+                if links.wizard.is_empty() {
+                    links.wizard = token::fresh()?;
+                    links.save(path)?;
+                }
+                Ok(links)
+            }
             Err(error) if error.kind() == io::ErrorKind::NotFound => {
-                let (experimenter, sign_up) = (token::fresh()?, token::fresh()?);
-                let links = Self { experimenter, sign_up, participants: BTreeMap::new(), synthetic };
+                let [experimenter, wizard, sign_up] = [token::fresh()?, token::fresh()?, token::fresh()?];
+                let links = Self { experimenter, wizard, sign_up, participants: BTreeMap::new(), synthetic };
                 links.save(path)?;
                 Ok(links)
             }
@@ -88,6 +99,10 @@ mod tests {
         assert_eq!((&again.experimenter, again.participants.len()), (&links.experimenter, 1));
         assert_eq!(again.place(&links.participants[&3]), Some(3));
         assert_eq!(again.place(""), None);
+        let earlier = fs::read_to_string(&path).unwrap().replace("\"wizard\"", "\"other\"");
+        fs::write(&path, earlier).unwrap();
+        let [first, second] = [Links::open(&path, false).unwrap(), Links::open(&path, false).unwrap()];
+        assert!(first.wizard.len() == 32 && first.wizard == second.wizard && first.experimenter == links.experimenter);
         fs::write(&path, "{").unwrap();
         assert!(Links::open(&path, false).is_err(), "links that are lost are not made anew in silence");
     }

@@ -110,10 +110,29 @@ impl Registry {
             "title": self.study.title,
             "planned": self.study.participants,
             "sign_up": format!("/sign-up/{}", self.links.sign_up),
+            "wizard": self.study.has_wizard().then(|| format!("/wizard/{}", self.links.wizard)),
             "sessions": { "running": running, "most": most },
             "participants": places.into_iter().map(|place| self.row(place)).collect::<Vec<_>>(),
             "notes": self.notes,
         })
+    }
+
+    /// What the wizard's page shows: the sessions that a wizard takes part in now, with what lets the seat's page in.
+    pub(crate) fn seats(&self) -> Value {
+        let seat = |participant: &Participant| {
+            let live = participant.live.as_ref()?;
+            let page = live.page.as_ref()?;
+            let (_, mission, _) = participant.progress.mission()?;
+            Some(json!({
+                "participant": pseudonym(participant.progress.plan().place),
+                "mission": mission.mission,
+                "port": page.port,
+                "token": page.wizard.as_ref()?,
+                "is_over": live.over.is_some(),
+            }))
+        };
+        let seats: Vec<Value> = self.participants.values().filter_map(seat).collect();
+        json!({ "title": self.study.title, "seats": seats })
     }
 
     fn row(&self, place: u32) -> Value {

@@ -6,6 +6,7 @@ mod latencies;
 mod participants;
 mod questionnaires;
 mod riek;
+mod wizard;
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -52,6 +53,7 @@ pub fn report(records: &Records, apparatus: &Apparatus, tables: &[Table]) -> Str
         ("Procedure", design::procedure(&known)),
         ("Apparatus", design::apparatus(&known)),
         ("Latencies", latencies::section(&known)),
+        ("Wizard", wizard::section(&known)),
         ("Questionnaires", questionnaires::section(&known)),
         ("Reporting guidelines for Wizard of Oz studies", riek::section(&known)),
     ] {

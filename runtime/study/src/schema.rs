@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
-use crate::shape::{Key, Kind, STUDY};
+use crate::shape::{Key, Kind, LONGEST_SECONDS, STUDY};
 
 /// The JSON Schema (2020-12) of a study's file.
 #[must_use]
@@ -33,6 +33,7 @@ fn value(kind: Kind) -> Value {
         Kind::Switch => json!({ "type": "boolean" }),
         Kind::Whole(most) => json!({ "type": "integer", "minimum": 0, "maximum": most }),
         Kind::Minutes => json!({ "type": "number", "exclusiveMinimum": 0 }),
+        Kind::Seconds => json!({ "type": "number", "exclusiveMinimum": 0, "maximum": LONGEST_SECONDS }),
         Kind::Share => json!({ "type": "number", "minimum": 0, "maximum": 1 }),
         Kind::Numbers => json!({ "type": "array", "items": { "type": "integer" } }),
         Kind::OneOf(words) => json!({ "enum": words }),

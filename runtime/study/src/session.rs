@@ -30,6 +30,8 @@ pub struct PageAddress {
     pub port: u16,
     /// What lets a page in.
     pub token: String,
+    /// What lets the wizard's page in, if a wizard takes part.
+    pub wizard: Option<String>,
 }
 
 /// How a session is.

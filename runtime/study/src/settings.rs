@@ -2,7 +2,10 @@
 
 use std::collections::BTreeMap;
 
+use cohabit_dialog::OnTimeout;
 use serde::{Deserialize, Serialize};
+
+use crate::design::Wizard;
 
 /// Settings, by name.
 pub type Settings = BTreeMap<String, Setting>;
@@ -25,6 +28,10 @@ pub const SCORE: &str = "score";
 pub const CLOCK: &str = "clock";
 /// The settings that are of the study's pages and no flags of `cohabit play`: true or false, false if absent.
 pub const OF_PAGES: [&str; 2] = [SCORE, CLOCK];
+/// The setting by which a wizard takes part: `yes`, or `no`.
+pub const WIZARD: &str = "wizard";
+/// The setting by which answers are delayed, ms, and how it may be written, too.
+pub const RESPONSE_DELAY: [&str; 2] = ["response-delay-ms", "response_delay_ms"];
 /// The flag of `cohabit play` that keeps what people say.
 pub const RECORD_AUDIO: &str = "record-audio";
 
@@ -40,6 +47,33 @@ pub fn is_on(settings: &Settings, name: &str) -> bool {
     settings.get(name) == Some(&Setting::Switch(true))
 }
 
+/// Whether a wizard takes part.
+#[must_use]
+pub fn has_wizard(settings: &Settings) -> bool {
+    settings.get(WIZARD) == Some(&Setting::Value("yes".to_owned()))
+}
+
+/// How long after they were received words are answered at the earliest, ms.
+#[must_use]
+pub fn response_delay_ms(settings: &Settings) -> u64 {
+    let set = RESPONSE_DELAY.iter().find_map(|name| settings.get(*name));
+    match set {
+        Some(Setting::Value(value)) => value.parse().unwrap_or(0),
+        _ => 0,
+    }
+}
+
+/// How a wizard takes part, as arguments of `cohabit play`.
+fn wizard_arguments(wizard: &Wizard) -> Vec<String> {
+    let Wizard { timeout_s, on_timeout, moment, phrases } = wizard;
+    let timeout = timeout_s.map(|seconds| format!("--wizard-timeout-s={seconds}"));
+    let follows = timeout_s.map(|_| format!("--wizard-on-timeout={on_timeout}"));
+    let moment =
+        moment.as_ref().filter(|_| *on_timeout == OnTimeout::Say).map(|text| format!("--wizard-moment={text}"));
+    let phrases = phrases.iter().map(|phrase| format!("--wizard-phrase={phrase}"));
+    timeout.into_iter().chain(follows).chain(moment).chain(phrases).collect()
+}
+
 /// Those of the settings that are flags of `cohabit play`, as its arguments.
 #[must_use]
 pub fn arguments(settings: &Settings) -> Vec<String> {
@@ -52,15 +86,16 @@ pub fn arguments(settings: &Settings) -> Vec<String> {
     settings.iter().filter(|(name, _)| !OF_PAGES.contains(&name.as_str())).flat_map(of_flag).collect()
 }
 
-/// The arguments of a participant's session under these settings. Who did not agree to be heard has no microphone, and no
-/// sound is kept; figures for developers are shown to nobody.
+/// The arguments of a participant's session under these settings, with a wizard who takes part so if one does. Who did not agree
+/// to be heard has no microphone, and no sound is kept; figures for developers are shown to nobody.
 #[must_use]
-pub fn session_arguments(settings: &Settings, agrees_to_audio: bool) -> Vec<String> {
+pub fn session_arguments(settings: &Settings, agrees_to_audio: bool, wizard: &Wizard) -> Vec<String> {
     let mut allowed = settings.clone();
     allowed.retain(|name, _| agrees_to_audio || name != RECORD_AUDIO);
     let hidden = [("figures", true), ("microphone", !agrees_to_audio), ("score", !is_on(settings, SCORE))];
     let hidden = hidden.into_iter().filter(|(_, is_hidden)| *is_hidden).map(|(part, _)| format!("--hide={part}"));
-    arguments(&allowed).into_iter().chain(hidden).collect()
+    let wizard = if has_wizard(settings) { wizard_arguments(wizard) } else { Vec::new() };
+    arguments(&allowed).into_iter().chain(hidden).chain(wizard).collect()
 }
 
 #[cfg(test)]
@@ -86,11 +121,35 @@ mod tests {
     }
 
     #[test]
+    fn only_sessions_with_a_wizard_are_told_how_one_takes_part() {
+        let phrase = "h=Hello!".parse().expect("a phrase");
+        let wizard = Wizard {
+            timeout_s: Some(8.0),
+            on_timeout: OnTimeout::Say,
+            moment: Some("Hm.".to_owned()),
+            phrases: vec![phrase],
+        };
+        let with = |takes_part: &str| {
+            let settings = Settings::from([
+                (WIZARD.to_owned(), value(takes_part)),
+                ("response_delay_ms".to_owned(), value("1500")),
+            ]);
+            assert_eq!((has_wizard(&settings), response_delay_ms(&settings)), (takes_part == "yes", 1500));
+            session_arguments(&settings, true, &wizard)
+        };
+        let own = ["--response_delay_ms=1500", "--wizard=no", "--hide=figures", "--hide=score"];
+        assert_eq!(with("no"), own);
+        let seat =
+            ["--wizard-timeout-s=8", "--wizard-on-timeout=say", "--wizard-moment=Hm.", "--wizard-phrase=h=Hello!"];
+        assert_eq!(with("yes")[4..], seat);
+    }
+
+    #[test]
     fn participants_see_and_are_heard_by_no_more_than_the_study_and_they_agreed_to() {
         let check = |settings: &[(&str, bool)], agrees: bool, expected: &[&str]| {
             let switch = |(name, is_on): &(&str, bool)| ((*name).to_owned(), Setting::Switch(*is_on));
             let settings = settings.iter().map(switch).collect();
-            assert_eq!(session_arguments(&settings, agrees), expected, "{settings:?}");
+            assert_eq!(session_arguments(&settings, agrees, &Wizard::default()), expected, "{settings:?}");
         };
         check(&[], false, &["--hide=figures", "--hide=microphone", "--hide=score"]);
         check(&[("score", true), ("clock", true)], false, &["--hide=figures", "--hide=microphone"]);

@@ -30,6 +30,8 @@ pub enum Kind {
     Whole(u64),
     /// A number of minutes above 0.
     Minutes,
+    /// A number of seconds above 0, of ten minutes at most.
+    Seconds,
     /// A number from 0 to 1.
     Share,
     /// A list of whole numbers.
@@ -58,6 +60,8 @@ const LARGEST_SEED: u64 = (1 << 53) - 1;
 const MOST_PARTICIPANTS: u64 = 10_000;
 /// More questions than a questionnaire has.
 const LARGEST_ITEM: u64 = 100;
+/// The longest that is counted in seconds.
+pub const LONGEST_SECONDS: f64 = 600.0;
 /// The longest block of a random assignment.
 const LARGEST_BLOCK: u64 = 1_000;
 
@@ -103,6 +107,28 @@ pub const STUDY: &[Key] = &[
     optional("factor", Kind::Tables(FACTOR), "a factor of the design"),
     required("block", Kind::Tables(BLOCK), "what participants do, in order"),
     optional("probe", Kind::Tables(PROBE), "a question that is asked during missions, once in each, while they go on"),
+    optional(
+        "wizard",
+        Kind::Table(WIZARD),
+        "how a wizard (Wizard of Oz) takes part in sessions with the setting wizard = \"yes\"",
+    ),
+];
+
+const WIZARD: &[Key] = &[
+    optional("timeout_s", Kind::Seconds, "how long a wizard may take to decide; as long as they like, if absent"),
+    optional(
+        "on_timeout",
+        Kind::OneOf(&["act", "say", "wait"]),
+        "what follows then: the robot does what it proposed (act, if absent), says that it takes a moment and waits on, or waits on",
+    ),
+    optional("moment", Kind::Text, "of on_timeout = \"say\": what the robot says"),
+    optional("phrase", Kind::Tables(PHRASE), "a canned phrase, which a key says"),
+];
+
+const PHRASE: &[Key] = &[
+    required("key", Kind::Text, "the key: a small letter or a digit"),
+    required("text", Kind::Text, "what the robot says"),
+    optional("waits", Kind::Switch, "whether what the robot proposed waits on, rather than being answered by it"),
 ];
 
 const PROBE: &[Key] = &[
@@ -220,6 +246,7 @@ impl Kind {
             Self::Switch => "true or false".to_owned(),
             Self::Whole(most) => format!("a whole number from 0 to {most}"),
             Self::Minutes => "a number of minutes above 0".to_owned(),
+            Self::Seconds => format!("a number of seconds above 0, up to {LONGEST_SECONDS}"),
             Self::Share => "a number from 0 to 1".to_owned(),
             Self::Numbers => "a list of whole numbers, such as [3, 5]".to_owned(),
             Self::OneOf(words) => format!("one of \"{}\"", words.join("\", \"")),

@@ -229,6 +229,30 @@ fn step_fields() -> [Field; 2] {
     ]
 }
 
+/// A table of what came of steps that were done, with the conditions under which they were.
+fn of_steps(
+    study: &Study,
+    all: &[Progress],
+    name: &'static str,
+    meaning: &'static str,
+    more: impl IntoIterator<Item = Field>,
+    rows: fn(&Study, &Plan, &Done) -> Vec<Vec<Cell>>,
+) -> Table {
+    let fields = step_fields().into_iter().chain(factor_fields(study, &BOTH)).chain(more).collect();
+    let of_one = |progress: &Progress| -> Vec<Vec<Cell>> {
+        progress.done().iter().flat_map(|done| rows(study, progress.plan(), done)).collect()
+    };
+    Table { name, meaning, fields, rows: all.iter().flat_map(of_one).collect() }
+}
+
+/// The mission that a questionnaire is about, if it is about one.
+fn mission_about(plan: &Plan, about: Option<usize>) -> Cell {
+    match about.and_then(|about| plan.steps.get(about)) {
+        Some(Step::Mission(mission)) => text(&mission.mission),
+        _ => Cell::Nothing,
+    }
+}
+
 fn step_cells(plan: &Plan, done: &Done) -> [Cell; 2] {
     [text(pseudonym(plan.place)), whole(done.step + 1)]
 }

@@ -31,17 +31,19 @@ use crate::{
 const SCRIPT: &str = "text/javascript; charset=utf-8";
 const HTML: &str = "text/html; charset=utf-8";
 /// The pages' files: path, media type, text.
-const FILES: [(&str, &str, &str); 7] = [
+const FILES: [(&str, &str, &str); 8] = [
     ("/study.js", SCRIPT, include_str!("../web/study.js")),
     ("/forms.js", SCRIPT, include_str!("../web/forms.js")),
     ("/server.js", SCRIPT, include_str!("../web/server.js")),
     ("/dom.js", SCRIPT, include_str!("../web/dom.js")),
     ("/experimenter.js", SCRIPT, include_str!("../web/experimenter.js")),
+    ("/wizard.js", SCRIPT, include_str!("../web/wizard.js")),
     ("/study.css", "text/css; charset=utf-8", include_str!("../web/study.css")),
     ("/favicon.svg", "image/svg+xml", include_str!("../../../dialog/web/favicon.svg")),
 ];
 const STUDY_PAGE: &str = include_str!("../web/study.html");
 const EXPERIMENTER_PAGE: &str = include_str!("../web/experimenter.html");
+const WIZARD_PAGE: &str = include_str!("../web/wizard.html");
 const STRANGER_PAGE: &str = include_str!("../web/stranger.html");
 /// The longest note of the experimenter's, and the longest reason, in characters.
 const LONGEST_NOTE: usize = 2000;
@@ -64,14 +66,18 @@ pub struct Doors {
     pub experimenter: String,
     /// Where participants sign up.
     pub sign_up: String,
+    /// The wizard's page, if a wizard takes part in any session.
+    pub wizard: Option<String>,
 }
 
 impl StudyService {
     /// Where its pages are.
     #[must_use]
     pub fn doors(&self) -> Doors {
-        let links = lock(&self.registry).links.clone();
+        let registry = lock(&self.registry);
+        let links = &registry.links;
         Doors {
+            wizard: registry.study.has_wizard().then(|| format!("/wizard/{}", links.wizard)),
             experimenter: format!("/experimenter/{}", links.experimenter),
             sign_up: format!("/sign-up/{}", links.sign_up),
         }
@@ -109,6 +115,8 @@ fn router(service: StudyService) -> Router {
         .route("/p/{token}", get(participant))
         .route("/p/{token}/state", get(state))
         .route("/p/{token}/event", post(event))
+        .route("/wizard/{token}", get(wizard))
+        .route("/wizard/{token}/state", get(seats))
         .route("/experimenter/{token}", get(experimenter))
         .route("/experimenter/{token}/state", get(overview))
         .route("/experimenter/{token}/command", post(command))
@@ -321,6 +329,28 @@ async fn overview(State(service): State<StudyService>, Path(given): Path<String>
             return StatusCode::NOT_FOUND.into_response();
         }
         Json(registry.overview(most)).into_response()
+    })
+    .await
+}
+
+async fn wizard(State(service): State<StudyService>, Path(given): Path<String>) -> Response {
+    with_study(service, move |registry, _| {
+        if token::admits(&registry.links.wizard, Some(&given)) {
+            page(WIZARD_PAGE)
+        } else {
+            stranger(&registry.study.contact)
+        }
+    })
+    .await
+}
+
+async fn seats(State(service): State<StudyService>, Path(given): Path<String>) -> Response {
+    with_study(service, move |registry, _| {
+        if token::admits(&registry.links.wizard, Some(&given)) {
+            Json(registry.seats()).into_response()
+        } else {
+            StatusCode::NOT_FOUND.into_response()
+        }
     })
     .await
 }

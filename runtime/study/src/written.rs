@@ -35,6 +35,24 @@ pub(crate) struct Written {
     pub factor: Vec<Spanned<WrittenFactor>>,
     pub block: Vec<Spanned<WrittenBlock>>,
     pub probe: Vec<Spanned<WrittenProbe>>,
+    pub wizard: Option<Spanned<WrittenWizard>>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(default)]
+pub(crate) struct WrittenWizard {
+    pub timeout_s: Option<Spanned<f64>>,
+    pub on_timeout: Option<Spanned<String>>,
+    pub moment: Option<Spanned<String>>,
+    pub phrase: Vec<Spanned<WrittenPhrase>>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(default)]
+pub(crate) struct WrittenPhrase {
+    pub key: Option<Spanned<String>>,
+    pub text: Option<Spanned<String>>,
+    pub waits: bool,
 }
 
 #[derive(Default, Deserialize)]

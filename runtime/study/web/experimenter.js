@@ -18,6 +18,8 @@ function show(next) {
   byId("sessions").textContent = `${state.sessions.running} of ${state.sessions.most} sessions`;
   const begun = state.participants.filter((one) => one.progress !== "not begun").length;
   byId("caption").textContent = `${begun} of ${state.planned} planned participants have begun`;
+  byId("wizard").hidden = !state.wizard;
+  if (state.wizard && !byId("wizard").href.endsWith(state.wizard)) byId("wizard").href = state.wizard;
   showRows();
   showNotes();
 }

@@ -15,6 +15,7 @@ mod answers;
 mod chance;
 mod codebook;
 mod csv;
+mod decisions;
 mod design;
 pub mod effect;
 mod fit;
@@ -43,14 +44,17 @@ pub use table::{Cell, Field, Kind, Table};
 /// A Python script that reads the tables from its own folder into pandas, for notebooks.
 pub const NOTEBOOK: &str = include_str!("notebook.py");
 
-/// All tables of these sessions, of one row a session, a turn, an action, a goal, and an answer to a questionnaire.
+/// All tables of these sessions, of one row a session, a turn, an action, a goal, and an answer to a questionnaire; where a wizard took
+/// part, also a decision.
 #[must_use]
 pub fn tables(played: &[Played]) -> Vec<Table> {
-    vec![
+    let has_wizard = played.iter().any(Played::has_wizard);
+    let whole = [
         sessions::table(played),
         turns::table(played),
         actions::table(played),
         goals::table(played),
         answers::table(played),
-    ]
+    ];
+    whole.into_iter().chain(has_wizard.then(|| decisions::table(played))).collect()
 }

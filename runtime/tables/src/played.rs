@@ -142,6 +142,11 @@ impl Played {
         (!self.goals.is_empty()).then(|| complete || self.goals.iter().all(|goal| goal.met))
     }
 
+    /// Whether a wizard took part.
+    pub(crate) fn has_wizard(&self) -> bool {
+        self.log.session.settings.get("wizard").is_some_and(|takes_part| takes_part != "no")
+    }
+
     /// What the robot was told to do.
     pub(crate) fn robots_actions(&self) -> impl Iterator<Item = &Deed> {
         self.actions.iter().filter(|deed| deed.body == ROBOT)

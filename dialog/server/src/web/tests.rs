@@ -49,6 +49,10 @@ impl Served {
     }
 
     fn admitting(admits_own_user: bool, limits: ServerLimits) -> Self {
+        Self::with_seat(admits_own_user, limits, None)
+    }
+
+    fn with_seat(admits_own_user: bool, limits: ServerLimits, seat: Option<Seat>) -> Self {
         let (bus, listener) = (Local::new(1), TcpListener::bind("127.0.0.1:0").unwrap());
         let address = listener.local_addr().unwrap();
         let hub = Arc::new(Hub::new(json!({}), vec![View::new(CameraId::Spectator(0))], Box::new(|| ())));
@@ -58,6 +62,7 @@ impl Served {
             hub: Arc::clone(&hub),
             host,
             token: TOKEN.into(),
+            seat,
             admits_own_user,
             hosts,
             limits,
@@ -191,6 +196,33 @@ fn without_the_token_nobody_sees_the_session() {
     let opened = tungstenite::client(format!("ws://{}/ws", served.address), served.connect());
     assert!(opened.is_err());
     assert_eq!(served.open().1, json!({}));
+}
+
+#[test]
+fn the_wizards_token_opens_the_seat_alone_and_nobody_else_learns_that_there_is_one() {
+    const WIZARD: &str = "89abcdef89abcdef89abcdef89abcdef";
+    let seat = Seat::new(WIZARD, &Holding::default());
+    let [with, without] = [Some(seat), None].map(|seat| Served::with_seat(true, PATIENT, seat));
+    let answer = |served: &Served, request: &str| {
+        let answer = served.answer(request, &[&served.own_host()]);
+        // When it was answered, and by which port, is no matter.
+        let lines = answer.lines().filter(|line| !line.starts_with("date:"));
+        lines.collect::<Vec<_>>().join("\n").replace(&served.address.to_string(), "here")
+    };
+    for parameters in [String::new(), "?token=wrong!".to_owned(), format!("?token={TOKEN}")] {
+        let refused = answer(&with, &format!("GET /wizard{parameters}"));
+        assert!(refused.starts_with("HTTP/1.1 403"), "{parameters}: {refused}");
+        assert_eq!(refused, answer(&without, &format!("GET /wizard{parameters}")));
+    }
+    let own = format!("?token={WIZARD}");
+    assert!(answer(&with, &format!("GET /wizard{own}")).starts_with("HTTP/1.1 200"));
+    for route in ["/", "/frame.jpg"] {
+        assert!(answer(&with, &format!("GET {route}{own}")).starts_with("HTTP/1.1 403"), "{route}");
+    }
+    assert!(answer(&without, &format!("GET /wizard{own}")).starts_with("HTTP/1.1 403"));
+    for route in ["/".to_owned(), format!("/?token={TOKEN}"), "/wizard.js".to_owned()] {
+        assert_eq!(answer(&with, &format!("GET {route}")), answer(&without, &format!("GET {route}")), "{route}");
+    }
 }
 
 #[test]

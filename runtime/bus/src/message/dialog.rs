@@ -31,11 +31,13 @@ pub enum DialogKind {
     Spoken = 9,
     /// What an interpreter such as a language model said about a turn, and how long it took: for logs.
     Interpreted = 10,
+    /// What a wizard decided about a turn, as JSON: for logs.
+    Decided = 11,
 }
 
 impl DialogKind {
     /// All kinds.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Utterance,
         Self::Reply,
         Self::Question,
@@ -46,6 +48,7 @@ impl DialogKind {
         Self::Latency,
         Self::Spoken,
         Self::Interpreted,
+        Self::Decided,
     ];
 }
 

@@ -58,9 +58,16 @@ mod tests {
             ThisProgram.check_arguments(&arguments)
         };
         assert_eq!(check(&["--ask=never", "--understanding=fast", "--body=person@Lab1", "--lock-step"]), Ok(()));
+        let seat = ["--wizard=yes", "--response_delay_ms=1500", "--wizard-timeout-s=8.5", "--wizard-on-timeout=say"];
+        let phrases = ["--wizard-phrase=h=Hello!", "--wizard-phrase=m:wait=Hm."];
+        assert_eq!(check(&[&seat[..], &phrases].concat()), Ok(()));
         for (arguments, part) in [
             (&["--ask=sometimes"][..], "sometimes"),
-            (&["--wizard"], "unexpected argument '--wizard'"),
+            (&["--hat"], "unexpected argument '--hat'"),
+            (&["--wizard=perhaps"], "invalid value 'perhaps'"),
+            (&["--wizard-on-timeout=say"], "--wizard-timeout-s"),
+            (&["--wizard-timeout-s=0"], "a number of seconds above 0"),
+            (&["--wizard-phrase=Hello!"], "is no phrase"),
             (&["--help"], "no setting"),
             (&["--lock-step", "--speed=2"], "cannot be used with"),
         ] {

@@ -138,6 +138,7 @@ impl Player for Sessions {
             lines,
             last_line,
             page: None,
+            wizard: None,
             heard: None,
             happened: Vec::new(),
             over,
@@ -186,6 +187,8 @@ struct PlayedSession {
     /// What it said last, which says why it ended.
     last_line: String,
     page: Option<PageAddress>,
+    /// What lets a wizard in, once it was told.
+    wizard: Option<String>,
     /// What its bus tells of the world, and of what is said.
     heard: Option<[Inbox; 2]>,
     /// What has happened and was not asked for yet.
@@ -201,8 +204,9 @@ impl PlayedSession {
         loop {
             match self.lines.try_recv() {
                 Ok(line) => {
+                    self.wizard = wizards_token(&line).or_else(|| self.wizard.take());
                     if let Some(page) = page_address(&line) {
-                        self.page = Some(page);
+                        self.page = Some(PageAddress { wizard: self.wizard.clone(), ..page });
                     }
                     self.last_line = line;
                 }
@@ -244,12 +248,18 @@ impl PlayedSession {
     }
 }
 
+/// What lets a wizard in, if a line of `play` tells of that: it comes before the page's.
+fn wizards_token(line: &str) -> Option<String> {
+    let (_, token) = line.strip_prefix("Wizard's seat: ")?.split_once("/wizard?token=")?;
+    Some(token.to_owned())
+}
+
 /// The page that a line of `play` tells of.
 fn page_address(line: &str) -> Option<PageAddress> {
     let address = line.split_whitespace().find(|word| word.starts_with("http"))?;
     let (site, token) = address.split_once("/?token=")?;
     let port = site.rsplit_once(':')?.1.parse().ok()?;
-    Some(PageAddress { port, token: token.to_owned() })
+    Some(PageAddress { port, token: token.to_owned(), wizard: None })
 }
 
 impl Playing for PlayedSession {
@@ -318,7 +328,7 @@ mod tests {
 
     #[test]
     fn pages_are_read_from_what_play_says() {
-        let page = |port, token: &str| Some(PageAddress { port, token: token.to_owned() });
+        let page = |port, token: &str| Some(PageAddress { port, token: token.to_owned(), wizard: None });
         for (line, expected) in [
             (
                 "Open http://127.0.0.1:40123/?token=ab12  (ready after 0.50 s; Ctrl-C ends the session)",
@@ -327,8 +337,11 @@ mod tests {
             ("The page is back at http://[::1]:9/?token=x", page(9, "x")),
             ("Playing \"Make cereal\" (make_cereal.json)", None),
             ("see http://example.org", None),
+            ("Wizard's seat: http://127.0.0.1:40123/wizard?token=cd34", None),
         ] {
             assert_eq!(page_address(line), expected, "{line}");
         }
+        let seat = wizards_token("Wizard's seat: http://127.0.0.1:40123/wizard?token=cd34");
+        assert_eq!((seat.as_deref(), wizards_token("Open http://127.0.0.1:9/?token=x")), (Some("cd34"), None));
     }
 }

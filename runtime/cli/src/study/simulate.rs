@@ -47,6 +47,7 @@ impl Simulate {
             people: people.unwrap_or_default(),
             program: env!("CARGO_PKG_VERSION").to_owned(),
         };
+        let has_wizard = study.has_wizard();
         let levels = study.factors.iter().flat_map(|factor| factor.levels.iter().map(|level| &level.settings));
         let passed_over = unheeded(levels);
         let mut files = study.files.clone();
@@ -62,6 +63,9 @@ impl Simulate {
         let simulated = simulate(study, folder, &run, &speakers, workers, &|| bar.inc(1)).map_err(classed)?;
         bar.finish_and_clear();
         self.tell(&run, &simulated, &passed_over);
+        if has_wizard {
+            println!("note: where a wizard takes part, each proposal of the robot counts as accepted");
+        }
         Ok(())
     }
 
@@ -108,12 +112,13 @@ settings = { understanding = "fast" }
 information = { file = "sheet.md", version = "1" }
 consent = { file = "sheet.md", version = "3", required = ["I agree."] }
 factor = [{ name = "ask", kind = "within", level = [
-    { name = "never", settings = { ask = "never" } }, { name = "always", settings = { ask = "always" } },
+    { name = "never", settings = { ask = "never" } }, { name = "always", settings = { ask = "always", wizard = "yes" } },
 ] }]
 probe = [{ questionnaire = "probe.toml", at = "goal_met" }]
 block = [
     { kind = "practice", mission = "cold_soda", minutes = 0.5 },
     { kind = "missions", minutes = 10, skip_after_minutes = 4, after_mission = ["tlx"] },
+    { kind = "debriefing", file = "sheet.md" },
 ]
 "#;
     const PROBE: &str = "title = \"T\"\nscale = { least = 1, most = 5 }\n[[item]]\nask = \"How?\"\n";
@@ -158,13 +163,25 @@ block = [
         assert_eq!(tables, dry_run(&folder, "two"));
         let table = |name: &str| tables.iter().find(|(own, _)| own == name).map(|(_, text)| text.as_str()).expect(name);
         assert!(table("methods.md").starts_with("> **Synthetic data.**"));
-        for name in
-            ["sessions.csv", "turns.csv", "actions.csv", "goals.csv", "missions.csv", "probes.csv", "scores.csv"]
-        {
+        for name in [
+            "sessions.csv",
+            "turns.csv",
+            "actions.csv",
+            "goals.csv",
+            "missions.csv",
+            "probes.csv",
+            "scores.csv",
+            "decisions.csv",
+        ] {
             let mut lines = table(name).lines();
             assert!(lines.next().is_some_and(|head| head.ends_with(",synthetic")), "{name}");
             assert!(lines.clone().count() > 3 && lines.any(|line| line.ends_with(",true")), "{name}: {}", table(name));
         }
+        // Nobody decided: where a wizard takes part, what the robot proposed counts as accepted, turn by turn.
+        let rows = |name: &str, condition: &str| table(name).lines().filter(|line| line.contains(condition)).count();
+        assert_eq!(rows("decisions.csv", ",accepted,false,"), rows("decisions.csv", "P0"));
+        assert_eq!(rows("decisions.csv", "P0"), rows("turns.csv", ",always,"), "{}", table("decisions.csv"));
+        assert!(table("methods.md").contains("the dry run took each proposal for accepted"), "{}", table("methods.md"));
         assert_eq!(table("sessions.csv").lines().count(), 1 + 3 * 2, "practice is left out: {}", table("sessions.csv"));
         assert!(table("missions.csv").contains("complete"), "{}", table("missions.csv"));
         let log = cohabit_record::Log::open(&folder.join("one/logs/P02-02-1.mcap")).expect("a log");

@@ -16,7 +16,7 @@ use cohabit_eval::{Settings, Style, Task, play};
 use cohabit_record::Log;
 use cohabit_study::{
     SimulatedMission, SimulatedPlayer, SimulatedSession,
-    settings::{Settings as StudySettings, arguments},
+    settings::{Settings as StudySettings, WIZARD, arguments, has_wizard},
 };
 use cohabit_tables::Chance;
 
@@ -28,6 +28,8 @@ use crate::{mission_file::MissionFile, peers::Listening};
 
 /// The settings of sessions that make a difference without a page, a voice or a picture.
 const HEEDED: [&str; 3] = ["ask", "knows", "understanding"];
+/// How logs note that each proposal counts as accepted, since nobody decides.
+const ACCEPTED: &str = "accepted";
 
 /// Plays missions with simulated people.
 pub struct Speakers {
@@ -53,6 +55,8 @@ struct Conditions {
     asking: Asking,
     knows: Knows,
     effort: Effort,
+    /// Whether the session has a wizard, each proposal to whom counts as accepted.
+    has_wizard: bool,
 }
 
 impl Speakers {
@@ -100,20 +104,23 @@ impl Conditions {
         heeded.retain(|name, _| HEEDED.contains(&name.as_str()));
         let line = HeededLine::try_parse_from(arguments(&heeded)).map_err(|error| error.to_string())?;
         let listening = line.listening;
-        Ok(Self { asking: listening.ask, knows: listening.knows, effort: listening.understanding })
+        let has_wizard = has_wizard(settings);
+        Ok(Self { asking: listening.ask, knows: listening.knows, effort: listening.understanding, has_wizard })
     }
 
     /// As logs note them.
     fn noted(&self) -> BTreeMap<String, String> {
         let values = [self.asking.to_string(), self.knows.to_string(), self.effort.to_string()];
-        HEEDED.into_iter().map(str::to_owned).zip(values).collect()
+        let wizard = if self.has_wizard { ACCEPTED } else { "no" };
+        let heeded = HEEDED.into_iter().map(str::to_owned).zip(values);
+        heeded.chain([(WIZARD.to_owned(), wizard.to_owned())]).collect()
     }
 }
 
 /// Those of a study's settings that a dry run passes over.
 pub fn unheeded<'a>(all: impl IntoIterator<Item = &'a StudySettings>) -> Vec<String> {
     let mut names: Vec<String> = all.into_iter().flat_map(|settings| settings.keys().cloned()).collect();
-    names.retain(|name| !HEEDED.contains(&name.as_str()));
+    names.retain(|name| !HEEDED.contains(&name.as_str()) && name != WIZARD);
     names.sort();
     names.dedup();
     names
@@ -145,6 +152,7 @@ impl SimulatedPlayer for Speakers {
             participant: wanted.participant.clone(),
             mission_file: if is_file { wanted.mission.clone() } else { file.name },
             settings: conditions.noted(),
+            has_wizard: conditions.has_wizard,
             began_ms: wanted.began_ms,
         };
         log.write(&wanted.log, facts).map_err(|error| error.to_string())?;

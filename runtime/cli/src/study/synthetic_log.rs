@@ -4,7 +4,9 @@
 use std::{collections::BTreeMap, path::Path};
 
 use cohabit_engine::replay::TICK_S;
-use cohabit_record::{DialogEntry, EventEntry, Log, LogError, LogWriter, SessionEntry, TickEntry};
+use cohabit_record::{
+    DecisionOutcome, DialogEntry, EventEntry, Log, LogError, LogWriter, SessionEntry, TickEntry, WizardDecision,
+};
 use cohabit_study::{Ending, Happening, SimulatedSession};
 
 /// The name under which a log notes that nobody took part.
@@ -28,6 +30,8 @@ pub struct Facts {
     pub participant: String,
     pub mission_file: String,
     pub settings: BTreeMap<String, String>,
+    /// Whether a wizard takes part: then each answer counts as a proposal that was accepted.
+    pub has_wizard: bool,
     /// When it began, ms since 1970.
     pub began_ms: u64,
 }
@@ -81,7 +85,7 @@ impl SyntheticLog {
     /// # Errors
     /// [`LogError`].
     pub fn write(&self, path: &Path, facts: Facts) -> Result<(), LogError> {
-        let Facts { session, participant, mission_file, mut settings, began_ms } = facts;
+        let Facts { session, participant, mission_file, mut settings, has_wizard, began_ms } = facts;
         settings.insert(SYNTHETIC.to_owned(), true.to_string());
         let entry = SessionEntry {
             session,
@@ -109,11 +113,25 @@ impl SyntheticLog {
                 out.event(event, began_nanos + at)?;
             }
             while let Some(entry) = dialog.next_if(|entry: &&DialogEntry| entry.tick <= number) {
-                out.dialog(&DialogEntry { sent_nanos: at, ..entry.clone() }, began_nanos + at)?;
+                let entry = DialogEntry { sent_nanos: at, ..entry.clone() };
+                out.dialog(&entry, began_nanos + at)?;
+                if has_wizard && entry.kind == "Utterance" {
+                    out.dialog(&accepted(&entry), began_nanos + at)?;
+                }
             }
         }
         out.finish()
     }
+}
+
+/// That what the robot made of what somebody said counts as accepted by a wizard.
+fn accepted(said: &DialogEntry) -> DialogEntry {
+    let decision = WizardDecision {
+        said: said.text.clone(),
+        synthetic: true,
+        ..WizardDecision::of_outcome(DecisionOutcome::Accepted)
+    };
+    DialogEntry { kind: WizardDecision::KIND.to_owned(), text: decision.text(), ..said.clone() }
 }
 
 /// What probes are asked at.

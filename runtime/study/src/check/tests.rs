@@ -1,5 +1,7 @@
 //! A study is read, or all that is wrong in it is said with its place.
 
+use cohabit_dialog::OnTimeout;
+
 use super::*;
 use crate::{
     design::{Block, FactorKind, Limits},
@@ -8,16 +10,25 @@ use crate::{
     settings::is_on,
 };
 
-/// A program that knows two flags and two missions.
+/// A program that knows some flags and two missions.
 struct Stub;
 
 impl Program for Stub {
     fn check_arguments(&self, arguments: &[String]) -> Result<(), String> {
-        let known = ["--ask=never", "--ask=always", "--paused", "--record-audio"];
+        let known = [
+            "--ask=never",
+            "--ask=always",
+            "--paused",
+            "--record-audio",
+            "--wizard=yes",
+            "--wizard=no",
+            "--response-delay-ms=2000",
+        ];
         let is_known = |one: &&String| known.contains(&one.as_str());
+        let is_alone = |one: &&String| !one.starts_with("--wizard=");
         match arguments.iter().find(|one| !is_known(one)) {
             Some(other) => Err(format!("unexpected argument `{other}`")),
-            None if arguments.len() > 1 => Err("one at a time".to_owned()),
+            None if arguments.iter().filter(is_alone).count() > 1 => Err("one at a time".to_owned()),
             None => Ok(()),
         }
     }
@@ -85,6 +96,27 @@ fn larger() -> String {
         STUDY.replacen("required = [\"I agree.\"]", boxes, 1).replacen("[[block]]", &format!("{practice}[[block]]"), 1);
     text.replacen("minutes = 0.5", "minutes = 0.5\nsettings = { clock = true }", 1)
 }
+
+/// The same with a wizard at one level, who takes part so.
+fn with_wizard(seat: &str) -> String {
+    let level = STUDY.replacen("settings = { ask = \"always\" }", "settings = { wizard = \"yes\" }", 1);
+    format!("{level}\n[wizard]\n{seat}\n")
+}
+
+const SEAT: &str = r#"
+timeout_s = 8
+on_timeout = "say"
+moment = "Hm."
+
+[[wizard.phrase]]
+key = "h"
+text = "Hello!"
+
+[[wizard.phrase]]
+key = "1"
+text = "One moment."
+waits = true
+"#;
 
 fn check(name: &str, text: &str) -> Result<Study, String> {
     let scratch = Scratch::new(&format!("check-{name}"));
@@ -298,7 +330,7 @@ fn the_schema_says_the_same() {
         let value: serde_json::Value = toml::from_str(text).unwrap();
         jsonschema::is_valid(&schema, &value)
     };
-    assert!(valid(STUDY) && valid(&larger()));
+    assert!(valid(STUDY) && valid(&larger()) && valid(&with_wizard(SEAT)));
     for (right, instead) in
         [("seed = 1", ""), ("seed = 1", "seed = -1"), ("seed = 1", "seed = 1\nsed = 2"), ("\"within\"", "\"in\"")]
     {
@@ -347,4 +379,63 @@ fn keys_that_are_missing_are_said_beside_what_cannot_be_read() {
         check("partial", &STUDY.replacen("seed = 1\n", "", 1).replacen("participants = 4", "participants = 4 4", 1));
     let said = said.unwrap_err();
     assert!(said.contains("`seed` is missing") && !said.contains("`participants` is missing"), "{said}");
+}
+
+#[test]
+fn a_wizard_takes_part_as_the_file_says() {
+    let study = check("wizard", &with_wizard(SEAT)).unwrap();
+    assert!(study.has_wizard() && !check("alone", STUDY).unwrap().has_wizard());
+    let wizard = &study.wizard;
+    assert_eq!(
+        (wizard.timeout_s, wizard.on_timeout, wizard.moment.as_deref()),
+        (Some(8.0), OnTimeout::Say, Some("Hm."))
+    );
+    let phrases: Vec<String> = wizard.phrases.iter().map(ToString::to_string).collect();
+    assert_eq!(phrases, ["h=Hello!", "1:wait=One moment."]);
+    // Latencies are not to tell the conditions apart.
+    let note = study.wizard_note().unwrap();
+    assert!(note.contains("a wizard takes longer"), "{note}");
+    let delayed = with_wizard(SEAT).replacen("wizard = \"yes\"", "wizard = \"yes\", response-delay-ms = 2000", 1);
+    let note = check("delayed", &delayed).unwrap().wizard_note().unwrap();
+    assert!(note.contains("2000 ms after the words with a wizard and 0 ms without"), "{note}");
+    let alike = delayed.replacen("ask = \"never\"", "response-delay-ms = 2000", 1);
+    assert_eq!(check("alike", &alike).unwrap().wizard_note(), None);
+}
+
+#[test]
+fn what_is_wrong_with_a_seat_is_said() {
+    let phrase = |key: &str, text: &str| format!("[[wizard.phrase]]\nkey = \"{key}\"\ntext = \"{text}\"\n");
+    let delayed = with_wizard("timeout_s = 1").replacen("\"yes\"", "\"yes\", response-delay-ms = 2000", 1);
+    let debriefing = "[[block]]\nkind = \"debriefing\"\nfile = \"sheet.md\"\n";
+    let inside = STUDY.replacen("ask = \"always\"", "wizard-timeout-s = 3", 1);
+    for (text, part) in [
+        (
+            with_wizard("on_timeout = \"say\""),
+            "/wizard/on_timeout: there is no time-out that this follows; add `timeout_s`",
+        ),
+        (
+            with_wizard("timeout_s = 0"),
+            "/wizard/timeout_s: `timeout_s` cannot be this integer; write a number of seconds",
+        ),
+        (with_wizard("timeout_s = 5\non_timeout = \"panic\""), "write one of \"act\", \"say\", \"wait\""),
+        (with_wizard("timeout_s = 5\nmoment = \"Hm.\""), "/wizard/moment: the robot never says this; write on_timeout"),
+        (with_wizard(&phrase("hi", "Hello!")), "/wizard/phrase/0/key: `hi` is no key for a phrase"),
+        (
+            with_wizard(&phrase("h", &"a".repeat(401))),
+            "/wizard/phrase/0/text: the phrase of key `h` has to have 1 to 400",
+        ),
+        (with_wizard(&phrase("h", "One.").repeat(2)), "/wizard/phrase/1/key: two phrases have the key `h`"),
+        (format!("{STUDY}\n[wizard]\n{SEAT}"), "/wizard: no session has a wizard; write wizard = \"yes\""),
+        (
+            with_wizard(SEAT).replacen(debriefing, "", 1),
+            "/block: a wizard takes part, and nobody is told so in the end",
+        ),
+        (delayed, "/wizard/timeout_s: a wizard has 1 s to decide, and nothing is answered before 2000 ms"),
+        (inside, "`wizard-timeout-s` is the same in all sessions; write it into `[wizard]`"),
+        (with_wizard(SEAT).replacen("\"yes\"", "\"perhaps\"", 1), "unexpected argument `--wizard=perhaps`"),
+    ] {
+        let said = check("seat", &text).expect_err(part);
+        assert!(said.contains(part), "no `{part}` in {said}");
+        assert_eq!(said.lines().count(), 1, "{said}");
+    }
 }

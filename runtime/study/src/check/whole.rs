@@ -7,7 +7,7 @@ use toml::Spanned;
 
 use super::Checking;
 use crate::{
-    design::{Assignment, Block, Choice, Condition, FactorKind, Study},
+    design::{Assignment, Choice, FactorKind, Study, conditions_of},
     settings::arguments,
     written::{BlockKind, Written, WrittenSheet},
 };
@@ -29,6 +29,9 @@ impl Checking<'_, '_> {
         study.block_size = if knows_factors { self.block_size(study, written) } else { 1 };
         self.combinations(study, written, blocks);
         self.audio(study, &written.consent);
+        if knows_factors && knows_blocks {
+            self.takes_part(study, written);
+        }
     }
 
     /// Whether each table of a list could be read as far as these keys go.
@@ -126,7 +129,7 @@ impl Checking<'_, '_> {
     fn combinations(&mut self, study: &Study, written: &Written, blocks: &[(Range<usize>, Pointer)]) {
         let factors = written.factor.first().map(|factor| (factor.span(), Pointer::default().key("factor")));
         for (block, place) in study.blocks.iter().zip(blocks) {
-            for (between, within) in conditions(study, block) {
+            for (between, within) in conditions_of(study, block) {
                 let settings = study.settings_of(block, &between, &within);
                 let Err(problem) = self.program.check_arguments(&arguments(&settings)) else { continue };
                 let level = |choice: &Choice| format!("{} = {}", choice.factor, choice.level);
@@ -137,22 +140,5 @@ impl Checking<'_, '_> {
                 self.findings.add(span.clone(), pointer, message, "change one of them");
             }
         }
-    }
-}
-
-/// The conditions, of both kinds, under which the sessions of a block are played.
-fn conditions(study: &Study, block: &Block) -> Vec<(Condition, Condition)> {
-    let of = |kind| study.conditions(kind);
-    match block {
-        Block::Mission { is_practice: true, .. } => vec![(Condition::default(), Condition::default())],
-        Block::Mission { .. } => {
-            of(FactorKind::Between).into_iter().map(|between| (between, Condition::default())).collect()
-        }
-        Block::Missions(_) => {
-            let within = of(FactorKind::Within);
-            let with_all = |between: Condition| within.clone().into_iter().map(move |one| (between.clone(), one));
-            of(FactorKind::Between).into_iter().flat_map(with_all).collect()
-        }
-        Block::Questionnaires(_) | Block::Break { .. } => Vec::new(),
     }
 }

@@ -6,26 +6,14 @@ use cohabit_dialog::Given;
 
 use super::*;
 use crate::{
-    check::{Program, StudyFile},
+    check::StudyFile,
     folder::Folder,
     progress::{Doing, Phase},
     registry::Who,
-    scratch::Scratch,
+    scratch::{Anything, Scratch},
     session::{PageAddress, Playing},
     web::{Sent, newcomers_event, participants_event},
 };
-
-struct Anything;
-
-impl Program for Anything {
-    fn check_arguments(&self, _: &[String]) -> Result<(), String> {
-        Ok(())
-    }
-
-    fn check_mission(&self, _: &str) -> Result<(), String> {
-        Ok(())
-    }
-}
 
 const STUDY: &str = r#"
 title = "A study"
@@ -74,7 +62,7 @@ impl Player for Stage {
     fn start(&mut self, wanted: &Wanted) -> Result<Box<dyn Playing>, String> {
         fs::write(&wanted.log, "log").unwrap();
         let mut all = self.0.lock().unwrap();
-        all.push((wanted.clone(), Look::Open(PageAddress { port: 1, token: "t".to_owned() })));
+        all.push((wanted.clone(), Look::Open(PageAddress { port: 1, token: "t".to_owned(), wizard: None })));
         Ok(Box::new(Act { stage: self.clone(), number: all.len() - 1 }))
     }
 }
@@ -235,6 +223,29 @@ fn who_agrees_to_be_heard_is_and_nobody_else() {
     case.start_again();
     assert!(case.registry().participants[&1].progress.agrees_to_audio());
     assert!(!case.registry().participants[&2].progress.agrees_to_audio());
+}
+
+#[test]
+fn the_wizards_page_is_led_to_the_seat_and_the_participants_page_is_as_ever() {
+    let mut case = Case::new("seat");
+    let place = case.enrol();
+    case.apply(place, &Event::GoesOn);
+    case.look_after(1);
+    case.look_after(1);
+    let page = |case: &mut Case| {
+        let mut page = case.registry().page(Who::Participant(place));
+        page["left_s"].take();
+        page
+    };
+    let before = page(&mut case);
+    assert_eq!((&before["page"], &case.registry().seats()["seats"]), (&"mission".into(), &serde_json::json!([])));
+    let led = PageAddress { port: 1, token: "t".to_owned(), wizard: Some("w".to_owned()) };
+    case.stage.set(0, Look::Open(led));
+    case.look_after(1);
+    let seat = &case.registry().seats()["seats"][0];
+    assert_eq!((&seat["participant"], &seat["port"], &seat["token"]), (&"P01".into(), &1.into(), &"w".into()));
+    assert_eq!(page(&mut case), before);
+    assert!(case.registry().overview(1)["wizard"].is_null(), "this study has none");
 }
 
 #[test]

@@ -48,7 +48,7 @@ pub(super) fn section(known: &Known<'_>) -> String {
 }
 
 /// The condition of each row.
-fn conditions(turns: &Table) -> Vec<String> {
+pub(super) fn conditions(turns: &Table) -> Vec<String> {
     let factors: Vec<(usize, &str)> = turns
         .fields
         .iter()

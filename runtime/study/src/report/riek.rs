@@ -13,10 +13,21 @@ enum Source {
     Participants,
     Instructions,
     Scenarios,
-    Wizard,
+    /// Who the wizards were, which only the experimenter knows.
+    Wizards,
+    /// What they could do.
+    Controls,
+    /// What they saw.
+    Perceives,
+    /// What they did otherwise than the robot.
+    Interventions,
+    /// How long they might take.
+    Time,
     /// Only the experimenter knows.
     Experimenter,
 }
+
+const NO_WIZARD: &str = "no wizard took part";
 
 const ITEMS: [(&str, &str, Source); 22] = [
     ("robot", "how many robots", Source::Robots),
@@ -29,14 +40,14 @@ const ITEMS: [(&str, &str, Source); 22] = [
     ("participants", "instructions", Source::Instructions),
     ("participants", "hypotheses about their behaviour", Source::Experimenter),
     ("participants", "whether they were simulated", Source::Participants),
-    ("wizard", "how many wizards", Source::Wizard),
-    ("wizard", "demographics, and relation to the research", Source::Wizard),
-    ("wizard", "what they knew of the hypotheses", Source::Wizard),
-    ("wizard", "what they controlled, and how", Source::Wizard),
-    ("wizard", "what they perceived, and how", Source::Wizard),
-    ("wizard", "training", Source::Wizard),
-    ("wizard", "errors, and how they were measured", Source::Wizard),
-    ("wizard", "instructions, and constraints of response time", Source::Wizard),
+    ("wizard", "how many wizards", Source::Wizards),
+    ("wizard", "demographics, and relation to the research", Source::Wizards),
+    ("wizard", "what they knew of the hypotheses", Source::Wizards),
+    ("wizard", "what they controlled, and how", Source::Controls),
+    ("wizard", "what they perceived, and how", Source::Perceives),
+    ("wizard", "training", Source::Wizards),
+    ("wizard", "errors, and how they were measured", Source::Interventions),
+    ("wizard", "instructions, and constraints of response time", Source::Time),
     ("general", "place and environment", Source::Experimenter),
     ("general", "scenarios", Source::Scenarios),
     ("general", "part of an iterative design", Source::Experimenter),
@@ -48,7 +59,7 @@ pub(super) fn section(known: &Known<'_>) -> String {
         let (state, what) = answer(known, source);
         vec![category.to_owned(), item.to_owned(), state.to_owned(), what]
     };
-    let missing = ITEMS.iter().filter(|(.., source)| matches!(source, Source::Experimenter)).count();
+    let missing = ITEMS.iter().filter(|(.., source)| answer(known, *source).0 == MISSING).count();
     format!(
         "After Riek (2012): of {} items {missing} are missing, which only the experimenter knows.\n\n{}",
         ITEMS.len(),
@@ -56,10 +67,20 @@ pub(super) fn section(known: &Known<'_>) -> String {
     )
 }
 
+/// The state of what only the experimenter knows.
+const MISSING: &str = "missing";
+
 fn answer(known: &Known<'_>, source: Source) -> (&'static str, String) {
     let study = &known.records.study;
+    let has_wizard = study.has_wizard();
+    let of_wizard =
+        |what: &str| if has_wizard { ("present", what.to_owned()) } else { ("does not apply", NO_WIZARD.to_owned()) };
     match source {
         Source::Robots => ("present", "simulated, one in each session unless `body` is set; see Apparatus".to_owned()),
+        Source::Autonomy if has_wizard => (
+            "present",
+            "it acts on its own on what participants say, but where a wizard takes part, who decides of each answer; see Wizard".to_owned(),
+        ),
         Source::Autonomy => ("present", "it acts on its own on what participants say: no wizard takes part".to_owned()),
         Source::Participants => {
             let who = if known.records.is_synthetic { "simulated participants" } else { "people" };
@@ -74,7 +95,16 @@ fn answer(known: &Known<'_>, source: Source) -> (&'static str, String) {
         Source::Scenarios => {
             ("present", format!("{}; see Apparatus", counted(known.apparatus.missions.len(), "mission")))
         }
-        Source::Wizard => ("does not apply", "no wizard took part".to_owned()),
-        Source::Experimenter => ("missing", "**add it**".to_owned()),
+        Source::Wizards if has_wizard => (MISSING, "**add it**".to_owned()),
+        Source::Wizards => ("does not apply", NO_WIZARD.to_owned()),
+        Source::Controls => of_wizard("each answer of the robot: what it says and does, in words and by plain requests; see Wizard"),
+        Source::Perceives => of_wizard(
+            "at a page of their own: what the robot sees, the conversation as participants see it, and the robot's own interpretation",
+        ),
+        Source::Interventions => {
+            of_wizard("each decision is recorded beside what the robot proposed (`decisions.csv`); counts are in Wizard")
+        }
+        Source::Time => of_wizard("the time-out and the delay of answers are in Wizard; **add** the protocol that wizards followed"),
+        Source::Experimenter => (MISSING, "**add it**".to_owned()),
     }
 }

@@ -4,7 +4,7 @@ use cohabit_tables::{Cell, Field, Kind};
 
 use super::{latencies::quantile, participants::day, *};
 use crate::{
-    design::{Choice, Factor, FactorKind, Level, Limits, Study},
+    design::{Block, Choice, Factor, FactorKind, Level, Limits, Study},
     instrument::Instrument,
     plan::{Plan, PlannedMission, Step},
     progress::{Ending, Event, Progress},
@@ -85,6 +85,7 @@ fn a_sheet_says_what_is_known_and_what_is_missing() {
         "| first answer or question | ask=never | 2 | 150 ms | 195 ms |",
         "- `sus`: 10 items, 2, 4, 6, 8 and 10 reversed. Scores: `sus`",
         "Brooke, J. (1996)",
+        "## Wizard\n\nNo wizard took part.",
         "| wizard | training | does not apply | no wizard took part |",
         "| participants | demographics | missing | **add it** |",
         "of 22 items 6 are missing",
@@ -92,6 +93,69 @@ fn a_sheet_says_what_is_known_and_what_is_missing() {
         assert!(text.contains(part), "no `{part}` in {text}");
     }
     assert!(!text.to_lowercase().contains("synthetic"), "{text}");
+}
+
+/// The same study, in which a wizard takes part at one level.
+fn with_wizard() -> Records {
+    let mut records = records(false);
+    let on = |settings: &mut Settings| {
+        settings.insert("wizard".to_owned(), Setting::Value("yes".to_owned()));
+        settings.insert("response-delay-ms".to_owned(), Setting::Value("1500".to_owned()));
+    };
+    on(&mut records.study.factors[0].levels[1].settings);
+    let (limits, text) = (Limits::default(), String::new());
+    let mission = "cold_soda".to_owned();
+    let block = Block::Mission { mission, is_practice: false, settings: Settings::new(), limits, text };
+    records.study.blocks = vec![block];
+    records.study.wizard.timeout_s = Some(8.0);
+    records.study.wizard.phrases = vec!["h=Hello!".parse().expect("a phrase")];
+    records
+}
+
+#[test]
+fn a_sheet_counts_what_a_wizard_did_otherwise() {
+    let field = |name: &'static str, kind| Field { name: name.into(), kind, unit: "", meaning: "".into() };
+    let row = |outcome: &str, intervention: bool, ms: Option<f64>| {
+        vec![
+            Cell::Text("always".to_owned()),
+            Cell::Text(outcome.to_owned()),
+            Cell::Flag(intervention),
+            Cell::Flag(outcome == "timed_out"),
+            ms.map_or(Cell::Nothing, Cell::Real),
+        ]
+    };
+    let decisions = Table {
+        name: "decisions",
+        meaning: "",
+        fields: vec![
+            field("factor_ask", Kind::Text),
+            field("outcome", Kind::Text),
+            field("intervention", Kind::Flag),
+            field("late", Kind::Flag),
+            field("decided_ms", Kind::Real),
+        ],
+        rows: vec![
+            row("accepted", false, Some(1000.0)),
+            row("edited", true, Some(5000.0)),
+            row("replaced", true, Some(3000.0)),
+            row("timed_out", false, None),
+        ],
+    };
+    let text = report(&with_wizard(), &Apparatus::default(), &[decisions]);
+    for part in [
+        "A decision may take 8 s; after that the robot does what it proposed.",
+        "canned phrases `h` \"Hello!\"",
+        "sooner than 1500 ms after it was said with a wizard, and 0 ms without",
+        "Of 4 decisions, 2 were interventions (50.0 %)",
+        "| ask=always | 4 | 1 | 1 | 1 | 0 | 1 | 0 | 0 | 2 | 1 | 3000 ms |",
+        "| wizard | training | missing | **add it** |",
+        "| wizard | what they controlled, and how | present |",
+        "of 22 items 10 are missing",
+    ] {
+        assert!(text.contains(part), "no `{part}` in {text}");
+    }
+    let before = report(&with_wizard(), &Apparatus::default(), &[]);
+    assert!(before.contains("interventions are **missing**"), "{before}");
 }
 
 #[test]

@@ -4,24 +4,12 @@ use std::{collections::BTreeMap, fs, path::Path};
 
 use super::*;
 use crate::{
-    check::{Program, StudyFile},
+    check::StudyFile,
     probe::Happening,
     progress::Ending,
     records::Records,
-    scratch::Scratch,
+    scratch::{Anything, Scratch},
 };
-
-struct Anything;
-
-impl Program for Anything {
-    fn check_arguments(&self, _: &[String]) -> Result<(), String> {
-        Ok(())
-    }
-
-    fn check_mission(&self, _: &str) -> Result<(), String> {
-        Ok(())
-    }
-}
 
 const STUDY: &str = r#"
 title = "A study"

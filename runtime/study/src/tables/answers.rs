@@ -7,7 +7,7 @@ use cohabit_tables::{
     Table,
 };
 
-use super::{BOTH, factor_cells, factor_fields, field, step_cells, step_fields, text, whole};
+use super::{BOTH, factor_cells, field, mission_about, of_steps, step_cells, text, whole};
 use crate::{
     design::Study,
     plan::{Plan, Step},
@@ -29,12 +29,8 @@ pub(super) fn table(study: &Study, all: &[Progress]) -> Table {
         field("attentive", Flag, "", "whether an attention check was answered rightly; nothing of other questions"),
         field("at_ms", Whole, "ms", "wall time at which it was answered, since 1970"),
     ];
-    let rows = all
-        .iter()
-        .flat_map(|progress| progress.done().iter().flat_map(move |done| answer_rows(study, progress.plan(), done)));
-    let fields = step_fields().into_iter().chain(factor_fields(study, &BOTH)).chain(more).collect();
     let meaning = "a participant's answer to a question that the study asked between missions";
-    Table { name: "answers", meaning, fields, rows: rows.collect() }
+    of_steps(study, all, "answers", meaning, more, answer_rows)
 }
 
 fn answer_rows(study: &Study, plan: &Plan, done: &Done) -> Vec<Vec<Cell>> {
@@ -42,10 +38,7 @@ fn answer_rows(study: &Study, plan: &Plan, done: &Done) -> Vec<Vec<Cell>> {
     let asked = study.questionnaire(name);
     // What was taken was checked; it is the questionnaire that may be another one by now.
     let messages = asked.and_then(|asked| asked.answered(plan.place, &done.answers).ok()).unwrap_or_default();
-    let mission = match about.and_then(|about| plan.steps.get(about)) {
-        Some(Step::Mission(mission)) => text(&mission.mission),
-        _ => Cell::Nothing,
-    };
+    let mission = mission_about(plan, *about);
     let factors = factor_cells(study, &BOTH, &plan.choices(done.step));
     let attentive = |item: u32| {
         let number = (item as usize).checked_sub(1)?;

@@ -6,7 +6,7 @@ use cohabit_tables::{
     Table,
 };
 
-use super::{BOTH, factor_cells, factor_fields, field, step_cells, step_fields, text, whole};
+use super::{BOTH, factor_cells, field, mission_about, of_steps, step_cells, text, whole};
 use crate::{
     design::Study,
     plan::{Plan, Step},
@@ -22,11 +22,8 @@ pub(super) fn table(study: &Study, all: &[Progress]) -> Table {
         field("meaning", Text, "", "what it means, with its range"),
         field("checks_failed", Whole, "", "attention checks of the questionnaire that were not answered rightly"),
     ];
-    let rows =
-        all.iter().flat_map(|progress| progress.done().iter().flat_map(move |done| rows(study, progress.plan(), done)));
-    let fields = step_fields().into_iter().chain(factor_fields(study, &BOTH)).chain(more).collect();
     let meaning = "what a participant's answers to a questionnaire between missions amount to";
-    Table { name: "scores", meaning, fields, rows: rows.collect() }
+    of_steps(study, all, "scores", meaning, more, rows)
 }
 
 fn rows(study: &Study, plan: &Plan, done: &Done) -> Vec<Vec<Cell>> {
@@ -34,10 +31,7 @@ fn rows(study: &Study, plan: &Plan, done: &Done) -> Vec<Vec<Cell>> {
     let (Some(asked), Some(instrument)) = (study.questionnaire(name), study.instrument(name)) else {
         return Vec::new();
     };
-    let mission = match about.and_then(|about| plan.steps.get(about)) {
-        Some(Step::Mission(mission)) => text(&mission.mission),
-        _ => Cell::Nothing,
-    };
+    let mission = mission_about(plan, *about);
     let failed = |(item, given): (usize, &Option<_>)| instrument.is_attentive(item, given.as_ref()) == Some(false);
     let failed = done.answers.iter().enumerate().filter(|one| failed(*one)).count();
     let factors = factor_cells(study, &BOTH, &plan.choices(done.step));

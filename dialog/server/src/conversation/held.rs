@@ -1,0 +1,498 @@
+//! What a conversation holds back: what it has understood and not answered yet, until a wizard decides or a delay is over.
+//!
+//! One thing is held back at a time; what is said meanwhile waits, and is understood once that was answered. While it is held
+//! back the conversation goes on as if it had not been said, and when something comes of that it is understood anew. A stop is
+//! never held back, and ends what is.
+
+use cohabit_bus::message::DialogKind;
+use cohabit_cdf::Action;
+use cohabit_language::{Asking, Context, Known, Step, Understanding};
+use cohabit_record::{DecisionOutcome, Proposed, WizardDecision};
+use serde::{Deserialize, Serialize};
+
+use super::{
+    Conversation, Reaction, TurnEnd,
+    hearing::{Meaning, Words},
+};
+use crate::{
+    known::Knowledge,
+    page::{LineKind, Speaker},
+    text::in_one_line,
+    wizard::{Decision, HeldSince, LONGEST_SAYING, Next, OnTimeout, Proposal},
+};
+
+/// So much of a proposal's plan is noted.
+const MOST_NOTED_STEPS: usize = 12;
+/// The most that waits behind what is held back.
+const MOST_WAITING: usize = 32;
+/// What a wizard reads who decides what is over.
+const PAST: &str = "That is past: it was answered, or the person has said something else.";
+const CHANGED: &str = "The proposal has changed meanwhile: look again.";
+
+/// What is held back.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+pub(super) struct Held {
+    words: Words,
+    meaning: Meaning,
+    /// What the robot made of the words by itself, for the record.
+    own: Proposed,
+    edits: Vec<String>,
+    revision: u32,
+    proposed_nanos: u64,
+    is_late: bool,
+    decided: Option<Decided>,
+}
+
+#[derive(Clone, Debug, Deserialize, Serialize)]
+struct Decided {
+    at_nanos: u64,
+    /// What the wizard has the robot say and do; what it proposed, if absent.
+    own: Option<Own>,
+}
+
+/// What a wizard has the robot say and do.
+#[derive(Clone, Debug, Default, Deserialize, Serialize)]
+struct Own {
+    say: String,
+    phrase: Option<char>,
+    order: Option<Order>,
+}
+
+/// A plain request of a wizard's that can be carried out.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+struct Order {
+    text: String,
+    steps: Vec<Step>,
+    context: Context,
+}
+
+impl Held {
+    fn since(&self) -> HeldSince {
+        HeldSince {
+            received_nanos: self.words.received_nanos,
+            proposed_nanos: self.proposed_nanos,
+            is_decided: self.decided.is_some(),
+            is_late: self.is_late,
+        }
+    }
+
+    /// What came of it, where the wizard decided; or did not in time.
+    fn outcome(&self) -> DecisionOutcome {
+        match &self.decided {
+            None => DecisionOutcome::TimedOut,
+            Some(Decided { own: Some(own), .. }) if own.is_nothing() => DecisionOutcome::Dismissed,
+            Some(Decided { own: Some(_), .. }) => DecisionOutcome::Replaced,
+            Some(Decided { own: None, .. }) if self.edits.is_empty() => DecisionOutcome::Accepted,
+            Some(Decided { own: None, .. }) => DecisionOutcome::Edited,
+        }
+    }
+
+    fn record(&self, outcome: DecisionOutcome, now_nanos: u64) -> WizardDecision {
+        let decided = self.decided.as_ref().filter(|_| outcome != DecisionOutcome::Stopped);
+        let own = decided.and_then(|decided| decided.own.as_ref());
+        WizardDecision {
+            said: self.words.text.clone(),
+            proposed: Some(self.own.clone()),
+            edits: self.edits.clone(),
+            is_late: self.is_late || outcome == DecisionOutcome::TimedOut,
+            decided_ms: decided.map(|decided| milliseconds(self.proposed_nanos, decided.at_nanos)),
+            answered_ms: (outcome != DecisionOutcome::Stopped)
+                .then(|| milliseconds(self.words.received_nanos, now_nanos)),
+            ..own.map_or_else(|| WizardDecision::of_outcome(outcome), |own| own.record(outcome))
+        }
+    }
+}
+
+impl Own {
+    fn is_nothing(&self) -> bool {
+        self.say.is_empty() && self.order.is_none()
+    }
+
+    fn record(&self, outcome: DecisionOutcome) -> WizardDecision {
+        let ordered = self.order.as_ref().map(|order| order.text.clone()).unwrap_or_default();
+        WizardDecision { spoke: self.say.clone(), phrase: self.phrase, ordered, ..WizardDecision::of_outcome(outcome) }
+    }
+}
+
+fn milliseconds(from_nanos: u64, to_nanos: u64) -> f64 {
+    to_nanos.saturating_sub(from_nanos) as f64 * 1e-6
+}
+
+/// What the robot would do, for a wizard and the record.
+fn proposed(understanding: &Understanding) -> Proposed {
+    let (kind, steps) = match understanding {
+        Understanding::Plan { steps, .. } => ("plan", steps.as_slice()),
+        Understanding::Question { .. } => ("question", &[][..]),
+        Understanding::Answer { .. } => ("answer", &[][..]),
+        Understanding::Refusal { .. } => ("refusal", &[][..]),
+        Understanding::Stop { .. } => ("stop", &[][..]),
+    };
+    let steps = steps.iter().filter(|step| !step.says.is_empty()).map(|step| step.says.clone());
+    let reply = understanding.reply().to_owned();
+    Proposed { kind: kind.to_owned(), steps: steps.take(MOST_NOTED_STEPS).collect(), reply }
+}
+
+impl Conversation {
+    /// Whether something is held back, so that what is said now has to wait.
+    pub(super) fn is_holding_back(&self) -> bool {
+        self.memory.held.is_some()
+    }
+
+    /// Has words wait until what is held back is answered; of too many the oldest are over.
+    pub(super) fn let_wait(&mut self, words: Words, reactions: &mut Vec<Reaction>) {
+        self.memory.waiting.push_back(words);
+        if self.memory.waiting.len() > MOST_WAITING
+            && let Some(Words { turn, .. }) = self.memory.waiting.pop_front()
+        {
+            reactions.push(Reaction::TurnEnded { turn, end: TurnEnd::Interrupted });
+        }
+        reactions.push(Reaction::Proposes);
+    }
+
+    /// Answers what was understood, or holds it back.
+    pub(super) fn answer(
+        &mut self,
+        words: Words,
+        meaning: Meaning,
+        knowledge: &Knowledge,
+        reactions: &mut Vec<Reaction>,
+    ) {
+        let turn = words.turn;
+        if !self.holding.holds() {
+            self.take_up(meaning, turn, turn, knowledge, reactions);
+            return;
+        }
+        match meaning.understanding {
+            Understanding::Stop { reply, then } => {
+                self.stop_held(reactions);
+                let stop = Understanding::Stop { reply, then: None };
+                let after = Meaning { understanding: stop, ..meaning };
+                self.take_up(after, turn, turn, knowledge, reactions);
+                if let Some(then) = then {
+                    // The plan of that number is the stop's.
+                    self.memory.turns += 1;
+                    let context = self.memory.context.clone();
+                    let meaning = Meaning { understanding: *then, context, unsure: None, open: None };
+                    self.hold(words, meaning, reactions);
+                }
+            }
+            // It sounded like a stop, and was none.
+            _ if self.is_holding_back() => self.let_wait(words, reactions),
+            understanding => self.hold(words, Meaning { understanding, ..meaning }, reactions),
+        }
+    }
+
+    fn take_up(
+        &mut self,
+        meaning: Meaning,
+        turn: u64,
+        number: u64,
+        knowledge: &Knowledge,
+        reactions: &mut Vec<Reaction>,
+    ) {
+        (self.memory.context, self.memory.unsure) = (meaning.context, meaning.unsure);
+        self.react(turn, number, meaning.understanding, knowledge, reactions);
+    }
+
+    fn hold(&mut self, words: Words, meaning: Meaning, reactions: &mut Vec<Reaction>) {
+        let proposed_nanos = words.received_nanos.max(self.memory.free_since_nanos);
+        let held = Held {
+            own: proposed(&meaning.understanding),
+            words,
+            meaning,
+            edits: Vec::new(),
+            revision: 0,
+            proposed_nanos,
+            is_late: false,
+            decided: None,
+        };
+        self.memory.held = Some(Box::new(held));
+        reactions.push(Reaction::Proposes);
+    }
+
+    /// The person told the robot to stop: what is held back, and what waits behind it, is over.
+    fn stop_held(&mut self, reactions: &mut Vec<Reaction>) {
+        let waiting = std::mem::take(&mut self.memory.waiting);
+        if let Some(held) = self.memory.held.take() {
+            self.note_decision(held.words.turn, &held.record(DecisionOutcome::Stopped, 0), reactions);
+            reactions.push(Reaction::TurnEnded { turn: held.words.turn, end: TurnEnd::Interrupted });
+            reactions.push(Reaction::Proposes);
+        }
+        for words in waiting {
+            let record = WizardDecision { said: words.text, ..WizardDecision::of_outcome(DecisionOutcome::Stopped) };
+            self.note_decision(words.turn, &record, reactions);
+            reactions.push(Reaction::TurnEnded { turn: words.turn, end: TurnEnd::Interrupted });
+        }
+    }
+
+    /// Notes a decision for the log; where nobody decides there is none.
+    fn note_decision(&self, turn: u64, record: &WizardDecision, reactions: &mut Vec<Reaction>) {
+        if self.holding.wizard.is_some() {
+            reactions.push(self.bus(DialogKind::Decided, turn, &record.text()));
+        }
+    }
+
+    /// Understands what is held back anew, in the conversation as it is by now. What is decided stays as it was seen.
+    pub(super) fn propose_again(&mut self, knowledge: &Knowledge, reactions: &mut Vec<Reaction>) {
+        let Some(held) = self.memory.held.as_ref().filter(|held| held.decided.is_none()) else { return };
+        let Some(known) = knowledge.known() else { return };
+        let meaning = match held.edits.last() {
+            Some(request) => self.requested(request, &known),
+            None => self.meaning(&held.words, &known),
+        };
+        let Some(held) = &mut self.memory.held else { return };
+        if !super::is_same(&held.meaning.understanding, &meaning.understanding) {
+            held.revision += 1;
+            if held.edits.is_empty() {
+                held.own = proposed(&meaning.understanding);
+            }
+            reactions.push(Reaction::Proposes);
+        }
+        held.meaning = meaning;
+    }
+
+    /// What a plain request means that somebody else wrote.
+    fn requested(&self, request: &str, known: &Known) -> Meaning {
+        let mut context = self.memory.context.clone();
+        let understanding = self.language.understand(request, known, &mut context);
+        Meaning { understanding, context, unsure: None, open: None }
+    }
+
+    /// What is proposed to a wizard now, if anything is held back.
+    pub(crate) fn proposal(&self, now_nanos: u64) -> Option<Proposal> {
+        let held = self.memory.held.as_ref()?;
+        let Proposed { kind, steps, reply } = proposed(&held.meaning.understanding);
+        let due = self.due(now_nanos);
+        Some(Proposal {
+            turn: held.words.turn,
+            revision: held.revision,
+            said: held.words.text.clone(),
+            edits: held.edits.clone(),
+            kind,
+            steps,
+            reply,
+            sureness: held.meaning.context.sureness(),
+            waiting: self.memory.waiting.iter().map(|words| words.text.clone()).collect(),
+            is_decided: held.decided.is_some(),
+            is_late: held.is_late,
+            left_ms: due.map(|due| due.saturating_sub(now_nanos) / 1_000_000),
+        })
+    }
+
+    /// When something follows without anybody's doing, if it does.
+    pub(crate) fn due(&self, now_nanos: u64) -> Option<u64> {
+        match self.holding.next(self.memory.held.as_ref()?.since(), now_nanos) {
+            Next::Wait(until) => until,
+            Next::Answer | Next::TimeOut(_) => Some(now_nanos),
+        }
+    }
+
+    /// What follows by now without anybody's doing.
+    pub(crate) fn elapse(&mut self, now_nanos: u64, knowledge: &Knowledge) -> Vec<Reaction> {
+        let mut reactions = Vec::new();
+        let Some(held) = &mut self.memory.held else { return reactions };
+        match self.holding.next(held.since(), now_nanos) {
+            Next::Wait(_) => {}
+            Next::Answer | Next::TimeOut(OnTimeout::Act) => self.release(now_nanos, knowledge, &mut reactions),
+            Next::TimeOut(follows) => {
+                held.is_late = true;
+                let turn = held.words.turn;
+                let moment = self.holding.wizard.as_ref().map(|wizard| wizard.moment.clone());
+                if let (OnTimeout::Say, Some(moment)) = (follows, moment) {
+                    self.say(turn, DialogKind::Reply, LineKind::Say, &moment, &mut reactions);
+                }
+                reactions.push(Reaction::Proposes);
+            }
+        }
+        reactions
+    }
+
+    /// Answers what is held back, and takes up what was said since.
+    fn release(&mut self, now_nanos: u64, knowledge: &Knowledge, reactions: &mut Vec<Reaction>) {
+        let Some(held) = self.memory.held.take() else { return };
+        let record = held.record(held.outcome(), now_nanos);
+        let Held { words: Words { turn, received_nanos, text, .. }, meaning, decided, .. } = *held;
+        let number = self.number_of(turn);
+        reactions.push(Reaction::Answers { turn: number, received_nanos });
+        match decided.and_then(|decided| decided.own) {
+            Some(own) => {
+                self.memory.context.note_said(false, &text);
+                self.do_own(turn, number, own, knowledge, reactions);
+            }
+            None => self.take_up(meaning, turn, number, knowledge, reactions),
+        }
+        self.note_decision(turn, &record, reactions);
+        reactions.push(Reaction::Proposes);
+        self.memory.free_since_nanos = now_nanos;
+        if let Some(words) = self.memory.waiting.pop_front() {
+            self.take_in(words, knowledge, reactions);
+        }
+    }
+
+    /// The number of the plan that answers a turn: that of the turn, if nothing was numbered since.
+    const fn number_of(&mut self, turn: u64) -> u64 {
+        if self.memory.turns > turn {
+            self.memory.turns += 1;
+        }
+        self.memory.turns
+    }
+
+    /// Says and does what a wizard wrote or picked.
+    fn do_own(&mut self, turn: u64, number: u64, own: Own, knowledge: &Knowledge, reactions: &mut Vec<Reaction>) {
+        let Own { say, order, .. } = own;
+        let end = if say.is_empty() { TurnEnd::Interrupted } else { TurnEnd::Answered };
+        if !say.is_empty() {
+            self.memory.asked = None;
+            self.say(turn, DialogKind::Reply, LineKind::Say, &say, reactions);
+        }
+        match order {
+            Some(Order { steps, context, .. }) => {
+                self.memory.context = context;
+                let silently = Understanding::Plan { steps, reply: String::new() };
+                self.react(turn, number, silently, knowledge, reactions);
+                self.silence(number);
+            }
+            None => reactions.push(Reaction::TurnEnded { turn, end }),
+        }
+    }
+
+    fn silence(&mut self, number: u64) {
+        if let Some(plan) = self.memory.plans.get_mut(&number) {
+            plan.is_silent = true;
+        }
+    }
+
+    /// Whether what comes of that plan is told to nobody but the wizard.
+    pub(super) fn is_silent(&self, number: u64) -> bool {
+        self.memory.plans.get(&number).is_some_and(|plan| plan.is_silent)
+    }
+
+    /// What came of an order, of which people are told nothing: the wizard reads what the robot would say.
+    pub(super) fn unsaid(&mut self, after: u64, reactions: Vec<Reaction>) -> Vec<Reaction> {
+        let newest = self.memory.plans.last_key_value().map(|(number, _)| *number);
+        if let Some(number) = newest.filter(|number| *number > after) {
+            self.silence(number);
+        }
+        let is_words = |message: &cohabit_bus::message::DialogMessage| {
+            matches!(message.header.kind(), Some(DialogKind::Reply | DialogKind::Question))
+        };
+        let told = reactions.into_iter().filter_map(|reaction| match reaction {
+            Reaction::Chat(line) if line.from == Speaker::Robot => Some(Reaction::ForWizard(line.text)),
+            Reaction::Bus(message) if is_words(&message) => None,
+            other => Some(other),
+        });
+        told.collect()
+    }
+
+    /// A wizard decides.
+    ///
+    /// # Errors
+    /// Why that cannot be, in words for the wizard.
+    pub(crate) fn decide(
+        &mut self,
+        decision: Decision,
+        now_nanos: u64,
+        knowledge: &Knowledge,
+    ) -> Result<Vec<Reaction>, String> {
+        let mut reactions = Vec::new();
+        match decision {
+            Decision::Accept { turn, revision } => {
+                let held = self.undecided(turn)?;
+                if held.revision != revision {
+                    return Err(CHANGED.to_owned());
+                }
+                held.decided = Some(Decided { at_nanos: now_nanos, own: None });
+            }
+            Decision::Edit { turn, text } => {
+                self.undecided(turn)?;
+                let known = knowledge.known().ok_or("The robot does not see anything yet.")?;
+                let meaning = self.requested(&request(&text)?, &known);
+                let held = self.undecided(turn)?;
+                held.edits.push(request(&text)?);
+                held.revision += 1;
+                held.meaning = meaning;
+                reactions.push(Reaction::Proposes);
+                return Ok(reactions);
+            }
+            Decision::Own { turn, say, phrase, order } => {
+                let own = self.own(&say, phrase, &order, knowledge)?;
+                let Some(turn) = turn else { return self.act(own, knowledge) };
+                self.undecided(turn)?.decided = Some(Decided { at_nanos: now_nanos, own: Some(own) });
+            }
+        }
+        reactions.push(Reaction::Proposes);
+        reactions.extend(self.elapse(now_nanos, knowledge));
+        Ok(reactions)
+    }
+
+    fn undecided(&mut self, turn: u64) -> Result<&mut Held, String> {
+        let held = self.memory.held.as_deref_mut();
+        held.filter(|held| held.words.turn == turn && held.decided.is_none()).ok_or_else(|| PAST.to_owned())
+    }
+
+    /// What a wizard wrote or picked, as far as it can be said and done.
+    fn own(&self, say: &str, phrase: Option<char>, order: &str, knowledge: &Knowledge) -> Result<Own, String> {
+        let mut phrases = self.holding.wizard.iter().flat_map(|wizard| &wizard.phrases);
+        let say = match phrase {
+            Some(key) => {
+                let known = phrases.find(|one| one.key == key);
+                known.ok_or_else(|| format!("No phrase has the key {key}."))?.text.clone()
+            }
+            None => in_one_line(say.trim()),
+        };
+        if say.chars().count() > LONGEST_SAYING {
+            return Err(format!("The robot says {LONGEST_SAYING} characters at most."));
+        }
+        let order = if order.trim().is_empty() { None } else { Some(self.order(&request(order)?, knowledge)?) };
+        Ok(Own { say, phrase, order })
+    }
+
+    /// What a wizard's plain request comes to; nothing is asked about it.
+    fn order(&self, text: &str, knowledge: &Knowledge) -> Result<Order, String> {
+        let known = knowledge.known().ok_or("The robot does not see anything yet.")?;
+        let mut context = self.memory.context.clone();
+        let understood = self.language.clone().asking(Asking::Never).understand(text, &known, &mut context);
+        let stop = || Step { action: Action::Stop, says: String::new() };
+        let steps = match understood {
+            Understanding::Plan { steps, .. } => steps,
+            Understanding::Stop { then: None, .. } => vec![stop()],
+            other => return Err(format!("The robot would not do that: {}", other.reply())),
+        };
+        Ok(Order { text: text.to_owned(), steps, context })
+    }
+
+    /// Has the robot say and do something of the wizard's own accord.
+    fn act(&mut self, own: Own, knowledge: &Knowledge) -> Result<Vec<Reaction>, String> {
+        if own.is_nothing() {
+            return Err("Write what the robot is to say or to do.".to_owned());
+        }
+        let mut reactions = Vec::new();
+        let record = own.record(DecisionOutcome::Unprompted);
+        let turn = self.memory.turns.max(1);
+        // What is held back keeps its number.
+        self.memory.turns = turn + u64::from(own.order.is_some());
+        let number = self.memory.turns;
+        let has_order = own.order.is_some();
+        self.do_own(turn, number, own, knowledge, &mut reactions);
+        if !has_order {
+            // No turn ends by what the robot says of its own accord.
+            reactions.retain(|reaction| !matches!(reaction, Reaction::TurnEnded { .. }));
+        }
+        self.note_decision(turn, &record, &mut reactions);
+        self.propose_again(knowledge, &mut reactions);
+        Ok(reactions)
+    }
+}
+
+/// A wizard's request, if it is one.
+fn request(text: &str) -> Result<String, String> {
+    let text = in_one_line(text.trim());
+    if (1..=LONGEST_SAYING).contains(&text.chars().count()) {
+        return Ok(text);
+    }
+    Err(format!("Write a plain request of 1 to {LONGEST_SAYING} characters."))
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests;

@@ -1,0 +1,312 @@
+//! What is held back is answered as a wizard decides, or by itself when its time has come; and people see the same either way.
+
+use std::time::Duration;
+
+use cohabit_bus::message::{DialogMessage, PlanStep};
+use cohabit_cdf::Status;
+use cohabit_record::DialogEntry;
+
+use super::{
+    super::tests::{conversation, knowledge, plans, says},
+    *,
+};
+use crate::wizard::{Holding, MOMENT, WizardSettings};
+
+const MS: u64 = 1_000_000;
+const SAID: &str = "go to the main office";
+
+fn seat(timeout: Option<(u64, OnTimeout)>) -> WizardSettings {
+    WizardSettings {
+        timeout: timeout.map(|(ms, _)| Duration::from_millis(ms)),
+        on_timeout: timeout.map(|(_, on)| on).unwrap_or_default(),
+        moment: MOMENT.to_owned(),
+        phrases: vec!["h=Hello!".parse().unwrap(), "m:wait=Hm, let me see.".parse().unwrap()],
+    }
+}
+
+fn with_wizard(delay_ms: u64, timeout: Option<(u64, OnTimeout)>) -> Conversation {
+    conversation().holding(Holding { delay: Duration::from_millis(delay_ms), wizard: Some(seat(timeout)) })
+}
+
+fn delayed(delay_ms: u64) -> Conversation {
+    conversation().holding(Holding { delay: Duration::from_millis(delay_ms), wizard: None })
+}
+
+/// Says something at 1 s; gives its turn.
+fn say(conversation: &mut Conversation, text: &str) -> u64 {
+    let (turn, reactions) = conversation.hear_called(text, text, 1000 * MS, &knowledge());
+    assert!(!plans(&reactions) && says(&reactions).is_empty(), "{reactions:?}");
+    turn
+}
+
+fn decide(conversation: &mut Conversation, decision: Decision, at_ms: u64) -> Vec<Reaction> {
+    conversation.decide(decision, at_ms * MS, &knowledge()).unwrap()
+}
+
+fn own(turn: Option<u64>, say: &str, order: &str) -> Decision {
+    Decision::Own { turn, say: say.to_owned(), phrase: None, order: order.to_owned() }
+}
+
+/// What was noted for the log.
+fn records(reactions: &[Reaction]) -> Vec<WizardDecision> {
+    let entries = reactions.iter().filter_map(|reaction| match reaction {
+        Reaction::Bus(message) => {
+            let view = cohabit_bus::message::DialogView { header: &message.header, steps: &[] };
+            DialogEntry::new(0, &cohabit_bus::Envelope::default(), view)
+        }
+        _ => None,
+    });
+    entries.filter_map(|entry| WizardDecision::of(&entry)).collect()
+}
+
+fn outcome(reactions: &[Reaction]) -> DecisionOutcome {
+    let all = records(reactions);
+    assert_eq!(all.len(), 1, "{reactions:?}");
+    all[0].outcome
+}
+
+#[test]
+fn what_is_accepted_is_done_as_the_robot_would_have() {
+    let mut conversation = with_wizard(0, None);
+    let turn = say(&mut conversation, SAID);
+    let proposal = conversation.proposal(1000 * MS).unwrap();
+    assert_eq!((proposal.turn, proposal.kind.as_str(), proposal.said.as_str()), (turn, "plan", SAID));
+    assert!(proposal.reply.contains("main office") && proposal.left_ms.is_none(), "{proposal:?}");
+    assert!(conversation.elapse(3_600_000 * MS, &knowledge()).is_empty(), "nothing follows by itself");
+    let reactions = decide(&mut conversation, Decision::Accept { turn, revision: 0 }, 3500);
+    let (_, by_itself) = super::super::tests::conversation().hear(SAID, &knowledge());
+    assert!(plans(&reactions));
+    assert_eq!(says(&reactions), says(&by_itself));
+    let record = &records(&reactions)[0];
+    assert_eq!((record.outcome, record.said.as_str()), (DecisionOutcome::Accepted, SAID));
+    assert_eq!((record.decided_ms, record.answered_ms), (Some(2500.0), Some(2500.0)));
+    assert!(conversation.proposal(0).is_none());
+    let again = conversation.decide(Decision::Accept { turn, revision: 0 }, 0, &knowledge());
+    assert_eq!(again, Err(PAST.to_owned()));
+}
+
+#[test]
+fn an_edit_is_proposed_in_its_place() {
+    let mut conversation = with_wizard(0, None);
+    let turn = say(&mut conversation, "blorp the zargle");
+    assert_eq!(conversation.proposal(0).unwrap().kind, "refusal");
+    let edit = Decision::Edit { turn, text: " go to the reception ".to_owned() };
+    assert!(!plans(&decide(&mut conversation, edit, 2000)));
+    let proposal = conversation.proposal(0).unwrap();
+    assert_eq!((proposal.kind.as_str(), proposal.revision), ("plan", 1));
+    let stale = conversation.decide(Decision::Accept { turn, revision: 0 }, 0, &knowledge());
+    assert_eq!(stale, Err(CHANGED.to_owned()));
+    let reactions = decide(&mut conversation, Decision::Accept { turn, revision: 1 }, 3000);
+    assert!(plans(&reactions) && says(&reactions).contains("reception"), "{}", says(&reactions));
+    let record = &records(&reactions)[0];
+    assert_eq!(
+        (record.outcome, record.edits.as_slice()),
+        (DecisionOutcome::Edited, &["go to the reception".to_owned()][..])
+    );
+    assert_eq!(record.proposed.as_ref().unwrap().kind, "refusal", "what the robot itself made of it");
+}
+
+#[test]
+fn words_and_orders_take_the_place_of_what_was_proposed() {
+    let mut conversation = with_wizard(0, None);
+    let turn = say(&mut conversation, SAID);
+    let reactions = decide(&mut conversation, own(Some(turn), "I would rather not.", ""), 2000);
+    assert!(!plans(&reactions));
+    assert_eq!((says(&reactions).as_str(), outcome(&reactions)), ("I would rather not.", DecisionOutcome::Replaced));
+    // An order is carried out without a word, and can go with one.
+    let turn = say(&mut conversation, SAID);
+    let reactions = decide(&mut conversation, own(Some(turn), "", "go to the reception"), 2000);
+    assert!(plans(&reactions) && says(&reactions).is_empty(), "{reactions:?}");
+    assert_eq!(records(&reactions)[0].ordered, "go to the reception");
+    let turn = say(&mut conversation, SAID);
+    let reactions = decide(&mut conversation, own(Some(turn), "Off I go.", "go to the reception"), 2000);
+    assert!(plans(&reactions) && says(&reactions) == "Off I go.");
+    let turn = say(&mut conversation, SAID);
+    let phrase = Decision::Own { turn: Some(turn), say: String::new(), phrase: Some('h'), order: String::new() };
+    let reactions = decide(&mut conversation, phrase, 2000);
+    assert_eq!((says(&reactions).as_str(), records(&reactions)[0].phrase), ("Hello!", Some('h')));
+    // Nothing at all dismisses it.
+    let turn = say(&mut conversation, SAID);
+    let reactions = decide(&mut conversation, own(Some(turn), "", ""), 2000);
+    assert!(!plans(&reactions) && says(&reactions).is_empty());
+    assert_eq!(outcome(&reactions), DecisionOutcome::Dismissed);
+}
+
+#[test]
+fn what_cannot_be_ordered_is_told_to_the_wizard_and_waits() {
+    let mut conversation = with_wizard(0, None);
+    let turn = say(&mut conversation, SAID);
+    for (decision, part) in [
+        (own(Some(turn), "", "blorp the zargle"), "would not do that"),
+        (own(Some(turn), "", "what are you holding?"), "would not do that"),
+        (own(Some(turn), &"a".repeat(401), ""), "400 characters"),
+        (own(None, "", ""), "Write what"),
+        (Decision::Own { turn: None, say: String::new(), phrase: Some('x'), order: String::new() }, "No phrase"),
+        (Decision::Edit { turn, text: " ".to_owned() }, "Write a plain request"),
+        (Decision::Edit { turn: turn + 1, text: SAID.to_owned() }, "past"),
+    ] {
+        let problem = conversation.decide(decision, 0, &knowledge()).unwrap_err();
+        assert!(problem.contains(part), "{problem}");
+        assert_eq!(conversation.proposal(0).unwrap().turn, turn, "it is held back yet");
+    }
+}
+
+#[test]
+fn a_wizard_acts_of_their_own_accord() {
+    let mut conversation = with_wizard(0, None);
+    let reactions = decide(&mut conversation, own(None, "Hello there.", ""), 2000);
+    assert_eq!((says(&reactions).as_str(), outcome(&reactions)), ("Hello there.", DecisionOutcome::Unprompted));
+    let reactions = decide(&mut conversation, own(None, "", "go to the reception"), 2000);
+    assert!(plans(&reactions) && says(&reactions).is_empty());
+    // A phrase that waits leaves what is held back as it is.
+    let turn = say(&mut conversation, SAID);
+    let phrase = Decision::Own { turn: None, say: String::new(), phrase: Some('m'), order: String::new() };
+    assert_eq!(says(&decide(&mut conversation, phrase, 2000)), "Hm, let me see.");
+    let reactions = decide(&mut conversation, Decision::Accept { turn, revision: 0 }, 3000);
+    assert!(plans(&reactions) && outcome(&reactions) == DecisionOutcome::Accepted);
+}
+
+#[test]
+fn what_comes_of_an_order_is_told_to_the_wizard_alone() {
+    let mut conversation = with_wizard(0, None);
+    let mut knowledge = knowledge();
+    let end = |conversation: &mut Conversation, knowledge: &mut Knowledge, plan: u64| {
+        let kinds = [DialogKind::StepEnded, DialogKind::PlanEnded];
+        let told = kinds.map(|kind| DialogMessage::new(kind, 0, plan, "").at_step(0, Status::TargetOutOfRange));
+        told.iter().flat_map(|message| conversation.follow(&message.header, knowledge)).collect::<Vec<_>>()
+    };
+    let reactions = decide(&mut conversation, own(None, "", SAID), 2000);
+    let plan = plan_number(&reactions);
+    let reactions = end(&mut conversation, &mut knowledge, plan);
+    assert!(says(&reactions).is_empty(), "{reactions:?}");
+    assert!(reactions.iter().any(|reaction| matches!(reaction, Reaction::ForWizard(_))), "{reactions:?}");
+    assert!(!reactions.iter().any(is_spoken), "{reactions:?}");
+    // What was asked for is told as ever.
+    let turn = say(&mut conversation, SAID);
+    let plan = plan_number(&decide(&mut conversation, Decision::Accept { turn, revision: 0 }, 2000));
+    assert!(!says(&end(&mut conversation, &mut knowledge, plan)).is_empty());
+}
+
+fn is_spoken(reaction: &Reaction) -> bool {
+    matches!(reaction, Reaction::Bus(message) if matches!(message.header.kind(), Some(DialogKind::Reply | DialogKind::Question)))
+}
+
+fn plan_number(reactions: &[Reaction]) -> u64 {
+    let plan = reactions.iter().find_map(|reaction| match reaction {
+        Reaction::Bus(message) if message.header.kind() == Some(DialogKind::Plan) => Some(message),
+        _ => None,
+    });
+    let plan: &DialogMessage = plan.unwrap();
+    assert!(plan.steps.iter().all(|step: &PlanStep| step.action != PlanStep::default().action));
+    plan.header.turn
+}
+
+#[test]
+fn a_time_out_has_its_policy() {
+    for (on, acts, moment) in
+        [(OnTimeout::Act, true, ""), (OnTimeout::Say, false, MOMENT), (OnTimeout::Wait, false, "")]
+    {
+        let mut conversation = with_wizard(500, Some((3000, on)));
+        let turn = say(&mut conversation, SAID);
+        assert_eq!(conversation.due(1000 * MS), Some(4000 * MS));
+        assert!(conversation.elapse(3999 * MS, &knowledge()).is_empty());
+        let reactions = conversation.elapse(4000 * MS, &knowledge());
+        assert_eq!(plans(&reactions), acts);
+        if acts {
+            let record = &records(&reactions)[0];
+            assert_eq!((record.outcome, record.is_late), (DecisionOutcome::TimedOut, true));
+            assert_eq!((record.decided_ms, record.answered_ms), (None, Some(3000.0)));
+            continue;
+        }
+        assert_eq!(says(&reactions), moment);
+        assert!(conversation.due(4000 * MS).is_none() && conversation.elapse(9000 * MS, &knowledge()).is_empty());
+        assert!(conversation.proposal(0).unwrap().is_late);
+        let reactions = decide(&mut conversation, Decision::Accept { turn, revision: 0 }, 9000);
+        let record = &records(&reactions)[0];
+        assert_eq!((record.outcome, record.is_late), (DecisionOutcome::Accepted, true));
+    }
+}
+
+#[test]
+fn the_delay_is_the_same_with_and_without_a_wizard() {
+    let mut alone = delayed(800);
+    let mut led = with_wizard(800, None);
+    let turn = say(&mut alone, SAID);
+    assert_eq!(say(&mut led, SAID), turn);
+    let reactions = decide(&mut led, Decision::Accept { turn, revision: 0 }, 1200);
+    assert!(!plans(&reactions) && led.proposal(0).unwrap().is_decided);
+    for conversation in [&mut alone, &mut led] {
+        assert_eq!(conversation.due(1200 * MS), Some(1800 * MS));
+        assert!(conversation.elapse(1799 * MS, &knowledge()).is_empty());
+    }
+    let (alone, led) = (alone.elapse(1800 * MS, &knowledge()), led.elapse(1800 * MS, &knowledge()));
+    assert!(records(&alone).is_empty(), "nobody decided it");
+    // To people it is all one.
+    let seen = |reactions: Vec<Reaction>| -> Vec<Reaction> {
+        let is_decision = |reaction: &Reaction| !records(std::slice::from_ref(reaction)).is_empty();
+        reactions.into_iter().filter(|reaction| !is_decision(reaction)).collect()
+    };
+    assert_eq!(seen(alone), seen(led));
+}
+
+#[test]
+fn what_is_said_meanwhile_waits_and_a_stop_does_not() {
+    let mut conversation = with_wizard(0, Some((3000, OnTimeout::Act)));
+    let first = say(&mut conversation, SAID);
+    let second = say(&mut conversation, "then go there again");
+    let third = say(&mut conversation, "go to the reception");
+    assert_eq!(conversation.proposal(0).unwrap().waiting, ["then go there again", "go to the reception"]);
+    decide(&mut conversation, Decision::Accept { turn: first, revision: 0 }, 2000);
+    let proposal = conversation.proposal(2000 * MS).unwrap();
+    assert_eq!((proposal.turn, proposal.left_ms), (second, Some(3000)), "time counts from when it could be decided");
+    let (_, reactions) = conversation.hear_called("stop!", "stop!", 2500 * MS, &knowledge());
+    assert!(plans(&reactions) && says(&reactions).contains("stop"), "{}", says(&reactions));
+    let outcomes: Vec<_> = records(&reactions).iter().map(|record| record.outcome).collect();
+    assert_eq!(outcomes, [DecisionOutcome::Stopped; 2]);
+    let ended = |turn: u64| {
+        let over = Reaction::TurnEnded { turn, end: TurnEnd::Interrupted };
+        reactions.contains(&over)
+    };
+    assert!(ended(second) && ended(third) && conversation.proposal(0).is_none());
+}
+
+#[test]
+fn what_is_said_with_a_stop_is_held_back_by_itself() {
+    let mut conversation = with_wizard(0, None);
+    let text = "stop, and go to the reception";
+    let (turn, reactions) = conversation.hear_called(text, text, 1000 * MS, &knowledge());
+    let stop = plan_number(&reactions);
+    assert!(!says(&reactions).contains("reception"), "{}", says(&reactions));
+    assert_eq!(conversation.proposal(0).unwrap().kind, "plan");
+    let reactions = decide(&mut conversation, Decision::Accept { turn, revision: 0 }, 2000);
+    assert!(plan_number(&reactions) > stop && says(&reactions).contains("reception"));
+}
+
+#[test]
+fn what_is_proposed_follows_what_the_robot_does_meanwhile() {
+    let mut conversation = with_wizard(0, None);
+    let turn = say(&mut conversation, SAID);
+    let plan = plan_number(&decide(&mut conversation, Decision::Accept { turn, revision: 0 }, 2000));
+    let held = say(&mut conversation, "what did you do?");
+    let before = conversation.proposal(0).unwrap();
+    let done = DialogMessage::new(DialogKind::StepEnded, 0, plan, "").at_step(0, Status::ActionSuccessful);
+    let reactions = conversation.follow(&done.header, &mut knowledge());
+    let after = conversation.proposal(0).unwrap();
+    assert_eq!(after.turn, held);
+    if after.reply != before.reply {
+        assert_eq!(after.revision, before.revision + 1);
+        assert!(reactions.contains(&Reaction::Proposes));
+    }
+    assert_ne!(after.reply, before.reply, "it has done something since");
+}
+
+#[test]
+fn a_conversation_goes_on_with_what_it_held_back() {
+    let mut conversation = with_wizard(0, None);
+    let turn = say(&mut conversation, SAID);
+    let kept = serde_json::to_string(conversation.memory()).unwrap();
+    let mut next = with_wizard(0, None);
+    next.restore(serde_json::from_str(&kept).unwrap());
+    assert_eq!(next.proposal(0), conversation.proposal(0));
+    assert!(plans(&decide(&mut next, Decision::Accept { turn, revision: 0 }, 2000)));
+}

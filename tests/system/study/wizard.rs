@@ -1,0 +1,91 @@
+//! A study with a wizard in one condition: the wizard's page leads to the seat, and participants' pages are the same.
+
+use std::{
+    thread,
+    time::{Duration, Instant},
+};
+
+use cohabit_tests::{Page, run};
+use serde_json::{Value, json};
+
+use super::{Person, STUDY, Server, WATCHDOG, study};
+use crate::COHABIT;
+
+const WIZARD: &str = r#"
+[wizard]
+timeout_s = 30
+on_timeout = "act"
+
+[[wizard.phrase]]
+key = "h"
+text = "Hello!"
+"#;
+
+/// The study in which a wizard takes part at one level of the factor within participants.
+fn with_wizard() -> String {
+    let study = STUDY.replace("settings = { ask = \"always\" }", "settings = { ask = \"never\", wizard = \"yes\" }");
+    assert_ne!(study, STUDY);
+    format!("{study}\n{WIZARD}")
+}
+
+fn keys(value: &Value) -> Vec<String> {
+    value.as_object().unwrap().keys().cloned().collect()
+}
+
+#[test]
+fn the_wizards_page_leads_to_the_seat_and_participants_see_no_difference() {
+    let scratch = study("study-wizard");
+    let _ = scratch.write("study.toml", &with_wizard());
+    let server = Server::start(&scratch, "0");
+    let overview = server.get(&format!("{}/state", server.experimenter));
+    let wizard = overview["wizard"].as_str().unwrap().to_owned();
+    for wrong in [format!("{wizard}0"), server.experimenter.replace("experimenter", "wizard")] {
+        let (head, _) = server.request("GET", &wrong, "");
+        assert!(head.starts_with("HTTP/1.1 404"), "{head}");
+    }
+    let person = Person::sign_up(&server);
+    person.agree(&server);
+    let mut shown = Vec::new();
+    for _ in 0..2 {
+        person.tell(&server, &json!("goes_on"));
+        let state = person.wait_for(&server, "mission");
+        shown.push((keys(&state), keys(&state["session"])));
+        let seats = server.get(&format!("{wizard}/state"))["seats"].clone();
+        let now = server.get(&format!("{}/state", server.experimenter))["participants"][0]["now"].clone();
+        let has_wizard = now.as_str().unwrap().contains("ask=always");
+        assert_eq!(seats.as_array().unwrap().len(), usize::from(has_wizard), "{seats} {now}");
+        if has_wizard {
+            let seat = &seats[0];
+            assert_eq!(seat["participant"], "P01");
+            let authority = format!("127.0.0.1:{}/?token={}", seat["port"], seat["token"].as_str().unwrap());
+            let mut page = person.session(&server);
+            let mut seat = Page::open(&authority).unwrap();
+            page.say("go to the main office").unwrap();
+            let told = seat.wait("a proposal", |_, message| message["proposal"]["is_decided"] == false).unwrap();
+            let accept =
+                json!({ "type": "accept", "turn": told["proposal"]["turn"], "revision": told["proposal"]["revision"] });
+            seat.send(&json!({ "type": "decide", "decision": accept })).unwrap();
+            page.wait("the main office", |page, _| page.state["robot"]["room"] == "MainOffice").unwrap();
+        }
+        let deadline = Instant::now() + WATCHDOG;
+        while person.state(&server)["skip_in_s"] != 0.0 {
+            assert!(Instant::now() < deadline);
+            thread::park_timeout(Duration::from_millis(50));
+        }
+        person.tell(&server, &json!({ "over": { "ending": "skipped" } }));
+        person.wait_for(&server, "questionnaire");
+        let answers = json!([{ "value": 3 }, null]);
+        person.tell(&server, &json!({ "answered": { "questionnaire": "short", "answers": answers } }));
+    }
+    assert_eq!(shown[0], shown[1]);
+    server.end();
+    let (data, out) = (scratch.path("data"), scratch.path("tables"));
+    let exported = run(COHABIT, &["study", "export", "--folder", &data, "--out", &out]).unwrap();
+    assert!(exported.status.success(), "{exported:?}");
+    let decisions = std::fs::read_to_string(format!("{out}/decisions.csv")).unwrap();
+    assert!(decisions.contains("accepted,false,false,go to the main office,plan"), "{decisions}");
+    assert!(decisions.lines().next().unwrap().contains("factor_ask"), "{decisions}");
+    let sheet = run(COHABIT, &["study", "report", "--folder", &data]).unwrap();
+    let sheet = String::from_utf8_lossy(&sheet.stdout).into_owned();
+    assert!(sheet.contains("Of 1 decision, 0 were interventions"), "{sheet}");
+}

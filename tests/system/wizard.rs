@@ -1,0 +1,276 @@
+//! A wizard takes part in a session: decides what the robot answers, at a page of their own, and nobody else learns of it.
+
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    thread,
+};
+
+use cohabit_record::{DecisionOutcome, Log, WizardDecision};
+use cohabit_tests::{Browser, Page, Play, run};
+use serde_json::{Value, json};
+
+use crate::COHABIT;
+
+/// A session, and where its wizard sits: `host:port/?token=…`, as pages are opened in tests.
+fn play(arguments: &[&str]) -> (Play, String) {
+    let common = ["make_cereal", "--knows", "everything", "--understanding", "fast", "--seed", "3", "--speed", "4"];
+    let mut play = Play::spawn(COHABIT, &[&common, arguments].concat()).unwrap();
+    let line = play.wait_for_line("Wizard's seat: ").unwrap();
+    let (_, address) = line.split_once("://").unwrap();
+    play.wait_until_ready().unwrap();
+    (play, address.replace("/wizard?", "/?"))
+}
+
+/// Says these, one after the other was answered; all that the page was told meanwhile.
+fn talk(page: &mut Page, said: &[&str]) -> Vec<Value> {
+    let mut told = Vec::new();
+    let mut hear = |page: &mut Page, last: &dyn Fn(&Value) -> bool| loop {
+        let message = page.next_message().unwrap();
+        let is_last = last(&message);
+        told.push(message);
+        if is_last {
+            break;
+        }
+    };
+    hear(page, &|message| message["type"] == "state");
+    for text in said {
+        page.say(text).unwrap();
+        hear(page, &|message| message["type"] == "turn" && message["ended"] == true);
+    }
+    told
+}
+
+/// Accepts whatever is proposed, so many times.
+fn accept(seat: &str, count: usize) -> thread::JoinHandle<()> {
+    let mut page = Page::open(seat).unwrap();
+    page.wait("the seat", |_, message| message["type"] == "seat").unwrap();
+    thread::spawn(move || {
+        for _ in 0..count {
+            let is_open = |message: &Value| message["type"] == "proposal" && message["proposal"]["is_decided"] == false;
+            let told = page.wait("a proposal", |_, message| is_open(message)).unwrap();
+            let (turn, revision) = (&told["proposal"]["turn"], &told["proposal"]["revision"]);
+            decide(&mut page, &json!({ "type": "accept", "turn": turn, "revision": revision }));
+        }
+    })
+}
+
+/// Decides; the problem with it, if there is one.
+fn decide(page: &mut Page, decision: &Value) -> Value {
+    page.send(&json!({ "type": "decide", "decision": decision })).unwrap();
+    page.wait("the answer", |_, message| message["type"] == "decided").unwrap()["problem"].clone()
+}
+
+/// The fields of the messages of each kind, also of what is in them.
+fn fields(told: &[Value]) -> BTreeMap<String, BTreeSet<String>> {
+    fn add(value: &Value, at: &str, all: &mut BTreeSet<String>) {
+        match value {
+            Value::Object(fields) => {
+                for (name, value) in fields {
+                    let at = format!("{at}/{name}");
+                    add(value, &at, all);
+                    all.insert(at);
+                }
+            }
+            Value::Array(items) => items.iter().for_each(|item| add(item, at, all)),
+            _ => {}
+        }
+    }
+    let mut fields = BTreeMap::<String, BTreeSet<String>>::new();
+    for message in told {
+        add(message, "", fields.entry(message["type"].to_string()).or_default());
+    }
+    fields
+}
+
+const TALK: [&str; 4] =
+    ["go to the main office", "what are you holding?", "blorp the zargle", "go to the break room, then look around"];
+
+#[test]
+fn participants_are_told_the_same_with_a_wizard_and_without() {
+    let delay = ["--response-delay-ms", "300"];
+    let (led, seat) = play(&[&delay[..], &["--wizard", "yes", "--wizard-phrase", "h=Hello!"]].concat());
+    // The wizard is there first.
+    let wizard = accept(&seat, TALK.len());
+    let with = talk(&mut Page::open(led.authority()).unwrap(), &TALK);
+    wizard.join().unwrap();
+    let common = ["make_cereal", "--knows", "everything", "--understanding", "fast", "--seed", "3", "--speed", "4"];
+    let alone = Play::start(COHABIT, &[&common[..], &delay].concat()).unwrap();
+    let without = talk(&mut Page::open(alone.authority()).unwrap(), &TALK);
+    // What follows from what was said comes in the same order, word for word; all else is of the same kinds and fields.
+    let said = |told: &[Value]| -> Vec<Value> {
+        let follows = ["you", "hello", "chat", "progress", "turn"];
+        let told = told.iter().filter(|message| follows.iter().any(|kind| message["type"] == *kind));
+        let mut told: Vec<Value> = told.cloned().collect();
+        for message in told.iter_mut().filter(|message| message["type"] == "hello") {
+            message["session"] = Value::Null;
+        }
+        told
+    };
+    assert_eq!(said(&with), said(&without));
+    assert_eq!(fields(&with), fields(&without));
+    for message in &with {
+        let text = message.to_string().to_lowercase();
+        assert!(!text.contains("wizard") && !text.contains("proposal") && !text.contains("decid"), "{text}");
+    }
+    led.end().unwrap();
+    alone.end().unwrap();
+}
+
+#[test]
+fn what_a_wizard_decides_is_done_and_stands_in_the_log() {
+    let (play, seat) = play(&["--wizard", "yes", "--wizard-phrase", "h=Hello!"]);
+    let mut wizard = Page::open(&seat).unwrap();
+    let told = wizard.wait("the seat", |_, message| message["type"] == "seat").unwrap();
+    assert_eq!(told["phrases"], json!([{ "key": "h", "text": "Hello!", "waits": false }]));
+    let mut page = Page::open(play.authority()).unwrap();
+    let proposed = |wizard: &mut Page, kind: &str, revision: u64| {
+        let is_it = |message: &Value| {
+            let proposal = &message["proposal"];
+            message["type"] == "proposal" && proposal["kind"] == kind && proposal["revision"] == revision
+        };
+        wizard.wait("a proposal", |_, message| is_it(message)).unwrap()["proposal"].clone()
+    };
+    let ended = |page: &mut Page| {
+        page.wait("the end", |_, message| message["type"] == "turn" && message["ended"] == true).unwrap();
+    };
+    let says = |page: &Page, text: &str| page.chat.iter().any(|(from, said)| from == "robot" && said.contains(text));
+
+    // Another request in place of what was said.
+    page.say("blorp the zargle").unwrap();
+    let proposal = proposed(&mut wizard, "refusal", 0);
+    assert_eq!(proposal["said"], "blorp the zargle");
+    let turn = &proposal["turn"];
+    assert!(decide(&mut wizard, &json!({ "type": "edit", "turn": turn, "text": "go to the reception" })).is_null());
+    let stale = decide(&mut wizard, &json!({ "type": "accept", "turn": turn, "revision": 0 }));
+    assert!(stale.as_str().unwrap().contains("changed"), "{stale}");
+    assert!(decide(&mut wizard, &json!({ "type": "accept", "turn": turn, "revision": 1 })).is_null());
+    ended(&mut page);
+    assert!(says(&page, "going to the reception"), "{:?}", page.chat);
+    // A phrase.
+    page.say("go to the break room").unwrap();
+    let proposal = proposed(&mut wizard, "plan", 0);
+    let phrase = json!({ "type": "own", "turn": proposal["turn"], "phrase": "h" });
+    assert!(decide(&mut wizard, &phrase).is_null());
+    ended(&mut page);
+    assert!(says(&page, "Hello!") && !says(&page, "break room"), "{:?}", page.chat);
+    // An order, of which nothing is said.
+    let lines = page.chat.len();
+    let order = json!({ "type": "own", "turn": null, "order": "go to the break room" });
+    assert!(decide(&mut wizard, &order).is_null());
+    page.wait("the break room", |page, _| page.state["robot"]["room_name"] == "break room").unwrap();
+    ended(&mut page);
+    assert_eq!(page.chat.len(), lines, "{:?}", page.chat);
+    let problem = decide(&mut wizard, &json!({ "type": "own", "turn": null, "order": "snorf the wibble" }));
+    assert!(problem.as_str().unwrap().contains("would not do that"), "{problem}");
+    // A stop is not held back.
+    page.do_and_wait("stop").unwrap();
+    drop((page, wizard));
+    let ended = play.end().unwrap();
+    let log = Log::open(&ended.log).unwrap();
+    let decisions: Vec<WizardDecision> = log.dialog.iter().filter_map(WizardDecision::of).collect();
+    let outcomes: Vec<_> = decisions.iter().map(|one| one.outcome).collect();
+    use DecisionOutcome::{Edited, Replaced, Unprompted};
+    assert_eq!(outcomes, [Edited, Replaced, Unprompted], "{decisions:#?}");
+    assert_eq!((decisions[1].phrase, decisions[2].ordered.as_str()), (Some('h'), "go to the break room"));
+    assert!(decisions[..2].iter().all(|one| one.decided_ms.is_some() && one.answered_ms >= one.decided_ms));
+    assert_eq!(log.session.settings["wizard"], "yes");
+    // What a wizard does reaches the world by the robot's commands alone.
+    let replayed = run(COHABIT, &["replay", ended.log.to_str().unwrap()]).unwrap();
+    assert!(replayed.status.success(), "{replayed:?}");
+    let out = ended.folder.join("tables");
+    let exported = run(COHABIT, &["export", ended.log.to_str().unwrap(), "--out", out.to_str().unwrap()]).unwrap();
+    assert!(exported.status.success(), "{exported:?}");
+    let table = std::fs::read_to_string(out.join("decisions.csv")).unwrap();
+    for part in ["edited,true,false,blorp the zargle,refusal", "go to the reception,1", "unprompted,true"] {
+        assert!(table.contains(part), "`{part}` is not in {table}");
+    }
+}
+
+#[test]
+fn a_late_wizard_leaves_it_to_the_policy_and_a_killed_service_holds_what_was_held() {
+    let acts = ["--wizard", "yes", "--wizard-timeout-s", "0.5", "--wizard-on-timeout", "act"];
+    let (play_acting, _) = play(&acts);
+    let mut page = Page::open(play_acting.authority()).unwrap();
+    page.do_and_wait("go to the main office").unwrap();
+    assert_eq!(page.state["robot"]["room_name"], "main office");
+    drop(page);
+    play_acting.end().unwrap();
+
+    let (play, seat) = play(&["--wizard", "yes"]);
+    let mut page = Page::open(play.authority()).unwrap();
+    let mut wizard = Page::open(&seat).unwrap();
+    let is_open = |message: &Value| message["type"] == "proposal" && message["proposal"]["is_decided"] == false;
+    page.say("go to the main office").unwrap();
+    let before = wizard.wait("a proposal", |_, message| is_open(message)).unwrap();
+    play.send("dialog", rustix::process::Signal::KILL).unwrap();
+    let mut wizard = Page::once_served(|| Page::open(&seat)).unwrap();
+    let after = wizard.wait("the proposal", |_, message| is_open(message)).unwrap();
+    assert_eq!(
+        (&after["proposal"]["turn"], &after["proposal"]["reply"]),
+        (&before["proposal"]["turn"], &before["proposal"]["reply"])
+    );
+    let mut page = Page::once_served(|| Page::open(play.authority())).unwrap();
+    let accept =
+        json!({ "type": "accept", "turn": after["proposal"]["turn"], "revision": after["proposal"]["revision"] });
+    assert!(decide(&mut wizard, &accept).is_null());
+    page.wait("the main office", |page, _| page.state["robot"]["room_name"] == "main office").unwrap();
+    drop((page, wizard));
+    play.end().unwrap();
+}
+
+#[test]
+#[cfg_attr(not(browser), ignore = "needs a browser")]
+fn a_wizard_needs_nothing_but_a_keyboard() {
+    let (play, seat) = play(&["--wizard", "yes", "--wizard-phrase", "h=Hello!"]);
+    let mut page = Page::open(play.authority()).unwrap();
+    let browser = Browser::start().unwrap();
+    let address = format!("http://{}", seat.replace("/?", "/wizard?"));
+    let mut tab = browser.open(&address, 1280, 800).unwrap();
+    tab.wait_until("window.cohabit?.frames > 0 && window.cohabit.seat !== null").unwrap();
+    assert_eq!(tab.evaluate("window.cohabit.view").unwrap(), json!("eyes/0"), "what the robot sees");
+    let press = |tab: &mut cohabit_tests::Tab, key: &str| {
+        let event = format!(
+            "document.activeElement.dispatchEvent(new KeyboardEvent('keydown', {{ key: {key:?}, bubbles: true }}))"
+        );
+        tab.evaluate(&event).unwrap();
+    };
+    page.say("blorp the zargle").unwrap();
+    tab.wait_until("window.cohabit.proposal?.kind === 'refusal'").unwrap();
+    // Written words begin with what was said.
+    press(&mut tab, "=");
+    assert_eq!(
+        tab.evaluate("document.activeElement.id + document.activeElement.value").unwrap(),
+        json!("editblorp the zargle")
+    );
+    tab.evaluate(
+        "document.activeElement.value = 'go to the reception'; document.querySelector('#orders').requestSubmit()",
+    )
+    .unwrap();
+    tab.wait_until("window.cohabit.proposal?.kind === 'plan' && document.activeElement === document.body").unwrap();
+    press(&mut tab, "Enter");
+    page.wait("the reception", |page, _| page.chat.iter().any(|(_, text)| text.contains("going to the reception")))
+        .unwrap();
+    press(&mut tab, "h");
+    page.wait("a phrase", |page, _| page.chat.iter().any(|(_, text)| text == "Hello!")).unwrap();
+    press(&mut tab, "/");
+    assert_eq!(tab.evaluate("document.activeElement.id").unwrap(), json!("say"));
+    tab.evaluate("document.activeElement.value = 'Here I am.'; document.querySelector('#orders').requestSubmit()")
+        .unwrap();
+    page.wait("what was typed", |page, _| page.chat.iter().any(|(_, text)| text == "Here I am.")).unwrap();
+    tab.wait_until("document.querySelector('#say').value === ''").unwrap();
+    // Everything that can be used has a name.
+    let nameless = "[...document.querySelectorAll('button, input, select, canvas, svg[role]')].filter((one) => one.checkVisibility() && \
+        !(one.getAttribute('aria-label') || one.innerText || one.labels?.length)).map((one) => one.outerHTML)";
+    assert_eq!(tab.evaluate(nameless).unwrap(), json!([]));
+    for (width, height) in [(1280, 800), (390, 844)] {
+        let size = json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": false });
+        tab.call("Emulation.setDeviceMetricsOverride", &size).unwrap();
+        assert_eq!(
+            tab.evaluate(&format!("document.documentElement.scrollWidth <= {width}")).unwrap(),
+            json!(true),
+            "{width}"
+        );
+    }
+    drop(page);
+    play.end().unwrap();
+}
