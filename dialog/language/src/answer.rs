@@ -278,6 +278,9 @@ impl Answerer<'_> {
         let deed = yes_no::deed_asked_about(self.lexicon, self.catalog, &question.rest).map(|clause| clause.intent);
         let want = Want::place(Intent::Find, &[], None);
         let object = about.and_then(|phrase| self.ground().one(phrase, &want).ok());
+        if let Some(not) = self.not_asked_for(object, &question.rest) {
+            return Understanding::answer(not);
+        }
         if let Some(why) = self.context.deeds.why(deed, object) {
             return Understanding::answer(format!("{why}."));
         }
@@ -297,6 +300,16 @@ impl Answerer<'_> {
                 self.context.deeds.goals_of(reason)
             ),
         })
+    }
+
+    /// `why did you not close the microwave`: that nobody asked for it, unless it was done.
+    fn not_asked_for(&self, object: Option<ObjectId>, asked: &[String]) -> Option<String> {
+        let at = asked.iter().position(|word| self.lexicon.ifs.negations.contains(word))?;
+        let done = [&asked[..at], &asked[at + 1..]].concat();
+        let intent = yes_no::deed_asked_about(self.lexicon, self.catalog, &done)?.intent;
+        let what = object.map_or_else(|| "that".to_owned(), |id| self.short(id));
+        let is_done = object.is_some_and(|id| self.context.deeds.did(intent, id));
+        (!is_done).then(|| format!("You did not ask me to {} {what}.", intent.verb()))
     }
 
     /// Why a thing is as it is: what was done to it.

@@ -64,12 +64,14 @@ impl Conversation<'_> {
             }
             Pending::Offer { mut plans } => {
                 let names: Vec<String> = plans.iter().map(|steps| reply::plan_in_words(steps)).collect();
-                let at = self.chosen_plan(words, is_yes || is(Small::Any), &names)?;
+                let chosen = self.chosen_plan(words, is_yes || is(Small::Any), &names);
+                let at = chosen.or_else(|| self.told_apart(words, &names).filter(|_| !is_command))?;
                 Some(self.go(plans.swap_remove(at), context))
             }
             Pending::Guess { mut guesses } => {
                 let names: Vec<String> = guesses.iter().map(|guess| guess.name.clone()).collect();
-                let at = self.chosen_plan(words, is_yes || is(Small::Any), &names)?;
+                let chosen = self.chosen_plan(words, is_yes || is(Small::Any), &names);
+                let at = chosen.or_else(|| self.told_apart(words, &names).filter(|_| !is_command))?;
                 Some(self.go_as_guessed(guesses.swap_remove(at), context))
             }
             Pending::Search { clauses } if is_yes || is(Small::Search) => {
@@ -179,6 +181,26 @@ impl Conversation<'_> {
             None => return None,
         };
         usize::try_from(at).ok().filter(|at| *at < names.len())
+    }
+
+    /// Which of the plans of these names is meant by words of which one alone has some: `the microwave, I said`.
+    fn told_apart(&self, words: &[String], names: &[String]) -> Option<usize> {
+        let lexicon = self.lexicon;
+        let says = |word: &String| {
+            !lexicon.is_small_word(word)
+                && lexicon.answer_lead.exact(std::slice::from_ref(word)).is_none()
+                && lexicon.prepositions.exact(std::slice::from_ref(word)).is_none()
+        };
+        // `the microwave, not the coffee maker`
+        let end = words.iter().position(|word| lexicon.ifs.negations.contains(word)).unwrap_or(words.len());
+        let said: Vec<String> = plain(&words[..end]).into_iter().filter(says).collect();
+        let names: Vec<Vec<String>> = names.iter().map(|name| lexicon.normalise(name).0).collect();
+        let having = |word: &String| names.iter().filter(|name| name.contains(word)).count();
+        let is_told = |name: &Vec<String>| said.iter().any(|word| name.contains(word) && having(word) == 1);
+        let known = said.iter().filter(|word| having(word) > 0).count();
+        let mut told = (0..names.len()).filter(|at| is_told(&names[*at]));
+        let at = told.next().filter(|_| 2 * known >= said.len())?;
+        told.next().is_none().then_some(at)
     }
 
     /// `yes please, and then close the door`: the yes, and what else is to be done.

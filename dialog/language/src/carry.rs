@@ -1,6 +1,6 @@
 //! Plans with the hand: picking up, putting somewhere, pouring, throwing, breaking.
 
-use cohabit_cdf::{Action, ClassId, ObjectClass, ObjectId, Property, RoomId, StateFlag, Verb};
+use cohabit_cdf::{Action, ClassId, Fluid, ObjectClass, ObjectId, Property, RoomId, StateFlag, Verb};
 
 use crate::{
     context::Role,
@@ -304,7 +304,7 @@ impl Planner<'_> {
         let held = self.scene.robot.held;
         // `pour in the bowl`, of the milk in the hand
         let full =
-            held.filter(|held| self.scene.object(*held).is_some_and(|held| held.fluid != cohabit_cdf::Fluid::None));
+            held.filter(|held| self.scene.object(*held).is_some_and(|held| held.fluid != Fluid::None));
         if let (Some(full), [phrase], None) = (full, settled.objects.as_slice(), &settled.goal)
             && phrase.pronoun.is_none()
             && phrase.fluid.is_none()
@@ -356,7 +356,7 @@ impl Planner<'_> {
         let [source, target] = [source, target].map(|id| self.scene.object(id));
         source
             .zip(target)
-            .is_some_and(|(source, target)| source.class == target.class && source.fluid == cohabit_cdf::Fluid::None)
+            .is_some_and(|(source, target)| source.class == target.class && source.fluid == Fluid::None)
     }
 
     /// Whether it can be filled, or lets what is poured into it run off.
@@ -379,7 +379,7 @@ impl Planner<'_> {
         let spoken = self.focus.place.iter().chain(&self.focus.recent).copied();
         let vessel = spoken
             .filter(|id| *id != source && self.has(*id, Property::Fillable))
-            .find(|id| self.scene.object(*id).is_some_and(|object| object.fluid == cohabit_cdf::Fluid::None));
+            .find(|id| self.scene.object(*id).is_some_and(|object| object.fluid == Fluid::None));
         vessel.ok_or_else(|| self.miss(&Phrase::default(), Miss::NoReferent, Intent::Pour, Some(Role::Place(0))))
     }
 
@@ -393,9 +393,19 @@ impl Planner<'_> {
         }
         self.hold(source)?;
         self.open_around(target, false);
-        let says = format!("pouring {} into {}", self.the(source), self.the(target));
+        let says = format!("pouring {} into {}", self.what_is_in(source), self.the(target));
         self.push(Action::Interact { verb: Verb::Pour, object: target }, says);
         Ok(())
+    }
+
+    /// What comes out of a thing that is poured: `the coffee`, `the cereal`.
+    fn what_is_in(&self, source: ObjectId) -> String {
+        let fluid = self.scene.object(source).map_or(Fluid::None, |object| object.fluid);
+        let the = self.the(source);
+        match fluid {
+            Fluid::None => the.strip_suffix(" box").map_or(the.clone(), str::to_owned),
+            fluid => format!("the {}", fluid.name().to_lowercase()),
+        }
     }
 
     fn nearest_sink(&self) -> Result<ObjectId, Fault> {

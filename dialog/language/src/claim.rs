@@ -32,7 +32,7 @@ enum Claim<'q> {
     /// It works something, or is needed for it.
     For,
     /// It is what else is named: `the red thing the laser tip`.
-    Same(Phrase),
+    Same(Box<Phrase>),
     /// It is where the phrase says.
     Placed,
     /// It is there at all.
@@ -116,7 +116,7 @@ impl<'q> Claim<'q> {
             return Self::For;
         }
         if let Some(other) = named(lexicon, left) {
-            return Self::Same(other);
+            return Self::Same(Box::new(other));
         }
         let is_placed = phrase.relations.iter().any(|one| one.kind != RelationKind::Has) || phrase.room.is_some();
         match () {

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeSet;
 
-use cohabit_cdf::Property;
+use cohabit_cdf::{ObjectClass, Property};
 
 use crate::{conversation::Conversation, lexicon::Lexicon, token, yes_no};
 
@@ -15,6 +15,10 @@ const CLAUSE: usize = 6;
 /// What a rewriting was made of: what was said, and before.
 pub(crate) struct Source {
     words: BTreeSet<String>,
+    /// The words that were said now.
+    said: BTreeSet<String>,
+    /// Each two words that stood beside each other before.
+    pairs: BTreeSet<[String; 2]>,
     /// Whether a condition was denied: `if it is not`.
     is_denied: bool,
     /// Whether anything was.
@@ -25,32 +29,42 @@ pub(crate) struct Source {
 
 impl Source {
     pub(crate) fn new(lexicon: &Lexicon, said: &[String], lines: &[(bool, String)]) -> Self {
-        let before = lines.iter().flat_map(|(_, line)| lexicon.normalise(line).0);
+        let before: Vec<Vec<String>> = lines.iter().map(|(_, line)| lexicon.normalise(line).0).collect();
+        let pairs = before.iter().flat_map(|line| line.windows(2)).map(|pair| [pair[0].clone(), pair[1].clone()]);
         Self {
+            pairs: pairs.collect(),
+            said: said.iter().cloned().collect(),
             is_denied: denies_condition(lexicon, said),
             only_asks: only_asks(lexicon, said),
             has_denial: said.iter().any(|word| lexicon.ifs.negations.contains(word)),
-            words: said.iter().cloned().chain(before).collect(),
+            words: said.iter().cloned().chain(before.into_iter().flatten()).collect(),
         }
     }
 }
 
 impl Conversation<'_> {
-    /// Plain requests without the colours of things that nobody named: `the red mug` where no red was spoken of. Devices may be called
-    /// by theirs.
+    /// Plain requests without the colours of things that nobody named: `the red mug` where no red was spoken of, `the blue desk` where
+    /// `the desk` was said and something else was blue. Devices may be called by theirs.
     pub(crate) fn without_invention(&self, text: &str, source: &Source) -> String {
         let words: Vec<&str> = text.split(' ').collect();
         let lexicon = self.lexicon;
-        let is_carried = |rest: &[&str]| {
-            let rest: Vec<String> = rest.iter().flat_map(|word| token::words(word)).collect();
-            let named = lexicon.classes.longest(&rest).map(|(_, namings)| namings);
-            named.is_some_and(|namings| {
-                namings.iter().all(|naming| self.catalog.class(naming.class).has(Property::Pickupable))
-            })
+        let is_all = |rest: &[String], fits: &dyn Fn(&ObjectClass) -> bool| {
+            let named = lexicon.classes.longest(rest).map(|(_, namings)| namings);
+            named.is_some_and(|namings| namings.iter().all(|naming| fits(self.catalog.class(naming.class))))
         };
         let is_invented = |at: usize| {
-            let color = [words[at].to_owned()];
-            lexicon.colors.exact(&color).is_some() && !source.words.contains(words[at]) && is_carried(&words[at + 1..])
+            let color = words[at].to_owned();
+            let rest: Vec<String> = words[at + 1..].iter().flat_map(|word| token::words(word)).collect();
+            let Some(noun) = rest.first().filter(|_| lexicon.colors.exact(std::slice::from_ref(&color)).is_some()) else {
+                return false;
+            };
+            if !source.words.contains(&color) {
+                return is_all(&rest, &|class| class.has(Property::Pickupable));
+            }
+            let is_of_another = source.said.contains(noun)
+                && !source.said.contains(&color)
+                && !source.pairs.contains(&[color, noun.clone()]);
+            is_of_another && is_all(&rest, &|class| !class.has(Property::Toggleable))
         };
         let kept = (0..words.len()).filter(|at| !is_invented(*at)).map(|at| words[at]);
         kept.collect::<Vec<_>>().join(" ")

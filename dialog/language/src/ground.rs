@@ -46,6 +46,8 @@ const NEARER_M: f32 = 0.15;
 
 /// How far `left of` reaches, m.
 const BESIDE_M: f32 = 2.0;
+/// How likely one in the room must be meant to count, whatever is elsewhere.
+const HERE: f32 = 0.2;
 
 /// How near a fixed thing such as a button is to the machine it is `on`, m.
 const PART_M: f32 = 0.8;
@@ -439,7 +441,11 @@ impl<'a> Ground<'a> {
                     || is_fixed && self.scene.objects.iter().any(|other| object.works == Some(other.id) && fits(other))
                     || is_fixed && self.scene.objects.iter().any(is_part)
             }
-            RelationKind::Has => self.has_poured(object, &relation.to) || self.scene.contents(object.id).any(fits),
+            RelationKind::Has => {
+                self.has_poured(object, &relation.to)
+                    || self.scene.contents(object.id).any(fits)
+                    || self.scene.objects.iter().any(|other| fits(other) && self.stands_by(object, other))
+            }
             // What works nothing may be for anything.
             RelationKind::For => object.works.is_none_or(|worked| self.scene.object(worked).is_some_and(fits)),
             RelationKind::LeftOf | RelationKind::RightOf => self.scene.objects.iter().any(|other| {
@@ -455,6 +461,15 @@ impl<'a> Ground<'a> {
                     && known::distance_m(other.position_m, object.position_m) < NEAR_M
             }),
         }
+    }
+
+    /// Whether furniture has other furniture beside it, as `the desk with the blue chair` has.
+    fn stands_by(&self, object: &KnownObject, other: &KnownObject) -> bool {
+        let is_carried = |object: &KnownObject| self.catalog.class(object.class).has(Property::Pickupable);
+        !is_carried(object)
+            && !is_carried(other)
+            && other.room == object.room
+            && known::distance_m(other.position_m, object.position_m) < NEAR_M
     }
 
     /// Whether what a phrase names was poured into an object: `the mug with coffee`.
@@ -589,10 +604,22 @@ impl<'a> Ground<'a> {
         let groups = self.told_apart(&ranked);
         let probability = groups.first().map_or(0.0, |(probability, _)| *probability);
         let rival = groups.get(1).map_or(0.0, |(probability, _)| *probability);
+        if let Some(here) = self.likely_here(phrase, &groups) {
+            return Ok(here);
+        }
         if !phrase.is_any && self.judge.asks(want.intent, best.class, probability, rival) {
             return Err(Miss::Several(rivals(&groups, RIVAL)));
         }
         Ok(best.id)
+    }
+
+    /// `the table`, where one in the room is likely meant and no other one there: who means one elsewhere says where.
+    fn likely_here(&self, phrase: &Phrase, groups: &[(f32, &KnownObject)]) -> Option<ObjectId> {
+        let mut here = groups.iter().filter(|(_, object)| object.room == self.scene.robot.room);
+        let (probability, object) = here.next()?;
+        let is_meant = *probability >= HERE && phrase.room.is_none() && !phrase.is_described();
+        let is_alone = here.next().is_none_or(|(other, _)| *other < probability * RIVAL);
+        (is_meant && is_alone).then_some(object.id)
     }
 
     /// `the machine`, after the coffee machine was spoken of: a word for many things means the one at hand.

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use cohabit_cdf::{Catalog, ClassId, Property};
+use cohabit_cdf::{Catalog, ClassId, ObjectClass, Property};
 
 use crate::{
     lexicon::{Lexicon, Naming},
@@ -17,6 +17,10 @@ const WORD_PART: f32 = 0.5;
 
 /// How much the last word of a name means its class, where others are called just that.
 const HEAD: f32 = 0.4;
+
+/// How much what some furniture of a kind is called means other furniture of that kind, and how many must be called so.
+const SHARED: f32 = 0.4;
+const SHARING: usize = 2;
 
 /// How much the word for a kind of things means a class of that kind.
 const KIND: f32 = 0.3;
@@ -41,6 +45,29 @@ impl Lexicon {
             }
         }
         self.add_heads(catalog);
+        self.share_words(catalog);
+    }
+
+    /// `the blue rack`: what several shelves are called, all are called, though less surely.
+    fn share_words(&mut self, catalog: &Catalog) {
+        let kind = |class: &ObjectClass| {
+            let is_furniture =
+                class.receptacle.is_some() && !class.has(Property::Pickupable) && !class.has(Property::Toggleable);
+            token::words(&class.name).pop().filter(|_| is_furniture)
+        };
+        let mut called: BTreeMap<(String, &str), usize> = BTreeMap::new();
+        for (kind, class) in catalog.classes().iter().filter_map(|class| Some((kind(class)?, class))) {
+            for word in class.words.iter().filter(|word| !word.contains(' ')) {
+                *called.entry((kind.clone(), word)).or_default() += 1;
+            }
+        }
+        for (id, class) in (0_u16..).map(ClassId).zip(catalog.classes()) {
+            let own = kind(class);
+            let shared = called.iter().filter(|((kind, _), count)| Some(kind) == own.as_ref() && **count >= SHARING);
+            for ((_, word), _) in shared {
+                self.name_class(word, id, SHARED);
+            }
+        }
     }
 
     /// `that box`: the cereal box too, though other things are called just that. Only what can be carried is meant so.

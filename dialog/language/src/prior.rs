@@ -1,6 +1,6 @@
 //! How likely ways to understand an utterance are by what is open: the robot's own question, and what is left of the mission.
 
-use cohabit_cdf::{Action, Verb};
+use cohabit_cdf::{Action, GoToTarget, Verb};
 
 use crate::{
     context::Context, conversation::Conversation, imagine, known::Known, understanding::Step, way::Way,
@@ -12,8 +12,9 @@ use crate::{
 const ASKED_ABOUT: f32 = 4.0;
 const FOR_NEXT_GOAL: f32 = 3.0;
 const FOR_LATER_GOAL: f32 = 1.5;
-/// The same of one that does what is so already.
+/// The same of one that does what is so already, and of one that goes to a room and acts in another.
 const IN_VAIN: f32 = 0.3;
+const ASTRAY: f32 = 0.5;
 
 impl Conversation<'_> {
     /// Gives ways their probability in the light of what is open.
@@ -31,6 +32,7 @@ impl Conversation<'_> {
             way.probability *= match way.steps() {
                 None if way.context.is_met => IN_VAIN,
                 Some(steps) if self.is_in_vain(steps) => IN_VAIN,
+                Some(steps) if self.goes_astray(steps) => ASTRAY,
                 _ if is_denied => 1.0,
                 _ if way.is_asked_about(context) => ASKED_ABOUT,
                 _ => for_goal,
@@ -55,6 +57,15 @@ impl Conversation<'_> {
                 Action::Interact { verb: Verb::Break | Verb::Close | Verb::Open | Verb::Pour, .. }
             );
             changes && state(&scene) == before
+        })
+    }
+
+    /// Whether it goes to a room to act on what is in another one.
+    fn goes_astray(&self, steps: &[Step]) -> bool {
+        steps.windows(2).any(|pair| {
+            let Action::GoTo { target: GoToTarget::Room(room) } = pair[0].action else { return false };
+            let acted_on = pair[1].object().filter(|id| self.scene.robot.held != Some(*id));
+            acted_on.and_then(|id| self.scene.object(id)).is_some_and(|object| object.room != room)
         })
     }
 

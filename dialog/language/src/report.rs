@@ -51,7 +51,10 @@ fn interaction(
 ) -> String {
     match verb {
         Verb::Open => format!("{the} is open"),
-        Verb::Close => format!("{the} is closed"),
+        Verb::Close => match scene.robot.held.filter(|held| *held != object) {
+            Some(held) => format!("{the} is closed, and I have {}", describe::short(catalog, scene, held)),
+            None => format!("{the} is closed"),
+        },
         Verb::Break => format!("{the} is broken"),
         Verb::Scan => format!("I have scanned {the}"),
         Verb::Pour => format!("I have poured it into {the}"),

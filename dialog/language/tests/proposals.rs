@@ -123,3 +123,17 @@ fn what_nobody_said_is_left_out_and_a_not_is_kept() {
     assert_eq!(talk().say("sing to that bowl about blue skies"), "take Bowl_01_1");
     assert_eq!(talk().say("sing to see if the fridge is locked, and if it is not, open it"), "open FridgeLower_02_1");
 }
+
+#[test]
+fn an_answer_may_say_what_one_alone_of_the_plans_has() {
+    for answer in ["the toaster", "I said the toaster", "the toaster one", "the toaster, not the plate"] {
+        let mut talk = talk();
+        talk.say("sing that plate a merry tune tonight");
+        let done = talk.say(answer);
+        assert!(done.starts_with("toggle Toaster_02"), "{answer}: {done}");
+    }
+    let mut talk = talk();
+    talk.say("sing that plate a merry tune tonight");
+    let done = talk.say("open the fridge by the toaster");
+    assert!(!done.contains("toggle"), "{done}");
+}

@@ -197,3 +197,19 @@ fn a_noun_that_nobody_taught_is_asked_about() {
     check(&[], "pick up the sponge in the sink", "? I do not know what \"sponge\" is. What does it look like?");
     check(&[], "look under the table", "examine TableRound_02_1");
 }
+
+#[test]
+fn whether_a_thing_is_what_is_named_is_told() {
+    check(&[], "is the yellow thing on the round table the banana?", "= Yes, …");
+    check(&[], "is the banana the yellow thing on the round table?", "= Yes, …");
+    check(&[], "is the red thing on the round table the hammer?", "= No, that is …");
+}
+
+#[test]
+fn why_something_was_not_done_is_that_nobody_asked_for_it() {
+    let mut talk = Talk::new(&[]);
+    talk.say_and_do("open the microwave");
+    assert_eq!(talk.say("why did you not close the microwave?"), "= You did not ask me to close the microwave.");
+    let told = talk.say("why did you open the microwave?");
+    assert!(told.starts_with("= I opened the microwave, since you"), "{told}");
+}
