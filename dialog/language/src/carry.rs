@@ -303,8 +303,7 @@ impl Planner<'_> {
     pub(crate) fn add_pour(&mut self, settled: &Settled) -> Result<(), Fault> {
         let held = self.scene.robot.held;
         // `pour in the bowl`, of the milk in the hand
-        let full =
-            held.filter(|held| self.scene.object(*held).is_some_and(|held| held.fluid != Fluid::None));
+        let full = held.filter(|held| self.scene.object(*held).is_some_and(|held| held.fluid != Fluid::None));
         if let (Some(full), [phrase], None) = (full, settled.objects.as_slice(), &settled.goal)
             && phrase.pronoun.is_none()
             && phrase.fluid.is_none()
@@ -354,9 +353,7 @@ impl Planner<'_> {
     /// Whether it is empty, and of the kind of what it is to be poured into: `the bowl into the bowl`.
     fn is_empty_twin(&self, source: ObjectId, target: ObjectId) -> bool {
         let [source, target] = [source, target].map(|id| self.scene.object(id));
-        source
-            .zip(target)
-            .is_some_and(|(source, target)| source.class == target.class && source.fluid == Fluid::None)
+        source.zip(target).is_some_and(|(source, target)| source.class == target.class && source.fluid == Fluid::None)
     }
 
     /// Whether it can be filled, or lets what is poured into it run off.

@@ -55,7 +55,8 @@ impl Conversation<'_> {
         let is_invented = |at: usize| {
             let color = words[at].to_owned();
             let rest: Vec<String> = words[at + 1..].iter().flat_map(|word| token::words(word)).collect();
-            let Some(noun) = rest.first().filter(|_| lexicon.colors.exact(std::slice::from_ref(&color)).is_some()) else {
+            let Some(noun) = rest.first().filter(|_| lexicon.colors.exact(std::slice::from_ref(&color)).is_some())
+            else {
                 return false;
             };
             if !source.words.contains(&color) {

@@ -198,7 +198,13 @@ impl WayEntry {
         steps
     }
 
-    fn process(&self, catalog: &Catalog, at: Vec<ClassId>, [also, start]: [Vec<ClassId>; 2], steps: Vec<Act>) -> Process {
+    fn process(
+        &self,
+        catalog: &Catalog,
+        at: Vec<ClassId>,
+        [also, start]: [Vec<ClassId>; 2],
+        steps: Vec<Act>,
+    ) -> Process {
         let fluid = self.fluid.as_deref().and_then(Fluid::from_name);
         Process { intent: self.intent, at, also, start, steps, fluid, object: of_ids(catalog, &self.object) }
     }
