@@ -46,8 +46,8 @@ const NEARER_M: f32 = 0.15;
 
 /// How far `left of` reaches, m.
 const BESIDE_M: f32 = 2.0;
-/// How likely one in the room must be meant to count, whatever is elsewhere.
-const HERE: f32 = 0.2;
+/// How likely the likeliest must be meant to count if it is in the room, whatever is elsewhere.
+const HERE: f32 = 0.3;
 
 /// How near a fixed thing such as a button is to the machine it is `on`, m.
 const PART_M: f32 = 0.8;
@@ -613,13 +613,13 @@ impl<'a> Ground<'a> {
         Ok(best.id)
     }
 
-    /// `the table`, where one in the room is likely meant and no other one there: who means one elsewhere says where.
+    /// `the table`, where the likeliest is in the room, and no other one there is likely: who means one elsewhere says where.
     fn likely_here(&self, phrase: &Phrase, groups: &[(f32, &KnownObject)]) -> Option<ObjectId> {
-        let mut here = groups.iter().filter(|(_, object)| object.room == self.scene.robot.room);
-        let (probability, object) = here.next()?;
-        let is_meant = *probability >= HERE && phrase.room.is_none() && !phrase.is_described();
-        let is_alone = here.next().is_none_or(|(other, _)| *other < probability * RIVAL);
-        (is_meant && is_alone).then_some(object.id)
+        let is_here = |object: &KnownObject| object.room == self.scene.robot.room;
+        let ((probability, likeliest), others) = groups.split_first()?;
+        let is_meant = *probability >= HERE && phrase.room.is_none() && !phrase.is_described() && is_here(likeliest);
+        let has_rival = others.iter().any(|(other, object)| is_here(object) && *other >= probability * RIVAL);
+        (is_meant && !has_rival).then_some(likeliest.id)
     }
 
     /// `the machine`, after the coffee machine was spoken of: a word for many things means the one at hand.
