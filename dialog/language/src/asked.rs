@@ -64,14 +64,12 @@ impl Conversation<'_> {
             }
             Pending::Offer { mut plans } => {
                 let names: Vec<String> = plans.iter().map(|steps| reply::plan_in_words(steps)).collect();
-                let chosen = self.chosen_plan(words, is_yes || is(Small::Any), &names);
-                let at = chosen.or_else(|| self.told_apart(words, &names).filter(|_| !is_command))?;
+                let at = self.chosen_plan(words, is_yes || is(Small::Any), is_command, &names)?;
                 Some(self.go(plans.swap_remove(at), context))
             }
             Pending::Guess { mut guesses } => {
                 let names: Vec<String> = guesses.iter().map(|guess| guess.name.clone()).collect();
-                let chosen = self.chosen_plan(words, is_yes || is(Small::Any), &names);
-                let at = chosen.or_else(|| self.told_apart(words, &names).filter(|_| !is_command))?;
+                let at = self.chosen_plan(words, is_yes || is(Small::Any), is_command, &names)?;
                 Some(self.go_as_guessed(guesses.swap_remove(at), context))
             }
             Pending::Search { clauses } if is_yes || is(Small::Search) => {
@@ -164,8 +162,14 @@ impl Conversation<'_> {
         Some(self.go_as_guessed(guess, context))
     }
 
-    /// Which of the plans of these names an answer means: `yes`, `the second one`, or what it was called.
-    fn chosen_plan(&self, words: &[String], is_yes: bool, names: &[String]) -> Option<usize> {
+    /// Which of the plans of these names an answer means: `yes`, `the second one`, or what it was called; where it commands nothing
+    /// else, in part.
+    fn chosen_plan(&self, words: &[String], is_yes: bool, is_command: bool, names: &[String]) -> Option<usize> {
+        let told_apart = || if is_command { None } else { self.told_apart(words, names) };
+        self.plan_called(words, is_yes, names).or_else(told_apart)
+    }
+
+    fn plan_called(&self, words: &[String], is_yes: bool, names: &[String]) -> Option<usize> {
         let is_called = |name: &String| plain(&self.lexicon.normalise(name).0) == plain(words);
         if let Some(at) = names.iter().position(is_called) {
             return Some(at);

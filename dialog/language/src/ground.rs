@@ -584,13 +584,12 @@ impl<'a> Ground<'a> {
     fn decide(&self, phrase: &Phrase, want: &Want<'_>, described: &Described<'a>) -> Result<ObjectId, Miss> {
         let ranked = self.ranked(phrase, want, described);
         let Some((_, best)) = ranked.first().copied() else { return Err(Miss::Unseen) };
+        let may_settle = self.judge.repairs == 0
+            && self.judge.asking == Asking::Unsure
+            && !self.judge.is_for_good(want.intent, best.class);
         // The only one that is as described.
         let is_sole = described.left.len() == 1 && phrase.is_described() && phrase.unknown.is_empty();
-        if is_sole
-            && self.judge.repairs == 0
-            && self.judge.asking == Asking::Unsure
-            && !self.judge.is_for_good(want.intent, best.class)
-        {
+        if may_settle && is_sole {
             return Ok(best.id);
         }
         if let Some(spoken) = self.spoken_of_kind(phrase, &described.left) {
@@ -604,7 +603,7 @@ impl<'a> Ground<'a> {
         let groups = self.told_apart(&ranked);
         let probability = groups.first().map_or(0.0, |(probability, _)| *probability);
         let rival = groups.get(1).map_or(0.0, |(probability, _)| *probability);
-        if let Some(here) = self.likely_here(phrase, &groups) {
+        if let Some(here) = self.likely_here(phrase, &groups).filter(|_| may_settle) {
             return Ok(here);
         }
         if !phrase.is_any && self.judge.asks(want.intent, best.class, probability, rival) {

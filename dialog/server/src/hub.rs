@@ -152,6 +152,15 @@ impl Hub {
         (first, receiver)
     }
 
+    /// The camera of that name, for a page that asks for it.
+    ///
+    /// # Errors
+    /// There is none; in words for the page.
+    pub fn view_of(&self, camera: &str) -> Result<&Arc<View>, String> {
+        let is_meant = |view: &&Arc<View>| view.camera.to_string() == camera;
+        self.views.iter().find(is_meant).ok_or_else(|| format!("There is no camera {camera}."))
+    }
+
     /// What the pages of wizards are told besides, from now on.
     pub fn for_wizards(&self) -> broadcast::Receiver<Arc<str>> {
         self.for_wizards.subscribe()

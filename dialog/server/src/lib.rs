@@ -8,6 +8,7 @@ mod alarm;
 mod connections;
 mod conversation;
 mod driving;
+mod feed;
 mod frames;
 mod hidden;
 mod hosts;

@@ -8,15 +8,15 @@ use cohabit_bus::message::Thing;
 use cohabit_cdf::BodyId;
 use serde::Deserialize;
 use serde_json::Value;
-use tokio::sync::{broadcast, watch};
+use tokio::sync::broadcast;
 
 use crate::{
+    feed::Feed,
     hub::Hub,
     limits::{Limits, ServerLimits},
     page,
     presence::Presence,
     talk::Talk,
-    view::{Frame, Marks, View, Viewing},
     wizard::Decision,
 };
 
@@ -41,10 +41,7 @@ enum FromSeat {
 struct Visit {
     hub: Arc<Hub>,
     talk: Arc<Talk>,
-    view: Arc<View>,
-    frames: watch::Receiver<Option<Frame>>,
-    _viewing: Viewing,
-    marks: Marks,
+    feed: Feed,
     limits: Limits,
     presence: Presence,
 }
@@ -61,12 +58,9 @@ pub async fn decide(hub: Arc<Hub>, talk: Arc<Talk>, seat: Arc<Value>, mut socket
         }
     }
     let Some(view) = hub.views.first().cloned() else { return };
-    let (mut frames, viewing) = view.join();
-    frames.mark_changed();
+    let feed = Feed::new(view);
     let (limits, presence) = (Limits::new(Instant::now()), Presence::new(server));
-    Visit { hub, talk, view, frames, _viewing: viewing, marks: Marks::default(), limits, presence }
-        .run(socket, messages, own)
-        .await;
+    Visit { hub, talk, feed, limits, presence }.run(socket, messages, own).await;
 }
 
 impl Visit {
@@ -100,7 +94,7 @@ impl Visit {
                     Ok(message) => vec![Message::text(message.to_string())],
                     Err(_) => return,
                 },
-                changed = self.frames.changed() => match changed {
+                changed = self.feed.changed() => match changed {
                     Ok(()) => self.show(),
                     Err(_) => return,
                 },
@@ -115,10 +109,7 @@ impl Visit {
 
     /// The newest frame, and where what the robot asked about is in it, if that is news.
     fn show(&mut self) -> Vec<Message> {
-        let frame = self.frames.borrow_and_update().clone();
-        let marks = self.marks.news(&self.view, &self.hub.marked());
-        let frame = frame.map(|frame| Message::binary(frame.to_vec()));
-        frame.into_iter().chain(marks.map(|marks| Message::text(marks.to_string()))).collect()
+        self.feed.frame().into_iter().chain(self.feed.marks(&self.hub.marked())).collect()
     }
 
     async fn answer(&mut self, text: &str) -> Option<Message> {
@@ -137,13 +128,11 @@ impl Visit {
         match message {
             FromSeat::Shown => Ok(None),
             FromSeat::View { camera } => {
-                self.view = self.view_of(&camera)?;
-                (self.frames, self._viewing) = self.view.join();
-                self.frames.mark_changed();
+                self.feed.turn_to(Arc::clone(self.hub.view_of(&camera)?));
                 Ok(None)
             }
             FromSeat::Point { camera, tick, x, y } => {
-                let Some(id) = self.view_of(&camera)?.id_at(tick, [x, y]) else { return Ok(None) };
+                let Some(id) = self.hub.view_of(&camera)?.id_at(tick, [x, y]) else { return Ok(None) };
                 self.talk.seen(Thing::of_id(id), [x, y]).map_err(|error| error.to_string())
             }
             FromSeat::Decide { body, decision } => self.decide(body.map(BodyId), decision).await.map(Some),
@@ -161,10 +150,5 @@ impl Visit {
             }
             Err(_) => Err("The robot did not answer.".to_owned()),
         }
-    }
-
-    fn view_of(&self, camera: &str) -> Result<Arc<View>, String> {
-        let is_meant = |view: &&Arc<View>| view.camera.to_string() == camera;
-        self.hub.views.iter().find(is_meant).cloned().ok_or_else(|| format!("There is no camera {camera}."))
     }
 }

@@ -11,10 +11,7 @@ use std::{
 
 use cohabit_bus::{CameraId, message::Thing};
 use cohabit_cdf::ObjectId;
-use serde_json::Value;
 use tokio::sync::watch;
-
-use crate::page;
 
 /// A frame as pages get it: JPEG behind a header of one kind byte (1), the view's index, six zero bytes, and the tick,
 /// little-endian.
@@ -163,25 +160,6 @@ impl View {
 const AIM_RINGS: [f32; 3] = [0.008, 0.018, 0.03];
 const AIM_SPOKES: [[f32; 2]; 8] =
     [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0], [0.7, 0.7], [-0.7, 0.7], [-0.7, -0.7], [0.7, -0.7]];
-
-/// Where the numbered answers to an open question are in the picture, as a page was told.
-#[derive(Default)]
-pub struct Marks(Vec<(usize, [f32; 2])>);
-
-impl Marks {
-    /// What the page is to be told, if that is news: where these objects are in the view's newest frame.
-    pub fn news(&mut self, view: &View, numbered: &[ObjectId]) -> Option<Value> {
-        if numbered.is_empty() && self.0.is_empty() {
-            return None;
-        }
-        let places = (1..).zip(view.places(numbered));
-        let marks: Vec<_> = places.filter_map(|(number, place)| Some((number, place?))).collect();
-        (marks != self.0).then(|| {
-            self.0 = marks;
-            page::marks(view.camera, &self.0)
-        })
-    }
-}
 
 impl View {
     /// Where each of these objects is in the newest frame, if it is seen there.

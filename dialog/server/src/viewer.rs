@@ -5,15 +5,15 @@ use std::{sync::Arc, time::Instant};
 use axum::extract::ws::{Message, WebSocket};
 use cohabit_bus::message::{Control, Thing};
 use serde::Deserialize;
-use tokio::sync::{broadcast, watch};
+use tokio::sync::broadcast;
 
 use crate::{
+    feed::Feed,
     hub::{Hub, Visit},
     limits::{Limits, ServerLimits},
     page,
     presence::Presence,
     screening::Screening,
-    view::{Frame, Marks, View, Viewing},
 };
 
 /// What a page sends.
@@ -39,10 +39,7 @@ enum FromPage {
 struct Viewer {
     hub: Arc<Hub>,
     screening: Arc<Screening>,
-    view: Arc<View>,
-    frames: watch::Receiver<Option<Frame>>,
-    _viewing: Viewing,
-    marks: Marks,
+    feed: Feed,
     limits: Limits,
     visit: Visit,
     presence: Presence,
@@ -60,12 +57,9 @@ pub async fn watch(hub: Arc<Hub>, screening: Arc<Screening>, mut socket: WebSock
         }
     }
     let Some(view) = hub.views.first().cloned() else { return };
-    let (mut frames, viewing) = view.join();
-    frames.mark_changed();
+    let feed = Feed::new(view);
     let (limits, presence) = (Limits::new(Instant::now()), Presence::new(server));
-    Viewer { hub, screening, view, frames, _viewing: viewing, marks: Marks::default(), limits, visit, presence }
-        .run(socket, messages)
-        .await;
+    Viewer { hub, screening, feed, limits, visit, presence }.run(socket, messages).await;
 }
 
 impl Viewer {
@@ -91,7 +85,7 @@ impl Viewer {
                     // It fell behind: closing makes it connect again and be told all anew.
                     Err(_) => return,
                 },
-                changed = self.frames.changed() => match changed {
+                changed = self.feed.changed() => match changed {
                     Ok(()) => self.show(),
                     Err(_) => return,
                 },
@@ -106,10 +100,7 @@ impl Viewer {
 
     /// The newest frame, and where what the robot asked about is in it, if that is news.
     fn show(&mut self) -> Vec<Message> {
-        let frame = self.frames.borrow_and_update().clone();
-        let marks = self.marks.news(&self.view, &self.hub.marked());
-        let frame = frame.map(|frame| Message::binary(frame.to_vec()));
-        frame.into_iter().chain(marks.map(|marks| Message::text(marks.to_string()))).collect()
+        self.feed.frame().into_iter().chain(self.feed.marks(&self.hub.marked())).collect()
     }
 
     fn answer(&mut self, text: &str) -> Option<Message> {
@@ -131,13 +122,11 @@ impl Viewer {
                 Ok(None)
             }
             FromPage::View { camera } => {
-                self.view = self.view_of(&camera)?;
-                (self.frames, self._viewing) = self.view.join();
-                self.frames.mark_changed();
+                self.feed.turn_to(Arc::clone(self.hub.view_of(&camera)?));
                 Ok(None)
             }
             FromPage::Point { camera, tick, x, y } => {
-                let Some(id) = self.view_of(&camera)?.id_at(tick, [x, y]) else { return Ok(None) };
+                let Some(id) = self.hub.view_of(&camera)?.id_at(tick, [x, y]) else { return Ok(None) };
                 self.screening.seen(Thing::of_id(id), [x, y]).map_err(|error| error.to_string())
             }
             FromPage::Pause => self.ask(Control::Pause),
@@ -150,10 +139,5 @@ impl Viewer {
 
     fn ask(&self, control: Control) -> Result<Option<serde_json::Value>, String> {
         self.screening.ask(control).map(|()| None).map_err(|error| error.to_string())
-    }
-
-    fn view_of(&self, camera: &str) -> Result<Arc<View>, String> {
-        let is_meant = |view: &&Arc<View>| view.camera.to_string() == camera;
-        self.hub.views.iter().find(is_meant).cloned().ok_or_else(|| format!("There is no camera {camera}."))
     }
 }

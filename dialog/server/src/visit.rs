@@ -14,13 +14,13 @@ use serde_json::Value;
 use tokio::sync::{
     broadcast::{self, error::RecvError},
     mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel},
-    watch,
 };
 
 use crate::{
     DialogError,
     affordances::Deed,
     driving::{Driver, News, Told},
+    feed::Feed,
     hub::{self, Hub},
     journal::MOST_VISITORS,
     limits::{Limits, ServerLimits},
@@ -32,7 +32,7 @@ use crate::{
     survey::Form,
     talk::Talk,
     text,
-    view::{Frame, Marks, View, Viewing},
+    view::View,
     voice::{Audience, EarAt, FromEar, Hearer, Hearing},
     web::Live,
 };
@@ -128,13 +128,10 @@ struct Visit {
     seat: hub::Visit,
     presence: Presence,
     visitor: Entered,
-    view: Arc<View>,
-    frames: watch::Receiver<Option<Frame>>,
-    _viewing: Viewing,
+    feed: Feed,
     limits: Limits,
     driver: Option<Driver>,
     aim: Aim,
-    marks: Marks,
     /// Where its sound goes, while it sends any.
     hearing: Option<Hearing>,
     ear: (UnboundedSender<FromEar>, UnboundedReceiver<FromEar>),
@@ -165,8 +162,6 @@ impl Visit {
         visitor: Entered,
     ) -> Self {
         let now = Instant::now();
-        let (mut frames, viewing) = view.join();
-        frames.mark_changed();
         let aim = Aim { told: Value::Null, at: now, picked: None };
         Self {
             hub,
@@ -174,13 +169,10 @@ impl Visit {
             seat,
             presence,
             visitor,
-            view,
-            frames,
-            _viewing: viewing,
+            feed: Feed::new(view),
             limits: Limits::new(now),
             driver: None,
             aim,
-            marks: Marks::default(),
             hearing: None,
             ear: unbounded_channel(),
             heard: None,
@@ -213,7 +205,7 @@ impl Visit {
                     // It fell behind: closing makes it connect again and be told all anew.
                     Err(RecvError::Lagged(_) | RecvError::Closed) => Err(Gone),
                 },
-                changed = self.frames.changed() => changed.map(|()| self.show()).map_err(|_| Gone),
+                changed = self.feed.changed() => changed.map(|()| self.show()).map_err(|_| Gone),
             };
             let Ok(answers) = answers else { return };
             for answer in answers {
@@ -233,16 +225,10 @@ impl Visit {
         Ok(answers)
     }
 
-    /// The newest frame, and what is in the middle of it.
+    /// The newest frame, and what is marked in it and in its middle.
     fn show(&mut self) -> Vec<Message> {
-        let frame = self.frames.borrow_and_update().clone();
-        let frame = frame.map(|frame| Message::binary(frame.to_vec()));
-        frame.into_iter().chain(self.mark()).chain(self.look(false)).collect()
-    }
-
-    /// Where what the robot asks about is in the newest frame, if that is news.
-    fn mark(&mut self) -> Option<Message> {
-        self.marks.news(&self.view, &self.hub.marked()).as_ref().map(tell)
+        let marks = self.feed.marks(&self.hub.marked());
+        self.feed.frame().into_iter().chain(marks).chain(self.look(false)).collect()
     }
 
     /// What is before the driven body, if that is news.
@@ -254,8 +240,8 @@ impl Visit {
         self.aim.at = Instant::now();
         let things: Vec<Thing> = match self.aim.picked {
             Some(object) => vec![Thing::Object(object)],
-            None if self.view.camera == driver.camera => {
-                self.view.ids_in_the_middle().into_iter().map(Thing::of_id).collect()
+            None if self.feed.view().camera == driver.camera => {
+                self.feed.view().ids_in_the_middle().into_iter().map(Thing::of_id).collect()
             }
             None => Vec::new(),
         };
@@ -380,15 +366,8 @@ impl Visit {
         Ok(Vec::new())
     }
 
-    fn view_of(&self, camera: &str) -> Result<Arc<View>, String> {
-        let is_meant = |view: &&Arc<View>| view.camera.to_string() == camera;
-        self.hub.views.iter().find(is_meant).cloned().ok_or_else(|| format!("There is no camera {camera}."))
-    }
-
     fn look_through(&mut self, camera: &str) -> Result<(), String> {
-        self.view = self.view_of(camera)?;
-        (self.frames, self._viewing) = self.view.join();
-        self.frames.mark_changed();
+        self.feed.turn_to(Arc::clone(self.hub.view_of(camera)?));
         Ok(())
     }
 
@@ -400,7 +379,7 @@ impl Visit {
         place: [f32; 2],
         received_nanos: u64,
     ) -> Result<Vec<Message>, String> {
-        let Some(id) = self.view_of(camera)?.id_at(tick, place) else { return Ok(Vec::new()) };
+        let Some(id) = self.hub.view_of(camera)?.id_at(tick, place) else { return Ok(Vec::new()) };
         let thing = Thing::of_id(id);
         if let (Thing::Object(object), Some(_)) = (thing, &self.driver) {
             self.aim.picked = Some(object);
