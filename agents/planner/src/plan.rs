@@ -108,19 +108,27 @@ pub enum PlanError {
 /// # Errors
 /// [`PlanError`] names the goal that cannot be reached, and why.
 pub fn plan(state: &SymbolicState, mission: &Mission, met: &[bool], limits: &Limits) -> Result<Plan, PlanError> {
-    let chosen = matter::of_the_world(state, mission);
-    let mut things: Vec<Matter> = chosen
-        .iter()
-        .map(|id| {
-            let thing = state.thing(*id);
-            let names = std::iter::once(&thing.instance).chain(&thing.aliases).cloned().collect();
-            Matter { id: Some(*id), class: thing.class, names }
-        })
-        .collect();
-    things.extend(matter::products(state, &chosen, mission));
-    let mut grounder = Grounder::new(state, things);
-    grounder.goals(mission, met);
-    grounder.ground();
+    plan_without(state, mission, met, limits, &[])
+}
+
+/// Plans without some actions, such as those that the world has refused, each a kind and the thing that it is about. Without
+/// [`ActionKind::GoTo`] nothing at all is done with a thing.
+///
+/// # Errors
+/// [`PlanError`] names the goal that cannot be reached, and why.
+pub fn plan_without(
+    state: &SymbolicState,
+    mission: &Mission,
+    met: &[bool],
+    limits: &Limits,
+    refused: &[(ActionKind, ObjectId)],
+) -> Result<Plan, PlanError> {
+    let mut grounder = grounded(state, mission, met);
+    let things = &grounder.things;
+    grounder.problem.operators.retain(|operator| match operator.deed {
+        Deed::Act(kind, thing) => things[usize::from(thing)].id.is_none_or(|id| !is_refused(refused, kind, id)),
+        Deed::Nothing => true,
+    });
     grounder.problem.keep_relevant(&grounder.tables);
     let relaxed = Relaxed::new(&grounder.problem);
     let (found, effort) = search(&grounder.problem, &relaxed, limits);
@@ -139,6 +147,28 @@ pub fn plan(state: &SymbolicState, mission: &Mission, met: &[bool], limits: &Lim
             })
         }
     }
+}
+
+/// The problem of a mission over the things that matter, with all its operators.
+pub(crate) fn grounded<'a>(state: &'a SymbolicState, mission: &Mission, met: &[bool]) -> Grounder<'a> {
+    let chosen = matter::of_the_world(state, mission);
+    let mut things: Vec<Matter> = chosen
+        .iter()
+        .map(|id| {
+            let thing = state.thing(*id);
+            let names = std::iter::once(&thing.instance).chain(&thing.aliases).cloned().collect();
+            Matter { id: Some(*id), class: thing.class, names }
+        })
+        .collect();
+    things.extend(matter::products(state, &chosen, mission));
+    let mut grounder = Grounder::new(state, things);
+    grounder.goals(mission, met);
+    grounder.ground();
+    grounder
+}
+
+fn is_refused(refused: &[(ActionKind, ObjectId)], kind: ActionKind, id: ObjectId) -> bool {
+    refused.iter().any(|(other, of)| *of == id && (*other == kind || *other == ActionKind::GoTo))
 }
 
 /// The steps that operators stand for, checked by the table; what is made on the way gets its id as it is made.
