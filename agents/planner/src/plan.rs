@@ -25,6 +25,14 @@ pub struct Limits {
     pub time: Duration,
 }
 
+impl Limits {
+    /// No limit of time: what comes of a search then depends on no machine.
+    #[must_use]
+    pub const fn of_states(states: usize) -> Self {
+        Self { states, time: Duration::MAX }
+    }
+}
+
 impl Default for Limits {
     fn default() -> Self {
         Self { states: 20_000, time: Duration::from_secs(10) }
