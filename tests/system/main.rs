@@ -17,6 +17,7 @@ mod lock_step;
 mod mcap;
 mod missions;
 mod origins;
+mod pddl;
 mod privacy;
 mod recording;
 mod restarts;

@@ -7,6 +7,7 @@
 //! thing before it acts on it, and waits for each machine that it sets going.
 //!
 //! An [`Executor`] carries plans out step by step, and plans anew when an action fails or the world is not as expected.
+//! [`pddl`] writes problems down for other planners, and reads their plans.
 
 mod cnf;
 mod effects;
@@ -16,10 +17,11 @@ mod goals;
 mod ground;
 mod matter;
 mod operators;
+pub mod pddl;
 mod plan;
 mod problem;
 mod relaxed;
 mod search;
 
 pub use executor::{Executor, Failure, GivenUp, Next};
-pub use plan::{Limits, Plan, PlanError, Step, plan, plan_without};
+pub use plan::{Limits, Plan, PlanError, Step, plan, plan_without, steps_to};

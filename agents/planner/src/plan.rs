@@ -157,6 +157,22 @@ pub fn plan_without(
     }
 }
 
+/// What a body does to do something to a thing: it goes there first, unless it holds it, and waits for the machine that it sets
+/// going.
+#[must_use]
+pub fn steps_to(state: &SymbolicState, kind: ActionKind, id: ObjectId) -> Vec<Step> {
+    let walk = Step { action: Action::GoTo { target: GoToTarget::Object(id) }, wait_s: 0.0 };
+    if kind == ActionKind::GoTo {
+        return vec![walk];
+    }
+    let mut at_hand = state.clone();
+    at_hand.ignore_distance();
+    let runs = at_hand.successor(kind, id).is_some_and(|next| next.running.is_some());
+    let moment_s = state.catalog.table().device(&state.class(id).id).moment_s;
+    let act = Step { action: kind.on(id), wait_s: if runs { moment_s } else { 0.0 } };
+    if state.thing(id).place == Place::Held { vec![act] } else { vec![walk, act] }
+}
+
 /// The problem of a mission over the things that matter, with all its operators.
 pub(crate) fn grounded<'a>(state: &'a SymbolicState, mission: &Mission, met: &[bool]) -> Grounder<'a> {
     let chosen = matter::of_the_world(state, mission);

@@ -12,6 +12,7 @@ mod gallery;
 mod generate;
 mod minds;
 mod mission_file;
+mod pddl;
 mod peers;
 mod play;
 mod rendering;
@@ -59,6 +60,8 @@ enum Command {
     Eval(eval::Eval),
     /// Make missions from a specification, each with a plan that solves it
     Generate(generate::Generate),
+    /// Write a mission as a planning problem (PDDL), or check a plan for it against the world
+    Pddl(pddl::PddlFiles),
     /// Run a study: participants, conditions, consent, sessions, data
     Study(study::Study),
     /// Say what this machine lacks for a session, and what that costs
@@ -94,6 +97,7 @@ impl Command {
             | Self::Export(_)
             | Self::Eval(_)
             | Self::Generate(_)
+            | Self::Pddl(_)
             | Self::Doctor(_)
             | Self::Top(_)
             | Self::Time(_)
@@ -132,6 +136,7 @@ fn run(asked: Cohabit) -> anyhow::Result<()> {
         Command::Export(export) => export.run(),
         Command::Eval(eval) => eval.run(),
         Command::Generate(generate) => generate.run(),
+        Command::Pddl(pddl) => pddl.run(),
         Command::Study(study) => study.run(),
         Command::Doctor(doctor) => doctor.run(),
         Command::Top(top) => top.run(),

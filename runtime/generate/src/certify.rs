@@ -1,20 +1,20 @@
 //! Certificates: a mission read as any other, solved by the planner, its plan carried out in a world.
 
-use std::{sync::Arc, time::Duration};
+use std::sync::Arc;
 
 use cohabit_cdf::{ActionKind, Catalog, GoToTarget, Layout, mission::read_mission};
-use cohabit_planner::{Limits, Plan, plan};
+use cohabit_planner::{Limits, Plan, Step, plan};
 use cohabit_world::{Action, BodyId, Input, World};
 use serde::Serialize;
 
 /// The body that does it.
-const BODY: BodyId = BodyId(0);
+pub(crate) const BODY: BodyId = BodyId(0);
 /// No command takes longer: two simulated minutes.
 const LONGEST_TICKS: u32 = 60 * 120;
 const TICKS_A_SECOND: f32 = 60.0;
 
 /// No limit of time: what is made must not depend on the machine.
-const LIMITS: Limits = Limits { states: 400, time: Duration::MAX };
+const LIMITS: Limits = Limits::of_states(400);
 
 /// One step of a plan, by name.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -81,16 +81,13 @@ fn carry_out(world: &mut World, plan: &Plan) -> Result<(Vec<PlannedStep>, usize)
         steps.extend(named(world, step.action));
         run(world, step.action)?;
         rooms.extend(world.body(BODY).map(|body| body.room));
-        for _ in 0..step.wait_ticks(TICKS_A_SECOND).max(1) {
-            if world.finished().is_none() {
-                world.step(&[]);
-            }
-        }
+        wait(world, step);
     }
     Ok((steps, rooms.len()))
 }
 
-fn run(world: &mut World, action: Action) -> Result<(), String> {
+/// Has the body do something; why it could not, in words.
+pub(crate) fn run(world: &mut World, action: Action) -> Result<(), String> {
     let command = world.tick() + 1;
     let mut inputs = vec![Input { command, body: BODY, action }];
     for _ in 0..LONGEST_TICKS {
@@ -101,6 +98,15 @@ fn run(world: &mut World, action: Action) -> Result<(), String> {
         }
     }
     Err(format!("{action:?} never came to an end"))
+}
+
+/// Lets the world go on after a step, for as long as the machine runs that it set going.
+pub(crate) fn wait(world: &mut World, step: &Step) {
+    for _ in 0..step.wait_ticks(TICKS_A_SECOND).max(1) {
+        if world.finished().is_none() {
+            world.step(&[]);
+        }
+    }
 }
 
 fn named(world: &World, action: Action) -> Option<PlannedStep> {

@@ -6,11 +6,13 @@
 
 mod certify;
 mod chance;
+mod check_plan;
 mod draft;
 mod generate;
 mod instructions;
 mod spec;
 
 pub use certify::{Certificate, certify};
+pub use check_plan::{Accepted, PlanProblem, check_plan};
 pub use generate::{GenerateError, Generated, GivenUp, Order, generate};
 pub use spec::{Spec, SpecError};
