@@ -86,7 +86,8 @@ impl Domain {
         self.derived.iter().for_each(|(_, formula)| self.check_formula(formula));
         for (name, (needs, effects)) in &self.actions {
             self.check_formula(needs);
-            for (_, atom, _) in changes(effects) {
+            for (when, atom, _) in changes(effects) {
+                when.iter().for_each(|condition| self.check_formula(condition));
                 self.check_atom(atom);
                 assert!(!derived.contains(printed(atom).as_str()), "{name} changes what follows from other facts");
             }
@@ -134,7 +135,8 @@ impl Domain {
         if !holds(needs, &whole) {
             return false;
         }
-        let due: Vec<_> = changes(effects).into_iter().filter(|(when, ..)| when.iter().all(|when| holds(when, &whole))).collect();
+        let is_due = |when: &[&Sexpr]| when.iter().all(|condition| holds(condition, &whole));
+        let due: Vec<_> = changes(effects).into_iter().filter(|(when, ..)| is_due(when)).collect();
         for (_, atom, _) in due.iter().filter(|(.., is_added)| !is_added) {
             state.remove(&printed(atom));
         }
@@ -146,18 +148,19 @@ impl Domain {
 
     /// Does what nobody does: meets goals, and has the machine that is on work and go off.
     pub fn settle(&self, state: &mut State) {
-        let of = |kind: &str| -> Vec<&String> {
-            let mut names: Vec<&String> = self.actions.keys().filter(|name| name.starts_with(kind)).collect();
-            names.sort();
-            names
-        };
-        let (meets, machines) = (of("meet-"), [of("work-"), of("rest-")].concat());
+        let (meets, machines) = (self.names("meet-"), [self.names("work-"), self.names("rest-")].concat());
         loop {
             while meets.iter().any(|name| self.act(name, state)) {}
             if !machines.iter().any(|name| self.act(name, state)) {
                 return;
             }
         }
+    }
+
+    fn names(&self, kind: &str) -> Vec<&String> {
+        let mut names: Vec<&String> = self.actions.keys().filter(|name| name.starts_with(kind)).collect();
+        names.sort();
+        names
     }
 
     /// Whether the goal is reached.

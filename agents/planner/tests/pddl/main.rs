@@ -78,11 +78,11 @@ fn goals_of_many_kinds_are_exported_whole() {
     for can_reset in [false, true] {
         for (objects, instance, state) in [
             (&["CoffeeMug_Boss_1"][..], "CoffeeMug_Boss_1", "isHot=true"),
-            (&["Bowl_01_1"], "Bowl_01_1", "isFilled=Water"),
-            (&["BreadLoaf_1", "Knife_01_1"], "BreadSlice_01_*", "isPickedUp=true"),
-            (&["CoffeeMug_Boss_1"], "CoffeeMug_Boss_1", "isEmbiggenated=true"),
-            (&["CoffeeMug_Boss_1"], "CoffeeMug_Boss_1", "isCold=true"),
-            (&["CoffeeMug_Boss_1"], "TableRound_02_1", "Contains=CoffeeMug_Boss_1"),
+            (&["Bowl_01_1"][..], "Bowl_01_1", "isFilled=Water"),
+            (&["BreadLoaf_1", "Knife_01_1"][..], "BreadSlice_01_*", "isPickedUp=true"),
+            (&["CoffeeMug_Boss_1"][..], "CoffeeMug_Boss_1", "isEmbiggenated=true"),
+            (&["CoffeeMug_Boss_1"][..], "CoffeeMug_Boss_1", "isCold=true"),
+            (&["CoffeeMug_Boss_1"][..], "TableRound_02_1", "Contains=CoffeeMug_Boss_1"),
         ] {
             check(state, &mission(objects, instance, state, can_reset));
         }
@@ -91,7 +91,7 @@ fn goals_of_many_kinds_are_exported_whole() {
 
 #[test]
 fn a_goal_that_cannot_be_reached_has_no_plan() {
-    let text = mission(&["Bowl_01_1"], "Bowl_01_1", "isSparking=true", false);
+    let text = mission(&["Bowl_01_1"][..], "Bowl_01_1", "isSparking=true", false);
     let Pddl { domain, problem, plan } = exported("sparks", &text);
     let domain = Domain::read(&domain, &problem);
     assert!(plan.is_err(), "{plan:?}");
