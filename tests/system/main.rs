@@ -11,6 +11,7 @@ mod driving;
 mod eval;
 mod export;
 mod faults;
+mod generate;
 mod https;
 mod interpreter;
 mod lock_step;

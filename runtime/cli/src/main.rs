@@ -19,6 +19,7 @@ mod rendering;
 mod replay;
 mod rerun;
 mod sessions;
+mod splits;
 mod stop;
 mod study;
 mod supervisor;

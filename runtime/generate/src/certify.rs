@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use cohabit_cdf::{ActionKind, Catalog, GoToTarget, Layout, mission::read_mission};
+use cohabit_cdf::{ActionKind, Catalog, GoToTarget, Layout, RoomId, mission::read_mission};
 use cohabit_planner::{Limits, Plan, Step, plan};
 use cohabit_world::{Action, BodyId, Input, World};
 use serde::Serialize;
@@ -42,9 +42,9 @@ pub struct Certificate {
     /// The plan.
     #[serde(skip)]
     pub plan: Vec<PlannedStep>,
-    /// Rooms that the plan leads to.
+    /// The rooms that the plan leads to.
     #[serde(skip)]
-    pub rooms: usize,
+    pub rooms: Vec<RoomId>,
     /// States that the planner looked at.
     #[serde(skip)]
     pub expanded: usize,
@@ -74,7 +74,7 @@ pub fn certify(id: &str, cdf: &str, catalog: &Arc<Catalog>, seed: u64) -> Result
     Ok(Certificate { seed, digest, ticks, score, plan: steps, rooms, expanded: planned.expanded })
 }
 
-fn carry_out(world: &mut World, plan: &Plan) -> Result<(Vec<PlannedStep>, usize), String> {
+fn carry_out(world: &mut World, plan: &Plan) -> Result<(Vec<PlannedStep>, Vec<RoomId>), String> {
     let mut steps = Vec::new();
     let mut rooms = std::collections::BTreeSet::new();
     for step in &plan.steps {
@@ -83,7 +83,7 @@ fn carry_out(world: &mut World, plan: &Plan) -> Result<(Vec<PlannedStep>, usize)
         rooms.extend(world.body(BODY).map(|body| body.room));
         wait(world, step);
     }
-    Ok((steps, rooms.len()))
+    Ok((steps, rooms.into_iter().collect()))
 }
 
 /// Has the body do something; why it could not, in words.
