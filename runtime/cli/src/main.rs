@@ -4,6 +4,7 @@ mod arena;
 mod branch;
 mod build;
 mod check;
+mod demonstrate;
 mod doctor;
 mod eval;
 mod export;
@@ -61,6 +62,8 @@ enum Command {
     Eval(eval::Eval),
     /// Make missions from a specification, each with a plan that solves it
     Generate(generate::Generate),
+    /// Have the expert play missions, and write a data set of what it does and what the robot sees
+    Demonstrate(demonstrate::Demonstrate),
     /// Write a mission as a planning problem (PDDL), or check a plan for it against the world
     Pddl(pddl::PddlFiles),
     /// Run a study: participants, conditions, consent, sessions, data
@@ -98,6 +101,7 @@ impl Command {
             | Self::Export(_)
             | Self::Eval(_)
             | Self::Generate(_)
+            | Self::Demonstrate(_)
             | Self::Pddl(_)
             | Self::Doctor(_)
             | Self::Top(_)
@@ -137,6 +141,7 @@ fn run(asked: Cohabit) -> anyhow::Result<()> {
         Command::Export(export) => export.run(),
         Command::Eval(eval) => eval.run(),
         Command::Generate(generate) => generate.run(),
+        Command::Demonstrate(demonstrate) => demonstrate.run(),
         Command::Pddl(pddl) => pddl.run(),
         Command::Study(study) => study.run(),
         Command::Doctor(doctor) => doctor.run(),

@@ -112,7 +112,7 @@ pub(crate) fn wait(world: &mut World, step: &Step) {
 fn named(world: &World, action: Action) -> Option<PlannedStep> {
     let (kind, id) = ActionKind::of(&action)?;
     let view = world.object(id)?;
-    let said = crate::instructions::said(world, kind, id);
+    let said = crate::instructions::instruction(world, kind, id);
     debug_assert!(!matches!(action, Action::GoTo { target: GoToTarget::Room(_) }));
     Some(PlannedStep { action: kind.name(), object: view.instance.to_owned(), said })
 }

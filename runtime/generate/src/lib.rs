@@ -17,5 +17,6 @@ pub use certify::{Certificate, certify};
 pub use check_plan::{Accepted, PlanProblem, check_plan};
 pub use draft::Blocker;
 pub use generate::{GenerateError, Generated, GivenUp, Order, generate};
+pub use instructions::instruction;
 pub use spec::{BlockerKind, Spec, SpecError};
 pub use splits::{Facets, HeldOut, Part, Parted, part};
