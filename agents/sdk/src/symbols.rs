@@ -86,7 +86,8 @@ impl Symbols {
         thing.flags = StateFlags(record.flags);
         thing.fluid = Fluid::ALL.get(usize::from(record.fluid)).copied().unwrap_or_default();
         thing.color = Color::ALL.get(usize::from(record.color)).copied().unwrap_or_default();
-        thing.works = works;
+        // What nothing says of it follows from where it stands, as the world has worked out.
+        thing.works = works.or(thing.works);
         let is_found = |parent: ObjectId| parent.0 == record.parent;
         thing.place = match &thing.place {
             _ if record.held_by != NONE => {

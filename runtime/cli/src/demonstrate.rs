@@ -67,8 +67,8 @@ impl FromStr for Modalities {
         }
         let named = |name: &str| Plane::ALL.into_iter().find(|plane| plane.name() == name.trim());
         let known = || Plane::ALL.map(Plane::name).join(", ");
-        let planes = text.split(',').map(|name| named(name).ok_or_else(|| format!("there is no `{name}`: {}", known())));
-        planes.collect::<Result<_, _>>().map(Self)
+        let plane = |name: &str| named(name).ok_or_else(|| format!("there is no `{name}`: {}", known()));
+        text.split(',').map(plane).collect::<Result<Vec<Plane>, String>>().map(Self)
     }
 }
 

@@ -7,7 +7,7 @@ use std::{
 
 use cohabit_cdf::BodyId;
 use cohabit_engine::SessionPlan;
-use cohabit_generate::check_plan;
+use cohabit_generate::{Accepted, check_plan};
 use cohabit_planner::{
     Limits,
     pddl::{self, Pddl},
@@ -89,7 +89,7 @@ fn check(world: &mut World, file: &Path) -> anyhow::Result<()> {
     let text = fs::read_to_string(file).map_err(|error| bad_input(format!("{name}: {error}")))?;
     let plan = pddl::read_plan(&text).map_err(|error| bad_input(format!("{name}: {error}")))?;
     let accepted = check_plan(world, &plan).map_err(|error| bad_input(format!("{name}: {error}")))?;
-    let cohabit_generate::Accepted { actions, ticks } = accepted;
-    println!("the world accepts the plan: all goals are met after {actions} actions, walks among them, at tick {ticks}");
+    let Accepted { actions, ticks } = accepted;
+    println!("the world accepts the plan: {actions} actions, walks among them, met all goals by tick {ticks}");
     Ok(())
 }

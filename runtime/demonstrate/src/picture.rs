@@ -41,7 +41,8 @@ fn rgb(path: &Path, size: [u32; 2], pixels: impl Iterator<Item = [u8; 3]>) -> Re
 }
 
 fn depth(path: &Path, size: [u32; 2], pixels: &[[u8; Plane::BYTES]]) -> Result<(), DemonstrateError> {
-    let bytes: Vec<u8> = pixels.iter().flat_map(|pixel| millimetres(f32::from_le_bytes(*pixel)).to_be_bytes()).collect();
+    let depths = pixels.iter().map(|pixel| millimetres(f32::from_le_bytes(*pixel)));
+    let bytes: Vec<u8> = depths.flat_map(u16::to_be_bytes).collect();
     encode(path, size, (ColorType::Grayscale, BitDepth::Sixteen), &bytes)
 }
 
@@ -50,7 +51,12 @@ fn millimetres(depth_m: f32) -> u16 {
     if depth_m.is_nan() { u16::MAX } else { (depth_m * MM).round().clamp(0.0, f32::from(u16::MAX)) as u16 }
 }
 
-fn encode(path: &Path, [width, height]: [u32; 2], form: (ColorType, BitDepth), bytes: &[u8]) -> Result<(), DemonstrateError> {
+fn encode(
+    path: &Path,
+    [width, height]: [u32; 2],
+    form: (ColorType, BitDepth),
+    bytes: &[u8],
+) -> Result<(), DemonstrateError> {
     let file = BufWriter::new(File::create(path).map_err(at(path))?);
     let failed = |source| DemonstrateError::Picture { path: PathBuf::from(path), source };
     let mut encoder = Encoder::new(file, width, height);

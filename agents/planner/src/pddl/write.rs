@@ -89,7 +89,10 @@ fn derived(facts: &Facts<'_>, text: &mut String) {
         // At least so many of the first so many things are there.
         for (among, count) in counts(places.len(), capacity(facts, receptacle)) {
             let here = facts.is_on(places[among - 1], receptacle);
-            let with = if count == 1 { here } else { format!("(and {here} (holds-{name}-{}-{}))", among - 1, count - 1) };
+            let with = match (among - 1, count - 1) {
+                (_, 0) => here,
+                (fewer, less) => format!("(and {here} (holds-{name}-{fewer}-{less}))"),
+            };
             let without =
                 if among > count { format!(" (holds-{name}-{}-{count})", among - 1) } else { String::new() };
             let _ = writeln!(text, "  (:derived (holds-{name}-{among}-{count}) (or {with}{without}))");
@@ -151,7 +154,8 @@ fn operator(facts: &Facts<'_>, index: usize, text: &mut String) {
         let mut effects = facts.effects(&work);
         effects.extend([format!("(not (on-{index}))"), format!("(worked-{index})")]);
         action(&format!("work-{index}"), &[format!("(on-{index})")], &effects, text);
-        let mut effects: Vec<String> = operator.runs.iter().map(|var| format!("(not {})", facts.atom(*var, 1))).collect();
+        let off = operator.runs.iter().map(|var| format!("(not {})", facts.atom(*var, 1)));
+        let mut effects: Vec<String> = off.collect();
         effects.extend([format!("(not (worked-{index}))"), "(idle)".to_owned()]);
         action(&format!("rest-{index}"), &[format!("(worked-{index})")], &effects, text);
     }
