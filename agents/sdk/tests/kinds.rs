@@ -293,7 +293,7 @@ fn an_agent_waits_while_another_commands_its_body() {
 
 #[test]
 fn an_expert_plays_a_mission_to_its_goals() {
-    const TICKS: u64 = 9_000;
+    const TICKS: u64 = 15_000;
     let plan = plan(0, 3, &[]);
     let first = plan.build().unwrap().symbols(BodyId(0));
     let expert = Expert::new(0, Arc::clone(&plan.mission), first);

@@ -49,6 +49,6 @@ fn caps_and_missions_that_cannot_be_read_end_it() {
     let settings = Settings { caps: Some(Caps { actions: 2, failed: 5 }), ..Settings::default() };
     let capped = played(&task("capped", builtin("make_cereal")), &settings);
     assert_eq!(capped.ended_early.as_deref(), Some("too many actions"));
-    let unread = played(&task("unread", "{}".to_owned()), &Settings::default());
+    let unread = played(&task("unread", "no mission".to_owned()), &Settings::default());
     assert!(unread.ended_early.unwrap().starts_with("not playable: "));
 }
