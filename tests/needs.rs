@@ -42,9 +42,11 @@ pub const VOICE: Need = Need { name: "voice", find: voice, variables: &["COHABIT
 pub const WHISPER: Need = Need { name: "whisper", find: whisper, variables: &["COHABIT_WHISPER"] };
 /// The right to mount a file system in a name space of one's own.
 pub const MOUNTS: Need = Need { name: "mounts", find: mounts, variables: &[] };
+/// Fast Downward, a planner for PDDL.
+pub const FAST_DOWNWARD: Need = Need { name: "fast_downward", find: fast_downward, variables: &[] };
 
 /// All of them.
-pub const ALL: [Need; 8] = [REFERENCE_DATA, BROWSER, PYTHON, PIP, VULKAN, VOICE, WHISPER, MOUNTS];
+pub const ALL: [Need; 9] = [REFERENCE_DATA, BROWSER, PYTHON, PIP, VULKAN, VOICE, WHISPER, MOUNTS, FAST_DOWNWARD];
 
 /// Tells cargo which of these are there, and when to look again. Called by build scripts.
 pub fn tell(needs: &[Need]) {
@@ -120,6 +122,10 @@ fn whisper() -> Vec<PathBuf> {
 fn mounts() -> Vec<PathBuf> {
     let mount = "mount -t tmpfs -o size=64k tmpfs /dev/shm && test -w /dev/shm";
     if runs("unshare", &["-rm", "sh", "-c", mount]) { first_program(&["unshare"]) } else { Vec::new() }
+}
+
+fn fast_downward() -> Vec<PathBuf> {
+    first_program(&["fast-downward", "fast-downward.py"])
 }
 
 /// The first of these programs that is on the path.

@@ -4,5 +4,12 @@
 mod needs;
 
 fn main() {
-    needs::tell(&[needs::REFERENCE_DATA, needs::BROWSER, needs::PYTHON, needs::VOICE, needs::MOUNTS]);
+    needs::tell(&[
+        needs::REFERENCE_DATA,
+        needs::BROWSER,
+        needs::PYTHON,
+        needs::VOICE,
+        needs::MOUNTS,
+        needs::FAST_DOWNWARD,
+    ]);
 }

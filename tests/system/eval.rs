@@ -75,6 +75,38 @@ fn what_failed_first_is_told() {
 }
 
 #[test]
+fn the_expert_solves_missions_from_their_goals_alone_and_its_logs_replay() {
+    let folder = folder("expert");
+    let missions = folder.join("missions");
+    std::fs::create_dir_all(&missions).unwrap();
+    for entry in std::fs::read_dir(builtin()).unwrap() {
+        let path = entry.unwrap().path();
+        // No script goes along: nothing is said.
+        if path.extension().is_some_and(|extension| extension == "json") {
+            std::fs::copy(&path, missions.join(path.file_name().unwrap())).unwrap();
+        }
+    }
+    let logs = folder.join("logs");
+    let arguments =
+        [missions.to_str().unwrap(), "--agent", "expert", "--workers", "2", "--record", logs.to_str().unwrap()];
+    let (report, printed) = eval(&folder, &arguments);
+    let played = report["missions"].as_array().unwrap();
+    assert!(played.len() >= 4, "{printed}");
+    for mission in played {
+        assert_eq!(mission["success"], true, "{mission:#}");
+        let replayed = run(COHABIT, &["replay", mission["log"].as_str().unwrap()]).unwrap();
+        let text = String::from_utf8_lossy(&replayed.stdout).into_owned();
+        assert!(text.contains("no tick differs"), "{text}");
+    }
+    let line = serde_json::json!({ "id": "one", "cdf": { "scene": {} } });
+    let file = folder.join("silent.jsonl");
+    std::fs::write(&file, format!("{line}\n")).unwrap();
+    let silent = run(COHABIT, &["eval", file.to_str().unwrap()]).unwrap();
+    let text = String::from_utf8_lossy(&silent.stderr).into_owned();
+    assert!(text.contains("silent.jsonl:1: nothing says what to do in it"), "{text}");
+}
+
+#[test]
 fn bad_sources_are_refused_with_their_place() {
     let folder = folder("bad");
     let bad = folder.join("missions.jsonl");
@@ -101,6 +133,17 @@ fn nearly_all_real_missions_are_solved_by_what_their_users_said() {
     println!("{solved} solved");
     // 376 of 382 when this was written.
     assert!(solved >= 375, "{printed}");
+}
+
+#[test]
+#[cfg_attr(not(reference_data), ignore = "needs the reference data in ../shared/arena")]
+fn the_expert_solves_nearly_all_real_missions() {
+    let folder = folder("expert-missions");
+    let data = reference_data().join("missions-dev.jsonl");
+    let (report, printed) = eval(&folder, &[data.to_str().unwrap(), "--agent", "expert"]);
+    let (solved, all) = (report["total"]["solved"].as_u64().unwrap(), report["total"]["missions"].as_u64().unwrap());
+    println!("{solved} of {all} solved");
+    assert!(solved * 100 >= all * 99, "{printed}");
 }
 
 #[test]

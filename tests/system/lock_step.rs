@@ -22,6 +22,18 @@ fn agents_and_recorder_keep_up() {
 }
 
 #[test]
+fn an_expert_in_a_process_of_its_own_plays_a_mission_to_its_goals() {
+    let play = Play::start(COHABIT, &["make_cereal", "--lock-step", "--agent", "expert", "--seed", "4"]).unwrap();
+    let mut page = Page::open(play.authority()).unwrap();
+    page.wait("every goal", |page, _| page.state["ending"] == "complete").unwrap();
+    assert!(page.goals().iter().all(|(_, met)| *met), "{:?}", page.goals());
+    let ended = play.end().unwrap();
+    let replayed = run(COHABIT, &["replay", ended.log.to_str().unwrap()]).unwrap();
+    let said = String::from_utf8_lossy(&replayed.stdout).into_owned();
+    assert!(replayed.status.success() && said.contains("no tick differs"), "{said}");
+}
+
+#[test]
 fn a_recorder_that_dies_is_waited_for_until_another_takes_its_place() {
     let arguments = ["--lock-step", "--agent", "random", "--seed", "4"];
     let mut play = Play::start(COHABIT, &arguments).unwrap();

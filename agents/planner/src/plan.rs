@@ -25,6 +25,14 @@ pub struct Limits {
     pub time: Duration,
 }
 
+impl Limits {
+    /// No limit of time: what comes of a search then depends on no machine.
+    #[must_use]
+    pub const fn of_states(states: usize) -> Self {
+        Self { states, time: Duration::MAX }
+    }
+}
+
 impl Default for Limits {
     fn default() -> Self {
         Self { states: 20_000, time: Duration::from_secs(10) }
@@ -108,19 +116,27 @@ pub enum PlanError {
 /// # Errors
 /// [`PlanError`] names the goal that cannot be reached, and why.
 pub fn plan(state: &SymbolicState, mission: &Mission, met: &[bool], limits: &Limits) -> Result<Plan, PlanError> {
-    let chosen = matter::of_the_world(state, mission);
-    let mut things: Vec<Matter> = chosen
-        .iter()
-        .map(|id| {
-            let thing = state.thing(*id);
-            let names = std::iter::once(&thing.instance).chain(&thing.aliases).cloned().collect();
-            Matter { id: Some(*id), class: thing.class, names }
-        })
-        .collect();
-    things.extend(matter::products(state, &chosen, mission));
-    let mut grounder = Grounder::new(state, things);
-    grounder.goals(mission, met);
-    grounder.ground();
+    plan_without(state, mission, met, limits, &[])
+}
+
+/// Plans without some actions, such as those that the world has refused, each a kind and the thing that it is about. Without
+/// [`ActionKind::GoTo`] nothing at all is done with a thing.
+///
+/// # Errors
+/// [`PlanError`] names the goal that cannot be reached, and why.
+pub fn plan_without(
+    state: &SymbolicState,
+    mission: &Mission,
+    met: &[bool],
+    limits: &Limits,
+    refused: &[(ActionKind, ObjectId)],
+) -> Result<Plan, PlanError> {
+    let mut grounder = grounded(state, mission, met);
+    let things = &grounder.things;
+    grounder.problem.operators.retain(|operator| match operator.deed {
+        Deed::Act(kind, thing) => things[usize::from(thing)].id.is_none_or(|id| !is_refused(refused, kind, id)),
+        Deed::Nothing => true,
+    });
     grounder.problem.keep_relevant(&grounder.tables);
     let relaxed = Relaxed::new(&grounder.problem);
     let (found, effort) = search(&grounder.problem, &relaxed, limits);
@@ -139,6 +155,44 @@ pub fn plan(state: &SymbolicState, mission: &Mission, met: &[bool], limits: &Lim
             })
         }
     }
+}
+
+/// What a body does to do something to a thing: it goes there first, unless it holds it, and waits for the machine that it sets
+/// going.
+#[must_use]
+pub fn steps_to(state: &SymbolicState, kind: ActionKind, id: ObjectId) -> Vec<Step> {
+    let walk = Step { action: Action::GoTo { target: GoToTarget::Object(id) }, wait_s: 0.0 };
+    if kind == ActionKind::GoTo {
+        return vec![walk];
+    }
+    let mut at_hand = state.clone();
+    at_hand.ignore_distance();
+    let runs = at_hand.successor(kind, id).is_some_and(|next| next.running.is_some());
+    let moment_s = state.catalog.table().device(&state.class(id).id).moment_s;
+    let act = Step { action: kind.on(id), wait_s: if runs { moment_s } else { 0.0 } };
+    if state.thing(id).place == Place::Held { vec![act] } else { vec![walk, act] }
+}
+
+/// The problem of a mission over the things that matter, with all its operators.
+pub(crate) fn grounded<'a>(state: &'a SymbolicState, mission: &Mission, met: &[bool]) -> Grounder<'a> {
+    let chosen = matter::of_the_world(state, mission);
+    let mut things: Vec<Matter> = chosen
+        .iter()
+        .map(|id| {
+            let thing = state.thing(*id);
+            let names = std::iter::once(&thing.instance).chain(&thing.aliases).cloned().collect();
+            Matter { id: Some(*id), class: thing.class, names }
+        })
+        .collect();
+    things.extend(matter::products(state, &chosen, mission));
+    let mut grounder = Grounder::new(state, things);
+    grounder.goals(mission, met);
+    grounder.ground();
+    grounder
+}
+
+fn is_refused(refused: &[(ActionKind, ObjectId)], kind: ActionKind, id: ObjectId) -> bool {
+    refused.iter().any(|(other, of)| *of == id && (*other == kind || *other == ActionKind::GoTo))
 }
 
 /// The steps that operators stand for, checked by the table; what is made on the way gets its id as it is made.

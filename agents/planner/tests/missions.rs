@@ -5,8 +5,8 @@
 use std::{path::PathBuf, sync::Arc, time::Instant};
 
 use cohabit_cdf::{ActionKind, Catalog, Layout, mission::read_mission};
-use cohabit_planner::{Limits, Plan, PlanError, plan};
-use cohabit_world::{Action, BodyId, Input, Status, World};
+use cohabit_planner::{Executor, Limits, Next, Plan, PlanError, plan};
+use cohabit_world::{Action, BodyId, GoToTarget, Input, Status, World};
 use serde_json::{Value, json};
 
 const ME: BodyId = BodyId(0);
@@ -238,4 +238,124 @@ fn a_device_of_the_table_alone_is_planned_with_and_works() {
     let plan = solve(&mut world).unwrap();
     let last = plan.steps.last().map(|step| told(&world, step.action)).unwrap();
     assert!(last.starts_with("toggle TrashCan_01"), "{last}");
+}
+
+/// Has an executor play, and does something between its actions.
+fn play(world: &mut World, executor: &mut Executor, mut between: impl FnMut(&mut World, Action)) {
+    const MOST_STEPS: usize = 400;
+    for _ in 0..MOST_STEPS {
+        let met: Vec<bool> = world.goals().iter().map(|goal| goal.met).collect();
+        match executor.next(&world.symbols(ME), &met) {
+            Next::Act(action) => {
+                let (status, detail) = run(world, action);
+                executor.outcome(status, &detail);
+                between(world, action);
+            }
+            Next::Wait(ticks) => {
+                for _ in 0..ticks {
+                    world.step(&[]);
+                }
+            }
+            Next::Over => return,
+        }
+    }
+    panic!("it never came to an end");
+}
+
+fn executor(world: &World) -> Executor {
+    Executor::new(Arc::clone(world.mission()), Limits::default(), TICKS_A_SECOND)
+}
+
+fn is_done(world: &World) -> bool {
+    world.goals().iter().all(|goal| goal.met)
+}
+
+#[test]
+fn an_executor_plays_the_missions_of_the_project_with_one_plan_each() {
+    let catalog = Arc::new(Catalog::builtin());
+    for (name, text) in cohabit_cdf::mission::builtin() {
+        let mut world = world(&catalog, name, text);
+        let mut executor = executor(&world);
+        play(&mut world, &mut executor, |_, _| {});
+        assert!(is_done(&world), "{name}: {:?}, {:?}", executor.given_up(), executor.failures());
+        assert!(executor.failures().is_empty(), "{name}: {:?}", executor.failures());
+        assert!(executor.plans() <= 3, "{name}: {} plans", executor.plans());
+    }
+}
+
+#[test]
+fn an_executor_plans_anew_when_what_it_held_is_put_elsewhere() {
+    let catalog = Arc::new(Catalog::builtin());
+    let text = mission(&[object("CoffeeMug_Boss_1", &[])], "CoffeeMug_Boss_1", "isHot=true");
+    let mut world = world(&catalog, "taken", &text);
+    let mug = world.find("CoffeeMug_Boss_1").unwrap();
+    let table = world.find("TableRound_02_1").unwrap();
+    let mut executor = executor(&world);
+    let mut taken = 0;
+    play(&mut world, &mut executor, |world, action| {
+        if action == (Action::PickUp { object: mug }) && taken == 0 {
+            taken += 1;
+            run(world, Action::GoTo { target: GoToTarget::Object(table) });
+            assert!(run(world, Action::Place { receptacle: table }).0.is_success());
+        }
+    });
+    assert_eq!(taken, 1);
+    assert!(is_done(&world), "{:?}", executor.given_up());
+    assert!(executor.plans() >= 2, "{} plans", executor.plans());
+}
+
+#[test]
+fn an_executor_reaches_what_it_can_and_says_what_it_cannot() {
+    let catalog = Arc::new(Catalog::builtin());
+    let objects = [object("Bowl_01_1", &[]), object("CoffeeMug_Boss_1", &[])];
+    let mut text: Value = serde_json::from_str(&mission(&objects, "Bowl_01_1", "isSparking=true")).unwrap();
+    let goal = |number: i64, state: Value, before: &[i64]| {
+        let mut goal = text["task_goals"][0].clone();
+        goal["goal_id"] = json!(number);
+        goal["object_states"] = json!([state]);
+        goal["preconditions"] = json!(before);
+        goal
+    };
+    let hot = goal(5, json!({ "CoffeeMug_Boss_1": "isHot=true" }), &[]);
+    let filled = goal(6, json!({ "Bowl_01_1": "isFilled=Water" }), &[4]);
+    let goals = json!([text["task_goals"][0].clone(), hot, filled]);
+    text["task_goals"] = goals;
+    let mut world = world(&catalog, "half", &text.to_string());
+    let mut executor = executor(&world);
+    play(&mut world, &mut executor, |_, _| {});
+    let met: Vec<i64> = world.goals().iter().filter(|goal| goal.met).map(|goal| goal.id).collect();
+    assert_eq!(met, [5], "{:?}", executor.given_up());
+    let given_up: Vec<_> = executor.given_up().iter().map(|one| (one.goal, one.to_string())).collect();
+    assert_eq!(given_up.len(), 2, "{given_up:?}");
+    assert!(given_up[0].0 == Some(4) && given_up[0].1.contains("nothing here makes the bowl be sparking"));
+    assert!(given_up[1].0 == Some(6) && given_up[1].1.contains("only after goal 4"));
+}
+
+#[test]
+fn what_the_world_refuses_twice_is_done_without() {
+    let catalog = Arc::new(Catalog::builtin());
+    let text = mission(&[object("CoffeeMug_Boss_1", &[])], "CoffeeMug_Boss_1", "isHot=true");
+    let mut world = world(&catalog, "refused", &text);
+    let mut executor = executor(&world);
+    // All that is done with the mug is refused: it cannot be got at.
+    let mug = world.find("CoffeeMug_Boss_1").unwrap();
+    let mut asked = 0;
+    loop {
+        match executor.next(&world.symbols(ME), &[false]) {
+            Next::Act(action) if ActionKind::of(&action).is_some_and(|(_, id)| id == mug) => {
+                asked += 1;
+                executor.outcome(Status::UnsupportedNavigation, "there is no way there");
+            }
+            Next::Act(action) => {
+                let (status, detail) = run(&mut world, action);
+                executor.outcome(status, &detail);
+            }
+            Next::Wait(_) => {}
+            Next::Over => break,
+        }
+    }
+    assert_eq!(asked, 2);
+    let reason = executor.given_up()[0].to_string();
+    let tried = "(tried: go_to CoffeeMug_Boss_1: UnsupportedNavigation: there is no way there)";
+    assert!(reason.contains(tried), "{reason}");
 }

@@ -4,8 +4,9 @@
 //! Who rather asks than is asked uses a [`Client`]: it claims a body, commands it, and waits for outcomes and turns.
 //! [`Eyes`] look through a camera: planes in place, and a list of what is seen by name.
 //!
-//! Four kinds of agents are whole: [`PlanFollower`] does what the dialog service plans, [`Scripted`] what a file says,
-//! [`Random`] anything, and [`Helper`] keeps the office in order by what its own camera shows.
+//! Five kinds of agents are whole: [`PlanFollower`] does what the dialog service plans, [`Scripted`] what a file says,
+//! [`Random`] anything, [`Helper`] keeps the office in order by what its own camera shows, and [`Expert`] plays a mission to its
+//! goals with a planner.
 //!
 //! This crate never knows the world's insides: an agent acts by commands and learns by outcomes. In lock-step it hears
 //! and acts in its turns alone, so what comes of it depends neither on the machine nor on where it runs.
@@ -43,6 +44,7 @@ mod affordance;
 mod agent;
 mod client;
 mod errand;
+mod expert;
 mod eyes;
 mod helper;
 mod memory;
@@ -52,10 +54,12 @@ mod plan_follower;
 mod random;
 mod script;
 mod scripted;
+mod symbols;
 
 pub use agent::{Agent, Deed, Heard, Now, Senses, TICKS_PER_SECOND};
 pub use client::{Client, Outcome, outcome};
 pub use errand::{Errand, Progress};
+pub use expert::Expert;
 pub use eyes::{Eyes, Glance, InView, SeenThing, Sight};
 pub use helper::Helper;
 pub use peer::{PeerError, run, wait_for_mission};

@@ -5,17 +5,20 @@ mod cast;
 
 use std::{
     process::{Command, Stdio},
-    sync::atomic::{AtomicBool, Ordering},
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
     thread,
 };
 
 use cast::{Played, catalog, plan, play};
-use cohabit_agent::{Agent, Deed, Heard, Helper, PlanFollower, Random, Script, Scripted, TICKS_PER_SECOND};
+use cohabit_agent::{Agent, Deed, Expert, Heard, Helper, PlanFollower, Random, Script, Scripted, TICKS_PER_SECOND};
 use cohabit_bus::{
     Local, Session, Shm,
     message::{DialogKind, DialogMessage, PlanStep},
 };
-use cohabit_cdf::{Action, GoToTarget, Property, RoomId, StateFlag};
+use cohabit_cdf::{Action, BodyId, GoToTarget, Property, RoomId, StateFlag};
 use cohabit_engine::SessionPlan;
 use rand_chacha::{
     ChaCha8Rng,
@@ -286,4 +289,16 @@ fn an_agent_waits_while_another_commands_its_body() {
         assert!(refused <= 1, "{refused} commands in vain: {:?}", played.outcomes);
         assert!(played.outcomes.len() > 20);
     });
+}
+
+#[test]
+fn an_expert_plays_a_mission_to_its_goals() {
+    const TICKS: u64 = 15_000;
+    let plan = plan(0, 3, &[]);
+    let first = plan.build().unwrap().symbols(BodyId(0));
+    let expert = Expert::new(0, Arc::clone(&plan.mission), first);
+    let played = play(plan, &Local::new(1), vec![(0, Box::new(expert) as Box<dyn Agent + Send>)], 0, TICKS);
+    let is_done = played.said.iter().any(|(body, words)| *body == 0 && words == "All goals are met.");
+    assert!(is_done, "{:?}, {:#?}", played.said, played.outcomes);
+    assert!(played.outcomes.iter().all(|ended| ended.status.is_success()), "{:#?}", played.outcomes);
 }

@@ -76,6 +76,12 @@ impl SymbolicState {
         free.first().map(|anchor| anchor.index)
     }
 
+    /// Notes that a thing was found in or on a receptacle. Which place it takes is not told: the first free one that fits.
+    pub fn found_on(&mut self, thing: ObjectId, parent: ObjectId) {
+        let anchors = self.place_for(parent, thing).into_iter().collect();
+        self.things[thing.0 as usize].place = Place::On { parent, anchors, within: true };
+    }
+
     /// How many things a hand can put into a receptacle while it is empty.
     #[must_use]
     pub fn capacity(&self, receptacle: ObjectId) -> usize {

@@ -1,4 +1,4 @@
-//! `cohabit eval`: are missions solved by what is said in them?
+//! `cohabit eval`: are missions solved by what is said in them, or by the expert?
 
 use std::{
     io::{self, Write as _},
@@ -11,12 +11,15 @@ use std::{
 
 use cohabit_cdf::Catalog;
 use cohabit_dialog::{Asking, Effort, Knows, Language};
-use cohabit_eval::{Caps, Played, Report, Settings, Style, Tally, Task, generate, play, pool, read_tasks};
+use cohabit_eval::{
+    Caps, Played, Report, Settings, Style, Tally, Task, generate, play, pool, read_missions, read_tasks, solve,
+};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::{failure::bad_input, terminal::shown};
 
-/// Plays missions headless and in lock-step, through the real dialog and agent code, and reports what came of them.
+/// Plays missions headless and in lock-step, through the real dialog and agent code or by the expert, and reports what came of
+/// them.
 #[derive(clap::Args)]
 pub struct Eval {
     /// A .jsonl of missions with utterances, a data set of sessions, a mission (CDF), or a folder of missions
@@ -27,6 +30,10 @@ pub struct Eval {
     user: Option<UserKind>,
     #[command(flatten)]
     made_up: MadeUp,
+    /// Who plays: `dialog`, the robot that does what is said; or `expert`, a planner that plays from the goals alone and knows
+    /// what the simulator knows, whatever `--knows`, `--ask` and `--script` say
+    #[arg(long, value_name = "KIND", default_value = "dialog")]
+    agent: AgentKind,
     /// What to say and do in missions that have no .script beside them
     #[arg(long, value_name = "FILE")]
     script: Option<PathBuf>,
@@ -68,6 +75,15 @@ pub struct Eval {
 enum UserKind {
     /// A program that speaks like people do.
     Simulated,
+}
+
+/// Who plays missions.
+#[derive(Clone, Copy, Eq, PartialEq, clap::ValueEnum)]
+enum AgentKind {
+    /// The robot that does what is said.
+    Dialog,
+    /// A planner that knows everything.
+    Expert,
 }
 
 /// Missions that are made up, and how their people speak.
@@ -132,6 +148,7 @@ impl Eval {
 
     fn tasks(&self) -> anyhow::Result<Vec<Task>> {
         let mut tasks = match &self.file {
+            Some(file) if self.agent == AgentKind::Expert => read_missions(file).map_err(bad_input)?,
             Some(file) => read_tasks(file, self.script.as_deref()).map_err(bad_input)?,
             None => self.make_up()?,
         };
@@ -185,10 +202,17 @@ impl Eval {
     }
 
     fn serve(&self) -> io::Result<()> {
-        let (settings, language) = (self.settings(), self.language());
-        pool::serve(io::stdin().lock(), io::stdout().lock(), |task| {
-            play(task, &settings, &language).map_err(io::Error::other)
-        })
+        let (settings, input, output) = (self.settings(), io::stdin().lock(), io::stdout().lock());
+        match self.agent {
+            AgentKind::Expert => {
+                let catalog = Arc::new(Catalog::builtin());
+                pool::serve(input, output, |task| solve(task, &settings, &catalog).map_err(io::Error::other))
+            }
+            AgentKind::Dialog => {
+                let language = self.language();
+                pool::serve(input, output, |task| play(task, &settings, &language).map_err(io::Error::other))
+            }
+        }
     }
 
     fn play(&self, tasks: &[Task]) -> anyhow::Result<Report> {

@@ -14,6 +14,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::{
     failure::{bad_input, environment},
+    splits::{self, Asked},
     terminal::shown,
 };
 
@@ -33,9 +34,30 @@ pub struct Generate {
     /// Write the missions to this file, a line each
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
+    /// The share of missions in which something stands in the way: a thing is behind a door that is shut, what would be used is
+    /// locked, or a machine has no power; that of the specification, if not given
+    #[arg(long, value_name = "SHARE", value_parser = share)]
+    blockers: Option<f64>,
+    /// Write the missions parted into this folder, too: for training, and for tests of what training does not have, by object,
+    /// room, floor plan and composition, with a manifest
+    #[arg(long, value_name = "DIR")]
+    splits: Option<PathBuf>,
+    /// The share of missions that each part gets but that for training, from 0.01 to 0.2
+    #[arg(long, value_name = "SHARE", default_value_t = 0.1, value_parser = split_share, requires = "splits")]
+    split_share: f64,
     /// Threads; one for each core if not given. They do not change what is made
     #[arg(long, value_name = "N")]
     workers: Option<usize>,
+}
+
+fn share(text: &str) -> Result<f64, String> {
+    let share = text.parse().ok().filter(|share| (0.0..=1.0).contains(share));
+    share.ok_or_else(|| "a number from 0 to 1".to_owned())
+}
+
+fn split_share(text: &str) -> Result<f64, String> {
+    let share = text.parse().ok().filter(|share| (0.01..=0.2).contains(share));
+    share.ok_or_else(|| "a number from 0.01 to 0.2".to_owned())
 }
 
 impl Generate {
@@ -52,11 +74,12 @@ impl Generate {
             ProgressStyle::with_template("{bar:30} {pos}/{len} made, {elapsed} ({eta} left)")
                 .unwrap_or_else(|_| ProgressStyle::default_bar()),
         );
-        let (began, mut written) = (Instant::now(), Ok(()));
+        let (began, mut written, mut facets) = (Instant::now(), Ok(()), Vec::new());
         let made = cohabit_generate::generate(&spec, &catalog, order, &mut |mission| {
             if written.is_ok() {
                 written = writeln!(out, "{}", mission.as_line());
             }
+            facets.push(mission.facets());
             bar.inc(1);
         });
         bar.finish_and_clear();
@@ -78,14 +101,25 @@ impl Generate {
         }
         let seconds = began.elapsed().as_secs_f64();
         println!("{} missions in {seconds:.1} s: {}", self.count, self.out.display());
-        Ok(())
+        match &self.splits {
+            Some(folder) => {
+                let asked = Asked { spec: &self.spec, seed: self.seed, share: self.split_share };
+                splits::write(&self.out, &facets, folder, asked)
+            }
+            None => Ok(()),
+        }
     }
 
     fn spec(&self, catalog: &Catalog) -> anyhow::Result<Spec> {
-        if self.spec == "builtin" {
-            return Ok(Spec::builtin(catalog));
-        }
-        let text = fs::read_to_string(&self.spec).map_err(|error| bad_input(format!("{}: {error}", self.spec)))?;
-        Spec::parse(&self.spec, &text, catalog).map_err(bad_input)
+        let spec = if self.spec == "builtin" {
+            Spec::builtin(catalog)
+        } else {
+            let text = fs::read_to_string(&self.spec).map_err(|error| bad_input(format!("{}: {error}", self.spec)))?;
+            Spec::parse(&self.spec, &text, catalog).map_err(bad_input)?
+        };
+        Ok(match self.blockers {
+            Some(share) => spec.with_blockers(share),
+            None => spec,
+        })
     }
 }

@@ -4,6 +4,7 @@ mod arena;
 mod branch;
 mod build;
 mod check;
+mod demonstrate;
 mod doctor;
 mod eval;
 mod export;
@@ -12,12 +13,14 @@ mod gallery;
 mod generate;
 mod minds;
 mod mission_file;
+mod pddl;
 mod peers;
 mod play;
 mod rendering;
 mod replay;
 mod rerun;
 mod sessions;
+mod splits;
 mod stop;
 mod study;
 mod supervisor;
@@ -60,6 +63,10 @@ enum Command {
     Eval(eval::Eval),
     /// Make missions from a specification, each with a plan that solves it
     Generate(generate::Generate),
+    /// Have the expert play missions, and write a data set of what it does and what the robot sees
+    Demonstrate(demonstrate::Demonstrate),
+    /// Write a mission as a planning problem (PDDL), or check a plan for it against the world
+    Pddl(pddl::PddlFiles),
     /// Run a study: participants, conditions, consent, sessions, data
     Study(study::Study),
     /// Say what this machine lacks for a session, and what that costs
@@ -95,6 +102,8 @@ impl Command {
             | Self::Export(_)
             | Self::Eval(_)
             | Self::Generate(_)
+            | Self::Demonstrate(_)
+            | Self::Pddl(_)
             | Self::Doctor(_)
             | Self::Top(_)
             | Self::Time(_)
@@ -133,6 +142,8 @@ fn run(asked: Cohabit) -> anyhow::Result<()> {
         Command::Export(export) => export.run(),
         Command::Eval(eval) => eval.run(),
         Command::Generate(generate) => generate.run(),
+        Command::Demonstrate(demonstrate) => demonstrate.run(),
+        Command::Pddl(pddl) => pddl.run(),
         Command::Study(study) => study.run(),
         Command::Doctor(doctor) => doctor.run(),
         Command::Top(top) => top.run(),

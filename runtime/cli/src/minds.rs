@@ -1,10 +1,17 @@
 //! Kinds of minds, and how one is asked for.
 
-use std::{ffi::OsString, fmt, fs, path::Path, str::FromStr};
+use std::{
+    ffi::OsString,
+    fmt, fs,
+    path::Path,
+    str::FromStr,
+    sync::{Arc, atomic::AtomicBool},
+};
 
 use clap::ValueEnum;
-use cohabit_agent::{Agent, Helper, PlanFollower, Random, Script, Scripted};
-use cohabit_cdf::Catalog;
+use cohabit_agent::{Agent, Expert, Helper, PlanFollower, Random, Script, Scripted, wait_for_mission};
+use cohabit_bus::Transport;
+use cohabit_cdf::{BodyId, Catalog};
 use cohabit_engine::SessionPlan;
 
 use crate::failure::bad_input;
@@ -20,6 +27,8 @@ pub enum MindKind {
     Scripted,
     /// Keeps the office in order, by what its own camera shows
     Helper,
+    /// Plays the mission to its goals with a planner; it knows what the simulator knows
+    Expert,
 }
 
 impl MindKind {
@@ -27,17 +36,33 @@ impl MindKind {
         self.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
     }
 
-    /// A mind of this kind for a body; what is random in it follows from `seed`.
-    pub fn mind(self, body: u32, seed: u64, script: Option<&Path>) -> anyhow::Result<Box<dyn Agent>> {
+    /// A mind of this kind for a body; what is random in it follows from `seed`. None, if it has to know the mission first:
+    /// [`expert`] makes it once the session is joined.
+    pub fn mind(self, body: u32, seed: u64, script: Option<&Path>) -> anyhow::Result<Option<Box<dyn Agent>>> {
         // Two at random in one world do not do the same.
         let seed = seed.wrapping_add(u64::from(body));
         Ok(match self {
-            Self::Dialog => Box::new(PlanFollower::new(body)),
-            Self::Random => Box::new(Random::new(seed)),
-            Self::Helper => Box::new(Helper::new(body, seed)),
-            Self::Scripted => Box::new(Scripted::new(body, read_script(script)?)),
+            Self::Dialog => Some(Box::new(PlanFollower::new(body))),
+            Self::Random => Some(Box::new(Random::new(seed))),
+            Self::Helper => Some(Box::new(Helper::new(body, seed))),
+            Self::Scripted => Some(Box::new(Scripted::new(body, read_script(script)?))),
+            Self::Expert => None,
         })
     }
+}
+
+/// The mind that plays the mission of the session on `bus` to its goals; `None` if `stop` comes before the mission is known.
+pub fn expert(body: u32, bus: &dyn Transport, stop: &AtomicBool) -> anyhow::Result<Option<Box<dyn Agent>>> {
+    let Some(mission) = wait_for_mission(bus, stop)? else { return Ok(None) };
+    let catalog = Arc::new(Catalog::builtin());
+    let plan = SessionPlan::new(mission.header.file.as_str(), &mission.text, catalog, mission.header.seed)?;
+    let plan = plan.with_bodies(mission.bodies);
+    let world = plan.build()?;
+    if body as usize >= world.bodies().len() {
+        let last = world.bodies().len() - 1;
+        return Err(bad_input(format!("there is no body {body}: the session has bodies 0 to {last}")));
+    }
+    Ok(Some(Box::new(Expert::new(body, Arc::clone(&plan.mission), world.symbols(BodyId(body))))))
 }
 
 fn read_script(file: Option<&Path>) -> anyhow::Result<Script> {
@@ -131,13 +156,14 @@ mod tests {
         for (text, whole) in [
             ("dialog", "dialog@0"),
             ("helper@1", "helper@1"),
+            ("expert", "expert@0"),
             ("random@0", "random@0"),
             ("scripted@2=a=b.txt", "scripted@2=a=b.txt"),
         ] {
             assert_eq!(text.parse::<MindRequest>().unwrap().to_string(), whole);
         }
         for (text, error) in [
-            ("butler", "there is no agent `butler`: dialog, random, scripted, helper"),
+            ("butler", "there is no agent `butler`: dialog, random, scripted, helper, expert"),
             ("helper@one", "`one` is no body"),
             ("scripted@1", "`scripted@1=FILE`"),
             ("helper@1=a.txt", "write `helper@1`"),

@@ -28,7 +28,7 @@ use crate::{
     branch::{BranchPoint, Branched},
     build,
     failure::{IncompleteLog, bad_input, environment, joining},
-    minds::MindKind,
+    minds::{MindKind, expert},
     mission_file::MissionFile,
     rendering::Rendering,
     rerun, stop,
@@ -215,9 +215,12 @@ pub struct Agent {
 impl Agent {
     /// Runs the agent.
     pub fn run(&self) -> anyhow::Result<()> {
-        let mut mind = self.kind.mind(self.body, self.seed, self.script.as_deref())?;
+        let mind = self.kind.mind(self.body, self.seed, self.script.as_deref())?;
         let (bus, stop) = self.joining.join()?;
-        cohabit_agent::run(&mut *mind, self.body, &bus, &stop)?;
+        let mind = mind.map_or_else(|| expert(self.body, &bus, &stop), |mind| Ok(Some(mind)))?;
+        if let Some(mut mind) = mind {
+            cohabit_agent::run(&mut *mind, self.body, &bus, &stop)?;
+        }
         Ok(())
     }
 }

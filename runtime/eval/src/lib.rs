@@ -2,7 +2,7 @@
 //! and what came of it is counted.
 //!
 //! A [`Task`] is a mission with what its people say. [`read_tasks`] finds tasks in the formats that missions come in;
-//! [`play`] plays one to its end; a [`Report`] sums many up. [`pool::run`] spreads them over worker processes.
+//! [`play`] plays one to its end by what is said, [`solve`] by the expert, from its goals alone; a [`Report`] sums many up. [`pool::run`] spreads them over worker processes.
 //!
 //! Nothing here is special to a mission, and nothing renders. Time is the world's own: nobody thinks while it runs.
 
@@ -17,6 +17,7 @@ pub mod pool;
 mod report;
 mod script;
 mod simulated;
+mod solve;
 mod source;
 mod task;
 mod trace;
@@ -28,5 +29,6 @@ pub use meaning::Meaning;
 pub use play::{Caps, Played, Said, Settings, Trouble, play};
 pub use report::{Report, Tally};
 pub use simulated::Style;
-pub use source::{SourceError, read_tasks};
+pub use solve::solve;
+pub use source::{SourceError, read_missions, read_tasks};
 pub use task::{Line, Task};

@@ -11,7 +11,7 @@ use cohabit_language::Known;
 use cohabit_record::{InputEntry, LogError, SessionFacts};
 use cohabit_world::{Input, Outcome, World};
 
-use crate::trace::Trace;
+use crate::trace::{Trace, input};
 
 /// The body that is spoken to.
 const BODY: BodyId = BodyId(0);
@@ -99,21 +99,10 @@ impl LockStep {
     /// [`LogError`].
     pub fn tick(&mut self) -> Result<(), LogError> {
         let entries = std::mem::take(&mut self.waiting);
-        let inputs: Vec<Input> = entries
-            .iter()
-            .map(|entry| Input { command: entry.command, body: BodyId(entry.body), action: entry.action })
-            .collect();
+        let inputs: Vec<Input> = entries.iter().map(input).collect();
         let told = self.world.step(&inputs);
         if let Some(trace) = &mut self.trace {
-            let tick = self.world.tick();
-            trace.tick(&self.world, entries)?;
-            for input in &inputs {
-                let turn = self.turn_by_command.get(&input.command).copied().unwrap_or(0);
-                trace.event(tick, &report::started(input, turn))?;
-            }
-            for event in &told.events {
-                trace.event(tick, &report::event(&self.world, event))?;
-            }
+            trace.step(&self.world, entries, &told.events)?;
         }
         let tick = self.world.tick();
         let body = self.world.body(BODY).map(|body| (body.position_m.to_array(), body.yaw_rad));

@@ -178,7 +178,7 @@ fn person_of(id: &str, seed: u64) -> u64 {
 }
 
 /// A task's id as the name of a file.
-fn file_name(id: &str) -> String {
+pub(crate) fn file_name(id: &str) -> String {
     let fits = |letter: char| letter.is_ascii_alphanumeric() || matches!(letter, '-' | '_' | '.' | '#');
     id.chars().map(|letter| if fits(letter) { letter } else { '_' }).collect()
 }
@@ -335,34 +335,43 @@ impl Player {
     }
 
     fn count(&mut self, outcome: &Outcome) {
-        let played = &mut self.played;
-        if !self.counts {
-            return;
-        }
-        played.actions += 1;
-        played.failed_actions += u32::from(outcome.status.is_failure());
-        *played.statuses.entry(format!("{:?}", outcome.status)).or_default() += 1;
-        let Some(caps) = self.caps else { return };
-        let too_much = [(played.actions > caps.actions, "actions"), (played.failed_actions >= caps.failed, "failures")];
-        if let Some((_, what)) = too_much.into_iter().find(|(over, _)| *over) {
-            played.ended_early = Some(format!("too many {what}"));
+        if self.counts {
+            self.played.count(outcome, self.caps);
         }
     }
 
     fn judged(self) -> Played {
-        let (world, mut played) = (self.session.world(), self.played);
-        let goals = world.goals();
-        played.goals = goals.len();
-        played.goals_met = goals_met(world);
-        played.success = played.goals > 0 && played.goals_met == played.goals && played.ended_early.is_none();
-        played.open_goals = open_goals(world);
-        played.ticks = world.tick();
-        if played.ended_early.is_none()
+        let mut played = self.played;
+        played.judge(self.session.world());
+        played
+    }
+}
+
+impl Played {
+    /// Counts a command that ended; too many of them end the mission.
+    pub(crate) fn count(&mut self, outcome: &Outcome, caps: Option<Caps>) {
+        self.actions += 1;
+        self.failed_actions += u32::from(outcome.status.is_failure());
+        *self.statuses.entry(format!("{:?}", outcome.status)).or_default() += 1;
+        let Some(caps) = caps else { return };
+        let too_much = [(self.actions > caps.actions, "actions"), (self.failed_actions >= caps.failed, "failures")];
+        if let Some((_, what)) = too_much.into_iter().find(|(over, _)| *over) {
+            self.ended_early = Some(format!("too many {what}"));
+        }
+    }
+
+    /// Takes over what the world says of its goals in the end.
+    pub(crate) fn judge(&mut self, world: &World) {
+        self.goals = world.goals().len();
+        self.goals_met = goals_met(world);
+        self.success = self.goals > 0 && self.goals_met == self.goals && self.ended_early.is_none();
+        self.open_goals = open_goals(world);
+        self.ticks = world.tick();
+        if self.ended_early.is_none()
             && let Some(cohabit_world::Ending::KilledByHazard) = world.finished()
         {
-            played.ended_early = Some("a hazard destroyed the robot".to_owned());
+            self.ended_early = Some("a hazard destroyed the robot".to_owned());
         }
-        played
     }
 }
 

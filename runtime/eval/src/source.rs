@@ -67,8 +67,17 @@ struct MissionLine {
     id: String,
     #[serde(default)]
     preparation_utterances: Vec<String>,
-    utterances: Vec<String>,
+    utterances: Option<Vec<String>>,
     cdf: Value,
+}
+
+/// What is to be said in missions.
+#[derive(Clone, Copy)]
+enum Scripts<'a> {
+    /// Each has a script; this one, if it has none of its own.
+    Needed(Option<&'a Path>),
+    /// Nothing is said.
+    Ignored,
 }
 
 /// The tasks of `path`: a `.jsonl` of missions with their utterances, the reference's data set of sessions, a mission
@@ -77,10 +86,23 @@ struct MissionLine {
 /// # Errors
 /// [`SourceError`].
 pub fn read_tasks(path: &Path, script: Option<&Path>) -> Result<Vec<Task>, SourceError> {
+    read_with(path, Scripts::Needed(script))
+}
+
+/// The same without what is said in them, for who plays them from their goals alone: missions need neither scripts nor
+/// utterances.
+///
+/// # Errors
+/// [`SourceError`].
+pub fn read_missions(path: &Path) -> Result<Vec<Task>, SourceError> {
+    read_with(path, Scripts::Ignored)
+}
+
+fn read_with(path: &Path, script: Scripts<'_>) -> Result<Vec<Task>, SourceError> {
     let tasks = if path.is_dir() {
         missions_in(path)?.iter().map(|mission| with_script(mission, script)).collect::<Result<_, _>>()?
     } else if path.extension().is_some_and(|extension| extension == "jsonl") {
-        lines(path, &read(path)?)?
+        lines(path, &read(path)?, script)?
     } else {
         let text = read(path)?;
         match serde_json::from_str::<Value>(&text) {
@@ -107,18 +129,25 @@ fn read(path: &Path) -> Result<String, SourceError> {
     std::fs::read_to_string(path).map_err(|source| SourceError::File { path: path.to_owned(), source })
 }
 
-fn lines(path: &Path, text: &str) -> Result<Vec<Task>, SourceError> {
+fn lines(path: &Path, text: &str, scripts: Scripts<'_>) -> Result<Vec<Task>, SourceError> {
     let filled = (1..).zip(text.lines()).filter(|(_, line)| !line.trim().is_empty());
     filled
         .map(|(number, line)| {
             let read: MissionLine = serde_json::from_str(line).map_err(|error| at_line(path, number, &error))?;
             let said = |texts: &[String]| texts.iter().map(|text| Line::utterance(text)).collect();
+            let script = match (&read.utterances, scripts) {
+                (_, Scripts::Ignored) => Vec::new(),
+                (Some(utterances), Scripts::Needed(_)) => said(utterances),
+                (None, Scripts::Needed(_)) => {
+                    return Err(at_line(path, number, &"nothing says what to do in it: it has no \"utterances\""));
+                }
+            };
             Ok(Task {
                 id: read.id,
                 family: None,
                 cdf: read.cdf.to_string(),
                 preparation: said(&read.preparation_utterances),
-                script: said(&read.utterances),
+                script,
             })
         })
         .collect()
@@ -134,7 +163,11 @@ fn missions_in(folder: &Path) -> Result<Vec<PathBuf>, SourceError> {
     Ok(paths)
 }
 
-fn with_script(mission: &Path, script: Option<&Path>) -> Result<Task, SourceError> {
+fn with_script(mission: &Path, scripts: Scripts<'_>) -> Result<Task, SourceError> {
+    let id = mission.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let Scripts::Needed(script) = scripts else {
+        return Ok(Task { id, family: None, cdf: read(mission)?, preparation: Vec::new(), script: Vec::new() });
+    };
     let own = mission.with_extension("script");
     let path = match script {
         _ if own.is_file() => own,
@@ -142,6 +175,5 @@ fn with_script(mission: &Path, script: Option<&Path>) -> Result<Task, SourceErro
         None => return Err(SourceError::NoScript { path: mission.to_owned(), script: own }),
     };
     let (preparation, script) = script::read(&read(&path)?).map_err(|(line, reason)| at_line(&path, line, &reason))?;
-    let id = mission.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     Ok(Task { id, family: None, cdf: read(mission)?, preparation, script })
 }

@@ -7,11 +7,12 @@ use cohabit_bus::{
     message::{DialogMessage, DialogView, EventMessage},
     monotonic_nanos, wall_nanos,
 };
-use cohabit_engine::SessionPlan;
+use cohabit_cdf::BodyId;
+use cohabit_engine::{SessionPlan, report};
 use cohabit_record::{
     DialogEntry, EventEntry, InputEntry, LogError, LogWriter, SessionEntry, SessionFacts, TickEntry, entry::hex,
 };
-use cohabit_world::World;
+use cohabit_world::{Event, Input, World};
 
 /// Writes a log.
 pub struct Trace {
@@ -26,10 +27,24 @@ impl Trace {
         Ok(Self { log: LogWriter::create(path, &entry, wall_nanos())? })
     }
 
-    /// A tick was made of these inputs.
-    pub fn tick(&mut self, world: &World, inputs: Vec<InputEntry>) -> Result<(), LogError> {
+    fn tick(&mut self, world: &World, inputs: Vec<InputEntry>) -> Result<(), LogError> {
         let digest = hex(&world.digest());
         self.log.tick(&TickEntry { tick: world.tick(), digest, wall_nanos: wall_nanos(), inputs })
+    }
+
+    /// A tick was made of these inputs, and this happened in it.
+    pub fn step(&mut self, world: &World, inputs: Vec<InputEntry>, events: &[Event]) -> Result<(), LogError> {
+        let tick = world.tick();
+        let started: Vec<EventMessage> =
+            inputs.iter().map(|entry| report::started(&input(entry), entry.turn)).collect();
+        self.tick(world, inputs)?;
+        for message in &started {
+            self.event(tick, message)?;
+        }
+        for event in events {
+            self.event(tick, &report::event(world, event))?;
+        }
+        Ok(())
     }
 
     /// Something happened.
@@ -54,4 +69,9 @@ impl Trace {
     pub fn finish(self) -> Result<(), LogError> {
         self.log.finish()
     }
+}
+
+/// An input as the world takes it.
+pub fn input(entry: &InputEntry) -> Input {
+    Input { command: entry.command, body: BodyId(entry.body), action: entry.action }
 }

@@ -1,20 +1,20 @@
 //! Certificates: a mission read as any other, solved by the planner, its plan carried out in a world.
 
-use std::{sync::Arc, time::Duration};
+use std::sync::Arc;
 
-use cohabit_cdf::{ActionKind, Catalog, GoToTarget, Layout, mission::read_mission};
-use cohabit_planner::{Limits, Plan, plan};
+use cohabit_cdf::{ActionKind, Catalog, GoToTarget, Layout, RoomId, mission::read_mission};
+use cohabit_planner::{Limits, Plan, Step, plan};
 use cohabit_world::{Action, BodyId, Input, World};
 use serde::Serialize;
 
 /// The body that does it.
-const BODY: BodyId = BodyId(0);
+pub(crate) const BODY: BodyId = BodyId(0);
 /// No command takes longer: two simulated minutes.
 const LONGEST_TICKS: u32 = 60 * 120;
 const TICKS_A_SECOND: f32 = 60.0;
 
 /// No limit of time: what is made must not depend on the machine.
-const LIMITS: Limits = Limits { states: 400, time: Duration::MAX };
+const LIMITS: Limits = Limits::of_states(400);
 
 /// One step of a plan, by name.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -42,9 +42,9 @@ pub struct Certificate {
     /// The plan.
     #[serde(skip)]
     pub plan: Vec<PlannedStep>,
-    /// Rooms that the plan leads to.
+    /// The rooms that the plan leads to.
     #[serde(skip)]
-    pub rooms: usize,
+    pub rooms: Vec<RoomId>,
     /// States that the planner looked at.
     #[serde(skip)]
     pub expanded: usize,
@@ -74,23 +74,20 @@ pub fn certify(id: &str, cdf: &str, catalog: &Arc<Catalog>, seed: u64) -> Result
     Ok(Certificate { seed, digest, ticks, score, plan: steps, rooms, expanded: planned.expanded })
 }
 
-fn carry_out(world: &mut World, plan: &Plan) -> Result<(Vec<PlannedStep>, usize), String> {
+fn carry_out(world: &mut World, plan: &Plan) -> Result<(Vec<PlannedStep>, Vec<RoomId>), String> {
     let mut steps = Vec::new();
     let mut rooms = std::collections::BTreeSet::new();
     for step in &plan.steps {
         steps.extend(named(world, step.action));
         run(world, step.action)?;
         rooms.extend(world.body(BODY).map(|body| body.room));
-        for _ in 0..step.wait_ticks(TICKS_A_SECOND).max(1) {
-            if world.finished().is_none() {
-                world.step(&[]);
-            }
-        }
+        wait(world, step);
     }
-    Ok((steps, rooms.len()))
+    Ok((steps, rooms.into_iter().collect()))
 }
 
-fn run(world: &mut World, action: Action) -> Result<(), String> {
+/// Has the body do something; why it could not, in words.
+pub(crate) fn run(world: &mut World, action: Action) -> Result<(), String> {
     let command = world.tick() + 1;
     let mut inputs = vec![Input { command, body: BODY, action }];
     for _ in 0..LONGEST_TICKS {
@@ -103,10 +100,19 @@ fn run(world: &mut World, action: Action) -> Result<(), String> {
     Err(format!("{action:?} never came to an end"))
 }
 
+/// Lets the world go on after a step, for as long as the machine runs that it set going.
+pub(crate) fn wait(world: &mut World, step: &Step) {
+    for _ in 0..step.wait_ticks(TICKS_A_SECOND).max(1) {
+        if world.finished().is_none() {
+            world.step(&[]);
+        }
+    }
+}
+
 fn named(world: &World, action: Action) -> Option<PlannedStep> {
     let (kind, id) = ActionKind::of(&action)?;
     let view = world.object(id)?;
-    let said = crate::instructions::said(world, kind, id);
+    let said = crate::instructions::instruction(world, kind, id);
     debug_assert!(!matches!(action, Action::GoTo { target: GoToTarget::Room(_) }));
     Some(PlannedStep { action: kind.name(), object: view.instance.to_owned(), said })
 }

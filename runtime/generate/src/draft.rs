@@ -1,17 +1,20 @@
 //! A mission in the making: what stands where, what is wanted of it, as a mission file.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use cohabit_cdf::{Catalog, Color, Layout, ObjectClass, Property, RoomId, catalog::Stands, layout::Placement};
+use serde::Serialize;
 use serde_json::{Map, Value, json};
 
 use crate::{
     chance::Chance,
-    spec::{MissionType, Pools, VarKind, VarSpec},
+    spec::{BlockerKind, MissionType, Pools, VarKind, VarSpec},
 };
 
 /// The doors of every floor plan.
 const DOORS: u32 = 7;
+/// What switches a circuit.
+const LEVER: &str = "FuseBox_01_Lever";
 /// Where people leave and look for things: not in the way of every door.
 const ROOMS: [RoomId; 7] = [
     RoomId::BreakRoom,
@@ -23,6 +26,25 @@ const ROOMS: [RoomId; 7] = [
     RoomId::Warehouse,
 ];
 
+/// Something that stands in the way of a mission's goals.
+#[derive(Clone, Debug, Eq, PartialEq, Serialize)]
+pub struct Blocker {
+    /// How.
+    pub kind: BlockerKind,
+    /// What: the container that is shut or locked, or the lever that is down.
+    pub instance: String,
+}
+
+/// A mission that was drawn.
+pub(crate) struct Drawn {
+    /// The mission file.
+    pub cdf: Value,
+    /// What stands in the way, if anything does.
+    pub blocker: Option<Blocker>,
+    /// The classes of the things that its goals are about.
+    pub things: Vec<String>,
+}
+
 /// What was decided so far.
 pub(crate) struct Draft<'a> {
     chance: &'a mut Chance,
@@ -33,19 +55,26 @@ pub(crate) struct Draft<'a> {
     objects: Vec<Value>,
     conditions: Vec<Value>,
     numbers: BTreeMap<String, u32>,
+    things: BTreeSet<String>,
+    blocker: Option<Blocker>,
 }
 
 impl<'a> Draft<'a> {
     pub fn new(catalog: &'a Catalog, layout: &'a Layout, pools: &'a Pools, chance: &'a mut Chance) -> Self {
-        let (vars, objects, conditions, numbers) = Default::default();
-        Self { chance, catalog, layout, pools, vars, objects, conditions, numbers }
+        let (vars, objects, conditions, numbers, things) = Default::default();
+        Self { chance, catalog, layout, pools, vars, objects, conditions, numbers, things, blocker: None }
     }
 
-    /// A mission file of a type; none where chance has chosen what does not go together.
-    pub fn draw(mut self, kind: &MissionType) -> Option<Value> {
+    /// A mission file of a type, perhaps with something in the way; none where chance has chosen what does not go together. What
+    /// is to be locked shows only in the plan of a mission without locks: see [`with_lock`].
+    pub fn draw(mut self, kind: &MissionType, blocker: Option<BlockerKind>) -> Option<Drawn> {
         for var in &kind.vars {
-            let instance = self.var(var)?;
+            let shut = blocker == Some(BlockerKind::Closed) && self.blocker.is_none();
+            let instance = self.var(var, shut)?;
             self.vars.insert(var.name.clone(), instance);
+        }
+        if blocker == Some(BlockerKind::Unpowered) {
+            self.cut_power()?;
         }
         for _ in 0..self.chance.below(self.pools.distractors + 1) {
             let class = self.carried(&[Property::Pickupable], &[])?;
@@ -54,10 +83,20 @@ impl<'a> Draft<'a> {
         let goals = kind.goals.iter().enumerate().map(|(number, goal)| self.goal(number, goal, kind.then));
         let goals: Vec<Value> = goals.collect::<Option<_>>()?;
         let start = ROOMS[self.chance.below(ROOMS.len())];
-        Some(self.finish(&kind.name, start, goals))
+        let mut robots = Vec::new();
+        if kind.robots > 1 {
+            robots.push(robot(1, start));
+            for number in 2..=kind.robots {
+                robots.push(robot(number, ROOMS[self.chance.below(ROOMS.len())]));
+            }
+        }
+        let (blocker, things) = (self.blocker.take(), std::mem::take(&mut self.things));
+        let cdf = self.finish(&kind.name, start, &robots, goals);
+        Some(Drawn { cdf, blocker, things: things.into_iter().collect() })
     }
 
-    fn var(&mut self, var: &VarSpec) -> Option<String> {
+    /// What a var stands for; a thing is put into something shut, if asked.
+    fn var(&mut self, var: &VarSpec, shut: bool) -> Option<String> {
         match var.kind {
             VarKind::Surface => self.surface(),
             VarKind::Device => self.device(|class| {
@@ -68,7 +107,13 @@ impl<'a> Draft<'a> {
             }),
             VarKind::Thing => {
                 let class = self.class_of(var)?;
-                let instance = self.put(&class, &var.state, &var.inside)?;
+                let instance = if shut && var.inside.is_empty() {
+                    let container = self.shut_container()?;
+                    self.put_at(&class, &var.state, &container, "in")
+                } else {
+                    self.put(&class, &var.state, &var.inside)?
+                };
+                self.things.insert(class.clone());
                 if self.chance.is(self.pools.doubles) {
                     self.put(&class, &var.state, &[])?;
                 }
@@ -110,6 +155,11 @@ impl<'a> Draft<'a> {
         } else {
             (self.device(|class| inside.contains(&class.id))?, "in")
         };
+        Some(self.put_at(class, state, &place, how))
+    }
+
+    /// Puts a thing on or into a receptacle.
+    fn put_at(&mut self, class: &str, state: &[String], place: &str, how: &str) -> String {
         let number = self.numbers.entry(class.to_owned()).or_default();
         *number += 1;
         let instance = format!("{class}_{number}");
@@ -120,7 +170,32 @@ impl<'a> Draft<'a> {
             states.push(json!({ "Unique": "true" }));
         }
         self.objects.push(json!({ "name": instance, "state": states, "location": [{ place: how }] }));
+        instance
+    }
+
+    /// A container of the floor plan with a door that is shut.
+    fn shut_container(&mut self) -> Option<String> {
+        let instance = self.device(|class| {
+            let is_container = class.receptacle.as_ref().is_some_and(|place| place.enclosed && place.keys.is_empty());
+            is_container && class.has(Property::Openable)
+        })?;
+        self.objects.push(json!({ "name": instance, "state": [{ "isOpen": "false" }] }));
+        self.blocker = Some(Blocker { kind: BlockerKind::Closed, instance: instance.clone() });
         Some(instance)
+    }
+
+    /// Puts down the lever of a fuse box.
+    fn cut_power(&mut self) -> Option<()> {
+        let is_lever = |placement: &&Placement| {
+            let class = self.catalog.class_of_instance(&placement.instance).map(|class| self.catalog.class(class));
+            class.is_some_and(|class| class.id == LEVER)
+        };
+        let levers: Vec<String> =
+            self.layout.placements.iter().filter(is_lever).map(|placement| placement.instance.clone()).collect();
+        let instance = self.chance.pick(&levers)?.clone();
+        self.objects.push(json!({ "name": instance, "state": [{ "isToggledOn": "false" }] }));
+        self.blocker = Some(Blocker { kind: BlockerKind::Unpowered, instance });
+        Some(())
     }
 
     /// Something of the floor plan that can be told from all else in its room.
@@ -193,7 +268,7 @@ impl<'a> Draft<'a> {
         Some(json!({ instance: format!("{name}=true") }))
     }
 
-    fn finish(self, name: &str, start: RoomId, goals: Vec<Value>) -> Value {
+    fn finish(self, name: &str, start: RoomId, robots: &[Value], goals: Vec<Value>) -> Value {
         let doors =
             (1..=DOORS).map(|number| json!({ "name": format!("Door_01_{number}"), "state": [{ "isOpen": "true" }] }));
         let objects: Vec<Value> = self.objects.into_iter().chain(doors).map(whole).collect();
@@ -206,7 +281,7 @@ impl<'a> Draft<'a> {
             "scene": {
                 "floor_plan": "1",
                 "scene_id": name,
-                "simbot_init": [],
+                "simbot_init": robots,
                 "roomLocation": [start.id()],
                 "required_objects": objects,
                 "sticky_notes": [],
@@ -219,6 +294,20 @@ impl<'a> Draft<'a> {
             "game_interactions": { "camera_movements": messages, "game_messages": messages },
         })
     }
+}
+
+/// A robot that starts in a room, as mission files ask for it.
+fn robot(number: usize, room: RoomId) -> Value {
+    json!({ "name": format!("TAM_{number}"), "roomLocation": [room.id()] })
+}
+
+/// A mission in which a container is locked.
+pub(crate) fn with_lock(cdf: &Value, instance: &str) -> Value {
+    let mut cdf = cdf.clone();
+    if let Some(objects) = cdf["scene"]["required_objects"].as_array_mut() {
+        objects.push(whole(json!({ "name": instance, "state": [{ "isLocked": "true" }] })));
+    }
+    cdf
 }
 
 /// An object's request with the fields that were left out.

@@ -8,14 +8,15 @@ use std::{
     },
 };
 
-use cohabit_cdf::{Catalog, Layout, LayoutError};
+use cohabit_cdf::{ActionKind, Catalog, Layout, LayoutError};
 use serde_json::{Value, json};
 
 use crate::{
     certify::{Certificate, certify},
     chance::Chance,
-    draft::Draft,
-    spec::{MissionType, Spec},
+    draft::{Blocker, Draft, Drawn, with_lock},
+    spec::{BlockerKind, MissionType, Spec},
+    splits::Facets,
 };
 
 /// Drafts of one mission that are tried before it is given up.
@@ -75,6 +76,10 @@ pub struct Generated {
     pub kind: String,
     /// The mission file.
     pub cdf: Value,
+    /// What stands in the way of its goals, if anything was put there.
+    pub blocker: Option<Blocker>,
+    /// The classes of the things that its goals are about.
+    pub things: Vec<String>,
     /// That, and how, it is solved.
     pub certificate: Certificate,
 }
@@ -92,11 +97,27 @@ impl Generated {
             "layout": self.cdf["scene"]["layoutOverride"],
             "preparation_utterances": [],
             "utterances": said,
-            "difficulty": { "actions": deeds, "walks": plan.len() - deeds, "rooms": rooms, "expanded": expanded },
+            "difficulty": { "actions": deeds, "walks": plan.len() - deeds, "rooms": rooms.len(), "expanded": expanded },
+            "blockers": self.blocker.iter().collect::<Vec<_>>(),
+            "things": self.things,
+            "rooms": rooms.iter().map(|room| room.id()).collect::<Vec<_>>(),
             "plan": plan,
             "certificate": self.certificate,
             "cdf": self.cdf,
         })
+    }
+}
+
+impl Generated {
+    /// What tells it from others where missions are parted for training and tests.
+    #[must_use]
+    pub fn facets(&self) -> Facets {
+        Facets {
+            kind: self.kind.clone(),
+            floor_plan: self.cdf["scene"]["layoutOverride"].as_str().unwrap_or_default().to_owned(),
+            rooms: self.certificate.rooms.iter().map(|room| room.id().to_owned()).collect(),
+            things: self.things.clone(),
+        }
     }
 }
 
@@ -203,22 +224,66 @@ impl Maker<'_> {
         let kind = self.kind(number);
         let mut chance = Chance::new(self.seed, number as u64);
         let mut reason = "what chance chose did not go together".to_owned();
-        for _ in 0..MOST_DRAFTS {
+        let wanted = self.blocker(&mut chance);
+        for draft in 0..MOST_DRAFTS {
             let layout = &self.layouts[chance.below(self.layouts.len())];
-            let Some(cdf) = Draft::new(self.catalog, layout, &self.spec.pools, &mut chance).draw(kind) else {
+            // Where nothing that is put in the way is in anybody's way, the mission goes without.
+            let blocker = wanted.filter(|_| draft < MOST_DRAFTS / 2);
+            let Some(drawn) = Draft::new(self.catalog, layout, &self.spec.pools, &mut chance).draw(kind, blocker)
+            else {
                 continue;
             };
-            match certify(&kind.name, &cdf.to_string(), self.catalog, self.seed) {
-                Ok(certificate) if is_as_long_as_asked(kind, &certificate) => {
-                    let (id, kind) = (String::new(), kind.name.clone());
-                    return Ok(Generated { id, kind, cdf, certificate });
-                }
-                Ok(_) => reason = "plans are shorter or longer than `steps` asks".to_owned(),
+            match self.certified(kind, drawn, blocker) {
+                Ok(mission) => return Ok(mission),
                 Err(why) => reason = why,
             }
         }
         Err(reason)
     }
+
+    /// What is to stand in the way of a mission, if anything is.
+    fn blocker(&self, chance: &mut Chance) -> Option<BlockerKind> {
+        let pools = &self.spec.pools;
+        // Without blockers nothing is drawn: the missions of a seed stay the same.
+        if pools.blockers == 0.0 || !chance.is(pools.blockers) {
+            return None;
+        }
+        let all: &[BlockerKind] = &BlockerKind::ALL;
+        let kinds = if pools.blocker_kinds.is_empty() { all } else { pools.blocker_kinds.as_slice() };
+        chance.pick(kinds).copied()
+    }
+
+    /// The mission of a draft: as long as asked, and with its blocker in the way.
+    fn certified(&self, kind: &MissionType, drawn: Drawn, wanted: Option<BlockerKind>) -> Result<Generated, String> {
+        let Drawn { mut cdf, mut blocker, things } = drawn;
+        let mut certificate = self.certify(kind, &cdf)?;
+        if wanted == Some(BlockerKind::Locked) {
+            let opened = certificate.plan.iter().find(|step| step.action == ActionKind::Open.name());
+            let instance = opened.ok_or("its plan opens nothing that could be locked")?.object.clone();
+            cdf = with_lock(&cdf, &instance);
+            certificate = self.certify(kind, &cdf)?;
+            blocker = Some(Blocker { kind: BlockerKind::Locked, instance });
+        }
+        if !is_as_long_as_asked(kind, &certificate) {
+            return Err("plans are shorter or longer than `steps` asks".to_owned());
+        }
+        let is_in_the_way = blocker
+            .as_ref()
+            .is_none_or(|blocker| (blocker.kind == BlockerKind::Locked) != uses(&certificate, &blocker.instance));
+        if !is_in_the_way {
+            return Err("what was put in the way was in nobody's way".to_owned());
+        }
+        Ok(Generated { id: String::new(), kind: kind.name.clone(), cdf, blocker, things, certificate })
+    }
+
+    fn certify(&self, kind: &MissionType, cdf: &Value) -> Result<Certificate, String> {
+        certify(&kind.name, &cdf.to_string(), self.catalog, self.seed)
+    }
+}
+
+/// Whether a plan does anything with a thing.
+fn uses(certificate: &Certificate, instance: &str) -> bool {
+    certificate.plan.iter().any(|step| step.object == instance)
 }
 
 fn is_as_long_as_asked(kind: &MissionType, certificate: &Certificate) -> bool {

@@ -3,8 +3,9 @@
 use cohabit_cdf::{ActionKind, ObjectId, StateFlag};
 use cohabit_world::{BodyId, World};
 
-/// One step, as an instruction.
-pub(crate) fn said(world: &World, kind: ActionKind, id: ObjectId) -> String {
+/// One step of the first body, as people would ask for it before it is done: `open the fridge`.
+#[must_use]
+pub fn instruction(world: &World, kind: ActionKind, id: ObjectId) -> String {
     let name = |id: ObjectId| {
         let class = world.object(id).map(|view| world.catalog().class(view.class));
         class.map_or_else(|| "thing".to_owned(), |class| class.name.to_lowercase())

@@ -2,15 +2,21 @@
 //!
 //! A [`Spec`] has types of missions as templates. [`generate`] draws from them: the same seed makes the same missions, on any
 //! machine and with any number of workers. A [`Generated`] mission carries its plan and a certificate: the digest of the world
-//! in which the plan met all goals.
+//! in which the plan met all goals. [`part`] parts missions for training and for tests of what was never seen in training.
 
 mod certify;
 mod chance;
+mod check_plan;
 mod draft;
 mod generate;
 mod instructions;
 mod spec;
+mod splits;
 
 pub use certify::{Certificate, certify};
+pub use check_plan::{Accepted, PlanProblem, check_plan};
+pub use draft::Blocker;
 pub use generate::{GenerateError, Generated, GivenUp, Order, generate};
-pub use spec::{Spec, SpecError};
+pub use instructions::instruction;
+pub use spec::{BlockerKind, Spec, SpecError};
+pub use splits::{Facets, HeldOut, Part, Parted, part};

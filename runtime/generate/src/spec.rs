@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use cohabit_cdf::{Catalog, Layout, Property};
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 /// Why a specification cannot be used.
 #[derive(Debug, thiserror::Error)]
@@ -50,6 +50,29 @@ pub(crate) struct Pools {
     /// Things that no goal is about.
     #[serde(default)]
     pub distractors: usize,
+    /// The share of missions in which something stands in the way.
+    #[serde(default)]
+    pub blockers: f64,
+    /// What stands in the way; anything, if empty.
+    #[serde(default)]
+    pub blocker_kinds: Vec<BlockerKind>,
+}
+
+/// What stands in the way of a goal.
+#[derive(Clone, Copy, Debug, Deserialize, Eq, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum BlockerKind {
+    /// What a goal is about is in something shut.
+    Closed,
+    /// What would be used does not open: there is another way.
+    Locked,
+    /// A machine that is needed has no power: the lever of its fuse box is down.
+    Unpowered,
+}
+
+impl BlockerKind {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Closed, Self::Locked, Self::Unpowered];
 }
 
 #[derive(Clone, Debug, Deserialize)]
@@ -64,7 +87,17 @@ pub(crate) struct MissionType {
     /// Whether a goal counts only after those before it.
     #[serde(default)]
     pub then: bool,
+    /// How many robots there are; the first one does all that the plan has.
+    #[serde(default = "one")]
+    pub robots: usize,
 }
+
+const fn one() -> usize {
+    1
+}
+
+/// Most robots of a mission.
+const MOST_ROBOTS: usize = 4;
 
 #[derive(Clone, Copy, Debug, Default, Deserialize, Eq, PartialEq)]
 #[serde(rename_all = "snake_case")]
@@ -124,8 +157,10 @@ impl Spec {
         if let Some(layout) = spec.pools.layouts.iter().find(|layout| !known.contains(layout)) {
             return wrong("pools", format!("there is no floor plan `{layout}`; there are {}", known.join(", ")));
         }
-        if !(0.0..=1.0).contains(&spec.pools.doubles) {
-            return wrong("pools", "doubles is a share, from 0 to 1".to_owned());
+        for (name, share) in [("doubles", spec.pools.doubles), ("blockers", spec.pools.blockers)] {
+            if !(0.0..=1.0).contains(&share) {
+                return wrong("pools", format!("{name} is a share, from 0 to 1"));
+            }
         }
         for kind in &spec.types {
             if let Some(reason) = kind.fault(catalog) {
@@ -133,6 +168,13 @@ impl Spec {
             }
         }
         Ok(spec)
+    }
+
+    /// The same with something in the way in that share of missions, from 0 to 1.
+    #[must_use]
+    pub fn with_blockers(mut self, share: f64) -> Self {
+        self.pools.blockers = share.clamp(0.0, 1.0);
+        self
     }
 
     /// The names of its types.
@@ -161,6 +203,9 @@ impl MissionType {
         }
         if self.goals.is_empty() {
             return Some("it has no goals".to_owned());
+        }
+        if !(1..=MOST_ROBOTS).contains(&self.robots) {
+            return Some(format!("robots = {}: a mission has 1 to {MOST_ROBOTS}", self.robots));
         }
         for goal in self.goals.iter().flat_map(|goal| goal.split(" and ")) {
             let (of, state) = goal.split_once(' ').unwrap_or((goal, ""));
@@ -199,6 +244,8 @@ mod tests {
             (&kind("vars = []\ngoals = [\"b isHot=true\"]"), "is about `b`"),
             (&kind("vars = [{ name = \"a\" }]\ngoals = [\"a isHot\"]"), "is no goal"),
             ("type = []", "no type of missions"),
+            ("[pools]\nblockers = 2.0\n[[type]]\nname = \"one\"\nvars = []\ngoals = []", "blockers is a share"),
+            (&kind("robots = 9\nvars = []\ngoals = [\"a* isHot=true\"]"), "robots = 9"),
         ] {
             let error = Spec::parse("spec.toml", text, &catalog).unwrap_err().to_string();
             assert!(error.contains(expected) && error.starts_with("spec.toml"), "{error}");

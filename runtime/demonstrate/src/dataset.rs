@@ -1,0 +1,291 @@
+//! A data set in a folder: one episode after the other, each whole or not there.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    sync::{
+        Arc, Mutex, PoisonError,
+        atomic::{AtomicBool, AtomicUsize, Ordering},
+    },
+};
+
+use cohabit_bus::message::Plane;
+use cohabit_cdf::Catalog;
+use cohabit_engine::SessionPlan;
+use cohabit_render::{Lens, LensError, MeshLibrary};
+use serde::{Deserialize, Serialize};
+use serde_json::json;
+
+use crate::{
+    camera::Camera,
+    episode::{self, Played, Totals},
+    error::{DemonstrateError, at},
+};
+
+/// What this format is called, with its version.
+const FORMAT: &str = "cohabit demonstrations 1";
+/// What is said of a data set within it.
+const CARD: &str = include_str!("../data/card.md");
+
+/// A mission that is to be demonstrated.
+#[derive(Clone, Debug)]
+pub struct MissionText {
+    /// Its name.
+    pub id: String,
+    /// Its file's text.
+    pub cdf: String,
+}
+
+/// How a data set is made: with the missions, all that it follows from.
+#[derive(Clone, Debug)]
+pub struct Recipe {
+    seed: u64,
+    lens: Lens,
+    planes: Vec<Plane>,
+}
+
+impl Recipe {
+    /// A seed for what missions leave to chance, the size of pictures in pixels, and what they show; nothing is drawn where
+    /// that is empty.
+    ///
+    /// # Errors
+    /// [`LensError`], where pictures of that size cannot be drawn.
+    pub fn new(seed: u64, size: [u32; 2], planes: &[Plane]) -> Result<Self, LensError> {
+        let planes = Plane::ALL.into_iter().filter(|plane| planes.contains(plane)).collect();
+        Ok(Self { seed, lens: Camera::lens(size[0], size[1])?, planes })
+    }
+
+    pub(crate) fn planes(&self) -> &[Plane] {
+        &self.planes
+    }
+
+    pub(crate) const fn lens(&self) -> Lens {
+        self.lens
+    }
+
+    /// What must be the same for two data sets to be the same.
+    fn text(&self, missions: &[MissionText]) -> String {
+        let mut hasher = blake3::Hasher::new();
+        for mission in missions {
+            for part in [&mission.id, &mission.cdf] {
+                hasher.update(&(part.len() as u64).to_le_bytes());
+                hasher.update(part.as_bytes());
+            }
+        }
+        let recipe = json!({
+            "format": FORMAT,
+            "program": env!("CARGO_PKG_VERSION"),
+            "seed": self.seed,
+            "size": self.lens.size(),
+            "modalities": self.planes.iter().map(|plane| plane.name()).collect::<Vec<_>>(),
+            "missions": missions.len(),
+            "missions_blake3": hasher.finalize().to_hex().as_str(),
+        });
+        format!("{recipe:#}\n")
+    }
+}
+
+/// One episode, as the manifest has it.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+struct EpisodeEntry {
+    id: String,
+    /// Its folder.
+    folder: String,
+    floor_plan: String,
+    /// What people read of the mission.
+    goal_text: String,
+    /// What people read of its goals, by their numbers.
+    goals: Vec<(i64, String)>,
+    seed: u64,
+    steps: usize,
+    failed_steps: usize,
+    frames: usize,
+    ticks: u64,
+    /// The digest of the world in the end.
+    digest: String,
+}
+
+/// A mission that is no episode.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+struct LeftOut {
+    id: String,
+    reason: String,
+}
+
+/// What came of it.
+#[derive(Clone, Debug, Default, Eq, PartialEq)]
+pub struct Summary {
+    /// Episodes in the data set.
+    pub episodes: usize,
+    /// Their steps.
+    pub steps: usize,
+    /// Their frames; each has a picture in each modality.
+    pub frames: usize,
+    /// Missions that were left out, and why.
+    pub left_out: Vec<(String, String)>,
+}
+
+/// Makes a data set of missions in a folder, or goes on with one that was interrupted; `done` is told whenever a mission was
+/// played.
+///
+/// # Errors
+/// [`DemonstrateError`]. Whole episodes stay; the same call goes on from there.
+pub fn demonstrate(
+    missions: &[MissionText],
+    folder: &Path,
+    recipe: &Recipe,
+    workers: usize,
+    done: &(dyn Fn() + Sync),
+) -> Result<Summary, DemonstrateError> {
+    begin(missions, folder, recipe)?;
+    let catalog = Arc::new(Catalog::builtin());
+    let meshes = Arc::new(MeshLibrary::build(&catalog)?);
+    let maker = Maker { folder, recipe, catalog, meshes };
+    let results = maker.all(missions, workers, done)?;
+    let (mut episodes, mut left_out) = (Vec::new(), Vec::new());
+    for result in results {
+        match result {
+            Ok(episode) => episodes.push(episode),
+            Err(left) => left_out.push(left),
+        }
+    }
+    finish(folder, &episodes, &left_out)?;
+    Ok(Summary {
+        episodes: episodes.len(),
+        steps: episodes.iter().map(|episode| episode.steps).sum(),
+        frames: episodes.iter().map(|episode| episode.frames).sum(),
+        left_out: left_out.into_iter().map(|left| (left.id, left.reason)).collect(),
+    })
+}
+
+/// Writes the recipe, or checks that it is the one that the folder was begun with.
+fn begin(missions: &[MissionText], folder: &Path, recipe: &Recipe) -> Result<(), DemonstrateError> {
+    let (path, text) = (folder.join("recipe.json"), recipe.text(missions));
+    fs::create_dir_all(folder.join("episodes")).map_err(at(folder))?;
+    if path.exists() {
+        let known = fs::read_to_string(&path).map_err(at(&path))?;
+        return if known == text { Ok(()) } else { Err(DemonstrateError::OtherRecipe { path }) };
+    }
+    fs::write(&path, text).map_err(at(&path))
+}
+
+/// Writes the card and, last, the manifest.
+fn finish(folder: &Path, episodes: &[EpisodeEntry], left_out: &[LeftOut]) -> Result<(), DemonstrateError> {
+    let card = folder.join("README.md");
+    fs::write(&card, CARD).map_err(at(&card))?;
+    let manifest = json!({
+        "format": FORMAT,
+        "program": env!("CARGO_PKG_VERSION"),
+        "episodes": episodes,
+        "left_out": left_out,
+    });
+    let (part, whole) = (folder.join("manifest.part"), folder.join("manifest.json"));
+    fs::write(&part, format!("{manifest:#}\n")).map_err(at(&part))?;
+    fs::rename(&part, &whole).map_err(at(&whole))
+}
+
+struct Maker<'a> {
+    folder: &'a Path,
+    recipe: &'a Recipe,
+    catalog: Arc<Catalog>,
+    meshes: Arc<MeshLibrary>,
+}
+
+/// An episode, or why there is none.
+type Made = Result<EpisodeEntry, LeftOut>;
+
+impl Maker<'_> {
+    /// All episodes in the order of the missions; workers take one after the other. The first error ends it.
+    fn all(
+        &self,
+        missions: &[MissionText],
+        workers: usize,
+        done: &(dyn Fn() + Sync),
+    ) -> Result<Vec<Made>, DemonstrateError> {
+        let (next, failed) = (AtomicUsize::new(0), AtomicBool::new(false));
+        let results = Mutex::new(Vec::new());
+        let work = || {
+            while !failed.load(Ordering::Relaxed) {
+                let number = next.fetch_add(1, Ordering::Relaxed);
+                let Some(mission) = missions.get(number) else { break };
+                let made = self.one(number, mission);
+                failed.fetch_or(made.is_err(), Ordering::Relaxed);
+                results.lock().unwrap_or_else(PoisonError::into_inner).push((number, made));
+                done();
+            }
+        };
+        std::thread::scope(|scope| {
+            for _ in 0..workers.clamp(1, missions.len().max(1)) {
+                scope.spawn(work);
+            }
+        });
+        let mut results = results.into_inner().unwrap_or_else(PoisonError::into_inner);
+        results.sort_by_key(|(number, _)| *number);
+        results.into_iter().map(|(_, made)| made).collect()
+    }
+
+    /// The episode of a mission: the one that is there, or a new one.
+    fn one(&self, number: usize, mission: &MissionText) -> Result<Made, DemonstrateError> {
+        let name = format!("episodes/{number:06}");
+        let (whole, part) = (self.folder.join(&name), self.folder.join(format!("{name}.part")));
+        if whole.exists() {
+            return read(&whole.join("episode.json")).map(Ok);
+        }
+        let left_out = |reason: String| Ok(Err(LeftOut { id: mission.id.clone(), reason }));
+        let built = SessionPlan::new(&mission.id, &mission.cdf, Arc::clone(&self.catalog), self.recipe.seed)
+            .and_then(|plan| plan.build().map(|world| (plan, world)));
+        let (plan, world) = match built {
+            Ok(built) => built,
+            Err(error) => return left_out(format!("it cannot be played: {error}")),
+        };
+        remove(&part)?;
+        fs::create_dir(&part).map_err(at(&part))?;
+        match episode::play(&plan, world, &self.meshes, self.recipe, &part)? {
+            Played::Solved(totals) => {
+                let entry = entry(mission, name, &plan, &totals);
+                write(&part.join("episode.json"), &entry)?;
+                fs::rename(&part, &whole).map_err(at(&whole))?;
+                Ok(Ok(entry))
+            }
+            Played::Unsolved(reason) => {
+                remove(&part)?;
+                left_out(reason)
+            }
+        }
+    }
+}
+
+fn entry(mission: &MissionText, folder: String, plan: &SessionPlan, totals: &Totals) -> EpisodeEntry {
+    let goals = plan.mission.goals.iter().map(|goal| (goal.id, goal.description.clone()));
+    EpisodeEntry {
+        id: mission.id.clone(),
+        folder,
+        floor_plan: plan.layout.id.clone(),
+        goal_text: plan.mission.goal_text.clone(),
+        goals: goals.collect(),
+        seed: plan.seed,
+        steps: totals.steps,
+        failed_steps: totals.failed,
+        frames: totals.frames,
+        ticks: totals.ticks,
+        digest: totals.digest.iter().map(|byte| format!("{byte:02x}")).collect(),
+    }
+}
+
+fn read(path: &Path) -> Result<EpisodeEntry, DemonstrateError> {
+    let text = fs::read_to_string(path).map_err(at(path))?;
+    serde_json::from_str(&text).map_err(|error| DemonstrateError::Damaged {
+        path: path.parent().map_or_else(PathBuf::new, Path::to_owned),
+        reason: error.to_string(),
+    })
+}
+
+fn write(path: &Path, entry: &EpisodeEntry) -> Result<(), DemonstrateError> {
+    let text = serde_json::to_string_pretty(entry).map_err(|error| at(path)(error.into()))?;
+    fs::write(path, format!("{text}\n")).map_err(at(path))
+}
+
+/// Removes what an interrupted worker has left.
+fn remove(folder: &Path) -> Result<(), DemonstrateError> {
+    if folder.exists() { fs::remove_dir_all(folder).map_err(at(folder)) } else { Ok(()) }
+}
