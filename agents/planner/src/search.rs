@@ -1,4 +1,5 @@
-//! Greedy best-first search: the state that looks nearest to the goals comes first, and helpful actions before others.
+//! Greedy best-first search: the state that looks nearest to the goals comes first, and helpful actions before others. What a plan does in vain is
+//! then left out.
 
 use std::{
     cmp::Reverse,
@@ -98,6 +99,39 @@ impl Space<'_> {
     fn is_done(&self, state: &[u16]) -> bool {
         self.met.iter().all(|var| state[*var as usize] == 1)
     }
+
+    /// A plan without what it does in vain: each operator is left out in turn, with those that cannot be done without it (action elimination).
+    fn needed(&self, initial: &[u16], plan: Vec<usize>) -> Vec<usize> {
+        let (mut plan, mut state, mut at) = (plan, initial.to_vec(), 0);
+        while at < plan.len() {
+            self.settle(&mut state);
+            if let Some(rest) = self.without_first(&state, &plan[at..]) {
+                plan.truncate(at);
+                plan.extend(rest);
+            } else {
+                state = self.apply(plan[at], &state);
+                at += 1;
+            }
+        }
+        plan
+    }
+
+    /// What is left of the rest of a plan without its first operator, if that reaches the goals.
+    fn without_first(&self, state: &[u16], rest: &[usize]) -> Option<Vec<usize>> {
+        let (mut state, mut kept) = (state.to_vec(), Vec::new());
+        for operator in &rest[1..] {
+            self.settle(&mut state);
+            if self.is_applicable(*operator, &state) {
+                state = self.apply(*operator, &state);
+                kept.push(*operator);
+            }
+        }
+        let is_done = self.is_done(&state) || {
+            self.settle(&mut state);
+            self.is_done(&state)
+        };
+        is_done.then_some(kept)
+    }
 }
 
 /// Looks for a plan.
@@ -118,6 +152,7 @@ pub(crate) fn search(problem: &Problem, relaxed: &Relaxed, limits: &Limits) -> (
     if space.is_done(&initial) {
         return (Found::Plan(Vec::new()), effort);
     }
+    let found = |nodes: &[Node], at: usize| Found::Plan(space.needed(&nodes[0].state, path(nodes, at)));
     let mut nodes = vec![Node { state: initial.clone(), parent: None }];
     let mut seen: HashSet<Vec<u16>> = HashSet::from([initial]);
     let mut open: BinaryHeap<Reverse<(u32, u32, usize)>> = BinaryHeap::from([Reverse((0, 0, 0))]);
@@ -132,7 +167,7 @@ pub(crate) fn search(problem: &Problem, relaxed: &Relaxed, limits: &Limits) -> (
         let mut state = nodes[index].state.clone();
         space.settle(&mut state);
         if space.is_done(&state) {
-            return (Found::Plan(path(&nodes, index)), effort);
+            return (found(&nodes, index), effort);
         }
         let outlook = relaxed.look(&state);
         let Some(distance) = outlook.distance else { continue };
@@ -150,7 +185,7 @@ pub(crate) fn search(problem: &Problem, relaxed: &Relaxed, limits: &Limits) -> (
             let at = nodes.len();
             nodes.push(Node { state: next, parent: Some((index, operator)) });
             if done {
-                return (Found::Plan(path(&nodes, at)), effort);
+                return (found(&nodes, at), effort);
             }
             let newest = u32::try_from(at).unwrap_or(u32::MAX);
             let rank = if helpful.contains(&operator) { distance } else { distance + OTHERS };

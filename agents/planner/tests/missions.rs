@@ -73,6 +73,17 @@ fn solve(world: &mut World) -> Result<Plan, String> {
 }
 
 #[test]
+fn nothing_is_done_in_vain() {
+    let catalog = Arc::new(Catalog::builtin());
+    let (name, text) = cohabit_cdf::mission::builtin().iter().find(|(name, _)| name.starts_with("cold_soda")).unwrap();
+    let world = world(&catalog, name, text);
+    let plan = planned(&world).unwrap();
+    let kinds = plan.steps.iter().filter_map(|step| ActionKind::of(&step.action)).map(|(kind, _)| kind);
+    let deeds: Vec<ActionKind> = kinds.filter(|kind| *kind != ActionKind::GoTo).collect();
+    assert_eq!(deeds, [ActionKind::PickUp, ActionKind::Place, ActionKind::Toggle]);
+}
+
+#[test]
 #[cfg_attr(not(reference_data), ignore = "needs the reference data in ../shared/arena")]
 fn real_missions_are_solved_from_their_goals() {
     let catalog = Arc::new(Catalog::builtin());
