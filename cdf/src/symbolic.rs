@@ -104,6 +104,32 @@ pub struct Thing {
     pub access: Access,
 }
 
+impl Thing {
+    /// A thing with no states, at hand, that nothing feeds.
+    #[must_use]
+    pub fn new(instance: String, class: ClassId, room: RoomId, place: Place) -> Self {
+        Self {
+            instance,
+            aliases: Vec::new(),
+            class,
+            room,
+            place,
+            flags: StateFlags::default(),
+            fluid: Fluid::None,
+            color: Color::Original,
+            scale: [1.0; 3],
+            works: None,
+            circuit: None,
+            feeds: None,
+            yesterday: None,
+            was: None,
+            prints: None,
+            touched: false,
+            access: Access::AT_HAND,
+        }
+    }
+}
+
 /// A portal: the times that it leads to, by name, and which one is next or now.
 #[derive(Clone, Debug, Eq, PartialEq)]
 pub struct Gate {

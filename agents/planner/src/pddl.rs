@@ -5,8 +5,8 @@
 //! there are three kinds that no body does: `meet-N` notes that goal N is met, as a world does by itself; `work-N` has the machine
 //! that action N has set going do its work, and `rest-N` has it go off. Reading a plan leaves them out ([`read_plan`]).
 //!
-//! What a machine's work depends on is looked up once it is on, not as it is switched on: no machine of the table tells the
-//! difference.
+//! What is set as a machine is switched on is set by `work-N`, together with what its work does: the conditions of both are those
+//! from before it was on.
 
 mod facts;
 mod plan_file;

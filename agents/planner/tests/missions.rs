@@ -2,12 +2,15 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod support;
+
 use std::{path::PathBuf, sync::Arc, time::Instant};
 
 use cohabit_cdf::{ActionKind, Catalog, Layout, mission::read_mission};
 use cohabit_planner::{Executor, Limits, Next, Plan, PlanError, plan};
 use cohabit_world::{Action, BodyId, GoToTarget, Input, Status, World};
 use serde_json::{Value, json};
+use support::{mission, object};
 
 const ME: BodyId = BodyId(0);
 /// No command takes longer: one simulated minute.
@@ -141,31 +144,6 @@ fn the_missions_of_the_project_are_solved() {
     }
 }
 
-/// A mission in the break room with these objects, and one goal.
-fn mission(objects: &[Value], instance: &str, state: &str) -> String {
-    let all: Vec<Value> = objects.to_vec();
-    json!({
-        "task_description": "", "goal_text": "one",
-        "scene": {
-            "floor_plan": "1", "scene_id": "one", "roomLocation": ["BreakRoom"], "required_objects": all,
-            "layoutOverride": "OfficeLayout1",
-        },
-        "task_goals": [{
-            "goal_id": 4, "description": "Get it done", "object_states": [{ instance: state }],
-            "object_states_relation": "and", "preconditions": [],
-            "visibility": { "isHidden": false, "activationInteractable": "ALWAYS UNLOCKED", "stickyNoteIndex": 0 },
-            "canReset": false,
-        }],
-        "stateconditions": [],
-    })
-    .to_string()
-}
-
-fn object(name: &str, states: &[(&str, &str)]) -> Value {
-    let states: Vec<Value> = states.iter().map(|(key, value)| json!({ *key: value })).collect();
-    json!({ "name": name, "state": states, "roomLocation": ["BreakRoom"] })
-}
-
 #[test]
 fn goals_of_many_kinds_are_reached() {
     let catalog = Arc::new(Catalog::builtin());
@@ -185,7 +163,7 @@ fn goals_of_many_kinds_are_reached() {
         (vec![object("Floppy_Virus_1", &[])], "Computer_Monitor_01_1", "isInfected=true"),
         (vec![object("Bowl_01_1", &[]), object("Hammer_1", &[])], "Bowl_01_1", "isBroken=true"),
     ] {
-        let mut world = world(&catalog, instance, &mission(&objects, instance, state));
+        let mut world = world(&catalog, instance, &mission(&objects, instance, state, false));
         let result = solve(&mut world);
         assert!(result.is_ok(), "{instance} {state}: {}", result.unwrap_err());
     }
@@ -209,7 +187,7 @@ fn what_cannot_be_is_said_with_its_reason() {
             "is locked: it does not open by hand",
         ),
     ] {
-        let world = world(&catalog, instance, &mission(&objects, instance, state));
+        let world = world(&catalog, instance, &mission(&objects, instance, state, false));
         match planned(&world) {
             Err(PlanError::Unreachable { goal: 4, description, reason: found }) => {
                 assert_eq!(description, "Get it done");
@@ -244,6 +222,7 @@ fn a_device_of_the_table_alone_is_planned_with_and_works() {
         &[object("FoodPlate_01_1", &[("isDirty", "false"), ("Unique", "true")])],
         "FoodPlate_01_1",
         "isDirty=true",
+        false,
     );
     let mut world = world(&catalog, "soil", &text);
     let plan = solve(&mut world).unwrap();
@@ -297,7 +276,7 @@ fn an_executor_plays_the_missions_of_the_project_with_one_plan_each() {
 #[test]
 fn an_executor_plans_anew_when_what_it_held_is_put_elsewhere() {
     let catalog = Arc::new(Catalog::builtin());
-    let text = mission(&[object("CoffeeMug_Boss_1", &[])], "CoffeeMug_Boss_1", "isHot=true");
+    let text = mission(&[object("CoffeeMug_Boss_1", &[])], "CoffeeMug_Boss_1", "isHot=true", false);
     let mut world = world(&catalog, "taken", &text);
     let mug = world.find("CoffeeMug_Boss_1").unwrap();
     let table = world.find("TableRound_02_1").unwrap();
@@ -319,7 +298,7 @@ fn an_executor_plans_anew_when_what_it_held_is_put_elsewhere() {
 fn an_executor_reaches_what_it_can_and_says_what_it_cannot() {
     let catalog = Arc::new(Catalog::builtin());
     let objects = [object("Bowl_01_1", &[]), object("CoffeeMug_Boss_1", &[])];
-    let mut text: Value = serde_json::from_str(&mission(&objects, "Bowl_01_1", "isSparking=true")).unwrap();
+    let mut text: Value = serde_json::from_str(&mission(&objects, "Bowl_01_1", "isSparking=true", false)).unwrap();
     let goal = |number: i64, state: Value, before: &[i64]| {
         let mut goal = text["task_goals"][0].clone();
         goal["goal_id"] = json!(number);
@@ -345,7 +324,7 @@ fn an_executor_reaches_what_it_can_and_says_what_it_cannot() {
 #[test]
 fn what_the_world_refuses_twice_is_done_without() {
     let catalog = Arc::new(Catalog::builtin());
-    let text = mission(&[object("CoffeeMug_Boss_1", &[])], "CoffeeMug_Boss_1", "isHot=true");
+    let text = mission(&[object("CoffeeMug_Boss_1", &[])], "CoffeeMug_Boss_1", "isHot=true", false);
     let mut world = world(&catalog, "refused", &text);
     let mut executor = executor(&world);
     // All that is done with the mug is refused: it cannot be got at.

@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use cohabit_bus::message::{NONE, ObjectRecord, StateView};
 use cohabit_cdf::{
     Action, ActionKind, ClassId, Color, Fluid, ObjectId, Property, RoomId, StateFlag, StateFlags,
-    symbolic::{Access, Place, SymbolicState, Thing},
+    symbolic::{Place, SymbolicState, Thing},
 };
 
 /// Things that may come into a world beyond those that are known: more are nonsense.
@@ -129,25 +129,8 @@ impl Symbols {
 
 /// A thing that came into the world, or left it before anything was heard of it.
 fn unknown(record: &ObjectRecord) -> Thing {
-    Thing {
-        instance: String::new(),
-        aliases: Vec::new(),
-        class: ClassId(record.class),
-        room: RoomId::from_index(u32::from(record.room)).unwrap_or(RoomId::ALL[0]),
-        place: Place::Gone,
-        flags: StateFlags::default(),
-        fluid: Fluid::None,
-        color: Color::Original,
-        scale: [1.0; 3],
-        works: None,
-        circuit: None,
-        feeds: None,
-        yesterday: None,
-        was: None,
-        prints: None,
-        touched: false,
-        access: Access::AT_HAND,
-    }
+    let room = RoomId::from_index(u32::from(record.room)).unwrap_or(RoomId::ALL[0]);
+    Thing::new(String::new(), ClassId(record.class), room, Place::Gone)
 }
 
 #[cfg(test)]

@@ -8,7 +8,7 @@ use crate::{
         table::{ActionKind, Change, Device, Over, Scope, Site, Term, View},
     },
     mission::Era,
-    state::{Color, Fluid, StateFlag, StateFlags},
+    state::{Fluid, StateFlag},
 };
 
 /// How much larger things are made.
@@ -244,25 +244,7 @@ impl SymbolicState {
         let aliases = maker.map_or_else(Vec::new, |maker| {
             maker.aliases.iter().map(|alias| instance.replacen(&maker.instance, alias, 1)).collect()
         });
-        let thing = Thing {
-            instance,
-            aliases,
-            class,
-            room: beside.room,
-            place,
-            flags: StateFlags::default(),
-            fluid: Fluid::None,
-            color: Color::Original,
-            scale: [1.0; 3],
-            works: None,
-            circuit: None,
-            feeds: None,
-            yesterday: None,
-            was,
-            prints: None,
-            touched: false,
-            access: beside.access,
-        };
+        let thing = Thing { aliases, was, access: beside.access, ..Thing::new(instance, class, beside.room, place) };
         self.things.push(thing);
     }
 

@@ -3,7 +3,7 @@
 use std::{collections::BTreeMap, path::PathBuf, sync::Arc, time::Instant};
 
 use cohabit_bus::message::DialogKind;
-use cohabit_cdf::BodyId;
+use cohabit_cdf::{BodyId, Catalog};
 use cohabit_dialog::{Conversation, Knowledge, TurnEnd};
 use cohabit_engine::SessionPlan;
 use cohabit_language::{Asking, Known, Knows, Language};
@@ -50,6 +50,11 @@ impl Settings {
     #[must_use]
     pub fn expert(seed: u64) -> Self {
         Self { seed, knows: Knows::Everything, asking: Asking::Never, ..Self::default() }
+    }
+
+    /// The session log of a task, if one is wanted.
+    pub(crate) fn log(&self, id: &str) -> Option<PathBuf> {
+        self.record.as_ref().map(|folder| folder.join(format!("{}.mcap", file_name(id))))
     }
 
     /// As a log notes them.
@@ -139,24 +144,12 @@ pub struct Said {
 pub fn play(task: &Task, settings: &Settings, language: &Language) -> Result<Played, LogError> {
     let (began, catalog) = (Instant::now(), language.catalog());
     let mut played = Played { id: task.id.clone(), ..Played::default() };
-    let built = SessionPlan::new(&task.id, &task.cdf, Arc::clone(catalog), settings.seed)
-        .and_then(|plan| plan.build().map(|world| (plan, world)));
-    let (plan, world) = match built {
-        Ok(built) => built,
-        Err(error) => {
-            played.ended_early = Some(format!("not playable: {error}"));
-            played.wall_s = began.elapsed().as_secs_f64();
-            return Ok(played);
-        }
-    };
-    played.load_s = began.elapsed().as_secs_f64();
-    played.family = task.family.clone().unwrap_or_else(|| family(&plan.mission));
+    let Some((plan, world)) = played.set_up(task, settings.seed, catalog, began) else { return Ok(played) };
     let knowledge = Knowledge::new(settings.knows, Arc::clone(catalog), world.layout(), BodyId(0))
         .with_mission(&plan.mission.goal_text);
     let conversation = Conversation::new(language.clone().asking(settings.asking), 0);
     let mut session = LockStep::new(world, conversation, knowledge);
-    if let Some(folder) = &settings.record {
-        let path = folder.join(format!("{}.mcap", file_name(&task.id)));
+    if let Some(path) = settings.log(&task.id) {
         let facts = SessionFacts { settings: settings.noted(), ..SessionFacts::named(&task.id) };
         session.record(&path, &facts, &plan)?;
         played.log = Some(path);
@@ -178,7 +171,7 @@ fn person_of(id: &str, seed: u64) -> u64 {
 }
 
 /// A task's id as the name of a file.
-pub(crate) fn file_name(id: &str) -> String {
+fn file_name(id: &str) -> String {
     let fits = |letter: char| letter.is_ascii_alphanumeric() || matches!(letter, '-' | '_' | '.' | '#');
     id.chars().map(|letter| if fits(letter) { letter } else { '_' }).collect()
 }
@@ -348,6 +341,31 @@ impl Player {
 }
 
 impl Played {
+    /// The plan of the task's session, and its world; nothing, if it cannot be played, which is noted.
+    pub(crate) fn set_up(
+        &mut self,
+        task: &Task,
+        seed: u64,
+        catalog: &Arc<Catalog>,
+        began: Instant,
+    ) -> Option<(SessionPlan, World)> {
+        let built = SessionPlan::new(&task.id, &task.cdf, Arc::clone(catalog), seed)
+            .and_then(|plan| plan.build().map(|world| (plan, world)));
+        let seconds = began.elapsed().as_secs_f64();
+        match built {
+            Ok((plan, world)) => {
+                self.load_s = seconds;
+                self.family = task.family.clone().unwrap_or_else(|| family(&plan.mission));
+                Some((plan, world))
+            }
+            Err(error) => {
+                self.ended_early = Some(format!("not playable: {error}"));
+                self.wall_s = seconds;
+                None
+            }
+        }
+    }
+
     /// Counts a command that ended; too many of them end the mission.
     pub(crate) fn count(&mut self, outcome: &Outcome, caps: Option<Caps>) {
         self.actions += 1;

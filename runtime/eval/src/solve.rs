@@ -4,14 +4,12 @@ use std::{collections::BTreeMap, sync::Arc, time::Instant};
 
 use cohabit_bus::message::EventMessage;
 use cohabit_cdf::{Action, ActionKind, BodyId, Catalog};
-use cohabit_engine::SessionPlan;
 use cohabit_planner::{Executor, GivenUp, Limits, Next};
 use cohabit_record::{InputEntry, LogError, SessionFacts};
 use cohabit_world::{Input, Outcome, World};
 
 use crate::{
-    family::family,
-    play::{Played, Settings, Trouble, file_name},
+    play::{Played, Settings, Trouble},
     task::Task,
     trace::{Trace, input},
 };
@@ -32,21 +30,9 @@ const LIMITS: Limits = Limits::of_states(4_000);
 pub fn solve(task: &Task, settings: &Settings, catalog: &Arc<Catalog>) -> Result<Played, LogError> {
     let began = Instant::now();
     let mut played = Played { id: task.id.clone(), ..Played::default() };
-    let built = SessionPlan::new(&task.id, &task.cdf, Arc::clone(catalog), settings.seed)
-        .and_then(|plan| plan.build().map(|world| (plan, world)));
-    let (plan, world) = match built {
-        Ok(built) => built,
-        Err(error) => {
-            played.ended_early = Some(format!("not playable: {error}"));
-            played.wall_s = began.elapsed().as_secs_f64();
-            return Ok(played);
-        }
-    };
-    played.load_s = began.elapsed().as_secs_f64();
-    played.family = task.family.clone().unwrap_or_else(|| family(&plan.mission));
+    let Some((plan, world)) = played.set_up(task, settings.seed, catalog, began) else { return Ok(played) };
     let mut trace = None;
-    if let Some(folder) = &settings.record {
-        let path = folder.join(format!("{}.mcap", file_name(&task.id)));
+    if let Some(path) = settings.log(&task.id) {
         trace = Some(Trace::create(&path, &facts(&task.id), &plan)?);
         played.log = Some(path);
     }

@@ -106,9 +106,7 @@ impl Generated {
             "cdf": self.cdf,
         })
     }
-}
 
-impl Generated {
     /// What tells it from others where missions are parted for training and tests.
     #[must_use]
     pub fn facets(&self) -> Facets {

@@ -141,8 +141,8 @@ fn operator(facts: &Facts<'_>, index: usize, text: &mut String) {
         let (name, places) = (facts.thing(room), facts.may_be_on(room).len());
         needs.push(format!("(not (holds-{name}-{places}-{}))", capacity(facts, room)));
     }
-    let all: Vec<&Assign> = operator.effects.iter().collect();
-    let effects = facts.effects(&all);
+    let assigns: Vec<&Assign> = operator.effects.iter().collect();
+    let effects = facts.effects(&assigns);
     if !is_machine(operator) {
         action(&facts.action(index), &needs, &effects, text);
         return;

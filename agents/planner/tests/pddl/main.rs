@@ -3,6 +3,8 @@
 #![allow(clippy::unwrap_used)]
 
 mod domain;
+#[path = "../support/mod.rs"]
+mod support;
 
 use std::sync::Arc;
 
@@ -13,7 +15,8 @@ use cohabit_planner::{
 };
 use cohabit_world::{BodyId, World};
 use domain::Domain;
-use serde_json::{Value, json};
+use serde_json::Value;
+use support::{mission, object};
 
 const ME: BodyId = BodyId(0);
 
@@ -52,27 +55,6 @@ fn the_missions_of_the_project_are_exported_whole() {
     }
 }
 
-/// A mission in the break room with these objects and one goal, which may open again.
-fn mission(objects: &[&str], instance: &str, state: &str, can_reset: bool) -> String {
-    let object = |name: &&str| json!({ "name": name, "state": [], "roomLocation": ["BreakRoom"] });
-    let all: Vec<Value> = objects.iter().map(object).collect();
-    json!({
-        "task_description": "", "goal_text": "one",
-        "scene": {
-            "floor_plan": "1", "scene_id": "one", "roomLocation": ["BreakRoom"], "required_objects": all,
-            "layoutOverride": "OfficeLayout1",
-        },
-        "task_goals": [{
-            "goal_id": 4, "description": "", "object_states": [{ instance: state }],
-            "object_states_relation": "and", "preconditions": [],
-            "visibility": { "isHidden": false, "activationInteractable": "ALWAYS UNLOCKED", "stickyNoteIndex": 0 },
-            "canReset": can_reset,
-        }],
-        "stateconditions": [],
-    })
-    .to_string()
-}
-
 #[test]
 fn goals_of_many_kinds_are_exported_whole() {
     for can_reset in [false, true] {
@@ -84,14 +66,15 @@ fn goals_of_many_kinds_are_exported_whole() {
             (&["CoffeeMug_Boss_1"][..], "CoffeeMug_Boss_1", "isCold=true"),
             (&["CoffeeMug_Boss_1"][..], "TableRound_02_1", "Contains=CoffeeMug_Boss_1"),
         ] {
-            check(state, &mission(objects, instance, state, can_reset));
+            let objects: Vec<Value> = objects.iter().map(|name| object(name, &[])).collect();
+            check(state, &mission(&objects, instance, state, can_reset));
         }
     }
 }
 
 #[test]
 fn a_goal_that_cannot_be_reached_has_no_plan() {
-    let text = mission(&["Bowl_01_1"][..], "Bowl_01_1", "isSparking=true", false);
+    let text = mission(&[object("Bowl_01_1", &[])], "Bowl_01_1", "isSparking=true", false);
     let Pddl { domain, problem, plan } = exported("sparks", &text);
     let domain = Domain::read(&domain, &problem);
     assert!(plan.is_err(), "{plan:?}");
