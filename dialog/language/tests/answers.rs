@@ -1,13 +1,9 @@
 //! Answers are true: of everything that stands in the built-in floor plans, in states drawn at random, questions that want a yes or a
 //! no get the right one, and conditions hold where they do.
 
-#![allow(clippy::unwrap_used)]
-
-mod support;
-
+use crate::support::Talk;
 use cohabit_cdf::{Fluid, ObjectId, Property, state::StateFlag};
 use cohabit_language::{Known, KnownObject, Understanding};
-use support::Talk;
 
 const ROOMS: [&str; 4] = [
     "plan OfficeLayout1 BreakRoom",

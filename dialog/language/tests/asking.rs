@@ -1,14 +1,10 @@
 //! When the robot asks, what it asks, and what it makes of the answers.
 
-#![allow(clippy::unwrap_used)]
-
-mod support;
-
-use cohabit_language::{Asking, Clarification, Context, Understanding};
-use support::{
+use crate::support::{
     Talk,
     cases::{before, cases},
 };
+use cohabit_language::{Asking, Clarification, Context, Understanding};
 
 /// Lines `> utterance` and `@ instance pointed at`, each followed by what is understood; `…` ends a prefix.
 fn check(asking: Asking, marks: &[&str], script: &str) {

@@ -1,10 +1,6 @@
 //! What the grammar does not read, the rewriter may: reasons around requests, verbs that nobody listed, wishes, stops.
-#![allow(clippy::unwrap_used)]
-
-mod support;
-
+use crate::support::Talk;
 use cohabit_language::Understanding;
-use support::Talk;
 
 #[test]
 fn a_request_is_found_among_other_words() {

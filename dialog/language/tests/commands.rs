@@ -1,10 +1,6 @@
 //! What people say, and the steps it means, in a small office.
 
-#![allow(clippy::unwrap_used)]
-
-mod support;
-
-use support::{Talk, catalog, scene, text};
+use crate::support::{Talk, catalog, scene, text};
 
 use cohabit_language::{Context, Language};
 

@@ -1,12 +1,8 @@
 //! Conversations: questions and their answers, pronouns, failures and their remedies.
 
-#![allow(clippy::unwrap_used)]
-
-mod support;
-
+use crate::support::{Talk, step_text};
 use cohabit_cdf::Status;
 use cohabit_language::Understanding;
-use support::{Talk, step_text};
 
 /// Lines of `> utterance` and what must come of it; `# step status` reports an outcome; `…` ends a prefix.
 fn check(marks: &[&str], script: &str) {
@@ -176,7 +172,7 @@ fn success_is_told() {
 fn things_are_put_back_and_steps_taken_back() {
     let mut talk = Talk::new(&[]);
     let take = talk.language.understand("take the milk", &talk.scene, &mut talk.context);
-    assert_eq!(support::text(&take, &talk.scene), "open FridgeLower_02_1, take MilkCarton_01_1");
+    assert_eq!(crate::support::text(&take, &talk.scene), "open FridgeLower_02_1, take MilkCarton_01_1");
     let milk = talk.scene.objects.iter().position(|object| object.instance == "MilkCarton_01_1").unwrap();
     let (id, fridge) = (talk.scene.objects[milk].id, talk.scene.objects[milk].parent.unwrap());
     talk.scene.robot.held = Some(id);

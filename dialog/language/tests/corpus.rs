@@ -1,6 +1,4 @@
 //! Stops among the utterances of the corpus are heard as stops, and others are not.
-#![allow(clippy::unwrap_used)]
-
 use std::{fs, path::Path};
 
 use cohabit_language::{Firmness, find_stop};

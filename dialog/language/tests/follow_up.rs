@@ -1,10 +1,6 @@
 //! What is said next: answers to the robot's question, corrections, the same again with something else.
 
-#![allow(clippy::unwrap_used)]
-
-mod support;
-
-use support::Talk;
+use crate::support::Talk;
 
 const KITCHEN: [&str; 3] =
     ["plan OfficeLayout2 BreakRoom", "add Knife_01 on KitchenCounterTop_02", "add SandwichHalf_01 in FridgeLower_02"];

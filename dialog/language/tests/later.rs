@@ -1,12 +1,8 @@
 //! What is done or answered once a plan has ended: what is left of the mission, a question about the outcome, what has yet to be found.
 
-#![allow(clippy::unwrap_used)]
-
-mod support;
-
+use crate::support::{Talk, text};
 use cohabit_cdf::Status;
 use cohabit_language::{Asking, KnownGoal, Understanding};
-use support::{Talk, text};
 
 /// Says something and carries out all that comes of it; a goal is met once the plan for it has ended. What was done and said, in order.
 fn carried_out(talk: &mut Talk, utterance: &str) -> Vec<String> {
@@ -188,7 +184,7 @@ fn woken(talk: &mut Talk, now_s: f64) -> Option<String> {
     if let cohabit_language::Understanding::Plan { steps, .. } = &understanding {
         talk.carry_out(steps);
     }
-    Some(support::text(&understanding, &talk.scene))
+    Some(crate::support::text(&understanding, &talk.scene))
 }
 
 #[test]

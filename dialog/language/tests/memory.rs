@@ -1,11 +1,8 @@
 //! What the robot remembers of what it saw, and how it looks for the rest, in the small office.
 
-#![allow(clippy::unwrap_used)]
-
-mod support;
-
 use std::sync::Arc;
 
+use crate::support::{catalog, scene, step_text};
 use cohabit_cdf::{
     Action, Catalog, GoToTarget, Layout, ObjectId, RoomId, StateFlag, Status, Verb,
     layout::{Finish, Opening, OpeningKind, Room, Viewpoint},
@@ -14,7 +11,6 @@ use cohabit_cdf::{
 use cohabit_language::{
     Clarification, Context, FloorPlan, Gaze, Known, Language, Lessons, Memory, Step, Understanding,
 };
-use support::{catalog, scene, step_text};
 
 const ROOMS: [(RoomId, [f32; 4]); 5] = [
     (RoomId::BreakRoom, [-5.0, -4.0, 7.0, 4.0]),
@@ -115,7 +111,7 @@ impl Robot {
                     steps
                 }
                 Some(other) => {
-                    said.push(support::text(&other, &known));
+                    said.push(crate::support::text(&other, &known));
                     break;
                 }
                 None => break,

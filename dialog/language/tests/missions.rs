@@ -1,14 +1,10 @@
 //! The utterances of real missions, understood in the built-in office.
 
-#![allow(clippy::unwrap_used)]
-
-mod support;
-
 use std::{path::Path, sync::Arc};
 
+use crate::support::text;
 use cohabit_cdf::{Catalog, Color, Fluid, Layout, Mission, ObjectId, RoomId, state::StateFlags};
 use cohabit_language::{Context, Known, KnownObject, KnownRobot, Language, Understanding};
-use support::text;
 
 /// A few less than led to a plan when this was written: 1,318 of 1,331.
 const FEWEST_PLANNED: usize = 1_315;

@@ -1,10 +1,6 @@
 //! What the robot does, and asks, of readings none of which is likely enough.
-#![allow(clippy::unwrap_used)]
-
-mod support;
-
+use crate::support::{Talk, catalog};
 use cohabit_language::{Language, Understanding};
-use support::{Talk, catalog};
 
 /// What a rewriter would write, each with its probability; the words themselves mean nothing.
 const WRITTEN: &[(&str, &[(&str, f32)])] = &[

@@ -1,11 +1,7 @@
 //! Questions about what the robot sees, did and knows, also several at once and about what was spoken of before.
 
-#![allow(clippy::unwrap_used)]
-
-mod support;
-
+use crate::support::Talk;
 use cohabit_language::Understanding;
-use support::Talk;
 
 /// Says these one after the other, does what is to be done, and gives the reply to the last.
 fn replied(marks: &[&str], said: &[&str]) -> String {

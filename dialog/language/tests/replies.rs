@@ -1,11 +1,7 @@
 //! What the robot says is English, whatever it is asked about: no article before a pronoun, and nothing offered that was denied.
 
-#![allow(clippy::unwrap_used)]
-
-mod support;
-
+use crate::support::Talk;
 use cohabit_language::Understanding;
-use support::Talk;
 
 const REQUESTS: [&str; 38] = [
     "pick up {}",

@@ -1,11 +1,7 @@
 //! What people say in long messages, understood with the rewriter.
-#![allow(clippy::unwrap_used)]
-
-mod support;
-
+use crate::support::{Talk, text};
 use cohabit_language::Understanding;
 use proptest::prelude::*;
-use support::{Talk, text};
 
 const BREAK_ROOM: &[&str] = &[
     "plan OfficeLayout2 BreakRoom",

@@ -1,13 +1,9 @@
 //! Whatever is typed, in whatever scene: an understanding, never a panic, and always the same one.
 
-#![allow(clippy::unwrap_used)]
-
-mod support;
-
+use crate::support::{Talk, catalog, scene};
 use cohabit_cdf::Status;
 use cohabit_language::{Context, Language, Understanding};
 use proptest::prelude::*;
-use support::{Talk, catalog, scene};
 
 /// Words that mean something, to be put together in any order.
 const WORDS: &str = "pick up put down the a it mug bowl red yellow on in into from to next with and then , . ? go room break lab 1 2 \

@@ -2,10 +2,6 @@
 //! utterance of the other sets of this crate says stop where it means something else.
 //! `held_out.txt` was written after the recogniser was done; its floor is what it made of it at first contact.
 
-#![allow(clippy::unwrap_used)]
-
-mod support;
-
 use std::path::{Path, PathBuf};
 
 use cohabit_language::{Firmness, Understanding, find_stop, mentions_stop, says_stop};
@@ -127,7 +123,7 @@ fn nothing_breaks_the_recogniser() {
 /// The lines of a list that a robot which is busy takes for what they are not: of those that begin with `S: `, which say stop, and of those
 /// that begin with `N: `, which do not.
 fn mistaken(list: &str) -> [Vec<&str>; 2] {
-    let mut talk = support::Talk::new(&[]);
+    let mut talk = crate::support::Talk::new(&[]);
     talk.say("go to the warehouse");
     let stops = |said: &str| {
         let understanding = talk.language.understand(said, &talk.scene, &mut talk.context.clone());

@@ -1,11 +1,7 @@
 //! What the robot says of itself and of things holds, and it does nothing that was not asked for: questions are answered,
 //! conditions are looked at, and verbs that it does not know are asked about.
 
-#![allow(clippy::unwrap_used)]
-
-mod support;
-
-use support::Talk;
+use crate::support::Talk;
 
 /// What must come of an utterance; `…` ends a prefix.
 fn check(marks: &[&str], said: &str, expected: &str) {
@@ -134,7 +130,7 @@ fn a_stop_is_done_before_what_else_is_said() {
         talk.say("go to the main office");
         let understanding = talk.language.understand(said, &talk.scene, &mut talk.context);
         let Understanding::Stop { then, .. } = understanding else { panic!("{said}: {understanding:?}") };
-        let then = then.map(|then| support::text(&then, &talk.scene)).unwrap_or_default();
+        let then = then.map(|then| crate::support::text(&then, &talk.scene)).unwrap_or_default();
         assert!(expected.strip_suffix('…').map_or(then == expected, |start| then.starts_with(start)), "{said}: {then}");
     };
     check("stop", "");

@@ -1,23 +1,19 @@
 //! What many people say, and what it should mean, written by hand. Some sets are looked at while the language is worked on; of `held_out.txt`,
 //! `strangers.txt` and the writers named here only the figures are looked at, so that they say what other people's words are worth.
 //!
-//! `cargo test -p cohabit-language --test utterances -- --nocapture` prints the figures, and what is wrong
+//! `cargo test -p cohabit-language --test language utterances -- --nocapture` prints the figures, and what is wrong
 //! in what may be looked at.
-//! `UTTERANCES=my.txt cargo test -p cohabit-language --test utterances -- --ignored --nocapture` measures a set of one's own;
+//! `UTTERANCES=my.txt cargo test -p cohabit-language --test language other_sets -- --ignored --nocapture` measures a set of one's own;
 //! `ONLY_FIGURES=1` before it keeps its cases unseen.
-
-#![allow(clippy::unwrap_used)]
-
-mod support;
 
 use std::collections::BTreeMap;
 
-use cohabit_language::{Clarification, Understanding};
-use support::{
+use crate::support::{
     Talk,
     cases::{Case, Expected, before, cases, found},
     text,
 };
+use cohabit_language::{Clarification, Understanding};
 
 /// What comes of the last utterance of a case, after all earlier ones were done.
 struct Outcome {
