@@ -245,6 +245,7 @@ function recall(step) {
 
 byId("composer").addEventListener("submit", (event) => {
   event.preventDefault();
+  clearTimeout(pause);
   const text = input.value.trim();
   if (tooLong(text)) say(text);
   else if (sendHeard(input.value)) draft = "";
@@ -253,6 +254,18 @@ byId("composer").addEventListener("submit", (event) => {
     draft = "";
   }
   input.focus();
+});
+
+const TYPING_PAUSE_MS = 150;
+let pause = 0;
+
+// What is typed is understood ahead where somebody pauses; it counts for nothing, and is kept nowhere, until it is sent.
+input.addEventListener("input", () => {
+  clearTimeout(pause);
+  pause = setTimeout(() => {
+    const text = input.value.trim();
+    if (text.includes(" ") && !tooLong(text)) send({ type: "typing", text });
+  }, TYPING_PAUSE_MS);
 });
 
 input.addEventListener("keydown", (event) => {

@@ -8,6 +8,7 @@ use std::{
 
 use cohabit_tests::{Page, Play, Scratch};
 use rustix::process::{Signal, geteuid};
+use serde_json::json;
 
 use crate::COHABIT;
 
@@ -107,4 +108,29 @@ fn what_is_planted_in_the_runtime_folder_is_not_written_to() {
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(output.status.code() == Some(4) && said.contains("chmod 700"), "{said}");
     assert_eq!(fs::read_to_string(&victim).unwrap(), "mine");
+}
+
+#[test]
+fn what_is_typed_and_not_said_is_kept_nowhere_and_told_to_nobody() {
+    let scratch = Scratch::new("drafts");
+    let (runtime, data) = (private(&scratch, "runtime"), private(&scratch, "data"));
+    let environment = [("XDG_RUNTIME_DIR", runtime.as_str()), ("XDG_DATA_HOME", data.as_str())];
+    let play = Play::start_in(COHABIT, &[], &environment).unwrap();
+    let [mut page, mut other] = [1, 2].map(|key| Page::open_as(play.authority(), key).unwrap());
+    page.send(&json!({ "type": "typing", "text": "tell nobody of the zanzibar affair" })).unwrap();
+    page.do_and_wait("turn left").unwrap();
+    other.do_and_wait("turn right").unwrap();
+    let lines = page.chat.iter().chain(&other.chat);
+    let told: Vec<_> = lines.filter(|(_, text)| text.contains("zanzibar")).collect();
+    assert!(told.is_empty(), "{told:?}");
+    drop((page, other));
+    play.end().unwrap();
+    let files = [runtime, data].into_iter().flat_map(|folder| contents(folder.as_ref()));
+    let files: Vec<_> = files.filter_map(|path| Some((fs::read(&path).ok()?, path))).collect();
+    let keeping = |word: &str| {
+        let has = |bytes: &[u8]| bytes.windows(word.len()).any(|part| part == word.as_bytes());
+        files.iter().filter(|(bytes, _)| has(bytes)).map(|(_, path)| path).collect::<Vec<_>>()
+    };
+    assert!(!keeping("turn left").is_empty(), "what is said is in the log");
+    assert!(keeping("zanzibar").is_empty(), "{:?}", keeping("zanzibar"));
 }

@@ -184,6 +184,12 @@ impl Language {
         Self { rewriter: Some(rewriter), ..self }
     }
 
+    /// Whether a language model may take some tenths of a second over an utterance; what it made of one is kept.
+    #[must_use]
+    pub const fn may_think_long(&self) -> bool {
+        self.rewriter.is_some()
+    }
+
     /// Whether it asks at all.
     #[must_use]
     pub fn may_ask(&self) -> bool {

@@ -7,6 +7,7 @@ mod affordances;
 mod alarm;
 mod connections;
 mod conversation;
+mod drafts;
 mod driving;
 mod feed;
 mod frames;
@@ -219,7 +220,8 @@ pub fn serve(
     let (tells, plays) = (Arc::clone(&hub), Arc::clone(&hub));
     let (tell, play) = (move |message: &Value| tells.tell(message), move |piece| plays.play(piece));
     let voice = Voice::new(Arc::clone(&bus), voice, tell, play);
-    let pages = Pages { hub: Arc::clone(&hub), drivers: Arc::clone(&drivers), voice: Arc::clone(&voice) };
+    let (drafts, drafted) = drafts::drafts();
+    let pages = Pages { hub: Arc::clone(&hub), drivers: Arc::clone(&drivers), voice: Arc::clone(&voice), drafts };
     let talk = Talk::new(&*bus, catalog, robots, puzzles, pages, journal)?;
     let ears = Ears::new(&*bus)?;
     talk.serve_at(place.clone());
@@ -239,6 +241,7 @@ pub fn serve(
             scope.spawn(|| until_ended(&ended, || talk::listen(ears, &talk, &over))),
             scope.spawn(|| until_ended(&ended, || talk::show_state(&talk, &survey, STATE_EVERY, &over))),
             scope.spawn(|| until_ended(&ended, || voice.pass_on(&over))),
+            scope.spawn(|| until_ended(&ended, || talk.read_ahead(drafted, &over))),
         ];
         if config.holding.holds() {
             workers.push(scope.spawn(|| until_ended(&ended, || talk.keep_time(&over))));

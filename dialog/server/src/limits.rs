@@ -13,6 +13,8 @@ const ALL_PER_SECOND: f64 = 40.0;
 const DRIVES_PER_SECOND: f64 = 20.0;
 /// Pieces of sound a second: a page sends 32, and more after a moment in which it could not.
 const SOUNDS_PER_SECOND: f64 = 120.0;
+/// Times a second that a page tells what is being typed: where somebody pauses.
+const DRAFTS_PER_SECOND: f64 = 4.0;
 /// All other messages a second.
 const OTHERS_PER_SECOND: f64 = 10.0;
 
@@ -63,6 +65,8 @@ pub struct Limits {
     pub drives: Throttle,
     /// Pieces of sound.
     pub sounds: Throttle,
+    /// What is being typed.
+    pub drafts: Throttle,
     /// Anything else.
     pub others: Throttle,
 }
@@ -74,6 +78,7 @@ impl Limits {
             all: Throttle::new(now, ALL_PER_SECOND),
             drives: Throttle::new(now, DRIVES_PER_SECOND),
             sounds: Throttle::new(now, SOUNDS_PER_SECOND),
+            drafts: Throttle::new(now, DRAFTS_PER_SECOND),
             others: Throttle::new(now, OTHERS_PER_SECOND),
         }
     }

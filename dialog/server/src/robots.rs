@@ -11,6 +11,7 @@ use cohabit_language::{Addressed, Consulting, Knows, Language, Lessons, Roster};
 
 use crate::{
     conversation::{Conversation, Memory},
+    drafts::Thought,
     known::Knowledge,
     wizard::Holding,
 };
@@ -205,16 +206,36 @@ impl Robots {
         state: Option<StateView<'_>>,
         nanos: u64,
     ) -> (Vec<BodyId>, String) {
+        let (robots, text) = self.would_be_addressed(text, visitor, state, nanos);
+        let bodies = robots.iter().map(|at| self.robots[*at].body).collect();
+        if let [one] = robots[..] {
+            self.spoken.insert(visitor.number, (one, nanos));
+        }
+        (bodies, text)
+    }
+
+    /// An utterance as those to whom a visitor would say it would understand it now.
+    pub fn thoughts(&self, text: &str, visitor: Visitor, state: Option<StateView<'_>>, nanos: u64) -> Vec<Thought> {
+        let (robots, text) = self.would_be_addressed(text, visitor, state, nanos);
+        let robots = robots.into_iter().map(|at| &self.robots[at]);
+        robots.filter_map(|robot| robot.conversation.thought(&text, &robot.knowledge)).collect()
+    }
+
+    fn would_be_addressed(
+        &self,
+        text: &str,
+        visitor: Visitor,
+        state: Option<StateView<'_>>,
+        nanos: u64,
+    ) -> (Vec<usize>, String) {
         let Addressed { robots, text } = self.roster.addressed(text);
-        let meant = match robots.as_slice() {
+        let mut meant = match robots.as_slice() {
             [] if is_stop(&text) => (0..self.robots.len()).collect(),
             [] => vec![self.unnamed(visitor, state, nanos)],
             _ => robots,
         };
-        if let [one] = meant[..] {
-            self.spoken.insert(visitor.number, (one, nanos));
-        }
-        (meant.into_iter().filter_map(|at| Some(self.robots.get(at)?.body)).collect(), text)
+        meant.retain(|at| *at < self.robots.len());
+        (meant, text)
     }
 
     /// Whom somebody speaks to who calls no name: who asked; who was spoken to just now; who is near; who was spoken to

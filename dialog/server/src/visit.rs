@@ -48,6 +48,8 @@ const FASTEST: f32 = 20.0;
 enum FromPage {
     /// Somebody said something.
     Say { text: String },
+    /// Somebody has typed this so far. It counts for nothing until it is said.
+    Typing { text: String },
     /// The page has shown its first frame.
     Shown,
     /// The page has shown a frame in which the robot first moves as it was told to in this turn.
@@ -307,6 +309,13 @@ impl Visit {
                 Ok(Vec::new())
             };
         }
+        if let FromPage::Typing { text } = message {
+            let text = text::in_one_line(text.trim());
+            if text::is_within_limit(&text) && self.limits.drafts.admits(now) {
+                self.live.talk.note_draft(&text, self.visitor());
+            }
+            return Ok(Vec::new());
+        }
         if !self.limits.others.admits(now) {
             return Err(a_lot());
         }
@@ -340,7 +349,7 @@ impl Visit {
                 let text = text.filter(|text| text::is_within_limit(text));
                 self.live.voice.note_own_voice(text.as_deref(), received_nanos);
             }
-            FromPage::Drive { .. } => {}
+            FromPage::Drive { .. } | FromPage::Typing { .. } => {}
         }
         Ok(Vec::new())
     }

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Conversation, Reaction, TurnEnd, is_same};
 use crate::{
+    drafts::Thought,
     known::Knowledge,
     page::{Line, LineKind, Speaker},
     spoken::{Reading, Spoken},
@@ -115,6 +116,13 @@ impl Conversation {
             }
         })?;
         Some(Reading { is_doubtful: reading.is_doubtful && self.language.may_ask(), ..reading })
+    }
+
+    /// A text as it would be understood now, if that takes long enough to be done ahead.
+    pub(crate) fn thought(&self, text: &str, knowledge: &Knowledge) -> Option<Thought> {
+        let known = knowledge.known().filter(|_| self.language.may_think_long())?;
+        let (language, context) = (self.language.clone(), self.memory.context.clone());
+        Some(Thought { language, known, context, text: text.to_owned() })
     }
 
     fn hear_as(

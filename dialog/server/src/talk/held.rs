@@ -6,7 +6,7 @@ use cohabit_bus::monotonic_nanos;
 use cohabit_cdf::BodyId;
 use serde_json::Value;
 
-use super::{Heard, Talk, pass_over};
+use super::{Heard, Talk, world::pass_over};
 use crate::{DialogError, page, robots::Robot, wizard::Decision};
 
 /// How often the thread that answers what is held back sees whether it is to end.
