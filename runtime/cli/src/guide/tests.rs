@@ -156,7 +156,7 @@ fn shell_lines(text: &str) -> Vec<String> {
 
 /// The commands of a line, each as its words. Understands quotes, comments, `&`, `;` and `|`, and no more of a shell.
 fn commands(line: &str) -> Vec<Vec<String>> {
-    let mut commands = vec![Vec::new()];
+    let mut commands: Vec<Vec<String>> = vec![Vec::new()];
     let (mut word, mut quote): (Option<String>, Option<char>) = (None, None);
     for letter in line.chars() {
         match (quote, letter) {
