@@ -12,6 +12,7 @@ mod eval;
 mod export;
 mod faults;
 mod generate;
+mod guide;
 mod https;
 mod interpreter;
 mod lock_step;

@@ -4,10 +4,12 @@ use std::{io, net::TcpListener, sync::Arc, time::Duration};
 
 use axum::{
     Router,
+    body::Bytes,
     extract::{Request, State},
     http::{HeaderName, HeaderValue, StatusCode, header, uri::Authority},
     middleware::{self, Next},
     response::{IntoResponse, Response},
+    routing::get,
 };
 
 use crate::{
@@ -74,6 +76,34 @@ impl Site {
         runtime.shutdown_timeout(Duration::from_millis(100));
         served
     }
+}
+
+/// A file that a site serves to everybody alike.
+#[derive(Clone, Debug)]
+pub struct SiteFile {
+    /// Where it is found; begins with `/`.
+    pub path: String,
+    /// Its media type.
+    pub kind: &'static str,
+    /// What is in it.
+    pub bytes: Vec<u8>,
+}
+
+/// Routes of these files; wherever else somebody asks, they get `missing` with the status 404, whatever its path.
+///
+/// # Panics
+/// If two files have the same path, or a path does not begin with `/`.
+pub fn file_routes(files: Vec<SiteFile>, missing: SiteFile) -> Router {
+    let routes = files.into_iter().fold(Router::new(), |router, SiteFile { path, kind, bytes }| {
+        let bytes = Bytes::from(bytes);
+        router.route(&path, get(move || file(StatusCode::OK, kind, bytes)))
+    });
+    let bytes = Bytes::from(missing.bytes);
+    routes.fallback(move || file(StatusCode::NOT_FOUND, missing.kind, bytes))
+}
+
+async fn file(status: StatusCode, kind: &'static str, bytes: Bytes) -> Response {
+    (status, [(header::CONTENT_TYPE, kind), (header::CACHE_CONTROL, "no-cache")], bytes).into_response()
 }
 
 /// Stands before every route, also those that do not exist: refuses who asks for another host, or comes from another

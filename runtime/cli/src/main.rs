@@ -11,6 +11,7 @@ mod export;
 mod failure;
 mod gallery;
 mod generate;
+mod guide;
 mod minds;
 mod mission_file;
 mod pddl;
@@ -69,6 +70,8 @@ enum Command {
     Pddl(pddl::PddlFiles),
     /// Run a study: participants, conditions, consent, sessions, data
     Study(study::Study),
+    /// Show the guide in the browser or in the terminal, without a network
+    Guide(guide::Guide),
     /// Say what this machine lacks for a session, and what that costs
     Doctor(doctor::Doctor),
     /// Show a running session live: its ticks, how long their stages take, and its peers
@@ -104,6 +107,7 @@ impl Command {
             | Self::Generate(_)
             | Self::Demonstrate(_)
             | Self::Pddl(_)
+            | Self::Guide(_)
             | Self::Doctor(_)
             | Self::Top(_)
             | Self::Time(_)
@@ -145,6 +149,7 @@ fn run(asked: Cohabit) -> anyhow::Result<()> {
         Command::Demonstrate(demonstrate) => demonstrate.run(),
         Command::Pddl(pddl) => pddl.run(),
         Command::Study(study) => study.run(),
+        Command::Guide(guide) => guide.run(),
         Command::Doctor(doctor) => doctor.run(),
         Command::Top(top) => top.run(),
         Command::Time(time) => time.run(),

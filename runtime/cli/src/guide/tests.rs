@@ -1,0 +1,234 @@
+//! README and guide: their links lead somewhere, and the commands in them are commands of this program.
+
+use std::{
+    collections::BTreeSet,
+    fs,
+    path::{Path, PathBuf},
+};
+
+use clap::Parser as _;
+use pulldown_cmark::{CodeBlockKind, Event, HeadingLevel, Tag, TagEnd};
+
+use super::{
+    book::{PAGES, PICTURES, SUMMARY, Target, from_root, page, target},
+    markdown::{Heading, events, headings, html},
+    pages::{files, title},
+};
+use crate::Cohabit;
+
+/// The root of the repository.
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+/// README and all pages: the path from the root, and the text.
+fn texts() -> Vec<(String, String)> {
+    let pages = PAGES.iter().map(|page| (format!("runtime/guide/src/{}.md", page.name), page.text.to_owned()));
+    let readme = fs::read_to_string(root().join("README.md")).unwrap();
+    std::iter::once(("README.md".to_owned(), readme)).chain(pages).collect()
+}
+
+/// Where links and pictures of a text lead.
+fn links(text: &str) -> Vec<String> {
+    let link = |event| match event {
+        Event::Start(Tag::Link { dest_url, .. } | Tag::Image { dest_url, .. }) => Some(dest_url.to_string()),
+        _ => None,
+    };
+    events(text).filter_map(link).collect()
+}
+
+/// What the links to the headings of a text have behind the `#`.
+fn anchors(text: &str) -> Vec<String> {
+    headings(text).iter().map(Heading::anchor).collect()
+}
+
+#[test]
+fn every_link_leads_to_a_page_a_heading_or_a_file() {
+    for (file, text) in texts() {
+        let folder = root().join(&file).parent().unwrap().to_owned();
+        for link in links(&text) {
+            if matches!(target(&link), Target::Site(_)) {
+                continue;
+            }
+            let (path, anchor) = link.split_once('#').unwrap_or((&link, ""));
+            let meant = if path.is_empty() { root().join(&file) } else { folder.join(path) };
+            assert!(meant.exists(), "{file}: `{link}` leads to no file");
+            if !anchor.is_empty() {
+                let there = anchors(&fs::read_to_string(&meant).unwrap());
+                assert!(there.contains(&anchor.to_owned()), "{file}: `{link}` leads to no heading of {there:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_guide_serves_every_page_and_picture_that_its_pages_link_to() {
+    let served: BTreeSet<String> = files().into_iter().map(|file| file.path).collect();
+    for shown in PAGES {
+        for event in events(shown.text) {
+            match event {
+                Event::Start(Tag::Link { dest_url, .. }) => {
+                    if let Target::Page(address) = target(&dest_url) {
+                        let path = address.split('#').next().unwrap_or_default();
+                        assert!(served.contains(path), "{}: `{dest_url}`", shown.name);
+                    }
+                }
+                Event::Start(Tag::Image { dest_url, .. }) => {
+                    let path = from_root(&dest_url);
+                    assert!(PICTURES.iter().any(|(known, _)| *known == path), "{}: `{dest_url}`", shown.name);
+                }
+                _ => {}
+            }
+        }
+    }
+}
+
+#[test]
+fn the_summary_has_all_pages_in_their_order_with_their_titles() {
+    let listed: Vec<(String, String)> = SUMMARY
+        .lines()
+        .filter_map(|line| line.strip_prefix("- [")?.strip_suffix(".md)")?.split_once("]("))
+        .map(|(title, name)| (title.to_owned(), name.to_owned()))
+        .collect();
+    let pages: Vec<(String, String)> = PAGES.iter().map(|page| (title(page), page.name.to_owned())).collect();
+    assert_eq!(listed, pages);
+    let folder = fs::read_dir(root().join("runtime/guide/src")).unwrap();
+    let names: BTreeSet<String> =
+        folder.map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned()).collect();
+    let known: BTreeSet<String> =
+        PAGES.iter().map(|page| format!("{}.md", page.name)).chain(["SUMMARY.md".to_owned()]).collect();
+    assert_eq!(names, known);
+}
+
+#[test]
+fn a_page_has_one_title_and_no_heading_twice() {
+    for page in PAGES {
+        let headings = headings(page.text);
+        let titles = headings.iter().filter(|heading| heading.level == HeadingLevel::H1).count();
+        assert!(titles == 1 && headings[0].level == HeadingLevel::H1, "{}: {headings:?}", page.name);
+        assert!(!title(page).contains(['<', '>', '&', '"', '`', '*', '_', '[']), "{}", title(page));
+        let anchors = anchors(page.text);
+        assert_eq!(anchors.iter().collect::<BTreeSet<_>>().len(), anchors.len(), "{}: {anchors:?}", page.name);
+    }
+    assert!(page("study").is_some() && page("nowhere").is_none());
+}
+
+#[test]
+fn a_page_names_itself_in_the_list_of_pages() {
+    for file in files().into_iter().filter(|file| file.kind.starts_with("text/html")) {
+        let text = String::from_utf8(file.bytes).unwrap();
+        assert_eq!(text.matches("aria-current=\"page\"").count(), 1, "{}", file.path);
+        assert_eq!(text.matches("<h1").count(), 1, "{}", file.path);
+        assert!(!["{title}", "{version}", "{contents}"].iter().any(|place| text.contains(place)), "{}", file.path);
+    }
+    assert_eq!(html(SUMMARY).matches("<a href=\"/").count(), PAGES.len());
+}
+
+#[test]
+fn the_readme_is_short() {
+    let (_, readme) = texts().swap_remove(0);
+    assert!(readme.lines().count() <= 180, "{} lines", readme.lines().count());
+}
+
+/// The lines of the blocks of a text that are for the shell; a line that ends with `\` goes on in the next one.
+fn shell_lines(text: &str) -> Vec<String> {
+    let mut lines = Vec::new();
+    let mut block: Option<String> = None;
+    for event in events(text) {
+        match event {
+            Event::Start(Tag::CodeBlock(CodeBlockKind::Fenced(language))) => {
+                block = (&*language == "sh").then(String::new);
+            }
+            Event::Text(text) => {
+                if let Some(block) = &mut block {
+                    block.push_str(&text);
+                }
+            }
+            Event::End(TagEnd::CodeBlock) => {
+                let block = block.take().unwrap_or_default().replace("\\\n", " ");
+                lines.extend(block.lines().map(str::to_owned));
+            }
+            _ => {}
+        }
+    }
+    lines
+}
+
+/// The commands of a line, each as its words. Understands quotes, comments, `&`, `;` and `|`, and no more of a shell.
+fn commands(line: &str) -> Vec<Vec<String>> {
+    let mut commands: Vec<Vec<String>> = vec![Vec::new()];
+    let (mut word, mut quote): (Option<String>, Option<char>) = (None, None);
+    for letter in line.chars() {
+        match (quote, letter) {
+            (Some(open), _) if open == letter => quote = None,
+            (Some(_), _) => word.get_or_insert_default().push(letter),
+            (None, '\'' | '"') => {
+                quote = Some(letter);
+                word.get_or_insert_default();
+            }
+            (None, '#') if word.is_none() => break,
+            (None, ' ' | '&' | ';' | '|') => {
+                let done = word.take();
+                if let Some(last) = commands.last_mut() {
+                    last.extend(done);
+                }
+                if letter != ' ' {
+                    commands.push(Vec::new());
+                }
+            }
+            (None, _) => word.get_or_insert_default().push(letter),
+        }
+    }
+    if let Some(last) = commands.last_mut() {
+        last.extend(word);
+    }
+    commands.retain(|words| !words.is_empty());
+    commands
+}
+
+/// What a command gives this program, the program's name first; `None`, if it starts another one.
+fn own_arguments(words: &[String]) -> Option<Vec<String>> {
+    const BY_CARGO: [&str; 4] = ["cargo", "run", "--release", "--"];
+    let is_variable = |word: &&String| word.split_once('=').is_some_and(|(name, _)| name.starts_with("COHABIT_"));
+    let words = &words[words.iter().take_while(is_variable).count()..];
+    let given = match words.strip_prefix(BY_CARGO.map(str::to_owned).as_slice()) {
+        Some(given) => given,
+        None => words.split_first().filter(|(program, _)| *program == "cohabit")?.1,
+    };
+    Some(std::iter::once("cohabit".to_owned()).chain(given.iter().cloned()).collect())
+}
+
+#[test]
+fn lines_for_the_shell_are_read_as_a_shell_reads_them() {
+    for (line, expected) in [
+        ("cohabit play  # it starts", vec![vec!["cohabit", "play"]]),
+        ("cohabit play --name 'a b' \"c#d\" e#f", vec![vec!["cohabit", "play", "--name", "a b", "c#d", "e#f"]]),
+        ("a & b; c | d", vec![vec!["a"], vec!["b"], vec!["c"], vec!["d"]]),
+        ("a ''", vec![vec!["a", ""]]),
+        ("# nothing", vec![]),
+    ] {
+        assert_eq!(commands(line), expected, "{line}");
+    }
+    let own = |line: &str| own_arguments(&commands(line)[0]);
+    let play = Some(vec!["cohabit".to_owned(), "play".to_owned()]);
+    assert_eq!(own("COHABIT_MODEL=m cohabit play"), play);
+    assert_eq!(own("cargo run --release -- play"), play);
+    assert_eq!(own("cargo test -p cohabit"), None);
+    assert_eq!(shell_lines("```sh\na \\\n  b\n```\n```rust\nc\n```\n"), ["a    b"]);
+}
+
+#[test]
+fn every_command_is_one_of_this_program() {
+    let mut count = 0;
+    for (file, text) in texts() {
+        for line in shell_lines(&text) {
+            for arguments in commands(&line).iter().filter_map(|words| own_arguments(words)) {
+                count += 1;
+                // The answer to `--help` is an error, too, but none of this kind.
+                let refused = Cohabit::try_parse_from(arguments).err().filter(clap::Error::use_stderr);
+                assert!(refused.is_none(), "{file}: `{line}`: {}", refused.map(|e| e.to_string()).unwrap_or_default());
+            }
+        }
+    }
+    assert!(count > 80, "only {count} commands were found");
+}

@@ -1,0 +1,104 @@
+//! The guide is served from the program itself, to this machine alone, and printed.
+
+use std::{
+    io::{BufRead as _, BufReader, Read as _, Write as _},
+    net::TcpStream,
+    process::{Child, Command, Stdio},
+    time::Duration,
+};
+
+use cohabit_tests::run;
+use rustix::process::{Pid, Signal, kill_process};
+
+use crate::COHABIT;
+
+/// The longest that an answer is waited for.
+const WATCHDOG: Duration = Duration::from_secs(60);
+
+/// A guide that is served, and where; killed when dropped.
+struct Served {
+    child: Child,
+    address: String,
+}
+
+impl Served {
+    fn start() -> Self {
+        let mut child = Command::new(COHABIT)
+            .args(["guide", "--port", "0", "--open", "no"])
+            .stdout(Stdio::piped())
+            .stdin(Stdio::null())
+            .spawn()
+            .unwrap();
+        let mut line = String::new();
+        BufReader::new(child.stdout.take().unwrap()).read_line(&mut line).unwrap();
+        let address = line.split_whitespace().find_map(|word| word.strip_prefix("http://"));
+        let address = address.unwrap_or_else(|| panic!("no address in {line}")).trim_end_matches('/').to_owned();
+        Self { child, address }
+    }
+
+    /// The status and the whole answer to who asks for a path of this host.
+    fn get(&self, host: &str, path: &str) -> (String, String) {
+        let mut stream = TcpStream::connect(&self.address).unwrap();
+        stream.set_read_timeout(Some(WATCHDOG)).unwrap();
+        let request = format!("GET {path} HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n");
+        stream.write_all(request.as_bytes()).unwrap();
+        let mut answer = Vec::new();
+        stream.read_to_end(&mut answer).unwrap();
+        let answer = String::from_utf8_lossy(&answer).into_owned();
+        (answer.split(' ').nth(1).unwrap_or_default().to_owned(), answer)
+    }
+}
+
+impl Drop for Served {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+/// Addresses of this site that a page refers to, without headings.
+fn addresses(html: &str) -> Vec<String> {
+    let parts = ["href=\"/", "src=\"/"].into_iter().flat_map(|mark| html.split(mark).skip(1));
+    parts.map(|part| format!("/{}", part.split(['"', '#']).next().unwrap_or_default())).collect()
+}
+
+#[test]
+fn each_page_and_all_that_it_refers_to_is_served_and_nothing_to_other_sites() {
+    let mut served = Served::start();
+    assert!(served.address.starts_with("127.0.0.1:"), "{}", served.address);
+    let own = served.address.clone();
+    let mut open = vec!["/".to_owned()];
+    let mut seen = std::collections::BTreeSet::new();
+    while let Some(path) = open.pop() {
+        if seen.insert(path.clone()) {
+            let (status, answer) = served.get(&own, &path);
+            assert_eq!(status, "200", "{path}");
+            assert!(answer.to_lowercase().contains("content-security-policy: default-src 'self'"), "{path}");
+            if answer.contains("text/html") {
+                assert!(answer.contains("<html lang=\"en\">") && !answer.contains("<script"), "{path}");
+                open.extend(addresses(&answer));
+            }
+        }
+    }
+    for path in ["/guide.css", "/study", "/pictures/page.jpg"] {
+        assert!(seen.contains(path), "{path} of {seen:?}");
+    }
+    let (status, answer) = served.get(&own, "/nowhere");
+    assert!(status == "404" && answer.contains("href=\"/study\""), "{answer}");
+    for path in ["/", "/study", "/nowhere"] {
+        assert_eq!(served.get("evil.example", path).0, "403", "{path}");
+    }
+    kill_process(Pid::from_raw(i32::try_from(served.child.id()).unwrap()).unwrap(), Signal::INT).unwrap();
+    assert!(served.child.wait().unwrap().success());
+}
+
+#[test]
+fn a_page_is_printed_and_an_unknown_one_is_refused_with_those_that_there_are() {
+    let output = run(COHABIT, &["guide", "--text", "study"]).unwrap();
+    assert!(output.status.success() && output.stdout.starts_with(b"# "), "{output:?}");
+    let output = run(COHABIT, &["guide", "--text", "studies"]).unwrap();
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{told}");
+    assert!(told.contains("no page `studies`") && told.contains("first-session, talk"), "{told}");
+    assert!(told.lines().count() == 1 && output.stdout.is_empty(), "{told}");
+}
