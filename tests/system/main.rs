@@ -30,6 +30,7 @@ mod study;
 mod survey;
 mod time;
 mod untrusted;
+mod vision;
 mod voice;
 mod wizard;
 
