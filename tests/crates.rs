@@ -27,6 +27,7 @@ const LEVELS: &[(&str, u8, &[&str])] = &[
     ("cohabit-dialog", 4, &["tokio", "axum", "hyper", "hyper-util", "rustls", "tokio-rustls", "rcgen"]),
     ("cohabit-eval", 5, &[]),
     ("cohabit-study", 5, &[]),
+    ("cohabit-vision", 5, &[]),
     ("cohabit-python", 5, &["pyo3", "numpy"]),
     ("cohabit", 6, &["clap", "anyhow", "indicatif"]),
 ];
@@ -45,6 +46,7 @@ const SHARED: &[(&str, &[&str])] = &[
             "cohabit-demonstrate",
             "cohabit-generate",
             "cohabit-study",
+            "cohabit-vision",
             "cohabit",
             "cohabit-tests",
         ],

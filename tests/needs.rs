@@ -44,9 +44,12 @@ pub const WHISPER: Need = Need { name: "whisper", find: whisper, variables: &["C
 pub const MOUNTS: Need = Need { name: "mounts", find: mounts, variables: &[] };
 /// Fast Downward, a planner for PDDL.
 pub const FAST_DOWNWARD: Need = Need { name: "fast_downward", find: fast_downward, variables: &[] };
+/// A `python3` with `pycocotools`, which reads COCO's annotations.
+pub const PYCOCOTOOLS: Need = Need { name: "pycocotools", find: pycocotools, variables: &[] };
 
 /// All of them.
-pub const ALL: [Need; 9] = [REFERENCE_DATA, BROWSER, PYTHON, PIP, VULKAN, VOICE, WHISPER, MOUNTS, FAST_DOWNWARD];
+pub const ALL: [Need; 10] =
+    [REFERENCE_DATA, BROWSER, PYTHON, PIP, VULKAN, VOICE, WHISPER, MOUNTS, FAST_DOWNWARD, PYCOCOTOOLS];
 
 /// Tells cargo which of these are there, and when to look again. Called by build scripts.
 pub fn tell(needs: &[Need]) {
@@ -126,6 +129,10 @@ fn mounts() -> Vec<PathBuf> {
 
 fn fast_downward() -> Vec<PathBuf> {
     first_program(&["fast-downward", "fast-downward.py"])
+}
+
+fn pycocotools() -> Vec<PathBuf> {
+    if runs("python3", &["-c", "import pycocotools.coco"]) { first_program(&["python3"]) } else { Vec::new() }
 }
 
 /// The first of these programs that is on the path.

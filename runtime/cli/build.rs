@@ -11,5 +11,6 @@ fn main() {
         needs::VOICE,
         needs::MOUNTS,
         needs::FAST_DOWNWARD,
+        needs::PYCOCOTOOLS,
     ]);
 }

@@ -31,6 +31,7 @@ mod study;
 mod survey;
 mod time;
 mod untrusted;
+mod vision;
 mod voice;
 mod wizard;
 

@@ -41,9 +41,9 @@ pub struct Demonstrate {
     workers: Option<usize>,
 }
 
-/// `300x300`.
+/// Pixels across and down: `300x300`.
 #[derive(Clone, Copy)]
-struct Size([u32; 2]);
+pub struct Size(pub [u32; 2]);
 
 impl FromStr for Size {
     type Err = String;

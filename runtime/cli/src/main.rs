@@ -29,6 +29,7 @@ mod terminal;
 mod time;
 mod tls;
 mod top;
+mod vision;
 mod voice;
 mod wizard;
 
@@ -66,6 +67,8 @@ enum Command {
     Generate(generate::Generate),
     /// Have the expert play missions, and write a data set of what it does and what the robot sees
     Demonstrate(demonstrate::Demonstrate),
+    /// Draw annotated views of the floor plans at random, and write them as a data set (COCO)
+    Vision(vision::Vision),
     /// Write a mission as a planning problem (PDDL), or check a plan for it against the world
     Pddl(pddl::PddlFiles),
     /// Run a study: participants, conditions, consent, sessions, data
@@ -106,6 +109,7 @@ impl Command {
             | Self::Eval(_)
             | Self::Generate(_)
             | Self::Demonstrate(_)
+            | Self::Vision(_)
             | Self::Pddl(_)
             | Self::Guide(_)
             | Self::Doctor(_)
@@ -147,6 +151,7 @@ fn run(asked: Cohabit) -> anyhow::Result<()> {
         Command::Eval(eval) => eval.run(),
         Command::Generate(generate) => generate.run(),
         Command::Demonstrate(demonstrate) => demonstrate.run(),
+        Command::Vision(vision) => vision.run(),
         Command::Pddl(pddl) => pddl.run(),
         Command::Study(study) => study.run(),
         Command::Guide(guide) => guide.run(),

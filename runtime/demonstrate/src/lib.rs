@@ -18,3 +18,5 @@ mod step;
 
 pub use dataset::{MissionText, Recipe, Summary, demonstrate};
 pub use error::DemonstrateError;
+pub use objects::ObjectEntry;
+pub use picture::write_plane;

@@ -6,9 +6,9 @@ use cohabit_cdf::{Color, Fluid, ObjectId};
 use cohabit_world::{ObjectView, World};
 use serde::Serialize;
 
-/// One object.
+/// One object, as data sets have it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(crate) struct ObjectEntry {
+pub struct ObjectEntry {
     instance: String,
     class: String,
     room: &'static str,
@@ -40,7 +40,7 @@ impl Objects {
     /// What is not as it was last written, in order of ids, and the instance ids of what has left the world since.
     pub fn changed(&mut self, world: &World) -> (Vec<ObjectEntry>, Vec<String>) {
         let views = world.objects().filter(|view| world.exists(view.id));
-        let now: BTreeMap<ObjectId, ObjectEntry> = views.map(|view| (view.id, entry(world, &view))).collect();
+        let now: BTreeMap<ObjectId, ObjectEntry> = views.map(|view| (view.id, ObjectEntry::of(world, &view))).collect();
         let gone = self.0.iter().filter(|(id, _)| !now.contains_key(*id)).map(|(_, entry)| entry.instance.clone());
         let gone = gone.collect();
         let changed = now.iter().filter(|(id, entry)| self.0.get(*id) != Some(*entry)).map(|(_, entry)| entry.clone());
@@ -50,18 +50,22 @@ impl Objects {
     }
 }
 
-fn entry(world: &World, view: &ObjectView<'_>) -> ObjectEntry {
-    ObjectEntry {
-        instance: view.instance.to_owned(),
-        class: world.catalog().class(view.class).id.clone(),
-        room: view.room.id(),
-        position_m: view.position_m.to_array(),
-        rotation: view.rotation.to_array(),
-        parent: view.parent.and_then(|parent| world.object(parent)).map(|parent| parent.instance.to_owned()),
-        held_by: view.held_by.map(|body| body.0),
-        states: view.flags.iter().map(|flag| format!("{flag:?}")).collect(),
-        fluid: (view.fluid != Fluid::None).then(|| view.fluid.name()),
-        color: (view.color != Color::Original).then(|| view.color.name()),
-        hidden: view.hidden,
+impl ObjectEntry {
+    /// An object as it is now.
+    #[must_use]
+    pub fn of(world: &World, view: &ObjectView<'_>) -> Self {
+        Self {
+            instance: view.instance.to_owned(),
+            class: world.catalog().class(view.class).id.clone(),
+            room: view.room.id(),
+            position_m: view.position_m.to_array(),
+            rotation: view.rotation.to_array(),
+            parent: view.parent.and_then(|parent| world.object(parent)).map(|parent| parent.instance.to_owned()),
+            held_by: view.held_by.map(|body| body.0),
+            states: view.flags.iter().map(|flag| format!("{flag:?}")).collect(),
+            fluid: (view.fluid != Fluid::None).then(|| view.fluid.name()),
+            color: (view.color != Color::Original).then(|| view.color.name()),
+            hidden: view.hidden,
+        }
     }
 }

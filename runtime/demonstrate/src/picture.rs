@@ -1,8 +1,7 @@
 //! Planes of frames as PNG files.
 
 use std::{
-    fs::File,
-    io::BufWriter,
+    fs,
     path::{Path, PathBuf},
 };
 
@@ -15,24 +14,30 @@ use crate::error::{DemonstrateError, at};
 /// Millimetres a metre.
 const MM: f32 = 1000.0;
 
-/// Writes a plane of a frame; says whether the frame has it.
+/// Writes a plane of a frame as [`write_plane`] does; says whether the frame has it.
+pub(crate) fn write(path: &Path, frame: &FrameView<'_>, plane: Plane) -> Result<bool, DemonstrateError> {
+    let Some(bytes) = frame.plane(plane) else { return Ok(false) };
+    write_plane(path, [frame.header.width, frame.header.height], plane, bytes).map(|()| true)
+}
+
+/// Writes a picture as a PNG file; `bytes` are those of the plane, `[height, width]`, row-major.
 ///
 /// - color: red, green, blue, 8 bits each.
 /// - depth: millimetres along the camera's axis, 16 bits; 65535 is all that is further away.
 /// - normals: x, y, z of the surface's normal in the world as red, green, blue: -1 to 1 as 1 to 255, and 128 each where there is
 ///   none.
 /// - ids: the `instance_color` of each id; nothing is black.
-pub(crate) fn write(path: &Path, frame: &FrameView<'_>, plane: Plane) -> Result<bool, DemonstrateError> {
-    let Some(bytes) = frame.plane(plane) else { return Ok(false) };
+///
+/// # Errors
+/// [`DemonstrateError::File`], and [`DemonstrateError::Picture`] where `bytes` are not as many as the picture has.
+pub fn write_plane(path: &Path, size: [u32; 2], plane: Plane, bytes: &[u8]) -> Result<(), DemonstrateError> {
     let pixels = bytes.as_chunks::<{ Plane::BYTES }>().0;
-    let size = [frame.header.width, frame.header.height];
-    let written = match plane {
+    match plane {
         Plane::Color => rgb(path, size, pixels.iter().map(|[red, green, blue, _]| [*red, *green, *blue])),
         Plane::Depth => depth(path, size, pixels),
         Plane::Normals => rgb(path, size, pixels.iter().map(|[x, y, z, _]| [*x, *y, *z].map(|side| side ^ 0x80))),
         Plane::Ids => rgb(path, size, pixels.iter().map(|id| instance_color(u32::from_le_bytes(*id)))),
-    };
-    written.map(|()| true)
+    }
 }
 
 fn rgb(path: &Path, size: [u32; 2], pixels: impl Iterator<Item = [u8; 3]>) -> Result<(), DemonstrateError> {
@@ -57,15 +62,17 @@ fn encode(
     form: (ColorType, BitDepth),
     bytes: &[u8],
 ) -> Result<(), DemonstrateError> {
-    let file = BufWriter::new(File::create(path).map_err(at(path))?);
     let failed = |source| DemonstrateError::Picture { path: PathBuf::from(path), source };
-    let mut encoder = Encoder::new(file, width, height);
+    // In memory first: what the disk refuses is then told, and told as an error of the file.
+    let mut file = Vec::new();
+    let mut encoder = Encoder::new(&mut file, width, height);
     encoder.set_color(form.0);
     encoder.set_depth(form.1);
     encoder.set_compression(Compression::Fast);
     let mut writer = encoder.write_header().map_err(failed)?;
     writer.write_image_data(bytes).map_err(failed)?;
-    writer.finish().map_err(failed)
+    writer.finish().map_err(failed)?;
+    fs::write(path, file).map_err(at(path))
 }
 
 #[cfg(test)]

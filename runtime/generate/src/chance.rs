@@ -6,18 +6,31 @@ use rand_chacha::{
 };
 
 /// A source of draws.
-pub(crate) struct Chance(ChaCha8Rng);
+pub struct Chance(ChaCha8Rng);
 
 impl Chance {
+    /// The draws of one stream of a seed; streams have nothing to do with each other.
+    #[must_use]
     pub fn new(seed: u64, stream: u64) -> Self {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         rng.set_stream(stream);
         Self(rng)
     }
 
+    /// Any number: a seed for what draws by itself.
+    pub fn number(&mut self) -> u64 {
+        self.0.next_u64()
+    }
+
     /// A number below `count`; 0 where that is 0.
     pub fn below(&mut self, count: usize) -> usize {
         if count == 0 { 0 } else { (self.0.next_u64() % count as u64) as usize }
+    }
+
+    /// A number from `low` to `high`.
+    pub fn between(&mut self, low: f32, high: f32) -> f32 {
+        let share = (self.0.next_u64() >> 40) as f32 / (1_u64 << 24) as f32;
+        low + (high - low) * share
     }
 
     /// True in that share of all draws.

@@ -9,6 +9,7 @@ use serde_json::{Map, Value, json};
 use crate::{
     chance::Chance,
     spec::{BlockerKind, MissionType, Pools, VarKind, VarSpec},
+    things::{is_container, is_debris, is_thing},
 };
 
 /// The doors of every floor plan.
@@ -138,11 +139,10 @@ impl<'a> Draft<'a> {
     /// A class of things to carry.
     fn carried(&mut self, affords: &[Property], without: &[Property]) -> Option<String> {
         let is_fit = |class: &&ObjectClass| {
-            class.has(Property::Pickupable)
+            is_thing(class)
+                && !is_debris(class)
                 && affords.iter().all(|one| class.has(*one))
                 && !without.iter().any(|one| class.has(*one))
-                && !class.name.is_empty()
-                && !is_debris(class)
         };
         let fit: Vec<&str> = self.catalog.classes().iter().filter(is_fit).map(|class| class.id.as_str()).collect();
         self.chance.pick(&fit).map(|class| (*class).to_owned())
@@ -175,10 +175,7 @@ impl<'a> Draft<'a> {
 
     /// A container of the floor plan with a door that is shut.
     fn shut_container(&mut self) -> Option<String> {
-        let instance = self.device(|class| {
-            let is_container = class.receptacle.as_ref().is_some_and(|place| place.enclosed && place.keys.is_empty());
-            is_container && class.has(Property::Openable)
-        })?;
+        let instance = self.device(is_container)?;
         self.objects.push(json!({ "name": instance, "state": [{ "isOpen": "false" }] }));
         self.blocker = Some(Blocker { kind: BlockerKind::Closed, instance: instance.clone() });
         Some(instance)
@@ -317,9 +314,4 @@ fn whole(object: Value) -> Value {
         all.extend::<Map<String, Value>>(some);
     }
     whole
-}
-
-/// What is left of another thing is called like it: nobody sends for it.
-fn is_debris(class: &ObjectClass) -> bool {
-    ["Broken", "Crushed", "Toast_", "Slice", "Lid"].iter().any(|part| class.id.contains(part))
 }

@@ -12,11 +12,14 @@ mod generate;
 mod instructions;
 mod spec;
 mod splits;
+mod things;
 
 pub use certify::{Certificate, certify};
+pub use chance::Chance;
 pub use check_plan::{Accepted, PlanProblem, check_plan};
 pub use draft::Blocker;
 pub use generate::{GenerateError, Generated, GivenUp, Order, generate};
 pub use instructions::instruction;
 pub use spec::{BlockerKind, Spec, SpecError};
 pub use splits::{Facets, HeldOut, Part, Parted, part};
+pub use things::{is_container, is_thing};

@@ -6,7 +6,7 @@ use cohabit_cdf::{
     BodyId, BodyKind, Catalog, Layout, Mission, ObjectId, Property, RoomId, StateFlag, catalog::Stands,
     mission::MessageTime,
 };
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 use crate::{
     apply::{Changes, settle},
@@ -444,6 +444,13 @@ impl World {
     #[must_use]
     pub fn navigable_area_m2(&self) -> f64 {
         self.navigation.area_m2
+    }
+
+    /// Whether the middle of a robot may be at a point of the floor: inside a room, clear of walls and of what stands
+    /// there.
+    #[must_use]
+    pub fn is_walkable(&self, point_m: Vec2) -> bool {
+        self.navigation.is_walkable(point_m)
     }
 
     /// The catalogue it was built from.
