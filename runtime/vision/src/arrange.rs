@@ -2,7 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use cohabit_cdf::{Catalog, ClassId, Layout, Mission, ObjectClass, ObjectRequest, RoomId, StateFlag, layout::Placement};
+use cohabit_cdf::{
+    Catalog, ClassId, Layout, Mission, ObjectClass, ObjectRequest, RoomId, StateFlag, layout::Placement,
+};
 use cohabit_generate::{Chance, is_container, is_thing};
 
 use crate::states;
