@@ -44,9 +44,12 @@ pub const WHISPER: Need = Need { name: "whisper", find: whisper, variables: &["C
 pub const MOUNTS: Need = Need { name: "mounts", find: mounts, variables: &[] };
 /// Fast Downward, a planner for PDDL.
 pub const FAST_DOWNWARD: Need = Need { name: "fast_downward", find: fast_downward, variables: &[] };
+/// The `lerobot` package, in whatever `python3` is.
+pub const LEROBOT: Need = Need { name: "lerobot", find: lerobot, variables: &[] };
 
 /// All of them.
-pub const ALL: [Need; 9] = [REFERENCE_DATA, BROWSER, PYTHON, PIP, VULKAN, VOICE, WHISPER, MOUNTS, FAST_DOWNWARD];
+pub const ALL: [Need; 10] =
+    [REFERENCE_DATA, BROWSER, PYTHON, PIP, VULKAN, VOICE, WHISPER, MOUNTS, FAST_DOWNWARD, LEROBOT];
 
 /// Tells cargo which of these are there, and when to look again. Called by build scripts.
 pub fn tell(needs: &[Need]) {
@@ -126,6 +129,12 @@ fn mounts() -> Vec<PathBuf> {
 
 fn fast_downward() -> Vec<PathBuf> {
     first_program(&["fast-downward", "fast-downward.py"])
+}
+
+fn lerobot() -> Vec<PathBuf> {
+    // Without importing it, which takes seconds.
+    let there = "import importlib.util, sys; sys.exit(importlib.util.find_spec('lerobot') is None)";
+    if runs("python3", &["-c", there]) { first_program(&["python3"]) } else { Vec::new() }
 }
 
 /// The first of these programs that is on the path.
