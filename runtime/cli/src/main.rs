@@ -4,6 +4,7 @@ mod arena;
 mod branch;
 mod build;
 mod check;
+mod convert;
 mod demonstrate;
 mod doctor;
 mod eval;
@@ -65,6 +66,8 @@ enum Command {
     Generate(generate::Generate),
     /// Have the expert play missions, and write a data set of what it does and what the robot sees
     Demonstrate(demonstrate::Demonstrate),
+    /// Write a data set of demonstrations in a format that others read
+    Convert(convert::Convert),
     /// Write a mission as a planning problem (PDDL), or check a plan for it against the world
     Pddl(pddl::PddlFiles),
     /// Run a study: participants, conditions, consent, sessions, data
@@ -103,6 +106,7 @@ impl Command {
             | Self::Eval(_)
             | Self::Generate(_)
             | Self::Demonstrate(_)
+            | Self::Convert(_)
             | Self::Pddl(_)
             | Self::Doctor(_)
             | Self::Top(_)
@@ -143,6 +147,7 @@ fn run(asked: Cohabit) -> anyhow::Result<()> {
         Command::Eval(eval) => eval.run(),
         Command::Generate(generate) => generate.run(),
         Command::Demonstrate(demonstrate) => demonstrate.run(),
+        Command::Convert(convert) => convert.run(),
         Command::Pddl(pddl) => pddl.run(),
         Command::Study(study) => study.run(),
         Command::Doctor(doctor) => doctor.run(),
