@@ -7,7 +7,7 @@ use crate::{Counts, native::Dataset};
 /// The card of a set in a format, with what its files are; the card of the set that it was made from follows.
 pub(crate) fn text(dataset: &Dataset, counts: &Counts, format: &str, files: &str) -> String {
     let recipe = &dataset.recipe;
-    let [width, height] = recipe.size;
+    let ([width, height], program) = (recipe.size, env!("CARGO_PKG_VERSION"));
     let pictures = if recipe.modalities.is_empty() {
         "none".to_owned()
     } else {
@@ -15,12 +15,12 @@ pub(crate) fn text(dataset: &Dataset, counts: &Counts, format: &str, files: &str
     };
     let rows = [
         ("format", format.to_owned()),
-        ("made by", format!("`cohabit demonstrate` {}, and `cohabit convert` {}", recipe.program, env!("CARGO_PKG_VERSION"))),
+        ("made by", format!("`cohabit demonstrate` {}, and `cohabit convert` {program}", recipe.program)),
         ("seed", recipe.seed.to_string()),
         ("missions", format!("{}, of which {} are left out", recipe.missions, dataset.left_out)),
         ("BLAKE3 of the missions", format!("`{}`", recipe.missions_blake3)),
         ("episodes", counts.episodes.to_string()),
-        ("samples", format!("{}, one for each step and one for the end of each episode", counts.samples)),
+        ("samples", counts.samples.to_string()),
         ("files of samples", counts.files.to_string()),
         ("pictures", pictures),
         ("licence", "that of the missions; what is drawn are the program's own models".to_owned()),

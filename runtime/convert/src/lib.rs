@@ -77,11 +77,16 @@ pub fn convert(
         return Err(ConvertError::Unfit { path: dataset.folder, reason });
     }
     let output = Output::begin(out)?;
-    let counts = match format {
+    let written = match format {
         Format::LeRobot => lerobot::write(&dataset, &output, limit_bytes, done),
         Format::Shards => shards::write(&dataset, &output, limit_bytes, done),
         Format::Arena => arena::write(&dataset, &output, done),
-    }?;
-    output.finish()?;
-    Ok(counts)
+    };
+    match written {
+        Ok(counts) => output.finish().map(|()| counts),
+        Err(error) => {
+            output.discard();
+            Err(error)
+        }
+    }
 }

@@ -55,6 +55,11 @@ impl Output {
         fs::write(&path, bytes).map_err(at(&path))
     }
 
+    /// Removes what was written: it will not be whole. What cannot be removed is begun anew the next time.
+    pub fn discard(self) {
+        let _ = fs::remove_dir_all(&self.part);
+    }
+
     /// Gives the folder its name: all of it is there.
     pub fn finish(self) -> Result<(), ConvertError> {
         fs::rename(&self.part, &self.whole).map_err(at(&self.whole))?;

@@ -95,7 +95,7 @@ fn each_format_is_made_once_and_alike_and_has_a_card() {
         for expected in ["| seed | 5 |", "| pictures | none |", "| licence |", "# The data set that this was made from"] {
             assert!(card.contains(expected), "{format:?}: {expected}: {card}");
         }
-        assert!(card.contains(&format!("| samples | {}, ", counts.samples)), "{card}");
+        assert!(card.contains(&format!("| samples | {} |", counts.samples)), "{card}");
         let error = native.convert(&format!("{}-1", format.name()), format, LARGE).unwrap_err();
         assert!(matches!(error, ConvertError::Exists { .. }) && error.is_bad_input(), "{error}");
     }
@@ -109,7 +109,9 @@ fn what_is_wrong_with_a_data_set_is_named_and_nothing_is_left() {
         let text = error.to_string();
         assert!(error.is_bad_input(), "{text}");
         expected.iter().for_each(|part| assert!(text.contains(part), "{part}: {text}"));
-        assert!(!Path::new(&native.scratch.path("out")).exists(), "{text}");
+        for name in ["out", "out.part"] {
+            assert!(!Path::new(&native.scratch.path(name)).exists(), "{name}: {text}");
+        }
     };
     refused(Format::Arena, &["32x24", "--size 300x300"]);
     let steps = native.folder.join("episodes/000000/steps.jsonl");
