@@ -22,6 +22,7 @@ const LEVELS: &[(&str, u8, &[&str])] = &[
     ("cohabit-engine", 3, &[]),
     ("cohabit-tables", 3, &["csv", "faer", "statrs"]),
     ("cohabit-arena", 4, &[]),
+    ("cohabit-convert", 4, &[]),
     ("cohabit-demonstrate", 4, &[]),
     ("cohabit-rerun", 4, &["re_sdk", "re_sdk_types", "arrow", "parquet"]),
     ("cohabit-dialog", 4, &["tokio", "axum", "hyper", "hyper-util", "rustls", "tokio-rustls", "rcgen"]),
@@ -33,7 +34,7 @@ const LEVELS: &[(&str, u8, &[&str])] = &[
 ];
 
 /// Dependencies that others may name too: the log, pages and existing clients speak JSON, tests report errors of all
-/// kinds, there are two programs, and a study has routes of its own.
+/// kinds, there are two programs, data sets are tables too, and a study has routes of its own.
 const SHARED: &[(&str, &[&str])] = &[
     (
         "serde_json",
@@ -43,6 +44,7 @@ const SHARED: &[(&str, &[&str])] = &[
             "cohabit-arena",
             "cohabit-dialog",
             "cohabit-eval",
+            "cohabit-convert",
             "cohabit-demonstrate",
             "cohabit-generate",
             "cohabit-study",
@@ -53,6 +55,7 @@ const SHARED: &[(&str, &[&str])] = &[
     ),
     ("anyhow", &["cohabit-rerun", "cohabit-tests"]),
     ("clap", &["cohabit-rerun"]),
+    ("parquet", &["cohabit-convert"]),
     ("axum", &["cohabit-study"]),
     ("tokio", &["cohabit-study"]),
 ];

@@ -46,10 +46,12 @@ pub const MOUNTS: Need = Need { name: "mounts", find: mounts, variables: &[] };
 pub const FAST_DOWNWARD: Need = Need { name: "fast_downward", find: fast_downward, variables: &[] };
 /// A `python3` with `pycocotools`, which reads COCO's annotations.
 pub const PYCOCOTOOLS: Need = Need { name: "pycocotools", find: pycocotools, variables: &[] };
+/// The `lerobot` package, in whatever `python3` is.
+pub const LEROBOT: Need = Need { name: "lerobot", find: lerobot, variables: &[] };
 
 /// All of them.
-pub const ALL: [Need; 10] =
-    [REFERENCE_DATA, BROWSER, PYTHON, PIP, VULKAN, VOICE, WHISPER, MOUNTS, FAST_DOWNWARD, PYCOCOTOOLS];
+pub const ALL: [Need; 11] =
+    [REFERENCE_DATA, BROWSER, PYTHON, PIP, VULKAN, VOICE, WHISPER, MOUNTS, FAST_DOWNWARD, PYCOCOTOOLS, LEROBOT];
 
 /// Tells cargo which of these are there, and when to look again. Called by build scripts.
 pub fn tell(needs: &[Need]) {
@@ -133,6 +135,12 @@ fn fast_downward() -> Vec<PathBuf> {
 
 fn pycocotools() -> Vec<PathBuf> {
     if runs("python3", &["-c", "import pycocotools.coco"]) { first_program(&["python3"]) } else { Vec::new() }
+}
+
+fn lerobot() -> Vec<PathBuf> {
+    // Without importing it, which takes seconds.
+    let there = "import importlib.util, sys; sys.exit(importlib.util.find_spec('lerobot') is None)";
+    if runs("python3", &["-c", there]) { first_program(&["python3"]) } else { Vec::new() }
 }
 
 /// The first of these programs that is on the path.

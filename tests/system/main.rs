@@ -5,6 +5,7 @@ mod arena;
 mod bad_input;
 mod browser;
 mod check;
+mod convert;
 mod determinism;
 mod doctor;
 mod driving;

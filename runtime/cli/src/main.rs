@@ -4,6 +4,7 @@ mod arena;
 mod branch;
 mod build;
 mod check;
+mod convert;
 mod demonstrate;
 mod doctor;
 mod eval;
@@ -69,6 +70,8 @@ enum Command {
     Demonstrate(demonstrate::Demonstrate),
     /// Draw annotated views of the floor plans at random, and write them as a data set (COCO)
     Vision(vision::Vision),
+    /// Write a data set of demonstrations in a format that others read
+    Convert(convert::Convert),
     /// Write a mission as a planning problem (PDDL), or check a plan for it against the world
     Pddl(pddl::PddlFiles),
     /// Run a study: participants, conditions, consent, sessions, data
@@ -110,6 +113,7 @@ impl Command {
             | Self::Generate(_)
             | Self::Demonstrate(_)
             | Self::Vision(_)
+            | Self::Convert(_)
             | Self::Pddl(_)
             | Self::Guide(_)
             | Self::Doctor(_)
@@ -152,6 +156,7 @@ fn run(asked: Cohabit) -> anyhow::Result<()> {
         Command::Generate(generate) => generate.run(),
         Command::Demonstrate(demonstrate) => demonstrate.run(),
         Command::Vision(vision) => vision.run(),
+        Command::Convert(convert) => convert.run(),
         Command::Pddl(pddl) => pddl.run(),
         Command::Study(study) => study.run(),
         Command::Guide(guide) => guide.run(),

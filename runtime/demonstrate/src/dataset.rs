@@ -18,14 +18,13 @@ use serde_json::json;
 
 use crate::{
     camera::Camera,
+    card,
     episode::{self, Played, Totals},
     error::{DemonstrateError, at},
 };
 
 /// What this format is called, with its version.
-const FORMAT: &str = "cohabit demonstrations 1";
-/// What is said of a data set within it.
-const CARD: &str = include_str!("../data/card.md");
+const FORMAT: &str = "cohabit demonstrations 2";
 
 /// A mission that is to be demonstrated.
 #[derive(Clone, Debug)]
@@ -61,6 +60,10 @@ impl Recipe {
 
     pub(crate) const fn lens(&self) -> Lens {
         self.lens
+    }
+
+    pub(crate) const fn seed(&self) -> u64 {
+        self.seed
     }
 
     /// What must be the same for two data sets to be the same.
@@ -149,13 +152,16 @@ pub fn demonstrate(
             Err(left) => left_out.push(left),
         }
     }
-    finish(folder, &episodes, &left_out)?;
-    Ok(Summary {
+    let mut summary = Summary {
         episodes: episodes.len(),
         steps: episodes.iter().map(|episode| episode.steps).sum(),
         frames: episodes.iter().map(|episode| episode.frames).sum(),
-        left_out: left_out.into_iter().map(|left| (left.id, left.reason)).collect(),
-    })
+        left_out: Vec::new(),
+    };
+    let counts = card::Counts { missions: missions.len(), left_out: left_out.len(), summary: &summary };
+    finish(folder, &card::text(recipe, counts), &episodes, &left_out)?;
+    summary.left_out = left_out.into_iter().map(|left| (left.id, left.reason)).collect();
+    Ok(summary)
 }
 
 /// Writes the recipe, or checks that it is the one that the folder was begun with.
@@ -170,9 +176,14 @@ fn begin(missions: &[MissionText], folder: &Path, recipe: &Recipe) -> Result<(),
 }
 
 /// Writes the card and, last, the manifest.
-fn finish(folder: &Path, episodes: &[EpisodeEntry], left_out: &[LeftOut]) -> Result<(), DemonstrateError> {
+fn finish(
+    folder: &Path,
+    text: &str,
+    episodes: &[EpisodeEntry],
+    left_out: &[LeftOut],
+) -> Result<(), DemonstrateError> {
     let card = folder.join("README.md");
-    fs::write(&card, CARD).map_err(at(&card))?;
+    fs::write(&card, text).map_err(at(&card))?;
     let manifest = json!({
         "format": FORMAT,
         "program": env!("CARGO_PKG_VERSION"),
@@ -244,6 +255,8 @@ impl Maker<'_> {
             Played::Solved(totals) => {
                 let entry = entry(mission, name, &plan, &totals);
                 write(&part.join("episode.json"), &entry)?;
+                let cdf = part.join("mission.json");
+                fs::write(&cdf, &mission.cdf).map_err(at(&cdf))?;
                 fs::rename(&part, &whole).map_err(at(&whole))?;
                 Ok(Ok(entry))
             }

@@ -5,9 +5,10 @@
 //! what the robot sees before it. An episode appears once it is whole, and `manifest.json` once all are, so whoever is interrupted
 //! goes on where they were. The same missions and the same recipe give the same bytes, with any number of workers.
 //!
-//! What each file has stands in `data/card.md`, which goes into the data set as its `README.md`.
+//! What each file has stands in `data/card.md`, which goes into the data set's `README.md`, behind how it was made and how much there is.
 
 mod camera;
+mod card;
 mod dataset;
 mod episode;
 mod error;

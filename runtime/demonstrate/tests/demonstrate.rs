@@ -67,6 +67,10 @@ fn an_episode_has_what_the_expert_did_and_what_the_robot_saw() {
     let folder = folder("whole");
     let summary = make(&["make_cereal"], &folder, &Plane::ALL, 1).unwrap();
     assert_eq!((summary.episodes, summary.left_out.len()), (1, 0));
+    let card = fs::read_to_string(folder.join("README.md")).unwrap();
+    assert!(card.contains("| seed | 5 |") && card.contains(&format!("| steps | {} |", summary.steps)), "{card}");
+    let mission = fs::read_to_string(folder.join("episodes/000000/mission.json")).unwrap();
+    assert_eq!(mission, missions(&["make_cereal"])[0].cdf);
     let steps = steps(&folder, 0);
     assert_eq!(steps.len(), summary.steps + 1);
     assert!(steps[0]["objects"].as_array().unwrap().len() > 100, "the first line has all objects");
