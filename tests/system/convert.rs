@@ -28,7 +28,11 @@ fn trajectories_of_the_expert_solve_their_mission_when_they_are_played() {
     let (text, code) = cohabit(&["eval", &trajectories, "--only", "#expert", "--report", &report]);
     assert_eq!(code, Some(0), "{text}");
     let report: Value = serde_json::from_str(&fs::read_to_string(&report).unwrap()).unwrap();
-    assert_eq!((&report["missions"].as_array().unwrap().len(), &report["missions"][0]["success"]), (&1, &true.into()), "{report:#}");
+    assert_eq!(
+        (&report["missions"].as_array().unwrap().len(), &report["missions"][0]["success"]),
+        (&1, &true.into()),
+        "{report:#}"
+    );
 }
 
 #[test]

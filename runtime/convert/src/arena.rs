@@ -59,7 +59,9 @@ fn check(dataset: &Dataset) -> Result<(), ConvertError> {
     }
     let mut names = BTreeSet::new();
     match dataset.episodes.iter().find(|episode| !names.insert(&episode.id)) {
-        Some(episode) => unfit(format!("two missions are called `{}`; give one another name, and make it anew", episode.id)),
+        Some(episode) => {
+            unfit(format!("two missions are called `{}`; give one another name, and make it anew", episode.id))
+        }
         None => Ok(()),
     }
 }
@@ -67,9 +69,8 @@ fn check(dataset: &Dataset) -> Result<(), ConvertError> {
 /// What is said of a mission; its pictures are copied.
 fn trajectory(dataset: &Dataset, output: &Output, episode: &Episode) -> Result<Value, ConvertError> {
     let text = dataset.text(episode, "mission.json")?;
-    let cdf: Value = serde_json::from_str(text.trim_start_matches('\u{feff}')).map_err(|error| ConvertError::Damaged {
-        path: dataset.path(episode, "mission.json"),
-        reason: error.to_string(),
+    let cdf: Value = serde_json::from_str(text.trim_start_matches('\u{feff}')).map_err(|error| {
+        ConvertError::Damaged { path: dataset.path(episode, "mission.json"), reason: error.to_string() }
     })?;
     let lines = dataset.lines(episode)?;
     let mut actions = Vec::new();
@@ -134,7 +135,8 @@ const fn type_name(kind: ActionKind) -> &'static str {
 
 /// The mask of a step's object, where it is seen and the data set has pictures of ids.
 fn mask(dataset: &Dataset, episode: &Episode, step: &Step) -> Result<Option<Vec<[usize; 2]>>, ConvertError> {
-    let Some(target) = step.target().filter(|_| dataset.recipe.modalities.iter().any(|modality| modality == "ids")) else {
+    let Some(target) = step.target().filter(|_| dataset.recipe.modalities.iter().any(|modality| modality == "ids"))
+    else {
         return Ok(None);
     };
     let (file, bytes) = dataset.picture(episode, step, "ids")?;

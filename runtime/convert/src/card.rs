@@ -28,5 +28,7 @@ pub(crate) fn text(dataset: &Dataset, counts: &Counts, format: &str, files: &str
     let rows: String = rows.iter().map(|(name, value)| format!("| {name} | {value} |\n")).collect();
     // The card is no part of what is converted: a data set is whole without it.
     let native = fs::read_to_string(dataset.folder.join("README.md")).unwrap_or_default();
-    format!("# Demonstrations as {format}\n\n| | |\n|---|---|\n{rows}\n{files}\n# The data set that this was made from\n\n{native}")
+    format!(
+        "# Demonstrations as {format}\n\n| | |\n|---|---|\n{rows}\n{files}\n# The data set that this was made from\n\n{native}"
+    )
 }

@@ -31,8 +31,7 @@ const CODEBASE_VERSION: &str = "v3.0";
 /// What is said of the files.
 const CARD: &str = include_str!("../data/lerobot.md");
 /// What the Hugging Face hub reads of a card.
-const FRONT_MATTER: &str =
-    "---\ntask_categories:\n- robotics\ntags:\n- LeRobot\nconfigs:\n- config_name: default\n  data_files: data/*/*.parquet\n---\n\n";
+const FRONT_MATTER: &str = "---\ntask_categories:\n- robotics\ntags:\n- LeRobot\nconfigs:\n- config_name: default\n  data_files: data/*/*.parquet\n---\n\n";
 
 /// Writes a data set into a folder; a file has `limit` bytes at most, unless one episode has more.
 pub(crate) fn write(

@@ -139,7 +139,10 @@ impl Dataset {
         }
         let manifest: Manifest = json(&folder.join("manifest.json")).map_err(|error| unfinished(error.to_string()))?;
         if manifest.format != FORMAT {
-            return Err(unfinished(format!("its format is `{}`, this reads `{FORMAT}`; make it anew", manifest.format)));
+            return Err(unfinished(format!(
+                "its format is `{}`, this reads `{FORMAT}`; make it anew",
+                manifest.format
+            )));
         }
         let recipe = json(&folder.join("recipe.json")).map_err(|error| unfinished(error.to_string()))?;
         if let Some(episode) = manifest.episodes.iter().find(|episode| !is_inside(&episode.folder)) {
@@ -170,7 +173,10 @@ impl Dataset {
                 let wrong = |reason| ConvertError::Line { path: path.clone(), line: number, reason };
                 let step: Step = serde_json::from_str(line).map_err(|error| wrong(error.to_string()))?;
                 if step.action.is_some() != (number <= episode.steps) {
-                    return Err(wrong(format!("all of its {} steps have actions, and the last line has none", episode.steps)));
+                    return Err(wrong(format!(
+                        "all of its {} steps have actions, and the last line has none",
+                        episode.steps
+                    )));
                 }
                 Ok(Line { text: line.to_owned(), step })
             })

@@ -176,12 +176,7 @@ fn begin(missions: &[MissionText], folder: &Path, recipe: &Recipe) -> Result<(),
 }
 
 /// Writes the card and, last, the manifest.
-fn finish(
-    folder: &Path,
-    text: &str,
-    episodes: &[EpisodeEntry],
-    left_out: &[LeftOut],
-) -> Result<(), DemonstrateError> {
+fn finish(folder: &Path, text: &str, episodes: &[EpisodeEntry], left_out: &[LeftOut]) -> Result<(), DemonstrateError> {
     let card = folder.join("README.md");
     fs::write(&card, text).map_err(at(&card))?;
     let manifest = json!({

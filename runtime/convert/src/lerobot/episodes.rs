@@ -62,9 +62,12 @@ impl<'a> Episodes<'a> {
 }
 
 fn columns(rows: &[Row], place: Place) -> Vec<Column> {
-    let longs = |name, value: &dyn Fn(&Row) -> i64| Column { name, values: Values::Long(rows.iter().map(value).collect()) };
-    let texts =
-        |name, value: &dyn Fn(&Row) -> &String| Column { name, values: Values::Text(rows.iter().map(value).cloned().collect()) };
+    let longs =
+        |name, value: &dyn Fn(&Row) -> i64| Column { name, values: Values::Long(rows.iter().map(value).collect()) };
+    let texts = |name, value: &dyn Fn(&Row) -> &String| Column {
+        name,
+        values: Values::Text(rows.iter().map(value).cloned().collect()),
+    };
     let tasks = rows.iter().map(|row| vec![row.task.clone()]).collect();
     vec![
         longs("episode_index", &|row| row.episode),

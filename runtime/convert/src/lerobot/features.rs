@@ -23,8 +23,7 @@ pub(crate) fn features(recipe: &Recipe) -> Value {
     let one = |kind: &str| json!({ "dtype": kind, "shape": [1], "names": null });
     let vector = |names: Vec<String>| json!({ "dtype": "float32", "shape": [names.len()], "names": names });
     let [width, height] = recipe.size;
-    let picture =
-        |channels: u32| json!({ "dtype": "image", "shape": [height, width, channels], "names": ["height", "width", "channels"] });
+    let picture = |channels: u32| json!({ "dtype": "image", "shape": [height, width, channels], "names": ["height", "width", "channels"] });
     let mut all = Map::new();
     let mut add = |name: &str, feature: Value| drop(all.insert(name.to_owned(), feature));
     add("observation.state", vector(vectors::state_names()));

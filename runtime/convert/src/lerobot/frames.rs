@@ -68,7 +68,8 @@ impl Frames<'_> {
     fn actions(&self, episode: &Episode, lines: &[Line]) -> Result<Vec<Vec<f32>>, ConvertError> {
         let size = self.dataset.recipe.size;
         let action = |(number, line): (usize, &Line)| {
-            vectors::action(&line.step, size).ok_or_else(|| self.wrong(episode, number, "there is no such kind of action"))
+            vectors::action(&line.step, size)
+                .ok_or_else(|| self.wrong(episode, number, "there is no such kind of action"))
         };
         (1..).zip(lines).map(action).collect()
     }
@@ -100,12 +101,16 @@ impl Frames<'_> {
             action.and_then(|action| self.classes.get(&action.class)).copied().unwrap_or(-1)
         };
         let object = |line: &Line| line.step.action.as_ref().map_or_else(String::new, |action| action.object.clone());
-        let status = |line: &Line| line.step.outcome.as_ref().map_or_else(String::new, |outcome| outcome.status.clone());
+        let status =
+            |line: &Line| line.step.outcome.as_ref().map_or_else(String::new, |outcome| outcome.status.clone());
         let done = |line: &Line| line.step.action.is_none();
         let instruction = |line: &Line| line.step.instruction().to_owned();
         [
             Column { name: "next.done", values: Values::Bool(lines.iter().map(done).collect()) },
-            Column { name: "step.tick", values: Values::Long(lines.iter().map(|line| line.step.tick as i64).collect()) },
+            Column {
+                name: "step.tick",
+                values: Values::Long(lines.iter().map(|line| line.step.tick as i64).collect()),
+            },
             Column { name: "step.class", values: Values::Long(lines.iter().map(class).collect()) },
             Column { name: "step.object", values: Values::Text(lines.iter().map(object).collect()) },
             Column { name: "step.instruction", values: Values::Text(lines.iter().map(instruction).collect()) },

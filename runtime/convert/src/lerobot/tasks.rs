@@ -60,9 +60,7 @@ pub(crate) fn of_episode(lines: &[Line]) -> String {
 
 /// What pandas writes with a table whose rows have names.
 fn pandas() -> String {
-    let column = |name: Option<&str>, field: &str, kind: &str, numpy: &str| {
-        json!({ "name": name, "field_name": field, "pandas_type": kind, "numpy_type": numpy, "metadata": null })
-    };
+    let column = |name: Option<&str>, field: &str, kind: &str, numpy: &str| json!({ "name": name, "field_name": field, "pandas_type": kind, "numpy_type": numpy, "metadata": null });
     let names = json!({
         "name": null, "field_name": null, "pandas_type": "unicode", "numpy_type": "object",
         "metadata": { "encoding": "UTF-8" },

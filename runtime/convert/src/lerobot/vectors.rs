@@ -76,7 +76,10 @@ mod tests {
             expected.iter().map(|(name, number)| ((*name).to_owned(), *number)).collect()
         };
         let state = [("x_m", 1.5), ("y_m", 2.0), ("yaw_rad", 0.5), ("head_pitch_rad", -0.25), ("is_holding", 1.0)];
-        assert_eq!(named(state_names(), super::state(&step).unwrap()), told(&[&state[..], &[("is_in_Lab1", 1.0)]].concat()));
+        assert_eq!(
+            named(state_names(), super::state(&step).unwrap()),
+            told(&[&state[..], &[("is_in_Lab1", 1.0)]].concat())
+        );
         let action = [("left", 0.1), ("top", 0.1), ("right", 0.3), ("bottom", 0.2)];
         let action = [&[("is_pick_up", 1.0), ("is_seen", 1.0)][..], &action[..]].concat();
         assert_eq!(named(action_names(), super::action(&step, [100, 200]).unwrap()), told(&action));
@@ -84,10 +87,13 @@ mod tests {
 
     #[test]
     fn an_episode_ends_with_a_stop_and_no_action_is_made_up() {
-        let mut step: Step = serde_json::from_value(json!({"tick": 7, "action": null, "outcome": null, "pose": null})).unwrap();
+        let mut step: Step =
+            serde_json::from_value(json!({"tick": 7, "action": null, "outcome": null, "pose": null})).unwrap();
         assert_eq!(named(action_names(), action(&step, [1, 1]).unwrap()), [("is_stop".to_owned(), 1.0)]);
         assert_eq!(state(&step), None);
-        step.action = serde_json::from_value(json!({"kind": "fly", "object": "x", "class": "x", "id": 1, "is_seen": false})).unwrap();
+        step.action =
+            serde_json::from_value(json!({"kind": "fly", "object": "x", "class": "x", "id": 1, "is_seen": false}))
+                .unwrap();
         assert_eq!(action(&step, [1, 1]), None);
     }
 }

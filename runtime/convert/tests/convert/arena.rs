@@ -14,7 +14,8 @@ fn trajectories_are_read_as_the_public_ones_are() {
     let trajectory = &json(&path)["make_cereal"];
     assert_eq!(trajectory["CDF"], serde_json::from_str::<serde_json::Value>(&native.text(0, "mission.json")).unwrap());
     let actions = trajectory["actions"].as_array().unwrap();
-    let steps: Vec<_> = native.lines(0).into_iter().map(|(_, line)| line).filter(|line| !line["action"].is_null()).collect();
+    let steps: Vec<_> =
+        native.lines(0).into_iter().map(|(_, line)| line).filter(|line| !line["action"].is_null()).collect();
     assert_eq!((actions.len(), counts.samples), (steps.len(), steps.len()), "the expert does not fail here");
     for (action, step) in actions.iter().zip(&steps) {
         let name = action["type"].as_str().unwrap().to_lowercase();
@@ -22,8 +23,10 @@ fn trajectories_are_read_as_the_public_ones_are() {
         assert_eq!(name, step["action"]["kind"].as_str().unwrap().replace('_', ""));
         assert_eq!(object["id"], step["action"]["object"]);
         assert_eq!(object["mask"].is_array(), step["action"]["is_seen"] == true, "{step}");
-        assert_eq!(std::fs::read(folder.join("images").join(action["colorImages"][0].as_str().unwrap())).unwrap(),
-            native.picture(0, step, "color"));
+        assert_eq!(
+            std::fs::read(folder.join("images").join(action["colorImages"][0].as_str().unwrap())).unwrap(),
+            native.picture(0, step, "color")
+        );
         if let Some(runs) = object["mask"].as_array() {
             let pixels: u64 = runs.iter().map(|run| run[1].as_u64().unwrap()).sum();
             let seen = step["seen"].as_array().unwrap().iter().find(|seen| seen["id"] == step["action"]["id"]).unwrap();
@@ -32,13 +35,16 @@ fn trajectories_are_read_as_the_public_ones_are() {
     }
     let tasks = read_tasks(&path, None).unwrap();
     let ids: Vec<&str> = tasks.iter().map(|task| task.id.as_str()).collect();
-    assert_eq!(ids, [
-        "make_cereal#synthetic1",
-        "make_cereal#synthetic2",
-        "make_cereal#synthetic3",
-        "make_cereal#synthetic4",
-        "make_cereal#expert",
-    ]);
+    assert_eq!(
+        ids,
+        [
+            "make_cereal#synthetic1",
+            "make_cereal#synthetic2",
+            "make_cereal#synthetic3",
+            "make_cereal#synthetic4",
+            "make_cereal#expert",
+        ]
+    );
     let is_action = |line: &Line| matches!(line, Line::Action(_));
     assert!(tasks[4].script.len() == actions.len() && tasks[4].script.iter().all(is_action));
 }

@@ -92,7 +92,8 @@ fn each_format_is_made_once_and_alike_and_has_a_card() {
         let (other, _) = native.convert(&format!("{}-2", format.name()), format, LARGE).unwrap();
         assert!(files(&one) == files(&other), "{format:?}");
         let card = fs::read_to_string(one.join("README.md")).unwrap();
-        for expected in ["| seed | 5 |", "| pictures | none |", "| licence |", "# The data set that this was made from"] {
+        for expected in ["| seed | 5 |", "| pictures | none |", "| licence |", "# The data set that this was made from"]
+        {
             assert!(card.contains(expected), "{format:?}: {expected}: {card}");
         }
         assert!(card.contains(&format!("| samples | {} |", counts.samples)), "{card}");
