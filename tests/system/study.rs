@@ -319,7 +319,8 @@ fn everybody_ends_in_the_conditions_they_were_assigned_whatever_is_killed() {
 
     // A session that is killed is started again in the same condition.
     let before = people[0].wait_for(&server, "mission")["session"].clone();
-    let [victim, ..] = processes("\0--participant\0P01\0", "\0play\0")[..] else { panic!("no session of P01") };
+    let of_server = format!("\0--session\0s{}-", server.child.id());
+    let [victim, ..] = processes("\0--participant\0P01\0", &of_server)[..] else { panic!("no session of P01") };
     kill_process(Pid::from_raw(victim).unwrap(), Signal::KILL).unwrap();
     let deadline = Instant::now() + WATCHDOG;
     while people[0].wait_for(&server, "mission")["session"] == before {
