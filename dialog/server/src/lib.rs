@@ -71,7 +71,7 @@ pub use questionnaire::{
     Form, Given, Item, NotAnswered, Questionnaire, QuestionnaireError, Scale, When, questionnaire_text,
 };
 pub use screening::{ScreeningConfig, screen};
-pub use site::{Framing, Site, SiteFile, file_routes};
+pub use site::{Framing, Site, SiteFile, file, file_routes};
 pub use spoken::meaning;
 pub use tls::{Identity, TlsError};
 pub use voice::VoiceConfig;

@@ -96,14 +96,15 @@ pub struct SiteFile {
 pub fn file_routes(files: Vec<SiteFile>, missing: SiteFile) -> Router {
     let routes = files.into_iter().fold(Router::new(), |router, SiteFile { path, kind, bytes }| {
         let bytes = Bytes::from(bytes);
-        router.route(&path, get(move || file(StatusCode::OK, kind, bytes)))
+        router.route(&path, get(move || file(kind, bytes)))
     });
     let bytes = Bytes::from(missing.bytes);
-    routes.fallback(move || file(StatusCode::NOT_FOUND, missing.kind, bytes))
+    routes.fallback(async move || (StatusCode::NOT_FOUND, file(missing.kind, bytes).await))
 }
 
-async fn file(status: StatusCode, kind: &'static str, bytes: Bytes) -> Response {
-    (status, [(header::CONTENT_TYPE, kind), (header::CACHE_CONTROL, "no-cache")], bytes).into_response()
+/// A file of this media type, which browsers ask for again each time.
+pub async fn file(kind: &'static str, bytes: impl Into<Bytes>) -> Response {
+    ([(header::CONTENT_TYPE, kind), (header::CACHE_CONTROL, "no-cache")], bytes.into()).into_response()
 }
 
 /// Stands before every route, also those that do not exist: refuses who asks for another host, or comes from another

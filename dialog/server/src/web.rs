@@ -21,7 +21,7 @@ use crate::{
     same_user::is_same_user,
     screening::Screening,
     seat,
-    site::{Framing, Site},
+    site::{Framing, Site, file},
     survey::Survey,
     talk::Talk,
     tls::Identity,
@@ -145,10 +145,6 @@ fn router(service: Service) -> Router {
         .route("/frame.jpg", get(frame))
         .route("/ws", get(socket))
         .with_state(service)
-}
-
-async fn file(kind: &'static str, text: &'static str) -> Response {
-    ([(header::CONTENT_TYPE, kind), (header::CACHE_CONTROL, "no-cache")], text).into_response()
 }
 
 type Parameters = Query<HashMap<String, String>>;

@@ -15,7 +15,7 @@ use axum::{
     response::{IntoResponse, Redirect, Response},
     routing::{get, post},
 };
-use cohabit_dialog::{Framing, Given, HostName, Identity, ServerLimits, Site, token};
+use cohabit_dialog::{Framing, Given, HostName, Identity, ServerLimits, Site, file, token};
 use serde::Deserialize;
 use serde_json::{Value, json};
 
@@ -122,10 +122,6 @@ fn router(service: StudyService) -> Router {
         .route("/experimenter/{token}/command", post(command))
         .fallback(nowhere)
         .with_state(service)
-}
-
-async fn file(kind: &'static str, text: &'static str) -> Response {
-    ([(header::CONTENT_TYPE, kind), (header::CACHE_CONTROL, "no-cache")], text).into_response()
 }
 
 fn page(text: &'static str) -> Response {
