@@ -18,7 +18,7 @@ pub use lateness::Lateness;
 pub use page::{Page, Pen, Received, Sound};
 pub use play::{Play, reference_data, run};
 pub use python::{output, python_with};
-pub use scratch::Scratch;
+pub use scratch::{Scratch, files};
 pub use soak::{Resident, Soaked, soak};
 pub use speech::{SpeechServer, babble, wav};
 

@@ -6,6 +6,7 @@ use std::{
     path::{Component, Path, PathBuf},
 };
 
+use cohabit_cdf::Status;
 use serde::{Deserialize, de::DeserializeOwned};
 
 use crate::error::{ConvertError, at};
@@ -89,7 +90,7 @@ pub(crate) struct Action {
 
 #[derive(Debug, Deserialize)]
 pub(crate) struct Outcome {
-    pub status: String,
+    pub status: Status,
 }
 
 #[derive(Debug, Deserialize)]
@@ -109,13 +110,10 @@ pub(crate) struct Seen {
     pub r#box: [u16; 4],
 }
 
-/// The statuses of steps that did what they were to do.
-const SUCCESSES: [&str; 2] = ["ActionSuccessful", "AlternateNavigationUsed"];
-
 impl Step {
     /// Whether it has an action that did what it was to do.
     pub fn has_succeeded(&self) -> bool {
-        self.outcome.as_ref().is_some_and(|outcome| SUCCESSES.contains(&outcome.status.as_str()))
+        self.outcome.as_ref().is_some_and(|outcome| outcome.status.is_success())
     }
 
     /// What people would say for it, without more words than needed; empty where there is no action.

@@ -3,15 +3,13 @@
 use std::{
     fs,
     path::{Path, PathBuf},
-    sync::{
-        Arc, Mutex, PoisonError,
-        atomic::{AtomicBool, AtomicUsize, Ordering},
-    },
+    sync::Arc,
 };
 
 use cohabit_bus::message::Plane;
 use cohabit_cdf::Catalog;
 use cohabit_engine::SessionPlan;
+use cohabit_generate::side_by_side;
 use cohabit_render::{Lens, LensError, MeshLibrary};
 use serde::{Deserialize, Serialize};
 use serde_json::json;
@@ -177,16 +175,23 @@ fn begin(missions: &[MissionText], folder: &Path, recipe: &Recipe) -> Result<(),
 
 /// Writes the card and, last, the manifest.
 fn finish(folder: &Path, text: &str, episodes: &[EpisodeEntry], left_out: &[LeftOut]) -> Result<(), DemonstrateError> {
-    let card = folder.join("README.md");
-    fs::write(&card, text).map_err(at(&card))?;
+    write_whole(folder, "README.md", text)?;
     let manifest = json!({
         "format": FORMAT,
         "program": env!("CARGO_PKG_VERSION"),
         "episodes": episodes,
         "left_out": left_out,
     });
-    let (part, whole) = (folder.join("manifest.part"), folder.join("manifest.json"));
-    fs::write(&part, format!("{manifest:#}\n")).map_err(at(&part))?;
+    write_whole(folder, "manifest.json", &format!("{manifest:#}\n"))
+}
+
+/// Writes a file that appears once it is whole.
+///
+/// # Errors
+/// [`DemonstrateError::File`].
+pub fn write_whole(folder: &Path, name: &str, text: &str) -> Result<(), DemonstrateError> {
+    let (part, whole) = (folder.join(format!("{name}.part")), folder.join(name));
+    fs::write(&part, text).map_err(at(&part))?;
     fs::rename(&part, &whole).map_err(at(&whole))
 }
 
@@ -208,26 +213,12 @@ impl Maker<'_> {
         workers: usize,
         done: &(dyn Fn() + Sync),
     ) -> Result<Vec<Made>, DemonstrateError> {
-        let (next, failed) = (AtomicUsize::new(0), AtomicBool::new(false));
-        let results = Mutex::new(Vec::new());
-        let work = || {
-            while !failed.load(Ordering::Relaxed) {
-                let number = next.fetch_add(1, Ordering::Relaxed);
-                let Some(mission) = missions.get(number) else { break };
-                let made = self.one(number, mission);
-                failed.fetch_or(made.is_err(), Ordering::Relaxed);
-                results.lock().unwrap_or_else(PoisonError::into_inner).push((number, made));
-                done();
-            }
-        };
-        std::thread::scope(|scope| {
-            for _ in 0..workers.clamp(1, missions.len().max(1)) {
-                scope.spawn(work);
-            }
-        });
-        let mut results = results.into_inner().unwrap_or_else(PoisonError::into_inner);
-        results.sort_by_key(|(number, _)| *number);
-        results.into_iter().map(|(_, made)| made).collect()
+        let mut workers = vec![(); workers.clamp(1, missions.len().max(1))];
+        side_by_side(&mut workers, 0..missions.len(), |(), number| {
+            let made = self.one(number, &missions[number]);
+            done();
+            made
+        })
     }
 
     /// The episode of a mission: the one that is there, or a new one.

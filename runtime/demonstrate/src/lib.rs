@@ -17,7 +17,7 @@ mod objects;
 mod picture;
 mod step;
 
-pub use dataset::{MissionText, Recipe, Summary, demonstrate};
+pub use dataset::{MissionText, Recipe, Summary, demonstrate, write_whole};
 pub use error::DemonstrateError;
 pub use objects::ObjectEntry;
 pub use picture::write_plane;

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use cohabit_bus::message::{FrameHeader, FrameView, SeenRecord, Thing};
-use cohabit_cdf::{Action, ActionKind, BodyId, ObjectId, SemanticClass};
+use cohabit_cdf::{Action, ActionKind, BodyId, ObjectId, SemanticClass, Status};
 use cohabit_render::instance_color;
 use cohabit_world::{Outcome, World};
 use serde::Serialize;
@@ -50,7 +50,7 @@ pub(crate) struct ActionEntry {
 
 #[derive(Debug, Serialize)]
 pub(crate) struct OutcomeEntry {
-    status: String,
+    status: Status,
     detail: String,
     /// The tick at which it was over.
     tick: u64,
@@ -109,8 +109,7 @@ impl StepEntry {
 
     /// Says what came of it.
     pub fn with_outcome(&mut self, outcome: &Outcome, tick: u64) {
-        let (status, detail) = (format!("{:?}", outcome.status), outcome.detail.clone());
-        self.outcome = Some(OutcomeEntry { status, detail, tick });
+        self.outcome = Some(OutcomeEntry { status: outcome.status, detail: outcome.detail.clone(), tick });
     }
 
     /// Says what a frame shows.

@@ -3,7 +3,6 @@
 #![allow(clippy::unwrap_used)]
 
 use std::{
-    collections::BTreeMap,
     fs,
     path::{Path, PathBuf},
     sync::atomic::{AtomicUsize, Ordering},
@@ -12,6 +11,7 @@ use std::{
 use cohabit_bus::message::Plane;
 use cohabit_cdf::mission;
 use cohabit_demonstrate::{DemonstrateError, MissionText, Recipe, Summary, demonstrate};
+use cohabit_tests::files;
 use serde_json::Value;
 
 /// A folder that is not there yet.
@@ -38,23 +38,6 @@ fn missions(names: &[&str]) -> Vec<MissionText> {
 fn make(names: &[&str], folder: &Path, planes: &[Plane], workers: usize) -> Result<Summary, DemonstrateError> {
     let recipe = Recipe::new(5, [64, 48], planes).unwrap();
     demonstrate(&missions(names), folder, &recipe, workers, &|| {})
-}
-
-/// All files of a folder, by their paths in it.
-fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
-    let mut all = BTreeMap::new();
-    let mut open = vec![folder.to_owned()];
-    while let Some(next) = open.pop() {
-        for entry in fs::read_dir(&next).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                open.push(path);
-            } else {
-                all.insert(path.strip_prefix(folder).unwrap().to_owned(), fs::read(&path).unwrap());
-            }
-        }
-    }
-    all
 }
 
 fn steps(folder: &Path, episode: usize) -> Vec<Value> {

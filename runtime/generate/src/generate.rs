@@ -2,10 +2,8 @@
 
 use std::{
     collections::{BTreeMap, BTreeSet},
-    sync::{
-        Arc, Mutex,
-        atomic::{AtomicUsize, Ordering},
-    },
+    convert::Infallible,
+    sync::Arc,
 };
 
 use cohabit_cdf::{ActionKind, Catalog, Layout, LayoutError};
@@ -15,6 +13,7 @@ use crate::{
     certify::{Certificate, certify},
     chance::Chance,
     draft::{Blocker, Draft, Drawn, with_lock},
+    side_by_side::side_by_side,
     spec::{BlockerKind, MissionType, Spec},
     splits::Facets,
 };
@@ -195,27 +194,10 @@ impl Maker<'_> {
 
     /// The missions of these numbers, in order; workers take one after the other.
     fn batch(&self, first: usize, count: usize, workers: usize) -> Vec<Result<Generated, String>> {
-        let taken = AtomicUsize::new(0);
-        let done = Mutex::new(Vec::new());
-        std::thread::scope(|scope| {
-            for _ in 0..workers.clamp(1, count.max(1)) {
-                scope.spawn(|| {
-                    loop {
-                        let number = taken.fetch_add(1, Ordering::Relaxed);
-                        if number >= count {
-                            break;
-                        }
-                        let mission = self.one(first + number);
-                        if let Ok(mut done) = done.lock() {
-                            done.push((number, mission));
-                        }
-                    }
-                });
-            }
-        });
-        let mut done = done.into_inner().unwrap_or_default();
-        done.sort_by_key(|(number, _)| *number);
-        done.into_iter().map(|(_, mission)| mission).collect()
+        let mut workers = vec![(); workers.clamp(1, count.max(1))];
+        let Ok(missions) =
+            side_by_side(&mut workers, first..first + count, |(), number| Ok::<_, Infallible>(self.one(number)));
+        missions
     }
 
     fn one(&self, number: usize) -> Result<Generated, String> {

@@ -1,15 +1,9 @@
 //! A data set in a folder: images side by side, each whole or not there, taken in order.
 
-use std::{
-    fs,
-    ops::Range,
-    path::Path,
-    sync::{
-        Mutex, PoisonError,
-        atomic::{AtomicBool, AtomicUsize, Ordering},
-    },
-};
+use std::{fs, path::Path};
 
+use cohabit_demonstrate::write_whole;
+use cohabit_generate::side_by_side;
 use serde_json::{Map, Value, json};
 
 use crate::{
@@ -67,7 +61,8 @@ pub fn make(
     let mut studios: Vec<Studio> = (0..workers).map(|_| maker.studio()).collect();
     let batch = BATCH * workers;
     for first in (0..images).step_by(batch) {
-        for made in side_by_side(&maker, &mut studios, first..images.min(first + batch))? {
+        let numbers = first..images.min(first + batch);
+        for made in side_by_side(&mut studios, numbers, |studio, number| maker.make(studio, number))? {
             taker.take(made, &mut studios[0])?;
             done();
         }
@@ -91,33 +86,7 @@ fn begin(folder: &Path, recipe: &Recipe) -> Result<(), VisionError> {
         let known = fs::read_to_string(&path).map_err(at(&path))?;
         return if known == text { Ok(()) } else { Err(VisionError::OtherRecipe { path }) };
     }
-    write_whole(folder, "recipe.json", &text)
-}
-
-/// The images of these numbers, in order; workers take one after the other. The first error ends it.
-fn side_by_side(maker: &Maker<'_>, studios: &mut [Studio], ids: Range<usize>) -> Result<Vec<Made>, VisionError> {
-    let (next, failed) = (AtomicUsize::new(ids.start), AtomicBool::new(false));
-    let results = Mutex::new(Vec::new());
-    let work = |studio: &mut Studio| {
-        while !failed.load(Ordering::Relaxed) {
-            let id = next.fetch_add(1, Ordering::Relaxed);
-            if id >= ids.end {
-                break;
-            }
-            let made = maker.make(studio, id);
-            failed.fetch_or(made.is_err(), Ordering::Relaxed);
-            results.lock().unwrap_or_else(PoisonError::into_inner).push((id, made));
-        }
-    };
-    let work = &work;
-    std::thread::scope(|scope| {
-        for studio in studios {
-            scope.spawn(move || work(studio));
-        }
-    });
-    let mut results = results.into_inner().unwrap_or_else(PoisonError::into_inner);
-    results.sort_by_key(|(id, _)| *id);
-    results.into_iter().map(|(_, made)| made).collect()
+    Ok(write_whole(folder, "recipe.json", &text)?)
 }
 
 /// Takes images in order: what an image may look like follows from those before it.
@@ -173,7 +142,7 @@ fn finish(
         },
         "annotations_by_category": seen,
     });
-    write_whole(folder, "manifest.json", &format!("{manifest:#}\n"))
+    Ok(write_whole(folder, "manifest.json", &format!("{manifest:#}\n"))?)
 }
 
 /// The data card with the figures of this data set.
@@ -194,11 +163,4 @@ fn card(images: usize, recipe: &Recipe, totals: &Totals) -> String {
         ("{license}", env!("CARGO_PKG_LICENSE").to_owned()),
     ];
     figures.iter().fold(CARD.to_owned(), |card, (name, figure)| card.replace(*name, figure))
-}
-
-/// Writes a file that appears once it is whole.
-fn write_whole(folder: &Path, name: &str, text: &str) -> Result<(), VisionError> {
-    let (part, whole) = (folder.join(format!("{name}.part")), folder.join(name));
-    fs::write(&part, text).map_err(at(&part))?;
-    fs::rename(&part, &whole).map_err(at(&whole))
 }

@@ -4,12 +4,13 @@
 
 use std::{
     cell::Cell,
-    collections::{BTreeMap, BTreeSet},
+    collections::BTreeSet,
     fs,
     path::{Path, PathBuf},
 };
 
 use cohabit_render::instance_of_color;
+use cohabit_tests::files;
 use cohabit_vision::{Filters, Recipe, Rle, Summary, VisionError, make, masks};
 use serde_json::Value;
 
@@ -29,23 +30,6 @@ fn recipe(seed: u64) -> Recipe {
 
 fn made(images: usize, folder: &Path, workers: usize) -> Summary {
     make(images, folder, &recipe(5), workers, &|| {}).unwrap()
-}
-
-/// All files of a folder, by their paths in it.
-fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
-    let mut all = BTreeMap::new();
-    let mut open = vec![folder.to_owned()];
-    while let Some(next) = open.pop() {
-        for entry in fs::read_dir(&next).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                open.push(path);
-            } else {
-                all.insert(path.strip_prefix(folder).unwrap().to_owned(), fs::read(&path).unwrap());
-            }
-        }
-    }
-    all
 }
 
 fn document(path: &Path) -> Value {

@@ -101,8 +101,9 @@ impl Frames<'_> {
             action.and_then(|action| self.classes.get(&action.class)).copied().unwrap_or(-1)
         };
         let object = |line: &Line| line.step.action.as_ref().map_or_else(String::new, |action| action.object.clone());
-        let status =
-            |line: &Line| line.step.outcome.as_ref().map_or_else(String::new, |outcome| outcome.status.clone());
+        let status = |line: &Line| {
+            line.step.outcome.as_ref().map_or_else(String::new, |outcome| format!("{:?}", outcome.status))
+        };
         let done = |line: &Line| line.step.action.is_none();
         let instruction = |line: &Line| line.step.instruction().to_owned();
         [

@@ -6,7 +6,6 @@ mod lerobot;
 mod shards;
 
 use std::{
-    collections::BTreeMap,
     fs,
     path::{Path, PathBuf},
 };
@@ -15,7 +14,7 @@ use cohabit_bus::message::Plane;
 use cohabit_cdf::mission;
 use cohabit_convert::{ConvertError, Counts, Format, convert};
 use cohabit_demonstrate::{MissionText, Recipe, demonstrate};
-use cohabit_tests::Scratch;
+use cohabit_tests::{Scratch, files};
 use serde_json::Value;
 
 /// What files may have, where a test does not care.
@@ -66,22 +65,6 @@ impl Native {
 
 fn json(path: &Path) -> Value {
     serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
-}
-
-/// All files of a folder, by their paths in it.
-fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
-    let mut all = BTreeMap::new();
-    let mut open = vec![folder.to_owned()];
-    while let Some(next) = open.pop() {
-        for path in fs::read_dir(&next).unwrap().map(|entry| entry.unwrap().path()) {
-            if path.is_dir() {
-                open.push(path);
-            } else {
-                all.insert(path.strip_prefix(folder).unwrap().to_owned(), fs::read(&path).unwrap());
-            }
-        }
-    }
-    all
 }
 
 #[test]
