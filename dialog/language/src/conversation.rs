@@ -33,6 +33,7 @@ use crate::{
     tidy,
     token::{self, MAX_CHARS},
     understanding::{Asking, Step, Understanding},
+    way::Way,
 };
 
 /// All that stays the same during a turn.
@@ -64,9 +65,29 @@ impl Conversation<'_> {
         if let Some(stop) = stop::find_stop(utterance).filter(|stop| is_heeded(stop, context))
             && (context.is_busy() || !self.is_wait(&self.lexicon.normalise(utterance).0))
         {
-            return (self.stopped(&stop.rest, context), 1.0);
+            return self
+                .asked_at_rest(&stop, utterance, context)
+                .unwrap_or_else(|| (self.stopped(&stop.rest, context), 1.0));
         }
         self.understand_whole(utterance, context)
+    }
+
+    /// `that will do, off with it`, to a robot that does nothing: what is asked for beside the stop, said before it or after it.
+    fn asked_at_rest(&self, stop: &Stop, utterance: &str, context: &mut Context) -> Option<(Understanding, f32)> {
+        if stop.is_all || context.is_busy() || context.pending.is_some() || context.awaits() {
+            return None;
+        }
+        let ways = self.rewritten(&self.wording(utterance), context);
+        if ways.first().is_none_or(Way::stops) {
+            return None;
+        }
+        let mut then = context.clone();
+        let understood = self.understand_whole(utterance, &mut then);
+        let is_reply = matches!(understood.0, Understanding::Plan { .. } | Understanding::Answer { .. });
+        is_reply.then(|| {
+            *context = then;
+            understood
+        })
     }
 
     /// It stops, and then does what else was asked for.

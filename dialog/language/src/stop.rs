@@ -25,6 +25,8 @@ pub struct Stop {
     pub firmness: Firmness,
     /// Whether the word itself was said: a phrase such as "wait" may yet go on as "wait for me".
     pub is_plain: bool,
+    /// Whether they say nothing else.
+    pub is_all: bool,
 }
 
 /// How surely a phrase says stop.
@@ -53,8 +55,10 @@ pub fn find_stop(text: &str) -> Option<Stop> {
             let Some(found) = (at >= end).then(|| said.stop_at(number, at, stop.is_some())).flatten() else { continue };
             end = found.end.max(at + 1);
             let before = stop.take();
+            let rest = said.rest(text, end);
             stop = Some(Stop {
-                rest: said.rest(text, end),
+                is_all: rest.is_empty() && before.as_ref().map_or(number == 0, |before| before.is_all),
+                rest,
                 firmness: before.as_ref().map_or(found.firmness, |before| before.firmness.max(found.firmness)),
                 is_plain: found.is_plain || before.is_some_and(|before| before.is_plain),
             });

@@ -6,16 +6,25 @@ use super::{Ruling, Scene, Verdict, refuse};
 use crate::{effect::Effect, facts::Facts, report::SoundKind, works};
 
 const SINK: &str = "KitchenCounterSink_01";
+const WATER_COOLER: &str = "WaterCooler_01";
 const CEREAL_BOX: &str = "Cereal_Box_01";
 const BOWL: &str = "Bowl_01";
 const COFFEE_MAKER: &str = "CoffeeMaker_01";
 
-/// Fills what is held at a running sink; the sink may be named, or the thing to fill.
+/// Fills what is held at a running sink or at the water cooler; either may be named, or the thing to fill at the sink.
 pub(super) fn fill(scene: &Scene<'_>, object: ObjectId) -> Verdict {
     let facts = scene.facts;
-    let (sink, target) = sink_and_target(scene, object, "filled")?;
-    scene.needs(target, Property::Fillable, "filled")?;
-    running(facts, sink)?;
+    let target = if facts.class(object).id == WATER_COOLER {
+        let held = scene.held_or_refuse()?;
+        scene.touch(object)?;
+        scene.needs(held, Property::Fillable, "filled")?;
+        held
+    } else {
+        let (sink, target) = sink_and_target(scene, object, "filled")?;
+        scene.needs(target, Property::Fillable, "filled")?;
+        running(facts, sink)?;
+        target
+    };
     if facts.object(target).fluid != Fluid::None {
         return full(&facts.name(target));
     }
