@@ -84,7 +84,6 @@ const LONGER: &[&str] = &[
     "dialog/language/src/search.rs",
     "dialog/language/src/stop.rs",
     "dialog/server/src/visit.rs",
-    "runtime/record/src/entry.rs",
     "runtime/render/src/cpu/strip.rs",
     "runtime/world/src/world.rs",
 ];
