@@ -102,7 +102,6 @@ const CIRCLES: &[(&str, &str, &str)] = &[
     ("cohabit-dialog", "screening", "web"),
     ("cohabit-dialog", "web", "visit"),
     ("cohabit-engine", "shot", "camera_rig"),
-    ("cohabit-planner", "search", "plan"),
     ("cohabit-record", "reading", "writer"),
     ("cohabit-record", "writer", "carry_on"),
     ("cohabit-render", "model_mesh", "library"),
