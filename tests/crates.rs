@@ -1,8 +1,16 @@
-//! The crates know each other only as the architecture allows.
+//! The crates, and the modules within them, know each other only as the architecture allows; and files are short.
 #![allow(clippy::unwrap_used)]
 
-use std::process::Command;
+mod modules;
 
+use std::{
+    collections::BTreeSet,
+    fs,
+    path::{Path, PathBuf},
+    process::Command,
+};
+
+use modules::{circular, sources, uses};
 use serde_json::Value;
 
 /// Each package, its level, and the heavy dependencies that it alone may name.
@@ -17,7 +25,6 @@ const LEVELS: &[(&str, u8, &[&str])] = &[
     ("cohabit-agent", 2, &[]),
     ("cohabit-generate", 2, &[]),
     ("cohabit-language", 2, &[]),
-    ("cohabit-speech", 2, &["ort", "earshot", "rustfft", "sha2", "zip"]),
     ("cohabit-gpu", 3, &["wgpu"]),
     ("cohabit-engine", 3, &[]),
     ("cohabit-tables", 3, &["csv", "faer", "statrs"]),
@@ -60,6 +67,59 @@ const SHARED: &[(&str, &[&str])] = &[
     ("tokio", &["cohabit-study"]),
 ];
 
+/// The most lines of a file. Tests do not count, nor does what is made while building.
+const MOST_LINES: usize = 500;
+
+/// Files that are longer yet: each goes from here when it is divided.
+const LONGER: &[&str] = &[
+    "agents/python/src/session.rs",
+    "dialog/language/src/answer.rs",
+    "dialog/language/src/asked.rs",
+    "dialog/language/src/carry.rs",
+    "dialog/language/src/conversation.rs",
+    "dialog/language/src/ground.rs",
+    "dialog/language/src/phrase.rs",
+    "dialog/language/src/plan.rs",
+    "dialog/language/src/search.rs",
+    "dialog/language/src/stop.rs",
+    "dialog/server/src/visit.rs",
+];
+
+/// The crate whose modules know each other in circles all over.
+const CIRCULAR: &str = "cohabit-language";
+
+/// Of other crates, who uses whom in a circle yet: without these there are none. Each goes from here when it is undone.
+const CIRCLES: &[(&str, &str, &str)] = &[
+    ("cohabit-agent", "eyes", "peer"),
+    ("cohabit-cdf", "action", "layout"),
+    ("cohabit-cdf", "goal", "mission"),
+    ("cohabit-demonstrate", "card", "dataset"),
+    ("cohabit-demonstrate", "episode", "dataset"),
+    ("cohabit-dialog", "affordances", "page"),
+    ("cohabit-dialog", "interpreter", "talk"),
+    ("cohabit-dialog", "robots", "conversation"),
+    ("cohabit-dialog", "robots", "drafts"),
+    ("cohabit-dialog", "screening", "web"),
+    ("cohabit-dialog", "web", "visit"),
+    ("cohabit-engine", "shot", "camera_rig"),
+    ("cohabit-record", "reading", "writer"),
+    ("cohabit-record", "writer", "carry_on"),
+    ("cohabit-render", "model_mesh", "library"),
+    ("cohabit-render", "shadow", "scene"),
+    ("cohabit-render", "veil", "scene"),
+    ("cohabit-study", "design", "settings"),
+    ("cohabit-world", "drive", "motion"),
+    ("cohabit-world", "effect", "works"),
+    ("cohabit-world", "entity", "works"),
+    ("cohabit-world", "goals", "sight"),
+    ("cohabit-world", "navigation", "push"),
+    ("cohabit-world", "state", "goals"),
+    ("cohabit-world", "state", "physics"),
+    ("cohabit-world", "state", "story"),
+    ("cohabit-world", "state", "works"),
+    ("cohabit-world", "works", "rules"),
+];
+
 fn metadata() -> Value {
     let output = Command::new(env!("CARGO"))
         .args(["metadata", "--no-deps", "--format-version", "1", "--offline"])
@@ -83,6 +143,15 @@ fn dependencies() -> Vec<(String, String)> {
             dependencies.map(move |dependency| (text(&package["name"]), text(&dependency["name"])))
         })
         .collect()
+}
+
+/// The folders of the packages below a root, by name.
+fn packages() -> (PathBuf, Vec<(String, PathBuf)>) {
+    let metadata = metadata();
+    let folder = |package: &Value| Path::new(package["manifest_path"].as_str().unwrap()).parent().unwrap().to_owned();
+    let packages = metadata["packages"].as_array().unwrap().iter();
+    let packages = packages.map(|package| (package["name"].as_str().unwrap().to_owned(), folder(package))).collect();
+    (metadata["workspace_root"].as_str().unwrap().into(), packages)
 }
 
 fn level(package: &str) -> Option<u8> {
@@ -116,4 +185,42 @@ fn a_heavy_dependency_has_one_owner() {
         })
         .collect();
     assert!(wrong.is_empty(), "dependencies that belong to another crate: {wrong:?}");
+}
+
+#[test]
+fn a_file_is_one_thing_and_no_longer_than_that() {
+    let (root, packages) = packages();
+    let folders = packages.iter().filter(|(package, _)| package != "cohabit-tests").map(|(_, folder)| folder);
+    let lines = |path: &PathBuf| fs::read_to_string(path).unwrap().lines().count();
+    let found: BTreeSet<String> = folders
+        .flat_map(|folder| sources(folder))
+        .filter(|path| lines(path) > MOST_LINES)
+        .map(|path| path.strip_prefix(&root).unwrap().to_string_lossy().into_owned())
+        .collect();
+    let known: BTreeSet<String> = LONGER.iter().map(|path| (*path).to_owned()).collect();
+    let longer: Vec<_> = found.difference(&known).collect();
+    assert!(longer.is_empty(), "files of more than {MOST_LINES} lines: {longer:?}");
+    let divided: Vec<_> = known.difference(&found).collect();
+    assert!(divided.is_empty(), "files that are no longer so long, and go from the list: {divided:?}");
+}
+
+#[test]
+fn modules_know_each_other_in_no_circle() {
+    let mut wrong = Vec::new();
+    for (package, folder) in packages().1 {
+        let all = uses(&folder.join("src"));
+        let circles = circular(&all);
+        if package == CIRCULAR {
+            assert!(!circles.is_empty(), "the modules of {package} know each other in no circle any more");
+            continue;
+        }
+        let mut rest = all;
+        for (_, from, to) in CIRCLES.iter().filter(|(name, ..)| *name == package) {
+            let is_there = circles.contains(&((*from).to_owned(), (*to).to_owned()));
+            assert!(is_there, "{package}: {from} does not use {to} in a circle any more, and goes from the list");
+            rest.get_mut(*from).unwrap().remove(*to);
+        }
+        wrong.extend(circular(&rest).into_iter().map(|(from, to)| format!("{package}: {from} uses {to}")));
+    }
+    assert!(wrong.is_empty(), "modules that know each other in circles: {wrong:#?}");
 }

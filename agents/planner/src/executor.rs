@@ -10,7 +10,10 @@ use cohabit_cdf::{
     symbolic::{Place, SymbolicState, Thing},
 };
 
-use crate::plan::{Limits, PlanError, Step, plan_without};
+use crate::{
+    limits::Limits,
+    plan::{PlanError, Step, plan_without},
+};
 
 /// Plans that are made without a goal being met in between, before the rest is given up.
 const MOST_PLANS: u32 = 40;

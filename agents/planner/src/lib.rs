@@ -15,6 +15,7 @@ mod executor;
 mod explain;
 mod goals;
 mod ground;
+mod limits;
 mod matter;
 mod operators;
 pub mod pddl;
@@ -24,4 +25,5 @@ mod relaxed;
 mod search;
 
 pub use executor::{Executor, Failure, GivenUp, Next};
-pub use plan::{Limits, Plan, PlanError, Step, plan, plan_without, steps_to};
+pub use limits::Limits;
+pub use plan::{Plan, PlanError, Step, plan, plan_without, steps_to};

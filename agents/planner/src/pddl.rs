@@ -16,7 +16,8 @@ mod write;
 use cohabit_cdf::{Mission, symbolic::SymbolicState};
 
 use crate::{
-    plan::{Limits, PlanError, grounded},
+    limits::Limits,
+    plan::{PlanError, grounded},
     problem::{Deed, Problem},
     relaxed::Relaxed,
     search::{Found, search},

@@ -1,7 +1,5 @@
 //! Plans: from a state and a mission's goals to actions.
 
-use std::time::Duration;
-
 use cohabit_cdf::{
     Action, ActionKind, GoToTarget, Mission, ObjectId,
     catalog::table::View as _,
@@ -10,34 +8,12 @@ use cohabit_cdf::{
 
 use crate::{
     ground::Grounder,
+    limits::Limits,
     matter::{self, Matter},
     problem::{Deed, Index},
     relaxed::Relaxed,
     search::{Found, search},
 };
-
-/// When a search gives up.
-#[derive(Clone, Copy, Debug)]
-pub struct Limits {
-    /// States that are looked at.
-    pub states: usize,
-    /// Time that it takes.
-    pub time: Duration,
-}
-
-impl Limits {
-    /// No limit of time: what comes of a search then depends on no machine.
-    #[must_use]
-    pub const fn of_states(states: usize) -> Self {
-        Self { states, time: Duration::MAX }
-    }
-}
-
-impl Default for Limits {
-    fn default() -> Self {
-        Self { states: 20_000, time: Duration::from_secs(10) }
-    }
-}
 
 /// One step of a plan.
 #[derive(Clone, Copy, Debug, PartialEq)]

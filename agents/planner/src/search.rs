@@ -8,7 +8,7 @@ use std::{
 };
 
 use crate::{
-    plan::Limits,
+    limits::Limits,
     problem::{Deed, Problem, Var},
     relaxed::Relaxed,
 };

@@ -251,21 +251,9 @@ fn synthesizer(settings: &VoiceSettings, lacks: &mut Vec<Lack>) -> Option<Box<dy
 /// A model at work leaves the simulator a core of the two that there are.
 const THREADS: usize = 1;
 
-/// How a file that is not there is said to be got.
-pub(crate) const INSTALL: &str = "`cohabit voice install` fetches it";
-
-/// And one of a folder with another recogniser.
+/// How a file is said to be got of a folder with another recogniser.
 const EXPORT: &str = "COHABIT_RECOGNIZER names a folder with a Moonshine or Whisper model, as `optimum-cli export onnx` writes \
                       it; without it, what is installed is used";
-
-/// A file of a folder, if it is there.
-///
-/// # Errors
-/// [`SpeechError::Missing`].
-pub(crate) fn file(folder: &Path, name: &str) -> Result<PathBuf, SpeechError> {
-    let path = folder.join(name);
-    if path.is_file() { Ok(path) } else { Err(SpeechError::Missing { path, remedy: INSTALL.into() }) }
-}
 
 #[cfg(test)]
 mod tests {

@@ -44,6 +44,7 @@ pub mod install;
 mod listener;
 mod mel;
 mod model;
+mod model_file;
 mod moonshine;
 mod ngram;
 mod onnx;

@@ -9,7 +9,7 @@ use crate::{
     RATE, SpeechError,
     audio::tame,
     decoder::{Decoder, Encoded},
-    model::Parts,
+    model_file::Parts,
     speller::{Begun, Model, most_tokens},
     tokens::{BEGIN, Tokens},
 };

@@ -13,7 +13,7 @@ use ort::{
     value::ValueType,
 };
 
-use crate::{SpeechError, engines::INSTALL};
+use crate::{SpeechError, model_file::INSTALL};
 
 /// The runtime's library, within the data folder.
 pub(crate) const LIBRARY: &str = "runtime/libonnxruntime.so";

@@ -13,7 +13,7 @@ use ort::{
 };
 use serde::Deserialize;
 
-use crate::{SpeechError, Synthesizer, engines::INSTALL, espeak, onnx, sentences};
+use crate::{SpeechError, Synthesizer, espeak, model_file::INSTALL, onnx, sentences};
 
 /// The voice's folder, within the data folder.
 pub(crate) const FOLDER: &str = "piper";

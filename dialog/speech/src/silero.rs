@@ -4,7 +4,7 @@ use std::path::Path;
 
 use ort::{inputs, session::Session, value::Tensor};
 
-use crate::{RATE, SpeechError, Vad, engines::file, onnx, vad::WINDOW};
+use crate::{RATE, SpeechError, Vad, model_file::file, onnx, vad::WINDOW};
 
 /// The model, within the data folder.
 pub(crate) const MODEL: &str = "silero/silero_vad.onnx";

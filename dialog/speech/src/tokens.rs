@@ -2,7 +2,7 @@
 
 use std::{fs, path::Path};
 
-use crate::{SpeechError, engines::file, onnx, vocabulary::Vocabulary};
+use crate::{SpeechError, model_file::file, onnx, vocabulary::Vocabulary};
 
 /// The file that they stand in.
 const TABLE: &str = "tokenizer.bin";

@@ -15,9 +15,8 @@ use serde::Deserialize;
 use crate::{
     SpeechError,
     decoder::{Decoder, Encoded},
-    engines::INSTALL,
     mel::{self, Mel},
-    model::Parts,
+    model_file::{INSTALL, Parts},
     onnx,
     speller::{Begun, Model, most_tokens},
     tokens::{Comes, Spelt, Tokens},

@@ -7,7 +7,7 @@ use cohabit_engine::{Appearance, Replayer, SessionPlan};
 use cohabit_record::{Branch, Log};
 use cohabit_world::World;
 
-use crate::{failure::bad_input, replay::SessionTime};
+use crate::{failure::bad_input, session_time::SessionTime};
 
 /// A point of a recorded session, such as `session.mcap@1:23.5`.
 #[derive(Clone, Debug, Eq, PartialEq)]

@@ -21,6 +21,7 @@ mod play;
 mod rendering;
 mod replay;
 mod rerun;
+mod session_time;
 mod sessions;
 mod splits;
 mod stop;

@@ -3,7 +3,6 @@
 mod film;
 mod page;
 mod picture;
-mod session_time;
 mod y4m;
 
 use std::{
@@ -18,9 +17,9 @@ use cohabit_cdf::Catalog;
 use cohabit_engine::{Replayer, replay};
 use cohabit_record::{Log, SessionEntry, entry::fingerprint};
 
-pub use session_time::SessionTime;
-
-use crate::{branch::BranchPoint, failure::bad_input, rendering::Rendering, rerun, terminal::shown};
+use crate::{
+    branch::BranchPoint, failure::bad_input, rendering::Rendering, rerun, session_time::SessionTime, terminal::shown,
+};
 use film::{Film, FilmOptions};
 use page::PageOptions;
 

@@ -1,0 +1,38 @@
+//! The process of a mind.
+
+use std::path::PathBuf;
+
+use super::Joining;
+use crate::minds::{MindKind, expert};
+
+/// Runs a mind for one body.
+#[derive(clap::Args)]
+pub struct Agent {
+    /// What kind of mind
+    #[arg(value_enum, default_value = "dialog")]
+    kind: MindKind,
+    #[command(flatten)]
+    joining: Joining,
+    /// The body it commands
+    #[arg(long, default_value_t = 0)]
+    body: u32,
+    /// The seed of all that is random in it
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    /// What a scripted one does: a file with an action a line
+    #[arg(long, value_name = "FILE", required_if_eq("kind", "scripted"))]
+    script: Option<PathBuf>,
+}
+
+impl Agent {
+    /// Runs the agent.
+    pub fn run(&self) -> anyhow::Result<()> {
+        let mind = self.kind.mind(self.body, self.seed, self.script.as_deref())?;
+        let (bus, stop) = self.joining.join()?;
+        let mind = mind.map_or_else(|| expert(self.body, &bus, &stop), |mind| Ok(Some(mind)))?;
+        if let Some(mut mind) = mind {
+            cohabit_agent::run(&mut *mind, self.body, &bus, &stop)?;
+        }
+        Ok(())
+    }
+}

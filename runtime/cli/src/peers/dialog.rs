@@ -1,0 +1,83 @@
+//! The process of the dialog service.
+
+use std::{net::SocketAddr, path::PathBuf, sync::Arc};
+
+use anyhow::Context as _;
+use cohabit_bus::{Session, message::CameraRecord};
+use cohabit_dialog::{Addresses, DialogConfig, DialogError, Endpoint};
+use cohabit_engine::SessionPlan;
+
+use super::{Joining, Listening, tell_supervisor};
+use crate::{
+    failure::{bad_input, environment},
+    mission_file::MissionFile,
+};
+
+/// Serves the page, and turns what people say into plans.
+#[derive(clap::Args)]
+pub struct Dialog {
+    #[command(flatten)]
+    joining: Joining,
+    #[command(flatten)]
+    listening: Listening,
+    /// A body whose robot people speak to; as often as there are
+    #[arg(long = "robot", value_name = "BODY", default_value = "0")]
+    robots: Vec<u32>,
+}
+
+impl Dialog {
+    /// Runs the dialog service. Prints its address, and later the time of the first frame shown, for its supervisor.
+    pub fn run(&self) -> anyhow::Result<()> {
+        let (bus, stop) = self.joining.join()?;
+        let Some(message) = cohabit_agent::wait_for_mission(&bus, &stop)? else { return Ok(()) };
+        let file = MissionFile { name: message.header.file.as_str().to_owned(), text: message.text };
+        let SessionPlan { catalog, layout, mission, .. } =
+            file.plan(message.header.seed, &message.bodies).context("the mission that the simulator published")?;
+        let config = self.config(message.header.seed, message.cameras)?;
+        let served = cohabit_dialog::serve(Arc::new(bus), mission, layout, catalog, config, &stop, tell_addresses);
+        served.map_err(|error| match error {
+            DialogError::Listen { .. } => environment(error),
+            other => other.into(),
+        })
+    }
+
+    /// How the service is set up for a session with this seed and these cameras.
+    fn config(&self, seed: u64, cameras: Vec<CameraRecord>) -> anyhow::Result<DialogConfig> {
+        let Self { joining, listening, robots } = self;
+        Ok(DialogConfig {
+            session: joining.session.clone(),
+            journal: Some(journal(&Session::new(&joining.session).map_err(bad_input)?)),
+            cameras,
+            identity: listening.tls.identity(listening.listen)?,
+            framed_by: listening.framed_by,
+            listen: SocketAddr::new(listening.listen, listening.port),
+            hosts: listening.hosts.clone(),
+            knows: listening.knows,
+            asking: listening.ask,
+            effort: listening.understanding,
+            consulting: listening.model,
+            interpreter: Endpoint::from_environment().map_err(bad_input)?.map(|model| Box::new(model) as _),
+            robots: robots.clone(),
+            names: listening.names.iter().map(|one| (one.body, one.name.clone())).collect(),
+            drivable: listening.drive,
+            questionnaires: listening.questionnaires()?,
+            voice: listening.voice.config(seed),
+            hidden: listening.hide.clone(),
+            holding: listening.wizard.holding(),
+            on_first_frame: Box::new(|| tell_supervisor("shown")),
+        })
+    }
+}
+
+fn tell_addresses(addresses: &Addresses) {
+    // Whoever reads what the supervisor says knows the seat when they know the page.
+    if let Some(address) = &addresses.wizard {
+        tell_supervisor(&format!("wizard {address}"));
+    }
+    tell_supervisor(&format!("page {}", addresses.page));
+}
+
+/// Where the dialog service of a session writes down what was said.
+pub fn journal(session: &Session) -> PathBuf {
+    session.folder().join("dialog.journal")
+}

@@ -1,0 +1,91 @@
+//! The simulator's process.
+
+use std::{sync::Arc, thread};
+
+use anyhow::Context as _;
+use cohabit_cdf::BodyRequest;
+use cohabit_engine::{Appearance, BuildError, CameraPlan, SessionPlan, Simulator};
+use cohabit_render::MeshLibrary;
+use cohabit_world::World;
+
+use super::{Joining, Timing};
+use crate::{
+    arena::{ArenaOptions, Games},
+    branch::{BranchPoint, Branched},
+    failure::bad_input,
+    mission_file::MissionFile,
+    rendering::Rendering,
+};
+
+/// Builds the world and steps it in real time; or, with --arena-port, as existing clients command.
+#[derive(clap::Args)]
+pub struct Sim {
+    /// A mission file (CDF), or the name of a built-in mission
+    mission: Option<String>,
+    /// The session's name
+    #[arg(long, required_unless_present = "arena_port")]
+    session: Option<String>,
+    /// The process that supervises this one
+    #[arg(long, hide = true)]
+    supervisor: Option<i32>,
+    #[command(flatten)]
+    arena: ArenaOptions,
+    /// The seed of all that is random, where the mission does not fix it
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    /// A body beside the mission's own robot: `robot` or `person`, with a room if wanted; as often as needed
+    #[arg(long = "body", value_name = "KIND[@ROOM]")]
+    bodies: Vec<BodyRequest>,
+    /// Go on from a point of a recorded session instead, LOG@TIME
+    #[arg(long, value_name = "LOG@TIME", conflicts_with_all = ["mission", "seed", "bodies", "arena_port"])]
+    branch: Option<BranchPoint>,
+    /// A camera beside those of the bodies, on the topic `frames/NAME`: KIND is `egocentric`, `panorama`,
+    /// `third-person`, `fixed` (x=, y=, z= in metres, yaw=, pitch= in degrees) or `top-down` (span= in metres); all have
+    /// size=WxH, rate=, planes=color+depth+normals+ids, and most body= and fov=; as often as needed
+    #[arg(long = "camera", value_name = "NAME=KIND[,OPTION=VALUE]")]
+    cameras: Vec<CameraPlan>,
+    #[command(flatten)]
+    rendering: Rendering,
+    #[command(flatten)]
+    timing: Timing,
+}
+
+impl Sim {
+    /// Runs the simulator.
+    pub fn run(&self) -> anyhow::Result<()> {
+        if let Some(port) = self.arena.port() {
+            let (mission, rendering) = (self.mission.as_deref(), self.rendering);
+            return self.arena.serve(port, &Games { mission, seed: self.seed, bodies: &self.bodies, rendering });
+        }
+        let (plan, before) = self.plan()?;
+        let cameras = [plan.cameras.as_slice(), &self.cameras].concat();
+        let plan = self.timing.of(plan.with_cameras(cameras).map_err(bad_input)?);
+        let session = self.session.clone().unwrap_or_default();
+        let (bus, stop) = Joining { session, supervisor: self.supervisor }.join()?;
+        let (before, meshes) = thread::scope(|scope| {
+            let meshes = scope.spawn(|| MeshLibrary::build(&plan.catalog));
+            let before = before.map_or_else(|| Ok((plan.build()?, Appearance::default())), Ok::<_, BuildError>);
+            (before, meshes.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
+        });
+        let meshes = Arc::new(meshes.context("build the models")?);
+        let renderer = self.rendering.start()?;
+        let (world, appearance) = before.map_err(bad_input)?;
+        let simulator = Simulator::new(&plan, world, meshes, renderer, &bus)?.appearing(appearance);
+        simulator.starting(self.timing.speed, self.timing.paused).run(&stop)?;
+        Ok(())
+    }
+
+    /// What is simulated, and the world that it goes on from if that is not the mission's.
+    fn plan(&self) -> anyhow::Result<(SessionPlan, Option<(World, Appearance)>)> {
+        match &self.branch {
+            Some(point) => {
+                let Branched { plan, world, appearance, .. } = point.open()?;
+                Ok((plan, Some((world, appearance))))
+            }
+            None => {
+                let file = MissionFile::find(self.mission.as_deref())?;
+                Ok((file.plan(self.seed, &self.bodies).map_err(bad_input)?, None))
+            }
+        }
+    }
+}

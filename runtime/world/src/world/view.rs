@@ -1,0 +1,149 @@
+//! What may be seen of a world from outside.
+
+use std::sync::Arc;
+
+use cohabit_cdf::{BodyId, Catalog, Layout, Mission, ObjectId, RoomId};
+use glam::Vec2;
+
+use super::World;
+use crate::{
+    body::BodyView,
+    entity::{Object, ObjectView},
+    facts::Facts,
+    goals::{self, GoalStatus},
+    power,
+    report::Ending,
+    score::score,
+    works::portal,
+};
+
+/// What may be seen from outside.
+impl World {
+    /// Ticks since the beginning.
+    #[must_use]
+    pub fn tick(&self) -> u64 {
+        self.state.tick
+    }
+
+    /// All objects there ever were, in the order of their ids; those that left are hidden.
+    pub fn objects(&self) -> impl ExactSizeIterator<Item = ObjectView<'_>> {
+        self.state.objects.iter().enumerate().map(|(index, object)| {
+            let id = ObjectId(u32::try_from(index).expect("invariant: fewer than 2^32 objects"));
+            view(&self.facts(), id, object)
+        })
+    }
+
+    /// One object.
+    #[must_use]
+    pub fn object(&self, id: ObjectId) -> Option<ObjectView<'_>> {
+        self.state.object(id).map(|object| view(&self.facts(), id, object))
+    }
+
+    /// The object in the world that answers to an instance id.
+    #[must_use]
+    pub fn find(&self, instance: &str) -> Option<ObjectId> {
+        self.state.find(instance)
+    }
+
+    /// Whether the object is in the world; one that left, or never was, is not.
+    #[must_use]
+    pub fn exists(&self, id: ObjectId) -> bool {
+        self.state.object(id).is_some_and(Object::exists)
+    }
+
+    /// All bodies, in the order of their ids.
+    pub fn bodies(&self) -> impl ExactSizeIterator<Item = BodyView> + '_ {
+        self.state
+            .bodies
+            .iter()
+            .enumerate()
+            .map(|(index, body)| BodyView::of(BodyId(u32::try_from(index).expect("invariant: few bodies")), body))
+    }
+
+    /// One body.
+    #[must_use]
+    pub fn body(&self, id: BodyId) -> Option<BodyView> {
+        self.state.body(id).map(|body| BodyView::of(id, body))
+    }
+
+    /// The mission's goals, in its order.
+    #[must_use]
+    pub fn goals(&self) -> Vec<GoalStatus> {
+        goals::statuses(&self.mission, &self.state)
+    }
+
+    /// The score so far: 1000, less one a second down to 100, and 100 for each goal met.
+    #[must_use]
+    pub fn score(&self) -> u32 {
+        let ticks = self.state.ended.map_or(self.state.tick, |(tick, _)| tick);
+        score(ticks, self.state.goals.iter().filter(|goal| goal.met).count())
+    }
+
+    /// How the mission ended, if it did.
+    #[must_use]
+    pub fn finished(&self) -> Option<Ending> {
+        self.state.ended.map(|(_, ending)| ending)
+    }
+
+    /// Whether the lights of a room are on.
+    #[must_use]
+    pub fn room_lit(&self, room: RoomId) -> bool {
+        let circuit = self.layout.rooms.iter().find(|plan| plan.id == room).map(|plan| i32::from(plan.circuit));
+        power::is_lit(&self.facts(), room, circuit)
+    }
+
+    /// The part of the floor that the middle of a robot can be on, m².
+    #[must_use]
+    pub fn navigable_area_m2(&self) -> f64 {
+        self.navigation.area_m2
+    }
+
+    /// Whether the middle of a robot may be at a point of the floor: inside a room, clear of walls and of what stands
+    /// there.
+    #[must_use]
+    pub fn is_walkable(&self, point_m: Vec2) -> bool {
+        self.navigation.is_walkable(point_m)
+    }
+
+    /// The catalogue it was built from.
+    #[must_use]
+    pub fn catalog(&self) -> &Arc<Catalog> {
+        &self.catalog
+    }
+
+    /// The floor plan it was built from.
+    #[must_use]
+    pub fn layout(&self) -> &Arc<Layout> {
+        &self.layout
+    }
+
+    /// The mission it was built from.
+    #[must_use]
+    pub fn mission(&self) -> &Arc<Mission> {
+        &self.mission
+    }
+}
+
+fn view<'a>(facts: &Facts<'a>, id: ObjectId, object: &'a Object) -> ObjectView<'a> {
+    ObjectView {
+        id,
+        instance: &object.instance,
+        class: object.class,
+        room: object.room,
+        position_m: object.pose.position,
+        rotation: object.pose.rotation,
+        scale: object.scale,
+        flags: object.flags,
+        fluid: object.fluid,
+        color: object.color,
+        opened: object.opened,
+        running: object.running,
+        parent: object.parent(),
+        held_by: object.held_by(),
+        hidden: !object.exists() || facts.shut_around(id).is_some_and(|shut| facts.object(shut).opened <= 0.0),
+        text: &object.text,
+        works: object.works,
+        leads_to: portal::open_gate(facts, id).map(|gate| gate.way().era),
+        in_mission: object.requested,
+    }
+}
