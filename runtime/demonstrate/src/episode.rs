@@ -21,6 +21,7 @@ use crate::{
     error::{DemonstrateError, at},
     objects::Objects,
     picture,
+    question::Asker,
     step::{PoseEntry, StepEntry},
 };
 
@@ -45,13 +46,15 @@ pub(crate) enum Played {
 pub(crate) struct Totals {
     pub steps: usize,
     pub failed: usize,
+    pub questions: usize,
     pub frames: usize,
     pub ticks: u64,
     pub digest: [u8; 32],
 }
 
-/// Plays a mission, and writes it down in a folder that is there and empty.
+/// Plays a mission, and writes it down in a folder that is there and empty; `number` is that of the episode.
 pub(crate) fn play(
+    number: u64,
     plan: &SessionPlan,
     world: World,
     meshes: &Arc<MeshLibrary>,
@@ -71,6 +74,7 @@ pub(crate) fn play(
         world,
         appearance: Appearance::default(),
         executor,
+        asker: recipe.has_questions().then(|| Asker::new(BODY, recipe.seed(), number)),
         camera,
         planes: recipe.planes(),
         folder,
@@ -87,6 +91,8 @@ struct Episode<'a> {
     world: World,
     appearance: Appearance,
     executor: Executor,
+    /// Who asks about instructions, if anybody does.
+    asker: Option<Asker>,
     camera: Option<Camera>,
     planes: &'a [Plane],
     folder: &'a Path,
@@ -135,14 +141,17 @@ impl Episode<'_> {
     fn step(&mut self, action: Action) -> Result<Result<(), String>, DemonstrateError> {
         let mut entry = self.before()?;
         entry.with_action(&self.world, action);
+        let asked = self.asker.as_mut().and_then(|asker| asker.ask(&self.world, action));
         let Some(outcome) = self.act(action) else {
             return Ok(Err(format!("{action:?} never came to an end")));
         };
         self.executor.outcome(outcome.status, &outcome.detail);
         entry.with_outcome(&outcome, self.world.tick());
+        entry.questions = asked.map_or_else(Vec::new, |asked| asked.answered(&self.world));
         self.write(&entry)?;
         self.totals.steps += 1;
         self.totals.failed += usize::from(outcome.status.is_failure());
+        self.totals.questions += entry.questions.len();
         // What follows from it is there a tick later.
         self.tick(&[]);
         Ok(Ok(()))
@@ -176,6 +185,7 @@ impl Episode<'_> {
             tick: self.world.tick(),
             action: None,
             instructions: BTreeMap::new(),
+            questions: Vec::new(),
             outcome: None,
             pose: PoseEntry::of(&self.world, BODY),
             goals: self.world.goals().iter().map(|goal| (goal.id, goal.met)).collect(),

@@ -109,7 +109,7 @@ impl User {
                 Some(place) if self.chance.is(0.3) => format!("the {} one", ORDINALS[place.min(ORDINALS.len() - 1)]),
                 _ => oracle.reference(meant),
             },
-            Clarification::Location => oracle.location(meant, &self.viewpoints(meant, truth)),
+            Clarification::Location => oracle.location(meant, &self.layout),
             Clarification::Appearance => oracle.appearance(meant),
             Clarification::Direction => oracle.direction(meant),
             Clarification::Confirmation if asked.candidates.is_empty() || asked.candidates.contains(&meant) => {
@@ -130,13 +130,6 @@ impl User {
         };
         let named = wanted.iter().find(|id| asked.candidates.contains(id));
         named.or_else(|| wanted.iter().find(|id| is_like(id))).or_else(|| wanted.first()).copied()
-    }
-
-    /// The viewpoints of the room that it is in.
-    fn viewpoints(&self, id: ObjectId, truth: &Known) -> Vec<(u8, [f32; 2])> {
-        let room = truth.object(id).map(|object| object.room);
-        let here = self.layout.viewpoints.iter().filter(|viewpoint| Some(viewpoint.room) == room);
-        here.map(|viewpoint| (viewpoint.number, viewpoint.at_m)).collect()
     }
 }
 
