@@ -210,7 +210,8 @@ fn check(folder: &Path) -> BTreeSet<String> {
 fn the_missions_of_the_project_have_questions_of_all_types() {
     let scratch = Scratch::new("demonstrate-questions");
     let folder = scratch.path("data");
-    make(Path::new(&folder), mission::builtin(), &Recipe::new(1, [64, 48], &[]).unwrap());
+    let missions = [mission::builtin(); 3].concat();
+    make(Path::new(&folder), &missions, &Recipe::new(1, [64, 48], &[]).unwrap());
     let types: Vec<String> = check(Path::new(&folder)).into_iter().collect();
     assert_eq!(types, ["appearance", "direction", "location", "reference"]);
     let card = fs::read_to_string(Path::new(&folder).join("README.md")).unwrap();
