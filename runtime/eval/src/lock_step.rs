@@ -117,7 +117,7 @@ impl LockStep {
     /// All that is true, as somebody would know it who is everywhere.
     #[must_use]
     pub fn truth(&self) -> Option<Known> {
-        with_state(&self.world, |state| known::everything(state, BODY)).flatten()
+        truth(&self.world)
     }
 
     /// What the robot asks, if it waits for an answer.
@@ -206,6 +206,11 @@ impl LockStep {
         self.recording.turns.insert(self.commands, turn);
         self.waiting.push(Input { command: self.commands, body: BODY, action });
     }
+}
+
+/// All that is true in a world, as somebody would know it who is everywhere.
+pub(crate) fn truth(world: &World) -> Option<Known> {
+    with_state(world, |state| known::everything(state, BODY)).flatten()
 }
 
 /// Looks at the state of the world as it would be published.

@@ -9,10 +9,11 @@ use std::sync::Arc;
 
 use cohabit_cdf::{Catalog, Layout, ObjectId};
 use cohabit_dialog::Asked;
+use cohabit_generate::Chance;
 use cohabit_language::{Clarification, Known, Oracle};
 use serde::{Deserialize, Serialize};
 
-use crate::{chance::Chance, meaning::Meaning};
+use crate::meaning::Meaning;
 
 /// How a simulated person speaks; shares are from 0 to 1.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
@@ -51,7 +52,7 @@ impl User {
     /// A person who speaks in that style; the same seed says the same.
     #[must_use]
     pub fn new(style: Style, seed: u64, catalog: Arc<Catalog>, layout: Arc<Layout>) -> Self {
-        Self { style, chance: Chance::new(seed), catalog, layout, last: None }
+        Self { style, chance: Chance::new(seed, 0), catalog, layout, last: None }
     }
 
     /// What they say for the robot to do it, who see the world as it is.
