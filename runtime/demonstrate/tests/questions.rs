@@ -185,7 +185,7 @@ fn check(folder: &Path) -> BTreeSet<String> {
     let mut types = BTreeSet::new();
     for (floor_plan, lines) in episodes(folder) {
         let layout = Layout::builtin(&floor_plan).unwrap();
-        let (mut objects, mut once) = (BTreeMap::new(), BTreeSet::new());
+        let (mut objects, mut once) = (BTreeMap::<String, Value>::new(), BTreeSet::new());
         for (line, next) in lines.iter().zip(&lines[1..]) {
             for gone in line["gone"].as_array().into_iter().flatten() {
                 objects.remove(gone.as_str().unwrap());
