@@ -3,19 +3,22 @@
 //! The templates are those of Alexa Arena's oracle (Gao et al. 2023, "Oracle Answers").
 
 use cohabit_cdf::{
-    Catalog, ObjectId,
+    Catalog, Layout, ObjectId,
+    layout::Viewpoint,
     model::{Material, Shape},
 };
 
 use crate::{
     describe,
-    known::{Known, KnownObject},
+    known::{Known, KnownObject, within_half_turn},
 };
 
 /// How near a thing must be to be a landmark, m.
 const LANDMARK_M: f32 = 1.5;
 /// A bearing of less is in front, of more than a half turn less so much is behind, rad.
 const AHEAD_RAD: f32 = std::f32::consts::FRAC_PI_4;
+/// Who goes less far need not have moved, m.
+const STEP_M: f32 = 0.3;
 
 /// Somebody who knows all.
 #[derive(Clone, Copy, Debug)]
@@ -32,9 +35,9 @@ impl<'a> Oracle<'a> {
     }
 
     /// Where is it? `The mug is to your left on the desk next to the lamp in the main office. It is closest to
-    /// viewpoint 3.`, of `viewpoints`, which are numbers and places (x, y in the world, m) of its room.
+    /// viewpoint 3.`, of those of its room in the floor plan.
     #[must_use]
-    pub fn location(&self, id: ObjectId, viewpoints: &[(u8, [f32; 2])]) -> String {
+    pub fn location(&self, id: ObjectId, layout: &Layout) -> String {
         let Some(object) = self.truth.object(id) else { return "It is not there any more.".to_owned() };
         let mut parts = vec![format!("The {} is", describe::bare(self.catalog, self.truth, id))];
         if object.room == self.truth.robot.room {
@@ -49,9 +52,10 @@ impl<'a> Oracle<'a> {
         }
         parts.push(format!("in the {}.", object.room.name()));
         let [x, y, _] = object.position_m;
-        let away = |at: &[f32; 2]| (at[0] - x).hypot(at[1] - y);
-        if let Some((number, _)) = viewpoints.iter().min_by(|(_, one), (_, other)| away(one).total_cmp(&away(other))) {
-            parts.push(format!("It is closest to viewpoint {number}."));
+        let away = |view: &Viewpoint| (view.at_m[0] - x).hypot(view.at_m[1] - y);
+        let here = layout.viewpoints.iter().filter(|view| view.room == object.room);
+        if let Some(nearest) = here.min_by(|one, other| away(one).total_cmp(&away(other))) {
+            parts.push(format!("It is closest to viewpoint {}.", nearest.number));
         }
         parts.join(" ")
     }
@@ -72,14 +76,21 @@ impl<'a> Oracle<'a> {
     /// Which direction? `You should turn left.`
     #[must_use]
     pub fn direction(&self, id: ObjectId) -> String {
-        let Some(object) = self.truth.object(id) else { return "You don't need to move.".to_owned() };
-        let turn = match direction(self.truth.bearing_rad(object)) {
-            "to your left" => "left",
-            "to your right" => "right",
-            "behind you" => "around",
-            _ => return "You don't need to move.".to_owned(),
-        };
-        format!("You should turn {turn}.")
+        let object = self.truth.object(id);
+        turn(object.map_or(0.0, |object| self.truth.bearing_rad(object))).unwrap_or_else(|| STAY.to_owned())
+    }
+
+    /// Which direction, to get to `to_m` (x, y in the world, m)? As the paper has it: where the robot stands is compared with
+    /// where it is in the end. `You should turn left.`, `You should go straight ahead.`, `You don't need to move.`
+    #[must_use]
+    pub fn way(&self, to_m: [f32; 2]) -> String {
+        let [x, y, _] = self.truth.robot.position_m;
+        let [dx, dy] = [to_m[0] - x, to_m[1] - y];
+        if dx.hypot(dy) < STEP_M {
+            return STAY.to_owned();
+        }
+        let bearing_rad = within_half_turn(dy.atan2(dx) - self.truth.robot.yaw_rad);
+        turn(bearing_rad).unwrap_or_else(|| "You should go straight ahead.".to_owned())
     }
 
     /// Which one do you mean? `The red mug on the desk in the main office.`
@@ -107,6 +118,20 @@ impl<'a> Oracle<'a> {
         let near = others.filter(|other| other.class != object.class && away(other) < LANDMARK_M);
         near.min_by(|one, other| away(one).total_cmp(&away(other)).then(one.id.cmp(&other.id))).map(|other| other.id)
     }
+}
+
+/// What is answered where nothing is to be done.
+const STAY: &str = "You don't need to move.";
+
+/// Which way to turn towards what is seen at a bearing; nothing, where it is ahead.
+fn turn(bearing_rad: f32) -> Option<String> {
+    let way = match direction(bearing_rad) {
+        "to your left" => "left",
+        "to your right" => "right",
+        "behind you" => "around",
+        _ => return None,
+    };
+    Some(format!("You should turn {way}."))
 }
 
 /// Where something is that is seen at a bearing, positive to the left.

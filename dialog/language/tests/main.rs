@@ -12,6 +12,7 @@ mod follow_up;
 mod later;
 mod memory;
 mod missions;
+mod oracle;
 mod proposals;
 mod questions;
 mod replies;

@@ -15,8 +15,8 @@ use crate::{
 /// Missions left out that are printed at most; the manifest has all.
 const MOST_PRINTED: usize = 30;
 
-/// Has the expert play missions, and writes a data set: of each step the state before it, the action, instructions, what came of
-/// it, and what the robot sees. A call that was interrupted goes on when it is made again.
+/// Has the expert play missions, and writes a data set: of each step the state before it, the action, instructions, questions with
+/// answers, what came of it, and what the robot sees. A call that was interrupted goes on when it is made again.
 #[derive(clap::Args)]
 pub struct Demonstrate {
     /// A .jsonl of missions, a mission (CDF), or a folder of missions
@@ -36,6 +36,9 @@ pub struct Demonstrate {
     /// What is drawn: some of color, depth, normals and ids, with commas between; or `none`
     #[arg(long, value_name = "LIST", default_value = "color,depth,normals,ids")]
     modalities: Modalities,
+    /// No questions about instructions, and no answers
+    #[arg(long)]
+    no_questions: bool,
     /// Missions that are played side by side; one for each core if not given. They do not change what is made
     #[arg(long, value_name = "N")]
     workers: Option<usize>,
@@ -77,6 +80,7 @@ impl Demonstrate {
     pub fn run(&self) -> anyhow::Result<()> {
         let missions = self.missions()?;
         let recipe = Recipe::new(self.seed, self.size.0, &self.modalities.0).map_err(bad_input)?;
+        let recipe = if self.no_questions { recipe.without_questions() } else { recipe };
         let workers = self.workers.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from));
         let bar = ProgressBar::new(missions.len() as u64).with_style(
             ProgressStyle::with_template("{bar:30} {pos}/{len} played, {elapsed} ({eta} left)")
@@ -95,9 +99,10 @@ impl Demonstrate {
             println!("... and {} more; the manifest has them all", summary.left_out.len() - MOST_PRINTED);
         }
         println!(
-            "{} episodes with {} steps and {} frames: {}",
+            "{} episodes with {} steps, {} questions and {} frames: {}",
             summary.episodes,
             summary.steps,
+            summary.questions,
             summary.frames,
             shown(self.out.display())
         );

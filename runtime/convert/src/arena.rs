@@ -18,7 +18,7 @@ use serde_json::{Map, Value, json};
 use crate::{
     Counts, card,
     error::{ConvertError, at},
-    native::{Action, Dataset, Episode, Step},
+    native::{Action, Dataset, Episode, Question, Step},
     output::Output,
     picture::{self, Pixels},
 };
@@ -171,16 +171,28 @@ fn is_file_name(text: &str) -> bool {
     text.len() <= 200 && text.bytes().all(is_plain)
 }
 
-/// An annotation for each style: an instruction for each action.
+/// An annotation for each style: an instruction for each action, with the questions about it.
 fn annotations(steps: &[&Step]) -> Vec<Value> {
     let styles: BTreeSet<&String> = steps.iter().flat_map(|step| step.instructions.keys()).collect();
     let annotation = |style: &&String| {
         let told = steps.iter().enumerate().filter_map(|(id, step)| {
-            step.instructions.get(*style).map(|text| json!({ "instruction": text, "actions": [id] }))
+            step.instructions.get(*style).map(|text| instruction(text, id, &step.questions))
         });
         json!({ "instructions": told.collect::<Vec<_>>() })
     };
     styles.iter().map(annotation).collect()
+}
+
+/// An instruction for an action. What is asked about it is what it leaves open, so that is necessary.
+fn instruction(text: &str, action: usize, questions: &[Question]) -> Value {
+    let mut told = json!({ "instruction": text, "actions": [action] });
+    let pair = |Question { question, answer }: &Question| {
+        json!({ "question": question, "answer": answer, "question_necessary": true })
+    };
+    if !questions.is_empty() {
+        told["question_answers"] = questions.iter().map(pair).collect();
+    }
+    told
 }
 
 #[cfg(test)]

@@ -12,7 +12,7 @@ use serde::{Deserialize, de::DeserializeOwned};
 use crate::error::{ConvertError, at};
 
 /// The format that is read, with its version.
-const FORMAT: &str = "cohabit demonstrations 2";
+const FORMAT: &str = "cohabit demonstrations 3";
 
 /// A finished data set.
 #[derive(Debug)]
@@ -68,6 +68,8 @@ pub(crate) struct Step {
     pub action: Option<Action>,
     #[serde(default)]
     pub instructions: BTreeMap<String, String>,
+    #[serde(default)]
+    pub questions: Vec<Question>,
     pub outcome: Option<Outcome>,
     pub pose: Option<Pose>,
     /// The file of each modality, in the folder of the episode.
@@ -86,6 +88,13 @@ pub(crate) struct Action {
     /// The id of the object in pictures.
     pub id: u32,
     pub is_seen: bool,
+}
+
+/// A question about the instructions, and its answer.
+#[derive(Debug, Deserialize)]
+pub(crate) struct Question {
+    pub question: String,
+    pub answer: String,
 }
 
 #[derive(Debug, Deserialize)]

@@ -10,7 +10,7 @@ const FILES: &str = include_str!("../data/card.md");
 pub(crate) struct Counts<'a> {
     pub missions: usize,
     pub left_out: usize,
-    /// Episodes, steps and frames.
+    /// Episodes, steps, questions and frames.
     pub summary: &'a Summary,
 }
 
@@ -29,6 +29,7 @@ pub(crate) fn text(recipe: &Recipe, counts: Counts<'_>) -> String {
         ("missions", format!("{}, of which {} are left out", counts.missions, counts.left_out)),
         ("episodes", counts.summary.episodes.to_string()),
         ("steps", counts.summary.steps.to_string()),
+        ("questions", counts.summary.questions.to_string()),
         ("frames", counts.summary.frames.to_string()),
         ("pictures", pictures),
         ("licence", "that of the missions; what is drawn are the program's own models".to_owned()),

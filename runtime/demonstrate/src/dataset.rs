@@ -22,7 +22,7 @@ use crate::{
 };
 
 /// What this format is called, with its version.
-const FORMAT: &str = "cohabit demonstrations 2";
+const FORMAT: &str = "cohabit demonstrations 3";
 
 /// A mission that is to be demonstrated.
 #[derive(Clone, Debug)]
@@ -39,17 +39,29 @@ pub struct Recipe {
     seed: u64,
     lens: Lens,
     planes: Vec<Plane>,
+    has_questions: bool,
 }
 
 impl Recipe {
-    /// A seed for what missions leave to chance, the size of pictures in pixels, and what they show; nothing is drawn where
+    /// A seed for what missions leave to chance and for questions, the size of pictures in pixels, and what they show; nothing is drawn where
     /// that is empty.
     ///
     /// # Errors
     /// [`LensError`], where pictures of that size cannot be drawn.
     pub fn new(seed: u64, size: [u32; 2], planes: &[Plane]) -> Result<Self, LensError> {
         let planes = Plane::ALL.into_iter().filter(|plane| planes.contains(plane)).collect();
-        Ok(Self { seed, lens: Camera::lens(size[0], size[1])?, planes })
+        Ok(Self { seed, lens: Camera::lens(size[0], size[1])?, planes, has_questions: true })
+    }
+
+    /// The same without questions about instructions.
+    #[must_use]
+    pub const fn without_questions(mut self) -> Self {
+        self.has_questions = false;
+        self
+    }
+
+    pub(crate) const fn has_questions(&self) -> bool {
+        self.has_questions
     }
 
     pub(crate) fn planes(&self) -> &[Plane] {
@@ -78,6 +90,7 @@ impl Recipe {
             "program": env!("CARGO_PKG_VERSION"),
             "seed": self.seed,
             "size": self.lens.size(),
+            "questions": self.has_questions,
             "modalities": self.planes.iter().map(|plane| plane.name()).collect::<Vec<_>>(),
             "missions": missions.len(),
             "missions_blake3": hasher.finalize().to_hex().as_str(),
@@ -100,6 +113,7 @@ struct EpisodeEntry {
     seed: u64,
     steps: usize,
     failed_steps: usize,
+    questions: usize,
     frames: usize,
     ticks: u64,
     /// The digest of the world in the end.
@@ -120,6 +134,8 @@ pub struct Summary {
     pub episodes: usize,
     /// Their steps.
     pub steps: usize,
+    /// The questions about them.
+    pub questions: usize,
     /// Their frames; each has a picture in each modality.
     pub frames: usize,
     /// Missions that were left out, and why.
@@ -153,6 +169,7 @@ pub fn demonstrate(
     let mut summary = Summary {
         episodes: episodes.len(),
         steps: episodes.iter().map(|episode| episode.steps).sum(),
+        questions: episodes.iter().map(|episode| episode.questions).sum(),
         frames: episodes.iter().map(|episode| episode.frames).sum(),
         left_out: Vec::new(),
     };
@@ -237,7 +254,7 @@ impl Maker<'_> {
         };
         remove(&part)?;
         fs::create_dir(&part).map_err(at(&part))?;
-        match episode::play(&plan, world, &self.meshes, self.recipe, &part)? {
+        match episode::play(number as u64, &plan, world, &self.meshes, self.recipe, &part)? {
             Played::Solved(totals) => {
                 let entry = entry(mission, name, &plan, &totals);
                 write(&part.join("episode.json"), &entry)?;
@@ -265,6 +282,7 @@ fn entry(mission: &MissionText, folder: String, plan: &SessionPlan, totals: &Tot
         seed: plan.seed,
         steps: totals.steps,
         failed_steps: totals.failed,
+        questions: totals.questions,
         frames: totals.frames,
         ticks: totals.ticks,
         digest: totals.digest.iter().map(|byte| format!("{byte:02x}")).collect(),

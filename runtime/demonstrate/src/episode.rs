@@ -2,6 +2,7 @@
 
 use std::{
     collections::BTreeMap,
+    convert::Infallible,
     fs::{self, File},
     io::{BufWriter, Write as _},
     path::{Path, PathBuf},
@@ -11,9 +12,9 @@ use std::{
 use cohabit_bus::message::{FrameView, Plane};
 use cohabit_cdf::{Action, BodyId};
 use cohabit_engine::{Appearance, SessionPlan};
-use cohabit_planner::{Executor, GivenUp, Limits, Next};
+use cohabit_generate::{ExpertPlay, Observer};
 use cohabit_render::MeshLibrary;
-use cohabit_world::{Input, Outcome, World};
+use cohabit_world::{Input, Report, World};
 
 use crate::{
     camera::Camera,
@@ -21,16 +22,12 @@ use crate::{
     error::{DemonstrateError, at},
     objects::Objects,
     picture,
+    question::Asker,
     step::{PoseEntry, StepEntry},
 };
 
 /// The body that plays.
 const BODY: BodyId = BodyId(0);
-const TICKS_PER_SECOND: f32 = 60.0;
-/// The longest that one action may take: two simulated minutes.
-const PATIENCE_TICKS: u32 = 60 * 120;
-/// What a search for a plan may take; no time, so that no machine makes another data set.
-const LIMITS: Limits = Limits::of_states(4_000);
 
 /// What came of an episode.
 pub(crate) enum Played {
@@ -45,13 +42,15 @@ pub(crate) enum Played {
 pub(crate) struct Totals {
     pub steps: usize,
     pub failed: usize,
+    pub questions: usize,
     pub frames: usize,
     pub ticks: u64,
     pub digest: [u8; 32],
 }
 
-/// Plays a mission, and writes it down in a folder that is there and empty.
+/// Plays a mission, and writes it down in a folder that is there and empty; `number` is that of the episode.
 pub(crate) fn play(
+    number: u64,
     plan: &SessionPlan,
     world: World,
     meshes: &Arc<MeshLibrary>,
@@ -66,63 +65,63 @@ pub(crate) fn play(
     };
     let path = folder.join("steps.jsonl");
     let lines = BufWriter::new(File::create(&path).map_err(at(&path))?);
-    let executor = Executor::new(Arc::clone(&plan.mission), LIMITS, TICKS_PER_SECOND);
+    let Ok(expert) = ExpertPlay::begin(world, Looks(Appearance::default()));
     let mut episode = Episode {
-        world,
-        appearance: Appearance::default(),
-        executor,
+        expert,
+        asker: recipe.has_questions().then(|| Asker::new(BODY, recipe.seed(), number)),
         camera,
         planes: recipe.planes(),
         folder,
         path,
         lines,
         objects: Objects::default(),
-        commands: 0,
         totals: Totals::default(),
     };
     episode.run()
 }
 
+/// What is shown besides the world, as ticks change it.
+struct Looks(Appearance);
+
+impl Observer for Looks {
+    type Error = Infallible;
+
+    fn note(&mut self, world: &World, inputs: &[Input], report: &Report) -> Result<(), Infallible> {
+        self.0.note(world, inputs, report);
+        Ok(())
+    }
+}
+
 struct Episode<'a> {
-    world: World,
-    appearance: Appearance,
-    executor: Executor,
+    expert: ExpertPlay<Looks>,
+    /// Who asks about instructions, if anybody does.
+    asker: Option<Asker>,
     camera: Option<Camera>,
     planes: &'a [Plane],
     folder: &'a Path,
     path: PathBuf,
     lines: BufWriter<File>,
     objects: Objects,
-    commands: u64,
     totals: Totals,
 }
 
 impl Episode<'_> {
     fn run(&mut self) -> Result<Played, DemonstrateError> {
-        // What is met as the mission begins is met before anybody plans.
-        self.tick(&[]);
-        while self.world.finished().is_none() {
-            let met: Vec<bool> = self.world.goals().iter().map(|goal| goal.met).collect();
-            match self.executor.next(&self.world.symbols(BODY), &met) {
-                Next::Act(action) => {
-                    if let Err(reason) = self.step(action)? {
-                        return Ok(Played::Unsolved(reason));
-                    }
-                }
-                Next::Wait(ticks) => (0..ticks).for_each(|_| drop(self.tick(&[]))),
-                Next::Over => break,
+        while let Ok(Some(action)) = self.expert.decide() {
+            if let Err(reason) = self.step(action)? {
+                return Ok(Played::Unsolved(reason));
             }
         }
         let last = self.before()?;
         self.write(&last)?;
         self.lines.flush().map_err(at(&self.path))?;
-        (self.totals.ticks, self.totals.digest) = (self.world.tick(), self.world.digest());
+        (self.totals.ticks, self.totals.digest) = (self.expert.world.tick(), self.expert.world.digest());
         Ok(self.verdict())
     }
 
     fn verdict(&self) -> Played {
-        let open = self.world.goals().iter().filter(|goal| !goal.met).count();
-        let given_up: Vec<String> = self.executor.given_up().iter().map(GivenUp::to_string).collect();
+        let open = self.expert.world.goals().iter().filter(|goal| !goal.met).count();
+        let given_up = self.expert.given_up();
         match open {
             0 if self.totals.steps > 0 => Played::Solved(self.totals),
             0 => Played::Unsolved("all goals are met from the beginning".to_owned()),
@@ -134,51 +133,33 @@ impl Episode<'_> {
     /// Does a step, and writes it down; says why it never came to an end, if it did not.
     fn step(&mut self, action: Action) -> Result<Result<(), String>, DemonstrateError> {
         let mut entry = self.before()?;
-        entry.with_action(&self.world, action);
-        let Some(outcome) = self.act(action) else {
+        entry.with_action(&self.expert.world, action);
+        let asked = self.asker.as_mut().and_then(|asker| asker.ask(&self.expert.world, action));
+        let Ok(Some((outcome, tick))) = self.expert.act(action) else {
             return Ok(Err(format!("{action:?} never came to an end")));
         };
-        self.executor.outcome(outcome.status, &outcome.detail);
-        entry.with_outcome(&outcome, self.world.tick());
+        entry.with_outcome(&outcome, tick);
+        entry.questions = asked.map_or_else(Vec::new, |asked| asked.answered(&self.expert.world));
         self.write(&entry)?;
         self.totals.steps += 1;
         self.totals.failed += usize::from(outcome.status.is_failure());
-        // What follows from it is there a tick later.
-        self.tick(&[]);
+        self.totals.questions += entry.questions.len();
         Ok(Ok(()))
-    }
-
-    fn act(&mut self, action: Action) -> Option<Outcome> {
-        self.commands += 1;
-        let command = self.commands;
-        let mut inputs = vec![Input { command, body: BODY, action }];
-        for _ in 0..PATIENCE_TICKS {
-            let outcomes = self.tick(&inputs);
-            inputs.clear();
-            if let Some(outcome) = outcomes.into_iter().find(|outcome| outcome.command == command) {
-                return Some(outcome);
-            }
-        }
-        None
-    }
-
-    fn tick(&mut self, inputs: &[Input]) -> Vec<Outcome> {
-        let report = self.world.step(inputs);
-        self.appearance.note(&self.world, inputs, &report);
-        report.outcomes
     }
 
     /// The state as it is now, with what the robot sees.
     fn before(&mut self) -> Result<StepEntry, DemonstrateError> {
-        let (objects, gone) = self.objects.changed(&self.world);
+        let (world, Looks(appearance)) = (&self.expert.world, &self.expert.observer);
+        let (objects, gone) = self.objects.changed(world);
         let mut entry = StepEntry {
             step: self.totals.steps,
-            tick: self.world.tick(),
+            tick: world.tick(),
             action: None,
             instructions: BTreeMap::new(),
+            questions: Vec::new(),
             outcome: None,
-            pose: PoseEntry::of(&self.world, BODY),
-            goals: self.world.goals().iter().map(|goal| (goal.id, goal.met)).collect(),
+            pose: PoseEntry::of(world, BODY),
+            goals: world.goals().iter().map(|goal| (goal.id, goal.met)).collect(),
             objects,
             gone,
             frames: BTreeMap::new(),
@@ -186,8 +167,8 @@ impl Episode<'_> {
             seen: Vec::new(),
         };
         if let Some(camera) = &mut self.camera {
-            let (world, planes, folder) = (&self.world, self.planes, self.folder);
-            camera.look(world, &self.appearance, |frame| {
+            let (planes, folder) = (self.planes, self.folder);
+            camera.look(world, appearance, |frame| {
                 entry.with_frame(world, frame);
                 entry.frames = pictures(frame, planes, folder, entry.step)?;
                 Ok(())

@@ -8,7 +8,7 @@ use cohabit_render::instance_color;
 use cohabit_world::{Outcome, World};
 use serde::Serialize;
 
-use crate::{instruction, objects::ObjectEntry};
+use crate::{instruction, objects::ObjectEntry, question::QuestionEntry};
 
 /// A line of `steps.jsonl`: the state before a step, the step, and what came of it. The last line has no step.
 #[derive(Debug, Serialize)]
@@ -20,6 +20,9 @@ pub(crate) struct StepEntry {
     /// What people would say for it, by style.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub instructions: BTreeMap<&'static str, String>,
+    /// What somebody asks who is told to do it, and what an oracle answers.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub questions: Vec<QuestionEntry>,
     pub outcome: Option<OutcomeEntry>,
     pub pose: Option<PoseEntry>,
     /// Whether each goal is met, by its number.

@@ -6,7 +6,6 @@
 //!
 //! Nothing here is special to a mission, and nothing renders. Time is the world's own: nobody thinks while it runs.
 
-mod chance;
 mod dataset;
 mod family;
 mod generate;

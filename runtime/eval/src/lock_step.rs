@@ -1,17 +1,18 @@
 //! World, conversation and agent in one thread, one tick after the other.
 
-use std::{collections::BTreeMap, path::Path};
+use std::path::Path;
 
 use cohabit_agent::{Agent, Deed, Heard, PlanFollower};
-use cohabit_bus::message::{DialogKind, DialogMessage, EventMessage, StateView};
+use cohabit_bus::message::{DialogKind, DialogMessage, StateView};
 use cohabit_cdf::{Action, BodyId};
 use cohabit_dialog::{Asked, Conversation, Knowledge, Reaction, TurnEnd, known};
 use cohabit_engine::{SessionPlan, report};
+use cohabit_generate::tick;
 use cohabit_language::Known;
-use cohabit_record::{InputEntry, LogError, SessionFacts};
+use cohabit_record::{LogError, SessionFacts};
 use cohabit_world::{Input, Outcome, World};
 
-use crate::trace::{Trace, input};
+use crate::trace::Recording;
 
 /// The body that is spoken to.
 const BODY: BodyId = BodyId(0);
@@ -23,10 +24,9 @@ pub struct LockStep {
     knowledge: Knowledge,
     agent: PlanFollower,
     commands: u64,
-    waiting: Vec<InputEntry>,
-    turn_by_command: BTreeMap<u64, u64>,
+    waiting: Vec<Input>,
     noted: Noted,
-    trace: Option<Trace>,
+    recording: Recording,
 }
 
 /// What is noted of a session until somebody takes it.
@@ -51,9 +51,8 @@ impl LockStep {
             agent: PlanFollower::new(BODY.0),
             commands: 0,
             waiting: Vec::new(),
-            turn_by_command: BTreeMap::new(),
             noted: Noted::default(),
-            trace: None,
+            recording: Recording::default(),
         }
     }
 
@@ -62,8 +61,7 @@ impl LockStep {
     /// # Errors
     /// [`LogError`].
     pub fn record(&mut self, path: &Path, facts: &SessionFacts, plan: &SessionPlan) -> Result<(), LogError> {
-        self.trace = Some(Trace::create(path, facts, plan)?);
-        Ok(())
+        self.recording.begin(path, facts, plan)
     }
 
     /// The world as it is.
@@ -98,18 +96,13 @@ impl LockStep {
     /// # Errors
     /// [`LogError`].
     pub fn tick(&mut self) -> Result<(), LogError> {
-        let entries = std::mem::take(&mut self.waiting);
-        let inputs: Vec<Input> = entries.iter().map(input).collect();
-        let told = self.world.step(&inputs);
-        if let Some(trace) = &mut self.trace {
-            trace.step(&self.world, entries, &told.events)?;
-        }
-        let tick = self.world.tick();
+        let outcomes = tick(&mut self.world, &mut self.recording, &std::mem::take(&mut self.waiting))?;
+        let now = self.world.tick();
         let body = self.world.body(BODY).map(|body| (body.position_m.to_array(), body.yaw_rad));
-        if body.is_some_and(|(position_m, yaw_rad)| self.knowledge.is_due(tick, position_m, yaw_rad)) {
+        if body.is_some_and(|(position_m, yaw_rad)| self.knowledge.is_due(now, position_m, yaw_rad)) {
             self.look();
         }
-        for outcome in told.outcomes {
+        for outcome in outcomes {
             self.end_command(outcome)?;
         }
         Ok(())
@@ -124,7 +117,7 @@ impl LockStep {
     /// All that is true, as somebody would know it who is everywhere.
     #[must_use]
     pub fn truth(&self) -> Option<Known> {
-        with_state(&self.world, |state| known::everything(state, BODY)).flatten()
+        truth(&self.world)
     }
 
     /// What the robot asks, if it waits for an answer.
@@ -138,15 +131,11 @@ impl LockStep {
     /// # Errors
     /// [`LogError`].
     pub fn finish(&mut self) -> Result<(), LogError> {
-        self.trace.take().map_or(Ok(()), Trace::finish)
+        self.recording.finish()
     }
 
     fn end_command(&mut self, outcome: Outcome) -> Result<(), LogError> {
-        let turn = self.turn_by_command.remove(&outcome.command).unwrap_or(0);
-        if let Some(trace) = &mut self.trace {
-            let Outcome { command, body, status, detail } = &outcome;
-            trace.event(self.world.tick(), &EventMessage::outcome(*command, turn, body.0, *status, detail))?;
-        }
+        let turn = self.recording.turns.remove(&outcome.command).unwrap_or(0);
         if outcome.command == self.commands && turn != 0 {
             let mut deeds = Vec::new();
             self.agent.hear(&Heard::Outcome { status: outcome.status, detail: &outcome.detail }, &mut deeds);
@@ -163,7 +152,7 @@ impl LockStep {
                 Deed::Act { turn, action } => self.act(turn, action),
                 Deed::Rest(_) => {}
                 Deed::Tell(message) => {
-                    self.write_down(&message)?;
+                    self.recording.dialog(self.world.tick(), &message)?;
                     if matches!(message.header.kind(), Some(DialogKind::StepEnded | DialogKind::PlanEnded)) {
                         self.look();
                     }
@@ -197,7 +186,7 @@ impl LockStep {
     }
 
     fn pass_on(&mut self, message: &DialogMessage) -> Result<(), LogError> {
-        self.write_down(message)?;
+        self.recording.dialog(self.world.tick(), message)?;
         match message.header.kind() {
             Some(DialogKind::Plan) => {
                 let mut deeds = Vec::new();
@@ -212,15 +201,16 @@ impl LockStep {
         }
     }
 
-    fn write_down(&mut self, message: &DialogMessage) -> Result<(), LogError> {
-        self.trace.as_mut().map_or(Ok(()), |trace| trace.dialog(self.world.tick(), message))
-    }
-
     fn act(&mut self, turn: u64, action: Action) {
         self.commands += 1;
-        self.turn_by_command.insert(self.commands, turn);
-        self.waiting.push(InputEntry { command: self.commands, turn, body: BODY.0, action });
+        self.recording.turns.insert(self.commands, turn);
+        self.waiting.push(Input { command: self.commands, body: BODY, action });
     }
+}
+
+/// All that is true in a world, as somebody would know it who is everywhere.
+pub(crate) fn truth(world: &World) -> Option<Known> {
+    with_state(world, |state| known::everything(state, BODY)).flatten()
 }
 
 /// Looks at the state of the world as it would be published.

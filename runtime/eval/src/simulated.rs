@@ -9,10 +9,11 @@ use std::sync::Arc;
 
 use cohabit_cdf::{Catalog, Layout, ObjectId};
 use cohabit_dialog::Asked;
+use cohabit_generate::Chance;
 use cohabit_language::{Clarification, Known, Oracle};
 use serde::{Deserialize, Serialize};
 
-use crate::{chance::Chance, meaning::Meaning};
+use crate::meaning::Meaning;
 
 /// How a simulated person speaks; shares are from 0 to 1.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
@@ -51,7 +52,7 @@ impl User {
     /// A person who speaks in that style; the same seed says the same.
     #[must_use]
     pub fn new(style: Style, seed: u64, catalog: Arc<Catalog>, layout: Arc<Layout>) -> Self {
-        Self { style, chance: Chance::new(seed), catalog, layout, last: None }
+        Self { style, chance: Chance::new(seed, 0), catalog, layout, last: None }
     }
 
     /// What they say for the robot to do it, who see the world as it is.
@@ -109,7 +110,7 @@ impl User {
                 Some(place) if self.chance.is(0.3) => format!("the {} one", ORDINALS[place.min(ORDINALS.len() - 1)]),
                 _ => oracle.reference(meant),
             },
-            Clarification::Location => oracle.location(meant, &self.viewpoints(meant, truth)),
+            Clarification::Location => oracle.location(meant, &self.layout),
             Clarification::Appearance => oracle.appearance(meant),
             Clarification::Direction => oracle.direction(meant),
             Clarification::Confirmation if asked.candidates.is_empty() || asked.candidates.contains(&meant) => {
@@ -130,13 +131,6 @@ impl User {
         };
         let named = wanted.iter().find(|id| asked.candidates.contains(id));
         named.or_else(|| wanted.iter().find(|id| is_like(id))).or_else(|| wanted.first()).copied()
-    }
-
-    /// The viewpoints of the room that it is in.
-    fn viewpoints(&self, id: ObjectId, truth: &Known) -> Vec<(u8, [f32; 2])> {
-        let room = truth.object(id).map(|object| object.room);
-        let here = self.layout.viewpoints.iter().filter(|viewpoint| Some(viewpoint.room) == room);
-        here.map(|viewpoint| (viewpoint.number, viewpoint.at_m)).collect()
     }
 }
 

@@ -1,77 +1,78 @@
 //! The session log of a task played in lock-step: the same entries as of a session that people played.
 
-use std::path::Path;
+use std::{collections::BTreeMap, path::Path};
 
 use cohabit_bus::{
     Envelope,
     message::{DialogMessage, DialogView, EventMessage},
     monotonic_nanos, wall_nanos,
 };
-use cohabit_cdf::BodyId;
 use cohabit_engine::{SessionPlan, report};
+use cohabit_generate::Observer;
 use cohabit_record::{
     DialogEntry, EventEntry, InputEntry, LogError, LogWriter, SessionEntry, SessionFacts, TickEntry, entry::hex,
 };
-use cohabit_world::{Event, Input, World};
+use cohabit_world::{Input, Outcome, Report, World};
 
-/// Writes a log.
-pub struct Trace {
-    log: LogWriter,
+/// What is kept of a session: its log, if one is wanted, and the turns that commands belong to.
+#[derive(Default)]
+pub struct Recording {
+    log: Option<LogWriter>,
+    /// The turn of each command that has one; it stays until it is taken out.
+    pub turns: BTreeMap<u64, u64>,
 }
 
-impl Trace {
-    /// Creates the log of `plan`, which must not exist.
-    pub fn create(path: &Path, facts: &SessionFacts, plan: &SessionPlan) -> Result<Self, LogError> {
+impl Recording {
+    /// Records all that follows in the log of `plan`, which must not exist.
+    pub fn begin(&mut self, path: &Path, facts: &SessionFacts, plan: &SessionPlan) -> Result<(), LogError> {
         let entry = SessionEntry::new(facts, &plan.message());
         let entry = entry.with(&plan.catalog, &plan.layout);
-        Ok(Self { log: LogWriter::create(path, &entry, wall_nanos())? })
-    }
-
-    fn tick(&mut self, world: &World, inputs: Vec<InputEntry>) -> Result<(), LogError> {
-        let digest = hex(&world.digest());
-        self.log.tick(&TickEntry { tick: world.tick(), digest, wall_nanos: wall_nanos(), inputs })
-    }
-
-    /// A tick was made of these inputs, and this happened in it.
-    pub fn step(&mut self, world: &World, inputs: Vec<InputEntry>, events: &[Event]) -> Result<(), LogError> {
-        let tick = world.tick();
-        let started: Vec<EventMessage> =
-            inputs.iter().map(|entry| report::started(&input(entry), entry.turn)).collect();
-        self.tick(world, inputs)?;
-        for message in &started {
-            self.event(tick, message)?;
-        }
-        for event in events {
-            self.event(tick, &report::event(world, event))?;
-        }
+        self.log = Some(LogWriter::create(path, &entry, wall_nanos())?);
         Ok(())
-    }
-
-    /// Something happened.
-    pub fn event(&mut self, tick: u64, message: &EventMessage) -> Result<(), LogError> {
-        match EventEntry::new(&Envelope { tick, ..Envelope::default() }, message) {
-            Some(entry) => self.log.event(&entry, wall_nanos()),
-            None => Ok(()),
-        }
     }
 
     /// Something was said or planned.
     pub fn dialog(&mut self, tick: u64, message: &DialogMessage) -> Result<(), LogError> {
+        let Some(log) = &mut self.log else { return Ok(()) };
         let envelope = Envelope { sent_nanos: monotonic_nanos(), ..Envelope::default() };
         let view = DialogView { header: &message.header, steps: &message.steps };
         match DialogEntry::new(tick, &envelope, view) {
-            Some(entry) => self.log.dialog(&entry, wall_nanos()),
+            Some(entry) => log.dialog(&entry, wall_nanos()),
             None => Ok(()),
         }
     }
 
     /// Ends the log.
-    pub fn finish(self) -> Result<(), LogError> {
-        self.log.finish()
+    pub fn finish(&mut self) -> Result<(), LogError> {
+        self.log.take().map_or(Ok(()), LogWriter::finish)
     }
 }
 
-/// An input as the world takes it.
-pub fn input(entry: &InputEntry) -> Input {
-    Input { command: entry.command, body: BodyId(entry.body), action: entry.action }
+impl Observer for Recording {
+    type Error = LogError;
+
+    fn note(&mut self, world: &World, inputs: &[Input], told: &Report) -> Result<(), LogError> {
+        let Self { log: Some(log), turns } = self else { return Ok(()) };
+        let turn = |command: u64| turns.get(&command).copied().unwrap_or(0);
+        let entry = |Input { command, body, action }: &Input| InputEntry {
+            command: *command,
+            turn: turn(*command),
+            body: body.0,
+            action: *action,
+        };
+        let (tick, digest) = (world.tick(), hex(&world.digest()));
+        let entries = inputs.iter().map(entry).collect();
+        log.tick(&TickEntry { tick, digest, wall_nanos: wall_nanos(), inputs: entries })?;
+        let started = inputs.iter().map(|input| report::started(input, turn(input.command)));
+        let happened = told.events.iter().map(|event| report::event(world, event));
+        let ended = told.outcomes.iter().map(|Outcome { command, body, status, detail }| {
+            EventMessage::outcome(*command, turn(*command), body.0, *status, detail)
+        });
+        for message in started.chain(happened).chain(ended) {
+            if let Some(entry) = EventEntry::new(&Envelope { tick, ..Envelope::default() }, &message) {
+                log.event(&entry, wall_nanos())?;
+            }
+        }
+        Ok(())
+    }
 }

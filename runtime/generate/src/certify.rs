@@ -4,14 +4,10 @@ use std::sync::Arc;
 
 use cohabit_cdf::{ActionKind, Catalog, GoToTarget, Layout, RoomId, mission::read_mission};
 use cohabit_planner::{Limits, Plan, Step, plan};
-use cohabit_world::{Action, BodyId, Input, World};
+use cohabit_world::{Action, Input, World};
 use serde::Serialize;
 
-/// The body that does it.
-pub(crate) const BODY: BodyId = BodyId(0);
-/// No command takes longer: two simulated minutes.
-const LONGEST_TICKS: u32 = 60 * 120;
-const TICKS_A_SECOND: f32 = 60.0;
+use crate::lock_step::{BODY, TICKS_PER_SECOND, carry_out};
 
 /// No limit of time: what is made must not depend on the machine.
 const LIMITS: Limits = Limits::of_states(400);
@@ -88,21 +84,18 @@ fn carry_out(world: &mut World, plan: &Plan) -> Result<(Vec<PlannedStep>, Vec<Ro
 
 /// Has the body do something; why it could not, in words.
 pub(crate) fn run(world: &mut World, action: Action) -> Result<(), String> {
-    let command = world.tick() + 1;
-    let mut inputs = vec![Input { command, body: BODY, action }];
-    for _ in 0..LONGEST_TICKS {
-        let report = world.step(&inputs);
-        inputs.clear();
-        if let Some(outcome) = report.outcomes.iter().find(|outcome| outcome.command == command) {
-            return if outcome.status.is_success() { Ok(()) } else { Err(outcome.detail.clone()) };
-        }
+    let command = Input { command: world.tick() + 1, body: BODY, action };
+    let Ok(outcome) = carry_out(world, &mut (), command);
+    match outcome {
+        Some(outcome) if outcome.status.is_success() => Ok(()),
+        Some(outcome) => Err(outcome.detail),
+        None => Err(format!("{action:?} never came to an end")),
     }
-    Err(format!("{action:?} never came to an end"))
 }
 
 /// Lets the world go on after a step, for as long as the machine runs that it set going.
 pub(crate) fn wait(world: &mut World, step: &Step) {
-    for _ in 0..step.wait_ticks(TICKS_A_SECOND).max(1) {
+    for _ in 0..step.wait_ticks(TICKS_PER_SECOND).max(1) {
         if world.finished().is_none() {
             world.step(&[]);
         }

@@ -6,6 +6,7 @@ use rand_chacha::{
 };
 
 /// A source of draws.
+#[derive(Clone, Debug)]
 pub struct Chance(ChaCha8Rng);
 
 impl Chance {

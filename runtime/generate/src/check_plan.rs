@@ -4,7 +4,10 @@ use cohabit_cdf::{ActionKind, ObjectId};
 use cohabit_planner::{pddl::PlanLine, steps_to};
 use cohabit_world::World;
 
-use crate::certify::{BODY, run, wait};
+use crate::{
+    certify::{run, wait},
+    lock_step::BODY,
+};
 
 /// What came of a plan that the world accepts.
 #[derive(Clone, Debug, Eq, PartialEq)]

@@ -96,6 +96,8 @@ const fn one() -> usize {
     1
 }
 
+/// The first types of the built-in specification are those of the paper.
+const TYPES_OF_THE_PAPER: usize = 12;
 /// Most robots of a mission.
 const MOST_ROBOTS: usize = 4;
 
@@ -170,6 +172,21 @@ impl Spec {
         Ok(spec)
     }
 
+    /// The twelve types of Alexa Arena's trajectory data set, as the project has them.
+    #[must_use]
+    pub fn of_the_paper(catalog: &Catalog) -> Self {
+        let mut spec = Self::builtin(catalog);
+        spec.types.truncate(TYPES_OF_THE_PAPER);
+        spec
+    }
+
+    /// The same with one type and one floor plan alone.
+    #[must_use]
+    pub fn only(&self, kind: &str, floor_plan: &str) -> Self {
+        let types = self.types.iter().filter(|one| one.name == kind).cloned().collect();
+        Self { types, pools: Pools { layouts: vec![floor_plan.to_owned()], ..self.pools.clone() } }
+    }
+
     /// The same with something in the way in that share of missions, from 0 to 1.
     #[must_use]
     pub fn with_blockers(mut self, share: f64) -> Self {
@@ -231,6 +248,9 @@ mod tests {
     fn the_builtin_specification_is_right() {
         let spec = Spec::builtin(&Catalog::builtin());
         assert_eq!(spec.types().count(), 24);
+        let paper = Spec::of_the_paper(&Catalog::builtin());
+        assert_eq!((paper.types().count(), paper.types().last()), (12, Some("toggleDevice")));
+        assert_eq!(paper.only("fill&deliver", "OfficeLayout1").types().collect::<Vec<_>>(), ["fill&deliver"]);
     }
 
     #[test]

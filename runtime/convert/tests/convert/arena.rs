@@ -33,6 +33,16 @@ fn trajectories_are_read_as_the_public_ones_are() {
             assert_eq!(pixels, seen["pixels"].as_u64().unwrap(), "{step}");
         }
     }
+    let questions: usize = steps.iter().map(|step| step["questions"].as_array().map_or(0, Vec::len)).sum();
+    assert!(questions > 0, "the expert has far to go here");
+    for annotation in trajectory["synthetic_annotations"].as_array().unwrap() {
+        for (instruction, step) in annotation["instructions"].as_array().unwrap().iter().zip(&steps) {
+            let told = instruction["question_answers"].as_array().into_iter().flatten();
+            let told: Vec<_> = told.map(|pair| (&pair["question"], &pair["answer"])).collect();
+            let asked = step["questions"].as_array().into_iter().flatten();
+            assert_eq!(told, asked.map(|pair| (&pair["question"], &pair["answer"])).collect::<Vec<_>>());
+        }
+    }
     let tasks = read_tasks(&path, None).unwrap();
     let ids: Vec<&str> = tasks.iter().map(|task| task.id.as_str()).collect();
     assert_eq!(

@@ -1,10 +1,10 @@
 //! How people name a thing that they see: by its noun, and what tells it from others of that name.
 
 use cohabit_cdf::{Catalog, Color, ObjectId, RoomId};
+use cohabit_generate::Chance;
 use cohabit_language::{Known, KnownObject};
 
 use super::Style;
-use crate::chance::Chance;
 
 /// Colours that are said by mistake.
 const COLORS: [&str; 5] = ["red", "green", "blue", "yellow", "white"];

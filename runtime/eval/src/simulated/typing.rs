@@ -1,6 +1,6 @@
 //! Slips of the fingers.
 
-use crate::chance::Chance;
+use cohabit_generate::Chance;
 
 /// Words of fewer letters are typed right.
 const SHORTEST: usize = 4;
@@ -33,7 +33,7 @@ mod tests {
 
     #[test]
     fn as_many_words_are_mistyped_as_asked_and_short_ones_never() {
-        let mut chance = Chance::new(3);
+        let mut chance = Chance::new(3, 0);
         let text = "please put the yellow mug on the table next to the window";
         assert_eq!(mistyped(text, 0.0, &mut chance), text);
         let all = mistyped(text, 1.0, &mut chance);
