@@ -3,6 +3,7 @@
 
 mod answers;
 mod datapackage;
+pub(crate) mod exercises;
 mod missions;
 pub(crate) mod probes;
 mod scores;
@@ -18,7 +19,7 @@ use cohabit_tables::{
 pub use datapackage::DataPackageError;
 
 use crate::{
-    design::{Choice, FactorKind, Study},
+    design::{Block, Choice, FactorKind, Study},
     folder::{Folder, FolderError, Note},
     plan::{Plan, Step, place_of, pseudonym},
     progress::{Doing, Done, Phase, Progress},
@@ -74,9 +75,14 @@ pub fn all(records: &Records, mut of_logs: Vec<Table>, with_practice: bool) -> V
         probes::table(study, progress, with_practice),
         notes(noted),
     ];
-    let mut tables = marked(own.into_iter().chain(of_logs).collect(), *is_synthetic);
+    let exercises = has_tutorial(study).then(|| exercises::table(study, progress));
+    let mut tables = marked(own.into_iter().chain(exercises).chain(of_logs).collect(), *is_synthetic);
     tables.push(codebook(&tables));
     tables
+}
+
+fn has_tutorial(study: &Study) -> bool {
+    study.blocks.iter().any(|block| matches!(block, Block::Mission { exercises, .. } if !exercises.is_empty()))
 }
 
 /// Writes [`all`] tables into a folder, with what they are for programs (`datapackage.json`); gives their paths.
