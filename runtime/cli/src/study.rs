@@ -1,5 +1,6 @@
 //! `cohabit study`: a study from plan to data.
 
+mod activities;
 mod data;
 mod plan;
 mod ports;

@@ -53,8 +53,7 @@ struct Exercises {
 }
 
 impl Activity {
-    const ALL: [Self; 7] =
-        [Self::Say, Self::Point, Self::Answer, Self::Stop, Self::Goal, Self::Move, Self::Look];
+    const ALL: [Self; 7] = [Self::Say, Self::Point, Self::Answer, Self::Stop, Self::Goal, Self::Move, Self::Look];
 
     /// Their names.
     pub const NAMES: [&'static str; 7] = [
