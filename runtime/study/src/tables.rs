@@ -13,7 +13,7 @@ use std::{borrow::Cow, collections::BTreeMap, path::PathBuf};
 use cohabit_tables::{
     Cell, CsvError, Field,
     Kind::{Flag, Text, Whole},
-    Table, codebook, write_csv,
+    ParquetFileError, Table, codebook, write_csv, write_parquet,
 };
 
 pub use datapackage::DataPackageError;
@@ -33,6 +33,9 @@ pub enum TablesError {
     /// A table cannot be written.
     #[error(transparent)]
     Csv(#[from] CsvError),
+    /// A table cannot be written as Parquet.
+    #[error(transparent)]
+    Parquet(#[from] ParquetFileError),
     /// What they are cannot be written beside them.
     #[error(transparent)]
     DataPackage(#[from] DataPackageError),
@@ -85,7 +88,7 @@ fn has_tutorial(study: &Study) -> bool {
     study.blocks.iter().any(|block| matches!(block, Block::Mission { exercises, .. } if !exercises.is_empty()))
 }
 
-/// Writes [`all`] tables into a folder, with what they are for programs (`datapackage.json`); gives their paths.
+/// Writes [`all`] tables into a folder, each as CSV and as Parquet, with what they are for programs (`datapackage.json`); gives their paths.
 ///
 /// # Errors
 /// [`TablesError`].
@@ -97,6 +100,9 @@ pub fn export(
 ) -> Result<Vec<PathBuf>, TablesError> {
     let tables = all(records, of_logs, with_practice);
     let mut paths = tables.iter().map(|table| write_csv(table, out)).collect::<Result<Vec<_>, _>>()?;
+    for table in &tables {
+        paths.push(write_parquet(table, out)?);
+    }
     paths.push(datapackage::write(records, &tables, out)?);
     Ok(paths)
 }

@@ -140,7 +140,8 @@ block = [
         let entries = fs::read_dir(out).expect("tables").map(|entry| entry.expect("a table").path());
         let read = |path: PathBuf| {
             let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            (name, fs::read_to_string(path).expect("a table"))
+            // Parquet files are no text, but are compared, too.
+            (name, String::from_utf8_lossy(&fs::read(path).expect("a table")).into_owned())
         };
         let mut tables: Vec<_> = entries.map(read).collect();
         tables.sort();
