@@ -307,7 +307,8 @@ impl Progress {
     /// Whether they have tried all of the present tutorial; no, if they are at none.
     #[must_use]
     pub fn has_tried_all(&self) -> bool {
-        self.mission().is_some_and(|(_, mission, _)| mission.is_tutorial() && self.tried.len() >= mission.exercises.len())
+        let has_all = |mission: &PlannedMission| mission.is_tutorial() && self.tried.len() >= mission.exercises.len();
+        self.mission().is_some_and(|(_, mission, _)| has_all(mission))
     }
 
     /// The present step.

@@ -83,7 +83,7 @@ mod tests {
     use super::*;
 
     fn table() -> Table {
-        let fields = [("who", Kind::Text, ""), ("turn", Kind::Whole, ""), ("s", Kind::Real, "s"), ("is", Kind::Flag, "")];
+        let fields = [("who", Kind::Text, ""), ("n", Kind::Whole, ""), ("s", Kind::Real, "s"), ("is", Kind::Flag, "")];
         let fields = fields.map(|(name, kind, unit)| Field::new(name, kind, unit, "m")).to_vec();
         let whole = vec![Cell::Text("=1".to_owned()), Cell::Whole(-3), Cell::Real(0.5), Cell::Flag(true)];
         Table { name: "turns", meaning: "a turn", fields, rows: vec![whole, vec![Cell::Nothing; 4]] }

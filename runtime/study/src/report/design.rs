@@ -144,7 +144,7 @@ pub(super) fn procedure(known: &Known<'_>) -> String {
                 (false, _) => "once".to_owned(),
                 (true, []) => "for practice, under no condition".to_owned(),
                 (true, all) => {
-                    format!("as a tutorial, under no condition, which waited until each of these was tried: {}", listed(all))
+                    format!("as a tutorial, under no condition, which waited until they had tried {}", listed(all))
                 }
             };
             let own = if own.is_empty() { String::new() } else { format!("; {}", settings(own)) };

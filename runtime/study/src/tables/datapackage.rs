@@ -93,7 +93,7 @@ mod tests {
         assert_eq!(package["title"], "T (synthetic: no data of people)");
         let resource = &package["resources"][0];
         assert_eq!((&resource["path"], &resource["name"]), (&json!("missions.csv"), &json!("missions")));
-        assert_eq!((resource["parquet"].as_str(), resource["format"].as_str()), (Some("missions.parquet"), Some("csv")));
+        assert_eq!((&resource["parquet"], &resource["format"]), (&json!("missions.parquet"), &json!("csv")));
         assert_eq!(package["resources"].as_array().map(Vec::len), Some(1), "Parquet is no tabular data resource");
         let types: Vec<&Value> = (0..3).map(|number| &resource["schema"]["fields"][number]["type"]).collect();
         assert_eq!(types, ["string", "number", "boolean"]);
