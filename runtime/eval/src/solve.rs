@@ -30,7 +30,7 @@ const LIMITS: Limits = Limits::of_states(4_000);
 pub fn solve(task: &Task, settings: &Settings, catalog: &Arc<Catalog>) -> Result<Played, LogError> {
     let began = Instant::now();
     let mut played = Played { id: task.id.clone(), ..Played::default() };
-    let Some((plan, world)) = played.set_up(task, settings.seed, catalog, began) else { return Ok(played) };
+    let Some((plan, world)) = played.set_up(task, settings, catalog, began) else { return Ok(played) };
     let mut trace = None;
     if let Some(path) = settings.log(&task.id) {
         trace = Some(Trace::create(&path, &facts(&task.id), &plan)?);

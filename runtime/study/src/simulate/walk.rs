@@ -40,6 +40,8 @@ pub struct SimulatedMission {
     pub seeds: [u64; 2],
     /// How they speak, with the time that this person takes for a line.
     pub speaking: Speaking,
+    /// Whether they speak aloud, as those do who agreed to be heard, rather than write.
+    pub is_heard: bool,
     /// Whether they give it up halfway.
     pub gives_up: bool,
     /// The longest that it is played, s: what would come after that is cut off.
@@ -200,6 +202,7 @@ impl<'a> Walk<'a> {
             settings: mission.settings.clone(),
             seeds: [study.seed, self.person.speaker(index)],
             speaking: Speaking { line_s: self.person.line_s(), ..(*speaking).clone() },
+            is_heard: self.progress.agrees_to_audio(),
             gives_up: self.person.gives_up(index),
             ends_by_s: mission.limits.limit_s,
             began_ms: self.at_ms,
