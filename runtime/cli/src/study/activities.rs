@@ -62,7 +62,7 @@ pub fn of_inputs(inputs: &[CommandMessage]) -> Vec<Activity> {
 
 #[cfg(test)]
 mod tests {
-    use DialogKind::{Plan, Pointed, Question, Reply, StepEnded, Utterance};
+    use cohabit_bus::message::DialogKind::{Plan, Pointed, Question, Reply, StepEnded, Utterance};
 
     use super::*;
 
