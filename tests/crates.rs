@@ -16,6 +16,7 @@ use serde_json::Value;
 /// Each package, its level, and the heavy dependencies that it alone may name.
 const LEVELS: &[(&str, u8, &[&str])] = &[
     ("cohabit-cdf", 0, &["serde_json", "schemars"]),
+    ("cohabit-parquet", 0, &["parquet"]),
     ("cohabit-world", 1, &["rapier3d", "polyanya"]),
     ("cohabit-bus", 1, &["iceoryx2"]),
     ("cohabit-planner", 1, &[]),
@@ -31,7 +32,7 @@ const LEVELS: &[(&str, u8, &[&str])] = &[
     ("cohabit-arena", 4, &[]),
     ("cohabit-convert", 4, &[]),
     ("cohabit-demonstrate", 4, &[]),
-    ("cohabit-rerun", 4, &["re_sdk", "re_sdk_types", "arrow", "parquet"]),
+    ("cohabit-rerun", 4, &["re_sdk", "re_sdk_types", "arrow"]),
     ("cohabit-dialog", 4, &["tokio", "axum", "hyper", "hyper-util", "rustls", "tokio-rustls", "rcgen"]),
     ("cohabit-eval", 5, &[]),
     ("cohabit-study", 5, &[]),
@@ -62,7 +63,7 @@ const SHARED: &[(&str, &[&str])] = &[
     ),
     ("anyhow", &["cohabit-rerun", "cohabit-tests"]),
     ("clap", &["cohabit-rerun"]),
-    ("parquet", &["cohabit-convert"]),
+    ("parquet", &["cohabit-rerun"]),
     ("axum", &["cohabit-study"]),
     ("tokio", &["cohabit-study"]),
 ];

@@ -67,7 +67,8 @@ fn said(entry: &DialogEntry, names: Names) -> Option<Told> {
         | DialogKind::PlanEnded
         | DialogKind::Spoken
         | DialogKind::Interpreted
-        | DialogKind::Decided => None,
+        | DialogKind::Decided
+        | DialogKind::Pointed => None,
     }
 }
 

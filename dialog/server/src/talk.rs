@@ -264,6 +264,11 @@ impl Talk {
         self.carry_out(&mut inner, body, Heard::AtPage(visitor), reactions)
     }
 
+    /// Somebody at a page pointed at a thing that is called so.
+    pub fn note_pointed(&self, name: &str, visitor: Visitor) -> Result<(), DialogError> {
+        self.lock().publish_pointed(name, visitor.number)
+    }
+
     /// What an interpreter takes for meant that the robot of a body was told in a turn, and how it came to that.
     pub fn note_interpretation(
         &self,

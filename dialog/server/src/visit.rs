@@ -390,6 +390,11 @@ impl Visit {
     ) -> Result<Vec<Message>, String> {
         let Some(id) = self.hub.view_of(camera)?.id_at(tick, place) else { return Ok(Vec::new()) };
         let thing = Thing::of_id(id);
+        let seen = self.live.talk.seen(thing, place).map_err(|error| error.to_string())?;
+        if let (Thing::Object(_) | Thing::Body(_), Some(seen)) = (thing, &seen) {
+            let name = seen["name"].as_str().unwrap_or_default();
+            self.live.talk.note_pointed(name, self.visitor()).map_err(|error| error.to_string())?;
+        }
         if let (Thing::Object(object), Some(_)) = (thing, &self.driver) {
             self.aim.picked = Some(object);
             return Ok(self.look(true).into_iter().collect());
@@ -399,7 +404,6 @@ impl Visit {
         {
             self.choose(object, received_nanos).await?;
         }
-        let seen = self.live.talk.seen(thing, place).map_err(|error| error.to_string())?;
         Ok(seen.iter().map(tell).collect())
     }
 

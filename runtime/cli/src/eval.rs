@@ -193,6 +193,7 @@ impl Eval {
             style: self.style(),
             caps: self.caps.map(|caps| caps.0),
             record: self.record.clone(),
+            ..Settings::default()
         }
     }
 

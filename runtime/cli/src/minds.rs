@@ -115,6 +115,11 @@ impl MindRequest {
         arguments.into_iter().map(OsString::from).collect()
     }
 
+    /// Whether it is the expert in this body.
+    pub fn is_expert(&self, body: u32) -> bool {
+        self.kind == MindKind::Expert && self.body == body
+    }
+
     /// The body of one that does what people ask of it.
     pub fn spoken_to(&self) -> Option<u32> {
         (self.kind == MindKind::Dialog).then_some(self.body)

@@ -1,5 +1,6 @@
 //! `cohabit study`: a study from plan to data.
 
+mod activities;
 mod data;
 mod plan;
 mod ports;
@@ -63,7 +64,7 @@ enum StudyCommand {
     Simulate(Simulate),
     /// Remove all data of a participant, and note that it was done
     Withdraw(Withdraw),
-    /// Write all data as tables with a codebook
+    /// Write all data as tables (CSV and Parquet) with a codebook
     Export(Export),
     /// Write the methods sheet: what a paper has to say of how the study was run
     Report(Report),

@@ -114,6 +114,16 @@ fn seconds(text: &str) -> Result<f32, String> {
 }
 
 impl VoiceOptions {
+    /// The share of words that are heard wrong on purpose.
+    pub const fn errors(self) -> f32 {
+        self.voice_errors
+    }
+
+    /// How much later than they were heard words are understood that were said aloud, s.
+    pub fn later_s(self) -> f64 {
+        f64::from(self.edit_heard) + f64::from(self.voice_delay)
+    }
+
     /// The same as arguments of another process.
     pub fn arguments(self) -> Vec<String> {
         let named = [

@@ -5,7 +5,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use parquet::errors::ParquetError;
+use cohabit_parquet::ParquetError;
 
 /// Why a data set cannot be converted.
 #[derive(Debug, thiserror::Error)]

@@ -8,7 +8,6 @@ mod features;
 mod frames;
 mod rolling;
 mod stats;
-mod table;
 mod tasks;
 mod vectors;
 

@@ -80,8 +80,16 @@ impl LockStep {
     /// # Errors
     /// [`LogError`].
     pub fn say(&mut self, text: &str) -> Result<u64, LogError> {
+        self.say_called(text, text)
+    }
+
+    /// The same, of which `text` is said to the robot: all but its name.
+    ///
+    /// # Errors
+    /// [`LogError`].
+    pub fn say_called(&mut self, said: &str, text: &str) -> Result<u64, LogError> {
         self.look();
-        let (turn, reactions) = self.conversation.hear(text, &self.knowledge);
+        let (turn, reactions) = self.conversation.hear_called(said, text, 0, &self.knowledge);
         self.carry_on(reactions)?;
         Ok(turn)
     }

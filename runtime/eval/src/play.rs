@@ -3,11 +3,12 @@
 use std::{collections::BTreeMap, path::PathBuf, sync::Arc, time::Instant};
 
 use cohabit_bus::message::DialogKind;
-use cohabit_cdf::{BodyId, Catalog};
+use cohabit_cdf::{BodyId, BodyRequest, Catalog};
 use cohabit_dialog::{Conversation, Knowledge, TurnEnd};
 use cohabit_engine::SessionPlan;
-use cohabit_language::{Asking, Known, Knows, Language};
+use cohabit_language::{Asking, Known, Knows, Language, Roster};
 use cohabit_record::{LogError, SessionFacts};
+use cohabit_speech::errors::Injector;
 use cohabit_world::{Outcome, World};
 use serde::{Deserialize, Serialize};
 
@@ -25,6 +26,9 @@ const PAUSE_TICKS: u64 = 150;
 /// The longest that one line may take: a search through all of an office, and back.
 const PATIENCE_TICKS: u64 = 60 * 900;
 
+/// People call a robot that has a name by it in one of so many things that they say.
+const CALLED_EVERY: usize = 3;
+
 /// The most times that people speak for the sake of one thing they want.
 const MOST_ROUNDS: u32 = 6;
 
@@ -39,6 +43,12 @@ pub struct Settings {
     pub asking: Asking,
     /// How those speak who say what they want in their own words; in the expert's words, if nothing is said.
     pub style: Option<Style>,
+    /// What people call the robot now and then, if it has a name.
+    pub name: Option<String>,
+    /// The share of words that the robot hears wrong, of people who speak aloud, from 0 to 1; what people write is read as it is.
+    pub mishears: f32,
+    /// Bodies beside those of the mission, which stand where they begin.
+    pub bodies: Vec<BodyRequest>,
     /// When to give up.
     pub caps: Option<Caps>,
     /// The folder for session logs, if they are wanted.
@@ -144,7 +154,7 @@ pub struct Said {
 pub fn play(task: &Task, settings: &Settings, language: &Language) -> Result<Played, LogError> {
     let (began, catalog) = (Instant::now(), language.catalog());
     let mut played = Played { id: task.id.clone(), ..Played::default() };
-    let Some((plan, world)) = played.set_up(task, settings.seed, catalog, began) else { return Ok(played) };
+    let Some((plan, world)) = played.set_up(task, settings, catalog, began) else { return Ok(played) };
     let knowledge = Knowledge::new(settings.knows, Arc::clone(catalog), world.layout(), BodyId(0))
         .with_mission(&plan.mission.goal_text);
     let conversation = Conversation::new(language.clone().asking(settings.asking), 0);
@@ -157,7 +167,8 @@ pub fn play(task: &Task, settings: &Settings, language: &Language) -> Result<Pla
     let user = settings.style.map(|style| {
         User::new(style, person_of(&task.id, settings.seed), Arc::clone(catalog), Arc::clone(&plan.layout))
     });
-    let mut player = Player { session, played, user, caps: settings.caps, counts: false };
+    let voice = Voice::new(settings, person_of(&task.id, settings.seed));
+    let mut player = Player { session, played, user, voice, caps: settings.caps, counts: false };
     player.run(task)?;
     player.session.finish()?;
     let mut played = player.judged();
@@ -179,11 +190,44 @@ fn file_name(id: &str) -> String {
 /// What the robot said, in order.
 type Replies = Vec<(DialogKind, String)>;
 
+/// How what people say reaches the robot.
+struct Voice {
+    /// What they call the robot, and who is called so.
+    called: Option<(String, Roster)>,
+    /// What makes errors in it.
+    injector: Option<Injector>,
+    /// How often they have spoken.
+    lines: usize,
+}
+
+impl Voice {
+    fn new(settings: &Settings, seed: u64) -> Self {
+        let called = settings.name.clone().map(|name| (name.clone(), Roster::new([name.as_str()])));
+        let injector = (settings.mishears > 0.0).then(|| Injector::new(settings.mishears, seed));
+        Self { called, injector, lines: 0 }
+    }
+
+    /// A line as the robot hears it, and what of it is said to the robot: all but its name.
+    fn heard(&mut self, text: &str) -> (String, String) {
+        let is_called = self.lines.is_multiple_of(CALLED_EVERY);
+        self.lines += 1;
+        let name = self.called.as_ref().filter(|_| is_called).map(|(name, _)| name);
+        let said = name.map_or_else(|| text.to_owned(), |name| format!("{name}, {text}"));
+        let heard = self.injector.as_mut().map_or_else(|| said.clone(), |injector| injector.garble(&said));
+        // What is not heard at all is said once more, and plainly.
+        let heard = if heard.trim().is_empty() { said } else { heard };
+        let plain = self.called.as_ref().map_or_else(|| heard.clone(), |(_, roster)| roster.addressed(&heard).text);
+        (heard, plain)
+    }
+}
+
 struct Player {
     session: LockStep,
     played: Played,
     /// Who says what is wanted in their own words.
     user: Option<User>,
+    /// How what is said reaches the robot.
+    voice: Voice,
     caps: Option<Caps>,
     /// Whether the preparation is over.
     counts: bool,
@@ -227,12 +271,13 @@ impl Player {
 
     /// Says something; gives how the turn ended, if it did, and what the robot said.
     fn exchange(&mut self, text: &str) -> Result<(Option<TurnEnd>, Replies), LogError> {
-        let turn = self.session.say(text)?;
-        let (end, said) =
+        let (said, plain) = self.voice.heard(text);
+        let turn = self.session.say_called(&said, &plain)?;
+        let (end, told) =
             self.until(|noted| noted.turns.iter().find(|(ended, _)| *ended == turn).map(|(_, end)| *end))?;
-        let replies = said.iter().map(|(_, text)| text.clone()).collect();
-        self.played.transcript.push(Said { line: text.to_owned(), replies });
-        Ok((end, said))
+        let replies = told.iter().map(|(_, text)| text.clone()).collect();
+        self.played.transcript.push(Said { line: said, replies });
+        Ok((end, told))
     }
 
     /// Says something and answers the questions that come back; gives why it did not do what it says.
@@ -345,11 +390,12 @@ impl Played {
     pub(crate) fn set_up(
         &mut self,
         task: &Task,
-        seed: u64,
+        settings: &Settings,
         catalog: &Arc<Catalog>,
         began: Instant,
     ) -> Option<(SessionPlan, World)> {
-        let built = SessionPlan::new(&task.id, &task.cdf, Arc::clone(catalog), seed)
+        let built = SessionPlan::new(&task.id, &task.cdf, Arc::clone(catalog), settings.seed)
+            .map(|plan| plan.with_bodies(settings.bodies.clone()))
             .and_then(|plan| plan.build().map(|world| (plan, world)));
         let seconds = began.elapsed().as_secs_f64();
         match built {
@@ -418,4 +464,26 @@ fn best_answer(question: &str, answers: &[&Answer]) -> Option<usize> {
     let asked = words(question);
     let likeness = |answer: &Answer| words(&answer.question).iter().filter(|word| asked.contains(word)).count();
     (0..answers.len()).max_by_key(|index| (likeness(answers[*index]), std::cmp::Reverse(*index)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn people_call_a_robot_by_its_name_now_and_then_and_are_misheard_as_often_as_they_are_to() {
+        let check = |settings: &Settings, expected: [(&str, &str); 2]| {
+            let mut voice = Voice::new(settings, 1);
+            for (said, plain) in expected {
+                assert_eq!(voice.heard("take the mug"), (said.to_owned(), plain.to_owned()));
+            }
+        };
+        check(&Settings::default(), [("take the mug", "take the mug"); 2]);
+        let named = Settings { name: Some("Rosie".to_owned()), ..Settings::default() };
+        check(&named, [("Rosie, take the mug", "take the mug"), ("take the mug", "take the mug")]);
+        let mishears = Settings { mishears: 1.0, ..Settings::default() };
+        let heard = |settings: &Settings| Voice::new(settings, 1).heard("take the yellow mug in the kitchen").0;
+        assert_ne!(heard(&mishears), "take the yellow mug in the kitchen");
+        assert_eq!(heard(&mishears), heard(&mishears));
+    }
 }

@@ -21,7 +21,7 @@ use crate::{
 pub fn solve(task: &Task, settings: &Settings, catalog: &Arc<Catalog>) -> Result<Played, LogError> {
     let began = Instant::now();
     let mut played = Played { id: task.id.clone(), ..Played::default() };
-    let Some((plan, world)) = played.set_up(task, settings.seed, catalog, began) else { return Ok(played) };
+    let Some((plan, world)) = played.set_up(task, settings, catalog, began) else { return Ok(played) };
     let mut recording = Recording::default();
     if let Some(path) = settings.log(&task.id) {
         recording.begin(&path, &facts(&task.id), &plan)?;

@@ -67,10 +67,11 @@ fn plan(study: &Study, between: &[Condition], seat: &Seat) -> Plan {
     for (number, block) in study.blocks.iter().enumerate() {
         match block {
             Block::Questionnaires(names) => steps.extend(names.iter().map(|name| asked(name, None))),
-            Block::Mission { mission, is_practice, limits, .. } => steps.push(Step::Mission(PlannedMission {
+            Block::Mission { mission, is_practice, exercises, limits, .. } => steps.push(Step::Mission(PlannedMission {
                 block: number,
                 mission: mission.clone(),
                 is_practice: *is_practice,
+                exercises: exercises.clone(),
                 within: Vec::new(),
                 settings: study.settings_of(block, condition, &Condition::default()),
                 limits: *limits,
@@ -168,6 +169,7 @@ fn add_missions(
             block,
             mission: (*mission).to_owned(),
             is_practice: false,
+            exercises: Vec::new(),
             within: condition.choices.clone(),
             settings: settings(condition),
             limits: asked_for.limits,

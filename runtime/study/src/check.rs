@@ -3,6 +3,7 @@
 mod blocks;
 mod minimisation;
 mod probes;
+mod tutorial;
 mod whole;
 mod wizard;
 

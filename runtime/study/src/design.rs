@@ -9,6 +9,7 @@ use crate::{
     instrument::Instrument,
     probe::Probe,
     settings::{Settings, has_wizard, merged, response_delay_ms},
+    tutorial::Exercise,
 };
 
 /// A study.
@@ -185,6 +186,8 @@ pub enum Block {
         mission: String,
         /// Whether it is for practice: under no condition at all, and no data of the study's question.
         is_practice: bool,
+        /// Of a tutorial, which is for practice: what is to be tried.
+        exercises: Vec<Exercise>,
         /// Its own settings.
         settings: Settings,
         /// How long.

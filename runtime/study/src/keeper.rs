@@ -18,6 +18,7 @@ use crate::{
     session::{Look, Player, Wanted, session_name},
     settings::session_arguments,
     tables,
+    tutorial::{self, Activity},
 };
 
 /// How often everything is looked at.
@@ -145,11 +146,22 @@ impl Registry {
             return Some(News::Over(Ending::TimeUp));
         }
         let (unsaved_s, happened) = (live.unsaved_s, live.playing.happened());
+        let tried = live.playing.tried();
         if unsaved_s >= SAVE_EVERY_S {
             self.save_played(place);
         }
         self.ask_probe(place, &happened);
+        self.tick_exercises(place, &tried);
         None
+    }
+
+    /// Notes which exercises of a tutorial a participant has tried.
+    fn tick_exercises(&mut self, place: u32, activities: &[Activity]) {
+        let Some(participant) = self.participants.get(&place) else { return };
+        let Some((_, mission, _)) = participant.progress.mission() else { return };
+        for exercise in tutorial::ticked(&mission.exercises, participant.progress.tried(), activities) {
+            self.note(place, &Event::Tried { exercise });
+        }
     }
 
     /// Asks a participant what is due now, if something is. Nothing is asked during practice.
@@ -208,6 +220,7 @@ impl Registry {
             log: self.folder.log_path(&name),
             before: self.before(place, step, attempt),
             seed: self.study.seed,
+            is_tutorial: mission.is_tutorial(),
             name,
         };
         match player.start(&wanted) {

@@ -17,6 +17,7 @@
 //!   and keeps none.
 //! - Score and clock are shown to participants only where a setting says so; figures for developers never are.
 //! - A practice is played under no condition, and exported tables leave it out.
+//! - A tutorial goes on until each of its exercises was tried, or its time is up; what was tried, its session tells.
 //! - A probe is asked once in a mission, while it goes on, and no other one before it is answered.
 //! - What is filled in of a questionnaire is kept as it is typed, and is no answer before it is sent.
 //! - A mission runs as a session of its own, whose page the participant's page shows within it. How sessions are played
@@ -65,6 +66,7 @@ mod shape;
 mod simulate;
 pub mod square;
 mod tables;
+mod tutorial;
 mod web;
 mod written;
 
@@ -89,4 +91,5 @@ pub use simulate::{
     SimulatedPlayer, SimulatedSession, Speaking, simulate,
 };
 pub use tables::{DataPackageError, TablesError, all as all_tables, export, is_practice};
+pub use tutorial::{Activity, Exercise, Tried};
 pub use web::{Doors, StudyService, address};

@@ -65,6 +65,7 @@ impl Registry {
             (Step::Mission(mission), Doing::Ready) => json!({
                 "page": "ready",
                 "html": self.text(mission.block),
+                "is_tutorial": mission.is_tutorial(),
                 "limit_s": mission.limits.limit_s,
                 "skip_after_s": mission.limits.skip_after_s,
             }),
@@ -190,11 +191,18 @@ fn played(participant: &Participant, mission: &PlannedMission) -> Value {
     let progress = &participant.progress;
     let is_over = live.is_some_and(|live| live.over.is_some());
     let rest = |seconds: Option<f64>| seconds.map(|seconds| (seconds - unsaved_s).max(0.0));
+    let skip_in_s = rest(progress.skip_in_s());
+    let is_tried = |number: usize| progress.tried().iter().any(|one| one.exercise == number);
+    let exercises = mission.exercises.iter().enumerate();
+    let exercises: Vec<Value> =
+        exercises.map(|(number, one)| json!({ "text": one.text, "is_tried": is_tried(number) })).collect();
     json!({
         "page": "mission",
         "session": { "port": page.port, "token": page.token, "has_microphone": progress.agrees_to_audio() },
         "is_over": is_over,
         "left_s": rest(progress.left_s().filter(|_| is_on(&mission.settings, CLOCK))),
-        "skip_in_s": rest(progress.skip_in_s()),
+        "skip_in_s": skip_in_s,
+        "exercises": exercises,
+        "may_go_on": progress.has_tried_all() || (mission.is_tutorial() && skip_in_s == Some(0.0)),
     })
 }

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::{
     design::{Choice, Limits},
     settings::Settings,
+    tutorial::Exercise,
 };
 
 /// What one participant does. It is written down when they enrol and never drawn again; where their condition depends on what
@@ -62,6 +63,9 @@ pub struct PlannedMission {
     /// Whether it is for practice, which tables leave out.
     #[serde(default)]
     pub is_practice: bool,
+    /// Of a tutorial: what is to be tried.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub exercises: Vec<Exercise>,
     /// The level of each within-participant factor; none outside the block of missions.
     pub within: Vec<Choice>,
     /// All settings of its session.
@@ -81,6 +85,14 @@ pub fn pseudonym(place: u32) -> String {
 pub fn place_of(pseudonym: &str) -> Option<u32> {
     let place = pseudonym.strip_prefix('P')?.parse().ok().filter(|place| *place > 0)?;
     (self::pseudonym(place) == pseudonym).then_some(place)
+}
+
+impl PlannedMission {
+    /// Whether it goes on until all of its exercises were tried.
+    #[must_use]
+    pub const fn is_tutorial(&self) -> bool {
+        !self.exercises.is_empty()
+    }
 }
 
 impl Plan {

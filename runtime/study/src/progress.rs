@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use crate::{
     plan::{Plan, PlannedMission, Step},
     probe::Probed,
+    tutorial::Tried,
 };
 
 /// Where a participant is.
@@ -32,6 +33,8 @@ pub struct Progress {
     drafts: usize,
     /// What they were asked during the present mission.
     probed: Vec<Probed>,
+    /// What they have tried in the present tutorial.
+    tried: Vec<Tried>,
 }
 
 /// A questionnaire's draft is kept so often: more changes than a person makes, and a bound for a page that runs wild.
@@ -107,7 +110,7 @@ pub enum Event {
         /// What they do: what they have done, and all the rest.
         plan: Box<Plan>,
     },
-    /// They want to begin a mission, or go on after a break.
+    /// They want to begin a mission, or go on after a break or a tutorial.
     GoesOn,
     /// Their mission's session is started.
     Started,
@@ -127,6 +130,11 @@ pub enum Event {
         probe: usize,
         /// The answer.
         answer: Option<Given>,
+    },
+    /// They have tried something in a tutorial.
+    Tried {
+        /// Which of its exercises, from 0.
+        exercise: usize,
     },
     /// Their mission's session ended before its time.
     Interrupted {
@@ -151,13 +159,13 @@ pub enum Event {
 #[derive(Clone, Copy, Debug, Deserialize, Eq, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Ending {
-    /// All of its goals are met.
+    /// All of its goals are met; of a tutorial: all was tried.
     Complete,
     /// Its goals cannot be met any more.
     Failed,
     /// Its time is up.
     TimeUp,
-    /// The participant skipped it.
+    /// The participant skipped it; of a tutorial: went on before all was tried.
     Skipped,
     /// The experimenter ended it.
     Stopped,
@@ -212,6 +220,8 @@ pub struct Done {
     pub answers: Vec<Option<Given>>,
     /// Of a mission: what was asked meanwhile.
     pub probed: Vec<Probed>,
+    /// Of a tutorial: what was tried, in order.
+    pub tried: Vec<Tried>,
 }
 
 /// Why an event cannot happen now, for the person who caused it.
@@ -236,6 +246,7 @@ impl Progress {
             draft: Vec::new(),
             drafts: 0,
             probed: Vec::new(),
+            tried: Vec::new(),
         }
     }
 
@@ -285,6 +296,19 @@ impl Progress {
     #[must_use]
     pub fn probed(&self) -> &[Probed] {
         &self.probed
+    }
+
+    /// What they have tried in the present tutorial, in order.
+    #[must_use]
+    pub fn tried(&self) -> &[Tried] {
+        &self.tried
+    }
+
+    /// Whether they have tried all of the present tutorial; no, if they are at none.
+    #[must_use]
+    pub fn has_tried_all(&self) -> bool {
+        let has_all = |mission: &PlannedMission| mission.is_tutorial() && self.tried.len() >= mission.exercises.len();
+        self.mission().is_some_and(|(_, mission, _)| has_all(mission))
     }
 
     /// The present step.
@@ -398,6 +422,16 @@ impl Progress {
                 let open = self.probed.iter_mut().find(is_open).ok_or(OUT_OF_TURN)?;
                 open.answer = Some((at_ms, answer.clone()));
             }
+            (Some(Step::Mission(mission)), Doing::Playing, Event::Tried { exercise }) => {
+                let is_new = !self.tried.iter().any(|one| one.exercise == *exercise);
+                if *exercise >= mission.exercises.len() || !is_new {
+                    return Err(OUT_OF_TURN);
+                }
+                self.tried.push(Tried { exercise: *exercise, at_ms });
+            }
+            (Some(Step::Mission(mission)), Doing::Playing, Event::GoesOn) if mission.is_tutorial() => {
+                return self.leave_tutorial(index, at_ms);
+            }
             (Some(Step::Mission(_)), Doing::Playing, Event::Interrupted { .. }) => {
                 self.phase = Phase::At(index, Doing::Queued { again: true });
                 return Ok(vec![Effect::EndSession]);
@@ -414,6 +448,15 @@ impl Progress {
         Ok(if self.phase == Phase::Assigning { vec![Effect::Assign] } else { Vec::new() })
     }
 
+    fn leave_tutorial(&mut self, index: usize, at_ms: u64) -> Result<Vec<Effect>, Refused> {
+        let ending = if self.has_tried_all() { Ending::Complete } else { Ending::Skipped };
+        if ending == Ending::Skipped && self.skip_in_s() != Some(0.0) {
+            return Err(Refused("There is something left to try."));
+        }
+        self.complete(index, Some(ending), Vec::new(), at_ms);
+        Ok(vec![Effect::EndSession])
+    }
+
     fn over(&mut self, index: usize, ending: Ending, at_ms: u64) -> Result<Vec<Effect>, Refused> {
         if ending == Ending::Skipped && self.skip_in_s() != Some(0.0) {
             return Err(Refused("This mission cannot be skipped yet."));
@@ -428,8 +471,9 @@ impl Progress {
 
     fn complete(&mut self, step: usize, ending: Option<Ending>, answers: Vec<Option<Given>>, at_ms: u64) {
         let (played_s, attempts) = (self.played_s, self.attempts);
-        let probed = std::mem::take(&mut self.probed);
-        let done = Done { step, began_ms: self.since_ms, ended_ms: at_ms, ending, played_s, attempts, answers, probed };
+        let (probed, tried) = (std::mem::take(&mut self.probed), std::mem::take(&mut self.tried));
+        let (began_ms, ended_ms) = (self.since_ms, at_ms);
+        let done = Done { step, began_ms, ended_ms, ending, played_s, attempts, answers, probed, tried };
         self.done.push(done);
         self.begin(step + 1, at_ms);
     }

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::{plan::pseudonym, probe::Happening, progress::Ending};
+use crate::{plan::pseudonym, probe::Happening, progress::Ending, tutorial::Activity};
 
 /// A session that is to be played.
 #[derive(Clone, Debug, Eq, PartialEq)]
@@ -21,6 +21,8 @@ pub struct Wanted {
     pub before: Vec<PathBuf>,
     /// The seed of its world; that of the study, so that a mission is the same for all.
     pub seed: u64,
+    /// Whether it is a tutorial: it tells what was tried, and goes on when its goals are met.
+    pub is_tutorial: bool,
 }
 
 /// Where the page of a session is: at the host that the study's own pages are at.
@@ -63,6 +65,9 @@ pub trait Playing: Send {
 
     /// What has happened in it since it was last looked at.
     fn happened(&mut self) -> Vec<Happening>;
+
+    /// What the participant has done in it since it was last looked at; of a tutorial alone.
+    fn tried(&mut self) -> Vec<Activity>;
 
     /// Asks it to end; it is [`Look::Gone`] soon.
     fn end(&mut self);

@@ -32,6 +32,12 @@ pub const OF_PAGES: [&str; 2] = [SCORE, CLOCK];
 pub const WIZARD: &str = "wizard";
 /// The setting by which answers are delayed, ms, and how it may be written, too.
 pub const RESPONSE_DELAY: [&str; 2] = ["response-delay-ms", "response_delay_ms"];
+/// The setting by which there are further bodies.
+pub const BODY: &str = "body";
+/// The setting that says whom people may drive.
+pub const DRIVE: &str = "drive";
+/// The setting that says when the robot asks.
+pub const ASK: &str = "ask";
 /// The flag of `cohabit play` that keeps what people say.
 pub const RECORD_AUDIO: &str = "record-audio";
 
@@ -51,6 +57,28 @@ pub fn is_on(settings: &Settings, name: &str) -> bool {
 #[must_use]
 pub fn has_wizard(settings: &Settings) -> bool {
     settings.get(WIZARD) == Some(&Setting::Value("yes".to_owned()))
+}
+
+/// Whether participants have a body to walk with: an avatar, or any, where people may drive all.
+#[must_use]
+pub fn has_avatar(settings: &Settings) -> bool {
+    let is_person = |body: &String| body.split('@').next() == Some("person");
+    let has_person = match settings.get(BODY) {
+        Some(Setting::Value(body)) => is_person(body),
+        Some(Setting::Values(bodies)) => bodies.iter().any(is_person),
+        _ => false,
+    };
+    match settings.get(DRIVE) {
+        Some(Setting::Value(whom)) if whom == "all" => true,
+        Some(Setting::Value(whom)) if whom == "none" => false,
+        _ => has_person,
+    }
+}
+
+/// Whether the robot asks anything at all.
+#[must_use]
+pub fn may_ask(settings: &Settings) -> bool {
+    settings.get(ASK) != Some(&Setting::Value("never".to_owned()))
 }
 
 /// How long after they were received words are answered at the earliest, ms.
@@ -118,6 +146,25 @@ mod tests {
         assert_eq!(arguments(&settings), ["--ask=never", "--body=person", "--body=robot@Lab1", "--tls"]);
         let over = Settings::from([("ask".to_owned(), value("always"))]);
         assert_eq!(arguments(&merged(&[&settings, &over]))[0], "--ask=always");
+    }
+
+    #[test]
+    fn who_can_walk_and_be_asked_follows_from_settings() {
+        let settings = |all: &[(&str, Setting)]| -> Settings {
+            all.iter().map(|(name, setting)| ((*name).to_owned(), setting.clone())).collect()
+        };
+        let bodies = Setting::Values(vec!["robot".to_owned(), "person@Lab1".to_owned()]);
+        for (all, expected) in [
+            (settings(&[]), false),
+            (settings(&[(BODY, value("person"))]), true),
+            (settings(&[(BODY, value("robot"))]), false),
+            (settings(&[(BODY, bodies.clone())]), true),
+            (settings(&[(BODY, bodies), (DRIVE, value("none"))]), false),
+            (settings(&[(DRIVE, value("all"))]), true),
+        ] {
+            assert_eq!(has_avatar(&all), expected, "{all:?}");
+        }
+        assert!(may_ask(&settings(&[])) && !may_ask(&settings(&[(ASK, value("never"))])));
     }
 
     #[test]

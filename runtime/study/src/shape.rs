@@ -1,6 +1,6 @@
 //! The keys of `study.toml`, as a table: what it is checked by, and what its JSON Schema is made of.
 
-use crate::probe::Moment;
+use crate::{probe::Moment, tutorial::Activity};
 
 /// A key of a table.
 #[derive(Clone, Copy, Debug)]
@@ -194,11 +194,12 @@ const LEVEL: &[Key] = &[
 const BLOCK: &[Key] = &[
     required(
         "kind",
-        Kind::OneOf(&["questionnaire", "practice", "mission", "missions", "break", "debriefing"]),
-        "what is done; a practice is a mission under no condition, and tables leave it out",
+        Kind::OneOf(&["questionnaire", "practice", "tutorial", "mission", "missions", "break", "debriefing"]),
+        "what is done; a practice is a mission under no condition, and tables leave it out; a tutorial is a practice that goes on \
+         until each of its exercises was tried",
     ),
     optional("questionnaires", Kind::Texts, "of a questionnaire block: names of questionnaires that ship, or files"),
-    optional("mission", Kind::Text, "of a mission or a practice: the mission"),
+    optional("mission", Kind::Text, "of a mission, a practice or a tutorial: the mission"),
     optional("settings", Kind::Settings, "of missions: settings of this block, as those of all sessions"),
     optional(
         "order",
@@ -210,7 +211,17 @@ const BLOCK: &[Key] = &[
         Kind::Minutes,
         "of missions: the most that one is played; of a break: the longest that it lasts",
     ),
-    optional("skip_after_minutes", Kind::Minutes, "of missions: when participants may skip one"),
+    optional(
+        "skip_after_minutes",
+        Kind::Minutes,
+        "of missions: when participants may skip one; of a tutorial: when they may go on whatever they have tried",
+    ),
+    optional(
+        "exercise",
+        Kind::Tables(EXERCISE),
+        "of a tutorial: what is to be tried, shown as a list beside the mission; if absent, to say something, to point, to stop \
+         the robot, and to meet a goal",
+    ),
     optional("after_mission", Kind::Texts, "of a missions block: questionnaires after each mission"),
     optional(
         "after_condition",
@@ -220,10 +231,21 @@ const BLOCK: &[Key] = &[
     optional("file", Kind::Text, "of missions, a break or a debriefing: a Markdown file with what participants read"),
 ];
 
+const EXERCISE: &[Key] = &[
+    required(
+        "what",
+        Kind::OneOf(&Activity::NAMES),
+        "what counts as tried: a message that the robot took, a click on a thing, an answer to a question of the robot's, a stop, \
+         a goal that was met; move and look take an avatar",
+    ),
+    required("text", Kind::Text, "what participants read"),
+];
+
 /// The keys of each kind of block besides `kind`: those that it must have, and those that it may have.
-pub const KEYS_OF_BLOCKS: [(&str, &[&str], &[&str]); 6] = [
+pub const KEYS_OF_BLOCKS: [(&str, &[&str], &[&str]); 7] = [
     ("questionnaire", &["questionnaires"], &[]),
     ("practice", &["mission"], &["settings", "minutes", "skip_after_minutes", "file"]),
+    ("tutorial", &["mission"], &["settings", "minutes", "skip_after_minutes", "exercise", "file"]),
     ("mission", &["mission"], &["settings", "minutes", "skip_after_minutes", "file"]),
     (
         "missions",

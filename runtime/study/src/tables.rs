@@ -3,6 +3,7 @@
 
 mod answers;
 mod datapackage;
+pub(crate) mod exercises;
 mod missions;
 pub(crate) mod probes;
 mod scores;
@@ -12,13 +13,13 @@ use std::{borrow::Cow, collections::BTreeMap, path::PathBuf};
 use cohabit_tables::{
     Cell, CsvError, Field,
     Kind::{Flag, Text, Whole},
-    Table, codebook, write_csv,
+    ParquetFileError, Table, codebook, write_csv, write_parquet,
 };
 
 pub use datapackage::DataPackageError;
 
 use crate::{
-    design::{Choice, FactorKind, Study},
+    design::{Block, Choice, FactorKind, Study},
     folder::{Folder, FolderError, Note},
     plan::{Plan, Step, place_of, pseudonym},
     progress::{Doing, Done, Phase, Progress},
@@ -32,6 +33,9 @@ pub enum TablesError {
     /// A table cannot be written.
     #[error(transparent)]
     Csv(#[from] CsvError),
+    /// A table cannot be written as Parquet.
+    #[error(transparent)]
+    Parquet(#[from] ParquetFileError),
     /// What they are cannot be written beside them.
     #[error(transparent)]
     DataPackage(#[from] DataPackageError),
@@ -74,12 +78,17 @@ pub fn all(records: &Records, mut of_logs: Vec<Table>, with_practice: bool) -> V
         probes::table(study, progress, with_practice),
         notes(noted),
     ];
-    let mut tables = marked(own.into_iter().chain(of_logs).collect(), *is_synthetic);
+    let exercises = has_tutorial(study).then(|| exercises::table(study, progress));
+    let mut tables = marked(own.into_iter().chain(exercises).chain(of_logs).collect(), *is_synthetic);
     tables.push(codebook(&tables));
     tables
 }
 
-/// Writes [`all`] tables into a folder, with what they are for programs (`datapackage.json`); gives their paths.
+fn has_tutorial(study: &Study) -> bool {
+    study.blocks.iter().any(|block| matches!(block, Block::Mission { exercises, .. } if !exercises.is_empty()))
+}
+
+/// Writes [`all`] tables into a folder, each as CSV and as Parquet, with what they are for programs (`datapackage.json`); gives their paths.
 ///
 /// # Errors
 /// [`TablesError`].
@@ -91,6 +100,9 @@ pub fn export(
 ) -> Result<Vec<PathBuf>, TablesError> {
     let tables = all(records, of_logs, with_practice);
     let mut paths = tables.iter().map(|table| write_csv(table, out)).collect::<Result<Vec<_>, _>>()?;
+    for table in &tables {
+        paths.push(write_parquet(table, out)?);
+    }
     paths.push(datapackage::write(records, &tables, out)?);
     Ok(paths)
 }

@@ -288,8 +288,9 @@ pub(crate) fn participants_event(registry: &mut Registry, place: u32, sent: &Sen
                 .answered(place, std::slice::from_ref(answer))
                 .map_err(|problem| StudyFault::NotNow(problem.to_string()))?;
         }
-        Event::GoesOn | Event::Withdrew => {}
-        Event::Over { ending: Ending::Skipped } => registry.save_played(place),
+        Event::Withdrew => {}
+        // A tutorial may be left once it was played for so long.
+        Event::GoesOn | Event::Over { ending: Ending::Skipped } => registry.save_played(place),
         // All else happens without their doing.
         _ => return Ok(()),
     }

@@ -125,6 +125,7 @@ pub(crate) enum BlockKind {
     Questionnaire,
     Mission,
     Practice,
+    Tutorial,
     Missions,
     Break,
     Debriefing,
@@ -140,9 +141,17 @@ pub(crate) struct WrittenBlock {
     pub order: Option<MissionOrder>,
     pub minutes: Option<Spanned<f64>>,
     pub skip_after_minutes: Option<Spanned<f64>>,
+    pub exercise: Option<Vec<Spanned<WrittenExercise>>>,
     pub after_mission: Option<Words>,
     pub after_condition: Option<Words>,
     pub file: Option<Spanned<String>>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(default)]
+pub(crate) struct WrittenExercise {
+    pub what: Option<Spanned<String>>,
+    pub text: Option<Spanned<String>>,
 }
 
 impl BlockKind {
@@ -151,6 +160,7 @@ impl BlockKind {
             Self::Questionnaire => "questionnaire",
             Self::Mission => "mission",
             Self::Practice => "practice",
+            Self::Tutorial => "tutorial",
             Self::Missions => "missions",
             Self::Break => "break",
             Self::Debriefing => "debriefing",
@@ -168,6 +178,7 @@ impl WrittenBlock {
             ("order", self.order.is_some()),
             ("minutes", self.minutes.is_some()),
             ("skip_after_minutes", self.skip_after_minutes.is_some()),
+            ("exercise", self.exercise.is_some()),
             ("after_mission", self.after_mission.is_some()),
             ("after_condition", self.after_condition.is_some()),
             ("file", self.file.is_some()),

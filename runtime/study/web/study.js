@@ -81,6 +81,35 @@ function going(text, event) {
   return element("div", "actions", made, problem);
 }
 
+/** What is to be tried in a tutorial, ticked as it is; and the button that goes on from there. */
+function exerciseList(exercises) {
+  const count = element("p", "soft", "");
+  count.role = "status";
+  const states = exercises.map(() => element("span", "unseen", ""));
+  const items = exercises.map(({ text }, at) => element("li", "exercise", element("span", "", text), states[at]));
+  const go = going("Go on", () => "goes_on");
+  const goOn = go.querySelector("button");
+  const shown = element("section", "exercises", element("h2", "", "Try this"), element("ol", "", ...items), count, go);
+  shown.setAttribute("aria-label", "Things to try");
+  let told = "";
+  return {
+    shown,
+    update(now, mayGoOn, isOver) {
+      shown.hidden = isOver;
+      const key = JSON.stringify([now, mayGoOn]);
+      if (key === told) return;
+      told = key;
+      now.forEach(({ is_tried: isTried }, at) => {
+        items[at].classList.toggle("tried", isTried);
+        states[at].textContent = isTried ? " (done)" : "";
+      });
+      const done = now.filter(({ is_tried: isTried }) => isTried).length;
+      count.textContent = done === now.length ? "You have tried all of it. Go on when you like." : `${done} of ${now.length} done`;
+      goOn.disabled = !mayGoOn;
+    },
+  };
+}
+
 const PAGES = {
   information: ({ html }) => [heading("About this study"), sheet(html), going("I have read this", () => "read")],
 
@@ -123,11 +152,13 @@ const PAGES = {
     return [heading(questionnaire.title), about, questionnaireForm(questionnaire, draft, answer, keep)];
   },
 
-  ready({ html, limit_s, skip_after_s }) {
+  ready({ html, is_tutorial: isTutorial, limit_s, skip_after_s }) {
     const lines = [];
+    if (isTutorial) lines.push("There is a list of things to try. You go on when you have tried them all.");
     if (limit_s !== null) lines.push(`It lasts ${whileOf(limit_s)} at most.`);
-    if (skip_after_s !== null) lines.push(`After ${whileOf(skip_after_s)} you may skip it, if you like.`);
-    return [heading("Your next mission"), sheet(html), element("p", "", lines.join(" ")), going("Begin", () => "goes_on")];
+    const may = isTutorial ? "go on without having tried all of it" : "skip it";
+    if (skip_after_s !== null) lines.push(`After ${whileOf(skip_after_s)} you may ${may}, if you like.`);
+    return [heading(isTutorial ? "Learn how it works" : "Your next mission"), sheet(html), element("p", "", lines.join(" ")), going("Begin", () => "goes_on")];
   },
 
   waiting() {
@@ -146,7 +177,7 @@ const PAGES = {
     return [heading("One moment, please"), text];
   },
 
-  mission({ session }) {
+  mission({ session, exercises }) {
     const frame = element("iframe", "session");
     frame.title = "The robot, and what you tell it";
     frame.allow = session.has_microphone ? "microphone; autoplay" : "autoplay";
@@ -160,16 +191,19 @@ const PAGES = {
     const probes = element("div", "probes");
     probes.role = "status";
     let asked = null;
-    update = ({ is_over: isOver, skip_in_s: skipInS, probe }) => {
+    const list = exercises.length > 0 ? exerciseList(exercises) : null;
+    update = ({ is_over: isOver, skip_in_s: skipInS, probe, exercises: now, may_go_on: mayGoOn }) => {
       over.hidden = !isOver;
-      offer.hidden = isOver || skipInS !== 0;
+      offer.hidden = list !== null || isOver || skipInS !== 0;
+      list?.update(now, mayGoOn, isOver);
       const number = isOver ? null : (probe?.number ?? null);
       if (number === asked) return;
       asked = number;
       const answer = (given) => send({ probe_answered: { probe: number, answer: given } });
       probes.replaceChildren(...(number === null ? [] : [probeForm(probe.item, answer)]));
     };
-    return [element("h1", "unseen", "Mission"), over, offer, frame, probes];
+    const beside = list ? element("div", "beside", frame, list.shown) : frame;
+    return [element("h1", "unseen", list ? "Tutorial" : "Mission"), over, offer, beside, probes];
   },
 
   break({ html }) {

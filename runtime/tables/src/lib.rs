@@ -8,7 +8,7 @@
 //! several, the fit is a linear mixed model with a random intercept for each ([`MixedModel`]). [`plots`] draws outcomes by
 //! condition, and [`power`] tells how many participants a planned study needs.
 //!
-//! Nothing here simulates sessions: all is in the logs. This crate never knows rerun, Arrow or files other than CSV.
+//! Nothing here simulates sessions: all is in the logs. This crate never knows rerun, Arrow or files other than CSV and Parquet.
 
 mod actions;
 mod answers;
@@ -22,6 +22,7 @@ mod fit;
 mod goals;
 mod interval;
 pub mod mixed;
+mod parquet;
 mod played;
 mod plot;
 pub mod power;
@@ -30,7 +31,10 @@ mod summary;
 mod table;
 mod turns;
 
-pub use self::csv::{CsvError, plain_text, write_csv};
+pub use self::{
+    csv::{CsvError, plain_text, write_csv},
+    parquet::{ParquetFileError, write_parquet},
+};
 pub use chance::Chance;
 pub use codebook::codebook;
 pub use fit::{ConditionTest, Fit, Observation, RandomIntercept, Term};

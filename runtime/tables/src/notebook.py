@@ -17,7 +17,7 @@ FORMULA = r"^'(?='*[=+\-@\t\r\n])"
 def table(name):
     """One of: sessions, turns, actions, goals, questionnaires, codebook."""
     parquet = FOLDER / f"{name}.parquet"
-    if parquet.exists():
+    if not (FOLDER / f"{name}.csv").exists():
         return pd.read_parquet(parquet)
     fields = pd.read_csv(FOLDER / "codebook.csv", dtype="string")
     fields = fields[(fields["table"] == name) & fields["type"].isin(TYPES)]

@@ -198,6 +198,10 @@ fn turns(dialog: &[DialogEntry]) -> (Vec<Turn>, BTreeMap<u64, u64>) {
             turn_of.insert(number, number);
             continue;
         }
+        // It is part of no turn.
+        if entry.kind == "Pointed" {
+            continue;
+        }
         let newest = turns.last().map(|turn| turn.number);
         let Some(number) = turn_of.get(&entry.turn).copied().or(newest) else { continue };
         turn_of.entry(entry.turn).or_insert(number);

@@ -73,7 +73,7 @@ impl Conversation {
     }
 
     /// The same, of which `text` is said to this robot: all but its name. It was received then, ns of the monotonic clock.
-    pub(crate) fn hear_called(
+    pub fn hear_called(
         &mut self,
         said: &str,
         text: &str,

@@ -141,6 +141,12 @@ impl Inner {
         self.publish(&message)
     }
 
+    pub(super) fn publish_pointed(&mut self, name: &str, visitor: u32) -> Result<(), DialogError> {
+        let mut message = DialogMessage::new(DialogKind::Pointed, self.spoken_to.0, 0, name);
+        message.header.person = visitor;
+        self.publish(&message)
+    }
+
     pub(super) fn publish(&mut self, message: &DialogMessage) -> Result<(), DialogError> {
         self.dialog.send(0, message.bytes(), &mut |bytes| message.write(bytes))?;
         Ok(())

@@ -33,11 +33,13 @@ pub enum DialogKind {
     Interpreted = 10,
     /// What a wizard decided about a turn, as JSON: for logs.
     Decided = 11,
+    /// Somebody at a page pointed at a thing in the picture: `person`, and what it is called: for logs.
+    Pointed = 12,
 }
 
 impl DialogKind {
     /// All kinds.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::Utterance,
         Self::Reply,
         Self::Question,
@@ -49,6 +51,7 @@ impl DialogKind {
         Self::Spoken,
         Self::Interpreted,
         Self::Decided,
+        Self::Pointed,
     ];
 }
 

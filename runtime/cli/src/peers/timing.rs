@@ -40,6 +40,11 @@ pub fn speed(text: &str) -> Result<f32, String> {
 }
 
 impl Timing {
+    /// How many times as fast as real time the world begins.
+    pub const fn speed(self) -> f32 {
+        self.speed
+    }
+
     /// The same choice as arguments of another process.
     pub fn arguments(self) -> Vec<OsString> {
         let mut arguments = Vec::new();

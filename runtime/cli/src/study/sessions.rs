@@ -15,15 +15,18 @@ use std::{
 use anyhow::Context as _;
 use cohabit_bus::{
     BusError, Inbox, Session, Shm, Topic,
-    message::{self, DialogKind, DialogView, EventKind, EventMessage},
+    message::{self, DialogKind, DialogView, EventKind, EventMessage, TickView},
 };
 use cohabit_cdf::Status;
 use cohabit_dialog::HostName;
 use cohabit_record::Log;
-use cohabit_study::{Ending, Happening, Look, PageAddress, Player, Playing, Wanted, address};
+use cohabit_study::{Activity, Ending, Happening, Look, PageAddress, Player, Playing, Wanted, address};
 use rustix::process::{Pid, Signal, kill_process};
 
-use super::ports::{Ports, Taken};
+use super::{
+    activities::{Activities, of_inputs, stops},
+    ports::{Ports, Taken},
+};
 use crate::{terminal::shown, tls::Tls};
 
 /// This very program, also when its file was replaced since it was started.
@@ -129,7 +132,8 @@ impl Player for Sessions {
                 drop(sender.send(line));
             });
         }
-        let over = point.and_then(|point| point.over);
+        // A tutorial goes on when its goals are met, and so it does from there.
+        let over = point.and_then(|point| point.over).filter(|over| !wanted.is_tutorial || *over != Ending::Complete);
         let last_line = String::new();
         Ok(Box::new(PlayedSession {
             child,
@@ -141,6 +145,7 @@ impl Player for Sessions {
             wizard: None,
             heard: None,
             happened: Vec::new(),
+            activities: wanted.is_tutorial.then(Activities::default),
             over,
             ends_by: None,
         }))
@@ -190,13 +195,23 @@ struct PlayedSession {
     /// What lets a wizard in, once it was told.
     wizard: Option<String>,
     /// What its bus tells of the world, and of what is said.
-    heard: Option<[Inbox; 2]>,
+    heard: Option<Heard>,
     /// What has happened and was not asked for yet.
     happened: Vec<Happening>,
+    /// What the participant does, if it is a tutorial.
+    activities: Option<Activities>,
     /// How its mission had ended before it began, if it goes on from such a point.
     over: Option<Ending>,
     /// When it is killed, if it was asked to end.
     ends_by: Option<Instant>,
+}
+
+/// What a session's bus tells.
+struct Heard {
+    events: Inbox,
+    dialog: Inbox,
+    /// What bodies are commanded, which is asked for in tutorials alone.
+    ticks: Option<Inbox>,
 }
 
 impl PlayedSession {
@@ -220,18 +235,34 @@ impl PlayedSession {
         if self.heard.is_none() {
             let Ok(session) = Session::new(&self.session) else { return Ok(None) };
             let bus = Shm::join(&session)?;
-            self.heard = Some([Inbox::new(&bus, Topic::Events)?, Inbox::new(&bus, Topic::Dialog)?]);
+            let ticks = self.activities.as_ref().map(|_| Inbox::new(&bus, Topic::Ticks)).transpose()?;
+            let (events, dialog) = (Inbox::new(&bus, Topic::Events)?, Inbox::new(&bus, Topic::Dialog)?);
+            self.heard = Some(Heard { events, dialog, ticks });
         }
-        let Some([events, dialog]) = &mut self.heard else { return Ok(None) };
-        let kind = |view: DialogView<'_>| view.header.kind();
-        while let Some((_, kind)) = dialog.next(|sample| DialogView::new(sample.payload()).map(kind))? {
+        let Some(Heard { events, dialog, ticks }) = &mut self.heard else { return Ok(None) };
+        if let (Some(activities), Some(ticks)) = (&mut self.activities, ticks) {
+            let commanded = |view: TickView<'_>| of_inputs(view.inputs);
+            while let Some((_, told)) = ticks.next(|sample| TickView::new(sample.payload()).map(commanded))? {
+                told.into_iter().for_each(|activity| activities.note(activity));
+            }
+        }
+        let told = |view: DialogView<'_>| (view.header.kind(), stops(view.steps));
+        while let Some((_, (kind, stops))) = dialog.next(|sample| DialogView::new(sample.payload()).map(told))? {
+            if let (Some(activities), Some(kind)) = (&mut self.activities, kind) {
+                activities.hear(kind, stops);
+            }
             self.happened.extend((kind == Some(DialogKind::Question)).then_some(Happening::QuestionAsked));
         }
         while let Some((_, event)) = events.next(|sample| message::read::<EventMessage>(sample.payload()))? {
             match event.kind() {
-                Some(EventKind::MissionComplete) => return Ok(Some(Ending::Complete)),
+                Some(EventKind::MissionComplete) if self.activities.is_none() => return Ok(Some(Ending::Complete)),
                 Some(EventKind::MissionFailed) => return Ok(Some(Ending::Failed)),
-                Some(EventKind::GoalMet) => self.happened.push(Happening::GoalMet),
+                Some(EventKind::GoalMet) => {
+                    self.happened.push(Happening::GoalMet);
+                    if let Some(activities) = &mut self.activities {
+                        activities.note(Activity::Goal);
+                    }
+                }
                 Some(EventKind::Outcome) if event.turn > 0 && event.status().is_some_and(Status::is_failure) => {
                     self.happened.push(Happening::ActionFailed);
                 }
@@ -290,6 +321,10 @@ impl Playing for PlayedSession {
 
     fn happened(&mut self) -> Vec<Happening> {
         std::mem::take(&mut self.happened)
+    }
+
+    fn tried(&mut self) -> Vec<Activity> {
+        self.activities.as_mut().map(Activities::take).unwrap_or_default()
     }
 
     fn end(&mut self) {

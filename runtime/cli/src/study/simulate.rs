@@ -48,8 +48,7 @@ impl Simulate {
             program: env!("CARGO_PKG_VERSION").to_owned(),
         };
         let has_wizard = study.has_wizard();
-        let levels = study.factors.iter().flat_map(|factor| factor.levels.iter().map(|level| &level.settings));
-        let passed_over = unheeded(levels);
+        let passed_over = unheeded(&study.all_settings());
         let mut files = study.files.clone();
         files.insert("study.toml".to_owned(), file.text.clone());
         let folder = Folder::begin_synthetic(&self.folder, &files, &run).map_err(refused)?;
@@ -79,7 +78,8 @@ impl Simulate {
         );
         if !passed_over.is_empty() {
             println!(
-                "note: conditions differ in {}, which a dry run without pages, voices and pictures passes over",
+                "note: the dry run could not act out these settings of the study, which take a page, a sound, a picture or \
+                 another mind: {}",
                 shown(passed_over.join(", "))
             );
         }
@@ -140,7 +140,8 @@ block = [
         let entries = fs::read_dir(out).expect("tables").map(|entry| entry.expect("a table").path());
         let read = |path: PathBuf| {
             let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            (name, fs::read_to_string(path).expect("a table"))
+            // Parquet files are no text, but are compared, too.
+            (name, String::from_utf8_lossy(&fs::read(path).expect("a table")).into_owned())
         };
         let mut tables: Vec<_> = entries.map(read).collect();
         tables.sort();

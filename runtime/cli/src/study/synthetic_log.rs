@@ -18,10 +18,18 @@ pub struct SyntheticLog {
     log: Log,
     /// At which ticks something was said.
     said: Vec<u64>,
-    /// How long the person takes for that, s.
-    line_s: f64,
+    pace: Pace,
     /// What would come after that is cut off, s.
     ends_by_s: f64,
+}
+
+/// How time goes by in it.
+#[derive(Clone, Copy, Debug)]
+pub struct Pace {
+    /// From one line to its answer, beside what the world takes: how long the person takes for it, and how long it is held back, s.
+    pub line_s: f64,
+    /// How many times as fast as real time the world goes.
+    pub speed: f64,
 }
 
 /// What the study's log notes of it.
@@ -37,16 +45,16 @@ pub struct Facts {
 }
 
 impl SyntheticLog {
-    /// That of a session in which somebody takes so long for a line.
-    pub fn new(log: Log, line_s: f64, ends_by_s: Option<f64>) -> Self {
+    /// That of a session in which time goes by so.
+    pub fn new(log: Log, pace: Pace, ends_by_s: Option<f64>) -> Self {
         let said = log.dialog.iter().filter(|entry| entry.kind == "Utterance").map(|entry| entry.tick).collect();
-        Self { log, said, line_s, ends_by_s: ends_by_s.unwrap_or(f64::INFINITY) }
+        Self { log, said, pace, ends_by_s: ends_by_s.unwrap_or(f64::INFINITY) }
     }
 
     /// When something is, s, to the millisecond: what the world took, and what the person took for all that was said so far.
     fn time_s(&self, tick: u64) -> f64 {
         let lines = self.said.partition_point(|at| *at <= tick);
-        let time_s = tick as f64 * TICK_S + lines as f64 * self.line_s;
+        let time_s = tick as f64 * TICK_S / self.pace.speed + lines as f64 * self.pace.line_s;
         (time_s * 1000.0).round() / 1000.0
     }
 

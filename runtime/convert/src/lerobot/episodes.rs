@@ -1,9 +1,8 @@
 //! `meta/episodes`: a row for each episode.
 
-use super::{
-    rolling::{Place, Rolling},
-    table::{Column, Values},
-};
+use cohabit_parquet::{Column, Values};
+
+use super::rolling::{Place, Rolling};
 use crate::{error::ConvertError, output::Output};
 
 /// Rows that are written together.
@@ -61,7 +60,7 @@ impl<'a> Episodes<'a> {
     }
 }
 
-fn columns(rows: &[Row], place: Place) -> Vec<Column> {
+fn columns(rows: &[Row], place: Place) -> Vec<Column<'static>> {
     let longs =
         |name, value: &dyn Fn(&Row) -> i64| Column { name, values: Values::Long(rows.iter().map(value).collect()) };
     let texts = |name, value: &dyn Fn(&Row) -> &String| Column {

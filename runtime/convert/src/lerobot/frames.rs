@@ -2,12 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use super::{
-    features,
-    stats::Stats,
-    table::{Column, Picture, Values},
-    vectors,
-};
+use cohabit_parquet::{Column, Picture, Values};
+
+use super::{features, stats::Stats, vectors};
 use crate::{
     error::ConvertError,
     native::{Dataset, Episode, Line},
@@ -43,7 +40,7 @@ impl Frames<'_> {
         lines: &[Line],
         position: Position,
         stats: &mut Stats,
-    ) -> Result<Vec<Column>, ConvertError> {
+    ) -> Result<Vec<Column<'static>>, ConvertError> {
         let mut columns = vec![
             Column { name: "observation.state", values: Values::Vector(self.states(episode, lines)?) },
             Column { name: "action", values: Values::Vector(self.actions(episode, lines)?) },
@@ -95,7 +92,7 @@ impl Frames<'_> {
     }
 
     /// What lines say besides, and the lines themselves.
-    fn steps(&self, lines: &[Line]) -> [Column; 7] {
+    fn steps(&self, lines: &[Line]) -> [Column<'static>; 7] {
         let class = |line: &Line| {
             let action = line.step.action.as_ref();
             action.and_then(|action| self.classes.get(&action.class)).copied().unwrap_or(-1)
@@ -126,7 +123,7 @@ impl Frames<'_> {
 }
 
 /// The columns that every LeRobot data set has.
-fn indices(frames: usize, position: Position) -> [Column; 5] {
+fn indices(frames: usize, position: Position) -> [Column<'static>; 5] {
     let count = frames as i64;
     let times = (0..frames).map(|frame| frame as f32 / FRAMES_PER_SECOND as f32);
     [

@@ -1,6 +1,7 @@
 //! A table in many files of bounded size, as LeRobot names them: `chunk-000/file-000.parquet`.
 
-use super::table::{Column, Table};
+use cohabit_parquet::{Column, TableWriter};
+
 use crate::{
     error::{ConvertError, in_table},
     output::Output,
@@ -33,7 +34,7 @@ pub(crate) struct Rolling<'a> {
     /// Bytes in a file, unless a single group of rows is larger.
     limit: usize,
     place: Place,
-    open: Option<Table>,
+    open: Option<TableWriter>,
     files: usize,
 }
 
@@ -52,14 +53,14 @@ impl<'a> Rolling<'a> {
     }
 
     /// Adds rows to the file that `room_for` has named.
-    pub fn write(&mut self, columns: &[Column]) -> Result<(), ConvertError> {
+    pub fn write(&mut self, columns: &[Column<'_>]) -> Result<(), ConvertError> {
         let Place { chunk, file } = self.place;
         let path = self.output.path(&format!("{}/chunk-{chunk:03}/file-{file:03}.parquet", self.folder))?;
         let table = match &mut self.open {
             Some(table) => table,
             None => {
                 self.files += 1;
-                let table = Table::create(&path, columns, Vec::new()).map_err(in_table(&path))?;
+                let table = TableWriter::create(&path, columns, &[]).map_err(in_table(&path))?;
                 self.open.insert(table)
             }
         };

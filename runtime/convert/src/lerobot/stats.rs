@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use cohabit_parquet::{Column, Values};
 use serde_json::{Value, json};
 
-use super::table::{Column, Values};
 use crate::picture::Pixels;
 
 /// The sums of one number of a feature.
@@ -44,14 +44,21 @@ pub(crate) struct Stats(BTreeMap<String, Feature>);
 
 impl Stats {
     /// Takes in the numbers of some rows; text has none, and pictures are taken in one by one.
-    pub fn add_columns(&mut self, columns: &[Column]) {
+    pub fn add_columns(&mut self, columns: &[Column<'_>]) {
         for column in columns {
             match &column.values {
                 Values::Bool(values) => self.add_numbers(column.name, values.iter().map(|value| f64::from(*value))),
                 Values::Long(values) => self.add_numbers(column.name, values.iter().map(|value| *value as f64)),
                 Values::Float(values) => self.add_numbers(column.name, values.iter().map(|value| f64::from(*value))),
                 Values::Vector(values) => values.iter().for_each(|value| self.add_vector(column.name, value)),
-                Values::Text(_) | Values::Texts(_) | Values::Picture(_) => {}
+                // Frames have all of their values.
+                Values::Text(_)
+                | Values::Texts(_)
+                | Values::Picture(_)
+                | Values::MaybeBool(_)
+                | Values::MaybeLong(_)
+                | Values::MaybeDouble(_)
+                | Values::MaybeText(_) => {}
             }
         }
     }

@@ -2,10 +2,9 @@
 
 use std::collections::HashMap;
 
-use parquet::file::metadata::KeyValue;
+use cohabit_parquet::{Column, TableWriter, Values};
 use serde_json::json;
 
-use super::table::{Column, Table, Values};
 use crate::{
     error::{ConvertError, in_table},
     native::Line,
@@ -46,8 +45,8 @@ impl Tasks {
             Column { name: "task_index", values: Values::Long((0..self.texts.len() as i64).collect()) },
             Column { name: ROW_NAMES, values: Values::Text(self.texts) },
         ];
-        let notes = vec![KeyValue::new("pandas".to_owned(), pandas())];
-        let mut table = Table::create(&path, &columns, notes).map_err(in_table(&path))?;
+        let names = pandas();
+        let mut table = TableWriter::create(&path, &columns, &[("pandas", names.as_str())]).map_err(in_table(&path))?;
         table.write(&columns).and_then(|()| table.close()).map_err(in_table(&path))
     }
 }

@@ -180,6 +180,7 @@ fn a_practice_is_under_no_condition_and_a_blocks_settings_give_way_to_levels_alo
     let one = |is_practice: bool| Block::Mission {
         mission: "m0".to_owned(),
         is_practice,
+        exercises: Vec::new(),
         settings: own("common", "own"),
         limits: Limits::default(),
         text: String::new(),

@@ -80,13 +80,17 @@ impl Checking<'_, '_> {
             BlockKind::Questionnaire | BlockKind::Debriefing => {
                 Block::Questionnaires(self.questionnaires(block.questionnaires.as_ref(), &at.key("questionnaires")))
             }
-            BlockKind::Mission | BlockKind::Practice => {
+            BlockKind::Mission | BlockKind::Practice | BlockKind::Tutorial => {
                 if let Some(mission) = &block.mission {
                     self.mission(mission, &at.key("mission"));
                 }
                 let mission = block.mission.as_ref().map(|name| name.get_ref().clone()).unwrap_or_default();
-                let is_practice = block.kind == BlockKind::Practice;
-                Block::Mission { mission, is_practice, settings, limits, text }
+                let exercises = match block.kind {
+                    BlockKind::Tutorial => self.exercises(block, at),
+                    _ => Vec::new(),
+                };
+                let is_practice = block.kind != BlockKind::Mission;
+                Block::Mission { mission, is_practice, exercises, settings, limits, text }
             }
             BlockKind::Missions => Block::Missions(Missions {
                 order: block.order.unwrap_or_default(),

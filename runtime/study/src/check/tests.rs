@@ -151,6 +151,39 @@ fn boxes_practice_and_what_pages_show_are_read() {
 }
 
 #[test]
+fn a_tutorial_has_its_own_exercises_or_the_usual_ones() {
+    let with = |keys: &str| {
+        let block = format!("[[block]]\nkind = \"tutorial\"\nmission = \"soda\"\n{keys}\n[[block]]");
+        check("tutorial", &STUDY.replacen("[[block]]", &block, 1))
+    };
+    let exercises = |keys: &str| {
+        let study = with(keys).unwrap();
+        let Block::Mission { is_practice: true, exercises, .. } = &study.blocks[0] else { panic!("a tutorial") };
+        exercises.iter().map(|one| one.what.name()).collect::<Vec<_>>()
+    };
+    assert_eq!(exercises(""), ["say", "point", "stop", "goal"]);
+    let own = "[[block.exercise]]\nwhat = \"stop\"\ntext = \"Stop it.\"\n";
+    assert_eq!(exercises(own), ["stop"]);
+    for (keys, part) in [
+        ("exercise = []".to_owned(), "`exercise` cannot be this empty list; write tables"),
+        (own.replace("\"stop\"", "\"jump\""), "write one of \"say\", \"point\", \"answer\""),
+        (own.replace("text = \"Stop it.\"\n", ""), "`text` is missing"),
+        (format!("{own}{own}"), "`stop` is there twice"),
+        (own.replace("\"stop\"", "\"move\""), "`move` is to be tried, and participants have no body; add `body"),
+        (
+            format!("settings = {{ ask = \"never\" }}\n{}", own.replace("\"stop\"", "\"answer\"")),
+            "`answer` is to be tried, and the robot asks nothing",
+        ),
+    ] {
+        let said = with(&keys).unwrap_err();
+        assert!(said.contains(part), "no `{part}` in {said}");
+    }
+    let in_a_break = "kind = \"break\"\nexercise = [{ what = \"say\", text = \"Say.\" }]";
+    let elsewhere = check("exercise", &STUDY.replacen("kind = \"break\"", in_a_break, 1));
+    assert!(elsewhere.unwrap_err().contains("a block of kind \"break\" has no `exercise`"));
+}
+
+#[test]
 fn what_is_wrong_is_said_with_its_place_and_a_remedy() {
     let wrong = [
         ("title = \"A study\"", "title = 3", ":2:9: /title: `title` cannot be this integer; write a text"),

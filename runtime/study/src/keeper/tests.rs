@@ -32,7 +32,7 @@ block = [{ kind = "missions", minutes = 5, settings = { record-audio = true } },
 
 /// Sessions that are what a test says.
 #[derive(Clone, Default)]
-struct Stage(Arc<Mutex<Vec<(Wanted, Look)>>>, Arc<Mutex<Vec<Happening>>>);
+struct Stage(Arc<Mutex<Vec<(Wanted, Look)>>>, Arc<Mutex<Vec<Happening>>>, Arc<Mutex<Vec<Activity>>>);
 
 struct Act {
     stage: Stage,
@@ -74,6 +74,10 @@ impl Playing for Act {
 
     fn happened(&mut self) -> Vec<Happening> {
         std::mem::take(&mut *self.stage.1.lock().unwrap())
+    }
+
+    fn tried(&mut self) -> Vec<Activity> {
+        std::mem::take(&mut *self.stage.2.lock().unwrap())
     }
 
     fn end(&mut self) {
@@ -323,6 +327,45 @@ fn a_probe_comes_when_it_is_due_and_its_answer_is_in_the_tables() {
     let all = [registry.participants[&place].progress.clone()];
     let rows = tables::probes::table(&registry.study, &all, false).rows;
     assert!(rows.len() == 1 && rows[0].contains(&cohabit_tables::Cell::Whole(4)), "{rows:?}");
+}
+
+#[test]
+fn a_tutorial_waits_until_all_was_tried_and_goes_on_where_it_was() {
+    let mut case = Case::new("tutorial");
+    let exercise = |what: &str| format!("{{ what = '{what}', text = 'Try to {what}.' }}");
+    let exercises = ["say", "stop"].map(exercise).join(", ");
+    let block = format!("block = [{{ kind = 'tutorial', mission = 'three', exercise = [{exercises}] }}, ");
+    let _ = case.scratch.write("study.toml", &STUDY.replacen("block = [", &block, 1));
+    case.start_again();
+    let place = case.enrol();
+    let page = |case: &mut Case| case.registry().page(Who::Participant(place));
+    case.apply(place, &Event::GoesOn);
+    case.look_after(1);
+    case.look_after(1);
+    assert!(case.stage.0.lock().unwrap()[0].0.is_tutorial);
+    let shown = page(&mut case)["exercises"].clone();
+    assert_eq!(shown[1], serde_json::json!({ "text": "Try to stop.", "is_tried": false }));
+    let goes_on = || Sent { step: Some(1), event: Event::GoesOn };
+    assert!(participants_event(case.registry(), place, &goes_on()).is_err(), "nothing was tried");
+    case.stage.2.lock().unwrap().extend([Activity::Say, Activity::Say, Activity::Point]);
+    case.look_after(1);
+    // What was tried outlasts the server.
+    case.start_again();
+    case.look_after(1);
+    case.look_after(1);
+    let shown = page(&mut case);
+    assert_eq!((&shown["exercises"][0]["is_tried"], &shown["may_go_on"]), (&true.into(), &false.into()));
+    case.stage.2.lock().unwrap().push(Activity::Stop);
+    case.look_after(1);
+    assert_eq!(page(&mut case)["may_go_on"], true);
+    participants_event(case.registry(), place, &goes_on()).unwrap();
+    assert_eq!(case.phase(place), Phase::At(1, Doing::Ready));
+    let registry = case.registry();
+    let done = &registry.participants[&place].progress.done()[0];
+    assert_eq!((done.ending, done.attempts, done.tried.len()), (Some(Ending::Complete), 2, 2));
+    let all = [registry.participants[&place].progress.clone()];
+    let rows = tables::exercises::table(&registry.study, &all).rows;
+    assert!(rows.len() == 2 && rows[1].contains(&cohabit_tables::Cell::Text("stop".to_owned())), "{rows:?}");
 }
 
 #[test]

@@ -3,13 +3,18 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::{design::Limits, settings::Settings};
+use crate::{
+    design::Limits,
+    settings::Settings,
+    tutorial::{Activity, Exercise},
+};
 
 fn mission(skip_after_s: Option<f64>) -> Step {
     Step::Mission(PlannedMission {
         block: 0,
         mission: "make_cereal".to_owned(),
         is_practice: false,
+        exercises: Vec::new(),
         within: Vec::new(),
         settings: Settings::new(),
         limits: Limits { limit_s: Some(60.0), skip_after_s },
@@ -49,6 +54,36 @@ fn interrupted() -> Event {
 fn run(progress: &mut Progress, events: &[Event]) -> Vec<Effect> {
     let step = |(second, event): (u64, &Event)| progress.step(event, second * 1000).unwrap();
     (1..).zip(events).flat_map(step).collect()
+}
+
+#[test]
+fn a_tutorial_is_left_when_all_was_tried_or_after_a_while() {
+    let exercise = |what| Exercise { what, text: "Try.".to_owned() };
+    let exercises = [Activity::Say, Activity::Stop].map(exercise).to_vec();
+    let Step::Mission(mission) = mission(Some(10.0)) else { panic!("a mission") };
+    let tutorial = Step::Mission(PlannedMission { is_practice: true, exercises, ..mission });
+    let tried = |exercise| Event::Tried { exercise };
+    let begun = || {
+        let mut progress = Progress::new(Plan { steps: vec![tutorial.clone()], ..plan() });
+        run(&mut progress, &[Event::Read, consented(), Event::GoesOn, Event::Started]);
+        progress
+    };
+    let mut progress = begun();
+    run(&mut progress, &[tried(1)]);
+    for refused in [tried(1), tried(2), Event::GoesOn] {
+        assert!(progress.step(&refused, 0).is_err(), "{refused:?}");
+    }
+    // What was tried is not lost with a session.
+    run(&mut progress, &[interrupted(), Event::Started, tried(0)]);
+    assert!(progress.has_tried_all());
+    assert_eq!(run(&mut progress, &[Event::GoesOn]), [Effect::EndSession]);
+    assert_eq!(progress.phase(), &Phase::Finished);
+    let done = &progress.done()[0];
+    let order: Vec<usize> = done.tried.iter().map(|one| one.exercise).collect();
+    assert_eq!((done.ending, order), (Some(Ending::Complete), vec![1, 0]));
+    let mut progress = begun();
+    assert_eq!(run(&mut progress, &[tried(0), Event::Played { seconds: 10.0 }, Event::GoesOn]), [Effect::EndSession]);
+    assert_eq!((progress.done()[0].ending, progress.tried()), (Some(Ending::Skipped), &[][..]));
 }
 
 #[test]

@@ -138,8 +138,15 @@ pub(super) fn procedure(known: &Known<'_>) -> String {
     )];
     steps.extend(study.blocks.iter().map(|block| match block {
         Block::Questionnaires(names) => format!("They answered {}.", listed(&quoted(names))),
-        Block::Mission { mission, is_practice, limits, settings: own, .. } => {
-            let how = if *is_practice { "for practice, under no condition" } else { "once" };
+        Block::Mission { mission, is_practice, exercises, limits, settings: own, .. } => {
+            let named: Vec<String> = exercises.iter().map(|one| format!("`{}`", one.what.name())).collect();
+            let how = match (is_practice, named.as_slice()) {
+                (false, _) => "once".to_owned(),
+                (true, []) => "for practice, under no condition".to_owned(),
+                (true, all) => {
+                    format!("as a tutorial, under no condition, which waited until they had tried {}", listed(all))
+                }
+            };
             let own = if own.is_empty() { String::new() } else { format!("; {}", settings(own)) };
             format!("They played `{mission}` {how}{}{own}.", limited(*limits))
         }

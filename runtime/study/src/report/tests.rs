@@ -33,6 +33,7 @@ fn records(is_synthetic: bool) -> Records {
         block: 0,
         mission: "cold_soda".to_owned(),
         is_practice: false,
+        exercises: Vec::new(),
         within: Vec::new(),
         settings: Settings::new(),
         limits: Limits::default(),
@@ -105,7 +106,8 @@ fn with_wizard() -> Records {
     on(&mut records.study.factors[0].levels[1].settings);
     let (limits, text) = (Limits::default(), String::new());
     let mission = "cold_soda".to_owned();
-    let block = Block::Mission { mission, is_practice: false, settings: Settings::new(), limits, text };
+    let (exercises, settings) = (Vec::new(), Settings::new());
+    let block = Block::Mission { mission, is_practice: false, exercises, settings, limits, text };
     records.study.blocks = vec![block];
     records.study.wizard.timeout_s = Some(8.0);
     records.study.wizard.phrases = vec!["h=Hello!".parse().expect("a phrase")];

@@ -5,6 +5,7 @@ use std::{collections::BTreeMap, fs, path::Path};
 use super::*;
 use crate::{
     check::StudyFile,
+    plan::Step,
     probe::Happening,
     progress::Ending,
     records::Records,
@@ -27,6 +28,7 @@ factor = [
 probe = [{ questionnaire = "one.toml", at = "goal_met" }, { questionnaire = "two.toml", at = "minutes", minutes = 0.5 }]
 block = [
     { kind = "practice", mission = "three" },
+    { kind = "tutorial", mission = "four", minutes = 9 },
     { kind = "missions", minutes = 2, skip_after_minutes = 1, after_mission = ["tlx"] },
     { kind = "break" },
     { kind = "questionnaire", questionnaires = ["sus"] },
@@ -119,6 +121,10 @@ fn what_happens_is_what_the_study_asks_for() {
                 *endings.entry(ending.name()).or_default() += 1;
                 let is_practice = progress.plan().is_practice(done.step);
                 assert!(is_practice == done.probed.is_empty(), "probes are asked, but not in practice: {done:?}");
+                let step = &progress.plan().steps[done.step];
+                let is_tutorial = matches!(step, Step::Mission(mission) if mission.is_tutorial());
+                let is_whole = is_tutorial && done.ending == Some(Ending::Complete);
+                assert_eq!(is_whole, done.tried.len() == 4, "{done:?}");
                 assert!(is_practice || done.played_s <= 120.0, "{done:?}");
             }
         }

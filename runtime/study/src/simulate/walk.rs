@@ -15,6 +15,7 @@ use crate::{
         people::Speaking,
         person::{Leaves, Person},
     },
+    tutorial::{Activity, Exercise},
 };
 
 /// So long somebody sees the end of a mission.
@@ -39,6 +40,8 @@ pub struct SimulatedMission {
     pub seeds: [u64; 2],
     /// How they speak, with the time that this person takes for a line.
     pub speaking: Speaking,
+    /// Whether they speak aloud, as those do who agreed to be heard, rather than write.
+    pub is_heard: bool,
     /// Whether they give it up halfway.
     pub gives_up: bool,
     /// The longest that it is played, s: what would come after that is cut off.
@@ -143,11 +146,49 @@ impl<'a> Walk<'a> {
         self.happens(Event::GoesOn)?;
         self.happens(Event::Started)?;
         let session = self.play(index, mission)?;
+        if mission.is_tutorial() {
+            return self.tutorial(index, mission, &session);
+        }
         let (ending, played_s) = ending(&session, mission.limits);
         self.probes(index, mission, &session, played_s)?;
         let left_s = played_s - self.progress.played_s();
         self.plays(left_s)?;
         self.passes(if matches!(ending, Ending::Complete | Ending::Failed) { ENDING_SEEN_S } else { 0.0 });
+        self.happens(Event::Over { ending })
+    }
+
+    /// They try one thing after the other, and go on as soon as they may.
+    fn tutorial(
+        &mut self,
+        index: usize,
+        mission: &PlannedMission,
+        session: &SimulatedSession,
+    ) -> Result<(), SimulateError> {
+        let Limits { limit_s, skip_after_s } = mission.limits;
+        let failed_s = session.ending.filter(|ending| *ending == Ending::Failed).map(|_| session.played_s);
+        let ends_s = failed_s.into_iter().chain(limit_s).fold(f64::INFINITY, f64::min);
+        let count = if self.person.gives_up(index) { mission.exercises.len() / 2 } else { mission.exercises.len() };
+        let tries = tries(&mission.exercises, session, self.person.line_s());
+        for (at_s, exercise) in tries.into_iter().take(count).filter(|(at_s, _)| *at_s < ends_s) {
+            self.plays(at_s - self.progress.played_s())?;
+            self.happens(Event::Tried { exercise })?;
+        }
+        if self.progress.has_tried_all() {
+            return self.happens(Event::GoesOn);
+        }
+        let skips_s = skip_after_s.map(|skip| skip.max(self.progress.played_s()) + GIVES_UP_AFTER_S);
+        if let Some(skips_s) = skips_s.filter(|skips_s| *skips_s < ends_s) {
+            self.plays(skips_s - self.progress.played_s())?;
+            return self.happens(Event::GoesOn);
+        }
+        let ending = match (failed_s, limit_s) {
+            (Some(failed), limit) if limit.is_none_or(|limit| failed < limit) => Ending::Failed,
+            (_, Some(_)) => Ending::TimeUp,
+            _ => Ending::Stopped,
+        };
+        if ends_s.is_finite() {
+            self.plays(ends_s - self.progress.played_s())?;
+        }
         self.happens(Event::Over { ending })
     }
 
@@ -161,6 +202,7 @@ impl<'a> Walk<'a> {
             settings: mission.settings.clone(),
             seeds: [study.seed, self.person.speaker(index)],
             speaking: Speaking { line_s: self.person.line_s(), ..(*speaking).clone() },
+            is_heard: self.progress.agrees_to_audio(),
             gives_up: self.person.gives_up(index),
             ends_by_s: mission.limits.limit_s,
             began_ms: self.at_ms,
@@ -210,6 +252,18 @@ impl<'a> Walk<'a> {
     }
 }
 
+/// When somebody tries which exercise, s, in order: one a line, but a goal once the session met one, which may be never.
+fn tries(exercises: &[Exercise], session: &SimulatedSession, line_s: f64) -> Vec<(f64, usize)> {
+    let met = session.happened.iter().find(|(_, what)| *what == Happening::GoalMet).map(|(at_s, _)| *at_s);
+    let when = |(number, exercise): (usize, &Exercise)| match exercise.what {
+        Activity::Goal => Some((met?, number)),
+        _ => Some(((number + 1) as f64 * line_s, number)),
+    };
+    let mut all: Vec<(f64, usize)> = exercises.iter().enumerate().filter_map(when).collect();
+    all.sort_by(|(one, _), (other, _)| one.total_cmp(other));
+    all
+}
+
 /// How a mission ends, and for how long it was played, s.
 fn ending(session: &SimulatedSession, limits: Limits) -> (Ending, f64) {
     let within = |at: f64| limits.limit_s.is_none_or(|limit| at < limit);
@@ -227,6 +281,16 @@ fn ending(session: &SimulatedSession, limits: Limits) -> (Ending, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn exercises_are_tried_one_a_line_and_a_goal_when_it_is_met() {
+        let exercise = |what| Exercise { what, text: String::new() };
+        let exercises = [Activity::Goal, Activity::Say, Activity::Stop].map(exercise);
+        let session = |happened| SimulatedSession { played_s: 90.0, ending: None, happened };
+        let met = session(vec![(5.0, Happening::QuestionAsked), (25.0, Happening::GoalMet)]);
+        assert_eq!(tries(&exercises, &met, 10.0), [(20.0, 1), (25.0, 0), (30.0, 2)]);
+        assert_eq!(tries(&exercises, &session(Vec::new()), 10.0), [(20.0, 1), (30.0, 2)]);
+    }
 
     #[test]
     fn missions_end_as_they_would_for_people() {

@@ -1,4 +1,8 @@
 //! What exported tables are, for programs: a Frictionless Data Package (specs.frictionlessdata.io), version 1.
+//!
+//! All resources of a tabular data package are tabular data resources, and the data of these are CSV (or JSON within it). So the
+//! Parquet file of a table is no resource: the resource of the CSV file names it in a property of its own, `parquet`, as the
+//! standard lets descriptors have.
 
 use std::{
     fs, io,
@@ -49,6 +53,7 @@ fn resource(table: &Table) -> Value {
         "profile": "tabular-data-resource",
         "name": table.name,
         "path": format!("{}.csv", table.name),
+        "parquet": format!("{}.parquet", table.name),
         "description": table.meaning,
         "format": "csv",
         "mediatype": "text/csv",
@@ -88,6 +93,8 @@ mod tests {
         assert_eq!(package["title"], "T (synthetic: no data of people)");
         let resource = &package["resources"][0];
         assert_eq!((&resource["path"], &resource["name"]), (&json!("missions.csv"), &json!("missions")));
+        assert_eq!((&resource["parquet"], &resource["format"]), (&json!("missions.parquet"), &json!("csv")));
+        assert_eq!(package["resources"].as_array().map(Vec::len), Some(1), "Parquet is no tabular data resource");
         let types: Vec<&Value> = (0..3).map(|number| &resource["schema"]["fields"][number]["type"]).collect();
         assert_eq!(types, ["string", "number", "boolean"]);
         assert_eq!(resource["schema"]["fields"][1]["unit"], "s");

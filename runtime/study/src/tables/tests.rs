@@ -34,6 +34,7 @@ fn practice_is_marked_and_left_out() {
             block: 0,
             mission: name.to_owned(),
             is_practice,
+            exercises: Vec::new(),
             within: Vec::new(),
             settings: Settings::new(),
             limits: Limits::default(),
