@@ -15,6 +15,7 @@ use serde_json::{Value, json};
 use crate::{
     affordances::Affordance,
     driving::DrivableBody,
+    expression::FacialExpression,
     latency::Moments,
     robots::RobotName,
     text::{in_lines, in_one_line},
@@ -358,6 +359,11 @@ pub fn marks(camera: CameraId, marks: &[(usize, [f32; 2])]) -> Value {
 pub fn progress(body: u32, turn: u64, step: u32, steps: usize, says: &str) -> Value {
     let says = in_one_line(says);
     json!({ "type": "progress", "body": body, "turn": turn, "step": step + 1, "steps": steps, "text": says })
+}
+
+/// What the face of a robot shows from now on.
+pub fn expression(body: u32, shown: FacialExpression) -> Value {
+    json!({ "type": "expression", "body": body, "expression": shown.name() })
 }
 
 /// A turn is over.

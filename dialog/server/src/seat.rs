@@ -58,6 +58,13 @@ pub async fn decide(hub: Arc<Hub>, talk: Arc<Talk>, seat: Arc<Value>, mut socket
         }
     }
     let Some(view) = hub.views.first().cloned() else { return };
+    let _seated = match talk.sit_down() {
+        Ok(seated) => seated,
+        Err(error) => {
+            tracing::error!("{error}");
+            return;
+        }
+    };
     let feed = Feed::new(view);
     let (limits, presence) = (Limits::new(Instant::now()), Presence::new(server));
     Visit { hub, talk, feed, limits, presence }.run(socket, messages, own).await;

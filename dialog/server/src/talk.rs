@@ -5,6 +5,7 @@ mod held;
 mod inner;
 mod outbox;
 mod picture;
+mod seated;
 mod world;
 
 use std::{
@@ -23,6 +24,7 @@ use crate::{
     conversation::Aloud,
     drafts::{Drafted, Drafts, Thought},
     driving::Drivers,
+    expression::FacialExpression,
     hub::Hub,
     interpreter::Puzzles,
     journal::{Journal, Place},
@@ -96,6 +98,9 @@ impl Talk {
         let past = journal.past();
         hub.restore(&past.lines);
         robots.restore(&past.conversations, &past.lessons);
+        for robot in robots.iter().filter(|robot| robot.conversation.expression() != FacialExpression::default()) {
+            hub.show_face(robot.body.0, &page::expression(robot.body.0, robot.conversation.expression()));
+        }
         let mut inner = Inner {
             robots,
             journal,
@@ -106,6 +111,7 @@ impl Talk {
             spoken_to: BodyId(0),
             woke_at: 0,
             present: BTreeMap::new(),
+            wizards: 0,
         };
         inner.tell_again()?;
         let alarm = Alarm::default();

@@ -58,6 +58,33 @@ pub struct Phrase {
     pub waits: bool,
 }
 
+/// Whether somebody sits at a session's seat.
+#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
+pub enum SeatState {
+    /// Nobody does.
+    #[default]
+    Empty,
+    /// A wizard's page is open.
+    Taken,
+}
+
+impl SeatState {
+    /// As the bus tells it.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Empty => "empty",
+            Self::Taken => "taken",
+        }
+    }
+
+    /// The one of that name.
+    #[must_use]
+    pub fn of(name: &str) -> Option<Self> {
+        [Self::Empty, Self::Taken].into_iter().find(|one| one.name() == name)
+    }
+}
+
 /// What is wrong with a setting of the seat.
 #[derive(Clone, Debug, Eq, PartialEq, thiserror::Error)]
 pub enum NotOfWizard {

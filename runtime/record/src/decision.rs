@@ -64,11 +64,13 @@ pub enum DecisionOutcome {
     Stopped,
     /// Nothing was proposed: the wizard acted of their own accord.
     Unprompted,
+    /// The session ended before it was decided.
+    Undecided,
 }
 
 impl DecisionOutcome {
     /// All of them.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Accepted,
         Self::Edited,
         Self::Replaced,
@@ -76,6 +78,7 @@ impl DecisionOutcome {
         Self::TimedOut,
         Self::Stopped,
         Self::Unprompted,
+        Self::Undecided,
     ];
 
     /// As tables have it.
@@ -89,6 +92,7 @@ impl DecisionOutcome {
             Self::TimedOut => "timed_out",
             Self::Stopped => "stopped",
             Self::Unprompted => "unprompted",
+            Self::Undecided => "undecided",
         }
     }
 

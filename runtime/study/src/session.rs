@@ -64,6 +64,11 @@ pub trait Playing: Send {
     /// What has happened in it since it was last looked at.
     fn happened(&mut self) -> Vec<Happening>;
 
+    /// Whether a wizard is to take part, and nobody sits at the seat.
+    fn lacks_wizard(&self) -> bool {
+        false
+    }
+
     /// Asks it to end; it is [`Look::Gone`] soon.
     fn end(&mut self);
 }

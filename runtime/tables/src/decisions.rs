@@ -22,7 +22,7 @@ const FIELDS: [Field; 20] = [
         Text,
         "",
         "accepted, edited, replaced, dismissed, timed_out (the robot did what it had proposed), stopped (the person said stop \
-         first), or unprompted",
+         first), unprompted, or undecided (the session ended first)",
     ),
     Field::new("intervention", Flag, "", "whether the robot did something else than it would have done by itself"),
     Field::new("late", Flag, "", "whether the time-out passed before the wizard had decided"),

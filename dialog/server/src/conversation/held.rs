@@ -4,7 +4,7 @@
 //! back the conversation goes on as if it had not been said, and when something comes of that it is understood anew. A stop is
 //! never held back, and ends what is.
 
-use cohabit_bus::message::DialogKind;
+use cohabit_bus::message::{DialogKind, DialogMessage};
 use cohabit_cdf::Action;
 use cohabit_language::{Asking, Context, Known, Step, Understanding};
 use cohabit_record::{DecisionOutcome, Proposed, WizardDecision};
@@ -87,7 +87,8 @@ impl Held {
         }
     }
 
-    fn record(&self, outcome: DecisionOutcome, now_nanos: u64) -> WizardDecision {
+    /// What is noted of it, answered then if it was.
+    fn record(&self, outcome: DecisionOutcome, answered_nanos: Option<u64>) -> WizardDecision {
         let decided = self.decided.as_ref().filter(|_| outcome != DecisionOutcome::Stopped);
         let own = decided.and_then(|decided| decided.own.as_ref());
         WizardDecision {
@@ -96,8 +97,7 @@ impl Held {
             edits: self.edits.clone(),
             is_late: self.is_late || outcome == DecisionOutcome::TimedOut,
             decided_ms: decided.map(|decided| milliseconds(self.proposed_nanos, decided.at_nanos)),
-            answered_ms: (outcome != DecisionOutcome::Stopped)
-                .then(|| milliseconds(self.words.received_nanos, now_nanos)),
+            answered_ms: answered_nanos.map(|nanos| milliseconds(self.words.received_nanos, nanos)),
             ..own.map_or_else(|| WizardDecision::of_outcome(outcome), |own| own.record(outcome))
         }
     }
@@ -214,7 +214,7 @@ impl Conversation {
     fn stop_held(&mut self, reactions: &mut Vec<Reaction>) {
         let waiting = std::mem::take(&mut self.memory.waiting);
         if let Some(held) = self.memory.held.take() {
-            self.note_decision(held.words.turn, &held.record(DecisionOutcome::Stopped, 0), reactions);
+            self.note_decision(held.words.turn, &held.record(DecisionOutcome::Stopped, None), reactions);
             reactions.push(Reaction::TurnEnded { turn: held.words.turn, end: TurnEnd::Interrupted });
             reactions.push(Reaction::Proposes);
         }
@@ -223,6 +223,25 @@ impl Conversation {
             self.note_decision(words.turn, &record, reactions);
             reactions.push(Reaction::TurnEnded { turn: words.turn, end: TurnEnd::Interrupted });
         }
+    }
+
+    /// What is noted of what is held back, and waits behind it, when the session ends; it stays, should the session go on.
+    pub(crate) fn left_undecided(&self) -> Vec<DialogMessage> {
+        if self.holding.wizard.is_none() {
+            return Vec::new();
+        }
+        let noted = |turn: u64, record: &WizardDecision| {
+            DialogMessage::new(DialogKind::Decided, self.body, turn, &record.text())
+        };
+        let held = self.memory.held.iter().map(|held| {
+            let outcome = if held.decided.is_some() { held.outcome() } else { DecisionOutcome::Undecided };
+            noted(held.words.turn, &held.record(outcome, None))
+        });
+        let waiting = self.memory.waiting.iter().map(|words| {
+            let said = words.text.clone();
+            noted(words.turn, &WizardDecision { said, ..WizardDecision::of_outcome(DecisionOutcome::Undecided) })
+        });
+        held.chain(waiting).collect()
     }
 
     /// Notes a decision for the log; where nobody decides there is none.
@@ -310,7 +329,7 @@ impl Conversation {
     /// Answers what is held back, and takes up what was said since.
     fn release(&mut self, now_nanos: u64, knowledge: &Knowledge, reactions: &mut Vec<Reaction>) {
         let Some(held) = self.memory.held.take() else { return };
-        let record = held.record(held.outcome(), now_nanos);
+        let record = held.record(held.outcome(), Some(now_nanos));
         let Held { words: Words { turn, received_nanos, text, .. }, meaning, decided, .. } = *held;
         let number = self.number_of(turn);
         reactions.push(Reaction::Answers { turn: number, received_nanos });

@@ -33,11 +33,15 @@ pub enum DialogKind {
     Interpreted = 10,
     /// What a wizard decided about a turn, as JSON: for logs.
     Decided = 11,
+    /// Whether somebody sits at the wizard's seat, as one word: `taken` or `empty`.
+    Seat = 12,
+    /// What the robot's face shows from now on, as one word.
+    Expressed = 13,
 }
 
 impl DialogKind {
     /// All kinds.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 13] = [
         Self::Utterance,
         Self::Reply,
         Self::Question,
@@ -49,6 +53,8 @@ impl DialogKind {
         Self::Spoken,
         Self::Interpreted,
         Self::Decided,
+        Self::Seat,
+        Self::Expressed,
     ];
 }
 

@@ -18,7 +18,7 @@ use cohabit_bus::{
     message::{self, DialogKind, DialogView, EventKind, EventMessage},
 };
 use cohabit_cdf::Status;
-use cohabit_dialog::HostName;
+use cohabit_dialog::{HostName, SeatState};
 use cohabit_record::Log;
 use cohabit_study::{Ending, Happening, Look, PageAddress, Player, Playing, Wanted, address};
 use rustix::process::{Pid, Signal, kill_process};
@@ -139,6 +139,7 @@ impl Player for Sessions {
             last_line,
             page: None,
             wizard: None,
+            seat: SeatState::default(),
             heard: None,
             happened: Vec::new(),
             over,
@@ -189,6 +190,8 @@ struct PlayedSession {
     page: Option<PageAddress>,
     /// What lets a wizard in, once it was told.
     wizard: Option<String>,
+    /// Whether a wizard sits at the seat.
+    seat: SeatState,
     /// What its bus tells of the world, and of what is said.
     heard: Option<[Inbox; 2]>,
     /// What has happened and was not asked for yet.
@@ -223,9 +226,13 @@ impl PlayedSession {
             self.heard = Some([Inbox::new(&bus, Topic::Events)?, Inbox::new(&bus, Topic::Dialog)?]);
         }
         let Some([events, dialog]) = &mut self.heard else { return Ok(None) };
-        let kind = |view: DialogView<'_>| view.header.kind();
-        while let Some((_, kind)) = dialog.next(|sample| DialogView::new(sample.payload()).map(kind))? {
-            self.happened.extend((kind == Some(DialogKind::Question)).then_some(Happening::QuestionAsked));
+        let told = |view: DialogView<'_>| (view.header.kind(), SeatState::of(view.header.text.as_str()));
+        while let Some((_, (kind, seat))) = dialog.next(|sample| DialogView::new(sample.payload()).map(told))? {
+            match kind {
+                Some(DialogKind::Question) => self.happened.push(Happening::QuestionAsked),
+                Some(DialogKind::Seat) => self.seat = seat.unwrap_or_default(),
+                _ => {}
+            }
         }
         while let Some((_, event)) = events.next(|sample| message::read::<EventMessage>(sample.payload()))? {
             match event.kind() {
@@ -290,6 +297,11 @@ impl Playing for PlayedSession {
 
     fn happened(&mut self) -> Vec<Happening> {
         std::mem::take(&mut self.happened)
+    }
+
+    fn lacks_wizard(&self) -> bool {
+        let has_seat = self.page.as_ref().is_some_and(|page| page.wizard.is_some());
+        has_seat && self.over.is_none() && self.seat == SeatState::Empty
     }
 
     fn end(&mut self) {

@@ -16,7 +16,7 @@ use crate::{
 };
 
 /// The columns of counts: a head, and the outcomes that it counts.
-const COUNTS: [(&str, &str); 7] = [
+const COUNTS: [(&str, &str); 8] = [
     ("accepted", "accepted"),
     ("edited", "edited"),
     ("replaced", "replaced"),
@@ -24,6 +24,7 @@ const COUNTS: [(&str, &str); 7] = [
     ("timed out", "timed_out"),
     ("stopped by the participant", "stopped"),
     ("unprompted", "unprompted"),
+    ("undecided at the end", "undecided"),
 ];
 
 /// What was decided under one condition.
