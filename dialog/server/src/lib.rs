@@ -77,7 +77,7 @@ pub use site::{Framing, Site, SiteFile, file, file_routes};
 pub use spoken::meaning;
 pub use tls::{Identity, TlsError};
 pub use voice::VoiceConfig;
-pub use wizard::{Holding, MOMENT, NotOfWizard, OnTimeout, Phrase, SeatState, WizardSettings};
+pub use wizard::{Holding, MOMENT, NotOfWizard, OnTimeout, Phrase, PlannedError, SeatState, WizardSettings};
 
 use crate::{
     driving::Drivers,
@@ -223,7 +223,8 @@ pub fn serve(
     let (tell, play) = (move |message: &Value| tells.tell(message), move |piece| plays.play(piece));
     let voice = Voice::new(Arc::clone(&bus), voice, tell, play);
     let (drafts, drafted) = drafts::drafts();
-    let pages = Pages { hub: Arc::clone(&hub), drivers: Arc::clone(&drivers), voice: Arc::clone(&voice), drafts };
+    let (its_hub, its_drivers, its_voice) = (Arc::clone(&hub), Arc::clone(&drivers), Arc::clone(&voice));
+    let pages = Pages { hub: its_hub, drivers: its_drivers, voice: its_voice, drafts, layout };
     let talk = Talk::new(&*bus, catalog, robots, puzzles, pages, journal)?;
     let ears = Ears::new(&*bus)?;
     talk.serve_at(place.clone());

@@ -19,7 +19,7 @@ use crate::{
     latency::Moments,
     robots::RobotName,
     text::{in_lines, in_one_line},
-    wizard::{Holding, LONGEST_SAYING, Proposal},
+    wizard::{Click, Holding, LONGEST_SAYING, Proposal},
 };
 
 /// Who says a line of chat.
@@ -416,6 +416,14 @@ pub fn unsaid(body: u32, text: &str) -> Value {
     json!({ "type": "unsaid", "body": body, "text": text })
 }
 
+/// What a wizard can have the robot of a body do with a thing that they clicked: what is sent back to have it done, and what a
+/// button says.
+pub fn menu(body: u32, name: &str, choices: &[(Click, String)]) -> Value {
+    let choice = |(click, label): &(Click, String)| json!({ "click": click, "label": label });
+    let choices: Vec<Value> = choices.iter().map(choice).collect();
+    json!({ "type": "menu", "body": body, "name": name, "choices": choices })
+}
+
 /// How a wizard takes part, for their page.
 pub fn seat(holding: &Holding) -> Value {
     let wizard = holding.wizard.as_ref();
@@ -425,6 +433,8 @@ pub fn seat(holding: &Holding) -> Value {
         "timeout_ms": wizard.and_then(|wizard| wizard.timeout).map(|timeout| timeout.as_millis() as u64),
         "on_timeout": wizard.map(|wizard| wizard.on_timeout.name()),
         "phrases": wizard.map(|wizard| wizard.phrases.as_slice()).unwrap_or_default(),
+        "errors": wizard.map(|wizard| wizard.errors.as_slice()).unwrap_or_default(),
+        "expressions": FacialExpression::ALL.map(FacialExpression::name),
         "longest_saying": LONGEST_SAYING,
     })
 }

@@ -3,6 +3,7 @@
 mod audience;
 mod held;
 mod inner;
+mod menu;
 mod outbox;
 mod picture;
 mod seated;
@@ -15,7 +16,7 @@ use std::{
 };
 
 use cohabit_bus::{Envelope, Inbox, Topic, Transport, Wake, monotonic_nanos};
-use cohabit_cdf::{BodyId, Catalog, ObjectId};
+use cohabit_cdf::{BodyId, Catalog, Layout, ObjectId};
 use cohabit_language::Meant;
 
 use crate::{
@@ -48,6 +49,7 @@ pub struct Talk {
     hub: Arc<Hub>,
     drivers: Arc<Drivers>,
     catalog: Arc<Catalog>,
+    layout: Arc<Layout>,
     /// Who makes something of what is not understood, if anybody.
     interpreter: Option<Puzzles>,
     /// How robots speak, and who is heard.
@@ -70,6 +72,8 @@ pub struct Pages {
     pub voice: Arc<Voice>,
     /// Where they leave what they may say next.
     pub drafts: Drafts,
+    /// The floor plan that they show.
+    pub layout: Arc<Layout>,
 }
 
 /// What something follows from.
@@ -93,7 +97,7 @@ impl Talk {
         pages: Pages,
         journal: Journal,
     ) -> Result<Arc<Self>, DialogError> {
-        let Pages { hub, drivers, voice, drafts } = pages;
+        let Pages { hub, drivers, voice, drafts, layout } = pages;
         let names = if robots.are_several() { robots.called_by().map(str::to_owned).collect() } else { Vec::new() };
         let past = journal.past();
         hub.restore(&past.lines);
@@ -116,7 +120,8 @@ impl Talk {
         inner.tell_again()?;
         let alarm = Alarm::default();
         alarm.set(inner.due());
-        Ok(Arc::new(Self { inner: Mutex::new(inner), hub, drivers, catalog, interpreter, voice, names, alarm, drafts }))
+        let inner = Mutex::new(inner);
+        Ok(Arc::new(Self { inner, hub, drivers, catalog, layout, interpreter, voice, names, alarm, drafts }))
     }
 
     /// Waits until this conversation sees the world, or until `over`: who is let in then is understood at once.

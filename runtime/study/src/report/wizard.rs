@@ -61,7 +61,9 @@ pub(super) fn section(known: &Known<'_>) -> String {
     }
     let head = ["condition", "decisions"].into_iter().chain(COUNTS.map(|(head, _)| head));
     let head: Vec<&str> = head.chain(["interventions", "late", "median time to decide"]).collect();
-    format!("{}\n\n{}\n\n{}", setting(known), summary(&counts), rows(&head, counts.iter().map(row)))
+    let injected = decisions.column("injected").filter(|cell| is_true(cell)).count();
+    let summary = format!("{}{}", summary(&counts), of_errors(injected));
+    format!("{}\n\n{summary}\n\n{}", setting(known), rows(&head, counts.iter().map(row)))
 }
 
 /// The sentence that a paper needs.
@@ -74,6 +76,11 @@ fn summary(counts: &BTreeMap<String, Count>) -> String {
         counted(total, "decision"),
         all.interventions
     )
+}
+
+fn of_errors(injected: usize) -> String {
+    let were = if injected == 1 { "was" } else { "were" };
+    if injected == 0 { String::new() } else { format!(" {} {were} injected.", counted(injected, "planned error")) }
 }
 
 fn row((condition, count): (&String, &Count)) -> Vec<String> {
@@ -92,10 +99,12 @@ fn row((condition, count): (&String, &Count)) -> Vec<String> {
 /// How the wizard took part.
 fn setting(known: &Known<'_>) -> String {
     let study = &known.records.study;
-    let Wizard { timeout_s, on_timeout, phrases, .. } = &study.wizard;
+    let Wizard { timeout_s, on_timeout, phrases, errors, .. } = &study.wizard;
     let keys: Vec<String> = phrases.iter().map(|phrase| format!("`{}` \"{}\"", phrase.key, phrase.text)).collect();
     let phrases =
         if keys.is_empty() { "no canned phrases".to_owned() } else { format!("canned phrases {}", listed(&keys)) };
+    let names: Vec<String> = errors.iter().map(|error| format!("\"{}\"", error.name)).collect();
+    let errors = if names.is_empty() { String::new() } else { format!(", and injects planned errors: {}", listed(&names)) };
     let who = if known.records.is_synthetic {
         "No wizard decided anything: the dry run took each proposal for accepted. In the study "
     } else {
@@ -104,7 +113,7 @@ fn setting(known: &Known<'_>) -> String {
     format!(
         "{who}a wizard decides of each answer in sessions with the setting `wizard` = `yes`. What participants say is understood by the \
          robot as ever, and held back; the wizard sees the robot's own interpretation, and accepts it, has another request \
-         understood in its place, or replaces it. {} The wizard has {phrases}. {}",
+         understood in its place, or replaces it. {} The wizard has {phrases}{errors}. {}",
         time(*timeout_s, *on_timeout),
         delays(known)
     )
