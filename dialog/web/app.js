@@ -6,7 +6,7 @@ import { buildDriving, showHeld, takeActed, takeAim, takeDriving, takeKey } from
 import { meetFaces, takeExpression } from "./face.js";
 import { enlargeMap, floor } from "./floor.js";
 import { expandGoals, takeState } from "./goals.js";
-import { isSpeech, keepWatch, takeViewKey } from "./keys.js";
+import { isSpeech, keepWatch, takeViewKey } from "./page.js";
 import { buildReplay, takePlayer, takeReplayKey, takeRewind } from "./replay.js";
 import { greeted, listen } from "./socket.js";
 import { askWhenDue, buildSurvey, noteAnswered, takeAnswered } from "./survey.js";

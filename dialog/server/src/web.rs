@@ -43,7 +43,7 @@ const FILES: [(&str, &str, &str); 19] = [
     ("/face.js", SCRIPT_TYPE, include_str!("../../web/face.js")),
     ("/floor.js", SCRIPT_TYPE, include_str!("../../web/floor.js")),
     ("/goals.js", SCRIPT_TYPE, include_str!("../../web/goals.js")),
-    ("/keys.js", SCRIPT_TYPE, include_str!("../../web/keys.js")),
+    ("/page.js", SCRIPT_TYPE, include_str!("../../web/page.js")),
     ("/replay.js", SCRIPT_TYPE, include_str!("../../web/replay.js")),
     ("/socket.js", SCRIPT_TYPE, include_str!("../../web/socket.js")),
     ("/survey.js", SCRIPT_TYPE, include_str!("../../web/survey.js")),

@@ -1,9 +1,9 @@
 // What pages of people and of wizards have in common beyond what they show: pieces of sound among frames, the key that changes the
 // view, and the watch over the connection.
 
-import { nextView, showRate } from "./view.js";
 import { toast } from "./dom.js";
 import { send, watchSilence } from "./socket.js";
+import { nextView, showRate } from "./view.js";
 
 /** Binary messages that are pieces of what robots say begin so; all others are frames. */
 const SPEECH = 2;
