@@ -110,13 +110,13 @@ pub enum NotOfWizard {
     #[error("the phrase of key `{0}` has to have 1 to {LONGEST_SAYING} characters")]
     Text(char),
     /// It is no planned error.
-    #[error("that is no planned error ({0}): write JSON such as `{{\"name\": \"wrong object\", \"do\": \"pick up the apple\"}}`")]
+    #[error("that is no planned error ({0}): write JSON such as `{{\"name\": \"slip\", \"do\": \"stop\"}}`")]
     PlannedError(String),
     /// It has no name to be called by.
     #[error("`{0}` is no name of a planned error: write a name of one short line")]
     ErrorName(String),
     /// The robot would neither say nor do anything, or too much.
-    #[error("the robot has to say or do something at the planned error `{0}`, each in one line of {LONGEST_SAYING} characters at most")]
+    #[error("the robot has to say or do something at the planned error `{0}`, in {LONGEST_SAYING} characters")]
     ErrorText(String),
     /// There is no such step, or nothing takes its place.
     #[error("the step of the planned error `{0}` counts from 1, and needs something to do in its place")]

@@ -135,7 +135,7 @@ const ERROR: &[Key] = &[
     optional(
         "step",
         Kind::Whole(LARGEST_STEP),
-        "the step of the proposed plan, from 1, in whose place it does that; in place of all that is proposed, if absent",
+        "the step of the proposed plan, from 1, in whose place it does that; in place of all of it, if absent",
     ),
 ];
 

@@ -39,7 +39,7 @@ const FIELDS: [Field; 26] = [
         "clicked",
         Text,
         "",
-        "what the wizard chose by a click: point, look, go_to_room, go_to_point, turn, move, or what was done to the object",
+        "what the wizard clicked: point, look, go_to_room, go_to_point, turn, move, or what was done to the object",
     ),
     Field::new("object", Whole, "", "the object that was clicked"),
     Field::new("expression", Text, "", "what the wizard had the robot's face show"),

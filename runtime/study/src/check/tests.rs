@@ -412,7 +412,7 @@ fn a_wizard_takes_part_as_the_file_says() {
 #[test]
 fn what_is_wrong_with_a_seat_is_said() {
     let phrase = |key: &str, text: &str| format!("[[wizard.phrase]]\nkey = \"{key}\"\ntext = \"{text}\"\n");
-    let error = |keys: &str| format!("[[wizard.error]]\n{keys}\n");
+    let error = |keys: &str| format!("[[wizard.error]]\nname = \"a\"\n{keys}\n");
     let delayed = with_wizard("timeout_s = 1").replacen("\"yes\"", "\"yes\", response-delay-ms = 2000", 1);
     let debriefing = "[[block]]\nkind = \"debriefing\"\nfile = \"sheet.md\"\n";
     let inside = STUDY.replacen("ask = \"always\"", "wizard-timeout-s = 3", 1);
@@ -433,9 +433,9 @@ fn what_is_wrong_with_a_seat_is_said() {
             "/wizard/phrase/0/text: the phrase of key `h` has to have 1 to 400",
         ),
         (with_wizard(&phrase("h", "One.").repeat(2)), "/wizard/phrase/1/key: two phrases have the key `h`"),
-        (with_wizard(&error("name = \"a\"")), "/wizard/error/0: the robot has to say or do something at the planned error `a`"),
-        (with_wizard(&error("name = \"a\"\nsay = \"Oh.\"\nstep = 1")), "/wizard/error/0: the step of the planned error `a`"),
-        (with_wizard(&error("name = \"a\"\nsay = \"Oh.\"").repeat(2)), "/wizard/error/1/name: two planned errors are called"),
+        (with_wizard(&error("")), "/wizard/error/0: the robot has to say or do something at the planned error `a`"),
+        (with_wizard(&error("say = \"Oh.\"\nstep = 1")), "/wizard/error/0: the step of the planned error `a`"),
+        (with_wizard(&error("say = \"Oh.\"").repeat(2)), "/wizard/error/1/name: two planned errors are called"),
         (format!("{STUDY}\n[wizard]\n{SEAT}"), "/wizard: no session has a wizard; write wizard = \"yes\""),
         (
             with_wizard(SEAT).replacen(debriefing, "", 1),

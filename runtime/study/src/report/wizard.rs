@@ -104,7 +104,8 @@ fn setting(known: &Known<'_>) -> String {
     let phrases =
         if keys.is_empty() { "no canned phrases".to_owned() } else { format!("canned phrases {}", listed(&keys)) };
     let names: Vec<String> = errors.iter().map(|error| format!("\"{}\"", error.name)).collect();
-    let errors = if names.is_empty() { String::new() } else { format!(", and injects planned errors: {}", listed(&names)) };
+    let injects = || format!(", and injects planned errors: {}", listed(&names));
+    let errors = if names.is_empty() { String::new() } else { injects() };
     let who = if known.records.is_synthetic {
         "No wizard decided anything: the dry run took each proposal for accepted. In the study "
     } else {

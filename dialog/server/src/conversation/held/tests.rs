@@ -356,8 +356,8 @@ fn planned_errors_take_the_place_of_what_was_proposed_and_are_marked() {
     let reactions = decide(&mut conversation, inject(None, "forgets"), 3000);
     assert_eq!(says(&reactions), "I forgot what I was about.");
     assert_eq!(records(&reactions)[0].injected.as_deref(), Some("forgets"));
-    for (decision, part) in [(inject(None, "wrong room"), "none is proposed"), (inject(None, "no such"), "No planned")] {
-        let problem = conversation.decide(decision, 0, &knowledge()).unwrap_err();
+    for (name, part) in [("wrong room", "none is proposed"), ("no such", "No planned error")] {
+        let problem = conversation.decide(inject(None, name), 0, &knowledge()).unwrap_err();
         assert!(problem.contains(part), "{problem}");
     }
 }
@@ -389,10 +389,10 @@ fn what_is_undecided_when_the_session_ends_is_noted() {
     let mut led = with_wizard(0, None);
     say(&mut led, SAID);
     say(&mut led, "go to the reception");
-    let noted: Vec<Reaction> = led.left_undecided().into_iter().map(|message| Reaction::Bus(Box::new(message))).collect();
-    let noted: Vec<_> = records(&noted).into_iter().map(|record| (record.outcome, record.said)).collect();
+    let left = led.left_undecided().into_iter().map(|message| Reaction::Bus(Box::new(message)));
+    let noted = records(&left.collect::<Vec<_>>()).into_iter().map(|record| (record.outcome, record.said));
     let undecided = |said: &str| (DecisionOutcome::Undecided, said.to_owned());
-    assert_eq!(noted, [undecided(SAID), undecided("go to the reception")]);
+    assert_eq!(noted.collect::<Vec<_>>(), [undecided(SAID), undecided("go to the reception")]);
     assert!(led.proposal(0).is_some(), "a service that goes on holds it back yet");
     let mut alone = delayed(500);
     say(&mut alone, SAID);
