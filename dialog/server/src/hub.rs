@@ -278,6 +278,15 @@ mod tests {
     }
 
     #[test]
+    fn who_comes_later_is_told_what_faces_show_by_now() {
+        let hub = hub();
+        for shown in ["sorry", "happy"] {
+            hub.show_face(1, &json!(shown));
+        }
+        assert_eq!(hub.attend().0, ["{}", "\"happy\""]);
+    }
+
+    #[test]
     fn a_page_that_never_said_a_word_gives_way_and_no_other_does() {
         let hub = hub();
         let visits: Vec<_> = (0..3).map(|_| join(&hub, Duration::ZERO).unwrap()).collect();
