@@ -115,16 +115,8 @@ mod tests {
             (Click::Point { object: 7 }, "point", Action::Highlight { object: ObjectId(7) }),
             (Click::Look { object: 7 }, "look", Action::Rotate { yaw_rad: 0.5 }),
             (Click::Act { deed: Deed::PickUp, object: 7 }, "pick_up", Action::PickUp { object: ObjectId(7) }),
-            (
-                Click::Floor { at_m: [1.0, 2.0] },
-                "go_to_point",
-                Action::GoTo { target: GoToTarget::Point([1.0, 2.0]) },
-            ),
-            (
-                Click::Room { room: RoomId::Lab1 },
-                "go_to_room",
-                Action::GoTo { target: GoToTarget::Room(RoomId::Lab1) },
-            ),
+            (Click::Floor { at_m: [1.0, 2.0] }, "go_to_point", Action::GoTo { target: GoToTarget::Point([1.0, 2.0]) }),
+            (Click::Room { room: RoomId::Lab1 }, "go_to_room", Action::GoTo { target: GoToTarget::Room(RoomId::Lab1) }),
             (Click::Turn { yaw_rad: 9.0 }, "turn", Action::Rotate { yaw_rad: PI }),
             (Click::Move { distance_m: -9.0 }, "move", Action::Move { distance_m: -FURTHEST_M }),
         ] {
