@@ -3,18 +3,17 @@
 
 import { byId, limitTexts, narrow, toast } from "./dom.js";
 import { buildDriving, showHeld, takeActed, takeAim, takeDriving, takeKey } from "./driving.js";
+import { meetFaces, takeExpression } from "./face.js";
 import { enlargeMap, floor } from "./floor.js";
 import { expandGoals, takeState } from "./goals.js";
+import { isSpeech, keepWatch, takeViewKey } from "./page.js";
 import { buildReplay, takePlayer, takeReplayKey, takeRewind } from "./replay.js";
-import { greeted, listen, watchSilence } from "./socket.js";
+import { greeted, listen } from "./socket.js";
 import { askWhenDue, buildSurvey, noteAnswered, takeAnswered } from "./survey.js";
 import { forgetSounds, hearState, takeSound } from "./sound.js";
 import { clearChat, endDoing, input, say, takeLatency, meet, takeLine, takeProgress, takeTurn, takeYou } from "./talk.js";
 import { forgetHeard, greetVoice, loseMicrophone, speakLine, stopListening, takeDeaf, takeHeard, takeHearing, takeHush, takeSpeech, takeVoice, takeVoiceKey } from "./voice.js";
-import { awaitFrame, buildViews, nextView, showRate, takeFrame, takeMarks, takeSeen } from "./view.js";
-
-/** Binary messages that are pieces of what robots say begin so; all others are frames. */
-const SPEECH = 2;
+import { awaitFrame, buildViews, takeFrame, takeMarks, takeSeen } from "./view.js";
 
 /** What tests and curious people may read. */
 window.cohabit = { frames: 0, state: null, latency: null, view: null, seen: null, driving: null, aim: null, marks: [], sounds: [], voice: {}, loseMicrophone };
@@ -38,6 +37,7 @@ function takeHello({ session, mission, map, views, drivable, robots, questionnai
   buildViews(views);
   buildDriving(drivable);
   meet(robots);
+  meetFaces(robots);
   clearChat();
   endDoing();
   forgetSounds();
@@ -48,10 +48,7 @@ function takeHello({ session, mission, map, views, drivable, robots, questionnai
 
 /** Whatever has the focus, if no body is driven: Escape stops the robot, Alt+C changes the view, and a letter or a slash begins a sentence. */
 document.addEventListener("keydown", (event) => {
-  if (event.altKey && event.code === "KeyC" && !event.ctrlKey && !event.metaKey) {
-    event.preventDefault();
-    nextView();
-  }
+  takeViewKey(event);
   if (event.isComposing || document.querySelector("dialog[open]") || takeVoiceKey(event) || takeReplayKey(event) || takeKey(event) || event.ctrlKey || event.metaKey || event.altKey) return;
   if (event.key === "Escape" && !event.repeat) {
     enlargeMap(false);
@@ -64,10 +61,7 @@ document.addEventListener("keydown", (event) => {
 });
 
 expandGoals(!narrow.matches);
-setInterval(() => {
-  showRate();
-  watchSilence();
-}, 500);
+keepWatch();
 listen({
   you: (you) => {
     takeYou(you);
@@ -85,6 +79,7 @@ listen({
     if (!byId("chat").hasAttribute("aria-busy")) speakLine(line);
     takeLine(line);
   },
+  expression: takeExpression,
   progress: takeProgress,
   turn: takeTurn,
   latency: (latency) => {
@@ -109,7 +104,7 @@ listen({
   heard: takeHeard,
   hush: takeHush,
   deaf: takeDeaf,
-  binary: (buffer) => (new Uint8Array(buffer, 0, 1)[0] === SPEECH ? takeSpeech(buffer) : takeFrame(buffer)),
+  binary: (buffer) => (isSpeech(buffer) ? takeSpeech(buffer) : takeFrame(buffer)),
   lost: () => {
     stopListening();
     endDoing();

@@ -2,6 +2,7 @@
 
 import { byId, capitalised, element, toast } from "./dom.js";
 import { collapseGoals } from "./goals.js";
+import { sendOrSay } from "./page.js";
 import { send } from "./socket.js";
 import { hideSeen, isLookingThrough, lookThroughCamera, view } from "./view.js";
 
@@ -90,7 +91,7 @@ function closeMenu() {
 
 function drive(body) {
   closeMenu();
-  if (!send({ type: "drive_body", body })) toast("There is no connection at the moment; please try again in a while.");
+  sendOrSay({ type: "drive_body", body });
 }
 
 export function leave() {

@@ -2,6 +2,7 @@
 
 import { byId, capitalised, element, narrow, toast, tooLong } from "./dom.js";
 import { floor } from "./floor.js";
+import { sendOrSay } from "./page.js";
 import { send } from "./socket.js";
 import { sendHeard } from "./voice.js";
 
@@ -89,7 +90,7 @@ function answersOf(answers) {
 }
 
 function choose(object) {
-  if (!send({ type: "choose", object })) toast("There is no connection at the moment; please try again in a while.");
+  sendOrSay({ type: "choose", object });
 }
 
 /** An answer is given once: what came before is past. */
@@ -226,12 +227,9 @@ export function say(text) {
     toast(`That is too long for the robot. ${problem}`);
     return false;
   }
-  if (send({ type: "say", text })) {
-    remember(text);
-    return true;
-  }
-  toast("There is no connection at the moment; please try again in a while.");
-  return false;
+  if (!sendOrSay({ type: "say", text })) return false;
+  remember(text);
+  return true;
 }
 
 function recall(step) {

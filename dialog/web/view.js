@@ -174,10 +174,17 @@ function placeOf({ clientX, clientY }) {
   };
 }
 
+/** What is sent with where somebody points, besides. */
+let besides = () => ({});
+
+export function pointWith(told) {
+  besides = told;
+}
+
 view.addEventListener("click", (event) => {
   const { x, y } = placeOf(event);
   if (!shown || Math.min(x, y) < 0 || Math.max(x, y) > 1) return;
-  send({ type: "point", ...shown, x, y });
+  send({ type: "point", ...shown, x, y, ...besides() });
 });
 
 export function takeSeen({ name, x, y, at }) {

@@ -2,24 +2,26 @@
 // It knows the messages of the service's socket and nothing of the world behind them.
 
 import { byId, capitalised, element, toast } from "./dom.js";
+import { faceOf, meetFaces, takeExpression } from "./face.js";
 import { enlargeMap, floor } from "./floor.js";
-import { greeted, listen, send, watchSilence } from "./socket.js";
+import { isMenuOpen, noteClick, openMenu, takeMenuKey } from "./menu.js";
+import { isSpeech, keepWatch, sendOrSay, takeViewKey } from "./page.js";
+import { greeted, listen, send } from "./socket.js";
 import { forgetSounds, hearState, takeSound } from "./sound.js";
-import { buildViews, lookThroughCamera, nextView, showRate, takeFrame, takeMarks, takeSeen } from "./view.js";
+import { buildViews, lookThroughCamera, pointWith, takeFrame, takeMarks, takeSeen } from "./view.js";
 
-/** Binary messages that are pieces of what robots say begin so; all others are frames. */
-const SPEECH = 2;
 /** What the robot is seen through first. */
 const EYES = "eyes/0";
 
 /** What tests and curious people may read. */
-window.cohabit = { frames: 0, state: null, view: null, seen: null, marks: [], sounds: [], proposal: null, seat: null };
+window.cohabit = { frames: 0, state: null, view: null, seen: null, marks: [], sounds: [], proposal: null, seat: null, menu: null };
 
 /** What each robot holds back, by its body. */
 const proposals = new Map();
 /** What is shown of them: the first, with the body of its robot. */
 let shown = null;
 let phrases = [];
+let expressions = [];
 let longest = Infinity;
 let robots = [];
 let hasLooked = false;
@@ -37,6 +39,7 @@ function takeHello({ session, mission, map, views, robots: all }) {
   robots = all;
   byId("robot").replaceChildren(...all.map(({ body, name }) => new Option(capitalised(name), body)));
   byId("robot-field").hidden = all.length < 2;
+  meetFaces(all);
   floor.build(map);
   buildViews(views);
   if (!hasLooked) lookThroughCamera(EYES);
@@ -67,6 +70,30 @@ function takeSeat(seat) {
     return button;
   }));
   byId("phrases").previousElementSibling.hidden = !phrases.length;
+  showErrors(seat.errors);
+  expressions = seat.expressions;
+  byId("expressions").replaceChildren(...expressions.map((expression, index) => {
+    const key = `Alt+${index + 1}`;
+    const button = element("button");
+    button.type = "button";
+    button.setAttribute("aria-keyshortcuts", key);
+    button.append(faceOf(expression), element("span", "", capitalised(expression)), element("kbd", "", key));
+    button.addEventListener("click", () => express(expression));
+    return button;
+  }));
+}
+
+/** The planned errors, each with what the robot would say and do. */
+function showErrors(errors) {
+  byId("errors").replaceChildren(...errors.map(({ name, say, do: does, step }) => {
+    const button = element("button");
+    button.type = "button";
+    const parts = [say && `says “${say}”`, does && (step ? `step ${step}: ${does}` : does)];
+    button.append(element("span", "", name), element("span", "hint", parts.filter(Boolean).join(" · ")));
+    button.addEventListener("click", () => decide({ type: "inject", turn: turnNow(), error: name }));
+    return button;
+  }));
+  byId("errors").parentElement.hidden = !errors.length;
 }
 
 function takeProposal({ body, proposal }) {
@@ -129,12 +156,15 @@ function showLeft() {
   if (left) byId("left").value = left.all ? Math.max(0, (left.until - performance.now()) / left.all) : 0;
 }
 
+/** The robot that is meant, by its body: the one that waits for a decision, or else the one that is chosen. */
+const robotNow = () => shown?.body ?? Number(byId("robot").value || robots[0]?.body || 0);
+
 /** Sends a decision; `from` are the fields that it was written in. */
-function decide(decision, body = shown?.body ?? Number(byId("robot").value || 0), from = []) {
+function decide(decision, body = robotNow(), from = []) {
   byId("problem").textContent = "";
   sent = from;
-  if (decision.type !== "edit" && decision.turn !== null) deciding = decision.turn;
-  if (!send({ type: "decide", body, decision })) toast("There is no connection at the moment; please try again in a while.");
+  if (decision.type !== "edit" && decision.turn !== undefined && decision.turn !== null) deciding = decision.turn;
+  sendOrSay({ type: "decide", body, decision });
 }
 
 const turnNow = () => (shown && !shown.is_decided && shown.turn !== deciding ? shown.turn : null);
@@ -151,6 +181,24 @@ function dismiss() {
 function sayPhrase(key) {
   const phrase = phrases.find((one) => one.key === key);
   if (phrase) decide({ type: "own", turn: phrase.waits ? null : turnNow(), phrase: key });
+}
+
+function express(expression) {
+  decide({ type: "express", expression });
+}
+
+/** What is no answer to what was said: a gesture, or a step aside. What is proposed waits on. */
+const GESTURES = ["point", "look", "turn", "move"];
+
+function doClicked(click, body = robotNow()) {
+  decide({ type: "click", turn: GESTURES.includes(click.does) ? null : turnNow(), click }, body);
+}
+
+function takeMenu({ body, name, choices }) {
+  window.cohabit.menu = choices;
+  // Who types has the name written where they type.
+  if (isWriting()) return;
+  openMenu(name, choices, ({ click }) => doClicked(click, body));
 }
 
 function stopRobot() {
@@ -206,13 +254,35 @@ function startEdit() {
 
 const KEYS = { Enter: accept, "=": startEdit, "/": to("say"), "-": to("order"), Delete: dismiss, Escape: stopRobot };
 
+const STEP_M = 0.5;
+const TURN_RAD = Math.PI / 6;
+/** What arrows have the robot do. */
+const STEPS = {
+  ArrowUp: { does: "move", distance_m: STEP_M },
+  ArrowDown: { does: "move", distance_m: -STEP_M },
+  ArrowLeft: { does: "turn", yaw_rad: TURN_RAD },
+  ArrowRight: { does: "turn", yaw_rad: -TURN_RAD },
+};
+
+/** Alt and a digit have the robot's face show something. Whether it was that. */
+function takeFaceKey(event) {
+  const digit = /^Digit([1-9])$/.exec(event.code)?.[1];
+  const expression = expressions[digit - 1];
+  if (!event.altKey || event.ctrlKey || event.metaKey || event.repeat || !expression) return false;
+  event.preventDefault();
+  express(expression);
+  return true;
+}
+
+/** What keys do that stand for no letter: arrows scroll the conversation where it has the focus. */
+function actionOf(key, target) {
+  if (key in STEPS) return target.matches("#chat") ? null : () => doClicked(STEPS[key]);
+  return KEYS[key] ?? (phrases.some((one) => one.key === key) ? () => sayPhrase(key) : null);
+}
+
 /** Keys decide wherever the focus is, but where something is typed or chosen, and where Enter presses a button. */
 document.addEventListener("keydown", (event) => {
-  if (event.altKey && event.code === "KeyC" && !event.ctrlKey && !event.metaKey) {
-    event.preventDefault();
-    nextView();
-    return;
-  }
+  if (takeViewKey(event) || takeFaceKey(event)) return;
   if (event.isComposing || event.ctrlKey || event.metaKey || event.altKey || event.repeat) return;
   const { target, key } = event;
   if (target.matches("input, select, textarea")) {
@@ -221,20 +291,36 @@ document.addEventListener("keydown", (event) => {
     target.blur();
     return;
   }
+  if (isMenuOpen() && takeMenuKey(event)) {
+    event.preventDefault();
+    return;
+  }
   if (key === "Enter" && target.matches("button, a")) return;
-  const does = KEYS[key] ?? (phrases.some((one) => one.key === key) ? () => sayPhrase(key) : null);
+  const does = actionOf(key, target);
   if (!does) return;
   event.preventDefault();
   if (key === "Escape") enlargeMap(false);
   does();
 });
 
-/** A click on a thing writes its name where somebody types: the field keeps the focus. */
+/** A click on a thing writes its name where somebody types, so the field keeps the focus; else it offers what can be done. */
 byId("view").addEventListener("mousedown", (event) => event.preventDefault());
+byId("view").addEventListener("click", noteClick);
+pointWith(() => ({ body: robotNow() }));
+
+byId("map").addEventListener("click", (event) => {
+  const inPlan = byId("map").getScreenCTM()?.inverse();
+  if (!inPlan) return;
+  noteClick(event);
+  const at = new DOMPoint(event.clientX, event.clientY).matrixTransform(inPlan);
+  send({ type: "floor", x: at.x, y: -at.y, body: robotNow() });
+});
+
+const isWriting = () => Boolean(document.activeElement?.matches("#orders input[type=text]"));
 
 function writeName({ name }) {
+  if (!isWriting()) return;
   const field = document.activeElement;
-  if (!field?.matches("#orders input[type=text]")) return;
   const before = field.value.slice(0, field.selectionStart);
   const space = before && !before.endsWith(" ") ? " " : "";
   field.setRangeText(space + name, field.selectionStart, field.selectionEnd, "end");
@@ -286,10 +372,7 @@ function takeState(state) {
   hearState(state);
 }
 
-setInterval(() => {
-  showRate();
-  watchSilence();
-}, 500);
+keepWatch();
 setInterval(showLeft, 100);
 showDoing();
 listen({
@@ -312,12 +395,14 @@ listen({
     takeSeen(seen);
     writeName(seen);
   },
+  menu: takeMenu,
+  expression: takeExpression,
   marks: takeMarks,
   sound: takeSound,
   highlight: (message) => floor.pointOut(message),
   error: (message) => toast(message.text),
   binary: (buffer) => {
-    if (new Uint8Array(buffer, 0, 1)[0] !== SPEECH) takeFrame(buffer);
+    if (!isSpeech(buffer)) takeFrame(buffer);
   },
   lost: () => {
     doing.clear();

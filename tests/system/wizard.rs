@@ -187,6 +187,52 @@ fn what_a_wizard_decides_is_done_and_stands_in_the_log() {
 }
 
 #[test]
+fn a_wizard_clicks_shows_a_face_injects_an_error_and_leaves_something_undecided() {
+    let error = r#"{"name":"wrong room","do":"go to the reception","step":1}"#;
+    let (play, seat) = play(&["--wizard", "yes", "--wizard-error", error]);
+    let mut wizard = Page::open(&seat).unwrap();
+    let told = wizard.wait("the seat", |_, message| message["type"] == "seat").unwrap();
+    assert_eq!((&told["errors"][0]["name"], &told["expressions"][2]), (&json!("wrong room"), &json!("sorry")));
+    let mut page = Page::open(play.authority()).unwrap();
+    page.wait("the robot", |page, _| page.state["robot"].is_object()).unwrap();
+    // Where it stands is a place on the floor.
+    let robot = &page.state["robot"];
+    wizard.send(&json!({ "type": "floor", "x": robot["x"], "y": robot["y"] })).unwrap();
+    let menu = wizard.wait("what is offered", |_, message| message["type"] == "menu").unwrap();
+    assert_eq!((&menu["name"], &menu["choices"][0]["label"]), (&robot["room_name"], &json!("Go there")));
+    let click = json!({ "type": "click", "turn": null, "click": menu["choices"][0]["click"] });
+    assert!(decide(&mut wizard, &click).is_null());
+    assert!(decide(&mut wizard, &json!({ "type": "express", "expression": "sorry" })).is_null());
+    page.wait("the face", |_, message| message["type"] == "expression" && message["expression"] == "sorry").unwrap();
+    let propose = |page: &mut Page, wizard: &mut Page, said: &str| {
+        page.say(said).unwrap();
+        let is_it = |message: &Value| message["type"] == "proposal" && message["proposal"]["said"] == said;
+        wizard.wait("a proposal", |_, message| is_it(message)).unwrap()["proposal"]["turn"].clone()
+    };
+    let turn = propose(&mut page, &mut wizard, "go to the main office");
+    let inject = json!({ "type": "inject", "turn": turn, "error": "wrong room" });
+    assert!(decide(&mut wizard, &inject).is_null());
+    page.wait("the wrong room", |page, _| page.state["robot"]["room_name"] == "reception").unwrap();
+    assert!(page.chat.iter().any(|(_, text)| text.starts_with("OK, going to the main office")), "{:?}", page.chat);
+    propose(&mut page, &mut wizard, "go to the break room");
+    drop((page, wizard));
+    let ended = play.end().unwrap();
+    let log = Log::open(&ended.log).unwrap();
+    let decisions: Vec<WizardDecision> = log.dialog.iter().filter_map(WizardDecision::of).collect();
+    let outcomes: Vec<_> = decisions.iter().map(|one| one.outcome).collect();
+    use DecisionOutcome::{Replaced, Undecided, Unprompted};
+    assert_eq!(outcomes, [Unprompted, Unprompted, Replaced, Undecided], "{decisions:#?}");
+    assert_eq!((decisions[0].clicked.as_deref(), decisions[0].chosen_ms.is_some()), (Some("go_to_point"), true));
+    assert_eq!(decisions[1].expression.as_deref(), Some("sorry"));
+    assert_eq!(decisions[2].injected.as_deref(), Some("wrong room"));
+    assert_eq!(decisions[3].said, "go to the break room");
+    let seat: Vec<&str> = log.dialog.iter().filter(|one| one.kind == "Seat").map(|one| one.text.as_str()).collect();
+    assert!(seat.starts_with(&["empty", "taken"]), "{seat:?}");
+    let replayed = run(COHABIT, &["replay", ended.log.to_str().unwrap()]).unwrap();
+    assert!(replayed.status.success(), "{replayed:?}");
+}
+
+#[test]
 fn a_late_wizard_leaves_it_to_the_policy_and_a_killed_service_holds_what_was_held() {
     let acts = ["--wizard", "yes", "--wizard-timeout-s", "0.5", "--wizard-on-timeout", "act"];
     let (play_acting, _) = play(&acts);

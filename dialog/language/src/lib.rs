@@ -95,13 +95,14 @@ mod verbless;
 mod waiting;
 mod way;
 mod wish;
+mod worded;
 mod wording;
 mod words;
 mod yes_no;
 
 use std::sync::Arc;
 
-use cohabit_cdf::{Catalog, ObjectId, Status};
+use cohabit_cdf::{Action, Catalog, ObjectId, Status};
 
 pub use address::{Addressed, Roster};
 pub use confidence::{Doubt, Features, Referent, Referents};
@@ -249,6 +250,13 @@ impl Language {
     #[must_use]
     pub fn name(&self, object: ObjectId, scene: &Known) -> String {
         describe::full(&self.catalog, scene, object)
+    }
+
+    /// An action as the step of a plan of its own: `picking up the milk`.
+    #[must_use]
+    pub fn step(&self, action: Action, scene: &Known) -> Step {
+        let says = worded::says(&self.catalog, scene, &action);
+        Step { action, says }
     }
 
     /// The scene as these steps are expected to leave it.

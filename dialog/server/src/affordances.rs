@@ -143,11 +143,22 @@ impl View for Seen<'_> {
 
 /// What an object affords to a body, the most obvious first, and whether it has to come nearer for any of it.
 pub fn afforded(state: StateView<'_>, body: u32, object: ObjectId, catalog: &Catalog) -> (Vec<Affordance>, bool) {
-    let Some(body) = state.bodies.iter().find(|record| record.body == body) else { return (Vec::new(), false) };
+    let Some((all, distance_m)) = all(state, body, object, catalog) else { return (Vec::new(), false) };
+    let (mut near, far): (Vec<_>, Vec<_>) = all.into_iter().partition(|one| distance_m <= within_m(one.deed));
+    near.truncate(MOST);
+    (near, far.iter().any(|one| within_m(one.deed) == REACH_M))
+}
+
+/// What an object affords to a body that walks up to it first, the most obvious first.
+pub fn afforded_from_afar(state: StateView<'_>, body: u32, object: ObjectId, catalog: &Catalog) -> Vec<Affordance> {
+    all(state, body, object, catalog).map(|(all, _)| all).unwrap_or_default()
+}
+
+/// All that an object affords to a body, and how far it is from it, m.
+fn all(state: StateView<'_>, body: u32, object: ObjectId, catalog: &Catalog) -> Option<(Vec<Affordance>, f32)> {
+    let body = state.bodies.iter().find(|record| record.body == body)?;
     let mut seen = Seen { state, catalog, held: None };
-    let Some(record) = seen.record(object).filter(|record| record.held_by == NONE) else {
-        return (Vec::new(), false);
-    };
+    let record = seen.record(object).filter(|record| record.held_by == NONE)?;
     seen.held = (body.held != NONE).then_some(ObjectId(body.held)).filter(|held| seen.exists(*held));
     let note = state.notes.iter().find(|note| note.object == object.0);
     let mut all = match seen.held.and_then(|held| seen.record(held)) {
@@ -159,10 +170,7 @@ pub fn afforded(state: StateView<'_>, body: u32, object: ObjectId, catalog: &Cat
         all.push(Affordance::new(Deed::Throw, "Throw at it"));
     }
     all.push(Affordance::new(Deed::Scan, "Scan"));
-    let distance_m = seen.distance_m(record, body.position_m);
-    let (mut near, far): (Vec<_>, Vec<_>) = all.into_iter().partition(|one| distance_m <= within_m(one.deed));
-    near.truncate(MOST);
-    (near, far.iter().any(|one| within_m(one.deed) == REACH_M))
+    Some((all, seen.distance_m(record, body.position_m)))
 }
 
 fn with_empty_hand(seen: &Seen<'_>, object: ObjectId) -> Vec<Affordance> {

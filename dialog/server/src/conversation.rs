@@ -2,6 +2,7 @@
 //!
 //! Pure: the newest knowledge comes in with every call, and what is to be sent comes out.
 
+mod face;
 mod hearing;
 mod held;
 mod reaction;
@@ -17,6 +18,7 @@ use cohabit_language::{Clarification, Consulting, Context, Language, Step, Under
 use serde::{Deserialize, Serialize};
 
 use crate::{
+    expression::FacialExpression,
     known::Knowledge,
     page::{self, Answer, Line, LineKind, Speaker},
     wizard::Holding,
@@ -106,6 +108,8 @@ pub struct Memory {
     waiting: VecDeque<Words>,
     /// Since when nothing is held back that was before, ns of the monotonic clock.
     free_since_nanos: u64,
+    /// What its face shows.
+    expression: FacialExpression,
 }
 
 /// So many lines tell an interpreter what it is about.
@@ -219,6 +223,7 @@ impl Conversation {
         reactions: &mut Vec<Reaction>,
     ) {
         self.memory.asked = None;
+        self.express(turn, face::shown_with(&understanding), reactions);
         match understanding {
             Understanding::Plan { steps, reply } => {
                 self.say(turn, DialogKind::Reply, LineKind::Say, &reply, reactions);
@@ -322,7 +327,7 @@ impl Conversation {
                 }
             }
             DialogKind::PlanEnded => {
-                let (told, missing) = (plan.told_end, plan.missing);
+                let (told, missing, is_silent) = (plan.told_end, plan.missing, plan.is_silent);
                 self.memory.plans.remove(&number);
                 let status = header.status().unwrap_or(Status::ActionExecutionError);
                 if status.is_success() && missing.is_some_and(|id| self.miss(turn, id, knowledge, &mut reactions)) {
@@ -339,6 +344,9 @@ impl Conversation {
                     status if status.is_success() => TurnEnd::Done,
                     _ => TurnEnd::Failed,
                 };
+                if end == TurnEnd::Failed && !is_silent {
+                    self.express(turn, FacialExpression::Sorry, &mut reactions);
+                }
                 reactions.push(Reaction::TurnEnded { turn, end });
             }
             _ => {}

@@ -4,13 +4,13 @@ use std::{sync::Arc, time::Duration};
 
 use cohabit_bus::{
     Inbox, Pauses, Sample, Topic, Transport, Wake, give_way,
-    message::{FrameView, Malformed, Plane},
+    message::{FrameHeader, FrameView, Malformed, Plane},
 };
 use jpeg_encoder::{ColorType, Encoder, EncodingError};
 
 use crate::{
     DialogError,
-    view::{Ids, View},
+    view::{Eye, Ids, View},
 };
 
 /// JPEG quality, of 100.
@@ -76,8 +76,10 @@ fn show(sample: &Sample, (index, view): (u8, &Arc<View>)) -> Result<Shown, Malfo
     let Some(color) = frame.plane(Plane::Color) else { return Ok(shown) };
     // The pictures of a panorama stand one above the other.
     let size = [frame.header.width, frame.header.height * frame.header.views];
+    let FrameHeader { position_m, yaw_rad, pitch_rad, fov_y_rad, .. } = frame.header;
+    let eye = Eye { position_m, yaw_rad, pitch_rad, fov_y_rad };
     match encode(index, tick, size, color) {
-        Ok(bytes) => view.show(Arc::new(bytes), frame.ids().map(|ids| Ids::new(tick, size, ids))),
+        Ok(bytes) => view.show(Arc::new(bytes), frame.ids().map(|ids| Ids::new(tick, size, ids).seen_from(eye))),
         Err(error) => tracing::warn!("a frame could not be encoded: {error}"),
     }
     Ok(shown)

@@ -1,7 +1,7 @@
 //! What all open pages share: the chat so far, the newest state, the views, and the seats.
 
 use std::{
-    collections::VecDeque,
+    collections::{BTreeMap, VecDeque},
     sync::{
         Arc, Mutex, MutexGuard, PoisonError,
         atomic::{AtomicBool, Ordering},
@@ -28,6 +28,8 @@ pub struct Hub {
     hello: String,
     lines: Mutex<VecDeque<String>>,
     state: Mutex<Option<String>>,
+    /// What the faces of robots show, by their bodies.
+    faces: Mutex<BTreeMap<u32, String>>,
     /// The objects that the robot asks about, in the order of their numbers.
     marked: Mutex<Arc<[ObjectId]>>,
     messages: broadcast::Sender<Arc<str>>,
@@ -119,6 +121,7 @@ impl Hub {
             hello: hello.to_string(),
             lines: Mutex::default(),
             state: Mutex::default(),
+            faces: Mutex::default(),
             marked: Mutex::default(),
             messages: broadcast::Sender::new(MESSAGES_KEPT),
             for_wizards: broadcast::Sender::new(MESSAGES_KEPT),
@@ -148,6 +151,7 @@ impl Hub {
         let receiver = self.messages.subscribe();
         let mut first = vec![self.hello.clone()];
         first.extend(lines.iter().cloned());
+        first.extend(lock(&self.faces).values().cloned());
         first.extend(lock(&self.state).clone());
         (first, receiver)
     }
@@ -220,6 +224,13 @@ impl Hub {
         }
     }
 
+    /// Tells all pages what the face of a robot shows, and keeps it.
+    pub fn show_face(&self, body: u32, message: &Value) {
+        let text = message.to_string();
+        lock(&self.faces).insert(body, text.clone());
+        let _ = self.messages.send(text.into());
+    }
+
     /// Has these objects numbered in the pictures.
     pub fn mark(&self, objects: &[ObjectId]) {
         let mut marked = lock(&self.marked);
@@ -264,6 +275,15 @@ mod tests {
         assert!(join(&hub, NEVER).is_none());
         visits.pop();
         assert!(join(&hub, NEVER).is_some());
+    }
+
+    #[test]
+    fn who_comes_later_is_told_what_faces_show_by_now() {
+        let hub = hub();
+        for shown in ["sorry", "happy"] {
+            hub.show_face(1, &json!(shown));
+        }
+        assert_eq!(hub.attend().0, ["{}", "\"happy\""]);
     }
 
     #[test]

@@ -9,6 +9,7 @@ mod connections;
 mod conversation;
 mod drafts;
 mod driving;
+mod expression;
 mod feed;
 mod frames;
 mod hidden;
@@ -61,6 +62,7 @@ pub use cohabit_language::{Asking, Consulting, Effort, Interpreter, Knows, Langu
 pub use cohabit_speech::VoiceSettings;
 pub use conversation::{Asked, Conversation, Reaction, TurnEnd};
 pub use driving::{Drivable, NotDrivable};
+pub use expression::FacialExpression;
 pub use hidden::{Hidden, NotHidden};
 pub use hosts::{HostName, NoHost};
 pub use interpreter::{Endpoint, EndpointError};
@@ -75,7 +77,7 @@ pub use site::{Framing, Site, SiteFile, file, file_routes};
 pub use spoken::meaning;
 pub use tls::{Identity, TlsError};
 pub use voice::VoiceConfig;
-pub use wizard::{Holding, MOMENT, NotOfWizard, OnTimeout, Phrase, WizardSettings};
+pub use wizard::{Holding, MOMENT, NotOfWizard, OnTimeout, Phrase, PlannedError, SeatState, WizardSettings};
 
 use crate::{
     driving::Drivers,
@@ -221,7 +223,8 @@ pub fn serve(
     let (tell, play) = (move |message: &Value| tells.tell(message), move |piece| plays.play(piece));
     let voice = Voice::new(Arc::clone(&bus), voice, tell, play);
     let (drafts, drafted) = drafts::drafts();
-    let pages = Pages { hub: Arc::clone(&hub), drivers: Arc::clone(&drivers), voice: Arc::clone(&voice), drafts };
+    let (its_hub, its_drivers, its_voice) = (Arc::clone(&hub), Arc::clone(&drivers), Arc::clone(&voice));
+    let pages = Pages { hub: its_hub, drivers: its_drivers, voice: its_voice, drafts, layout };
     let talk = Talk::new(&*bus, catalog, robots, puzzles, pages, journal)?;
     let ears = Ears::new(&*bus)?;
     talk.serve_at(place.clone());
@@ -231,6 +234,9 @@ pub fn serve(
     let over = || stop.load(Ordering::Relaxed) || ended.load(Ordering::Relaxed);
     talk.wait_until_it_sees(&*bus, &over)?;
     talk.leave_puzzles()?;
+    if seat.is_some() {
+        talk.offer_seat()?;
+    }
     thread::scope(|scope| {
         if let (Some(interpreter), Some(asked)) = (config.interpreter, asked) {
             // It may take long to answer; nobody waits for it at the end.
@@ -267,10 +273,11 @@ pub fn serve(
         let ending = Ending(&ended);
         let served = web::serve(listener, service, &over).map_err(DialogError::Serve);
         drop(ending);
-        workers
+        let ended = workers
             .into_iter()
             .map(|worker| worker.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
-            .fold(served, Result::and)
+            .fold(served, Result::and);
+        ended.and_then(|()| talk.close())
     })
 }
 

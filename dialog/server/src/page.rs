@@ -15,10 +15,11 @@ use serde_json::{Value, json};
 use crate::{
     affordances::Affordance,
     driving::DrivableBody,
+    expression::FacialExpression,
     latency::Moments,
     robots::RobotName,
     text::{in_lines, in_one_line},
-    wizard::{Holding, LONGEST_SAYING, Proposal},
+    wizard::{Click, Holding, LONGEST_SAYING, Proposal},
 };
 
 /// Who says a line of chat.
@@ -360,6 +361,11 @@ pub fn progress(body: u32, turn: u64, step: u32, steps: usize, says: &str) -> Va
     json!({ "type": "progress", "body": body, "turn": turn, "step": step + 1, "steps": steps, "text": says })
 }
 
+/// What the face of a robot shows from now on.
+pub fn expression(body: u32, shown: FacialExpression) -> Value {
+    json!({ "type": "expression", "body": body, "expression": shown.name() })
+}
+
 /// A turn is over.
 pub fn turn_ended(body: u32, turn: u64, status: &str) -> Value {
     json!({ "type": "turn", "body": body, "turn": turn, "ended": true, "status": status })
@@ -410,6 +416,14 @@ pub fn unsaid(body: u32, text: &str) -> Value {
     json!({ "type": "unsaid", "body": body, "text": text })
 }
 
+/// What a wizard can have the robot of a body do with a thing that they clicked: what is sent back to have it done, and what a
+/// button says.
+pub fn menu(body: u32, name: &str, choices: &[(Click, String)]) -> Value {
+    let choice = |(click, label): &(Click, String)| json!({ "click": click, "label": label });
+    let choices: Vec<Value> = choices.iter().map(choice).collect();
+    json!({ "type": "menu", "body": body, "name": name, "choices": choices })
+}
+
 /// How a wizard takes part, for their page.
 pub fn seat(holding: &Holding) -> Value {
     let wizard = holding.wizard.as_ref();
@@ -419,6 +433,8 @@ pub fn seat(holding: &Holding) -> Value {
         "timeout_ms": wizard.and_then(|wizard| wizard.timeout).map(|timeout| timeout.as_millis() as u64),
         "on_timeout": wizard.map(|wizard| wizard.on_timeout.name()),
         "phrases": wizard.map(|wizard| wizard.phrases.as_slice()).unwrap_or_default(),
+        "errors": wizard.map(|wizard| wizard.errors.as_slice()).unwrap_or_default(),
+        "expressions": FacialExpression::ALL.map(FacialExpression::name),
         "longest_saying": LONGEST_SAYING,
     })
 }

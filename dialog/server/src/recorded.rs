@@ -8,6 +8,7 @@ use cohabit_record::{DialogEntry, EventEntry, Log};
 use serde_json::{Value, json};
 
 use crate::{
+    expression::FacialExpression,
     latency::Moments,
     page::{self, Answer, Line, LineKind, Speaker},
 };
@@ -56,6 +57,9 @@ fn said(entry: &DialogEntry, names: Names) -> Option<Told> {
         DialogKind::Utterance => line(Speaker::Person, LineKind::Say),
         DialogKind::Reply => line(Speaker::Robot, LineKind::Say),
         DialogKind::Question => line(Speaker::Robot, LineKind::Question),
+        DialogKind::Expressed => {
+            FacialExpression::of(&entry.text).map(|shown| Told::Page(page::expression(entry.body, shown)))
+        }
         DialogKind::Latency => {
             let [received, understood, moved, shown, drawn] = entry.stamps;
             let moments = Moments { turn: entry.turn, received, understood, moved, shown, drawn, ..Moments::default() };
@@ -68,7 +72,8 @@ fn said(entry: &DialogEntry, names: Names) -> Option<Told> {
         | DialogKind::Spoken
         | DialogKind::Interpreted
         | DialogKind::Decided
-        | DialogKind::Pointed => None,
+        | DialogKind::Pointed
+        | DialogKind::Seat => None,
     }
 }
 

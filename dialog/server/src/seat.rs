@@ -29,7 +29,21 @@ enum FromSeat {
     /// Somebody wants to look through another camera.
     View { camera: String },
     /// Somebody points at something in the picture: how far from the left and from the top, 0 to 1.
-    Point { camera: String, tick: u64, x: f32, y: f32 },
+    Point {
+        camera: String,
+        tick: u64,
+        x: f32,
+        y: f32,
+        #[serde(default)]
+        body: Option<u32>,
+    },
+    /// Somebody points at a place on the floor plan, m, in the world.
+    Floor {
+        x: f32,
+        y: f32,
+        #[serde(default)]
+        body: Option<u32>,
+    },
     /// The wizard decides; of the robot of a body, if there are several.
     Decide {
         #[serde(default)]
@@ -44,6 +58,8 @@ struct Visit {
     feed: Feed,
     limits: Limits,
     presence: Presence,
+    /// When the page was told what can be done with what was clicked last.
+    offered: Option<Instant>,
 }
 
 /// Serves a wizard's page until it goes; `seat` is what it is told of how a wizard takes part.
@@ -58,9 +74,16 @@ pub async fn decide(hub: Arc<Hub>, talk: Arc<Talk>, seat: Arc<Value>, mut socket
         }
     }
     let Some(view) = hub.views.first().cloned() else { return };
+    let _seated = match talk.sit_down() {
+        Ok(seated) => seated,
+        Err(error) => {
+            tracing::error!("{error}");
+            return;
+        }
+    };
     let feed = Feed::new(view);
     let (limits, presence) = (Limits::new(Instant::now()), Presence::new(server));
-    Visit { hub, talk, feed, limits, presence }.run(socket, messages, own).await;
+    Visit { hub, talk, feed, limits, presence, offered: None }.run(socket, messages, own).await;
 }
 
 impl Visit {
@@ -76,7 +99,7 @@ impl Visit {
                 received = socket.recv() => {
                     self.presence.note_word();
                     match received {
-                        Some(Ok(Message::Text(text))) => self.answer(&text).await.into_iter().collect(),
+                        Some(Ok(Message::Text(text))) => self.answer(&text).await,
                         Some(Ok(Message::Close(_)) | Err(_)) | None => return,
                         Some(Ok(_)) => Vec::new(),
                     }
@@ -112,13 +135,13 @@ impl Visit {
         self.feed.frame().into_iter().chain(self.feed.marks(&self.hub.marked())).collect()
     }
 
-    async fn answer(&mut self, text: &str) -> Option<Message> {
-        let answer = self.take(text).await.unwrap_or_else(|problem| Some(page::error(&problem)))?;
-        Some(Message::text(answer.to_string()))
+    async fn answer(&mut self, text: &str) -> Vec<Message> {
+        let answers = self.take(text).await.unwrap_or_else(|problem| vec![page::error(&problem)]);
+        answers.iter().map(|answer| Message::text(answer.to_string())).collect()
     }
 
     /// Takes a message of the page; says what is wrong with it, if anything.
-    async fn take(&mut self, text: &str) -> Result<Option<Value>, String> {
+    async fn take(&mut self, text: &str) -> Result<Vec<Value>, String> {
         let now = Instant::now();
         if !self.limits.all.admits(now) || !self.limits.others.admits(now) {
             return Err("That was a lot at once; wait a moment, please.".to_owned());
@@ -126,16 +149,40 @@ impl Visit {
         let message: FromSeat =
             serde_json::from_str(text).map_err(|error| format!("The page sent nonsense: {error}"))?;
         match message {
-            FromSeat::Shown => Ok(None),
+            FromSeat::Shown => Ok(Vec::new()),
             FromSeat::View { camera } => {
                 self.feed.turn_to(Arc::clone(self.hub.view_of(&camera)?));
-                Ok(None)
+                Ok(Vec::new())
             }
-            FromSeat::Point { camera, tick, x, y } => {
-                let Some(id) = self.hub.view_of(&camera)?.id_at(tick, [x, y]) else { return Ok(None) };
-                self.talk.seen(Thing::of_id(id), [x, y]).map_err(|error| error.to_string())
+            FromSeat::Point { camera, tick, x, y, body } => {
+                let view = self.hub.view_of(&camera)?;
+                let Some(id) = view.id_at(tick, [x, y]) else { return Ok(Vec::new()) };
+                let (thing, floor_m) = (Thing::of_id(id), view.floor_at(tick, [x, y]));
+                let seen = self.talk.seen(thing, [x, y]).map_err(|error| error.to_string())?;
+                let menu = self.talk.menu(body.map(BodyId), thing, floor_m).map_err(|error| error.to_string())?;
+                self.offered = menu.is_some().then_some(now);
+                Ok(seen.into_iter().chain(menu).collect())
             }
-            FromSeat::Decide { body, decision } => self.decide(body.map(BodyId), decision).await.map(Some),
+            FromSeat::Floor { x, y, body } => {
+                let menu = self.talk.floor_menu(body.map(BodyId), [x, y]).map_err(|error| error.to_string())?;
+                self.offered = menu.is_some().then_some(now);
+                Ok(menu.into_iter().collect())
+            }
+            FromSeat::Decide { body, decision } => {
+                let decision = self.timed(decision, now);
+                Ok(vec![self.decide(body.map(BodyId), decision).await?])
+            }
+        }
+    }
+
+    /// A decision with how long its choice took, if it is one of those that were offered last.
+    fn timed(&mut self, decision: Decision, now: Instant) -> Decision {
+        match decision {
+            Decision::Click { turn, click, .. } if click.is_of_menu() => {
+                let chosen_ms = self.offered.take().map(|offered| (now - offered).as_secs_f64() * 1000.0);
+                Decision::Click { turn, click, chosen_ms }
+            }
+            other => other,
         }
     }
 

@@ -3,8 +3,10 @@
 mod audience;
 mod held;
 mod inner;
+mod menu;
 mod outbox;
 mod picture;
+mod seated;
 mod world;
 
 use std::{
@@ -14,7 +16,7 @@ use std::{
 };
 
 use cohabit_bus::{Envelope, Inbox, Topic, Transport, Wake, monotonic_nanos};
-use cohabit_cdf::{BodyId, Catalog, ObjectId};
+use cohabit_cdf::{BodyId, Catalog, Layout, ObjectId};
 use cohabit_language::Meant;
 
 use crate::{
@@ -23,6 +25,7 @@ use crate::{
     conversation::Aloud,
     drafts::{Drafted, Drafts, Thought},
     driving::Drivers,
+    expression::FacialExpression,
     hub::Hub,
     interpreter::Puzzles,
     journal::{Journal, Place},
@@ -46,6 +49,7 @@ pub struct Talk {
     hub: Arc<Hub>,
     drivers: Arc<Drivers>,
     catalog: Arc<Catalog>,
+    layout: Arc<Layout>,
     /// Who makes something of what is not understood, if anybody.
     interpreter: Option<Puzzles>,
     /// How robots speak, and who is heard.
@@ -68,6 +72,8 @@ pub struct Pages {
     pub voice: Arc<Voice>,
     /// Where they leave what they may say next.
     pub drafts: Drafts,
+    /// The floor plan that they show.
+    pub layout: Arc<Layout>,
 }
 
 /// What something follows from.
@@ -91,11 +97,14 @@ impl Talk {
         pages: Pages,
         journal: Journal,
     ) -> Result<Arc<Self>, DialogError> {
-        let Pages { hub, drivers, voice, drafts } = pages;
+        let Pages { hub, drivers, voice, drafts, layout } = pages;
         let names = if robots.are_several() { robots.called_by().map(str::to_owned).collect() } else { Vec::new() };
         let past = journal.past();
         hub.restore(&past.lines);
         robots.restore(&past.conversations, &past.lessons);
+        for robot in robots.iter().filter(|robot| robot.conversation.expression() != FacialExpression::default()) {
+            hub.show_face(robot.body.0, &page::expression(robot.body.0, robot.conversation.expression()));
+        }
         let mut inner = Inner {
             robots,
             journal,
@@ -106,11 +115,13 @@ impl Talk {
             spoken_to: BodyId(0),
             woke_at: 0,
             present: BTreeMap::new(),
+            wizards: 0,
         };
         inner.tell_again()?;
         let alarm = Alarm::default();
         alarm.set(inner.due());
-        Ok(Arc::new(Self { inner: Mutex::new(inner), hub, drivers, catalog, interpreter, voice, names, alarm, drafts }))
+        let inner = Mutex::new(inner);
+        Ok(Arc::new(Self { inner, hub, drivers, catalog, layout, interpreter, voice, names, alarm, drafts }))
     }
 
     /// Waits until this conversation sees the world, or until `over`: who is let in then is understood at once.

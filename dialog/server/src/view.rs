@@ -25,6 +25,41 @@ pub struct Ids {
     tick: u64,
     size: [u32; 2],
     runs: Vec<(u32, u32)>,
+    eye: Option<Eye>,
+}
+
+/// Where a picture was taken from, in the world.
+#[derive(Clone, Copy, Debug)]
+pub struct Eye {
+    /// Where, m; the floor is at 0.
+    pub position_m: [f32; 3],
+    /// Where it looks, rad.
+    pub yaw_rad: f32,
+    /// How far up it looks, rad.
+    pub pitch_rad: f32,
+    /// Between the upper and the lower edge, rad.
+    pub fov_y_rad: f32,
+}
+
+/// A floor that is seen flatter than this is too far away to be clicked: metres down per metre ahead.
+const FLATTEST: f32 = 0.05;
+
+impl Eye {
+    /// The point on the floor at a place (0 to 1 from the left and from the top) of a picture of that size, m.
+    fn floor_m(&self, size: [u32; 2], place: [f32; 2]) -> Option<[f32; 2]> {
+        let half = (self.fov_y_rad / 2.0).tan();
+        let aspect = size[0] as f32 / size[1].max(1) as f32;
+        let (right, up) = ((2.0 * place[0] - 1.0) * half * aspect, (1.0 - 2.0 * place[1]) * half);
+        let ((sin_yaw, cos_yaw), (sin_pitch, cos_pitch)) = (self.yaw_rad.sin_cos(), self.pitch_rad.sin_cos());
+        let (ahead, down) = (cos_pitch - up * sin_pitch, -(sin_pitch + up * cos_pitch));
+        if down < FLATTEST {
+            return None;
+        }
+        let [x_m, y_m, height_m] = self.position_m;
+        let far = height_m / down;
+        let [dx, dy] = [ahead * cos_yaw + right * sin_yaw, ahead * sin_yaw - right * cos_yaw];
+        Some([x_m + far * dx, y_m + far * dy])
+    }
 }
 
 impl Ids {
@@ -35,7 +70,12 @@ impl Ids {
             end += run.len() as u32;
             (run[0], end)
         });
-        Self { tick, size, runs: runs.collect() }
+        Self { tick, size, runs: runs.collect(), eye: None }
+    }
+
+    /// The same of a frame that was taken from there.
+    pub fn seen_from(self, eye: Eye) -> Self {
+        Self { eye: Some(eye), ..self }
     }
 
     /// Where each of these objects is, if it is seen: the middle of its pixels from the left, the first from the top.
@@ -153,6 +193,13 @@ impl View {
     pub fn id_at(&self, tick: u64, place: [f32; 2]) -> Option<u32> {
         lock(&self.ids).iter().min_by_key(|ids| ids.tick.abs_diff(tick))?.at(place)
     }
+
+    /// Where on the floor that place is, m, whatever stands before it.
+    pub fn floor_at(&self, tick: u64, place: [f32; 2]) -> Option<[f32; 2]> {
+        let kept = lock(&self.ids);
+        let ids = kept.iter().min_by_key(|ids| ids.tick.abs_diff(tick))?;
+        ids.eye?.floor_m(ids.size, place)
+    }
 }
 
 /// How far around the middle of a picture something may be that is aimed at, as a part of its width, and how many places
@@ -202,6 +249,23 @@ mod tests {
         assert_eq!(at(1, 0.9, 0.1), Some(3), "the oldest that is kept");
         view.forget();
         assert_eq!(at(6, 0.9, 0.1), None);
+    }
+
+    #[test]
+    fn the_floor_is_found_where_the_eye_sees_it() {
+        let view = View::new(CameraId::Eyes(0));
+        let quarter = std::f32::consts::FRAC_PI_4;
+        let eye = Eye { position_m: [1.0, 2.0, 1.0], yaw_rad: 2.0 * quarter, pitch_rad: -quarter, fov_y_rad: quarter };
+        view.show(Frame::default(), Some(Ids::new(1, [4, 3], &[1; 12]).seen_from(eye)));
+        let [x, y] = view.floor_at(1, [0.5, 0.5]).unwrap();
+        assert!((x - 1.0).abs() < 1e-5 && (y - 3.0).abs() < 1e-5, "a metre ahead, which is along y: {x} {y}");
+        let [x, _] = view.floor_at(1, [0.9, 0.5]).unwrap();
+        assert!(x > 1.0, "what is right of the middle is right of the eye");
+        let [_, y] = view.floor_at(1, [0.5, 0.9]).unwrap();
+        assert!(y < 3.0, "what is lower is nearer");
+        let level = Eye { pitch_rad: 0.0, ..eye };
+        view.show(Frame::default(), Some(Ids::new(2, [4, 3], &[1; 12]).seen_from(level)));
+        assert_eq!(view.floor_at(2, [0.5, 0.5]), None);
     }
 
     #[test]

@@ -36,12 +36,14 @@ const HTML_TYPE: &str = "text/html; charset=utf-8";
 const STYLE_TYPE: &str = "text/css; charset=utf-8";
 const SCRIPT_TYPE: &str = "text/javascript; charset=utf-8";
 /// The page's other files: path, media type, text.
-const FILES: [(&str, &str, &str); 16] = [
+const FILES: [(&str, &str, &str); 19] = [
     ("/app.js", SCRIPT_TYPE, include_str!("../../web/app.js")),
     ("/dom.js", SCRIPT_TYPE, include_str!("../../web/dom.js")),
     ("/driving.js", SCRIPT_TYPE, include_str!("../../web/driving.js")),
+    ("/face.js", SCRIPT_TYPE, include_str!("../../web/face.js")),
     ("/floor.js", SCRIPT_TYPE, include_str!("../../web/floor.js")),
     ("/goals.js", SCRIPT_TYPE, include_str!("../../web/goals.js")),
+    ("/page.js", SCRIPT_TYPE, include_str!("../../web/page.js")),
     ("/replay.js", SCRIPT_TYPE, include_str!("../../web/replay.js")),
     ("/socket.js", SCRIPT_TYPE, include_str!("../../web/socket.js")),
     ("/survey.js", SCRIPT_TYPE, include_str!("../../web/survey.js")),
@@ -53,6 +55,7 @@ const FILES: [(&str, &str, &str); 16] = [
     ("/style.css", STYLE_TYPE, include_str!("../../web/style.css")),
     // They are there in every session, so that nobody learns from them whether a wizard takes part.
     ("/wizard.css", STYLE_TYPE, include_str!("../../web/wizard.css")),
+    ("/menu.js", SCRIPT_TYPE, include_str!("../../web/menu.js")),
     ("/wizard.js", SCRIPT_TYPE, include_str!("../../web/wizard.js")),
 ];
 const ICON: &str = include_str!("../../web/favicon.svg");

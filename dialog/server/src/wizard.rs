@@ -4,9 +4,16 @@
 //! What a robot is told is held back where a wizard takes part, or where answers have a constant delay. One rule says when it is
 //! answered ([`Holding::next`]), so both conditions of a study have the same latency.
 
+mod click;
+mod planned;
+
 use std::{fmt, str::FromStr, time::Duration};
 
 use serde::{Deserialize, Serialize};
+
+use crate::expression::FacialExpression;
+pub(crate) use click::Click;
+pub use planned::PlannedError;
 
 /// The longest text of a phrase, and of what a wizard has the robot say, in characters.
 pub const LONGEST_SAYING: usize = 400;
@@ -33,6 +40,8 @@ pub struct WizardSettings {
     pub moment: String,
     /// What they can have the robot say by a key.
     pub phrases: Vec<Phrase>,
+    /// The errors that they can have the robot make.
+    pub errors: Vec<PlannedError>,
 }
 
 /// What follows when a wizard has not decided in time.
@@ -58,6 +67,33 @@ pub struct Phrase {
     pub waits: bool,
 }
 
+/// Whether somebody sits at a session's seat.
+#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
+pub enum SeatState {
+    /// Nobody does.
+    #[default]
+    Empty,
+    /// A wizard's page is open.
+    Taken,
+}
+
+impl SeatState {
+    /// As the bus tells it.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Empty => "empty",
+            Self::Taken => "taken",
+        }
+    }
+
+    /// The one of that name.
+    #[must_use]
+    pub fn of(name: &str) -> Option<Self> {
+        [Self::Empty, Self::Taken].into_iter().find(|one| one.name() == name)
+    }
+}
+
 /// What is wrong with a setting of the seat.
 #[derive(Clone, Debug, Eq, PartialEq, thiserror::Error)]
 pub enum NotOfWizard {
@@ -73,6 +109,18 @@ pub enum NotOfWizard {
     /// Its text is too long, or there is none.
     #[error("the phrase of key `{0}` has to have 1 to {LONGEST_SAYING} characters")]
     Text(char),
+    /// It is no planned error.
+    #[error("that is no planned error ({0}): write JSON such as `{{\"name\": \"slip\", \"do\": \"stop\"}}`")]
+    PlannedError(String),
+    /// It has no name to be called by.
+    #[error("`{0}` is no name of a planned error: write a name of one short line")]
+    ErrorName(String),
+    /// The robot would neither say nor do anything, or too much.
+    #[error("the robot has to say or do something at the planned error `{0}`, in {LONGEST_SAYING} characters")]
+    ErrorText(String),
+    /// There is no such step, or nothing takes its place.
+    #[error("the step of the planned error `{0}` counts from 1, and needs something to do in its place")]
+    ErrorStep(String),
 }
 
 impl Holding {
@@ -127,7 +175,7 @@ pub(crate) enum Next {
 }
 
 /// What a wizard decides.
-#[derive(Clone, Debug, Deserialize, Eq, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq)]
 #[serde(tag = "type", rename_all = "snake_case")]
 pub(crate) enum Decision {
     /// The robot does what it proposes.
@@ -157,6 +205,28 @@ pub(crate) enum Decision {
         /// A plain request that it carries out without a word.
         #[serde(default)]
         order: String,
+    },
+    /// The robot does what was clicked without a word; instead of what it proposes, if a turn is named.
+    Click {
+        /// The turn.
+        turn: Option<u64>,
+        /// What.
+        click: Click,
+        /// From the click on a thing to the choice of what is done with it, ms; the server knows, and the page does not say.
+        #[serde(skip)]
+        chosen_ms: Option<f64>,
+    },
+    /// The robot makes a planned error; instead of what it proposes, if a turn is named.
+    Inject {
+        /// The turn.
+        turn: Option<u64>,
+        /// The error's name.
+        error: String,
+    },
+    /// The robot's face shows something.
+    Express {
+        /// What.
+        expression: FacialExpression,
     },
 }
 
@@ -268,6 +338,7 @@ mod tests {
             on_timeout: timeout.map(|(_, on)| on).unwrap_or_default(),
             moment: MOMENT.to_owned(),
             phrases: Vec::new(),
+            errors: Vec::new(),
         };
         Holding { delay: Duration::from_millis(delay_ms), wizard: has_wizard.then_some(wizard) }
     }

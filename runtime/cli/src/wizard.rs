@@ -3,7 +3,7 @@
 use std::{fmt, time::Duration};
 
 use clap::ValueEnum;
-use cohabit_dialog::{Holding, MOMENT, OnTimeout, Phrase, WizardSettings};
+use cohabit_dialog::{Holding, MOMENT, OnTimeout, Phrase, PlannedError, WizardSettings};
 
 /// The longest that anything is waited for, s.
 const LONGEST_S: f64 = 600.0;
@@ -29,6 +29,10 @@ pub struct WizardOptions {
     /// needed
     #[arg(long = "wizard-phrase", value_name = "KEY=TEXT")]
     pub wizard_phrases: Vec<Phrase>,
+    /// An error that a wizard can have the robot make, as JSON, such as `{"name": "wrong object", "do": "pick up the apple"}`: with
+    /// `say`, what it says; with `step`, the step of the proposed plan, from 1, that is replaced; as often as needed
+    #[arg(long = "wizard-error", value_name = "JSON")]
+    pub wizard_errors: Vec<PlannedError>,
     /// How long after they were received words are answered, ms, with a wizard and without: a constant delay; a stop is never
     /// delayed
     #[arg(long, alias = "response_delay_ms", value_name = "MILLISECONDS", default_value_t = 0, value_parser = clap::value_parser!(u64).range(0..=60_000))]
@@ -67,6 +71,7 @@ impl WizardOptions {
             on_timeout: self.wizard_on_timeout.unwrap_or_default(),
             moment: self.wizard_moment.clone(),
             phrases: self.wizard_phrases.clone(),
+            errors: self.wizard_errors.clone(),
         });
         Holding { delay: Duration::from_millis(self.response_delay_ms), wizard }
     }
@@ -77,12 +82,13 @@ impl WizardOptions {
         let on_timeout = self.wizard_on_timeout.map(|what| format!("--wizard-on-timeout={what}"));
         let phrases: Vec<String> =
             self.wizard_phrases.iter().map(|phrase| format!("--wizard-phrase={phrase}")).collect();
+        let errors: Vec<String> = self.wizard_errors.iter().map(|error| format!("--wizard-error={error}")).collect();
         let whole = [
             format!("--wizard={}", self.wizard),
             format!("--wizard-moment={}", self.wizard_moment),
             format!("--response-delay-ms={}", self.response_delay_ms),
         ];
-        whole.into_iter().chain(timeout).chain(on_timeout).chain(phrases)
+        whole.into_iter().chain(timeout).chain(on_timeout).chain(phrases).chain(errors)
     }
 
     /// The same, for the log.

@@ -184,6 +184,7 @@ impl LockStep {
                 Reaction::TurnEnded { turn, end } => self.noted.turns.push((turn, end)),
                 Reaction::Chat(_)
                 | Reaction::Page(_)
+                | Reaction::Expresses(_)
                 | Reaction::Interpret(..)
                 | Reaction::Proposes
                 | Reaction::ForWizard(_)

@@ -32,6 +32,21 @@ pub struct WizardDecision {
     /// What the wizard had the robot do.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub ordered: String,
+    /// What the wizard chose by a click: `point`, `look`, `go_to_room`, `go_to_point`, `turn`, `move`, or what is done to the object.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub clicked: Option<String>,
+    /// The object that was clicked.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub object: Option<u32>,
+    /// What the wizard had the robot's face show.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub expression: Option<String>,
+    /// The name of the planned error that the wizard injected.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub injected: Option<String>,
+    /// From the click on a thing to the choice of what is done with it, ms.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub chosen_ms: Option<f64>,
     /// Whether the time-out had passed first.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub is_late: bool,
@@ -64,11 +79,13 @@ pub enum DecisionOutcome {
     Stopped,
     /// Nothing was proposed: the wizard acted of their own accord.
     Unprompted,
+    /// The session ended before it was decided.
+    Undecided,
 }
 
 impl DecisionOutcome {
     /// All of them.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Accepted,
         Self::Edited,
         Self::Replaced,
@@ -76,6 +93,7 @@ impl DecisionOutcome {
         Self::TimedOut,
         Self::Stopped,
         Self::Unprompted,
+        Self::Undecided,
     ];
 
     /// As tables have it.
@@ -89,6 +107,7 @@ impl DecisionOutcome {
             Self::TimedOut => "timed_out",
             Self::Stopped => "stopped",
             Self::Unprompted => "unprompted",
+            Self::Undecided => "undecided",
         }
     }
 
@@ -126,6 +145,11 @@ impl WizardDecision {
             spoke: String::new(),
             phrase: None,
             ordered: String::new(),
+            clicked: None,
+            object: None,
+            expression: None,
+            injected: None,
+            chosen_ms: None,
             is_late: false,
             decided_ms: None,
             answered_ms: None,
@@ -170,17 +194,17 @@ mod tests {
     #[test]
     fn decisions_read_as_they_are_written() {
         let decision = WizardDecision {
-            outcome: DecisionOutcome::Edited,
             said: "fetch me the thing".to_owned(),
             proposed: Some(Proposed { kind: "refusal".to_owned(), steps: Vec::new(), reply: "What thing?".to_owned() }),
             edits: vec!["pick up the red mug".to_owned()],
-            spoke: String::new(),
-            phrase: None,
-            ordered: String::new(),
+            clicked: Some("pick_up".to_owned()),
+            object: Some(7),
+            expression: Some("sorry".to_owned()),
+            injected: Some("wrong object".to_owned()),
+            chosen_ms: Some(800.0),
             is_late: true,
             decided_ms: Some(2500.0),
-            answered_ms: None,
-            synthetic: false,
+            ..WizardDecision::of_outcome(DecisionOutcome::Edited)
         };
         let read: WizardDecision = serde_json::from_str(&decision.text()).unwrap();
         assert_eq!(read, decision);

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use cohabit_dialog::{OnTimeout, Phrase, Questionnaire};
+use cohabit_dialog::{OnTimeout, Phrase, PlannedError, Questionnaire};
 use serde::{Deserialize, Serialize};
 
 use crate::{
@@ -70,6 +70,8 @@ pub struct Wizard {
     pub moment: Option<String>,
     /// What they can have the robot say by a key.
     pub phrases: Vec<Phrase>,
+    /// The errors that they can have the robot make.
+    pub errors: Vec<PlannedError>,
 }
 
 /// A text with its version.

@@ -7,7 +7,7 @@ use crate::{
     markdown::html,
     plan::{Plan, PlannedMission, Step, pseudonym},
     progress::{Doing, Phase, Progress},
-    registry::{Participant, Reading, Registry, Who},
+    registry::{Live, Participant, Reading, Registry, Who},
     settings::{CLOCK, is_on},
     tables::{levels, progress_name},
 };
@@ -155,6 +155,8 @@ impl Registry {
             row["mission"] = json!(mission.mission);
             row["now"] = json!(levels(&mission.within));
             row["played_s"] = json!(progress.played_s() + participant.live.as_ref().map_or(0.0, |live| live.unsaved_s));
+            let lacks_wizard = |live: &Live| live.over.is_none() && live.playing.lacks_wizard();
+            row["lacks_wizard"] = json!(participant.live.as_ref().is_some_and(lacks_wizard));
         }
         row
     }

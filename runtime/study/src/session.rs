@@ -69,6 +69,11 @@ pub trait Playing: Send {
     /// What the participant has done in it since it was last looked at; of a tutorial alone.
     fn tried(&mut self) -> Vec<Activity>;
 
+    /// Whether a wizard is to take part, and nobody sits at the seat.
+    fn lacks_wizard(&self) -> bool {
+        false
+    }
+
     /// Asks it to end; it is [`Look::Gone`] soon.
     fn end(&mut self);
 }

@@ -93,13 +93,14 @@ pub fn response_delay_ms(settings: &Settings) -> u64 {
 
 /// How a wizard takes part, as arguments of `cohabit play`.
 fn wizard_arguments(wizard: &Wizard) -> Vec<String> {
-    let Wizard { timeout_s, on_timeout, moment, phrases } = wizard;
+    let Wizard { timeout_s, on_timeout, moment, phrases, errors } = wizard;
     let timeout = timeout_s.map(|seconds| format!("--wizard-timeout-s={seconds}"));
     let follows = timeout_s.map(|_| format!("--wizard-on-timeout={on_timeout}"));
     let moment =
         moment.as_ref().filter(|_| *on_timeout == OnTimeout::Say).map(|text| format!("--wizard-moment={text}"));
     let phrases = phrases.iter().map(|phrase| format!("--wizard-phrase={phrase}"));
-    timeout.into_iter().chain(follows).chain(moment).chain(phrases).collect()
+    let errors = errors.iter().map(|error| format!("--wizard-error={error}"));
+    timeout.into_iter().chain(follows).chain(moment).chain(phrases).chain(errors).collect()
 }
 
 /// Those of the settings that are flags of `cohabit play`, as its arguments.
@@ -175,6 +176,7 @@ mod tests {
             on_timeout: OnTimeout::Say,
             moment: Some("Hm.".to_owned()),
             phrases: vec![phrase],
+            errors: vec![r#"{"name":"forgets","say":"Oh."}"#.parse().expect("a planned error")],
         };
         let with = |takes_part: &str| {
             let settings = Settings::from([
@@ -186,8 +188,13 @@ mod tests {
         };
         let own = ["--response_delay_ms=1500", "--wizard=no", "--hide=figures", "--hide=score"];
         assert_eq!(with("no"), own);
-        let seat =
-            ["--wizard-timeout-s=8", "--wizard-on-timeout=say", "--wizard-moment=Hm.", "--wizard-phrase=h=Hello!"];
+        let seat = [
+            "--wizard-timeout-s=8",
+            "--wizard-on-timeout=say",
+            "--wizard-moment=Hm.",
+            "--wizard-phrase=h=Hello!",
+            r#"--wizard-error={"name":"forgets","say":"Oh."}"#,
+        ];
         assert_eq!(with("yes")[4..], seat);
     }
 

@@ -60,6 +60,8 @@ const LARGEST_SEED: u64 = (1 << 53) - 1;
 const MOST_PARTICIPANTS: u64 = 10_000;
 /// More questions than a questionnaire has.
 const LARGEST_ITEM: u64 = 100;
+/// More steps than a plan is told in.
+const LARGEST_STEP: u64 = 100;
 /// The longest that is counted in seconds.
 pub const LONGEST_SECONDS: f64 = 600.0;
 /// The longest block of a random assignment.
@@ -123,6 +125,18 @@ const WIZARD: &[Key] = &[
     ),
     optional("moment", Kind::Text, "of on_timeout = \"say\": what the robot says"),
     optional("phrase", Kind::Tables(PHRASE), "a canned phrase, which a key says"),
+    optional("error", Kind::Tables(ERROR), "a planned error of the robot, which the wizard injects"),
+];
+
+const ERROR: &[Key] = &[
+    required("name", Kind::Text, "what it is called at the seat and in tables"),
+    optional("say", Kind::Text, "what the robot says; of an error in a step, what it would have said, if absent"),
+    optional("do", Kind::Text, "what the robot does: a plain request"),
+    optional(
+        "step",
+        Kind::Whole(LARGEST_STEP),
+        "the step of the proposed plan, from 1, in whose place it does that; in place of all of it, if absent",
+    ),
 ];
 
 const PHRASE: &[Key] = &[

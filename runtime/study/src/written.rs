@@ -45,6 +45,17 @@ pub(crate) struct WrittenWizard {
     pub on_timeout: Option<Spanned<String>>,
     pub moment: Option<Spanned<String>>,
     pub phrase: Vec<Spanned<WrittenPhrase>>,
+    pub error: Vec<Spanned<WrittenError>>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(default)]
+pub(crate) struct WrittenError {
+    pub name: Option<Spanned<String>>,
+    pub say: Option<Spanned<String>>,
+    #[serde(rename = "do")]
+    pub order: Option<Spanned<String>>,
+    pub step: Option<Spanned<u8>>,
 }
 
 #[derive(Default, Deserialize)]

@@ -21,6 +21,7 @@ function show(next) {
   byId("wizard").hidden = !state.wizard;
   if (state.wizard && !byId("wizard").href.endsWith(state.wizard)) byId("wizard").href = state.wizard;
   showRows();
+  showAlarm();
   showNotes();
 }
 
@@ -53,7 +54,7 @@ function fill(row, one) {
     const cell = row.children[index + 1];
     if (cell.textContent !== text) cell.textContent = text;
   });
-  row.classList.toggle("alarm", isSilent(one));
+  row.classList.toggle("alarm", isSilent(one) || Boolean(one.lacks_wizard));
 }
 
 const isOut = ({ progress }) => ["not begun", "finished", "excluded", "withdrawn"].includes(progress);
@@ -61,8 +62,15 @@ const isSilent = (one) => !isOut(one) && (one.away_s === null || one.away_s > SI
 
 function pageOf(one) {
   if (isOut(one)) return "";
-  if (one.away_s === null) return "not open";
-  return one.away_s > SILENT_S ? `silent for ${clock(one.away_s)}` : "open";
+  const page = one.away_s === null ? "not open" : one.away_s > SILENT_S ? `silent for ${clock(one.away_s)}` : "open";
+  return one.lacks_wizard ? `${page} · no wizard at the seat` : page;
+}
+
+/** What is the same is not told anew to who listens to the page. */
+function showAlarm() {
+  const lacking = state.participants.filter((one) => one.lacks_wizard).map(({ participant }) => participant);
+  const text = lacking.length ? `Nobody sits at the wizard's seat: ${lacking.join(", ")}` : "";
+  if (byId("alarm").textContent !== text) byId("alarm").textContent = text;
 }
 
 function actionsOf(one) {

@@ -11,7 +11,7 @@ use crate::{
     },
 };
 
-const FIELDS: [Field; 20] = [
+const FIELDS: [Field; 26] = [
     Field::new("session", Text, "", "the session, as in the table of sessions"),
     Field::new("turn", Whole, "", "the turn that was answered; of what was unprompted, the one before"),
     Field::new("body", Whole, "", "the robot's body"),
@@ -22,7 +22,7 @@ const FIELDS: [Field; 20] = [
         Text,
         "",
         "accepted, edited, replaced, dismissed, timed_out (the robot did what it had proposed), stopped (the person said stop \
-         first), or unprompted",
+         first), unprompted, or undecided (the session ended first)",
     ),
     Field::new("intervention", Flag, "", "whether the robot did something else than it would have done by itself"),
     Field::new("late", Flag, "", "whether the time-out passed before the wizard had decided"),
@@ -35,6 +35,17 @@ const FIELDS: [Field; 20] = [
     Field::new("spoke", Text, "", "what the wizard had the robot say"),
     Field::new("phrase", Text, "", "the key of the canned phrase that this was"),
     Field::new("ordered", Text, "", "what the wizard had the robot do, as a plain request"),
+    Field::new(
+        "clicked",
+        Text,
+        "",
+        "what the wizard clicked: point, look, go_to_room, go_to_point, turn, move, or what was done to the object",
+    ),
+    Field::new("object", Whole, "", "the object that was clicked"),
+    Field::new("expression", Text, "", "what the wizard had the robot's face show"),
+    Field::new("injected", Flag, "", "whether the wizard injected a planned error"),
+    Field::new("planned_error", Text, "", "its name"),
+    Field::new("chosen_ms", Real, "ms", "wall time from the click on a thing to the choice of what is done with it"),
     Field::new("decided_ms", Real, "ms", "wall time from the proposal to the wizard's decision"),
     Field::new("answered_ms", Real, "ms", "wall time from the words to the robot's answer"),
     Field::new("simulated", Flag, "", "whether a program played the session, so that no wizard decided it"),
@@ -74,6 +85,12 @@ fn row(played: &Played, entry: &DialogEntry, decision: &WizardDecision) -> Vec<C
         Cell::text(&decision.spoke),
         Cell::maybe(decision.phrase, |key| Cell::text(key.to_string())),
         Cell::text(&decision.ordered),
+        Cell::text(decision.clicked.as_deref().unwrap_or_default()),
+        Cell::maybe(decision.object, Cell::whole),
+        Cell::text(decision.expression.as_deref().unwrap_or_default()),
+        Cell::Flag(decision.injected.is_some()),
+        Cell::text(decision.injected.as_deref().unwrap_or_default()),
+        Cell::maybe(decision.chosen_ms, Cell::Real),
         Cell::maybe(decision.decided_ms, Cell::Real),
         Cell::maybe(decision.answered_ms, Cell::Real),
         Cell::Flag(decision.synthetic),

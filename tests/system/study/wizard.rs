@@ -58,8 +58,18 @@ fn the_wizards_page_leads_to_the_seat_and_participants_see_no_difference() {
             let seat = &seats[0];
             assert_eq!(seat["participant"], "P01");
             let authority = format!("127.0.0.1:{}/?token={}", seat["port"], seat["token"].as_str().unwrap());
+            let overview = || server.get(&format!("{}/state", server.experimenter));
+            let wait_for_alarm = |expected: bool| {
+                let deadline = Instant::now() + WATCHDOG;
+                while overview()["participants"][0]["lacks_wizard"] != expected {
+                    assert!(Instant::now() < deadline, "the alarm is not {expected}");
+                    thread::park_timeout(Duration::from_millis(50));
+                }
+            };
+            wait_for_alarm(true);
             let mut page = person.session(&server);
             let mut seat = Page::open(&authority).unwrap();
+            wait_for_alarm(false);
             page.say("go to the main office").unwrap();
             let told = seat.wait("a proposal", |_, message| message["proposal"]["is_decided"] == false).unwrap();
             let accept =

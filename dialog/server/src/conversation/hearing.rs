@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::{Conversation, Reaction, TurnEnd, is_same};
 use crate::{
     drafts::Thought,
+    expression::FacialExpression,
     known::Knowledge,
     page::{Line, LineKind, Speaker},
     spoken::{Reading, Spoken},
@@ -172,6 +173,7 @@ impl Conversation {
         let turn = words.turn;
         self.memory.unsure = None;
         self.memory.puzzle = Some(Puzzle { words, meaning });
+        self.express(turn, FacialExpression::Thinking, reactions);
         self.say(turn, DialogKind::Reply, LineKind::Say, "One moment, let me think.", reactions);
         reactions.push(Reaction::Interpret(turn, Box::new(unclear)));
     }

@@ -4,9 +4,10 @@
 //! back the conversation goes on as if it had not been said, and when something comes of that it is understood anew. A stop is
 //! never held back, and ends what is.
 
-use cohabit_bus::message::DialogKind;
-use cohabit_cdf::Action;
-use cohabit_language::{Asking, Context, Known, Step, Understanding};
+mod deciding;
+
+use cohabit_bus::message::{DialogKind, DialogMessage};
+use cohabit_language::{Known, Understanding};
 use cohabit_record::{DecisionOutcome, Proposed, WizardDecision};
 use serde::{Deserialize, Serialize};
 
@@ -16,18 +17,15 @@ use super::{
 };
 use crate::{
     known::Knowledge,
-    page::{LineKind, Speaker},
-    text::in_one_line,
-    wizard::{Decision, HeldSince, LONGEST_SAYING, Next, OnTimeout, Proposal},
+    page::LineKind,
+    wizard::{HeldSince, Next, OnTimeout, Proposal},
 };
+use deciding::Own;
 
 /// So much of a proposal's plan is noted.
 const MOST_NOTED_STEPS: usize = 12;
 /// The most that waits behind what is held back.
 const MOST_WAITING: usize = 32;
-/// What a wizard reads who decides what is over.
-const PAST: &str = "That is past: it was answered, or the person has said something else.";
-const CHANGED: &str = "The proposal has changed meanwhile: look again.";
 
 /// What is held back.
 #[derive(Clone, Debug, Deserialize, Serialize)]
@@ -48,22 +46,6 @@ struct Decided {
     at_nanos: u64,
     /// What the wizard has the robot say and do; what it proposed, if absent.
     own: Option<Own>,
-}
-
-/// What a wizard has the robot say and do.
-#[derive(Clone, Debug, Default, Deserialize, Serialize)]
-struct Own {
-    say: String,
-    phrase: Option<char>,
-    order: Option<Order>,
-}
-
-/// A plain request of a wizard's that can be carried out.
-#[derive(Clone, Debug, Deserialize, Serialize)]
-struct Order {
-    text: String,
-    steps: Vec<Step>,
-    context: Context,
 }
 
 impl Held {
@@ -87,7 +69,8 @@ impl Held {
         }
     }
 
-    fn record(&self, outcome: DecisionOutcome, now_nanos: u64) -> WizardDecision {
+    /// What is noted of it, answered then if it was.
+    fn record(&self, outcome: DecisionOutcome, answered_nanos: Option<u64>) -> WizardDecision {
         let decided = self.decided.as_ref().filter(|_| outcome != DecisionOutcome::Stopped);
         let own = decided.and_then(|decided| decided.own.as_ref());
         WizardDecision {
@@ -96,21 +79,9 @@ impl Held {
             edits: self.edits.clone(),
             is_late: self.is_late || outcome == DecisionOutcome::TimedOut,
             decided_ms: decided.map(|decided| milliseconds(self.proposed_nanos, decided.at_nanos)),
-            answered_ms: (outcome != DecisionOutcome::Stopped)
-                .then(|| milliseconds(self.words.received_nanos, now_nanos)),
+            answered_ms: answered_nanos.map(|nanos| milliseconds(self.words.received_nanos, nanos)),
             ..own.map_or_else(|| WizardDecision::of_outcome(outcome), |own| own.record(outcome))
         }
-    }
-}
-
-impl Own {
-    fn is_nothing(&self) -> bool {
-        self.say.is_empty() && self.order.is_none()
-    }
-
-    fn record(&self, outcome: DecisionOutcome) -> WizardDecision {
-        let ordered = self.order.as_ref().map(|order| order.text.clone()).unwrap_or_default();
-        WizardDecision { spoke: self.say.clone(), phrase: self.phrase, ordered, ..WizardDecision::of_outcome(outcome) }
     }
 }
 
@@ -214,7 +185,7 @@ impl Conversation {
     fn stop_held(&mut self, reactions: &mut Vec<Reaction>) {
         let waiting = std::mem::take(&mut self.memory.waiting);
         if let Some(held) = self.memory.held.take() {
-            self.note_decision(held.words.turn, &held.record(DecisionOutcome::Stopped, 0), reactions);
+            self.note_decision(held.words.turn, &held.record(DecisionOutcome::Stopped, None), reactions);
             reactions.push(Reaction::TurnEnded { turn: held.words.turn, end: TurnEnd::Interrupted });
             reactions.push(Reaction::Proposes);
         }
@@ -223,6 +194,25 @@ impl Conversation {
             self.note_decision(words.turn, &record, reactions);
             reactions.push(Reaction::TurnEnded { turn: words.turn, end: TurnEnd::Interrupted });
         }
+    }
+
+    /// What is noted of what is held back, and waits behind it, when the session ends; it stays, should the session go on.
+    pub(crate) fn left_undecided(&self) -> Vec<DialogMessage> {
+        if self.holding.wizard.is_none() {
+            return Vec::new();
+        }
+        let noted = |turn: u64, record: &WizardDecision| {
+            DialogMessage::new(DialogKind::Decided, self.body, turn, &record.text())
+        };
+        let held = self.memory.held.iter().map(|held| {
+            let outcome = if held.decided.is_some() { held.outcome() } else { DecisionOutcome::Undecided };
+            noted(held.words.turn, &held.record(outcome, None))
+        });
+        let waiting = self.memory.waiting.iter().map(|words| {
+            let said = words.text.clone();
+            noted(words.turn, &WizardDecision { said, ..WizardDecision::of_outcome(DecisionOutcome::Undecided) })
+        });
+        held.chain(waiting).collect()
     }
 
     /// Notes a decision for the log; where nobody decides there is none.
@@ -310,7 +300,7 @@ impl Conversation {
     /// Answers what is held back, and takes up what was said since.
     fn release(&mut self, now_nanos: u64, knowledge: &Knowledge, reactions: &mut Vec<Reaction>) {
         let Some(held) = self.memory.held.take() else { return };
-        let record = held.record(held.outcome(), now_nanos);
+        let record = held.record(held.outcome(), Some(now_nanos));
         let Held { words: Words { turn, received_nanos, text, .. }, meaning, decided, .. } = *held;
         let number = self.number_of(turn);
         reactions.push(Reaction::Answers { turn: number, received_nanos });
@@ -336,161 +326,6 @@ impl Conversation {
         }
         self.memory.turns
     }
-
-    /// Says and does what a wizard wrote or picked.
-    fn do_own(&mut self, turn: u64, number: u64, own: Own, knowledge: &Knowledge, reactions: &mut Vec<Reaction>) {
-        let Own { say, order, .. } = own;
-        let end = if say.is_empty() { TurnEnd::Interrupted } else { TurnEnd::Answered };
-        if !say.is_empty() {
-            self.memory.asked = None;
-            self.say(turn, DialogKind::Reply, LineKind::Say, &say, reactions);
-        }
-        match order {
-            Some(Order { steps, context, .. }) => {
-                self.memory.context = context;
-                let silently = Understanding::Plan { steps, reply: String::new() };
-                self.react(turn, number, silently, knowledge, reactions);
-                self.silence(number);
-            }
-            None => reactions.push(Reaction::TurnEnded { turn, end }),
-        }
-    }
-
-    fn silence(&mut self, number: u64) {
-        if let Some(plan) = self.memory.plans.get_mut(&number) {
-            plan.is_silent = true;
-        }
-    }
-
-    /// Whether what comes of that plan is told to nobody but the wizard.
-    pub(super) fn is_silent(&self, number: u64) -> bool {
-        self.memory.plans.get(&number).is_some_and(|plan| plan.is_silent)
-    }
-
-    /// What came of an order, of which people are told nothing: the wizard reads what the robot would say.
-    pub(super) fn unsaid(&mut self, after: u64, reactions: Vec<Reaction>) -> Vec<Reaction> {
-        let newest = self.memory.plans.last_key_value().map(|(number, _)| *number);
-        if let Some(number) = newest.filter(|number| *number > after) {
-            self.silence(number);
-        }
-        let is_words = |message: &cohabit_bus::message::DialogMessage| {
-            matches!(message.header.kind(), Some(DialogKind::Reply | DialogKind::Question))
-        };
-        let told = reactions.into_iter().filter_map(|reaction| match reaction {
-            Reaction::Chat(line) if line.from == Speaker::Robot => Some(Reaction::ForWizard(line.text)),
-            Reaction::Bus(message) if is_words(&message) => None,
-            other => Some(other),
-        });
-        told.collect()
-    }
-
-    /// A wizard decides.
-    ///
-    /// # Errors
-    /// Why that cannot be, in words for the wizard.
-    pub(crate) fn decide(
-        &mut self,
-        decision: Decision,
-        now_nanos: u64,
-        knowledge: &Knowledge,
-    ) -> Result<Vec<Reaction>, String> {
-        let mut reactions = Vec::new();
-        match decision {
-            Decision::Accept { turn, revision } => {
-                let held = self.undecided(turn)?;
-                if held.revision != revision {
-                    return Err(CHANGED.to_owned());
-                }
-                held.decided = Some(Decided { at_nanos: now_nanos, own: None });
-            }
-            Decision::Edit { turn, text } => {
-                self.undecided(turn)?;
-                let known = knowledge.known().ok_or("The robot does not see anything yet.")?;
-                let meaning = self.requested(&request(&text)?, &known);
-                let held = self.undecided(turn)?;
-                held.edits.push(request(&text)?);
-                held.revision += 1;
-                held.meaning = meaning;
-                reactions.push(Reaction::Proposes);
-                return Ok(reactions);
-            }
-            Decision::Own { turn, say, phrase, order } => {
-                let own = self.own(&say, phrase, &order, knowledge)?;
-                let Some(turn) = turn else { return self.act(own, knowledge) };
-                self.undecided(turn)?.decided = Some(Decided { at_nanos: now_nanos, own: Some(own) });
-            }
-        }
-        reactions.push(Reaction::Proposes);
-        reactions.extend(self.elapse(now_nanos, knowledge));
-        Ok(reactions)
-    }
-
-    fn undecided(&mut self, turn: u64) -> Result<&mut Held, String> {
-        let held = self.memory.held.as_deref_mut();
-        held.filter(|held| held.words.turn == turn && held.decided.is_none()).ok_or_else(|| PAST.to_owned())
-    }
-
-    /// What a wizard wrote or picked, as far as it can be said and done.
-    fn own(&self, say: &str, phrase: Option<char>, order: &str, knowledge: &Knowledge) -> Result<Own, String> {
-        let mut phrases = self.holding.wizard.iter().flat_map(|wizard| &wizard.phrases);
-        let say = match phrase {
-            Some(key) => {
-                let known = phrases.find(|one| one.key == key);
-                known.ok_or_else(|| format!("No phrase has the key {key}."))?.text.clone()
-            }
-            None => in_one_line(say.trim()),
-        };
-        if say.chars().count() > LONGEST_SAYING {
-            return Err(format!("The robot says {LONGEST_SAYING} characters at most."));
-        }
-        let order = if order.trim().is_empty() { None } else { Some(self.order(&request(order)?, knowledge)?) };
-        Ok(Own { say, phrase, order })
-    }
-
-    /// What a wizard's plain request comes to; nothing is asked about it.
-    fn order(&self, text: &str, knowledge: &Knowledge) -> Result<Order, String> {
-        let known = knowledge.known().ok_or("The robot does not see anything yet.")?;
-        let mut context = self.memory.context.clone();
-        let understood = self.language.clone().asking(Asking::Never).understand(text, &known, &mut context);
-        let stop = || Step { action: Action::Stop, says: String::new() };
-        let steps = match understood {
-            Understanding::Plan { steps, .. } => steps,
-            Understanding::Stop { then: None, .. } => vec![stop()],
-            other => return Err(format!("The robot would not do that: {}", other.reply())),
-        };
-        Ok(Order { text: text.to_owned(), steps, context })
-    }
-
-    /// Has the robot say and do something of the wizard's own accord.
-    fn act(&mut self, own: Own, knowledge: &Knowledge) -> Result<Vec<Reaction>, String> {
-        if own.is_nothing() {
-            return Err("Write what the robot is to say or to do.".to_owned());
-        }
-        let mut reactions = Vec::new();
-        let record = own.record(DecisionOutcome::Unprompted);
-        let turn = self.memory.turns.max(1);
-        // What is held back keeps its number.
-        self.memory.turns = turn + u64::from(own.order.is_some());
-        let number = self.memory.turns;
-        let has_order = own.order.is_some();
-        self.do_own(turn, number, own, knowledge, &mut reactions);
-        if !has_order {
-            // No turn ends by what the robot says of its own accord.
-            reactions.retain(|reaction| !matches!(reaction, Reaction::TurnEnded { .. }));
-        }
-        self.note_decision(turn, &record, &mut reactions);
-        self.propose_again(knowledge, &mut reactions);
-        Ok(reactions)
-    }
-}
-
-/// A wizard's request, if it is one.
-fn request(text: &str) -> Result<String, String> {
-    let text = in_one_line(text.trim());
-    if (1..=LONGEST_SAYING).contains(&text.chars().count()) {
-        return Ok(text);
-    }
-    Err(format!("Write a plain request of 1 to {LONGEST_SAYING} characters."))
 }
 
 #[cfg(test)]

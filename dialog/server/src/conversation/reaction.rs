@@ -4,7 +4,7 @@ use cohabit_bus::message::DialogMessage;
 use cohabit_language::Unclear;
 use serde_json::Value;
 
-use crate::page::Line;
+use crate::{expression::FacialExpression, page::Line};
 
 /// What the conversation wants done.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,6 +15,8 @@ pub enum Reaction {
     Chat(Line),
     /// To all pages, not kept.
     Page(Value),
+    /// To all pages: what the robot's face shows from now on.
+    Expresses(FacialExpression),
     /// To an interpreter: what is not understood in this turn.
     Interpret(u64, Box<Unclear>),
     /// To wizards: what is held back has changed.

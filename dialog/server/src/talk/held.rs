@@ -35,6 +35,13 @@ impl Talk {
         inner.robots.iter().map(|robot| proposed(robot, now_nanos)).collect()
     }
 
+    /// The session is over: notes what was held back and never answered.
+    pub fn close(&self) -> Result<(), DialogError> {
+        let mut inner = self.lock();
+        let left: Vec<_> = inner.robots.iter().flat_map(|robot| robot.conversation.left_undecided()).collect();
+        left.iter().try_for_each(|message| inner.publish(message))
+    }
+
     /// Answers what is held back when its time has come, until `over`.
     pub fn keep_time(&self, over: &dyn Fn() -> bool) -> Result<(), DialogError> {
         while !over() {

@@ -31,6 +31,8 @@ pub(super) struct Inner {
     pub(super) woke_at: u64,
     /// The visitors who are there, and how many pages each has open.
     pub(super) present: BTreeMap<u32, usize>,
+    /// How many wizards' pages are open.
+    pub(super) wizards: usize,
 }
 
 impl Inner {

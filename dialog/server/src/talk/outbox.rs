@@ -63,6 +63,7 @@ impl Talk {
                     }
                 }
                 Reaction::Page(message) => self.hub.tell(&message),
+                Reaction::Expresses(shown) => self.hub.show_face(body.0, &page::expression(body.0, shown)),
                 Reaction::Interpret(turn, unclear) => {
                     let is_asked = self
                         .interpreter

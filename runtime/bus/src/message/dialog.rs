@@ -33,13 +33,17 @@ pub enum DialogKind {
     Interpreted = 10,
     /// What a wizard decided about a turn, as JSON: for logs.
     Decided = 11,
+    /// Whether somebody sits at the wizard's seat, as one word: `taken` or `empty`.
+    Seat = 12,
+    /// What the robot's face shows from now on, as one word.
+    Expressed = 13,
     /// Somebody at a page pointed at a thing in the picture: `person`, and what it is called: for logs.
-    Pointed = 12,
+    Pointed = 14,
 }
 
 impl DialogKind {
     /// All kinds.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 14] = [
         Self::Utterance,
         Self::Reply,
         Self::Question,
@@ -51,6 +55,8 @@ impl DialogKind {
         Self::Spoken,
         Self::Interpreted,
         Self::Decided,
+        Self::Seat,
+        Self::Expressed,
         Self::Pointed,
     ];
 }

@@ -18,7 +18,7 @@ use cohabit_bus::{
     message::{self, DialogKind, DialogView, EventKind, EventMessage, TickView},
 };
 use cohabit_cdf::Status;
-use cohabit_dialog::HostName;
+use cohabit_dialog::{HostName, SeatState};
 use cohabit_record::Log;
 use cohabit_study::{Activity, Ending, Happening, Look, PageAddress, Player, Playing, Wanted, address};
 use rustix::process::{Pid, Signal, kill_process};
@@ -143,6 +143,7 @@ impl Player for Sessions {
             last_line,
             page: None,
             wizard: None,
+            seat: SeatState::default(),
             heard: None,
             happened: Vec::new(),
             activities: wanted.is_tutorial.then(Activities::default),
@@ -194,6 +195,8 @@ struct PlayedSession {
     page: Option<PageAddress>,
     /// What lets a wizard in, once it was told.
     wizard: Option<String>,
+    /// Whether a wizard sits at the seat.
+    seat: SeatState,
     /// What its bus tells of the world, and of what is said.
     heard: Option<Heard>,
     /// What has happened and was not asked for yet.
@@ -246,12 +249,18 @@ impl PlayedSession {
                 told.into_iter().for_each(|activity| activities.note(activity));
             }
         }
-        let told = |view: DialogView<'_>| (view.header.kind(), stops(view.steps));
-        while let Some((_, (kind, stops))) = dialog.next(|sample| DialogView::new(sample.payload()).map(told))? {
+        let told = |view: DialogView<'_>| {
+            (view.header.kind(), stops(view.steps), SeatState::of(view.header.text.as_str()))
+        };
+        while let Some((_, (kind, stops, seat))) = dialog.next(|sample| DialogView::new(sample.payload()).map(told))? {
             if let (Some(activities), Some(kind)) = (&mut self.activities, kind) {
                 activities.hear(kind, stops);
             }
-            self.happened.extend((kind == Some(DialogKind::Question)).then_some(Happening::QuestionAsked));
+            match kind {
+                Some(DialogKind::Question) => self.happened.push(Happening::QuestionAsked),
+                Some(DialogKind::Seat) => self.seat = seat.unwrap_or_default(),
+                _ => {}
+            }
         }
         while let Some((_, event)) = events.next(|sample| message::read::<EventMessage>(sample.payload()))? {
             match event.kind() {
@@ -325,6 +334,11 @@ impl Playing for PlayedSession {
 
     fn tried(&mut self) -> Vec<Activity> {
         self.activities.as_mut().map(Activities::take).unwrap_or_default()
+    }
+
+    fn lacks_wizard(&self) -> bool {
+        let has_seat = self.page.as_ref().is_some_and(|page| page.wizard.is_some());
+        has_seat && self.over.is_none() && self.seat == SeatState::Empty
     }
 
     fn end(&mut self) {

@@ -116,6 +116,11 @@ text = "Hello!"
 key = "1"
 text = "One moment."
 waits = true
+
+[[wizard.error]]
+name = "wrong object"
+do = "pick up the apple"
+step = 1
 "#;
 
 fn check(name: &str, text: &str) -> Result<Study, String> {
@@ -425,6 +430,8 @@ fn a_wizard_takes_part_as_the_file_says() {
     );
     let phrases: Vec<String> = wizard.phrases.iter().map(ToString::to_string).collect();
     assert_eq!(phrases, ["h=Hello!", "1:wait=One moment."]);
+    let errors: Vec<String> = wizard.errors.iter().map(ToString::to_string).collect();
+    assert_eq!(errors, [r#"{"name":"wrong object","do":"pick up the apple","step":1}"#]);
     // Latencies are not to tell the conditions apart.
     let note = study.wizard_note().unwrap();
     assert!(note.contains("a wizard takes longer"), "{note}");
@@ -438,6 +445,7 @@ fn a_wizard_takes_part_as_the_file_says() {
 #[test]
 fn what_is_wrong_with_a_seat_is_said() {
     let phrase = |key: &str, text: &str| format!("[[wizard.phrase]]\nkey = \"{key}\"\ntext = \"{text}\"\n");
+    let error = |keys: &str| format!("[[wizard.error]]\nname = \"a\"\n{keys}\n");
     let delayed = with_wizard("timeout_s = 1").replacen("\"yes\"", "\"yes\", response-delay-ms = 2000", 1);
     let debriefing = "[[block]]\nkind = \"debriefing\"\nfile = \"sheet.md\"\n";
     let inside = STUDY.replacen("ask = \"always\"", "wizard-timeout-s = 3", 1);
@@ -458,6 +466,9 @@ fn what_is_wrong_with_a_seat_is_said() {
             "/wizard/phrase/0/text: the phrase of key `h` has to have 1 to 400",
         ),
         (with_wizard(&phrase("h", "One.").repeat(2)), "/wizard/phrase/1/key: two phrases have the key `h`"),
+        (with_wizard(&error("")), "/wizard/error/0: the robot has to say or do something at the planned error `a`"),
+        (with_wizard(&error("say = \"Oh.\"\nstep = 1")), "/wizard/error/0: the step of the planned error `a`"),
+        (with_wizard(&error("say = \"Oh.\"").repeat(2)), "/wizard/error/1/name: two planned errors are called"),
         (format!("{STUDY}\n[wizard]\n{SEAT}"), "/wizard: no session has a wizard; write wizard = \"yes\""),
         (
             with_wizard(SEAT).replacen(debriefing, "", 1),

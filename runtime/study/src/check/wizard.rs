@@ -3,14 +3,14 @@
 use std::collections::BTreeSet;
 
 use cohabit_cdf::mission::Pointer;
-use cohabit_dialog::{NotOfWizard, OnTimeout, Phrase};
+use cohabit_dialog::{NotOfWizard, OnTimeout, Phrase, PlannedError};
 use toml::Spanned;
 
 use super::Checking;
 use crate::{
     design::{Study, Wizard},
     settings::{has_wizard, response_delay_ms},
-    written::{BlockKind, Written, WrittenPhrase, WrittenWizard},
+    written::{BlockKind, Written, WrittenError, WrittenPhrase, WrittenWizard},
 };
 
 const MS: f64 = 1000.0;
@@ -37,7 +37,33 @@ impl Checking<'_, '_> {
             on_timeout,
             moment: written.moment.as_ref().map(|text| text.get_ref().clone()),
             phrases: self.phrases(&written.phrase, &at.key("phrase")),
+            errors: self.planned_errors(&written.error, &at.key("error")),
         }
+    }
+
+    fn planned_errors(&mut self, written: &[Spanned<WrittenError>], at: &Pointer) -> Vec<PlannedError> {
+        let mut names = BTreeSet::new();
+        let mut all = Vec::new();
+        for (index, error) in written.iter().enumerate() {
+            let place = at.item(index);
+            let WrittenError { name: Some(name), say, order, step } = error.get_ref() else { continue };
+            let text = |text: &Option<Spanned<String>>| {
+                text.as_ref().map(|text| text.get_ref().trim().to_owned()).unwrap_or_default()
+            };
+            let (step, say, order) = (step.as_ref().map(|step| *step.get_ref()), text(say), text(order));
+            match (PlannedError { name: name.get_ref().clone(), say, order, step }).checked() {
+                Ok(planned) if names.insert(planned.name.clone()) => all.push(planned),
+                Ok(planned) => {
+                    let message = format!("two planned errors are called `{}`", planned.name);
+                    self.findings.add(name.span(), &place.key("name"), message, "give one of them another name");
+                }
+                Err(problem) => {
+                    let remedy = "such as name = \"wrong object\" and do = \"pick up the apple\"";
+                    self.findings.add(error.span(), &place, problem.to_string(), remedy);
+                }
+            }
+        }
+        all
     }
 
     fn phrases(&mut self, written: &[Spanned<WrittenPhrase>], at: &Pointer) -> Vec<Phrase> {

@@ -80,6 +80,11 @@ impl Playing for Act {
         std::mem::take(&mut *self.stage.2.lock().unwrap())
     }
 
+    fn lacks_wizard(&self) -> bool {
+        let look = &self.stage.0.lock().unwrap()[self.number].1;
+        matches!(look, Look::Open(page) if page.wizard.is_some())
+    }
+
     fn end(&mut self) {
         self.stage.set(self.number, Look::Gone("as asked".to_owned()));
     }
@@ -243,12 +248,15 @@ fn the_wizards_page_is_led_to_the_seat_and_the_participants_page_is_as_ever() {
     };
     let before = page(&mut case);
     assert_eq!((&before["page"], &case.registry().seats()["seats"]), (&"mission".into(), &serde_json::json!([])));
+    let lacks_wizard = |case: &mut Case| case.registry().overview(1)["participants"][0]["lacks_wizard"].clone();
+    assert_eq!(lacks_wizard(&mut case), false);
     let led = PageAddress { port: 1, token: "t".to_owned(), wizard: Some("w".to_owned()) };
     case.stage.set(0, Look::Open(led));
     case.look_after(1);
     let seat = &case.registry().seats()["seats"][0];
     assert_eq!((&seat["participant"], &seat["port"], &seat["token"]), (&"P01".into(), &1.into(), &"w".into()));
     assert_eq!(page(&mut case), before);
+    assert_eq!(lacks_wizard(&mut case), true, "the experimenter is alarmed");
     assert!(case.registry().overview(1)["wizard"].is_null(), "this study has none");
 }
 

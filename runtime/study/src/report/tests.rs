@@ -149,7 +149,7 @@ fn a_sheet_counts_what_a_wizard_did_otherwise() {
         "canned phrases `h` \"Hello!\"",
         "sooner than 1500 ms after it was said with a wizard, and 0 ms without",
         "Of 4 decisions, 2 were interventions (50.0 %)",
-        "| ask=always | 4 | 1 | 1 | 1 | 0 | 1 | 0 | 0 | 2 | 1 | 3000 ms |",
+        "| ask=always | 4 | 1 | 1 | 1 | 0 | 1 | 0 | 0 | 0 | 2 | 1 | 3000 ms |",
         "| wizard | training | missing | **add it** |",
         "| wizard | what they controlled, and how | present |",
         "of 22 items 10 are missing",

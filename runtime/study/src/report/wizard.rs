@@ -16,7 +16,7 @@ use crate::{
 };
 
 /// The columns of counts: a head, and the outcomes that it counts.
-const COUNTS: [(&str, &str); 7] = [
+const COUNTS: [(&str, &str); 8] = [
     ("accepted", "accepted"),
     ("edited", "edited"),
     ("replaced", "replaced"),
@@ -24,6 +24,7 @@ const COUNTS: [(&str, &str); 7] = [
     ("timed out", "timed_out"),
     ("stopped by the participant", "stopped"),
     ("unprompted", "unprompted"),
+    ("undecided at the end", "undecided"),
 ];
 
 /// What was decided under one condition.
@@ -60,7 +61,9 @@ pub(super) fn section(known: &Known<'_>) -> String {
     }
     let head = ["condition", "decisions"].into_iter().chain(COUNTS.map(|(head, _)| head));
     let head: Vec<&str> = head.chain(["interventions", "late", "median time to decide"]).collect();
-    format!("{}\n\n{}\n\n{}", setting(known), summary(&counts), rows(&head, counts.iter().map(row)))
+    let injected = decisions.column("injected").filter(|cell| is_true(cell)).count();
+    let summary = format!("{}{}", summary(&counts), of_errors(injected));
+    format!("{}\n\n{summary}\n\n{}", setting(known), rows(&head, counts.iter().map(row)))
 }
 
 /// The sentence that a paper needs.
@@ -73,6 +76,11 @@ fn summary(counts: &BTreeMap<String, Count>) -> String {
         counted(total, "decision"),
         all.interventions
     )
+}
+
+fn of_errors(injected: usize) -> String {
+    let were = if injected == 1 { "was" } else { "were" };
+    if injected == 0 { String::new() } else { format!(" {} {were} injected.", counted(injected, "planned error")) }
 }
 
 fn row((condition, count): (&String, &Count)) -> Vec<String> {
@@ -91,10 +99,13 @@ fn row((condition, count): (&String, &Count)) -> Vec<String> {
 /// How the wizard took part.
 fn setting(known: &Known<'_>) -> String {
     let study = &known.records.study;
-    let Wizard { timeout_s, on_timeout, phrases, .. } = &study.wizard;
+    let Wizard { timeout_s, on_timeout, phrases, errors, .. } = &study.wizard;
     let keys: Vec<String> = phrases.iter().map(|phrase| format!("`{}` \"{}\"", phrase.key, phrase.text)).collect();
     let phrases =
         if keys.is_empty() { "no canned phrases".to_owned() } else { format!("canned phrases {}", listed(&keys)) };
+    let names: Vec<String> = errors.iter().map(|error| format!("\"{}\"", error.name)).collect();
+    let injects = || format!(", and injects planned errors: {}", listed(&names));
+    let errors = if names.is_empty() { String::new() } else { injects() };
     let who = if known.records.is_synthetic {
         "No wizard decided anything: the dry run took each proposal for accepted. In the study "
     } else {
@@ -103,7 +114,7 @@ fn setting(known: &Known<'_>) -> String {
     format!(
         "{who}a wizard decides of each answer in sessions with the setting `wizard` = `yes`. What participants say is understood by the \
          robot as ever, and held back; the wizard sees the robot's own interpretation, and accepts it, has another request \
-         understood in its place, or replaces it. {} The wizard has {phrases}. {}",
+         understood in its place, or replaces it. {} The wizard has {phrases}{errors}. {}",
         time(*timeout_s, *on_timeout),
         delays(known)
     )

@@ -3,14 +3,18 @@
 use std::time::Duration;
 
 use cohabit_bus::message::{DialogMessage, PlanStep};
-use cohabit_cdf::Status;
+use cohabit_cdf::{Action, GoToTarget, RoomId, Status};
 use cohabit_record::DialogEntry;
 
 use super::{
     super::tests::{conversation, knowledge, plans, says},
+    deciding::{CHANGED, PAST},
     *,
 };
-use crate::wizard::{Holding, MOMENT, WizardSettings};
+use crate::{
+    expression::FacialExpression,
+    wizard::{Click, Decision, Holding, MOMENT, WizardSettings},
+};
 
 const MS: u64 = 1_000_000;
 const SAID: &str = "go to the main office";
@@ -21,6 +25,10 @@ fn seat(timeout: Option<(u64, OnTimeout)>) -> WizardSettings {
         on_timeout: timeout.map(|(_, on)| on).unwrap_or_default(),
         moment: MOMENT.to_owned(),
         phrases: vec!["h=Hello!".parse().unwrap(), "m:wait=Hm, let me see.".parse().unwrap()],
+        errors: vec![
+            r#"{"name":"wrong room","do":"go to the reception","step":1}"#.parse().unwrap(),
+            r#"{"name":"forgets","say":"I forgot what I was about."}"#.parse().unwrap(),
+        ],
     }
 }
 
@@ -309,4 +317,84 @@ fn a_conversation_goes_on_with_what_it_held_back() {
     next.restore(serde_json::from_str(&kept).unwrap());
     assert_eq!(next.proposal(0), conversation.proposal(0));
     assert!(plans(&decide(&mut next, Decision::Accept { turn, revision: 0 }, 2000)));
+}
+
+#[test]
+fn clicks_are_done_without_a_word_and_noted() {
+    let mut conversation = with_wizard(0, None);
+    let click = |turn, click| Decision::Click { turn, click, chosen_ms: Some(700.0) };
+    let reactions = decide(&mut conversation, click(None, Click::Room { room: RoomId::Reception }), 2000);
+    assert!(plans(&reactions) && says(&reactions).is_empty(), "{reactions:?}");
+    let record = &records(&reactions)[0];
+    assert_eq!((record.outcome, record.chosen_ms), (DecisionOutcome::Unprompted, Some(700.0)));
+    assert_eq!((record.clicked.as_deref(), record.ordered.as_str()), (Some("go_to_room"), "going to the reception"));
+    // In place of what was proposed.
+    let turn = say(&mut conversation, SAID);
+    let reactions = decide(&mut conversation, click(Some(turn), Click::Point { object: 3 }), 2000);
+    let record = &records(&reactions)[0];
+    assert_eq!((record.outcome, record.object), (DecisionOutcome::Replaced, Some(3)));
+    assert!(plans(&reactions) && conversation.proposal(0).is_none());
+    let problem = conversation.decide(click(None, Click::Look { object: 3 }), 0, &knowledge()).unwrap_err();
+    assert!(problem.contains("in that room"), "{problem}");
+}
+
+#[test]
+fn planned_errors_take_the_place_of_what_was_proposed_and_are_marked() {
+    let mut conversation = with_wizard(0, None);
+    let inject = |turn, name: &str| Decision::Inject { turn, error: name.to_owned() };
+    let turn = say(&mut conversation, SAID);
+    let reactions = decide(&mut conversation, inject(Some(turn), "wrong room"), 2000);
+    assert!(says(&reactions).contains("main office"), "it says what it would have said: {}", says(&reactions));
+    let reception = Action::GoTo { target: GoToTarget::Room(RoomId::Reception) };
+    let does = reactions.iter().any(|reaction| match reaction {
+        Reaction::Bus(message) => message.steps.iter().any(|step| step.action == reception.into()),
+        _ => false,
+    });
+    assert!(does, "{reactions:?}");
+    let record = &records(&reactions)[0];
+    assert_eq!((record.outcome, record.injected.as_deref()), (DecisionOutcome::Replaced, Some("wrong room")));
+    let reactions = decide(&mut conversation, inject(None, "forgets"), 3000);
+    assert_eq!(says(&reactions), "I forgot what I was about.");
+    assert_eq!(records(&reactions)[0].injected.as_deref(), Some("forgets"));
+    for (name, part) in [("wrong room", "none is proposed"), ("no such", "No planned error")] {
+        let problem = conversation.decide(inject(None, name), 0, &knowledge()).unwrap_err();
+        assert!(problem.contains(part), "{problem}");
+    }
+}
+
+#[test]
+fn the_face_follows_the_conversation_and_the_wizard() {
+    let shown = |reactions: &[Reaction]| -> Vec<FacialExpression> {
+        let all = reactions.iter().filter_map(|reaction| match reaction {
+            Reaction::Expresses(shown) => Some(*shown),
+            _ => None,
+        });
+        all.collect()
+    };
+    let mut alone = conversation();
+    let (_, reactions) = alone.hear("blorp the zargle", &knowledge());
+    assert_eq!(shown(&reactions), [FacialExpression::Confused], "without a wizard, too");
+    let (_, reactions) = alone.hear(SAID, &knowledge());
+    assert_eq!(shown(&reactions), [FacialExpression::Neutral]);
+    let mut led = with_wizard(0, None);
+    let happy = || Decision::Express { expression: FacialExpression::Happy };
+    let reactions = decide(&mut led, happy(), 2000);
+    assert_eq!((shown(&reactions), outcome(&reactions)), (vec![FacialExpression::Happy], DecisionOutcome::Unprompted));
+    assert_eq!(records(&reactions)[0].expression.as_deref(), Some("happy"));
+    assert!(shown(&decide(&mut led, happy(), 2500)).is_empty(), "that is no news");
+}
+
+#[test]
+fn what_is_undecided_when_the_session_ends_is_noted() {
+    let mut led = with_wizard(0, None);
+    say(&mut led, SAID);
+    say(&mut led, "go to the reception");
+    let left = led.left_undecided().into_iter().map(|message| Reaction::Bus(Box::new(message)));
+    let noted = records(&left.collect::<Vec<_>>()).into_iter().map(|record| (record.outcome, record.said));
+    let undecided = |said: &str| (DecisionOutcome::Undecided, said.to_owned());
+    assert_eq!(noted.collect::<Vec<_>>(), [undecided(SAID), undecided("go to the reception")]);
+    assert!(led.proposal(0).is_some(), "a service that goes on holds it back yet");
+    let mut alone = delayed(500);
+    say(&mut alone, SAID);
+    assert!(alone.left_undecided().is_empty(), "nobody was to decide");
 }

@@ -1,0 +1,35 @@
+//! What the robot's face shows of the conversation, with a wizard and without.
+
+use cohabit_bus::message::DialogKind;
+use cohabit_language::Understanding;
+
+use super::{Conversation, Reaction};
+use crate::expression::FacialExpression;
+
+impl Conversation {
+    /// What its face shows.
+    pub(crate) const fn expression(&self) -> FacialExpression {
+        self.memory.expression
+    }
+
+    /// Has its face show something from now on, which is told if it is news.
+    pub(super) fn express(&mut self, turn: u64, shown: FacialExpression, reactions: &mut Vec<Reaction>) {
+        if self.memory.expression != shown {
+            self.memory.expression = shown;
+            reactions.push(self.bus(DialogKind::Expressed, turn, shown.name()));
+            reactions.push(Reaction::Expresses(shown));
+        }
+    }
+}
+
+/// What its face shows while it answers so.
+pub(super) const fn shown_with(understanding: &Understanding) -> FacialExpression {
+    match understanding {
+        Understanding::Refusal { is_lost: true, .. } => FacialExpression::Confused,
+        Understanding::Refusal { .. } => FacialExpression::Sorry,
+        Understanding::Plan { .. }
+        | Understanding::Question { .. }
+        | Understanding::Answer { .. }
+        | Understanding::Stop { .. } => FacialExpression::Neutral,
+    }
+}

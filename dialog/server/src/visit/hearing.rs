@@ -1,0 +1,157 @@
+//! How a page is heard, and hears: its microphone, what was made of it, and what robots say aloud.
+
+use std::{sync::Arc, time::Instant};
+
+use axum::extract::ws::Message;
+use cohabit_bus::monotonic_nanos;
+use cohabit_speech::Recognition;
+use tokio::sync::broadcast::{self, error::RecvError};
+
+use super::{Visit, tell};
+use crate::{
+    page,
+    spoken::{Reading, Spoken},
+    text,
+    voice::{Audience, EarAt, FromEar, Hearer, Hearing},
+    web::Live,
+};
+
+impl Visit {
+    /// Listens to the page's microphone from now on.
+    pub(super) fn begin_listening(&mut self, rate: u32, held: bool) -> Result<(), String> {
+        if !self.live.voice.config.has_microphone {
+            return Err("This session hears no microphone: please type.".to_owned());
+        }
+        if self.hearing.is_none() {
+            let Live { voice, talk, .. } = &self.live;
+            let at = EarAt {
+                voice: Arc::clone(voice),
+                talk: Arc::clone(talk) as Arc<dyn Audience>,
+                visitor: self.visitor.number,
+                to: self.ear.0.clone(),
+            };
+            self.hearing = Some(Hearing::begin(at, rate)?);
+        }
+        let Some(hearing) = &mut self.hearing else { return Ok(()) };
+        hearing.begin_again(rate)?;
+        if held {
+            hearing.hold();
+        }
+        Ok(())
+    }
+
+    /// What was said is all. The ear stays, should more be said.
+    pub(super) fn end_listening(&mut self) {
+        if let Some(hearing) = &self.hearing {
+            hearing.finish();
+        }
+    }
+
+    /// Takes a piece of sound; what cannot be listened to ends the listening, and says why.
+    pub(super) fn listen(&mut self, bytes: &[u8]) -> Vec<Message> {
+        let (received_nanos, now) = (monotonic_nanos(), Instant::now());
+        // What comes after the end, or before it was begun, was on its way.
+        let Some(hearing) = &mut self.hearing else { return Vec::new() };
+        let taken = if self.limits.sounds.admits(now) {
+            hearing.take(bytes, received_nanos)
+        } else {
+            Err("The microphone sends more than can be listened to: reload the page, or type.".to_owned())
+        };
+        match taken {
+            Ok(note) => note.map(|note| tell(&page::error(note))).into_iter().collect(),
+            Err(problem) => {
+                self.hearing = None;
+                vec![tell(&page::error(&problem)), tell(&page::deaf())]
+            }
+        }
+    }
+
+    /// What the page's ear heard.
+    pub(super) async fn take_heard(&mut self, heard: FromEar) -> Vec<Message> {
+        match heard {
+            FromEar::Page(message) => vec![tell(&message)],
+            FromEar::Said(spoken) => {
+                let said = self.take_spoken(*spoken).await;
+                said.unwrap_or_else(|problem| vec![tell(&page::error(&problem))])
+            }
+        }
+    }
+
+    /// Shows what was heard for a moment, if it can be changed, or has the robot hear it.
+    async fn take_spoken(&mut self, spoken: Spoken) -> Result<Vec<Message>, String> {
+        let edit = self.live.voice.config.edit;
+        if edit.is_zero() {
+            let meant_nanos = spoken.text_nanos;
+            return self.say_aloud(spoken, meant_nanos).await;
+        }
+        let read = self.live.talk.read(&spoken, self.visitor()).map_err(|error| error.to_string())?;
+        let Some(reading) = read else { return Ok(vec![tell(&page::hearing("nothing"))]) };
+        self.heard_count += 1;
+        let told = tell(&page::heard(self.heard_count, &reading.text, edit.as_millis()));
+        self.heard = Some((self.heard_count, Spoken { settled: Some(reading), ..spoken }));
+        Ok(vec![told])
+    }
+
+    async fn say_aloud(&mut self, spoken: Spoken, meant_nanos: u64) -> Result<Vec<Message>, String> {
+        let (visitor, talk) = (self.visitor(), Arc::clone(&self.live.talk));
+        match tokio::task::spawn_blocking(move || talk.hear_aloud(&spoken, visitor, meant_nanos)).await {
+            Ok(Ok(is_heard)) => Ok(vec![tell(&page::hearing(if is_heard { "said" } else { "nothing" }))]),
+            Ok(Err(error)) => {
+                tracing::error!("{error}");
+                Err("The robot cannot be reached.".to_owned())
+            }
+            Err(_) => Ok(Vec::new()),
+        }
+    }
+
+    /// What was heard is meant, perhaps in other words; or is to be forgotten.
+    pub(super) async fn say_heard(
+        &mut self,
+        number: u64,
+        text: Option<String>,
+        sure: bool,
+        received_nanos: u64,
+    ) -> Result<(), String> {
+        let Some((_, spoken)) = self.heard.take_if(|(heard, _)| *heard == number) else { return Ok(()) };
+        if let Some(hearing) = &self.hearing {
+            hearing.part();
+        }
+        let Some(text) = text.as_deref().map(text::in_one_line) else { return Ok(()) };
+        if text.trim().is_empty() || !text::is_within_limit(&text) {
+            return self.say(&text, received_nanos).await;
+        }
+        let shown = spoken.settled.filter(|reading| reading.text == text);
+        let heard = if shown.is_some() { spoken.heard } else { Recognition::sure(text.as_str()) };
+        let is_doubtful = !sure && shown.is_some_and(|reading| reading.is_doubtful);
+        let spoken = Spoken { heard, settled: Some(Reading { text, is_doubtful }), ..spoken };
+        self.say_aloud(spoken, received_nanos).await.map(drop)
+    }
+
+    /// Has the page hear what robots say, or not; gives what it is told of the engines.
+    pub(super) fn hear_robots(&mut self, on: bool) -> Vec<Message> {
+        if !on {
+            self.sounds = None;
+        } else if self.sounds.is_none() {
+            self.sounds = Some((self.hub.sounds(), self.live.voice.hearer()));
+            let (voice, to) = (Arc::clone(&self.live.voice), self.ear.0.clone());
+            // Opening the engines takes a second.
+            std::thread::spawn(move || drop(to.send(FromEar::Page(voice.told()))));
+        }
+        Vec::new()
+    }
+}
+
+/// The next piece of what robots say; pends where that is not wanted.
+pub(super) async fn next_sound(sounds: &mut Option<(broadcast::Receiver<Arc<Vec<u8>>>, Hearer)>) -> Arc<Vec<u8>> {
+    if let Some((sounds, _)) = sounds {
+        loop {
+            match sounds.recv().await {
+                Ok(piece) => return piece,
+                // It misses some.
+                Err(RecvError::Lagged(_)) => {}
+                Err(RecvError::Closed) => break,
+            }
+        }
+    }
+    std::future::pending().await
+}
