@@ -39,10 +39,11 @@ impl Draft {
     /// Begins one, or goes on with the one of the same run: what was cut off in the middle of a line is played again.
     pub(crate) fn open(out: &Path, header: Header) -> Result<Self, RunError> {
         let path = part_of(out);
+        let damaged = |line: usize, reason: String| RunError::Damaged { path: path.clone(), line, reason };
         let text = match fs::read(&path) {
-            Ok(bytes) => whole_lines(bytes),
+            Ok(bytes) => String::from_utf8(whole_lines(bytes)).map_err(|error| damaged(1, error.to_string()))?,
             Err(error) if error.kind() == io::ErrorKind::NotFound => String::new(),
-            Err(source) => return Err(RunError::File { path, source }),
+            Err(source) => return Err(RunError::File { path: path.clone(), source }),
         };
         if text.is_empty() {
             let file = File::create(&path).map_err(at(&path))?;
@@ -51,10 +52,9 @@ impl Draft {
             draft.append(&first)?;
             return Ok(draft);
         }
-        let damaged = |line: usize, reason: String| RunError::Damaged { path: path.clone(), line, reason };
         let Submission { header: before, lines } = Submission::parse(&text).map_err(|reason| damaged(1, reason))?;
         if !before.is_same_run(&header) {
-            return Err(RunError::OtherRun { path });
+            return Err(RunError::OtherRun { path: path.clone() });
         }
         let mut episodes = BTreeMap::new();
         for Line { number, episode } in lines {
@@ -103,12 +103,11 @@ pub(crate) fn write(out: &Path, header: &Header, episodes: &[Episode]) -> Result
     fs::remove_file(&part).map_err(at(&part))
 }
 
-/// What of a file is whole lines of text.
-fn whole_lines(mut bytes: Vec<u8>) -> String {
+/// What of a file is whole lines.
+fn whole_lines(mut bytes: Vec<u8>) -> Vec<u8> {
     let end = bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |last| last + 1);
     bytes.truncate(end);
-    // What is no text is no episode either, and said so.
-    String::from_utf8_lossy(&bytes).into_owned()
+    bytes
 }
 
 fn line(value: &impl Serialize, path: &Path) -> Result<String, RunError> {
