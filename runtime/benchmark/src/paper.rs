@@ -70,8 +70,8 @@ mod tests {
         assert_eq!((paper.vision.len(), paper.methods.len()), (4, 4));
         for method in &paper.methods {
             assert_eq!(method.types.len(), 12, "{}", method.name);
-            let rates = method.types.values();
-            let (least, most) = rates.fold((100.0_f64, 0.0_f64), |(least, most), rate| (least.min(*rate), most.max(*rate)));
+            let least = method.types.values().copied().fold(f64::INFINITY, f64::min);
+            let most = method.types.values().copied().fold(0.0, f64::max);
             assert!(least <= method.msr && method.msr <= most, "{}", method.name);
         }
     }

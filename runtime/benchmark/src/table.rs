@@ -93,16 +93,14 @@ fn overall(entries: &[&Entry]) -> Grid {
     }
 }
 
-fn by(
-    title: &str,
-    entries: &[&Entry],
-    split: Split,
-    groups: fn(&SplitTotals) -> &BTreeMap<String, Tally>,
-) -> Grid {
+fn by(title: &str, entries: &[&Entry], split: Split, groups: fn(&SplitTotals) -> &BTreeMap<String, Tally>) -> Grid {
     let played: Vec<(&Entry, &BTreeMap<String, Tally>)> =
         entries.iter().filter_map(|entry| Some((*entry, groups(totals(entry, split)?)))).collect();
     let names: BTreeSet<&String> = played.iter().flat_map(|(_, groups)| groups.keys()).collect();
-    let count = |name: &String| played.iter().find_map(|(_, groups)| groups.get(name)).map_or(0, |tally| tally.missions);
+    let count = |name: &String| {
+        let tally = played.iter().find_map(|(_, groups)| groups.get(name));
+        tally.map_or(0, |tally| tally.missions)
+    };
     let rows = names.into_iter().map(|name| {
         let figures = played.iter().map(|(_, groups)| rate(groups.get(name)));
         [name.clone(), count(name).to_string()].into_iter().chain(figures).collect()
@@ -180,7 +178,8 @@ fn named(name: &str, questions: bool) -> String {
 }
 
 fn yes(is_so: bool) -> String {
-    if is_so { "yes" } else { "no" }.to_owned()
+    let word = if is_so { "yes" } else { "no" };
+    word.to_owned()
 }
 
 fn verified(check: Check) -> String {
@@ -233,7 +232,8 @@ mod tests {
     use crate::submission::AgentCard;
 
     fn entry(name: &str, solved: usize, check: Check) -> Entry {
-        let tally = Tally { missions: 4, solved, msr: solved as f64 / 4.0, interval_95: [0.1, 0.9], ..Tally::default() };
+        let msr = solved as f64 / 4.0;
+        let tally = Tally { missions: 4, solved, msr, interval_95: [0.1, 0.9], ..Tally::default() };
         let parts = BTreeMap::from([("seen".to_owned(), tally)]);
         let types = BTreeMap::from([("clean&deliver".to_owned(), tally)]);
         let totals = BTreeMap::from([(Split::Test, SplitTotals { all: tally, parts, types })]);
