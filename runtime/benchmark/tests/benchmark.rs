@@ -101,7 +101,7 @@ fn a_submission_holds_and_is_the_same_with_any_number_of_workers() {
     let scratch = Scratch::new("benchmark-holds");
     let (benchmark, out) = submission(&scratch);
     let text = fs::read_to_string(&out).unwrap();
-    assert_eq!(differences(&benchmark, &text), []);
+    assert_eq!(differences(&benchmark, &text), Vec::<Difference>::new());
     let alone = PathBuf::from(scratch.path("alone.jsonl"));
     played(&benchmark, &alone, 1).unwrap();
     assert_eq!(fs::read_to_string(&alone).unwrap(), text);
@@ -131,7 +131,7 @@ fn a_run_that_was_cut_in_the_middle_of_a_line_goes_on() {
     assert!(!part.exists());
     let whole = fs::read_to_string(&cut).unwrap();
     assert!(whole.lines().skip(1).eq(text.lines().skip(1)), "{whole}");
-    assert_eq!(differences(&benchmark, &whole), []);
+    assert_eq!(differences(&benchmark, &whole), Vec::<Difference>::new());
     // What is whole and yet no episode is not passed over, nor is another run's.
     let again = PathBuf::from(scratch.path("again.jsonl"));
     let part = scratch.path("again.jsonl.part");
@@ -185,8 +185,8 @@ fn what_was_tampered_with_is_named() {
     }));
     assert!(fields(&found).contains(&"taken"), "{found:?}");
 
-    let found = check(&changed(&text, 0, |header| header["totals"]["test"]["all"]["msr"] = json!(1.5)));
-    assert!(matches!(found.as_slice(), [Difference::Totals { place, .. }] if place == "test"), "{found:?}");
+    let found = check(&changed(&text, 0, |header| header["totals"]["validation"]["all"]["msr"] = json!(1.5)));
+    assert!(matches!(found.as_slice(), [Difference::Totals { place, .. }] if place == "validation"), "{found:?}");
 
     let lines: Vec<&str> = text.lines().collect();
     let without: Vec<&str> = lines.iter().copied().filter(|line| *line != lines[1]).collect();
