@@ -10,7 +10,7 @@ use serde::Deserialize;
 use crate::{
     episode::Caps,
     mission::{Instruction, Mission, Split},
-    replay::world,
+    stage::world,
 };
 
 /// The name and the text of the project's own benchmark.
@@ -139,7 +139,7 @@ impl Benchmark {
 
     /// The missions of these splits, in order.
     pub fn of<'a>(&'a self, splits: &'a [Split]) -> impl Iterator<Item = &'a Mission> {
-        self.missions.iter().filter(|mission| splits.contains(&mission.split))
+        self.missions.iter().filter(move |mission| splits.contains(&mission.split))
     }
 
     /// The mission of that name.
@@ -157,7 +157,8 @@ fn parted(made: Vec<Generated>, share: f64, seed: u64, catalog: &Arc<Catalog>) -
     let missions = made.into_iter().zip(parts.into_iter().zip(splits));
     missions
         .map(|(generated, (part, split))| {
-            let world = world(&generated.id, &generated.cdf, seed, catalog)?;
+            let world = world(&generated.id, &generated.cdf, seed, catalog);
+            let world = world.map_err(|reason| format!("{}: {reason}", generated.id))?;
             let steps = &generated.certificate.plan;
             let instructions = steps.iter().map(|step| Instruction {
                 text: step.said.clone(),

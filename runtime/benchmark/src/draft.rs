@@ -11,7 +11,7 @@ use serde::Serialize;
 
 use crate::{
     episode::Episode,
-    run::RunError,
+    error::RunError,
     submission::{Header, Line, Submission},
 };
 

@@ -72,7 +72,7 @@ mod tests {
             assert_eq!(method.types.len(), 12, "{}", method.name);
             let least = method.types.values().copied().fold(f64::INFINITY, f64::min);
             let most = method.types.values().copied().fold(0.0, f64::max);
-            assert!(least <= method.msr && method.msr <= most, "{}", method.name);
+            assert!((least..=most).contains(&method.msr), "{}", method.name);
         }
     }
 }

@@ -9,7 +9,8 @@ use crate::{
     benchmark::Benchmark,
     episode::{Recording, TickInputs},
     mission::Mission,
-    replay::{input, world},
+    replay::input,
+    stage::world,
 };
 
 /// The body that acts.

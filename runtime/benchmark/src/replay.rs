@@ -1,29 +1,17 @@
 //! Commands played again in a world of their own: where all figures come from.
 
-use std::sync::Arc;
-
-use cohabit_cdf::{Catalog, Layout, mission::read_mission};
 use cohabit_record::{InputEntry, entry::hex};
 use cohabit_world::{BodyId, Ending, Input, World};
-use serde_json::Value;
 
 use crate::{
     benchmark::Benchmark,
     episode::{Caps, Episode, EpisodeEnd, Recording, TickInputs},
     mission::Mission,
+    stage::world,
 };
 
 /// An episode is over after so long: two simulated hours.
 const MOST_TICKS: u64 = 60 * 60 * 60 * 2;
-
-/// The world of a mission at its first tick; why there is none, in words.
-pub(crate) fn world(id: &str, cdf: &Value, seed: u64, catalog: &Arc<Catalog>) -> Result<World, String> {
-    let failed = |reason: String| format!("{id}: {reason}");
-    let checked = read_mission(id, &cdf.to_string(), catalog).map_err(|problems| failed(problems.to_string()))?;
-    let layout = Layout::builtin(&checked.mission.layout).map_err(|error| failed(error.to_string()))?;
-    let world = World::new(Arc::clone(catalog), Arc::new(layout), Arc::new(checked.mission), seed);
-    world.map_err(|error| failed(error.to_string()))
-}
 
 /// Plays what an agent did in a mission again, up to where the mission is over; gives what came of it.
 ///

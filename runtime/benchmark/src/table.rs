@@ -51,8 +51,9 @@ pub fn grids(entries: &[Entry]) -> Vec<Grid> {
     let mut sorted: Vec<&Entry> = entries.iter().collect();
     let rates = |entry: &Entry| [Split::Test, Split::Validation].map(|split| msr(entry, split));
     sorted.sort_by(|one, other| {
-        let ([test, validation], [other_test, other_validation]) = (rates(one), rates(other));
-        other_test.total_cmp(&test).then(other_validation.total_cmp(&validation)).then_with(|| one.file.cmp(&other.file))
+        let ([test, validation], [next_test, next_validation]) = (rates(one), rates(other));
+        let by_rate = next_test.total_cmp(&test).then(next_validation.total_cmp(&validation));
+        by_rate.then_with(|| one.file.cmp(&other.file))
     });
     let mut grids = vec![overall(&sorted)];
     for split in [Split::Test, Split::Validation] {

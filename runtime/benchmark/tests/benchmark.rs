@@ -12,8 +12,8 @@ use std::{
 };
 
 use cohabit_benchmark::{
-    AgentCard, Benchmark, Check, Difference, Entry, Header, Mission, Recording, RunError, Split, Submission, grids, page,
-    random, run, verify,
+    AgentCard, Benchmark, Check, Difference, Entry, Header, Mission, Recording, RunError, Split, Submission, grids,
+    page, random, run, verify,
 };
 use cohabit_cdf::Catalog;
 use cohabit_tests::Scratch;

@@ -206,9 +206,13 @@ impl Verify {
         for difference in &differences {
             println!("{}", shown(difference));
         }
-        let file = self.file.display();
+        let (file, program) = (self.file.display(), &submission.header.program);
+        if !differences.is_empty() && program != env!("CARGO_PKG_VERSION") {
+            println!("note: it was made by version {} of the program", shown(program));
+        }
         anyhow::ensure!(differences.is_empty(), "{file}: not verified: {} differences", differences.len());
-        println!("{}: verified: {} episodes were played again, and nothing differs", shown(file), submission.lines.len());
+        let count = submission.lines.len();
+        println!("{}: verified: {count} episodes were played again, and nothing differs", shown(file));
         Ok(())
     }
 }

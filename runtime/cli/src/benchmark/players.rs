@@ -4,6 +4,7 @@ use std::{
     collections::BTreeMap,
     fs,
     path::{Path, PathBuf},
+    sync::Arc,
 };
 
 use clap::ValueEnum as _;
@@ -124,22 +125,13 @@ impl Player {
         Ok(match asked.agent {
             AgentKind::Random => Self::Random(asked.seed),
             AgentKind::Expert => {
-                let scratch = Scratch::new()?;
-                let settings = Settings { caps, record: Some(scratch.0.clone()), ..Settings::expert(benchmark.seed) };
-                Self::Expert(settings, scratch)
+                Self::Expert(Settings { caps, ..Settings::expert(benchmark.seed) }, Scratch::new()?)
             }
             AgentKind::Dialog => {
-                let scratch = Scratch::new()?;
-                let settings = Settings {
-                    seed: benchmark.seed,
-                    knows: asked.knows,
-                    asking: asked.ask,
-                    style: None,
-                    caps,
-                    record: Some(scratch.0.clone()),
-                };
-                let language = cohabit_dialog::language(benchmark.catalog.clone(), asked.understanding);
-                Self::Dialog(Box::new(language), settings, scratch)
+                let (seed, knows, asking) = (benchmark.seed, asked.knows, asked.ask);
+                let settings = Settings { seed, knows, asking, caps, ..Settings::default() };
+                let language = cohabit_dialog::language(Arc::clone(&benchmark.catalog), asked.understanding);
+                Self::Dialog(Box::new(language), settings, Scratch::new()?)
             }
         })
     }
@@ -147,8 +139,10 @@ impl Player {
     /// Plays a mission; gives what was done, or why it could not be played, in words.
     pub fn play(&self, benchmark: &Benchmark, mission: &Mission) -> Result<Recording, String> {
         let played = match self {
-            Self::Dialog(language, settings, _) => play(&task(mission), settings, language),
-            Self::Expert(settings, _) => solve(&task(mission), settings, &benchmark.catalog),
+            Self::Dialog(language, settings, scratch) => play(&task(mission), &scratch.logging(settings), language),
+            Self::Expert(settings, scratch) => {
+                solve(&task(mission), &scratch.logging(settings), &benchmark.catalog)
+            }
             Self::Random(seed) => return random(benchmark, mission, *seed),
             Self::Recorded(recordings) => {
                 return recordings.get(&mission.id).cloned().ok_or_else(|| "it has no log".to_owned());
@@ -205,6 +199,11 @@ impl Scratch {
         let _ = fs::remove_dir_all(&folder);
         fs::create_dir_all(&folder).map_err(|error| environment(format!("{}: {error}", folder.display())))?;
         Ok(Self(folder))
+    }
+
+    /// These settings, with logs that come here.
+    fn logging(&self, settings: &Settings) -> Settings {
+        Settings { record: Some(self.0.clone()), ..settings.clone() }
     }
 }
 
