@@ -109,8 +109,8 @@ impl Benchmark {
     pub fn parse(file: &str, text: &str, catalog: &Arc<Catalog>, workers: usize) -> Result<Self, BenchmarkError> {
         let wrong = |reason: String| BenchmarkError::Wrong { file: file.to_owned(), reason };
         let written: Result<Written, _> = toml::from_str(text);
-        let written = written
-            .map_err(|source| BenchmarkError::Syntax { file: file.to_owned(), source: Box::new(source) })?;
+        let written =
+            written.map_err(|source| BenchmarkError::Syntax { file: file.to_owned(), source: Box::new(source) })?;
         if !(0.01..=0.2).contains(&written.share) {
             return Err(wrong(format!("share = {}: a number from 0.01 to 0.2", written.share)));
         }

@@ -67,8 +67,7 @@ pub fn recordings(folder: &Path, benchmark: &Benchmark) -> Result<BTreeMap<Strin
         if let Some((other, _)) = found.get(&mission.id) {
             return Err(LogsError::Twice { path, other: other.clone(), mission: mission.id.clone() });
         }
-        let recording =
-            recording(&log, benchmark).map_err(|reason| LogsError::Unfit { path: path.clone(), reason })?;
+        let recording = recording(&log, benchmark).map_err(|reason| LogsError::Unfit { path: path.clone(), reason })?;
         found.insert(mission.id.clone(), (path, recording));
     }
     Ok(found.into_iter().map(|(id, (_, recording))| (id, recording)).collect())

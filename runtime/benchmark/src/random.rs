@@ -47,8 +47,7 @@ fn choose(world: &World, chance: &mut Chance) -> Option<Action> {
     let mut kinds = ActionKind::ALL.to_vec();
     while !kinds.is_empty() {
         let kind = kinds.swap_remove(chance.below(kinds.len()));
-        let is_allowed =
-            |id: &ObjectId| table.judge(&state, kind, *id).is_some_and(|judgement| judgement.is_allowed());
+        let is_allowed = |id: &ObjectId| table.judge(&state, kind, *id).is_some_and(|judgement| judgement.is_allowed());
         let allowed: Vec<ObjectId> = state.existing().filter(is_allowed).collect();
         if let Some(object) = chance.pick(&allowed) {
             return Some(kind.on(*object));

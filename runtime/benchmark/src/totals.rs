@@ -68,8 +68,7 @@ impl Tally {
 /// The figures of these episodes; those of missions that the benchmark has not are left out.
 #[must_use]
 pub fn totals(benchmark: &Benchmark, episodes: &[Episode]) -> Totals {
-    let missions: BTreeMap<&str, _> =
-        benchmark.missions.iter().map(|mission| (mission.id.as_str(), mission)).collect();
+    let missions: BTreeMap<&str, _> = benchmark.missions.iter().map(|mission| (mission.id.as_str(), mission)).collect();
     let mut all = BTreeMap::<Split, Groups<'_>>::new();
     for episode in episodes {
         if let Some(mission) = missions.get(episode.mission.as_str()) {

@@ -124,9 +124,7 @@ impl Player {
         let caps = Some(Caps { actions: benchmark.caps.actions, failed: benchmark.caps.failed });
         Ok(match asked.agent {
             AgentKind::Random => Self::Random(asked.seed),
-            AgentKind::Expert => {
-                Self::Expert(Settings { caps, ..Settings::expert(benchmark.seed) }, Scratch::new()?)
-            }
+            AgentKind::Expert => Self::Expert(Settings { caps, ..Settings::expert(benchmark.seed) }, Scratch::new()?),
             AgentKind::Dialog => {
                 let (seed, knows, asking) = (benchmark.seed, asked.knows, asked.ask);
                 let settings = Settings { seed, knows, asking, caps, ..Settings::default() };
@@ -140,9 +138,7 @@ impl Player {
     pub fn play(&self, benchmark: &Benchmark, mission: &Mission) -> Result<Recording, String> {
         let played = match self {
             Self::Dialog(language, settings, scratch) => play(&task(mission), &scratch.logging(settings), language),
-            Self::Expert(settings, scratch) => {
-                solve(&task(mission), &scratch.logging(settings), &benchmark.catalog)
-            }
+            Self::Expert(settings, scratch) => solve(&task(mission), &scratch.logging(settings), &benchmark.catalog),
             Self::Random(seed) => return random(benchmark, mission, *seed),
             Self::Recorded(recordings) => {
                 return recordings.get(&mission.id).cloned().ok_or_else(|| "it has no log".to_owned());
