@@ -3,6 +3,7 @@
 
 mod arena;
 mod bad_input;
+mod benchmark;
 mod browser;
 mod check;
 mod convert;

@@ -1,6 +1,7 @@
 //! `cohabit`: people and robots together in a simulated office.
 
 mod arena;
+mod benchmark;
 mod branch;
 mod build;
 mod check;
@@ -65,6 +66,8 @@ enum Command {
     Export(export::Export),
     /// Play many missions headless, by what is said in them, and report what came of them
     Eval(eval::Eval),
+    /// Play fixed missions for a leaderboard, verify what others played, print a table of submissions
+    Benchmark(benchmark::Benchmark),
     /// Make missions from a specification, each with a plan that solves it
     Generate(generate::Generate),
     /// Have the expert play missions, and write a data set of what it does and what the robot sees
@@ -111,6 +114,7 @@ impl Command {
             | Self::Compare(_)
             | Self::Export(_)
             | Self::Eval(_)
+            | Self::Benchmark(_)
             | Self::Generate(_)
             | Self::Demonstrate(_)
             | Self::Vision(_)
@@ -154,6 +158,7 @@ fn run(asked: Cohabit) -> anyhow::Result<()> {
         Command::Compare(compare) => compare.run(),
         Command::Export(export) => export.run(),
         Command::Eval(eval) => eval.run(),
+        Command::Benchmark(benchmark) => benchmark.run(),
         Command::Generate(generate) => generate.run(),
         Command::Demonstrate(demonstrate) => demonstrate.run(),
         Command::Vision(vision) => vision.run(),

@@ -30,4 +30,4 @@ pub use report::{Report, Tally};
 pub use simulated::Style;
 pub use solve::solve;
 pub use source::{SourceError, read_missions, read_tasks};
-pub use task::{Line, Task};
+pub use task::{Answer, Line, Task};

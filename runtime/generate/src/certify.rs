@@ -21,7 +21,7 @@ pub struct PlannedStep {
     pub object: String,
     /// How people say it.
     #[serde(skip)]
-    pub(crate) said: String,
+    pub said: String,
 }
 
 /// That a mission can be solved, and how.

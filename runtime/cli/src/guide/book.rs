@@ -34,6 +34,7 @@ pub const PAGES: &[Page] = pages![
     "python",
     "expert",
     "evaluation",
+    "benchmark",
     "arena",
     "language-model",
     "performance",

@@ -1,0 +1,245 @@
+//! A benchmark's file, and the missions that follow from it.
+
+use std::{collections::BTreeMap, sync::Arc};
+
+use cohabit_cdf::Catalog;
+use cohabit_generate::{GenerateError, Generated, Order, Part, Parted, Spec, SpecError, generate, part};
+use cohabit_world::World;
+use serde::Deserialize;
+
+use crate::{
+    episode::Caps,
+    mission::{Instruction, Mission, Split},
+    stage::world,
+};
+
+/// The name and the text of the project's own benchmark.
+const BUILTIN: (&str, &str) = ("benchmark-1.toml", include_str!("../data/benchmark-1.toml"));
+
+/// Why a benchmark cannot be played.
+#[derive(Debug, thiserror::Error)]
+pub enum BenchmarkError {
+    /// Its file is not the TOML expected.
+    #[error("{file}: {source}")]
+    Syntax {
+        /// Which file.
+        file: String,
+        /// Where and what.
+        source: Box<toml::de::Error>,
+    },
+    /// Its file asks for what there is not.
+    #[error("{file}: {reason}")]
+    Wrong {
+        /// Which file.
+        file: String,
+        /// What is wrong, and what would be right.
+        reason: String,
+    },
+    /// Its specification of missions is wrong.
+    #[error(transparent)]
+    Spec(#[from] SpecError),
+    /// Its missions cannot be made.
+    #[error("{file}: {source}")]
+    Generate {
+        /// Which file.
+        file: String,
+        /// Why.
+        source: GenerateError,
+    },
+    /// It has other missions here than where it was made.
+    #[error(
+        "{file}: its missions have the digest {found} here, and {expected} in the file: this program makes other missions \
+         than the one that the benchmark was made with; play it with that one"
+    )]
+    OtherMissions {
+        /// Which file.
+        file: String,
+        /// The digest in the file.
+        expected: String,
+        /// The digest here.
+        found: String,
+    },
+}
+
+/// A benchmark with its missions.
+#[derive(Clone, Debug)]
+pub struct Benchmark {
+    /// Its version.
+    pub version: u32,
+    /// The seed of what its missions leave to chance.
+    pub seed: u64,
+    /// When a mission is given up.
+    pub caps: Caps,
+    /// The digest of its missions (BLAKE3, in hexadecimal).
+    pub digest: String,
+    /// All missions, in order.
+    pub missions: Vec<Mission>,
+    /// What they are made of.
+    pub catalog: Arc<Catalog>,
+}
+
+/// The file.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Written {
+    version: u32,
+    seed: u64,
+    count: usize,
+    share: f64,
+    digest: Option<String>,
+    caps: Caps,
+    missions: toml::Table,
+}
+
+impl Benchmark {
+    /// The project's own, of which so many threads make the missions.
+    ///
+    /// # Errors
+    /// [`BenchmarkError`].
+    pub fn builtin(catalog: &Arc<Catalog>, workers: usize) -> Result<Self, BenchmarkError> {
+        let (file, text) = BUILTIN;
+        Self::parse(file, text, catalog, workers)
+    }
+
+    /// Reads a benchmark's file, makes its missions, and compares their digest with the file's, if that names one. The number of
+    /// threads changes nothing.
+    ///
+    /// # Errors
+    /// [`BenchmarkError`].
+    pub fn parse(file: &str, text: &str, catalog: &Arc<Catalog>, workers: usize) -> Result<Self, BenchmarkError> {
+        let wrong = |reason: String| BenchmarkError::Wrong { file: file.to_owned(), reason };
+        let written: Result<Written, _> = toml::from_str(text);
+        let written =
+            written.map_err(|source| BenchmarkError::Syntax { file: file.to_owned(), source: Box::new(source) })?;
+        if !(0.01..=0.2).contains(&written.share) {
+            return Err(wrong(format!("share = {}: a number from 0.01 to 0.2", written.share)));
+        }
+        let spec = toml::to_string(&written.missions).map_err(|error| wrong(format!("missions: {error}")))?;
+        let spec = Spec::parse(file, &spec, catalog)?;
+        let order = Order { count: written.count, seed: written.seed, workers: workers.max(1) };
+        let mut made = Vec::new();
+        generate(&spec, catalog, order, &mut |mission| made.push(mission))
+            .map_err(|source| BenchmarkError::Generate { file: file.to_owned(), source })?;
+        let missions = parted(made, written.share, written.seed, catalog).map_err(wrong)?;
+        let digest = digest(&missions);
+        match written.digest {
+            Some(expected) if expected != digest => {
+                Err(BenchmarkError::OtherMissions { file: file.to_owned(), expected, found: digest })
+            }
+            _ => Ok(Self {
+                version: written.version,
+                seed: written.seed,
+                caps: written.caps,
+                digest,
+                missions,
+                catalog: Arc::clone(catalog),
+            }),
+        }
+    }
+
+    /// The missions of these splits, in order.
+    pub fn of<'a>(&'a self, splits: &'a [Split]) -> impl Iterator<Item = &'a Mission> {
+        self.missions.iter().filter(move |mission| splits.contains(&mission.split))
+    }
+
+    /// The mission of that name.
+    #[must_use]
+    pub fn mission(&self, id: &str) -> Option<&Mission> {
+        self.missions.iter().find(|mission| mission.id == id)
+    }
+}
+
+/// The missions with what they are for, and what is said in them; why one cannot be laid out, in words.
+fn parted(made: Vec<Generated>, share: f64, seed: u64, catalog: &Arc<Catalog>) -> Result<Vec<Mission>, String> {
+    let facets: Vec<_> = made.iter().map(Generated::facets).collect();
+    let Parted { parts, .. } = part(&facets, share, seed);
+    let splits = splits(&parts);
+    let missions = made.into_iter().zip(parts.into_iter().zip(splits));
+    missions
+        .map(|(generated, (part, split))| {
+            let world = world(&generated.id, &generated.cdf, seed, catalog);
+            let world = world.map_err(|reason| format!("{}: {reason}", generated.id))?;
+            let steps = &generated.certificate.plan;
+            let instructions = steps.iter().map(|step| Instruction {
+                text: step.said.clone(),
+                answer: described(&world, &step.object).unwrap_or_else(|| step.said.clone()),
+            });
+            let instructions = instructions.collect();
+            Ok(Mission { id: generated.id, kind: generated.kind, split, part, instructions, cdf: generated.cdf })
+        })
+        .collect()
+}
+
+/// What missions are for: of each part that is held out, every other one is for validation, and the rest for tests.
+fn splits(parts: &[Part]) -> Vec<Split> {
+    let mut counts = BTreeMap::<Part, usize>::new();
+    let mut split = |part: &Part| {
+        let count = counts.entry(*part).or_default();
+        *count += 1;
+        match part {
+            Part::Train => Split::Train,
+            _ if *count % 2 == 1 => Split::Validation,
+            _ => Split::Test,
+        }
+    };
+    parts.iter().map(&mut split).collect()
+}
+
+/// What a person calls a thing as the mission begins: `the apple on the counter in the break room`.
+fn described(world: &World, instance: &str) -> Option<String> {
+    let thing = world.object(world.find(instance)?)?;
+    let catalog = world.catalog();
+    let place = thing.parent.and_then(|parent| world.object(parent)).map(|parent| {
+        let class = catalog.class(parent.class);
+        let is_enclosed = class.receptacle.as_ref().is_some_and(|receptacle| receptacle.enclosed);
+        format!(" {} the {}", if is_enclosed { "in" } else { "on" }, class.name.to_lowercase())
+    });
+    let name = catalog.class(thing.class).name.to_lowercase();
+    Some(format!("the {name}{} in the {}", place.unwrap_or_default(), thing.room.name()))
+}
+
+fn digest(missions: &[Mission]) -> String {
+    let mut hasher = blake3::Hasher::new();
+    for mission in missions {
+        hasher.update(format!("{}\n", mission.as_line()).as_bytes());
+    }
+    hasher.finalize().to_hex().to_string()
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn validation_and_test_share_each_part() {
+        let parts = [Part::Train, Part::Seen, Part::UnseenRoom, Part::Seen, Part::Train, Part::UnseenRoom, Part::Seen];
+        let expected = [
+            Split::Train,
+            Split::Validation,
+            Split::Validation,
+            Split::Test,
+            Split::Train,
+            Split::Test,
+            Split::Validation,
+        ];
+        assert_eq!(splits(&parts), expected);
+    }
+
+    #[test]
+    fn what_is_wrong_with_a_file_is_named() {
+        let catalog = Arc::new(Catalog::builtin());
+        let caps = "[caps]\nactions = 50\nfailed = 10\n";
+        let kind = "[[missions.type]]\nname = \"one\"\nvars = [{ name = \"a\", class = [\"Apple\"] }]\ngoals = [\"a isPickedUp=true\"]\n";
+        let head = "version = 9\nseed = 1\ncount = 2\nshare = 0.1\n";
+        for (text, expected) in [
+            ("version = 1".to_owned(), "missing field"),
+            (format!("{}{caps}{kind}", head.replace("0.1", "0.9")), "share = 0.9"),
+            (format!("{head}{caps}{}", kind.replace("Apple", "Nix")), "`Nix`"),
+            (format!("{head}digest = \"00\"\n{caps}{kind}"), "the digest"),
+        ] {
+            let error = Benchmark::parse("b.toml", &text, &catalog, 1).unwrap_err().to_string();
+            assert!(error.starts_with("b.toml") && error.contains(expected), "{error}");
+        }
+    }
+}
