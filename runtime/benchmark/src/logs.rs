@@ -101,10 +101,7 @@ pub fn recording(log: &Log, benchmark: &Benchmark) -> Result<Recording, String> 
         return Err(format!("the session has the seed {}; play the mission with `--seed {seed}`", session.seed));
     }
     let taken = log.ticks.iter().filter(|entry| !entry.inputs.is_empty());
-    let taken = taken.map(|entry| TickInputs {
-        tick: entry.tick,
-        digest: entry.digest.clone(),
-        inputs: entry.inputs.clone(),
-    });
+    let taken =
+        taken.map(|entry| TickInputs { tick: entry.tick, digest: entry.digest.clone(), inputs: entry.inputs.clone() });
     Ok(Recording { ticks: log.ticks.last().map_or(0, |entry| entry.tick), taken: taken.collect() })
 }

@@ -129,7 +129,8 @@ impl Submission {
     /// # Errors
     /// [`SubmissionError`].
     pub fn read(path: &Path) -> Result<Self, SubmissionError> {
-        let text = fs::read_to_string(path).map_err(|source| SubmissionError::File { path: path.to_owned(), source })?;
+        let text =
+            fs::read_to_string(path).map_err(|source| SubmissionError::File { path: path.to_owned(), source })?;
         Self::parse(&text).map_err(|reason| SubmissionError::Header { path: path.to_owned(), reason })
     }
 

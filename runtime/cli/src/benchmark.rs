@@ -161,7 +161,8 @@ impl Run {
         let play = |mission: &Mission| player.play(&benchmark, mission);
         let played = run(&benchmark, header, &self.out, self.which.workers(), &play, &|| bar.inc(1));
         bar.finish_and_clear();
-        let header = played.map_err(|error| if error.is_bad_input() { bad_input(error) } else { environment(error) })?;
+        let header =
+            played.map_err(|error| if error.is_bad_input() { bad_input(error) } else { environment(error) })?;
         let entry = Entry { file: self.out.display().to_string(), header, check: Check::NotVerified };
         let own: Vec<_> = grids(&[entry]).into_iter().filter(|grid| !grid.title.contains("paper")).collect();
         print!("{}", shown_lines(text(&own)));

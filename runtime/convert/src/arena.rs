@@ -175,9 +175,10 @@ fn is_file_name(text: &str) -> bool {
 fn annotations(steps: &[&Step]) -> Vec<Value> {
     let styles: BTreeSet<&String> = steps.iter().flat_map(|step| step.instructions.keys()).collect();
     let annotation = |style: &&String| {
-        let told = steps.iter().enumerate().filter_map(|(id, step)| {
-            step.instructions.get(*style).map(|text| instruction(text, id, &step.questions))
-        });
+        let told = steps
+            .iter()
+            .enumerate()
+            .filter_map(|(id, step)| step.instructions.get(*style).map(|text| instruction(text, id, &step.questions)));
         json!({ "instructions": told.collect::<Vec<_>>() })
     };
     styles.iter().map(annotation).collect()
@@ -186,9 +187,7 @@ fn annotations(steps: &[&Step]) -> Vec<Value> {
 /// An instruction for an action. What is asked about it is what it leaves open, so that is necessary.
 fn instruction(text: &str, action: usize, questions: &[Question]) -> Value {
     let mut told = json!({ "instruction": text, "actions": [action] });
-    let pair = |Question { question, answer }: &Question| {
-        json!({ "question": question, "answer": answer, "question_necessary": true })
-    };
+    let pair = |Question { question, answer }: &Question| json!({ "question": question, "answer": answer, "question_necessary": true });
     if !questions.is_empty() {
         told["question_answers"] = questions.iter().map(pair).collect();
     }

@@ -90,19 +90,13 @@ impl Asked {
         let noun = world.catalog().class(object.class).name.to_lowercase();
         let entry = |kind: &QuestionType| {
             let (question, answer) = match kind {
-                QuestionType::Location => {
-                    (format!("Where is the {noun}?"), oracle.location(object.id, world.layout()))
-                }
-                QuestionType::Appearance => {
-                    (format!("What does the {noun} look like?"), oracle.appearance(object.id))
-                }
+                QuestionType::Location => (format!("Where is the {noun}?"), oracle.location(object.id, world.layout())),
+                QuestionType::Appearance => (format!("What does the {noun} look like?"), oracle.appearance(object.id)),
                 QuestionType::Direction => {
                     let end_m = [body.position_m.x, body.position_m.y];
                     ("Which direction should I turn to?".to_owned(), oracle.way(end_m))
                 }
-                QuestionType::Reference => {
-                    (format!("Which {noun} are you referring to?"), oracle.reference(object.id))
-                }
+                QuestionType::Reference => (format!("Which {noun} are you referring to?"), oracle.reference(object.id)),
             };
             QuestionEntry { r#type: *kind, object: object.instance.clone(), question, answer }
         };

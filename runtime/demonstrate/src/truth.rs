@@ -13,12 +13,8 @@ const AHEAD_RAD: f32 = FRAC_PI_4;
 /// something shut, is visible.
 pub(crate) fn everything(world: &World, body: BodyId) -> Option<Known> {
     let view = world.body(body)?;
-    let robot = KnownRobot {
-        position_m: view.position_m.to_array(),
-        yaw_rad: view.yaw_rad,
-        room: view.room,
-        held: view.held,
-    };
+    let robot =
+        KnownRobot { position_m: view.position_m.to_array(), yaw_rad: view.yaw_rad, room: view.room, held: view.held };
     let present = world.objects().filter(|object| world.exists(object.id));
     let objects = present.map(|object| known(&object, &robot)).collect();
     Some(Known { robot, objects, mission: String::new(), goals: Vec::new(), floor: None, person: None })

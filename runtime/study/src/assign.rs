@@ -67,15 +67,17 @@ fn plan(study: &Study, between: &[Condition], seat: &Seat) -> Plan {
     for (number, block) in study.blocks.iter().enumerate() {
         match block {
             Block::Questionnaires(names) => steps.extend(names.iter().map(|name| asked(name, None))),
-            Block::Mission { mission, is_practice, exercises, limits, .. } => steps.push(Step::Mission(PlannedMission {
-                block: number,
-                mission: mission.clone(),
-                is_practice: *is_practice,
-                exercises: exercises.clone(),
-                within: Vec::new(),
-                settings: study.settings_of(block, condition, &Condition::default()),
-                limits: *limits,
-            })),
+            Block::Mission { mission, is_practice, exercises, limits, .. } => {
+                steps.push(Step::Mission(PlannedMission {
+                    block: number,
+                    mission: mission.clone(),
+                    is_practice: *is_practice,
+                    exercises: exercises.clone(),
+                    within: Vec::new(),
+                    settings: study.settings_of(block, condition, &Condition::default()),
+                    limits: *limits,
+                }))
+            }
             Block::Missions(missions) => {
                 let settings = |within: &Condition| study.settings_of(block, condition, within);
                 add_missions(&mut steps, study, (number, missions), seat, &settings);

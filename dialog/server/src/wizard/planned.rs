@@ -74,10 +74,9 @@ mod tests {
 
     #[test]
     fn planned_errors_read_as_they_are_written() {
-        for text in [
-            r#"{"name":"wrong object","do":"pick up the apple","step":1}"#,
-            r#"{"name":"forgets","say":"I forgot."}"#,
-        ] {
+        for text in
+            [r#"{"name":"wrong object","do":"pick up the apple","step":1}"#, r#"{"name":"forgets","say":"I forgot."}"#]
+        {
             assert_eq!(text.parse::<PlannedError>().unwrap().to_string(), text);
         }
         for (wrong, part) in [

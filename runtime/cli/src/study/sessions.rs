@@ -249,9 +249,8 @@ impl PlayedSession {
                 told.into_iter().for_each(|activity| activities.note(activity));
             }
         }
-        let told = |view: DialogView<'_>| {
-            (view.header.kind(), stops(view.steps), SeatState::of(view.header.text.as_str()))
-        };
+        let told =
+            |view: DialogView<'_>| (view.header.kind(), stops(view.steps), SeatState::of(view.header.text.as_str()));
         while let Some((_, (kind, stops, seat))) = dialog.next(|sample| DialogView::new(sample.payload()).map(told))? {
             if let (Some(activities), Some(kind)) = (&mut self.activities, kind) {
                 activities.hear(kind, stops);

@@ -292,9 +292,8 @@ impl Conversation {
         if let Some(number) = newest.filter(|number| *number > after) {
             self.silence(number);
         }
-        let is_words = |message: &DialogMessage| {
-            matches!(message.header.kind(), Some(DialogKind::Reply | DialogKind::Question))
-        };
+        let is_words =
+            |message: &DialogMessage| matches!(message.header.kind(), Some(DialogKind::Reply | DialogKind::Question));
         let told = reactions.into_iter().filter_map(|reaction| match reaction {
             Reaction::Chat(line) if line.from == Speaker::Robot => Some(Reaction::ForWizard(line.text)),
             Reaction::Bus(message) if is_words(&message) => None,
