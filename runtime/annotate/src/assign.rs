@@ -77,6 +77,14 @@ impl Board {
         }
     }
 
+    /// A board with these lines of a journal, by which nobody is asked anything.
+    #[must_use]
+    pub fn of_record(lines: Vec<Annotation>) -> Self {
+        let mut board = Self::new(Settings::default(), BTreeSet::new(), 0, 0);
+        lines.into_iter().for_each(|line| board.note(line));
+        board
+    }
+
     /// Takes in an annotation, or a correction of one. Whoever wrote it has no task any more, if it was that one.
     pub fn note(&mut self, annotation: Annotation) {
         self.next_id = self.next_id.max(annotation.id + 1);

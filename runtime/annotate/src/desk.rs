@@ -1,6 +1,9 @@
 //! A data set that is annotated: its films, its board and its journal, and what a page may ask of them.
 
-use std::path::{Path, PathBuf};
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+};
 
 use serde::Deserialize;
 use serde_json::{Value, json};
@@ -34,7 +37,7 @@ pub enum Refused {
     #[error("Please write something, or say why you skip this.")]
     Empty,
     /// There is too much text.
-    #[error("This text has {0} characters; {LONGEST_TEXT} are the most. Nothing was saved; please shorten it.")]
+    #[error("This text has {0} characters; {most} are the most. Nothing was saved; please shorten it.", most = LONGEST_TEXT)]
     TooLong(usize),
     /// The task is somebody else's now.
     #[error("This task has gone to somebody else meanwhile, so nothing was saved. Please go on with the next one.")]
@@ -43,7 +46,10 @@ pub enum Refused {
     #[error("There is no such text of yours; nothing was saved.")]
     NotYours,
     /// The disk does not take it.
-    #[error("Nothing was saved: the computer that keeps the texts has a problem. Your text is still here; please tell whoever gave you the link, and try again.")]
+    #[error(
+        "Nothing was saved: the computer that keeps the texts has a problem. Your text is still here; please tell whoever gave you \
+         the link, and try again."
+    )]
     NotSaved(#[source] AnnotateError),
 }
 
@@ -64,6 +70,8 @@ pub struct Desk {
     board: Board,
     journal: Journal,
     links: Links,
+    /// The task that each annotator sent last.
+    sent: BTreeMap<String, u64>,
 }
 
 impl Desk {
@@ -90,7 +98,7 @@ impl Desk {
         }
         let mut board = Board::new(settings, films.segments(cut), links.annotators.len(), now_ms);
         annotations.into_iter().for_each(|annotation| board.note(annotation));
-        Ok(Self { films, board, journal, links })
+        Ok(Self { films, board, journal, links, sent: BTreeMap::new() })
     }
 
     /// Who may annotate, and by which tokens.
@@ -156,8 +164,11 @@ impl Desk {
 
     /// Saves what somebody sends. What is sent twice counts once.
     pub(crate) fn receive(&mut self, annotator: &str, sent: Sent, now_ms: u64) -> Result<(), Refused> {
+        let mut finished = None;
         let annotation = match sent {
+            Sent::Annotation { claim, .. } if self.sent.get(annotator) == Some(&claim) => return Ok(()),
             Sent::Annotation { claim, what } => {
+                finished = Some(claim);
                 let what = match what {
                     What::Text(text) => What::Text(checked(&text)?),
                     What::Skipped(reason) => What::Skipped(reason),
@@ -170,7 +181,7 @@ impl Desk {
                 let text = checked(&text)?;
                 let own = self.board.annotation(id).filter(|one| one.annotator == annotator);
                 let own = own.filter(|one| one.text().is_some()).ok_or(Refused::NotYours)?.clone();
-                if own.text() == Some(&text) {
+                if own.text() == Some(text.as_str()) {
                     return Ok(());
                 }
                 let what = What::Text(text);
@@ -179,6 +190,9 @@ impl Desk {
         };
         self.journal.append(&annotation).map_err(Refused::NotSaved)?;
         self.board.note(annotation);
+        if let Some(claim) = finished {
+            self.sent.insert(annotator.to_owned(), claim);
+        }
         Ok(())
     }
 
