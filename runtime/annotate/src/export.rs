@@ -112,7 +112,8 @@ pub fn export(folder: &Path) -> Result<Exported, AnnotateError> {
             files.push((path, after));
         }
     }
-    exported.left_out = all - exported.instructions - exported.questions - exported.answers;
+    let written = exported.instructions + exported.questions + exported.answers;
+    exported.left_out = all.saturating_sub(written);
     let path = folder.join("README.md");
     let before = card(&path)?;
     let after = with_part(&before, &part(exported));
@@ -133,7 +134,7 @@ impl Human<'_> {
 /// What is to stand in an episode of so many steps. Questions have the answers to them.
 fn human<'a>(texts: &[&'a Annotation], steps: usize) -> Human<'a> {
     let mut human = Human::default();
-    let mut places = BTreeMap::new();
+    let mut places: BTreeMap<u64, usize> = BTreeMap::new();
     for annotation in texts.iter().copied() {
         let (segment, annotator) = (annotation.task.segment(), annotation.annotator.as_str());
         let Some(text) = annotation.text().filter(|_| segment.first_step < segment.end_step && segment.end_step <= steps)
@@ -152,8 +153,8 @@ fn human<'a>(texts: &[&'a Annotation], steps: usize) -> Human<'a> {
                 human.questions.push(Question { annotator, first_step, end_step, moment_step, instruction, text, answers });
             }
             Task::Answer { question, .. } => {
-                if let Some(asked) = places.get(&question.id).and_then(|place: &usize| human.questions.get_mut(*place)) {
-                    asked.answers.push(Answer { annotator, question: &question.text, text });
+                if let Some(place) = places.get(&question.id).copied() {
+                    human.questions[place].answers.push(Answer { annotator, question: &question.text, text });
                 }
             }
         }
