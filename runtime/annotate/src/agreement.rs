@@ -9,9 +9,19 @@ mod report;
 #[cfg(test)]
 mod tests;
 
-use std::collections::BTreeMap;
+use std::{collections::BTreeMap, path::Path};
 
-use crate::task::{Annotation, Kind, Segment, Unit};
+use cohabit_convert::native::Dataset;
+
+use crate::{
+    agreement_path,
+    assign::Board,
+    error::AnnotateError,
+    journal::Journal,
+    journal_path,
+    task::{Annotation, Kind, Segment, Unit},
+    whole::{self, Readers},
+};
 
 pub use report::{csv, lines};
 
@@ -43,6 +53,23 @@ pub struct KindAgreement {
     pub token_f1: Option<f64>,
     /// Krippendorff's alpha of whether people wrote a text; none where all did, or nobody, or no two were asked the same.
     pub skip_alpha: Option<f64>,
+}
+
+/// Measures the agreement of a data set's annotations, and writes it into its table; gives that of each kind.
+///
+/// # Errors
+/// [`AnnotateError`], also where nobody has written anything yet.
+pub fn measure(folder: &Path) -> Result<Vec<KindAgreement>, AnnotateError> {
+    Dataset::open(folder)?;
+    let board = Board::of_record(Journal::read(&journal_path(folder))?);
+    let units = by_unit(board.annotations());
+    if units.is_empty() {
+        let reason = "nobody has annotated it yet: call `cohabit annotate` without `--agreement`, and give people their links";
+        return Err(AnnotateError::Unfit { path: folder.to_owned(), reason: reason.to_owned() });
+    }
+    let kinds = by_kind(&units);
+    whole::write(&agreement_path(folder), csv(&units, &kinds).as_bytes(), Readers::All)?;
+    Ok(kinds)
 }
 
 /// The agreement by unit, in their order.

@@ -1,5 +1,6 @@
 //! `cohabit`: people and robots together in a simulated office.
 
+mod annotate;
 mod arena;
 mod branch;
 mod build;
@@ -72,6 +73,8 @@ enum Command {
     Vision(vision::Vision),
     /// Write a data set of demonstrations in a format that others read
     Convert(convert::Convert),
+    /// Have people annotate a data set of demonstrations on a page: instructions, questions and answers
+    Annotate(annotate::Annotate),
     /// Write a mission as a planning problem (PDDL), or check a plan for it against the world
     Pddl(pddl::PddlFiles),
     /// Run a study: participants, conditions, consent, sessions, data
@@ -114,6 +117,7 @@ impl Command {
             | Self::Demonstrate(_)
             | Self::Vision(_)
             | Self::Convert(_)
+            | Self::Annotate(_)
             | Self::Pddl(_)
             | Self::Guide(_)
             | Self::Doctor(_)
@@ -157,6 +161,7 @@ fn run(asked: Cohabit) -> anyhow::Result<()> {
         Command::Demonstrate(demonstrate) => demonstrate.run(),
         Command::Vision(vision) => vision.run(),
         Command::Convert(convert) => convert.run(),
+        Command::Annotate(annotate) => annotate.run(),
         Command::Pddl(pddl) => pddl.run(),
         Command::Study(study) => study.run(),
         Command::Guide(guide) => guide.run(),
