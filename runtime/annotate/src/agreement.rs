@@ -91,7 +91,7 @@ pub fn by_unit<'a>(annotations: impl IntoIterator<Item = &'a Annotation>) -> Vec
 /// The agreement by kind.
 #[must_use]
 pub fn by_kind(units: &[UnitAgreement]) -> Vec<KindAgreement> {
-    let of_kind = |kind| {
+    let of_kind = |kind: Kind| {
         let own: Vec<&UnitAgreement> = units.iter().filter(|one| one.unit.kind() == kind).collect();
         let judged: Vec<[usize; 2]> = own.iter().map(|one| [one.texts, one.skipped]).collect();
         KindAgreement {

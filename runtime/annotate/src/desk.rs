@@ -37,7 +37,7 @@ pub enum Refused {
     #[error("Please write something, or say why you skip this.")]
     Empty,
     /// There is too much text.
-    #[error("This text has {0} characters; {most} are the most. Nothing was saved; please shorten it.", most = LONGEST_TEXT)]
+    #[error("Nothing was saved: this text has {0} characters, and {most} are the most.", most = LONGEST_TEXT)]
     TooLong(usize),
     /// The task is somebody else's now.
     #[error("This task has gone to somebody else meanwhile, so nothing was saved. Please go on with the next one.")]

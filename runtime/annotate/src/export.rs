@@ -137,11 +137,8 @@ fn human<'a>(texts: &[&'a Annotation], steps: usize) -> Human<'a> {
     let mut places: BTreeMap<u64, usize> = BTreeMap::new();
     for annotation in texts.iter().copied() {
         let (segment, annotator) = (annotation.task.segment(), annotation.annotator.as_str());
-        let Some(text) = annotation.text().filter(|_| segment.first_step < segment.end_step && segment.end_step <= steps)
-        else {
-            continue;
-        };
         let (first_step, end_step) = (segment.first_step, segment.end_step);
+        let Some(text) = annotation.text().filter(|_| first_step < end_step && end_step <= steps) else { continue };
         match &annotation.task {
             Task::Instruction { .. } => {
                 human.instructions.push(Instruction { annotator, first_step, end_step, text });
@@ -149,8 +146,15 @@ fn human<'a>(texts: &[&'a Annotation], steps: usize) -> Human<'a> {
             Task::Question { moment_step, instruction, .. } => {
                 places.insert(annotation.id, human.questions.len());
                 let (moment_step, instruction) = (*moment_step, instruction.text.as_str());
-                let answers = Vec::new();
-                human.questions.push(Question { annotator, first_step, end_step, moment_step, instruction, text, answers });
+                human.questions.push(Question {
+                    annotator,
+                    first_step,
+                    end_step,
+                    moment_step,
+                    instruction,
+                    text,
+                    answers: Vec::new(),
+                });
             }
             Task::Answer { question, .. } => {
                 if let Some(place) = places.get(&question.id).copied() {

@@ -107,8 +107,7 @@ impl Films {
 
 impl Film {
     fn segments(&self, cut: Cut) -> Vec<Segment> {
-        let segment =
-            |first_step, end_step| Segment { episode: self.folder.clone(), first_step, end_step };
+        let segment = |first_step, end_step| Segment { episode: self.folder.clone(), first_step, end_step };
         match cut {
             Cut::Goals => {
                 let begins = std::iter::once(0).chain(self.cuts.iter().copied());

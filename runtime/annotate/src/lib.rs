@@ -2,7 +2,7 @@
 //! it, and answer those of others.
 //!
 //! A [`Board`] says who is asked what: pure, without clocks and files. A [`Desk`] has a data set with its board and its journal;
-//! [`AnnotateService`] serves it to browsers. [`agreement`] says how alike people's texts are, and [`export`] writes them into the
+//! [`AnnotateService`] serves it to browsers. [`agreement`] says how alike people's texts are, and [`export()`] writes them into the
 //! episodes of the data set.
 //!
 //! - Nobody is asked the same twice, nor to answer their own question, nor to ask about their own instruction.

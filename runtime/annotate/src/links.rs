@@ -114,9 +114,11 @@ mod tests {
 
     #[test]
     fn names_are_plain() {
-        for (name, expected) in [("A01", true), ("x_y-z", true), ("", false), ("a b", false), ("ä", false), ("a,b", false)]
-        {
-            assert_eq!(check(name).is_ok(), expected, "{name}");
+        for name in ["A01", "x_y-z"] {
+            assert!(check(name).is_ok(), "{name}");
+        }
+        for name in ["", "a b", "ä", "a,b", "../x"] {
+            assert!(check(name).is_err(), "{name}");
         }
         assert!(check(&"x".repeat(33)).is_err());
     }

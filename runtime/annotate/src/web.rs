@@ -136,11 +136,7 @@ async fn task(State(service): State<AnnotateService>, Path(token): Path<String>)
     answered(for_annotator(service, token, |desk, annotator| desk.page(annotator, now_ms())).await)
 }
 
-async fn send(
-    State(service): State<AnnotateService>,
-    Path(token): Path<String>,
-    Json(sent): Json<Sent>,
-) -> Response {
+async fn send(State(service): State<AnnotateService>, Path(token): Path<String>, Json(sent): Json<Sent>) -> Response {
     let receive = move |desk: &mut Desk, annotator: &str| {
         let problem = desk.receive(annotator, sent, now_ms()).err();
         let mut page = desk.page(annotator, now_ms());

@@ -144,10 +144,8 @@ impl Annotate {
             Watched::Goals => Cut::Goals,
             Watched::Episodes => Cut::Episodes,
         };
-        let settings = Settings {
-            per_segment: usize::from(self.per_segment),
-            kept_ms: u64::from(self.kept_minutes) * 60 * 1000,
-        };
+        let kept_ms = u64::from(self.kept_minutes) * 60 * 1000;
+        let settings = Settings { per_segment: usize::from(self.per_segment), kept_ms };
         let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
         let now_ms = u64::try_from(since.as_millis())?;
         Desk::open(&self.dataset, &names, cut, settings, now_ms).map_err(refused)

@@ -6,7 +6,8 @@ use serde_json::json;
 use super::*;
 use crate::task::{Reading, Reason, Segment, What};
 
-const EPISODE: &str = "{\n  \"id\": \"a \\\"human\\\" \\n  b\",\n  \"folder\": \"episodes/000000\",\n  \"steps\": 4\n}\n";
+const EPISODE: &str =
+    "{\n  \"id\": \"a \\\"human\\\" \\n  b\",\n  \"folder\": \"episodes/000000\",\n  \"steps\": 4\n}\n";
 const README: &str = "# Demonstrations\n";
 
 fn dataset(scratch: &Scratch) -> PathBuf {
