@@ -166,7 +166,7 @@ fn only_who_has_a_link_gets_in_and_a_killed_server_loses_nothing() {
 }
 
 #[test]
-#[cfg_attr(not(mounts), ignore = "needs mounts of its own")]
+#[cfg_attr(not(mounts), ignore = "optional: the right to mount a file system (`unshare -rm`)")]
 fn on_a_full_disk_the_page_hears_that_nothing_was_saved() {
     let scratch = Scratch::new("annotate-full");
     let folder = dataset(&scratch, "color");

@@ -69,7 +69,9 @@ async function refresh() {
       byId("offline").hidden = true;
       signed = Date.now();
       isWorkedOn = false;
-      if (task && answer.task?.claim !== task.claim) {
+      if (isSame(answer.task)) {
+        task = answer.task;
+      } else if (task) {
         state = answer;
         gone("This task has gone to somebody else meanwhile. Your text is still here, but it cannot be sent any more.");
       } else {
@@ -80,6 +82,11 @@ async function refresh() {
     }
   }
   setTimeout(refresh, ASK_EVERY_MS);
+}
+
+/** Whether a task is the one that is shown, also of a server that was started anew and counts anew. */
+function isSame(other) {
+  return Boolean(task && other) && JSON.stringify({ ...task, claim: 0 }) === JSON.stringify({ ...other, claim: 0 });
 }
 
 /** The task is somebody else's; what was written stays until somebody goes on. */
@@ -130,7 +137,7 @@ function showTask() {
 
 // What is typed outlasts a reload of the page.
 
-const draft = () => `draft ${here} ${task.claim}`;
+const draft = () => `draft ${here} ${JSON.stringify({ ...task, claim: 0 })}`;
 
 function kept() {
   try {
@@ -237,9 +244,15 @@ byId("film").addEventListener("keydown", (event) => {
 async function sendOnce(what) {
   const buttons = [byId("send"), byId("skip")];
   buttons.forEach((one) => { one.disabled = true; });
-  const { claim } = task;
   const key = draft();
-  const problem = await tell({ annotation: { claim, what } });
+  let { claim } = task;
+  let problem = await tell({ annotation: { claim, what } });
+  if (problem && state.task?.claim !== claim && isSame(state.task)) {
+    // The server was started anew, and has given the same task again.
+    task = state.task;
+    claim = task.claim;
+    problem = await tell({ annotation: { claim, what } });
+  }
   buttons.forEach((one) => { one.disabled = false; });
   if (!problem) {
     try {
