@@ -35,6 +35,7 @@ const LEVELS: &[(&str, u8, &[&str])] = &[
     ("cohabit-demonstrate", 4, &[]),
     ("cohabit-rerun", 4, &["re_sdk", "re_sdk_types", "arrow"]),
     ("cohabit-dialog", 4, &["tokio", "axum", "hyper", "hyper-util", "rustls", "tokio-rustls", "rcgen"]),
+    ("cohabit-annotate", 5, &[]),
     ("cohabit-eval", 5, &[]),
     ("cohabit-study", 5, &[]),
     ("cohabit-vision", 5, &[]),
@@ -43,13 +44,14 @@ const LEVELS: &[(&str, u8, &[&str])] = &[
 ];
 
 /// Dependencies that others may name too: the log, pages and existing clients speak JSON, tests report errors of all
-/// kinds, there are two programs, data sets are tables too, and a study has routes of its own.
+/// kinds, there are two programs, data sets are tables too, and studies and annotators have routes of their own.
 const SHARED: &[(&str, &[&str])] = &[
     (
         "serde_json",
         &[
             "cohabit-record",
             "cohabit-speech",
+            "cohabit-annotate",
             "cohabit-arena",
             "cohabit-benchmark",
             "cohabit-dialog",
@@ -66,8 +68,8 @@ const SHARED: &[(&str, &[&str])] = &[
     ("anyhow", &["cohabit-rerun", "cohabit-tests"]),
     ("clap", &["cohabit-rerun"]),
     ("parquet", &["cohabit-rerun"]),
-    ("axum", &["cohabit-study"]),
-    ("tokio", &["cohabit-study"]),
+    ("axum", &["cohabit-annotate", "cohabit-study"]),
+    ("tokio", &["cohabit-annotate", "cohabit-study"]),
 ];
 
 /// The most lines of a file. Tests do not count, nor does what is made while building.

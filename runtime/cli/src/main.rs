@@ -1,5 +1,6 @@
 //! `cohabit`: people and robots together in a simulated office.
 
+mod annotate;
 mod arena;
 mod benchmark;
 mod branch;
@@ -76,6 +77,8 @@ enum Command {
     Vision(vision::Vision),
     /// Write a data set of demonstrations in a format that others read
     Convert(convert::Convert),
+    /// Have people annotate a data set of demonstrations on a page: instructions, questions and answers
+    Annotate(annotate::Annotate),
     /// Write a mission as a planning problem (PDDL), or check a plan for it against the world
     Pddl(pddl::PddlFiles),
     /// Run a study: participants, conditions, consent, sessions, data
@@ -119,6 +122,7 @@ impl Command {
             | Self::Demonstrate(_)
             | Self::Vision(_)
             | Self::Convert(_)
+            | Self::Annotate(_)
             | Self::Pddl(_)
             | Self::Guide(_)
             | Self::Doctor(_)
@@ -163,6 +167,7 @@ fn run(asked: Cohabit) -> anyhow::Result<()> {
         Command::Demonstrate(demonstrate) => demonstrate.run(),
         Command::Vision(vision) => vision.run(),
         Command::Convert(convert) => convert.run(),
+        Command::Annotate(annotate) => annotate.run(),
         Command::Pddl(pddl) => pddl.run(),
         Command::Study(study) => study.run(),
         Command::Guide(guide) => guide.run(),

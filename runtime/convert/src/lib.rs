@@ -10,7 +10,7 @@ mod arena;
 mod card;
 mod error;
 mod lerobot;
-mod native;
+pub mod native;
 mod output;
 mod picture;
 mod shards;

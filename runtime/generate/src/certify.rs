@@ -7,7 +7,7 @@ use cohabit_planner::{Limits, Plan, Step, plan};
 use cohabit_world::{Action, Input, World};
 use serde::Serialize;
 
-use crate::lock_step::{BODY, TICKS_PER_SECOND, carry_out};
+use crate::lock_step::{self, BODY, TICKS_PER_SECOND};
 
 /// No limit of time: what is made must not depend on the machine.
 const LIMITS: Limits = Limits::of_states(400);
@@ -85,7 +85,7 @@ fn carry_out(world: &mut World, plan: &Plan) -> Result<(Vec<PlannedStep>, Vec<Ro
 /// Has the body do something; why it could not, in words.
 pub(crate) fn run(world: &mut World, action: Action) -> Result<(), String> {
     let command = Input { command: world.tick() + 1, body: BODY, action };
-    let Ok(outcome) = carry_out(world, &mut (), command);
+    let Ok(outcome) = lock_step::carry_out(world, &mut (), command);
     match outcome {
         Some(outcome) if outcome.status.is_success() => Ok(()),
         Some(outcome) => Err(outcome.detail),

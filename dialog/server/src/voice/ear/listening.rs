@@ -1,7 +1,7 @@
 //! An ear at work: what a page sends becomes turns of speech, and what was said is told.
 
 use std::{
-    sync::{Arc, mpsc::Receiver},
+    sync::mpsc::Receiver,
     thread,
 };
 
