@@ -64,7 +64,8 @@ pub fn measure(folder: &Path) -> Result<Vec<KindAgreement>, AnnotateError> {
     let board = Board::of_record(Journal::read(&journal_path(folder))?);
     let units = by_unit(board.annotations());
     if units.is_empty() {
-        let reason = "nobody has annotated it yet: call `cohabit annotate` without `--agreement`, and give people their links";
+        let reason =
+            "nobody has annotated it yet: call `cohabit annotate` without `--agreement`, and give people their links";
         return Err(AnnotateError::Unfit { path: folder.to_owned(), reason: reason.to_owned() });
     }
     let kinds = by_kind(&units);

@@ -214,8 +214,7 @@ impl Board {
         self.annotations.values().filter(|asked| asked.annotator != annotator).find_map(|asked| {
             let Task::Question { segment, instruction, .. } = &asked.task else { return None };
             let question = reading(asked)?;
-            let is_asked =
-                self.segments.contains(segment) && self.is_open(&Unit::Answer(asked.id), annotator, taken);
+            let is_asked = self.segments.contains(segment) && self.is_open(&Unit::Answer(asked.id), annotator, taken);
             is_asked.then(|| Task::Answer { segment: segment.clone(), instruction: instruction.clone(), question })
         })
     }

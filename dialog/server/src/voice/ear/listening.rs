@@ -1,9 +1,6 @@
 //! An ear at work: what a page sends becomes turns of speech, and what was said is told.
 
-use std::{
-    sync::mpsc::Receiver,
-    thread,
-};
+use std::{sync::mpsc::Receiver, thread};
 
 use cohabit_bus::monotonic_nanos;
 use cohabit_language::{says_stop, says_stop_already};
