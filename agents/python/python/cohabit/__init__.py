@@ -31,6 +31,7 @@ from ._native import (
 from ._native import builtin_missions as _builtin_missions
 from ._native import class_ids as _class_ids
 from .actions import Action, Drive, GoTo, Highlight, Interact, Look, LookAround, Move, PickUp, Place, Rotate, Stop
+from .body_tools import Tools, tools
 from .env import Env
 from .evaluation import Evaluation, evaluate
 from .missions import Mission, Suite, generate, suite
@@ -38,7 +39,6 @@ from .parallel import ParallelEnv
 from .records import records
 from .sensing import CHOICES, PLANES
 from .session import Session, join
-from .tools import Tools, tools
 from .vector import VectorEnv
 
 __version__ = VERSION

@@ -124,7 +124,7 @@ def suite(path: Union[str, os.PathLike[str]]) -> Suite:
     if path.is_dir():
         missions = [_of_cdf(file.stem, _read_json(file)) for file in sorted(path.glob("*.json"))]
     elif path.suffix == ".jsonl":
-        lines = [(number, line) for number, line in enumerate(_read(path).splitlines(), 1) if line.strip()]
+        lines = [(number, line) for number, line in enumerate(_read(path).split("\n"), 1) if line.strip()]
         missions = [_of_line(line, f"{path}:{number}") for number, line in lines]
     else:
         whole = _read_json(path)

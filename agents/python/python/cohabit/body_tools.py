@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping
 from typing import Any, Literal, Union
 
@@ -24,6 +25,7 @@ _DEEDS = {
     "pick_up": "Take an object into the empty hand.",
     "place": "Put what is held onto or into a receptacle.",
 }
+_NAMES = {"it": "the object", "held": "what is held", "cover": "what covers it", "holder": "what holds it"}
 _MOST_REFUSALS = 6
 
 
@@ -66,18 +68,24 @@ def tools(body: Union[Session, Env]) -> Tools:
 
 def _described() -> list[tuple[str, str, dict[str, Any]]]:
     """Name, description and JSON Schema of each tool."""
-    described = []
+    described: list[tuple[str, str, dict[str, Any]]] = []
     for name, (text, argument, low, high) in _MOTIONS.items():
         number = {"type": "number", "minimum": low, "maximum": high}
         described.append((name, text, _schema({argument: number})))
     described.append(("look_around", "Turn once around, looking.", _schema({})))
-    for name, words, refusals in _native.action_table():
+    for name, spoken, refusals in _native.action_table():
         text = _DEEDS.get(name) or f"{name.capitalize()} an object, with the hand or with what it holds."
-        said = ", ".join(f"`{word}`" for word in words)
-        why = "; ".join(sentence.replace("{it}", "the object").replace("{held}", "what is held") for _, sentence in refusals[:_MOST_REFUSALS])
-        text += (f" People say {said}." if said else "") + (f" Refused where: {why}." if why else "")
+        said = ", ".join(f"`{word}`" for word in spoken)
+        why = " ".join(_sentence(words) for _, words in refusals[:_MOST_REFUSALS])
+        text += (f" People say {said}." if said else "") + (f" It is refused with: {why}" if why else "")
         described.append((name, text, _schema({"object": _OBJECT})))
     return described
+
+
+def _sentence(words: str) -> str:
+    """A refusal of the table, with words for names."""
+    sentence = re.sub(r"\{(\w+)\}", lambda name: _NAMES.get(name[1], "it"), words)
+    return sentence[:1].upper() + sentence[1:].rstrip(".") + "."
 
 
 def _schema(properties: dict[str, Any]) -> dict[str, Any]:
