@@ -107,7 +107,7 @@ impl Book {
     }
 
     /// The rows of each world there.
-    pub fn rows<'a>(&self, fresh: &'a mut Fresh) -> Vec<Vec<&'a mut [u8]>> {
+    pub fn rows<'a>(&self, fresh: &'a mut [Vec<u64>]) -> Vec<Vec<&'a mut [u8]>> {
         let mut rows: Vec<Vec<&'a mut [u8]>> = (0..self.worlds).map(|_| Vec::new()).collect();
         for (page, words) in self.pages.iter().zip(fresh) {
             let mut rest: &'a mut [u8] = bytemuck::cast_slice_mut(words.as_mut_slice());

@@ -13,7 +13,8 @@ impl Crew {
     /// So many threads, from 1 to 256; fewer, if the machine gives no more.
     pub fn new(threads: usize) -> Self {
         let others = threads.clamp(1, 256) - 1;
-        let build = || ThreadPoolBuilder::new().num_threads(others).thread_name(|index| format!("world-{index}")).build();
+        let name = |index| format!("world-{index}");
+        let build = || ThreadPoolBuilder::new().num_threads(others).thread_name(name).build();
         Self { others: (others > 0).then(build).and_then(Result::ok) }
     }
 
@@ -21,11 +22,7 @@ impl Crew {
     ///
     /// # Errors
     /// Those of `work`.
-    pub fn share_out<J: Send, E: Send>(
-        &self,
-        jobs: Vec<J>,
-        work: impl Fn(J) -> Result<(), E> + Sync,
-    ) -> Result<(), E> {
+    pub fn share_out<J: Send, E: Send>(&self, jobs: Vec<J>, work: impl Fn(J) -> Result<(), E> + Sync) -> Result<(), E> {
         let Some(others) = self.others.as_ref().filter(|_| jobs.len() > 1) else {
             return jobs.into_iter().try_for_each(work);
         };

@@ -36,7 +36,7 @@ impl Owner {
         match self {
             Self::Sample(sample) => look(sample.lock().unwrap_or_else(PoisonError::into_inner).payload()),
             Self::Bytes(words) => look(bytemuck::cast_slice(words)),
-            Self::Page(words) => look(bytemuck::cast_slice(words)),
+            Self::Page(words) => look(bytemuck::cast_slice(words.as_slice())),
         }
     }
 }

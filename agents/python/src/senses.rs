@@ -118,13 +118,7 @@ fn near(around: &impl Around, body: &Posture) -> Vec<Sight> {
 
 impl Sensed {
     /// What a body senses once its slots are filled anew; none if it is not there.
-    pub fn of(
-        around: &impl Around,
-        body: u32,
-        slots: usize,
-        filling: Filling,
-        frame: Option<&Frame>,
-    ) -> Option<Self> {
+    pub fn of(around: &impl Around, body: u32, slots: usize, filling: Filling, frame: Option<&Frame>) -> Option<Self> {
         let body = around.posture(body)?;
         let objects = fill(around, &body, filling, slots, frame);
         let held = body.held.and_then(|held| around.sight(held)).map(|held| held.class);

@@ -54,7 +54,9 @@ impl Stage {
     /// A world. `mission` is a path or the name of a built-in mission, unless its `text` is given; `bodies` and `cameras`
     /// are written as on the command line. With `randomize`, a mission's own seed gives way to that of each beginning.
     #[new]
-    #[pyo3(signature = (mission=None, text=None, bodies=Vec::new(), cameras=Vec::new(), seed=0, threads=1, randomize=false))]
+    #[pyo3(signature = (
+        mission=None, text=None, bodies=Vec::new(), cameras=Vec::new(), seed=0, threads=1, randomize=false
+    ))]
     #[allow(clippy::too_many_arguments)]
     fn new(
         py: Python<'_>,
@@ -74,8 +76,8 @@ impl Stage {
         })
     }
 
-    /// Begins anew, with that seed where the mission leaves something to chance; with another mission, if one is given by a path,
-    /// the name of a built-in one, or its `text`.
+    /// Begins anew, with that seed where the mission leaves something to chance; with another mission, if one is given by a
+    /// path, the name of a built-in one, or its `text`.
     #[pyo3(signature = (seed, mission=None, text=None))]
     fn reset(&self, py: Python<'_>, seed: u64, mission: Option<String>, text: Option<String>) -> PyResult<()> {
         let is_given = mission.is_some() || text.is_some();

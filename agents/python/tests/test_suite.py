@@ -22,7 +22,8 @@ def made() -> cohabit.Suite:
 
 
 def test_missions_are_made_by_a_seed(made: cohabit.Suite) -> None:
-    assert [one.text for one in cohabit.generate(4, seed=3)] == [one.text for one in cohabit.generate(4, seed=3, workers=1)]
+    few, again = cohabit.generate(4, seed=3), cohabit.generate(4, seed=3, workers=1)
+    assert [one.text for one in few] == [one.text for one in again] == [one.text for one in made[:4]]
     assert all(one.instruction and one.type and one.layout and one.things for one in made)
     few = cohabit.generate(3, seed=1, types=["breakObject"])
     assert few.types == ["breakObject"]
@@ -87,7 +88,8 @@ def test_a_policy_is_evaluated(made: cohabit.Suite, tmp_path: Path) -> None:
     def wait(observation: dict[str, Any], infos: dict[str, Any]) -> np.ndarray:
         return np.tile([CHOICES.index("turn_left"), 0], (len(infos["tick"]), 1))
 
-    told = cohabit.evaluate(wait, made, 5, seed=2, num_envs=2, record=tmp_path, planes=(), max_steps=3, ticks_per_step=5)
+    short: dict[str, Any] = {"planes": (), "max_steps": 3, "ticks_per_step": 5}
+    told = cohabit.evaluate(wait, made, 5, seed=2, num_envs=2, record=tmp_path, **short)
     assert [episode.mission for episode in told.episodes] == [one.id for one in made[:5]]
     assert [episode.seed for episode in told.episodes] == [2, 3, 4, 5, 6]
     row = told.rows[-1]
@@ -96,11 +98,11 @@ def test_a_policy_is_evaluated(made: cohabit.Suite, tmp_path: Path) -> None:
     assert "all" in str(told) and "95 % interval" in str(told)
     lines = [json.loads(line) for line in (tmp_path / "episodes.jsonl").read_text().splitlines()]
     assert lines[3]["actions"] == [[CHOICES.index("turn_left"), 0]] * 3
-    env = cohabit.Env(planes=(), max_steps=3, ticks_per_step=5)
+    env = cohabit.Env(**short)
     env.reset(seed=lines[3]["seed"], options={"mission": made[3]})
     *_, info = [env.step(np.array(action)) for action in lines[3]["actions"]][-1]
     assert (info["tick"], info["score"]) == (lines[3]["ticks"], lines[3]["score"])
-    alone = cohabit.evaluate(wait, made, 5, seed=2, num_envs=1, planes=(), max_steps=3, ticks_per_step=5)
+    alone = cohabit.evaluate(wait, made, 5, seed=2, num_envs=1, **short)
     assert alone == told
 
 
@@ -160,7 +162,8 @@ def test_a_body_has_tools() -> None:
     assert all("{" not in tool["description"] for tool in named.values())
     assert [tool["name"] for tool in tools.schemas("mcp")] == list(named)
     assert not tools.call("go_to", {"object": "CanSodaNew_01_1"}).startswith("Refused")
-    assert tools.call("pick_up", {"object": "bowel"}).startswith("Refused (InvalidObjectClass): there is no object `bowel`")
+    refused = "Refused (InvalidObjectClass): there is no object `bowel`"
+    assert tools.call("pick_up", {"object": "bowel"}).startswith(refused)
     assert tools.call("fly", {}).startswith("Refused: there is no tool `fly`")
     assert tools.call("move", {"distance_m": "far"}) == "Refused: `distance_m` is 'far': a number from -10.0 to 10.0."
     assert "takes object" in tools.call("open", {})

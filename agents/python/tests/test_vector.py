@@ -28,8 +28,9 @@ def check_row(batch: dict[str, Any], place: int, single: dict[str, Any]) -> None
 @pytest.mark.parametrize("planes", [(), ("color",), ("color", "depth", "normals", "ids")])
 @pytest.mark.parametrize("threads", [1, 3])
 def test_many_worlds_are_as_many_single_ones(planes: tuple[str, ...], threads: int) -> None:
-    many = cohabit.VectorEnv("make_cereal", 3, planes=planes, threads=threads, randomize=True, instruction=True, **SHORT)
-    single = [cohabit.Env("make_cereal", planes=planes, randomize=True, instruction=True, **SHORT) for _ in range(3)]
+    same: dict[str, Any] = {"planes": planes, "randomize": True, "instruction": True, **SHORT}
+    many = cohabit.VectorEnv("make_cereal", 3, threads=threads, **same)
+    single = [cohabit.Env("make_cereal", **same) for _ in range(3)]
     observation, infos = many.reset(seed=7)
     assert many.observation_space.contains(observation)
     for place, env in enumerate(single):

@@ -97,8 +97,8 @@ class Suite(Sequence[Mission]):
 
 
 def _line(mission: Mission) -> str:
-    line = {"id": mission.id, "type": mission.type, "layout": mission.layout, "utterances": [mission.instruction]}
-    line |= {"rooms": list(mission.rooms), "things": list(mission.things), "cdf": json.loads(mission.text)}
+    line: dict[str, Any] = {"id": mission.id, "type": mission.type, "layout": mission.layout}
+    line |= {"utterances": [mission.instruction], "rooms": list(mission.rooms), "things": list(mission.things), "cdf": json.loads(mission.text)}
     return json.dumps(line)
 
 

@@ -157,7 +157,8 @@ class VectorEnv(_Base[Observation, npt.NDArray[np.int64], npt.NDArray[Any]]):
         for place in np.flatnonzero(done):
             one = {"final_obs": _row(final_obs, place), "final_info": _row_of_infos(final_info, place)}
             last = self._add_info(last, one, int(place))
-        again = self._turn([None] * self.num_envs, [self._begin(int(place), None, {}) for place in np.flatnonzero(done)])
+        anew = [self._begin(int(place), None, {}) for place in np.flatnonzero(done)]
+        again = self._turn([None] * self.num_envs, anew)
         # What came of the commands of worlds that go on is still to be told.
         statuses, details, endings = (
             [new if is_over else old for old, new, is_over in zip(olds, news, done)]
