@@ -1,11 +1,11 @@
 //! The discrete actions of environments: what a policy chooses from, and what of it makes sense.
 
-use std::f32::consts::PI;
+use std::{f32::consts::PI, sync::OnceLock};
 
 use cohabit_cdf::{Action, ActionKind, Catalog, GoToTarget, ObjectClass, ObjectId, RoomId, Verb};
 use pyo3::prelude::*;
 
-use crate::{action::PyAction, error::bad_argument};
+use crate::{action::PyAction, error::bad_argument, library::catalog};
 
 /// One step ahead or back, m.
 const STRIDE_M: f32 = 0.5;
@@ -105,6 +105,22 @@ impl Choice {
             _ => None,
         }
     }
+}
+
+/// The choices that things of a class afford to somebody who holds a thing of another class, or nothing: a bit each, by their
+/// numbers. Worked out for all classes at once when something of a class is held first.
+pub fn afforded(class: u16, held: Option<u16>) -> u64 {
+    static BY_HELD: OnceLock<Vec<OnceLock<Vec<u64>>>> = OnceLock::new();
+    let classes = catalog().classes();
+    let by_held = BY_HELD.get_or_init(|| (0..=classes.len()).map(|_| OnceLock::new()).collect());
+    let held_class = held.and_then(|held| classes.get(usize::from(held)));
+    let place = held.map_or(0, |held| usize::from(held) + 1);
+    let row = |class: &ObjectClass| {
+        let suits = |choice: Choice| u64::from(choice.is_afforded(catalog(), class, held_class));
+        (0_u32..).zip(Choice::all()).fold(0, |bits, (number, choice)| bits | suits(choice) << number)
+    };
+    let rows = by_held.get(place).map(|rows| rows.get_or_init(|| classes.iter().map(row).collect()));
+    rows.and_then(|rows| rows.get(usize::from(class))).copied().unwrap_or(0)
 }
 
 /// The command that a choice means, done to an object if to one; none for waiting.

@@ -77,17 +77,19 @@ impl Frame {
         self.owner.with(|payload| FrameView::new(payload).map_or_else(|_| Vec::new(), |view| view.seen().to_vec()))
     }
 
+    /// Copies a plane to where there is room for it, if the frame has that plane.
+    pub fn copy_plane(&self, plane: Plane, to: &mut [u8]) {
+        if let Some(at) = self.plane_at[plane as usize] {
+            self.owner.with(|payload| to.copy_from_slice(&payload[at..at + to.len()]));
+        }
+    }
+
     fn array<'py>(&self, py: Python<'py>, plane: Plane) -> PyResult<Option<Bound<'py, PyAny>>> {
         let Some(at) = self.plane_at[plane as usize] else { return Ok(None) };
         let (views, width, height) =
             (self.header.views as usize, self.header.width as usize, self.header.height as usize);
         let mut shape = if views == 1 { vec![height, width] } else { vec![views, height, width] };
-        let item = match plane {
-            Plane::Color => "|u1",
-            Plane::Depth => "<f4",
-            Plane::Normals => "|i1",
-            Plane::Ids => "<u4",
-        };
+        let item = item_of(plane);
         if matches!(plane, Plane::Color | Plane::Normals) {
             shape.push(4);
         }
@@ -216,6 +218,16 @@ impl Frame {
 
     fn __repr__(&self) -> String {
         format!("Frame(tick={}, {}x{}, {})", self.tick, self.header.width, self.header.height, self.planes().join("+"))
+    }
+}
+
+/// The type of an item of a plane, as numpy writes it.
+pub const fn item_of(plane: Plane) -> &'static str {
+    match plane {
+        Plane::Color => "|u1",
+        Plane::Depth => "<f4",
+        Plane::Normals => "|i1",
+        Plane::Ids => "<u4",
     }
 }
 

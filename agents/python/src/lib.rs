@@ -1,21 +1,28 @@
-//! The part of the Python package `cohabit` that is not Python: a world stepped in lock-step inside the interpreter's
-//! process, and a peer of a running session whose frames are read where the simulator wrote them.
+//! The part of the Python package `cohabit` that is not Python: worlds stepped in lock-step inside the interpreter's
+//! process, one or many in a call, and a peer of a running session whose frames are read where the simulator wrote them.
 //!
 //! Whatever waits or computes lets other Python threads run meanwhile, and whatever waits ends at Ctrl-C. What is handed
 //! to Python as memory cannot be written to there. This crate never knows rules: it asks the world and the catalogue.
 
 mod action;
+mod around;
+mod book;
 mod choice;
+mod crew;
 mod error;
 mod frame;
 mod library;
 mod memory;
 mod mission_file;
 mod outcome;
+mod part;
 mod senses;
 mod session;
 mod stage;
 mod state;
+mod suite;
+mod theatre;
+mod vec_stage;
 
 /// What Python imports.
 #[pyo3::pymodule]
@@ -34,6 +41,8 @@ mod _native {
         session::{Command, Heard, Session},
         stage::Stage,
         state::{Body, Goal, Object, State},
+        suite::{action_table, builtin_missions, generate_missions, part_missions},
+        vec_stage::VecStage,
     };
 
     use pyo3::prelude::*;

@@ -12,6 +12,8 @@ pub enum Owner {
     Sample(Arc<Mutex<Sample>>),
     /// This process alone.
     Bytes(Arc<[u64]>),
+    /// This process alone, which uses it anew once nobody else refers to it.
+    Page(Arc<Vec<u64>>),
 }
 
 /// Some memory with a shape, kept alive by whoever refers to this.
@@ -34,6 +36,7 @@ impl Owner {
         match self {
             Self::Sample(sample) => look(sample.lock().unwrap_or_else(PoisonError::into_inner).payload()),
             Self::Bytes(words) => look(bytemuck::cast_slice(words)),
+            Self::Page(words) => look(bytemuck::cast_slice(words.as_slice())),
         }
     }
 }

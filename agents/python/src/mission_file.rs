@@ -39,6 +39,17 @@ pub enum MissionFileError {
 }
 
 impl MissionFile {
+    /// The mission of that `text`, called `name`; without a text, what [`Self::find`] finds.
+    ///
+    /// # Errors
+    /// A `ValueError` if there is none.
+    pub fn given(name: Option<String>, text: Option<String>) -> PyResult<Self> {
+        match text {
+            Some(text) => Ok(Self { name: name.unwrap_or_else(|| "mission".to_owned()), text }),
+            None => Self::find(name.as_deref()).map_err(bad_argument),
+        }
+    }
+
     /// The file at that path, or the built-in mission of that name; the default one for `None`.
     ///
     /// # Errors

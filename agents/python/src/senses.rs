@@ -1,11 +1,17 @@
 //! What a body senses besides pictures: itself, and the objects that fill its slots.
 
-use cohabit_bus::message::{BodyRecord, ObjectRecord, Thing};
+use cohabit_bus::message::Thing;
 use cohabit_cdf::{ObjectId, StateFlag, StateFlags};
 use cohabit_world::Vec3;
 use pyo3::prelude::*;
 
-use crate::{choice::Choice, error::bad_argument, frame::Frame, library, memory::Memory};
+use crate::{
+    around::{Around, Posture, Sight},
+    choice::{Choice, afforded},
+    error::bad_argument,
+    frame::Frame,
+    memory::Memory,
+};
 
 /// Which objects fill a body's slots.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
@@ -33,23 +39,21 @@ impl Filling {
     }
 }
 
-/// All there is to sense.
-#[derive(Clone, Copy)]
-pub struct Surroundings<'a> {
-    pub bodies: &'a [BodyRecord],
-    /// By their numbers.
-    pub objects: &'a [ObjectRecord],
-}
-
 /// What a body senses, before it is Python's.
 pub struct Sensed {
-    body: BodyRecord,
-    held_class: i64,
-    ids: Vec<u32>,
-    classes: Vec<i64>,
-    positions_m: Vec<[f32; 3]>,
-    flags: Vec<[i8; StateFlag::ALL.len()]>,
-    afforded: Vec<i8>,
+    pub body: Posture,
+    /// The class of what it holds, from 1; 0 is nothing.
+    pub held_class: i64,
+    /// The id of each slot's object in the id plane; 0 is an empty slot.
+    pub ids: Vec<u32>,
+    /// Its class, from 1.
+    pub classes: Vec<i64>,
+    /// Where it is, seen from the body.
+    pub positions_m: Vec<[f32; 3]>,
+    /// Its states.
+    pub flags: Vec<[i8; StateFlag::ALL.len()]>,
+    /// Whether its class affords each choice: `[choices, slots]`.
+    pub afforded: Vec<i8>,
 }
 
 /// What a body senses besides pictures. Arrays of `slots` rows are filled up with zeros.
@@ -79,62 +83,45 @@ pub struct Senses {
     afforded: Py<PyAny>,
 }
 
-impl Surroundings<'_> {
-    fn body(&self, body: u32) -> Option<&BodyRecord> {
-        self.bodies.iter().find(|record| record.body == body)
-    }
+/// The objects that fill a body's slots, at most `slots`.
+fn fill(around: &impl Around, body: &Posture, filling: Filling, slots: usize, frame: Option<&Frame>) -> Vec<Sight> {
+    let mut objects = match filling {
+        Filling::Seen => frame.map_or_else(Vec::new, |frame| seen(around, frame)),
+        Filling::Near => near(around, body),
+        Filling::All => around.sights().take(slots).collect(),
+    };
+    objects.truncate(slots);
+    objects
+}
 
-    fn object(&self, object: u32) -> Option<&ObjectRecord> {
-        let place = self.objects.binary_search_by_key(&object, |record| record.object).ok()?;
-        self.objects.get(place)
-    }
-
-    /// The objects that fill a body's slots, at most `slots`.
-    fn fill(&self, body: &BodyRecord, filling: Filling, slots: usize, frame: Option<&Frame>) -> Vec<&ObjectRecord> {
-        let mut objects = match filling {
-            Filling::Seen => frame.map_or_else(Vec::new, |frame| self.seen(frame)),
-            Filling::Near => self.near(body),
-            Filling::All => self.objects.iter().collect(),
-        };
-        objects.truncate(slots);
-        objects
-    }
-
-    fn seen(&self, frame: &Frame) -> Vec<&ObjectRecord> {
-        let mut pixels: Vec<(u32, u32)> = Vec::new();
-        for record in frame.records() {
-            let Thing::Object(ObjectId(object)) = Thing::of_id(record.id) else { continue };
-            match pixels.iter_mut().find(|(_, other)| *other == object) {
-                Some((count, _)) => *count += record.pixels,
-                None => pixels.push((record.pixels, object)),
-            }
+fn seen(around: &impl Around, frame: &Frame) -> Vec<Sight> {
+    let mut pixels: Vec<(u32, u32)> = Vec::new();
+    for record in frame.records() {
+        let Thing::Object(ObjectId(object)) = Thing::of_id(record.id) else { continue };
+        match pixels.iter_mut().find(|(_, other)| *other == object) {
+            Some((count, _)) => *count += record.pixels,
+            None => pixels.push((record.pixels, object)),
         }
-        pixels.sort_by_key(|(count, object)| (std::cmp::Reverse(*count), *object));
-        pixels.into_iter().filter_map(|(_, object)| self.object(object)).collect()
     }
+    pixels.sort_by_key(|(count, object)| (std::cmp::Reverse(*count), *object));
+    pixels.into_iter().filter_map(|(_, object)| around.sight(object)).collect()
+}
 
-    fn near(&self, body: &BodyRecord) -> Vec<&ObjectRecord> {
-        let at = Vec3::from_array(body.position_m);
-        let in_room = self.objects.iter().filter(|object| u32::from(object.room) == body.room && object.hidden == 0);
-        let mut objects: Vec<(f32, &ObjectRecord)> =
-            in_room.map(|object| ((Vec3::from_array(object.position_m) - at).length_squared(), object)).collect();
-        objects.sort_by(|(one, first), (other, second)| one.total_cmp(other).then(first.object.cmp(&second.object)));
-        objects.into_iter().map(|(_, object)| object).collect()
-    }
+fn near(around: &impl Around, body: &Posture) -> Vec<Sight> {
+    let at = Vec3::from_array(body.position_m);
+    let in_room = around.sights().filter(|object| object.room == body.room && !object.hidden);
+    let mut objects: Vec<(f32, Sight)> =
+        in_room.map(|object| ((Vec3::from_array(object.position_m) - at).length_squared(), object)).collect();
+    objects.sort_by(|(one, first), (other, second)| one.total_cmp(other).then(first.object.cmp(&second.object)));
+    objects.into_iter().map(|(_, object)| object).collect()
 }
 
 impl Sensed {
     /// What a body senses once its slots are filled anew; none if it is not there.
-    pub fn of(
-        around: Surroundings<'_>,
-        body: u32,
-        slots: usize,
-        filling: Filling,
-        frame: Option<&Frame>,
-    ) -> Option<Self> {
-        let body = *around.body(body)?;
-        let objects = around.fill(&body, filling, slots, frame);
-        let held = around.object(body.held).map(|held| held.class);
+    pub fn of(around: &impl Around, body: u32, slots: usize, filling: Filling, frame: Option<&Frame>) -> Option<Self> {
+        let body = around.posture(body)?;
+        let objects = fill(around, &body, filling, slots, frame);
+        let held = body.held.and_then(|held| around.sight(held)).map(|held| held.class);
         let mut sensed = Self {
             body,
             held_class: held.map_or(0, class_number),
@@ -151,20 +138,28 @@ impl Sensed {
             sensed.positions_m[slot] = seen_from.place(Vec3::from_array(object.position_m));
             sensed.flags[slot] = StateFlag::ALL.map(|flag| i8::from(StateFlags(object.flags).has(flag)));
         }
-        let class = |class: u16| library::catalog().classes().get(usize::from(class));
-        let held = held.and_then(class);
-        for (choice, row) in Choice::all().zip(sensed.afforded.chunks_mut(slots.max(1))) {
+        let suits: Vec<u64> = objects.iter().map(|object| afforded(object.class, held)).collect();
+        for (number, (choice, row)) in Choice::all().zip(sensed.afforded.chunks_mut(slots.max(1))).enumerate() {
             if !choice.takes_slot() {
                 row.fill(1);
                 continue;
             }
-            for (object, afforded) in objects.iter().zip(row) {
-                *afforded = i8::from(
-                    class(object.class).is_some_and(|class| choice.is_afforded(library::catalog(), class, held)),
-                );
+            for (suits, afforded) in suits.iter().zip(row) {
+                *afforded = i8::from(*suits & (1 << number) != 0);
             }
         }
         Some(sensed)
+    }
+
+    /// Which choices suit any of the slots.
+    pub fn choices(&self) -> impl Iterator<Item = bool> + '_ {
+        self.afforded.chunks(self.ids.len().max(1)).map(|row| row.contains(&1))
+    }
+
+    /// Which slots hold something; the first one, if none does: something must be chosen, also by those that need nothing.
+    pub fn slots(&self) -> impl Iterator<Item = bool> + '_ {
+        let is_empty = self.ids.iter().all(|id| *id == 0);
+        self.ids.iter().enumerate().map(move |(slot, id)| *id != 0 || is_empty && slot == 0)
     }
 
     /// The objects in its slots.
@@ -186,7 +181,7 @@ impl Sensed {
             head_pitch_rad: self.body.head_pitch_rad,
             room: self.body.room,
             held_class: self.held_class,
-            busy: self.body.busy != 0,
+            busy: self.body.busy,
             ids: Memory::array_of(py, &self.ids, vec![slots], "<u4")?.unbind(),
             classes: Memory::array_of(py, &self.classes, vec![slots], "<i8")?.unbind(),
             positions: Memory::array_of(py, &self.positions_m, vec![slots, 3], "<f4")?.unbind(),
@@ -208,7 +203,7 @@ struct Seer {
 }
 
 impl Seer {
-    fn new(body: &BodyRecord) -> Self {
+    fn new(body: &Posture) -> Self {
         let (sin, cos) = libm::sincosf(body.yaw_rad);
         Self { at_m: Vec3::from_array(body.position_m), ahead: [cos, sin] }
     }

@@ -395,7 +395,7 @@ impl Session {
         let filling = Filling::named(filling)?;
         let state = self.state(py, SENSE_S)?;
         let body = self.body();
-        let sensed = Sensed::of(state.surroundings(), body, slots, filling, frame.map(Bound::get));
+        let sensed = Sensed::of(&state.around(), body, slots, filling, frame.map(Bound::get));
         sensed.ok_or_else(|| bad_argument(format!("there is no body {body} in this session")))?.into_python(py)
     }
 

@@ -4,13 +4,13 @@ use std::sync::Arc;
 
 use cohabit_bus::message::{BodyRecord, GoalRecord, Malformed, NONE, ObjectRecord, StateParts, StateView};
 use cohabit_cdf::{BodyKind, Color, Fluid, RoomId, StateFlags};
-use pyo3::{exceptions::PyKeyError, prelude::*};
+use pyo3::{exceptions::PyKeyError, prelude::*, types::PyBytes};
 
 use crate::{
+    around::Records,
     error::bad_argument,
     library::catalog,
     memory::{Memory, Owner},
-    senses::Surroundings,
 };
 
 /// The world at one tick. It is a copy: keep as many as you like.
@@ -195,9 +195,9 @@ impl State {
     }
 
     /// Its bodies and objects.
-    pub fn surroundings(&self) -> Surroundings<'_> {
+    pub fn around(&self) -> Records<'_> {
         let StateView { bodies, objects, .. } = self.view();
-        Surroundings { bodies, objects }
+        Records { bodies, objects }
     }
 
     fn payload(&self) -> &[u8] {
@@ -236,6 +236,18 @@ impl State {
 
 #[pymethods]
 impl State {
+    /// The state in the bytes of another one, of that tick.
+    #[staticmethod]
+    fn of_payload(payload: &[u8], tick: u64) -> PyResult<Self> {
+        Self::try_from((payload, tick)).map_err(bad_argument)
+    }
+
+    /// All of it as bytes.
+    #[pyo3(name = "payload")]
+    fn bytes_of_payload<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
+        PyBytes::new(py, self.payload())
+    }
+
     /// When it was so.
     #[getter]
     const fn tick(&self) -> u64 {

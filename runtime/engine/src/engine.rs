@@ -18,7 +18,8 @@ use crate::{
     build::SessionPlan,
     camera_plan::CameraPlan,
     intake::Intake,
-    report, snapshot,
+    report,
+    snapshot::{self, RestoreError},
     stopwatch::{Stopwatch, stage_of},
 };
 
@@ -122,6 +123,21 @@ impl Engine {
     #[must_use]
     pub const fn visible(&self) -> Visible<'_> {
         Visible { world: &self.world, appearance: &self.appearance }
+    }
+
+    /// All that is needed to go on from here, as bytes: see [`Self::restore`].
+    #[must_use]
+    pub fn snapshot(&self) -> Vec<u8> {
+        snapshot::write(self.visible())
+    }
+
+    /// Goes on from where an engine of the same mission was.
+    ///
+    /// # Errors
+    /// [`RestoreError`]; the world is then as it was.
+    pub fn restore(&mut self, bytes: &[u8]) -> Result<(), RestoreError> {
+        self.appearance = snapshot::restore(&mut self.world, bytes)?;
+        Ok(())
     }
 
     /// One tick, whose wall time is stamped `wall_nanos` (since 1970).

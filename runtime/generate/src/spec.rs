@@ -194,6 +194,20 @@ impl Spec {
         self
     }
 
+    /// The same with these of its types alone; `file` is only what an error calls them.
+    ///
+    /// # Errors
+    /// [`SpecError::Wrong`] if there is none of that name.
+    pub fn only(mut self, file: &str, names: &[String]) -> Result<Self, SpecError> {
+        let known: Vec<&str> = self.types().collect();
+        if let Some(name) = names.iter().find(|name| !known.contains(&name.as_str())) {
+            let reason = format!("there is no type `{name}`; there are {}", known.join(", "));
+            return Err(SpecError::Wrong { file: file.to_owned(), place: "type".to_owned(), reason });
+        }
+        self.types.retain(|kind| names.contains(&kind.name));
+        Ok(self)
+    }
+
     /// The names of its types.
     pub fn types(&self) -> impl Iterator<Item = &str> {
         self.types.iter().map(|kind| kind.name.as_str())

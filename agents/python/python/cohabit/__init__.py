@@ -1,6 +1,8 @@
 """People and robots in a simulated office: join a session, read its frames in place, train in lock-step.
 
-- :class:`Env` and :class:`ParallelEnv` play missions in lock-step, in this process.
+- :class:`Env` and :class:`ParallelEnv` play missions in lock-step, in this process; :class:`VectorEnv` many at once.
+- :func:`suite` and :func:`generate` have missions by the thousand; :func:`evaluate` scores a policy on them.
+- :func:`tools` describes what a body can do to language models.
 - :func:`join` joins a running session.
 """
 
@@ -8,6 +10,7 @@ from __future__ import annotations
 
 import gymnasium as _gymnasium
 
+from . import _pickling as _pickling
 from ._native import (
     FLAGS,
     ROOMS,
@@ -25,13 +28,18 @@ from ._native import (
     Seen,
     State,
 )
+from ._native import builtin_missions as _builtin_missions
 from ._native import class_ids as _class_ids
 from .actions import Action, Drive, GoTo, Highlight, Interact, Look, LookAround, Move, PickUp, Place, Rotate, Stop
+from .body_tools import Tools, tools
 from .env import Env
-from .office import CHOICES, PLANES
+from .evaluation import Evaluation, evaluate
+from .missions import Mission, Suite, generate, suite
 from .parallel import ParallelEnv
 from .records import records
+from .sensing import CHOICES, PLANES
 from .session import Session, join
+from .vector import VectorEnv
 
 __version__ = VERSION
 
@@ -52,6 +60,7 @@ __all__ = [
     "Drive",
     "Env",
     "Error",
+    "Evaluation",
     "Frame",
     "GoTo",
     "Goal",
@@ -60,6 +69,7 @@ __all__ = [
     "Interact",
     "Look",
     "LookAround",
+    "Mission",
     "Move",
     "Object",
     "Outcome",
@@ -71,9 +81,26 @@ __all__ = [
     "Session",
     "State",
     "Stop",
+    "Suite",
+    "Tools",
+    "VectorEnv",
+    "evaluate",
+    "generate",
     "join",
     "records",
+    "suite",
+    "tools",
 ]
 
-_gymnasium.register("Cohabit/Mission-v0", entry_point="cohabit.env:Env")
-_gymnasium.register("Cohabit/MissionState-v0", entry_point="cohabit.env:Env", kwargs={"planes": ()})
+
+
+def _register(name: str, **arguments: object) -> None:
+    entry, vector = "cohabit.env:Env", "cohabit.vector:VectorEnv"
+    _gymnasium.register(f"Cohabit/{name}-v0", entry_point=entry, vector_entry_point=vector, kwargs=dict(arguments))
+
+
+_register("Mission")
+_register("MissionState", planes=())
+for _mission in _builtin_missions():
+    # Such as `Cohabit/MakeCereal-v0`.
+    _register("".join(word.capitalize() for word in _mission.split("_")), mission=_mission)

@@ -1,5 +1,6 @@
 """The part of the package that is not Python."""
 
+from collections.abc import Sequence
 from typing import Any, Optional, Union, final
 
 import numpy as np
@@ -21,6 +22,18 @@ class Error(Exception): ...
 def class_ids() -> list[str]: ...
 def class_names() -> list[str]: ...
 def mission_text(name: Optional[str] = None) -> tuple[str, str]: ...
+def builtin_missions() -> list[str]: ...
+def generate_missions(
+    count: int, seed: int, types: Optional[list[str]], blockers: Optional[float], workers: int
+) -> list[str]:
+    """Lines of a file of missions."""
+
+def part_missions(missions: list[tuple[str, str, list[str], list[str]]], share: float, seed: int) -> list[str]:
+    """The part that each mission, given by type, floor plan, rooms and things, belongs to."""
+
+def action_table() -> list[tuple[str, list[str], list[tuple[str, str]]]]:
+    """What can be done to objects: the name, what people say for it, and how it is refused: statuses with sentences."""
+
 def choice_action(choice: int, object: int) -> Optional[Action]: ...
 @final
 class Action:
@@ -269,6 +282,10 @@ class State:
     @property
     def notes(self) -> list[tuple[int, str, bool]]:
         """What the sticky notes say: the object's number, the text, whether it was read."""
+    @staticmethod
+    def of_payload(payload: bytes, tick: int) -> State: ...
+    def payload(self) -> bytes:
+        """All of it as bytes."""
     def find(self, name: Union[int, str], near: int = 0) -> Object:
         """The object of that number, instance id, or class: then the nearest to a body. Raises ``KeyError``."""
     def records(self, list: str) -> tuple[int, npt.NDArray[np.uint8]]: ...
@@ -308,8 +325,17 @@ class Stage:
         cameras: list[str] = ...,
         seed: int = 0,
         threads: int = 1,
+        randomize: bool = False,
     ) -> Stage: ...
-    def reset(self, seed: int) -> None: ...
+    def reset(self, seed: int, mission: Optional[str] = None, text: Optional[str] = None) -> None: ...
+    def made_of(self) -> tuple[str, str, list[str], list[str], int, int, bool]:
+        """The arguments of a stage that is the same at its beginning."""
+    def save(self) -> tuple[bytes, int, list[tuple[int, int, Optional[str]]], list[list[int]]]:
+        """This moment, for :meth:`load`."""
+    def load(
+        self, state: bytes, commanded: int, pending: list[tuple[int, int, Optional[str]]], slots: list[list[int]]
+    ) -> None:
+        """Goes on from a moment of a stage that was made of the same."""
     def act(self, actions: list[tuple[int, Action]], ticks: Optional[int] = None) -> list[Outcome]: ...
     def choose(self, choices: list[tuple[int, int, int]], ticks: Optional[int] = None) -> list[Outcome]: ...
     def look(self, cameras: list[str]) -> list[Frame]: ...
@@ -319,6 +345,37 @@ class Stage:
     def digest(self) -> bytes: ...
     def kinds(self) -> list[str]: ...
     def mission(self) -> tuple[str, int]: ...
+
+@final
+class VecStage:
+    """Worlds that are stepped together by threads of their own."""
+
+    def __new__(
+        cls,
+        missions: Sequence[tuple[Optional[str], Optional[str]]],
+        bodies: list[str],
+        cameras: list[str],
+        eyes: Optional[str],
+        planes: list[str],
+        slots: int,
+        filling: str,
+        ticks: Optional[int],
+        most_steps: int,
+        threads: int,
+        randomize: bool,
+    ) -> VecStage: ...
+    def layout(self) -> list[tuple[str, int, int, list[int], str]]:
+        """Where arrays are in pages: name, page, first byte, shape, type."""
+    def turn(
+        self,
+        choices: list[Optional[list[int]]],
+        beginnings: list[tuple[int, int, Optional[tuple[Optional[str], Optional[str]]]]],
+    ) -> tuple[list[npt.NDArray[np.uint8]], list[str], list[str], list[str]]:
+        """One turn of all worlds. Gives the pages, and of each world the status and the detail of its command, and its
+        ending."""
+    def look(self, world: int, camera: str) -> Frame: ...
+    def state(self, world: int) -> State: ...
+    def digest(self, world: int) -> bytes: ...
 
 @final
 class Heard:

@@ -7,8 +7,10 @@ body that is not hidden. An action on a name that is unknown is refused: its out
 from __future__ import annotations
 
 import difflib
+import math
+from collections.abc import Collection
 from dataclasses import dataclass
-from typing import Union
+from typing import Protocol, Union
 
 from . import _native
 
@@ -16,28 +18,66 @@ ObjectRef = Union[int, str, _native.Object, _native.Seen]
 """An object: its number, a name, or what ``state`` or a frame gave for it."""
 
 
-def resolve(reference: ObjectRef, state: _native.State, body: int, rooms: bool = False) -> Union[int, str]:
+class Names(Protocol):
+    """What objects are called by whoever acts: a state, or what is known of one."""
+
+    @property
+    def objects(self) -> list[_native.Object]:
+        """All objects that can be named."""
+
+    def find(self, name: Union[int, str], near: int = 0) -> _native.Object:
+        """The object of that number, instance id, or class: then the nearest to a body. Raises ``KeyError``."""
+
+
+class Known:
+    """What is known of a state: some of its objects alone."""
+
+    def __init__(self, state: _native.State, known: Collection[int]) -> None:
+        self._state = state
+        self._known = known
+
+    @property
+    def objects(self) -> list[_native.Object]:
+        """Those that are known."""
+        return [thing for thing in self._state.objects if thing.id in self._known]
+
+    def find(self, name: Union[int, str], near: int = 0) -> _native.Object:
+        """The one of that number, instance id, or class: then the nearest to a body. Raises ``KeyError``."""
+        at = next((body.position for body in self._state.bodies if body.id == near), (0.0, 0.0, 0.0))
+        known = self.objects
+        exact = [thing for thing in known if name in (thing.id, thing.instance)]
+        alike = [thing for thing in known if thing.class_id == name or thing.name.lower() == str(name).lower()]
+        if not exact and not alike:
+            raise KeyError(f"no object {name} is known")
+        return min(exact or alike, key=lambda thing: (thing.hidden, math.dist(thing.position, at)))
+
+
+def resolve(reference: ObjectRef, state: Names, body: int, rooms: bool = False) -> Union[int, str]:
     """The number of the object that is meant, or a sentence that says why there is none; ``rooms`` may be meant too."""
     if isinstance(reference, _native.Seen):
         return f"{reference!r} is no object" if reference.object is None else reference.object
     if isinstance(reference, _native.Object):
-        return reference.id
-    if isinstance(reference, int):
+        reference = reference.id
+    if isinstance(reference, int) and not isinstance(state, Known):
         return reference
     try:
         return state.find(reference, near=body).id
     except KeyError:
-        return _unknown(reference, state, rooms)
+        return _unknown(str(reference), state, rooms)
 
 
-def _unknown(name: str, state: _native.State, rooms: bool) -> str:
+def _unknown(name: str, state: Names, rooms: bool) -> str:
     """Says that nothing is called that, and what is called something similar."""
     known = {called for thing in state.objects for called in (thing.name, thing.class_id, thing.instance)}
     known.update(_native.ROOMS if rooms else ())
     spelled = {called.lower(): called for called in sorted(known)}
     near = [spelled[called] for called in difflib.get_close_matches(name.lower(), sorted(spelled), 3)]
     kinds = "object or room" if rooms else "object"
-    return f"there is no {kinds} `{name}` in this world" + (f": did you mean `{'`, `'.join(near)}`?" if near else "")
+    if isinstance(state, Known):
+        missing = f"no {kinds} `{name}` has been seen yet"
+    else:
+        missing = f"there is no {kinds} `{name}` in this world"
+    return missing + (f": did you mean `{'`, `'.join(near)}`?" if near else "")
 
 
 @dataclass(frozen=True)
@@ -46,7 +86,7 @@ class Move:
 
     distance_m: float
 
-    def plain(self, state: _native.State, body: int) -> _native.Action:
+    def plain(self, state: Names, body: int) -> _native.Action:
         """The action with its objects as numbers."""
         return _native.Action.move(self.distance_m)
 
@@ -57,7 +97,7 @@ class Rotate:
 
     yaw_rad: float
 
-    def plain(self, state: _native.State, body: int) -> _native.Action:
+    def plain(self, state: Names, body: int) -> _native.Action:
         """The action with its objects as numbers."""
         return _native.Action.rotate(self.yaw_rad)
 
@@ -68,7 +108,7 @@ class Look:
 
     pitch_rad: float
 
-    def plain(self, state: _native.State, body: int) -> _native.Action:
+    def plain(self, state: Names, body: int) -> _native.Action:
         """The action with its objects as numbers."""
         return _native.Action.look(self.pitch_rad)
 
@@ -77,7 +117,7 @@ class Look:
 class LookAround:
     """Turn once around, looking."""
 
-    def plain(self, state: _native.State, body: int) -> _native.Action:
+    def plain(self, state: Names, body: int) -> _native.Action:
         """The action with its objects as numbers."""
         return _native.Action.look_around()
 
@@ -88,7 +128,7 @@ class GoTo:
 
     target: Union[ObjectRef, tuple[str, int], tuple[float, float]]
 
-    def plain(self, state: _native.State, body: int) -> _native.Action:
+    def plain(self, state: Names, body: int) -> _native.Action:
         """The action with its objects as numbers."""
         target = self.target
         if isinstance(target, tuple):
@@ -107,7 +147,7 @@ class PickUp:
 
     object: ObjectRef
 
-    def plain(self, state: _native.State, body: int) -> _native.Action:
+    def plain(self, state: Names, body: int) -> _native.Action:
         """The action with its objects as numbers."""
         return _native.Action.pick_up(resolve(self.object, state, body))
 
@@ -118,7 +158,7 @@ class Place:
 
     receptacle: ObjectRef
 
-    def plain(self, state: _native.State, body: int) -> _native.Action:
+    def plain(self, state: Names, body: int) -> _native.Action:
         """The action with its objects as numbers."""
         return _native.Action.place(resolve(self.receptacle, state, body))
 
@@ -130,7 +170,7 @@ class Interact:
     verb: str
     object: ObjectRef
 
-    def plain(self, state: _native.State, body: int) -> _native.Action:
+    def plain(self, state: Names, body: int) -> _native.Action:
         """The action with its objects as numbers."""
         return _native.Action.interact(self.verb, resolve(self.object, state, body))
 
@@ -141,7 +181,7 @@ class Highlight:
 
     object: ObjectRef
 
-    def plain(self, state: _native.State, body: int) -> _native.Action:
+    def plain(self, state: Names, body: int) -> _native.Action:
         """The action with its objects as numbers."""
         return _native.Action.highlight(resolve(self.object, state, body))
 
@@ -157,7 +197,7 @@ class Drive:
     turn_rad_s: float = 0.0
     pitch_rad_s: float = 0.0
 
-    def plain(self, state: _native.State, body: int) -> _native.Action:
+    def plain(self, state: Names, body: int) -> _native.Action:
         """The action with its objects as numbers."""
         return _native.Action.drive(self.forward_m_s, self.turn_rad_s, self.pitch_rad_s)
 
@@ -166,7 +206,7 @@ class Drive:
 class Stop:
     """Let go of whatever it is doing, now."""
 
-    def plain(self, state: _native.State, body: int) -> _native.Action:
+    def plain(self, state: Names, body: int) -> _native.Action:
         """The action with its objects as numbers."""
         return _native.Action.stop()
 

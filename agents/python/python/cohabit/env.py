@@ -21,7 +21,8 @@ class Env(gymnasium.Env[Observation, npt.NDArray[np.int64]]):
     An action is ``[choice, slot]``: what to do (``cohabit.CHOICES``), and to which object of those in the body's slots
     (``slot_ids`` and the like in the observation). What makes no sense is refused by the world: ``info["status"]``
     and ``info["detail"]`` say how it went, ``info["action_mask"]`` what may be tried, as ``action_space.sample`` takes
-    it, and ``info["affordances"]`` (``[choices, slots]``) which choice suits which slot.
+    it, and ``info["affordances"]`` (``[choices, slots]``) which choice suits which slot. ``info["instruction"]`` is what the
+    robot is told to do. An environment can be pickled and copied, but for one in a session: the copy goes on from there.
 
     The reward is the change of the score over 100: a goal is worth 1, a simulated second costs 0.01. An episode
     terminates when the mission ends, and is truncated after ``max_steps``.
@@ -54,6 +55,9 @@ class Env(gymnasium.Env[Observation, npt.NDArray[np.int64]]):
         render_size: tuple[int, int] = (640, 360),
         threads: int = 1,
         session: Optional[Session] = None,
+        randomize: bool = False,
+        instruction: bool = False,
+        knows: str = "everything",
     ) -> None:
         check_steps(render_mode, ticks_per_step)
         if session is not None and render_mode is not None:
@@ -62,12 +66,27 @@ class Env(gymnasium.Env[Observation, npt.NDArray[np.int64]]):
         self.max_steps = max_steps
         self.ticks_per_step = ticks_per_step
         render = render_size if render_mode else None
-        self.office = Office(mission, bodies, planes, camera, size, slots, fill, render, threads, session)
+        self.office = Office(
+            mission,
+            bodies,
+            planes,
+            camera,
+            size,
+            slots,
+            fill,
+            render,
+            threads,
+            session,
+            randomize=randomize,
+            instruction=instruction,
+            knows=knows,
+        )
         self.observation_space = self.office.observation_space
         self.action_space = self.office.action_space
         self._body = 0 if session is None else session.body
         self._steps = 0
         self._score = 0
+        self._masks: npt.NDArray[np.bool_] = np.zeros(0, np.bool_)
 
     @property
     def state(self) -> _native.State:
@@ -88,7 +107,14 @@ class Env(gymnasium.Env[Observation, npt.NDArray[np.int64]]):
         self._steps = 0
         self._score, _ = self.office.progress()
         (observation,), (info,) = self.office.observe([self._body])
+        self._masks = info["action_masks"]
         return observation, info | outcome_info([], self._body)
+
+    def action_masks(self) -> npt.NDArray[np.bool_]:
+        """Which choices and which slots may be tried, one after the other, ``[choices + slots]``: as masked PPO asks for them.
+        The same is in ``info["action_masks"]``, which stays an array where environments are made a vector of."""
+        self.office.check_begun("action_masks")
+        return self._masks
 
     def step(
         self, action: npt.NDArray[np.int64]
@@ -104,12 +130,13 @@ class Env(gymnasium.Env[Observation, npt.NDArray[np.int64]]):
     def act(self, action: Action) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
         """The same as :meth:`step` with an action in words, such as ``GoTo("bowl")``."""
         self.office.check_begun("act")
-        plain = action.plain(self.state, self._body)
+        plain = action.plain(self.office.names(self._body), self._body)
         return self._after(self.office.world.act([(self._body, plain)], self.ticks_per_step))
 
     def _after(self, outcomes: Sequence[_native.Outcome]) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
         self._steps += 1
         (observation,), (info,) = self.office.observe([self._body])
+        self._masks = info["action_masks"]
         reward = (info["score"] - self._score) / 100
         self._score = info["score"]
         terminated = info["ending"] != "running"

@@ -17,6 +17,7 @@ Observations are dictionaries. Pictures are those of each body's camera; all els
 ``slot_classes``     ``[S]`` i8              its class, as ``held``
 ``slot_positions``   ``[S, 3]`` f4           where it is from the body: ahead, to the left, up, m
 ``slot_states``      ``[S, 25]`` 0, 1        its states, in the order of ``cohabit.FLAGS``
+``instruction``      text                    what the robot is told to do, if it is asked for
 ===================  ======================  =================================================================
 
 A panorama's planes have four pictures, ``[4, H, W, …]``: ahead, right, back, left.
@@ -33,42 +34,29 @@ from typing import Any, Optional, Protocol, Union
 import gymnasium
 import numpy as np
 import numpy.typing as npt
-from gymnasium import spaces
 
 from . import _native
+from .actions import Known, Names
+from .missions import Mission, Suite, instruction_of
 from .records import NONE
+from .sensing import CHOICES, MOST_GOALS, PLANES, Sensing, observable
 from .session import Session
 
-MissionLike = Union[None, str, "os.PathLike[str]", Mapping[str, Any]]
-"""A built-in mission's name, a CDF file's path, or a CDF as a dictionary; ``None`` is the default mission."""
+__all__ = ["CHOICES", "OPTIONS", "PLANES", "MissionLike", "Observation", "Office"]
+
+MissionLike = Union[None, str, "os.PathLike[str]", Mapping[str, Any], Mission, Suite]
+"""A built-in mission's name, a CDF file's path, a CDF as a dictionary, a mission of a suite, or a suite, of which a mission is
+sampled for each episode; ``None`` is the default mission."""
 
 Observation = dict[str, Any]
 ActionMask = tuple[npt.NDArray[np.int8], npt.NDArray[np.int8]]
-
-PLANES = ("color", "depth", "normals", "ids")
-"""The planes there are."""
-
-CHOICES: tuple[str, ...] = tuple(name for name, _ in _native.CHOICES)
-"""The kinds of actions of environments, by their numbers."""
 
 OPTIONS = ("mission", "layout", "seed")
 """What ``reset(options=…)`` takes, for the episode that begins: another ``mission``, another ``layout`` (the floor plan, such
 as ``"OfficeLayout2_mirror"``), and the ``seed`` of what is placed at random, also where the mission has a seed of its own."""
 
-MOST_GOALS = 16
-"""Goals that an observation tells of."""
-
 _LONG_TICKS = 60 * 240
 _WAIT_TICKS = 60
-_FARTHEST_M = 1000.0
-_CLASSES = len(_native.class_ids())
-_PLANE_SPACES: dict[str, tuple[float, float, tuple[int, ...], Any]] = {
-    "color": (0, 255, (4,), np.uint8),
-    "depth": (0.0, np.inf, (), np.float32),
-    "normals": (-128, 127, (4,), np.int8),
-    "ids": (0, 2**32 - 1, (), np.uint32),
-}
-_VIEWS = {"panorama": 4}
 
 
 class World(Protocol):
@@ -77,8 +65,8 @@ class World(Protocol):
     def kinds(self) -> list[str]:
         """The kinds of all bodies that are played."""
 
-    def reset(self, seed: int) -> None:
-        """Begins anew."""
+    def reset(self, seed: int, mission: Optional[str] = None, text: Optional[str] = None) -> None:
+        """Begins anew, with another mission, if one is given."""
 
     def act(self, actions: list[tuple[int, _native.Action]], ticks: Optional[int] = None) -> list[_native.Outcome]:
         """Has bodies carry out actions until all have ended, or for so many ticks."""
@@ -123,7 +111,7 @@ class Guest:
         """The kind of the body that is played."""
         return [self.session.state().bodies[self.session.body].kind]
 
-    def reset(self, seed: int) -> None:
+    def reset(self, seed: int, mission: Optional[str] = None, text: Optional[str] = None) -> None:
         """A session's world goes on as it is."""
         if not self._begun:
             self.session.claim(self.session.take_over)
@@ -201,11 +189,17 @@ class Office:
     :param size: width and height of a picture, or one number.
     :param slots: objects that a body can choose from at once.
     :param fill: what fills them: ``"seen"`` in the body's picture, the largest first; ``"near"``, what is not hidden in its
-        room, the nearest first; ``"all"``, by number. Left out, it is ``"seen"`` where there are pictures, else ``"near"``.
+        room, the nearest first; ``"all"``, by number. Left out, it is ``"seen"`` where ``ids`` are observed, else ``"near"``: ids
+        that nobody asked for are not drawn.
     :param render: width and height of :meth:`render`'s pictures, if any are wanted.
     :param threads: threads that draw.
     :param session: a session that was joined, whose world it is instead; ``mission``, ``bodies`` and ``threads`` say nothing
         then, ``camera`` is the name of one of its cameras (``"egocentric"`` for the body's own), and ``size`` that camera's.
+    :param randomize: whether what a mission places at random follows from the seed of each episode even where the mission has
+        a seed of its own, as the built-in ones do.
+    :param instruction: whether an observation has what the robot is told to do; it is in the info in any case.
+    :param knows: which objects an action in words may name: ``"everything"`` there is, or what the body has ``"seen"`` in this
+        episode: what was in its slots, in its pictures (if they have ids), or in its hand.
     """
 
     def __init__(
@@ -220,53 +214,70 @@ class Office:
         render: Optional[tuple[int, int]],
         threads: int,
         session: Optional[Session] = None,
+        randomize: bool = False,
+        instruction: bool = False,
+        knows: str = "everything",
     ) -> None:
-        unknown = [plane for plane in planes if plane not in PLANES]
-        if unknown:
-            raise ValueError(f"there is no plane `{unknown[0]}`: {', '.join(PLANES)}")
-        if not 1 <= slots <= 4096:
-            raise ValueError(f"{slots} slots: 1 to 4096")
-        self.planes = tuple(plane for plane in PLANES if plane in planes)
-        self.slots = slots
-        self.fill = fill or ("seen" if self.planes else "near")
-        self.size = (size, size) if isinstance(size, int) else size
-        self.kind = camera.split(",", 1)[0]
-        drawn = self.planes + (("ids",) if self.fill == "seen" and "ids" not in self.planes else ())
-        self._drawn = bool(drawn)
-        count = 1 + len(bodies)
+        if knows not in ("everything", "seen"):
+            raise ValueError(f"nobody knows `{knows}`: everything or seen")
+        self.sensing = Sensing(planes, camera, size, slots, fill, instruction)
+        self.planes, self.slots, self.fill = self.sensing.planes, slots, self.sensing.fill
+        self.knows = knows
         self._session_camera = camera if session is not None else None
-        cameras = [self._camera(body, camera, drawn) for body in range(count)] if drawn and session is None else []
-        if render is not None:
-            cameras += [
-                f"watch-{body}=third-person,body={body},size={render[0]}x{render[1]},planes=color" for body in range(count)
-            ]
         self._mission = mission
-        self._played: tuple[MissionLike, Optional[str], Optional[int]] = (mission, None, None)
-        self._bodies, self._cameras, self._threads = list(bodies), cameras, threads
+        first = mission[0] if isinstance(mission, Suite) else mission
+        self._played: Played = (first, None, None)
+        self._randomize = randomize
         self._has_begun = False
+        self._known: dict[int, set[int]] = {}
+        self.mission_name, self.instruction = "", ""
         self.world: World
         if session is None:
-            self.world = self._stage(*self._played)
+            name, text = mission_text(*self._played)
+            cameras = self.sensing.cameras(1 + len(bodies), render)
+            self.world = _native.Stage(name, text, list(bodies), cameras, 0, threads, randomize)
+            self._told(name, text)
         else:
-            self.world = Guest(session, self._eyes(session.body) if drawn else None, drawn, self.size)
+            drawn = self.sensing.drawn
+            self.world = Guest(session, self._eyes(session.body) if drawn else None, drawn, self.sensing.size)
+            self.mission_name = session.peer.mission
         self.kinds = tuple(self.world.kinds())
-        self.observation_space = self._observation_space()
-        self.action_space = spaces.MultiDiscrete([len(CHOICES), slots])
+        self.observation_space = self.sensing.observation_space()
+        self.action_space = self.sensing.action_space()
 
-    def _stage(self, mission: MissionLike, layout: Optional[str], seed: Optional[int]) -> _native.Stage:
-        name, text = _mission(mission)
-        if layout is not None or seed is not None:
-            name, text = _changed(name, text, layout, seed)
-        return _native.Stage(name, text, self._bodies, self._cameras, 0, self._threads)
+    def _told(self, name: str, text: str) -> None:
+        """Notes what is played."""
+        self.mission_name, self.instruction = name, instruction_in(self._played[0], text)
 
     def begin(self, seed: int, options: Optional[Mapping[str, Any]]) -> None:
         """Begins the mission anew, or another one that ``options`` name. Raises ``ValueError`` if they name anything else."""
-        played = self._chosen(options or {})
+        played = self._chosen(options or {}, seed)
+        if self._randomize and played[2] is not None:
+            seed = played[2]
         if played != self._played:
-            self.world = self._stage(*played)
+            name, text = mission_text(*played)
+            self.world.reset(seed, name, text)
             self._played = played
-        self.world.reset(seed)
+            self._told(name, text)
+        else:
+            self.world.reset(seed)
+        self._known.clear()
         self._has_begun = True
+
+    def names(self, body: int) -> Names:
+        """What an action in words of a body may name."""
+        state = self.world.state()
+        return state if self.knows == "everything" else Known(state, self._known.get(body, set()))
+
+    def _remember(self, body: int, senses: _native.Senses, frame: Optional[_native.Frame]) -> None:
+        """Notes which objects a body has seen by now."""
+        known = self._known.setdefault(body, set())
+        known.update(int(number) - 1 for number in senses.ids if number)
+        if frame is not None:
+            known.update(thing.object for thing in frame.seen if thing.object is not None)
+        held = self.world.state().bodies[body].held
+        if held is not None:
+            known.add(held)
 
     def check_begun(self, method: str) -> None:
         """Raises :class:`gymnasium.error.ResetNeeded` before the first :meth:`begin`."""
@@ -280,11 +291,13 @@ class Office:
         unknown = next((name for name in options if name not in known), None)
         return None if unknown is None else f"there is no option `{unknown}` of reset: {takes}"
 
-    def _chosen(self, options: Mapping[str, Any]) -> tuple[MissionLike, Optional[str], Optional[int]]:
+    def _chosen(self, options: Mapping[str, Any], episode: int) -> Played:
         """The mission, layout and seed of the next episode."""
         if (unknown := self.unknown_option(options)) is not None:
             raise ValueError(unknown)
         mission, layout, seed = options.get("mission", self._mission), options.get("layout"), options.get("seed")
+        if isinstance(mission, Suite):
+            mission = mission.sample(episode)
         if layout is not None and not isinstance(layout, str):
             raise ValueError(f"option `layout` is {layout!r}: the id of a floor plan, such as `OfficeLayout2`")
         if seed is not None and (isinstance(seed, bool) or not isinstance(seed, (int, np.integer)) or seed < 0):
@@ -297,44 +310,20 @@ class Office:
             return f"sense-{body}"
         return f"egocentric/{body}" if self._session_camera == "egocentric" else self._session_camera
 
-    def _camera(self, body: int, camera: str, planes: Sequence[str]) -> str:
-        kind, _, options = camera.partition(",")
-        width, height = self.size
-        own = [f"size={width}x{height}", f"planes={'+'.join(planes)}", *([options] if options else [])]
-        if kind != "fixed" and "body=" not in options:
-            own.append(f"body={body}")
-        return f"sense-{body}={kind},{','.join(own)}"
-
-    def _observation_space(self) -> spaces.Dict:
-        width, height = self.size
-        views = (_VIEWS[self.kind],) if self.kind in _VIEWS else ()
-        parts: dict[str, gymnasium.Space[Any]] = {}
-        for plane in self.planes:
-            low, high, channels, dtype = _PLANE_SPACES[plane]
-            parts[plane] = spaces.Box(low, high, (*views, height, width, *channels), dtype)
-        parts["position"] = spaces.Box(-_FARTHEST_M, _FARTHEST_M, (3,), np.float32)
-        parts["heading"] = spaces.Box(-2 * np.pi, 2 * np.pi, (2,), np.float32)
-        parts["room"] = spaces.Discrete(len(_native.ROOMS))
-        parts["held"] = spaces.Discrete(_CLASSES + 1)
-        parts["busy"] = spaces.Discrete(2)
-        parts["goals"] = spaces.MultiBinary(MOST_GOALS)
-        parts["slot_ids"] = spaces.Box(0, 2**32 - 1, (self.slots,), np.uint32)
-        parts["slot_classes"] = spaces.Box(0, _CLASSES, (self.slots,), np.int64)
-        parts["slot_positions"] = spaces.Box(-_FARTHEST_M, _FARTHEST_M, (self.slots, 3), np.float32)
-        parts["slot_states"] = spaces.MultiBinary((self.slots, len(_native.FLAGS)))
-        return spaces.Dict(parts)
-
     def observe(self, bodies: Sequence[int]) -> tuple[list[Observation], list[dict[str, Any]]]:
         """What each of these bodies observes, and what may be known beyond it."""
         frames: Sequence[Optional[_native.Frame]]
-        frames = self.world.look([self._eyes(body) for body in bodies]) if self._drawn else [None] * len(bodies)
+        frames = self.world.look([self._eyes(body) for body in bodies]) if self.sensing.drawn else [None] * len(bodies)
         tick, score, ending, goals = self.world.progress()
         met = np.zeros(MOST_GOALS, np.int8)
         for index, (_, is_met) in enumerate(goals[:MOST_GOALS]):
             met[index] = is_met
         seen = [frame for frame in frames if frame is not None] if self.fill == "seen" else []
         observations, infos = [], []
-        for frame, senses in zip(frames, self.world.sense(list(bodies), self.slots, self.fill, seen)):
+        sensed = self.world.sense(list(bodies), self.slots, self.fill, seen)
+        for body, frame, senses in zip(bodies, frames, sensed):
+            if self.knows == "seen":
+                self._remember(body, senses, frame)
             observation: Observation = {}
             if frame is not None:
                 for plane in self.planes:
@@ -349,10 +338,14 @@ class Office:
             observation["slot_classes"] = senses.classes
             observation["slot_positions"] = senses.positions
             observation["slot_states"] = senses.flags
+            if self.sensing.instruction:
+                observation["instruction"] = observable(self.instruction)
             observations.append(observation)
             info = {"tick": tick, "score": score, "ending": ending, "goals": dict(goals)}
+            info["mission"], info["instruction"] = self.mission_name, self.instruction
             info["affordances"] = senses.afforded
-            info["action_mask"] = _mask(senses)
+            info["action_mask"] = mask = _mask(senses)
+            info["action_masks"] = np.concatenate(mask).astype(np.bool_)
             infos.append(info)
         return observations, infos
 
@@ -377,21 +370,36 @@ def _mask(senses: _native.Senses) -> ActionMask:
     return kinds, slots
 
 
-def _mission(mission: MissionLike) -> tuple[Optional[str], Optional[str]]:
-    """A mission's name, and its text if it is none that can be found by it."""
-    if mission is None or isinstance(mission, str):
-        return mission, None
-    if isinstance(mission, Mapping):
-        return "mission", json.dumps(mission)
-    return os.fspath(mission), None
+Played = tuple[MissionLike, Optional[str], Optional[int]]
+"""A mission, the layout that it is moved to, and the seed that it is given, if any is."""
 
 
-def _changed(
-    name: Optional[str], text: Optional[str], layout: Optional[str], seed: Optional[int]
-) -> tuple[str, str]:
+def mission_text(mission: MissionLike, layout: Optional[str] = None, seed: Optional[int] = None) -> tuple[str, str]:
     """A mission's name and text, on another layout or with another seed."""
-    if name is None or text is None:
-        name, text = _native.mission_text(name)
+    if isinstance(mission, Suite):
+        raise ValueError("a suite has many missions: one of them, such as suite[0]")
+    if isinstance(mission, Mission):
+        name, text = mission.id, mission.text
+    elif isinstance(mission, Mapping):
+        name, text = "mission", json.dumps(mission)
+    else:
+        name, text = _native.mission_text(None if mission is None else os.fspath(mission))
+    return (name, text) if layout is None and seed is None else _changed(name, text, layout, seed)
+
+
+def instruction_in(mission: MissionLike, text: str) -> str:
+    """What the robot is told to do in a mission of that text."""
+    if isinstance(mission, Mission):
+        return mission.instruction
+    try:
+        return instruction_of(json.loads(text.lstrip("\ufeff")))
+    except ValueError:
+        # Whoever plays it says what is wrong with it.
+        return ""
+
+
+def _changed(name: str, text: str, layout: Optional[str], seed: Optional[int]) -> tuple[str, str]:
+    """A mission's name and text, on another layout or with another seed."""
     try:
         cdf = json.loads(text)
     except ValueError as error:

@@ -49,13 +49,29 @@ class ParallelEnv(Base):  # type: ignore[misc, unused-ignore]
         render_mode: Optional[str] = None,
         render_size: tuple[int, int] = (640, 360),
         threads: int = 1,
+        randomize: bool = False,
+        instruction: bool = False,
+        knows: str = "everything",
     ) -> None:
         check_steps(render_mode, ticks_per_step)
         self.render_mode = render_mode
         self.max_steps = max_steps
         self.ticks_per_step = ticks_per_step
         render = render_size if render_mode else None
-        self.office = Office(mission, bodies, planes, camera, size, slots, fill, render, threads)
+        self.office = Office(
+            mission,
+            bodies,
+            planes,
+            camera,
+            size,
+            slots,
+            fill,
+            render,
+            threads,
+            randomize=randomize,
+            instruction=instruction,
+            knows=knows,
+        )
         self.possible_agents = [f"{kind}_{number}" for number, kind in enumerate(self.office.kinds)]
         self.agents: list[str] = []
         self._number = {agent: number for number, agent in enumerate(self.possible_agents)}
@@ -109,8 +125,8 @@ class ParallelEnv(Base):  # type: ignore[misc, unused-ignore]
     def act(self, actions: Mapping[str, Action]) -> Step:
         """The same as :meth:`step` with actions in words, such as ``GoTo("bowl")``."""
         self.office.check_begun("act")
-        state = self.office.world.state()
-        plain = [(self._number[agent], action.plain(state, self._number[agent])) for agent, action in actions.items()]
+        numbers = [(self._number[agent], action) for agent, action in actions.items()]
+        plain = [(number, action.plain(self.office.names(number), number)) for number, action in numbers]
         return self._after(self.office.world.act(plain, self.ticks_per_step))
 
     def _observe(self, outcomes: Sequence[_native.Outcome]) -> tuple[dict[str, Observation], Infos]:

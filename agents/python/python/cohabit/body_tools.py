@@ -1,0 +1,115 @@
+"""What a body can do, as tools for language models: JSON Schema in the shape of OpenAI's functions or of MCP's tools."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from typing import Any, Literal, Union
+
+from . import _native
+from .actions import Action, GoTo, Interact, LookAround, Move, PickUp, Place, Rotate
+from .env import Env
+from .session import Session
+
+_OBJECT = {
+    "type": "string",
+    "minLength": 1,
+    "description": "the object: what people call it, its class, or its instance id, such as `Bowl_01_1`",
+}
+_MOTIONS: dict[str, tuple[str, str, float, float]] = {
+    "move": ("Move along the heading; a negative distance is backwards.", "distance_m", -10.0, 10.0),
+    "turn": ("Turn on the spot; a positive angle is to the left.", "yaw_rad", -6.3, 6.3),
+}
+_DEEDS = {
+    "go_to": "Walk to an object, so that it is within reach, or into a room.",
+    "pick_up": "Take an object into the empty hand.",
+    "place": "Put what is held onto or into a receptacle.",
+}
+_NAMES = {"it": "the object", "held": "what is held", "cover": "what covers it", "holder": "what holds it"}
+_MOST_REFUSALS = 6
+
+
+class Tools:
+    """The tools of one body: :meth:`schemas` describes them, and :meth:`call` uses one."""
+
+    def __init__(self, body: Union[Session, Env]) -> None:
+        self.body = body
+
+    def schemas(self, shape: Literal["openai", "mcp"] = "openai") -> list[dict[str, Any]]:
+        """A description of each tool, as ``tools`` of OpenAI's chat completions, or of an answer of MCP's ``tools/list``."""
+        if shape not in ("openai", "mcp"):
+            raise ValueError(f"there is no shape `{shape}`: openai or mcp")
+        if shape == "mcp":
+            return [{"name": name, "description": text, "inputSchema": schema} for name, text, schema in _described()]
+        described = ({"name": name, "description": text, "parameters": schema} for name, text, schema in _described())
+        return [{"type": "function", "function": function} for function in described]
+
+    def call(self, name: str, arguments: Mapping[str, Any]) -> str:
+        """Has the body do it, and says in a sentence what came of it, also where it was refused or made no sense."""
+        try:
+            action = _action(name, arguments)
+        except ValueError as error:
+            return f"Refused: {error}."
+        if isinstance(self.body, Env):
+            info = self.body.act(action)[-1]
+            status, detail = info["status"], info["detail"]
+        else:
+            outcome = self.body.do(action)
+            status, detail = outcome.status, outcome.detail
+        if status in ("ActionSuccessful", "AlternateNavigationUsed"):
+            return detail or "Done."
+        return f"Refused ({status or 'not ended'}): {detail or 'nothing came of it yet'}"
+
+
+def tools(body: Union[Session, Env]) -> Tools:
+    """The tools of a body: that of a session that was joined, or of an environment that was reset."""
+    return Tools(body)
+
+
+def _described() -> list[tuple[str, str, dict[str, Any]]]:
+    """Name, description and JSON Schema of each tool."""
+    described: list[tuple[str, str, dict[str, Any]]] = []
+    for name, (text, argument, low, high) in _MOTIONS.items():
+        number = {"type": "number", "minimum": low, "maximum": high}
+        described.append((name, text, _schema({argument: number})))
+    described.append(("look_around", "Turn once around, looking.", _schema({})))
+    for name, spoken, refusals in _native.action_table():
+        text = _DEEDS.get(name) or f"{name.capitalize()} an object, with the hand or with what it holds."
+        said = ", ".join(f"`{word}`" for word in spoken)
+        why = " ".join(_sentence(words) for _, words in refusals[:_MOST_REFUSALS])
+        text += (f" People say {said}." if said else "") + (f" It is refused with: {why}" if why else "")
+        described.append((name, text, _schema({"object": _OBJECT})))
+    return described
+
+
+def _sentence(words: str) -> str:
+    """A refusal of the table, with words for names."""
+    sentence = re.sub(r"\{(\w+)\}", lambda name: _NAMES.get(name[1], "it"), words)
+    return sentence[:1].upper() + sentence[1:].rstrip(".") + "."
+
+
+def _schema(properties: dict[str, Any]) -> dict[str, Any]:
+    return {"type": "object", "properties": properties, "required": list(properties), "additionalProperties": False}
+
+
+def _action(name: str, arguments: Mapping[str, Any]) -> Action:
+    """The action of a call. Raises ``ValueError`` that says what is wrong with it."""
+    schemas = {known: schema for known, _, schema in _described()}
+    if name not in schemas:
+        raise ValueError(f"there is no tool `{name}`: one of {', '.join(schemas)}")
+    wanted = schemas[name]["properties"]
+    if set(arguments) != set(wanted):
+        raise ValueError(f"`{name}` takes {', '.join(wanted) or 'no arguments'}, not {', '.join(arguments) or 'nothing'}")
+    if name == "look_around":
+        return LookAround()
+    if name in _MOTIONS:
+        _, argument, low, high = _MOTIONS[name]
+        value = arguments[argument]
+        if isinstance(value, bool) or not isinstance(value, (int, float)) or not low <= value <= high:
+            raise ValueError(f"`{argument}` is {value!r}: a number from {low} to {high}")
+        return Move(value) if name == "move" else Rotate(value)
+    thing = arguments["object"]
+    if not isinstance(thing, str) or not thing:
+        raise ValueError(f"`object` is {thing!r}: the name of an object")
+    deeds: dict[str, Callable[[str], Action]] = {"go_to": GoTo, "pick_up": PickUp, "place": Place}
+    return deeds[name](thing) if name in deeds else Interact(name, thing)

@@ -1,0 +1,140 @@
+//! What bodies sense of a world: taken from the world itself, or from the records that its simulator published.
+
+use cohabit_bus::message::{BodyRecord, NONE, ObjectRecord};
+use cohabit_cdf::{BodyId, ObjectId};
+use cohabit_world::{BodyView, ObjectView, World};
+
+/// An object, as far as bodies sense it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sight {
+    /// Its number.
+    pub object: u32,
+    /// The index of its class.
+    pub class: u16,
+    /// The index of its room.
+    pub room: u32,
+    /// Whether it cannot be seen.
+    pub hidden: bool,
+    /// Its states, a bit each.
+    pub flags: u32,
+    /// Its origin, m.
+    pub position_m: [f32; 3],
+}
+
+/// A body, as it senses itself.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Posture {
+    /// On the floor, m.
+    pub position_m: [f32; 3],
+    /// Its heading, rad.
+    pub yaw_rad: f32,
+    /// The pitch of its head, rad.
+    pub head_pitch_rad: f32,
+    /// The index of its room.
+    pub room: u32,
+    /// The number of the object that it holds.
+    pub held: Option<u32>,
+    /// Whether it carries out a command.
+    pub busy: bool,
+}
+
+/// Something that bodies are in.
+pub trait Around {
+    /// A body; none if it is not there.
+    fn posture(&self, body: u32) -> Option<Posture>;
+
+    /// An object; none if it is not there any more.
+    fn sight(&self, object: u32) -> Option<Sight>;
+
+    /// All objects that are there, by their numbers.
+    fn sights(&self) -> impl Iterator<Item = Sight>;
+}
+
+/// Records of bodies and of objects; those of objects by their numbers.
+#[derive(Clone, Copy)]
+pub struct Records<'a> {
+    pub bodies: &'a [BodyRecord],
+    pub objects: &'a [ObjectRecord],
+}
+
+impl Around for Records<'_> {
+    fn posture(&self, body: u32) -> Option<Posture> {
+        self.bodies.iter().find(|record| record.body == body).map(Posture::from)
+    }
+
+    fn sight(&self, object: u32) -> Option<Sight> {
+        let place = self.objects.binary_search_by_key(&object, |record| record.object).ok()?;
+        self.objects.get(place).map(Sight::from)
+    }
+
+    fn sights(&self) -> impl Iterator<Item = Sight> {
+        self.objects.iter().map(Sight::from)
+    }
+}
+
+impl Around for World {
+    fn posture(&self, body: u32) -> Option<Posture> {
+        self.body(BodyId(body)).map(|view| Posture::from(&view))
+    }
+
+    fn sight(&self, object: u32) -> Option<Sight> {
+        let id = ObjectId(object);
+        self.object(id).filter(|_| self.exists(id)).map(|view| Sight::from(&view))
+    }
+
+    fn sights(&self) -> impl Iterator<Item = Sight> {
+        self.objects().filter(|view| self.exists(view.id)).map(|view| Sight::from(&view))
+    }
+}
+
+impl From<&ObjectRecord> for Sight {
+    fn from(record: &ObjectRecord) -> Self {
+        Self {
+            object: record.object,
+            class: record.class,
+            room: u32::from(record.room),
+            hidden: record.hidden != 0,
+            flags: record.flags,
+            position_m: record.position_m,
+        }
+    }
+}
+
+impl From<&ObjectView<'_>> for Sight {
+    fn from(view: &ObjectView<'_>) -> Self {
+        Self {
+            object: view.id.0,
+            class: view.class.0,
+            room: view.room as u32,
+            hidden: view.hidden,
+            flags: view.flags.0,
+            position_m: view.position_m.to_array(),
+        }
+    }
+}
+
+impl From<&BodyRecord> for Posture {
+    fn from(record: &BodyRecord) -> Self {
+        Self {
+            position_m: record.position_m,
+            yaw_rad: record.yaw_rad,
+            head_pitch_rad: record.head_pitch_rad,
+            room: record.room,
+            held: (record.held != NONE).then_some(record.held),
+            busy: record.busy != 0,
+        }
+    }
+}
+
+impl From<&BodyView> for Posture {
+    fn from(view: &BodyView) -> Self {
+        Self {
+            position_m: view.position_m.to_array(),
+            yaw_rad: view.yaw_rad,
+            head_pitch_rad: view.head_pitch_rad,
+            room: view.room as u32,
+            held: view.held.map(|object| object.0),
+            busy: view.busy,
+        }
+    }
+}

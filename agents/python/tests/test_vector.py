@@ -1,0 +1,132 @@
+"""Vectors of environments: as many single ones, step by step."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import gymnasium
+import numpy as np
+import pytest
+from gymnasium.vector import AutoresetMode
+
+import cohabit
+from cohabit import CHOICES
+
+SHORT = {"ticks_per_step": 10, "max_steps": 5, "size": 24, "slots": 8}
+
+
+def actions(seed: int, worlds: int, steps: int) -> np.ndarray:
+    return np.random.default_rng(seed).integers([len(CHOICES), 8], size=(steps, worlds, 2))
+
+
+def check_row(batch: dict[str, Any], place: int, single: dict[str, Any]) -> None:
+    assert set(batch) == set(single)
+    for name, value in single.items():
+        assert np.array_equal(batch[name][place], value), (name, place)
+
+
+@pytest.mark.parametrize("planes", [(), ("color",), ("color", "depth", "normals", "ids")])
+@pytest.mark.parametrize("threads", [1, 3])
+def test_many_worlds_are_as_many_single_ones(planes: tuple[str, ...], threads: int) -> None:
+    same: dict[str, Any] = {"planes": planes, "randomize": True, "instruction": True, **SHORT}
+    many = cohabit.VectorEnv("make_cereal", 3, threads=threads, **same)
+    single = [cohabit.Env("make_cereal", **same) for _ in range(3)]
+    observation, infos = many.reset(seed=7)
+    assert many.observation_space.contains(observation)
+    for place, env in enumerate(single):
+        one, info = env.reset(seed=7 + place)
+        check_row(observation, place, one)
+        assert (infos["action_masks"][place] == info["action_masks"]).all()
+    over = [False] * 3
+    for chosen in actions(1, 3, 12):
+        observation, rewards, terminated, truncated, infos = many.step(chosen)
+        for place, env in enumerate(single):
+            if over[place]:
+                (one, info), reward, ends = env.reset(), 0.0, (False, False)
+            else:
+                one, reward, *ends, info = env.step(chosen[place])
+            over[place] = any(ends)
+            check_row(observation, place, one)
+            assert (rewards[place], terminated[place], truncated[place]) == (reward, *ends)
+            for name in ("status", "detail", "tick", "score", "ending", "mission", "instruction"):
+                assert infos[name][place] == info[name], name
+            assert (infos["action_masks"][place] == env.action_masks()).all()
+            assert many.stage.digest(place) == env.office.world.digest()
+
+
+def test_the_contract_of_gymnasium() -> None:
+    envs = gymnasium.make_vec("Cohabit/MissionState-v0", 2, **SHORT)
+    assert isinstance(envs.unwrapped, cohabit.VectorEnv)
+    assert envs.metadata["autoreset_mode"] is AutoresetMode.NEXT_STEP
+    assert envs.single_action_space == gymnasium.make("Cohabit/MissionState-v0", slots=8).action_space
+    envs.action_space.seed(0)
+    with pytest.raises(gymnasium.error.ResetNeeded):
+        envs.step(envs.action_space.sample())
+    envs.reset(seed=[3, None])
+    for _ in range(8):
+        observation, rewards, terminated, truncated, infos = envs.step(envs.action_space.sample())
+        assert observation in envs.observation_space
+        assert rewards.dtype == np.float64 and terminated.dtype == truncated.dtype == np.bool_
+        assert infos["_status"].all() and infos["action_masks"].shape == (2, len(CHOICES) + 8)
+    with pytest.raises(ValueError, match="1 actions for 2 worlds"):
+        envs.step(np.zeros((1, 2), np.int64))
+    with pytest.raises(ValueError, match="no choice 99"):
+        envs.step(np.full((2, 2), 99))
+    wrapped = gymnasium.wrappers.vector.RecordEpisodeStatistics(envs)
+    wrapped.reset(seed=0)
+    told = [wrapped.step(np.zeros((2, 2), np.int64))[-1] for _ in range(5)][-1]
+    assert (told["episode"]["l"] == 5).all()
+    envs.close()
+
+
+def test_an_episode_begins_in_the_step_in_which_one_ends() -> None:
+    envs = cohabit.VectorEnv("cold_soda", 2, planes=(), autoreset_mode="SameStep", **SHORT)
+    envs.reset(seed=0)
+    for chosen in actions(2, 2, 4):
+        *_, infos = envs.step(chosen)
+        assert "final_obs" not in infos
+    observation, _, _, truncated, infos = envs.step(actions(3, 2, 1)[0])
+    assert truncated.all() and infos["_final_obs"].all()
+    assert (infos["tick"] == 0).all() and (infos["final_info"]["tick"] == 50).all()
+    assert infos["final_obs"][1]["position"].shape == (3,) and observation in envs.observation_space
+
+
+def test_without_autoreset_a_mask_says_which_begin_anew() -> None:
+    envs = cohabit.VectorEnv("cold_soda", 2, planes=("color",), autoreset_mode="Disabled", **SHORT)
+    envs.reset(seed=0)
+    turn = np.tile([CHOICES.index("turn_left"), 0], (2, 1))
+    for _ in range(5):
+        before, *_ = envs.step(turn)
+    with pytest.raises(gymnasium.error.ResetNeeded, match="environments 0, 1 are over"):
+        envs.step(turn)
+    observation, infos = envs.reset(options={"reset_mask": np.array([True, False])})
+    assert list(infos["tick"]) == [0, 50]
+    assert (observation["color"][1] == before["color"][1]).all()
+    *_, infos = envs.step_where(turn, np.array([True, False]))
+    assert list(infos["tick"]) == [10, 50]
+
+
+def test_arrays_can_be_kept() -> None:
+    envs = cohabit.VectorEnv("cold_soda", 2, planes=("color",), size=16, slots=4, ticks_per_step=1)
+    envs.reset(seed=0)
+    turn = np.tile([CHOICES.index("turn_left"), 0], (2, 1))
+    kept = [envs.step(turn)[0]["color"] for _ in range(20)]
+    copies = [array.copy() for array in kept]
+    for _ in range(20):
+        envs.step(turn)
+    assert all((array == copy).all() for array, copy in zip(kept, copies))
+    assert len({array.ctypes.data for array in kept}) == 20 and not kept[0].flags.writeable
+
+
+def test_pictures_of_a_vector() -> None:
+    envs = cohabit.VectorEnv("cold_soda", 2, planes=(), render_mode="rgb_array", render_size=(32, 24))
+    envs.reset(seed=0)
+    pictures = envs.render()
+    assert pictures is not None and [picture.shape for picture in pictures] == [(24, 32, 3)] * 2
+
+
+@pytest.mark.parametrize("name", ["MakeCereal", "ColdSoda", "LaserLab", "WarmCoffee"])
+def test_built_in_missions_are_registered(name: str) -> None:
+    env = gymnasium.make(f"Cohabit/{name}-v0", planes=(), render_mode="rgb_array", render_size=(32, 24))
+    _, info = env.reset(seed=0)
+    assert info["instruction"] and env.render().shape == (24, 32, 3)
