@@ -28,7 +28,7 @@ pub fn generate_missions(
     py.detach(|| {
         let mut spec = Spec::builtin(catalog());
         if let Some(types) = types {
-            spec = spec.only("types", &types).map_err(bad_argument)?;
+            spec = spec.of_types("types", &types).map_err(bad_argument)?;
         }
         if let Some(share) = blockers {
             spec = spec.with_blockers(share);

@@ -198,7 +198,8 @@ impl Theatre {
         self.connect(world)?;
         self.pending.clear();
         self.commanded = 0;
-        self.slots = vec![Vec::new(); self.world().bodies().len()];
+        let bodies = self.world().bodies().len();
+        self.slots = vec![Vec::new(); bodies];
         self.claim_all()
     }
 

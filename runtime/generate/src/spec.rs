@@ -198,7 +198,7 @@ impl Spec {
     ///
     /// # Errors
     /// [`SpecError::Wrong`] if there is none of that name.
-    pub fn only(mut self, file: &str, names: &[String]) -> Result<Self, SpecError> {
+    pub fn of_types(mut self, file: &str, names: &[String]) -> Result<Self, SpecError> {
         let known: Vec<&str> = self.types().collect();
         if let Some(name) = names.iter().find(|name| !known.contains(&name.as_str())) {
             let reason = format!("there is no type `{name}`; there are {}", known.join(", "));
