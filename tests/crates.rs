@@ -26,6 +26,7 @@ const LEVELS: &[(&str, u8, &[&str])] = &[
     ("cohabit-agent", 2, &[]),
     ("cohabit-generate", 2, &[]),
     ("cohabit-language", 2, &[]),
+    ("cohabit-speech", 2, &["ort", "earshot", "rustfft", "sha2", "zip"]),
     ("cohabit-gpu", 3, &["wgpu"]),
     ("cohabit-engine", 3, &[]),
     ("cohabit-tables", 3, &["csv", "faer", "statrs"]),
@@ -87,7 +88,6 @@ const LONGER: &[&str] = &[
     "dialog/language/src/plan.rs",
     "dialog/language/src/search.rs",
     "dialog/language/src/stop.rs",
-    "dialog/server/src/visit.rs",
 ];
 
 /// The crate whose modules know each other in circles all over.

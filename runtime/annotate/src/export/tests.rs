@@ -15,7 +15,7 @@ fn dataset(scratch: &Scratch) -> PathBuf {
     fs::create_dir_all(folder.join("episodes/000000")).unwrap();
     fs::create_dir_all(folder.join("annotations")).unwrap();
     let manifest = json!({
-        "format": "cohabit demonstrations 2", "left_out": [],
+        "format": "cohabit demonstrations 3", "left_out": [],
         "episodes": [{ "id": "a", "folder": "episodes/000000", "floor_plan": "x", "steps": 4 }],
     });
     let recipe = json!({
