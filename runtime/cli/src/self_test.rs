@@ -19,7 +19,7 @@ use crate::{
 };
 use trials::Passed;
 
-/// What the trials take at most where sessions run in real time: two cores of a slow machine need a quarter of it.
+/// What the trials take at most on a machine that is quick enough for sessions: a minute of the world, and its models.
 const TRIALS_TAKE: Duration = Duration::from_secs(20);
 
 /// What is done where a trial fails: the looks at the machine, which follow, say what it lacks.
