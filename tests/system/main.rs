@@ -27,6 +27,7 @@ mod privacy;
 mod recording;
 mod restarts;
 mod searching;
+mod self_test;
 mod sessions;
 mod several;
 mod soak;

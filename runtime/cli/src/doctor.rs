@@ -8,14 +8,17 @@ mod processor;
 mod speech;
 mod system;
 
-use std::io::{self, BufWriter, Write};
+use std::{
+    io::{self, BufWriter, Write},
+    net::SocketAddr,
+};
 
 use serde_json::{Value, json};
 
 use crate::peers::Listening;
-use finding::{Finding, State};
 use machine::Machine;
 
+pub use finding::{Finding, State};
 pub use memory::{ensure_room, shared_memory_fault};
 
 /// A look at one thing that a session needs or is better with.
@@ -66,8 +69,9 @@ impl Doctor {
             devices::print_gpu();
             return Ok(());
         }
-        let machine = Machine::this(&self.listening)?;
-        let findings: Vec<_> = CHECKS.iter().map(|check| (check.name, (check.look)(&machine))).collect();
+        let mut findings = Vec::new();
+        let page = SocketAddr::new(self.listening.listen, self.listening.port);
+        look(page, &mut |name, finding| findings.push((name, finding)))?;
         let told = self.tell(&findings);
         // Who reads may have read enough.
         if let Err(error) = told
@@ -101,6 +105,15 @@ impl Doctor {
     }
 }
 
+/// Looks at all of this machine, where a page is to be served at `page`; tells each check's name and what it finds.
+pub fn look(page: SocketAddr, tell: &mut dyn FnMut(&'static str, Finding)) -> io::Result<()> {
+    let machine = Machine::this(page)?;
+    for check in &CHECKS {
+        tell(check.name, (check.look)(&machine));
+    }
+    Ok(())
+}
+
 fn count(findings: &[(&str, Finding)], state: State) -> usize {
     findings.iter().filter(|(_, finding)| finding.state == state).count()
 }
@@ -118,7 +131,7 @@ fn verdict(findings: &[(&str, Finding)]) -> String {
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
 mod tests {
-    use std::{fs, net::SocketAddr, path::PathBuf};
+    use std::{fs, path::PathBuf};
 
     use cohabit_speech::VoiceSettings;
 

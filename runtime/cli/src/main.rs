@@ -23,6 +23,7 @@ mod play;
 mod rendering;
 mod replay;
 mod rerun;
+mod self_test;
 mod session_time;
 mod sessions;
 mod splits;
@@ -87,6 +88,8 @@ enum Command {
     Guide(guide::Guide),
     /// Say what this machine lacks for a session, and what that costs
     Doctor(doctor::Doctor),
+    /// Play a mission on this machine from end to end, and say line by line what works and what is missing
+    SelfTest(self_test::SelfTest),
     /// Show a running session live: its ticks, how long their stages take, and its peers
     Top(top::Top),
     /// Have the world of a running session stand still, go on, step, or go faster
@@ -109,7 +112,13 @@ impl Command {
     /// Has the files of a session, its log among them, readable by this user alone.
     fn keep_files_private(&self) {
         match self {
-            Self::Play(_) | Self::Sim(_) | Self::Agent(_) | Self::Dialog(_) | Self::Record(_) | Self::Study(_) => {
+            Self::Play(_)
+            | Self::Sim(_)
+            | Self::Agent(_)
+            | Self::Dialog(_)
+            | Self::Record(_)
+            | Self::Study(_)
+            | Self::SelfTest(_) => {
                 rustix::process::umask(Mode::RWXG | Mode::RWXO);
             }
             Self::Check(_)
@@ -172,6 +181,7 @@ fn run(asked: Cohabit) -> anyhow::Result<()> {
         Command::Study(study) => study.run(),
         Command::Guide(guide) => guide.run(),
         Command::Doctor(doctor) => doctor.run(),
+        Command::SelfTest(test) => test.run(),
         Command::Top(top) => top.run(),
         Command::Time(time) => time.run(),
         Command::Voice(voice) => voice.run(),

@@ -52,6 +52,13 @@ impl Finding {
         Self { state: State::Broken, ..Self::costs(found, costs, remedy) }
     }
 
+    /// As one line.
+    pub fn as_line(&self, check: &str) -> String {
+        let told = [&self.found, &self.costs, &self.remedy].into_iter().filter(|text| !text.is_empty());
+        let told: Vec<&str> = told.map(String::as_str).collect();
+        format!("{:7} {check:17} {}", self.state.name(), told.join("; "))
+    }
+
     /// As JSON.
     pub fn value(&self, check: &str) -> Value {
         let some = |text: &str| (!text.is_empty()).then(|| text.to_owned());
@@ -70,4 +77,20 @@ pub fn size(bytes: u64) -> String {
     const UNITS: [(u64, &str); 3] = [(1 << 30, "GiB"), (1 << 20, "MiB"), (1 << 10, "KiB")];
     let unit = UNITS.iter().find(|(unit, _)| bytes >= *unit);
     unit.map_or_else(|| format!("{bytes} B"), |(unit, name)| format!("{:.1} {name}", bytes as f64 / *unit as f64))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_has_what_there_is_to_say() {
+        for (finding, expected) in [
+            (Finding::good("4"), "ok      cores             4"),
+            (Finding::costs("none", "slow", ""), "costs   cores             none; slow"),
+            (Finding::broken("none", "slow", "buy one"), "broken  cores             none; slow; buy one"),
+        ] {
+            assert_eq!(finding.as_line("cores"), expected);
+        }
+    }
 }

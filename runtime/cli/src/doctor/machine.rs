@@ -12,7 +12,7 @@ use std::{
 use cohabit_bus::Urgency;
 use cohabit_speech::VoiceSettings;
 
-use crate::{peers::Listening, sessions};
+use crate::sessions;
 
 /// A machine to look at; tests make up their own.
 #[derive(Clone, Debug)]
@@ -38,14 +38,14 @@ pub struct Machine {
 }
 
 impl Machine {
-    /// This one.
-    pub fn this(listening: &Listening) -> std::io::Result<Self> {
+    /// This one, with the page to be served there.
+    pub fn this(page: SocketAddr) -> std::io::Result<Self> {
         Ok(Self {
             root: PathBuf::from("/"),
             runtime_folder: cohabit_bus::Session::folder_of_all(),
             log_folder: sessions::usual_folder(),
             path: env::var_os("PATH").unwrap_or_default(),
-            page: SocketAddr::new(listening.listen, listening.port),
+            page,
             program: env::current_exe()?,
             user: rustix::process::getuid().as_raw(),
             urgency: super::processor::granted(),

@@ -17,6 +17,7 @@ macro_rules! pages {
 /// All pages, in the order of [`SUMMARY`].
 pub const PAGES: &[Page] = pages![
     "first-session",
+    "how-it-works",
     "talk",
     "understanding",
     "missions",
@@ -26,6 +27,7 @@ pub const PAGES: &[Page] = pages![
     "study",
     "dry-run",
     "questionnaires",
+    "deploy",
     "wizard",
     "tables",
     "replay",
@@ -38,6 +40,9 @@ pub const PAGES: &[Page] = pages![
     "arena",
     "language-model",
     "performance",
+    "latency",
+    "limits",
+    "stability",
     "security",
     "troubleshooting",
     "development",
