@@ -1,4 +1,4 @@
-//! Each large data or model file has its origin and licence in `DATA.md`.
+//! Each large data or model file has its origin and licence in `runtime/DATA.md`.
 #![allow(clippy::unwrap_used)]
 
 use std::{
@@ -74,17 +74,17 @@ fn large_files(above: u64) -> Vec<String> {
 
 #[test]
 fn each_large_file_has_its_origin_and_licence() {
-    let text = fs::read_to_string(root().join("DATA.md")).unwrap();
+    let text = fs::read_to_string(root().join("runtime/DATA.md")).unwrap();
     let rows = rows(&text);
     for file in large_files(LARGE) {
         let covering = rows.iter().filter(|row| row.covers(&file)).count();
-        assert_eq!(covering, 1, "{file}: give it one row in DATA.md, with its origin and licence");
+        assert_eq!(covering, 1, "{file}: give it one row in runtime/DATA.md, with its origin and licence");
     }
 }
 
 #[test]
 fn each_row_is_of_something_and_says_all() {
-    let text = fs::read_to_string(root().join("DATA.md")).unwrap();
+    let text = fs::read_to_string(root().join("runtime/DATA.md")).unwrap();
     let rows = rows(&text);
     assert!(!rows.is_empty());
     for row in &rows {
