@@ -27,7 +27,12 @@ const FIELDS: [Field; 19] = [
     Field::new("watched_s", Real, "s", "simulated time for which it is known where both were"),
     Field::new("min_distance_m", Real, "m", "the least that was between their outlines (cylinders of their radii)"),
     Field::new("intimate_s", Real, "s", "time for which that was less than 0.45 m (intimate space, Hall 1966)"),
-    Field::new("personal_s", Real, "s", "time for which it was less than 1.2 m (personal space), intimate space included"),
+    Field::new(
+        "personal_s",
+        Real,
+        "s",
+        "time for which it was less than 1.2 m (personal space), intimate space included",
+    ),
     Field::new(
         "contacts",
         Whole,
@@ -43,7 +48,7 @@ const FIELDS: [Field; 19] = [
         "rad/m",
         "path irregularity: how far the direction of the robot's motion turned, left or right, per metre of path",
     ),
-    Field::new("travels", Whole, "", "commands to the robot to go somewhere that ended, but for those it was there already"),
+    Field::new("travels", Whole, "", "commands to go somewhere that ended, but for those where the robot was there already"),
     Field::new("arrived", Whole, "", "those of them that it arrived of; the next three are about these"),
     Field::new("time_to_goal_s", Real, "s", "simulated time that one took, mean"),
     Field::new("path_efficiency", Real, "", "the shortest way as a share of the way that was gone, mean"),
@@ -60,7 +65,7 @@ const FIELDS: [Field; 19] = [
         "s",
         "time in which the robot was to go somewhere and neither moved (0.05 m/s) nor turned (0.1 rad/s)",
     ),
-    Field::new("problem", Text, "", "why some or all of the session is missing here: its log lacks it, or replays otherwise"),
+    Field::new("problem", Text, "", "why the session is missing here, or a part of it: its log lacks it, or replays otherwise"),
 ];
 
 /// All encounters of these sessions.
