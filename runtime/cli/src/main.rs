@@ -19,6 +19,7 @@ mod minds;
 mod mission_file;
 mod movement;
 mod pddl;
+mod pedestrians;
 mod peers;
 mod play;
 mod rendering;

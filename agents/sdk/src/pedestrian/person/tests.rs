@@ -10,7 +10,7 @@ fn floor() -> Floor {
         obstacles: Vec::new(),
         viewpoints: vec![(RoomId::Lab1, 1, Vec2::new(0.0, 4.0)), (RoomId::Lab1, 2, Vec2::new(4.0, 4.0))],
         doors: Vec::new(),
-        path: Box::new(|_, to| (to.x < 100.0).then(|| vec![to])),
+        path: Box::new(|_: Vec2, to: Vec2| (to.x < 100.0).then(|| vec![to])),
     }
 }
 
@@ -90,7 +90,7 @@ fn who_finds_no_way_does_the_next_thing() {
 #[test]
 fn behind_a_door_is_where_the_way_goes_on() {
     let way = [Vec2::ZERO, Vec2::new(2.0, 0.0), Vec2::new(2.0, 0.4)];
-    assert_eq!(beyond(&way, Vec2::new(0.5, 0.3)), Some(Vec2::new(1.5, 0.0)));
+    assert!(beyond(&way, Vec2::new(0.5, 0.3)).unwrap().distance(Vec2::new(1.5, 0.0)) < 1e-5);
     assert_eq!(beyond(&way, Vec2::new(1.9, 0.0)), Some(Vec2::new(2.0, 0.4)));
     assert_eq!(beyond(&way, Vec2::new(0.5, 1.0)), None);
 }
