@@ -14,7 +14,8 @@ use std::{
 
 use cast::{Played, catalog, plan, play};
 use cohabit_agent::{
-    Agent, Crowd, Deed, Expert, Floor, Heard, Helper, PlanFollower, Random, Schedule, Script, Scripted, TICKS_PER_SECOND,
+    Agent, Crowd, Deed, Expert, Floor, Heard, Helper, PlanFollower, Random, Schedule, Script, Scripted,
+    TICKS_PER_SECOND,
 };
 use cohabit_bus::{
     Local, Session, Shm,

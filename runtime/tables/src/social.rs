@@ -48,8 +48,8 @@ const FIELDS: [Field; 19] = [
         "rad/m",
         "path irregularity: how far the direction of the robot's motion turned, left or right, per metre of path",
     ),
-    Field::new("travels", Whole, "", "commands to go somewhere that ended, but for those where the robot was there already"),
-    Field::new("arrived", Whole, "", "those of them that it arrived of; the next three are about these"),
+    Field::new("travels", Whole, "", "commands to go somewhere that ended, but for those where it was there already"),
+    Field::new("arrived", Whole, "", "those of them after which it was there; the next three are about these"),
     Field::new("time_to_goal_s", Real, "s", "simulated time that one took, mean"),
     Field::new("path_efficiency", Real, "", "the shortest way as a share of the way that was gone, mean"),
     Field::new(
@@ -65,7 +65,7 @@ const FIELDS: [Field; 19] = [
         "s",
         "time in which the robot was to go somewhere and neither moved (0.05 m/s) nor turned (0.1 rad/s)",
     ),
-    Field::new("problem", Text, "", "why the session is missing here, or a part of it: its log lacks it, or replays otherwise"),
+    Field::new("problem", Text, "", "why a part of the session is missing here: its log lacks it, or replays otherwise"),
 ];
 
 /// All encounters of these sessions.

@@ -227,9 +227,9 @@ impl Person {
     /// The point behind a shut door that is next on the way, if one is.
     fn beyond_door(&self, around: &Around<'_>) -> Option<Vec2> {
         let at_m = around.own.at_m;
-        let near = around.shut.iter().filter(|door| door.distance(at_m) < DOOR_NEAR_M);
+        let mut near = around.shut.iter().filter(|door| door.distance(at_m) < DOOR_NEAR_M);
         let way: Vec<Vec2> = std::iter::once(at_m).chain(self.way.iter().copied()).collect();
-        near.into_iter().find_map(|door| beyond(&way, *door))
+        near.find_map(|door| beyond(&way, *door))
     }
 
     /// Whether it has hardly moved for long, while it meant to.
