@@ -85,16 +85,21 @@ impl Crowd {
                 continue;
             }
             newest = states.latest(|sample| StateView::new(sample.payload()).map(drop))?.or(newest);
-            if let Some((sample, ())) = &newest {
-                let tick = turn.unwrap_or(sample.envelope().tick);
-                client.note_sensed(tick);
-                if lock_step || tick >= due {
-                    due = tick + LOOK_TICKS;
-                    self.look(tick, StateView::new(sample.payload())?, &mut client)?;
+            let Some((sample, ())) = &newest else {
+                if lock_step {
+                    client.ready(1)?;
                 }
+                continue;
+            };
+            let tick = turn.unwrap_or(sample.envelope().tick);
+            client.note_sensed(tick);
+            // An outcome may bring a turn before its time.
+            if tick >= due {
+                due = tick + LOOK_TICKS;
+                self.look(tick, StateView::new(sample.payload())?, &mut client)?;
             }
             if lock_step {
-                client.ready(LOOK_TICKS)?;
+                client.ready(due - tick)?;
             }
         }
         Ok(())
