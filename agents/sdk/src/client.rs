@@ -78,6 +78,11 @@ impl Client {
         self.body
     }
 
+    /// Who it is, as states and events name the commander of a body.
+    pub(crate) fn run(&self) -> u64 {
+        self.commands.run()
+    }
+
     /// Whether it commands the body, as far as it has heard.
     #[must_use]
     pub const fn commands_body(&self) -> bool {
@@ -107,8 +112,13 @@ impl Client {
     /// # Errors
     /// [`BusError::Send`].
     pub fn claim(&mut self, take_over: bool) -> Result<u64, BusError> {
+        self.claim_of(self.body, take_over)
+    }
+
+    /// The same for any body: one peer may command several.
+    pub(crate) fn claim_of(&mut self, body: u32, take_over: bool) -> Result<u64, BusError> {
         let command = self.next_after(self.base);
-        let claim = CommandMessage::claim(command, self.body, &self.peer, take_over);
+        let claim = CommandMessage::claim(command, body, &self.peer, take_over);
         self.send(&claim)?;
         Ok(command)
     }
@@ -127,8 +137,13 @@ impl Client {
     /// # Errors
     /// [`BusError::Send`].
     pub fn act(&mut self, turn: u64, action: Action) -> Result<u64, BusError> {
+        self.act_in(self.body, turn, action)
+    }
+
+    /// The same in any body that it commands.
+    pub(crate) fn act_in(&mut self, body: u32, turn: u64, action: Action) -> Result<u64, BusError> {
         let command = self.next_after(self.base_of_acts);
-        self.send(&CommandMessage::act(command, turn, self.body, action))?;
+        self.send(&CommandMessage::act(command, turn, body, action))?;
         Ok(command)
     }
 

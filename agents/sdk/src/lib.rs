@@ -8,6 +8,8 @@
 //! [`Random`] anything, [`Helper`] keeps the office in order by what its own camera shows, and [`Expert`] plays a mission to its
 //! goals with a planner.
 //!
+//! A [`Crowd`] is many at once: pedestrians who walk by social forces, to where a [`Schedule`] has them go.
+//!
 //! This crate never knows the world's insides: an agent acts by commands and learns by outcomes. In lock-step it hears
 //! and acts in its turns alone, so what comes of it depends neither on the machine nor on where it runs.
 //!
@@ -49,6 +51,7 @@ mod eyes;
 mod helper;
 mod memory;
 mod past;
+mod pedestrian;
 mod peer;
 mod plan_follower;
 mod random;
@@ -62,6 +65,7 @@ pub use errand::{Errand, Progress};
 pub use expert::Expert;
 pub use eyes::{Eyes, Glance, InView, SeenThing, Sight};
 pub use helper::Helper;
+pub use pedestrian::{Crowd, Floor, Paths, Schedule, ScheduleError};
 pub use peer::{PeerError, run, wait_for_mission};
 pub use plan_follower::PlanFollower;
 pub use random::Random;

@@ -13,13 +13,17 @@ use std::{
 };
 
 use cast::{Played, catalog, plan, play};
-use cohabit_agent::{Agent, Deed, Expert, Heard, Helper, PlanFollower, Random, Script, Scripted, TICKS_PER_SECOND};
+use cohabit_agent::{
+    Agent, Crowd, Deed, Expert, Floor, Heard, Helper, PlanFollower, Random, Schedule, Script, Scripted,
+    TICKS_PER_SECOND,
+};
 use cohabit_bus::{
     Local, Session, Shm,
     message::{DialogKind, DialogMessage, PlanStep},
 };
 use cohabit_cdf::{Action, BodyId, GoToTarget, Property, RoomId, StateFlag};
 use cohabit_engine::SessionPlan;
+use cohabit_world::Vec2;
 use rand_chacha::{
     ChaCha8Rng,
     rand_core::{Rng, SeedableRng},
@@ -301,4 +305,44 @@ fn an_expert_plays_a_mission_to_its_goals() {
     let is_done = played.said.iter().any(|(body, words)| *body == 0 && words == "All goals are met.");
     assert!(is_done, "{:?}, {:#?}", played.said, played.outcomes);
     assert!(played.outcomes.iter().all(|ended| ended.status.is_success()), "{:#?}", played.outcomes);
+}
+
+/// Two people who swap rooms, and meet; in a session that is played for so many ticks.
+fn pedestrians(ticks: u64) -> Played {
+    const SCHEDULE: &str = "[[entry]]\nperson = 1\ngo_to = \"MainOffice\"\n[[entry]]\nperson = 1\nmeet = 2\n\
+                            [[entry]]\nperson = 2\ngo_to = \"BreakRoom\"\n[[entry]]\nperson = 2\nmeet = 1";
+    let plan = plan(2, 3, &["person@BreakRoom", "person@MainOffice"]);
+    let world = plan.build().unwrap();
+    let at_m = |at_m: [f32; 2]| Vec2::from(at_m);
+    let floor = Floor {
+        obstacles: world.obstacles(),
+        viewpoints: plan.layout.viewpoints.iter().map(|own| (own.room, own.number, at_m(own.at_m))).collect(),
+        doors: plan.layout.openings.iter().filter_map(|own| Some((own.door.clone()?, at_m(own.at_m)))).collect(),
+        path: Box::new(move |from: Vec2, to: Vec2| world.path(from, to).map(|(way, _)| way)),
+    };
+    let mut crowd = Crowd::new(&Schedule::parse("test", SCHEDULE).unwrap(), floor, SEED);
+    let (bus, stop) = (Local::new(1), AtomicBool::new(false));
+    thread::scope(|scope| {
+        scope.spawn(|| crowd.run(&bus, &stop).unwrap());
+        let played = play(plan, &bus, Vec::new(), 1, ticks);
+        stop.store(true, Ordering::Relaxed);
+        played
+    })
+}
+
+#[test]
+fn pedestrians_get_where_they_are_to_go_and_walk_the_same_in_every_run() {
+    const TICKS: u64 = 3600;
+    let played = pedestrians(TICKS);
+    let was_in = |body: u32, room: RoomId| played.rooms[&body].contains(&(room as u32));
+    assert!(was_in(1, RoomId::MainOffice) && was_in(2, RoomId::BreakRoom), "{:?}", played.rooms);
+    assert_same(&played, &pedestrians(TICKS));
+    assert_eq!(played.timeouts, 0);
+}
+
+#[test]
+fn bodies_are_as_wide_as_pedestrians_take_them_for() {
+    let world = plan(2, 3, &["person"]).build().unwrap();
+    let radii: Vec<f32> = world.bodies().map(|body| body.radius_m).collect();
+    assert_eq!(radii, [0.25, 0.22]);
 }

@@ -3,6 +3,7 @@
 use std::{
     fs,
     path::{Path, PathBuf},
+    sync::Arc,
 };
 
 use anyhow::Context as _;
@@ -11,12 +12,14 @@ use cohabit_tables::{NOTEBOOK, Played, Summary, codebook, plots, tables, write_c
 
 use crate::{
     failure::bad_input,
+    movement::with_movement,
     rerun,
     study::without_practice,
     terminal::{shown, shown_json, shown_lines},
 };
 
-/// Writes turns, actions, goals and sessions as tables with a codebook, or sums them up by condition.
+/// Writes turns, actions, goals and sessions as tables with a codebook, or sums them up by condition. Of sessions with people, a
+/// table tells how robots moved around them.
 #[derive(clap::Args)]
 pub struct Export {
     /// Session logs, or folders of them
@@ -64,8 +67,8 @@ impl Export {
                 return Ok(());
             }
         }
-        let catalog = Catalog::builtin();
-        let played = Played::open_all(&logs, &catalog).map_err(bad_input)?;
+        let catalog = Arc::new(Catalog::builtin());
+        let played = with_movement(Played::open_all(&logs, &catalog).map_err(bad_input)?, &catalog);
         if let (Some(folder), Format::Csv) = (&self.out, self.format) {
             write(&played, folder, self.json)?;
         }

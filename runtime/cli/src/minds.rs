@@ -1,6 +1,7 @@
 //! Kinds of minds, and how one is asked for.
 
 use std::{
+    collections::BTreeMap,
     ffi::OsString,
     fmt, fs,
     path::Path,
@@ -11,10 +12,13 @@ use std::{
 use clap::ValueEnum;
 use cohabit_agent::{Agent, Expert, Helper, PlanFollower, Random, Script, Scripted, wait_for_mission};
 use cohabit_bus::Transport;
-use cohabit_cdf::{BodyId, Catalog};
+use cohabit_cdf::{BodyId, BodyKind, Catalog};
 use cohabit_engine::SessionPlan;
 
-use crate::failure::bad_input;
+use crate::{
+    failure::bad_input,
+    pedestrians::{fault, read_schedule},
+};
 
 /// Kinds of minds.
 #[derive(Clone, Copy, Debug, Eq, PartialEq, ValueEnum)]
@@ -29,6 +33,8 @@ pub enum MindKind {
     Helper,
     /// Plays the mission to its goals with a planner; it knows what the simulator knows
     Expert,
+    /// Has people walk about by a schedule: all bodies that its file names, in one process
+    Pedestrian,
 }
 
 impl MindKind {
@@ -37,7 +43,7 @@ impl MindKind {
     }
 
     /// A mind of this kind for a body; what is random in it follows from `seed`. None, if it has to know the mission first:
-    /// [`expert`] makes it once the session is joined.
+    /// [`expert`] makes it once the session is joined, or [`crowd`](crate::pedestrians::crowd) makes several.
     pub fn mind(self, body: u32, seed: u64, script: Option<&Path>) -> anyhow::Result<Option<Box<dyn Agent>>> {
         // Two at random in one world do not do the same.
         let seed = seed.wrapping_add(u64::from(body));
@@ -46,7 +52,7 @@ impl MindKind {
             Self::Random => Some(Box::new(Random::new(seed))),
             Self::Helper => Some(Box::new(Helper::new(body, seed))),
             Self::Scripted => Some(Box::new(Scripted::new(body, read_script(script)?))),
-            Self::Expert => None,
+            Self::Expert | Self::Pedestrian => None,
         })
     }
 }
@@ -72,7 +78,8 @@ fn read_script(file: Option<&Path>) -> anyhow::Result<Script> {
     Script::parse(&name.to_string(), &text, &Catalog::builtin()).map_err(bad_input)
 }
 
-/// A mind that a session starts with: its kind, perhaps its body, perhaps its script, such as `scripted@1=walk.txt`.
+/// A mind that a session starts with: its kind, perhaps its body, perhaps its script, such as `scripted@1=walk.txt`. Pedestrians
+/// are several at once, whose schedule says which: `pedestrian=office.toml`.
 #[derive(Clone, Debug, Eq, PartialEq)]
 pub struct MindRequest {
     kind: MindKind,
@@ -92,6 +99,10 @@ impl FromStr for MindRequest {
             .parse()
             .map_err(|_| format!("`{body}` is no body: bodies count from 0, such as `{kind}@1`", kind = kind.name()))?;
         match (kind, &script) {
+            (MindKind::Pedestrian, Some(_)) if !who.contains('@') => Ok(Self { kind, body, script }),
+            (MindKind::Pedestrian, _) => {
+                Err("pedestrians need a schedule, which names their bodies: `pedestrian=FILE`".to_owned())
+            }
             (MindKind::Scripted, None) => Err(format!("a scripted agent needs a script: `scripted@{body}=FILE`")),
             (MindKind::Scripted, Some(_)) | (_, None) => Ok(Self { kind, body, script }),
             (_, Some(_)) => Err(format!("only a scripted agent takes a script: write `{}@{body}`", kind.name())),
@@ -101,7 +112,10 @@ impl FromStr for MindRequest {
 
 impl fmt::Display for MindRequest {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}@{}", self.kind.name(), self.body)?;
+        f.write_str(&self.kind.name())?;
+        if self.kind != MindKind::Pedestrian {
+            write!(f, "@{}", self.body)?;
+        }
         self.script.as_ref().map_or(Ok(()), |file| write!(f, "={file}"))
     }
 }
@@ -127,23 +141,38 @@ impl MindRequest {
 
     /// Says what is wrong with these minds for a session, before anything of it is started.
     pub fn check(requests: &[Self], plan: &SessionPlan) -> anyhow::Result<()> {
-        let bodies = plan.mission.robots.len().max(1) + plan.bodies.len();
-        for (index, request) in requests.iter().enumerate() {
-            let body = request.body;
-            if body as usize >= bodies {
-                let last = bodies - 1;
-                let remedy = format!("the session has bodies 0 to {last}; `--body robot` adds one");
-                return Err(bad_input(format!("`--agent {request}`: there is no body {body}: {remedy}")));
+        let robots = std::iter::repeat_n(BodyKind::Robot, plan.mission.robots.len().max(1));
+        let kinds: Vec<BodyKind> = robots.chain(plan.bodies.iter().map(|body| body.kind)).collect();
+        let mut taken = BTreeMap::<u32, &Self>::new();
+        for request in requests {
+            for body in request.bodies(&kinds)? {
+                if body as usize >= kinds.len() {
+                    let last = kinds.len() - 1;
+                    let remedy = format!("the session has bodies 0 to {last}; `--body robot` adds one");
+                    return Err(bad_input(format!("`--agent {request}`: there is no body {body}: {remedy}")));
+                }
+                if let Some(other) = taken.insert(body, request) {
+                    let remedy = format!("give one of them another body, such as `@{}`", body + 1);
+                    return Err(bad_input(format!("`--agent {request}`: body {body} is that of `{other}`: {remedy}")));
+                }
             }
-            if let Some(other) = requests[..index].iter().find(|other| other.body == body) {
-                let remedy = format!("give one of them another body, such as `@{}`", body + 1);
-                return Err(bad_input(format!("`--agent {request}`: body {body} is that of `{other}`: {remedy}")));
-            }
-            if let Some(file) = &request.script {
-                read_script(Some(Path::new(file)))?;
+            if request.kind == MindKind::Scripted {
+                read_script(request.script.as_deref().map(Path::new))?;
             }
         }
         Ok(())
+    }
+
+    /// The bodies that it commands in a session of bodies of these kinds.
+    fn bodies(&self, kinds: &[BodyKind]) -> anyhow::Result<Vec<u32>> {
+        if self.kind != MindKind::Pedestrian {
+            return Ok(vec![self.body]);
+        }
+        let schedule = read_schedule(self.script.as_deref().map(Path::new))?;
+        match fault(&schedule, kinds) {
+            Some(fault) => Err(bad_input(format!("`--agent {self}`: {fault}"))),
+            None => Ok(schedule.people().collect()),
+        }
     }
 }
 
@@ -164,14 +193,17 @@ mod tests {
             ("expert", "expert@0"),
             ("random@0", "random@0"),
             ("scripted@2=a=b.txt", "scripted@2=a=b.txt"),
+            ("pedestrian=office.toml", "pedestrian=office.toml"),
         ] {
             assert_eq!(text.parse::<MindRequest>().unwrap().to_string(), whole);
         }
         for (text, error) in [
-            ("butler", "there is no agent `butler`: dialog, random, scripted, helper, expert"),
+            ("butler", "there is no agent `butler`: dialog, random, scripted, helper, expert, pedestrian"),
             ("helper@one", "`one` is no body"),
             ("scripted@1", "`scripted@1=FILE`"),
             ("helper@1=a.txt", "write `helper@1`"),
+            ("pedestrian", "`pedestrian=FILE`"),
+            ("pedestrian@1=office.toml", "`pedestrian=FILE`"),
         ] {
             let found = text.parse::<MindRequest>().unwrap_err();
             assert!(found.contains(error), "{found}");
@@ -194,5 +226,7 @@ mod tests {
         assert!(absent.contains("bodies 0 to 1"), "{absent}");
         let unread = check(&["scripted@1=/nowhere.txt"]).unwrap_err();
         assert!(unread.contains("/nowhere.txt"), "{unread}");
+        let unread = check(&["dialog", "pedestrian=/nowhere.toml"]).unwrap_err();
+        assert!(unread.contains("/nowhere.toml"), "{unread}");
     }
 }

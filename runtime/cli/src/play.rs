@@ -45,9 +45,9 @@ pub struct Play {
     /// A body beside the mission's own robot: `robot` or `person`, with a room if wanted; as often as needed
     #[arg(long = "body", value_name = "KIND[@ROOM]")]
     bodies: Vec<BodyRequest>,
-    /// A mind for a body: `dialog`, `random`, `scripted`, `helper` or `expert` (which plays the mission to its goals and knows
-    /// what the simulator knows), with the number of its body if it is not 0, and a script if it is scripted; as often as there
-    /// are bodies
+    /// A mind for a body: `dialog`, `random`, `scripted`, `helper`, `expert` (which plays the mission to its goals and knows
+    /// what the simulator knows) or `pedestrian` (people who walk about by a schedule), with the number of its body if it is not
+    /// 0, and a script if it is scripted; as often as there are bodies
     #[arg(long = "agent", value_name = "KIND[@BODY][=FILE]", default_value = "dialog")]
     minds: Vec<MindRequest>,
     /// A camera beside those of the bodies, on the topic `frames/NAME`: KIND is `egocentric`, `panorama`,

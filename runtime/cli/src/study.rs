@@ -33,6 +33,7 @@ use cohabit_tables::{Played, tables};
 use crate::{
     doctor::ensure_room,
     failure::{bad_input, environment},
+    movement::with_movement,
     stop,
     terminal::shown,
     tls::Tls,
@@ -300,7 +301,8 @@ impl Export {
         let (_, study) = read(&Folder::study_file(&self.folder))?;
         let records = Records::read(study, &self.folder).map_err(refused)?;
         let logs = data::logs(&self.folder, &records.progress, self.practice)?;
-        let played = Played::open_all(&logs, &Catalog::builtin()).map_err(bad_input)?;
+        let catalog = Arc::new(Catalog::builtin());
+        let played = with_movement(Played::open_all(&logs, &catalog).map_err(bad_input)?, &catalog);
         std::fs::create_dir_all(&self.out).map_err(|error| bad_input(format!("{}: {error}", self.out.display())))?;
         for path in export(&records, tables(&played), self.practice, &self.out)? {
             println!("{}", shown(path.display()));

@@ -1,6 +1,7 @@
 //! Re-simulates a recorded session and compares it tick by tick.
 
 mod difference;
+mod movement;
 mod replayer;
 
 use std::{ops::ControlFlow, sync::Arc};
@@ -9,6 +10,7 @@ use cohabit_cdf::Catalog;
 use cohabit_record::Log;
 
 pub use difference::Difference;
+pub use movement::movement;
 pub use replayer::{ReplayError, Replayed, Replayer};
 
 /// Simulated seconds a tick.

@@ -17,12 +17,12 @@ use cohabit_bus::{
     Local, Publisher, Topic, Transport, Wake,
     message::{CommandMessage, FrameView, Plane},
 };
-use cohabit_cdf::{Action, Catalog, GoToTarget, mission};
+use cohabit_cdf::{Action, BodyKind, Catalog, GoToTarget, mission};
 use cohabit_engine::{
     CameraPlan, Engine, Replayer, SessionPlan, Simulator, Stills,
-    replay::{Difference, replay},
+    replay::{Difference, movement, replay},
 };
-use cohabit_record::{Branch, Log, Recorder, SessionFacts, entry::hex};
+use cohabit_record::{Branch, Log, Recorder, SessionFacts, Stop, entry::hex};
 use cohabit_render::{CpuRenderer, MeshLibrary};
 
 const TICKS: u64 = 1500;
@@ -293,4 +293,25 @@ fn a_session_goes_on_live_from_any_point_of_another_one() {
     let again = replay(&second, catalog()).unwrap();
     assert_eq!((again.difference, again.ticks), (None, second.ticks.len() as u64));
     assert!(again.ticks >= 200 && again.inputs >= 1, "{} ticks, {} inputs", again.ticks, again.inputs);
+}
+
+#[test]
+fn a_session_tells_how_its_bodies_moved() {
+    let log = recorded();
+    let movement = movement(&log, catalog()).unwrap();
+    assert_eq!(movement.problem, None);
+    let kinds: Vec<BodyKind> = movement.trails.iter().map(|trail| trail.kind).collect();
+    assert_eq!(kinds, [BodyKind::Robot, BodyKind::Person]);
+    for trail in &movement.trails {
+        let ticks: Vec<u64> = trail.stops.iter().map(|stop| stop.tick).collect();
+        assert_eq!(ticks, (0..=TICKS).collect::<Vec<_>>());
+    }
+    // The robot was sent to the bowl, once.
+    let travel = movement.travels.iter().find(|travel| travel.body == 0).unwrap();
+    assert!(travel.success && travel.from == FIRST - 1 && travel.to > FIRST, "{travel:?}");
+    let stops = &movement.trails[0].stops;
+    let gone = |pair: &[Stop]| (pair[1].at_m[0] - pair[0].at_m[0]).hypot(pair[1].at_m[1] - pair[0].at_m[1]);
+    let gone_m: f64 = stops[travel.from as usize..=travel.to as usize].windows(2).map(gone).sum();
+    let shortest_m = travel.shortest_m.unwrap();
+    assert!(shortest_m < gone_m + 0.1, "{shortest_m} m of {gone_m} m");
 }

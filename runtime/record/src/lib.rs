@@ -37,6 +37,7 @@ mod decision;
 pub mod entry;
 mod film;
 mod log;
+mod movement;
 mod reading;
 mod recorder;
 mod segment;
@@ -53,6 +54,7 @@ pub use entry::{
     TickEntry,
 };
 pub use log::{Log, LogError, Lost};
+pub use movement::{Movement, Stop, Trail, Travel};
 pub use recorder::{RecordError, Recorder, Recording};
 pub use snapshot::Snapshot;
 pub use writer::LogWriter;

@@ -8,6 +8,8 @@
 //! several, the fit is a linear mixed model with a random intercept for each ([`MixedModel`]). [`plots`] draws outcomes by
 //! condition, and [`power`] tells how many participants a planned study needs.
 //!
+//! How robots and people moved around each other is told where it was worked out before ([`Played::with_movement`]).
+//!
 //! Nothing here simulates sessions: all is in the logs. This crate never knows rerun, Arrow or files other than CSV and Parquet.
 
 mod actions;
@@ -27,6 +29,7 @@ mod played;
 mod plot;
 pub mod power;
 mod sessions;
+mod social;
 mod summary;
 mod table;
 mod turns;
@@ -49,7 +52,7 @@ pub use table::{Cell, Field, Kind, Table};
 pub const NOTEBOOK: &str = include_str!("notebook.py");
 
 /// All tables of these sessions, of one row a session, a turn, an action, a goal, and an answer to a questionnaire; where a wizard took
-/// part, also a decision.
+/// part, also a decision; where it is known how bodies moved, also a pair of a robot and a person.
 #[must_use]
 pub fn tables(played: &[Played]) -> Vec<Table> {
     let has_wizard = played.iter().any(Played::has_wizard);
@@ -60,5 +63,8 @@ pub fn tables(played: &[Played]) -> Vec<Table> {
         goals::table(played),
         answers::table(played),
     ];
-    whole.into_iter().chain(has_wizard.then(|| decisions::table(played))).collect()
+    let has_movement = played.iter().any(|one| one.movement.is_some());
+    let decisions = has_wizard.then(|| decisions::table(played));
+    let social = has_movement.then(|| social::table(played));
+    whole.into_iter().chain(decisions).chain(social).collect()
 }

@@ -15,7 +15,7 @@ FORMULA = r"^'(?='*[=+\-@\t\r\n])"
 
 
 def table(name):
-    """One of: sessions, turns, actions, goals, questionnaires, codebook."""
+    """One of: sessions, turns, actions, goals, questionnaires, codebook; social, where there were people."""
     parquet = FOLDER / f"{name}.parquet"
     if not (FOLDER / f"{name}.csv").exists():
         return pd.read_parquet(parquet)

@@ -2,11 +2,12 @@
 
 use std::{
     collections::BTreeMap,
+    fmt::Display,
     path::{Path, PathBuf},
 };
 
-use cohabit_cdf::{Action, Catalog, Mission, Status, mission};
-use cohabit_record::{DialogEntry, EventEntry, Log, LogError};
+use cohabit_cdf::{Action, BodyKind, Catalog, Mission, Status, mission};
+use cohabit_record::{DialogEntry, EventEntry, Log, LogError, Movement};
 use cohabit_world::DT_NANOS;
 
 /// The body that is spoken to.
@@ -22,6 +23,8 @@ pub struct Played {
     pub(crate) turns: Vec<Turn>,
     pub(crate) actions: Vec<Deed>,
     pub(crate) goals: Vec<Reached>,
+    /// How its bodies moved, if that was worked out.
+    pub(crate) movement: Option<Movement>,
 }
 
 /// Why a log has no tables.
@@ -128,7 +131,19 @@ impl Played {
         let mission = read.map_err(|problems| PlayedError::Mission { name: name.to_owned(), problems })?.mission;
         let (turns, turn_of) = turns(&log.dialog);
         let (actions, goals) = (actions(&log, &turn_of), goals(&mission, &log.events));
-        Ok(Self { name: name.to_owned(), log, mission, turns, actions, goals })
+        Ok(Self { name: name.to_owned(), log, mission, turns, actions, goals, movement: None })
+    }
+
+    /// The same, knowing how its bodies moved, if there was a person whom a robot could meet. A log has to be played again for that:
+    /// `movement` does so, or says why it cannot.
+    #[must_use]
+    pub fn with_movement<E: Display>(self, movement: impl FnOnce(&Log) -> Result<Movement, E>) -> Self {
+        if !self.log.session.bodies.iter().any(|body| body.kind == BodyKind::Person) {
+            return self;
+        }
+        let none = |error: E| Movement { problem: Some(error.to_string()), ..Movement::default() };
+        let movement = movement(&self.log).unwrap_or_else(none);
+        Self { movement: Some(movement), ..self }
     }
 
     /// Its ticks.

@@ -1,11 +1,12 @@
 //! Tables and summaries of sessions that are played here, against what those who played them counted.
 #![allow(clippy::unwrap_used)]
 
-use std::{fs, path::Path, sync::Arc};
+use std::{convert::Infallible, fs, path::Path, sync::Arc};
 
-use cohabit_cdf::Catalog;
+use cohabit_cdf::{BodyKind, Catalog};
 use cohabit_eval::{Settings, play, read_tasks};
 use cohabit_language::{Asking, Language};
+use cohabit_record::{Log, Movement, Stop, Trail};
 use cohabit_tables::{Cell, NOTEBOOK, Played, Summary, Table, codebook, plain_text, plots, tables, write_csv};
 
 const MISSIONS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../cdf/missions");
@@ -127,4 +128,41 @@ fn conditions_are_compared_and_fitted() {
     assert!(of("plot_answered_ms.svg").contains("answered (ms)"), "the unit is that of the table's field");
     let unknown = Summary::new(&played, &["moon".to_owned()]).unwrap_err().to_string();
     assert!(unknown.contains("no session notes `moon`") && unknown.contains("ask, knows, mission"), "{unknown}");
+}
+
+/// A robot and a person who stand two metres apart for a second.
+fn standing(_: &Log) -> Result<Movement, Infallible> {
+    let trail = |body: u32, kind: BodyKind| {
+        let stop = |tick: u64| Stop { tick, at_m: [2.0 * f64::from(body), 0.0], yaw_rad: 0.0 };
+        Trail { body, kind, radius_m: 0.25, stops: (0..60).map(stop).collect() }
+    };
+    let trails = vec![trail(0, BodyKind::Robot), trail(1, BodyKind::Person)];
+    Ok(Movement { trails, ..Movement::default() })
+}
+
+#[test]
+fn sessions_with_people_tell_how_robots_moved_around_them() {
+    let folder = Path::new(FOLDER).join("export-people");
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).unwrap();
+    let language = Language::new(Arc::new(Catalog::builtin()));
+    let bodies = vec!["person".parse().unwrap()];
+    let settings = Settings { asking: Asking::Never, record: Some(folder), bodies, ..Settings::expert(1) };
+    let task = read_tasks(Path::new(MISSIONS), None).unwrap().into_iter().find(|task| !task.id.contains("cereal"));
+    let counted = play(&task.unwrap(), &settings, &language).unwrap();
+    let session = Played::open(counted.log.as_ref().unwrap(), language.catalog()).unwrap();
+    let moved = session.clone().with_movement(standing);
+    let all = tables(std::slice::from_ref(&moved));
+    let social = table(&all, "social");
+    assert_eq!(social.column("min_distance_m").collect::<Vec<_>>(), [&Cell::Real(1.5)]);
+    check_file(social);
+    let text = Summary::new(&[moved], &[]).unwrap().to_string();
+    assert!(text.contains("minimum distance (m)"), "{text}");
+    // What cannot be worked out is said; where nobody could be met, nothing is worked out.
+    let failed = session.with_movement(|_| Err("no such mission"));
+    let all = tables(&[failed]);
+    let problems: Vec<&Cell> = table(&all, "social").column("problem").collect();
+    assert_eq!(problems, [&Cell::Text("no such mission".to_owned())]);
+    let (alone, _) = sessions("export-alone", Asking::Never).remove(0);
+    assert!(!tables(&[alone.with_movement(standing)]).iter().any(|table| table.name == "social"));
 }

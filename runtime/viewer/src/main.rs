@@ -29,6 +29,8 @@ use anyhow::Context as _;
 use clap::{Parser, Subcommand};
 use cohabit_bus::{Session, Shm};
 use cohabit_cdf::Catalog;
+use cohabit_engine::replay::movement;
+use cohabit_record::Log;
 use cohabit_render::MeshLibrary;
 use cohabit_tables::Played;
 use panes::Contents;
@@ -187,8 +189,10 @@ impl Live {
 
 impl Tables {
     fn run(&self) -> anyhow::Result<()> {
-        let catalog = Catalog::builtin();
-        let played = Played::open_all(&self.logs, &catalog)?;
+        let catalog = Arc::new(Catalog::builtin());
+        let played = Played::open_all(&self.logs, &catalog)?.into_iter();
+        let moved = |log: &Log| movement(log, Arc::clone(&catalog));
+        let played: Vec<Played> = played.map(|one| one.with_movement(moved)).collect();
         std::fs::create_dir_all(&self.out).with_context(|| self.out.display().to_string())?;
         let tables = cohabit_tables::tables(&played);
         for table in tables.iter().chain([&cohabit_tables::codebook(&tables)]) {

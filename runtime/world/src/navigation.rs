@@ -126,6 +126,11 @@ impl Navigation {
         Self { mesh, blockers, rooms, pushes_leaves: false, version: facts.state.floor_version, area_m2 }
     }
 
+    /// The corners of all that the mesh leaves out, m.
+    pub fn outlines(&self) -> impl Iterator<Item = [Vec2; 4]> + '_ {
+        self.blockers.all().map(Footprint::corners)
+    }
+
     /// What has doors or drawers that a body could run into.
     pub fn swinging(&self) -> &[ObjectId] {
         &self.blockers.swinging

@@ -24,6 +24,7 @@ pub const PAGES: &[Page] = pages![
     "vision",
     "voice",
     "together",
+    "pedestrians",
     "study",
     "dry-run",
     "questionnaires",

@@ -3,7 +3,10 @@
 use std::path::PathBuf;
 
 use super::Joining;
-use crate::minds::{MindKind, expert};
+use crate::{
+    minds::{MindKind, expert},
+    pedestrians::crowd,
+};
 
 /// Runs a mind for one body.
 #[derive(clap::Args)]
@@ -19,8 +22,8 @@ pub struct Agent {
     /// The seed of all that is random in it
     #[arg(long, default_value_t = 0)]
     seed: u64,
-    /// What a scripted one does: a file with an action a line
-    #[arg(long, value_name = "FILE", required_if_eq("kind", "scripted"))]
+    /// What a scripted one does: a file with an action a line; or what pedestrians do: a schedule (TOML), which names their bodies
+    #[arg(long, value_name = "FILE", required_if_eq_any([("kind", "scripted"), ("kind", "pedestrian")]))]
     script: Option<PathBuf>,
 }
 
@@ -29,6 +32,12 @@ impl Agent {
     pub fn run(&self) -> anyhow::Result<()> {
         let mind = self.kind.mind(self.body, self.seed, self.script.as_deref())?;
         let (bus, stop) = self.joining.join()?;
+        if self.kind == MindKind::Pedestrian {
+            if let Some(mut crowd) = crowd(self.script.as_deref(), self.seed, &bus, &stop)? {
+                crowd.run(&bus, &stop)?;
+            }
+            return Ok(());
+        }
         let mind = mind.map_or_else(|| expert(self.body, &bus, &stop), |mind| Ok(Some(mind)))?;
         if let Some(mut mind) = mind {
             cohabit_agent::run(&mut *mind, self.body, &bus, &stop)?;

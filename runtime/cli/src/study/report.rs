@@ -1,6 +1,6 @@
 //! `cohabit study report`: the methods sheet of a study.
 
-use std::{fs, path::PathBuf};
+use std::{fs, path::PathBuf, sync::Arc};
 
 use cohabit_cdf::Catalog;
 use cohabit_record::{Log, entry::fingerprint};
@@ -10,6 +10,7 @@ use cohabit_tables::{Played, tables};
 use super::{data, read, refused};
 use crate::{
     failure::bad_input,
+    movement::with_movement,
     terminal::{shown, shown_lines},
 };
 
@@ -28,7 +29,7 @@ impl Report {
     pub fn run(&self) -> anyhow::Result<()> {
         let (_, study) = read(&Folder::study_file(&self.folder))?;
         let records = Records::read(study, &self.folder).map_err(refused)?;
-        let catalog = Catalog::builtin();
+        let catalog = Arc::new(Catalog::builtin());
         let (mut apparatus, mut played) = (Apparatus::default(), Vec::new());
         for path in data::logs(&self.folder, &records.progress, true)? {
             let log = Log::open(&path).map_err(bad_input)?;
@@ -40,6 +41,7 @@ impl Report {
             note_settings(&mut apparatus, &log);
             played.push(Played::new(&name, log, &catalog).map_err(bad_input)?);
         }
+        let played = with_movement(played, &catalog);
         let text = report(&records, &apparatus, &all_tables(&records, tables(&played), false));
         let Some(out) = &self.out else {
             print!("{}", shown_lines(text));

@@ -3,6 +3,7 @@
 use crate::{
     played::Played,
     sessions,
+    social::{SESSION_MEASURES, SessionMeasure},
     table::{Cell, Kind},
 };
 
@@ -40,7 +41,8 @@ pub(crate) struct Outcome {
 }
 
 impl Outcome {
-    /// All outcomes of these sessions, a questionnaire's score each at the end.
+    /// All outcomes of these sessions: a questionnaire's score each, then, where it is known how bodies moved, how the robot
+    /// moved around people.
     pub fn all(played: &[Played]) -> Vec<Self> {
         let table = sessions::table(played);
         let named = |field: &str| {
@@ -57,7 +59,20 @@ impl Outcome {
                 values: table.column(&field.name).map(number).collect(),
             })
         };
-        table.fields.iter().filter_map(outcome).collect()
+        let moved = played.iter().any(|one| one.movement.is_some());
+        let social = SESSION_MEASURES.iter().filter(|_| moved).map(|measure| Self::social(measure, played));
+        table.fields.iter().filter_map(outcome).chain(social).collect()
+    }
+
+    fn social(measure: &SessionMeasure, played: &[Played]) -> Self {
+        Self {
+            name: measure.name.to_owned(),
+            field: measure.field.to_owned(),
+            unit: measure.unit,
+            meaning: measure.meaning.to_owned(),
+            is_share: false,
+            values: played.iter().map(|one| one.movement.as_ref().and_then(measure.value)).collect(),
+        }
     }
 }
 

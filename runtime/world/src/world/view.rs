@@ -105,6 +105,21 @@ impl World {
         self.navigation.is_walkable(point_m)
     }
 
+    /// The shortest way over the walkable floor as it was when the latest tick began: its points, m, without the one where it
+    /// starts, and its length, m. Both ends may be a little off that floor; `None` if there is no way, such as through a
+    /// locked door.
+    #[must_use]
+    pub fn path(&self, from_m: Vec2, to_m: Vec2) -> Option<(Vec<Vec2>, f32)> {
+        self.navigation.path(from_m, to_m)
+    }
+
+    /// The outlines of all that bodies cannot walk through, m: corners counter-clockwise, convex. Closed doors that are not
+    /// locked are not among them: they open by themselves.
+    #[must_use]
+    pub fn obstacles(&self) -> Vec<[Vec2; 4]> {
+        self.navigation.outlines().collect()
+    }
+
     /// The catalogue it was built from.
     #[must_use]
     pub fn catalog(&self) -> &Arc<Catalog> {
