@@ -65,7 +65,12 @@ const FIELDS: [Field; 19] = [
         "s",
         "time in which the robot was to go somewhere and neither moved (0.05 m/s) nor turned (0.1 rad/s)",
     ),
-    Field::new("problem", Text, "", "why a part of the session is missing here: its log lacks it, or replays otherwise"),
+    Field::new(
+        "problem",
+        Text,
+        "",
+        "why a part of the session is missing here: its log lacks it, or replays otherwise",
+    ),
 ];
 
 /// All encounters of these sessions.

@@ -1,4 +1,4 @@
-        let walker = |record: &BodyRecord|//! All pedestrians of a session as one peer: what they see, and what their bodies are told.
+//! All pedestrians of a session as one peer: what they see, and what their bodies are told.
 
 use std::{
     collections::BTreeMap,
@@ -134,7 +134,7 @@ impl Crowd {
 
     /// All bodies, and how they move: by where they were when they were last looked at.
     fn walkers(&mut self, tick: u64, records: &[BodyRecord]) -> BTreeMap<u32, Walker> {
-        let mut walker = |record: &BodyRecord| {
+        let walker = |record: &BodyRecord| {
             let at_m = Vec2::new(record.position_m[0], record.position_m[1]);
             let before = self.seen.insert(record.body, (tick, at_m));
             let velocity_m_s = before.map_or(Vec2::ZERO, |before| speed(before, (tick, at_m)));

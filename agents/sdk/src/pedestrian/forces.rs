@@ -1,4 +1,4 @@
-(0..outline.len()).map(move |at|//! How pedestrians walk: the social force model. Pure: who is where goes in, a velocity comes out.
+//! How pedestrians walk: the social force model. Pure: who is where goes in, a velocity comes out.
 //!
 //! The model is that of Helbing and Molnár ("Social force model for pedestrian dynamics", Physical Review E 51, 1995): a
 //! pedestrian accelerates towards a desired velocity, away from others and away from walls. How others act on one is taken
@@ -159,7 +159,7 @@ fn is_inside(outline: &Outline, point: Vec2) -> bool {
 }
 
 fn edges(outline: &Outline) -> impl Iterator<Item = (Vec2, Vec2)> {
-    (0..outline.len()).map(|at| (outline[at], outline[(at + 1) % outline.len()]))
+    (0..outline.len()).map(move |at| (outline[at], outline[(at + 1) % outline.len()]))
 }
 
 /// The point of a stretch that is nearest to another one.
