@@ -57,7 +57,6 @@ export const isDriving = () => driven !== null;
 export function buildDriving(all) {
   bodies = all;
   byId("walk-in").hidden = !bodies.length || isDriving();
-  byId("walk-in").setAttribute("aria-haspopup", String(bodies.length > 1));
   closeMenu();
   stopDriving("");
 }
@@ -80,13 +79,19 @@ function openMenu() {
     return button;
   }));
   byId("walk-menu").hidden = false;
-  byId("walk-in").setAttribute("aria-expanded", "true");
+  tellMenu();
   byId("walk-menu").querySelector("button:enabled")?.focus();
 }
 
 function closeMenu() {
   byId("walk-menu").hidden = true;
-  byId("walk-in").setAttribute("aria-expanded", "false");
+  tellMenu();
+}
+
+/** Says whether the menu is open, where there is one to open. */
+function tellMenu() {
+  if (bodies.length > 1) byId("walk-in").setAttribute("aria-expanded", String(!byId("walk-menu").hidden));
+  else byId("walk-in").removeAttribute("aria-expanded");
 }
 
 function drive(body) {
@@ -122,6 +127,8 @@ function startDriving(body) {
   input.blur();
   labelBefore = view.getAttribute("aria-label");
   view.setAttribute("aria-label", `What ${body.name} sees: walk with W, A, S and D, leave with Escape`);
+  // A screen reader then leaves the keys to the page.
+  view.role = "application";
   view.tabIndex = 0;
   view.focus({ preventScroll: true });
 }
@@ -135,6 +142,7 @@ function stopDriving(text) {
   document.body.classList.remove("driving");
   byId("walk-in").hidden = !bodies.length;
   collapseGoals(false);
+  view.role = "img";
   view.removeAttribute("tabindex");
   view.setAttribute("aria-label", labelBefore);
   if (isLookingThrough(was.camera) && before) lookThroughCamera(before);

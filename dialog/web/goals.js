@@ -119,6 +119,11 @@ function placeGoals() {
   else byId("view").after(byId("goals"));
 }
 
+// What does not fit is scrolled by the keyboard, too.
+new ResizeObserver(([{ target }]) => {
+  if (target.scrollHeight > target.clientHeight) target.tabIndex = 0;
+  else target.removeAttribute("tabindex");
+}).observe(byId("goals-body"));
 byId("goals-toggle").addEventListener("click", () => expandGoals(byId("goals").classList.contains("collapsed")));
 narrow.addEventListener("change", () => {
   placeGoals();

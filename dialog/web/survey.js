@@ -84,15 +84,15 @@ function fieldOf(item, index) {
   const label = element("p", "survey-ask", item.ask);
   label.id = `survey-ask-${index}`;
   if (item.optional) label.append(element("span", "survey-optional", " (optional)"));
-  const { control, read } = item.scale ? scaleOf(item.scale, index) : item.choice ? choiceOf(item.choice, index) : wordsOf();
-  control.setAttribute("aria-labelledby", label.id);
+  const { control, named = control, read } = item.scale ? scaleOf(item.scale, index) : item.choice ? choiceOf(item.choice, index) : wordsOf();
+  named.setAttribute("aria-labelledby", label.id);
   row.append(label, control);
   return { row, optional: item.optional, read };
 }
 
 function scaleOf(scale, index) {
   const places = (scale.most - scale.least) / scale.step + 1;
-  return places > MOST_BUTTONS ? sliderOf(scale) : buttonsOf(scale, places, index);
+  return places > MOST_BUTTONS ? sliderOf(scale, index) : buttonsOf(scale, places, index);
 }
 
 function ends({ left, right, least, most }) {
@@ -104,7 +104,14 @@ function buttonsOf(scale, places, index) {
   control.role = "radiogroup";
   const [left, right] = ends(scale);
   const row = element("div", "survey-places");
-  row.append(...Array.from({ length: places }, (_, at) => radio(index, scale.least + at * scale.step, String(scale.least + at * scale.step))));
+  const name = (value, at) => {
+    const end = at === 0 ? scale.left : at === places - 1 ? scale.right : "";
+    return end ? `${value}, ${end}` : String(value);
+  };
+  row.append(...Array.from({ length: places }, (_, at) => {
+    const value = scale.least + at * scale.step;
+    return radio(index, value, String(value), name(value, at));
+  }));
   control.append(left, row, right);
   return { control, read: () => chosen(control) };
 }
@@ -116,10 +123,11 @@ function choiceOf(choices, index) {
   return { control, read: () => chosen(control) };
 }
 
-function radio(index, value, text) {
+function radio(index, value, text, name) {
   const label = element("label", "survey-radio");
   const input = element("input");
   Object.assign(input, { type: "radio", name: `survey-${index}`, value });
+  if (name) input.setAttribute("aria-label", name);
   label.append(input, element("span", "", text));
   return label;
 }
@@ -130,15 +138,27 @@ function chosen(control) {
 }
 
 /** A slider that has no value before it is touched. */
-function sliderOf(scale) {
+function sliderOf(scale, index) {
   const control = element("div", "survey-scale slider untouched");
   const input = element("input");
   Object.assign(input, { type: "range", min: scale.least, max: scale.most, step: scale.step });
-  const touch = () => control.classList.remove("untouched");
+  input.setAttribute("aria-valuetext", "not answered yet");
+  const touch = () => {
+    control.classList.remove("untouched");
+    input.setAttribute("aria-valuetext", input.value);
+  };
   for (const kind of ["input", "pointerup"]) input.addEventListener(kind, touch);
+  // Who means the place where it stands presses Space or Enter on it.
+  input.addEventListener("keydown", (event) => {
+    if (event.key !== " " && event.key !== "Enter") return;
+    event.preventDefault();
+    touch();
+  });
   const [left, right] = ends(scale);
+  for (const [end, text] of [["left", left], ["right", right]]) text.id = `survey-${end}-${index}`;
+  input.setAttribute("aria-describedby", `${left.id} ${right.id}`);
   control.append(left, input, right);
-  return { control, read: () => (control.classList.contains("untouched") ? null : { value: Number(input.value) }) };
+  return { control, named: input, read: () => (control.classList.contains("untouched") ? null : { value: Number(input.value) }) };
 }
 
 function wordsOf() {
@@ -160,6 +180,7 @@ byId("survey-form").addEventListener("submit", (event) => {
   if (wrong >= 0) {
     showProblem(`Question ${wrong + 1}: ${problems[wrong]}`);
     fields[wrong].row.scrollIntoView({ block: "center" });
+    fields[wrong].row.querySelector("input, textarea").focus({ preventScroll: true });
   } else if (send({ type: "answer", questionnaire: shown.name, answers, finished })) {
     showProblem("");
   } else {
@@ -175,6 +196,8 @@ export function takeAnswered({ questionnaire, problem }) {
   answered.add(questionnaire);
   if (shown?.name === questionnaire) close();
   showButton();
+  // The button that had the focus may be gone.
+  if (document.activeElement === document.body) byId("chat-input").focus();
   toast("Thank you.");
 }
 

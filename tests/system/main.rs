@@ -1,6 +1,7 @@
 //! Whole sessions in real processes.
 #![allow(clippy::unwrap_used, missing_docs)]
 
+mod accessibility;
 mod annotate;
 mod arena;
 mod bad_input;

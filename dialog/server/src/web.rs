@@ -36,7 +36,7 @@ const HTML_TYPE: &str = "text/html; charset=utf-8";
 const STYLE_TYPE: &str = "text/css; charset=utf-8";
 const SCRIPT_TYPE: &str = "text/javascript; charset=utf-8";
 /// The page's other files: path, media type, text.
-const FILES: [(&str, &str, &str); 19] = [
+const FILES: [(&str, &str, &str); 20] = [
     ("/app.js", SCRIPT_TYPE, include_str!("../../web/app.js")),
     ("/dom.js", SCRIPT_TYPE, include_str!("../../web/dom.js")),
     ("/driving.js", SCRIPT_TYPE, include_str!("../../web/driving.js")),
@@ -53,6 +53,7 @@ const FILES: [(&str, &str, &str); 19] = [
     ("/microphone.js", SCRIPT_TYPE, include_str!("../../web/microphone.js")),
     ("/voice.js", SCRIPT_TYPE, include_str!("../../web/voice.js")),
     ("/style.css", STYLE_TYPE, include_str!("../../web/style.css")),
+    ("/access.css", STYLE_TYPE, include_str!("../../web/access.css")),
     // They are there in every session, so that nobody learns from them whether a wizard takes part.
     ("/wizard.css", STYLE_TYPE, include_str!("../../web/wizard.css")),
     ("/menu.js", SCRIPT_TYPE, include_str!("../../web/menu.js")),
