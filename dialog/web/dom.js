@@ -1,5 +1,7 @@
 // Small things that every part of the page makes its elements with.
 
+import { text as words } from "./texts.js";
+
 export const byId = (id) => document.getElementById(id);
 export const calm = window.matchMedia("(prefers-reduced-motion: reduce)");
 export const narrow = window.matchMedia("(max-width: 820px)");
@@ -30,7 +32,7 @@ export function limitTexts(longest = Infinity) {
 /** What is wrong with a text that is too long; nothing, if it is not. */
 export function tooLong(text) {
   const length = [...text].length;
-  return length > longestText ? `It has ${length} characters; ${longestText} at most, please.` : "";
+  return length > longestText ? words("too_long", { length, longest: longestText }) : "";
 }
 
 const TOAST_MS = 5000;

@@ -2,6 +2,7 @@
 
 import { byId, element, toast, tooLong } from "./dom.js";
 import { send } from "./socket.js";
+import { text } from "./texts.js";
 
 /** Scales with more places than these are sliders. */
 const MOST_BUTTONS = 11;
@@ -59,8 +60,8 @@ function asksEarly(questionnaire) {
 function showButton() {
   const [first] = unanswered();
   byId("survey-open").hidden = !first;
-  const text = asksEarly(first) ? "I have finished" : "Questionnaire";
-  if (byId("survey-open").textContent !== text) byId("survey-open").textContent = text;
+  const words = asksEarly(first) ? text("have_finished") : text("questionnaire");
+  if (byId("survey-open").textContent !== words) byId("survey-open").textContent = words;
 }
 
 function show(questionnaire) {
@@ -83,7 +84,7 @@ function fieldOf(item, index) {
   const row = element("li", "survey-item");
   const label = element("p", "survey-ask", item.ask);
   label.id = `survey-ask-${index}`;
-  if (item.optional) label.append(element("span", "survey-optional", " (optional)"));
+  if (item.optional) label.append(element("span", "survey-optional", text("optional")));
   const { control, named = control, read } = item.scale ? scaleOf(item.scale, index) : item.choice ? choiceOf(item.choice, index) : wordsOf();
   named.setAttribute("aria-labelledby", label.id);
   row.append(label, control);
@@ -119,16 +120,16 @@ function buttonsOf(scale, places, index) {
 function choiceOf(choices, index) {
   const control = element("div", "survey-choice");
   control.role = "radiogroup";
-  control.append(...choices.map((text, at) => radio(index, at + 1, text)));
+  control.append(...choices.map((choice, at) => radio(index, at + 1, choice)));
   return { control, read: () => chosen(control) };
 }
 
-function radio(index, value, text, name) {
+function radio(index, value, shownAs, name) {
   const label = element("label", "survey-radio");
   const input = element("input");
   Object.assign(input, { type: "radio", name: `survey-${index}`, value });
   if (name) input.setAttribute("aria-label", name);
-  label.append(input, element("span", "", text));
+  label.append(input, element("span", "", shownAs));
   return label;
 }
 
@@ -142,7 +143,7 @@ function sliderOf(scale, index) {
   const control = element("div", "survey-scale slider untouched");
   const input = element("input");
   Object.assign(input, { type: "range", min: scale.least, max: scale.most, step: scale.step });
-  input.setAttribute("aria-valuetext", "not answered yet");
+  input.setAttribute("aria-valuetext", text("not_answered"));
   const touch = () => {
     control.classList.remove("untouched");
     input.setAttribute("aria-valuetext", input.value);
@@ -155,7 +156,7 @@ function sliderOf(scale, index) {
     touch();
   });
   const [left, right] = ends(scale);
-  for (const [end, text] of [["left", left], ["right", right]]) text.id = `survey-${end}-${index}`;
+  for (const [end, words] of [["left", left], ["right", right]]) words.id = `survey-${end}-${index}`;
   input.setAttribute("aria-describedby", `${left.id} ${right.id}`);
   control.append(left, input, right);
   return { control, named: input, read: () => (control.classList.contains("untouched") ? null : { value: Number(input.value) }) };
@@ -167,24 +168,24 @@ function wordsOf() {
   return { control, read: () => (control.value.trim() ? { text: control.value.trim() } : null) };
 }
 
-function showProblem(text) {
-  byId("survey-problem").textContent = text;
+function showProblem(problem) {
+  byId("survey-problem").textContent = problem;
 }
 
 byId("survey-form").addEventListener("submit", (event) => {
   event.preventDefault();
   const answers = fields.map(({ read }) => read());
-  const problems = fields.map(({ optional }, index) => (!optional && answers[index] === null ? "It has no answer yet." : tooLong(answers[index]?.text ?? "")));
+  const problems = fields.map(({ optional }, index) => (!optional && answers[index] === null ? text("no_answer") : tooLong(answers[index]?.text ?? "")));
   const wrong = problems.findIndex((problem) => problem);
   fields.forEach(({ row }, index) => row.classList.toggle("missing", index === wrong));
   if (wrong >= 0) {
-    showProblem(`Question ${wrong + 1}: ${problems[wrong]}`);
+    showProblem(text("question_problem", { number: wrong + 1, problem: problems[wrong] }));
     fields[wrong].row.scrollIntoView({ block: "center" });
     fields[wrong].row.querySelector("input, textarea").focus({ preventScroll: true });
   } else if (send({ type: "answer", questionnaire: shown.name, answers, finished })) {
     showProblem("");
   } else {
-    showProblem("There is no connection at the moment; please try again in a while.");
+    showProblem(text("no_connection"));
   }
 });
 
@@ -198,7 +199,7 @@ export function takeAnswered({ questionnaire, problem }) {
   showButton();
   // The button that had the focus may be gone.
   if (document.activeElement === document.body) byId("chat-input").focus();
-  toast("Thank you.");
+  toast(text("thank_you"));
 }
 
 function putOff() {
@@ -212,7 +213,7 @@ byId("survey-open").addEventListener("click", () => {
   const [first] = unanswered();
   if (!first) return;
   if (asksEarly(first)) {
-    if (!window.confirm("The mission is not over yet. Have you finished, and want to answer the questions now?")) return;
+    if (!window.confirm(text("finished_early"))) return;
     finished = true;
   }
   show(first);

@@ -4,6 +4,7 @@ import { byId, capitalised, drawn, element } from "./dom.js";
 import { floor } from "./floor.js";
 import { send, showLink } from "./socket.js";
 import { hearThrough } from "./sound.js";
+import { text } from "./texts.js";
 
 const HEADER_BYTES = 16;
 const FRAME_KIND = 1;
@@ -103,7 +104,7 @@ export function buildViews(all) {
     return button;
   }));
   const others = views.filter(({ camera }) => !(camera in MAIN_VIEWS));
-  const title = new Option("More", "", true, true);
+  const title = new Option(text("view_more"), "", true, true);
   title.disabled = true;
   byId("views-more").replaceChildren(title, ...others.map(({ camera, name }) => new Option(capitalised(name), camera)));
   byId("views-more").hidden = !others.length;

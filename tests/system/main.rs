@@ -19,6 +19,7 @@ mod generate;
 mod guide;
 mod https;
 mod interpreter;
+mod languages;
 mod lock_step;
 mod mcap;
 mod missions;

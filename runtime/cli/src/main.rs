@@ -17,6 +17,7 @@ mod generate;
 mod guide;
 mod minds;
 mod mission_file;
+mod page_language;
 mod pddl;
 mod peers;
 mod play;

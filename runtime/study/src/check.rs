@@ -1,6 +1,7 @@
 //! Reads `study.toml`, and says all that is wrong in it.
 
 mod blocks;
+mod language;
 mod minimisation;
 mod probes;
 mod tutorial;
@@ -63,13 +64,15 @@ pub enum StudyError {
 }
 
 /// Flags of `play` that the study's server itself sets for each session, or that would part its page from the study's.
-const OWN_FLAGS: [&str; 13] = [
+const OWN_FLAGS: [&str; 15] = [
     "branch",
     "framed-by",
     "hide",
     "host",
     "listen",
     "log",
+    "page-language",
+    "page-texts",
     "participant",
     "port",
     "session",
@@ -169,10 +172,13 @@ impl Checking<'_, '_> {
         let factors = self.factors(&written.factor, &root.key("factor"));
         let wizard = self.wizard(written.wizard.as_ref());
         let minimisation = self.minimisation(written.minimisation.as_ref(), &factors, &blocks);
+        let (page_texts, page_texts_file) = self.page_texts(written).unwrap_or_default();
         let mut study = Study {
             probes,
             wizard,
             minimisation,
+            page_texts,
+            page_texts_file,
             information: self.sheet(&written.information, &root.key("information")),
             consent: self.sheet(&written.consent, &root.key("consent")),
             consents: boxes(&written.consent),

@@ -15,11 +15,14 @@ use axum::{
     response::{IntoResponse, Redirect, Response},
     routing::{get, post},
 };
-use cohabit_dialog::{Framing, Given, HostName, Identity, ServerLimits, Site, file, token};
+use cohabit_dialog::{
+    Framing, Given, HostName, Identity, PagePart, PageTexts, ServerLimits, Site, file, token,
+};
 use serde::Deserialize;
 use serde_json::{Value, json};
 
 use crate::{
+    design::Study,
     folder::Note,
     keeper::lock,
     markdown::escaped,
@@ -31,11 +34,12 @@ use crate::{
 const SCRIPT: &str = "text/javascript; charset=utf-8";
 const HTML: &str = "text/html; charset=utf-8";
 /// The pages' files: path, media type, text.
-const FILES: [(&str, &str, &str); 8] = [
+const FILES: [(&str, &str, &str); 9] = [
     ("/study.js", SCRIPT, include_str!("../web/study.js")),
     ("/forms.js", SCRIPT, include_str!("../web/forms.js")),
     ("/server.js", SCRIPT, include_str!("../web/server.js")),
     ("/dom.js", SCRIPT, include_str!("../web/dom.js")),
+    ("/texts.js", SCRIPT, include_str!("../../../dialog/web/texts.js")),
     ("/experimenter.js", SCRIPT, include_str!("../web/experimenter.js")),
     ("/wizard.js", SCRIPT, include_str!("../web/wizard.js")),
     ("/study.css", "text/css; charset=utf-8", include_str!("../web/study.css")),
@@ -124,21 +128,27 @@ fn router(service: StudyService) -> Router {
         .with_state(service)
 }
 
-fn page(text: &'static str) -> Response {
-    ([(header::CONTENT_TYPE, HTML)], text).into_response()
+/// A page with these texts.
+fn page(html: &str, texts: &PageTexts) -> Response {
+    ([(header::CONTENT_TYPE, HTML)], texts.page(PagePart::Study, html)).into_response()
+}
+
+/// A page of the study's staff: those are in English.
+fn staff_page(html: &str) -> Response {
+    page(html, &PageTexts::default())
 }
 
 /// The page of those whose link is not known, with whom to ask.
-fn stranger(contact: &str) -> Response {
-    (StatusCode::NOT_FOUND, [(header::CONTENT_TYPE, HTML)], strangers_page(contact)).into_response()
+fn stranger(study: &Study) -> Response {
+    (StatusCode::NOT_FOUND, [(header::CONTENT_TYPE, HTML)], strangers_page(study)).into_response()
 }
 
-fn strangers_page(contact: &str) -> String {
-    STRANGER_PAGE.replace("{contact}", &escaped(contact))
+fn strangers_page(Study { page_texts, contact, .. }: &Study) -> String {
+    page_texts.page(PagePart::Study, STRANGER_PAGE).replace("{contact}", &escaped(contact))
 }
 
 async fn nowhere(State(service): State<StudyService>) -> Response {
-    with_study(service, |registry, _| stranger(&registry.study.contact)).await
+    with_study(service, |registry, _| stranger(&registry.study)).await
 }
 
 /// Does something with the study, away from the threads that serve: what is written down takes its time.
@@ -171,7 +181,7 @@ async fn sign_up(
 ) -> Response {
     with_study(service, move |registry, _| {
         if !token::admits(&registry.links.sign_up, Some(&given)) {
-            return stranger(&registry.study.contact);
+            return stranger(&registry.study);
         }
         match registry.sign_up() {
             Ok(token) => {
@@ -196,9 +206,9 @@ async fn participant(
             if let Who::Newcomer(index) = who {
                 registry.tell(index, &parameters);
             }
-            page(STUDY_PAGE)
+            page(STUDY_PAGE, &registry.study.page_texts)
         }
-        None => stranger(&registry.study.contact),
+        None => stranger(&registry.study),
     })
     .await
 }
@@ -312,9 +322,9 @@ fn check_draft(answers: &[Option<Given>]) -> Result<(), StudyFault> {
 async fn experimenter(State(service): State<StudyService>, Path(given): Path<String>) -> Response {
     with_study(service, move |registry, _| {
         if token::admits(&registry.links.experimenter, Some(&given)) {
-            page(EXPERIMENTER_PAGE)
+            staff_page(EXPERIMENTER_PAGE)
         } else {
-            stranger(&registry.study.contact)
+            stranger(&registry.study)
         }
     })
     .await
@@ -333,9 +343,9 @@ async fn overview(State(service): State<StudyService>, Path(given): Path<String>
 async fn wizard(State(service): State<StudyService>, Path(given): Path<String>) -> Response {
     with_study(service, move |registry, _| {
         if token::admits(&registry.links.wizard, Some(&given)) {
-            page(WIZARD_PAGE)
+            staff_page(WIZARD_PAGE)
         } else {
-            stranger(&registry.study.contact)
+            stranger(&registry.study)
         }
     })
     .await
@@ -423,12 +433,18 @@ fn short(text: &str) -> Result<String, StudyFault> {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
 
     #[test]
     fn whose_link_is_not_known_reads_whom_to_ask() {
-        let page = strangers_page("Ada <ada@example.org>");
-        assert!(page.contains("Ada &lt;ada@example.org&gt;") && !page.contains("{contact}"), "{page}");
+        let contact = "Ada <ada@example.org>".to_owned();
+        for (language, title) in [("en", "This link is not known"), ("de", "Dieser Link ist nicht bekannt")] {
+            let page_texts = PageTexts::of(language).unwrap();
+            let page = strangers_page(&Study { contact: contact.clone(), page_texts, ..Study::default() });
+            assert!(page.contains("Ada &lt;ada@example.org&gt;") && !page.contains('{'), "{page}");
+            assert!(page.contains(title) && page.contains(&format!("<html lang=\"{language}\">")), "{page}");
+        }
     }
 }

@@ -131,6 +131,37 @@ fn a_person_takes_part_in_a_browser() {
 
 #[test]
 #[cfg_attr(not(browser), ignore = "needs a browser")]
+fn a_person_takes_part_in_german() {
+    let scratch = study("study-german");
+    let _ = scratch.write("study.toml", &format!("language = \"de\"\n{STUDY}"));
+    let server = Server::start(&scratch, "0");
+    let browser = Browser::start().unwrap();
+    let mut tab = browser.open(&format!("http://{}{}", server.host, server.sign_up), 390, 844).unwrap();
+    go_on(&mut tab, "Ich habe dies gelesen");
+    tab.wait_until("document.querySelectorAll('.check input').length === 3").unwrap();
+    assert_eq!(tab.evaluate("document.documentElement.lang").unwrap(), json!("de"));
+    accessibility::check(&mut tab, "a German consent form");
+    tab.evaluate("document.querySelectorAll('.check input:required').forEach((box) => box.click())").unwrap();
+    go_on(&mut tab, "Ich willige in die Teilnahme ein");
+    tab.wait_until("document.querySelector('h1').textContent === 'Ihre nächste Aufgabe'").unwrap();
+    let notice = "document.querySelector('.robot-language').textContent.includes('nur Englisch')";
+    assert_eq!(tab.evaluate(notice).unwrap(), json!(true));
+    accessibility::check(&mut tab, "a German page before a mission");
+    go_on(&mut tab, "Beginnen");
+    // The page of the session is in the same language.
+    tab.wait_until("document.querySelector('iframe.session') !== null").unwrap();
+    let address = tab.evaluate("document.querySelector('iframe.session').src").unwrap();
+    let mut session = browser.open(address.as_str().unwrap(), 1280, 800).unwrap();
+    session.wait_until("document.querySelector('#link-text')?.textContent === 'verbunden'").unwrap();
+    // The experimenter's page is not.
+    let mut lab = browser.open(&format!("http://{}{}", server.host, server.experimenter), 1280, 800).unwrap();
+    lab.wait_until("document.documentElement.lang === 'en' && document.querySelector('#rows tr') !== null").unwrap();
+    drop((tab, session, lab, browser));
+    server.end();
+}
+
+#[test]
+#[cfg_attr(not(browser), ignore = "needs a browser")]
 fn other_machines_take_part_by_https_at_ports_that_are_known() {
     let scratch = study("study-https");
     let first = 20_000 + std::process::id() % 10_000;
