@@ -100,7 +100,7 @@ listen({
   },
   sound: takeSound,
   highlight: (message) => floor.pointOut(message),
-  error: (message) => toast(message.text),
+  error: (message) => toast(message.text, "en"),
   voice: takeVoice,
   hearing: takeHearing,
   heard: takeHeard,

@@ -1,6 +1,6 @@
 // Small things that every part of the page makes its elements with.
 
-import { text as words } from "./texts.js";
+import { language, text as words } from "./texts.js";
 
 export const byId = (id) => document.getElementById(id);
 export const calm = window.matchMedia("(prefers-reduced-motion: reduce)");
@@ -37,8 +37,10 @@ export function tooLong(text) {
 
 const TOAST_MS = 5000;
 
-export function toast(text) {
+/** Says something for a while, in the language of the page if no other is named. */
+export function toast(text, lang = language) {
   const shown = element("p", "toast", text);
+  shown.lang = lang;
   byId("toasts").replaceChildren(shown);
   setTimeout(() => shown.remove(), TOAST_MS);
 }

@@ -148,7 +148,7 @@ function stopDriving(why) {
   view.setAttribute("aria-label", labelBefore);
   if (isLookingThrough(was.camera) && before) lookThroughCamera(before);
   before = null;
-  if (why) toast(why);
+  if (why) toast(why, "en");
 }
 
 // ---------------------------------------------------------------------------------------------- moving

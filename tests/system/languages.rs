@@ -13,7 +13,8 @@ const GERMAN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../dialog/web/text
 #[cfg_attr(not(browser), ignore = "needs a browser")]
 fn a_german_page_is_german_and_says_that_the_robot_speaks_english() {
     let browser = Browser::start().unwrap();
-    let play = Play::start(COHABIT, &["cold_soda", "--seed", "5", "--page-language", "de", "--body", "person"]).unwrap();
+    let german = ["cold_soda", "--seed", "5", "--page-language", "de", "--body", "person"];
+    let play = Play::start(COHABIT, &german).unwrap();
     let mut tab = browser.open(&play.address, 1280, 800).unwrap();
     tab.wait_until("window.cohabit?.frames > 0 && document.querySelector('#goals-list li') !== null").unwrap();
     assert_eq!(tab.evaluate("document.documentElement.lang").unwrap(), json!("de"));

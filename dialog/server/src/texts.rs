@@ -212,6 +212,12 @@ impl PageTexts {
         if problems.is_empty() { Ok(written.into_texts()) } else { Err(refused(problems)) }
     }
 
+    /// The text of a key for a study's server itself, of which tests know that it is there.
+    #[must_use]
+    pub fn study_text(&self, key: &str) -> &str {
+        self.study.get(key).map_or("", String::as_str)
+    }
+
     /// The tag of their language.
     #[must_use]
     pub fn language(&self) -> &str {

@@ -16,7 +16,7 @@ use std::{
 };
 
 use cohabit_cdf::mission::{Pointer, Problems};
-use cohabit_dialog::Questionnaire;
+use cohabit_dialog::{PageTexts, Questionnaire};
 use serde::Deserialize as _;
 use toml::{
     Spanned,
@@ -143,6 +143,8 @@ struct Checking<'a, 'f> {
     keeps_audio: Option<(Range<usize>, Pointer)>,
     /// Whether each setting could be read that says whether a wizard takes part.
     knows_wizards: bool,
+    /// What participants read on their pages.
+    texts: PageTexts,
 }
 
 impl<'a, 'f> Checking<'a, 'f> {
@@ -156,6 +158,7 @@ impl<'a, 'f> Checking<'a, 'f> {
             files: BTreeMap::new(),
             keeps_audio: None,
             knows_wizards: true,
+            texts: PageTexts::default(),
         }
     }
 }
@@ -163,6 +166,9 @@ impl<'a, 'f> Checking<'a, 'f> {
 impl Checking<'_, '_> {
     fn study(&mut self, written: &Written) -> Study {
         let root = Pointer::default();
+        let (page_texts, page_texts_file) = self.page_texts(written).unwrap_or_default();
+        // The usual exercises of tutorials are in the same language.
+        self.texts = page_texts.clone();
         let blocks = self.blocks(&written.block, &root.key("block"));
         let participants = written.participants.as_ref();
         if let Some(none) = participants.filter(|count| *count.get_ref() == 0) {
@@ -172,7 +178,6 @@ impl Checking<'_, '_> {
         let factors = self.factors(&written.factor, &root.key("factor"));
         let wizard = self.wizard(written.wizard.as_ref());
         let minimisation = self.minimisation(written.minimisation.as_ref(), &factors, &blocks);
-        let (page_texts, page_texts_file) = self.page_texts(written).unwrap_or_default();
         let mut study = Study {
             probes,
             wizard,

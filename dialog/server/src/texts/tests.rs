@@ -8,14 +8,19 @@ const GERMAN_TABLE: &str = include_str!("../../../web/texts/de.toml");
 /// The pages and scripts of a part, as they stand in the sources.
 fn sources(part: PagePart) -> Vec<(String, String)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let (folder, staff): (_, &[&str]) = match part {
-        PagePart::Session => ("dialog/web", &["wizard.html"]),
-        PagePart::Study => ("runtime/study/web", &["wizard.html", "experimenter.html"]),
+    let (folder, staff, more): (_, &[&str], &[&str]) = match part {
+        PagePart::Session => ("dialog/web", &["wizard.html"], &[]),
+        // Its server tells participants what they are to try in a tutorial.
+        PagePart::Study => {
+            ("runtime/study/web", &["wizard.html", "experimenter.html"], &["runtime/study/src/tutorial.rs"])
+        }
     };
     let files = fs::read_dir(root.join(folder)).unwrap().map(|entry| entry.unwrap().path());
     files
+        .chain(more.iter().map(|file| root.join(file)))
         .map(|path| (path.file_name().unwrap().to_string_lossy().into_owned(), path))
-        .filter(|(name, _)| !staff.contains(&name.as_str()) && [".html", ".js"].iter().any(|end| name.ends_with(end)))
+        .filter(|(name, _)| !staff.contains(&name.as_str()))
+        .filter(|(name, _)| [".html", ".js", ".rs"].iter().any(|end| name.ends_with(end)))
         .map(|(name, path)| (name, fs::read_to_string(path).unwrap()))
         .collect()
 }
