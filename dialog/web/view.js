@@ -139,6 +139,7 @@ export function lookThrough(view, chosen = true) {
   if (!first) {
     if (chosen) rememberView(view.camera);
     byId("seen").textContent = nameOf(view);
+    byId("seen").lang = view.name in NAMES ? language : "en";
   }
 }
 
@@ -199,6 +200,7 @@ export function takeSeen({ name, x, y, at }) {
   const frame = view.parentElement.getBoundingClientRect();
   const [left, top] = onScreen(x, y);
   label.textContent = capitalised(name);
+  label.lang = "en";
   label.classList.add("placed");
   const half = label.offsetWidth / 2 + 6;
   label.style.left = `${Math.max(half, Math.min(frame.width - half, left))}px`;

@@ -15,9 +15,7 @@ use axum::{
     response::{IntoResponse, Redirect, Response},
     routing::{get, post},
 };
-use cohabit_dialog::{
-    Framing, Given, HostName, Identity, PagePart, PageTexts, ServerLimits, Site, file, token,
-};
+use cohabit_dialog::{Framing, Given, HostName, Identity, PagePart, PageTexts, ServerLimits, Site, file, token};
 use serde::Deserialize;
 use serde_json::{Value, json};
 

@@ -5,9 +5,7 @@ use std::net::IpAddr;
 use cohabit_dialog::{Asking, Consulting, Drivable, Effort, Hidden, HostName, Knows, Questionnaire};
 
 use super::body_name::BodyName;
-use crate::{
-    failure::bad_input, page_language::PageLanguage, tls::Tls, voice::VoiceOptions, wizard::WizardOptions,
-};
+use crate::{failure::bad_input, page_language::PageLanguage, tls::Tls, voice::VoiceOptions, wizard::WizardOptions};
 
 /// Where the page is served.
 #[derive(clap::Args, Clone)]
