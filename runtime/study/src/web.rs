@@ -160,13 +160,13 @@ async fn with_study(
 }
 
 /// What did not happen, for the page; what the experimenter must know of it goes to the terminal.
-fn told(fault: &StudyFault) -> Value {
+fn told(fault: &StudyFault, texts: &PageTexts) -> Value {
     match fault {
         StudyFault::Journal(error) => tracing::error!("{error}"),
         StudyFault::Folder(error) => tracing::error!("{error}"),
-        StudyFault::Refused(_) | StudyFault::NotNow(_) => {}
+        StudyFault::Refused(_) | StudyFault::NotNow(_) => return json!(fault.to_string()),
     }
-    json!(fault.to_string())
+    json!(texts.study_text("not_saved"))
 }
 
 /// The parameters of a link, such as a site that recruits people passes them.
@@ -246,7 +246,8 @@ async fn event(State(service): State<StudyService>, Path(given): Path<String>, J
         };
         let who = registry.who(&given).unwrap_or(Who::Withdrawn);
         let mut page = seen(registry, who);
-        page["problem"] = problem.as_ref().map_or(Value::Null, told);
+        let texts = &registry.study.page_texts;
+        page["problem"] = problem.as_ref().map_or(Value::Null, |fault| told(fault, texts));
         Json(page).into_response()
     })
     .await
@@ -387,7 +388,8 @@ async fn command(
         }
         let problem = registry.obey(command).err();
         let mut page = registry.overview(most);
-        page["problem"] = problem.as_ref().map_or(Value::Null, told);
+        let texts = PageTexts::default();
+        page["problem"] = problem.as_ref().map_or(Value::Null, |fault| told(fault, &texts));
         Json(page).into_response()
     })
     .await

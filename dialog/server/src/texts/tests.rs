@@ -10,10 +10,12 @@ fn sources(part: PagePart) -> Vec<(String, String)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let (folder, staff, more): (_, &[&str], &[&str]) = match part {
         PagePart::Session => ("dialog/web", &["wizard.html"], &[]),
-        // Its server tells participants what they are to try in a tutorial.
-        PagePart::Study => {
-            ("runtime/study/web", &["wizard.html", "experimenter.html"], &["runtime/study/src/tutorial.rs"])
-        }
+        // Its server tells participants some things itself, such as what they are to try in a tutorial.
+        PagePart::Study => (
+            "runtime/study/web",
+            &["wizard.html", "experimenter.html"],
+            &["runtime/study/src/registry.rs", "runtime/study/src/tutorial.rs", "runtime/study/src/web.rs"],
+        ),
     };
     let files = fs::read_dir(root.join(folder)).unwrap().map(|entry| entry.unwrap().path());
     files
