@@ -11,6 +11,7 @@ import { buildReplay, takePlayer, takeReplayKey, takeRewind } from "./replay.js"
 import { greeted, listen } from "./socket.js";
 import { askWhenDue, buildSurvey, noteAnswered, takeAnswered } from "./survey.js";
 import { forgetSounds, hearState, takeSound } from "./sound.js";
+import { language, text } from "./texts.js";
 import { clearChat, endDoing, input, say, takeLatency, meet, takeLine, takeProgress, takeTurn, takeYou } from "./talk.js";
 import { forgetHeard, greetVoice, loseMicrophone, speakLine, stopListening, takeDeaf, takeHeard, takeHearing, takeHush, takeSpeech, takeVoice, takeVoiceKey } from "./voice.js";
 import { awaitFrame, buildViews, takeFrame, takeMarks, takeSeen } from "./view.js";
@@ -29,9 +30,10 @@ function takeHello({ session, mission, map, views, drivable, robots, questionnai
   greeted();
   leaveOut(hidden);
   limitTexts(longestText);
-  byId("session").textContent = replay ? `${session} · recorded` : session;
+  byId("session").textContent = replay ? text("recorded_name", { session }) : session;
   document.title = mission.title ? `${mission.title} · Cohabit` : "Cohabit";
-  byId("goals-title").textContent = mission.title || "Mission";
+  byId("goals-title").textContent = mission.title || text("mission");
+  byId("goals-title").lang = mission.title ? "en" : language;
   byId("goals-about").textContent = mission.description === mission.title ? "" : mission.description;
   floor.build(map);
   buildViews(views);
@@ -98,7 +100,7 @@ listen({
   },
   sound: takeSound,
   highlight: (message) => floor.pointOut(message),
-  error: (message) => toast(message.text),
+  error: (message) => toast(message.text, "en"),
   voice: takeVoice,
   hearing: takeHearing,
   heard: takeHeard,

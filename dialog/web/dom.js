@@ -1,5 +1,7 @@
 // Small things that every part of the page makes its elements with.
 
+import { language, text as words } from "./texts.js";
+
 export const byId = (id) => document.getElementById(id);
 export const calm = window.matchMedia("(prefers-reduced-motion: reduce)");
 export const narrow = window.matchMedia("(max-width: 820px)");
@@ -30,13 +32,15 @@ export function limitTexts(longest = Infinity) {
 /** What is wrong with a text that is too long; nothing, if it is not. */
 export function tooLong(text) {
   const length = [...text].length;
-  return length > longestText ? `It has ${length} characters; ${longestText} at most, please.` : "";
+  return length > longestText ? words("too_long", { length, longest: longestText }) : "";
 }
 
 const TOAST_MS = 5000;
 
-export function toast(text) {
+/** Says something for a while, in the language of the page if no other is named. */
+export function toast(text, lang = language) {
   const shown = element("p", "toast", text);
+  shown.lang = lang;
   byId("toasts").replaceChildren(shown);
   setTimeout(() => shown.remove(), TOAST_MS);
 }

@@ -4,6 +4,7 @@ import { byId, capitalised, element, toast } from "./dom.js";
 import { collapseGoals } from "./goals.js";
 import { sendOrSay } from "./page.js";
 import { send } from "./socket.js";
+import { language, text } from "./texts.js";
 import { hideSeen, isLookingThrough, lookThroughCamera, view } from "./view.js";
 
 /** What is asked of a body at most; the session cuts it down to what the body can do. */
@@ -57,7 +58,6 @@ export const isDriving = () => driven !== null;
 export function buildDriving(all) {
   bodies = all;
   byId("walk-in").hidden = !bodies.length || isDriving();
-  byId("walk-in").setAttribute("aria-haspopup", String(bodies.length > 1));
   closeMenu();
   stopDriving("");
 }
@@ -75,18 +75,24 @@ function openMenu() {
     const taken = Boolean(states?.driven?.includes(body));
     button.type = "button";
     button.disabled = taken;
-    if (taken) button.append(element("span", "taken", "somebody is there"));
+    if (taken) button.append(element("span", "taken", text("body_taken")));
     button.addEventListener("click", () => drive(body));
     return button;
   }));
   byId("walk-menu").hidden = false;
-  byId("walk-in").setAttribute("aria-expanded", "true");
+  tellMenu();
   byId("walk-menu").querySelector("button:enabled")?.focus();
 }
 
 function closeMenu() {
   byId("walk-menu").hidden = true;
-  byId("walk-in").setAttribute("aria-expanded", "false");
+  tellMenu();
+}
+
+/** Says whether the menu is open, where there is one to open. */
+function tellMenu() {
+  if (bodies.length > 1) byId("walk-in").setAttribute("aria-expanded", String(!byId("walk-menu").hidden));
+  else byId("walk-in").removeAttribute("aria-expanded");
 }
 
 function drive(body) {
@@ -101,8 +107,8 @@ export function leave() {
 }
 
 /** The session says that this page drives a body, or no longer does. */
-export function takeDriving({ body, text }) {
-  if (body === null) stopDriving(text);
+export function takeDriving({ body, text: why }) {
+  if (body === null) stopDriving(why);
   else startDriving(bodies.find((one) => one.body === body));
 }
 
@@ -121,12 +127,14 @@ function startDriving(body) {
   showHeld(window.cohabit.state);
   input.blur();
   labelBefore = view.getAttribute("aria-label");
-  view.setAttribute("aria-label", `What ${body.name} sees: walk with W, A, S and D, leave with Escape`);
+  view.setAttribute("aria-label", text("picture_driven", { name: body.name }));
+  // A screen reader then leaves the keys to the page.
+  view.role = "application";
   view.tabIndex = 0;
   view.focus({ preventScroll: true });
 }
 
-function stopDriving(text) {
+function stopDriving(why) {
   if (!isDriving()) return;
   const was = driven;
   driven = null;
@@ -135,11 +143,12 @@ function stopDriving(text) {
   document.body.classList.remove("driving");
   byId("walk-in").hidden = !bodies.length;
   collapseGoals(false);
+  view.role = "img";
   view.removeAttribute("tabindex");
   view.setAttribute("aria-label", labelBefore);
   if (isLookingThrough(was.camera) && before) lookThroughCamera(before);
   before = null;
-  if (text) toast(text);
+  if (why) toast(why, "en");
 }
 
 // ---------------------------------------------------------------------------------------------- moving
@@ -306,7 +315,7 @@ export function takeAim(aim) {
   window.cohabit.aim = aim;
   byId("hud").classList.toggle("aims", aim.object !== null);
   byId("aim-name").textContent = aim.name ? capitalised(aim.name) : "";
-  byId("aim-hint").textContent = aim.far ? "come closer" : "";
+  byId("aim-hint").textContent = aim.far ? text("come_closer") : "";
   byId("offers").replaceChildren(...offered.options.map((option) => {
     const button = element("button", option.key === OFFER_KEYS[0] ? "offer first" : "offer");
     button.type = "button";
@@ -324,9 +333,9 @@ function act({ deed }) {
 }
 
 /** What came of a deed of one's own. */
-export function takeActed({ ok, text }) {
+export function takeActed({ ok, text: told }) {
   const line = byId("acted");
-  line.textContent = text;
+  line.textContent = told;
   line.classList.toggle("failed", !ok);
   clearTimeout(saidTimer);
   saidTimer = setTimeout(() => { line.textContent = ""; }, SAID_MS);
@@ -337,7 +346,8 @@ export function showHeld(state) {
   if (!isDriving() || !state) return;
   const all = [state.robot, ...state.others];
   const holding = all.find((one) => one?.body === driven.body)?.holding;
-  byId("driver-holding").textContent = holding ? capitalised(holding) : "Nothing";
+  byId("driver-holding").textContent = holding ? capitalised(holding) : text("nothing");
+  byId("driver-holding").lang = holding ? "en" : language;
   byId("driver-holding").classList.toggle("none", !holding);
 }
 

@@ -1,6 +1,7 @@
 // The robots' faces, as small as a word: what each shows, beside its name.
 
 import { byId, capitalised, drawn, element } from "./dom.js";
+import { text } from "./texts.js";
 
 const MOUTHS = {
   neutral: "M7 13.2h6",
@@ -8,6 +9,13 @@ const MOUTHS = {
   sorry: "M6 14.4q4 -4 8 0",
   confused: "M6 13.6l2.7 -1.6l2.6 1.6l2.7 -1.6",
   thinking: "M10.5 13.2h3.5",
+};
+
+const LOOKS = {
+  happy: text("looks_happy"),
+  sorry: text("looks_sorry"),
+  confused: text("looks_confused"),
+  thinking: text("looks_thinking"),
 };
 
 /** What people call the robots, by their bodies. */
@@ -37,7 +45,7 @@ export function faceOf(expression) {
 
 function showFaces() {
   byId("faces").replaceChildren(...[...shown].map(([body, expression]) => {
-    const looks = expression === "neutral" ? "" : `looks ${expression}`;
+    const looks = LOOKS[expression] ?? "";
     const one = element("span", "face-of");
     one.append(faceOf(expression), element("b", "", names.get(body)), element("span", "", looks));
     return one;

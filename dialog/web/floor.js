@@ -1,6 +1,7 @@
 // The floor plan: rooms, walls, furniture, and where everybody is.
 
 import { byId, calm, capitalised, drawn } from "./dom.js";
+import { text } from "./texts.js";
 
 /** Space round the plan, m. */
 const MARGIN_M = 0.7;
@@ -13,6 +14,8 @@ const LINE_M = 1.24;
 /** How quickly the arrow nears the robot's pose: the time to come 63 % of the way. */
 const SETTLE_MS = 90;
 const HIGHLIGHT_MS = 4000;
+/** What bodies are called. */
+const KINDS = { person: text("person"), robot: text("robot") };
 
 /** Takes the stretches `gaps` out of the stretch from `start` to `end`. */
 function without(start, end, gaps) {
@@ -51,7 +54,7 @@ function gapsIn(along, at, openings) {
 function labelOf({ id, name, rects }) {
   const area = ([w, s, e, n]) => (e - w) * (n - s);
   const [west, south, east, north] = rects.reduce((a, b) => (area(b) > area(a) ? b : a));
-  const width = (text) => text.length * LETTER * LABEL_M;
+  const width = (word) => word.length * LETTER * LABEL_M;
   const words = capitalised(name).split(" ");
   const longest = Math.max(...words.map(width));
   const turned = longest > east - west - 0.5 && north - south > east - west;
@@ -158,7 +161,7 @@ class Floor {
           drawn("circle", { class: "map-halo", r: 0.85 }),
           drawn("path", { class: "map-arrow", d: "M.66 0L-.48 .5L-.24 0L-.48 -.5Z" }));
         body.append(drawn("title", {}));
-        body.lastElementChild.textContent = capitalised(kind);
+        body.lastElementChild.textContent = KINDS[kind] ?? capitalised(kind);
         this.others.append(body);
       }
       body.setAttribute("transform", `translate(${x} ${-y}) rotate(${(-yaw * 180) / Math.PI})`);
@@ -166,9 +169,9 @@ class Floor {
   }
 
   showNotes(notes) {
-    const text = JSON.stringify(notes);
-    if (!this.notes || text === this.notesShown) return;
-    this.notesShown = text;
+    const told = JSON.stringify(notes);
+    if (!this.notes || told === this.notesShown) return;
+    this.notesShown = told;
     this.notes.replaceChildren(...notes.map(({ x, y, read }) =>
       drawn("g", { class: read ? "map-note read" : "map-note", transform: `translate(${x} ${-y})` },
         drawn("rect", { x: -0.55, y: -0.55, width: 1.1, height: 1.1, rx: 0.14 }))));
@@ -213,7 +216,7 @@ export const floor = new Floor(byId("map"));
 export function enlargeMap(enlarged) {
   document.body.classList.toggle("map-large", enlarged);
   byId("map-toggle").setAttribute("aria-expanded", String(enlarged));
-  byId("map-toggle").setAttribute("aria-label", enlarged ? "Shrink the floor plan" : "Enlarge the floor plan");
+  byId("map-toggle").setAttribute("aria-label", enlarged ? text("plan_shrink") : text("plan_enlarge"));
 }
 
 byId("map-toggle").addEventListener("click", () => enlargeMap(!document.body.classList.contains("map-large")));

@@ -3,6 +3,7 @@
 import { byId, calm, capitalised, drawn, element, narrow } from "./dom.js";
 import { floor } from "./floor.js";
 import { endDoing, input } from "./talk.js";
+import { language, text } from "./texts.js";
 
 let goalsShown = "";
 let metBefore = null;
@@ -23,11 +24,12 @@ export function takeState(state) {
 
 function showRobot(robot) {
   const room = robot?.room_name ?? "–";
-  const holding = robot?.holding ?? "nothing";
+  const holding = robot?.holding ?? text("holds_nothing");
   byId("room").textContent = capitalised(room);
   byId("holding").textContent = capitalised(holding);
+  byId("holding").lang = robot?.holding ? "en" : language;
   byId("holding").classList.toggle("none", !robot?.holding);
-  byId("robot-line").textContent = robot ? `${room} · holds ${holding}` : "";
+  byId("robot-line").textContent = robot ? text("robot_line", { room, holding }) : "";
   document.body.classList.toggle("busy", Boolean(robot?.busy));
 }
 
@@ -43,16 +45,16 @@ function showScore(wanted) {
     if (scoreWanted !== wanted) return;
     const part = calm.matches ? 1 : Math.min((now - startedAt) / 350, 1);
     score = Math.round(from + (wanted - from) * part);
-    byId("score").textContent = score.toLocaleString("en");
+    byId("score").textContent = score.toLocaleString(language);
     if (part < 1) requestAnimationFrame(count);
   };
   count(startedAt);
 }
 
 function showGoals(goals) {
-  const text = JSON.stringify(goals);
-  if (text === goalsShown) return;
-  goalsShown = text;
+  const told = JSON.stringify(goals);
+  if (told === goalsShown) return;
+  goalsShown = told;
   const met = goals.filter((goal) => goal.met).length;
   byId("goals-list").replaceChildren(...goals.map((goal, index) => {
     const item = element("li", goal.met ? "met" : goal.hidden ? "hidden-goal" : "");
@@ -60,7 +62,9 @@ function showGoals(goals) {
     const mark = drawn("svg", { viewBox: "0 0 20 20", "aria-hidden": "true" },
       drawn("circle", { cx: 10, cy: 10, r: 8.25 }),
       drawn("path", { d: "M6 10.4l2.8 2.8L14.2 7.4", pathLength: 100 }));
-    item.append(mark, element("span", "", goal.text), element("span", "unseen", goal.met ? " (reached)" : " (open)"));
+    const words = element("span", "", goal.text);
+    words.lang = "en";
+    item.append(mark, words, element("span", "unseen", goal.met ? text("goal_reached_mark") : text("goal_open_mark")));
     return item;
   }));
   byId("goals-count").textContent = goals.length ? `${met}/${goals.length}` : "";
@@ -76,9 +80,9 @@ function showEnding({ ending, goals, score: points }) {
   banner.classList.toggle("failed", ending === "failed");
   if (banner.hidden) return;
   const met = goals.filter((goal) => goal.met).length;
-  byId("banner-title").textContent = ending === "complete" ? "Mission complete" : "Mission failed";
-  const reached = goals.length === 1 ? [] : [`${met} of ${goals.length} goals`];
-  const scored = document.body.classList.contains("no-score") ? [] : [`score ${points.toLocaleString("en")}`];
+  byId("banner-title").textContent = ending === "complete" ? text("mission_complete") : text("mission_failed");
+  const reached = goals.length === 1 ? [] : [text("goals_met", { met, all: goals.length })];
+  const scored = document.body.classList.contains("no-score") ? [] : [text("points", { points: points.toLocaleString(language) })];
   byId("banner-text").textContent = [...reached, ...scored].join(" · ");
   byId("sparks").replaceChildren(...(ending === "complete" && !calm.matches ? sparks() : []));
   endDoing();
@@ -119,6 +123,11 @@ function placeGoals() {
   else byId("view").after(byId("goals"));
 }
 
+// What does not fit is scrolled by the keyboard, too.
+new ResizeObserver(([{ target }]) => {
+  if (target.scrollHeight > target.clientHeight) target.tabIndex = 0;
+  else target.removeAttribute("tabindex");
+}).observe(byId("goals-body"));
 byId("goals-toggle").addEventListener("click", () => expandGoals(byId("goals").classList.contains("collapsed")));
 narrow.addEventListener("change", () => {
   placeGoals();

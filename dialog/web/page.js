@@ -3,6 +3,7 @@
 
 import { toast } from "./dom.js";
 import { send, watchSilence } from "./socket.js";
+import { text } from "./texts.js";
 import { nextView, showRate } from "./view.js";
 
 /** Binary messages that are pieces of what robots say begin so; all others are frames. */
@@ -22,7 +23,7 @@ export function takeViewKey(event) {
 /** Sends a message, or says that it cannot be sent. Whether it was sent. */
 export function sendOrSay(message) {
   const isSent = send(message);
-  if (!isSent) toast("There is no connection at the moment; please try again in a while.");
+  if (!isSent) toast(text("no_connection"));
   return isSent;
 }
 

@@ -3,6 +3,7 @@
 import { byId, element } from "./dom.js";
 import { send } from "./socket.js";
 import { clearChat, endDoing, takeLine } from "./talk.js";
+import { text } from "./texts.js";
 
 /** A slider that is dragged asks for another time so often, ms. */
 const SEEK_EVERY_MS = 120;
@@ -34,11 +35,11 @@ export function buildReplay(replay) {
   showTime();
 }
 
-function markOf({ tick: at, kind, text }) {
+function markOf({ tick: at, kind, text: words }) {
   const mark = element("button", `mark-of-${kind}`);
   mark.type = "button";
   mark.tabIndex = -1;
-  mark.title = `${clock(at)}  ${text}`;
+  mark.title = `${clock(at)}  ${words}`;
   mark.style.left = `${100 * share(at)}%`;
   mark.addEventListener("click", () => seek(at));
   return mark;
@@ -62,7 +63,7 @@ export function takePlayer(state) {
   tick = state.tick;
   if (wanted === tick) wanted = null;
   byId("play").classList.toggle("playing", !paused);
-  byId("play").setAttribute("aria-label", paused ? "Play" : "Pause");
+  byId("play").setAttribute("aria-label", paused ? text("play") : text("pause"));
   byId("pace").value = String(state.player.speed);
   showTime();
 }

@@ -1,6 +1,7 @@
 // The page's one connection to the session: reconnects by itself, and shows how it stands.
 
 import { byId } from "./dom.js";
+import { text } from "./texts.js";
 
 const FIRST_PAUSE_MS = 500;
 const LONGEST_PAUSE_MS = 5000;
@@ -66,12 +67,12 @@ export function showLink(link) {
   const { classList } = document.body;
   classList.remove("connecting", "open", "lost", "quiet");
   classList.add(link);
-  const words = { connecting: "connecting", open: "connected", lost: "not connected", quiet: "no word from the session" };
+  const words = { connecting: text("connecting"), open: text("connected"), lost: text("not_connected"), quiet: text("no_word") };
   byId("link-text").textContent = words[link];
   const notices = {
-    lost: "The session has ended or cannot be reached; trying again…",
-    quiet: "The session has gone quiet; waiting for it…",
-    open: window.cohabit.frames ? "" : "Waiting for the first picture…",
+    lost: text("session_lost"),
+    quiet: text("session_quiet"),
+    open: window.cohabit.frames ? "" : text("waiting_for_picture"),
   };
   showNotice(notices[link] ?? "");
 }
@@ -82,9 +83,9 @@ export function greeted() {
   showLink("open");
 }
 
-function showNotice(text) {
-  byId("notice-text").textContent = text;
-  byId("notice").hidden = !text;
+function showNotice(words) {
+  byId("notice-text").textContent = words;
+  byId("notice").hidden = !words;
 }
 
 export function watchSilence() {

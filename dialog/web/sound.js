@@ -2,6 +2,7 @@
 // whose eyes this page looks through.
 
 import { byId } from "./dom.js";
+import { text } from "./texts.js";
 
 /** How loud, 0 to 1, and whether at all: remembered by the browser. */
 const REMEMBERED = "cohabit-sound";
@@ -249,7 +250,7 @@ function showVolume() {
   byId("volume").value = settings.muted ? 0 : settings.volume;
   byId("volume").style.setProperty("--past", `${100 * (settings.muted ? 0 : settings.volume)}%`);
   byId("mute").setAttribute("aria-pressed", String(silent));
-  byId("mute").title = silent ? "Sounds are off: click to hear them" : "Turn sounds off";
+  byId("mute").title = silent ? text("sounds_are_off") : text("turn_sounds_off");
 }
 
 byId("mute").addEventListener("click", () => {

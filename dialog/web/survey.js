@@ -2,6 +2,7 @@
 
 import { byId, element, toast, tooLong } from "./dom.js";
 import { send } from "./socket.js";
+import { text } from "./texts.js";
 
 /** Scales with more places than these are sliders. */
 const MOST_BUTTONS = 11;
@@ -59,8 +60,8 @@ function asksEarly(questionnaire) {
 function showButton() {
   const [first] = unanswered();
   byId("survey-open").hidden = !first;
-  const text = asksEarly(first) ? "I have finished" : "Questionnaire";
-  if (byId("survey-open").textContent !== text) byId("survey-open").textContent = text;
+  const words = asksEarly(first) ? text("have_finished") : text("questionnaire");
+  if (byId("survey-open").textContent !== words) byId("survey-open").textContent = words;
 }
 
 function show(questionnaire) {
@@ -83,16 +84,16 @@ function fieldOf(item, index) {
   const row = element("li", "survey-item");
   const label = element("p", "survey-ask", item.ask);
   label.id = `survey-ask-${index}`;
-  if (item.optional) label.append(element("span", "survey-optional", " (optional)"));
-  const { control, read } = item.scale ? scaleOf(item.scale, index) : item.choice ? choiceOf(item.choice, index) : wordsOf();
-  control.setAttribute("aria-labelledby", label.id);
+  if (item.optional) label.append(element("span", "survey-optional", text("optional")));
+  const { control, named = control, read } = item.scale ? scaleOf(item.scale, index) : item.choice ? choiceOf(item.choice, index) : wordsOf();
+  named.setAttribute("aria-labelledby", label.id);
   row.append(label, control);
   return { row, optional: item.optional, read };
 }
 
 function scaleOf(scale, index) {
   const places = (scale.most - scale.least) / scale.step + 1;
-  return places > MOST_BUTTONS ? sliderOf(scale) : buttonsOf(scale, places, index);
+  return places > MOST_BUTTONS ? sliderOf(scale, index) : buttonsOf(scale, places, index);
 }
 
 function ends({ left, right, least, most }) {
@@ -104,7 +105,14 @@ function buttonsOf(scale, places, index) {
   control.role = "radiogroup";
   const [left, right] = ends(scale);
   const row = element("div", "survey-places");
-  row.append(...Array.from({ length: places }, (_, at) => radio(index, scale.least + at * scale.step, String(scale.least + at * scale.step))));
+  const name = (value, at) => {
+    const end = at === 0 ? scale.left : at === places - 1 ? scale.right : "";
+    return end ? `${value}, ${end}` : String(value);
+  };
+  row.append(...Array.from({ length: places }, (_, at) => {
+    const value = scale.least + at * scale.step;
+    return radio(index, value, String(value), name(value, at));
+  }));
   control.append(left, row, right);
   return { control, read: () => chosen(control) };
 }
@@ -112,15 +120,16 @@ function buttonsOf(scale, places, index) {
 function choiceOf(choices, index) {
   const control = element("div", "survey-choice");
   control.role = "radiogroup";
-  control.append(...choices.map((text, at) => radio(index, at + 1, text)));
+  control.append(...choices.map((choice, at) => radio(index, at + 1, choice)));
   return { control, read: () => chosen(control) };
 }
 
-function radio(index, value, text) {
+function radio(index, value, shownAs, name) {
   const label = element("label", "survey-radio");
   const input = element("input");
   Object.assign(input, { type: "radio", name: `survey-${index}`, value });
-  label.append(input, element("span", "", text));
+  if (name) input.setAttribute("aria-label", name);
+  label.append(input, element("span", "", shownAs));
   return label;
 }
 
@@ -130,15 +139,27 @@ function chosen(control) {
 }
 
 /** A slider that has no value before it is touched. */
-function sliderOf(scale) {
+function sliderOf(scale, index) {
   const control = element("div", "survey-scale slider untouched");
   const input = element("input");
   Object.assign(input, { type: "range", min: scale.least, max: scale.most, step: scale.step });
-  const touch = () => control.classList.remove("untouched");
+  input.setAttribute("aria-valuetext", text("not_answered"));
+  const touch = () => {
+    control.classList.remove("untouched");
+    input.setAttribute("aria-valuetext", input.value);
+  };
   for (const kind of ["input", "pointerup"]) input.addEventListener(kind, touch);
+  // Who means the place where it stands presses Space or Enter on it.
+  input.addEventListener("keydown", (event) => {
+    if (event.key !== " " && event.key !== "Enter") return;
+    event.preventDefault();
+    touch();
+  });
   const [left, right] = ends(scale);
+  for (const [end, words] of [["left", left], ["right", right]]) words.id = `survey-${end}-${index}`;
+  input.setAttribute("aria-describedby", `${left.id} ${right.id}`);
   control.append(left, input, right);
-  return { control, read: () => (control.classList.contains("untouched") ? null : { value: Number(input.value) }) };
+  return { control, named: input, read: () => (control.classList.contains("untouched") ? null : { value: Number(input.value) }) };
 }
 
 function wordsOf() {
@@ -147,23 +168,24 @@ function wordsOf() {
   return { control, read: () => (control.value.trim() ? { text: control.value.trim() } : null) };
 }
 
-function showProblem(text) {
-  byId("survey-problem").textContent = text;
+function showProblem(problem) {
+  byId("survey-problem").textContent = problem;
 }
 
 byId("survey-form").addEventListener("submit", (event) => {
   event.preventDefault();
   const answers = fields.map(({ read }) => read());
-  const problems = fields.map(({ optional }, index) => (!optional && answers[index] === null ? "It has no answer yet." : tooLong(answers[index]?.text ?? "")));
+  const problems = fields.map(({ optional }, index) => (!optional && answers[index] === null ? text("no_answer") : tooLong(answers[index]?.text ?? "")));
   const wrong = problems.findIndex((problem) => problem);
   fields.forEach(({ row }, index) => row.classList.toggle("missing", index === wrong));
   if (wrong >= 0) {
-    showProblem(`Question ${wrong + 1}: ${problems[wrong]}`);
+    showProblem(text("question_problem", { number: wrong + 1, problem: problems[wrong] }));
     fields[wrong].row.scrollIntoView({ block: "center" });
+    fields[wrong].row.querySelector("input, textarea").focus({ preventScroll: true });
   } else if (send({ type: "answer", questionnaire: shown.name, answers, finished })) {
     showProblem("");
   } else {
-    showProblem("There is no connection at the moment; please try again in a while.");
+    showProblem(text("no_connection"));
   }
 });
 
@@ -175,7 +197,9 @@ export function takeAnswered({ questionnaire, problem }) {
   answered.add(questionnaire);
   if (shown?.name === questionnaire) close();
   showButton();
-  toast("Thank you.");
+  // The button that had the focus may be gone.
+  if (document.activeElement === document.body) byId("chat-input").focus();
+  toast(text("thank_you"));
 }
 
 function putOff() {
@@ -189,7 +213,7 @@ byId("survey-open").addEventListener("click", () => {
   const [first] = unanswered();
   if (!first) return;
   if (asksEarly(first)) {
-    if (!window.confirm("The mission is not over yet. Have you finished, and want to answer the questions now?")) return;
+    if (!window.confirm(text("finished_early"))) return;
     finished = true;
   }
   show(first);

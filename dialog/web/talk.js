@@ -4,6 +4,7 @@ import { byId, capitalised, element, narrow, toast, tooLong } from "./dom.js";
 import { floor } from "./floor.js";
 import { sendOrSay } from "./page.js";
 import { send } from "./socket.js";
+import { language, text as words } from "./texts.js";
 import { sendHeard } from "./voice.js";
 
 /** So near its end, the log follows what is said, px. */
@@ -27,13 +28,13 @@ export function takeYou(you) {
 export function meet(robots) {
   robotNames = new Map(robots.length > 1 ? robots.map(({ body, name }) => [body, capitalised(name)]) : []);
   const named = [...robotNames.values()];
-  byId("called").textContent = named.length ? `Begin with a name to say whom you mean: ${named.join(", ")}` : "";
+  byId("called").textContent = named.length ? words("call_by_name", { names: named.join(", ") }) : "";
 }
 
 /** Who says a line: a name where it is neither this person nor the one robot. */
 function speakerOf({ from, body, visitor: by }) {
-  if (from === "person") return by === undefined || by === visitor ? "" : `Person ${by}`;
-  if (from === "robot" && body !== undefined) return robotNames.get(body) ?? `Body ${body}`;
+  if (from === "person") return by === undefined || by === visitor ? "" : words("person_number", { number: by });
+  if (from === "robot" && body !== undefined) return robotNames.get(body) ?? words("body_number", { number: body });
   return "";
 }
 
@@ -55,7 +56,7 @@ export function takeLine(line) {
   if (!replayed) bubble.classList.add("fresh");
   lastSpeaker = speaker;
   log.append(bubble);
-  if (line.from !== "game") input.placeholder = line.kind === "question" ? "Answer the robot" : "Tell the robot what to do";
+  if (line.from !== "game") input.placeholder = line.kind === "question" ? words("answer_robot") : words("tell_robot");
   if (isMine(line)) {
     remember(line.text);
     byId("chips").hidden = true;
@@ -74,6 +75,7 @@ function isMine(line) {
 /** The answers that a question offers, numbered if they are objects; clicking on one gives it. */
 function answersOf(answers) {
   const list = element("div", "answers");
+  list.lang = "en";
   list.append(...answers.map(({ text, object }, index) => {
     const button = element("button", "");
     button.type = "button";
@@ -104,21 +106,23 @@ function lineOf(line) {
   let { text } = line;
   const bubble = element("div", `line from-${from} kind-${kind}`);
   const name = speakerOf(line);
-  const unnamed = { person: "You: ", robot: "Robot: ", game: "" }[from] ?? "";
+  const unnamed = { person: words("you_said"), robot: words("robot_said"), game: "" }[from] ?? "";
   if (name) bubble.append(element("b", "line-speaker", name), element("span", "unseen", ": "));
   else if (unnamed) bubble.append(element("span", "unseen", unnamed));
   bubble.classList.toggle("from-other", from === "person" && name !== "");
   if (from === "game" && kind === "goal") {
     const added = NEW_GOAL.test(text);
     bubble.classList.toggle("new-goal", added);
-    bubble.append(element("b", "line-label", added ? "New goal" : "✓ Goal reached"));
+    bubble.append(element("b", "line-label", added ? words("new_goal") : words("goal_reached")));
     text = text.replace(NEW_GOAL, "");
   } else if (from === "game" && kind === "note") {
-    bubble.append(element("b", "line-label", "Sticky note"));
+    bubble.append(element("b", "line-label", words("sticky_note")));
   } else if (from === "game" && kind === "ending") {
     bubble.classList.toggle("failed", /fail/i.test(text));
   }
-  bubble.append(element("span", "line-text", text));
+  const said = element("span", "line-text", text);
+  said.lang = "en";
+  bubble.append(said);
   if (answers.length) bubble.append(answersOf(answers));
   return bubble;
 }
@@ -167,6 +171,7 @@ function endStep(body, status) {
   if (!progress) return;
   const name = robotNames.get(body);
   const step = element("li", status === "done" ? "done" : "undone", name ? `${name}: ${progress.text}` : capitalised(progress.text));
+  step.lang = "en";
   const trail = byId("trail");
   trail.prepend(step);
   while (trail.childElementCount > MOST_PAST_STEPS) trail.lastElementChild.remove();
@@ -176,11 +181,17 @@ function showDoing({ body, step, steps, text }) {
   const several = steps > 1;
   byId("doing").classList.remove("idle");
   const name = robotNames.get(body);
-  byId("doing-text").textContent = name ? `${name}: ${text}` : capitalised(text);
-  byId("doing-count").textContent = several ? `${step} of ${steps}` : "";
+  showDoingText(name ? `${name}: ${text}` : capitalised(text), "en");
+  byId("doing-count").textContent = several ? words("step_of", { step, steps }) : "";
   const marks = Array.from({ length: several && steps <= MOST_STEPS ? steps : 0 }, (_, index) =>
     element("i", index + 1 < step ? "past" : index + 1 === step ? "now" : ""));
   byId("doing-steps").replaceChildren(...marks);
+}
+
+/** What robots are about is told by the session, in English; the rest is of the page's language. */
+function showDoingText(shown, lang) {
+  byId("doing-text").textContent = shown;
+  byId("doing-text").lang = lang;
 }
 
 export function takeTurn({ body, turn, ended, status }) {
@@ -195,17 +206,25 @@ export function takeTurn({ body, turn, ended, status }) {
 export function endDoing() {
   doing.clear();
   byId("doing").classList.add("idle");
-  const idle = { running: "Ready", complete: "All done", failed: "The mission is over" };
-  byId("doing-text").textContent = document.body.classList.contains("lost") ? "Waiting for the session" : idle[window.cohabit.state?.ending ?? "running"];
+  const idle = { running: words("ready"), complete: words("all_done"), failed: words("mission_over") };
+  const isLost = document.body.classList.contains("lost");
+  showDoingText(isLost ? words("waiting_for_session") : idle[window.cohabit.state?.ending ?? "running"], language);
   byId("doing-count").textContent = "";
   byId("doing-steps").replaceChildren();
 }
 
 export function takeLatency(latency) {
   window.cohabit.latency = latency;
-  const words = { heard: latency.heard_ms, understood: latency.understood_ms, answering: latency.sounded_ms, moving: latency.moved_ms, seen: latency.shown_ms };
-  const parts = Object.entries(words).filter(([, ms]) => typeof ms === "number");
-  byId("latency").textContent = parts.map(([word, ms]) => `${word} ${inMilliseconds(ms)}`).join(" · ");
+  const { heard_ms: heard, understood_ms: understood, sounded_ms: sounded, moved_ms: moved, shown_ms: seen } = latency;
+  const has = (ms) => typeof ms === "number";
+  const parts = [
+    has(heard) && words("latency_heard", { time: inMilliseconds(heard) }),
+    has(understood) && words("latency_understood", { time: inMilliseconds(understood) }),
+    has(sounded) && words("latency_answering", { time: inMilliseconds(sounded) }),
+    has(moved) && words("latency_moving", { time: inMilliseconds(moved) }),
+    has(seen) && words("latency_seen", { time: inMilliseconds(seen) }),
+  ];
+  byId("latency").textContent = parts.filter(Boolean).join(" · ");
 }
 
 function inMilliseconds(ms) {
@@ -224,7 +243,7 @@ function remember(text) {
 export function say(text) {
   const problem = tooLong(text);
   if (problem) {
-    toast(`That is too long for the robot. ${problem}`);
+    toast(words("too_long_for_robot", { problem }));
     return false;
   }
   if (!sendOrSay({ type: "say", text })) return false;

@@ -4,6 +4,7 @@ import { byId, capitalised, drawn, element } from "./dom.js";
 import { floor } from "./floor.js";
 import { send, showLink } from "./socket.js";
 import { hearThrough } from "./sound.js";
+import { language, text } from "./texts.js";
 
 const HEADER_BYTES = 16;
 const FRAME_KIND = 1;
@@ -83,6 +84,10 @@ const MAIN_VIEWS = {
   "overhead/0": "M3 3.5h14v13H3zM3 9.5h6.5M11.5 3.5v7M11.5 13.5v3",
 };
 
+/** What the session calls the views of its one robot, and what this page does. */
+const NAMES = { "Third person": text("view_behind"), "Robot's eyes": text("view_eyes"), "From above": text("view_above") };
+const nameOf = ({ name }) => NAMES[name] ?? name;
+
 let views = [];
 let looking = null;
 /** The picture on the screen: its camera and tick. */
@@ -96,14 +101,15 @@ export function buildViews(all) {
   byId("views-main").replaceChildren(...views.filter(({ camera }) => camera in MAIN_VIEWS).map((view) => {
     const button = element("button", "view-button");
     button.type = "button";
-    button.title = `${view.name} (Alt+C)`;
+    button.title = `${nameOf(view)} (Alt+C)`;
+    button.lang = view.name in NAMES ? language : "en";
     button.dataset.camera = view.camera;
-    button.append(icon(MAIN_VIEWS[view.camera]), element("span", "view-name", view.name));
+    button.append(icon(MAIN_VIEWS[view.camera]), element("span", "view-name", nameOf(view)));
     button.addEventListener("click", () => lookThrough(view));
     return button;
   }));
   const others = views.filter(({ camera }) => !(camera in MAIN_VIEWS));
-  const title = new Option("More", "", true, true);
+  const title = new Option(text("view_more"), "", true, true);
   title.disabled = true;
   byId("views-more").replaceChildren(title, ...others.map(({ camera, name }) => new Option(capitalised(name), camera)));
   byId("views-more").hidden = !others.length;
@@ -132,7 +138,8 @@ export function lookThrough(view, chosen = true) {
   byId("marks").replaceChildren();
   if (!first) {
     if (chosen) rememberView(view.camera);
-    byId("seen").textContent = view.name;
+    byId("seen").textContent = nameOf(view);
+    byId("seen").lang = view.name in NAMES ? language : "en";
   }
 }
 
@@ -193,6 +200,7 @@ export function takeSeen({ name, x, y, at }) {
   const frame = view.parentElement.getBoundingClientRect();
   const [left, top] = onScreen(x, y);
   label.textContent = capitalised(name);
+  label.lang = "en";
   label.classList.add("placed");
   const half = label.offsetWidth / 2 + 6;
   label.style.left = `${Math.max(half, Math.min(frame.width - half, left))}px`;

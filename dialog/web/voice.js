@@ -3,6 +3,7 @@
 import { byId, toast } from "./dom.js";
 import { send, sendSound } from "./socket.js";
 import { audio } from "./sound.js";
+import { text as words } from "./texts.js";
 
 const REMEMBERED = "cohabit-voice";
 /** Sound goes to the session at this rate. */
@@ -43,7 +44,7 @@ function show() {
   document.body.classList.toggle("listening", isOn);
   mic.setAttribute("aria-pressed", String(isOn));
   byId("open-mic").setAttribute("aria-pressed", String(mode === "open"));
-  byId("hearing-text").dataset.waits = engines ? "Listening…" : "Getting ready to listen…";
+  byId("hearing-text").dataset.waits = engines ? words("listening") : words("getting_ready");
   byId("aloud").setAttribute("aria-pressed", String(Boolean(settings.aloud)));
   byId("recorded").hidden = !isRecorded || !isOn;
   if (!isOn) showLevel(0);
@@ -74,9 +75,9 @@ function note(text) {
 
 const CONSTRAINTS = { audio: { echoCancellation: true, noiseSuppression: true, autoGainControl: true, channelCount: 1 } };
 const PROBLEMS = {
-  NotAllowedError: "The browser does not let this page use the microphone: allow it beside the page's address, or type.",
-  NotFoundError: "There is no microphone at this machine. You can type.",
-  NotReadableError: "Another program has the microphone. You can type.",
+  NotAllowedError: words("microphone_forbidden"),
+  NotFoundError: words("microphone_missing"),
+  NotReadableError: words("microphone_busy"),
 };
 
 /** Takes the microphone, if nobody has; whether it is there. */
@@ -84,7 +85,7 @@ function takeMicrophone() {
   clearTimeout(idleTimer);
   taking ??= openMicrophone().catch((problem) => {
     taking = null;
-    note(PROBLEMS[problem.name] ?? `The microphone cannot be used (${problem.message}). You can type.`);
+    note(PROBLEMS[problem.name] ?? words("microphone_fails", { problem: problem.message }));
     return false;
   });
   return taking;
@@ -92,7 +93,7 @@ function takeMicrophone() {
 
 async function openMicrophone() {
   if (!navigator.mediaDevices?.getUserMedia || !window.AudioWorkletNode) {
-    note("The browser gives a microphone only to pages of this machine, or that come by https. You can type.");
+    note(words("microphone_insecure"));
     taking = null;
     return false;
   }
@@ -117,7 +118,7 @@ export function loseMicrophone() {
   if (!stream) return;
   dropMicrophone();
   stopListening();
-  note("The microphone is gone. You can type, or plug it in and press the button again.");
+  note(words("microphone_gone"));
 }
 
 /** Lets the microphone go, so that the browser no longer shows it in use. */
@@ -206,7 +207,7 @@ export function takeHearing({ state, text, joins }) {
   if (state === "partial") showHearing(unfinished(text), "partial");
   else if (state === "began") showHearing("…", "partial");
   else {
-    clearHearing(state === "nothing" && mode === "tap" ? "I heard nothing." : "");
+    clearHearing(state === "nothing" && mode === "tap" ? words("heard_nothing") : "");
     if (mode === "tap") stopListening();
   }
 }
@@ -228,7 +229,7 @@ function lack(what, remedy) {
 }
 
 function tellLack() {
-  note(lack("This session cannot hear. You can type.", "For voice, run on its machine: cohabit voice install. Then start it anew."));
+  note(lack(words("cannot_hear"), words("cannot_hear_remedy")));
   byId("hearing").title = engines?.lacks.join("\n") ?? "";
 }
 
@@ -437,5 +438,5 @@ byId("open-mic").addEventListener("click", () => {
 byId("aloud").addEventListener("click", () => {
   audio();
   speakAloud(!settings.aloud);
-  if (settings.aloud && engines?.speaks === false && !window.speechSynthesis?.getVoices().length) toast(lack("Neither the session nor this browser has a voice.", "On the session's machine, run: cohabit voice install."));
+  if (settings.aloud && engines?.speaks === false && !window.speechSynthesis?.getVoices().length) toast(lack(words("cannot_speak"), words("cannot_speak_remedy")));
 });

@@ -254,6 +254,8 @@ fn two_people_annotate_an_episode_in_a_browser() {
     wait_for_title(&mut ana, "What would you tell the robot?");
     // The pictures are there, and are played by the keyboard alone.
     ana.wait_until("document.querySelector('#picture').naturalWidth === 64").unwrap();
+    crate::accessibility::check(&mut ana, "an annotator's page");
+    crate::accessibility::check_keyboard(&mut ana, "an annotator's page");
     let at = "document.querySelector('#scrub').value";
     ana.evaluate("document.querySelector('#film').focus()").unwrap();
     press(&mut ana, "ArrowRight");

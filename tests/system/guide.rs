@@ -7,10 +7,10 @@ use std::{
     time::Duration,
 };
 
-use cohabit_tests::run;
+use cohabit_tests::{Browser, run};
 use rustix::process::{Pid, Signal, kill_process};
 
-use crate::COHABIT;
+use crate::{COHABIT, accessibility};
 
 /// The longest that an answer is waited for.
 const WATCHDOG: Duration = Duration::from_secs(60);
@@ -90,6 +90,19 @@ fn each_page_and_all_that_it_refers_to_is_served_and_nothing_to_other_sites() {
     }
     kill_process(Pid::from_raw(i32::try_from(served.child.id()).unwrap()).unwrap(), Signal::INT).unwrap();
     assert!(served.child.wait().unwrap().success());
+}
+
+#[test]
+#[cfg_attr(not(browser), ignore = "needs a browser")]
+fn everybody_can_use_the_guide() {
+    let served = Served::start();
+    let browser = Browser::start().unwrap();
+    for path in ["/", "/study", "/nowhere"] {
+        let mut tab = browser.open(&format!("http://{}{path}", served.address), 1280, 800).unwrap();
+        tab.wait_until("document.readyState === 'complete' && document.querySelector('main h1') !== null").unwrap();
+        accessibility::check(&mut tab, path);
+        accessibility::check_keyboard(&mut tab, path);
+    }
 }
 
 #[test]

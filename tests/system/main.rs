@@ -1,6 +1,7 @@
 //! Whole sessions in real processes.
 #![allow(clippy::unwrap_used, missing_docs)]
 
+mod accessibility;
 mod annotate;
 mod arena;
 mod bad_input;
@@ -18,6 +19,7 @@ mod generate;
 mod guide;
 mod https;
 mod interpreter;
+mod languages;
 mod lock_step;
 mod mcap;
 mod missions;

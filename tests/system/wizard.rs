@@ -306,19 +306,7 @@ fn a_wizard_needs_nothing_but_a_keyboard() {
         .unwrap();
     page.wait("what was typed", |page, _| page.chat.iter().any(|(_, text)| text == "Here I am.")).unwrap();
     tab.wait_until("document.querySelector('#say').value === ''").unwrap();
-    // Everything that can be used has a name.
-    let nameless = "[...document.querySelectorAll('button, input, select, canvas, svg[role]')].filter((one) => one.checkVisibility() && \
-        !(one.getAttribute('aria-label') || one.innerText || one.labels?.length)).map((one) => one.outerHTML)";
-    assert_eq!(tab.evaluate(nameless).unwrap(), json!([]));
-    for (width, height) in [(1280, 800), (390, 844)] {
-        let size = json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": false });
-        tab.call("Emulation.setDeviceMetricsOverride", &size).unwrap();
-        assert_eq!(
-            tab.evaluate(&format!("document.documentElement.scrollWidth <= {width}")).unwrap(),
-            json!(true),
-            "{width}"
-        );
-    }
+    crate::accessibility::check(&mut tab, "the wizard's seat");
     drop(page);
     play.end().unwrap();
 }

@@ -33,6 +33,7 @@ mod spoken;
 mod survey;
 mod talk;
 mod text;
+mod texts;
 mod tls;
 pub mod token;
 mod view;
@@ -75,6 +76,7 @@ pub use questionnaire::{
 pub use screening::{ScreeningConfig, screen};
 pub use site::{Framing, Site, SiteFile, file, file_routes};
 pub use spoken::meaning;
+pub use texts::{PagePart, PageTexts, PageTextsError, TextProblem, languages};
 pub use tls::{Identity, TlsError};
 pub use voice::VoiceConfig;
 pub use wizard::{Holding, MOMENT, NotOfWizard, OnTimeout, Phrase, PlannedError, SeatState, WizardSettings};
@@ -129,6 +131,8 @@ pub struct DialogConfig {
     pub voice: VoiceConfig,
     /// What the page leaves out.
     pub hidden: Vec<Hidden>,
+    /// What people read on the page, beside what the session and the robot say.
+    pub texts: PageTexts,
     /// What robots hold back, and who decides of it.
     pub holding: Holding,
     /// Called once, when a page says that it has shown a frame.
@@ -269,7 +273,9 @@ pub fn serve(
         let host = Host::Live(Live { talk: Arc::clone(&talk), drivers, survey, voice });
         let (token, identity, hosts) = (token.into(), config.identity, config.hosts);
         let framing = Framing { framed_by: config.framed_by, frames_ports: false };
-        let service = Service { hub, host, token, seat, admits_own_user: true, identity, hosts, limits, framing };
+        let texts = Arc::new(config.texts);
+        let admits_own_user = true;
+        let service = Service { hub, host, token, seat, admits_own_user, identity, hosts, limits, framing, texts };
         let ending = Ending(&ended);
         let served = web::serve(listener, service, &over).map_err(DialogError::Serve);
         drop(ending);

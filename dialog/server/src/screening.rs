@@ -124,8 +124,9 @@ pub fn screen(
         let host = Host::Recorded(Arc::clone(&screening));
         let (hub, hosts, limits) = (Arc::clone(&hub), config.hosts.clone(), ServerLimits::default());
         let (token, framing) = (token.into(), Framing::default());
-        let (identity, seat) = (None, None);
-        let service = Service { hub, host, token, seat, admits_own_user: true, identity, hosts, limits, framing };
+        let (identity, seat, texts) = (None, None, Arc::default());
+        let admits_own_user = true;
+        let service = Service { hub, host, token, seat, admits_own_user, identity, hosts, limits, framing, texts };
         let served = web::serve(listener, service, &over).map_err(DialogError::Serve);
         ended.store(true, Ordering::Relaxed);
         workers

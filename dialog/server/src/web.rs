@@ -24,6 +24,7 @@ use crate::{
     site::{Framing, Site, file},
     survey::Survey,
     talk::Talk,
+    texts::{PagePart, PageTexts},
     tls::Identity,
     token, viewer, visit,
     voice::Voice,
@@ -36,7 +37,7 @@ const HTML_TYPE: &str = "text/html; charset=utf-8";
 const STYLE_TYPE: &str = "text/css; charset=utf-8";
 const SCRIPT_TYPE: &str = "text/javascript; charset=utf-8";
 /// The page's other files: path, media type, text.
-const FILES: [(&str, &str, &str); 19] = [
+const FILES: [(&str, &str, &str); 21] = [
     ("/app.js", SCRIPT_TYPE, include_str!("../../web/app.js")),
     ("/dom.js", SCRIPT_TYPE, include_str!("../../web/dom.js")),
     ("/driving.js", SCRIPT_TYPE, include_str!("../../web/driving.js")),
@@ -49,10 +50,12 @@ const FILES: [(&str, &str, &str); 19] = [
     ("/survey.js", SCRIPT_TYPE, include_str!("../../web/survey.js")),
     ("/sound.js", SCRIPT_TYPE, include_str!("../../web/sound.js")),
     ("/talk.js", SCRIPT_TYPE, include_str!("../../web/talk.js")),
+    ("/texts.js", SCRIPT_TYPE, include_str!("../../web/texts.js")),
     ("/view.js", SCRIPT_TYPE, include_str!("../../web/view.js")),
     ("/microphone.js", SCRIPT_TYPE, include_str!("../../web/microphone.js")),
     ("/voice.js", SCRIPT_TYPE, include_str!("../../web/voice.js")),
     ("/style.css", STYLE_TYPE, include_str!("../../web/style.css")),
+    ("/access.css", STYLE_TYPE, include_str!("../../web/access.css")),
     // They are there in every session, so that nobody learns from them whether a wizard takes part.
     ("/wizard.css", STYLE_TYPE, include_str!("../../web/wizard.css")),
     ("/menu.js", SCRIPT_TYPE, include_str!("../../web/menu.js")),
@@ -81,6 +84,8 @@ pub struct Service {
     pub identity: Option<Identity>,
     /// Whose pages may show the page within them.
     pub framing: Framing,
+    /// What participants read on it.
+    pub texts: Arc<PageTexts>,
 }
 
 /// The wizard's seat of a session.
@@ -176,14 +181,15 @@ async fn index(State(service): State<Service>, Extension(ends): Extension<Ends>,
     if let Some(refusal) = refused(&service, &parameters, ends, Role::Participant) {
         return refusal;
     }
-    ([(header::CONTENT_TYPE, HTML_TYPE)], INDEX).into_response()
+    ([(header::CONTENT_TYPE, HTML_TYPE)], service.texts.page(PagePart::Session, INDEX)).into_response()
 }
 
 async fn wizard(State(service): State<Service>, Extension(ends): Extension<Ends>, parameters: Parameters) -> Response {
     if let Some(refusal) = refused(&service, &parameters, ends, Role::Wizard) {
         return refusal;
     }
-    ([(header::CONTENT_TYPE, HTML_TYPE)], SEAT).into_response()
+    // The seat's scripts are those of the session's page; the seat is in English.
+    ([(header::CONTENT_TYPE, HTML_TYPE)], PageTexts::default().page(PagePart::Session, SEAT)).into_response()
 }
 
 async fn frame(State(service): State<Service>, Extension(ends): Extension<Ends>, parameters: Parameters) -> Response {

@@ -18,6 +18,7 @@ mod guide;
 mod minds;
 mod mission_file;
 mod movement;
+mod page_language;
 mod pddl;
 mod pedestrians;
 mod peers;

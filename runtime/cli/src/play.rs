@@ -96,6 +96,7 @@ impl Play {
         self.rendering.check()?;
         self.watching.check()?;
         let questionnaires = self.listening.questionnaires()?;
+        let page_texts = self.listening.language.texts()?;
         let Listening { tls, listen, .. } = &self.listening;
         if let Some(notice) = tls.notice(*listen, tls.identity(*listen)?.as_ref()) {
             println!("{notice}");
@@ -123,7 +124,8 @@ impl Play {
         let timing = self.timing.with_agents(self.minds.len());
         let sim = Role::sim(self.world_arguments(seed), self.rendering, timing);
         let minds = self.minds.iter().map(|agent| Role::agent(agent, seed));
-        let noted = self.noted(&plan, &robots, &questionnaires, before.map(|before| before.from));
+        let mut noted = self.noted(&plan, &robots, &questionnaires, before.map(|before| before.from));
+        noted.settings.push(("page_language".to_owned(), page_texts.language().to_owned()));
         let peers = [Role::record(&log, &noted, self.watching), Role::dialog(&self.listening, &robots)];
         let roles = std::iter::once(sim).chain(peers).chain(minds);
         let played = Supervisor::start(&name, roles, began).and_then(|supervisor| supervisor.run(&stop));

@@ -208,6 +208,10 @@ impl Run {
             println!("{notice}");
         }
         let title = study.title.clone();
+        let page = match &study.page_texts_file {
+            Some(file) => format!("--page-texts={file}"),
+            None => format!("--page-language={}", study.page_texts.language()),
+        };
         let registry = Arc::new(Mutex::new(Registry::new(study, folder).map_err(refused)?));
         let service = StudyService { registry: Arc::clone(&registry), most_sessions };
         let served = Served {
@@ -215,6 +219,7 @@ impl Run {
             hosts: self.hosts.clone(),
             tls: self.tls.clone(),
             ports: self.session_ports.clone().map(Ports::new),
+            page,
         };
         let (doors, site) = (service.doors(), served.site(identity.is_some()));
         let mut sessions = Sessions::new(study_file.parent().unwrap_or(Path::new(".")), served)?;

@@ -92,8 +92,8 @@ impl Role {
         let hidden = listening.hide.iter().map(|part| format!("--hide={part}"));
         let arguments = arguments.chain(hosts).chain(framed_by).chain(hidden);
         let arguments = arguments.chain(listening.voice.arguments()).chain(listening.wizard.arguments());
-        let tls = listening.tls.arguments();
-        Self { name: "dialog", arguments: arguments.map(OsString::from).chain(tls).collect() }
+        let (tls, language) = (listening.tls.arguments(), listening.language.arguments());
+        Self { name: "dialog", arguments: arguments.map(OsString::from).chain(tls).chain(language).collect() }
     }
 
     /// The order in which roles are ended: who speaks first, who writes down last.

@@ -1,6 +1,7 @@
 //! Reads `study.toml`, and says all that is wrong in it.
 
 mod blocks;
+mod language;
 mod minimisation;
 mod probes;
 mod tutorial;
@@ -15,7 +16,7 @@ use std::{
 };
 
 use cohabit_cdf::mission::{Pointer, Problems};
-use cohabit_dialog::Questionnaire;
+use cohabit_dialog::{PageTexts, Questionnaire};
 use serde::Deserialize as _;
 use toml::{
     Spanned,
@@ -63,13 +64,15 @@ pub enum StudyError {
 }
 
 /// Flags of `play` that the study's server itself sets for each session, or that would part its page from the study's.
-const OWN_FLAGS: [&str; 13] = [
+const OWN_FLAGS: [&str; 15] = [
     "branch",
     "framed-by",
     "hide",
     "host",
     "listen",
     "log",
+    "page-language",
+    "page-texts",
     "participant",
     "port",
     "session",
@@ -140,6 +143,8 @@ struct Checking<'a, 'f> {
     keeps_audio: Option<(Range<usize>, Pointer)>,
     /// Whether each setting could be read that says whether a wizard takes part.
     knows_wizards: bool,
+    /// What participants read on their pages.
+    texts: PageTexts,
 }
 
 impl<'a, 'f> Checking<'a, 'f> {
@@ -153,6 +158,7 @@ impl<'a, 'f> Checking<'a, 'f> {
             files: BTreeMap::new(),
             keeps_audio: None,
             knows_wizards: true,
+            texts: PageTexts::default(),
         }
     }
 }
@@ -160,6 +166,9 @@ impl<'a, 'f> Checking<'a, 'f> {
 impl Checking<'_, '_> {
     fn study(&mut self, written: &Written) -> Study {
         let root = Pointer::default();
+        let (page_texts, page_texts_file) = self.page_texts(written).unwrap_or_default();
+        // The usual exercises of tutorials are in the same language.
+        self.texts = page_texts.clone();
         let blocks = self.blocks(&written.block, &root.key("block"));
         let participants = written.participants.as_ref();
         if let Some(none) = participants.filter(|count| *count.get_ref() == 0) {
@@ -173,6 +182,8 @@ impl Checking<'_, '_> {
             probes,
             wizard,
             minimisation,
+            page_texts,
+            page_texts_file,
             information: self.sheet(&written.information, &root.key("information")),
             consent: self.sheet(&written.consent, &root.key("consent")),
             consents: boxes(&written.consent),

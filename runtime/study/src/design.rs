@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use cohabit_dialog::{OnTimeout, Phrase, PlannedError, Questionnaire};
+use cohabit_dialog::{OnTimeout, PageTexts, Phrase, PlannedError, Questionnaire};
 use serde::{Deserialize, Serialize};
 
 use crate::{
@@ -47,6 +47,10 @@ pub struct Study {
     pub probes: Vec<Probe>,
     /// How a wizard takes part in the sessions that have one.
     pub wizard: Wizard,
+    /// What participants read on their pages, beside the study's own texts.
+    pub page_texts: PageTexts,
+    /// Where those lie, if in a file of the study.
+    pub page_texts_file: Option<String>,
     /// What participants read at the end, in Markdown.
     pub debriefing: Option<String>,
     /// What shows that somebody took part.

@@ -291,10 +291,8 @@ impl Registry {
         if taken < self.study.participants as usize {
             return Ok(());
         }
-        Err(StudyFault::NotNow(format!(
-            "This study has all the participants that it needs. Thank you! ({})",
-            self.study.contact
-        )))
+        let Study { page_texts, contact, .. } = &self.study;
+        Err(StudyFault::NotNow(page_texts.study_text("study_full").replace("{contact}", contact)))
     }
 
     /// A place for the next participant, with a link of its own.
@@ -323,9 +321,7 @@ impl Registry {
         let numbered = self.study.consents.iter().enumerate();
         let (agreed, declined): (Vec<_>, Vec<_>) = numbered.partition(|(number, _)| ticked.contains(number));
         if version != self.study.consent.version || declined.iter().any(|(_, one)| one.is_required) {
-            return Err(StudyFault::NotNow(
-                "Please tick all boxes that are not optional, or leave the study.".to_owned(),
-            ));
+            return Err(StudyFault::NotNow(self.study.page_texts.study_text("boxes_open").to_owned()));
         }
         let audio = agreed.iter().any(|(_, one)| one.audio);
         let ticked = agreed.iter().map(|(number, _)| *number).collect();

@@ -71,6 +71,12 @@ const LARGEST_BLOCK: u64 = 1_000;
 pub const STUDY: &[Key] = &[
     required("title", Kind::Text, "what participants read above each page"),
     required("contact", Kind::Text, "whom participants can ask, such as a name and an address"),
+    optional(
+        "language",
+        Kind::Text,
+        "the language of participants' pages: de or es; en, if absent. The robot speaks English all the same",
+    ),
+    optional("page_texts", Kind::Text, "a file (TOML) with the texts of participants' pages in any other language"),
     required("seed", Kind::Whole(LARGEST_SEED), "the seed of the assignment and of all worlds"),
     required(
         "participants",

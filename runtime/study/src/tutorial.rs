@@ -1,8 +1,9 @@
 //! Tutorials: missions in which a participant tries one thing after the other, and goes on once each was tried.
 //!
-//! What is to be tried is data: the list of a tutorial's block, or the one in `tutorial/usual.toml`. Whether something was tried
+//! What is to be tried is data: the list of a tutorial's block, or the usual one, in the language of the study. Whether something was tried
 //! is told by the session, never by the page.
 
+use cohabit_dialog::PageTexts;
 use serde::{Deserialize, Serialize};
 
 /// Something that a tutorial has its participants try.
@@ -41,15 +42,6 @@ pub struct Tried {
     pub exercise: usize,
     /// When, ms since 1970.
     pub at_ms: u64,
-}
-
-/// The exercises of a tutorial that has no list of its own.
-const USUAL: &str = include_str!("tutorial/usual.toml");
-
-/// A file of exercises.
-#[derive(Deserialize)]
-struct Exercises {
-    exercise: Vec<Exercise>,
 }
 
 impl Activity {
@@ -93,10 +85,16 @@ impl Activity {
     }
 }
 
-/// The exercises that any mission allows.
+/// The exercises of a tutorial that has no list of its own: what every mission allows, under all settings.
 #[must_use]
-pub fn usual() -> Vec<Exercise> {
-    toml::from_str(USUAL).map(|all: Exercises| all.exercise).unwrap_or_default()
+pub fn usual(texts: &PageTexts) -> Vec<Exercise> {
+    let all = [
+        (Activity::Say, texts.study_text("exercise_say")),
+        (Activity::Point, texts.study_text("exercise_point")),
+        (Activity::Stop, texts.study_text("exercise_stop")),
+        (Activity::Goal, texts.study_text("exercise_goal")),
+    ];
+    all.into_iter().map(|(what, text)| Exercise { what, text: text.to_owned() }).collect()
 }
 
 /// The exercises, by number, that these activities tick and that were not tried before.
@@ -109,14 +107,18 @@ pub fn ticked(exercises: &[Exercise], tried: &[Tried], activities: &[Activity]) 
 
 #[cfg(test)]
 mod tests {
+    use cohabit_dialog::languages;
+
     use super::*;
 
     #[test]
     fn the_usual_exercises_need_nothing_of_a_study() {
-        let all = usual();
-        let named: Vec<&str> = all.iter().map(|one| one.what.name()).collect();
-        assert_eq!(named, ["say", "point", "stop", "goal"]);
-        assert!(all.iter().all(|one| !one.text.trim().is_empty() && !one.what.needs_avatar()));
+        for language in languages() {
+            let all = usual(&PageTexts::of(language).expect("it ships"));
+            let named: Vec<&str> = all.iter().map(|one| one.what.name()).collect();
+            assert_eq!(named, ["say", "point", "stop", "goal"]);
+            assert!(all.iter().all(|one| !one.text.trim().is_empty() && !one.what.needs_avatar()));
+        }
     }
 
     #[test]

@@ -15,11 +15,12 @@ use axum::{
     response::{IntoResponse, Redirect, Response},
     routing::{get, post},
 };
-use cohabit_dialog::{Framing, Given, HostName, Identity, ServerLimits, Site, file, token};
+use cohabit_dialog::{Framing, Given, HostName, Identity, PagePart, PageTexts, ServerLimits, Site, file, token};
 use serde::Deserialize;
 use serde_json::{Value, json};
 
 use crate::{
+    design::Study,
     folder::Note,
     keeper::lock,
     markdown::escaped,
@@ -31,11 +32,12 @@ use crate::{
 const SCRIPT: &str = "text/javascript; charset=utf-8";
 const HTML: &str = "text/html; charset=utf-8";
 /// The pages' files: path, media type, text.
-const FILES: [(&str, &str, &str); 8] = [
+const FILES: [(&str, &str, &str); 9] = [
     ("/study.js", SCRIPT, include_str!("../web/study.js")),
     ("/forms.js", SCRIPT, include_str!("../web/forms.js")),
     ("/server.js", SCRIPT, include_str!("../web/server.js")),
     ("/dom.js", SCRIPT, include_str!("../web/dom.js")),
+    ("/texts.js", SCRIPT, include_str!("../../../dialog/web/texts.js")),
     ("/experimenter.js", SCRIPT, include_str!("../web/experimenter.js")),
     ("/wizard.js", SCRIPT, include_str!("../web/wizard.js")),
     ("/study.css", "text/css; charset=utf-8", include_str!("../web/study.css")),
@@ -124,21 +126,27 @@ fn router(service: StudyService) -> Router {
         .with_state(service)
 }
 
-fn page(text: &'static str) -> Response {
-    ([(header::CONTENT_TYPE, HTML)], text).into_response()
+/// A page with these texts.
+fn page(html: &str, texts: &PageTexts) -> Response {
+    ([(header::CONTENT_TYPE, HTML)], texts.page(PagePart::Study, html)).into_response()
+}
+
+/// A page of the study's staff: those are in English.
+fn staff_page(html: &str) -> Response {
+    page(html, &PageTexts::default())
 }
 
 /// The page of those whose link is not known, with whom to ask.
-fn stranger(contact: &str) -> Response {
-    (StatusCode::NOT_FOUND, [(header::CONTENT_TYPE, HTML)], strangers_page(contact)).into_response()
+fn stranger(study: &Study) -> Response {
+    (StatusCode::NOT_FOUND, [(header::CONTENT_TYPE, HTML)], strangers_page(study)).into_response()
 }
 
-fn strangers_page(contact: &str) -> String {
-    STRANGER_PAGE.replace("{contact}", &escaped(contact))
+fn strangers_page(Study { page_texts, contact, .. }: &Study) -> String {
+    page_texts.page(PagePart::Study, STRANGER_PAGE).replace("{contact}", &escaped(contact))
 }
 
 async fn nowhere(State(service): State<StudyService>) -> Response {
-    with_study(service, |registry, _| stranger(&registry.study.contact)).await
+    with_study(service, |registry, _| stranger(&registry.study)).await
 }
 
 /// Does something with the study, away from the threads that serve: what is written down takes its time.
@@ -152,13 +160,13 @@ async fn with_study(
 }
 
 /// What did not happen, for the page; what the experimenter must know of it goes to the terminal.
-fn told(fault: &StudyFault) -> Value {
+fn told(fault: &StudyFault, texts: &PageTexts) -> Value {
     match fault {
         StudyFault::Journal(error) => tracing::error!("{error}"),
         StudyFault::Folder(error) => tracing::error!("{error}"),
-        StudyFault::Refused(_) | StudyFault::NotNow(_) => {}
+        StudyFault::Refused(_) | StudyFault::NotNow(_) => return json!(fault.to_string()),
     }
-    json!(fault.to_string())
+    json!(texts.study_text("not_saved"))
 }
 
 /// The parameters of a link, such as a site that recruits people passes them.
@@ -171,7 +179,7 @@ async fn sign_up(
 ) -> Response {
     with_study(service, move |registry, _| {
         if !token::admits(&registry.links.sign_up, Some(&given)) {
-            return stranger(&registry.study.contact);
+            return stranger(&registry.study);
         }
         match registry.sign_up() {
             Ok(token) => {
@@ -196,9 +204,9 @@ async fn participant(
             if let Who::Newcomer(index) = who {
                 registry.tell(index, &parameters);
             }
-            page(STUDY_PAGE)
+            page(STUDY_PAGE, &registry.study.page_texts)
         }
-        None => stranger(&registry.study.contact),
+        None => stranger(&registry.study),
     })
     .await
 }
@@ -238,7 +246,8 @@ async fn event(State(service): State<StudyService>, Path(given): Path<String>, J
         };
         let who = registry.who(&given).unwrap_or(Who::Withdrawn);
         let mut page = seen(registry, who);
-        page["problem"] = problem.as_ref().map_or(Value::Null, told);
+        let texts = &registry.study.page_texts;
+        page["problem"] = problem.as_ref().map_or(Value::Null, |fault| told(fault, texts));
         Json(page).into_response()
     })
     .await
@@ -312,9 +321,9 @@ fn check_draft(answers: &[Option<Given>]) -> Result<(), StudyFault> {
 async fn experimenter(State(service): State<StudyService>, Path(given): Path<String>) -> Response {
     with_study(service, move |registry, _| {
         if token::admits(&registry.links.experimenter, Some(&given)) {
-            page(EXPERIMENTER_PAGE)
+            staff_page(EXPERIMENTER_PAGE)
         } else {
-            stranger(&registry.study.contact)
+            stranger(&registry.study)
         }
     })
     .await
@@ -333,9 +342,9 @@ async fn overview(State(service): State<StudyService>, Path(given): Path<String>
 async fn wizard(State(service): State<StudyService>, Path(given): Path<String>) -> Response {
     with_study(service, move |registry, _| {
         if token::admits(&registry.links.wizard, Some(&given)) {
-            page(WIZARD_PAGE)
+            staff_page(WIZARD_PAGE)
         } else {
-            stranger(&registry.study.contact)
+            stranger(&registry.study)
         }
     })
     .await
@@ -379,7 +388,8 @@ async fn command(
         }
         let problem = registry.obey(command).err();
         let mut page = registry.overview(most);
-        page["problem"] = problem.as_ref().map_or(Value::Null, told);
+        let texts = PageTexts::default();
+        page["problem"] = problem.as_ref().map_or(Value::Null, |fault| told(fault, &texts));
         Json(page).into_response()
     })
     .await
@@ -423,12 +433,18 @@ fn short(text: &str) -> Result<String, StudyFault> {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
 
     #[test]
     fn whose_link_is_not_known_reads_whom_to_ask() {
-        let page = strangers_page("Ada <ada@example.org>");
-        assert!(page.contains("Ada &lt;ada@example.org&gt;") && !page.contains("{contact}"), "{page}");
+        let contact = "Ada <ada@example.org>".to_owned();
+        for (language, title) in [("en", "This link is not known"), ("de", "Dieser Link ist nicht bekannt")] {
+            let page_texts = PageTexts::of(language).unwrap();
+            let page = strangers_page(&Study { contact: contact.clone(), page_texts, ..Study::default() });
+            assert!(page.contains("Ada &lt;ada@example.org&gt;") && !page.contains('{'), "{page}");
+            assert!(page.contains(title) && page.contains(&format!("<html lang=\"{language}\">")), "{page}");
+        }
     }
 }

@@ -21,6 +21,8 @@ pub(crate) type WrittenSettings = BTreeMap<Spanned<String>, Spanned<toml::Value>
 pub(crate) struct Written {
     pub title: String,
     pub contact: String,
+    pub language: Option<Spanned<String>>,
+    pub page_texts: Option<Spanned<String>>,
     pub seed: u64,
     pub participants: Option<Spanned<u32>>,
     pub assignment: Option<Spanned<Assignment>>,

@@ -21,10 +21,3 @@ export function clock(seconds) {
   const whole = Math.max(0, Math.ceil(seconds));
   return `${Math.floor(whole / 60)}:${String(whole % 60).padStart(2, "0")}`;
 }
-
-/** Words for a while, such as 4 minutes. */
-export function whileOf(seconds) {
-  const minutes = Math.round(seconds / 60);
-  if (minutes < 1) return `${Math.round(seconds)} seconds`;
-  return minutes === 1 ? "one minute" : `${minutes} minutes`;
-}

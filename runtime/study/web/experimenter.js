@@ -33,7 +33,10 @@ function showRows() {
   const form = state.participants.map(({ participant, progress, mission }) => [participant, progress, mission]);
   if (JSON.stringify(form) !== built) {
     built = JSON.stringify(form);
+    const focused = byId("rows").contains(document.activeElement) ? document.activeElement.getAttribute("aria-label") : null;
     byId("rows").replaceChildren(...state.participants.map(rowOf));
+    const again = [...byId("rows").querySelectorAll("button")].find((one) => one.getAttribute("aria-label") === focused);
+    if (again) again.focus({ preventScroll: true });
     showAbout();
   }
   state.participants.forEach((one, index) => fill(byId("rows").children[index], one));
@@ -105,10 +108,14 @@ async function copy(from, path) {
   try {
     await navigator.clipboard.writeText(location.origin + path);
     from.textContent = "Copied";
+    byId("copied").textContent = "The link is copied";
   } catch {
     prompt("Copy this link:", location.origin + path);
   }
-  setTimeout(() => { from.textContent = before; }, 1500);
+  setTimeout(() => {
+    from.textContent = before;
+    byId("copied").textContent = "";
+  }, 1500);
 }
 
 function showAbout() {

@@ -1,6 +1,7 @@
 // Questionnaires as forms, one question after the other.
 
 import { element } from "./dom.js";
+import { text as words } from "./texts.js";
 
 /** Scales with more places than these are sliders. */
 const MOST_BUTTONS = 11;
@@ -26,9 +27,9 @@ export function questionnaireForm({ items }, draft, send, keep) {
   const list = element("ol", "items", ...fields.map(({ row }) => row));
   const problem = element("p", "problem");
   problem.role = "alert";
-  const submit = element("button", "chief", "Send and go on");
+  const submit = element("button", "chief", words("send_answers"));
   submit.type = "submit";
-  const hint = element("p", "soft", "What you fill in is kept while you go, also if you reload this page. It counts once you send it.");
+  const hint = element("p", "soft", words("answers_kept"));
   form.append(list, hint, problem, element("div", "actions", submit));
   keepUpWith(form, () => fields.map(({ read }) => read()), keep);
   form.addEventListener("submit", async (event) => {
@@ -37,7 +38,7 @@ export function questionnaireForm({ items }, draft, send, keep) {
     const missing = fields.findIndex(({ optional }, index) => !optional && answers[index] === null);
     fields.forEach(({ group }, index) => group.toggleAttribute("data-missing", index === missing));
     if (missing >= 0) {
-      problem.textContent = `Question ${missing + 1} has no answer yet.`;
+      problem.textContent = words("question_unanswered", { number: missing + 1 });
       fields[missing].group.querySelector("input, textarea").focus();
       return;
     }
@@ -56,14 +57,14 @@ export function probeForm(item, send) {
   const { group, read, optional } = fieldOf(item, 0);
   const problem = element("p", "problem");
   problem.role = "alert";
-  const submit = element("button", "chief", "Send");
+  const submit = element("button", "chief", words("probe_send"));
   submit.type = "submit";
-  form.append(element("p", "soft", "A question in between. The mission goes on meanwhile."), group, problem, element("div", "actions", submit));
+  form.append(element("p", "soft", words("probe_about")), group, problem, element("div", "actions", submit));
   form.addEventListener("submit", async (event) => {
     event.preventDefault();
     const answer = read();
     if (answer === null && !optional) {
-      problem.textContent = "Please answer the question.";
+      problem.textContent = words("probe_unanswered");
       return;
     }
     submit.disabled = true;
@@ -99,7 +100,7 @@ function keepUpWith(form, read, keep) {
 function fieldOf(item, index) {
   const group = element("fieldset", "item");
   const legend = element("legend", "", item.ask);
-  if (item.optional) legend.append(element("span", "soft", " (optional)"));
+  if (item.optional) legend.append(element("span", "soft", words("optional")));
   const { controls, read, write } = item.scale ? scaleOf(item.scale, index) : item.choice ? choiceOf(item.choice, index) : wordsOf(item.ask);
   group.append(legend, ...controls);
   return { row: element("li", "", group), group, optional: item.optional, read, write };
@@ -152,8 +153,8 @@ function sliderOf(scale) {
   const middle = scale.least + scale.step * Math.round((scale.most - scale.least) / scale.step / 2);
   Object.assign(input, { type: "range", min: scale.least, max: scale.most, step: scale.step, value: middle });
   const about = (text) => input.setAttribute("aria-valuetext", text);
-  input.setAttribute("aria-label", `From ${scale.left || scale.least} to ${scale.right || scale.most}`);
-  about("not answered yet");
+  input.setAttribute("aria-label", words("scale_ends", { left: scale.left || scale.least, right: scale.right || scale.most }));
+  about(words("not_answered"));
   const touch = () => {
     input.classList.remove("untouched");
     about(input.value);

@@ -1,5 +1,7 @@
 // What the page asks the study's server, and tells it. Lost connections are tried again for ever.
 
+import { text } from "./texts.js";
+
 const ASK_EVERY_MS = 1000;
 const GIVE_UP_MS = 8000;
 
@@ -58,7 +60,7 @@ export async function tell(path, body) {
     return state.problem ?? "";
   } catch {
     onLost(true);
-    return "There is no connection at the moment; please try again in a while.";
+    return text("no_connection");
   }
 }
 

@@ -1,8 +1,9 @@
 // A participant's page: shows what the study's server says that it is time for.
 
-import { byId, button, clock, element, whileOf } from "./dom.js";
+import { byId, button, clock, element } from "./dom.js";
 import { probeForm, questionnaireForm } from "./forms.js";
 import { endFollowing, follow, tell, tellQuietly } from "./server.js";
+import { text as words } from "./texts.js";
 
 /** Pages after which nothing follows. */
 const LAST = ["finished", "withdrawn", "excluded", "unknown"];
@@ -38,7 +39,7 @@ function show(answer) {
 function build(state) {
   update = () => {};
   document.body.dataset.page = state.page;
-  document.title = state.title ?? "Study";
+  document.title = state.title ?? words("study");
   const parts = (PAGES[state.page] ?? PAGES.unknown)(state);
   byId("content").replaceChildren(...parts);
   const heading = byId("content").querySelector("h1");
@@ -51,16 +52,23 @@ function build(state) {
 
 function showBar(state) {
   byId("bar-title").textContent = state.title ?? "";
-  byId("bar-step").textContent = state.step ? `Step ${state.step} of ${state.steps}` : "";
+  byId("bar-step").textContent = state.step ? words("step_of", { step: state.step, steps: state.steps }) : "";
   const isTimed = state.page === "mission" && !state.is_over && state.left_s !== null;
-  byId("bar-time").textContent = isTimed ? `${clock(state.left_s)} left` : "";
+  byId("bar-time").textContent = isTimed ? words("time_left", { time: clock(state.left_s) }) : "";
   const mayLeave = Boolean(state.step) || state.page === "finished";
   byId("leave").hidden = !mayLeave;
-  byId("contact").textContent = state.contact ? `Questions about this study? Contact: ${state.contact}` : "";
+  byId("contact").textContent = state.contact ? words("contact", { contact: state.contact }) : "";
   if (state.page !== "mission" || state.is_over) byId("skip-card").close();
 }
 
 const heading = (text) => element("h1", "", text);
+
+/** Words for a while, such as 4 minutes. */
+function whileOf(seconds) {
+  const minutes = Math.round(seconds / 60);
+  if (minutes < 1) return words("while_seconds", { count: Math.round(seconds) });
+  return minutes === 1 ? words("while_minute") : words("while_minutes", { count: minutes });
+}
 
 /** A text that the server made from Markdown; all that was HTML in it is escaped. */
 function sheet(html) {
@@ -87,10 +95,10 @@ function exerciseList(exercises) {
   count.role = "status";
   const states = exercises.map(() => element("span", "unseen", ""));
   const items = exercises.map(({ text }, at) => element("li", "exercise", element("span", "", text), states[at]));
-  const go = going("Go on", () => "goes_on");
+  const go = going(words("go_on"), () => "goes_on");
   const goOn = go.querySelector("button");
-  const shown = element("section", "exercises", element("h2", "", "Try this"), element("ol", "", ...items), count, go);
-  shown.setAttribute("aria-label", "Things to try");
+  const shown = element("section", "exercises", element("h2", "", words("try_this")), element("ol", "", ...items), count, go);
+  shown.setAttribute("aria-label", words("things_to_try"));
   let told = "";
   return {
     shown,
@@ -101,17 +109,17 @@ function exerciseList(exercises) {
       told = key;
       now.forEach(({ is_tried: isTried }, at) => {
         items[at].classList.toggle("tried", isTried);
-        states[at].textContent = isTried ? " (done)" : "";
+        states[at].textContent = isTried ? words("tried_mark") : "";
       });
       const done = now.filter(({ is_tried: isTried }) => isTried).length;
-      count.textContent = done === now.length ? "You have tried all of it. Go on when you like." : `${done} of ${now.length} done`;
+      count.textContent = done === now.length ? words("tried_all") : words("tried_some", { done, all: now.length });
       goOn.disabled = !mayGoOn;
     },
   };
 }
 
 const PAGES = {
-  information: ({ html }) => [heading("About this study"), sheet(html), going("I have read this", () => "read")],
+  information: ({ html }) => [heading(words("information")), sheet(html), going(words("information_read"), () => "read")],
 
   consent({ html, boxes: asked, version }) {
     const form = element("form", "consent");
@@ -119,15 +127,15 @@ const PAGES = {
       const box = element("input");
       box.type = "checkbox";
       box.required = isRequired;
-      const words = element("span", "", text, ...(isRequired ? [] : [element("span", "soft", " (optional)")]));
-      form.append(element("label", "check", box, words));
+      const sentence = element("span", "", text, ...(isRequired ? [] : [element("span", "soft", words("optional"))]));
+      form.append(element("label", "check", box, sentence));
       return box;
     });
-    const agree = element("button", "chief", "I agree to take part");
+    const agree = element("button", "chief", words("consent_agree"));
     agree.type = "submit";
     const problem = element("p", "problem");
     problem.role = "alert";
-    form.append(problem, element("div", "actions", button("quiet", "I do not agree", () => send("declined")), agree));
+    form.append(problem, element("div", "actions", button("quiet", words("consent_decline"), () => send("declined")), agree));
     form.addEventListener("submit", async (event) => {
       event.preventDefault();
       agree.disabled = true;
@@ -135,13 +143,13 @@ const PAGES = {
       problem.textContent = await send({ consented: { version, ticked } });
       agree.disabled = false;
     });
-    return [heading("Your consent"), sheet(html), form];
+    return [heading(words("consent")), sheet(html), form];
   },
 
   declined: () => [
-    heading("You do not take part"),
-    element("p", "", "Thank you. Nothing of yours was recorded. You can close this page."),
-    element("div", "actions", button("quiet", "Back to the consent form", () => send("read"))),
+    heading(words("declined")),
+    element("p", "", words("declined_about")),
+    element("div", "actions", button("quiet", words("declined_back"), () => send("read"))),
   ],
 
   questionnaire({ questionnaire, draft }) {
@@ -154,40 +162,44 @@ const PAGES = {
 
   ready({ html, is_tutorial: isTutorial, limit_s, skip_after_s }) {
     const lines = [];
-    if (isTutorial) lines.push("There is a list of things to try. You go on when you have tried them all.");
-    if (limit_s !== null) lines.push(`It lasts ${whileOf(limit_s)} at most.`);
-    const may = isTutorial ? "go on without having tried all of it" : "skip it";
-    if (skip_after_s !== null) lines.push(`After ${whileOf(skip_after_s)} you may ${may}, if you like.`);
-    return [heading(isTutorial ? "Learn how it works" : "Your next mission"), sheet(html), element("p", "", lines.join(" ")), going("Begin", () => "goes_on")];
+    if (isTutorial) lines.push(words("ready_tutorial"));
+    if (limit_s !== null) lines.push(words("ready_limit", { while: whileOf(limit_s) }));
+    if (skip_after_s !== null) {
+      const values = { while: whileOf(skip_after_s) };
+      lines.push(isTutorial ? words("ready_tutorial_skip", values) : words("ready_skip", values));
+    }
+    const title = heading(isTutorial ? words("tutorial_next") : words("mission_next"));
+    const robot = element("p", "robot-language", words("robot_language"));
+    return [title, sheet(html), robot, element("p", "", lines.join(" ")), going(words("begin"), () => "goes_on")];
   },
 
   waiting() {
     const place = element("p", "", "");
     place.role = "status";
     update = ({ ahead }) => {
-      const text = ahead ? `${ahead} ${ahead === 1 ? "person is" : "people are"} before you.` : "You are next.";
+      const text = ahead ? (ahead === 1 ? words("waiting_one") : words("waiting_several", { count: ahead })) : words("waiting_next");
       if (place.textContent !== text) place.textContent = text;
     };
-    return [heading("Please wait"), element("p", "", "All robots are busy at the moment. Your mission begins by itself."), place];
+    return [heading(words("waiting")), element("p", "", words("waiting_about")), place];
   },
 
   starting() {
-    const text = element("p", "", "The robot is getting ready. This takes a few seconds.");
+    const text = element("p", "", words("starting_about"));
     text.role = "status";
-    return [heading("One moment, please"), text];
+    return [heading(words("starting")), text];
   },
 
   mission({ session, exercises }) {
     const frame = element("iframe", "session");
-    frame.title = "The robot, and what you tell it";
+    frame.title = words("session");
     frame.allow = session.has_microphone ? "microphone; autoplay" : "autoplay";
     frame.src = `${location.protocol}//${location.hostname}:${session.port}/?token=${session.token}`;
-    const over = element("p", "over", "This mission is over. The study goes on in a moment.");
+    const over = element("p", "over", words("mission_over"));
     over.role = "status";
     over.hidden = true;
-    const skip = button("quiet", "Skip this mission", () => byId("skip-card").showModal());
+    const skip = button("quiet", words("skip"), () => byId("skip-card").showModal());
     skip.id = "skip";
-    const offer = element("div", "offer", element("p", "", "If you are stuck, you may go on without finishing this mission."), skip);
+    const offer = element("div", "offer", element("p", "", words("skip_offer")), skip);
     const probes = element("div", "probes");
     probes.role = "status";
     let asked = null;
@@ -203,27 +215,27 @@ const PAGES = {
       probes.replaceChildren(...(number === null ? [] : [probeForm(probe.item, answer)]));
     };
     const beside = list ? element("div", "beside", frame, list.shown) : frame;
-    return [element("h1", "unseen", list ? "Tutorial" : "Mission"), over, offer, beside, probes];
+    return [element("h1", "unseen", list ? words("tutorial") : words("mission")), over, offer, beside, probes];
   },
 
   break({ html }) {
     const left = element("p", "soft", "");
     update = ({ left_s }) => {
-      left.textContent = left_s === null ? "" : `The study goes on by itself in ${clock(left_s)}.`;
+      left.textContent = left_s === null ? "" : words("break_left", { time: clock(left_s) });
     };
-    return [heading("A break"), sheet(html), left, going("Go on now", () => "goes_on")];
+    return [heading(words("break")), sheet(html), left, going(words("go_on_now"), () => "goes_on")];
   },
 
   finished({ html, completion }) {
-    const parts = [heading("Thank you")];
+    const parts = [heading(words("finished"))];
     if (html) parts.push(sheet(html));
-    else parts.push(element("p", "", "You have done all of it. You may close this page."));
+    else parts.push(element("p", "", words("finished_about")));
     if (completion?.code) {
       const code = element("output", "code", completion.code);
-      parts.push(element("p", "", "Your completion code: ", code));
+      parts.push(element("p", "", words("completion_code"), code));
     }
     if (completion?.return) {
-      const link = element("a", "chief", "Go back to where you came from");
+      const link = element("a", "chief", words("completion_return"));
       link.href = completion.return;
       parts.push(element("p", "actions", link));
     }
@@ -231,18 +243,18 @@ const PAGES = {
   },
 
   withdrawn: () => [
-    heading("You have left the study"),
-    element("p", "", "Nothing of yours in this study is kept. You can close this page."),
+    heading(words("withdrawn")),
+    element("p", "", words("withdrawn_about")),
   ],
 
   excluded: () => [
-    heading("The study ends here for you"),
-    element("p", "", "Thank you for taking part. You can close this page."),
+    heading(words("excluded")),
+    element("p", "", words("excluded_about")),
   ],
 
   unknown: () => [
-    heading("This link is not known any more"),
-    element("p", "", "Please open the link that you were given once more."),
+    heading(words("unknown")),
+    element("p", "", words("unknown_about")),
   ],
 };
 

@@ -6,6 +6,7 @@ use cohabit_tests::{Browser, Tab};
 use serde_json::{Value, json};
 
 use super::{STUDY, Server, study};
+use crate::accessibility;
 
 /// Clicks the chief button of the page, once it is there.
 fn go_on(tab: &mut Tab, text: &str) {
@@ -52,8 +53,12 @@ fn a_person_takes_part_in_a_browser() {
     let server = Server::start(&scratch, "0");
     let browser = Browser::start().unwrap();
     let mut tab = browser.open(&format!("http://{}{}", server.host, server.sign_up), 390, 844).unwrap();
+    tab.wait_until("document.querySelector('#content button.chief') !== null").unwrap();
+    accessibility::check(&mut tab, "the information of a study");
     go_on(&mut tab, "I have read this");
     tab.wait_until("document.querySelectorAll('.check input').length === 3").unwrap();
+    accessibility::check(&mut tab, "the consent form");
+    accessibility::check_keyboard(&mut tab, "the consent form");
     tab.wait_until("document.querySelectorAll('.check input:required').length === 2").unwrap();
     tab.evaluate("document.querySelectorAll('.check input:required').forEach((box) => box.click())").unwrap();
     go_on(&mut tab, "I agree to take part");
@@ -71,6 +76,7 @@ fn a_person_takes_part_in_a_browser() {
     look_at_session(&browser, &tab.evaluate("document.querySelector('iframe.session').src").unwrap());
     // A question in between is asked beside the mission, until it is answered.
     tab.wait_until("document.querySelector('.probe') !== null").unwrap();
+    accessibility::check(&mut tab, "a mission with a question in between");
     tab.evaluate("document.querySelector('.probe .chief').click()").unwrap();
     tab.wait_until("document.querySelector('.probe .problem').textContent === 'Please answer the question.'").unwrap();
     tab.evaluate("document.querySelectorAll('.probe input')[2].click()").unwrap();
@@ -84,6 +90,7 @@ fn a_person_takes_part_in_a_browser() {
     tab.wait_until("document.querySelector('#skip-card').open").unwrap();
     tab.evaluate("document.querySelector('#skip-now').click()").unwrap();
     tab.wait_until("document.querySelectorAll('.item').length === 2").unwrap();
+    accessibility::check(&mut tab, "a questionnaire of a study");
     go_on(&mut tab, "Send and go on");
     tab.wait_until("document.querySelector('.problem').textContent === 'Question 1 has no answer yet.'").unwrap();
     assert_eq!(tab.evaluate("document.activeElement.type").unwrap(), json!("radio"));
@@ -100,6 +107,8 @@ fn a_person_takes_part_in_a_browser() {
 
     let mut lab = browser.open(&format!("http://{}{}", server.host, server.experimenter), 1280, 800).unwrap();
     lab.wait_until("document.querySelector('#rows tr td')?.textContent === 'ready'").unwrap();
+    accessibility::check(&mut lab, "the experimenter's page");
+    accessibility::check_keyboard(&mut lab, "the experimenter's page");
     let type_note = "document.querySelector('#note-text').focus()";
     lab.evaluate(type_note).unwrap();
     lab.type_and_enter("took her time").unwrap();
@@ -108,6 +117,7 @@ fn a_person_takes_part_in_a_browser() {
     // Who leaves is asked once more, and then nothing is left.
     tab.evaluate("document.querySelector('#leave').click()").unwrap();
     tab.wait_until("document.querySelector('#leave-card').open").unwrap();
+    accessibility::check(&mut tab, "the question whether to leave");
     tab.evaluate("document.querySelector('#leave-card .danger').click()").unwrap();
     tab.wait_until("document.querySelector('h1').textContent === 'You have left the study'").unwrap();
     // The session's page does not take the focus from the study's: the browser says so.
@@ -117,6 +127,37 @@ fn a_person_takes_part_in_a_browser() {
     drop((tab, lab, browser));
     server.end();
     assert!(!fs::exists(scratch.path("data/journals/P01.jsonl")).unwrap());
+}
+
+#[test]
+#[cfg_attr(not(browser), ignore = "needs a browser")]
+fn a_person_takes_part_in_german() {
+    let scratch = study("study-german");
+    let _ = scratch.write("study.toml", &format!("language = \"de\"\n{STUDY}"));
+    let server = Server::start(&scratch, "0");
+    let browser = Browser::start().unwrap();
+    let mut tab = browser.open(&format!("http://{}{}", server.host, server.sign_up), 390, 844).unwrap();
+    go_on(&mut tab, "Ich habe dies gelesen");
+    tab.wait_until("document.querySelectorAll('.check input').length === 3").unwrap();
+    assert_eq!(tab.evaluate("document.documentElement.lang").unwrap(), json!("de"));
+    accessibility::check(&mut tab, "a German consent form");
+    tab.evaluate("document.querySelectorAll('.check input:required').forEach((box) => box.click())").unwrap();
+    go_on(&mut tab, "Ich willige in die Teilnahme ein");
+    tab.wait_until("document.querySelector('h1').textContent === 'Ihre nächste Aufgabe'").unwrap();
+    let notice = "document.querySelector('.robot-language').textContent.includes('nur Englisch')";
+    assert_eq!(tab.evaluate(notice).unwrap(), json!(true));
+    accessibility::check(&mut tab, "a German page before a mission");
+    go_on(&mut tab, "Beginnen");
+    // The page of the session is in the same language.
+    tab.wait_until("document.querySelector('iframe.session') !== null").unwrap();
+    let address = tab.evaluate("document.querySelector('iframe.session').src").unwrap();
+    let mut session = browser.open(address.as_str().unwrap(), 1280, 800).unwrap();
+    session.wait_until("document.querySelector('#link-text')?.textContent === 'verbunden'").unwrap();
+    // The experimenter's page is not.
+    let mut lab = browser.open(&format!("http://{}{}", server.host, server.experimenter), 1280, 800).unwrap();
+    lab.wait_until("document.documentElement.lang === 'en' && document.querySelector('#rows tr') !== null").unwrap();
+    drop((tab, session, lab, browser));
+    server.end();
 }
 
 #[test]

@@ -68,6 +68,7 @@ impl Served {
             limits,
             identity: None,
             framing: Framing::default(),
+            texts: Arc::default(),
         };
         let over = Arc::new(AtomicBool::new(false));
         let is_over = Arc::clone(&over);

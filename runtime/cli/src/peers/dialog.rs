@@ -63,6 +63,7 @@ impl Dialog {
             questionnaires: listening.questionnaires()?,
             voice: listening.voice.config(seed),
             hidden: listening.hide.clone(),
+            texts: listening.language.texts()?,
             holding: listening.wizard.holding(),
             on_first_frame: Box::new(|| tell_supervisor("shown")),
         })

@@ -5,7 +5,7 @@ use std::net::IpAddr;
 use cohabit_dialog::{Asking, Consulting, Drivable, Effort, Hidden, HostName, Knows, Questionnaire};
 
 use super::body_name::BodyName;
-use crate::{failure::bad_input, tls::Tls, voice::VoiceOptions, wizard::WizardOptions};
+use crate::{failure::bad_input, page_language::PageLanguage, tls::Tls, voice::VoiceOptions, wizard::WizardOptions};
 
 /// Where the page is served.
 #[derive(clap::Args, Clone)]
@@ -28,6 +28,8 @@ pub struct Listening {
     /// What the page leaves out: `figures` for developers, the `microphone`, or the `score`; as often as needed
     #[arg(long, value_name = "PART")]
     pub hide: Vec<Hidden>,
+    #[command(flatten)]
+    pub language: PageLanguage,
     /// Whom people may drive from the page: the avatars of `people`, `all` bodies, which robots' minds then hand over for
     /// so long, or `none`
     #[arg(long, default_value_t)]

@@ -44,6 +44,8 @@ pub struct Served {
     pub tls: Tls,
     /// The ports of sessions; any, if absent.
     pub ports: Option<Ports>,
+    /// The argument of `play` by which pages of sessions are in the language of the study's.
+    pub page: String,
 }
 
 /// Starts sessions.
@@ -69,6 +71,7 @@ impl Sessions {
             .args(["--listen", &listening.ip().to_string()])
             .args(["--framed-by", &listening.port().to_string()])
             .args(tls.arguments())
+            .arg(&self.served.page)
             .args(["--participant", &wanted.participant])
             .arg("--log")
             .arg(&wanted.log)
@@ -366,7 +369,7 @@ mod tests {
         let site = |hosts: &[&str], is_encrypted: bool| {
             let hosts = hosts.iter().map(|host| host.parse().expect("a host")).collect();
             let listening = SocketAddr::from(([127, 0, 0, 1], 8700));
-            Served { listening, hosts, tls: Tls::default(), ports: None }.site(is_encrypted)
+            Served { listening, hosts, tls: Tls::default(), ports: None, page: String::new() }.site(is_encrypted)
         };
         assert_eq!(site(&[], false), "http://127.0.0.1:8700");
         assert_eq!(site(&["study.example.org", "lab"], true), "https://study.example.org:8700");

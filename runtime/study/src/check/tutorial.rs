@@ -16,7 +16,7 @@ use crate::{
 impl Checking<'_, '_> {
     /// Those of a tutorial: its own, or the usual ones.
     pub(super) fn exercises(&mut self, block: &WrittenBlock, at: &Pointer) -> Vec<Exercise> {
-        let Some(written) = &block.exercise else { return usual() };
+        let Some(written) = &block.exercise else { return usual(&self.texts) };
         let mut found: Vec<Exercise> = Vec::new();
         for (index, exercise) in written.iter().enumerate() {
             let Some((exercise, span)) = exercise_of(exercise.get_ref()) else { continue };
