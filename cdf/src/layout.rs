@@ -89,7 +89,7 @@ impl RoomId {
     /// What people call it in this world: its name, or the one that a world pack gives it.
     #[must_use]
     pub fn name_in(self, catalog: &Catalog) -> &str {
-        catalog.room_names(self.id()).map_or(self.name(), |names| &names.name)
+        catalog.room_names(self.id()).map_or(self.name(), |names| names.name.as_str())
     }
 
     /// The room at this index of [`Self::ALL`].

@@ -29,12 +29,13 @@ fn the_template_is_a_world_without_faults() {
     assert_eq!(catalog.packs()[0].name, "my-lab");
     assert!(catalog.find("Wrench_01").is_some() && catalog.table().is_device("Degreaser_01"));
     let plan = Layout::find("Workshop", catalog).unwrap();
-    assert_eq!(plan.faults(catalog), []);
+    let faults = plan.faults(catalog);
+    assert!(faults.is_empty(), "{faults:?}");
     assert_eq!(RoomId::SmallOffice.name_in(catalog), "workshop");
     assert_eq!(RoomId::Hallway.name_in(catalog), "hallway");
     for (name, text) in world.packs()[0].missions() {
         let checked = read_mission(name, text, catalog).unwrap();
-        assert_eq!(checked.warnings, []);
+        assert!(checked.warnings.is_empty(), "{:?}", checked.warnings);
         assert_eq!(checked.mission.layout, "Workshop");
     }
     assert!(world.missions().any(|(name, _)| name == "clean_wrench.json"));
@@ -78,7 +79,7 @@ fn what_is_wrong_is_named_with_its_file_its_place_and_what_would_be_right() {
     let many = format!("[[model]]\nid = \"M\"\npart = [{}]", "{ shape = \"sphere\", radii = [1, 1, 1], repeat = { count = 5000, step = [0, 0, 0] } }");
     let huge = "room = [{ id = \"Hallway\", rects_m = [[0.0, 0.0, 5000.0, 2.0]], floor = { material = \"tile\", color = \"#ffffff\" }, wall = { material = \"plain\", color = \"#eeeeee\" }, circuit = 1 }]";
     let itself = "base = \"Workshop\"\nplacement = [{ instance = \"Desk_01_1\", room = \"SmallOffice\", on = \"Degreaser_01_1\" }, { instance = \"Degreaser_01_1\", room = \"SmallOffice\", on = \"Desk_01_1\" }]";
-    let cases: Vec<(&str, String, &[&str])> = vec![
+    let cases: &[(&str, String, &[&str])] = &[
         ("../world.toml", String::new(), &["first: ", "`../world.toml`", "within the pack"]),
         ("/etc/objects.toml", String::new(), &["within the pack"]),
         ("objects/..\\x.toml", String::new(), &["within the pack"]),
@@ -113,8 +114,8 @@ fn what_is_wrong_is_named_with_its_file_its_place_and_what_would_be_right() {
         ("missions/make_cereal.json", "{}".to_owned(), &["the built-in make_cereal.json", "first/missions/make_cereal.json"]),
     ];
     for (path, text, expected) in cases {
-        let error = world(vec![files("my-lab", &[(path, &text)])]).unwrap_err().to_string();
-        for part in expected {
+        let error = world(vec![files("my-lab", &[(*path, text.as_str())])]).unwrap_err().to_string();
+        for part in *expected {
             assert!(error.contains(part), "{path}: {part:?} is not in {error}");
         }
     }
@@ -123,8 +124,7 @@ fn what_is_wrong_is_named_with_its_file_its_place_and_what_would_be_right() {
 #[test]
 fn two_packs_with_one_id_are_refused_with_both_files() {
     let check = |more: &[PackFile], expected: &[&str]| {
-        let other: Vec<PackFile> = more.iter().cloned().collect();
-        let error = world(vec![files("my-lab", &[]), other]).unwrap_err().to_string();
+        let error = world(vec![files("my-lab", &[]), more.to_vec()]).unwrap_err().to_string();
         for part in expected {
             assert!(error.contains(part), "{part:?} is not in {error}");
         }
