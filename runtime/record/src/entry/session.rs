@@ -137,10 +137,14 @@ impl SessionEntry {
         }
     }
 
-    /// The same with what stands for the catalogue and the floor plan that it is played with.
+    /// The same with what stands for the catalogue and the floor plan that it is played with, and with their world packs.
     #[must_use]
-    pub fn with(self, catalog: &Catalog, layout: &Layout) -> Self {
+    pub fn with(mut self, catalog: &Catalog, layout: &Layout) -> Self {
         let packs = catalog.packs().to_vec();
+        if !packs.is_empty() {
+            let named: Vec<String> = packs.iter().map(ToString::to_string).collect();
+            self.settings.insert("world".to_owned(), named.join("; "));
+        }
         Self { catalog: fingerprint(catalog.classes()), layout: fingerprint(layout), packs, ..self }
     }
 }
