@@ -17,6 +17,7 @@ mod generate;
 mod guide;
 mod minds;
 mod mission_file;
+mod new;
 mod pddl;
 mod peers;
 mod play;
@@ -36,6 +37,7 @@ mod top;
 mod vision;
 mod voice;
 mod wizard;
+mod world;
 
 use std::{ffi::OsString, io::IsTerminal as _, process::ExitCode};
 
@@ -59,6 +61,8 @@ enum Command {
     Play(Box<play::Play>),
     /// Say what is wrong in mission files, and where
     Check(check::Check),
+    /// Write files to begin with: a world pack
+    New(new::New),
     /// Re-simulate a recorded session and compare it tick by tick
     Replay(replay::Replay),
     /// Lay two recorded sessions beside each other in rerun
@@ -113,6 +117,7 @@ impl Command {
                 rustix::process::umask(Mode::RWXG | Mode::RWXO);
             }
             Self::Check(_)
+            | Self::New(_)
             | Self::Replay(_)
             | Self::Compare(_)
             | Self::Export(_)
@@ -158,6 +163,7 @@ fn run(asked: Cohabit) -> anyhow::Result<()> {
     match asked.command {
         Command::Play(play) => play.run(),
         Command::Check(check) => check.run(),
+        Command::New(new) => new.run(),
         Command::Replay(replay) => replay.run(),
         Command::Compare(compare) => compare.run(),
         Command::Export(export) => export.run(),

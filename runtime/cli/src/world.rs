@@ -41,7 +41,7 @@ impl WorldPacks {
     }
 
     /// Whether there are none.
-    pub const fn is_empty(&self) -> bool {
+    pub fn is_empty(&self) -> bool {
         self.world_folders.is_empty()
     }
 

@@ -3,7 +3,10 @@
 use std::path::PathBuf;
 
 use super::Joining;
-use crate::minds::{MindKind, expert};
+use crate::{
+    minds::{MindKind, expert},
+    world::WorldPacks,
+};
 
 /// Runs a mind for one body.
 #[derive(clap::Args)]
@@ -22,16 +25,20 @@ pub struct Agent {
     /// What a scripted one does: a file with an action a line
     #[arg(long, value_name = "FILE", required_if_eq("kind", "scripted"))]
     script: Option<PathBuf>,
+    #[command(flatten)]
+    packs: WorldPacks,
 }
 
 impl Agent {
     /// Runs the agent.
     pub fn run(&self) -> anyhow::Result<()> {
-        let mind = self.kind.mind(self.body, self.seed, self.script.as_deref())?;
+        let world = self.packs.read()?;
+        let catalog = world.catalog();
+        let mind = self.kind.mind(catalog, self.body, self.seed, self.script.as_deref())?;
         let (bus, stop) = self.joining.join()?;
-        let mind = mind.map_or_else(|| expert(self.body, &bus, &stop), |mind| Ok(Some(mind)))?;
+        let mind = mind.map_or_else(|| expert(catalog, self.body, &bus, &stop), |mind| Ok(Some(mind)))?;
         if let Some(mut mind) = mind {
-            cohabit_agent::run(&mut *mind, self.body, &bus, &stop)?;
+            cohabit_agent::run_in(catalog, &mut *mind, self.body, &bus, &stop)?;
         }
         Ok(())
     }
