@@ -28,7 +28,7 @@ pub use template::{NAME_RULE, files as template, is_name};
 use crate::{
     builtin,
     catalog::{Catalog, Layer, PackId, RoomNames},
-    layout::{Layout, RoomId},
+    layout::Layout,
 };
 use ids::Ids;
 
@@ -283,11 +283,6 @@ fn digest(files: &[PackFile]) -> String {
         }
     }
     hasher.finalize().to_hex().to_string()
-}
-
-/// Whether a room has this id.
-fn is_room(id: &str) -> bool {
-    RoomId::ALL.iter().any(|room| room.id() == id)
 }
 
 #[cfg(test)]

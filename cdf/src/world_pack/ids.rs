@@ -7,6 +7,9 @@ use serde::{Deserialize, de::IgnoredAny};
 use super::{PackError, WorldPack, limits};
 use crate::builtin;
 
+/// The end of the ids of mirrored floor plans.
+const MIRRORED: &str = "_mirror";
+
 /// The file of each id, by what has it.
 #[derive(Default)]
 pub(super) struct Ids {
@@ -89,6 +92,10 @@ impl Ids {
             self.note("name of the room", &room.id, &head)?;
         }
         for (file, _) in &pack.layouts {
+            if stem(file).ends_with(MIRRORED) {
+                let reason = format!("`{MIRRORED}` is how mirror images of floor plans end");
+                return Err(PackError::at(file, "", reason, "give the file another name"));
+            }
             self.note("floor plan", stem(file), file)?;
         }
         for (file, _) in &pack.missions {

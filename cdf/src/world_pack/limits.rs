@@ -1,12 +1,12 @@
 //! What no pack may have: paths out of its folder, numbers that are none, sizes that no office has.
 
 use serde::{Deserialize, de::DeserializeOwned};
-use toml::Value;
+use toml::{Table, Value};
 
-use super::{PackError, is_room};
+use super::PackError;
 use crate::{
     catalog::{ObjectClass, RoomNames},
-    layout::Layout,
+    layout::{Layout, RoomId},
     model::Model,
 };
 
@@ -50,7 +50,7 @@ pub(super) fn check_path(root: &str, path: &str) -> Result<(), PackError> {
 
 /// All numbers are numbers, and neither lists nor texts go on for ever.
 pub(super) fn check_numbers(file: &str, text: &str) -> Result<(), PackError> {
-    walk(file, "", &read::<Value>(file, text)?)
+    walk(file, "", &Value::Table(read::<Table>(file, text)?))
 }
 
 fn walk(file: &str, at: &str, value: &Value) -> Result<(), PackError> {
@@ -147,8 +147,8 @@ pub(super) fn check_rooms(file: &str, rooms: &[RoomNames]) -> Result<(), PackErr
         fits && !words.trim().is_empty() && words.len() <= 64
     };
     for (index, room) in rooms.iter().enumerate() {
-        if !is_room(&room.id) {
-            let remedy = format!("take one of {}", crate::layout::RoomId::ALL.map(crate::layout::RoomId::id).join(", "));
+        if !RoomId::ALL.iter().any(|known| known.id() == room.id) {
+            let remedy = format!("take one of {}", RoomId::ALL.map(RoomId::id).join(", "));
             let reason = format!("there is no room `{}`", room.id);
             return Err(PackError::at(file, &format!("room[{index}].id"), reason, &remedy));
         }

@@ -1,7 +1,7 @@
 #![allow(clippy::unwrap_used)]
 
 use super::*;
-use crate::mission::read_mission;
+use crate::{layout::RoomId, mission::read_mission};
 
 fn file(path: &str, text: &str) -> PackFile {
     PackFile { path: path.to_owned(), bytes: text.as_bytes().to_vec() }
@@ -111,6 +111,7 @@ fn what_is_wrong_is_named_with_its_file_its_place_and_what_would_be_right() {
         ("layouts/More.toml", itself.to_owned(), &["stands on itself"]),
         ("layouts/More.toml", huge.to_owned(), &["first/layouts/More.toml: room: ", "at most 100 m"]),
         ("layouts/More.toml", String::new(), &["first/layouts/More.toml: room: there is none"]),
+        ("layouts/Workshop_mirror.toml", "base = \"Workshop\"".to_owned(), &["first/layouts/Workshop_mirror.toml: ", "another name"]),
         ("missions/make_cereal.json", "{}".to_owned(), &["the built-in make_cereal.json", "first/missions/make_cereal.json"]),
     ];
     for (path, text, expected) in cases {
