@@ -223,7 +223,8 @@ impl Answerer<'_> {
     fn whether_in(&self, room: RoomId) -> Understanding {
         let here = self.scene.robot.room;
         let start = if here == room { "Yes" } else { "No" };
-        Understanding::whether(here == room, format!("{start}, I am in the {}.", here.name_in(self.catalog)), Vec::new())
+        let name = here.name_in(self.catalog);
+        Understanding::whether(here == room, format!("{start}, I am in the {name}."), Vec::new())
     }
 
     fn doing(&self) -> Understanding {

@@ -171,7 +171,8 @@ pub(crate) fn apart_from(catalog: &Catalog, scene: &Known, candidates: &[ObjectI
                 Some(bare) => format!("the {color_of} {bare}"),
                 None => name,
             };
-            if is_same(&name, &phrase.text) { format!("{name} here in the {}", object.room.name_in(catalog)) } else { name }
+            let room = object.room.name_in(catalog);
+            if is_same(&name, &phrase.text) { format!("{name} here in the {room}") } else { name }
         })
         .collect()
 }

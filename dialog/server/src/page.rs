@@ -213,7 +213,10 @@ pub fn hello(
     let rooms: Vec<Value> = layout
         .rooms
         .iter()
-        .map(|room| json!({ "id": room.id.id(), "name": room.id.name_in(catalog), "rects": room.rects_m, "floor": room.floor.color }))
+        .map(|room| {
+            let (id, name) = (room.id.id(), room.id.name_in(catalog));
+            json!({ "id": id, "name": name, "rects": room.rects_m, "floor": room.floor.color })
+        })
         .collect();
     let openings: Vec<Value> = layout
         .openings

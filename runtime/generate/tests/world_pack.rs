@@ -24,9 +24,16 @@ fn the_mission_of_the_template_is_certified_by_the_planner() {
 #[test]
 fn missions_are_made_with_the_objects_of_a_pack_on_its_floor_plan() {
     let world = world();
-    let spec = "[pools]\nlayouts = [\"Workshop\"]\n\n[[type]]\nname = \"clean\"\nvars = [{ name = \"a\", class = [\"Wrench_01\"], \
-                state = [\"isDirty=true\"] }]\ngoals = [\"a isDirty=false\"]\n";
-    let spec = Spec::parse("spec.toml", spec, world.catalog()).unwrap();
+    let text = r#"
+[pools]
+layouts = ["Workshop"]
+
+[[type]]
+name = "clean"
+vars = [{ name = "a", class = ["Wrench_01"], state = ["isDirty=true"] }]
+goals = ["a isDirty=false"]
+"#;
+    let spec = Spec::parse("spec.toml", text, world.catalog()).unwrap();
     let mut made = Vec::new();
     let order = Order { count: 1, seed: 1, workers: 1 };
     generate(&spec, world.catalog(), order, &mut |mission| made.push(mission.as_line())).unwrap();
