@@ -1,6 +1,7 @@
 //! The object catalogue: every class of object, what it affords, what people call it and what it looks like.
 
 mod names;
+mod pack;
 pub mod table;
 
 use std::collections::HashMap;
@@ -8,6 +9,8 @@ use std::collections::HashMap;
 use serde::{Deserialize, Serialize};
 
 pub use names::ClassNames;
+pub(crate) use pack::Layer;
+pub use pack::{PackId, RoomNames};
 use table::{ActionTable, TableError};
 
 use crate::{builtin, model::Model};
@@ -154,6 +157,7 @@ pub struct Catalog {
     model_by_class: Vec<usize>,
     names: Vec<ClassNames>,
     table: ActionTable,
+    layer: Layer,
 }
 
 #[derive(Deserialize)]
@@ -180,10 +184,12 @@ pub enum CatalogError {
         source: Box<toml::de::Error>,
     },
     /// Two classes or models share an id.
-    #[error("{file}: `{id}` is defined twice")]
+    #[error("{file}: `{id}` is defined twice: it is in {first} already; give one of them another id")]
     Duplicate {
         /// Which file has the second.
         file: String,
+        /// Which has the first.
+        first: String,
         /// The id.
         id: String,
     },
@@ -220,12 +226,15 @@ impl Catalog {
             model_by_class: Vec::new(),
             names: Vec::new(),
             table: ActionTable::default(),
+            layer: Layer::default(),
         };
-        let mut model_by_id = HashMap::new();
+        let mut model_by_id: HashMap<String, (usize, &str)> = HashMap::new();
+        let mut file_of_class: HashMap<String, &str> = HashMap::new();
         for (file, text) in models {
             for model in read::<ModelFile>(file, text)?.models {
-                if model_by_id.insert(model.id.clone(), catalog.models.len()).is_some() {
-                    return Err(CatalogError::Duplicate { file: (*file).to_owned(), id: model.id });
+                if let Some((_, first)) = model_by_id.insert(model.id.clone(), (catalog.models.len(), *file)) {
+                    let (file, first) = ((*file).to_owned(), first.to_owned());
+                    return Err(CatalogError::Duplicate { file, first, id: model.id });
                 }
                 catalog.models.push(model);
             }
@@ -233,11 +242,13 @@ impl Catalog {
         for (file, text) in objects {
             for class in read::<ObjectFile>(file, text)?.objects {
                 let id = ClassId(u16::try_from(catalog.classes.len()).expect("invariant: fewer than 65536 classes"));
-                if catalog.class_by_id.insert(class.id.clone(), id).is_some() {
-                    return Err(CatalogError::Duplicate { file: (*file).to_owned(), id: class.id });
+                if let Some(first) = file_of_class.insert(class.id.clone(), *file) {
+                    let (file, first) = ((*file).to_owned(), first.to_owned());
+                    return Err(CatalogError::Duplicate { file, first, id: class.id });
                 }
+                catalog.class_by_id.insert(class.id.clone(), id);
                 let model = class.model.clone().unwrap_or_else(|| class.id.clone());
-                let Some(index) = model_by_id.get(&model) else {
+                let Some((index, _)) = model_by_id.get(&model) else {
                     return Err(CatalogError::NoModel { object: class.id, model });
                 };
                 catalog.model_by_class.push(*index);

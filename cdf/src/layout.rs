@@ -86,6 +86,12 @@ impl RoomId {
         Self::ALL.into_iter().find(|room| room.id().eq_ignore_ascii_case(id))
     }
 
+    /// What people call it in this world: its name, or the one that a world pack gives it.
+    #[must_use]
+    pub fn name_in(self, catalog: &Catalog) -> &str {
+        catalog.room_names(self.id()).map_or(self.name(), |names| names.name.as_str())
+    }
+
     /// The room at this index of [`Self::ALL`].
     #[must_use]
     pub fn from_index(index: u32) -> Option<Self> {
@@ -128,6 +134,20 @@ impl Layout {
     #[must_use]
     pub fn builtin_ids() -> Vec<String> {
         file::ids(builtin::LAYOUTS)
+    }
+
+    /// The plan with this id that there is with this catalogue: one of the project's own, or of a world pack.
+    ///
+    /// # Errors
+    /// [`LayoutError`] names the file and what is wrong in it, or the ids there are.
+    pub fn find(id: &str, catalog: &Catalog) -> Result<Self, LayoutError> {
+        Self::parse(id, &files(catalog))
+    }
+
+    /// The ids that [`Self::find`] knows, mirrored ones last.
+    #[must_use]
+    pub fn ids(catalog: &Catalog) -> Vec<String> {
+        file::ids(&files(catalog))
     }
 
     /// The room whose floor has this point, if any.
@@ -189,6 +209,11 @@ impl Layout {
         let (sin, cos) = (libm::sinf(yaw), libm::cosf(yaw));
         [base[0] + cos * x - sin * y, base[1] + sin * x + cos * y, base[2] + z]
     }
+}
+
+/// The project's own plan files, and those of the world packs that a catalogue has.
+fn files(catalog: &Catalog) -> Vec<(&str, &str)> {
+    builtin::LAYOUTS.iter().copied().chain(catalog.plans()).collect()
 }
 
 /// A room: a rectangle of floor, walls around it.

@@ -17,6 +17,7 @@ pub mod model;
 pub mod semantic;
 pub mod state;
 pub mod symbolic;
+pub mod world_pack;
 
 /// The project's own data files, as `(file name, text)`.
 mod builtin {
@@ -26,7 +27,7 @@ mod builtin {
 pub use action::{Action, BodyId, GoToTarget, ObjectId, Status, Verb};
 pub use body::{BodyKind, BodyRequest};
 pub use catalog::{
-    Catalog, CatalogError, ClassId, ClassNames, ObjectClass, Property,
+    Catalog, CatalogError, ClassId, ClassNames, ObjectClass, PackId, Property, RoomNames,
     table::{self, ActionKind, ActionTable},
 };
 pub use goal::{Expression, Goal, GoalState, InstancePattern, Occasion, Predicate, Relation, StateCondition};
@@ -35,3 +36,4 @@ pub use mission::{Mission, ObjectRequest};
 pub use model::Model;
 pub use semantic::SemanticClass;
 pub use state::{Color, Fluid, StateFlag, StateFlags};
+pub use world_pack::{PackError, PackFile, WorldData, WorldPack};

@@ -23,6 +23,8 @@ mod scene;
 pub mod schema;
 mod source;
 
+use std::cell::OnceCell;
+
 use serde::{Deserialize as _, Serialize};
 
 pub use self::{
@@ -152,10 +154,11 @@ pub fn builtin() -> &'static [(&'static str, &'static str)] {
 /// All [`Problems`], warnings among them, if one of them is an error; a single one for what is no JSON, and for what is larger
 /// than a mission may be ([`limits`]).
 pub fn read_mission(file: &str, text: &str, catalog: &Catalog) -> Result<Checked, Problems> {
+    let kept = OnceCell::new();
     // Editors of another system put a byte order mark before the text.
     let text = text.trim_start_matches('\u{feff}');
     if let Some(limits::Exceeded { at, message, remedy }) = limits::exceeded(text) {
-        let mut reader = Reader::new(file, catalog);
+        let mut reader = Reader::new(file, catalog, &kept);
         reader.error(&at, message, Some(remedy));
         if at.is_root() {
             // It is not looked through for a line.
@@ -166,7 +169,7 @@ pub fn read_mission(file: &str, text: &str, catalog: &Catalog) -> Result<Checked
         return Err(Problems(reader.problems));
     }
     let value = serde_json::from_str(text).map_err(|error| syntax(file, text, &error))?;
-    let mut reader = Reader::new(file, catalog);
+    let mut reader = Reader::new(file, catalog, &kept);
     let read = match Loose::<Cdf>::deserialize(&value) {
         Ok(Loose::As(raw)) => reader.mission(&raw).map(|mission| (mission, raw)),
         _ => {

@@ -40,6 +40,7 @@ mod untrusted;
 mod vision;
 mod voice;
 mod wizard;
+mod world;
 
 /// The binary under test.
 const COHABIT: &str = env!("CARGO_BIN_EXE_cohabit");

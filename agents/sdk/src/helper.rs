@@ -104,6 +104,12 @@ impl Helper {
         }
     }
 
+    /// The same in a world with this catalogue.
+    #[must_use]
+    pub fn knowing(self, catalog: &Catalog) -> Self {
+        Self { catalog: catalog.clone(), ..self }
+    }
+
     fn live(&mut self, now: &Now<'_>, deeds: &mut Vec<Deed>) {
         self.tick = now.tick;
         if let Some(sight) = now.sight {

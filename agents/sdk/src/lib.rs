@@ -66,7 +66,7 @@ pub use expert::Expert;
 pub use eyes::{Eyes, Glance, InView, SeenThing, Sight};
 pub use helper::Helper;
 pub use pedestrian::{Crowd, Floor, Paths, Schedule, ScheduleError};
-pub use peer::{PeerError, run, wait_for_mission};
+pub use peer::{PeerError, run, run_in, wait_for_mission};
 pub use plan_follower::PlanFollower;
 pub use random::Random;
 pub use script::{Script, ScriptError};

@@ -55,9 +55,23 @@ pub enum PeerError {
 /// # Errors
 /// [`PeerError`].
 pub fn run(agent: &mut dyn Agent, body: u32, bus: &dyn Transport, stop: &AtomicBool) -> Result<(), PeerError> {
+    run_in(&Arc::new(Catalog::builtin()), agent, body, bus, stop)
+}
+
+/// The same in a world with this catalogue.
+///
+/// # Errors
+/// [`PeerError`].
+pub fn run_in(
+    catalog: &Arc<Catalog>,
+    agent: &mut dyn Agent,
+    body: u32,
+    bus: &dyn Transport,
+    stop: &AtomicBool,
+) -> Result<(), PeerError> {
     let Some(mission) = wait_for_mission(bus, stop)? else { return Ok(()) };
     let Some(world) = World::look_at(bus, stop)? else { return Ok(()) };
-    let mut mind = Mind::join(agent, body, bus, mission.header.lock_step == 1, world)?;
+    let mut mind = Mind::join(catalog, agent, body, bus, mission.header.lock_step == 1, world)?;
     mind.claim()?;
     while !stop.load(Ordering::Relaxed) {
         mind.live()?;
@@ -147,6 +161,7 @@ struct Mind<'a> {
 
 impl<'a> Mind<'a> {
     fn join(
+        catalog: &Arc<Catalog>,
         agent: &'a mut dyn Agent,
         body: u32,
         bus: &dyn Transport,
@@ -155,7 +170,6 @@ impl<'a> Mind<'a> {
     ) -> Result<Self, PeerError> {
         let senses = agent.senses();
         let camera = u8::try_from(body).map(CameraId::Egocentric).map_err(|_| PeerError::NoCamera(body))?;
-        let catalog = || Arc::new(Catalog::builtin());
         // Before the first tick there is no past, and all that was said is new.
         let is_first = lock_step && world.newest.envelope().tick == 0;
         Ok(Self {
@@ -163,7 +177,7 @@ impl<'a> Mind<'a> {
             dialog: Inbox::new(bus, Topic::Dialog)?,
             tells: bus.publisher(Topic::Dialog)?,
             world: (senses.sight || senses.state).then_some(world),
-            eyes: senses.sight.then(|| Eyes::open(bus, camera, catalog())).transpose()?,
+            eyes: senses.sight.then(|| Eyes::open(bus, camera, Arc::clone(catalog))).transpose()?,
             glance: None,
             past: (!is_first).then(Past::default),
             turn: 0,

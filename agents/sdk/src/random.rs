@@ -74,6 +74,12 @@ impl Random {
         }
     }
 
+    /// The same in a world with this catalogue.
+    #[must_use]
+    pub fn knowing(self, catalog: &Arc<Catalog>) -> Self {
+        Self { catalog: Arc::clone(catalog), ..self }
+    }
+
     /// A number below `count`.
     fn below(&mut self, count: u64) -> u64 {
         self.rng.next_u64() % count.max(1)

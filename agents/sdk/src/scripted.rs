@@ -46,6 +46,12 @@ impl Scripted {
         }
     }
 
+    /// The same in a world with this catalogue.
+    #[must_use]
+    pub fn knowing(self, catalog: &Catalog) -> Self {
+        Self { catalog: catalog.clone(), ..self }
+    }
+
     fn live(&mut self, now: &Now<'_>, deeds: &mut Vec<Deed>) {
         self.tick = now.tick;
         while self.commands && !self.stopped && !self.errand.is_under_way() && now.tick >= self.waits_until {

@@ -56,8 +56,10 @@ pub(super) fn ids(files: &[(&str, &str)]) -> Vec<String> {
     plain.chain(mirrored).collect()
 }
 
+/// The id of a plan file, which may be named with its folder.
 fn stem(file: &str) -> &str {
-    file.strip_suffix(".toml").unwrap_or(file)
+    let name = file.rsplit('/').next().unwrap_or(file);
+    name.strip_suffix(".toml").unwrap_or(name)
 }
 
 impl Layout {

@@ -1,6 +1,6 @@
 //! What all parts of the reading share: the places to look names up, the problems found, and loose fields made firm.
 
-use std::collections::BTreeSet;
+use std::{cell::OnceCell, collections::BTreeSet};
 
 use serde_json::Value;
 
@@ -18,7 +18,9 @@ pub(super) struct Reader<'a> {
     /// The objects there are.
     pub catalog: &'a Catalog,
     /// The mission's layout, once it is known.
-    pub layout: Option<&'static Layout>,
+    pub layout: Option<&'a Layout>,
+    /// Keeps that layout, if it is one of a world pack.
+    pub kept: &'a OnceCell<Layout>,
     /// The instances that the mission lists, in the order of the file.
     pub listed: Vec<String>,
     /// Whether its list of objects is none, so that nothing is known to be missing.
@@ -52,11 +54,12 @@ pub(super) struct GoalPlaces {
 }
 
 impl<'a> Reader<'a> {
-    pub fn new(file: &'a str, catalog: &'a Catalog) -> Self {
+    pub fn new(file: &'a str, catalog: &'a Catalog, kept: &'a OnceCell<Layout>) -> Self {
         Self {
             file,
             catalog,
             layout: None,
+            kept,
             listed: Vec::new(),
             unlisted_all: false,
             misspelt: Vec::new(),

@@ -81,13 +81,32 @@ impl Reader<'_> {
         }
         if let Some(plan) = plans.get(&id) {
             self.layout = Some(plan);
+        } else if self.has_own_plan(&id) {
+            self.load_own_plan(at, &id);
         } else if LAYOUTS.contains(&id.strip_suffix(MIRRORED).unwrap_or(&id)) {
             let remedy = Some(format!("take `{DEFAULT_LAYOUT}`"));
             self.warn(at, format!("there is no floor plan for layout `{id}` yet"), remedy);
         } else {
-            self.unknown(at, "layout", &id, plans.keys().map(String::as_str));
+            let known = Layout::ids(self.catalog);
+            self.unknown(at, "layout", &id, known.iter().map(String::as_str));
         }
         id
+    }
+
+    /// Whether a world pack has this floor plan.
+    fn has_own_plan(&self, id: &str) -> bool {
+        !self.catalog.packs().is_empty() && Layout::ids(self.catalog).iter().any(|known| known == id)
+    }
+
+    /// Takes a floor plan of a world pack for the mission's.
+    fn load_own_plan(&mut self, at: &Pointer, id: &str) {
+        match Layout::find(id, self.catalog) {
+            Ok(plan) => {
+                let kept = self.kept;
+                self.layout = Some(kept.get_or_init(|| plan));
+            }
+            Err(error) => self.error(at, format!("the floor plan `{id}` cannot be read: {error}"), None),
+        }
     }
 
     /// The layouts in which the mission must not be played.
@@ -96,7 +115,9 @@ impl Reader<'_> {
         let mut blacklisted = Vec::with_capacity(entries.len());
         for (index, entry) in entries.iter().enumerate() {
             let id = entry.text();
-            let known = LAYOUTS.contains(&id.strip_suffix(MIRRORED).unwrap_or(&id)) || plans().contains_key(&id);
+            let known = LAYOUTS.contains(&id.strip_suffix(MIRRORED).unwrap_or(&id))
+                || plans().contains_key(&id)
+                || self.has_own_plan(&id);
             if !known {
                 let remedy = did_you_mean(&id, plans().keys().map(String::as_str));
                 self.warn(&at.item(index), format!("unknown layout `{id}` is blacklisted"), remedy);

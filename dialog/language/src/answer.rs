@@ -212,7 +212,7 @@ impl Answerer<'_> {
     }
 
     fn robot(&self) -> Understanding {
-        Understanding::answer(format!("I am in the {}.", self.scene.robot.room.name()))
+        Understanding::answer(format!("I am in the {}.", self.scene.robot.room.name_in(self.catalog)))
     }
 
     /// `is there any thing in the fridge`.
@@ -223,7 +223,8 @@ impl Answerer<'_> {
     fn whether_in(&self, room: RoomId) -> Understanding {
         let here = self.scene.robot.room;
         let start = if here == room { "Yes" } else { "No" };
-        Understanding::whether(here == room, format!("{start}, I am in the {}.", here.name()), Vec::new())
+        let name = here.name_in(self.catalog);
+        Understanding::whether(here == room, format!("{start}, I am in the {name}."), Vec::new())
     }
 
     fn doing(&self) -> Understanding {
@@ -559,7 +560,7 @@ impl Answerer<'_> {
     }
 
     fn way_to(&self, room: RoomId) -> String {
-        let name = room.name();
+        let name = room.name_in(self.catalog);
         if room == self.scene.robot.room {
             return format!("This is the {name}.");
         }
@@ -601,12 +602,12 @@ impl Answerer<'_> {
                 _ => "to my right",
             }
         });
-        format!("{the} {} here in the {}, {side}", describe::is(&the), self.scene.robot.room.name())
+        format!("{the} {} here in the {}, {side}", describe::is(&the), self.scene.robot.room.name_in(self.catalog))
     }
 
     fn room_contents(&self, room: RoomId) -> Understanding {
         let there: Vec<&KnownObject> = self.scene.objects.iter().filter(|object| object.room == room).collect();
-        let place = format!("in the {}", room.name());
+        let place = format!("in the {}", room.name_in(self.catalog));
         if there.is_empty() {
             return Understanding::whether(false, format!("I have seen nothing {place} yet."), Vec::new());
         }

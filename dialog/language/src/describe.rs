@@ -89,7 +89,7 @@ pub(crate) fn location(catalog: &Catalog, scene: &Known, id: ObjectId) -> String
         parts.push(format!("{preposition} {}", short(catalog, scene, parent.id)));
     }
     if object.room != scene.robot.room {
-        parts.push(format!("in the {}", object.room.name()));
+        parts.push(format!("in the {}", object.room.name_in(catalog)));
     }
     parts.join(" ")
 }
@@ -107,7 +107,7 @@ pub(crate) fn place(catalog: &Catalog, scene: &Known, id: ObjectId) -> String {
     if object.room == scene.robot.room {
         location(catalog, scene, id)
     } else {
-        format!("in the {}", object.room.name())
+        format!("in the {}", object.room.name_in(catalog))
     }
 }
 
@@ -171,7 +171,8 @@ pub(crate) fn apart_from(catalog: &Catalog, scene: &Known, candidates: &[ObjectI
                 Some(bare) => format!("the {color_of} {bare}"),
                 None => name,
             };
-            if is_same(&name, &phrase.text) { format!("{name} here in the {}", object.room.name()) } else { name }
+            let room = object.room.name_in(catalog);
+            if is_same(&name, &phrase.text) { format!("{name} here in the {room}") } else { name }
         })
         .collect()
 }

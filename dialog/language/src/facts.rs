@@ -197,7 +197,7 @@ impl Facts<'_> {
             fluid => said.push(format!("full of {}", fluid.name().to_lowercase())),
         }
         let place = describe::location(self.catalog, self.scene, object.id);
-        let place = if place.is_empty() { format!("here in the {}", object.room.name()) } else { place };
+        let place = if place.is_empty() { format!("here in the {}", object.room.name_in(self.catalog)) } else { place };
         if said.is_empty() {
             return format!("the {bare} {} {place}", describe::is(&bare));
         }

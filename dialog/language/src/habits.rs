@@ -11,13 +11,27 @@ const ANYWHERE: f32 = 0.02;
 /// The share of small things that are behind doors, where the plans say nothing.
 const ENCLOSED: f32 = 0.2;
 
-/// What stands in the built-in plans: instance, room, and what it is on or in. Read once, for all languages.
-static PLACES: LazyLock<Vec<(String, RoomId, Option<String>)>> = LazyLock::new(|| {
+/// An instance, its room, and what it is on or in.
+type Placed = (String, RoomId, Option<String>);
+
+/// What stands in the built-in plans. Read once, for all languages.
+static PLACES: LazyLock<Vec<Placed>> =
+    LazyLock::new(|| placed(Layout::builtin_ids().iter().filter_map(|id| Layout::builtin(id).ok())));
+
+/// What stands in the plans of world packs.
+fn places_of_packs(catalog: &Catalog) -> Vec<Placed> {
+    if catalog.packs().is_empty() {
+        return Vec::new();
+    }
+    let (built_in, all) = (Layout::builtin_ids(), Layout::ids(catalog));
+    placed(all.iter().filter(|id| !built_in.contains(id)).filter_map(|id| Layout::find(id, catalog).ok()))
+}
+
+fn placed(layouts: impl Iterator<Item = Layout>) -> Vec<Placed> {
     // Mirrored plans hold the same things in the same rooms.
-    let ids = Layout::builtin_ids().into_iter().filter(|id| !id.ends_with("_mirror"));
-    let placements = ids.filter_map(|id| Layout::builtin(&id).ok()).flat_map(|layout| layout.placements);
+    let placements = layouts.filter(|layout| !layout.id.ends_with("_mirror")).flat_map(|layout| layout.placements);
     placements.map(|placement| (placement.instance, placement.room, placement.on)).collect()
-});
+}
 
 /// Counts of classes by room, and by what encloses them.
 #[derive(Debug)]
@@ -27,10 +41,10 @@ pub(crate) struct Habits {
 }
 
 impl Habits {
-    /// Counts in the built-in plans what the catalogue has.
+    /// Counts in the built-in plans, and in those of world packs, what the catalogue has.
     pub(crate) fn new(catalog: &Catalog) -> Self {
         let mut habits = Self { rooms: BTreeMap::new(), enclosed: BTreeMap::new() };
-        for (instance, room, on) in PLACES.iter() {
+        for (instance, room, on) in PLACES.iter().chain(&places_of_packs(catalog)) {
             let Some(class) = catalog.class_of_instance(instance) else { continue };
             habits.rooms.entry(class).or_default()[*room as usize] += 1.0;
             let place = on.as_deref().and_then(|on| catalog.class_of_instance(on));

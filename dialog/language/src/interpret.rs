@@ -121,9 +121,9 @@ impl Language {
             things: things.into_iter().collect(),
             facts: told.take(MOST_FACTS).collect(),
             goals: scene.goals.iter().filter(|goal| !goal.met).map(|goal| goal.text.clone()).collect(),
-            rooms: RoomId::ALL.iter().map(|room| room.name().to_owned()).collect(),
+            rooms: RoomId::ALL.iter().map(|room| room.name_in(self.catalog()).to_owned()).collect(),
             held: scene.robot.held.map(bare),
-            room: scene.robot.room.name().to_owned(),
+            room: scene.robot.room.name_in(self.catalog()).to_owned(),
         }
     }
 

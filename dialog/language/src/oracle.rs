@@ -50,7 +50,7 @@ impl<'a> Oracle<'a> {
         if let Some(landmark) = self.landmark(object) {
             parts.push(format!("next to {}", describe::short(self.catalog, self.truth, landmark)));
         }
-        parts.push(format!("in the {}.", object.room.name()));
+        parts.push(format!("in the {}.", object.room.name_in(self.catalog)));
         let [x, y, _] = object.position_m;
         let away = |view: &Viewpoint| (view.at_m[0] - x).hypot(view.at_m[1] - y);
         let here = layout.viewpoints.iter().filter(|view| view.room == object.room);
@@ -104,7 +104,7 @@ impl<'a> Oracle<'a> {
             let preposition = describe::inside(self.catalog, parent.class);
             format!(" {preposition} {}", describe::short(self.catalog, self.truth, parent.id))
         });
-        format!("The {colored}{} in the {}.", held.unwrap_or_default(), object.room.name())
+        format!("The {colored}{} in the {}.", held.unwrap_or_default(), object.room.name_in(self.catalog))
     }
 
     /// Something else that is kept by what keeps it, the nearest; nothing, if that is like it.

@@ -473,12 +473,12 @@ impl Planner<'_> {
     }
 
     pub(crate) fn go_to_room(&mut self, room: cohabit_cdf::RoomId) {
-        let says = format!("going to the {}", room.name());
+        let says = format!("going to the {}", room.name_in(self.catalog));
         self.push(Action::GoTo { target: GoToTarget::Room(room) }, says);
     }
 
     fn go_to_viewpoint(&mut self, room: cohabit_cdf::RoomId, number: u8) {
-        let says = format!("going to viewpoint {number} in the {}", room.name());
+        let says = format!("going to viewpoint {number} in the {}", room.name_in(self.catalog));
         self.push(Action::GoTo { target: GoToTarget::Viewpoint(room, number) }, says);
     }
 

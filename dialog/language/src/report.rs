@@ -21,7 +21,7 @@ pub(crate) fn success(catalog: &Catalog, devices: &Devices, scene: &Known, step:
             }
             None => "done".to_owned(),
         },
-        Action::GoTo { target: GoToTarget::Room(room) } => format!("I am in the {}", room.name()),
+        Action::GoTo { target: GoToTarget::Room(room) } => format!("I am in the {}", room.name_in(catalog)),
         Action::GoTo { target: GoToTarget::Point(_) } => match step.says.strip_prefix("bringing you ") {
             Some(what) => format!("here is {what}"),
             None if step.says == "coming to you" => "here I am".to_owned(),

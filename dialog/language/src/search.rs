@@ -305,7 +305,7 @@ impl Conversation<'_> {
             _ if target.is_hasty => "I look around first.".to_owned(),
             _ if is_new => format!("I have not seen {said} yet, so I look for it."),
             Some(leg) if leg.room != before => {
-                format!("I do not see {said} here. I look in the {}.", leg.room.name())
+                format!("I do not see {said} here. I look in the {}.", leg.room.name_in(self.catalog))
             }
             _ => String::new(),
         };

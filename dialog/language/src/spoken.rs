@@ -57,7 +57,7 @@ impl Language {
             let into = if class.has(Property::Pickupable) { &mut names.things } else { &mut names.places };
             into.extend(std::iter::once(&class.name).chain(&class.words).map(|name| name.to_lowercase()));
         }
-        names.rooms = RoomId::ALL.iter().map(|room| room.name().to_lowercase()).collect();
+        names.rooms = RoomId::ALL.iter().map(|room| room.name_in(&self.catalog).to_lowercase()).collect();
         names.words = Arc::clone(&self.lexicon.known);
         names
     }

@@ -18,9 +18,9 @@ pub(crate) fn says(catalog: &Catalog, scene: &Known, action: &Action) -> String 
         Action::Look { pitch_rad } => format!("looking {}", if pitch_rad > 0.0 { "up" } else { "down" }),
         Action::LookAround => "looking around".to_owned(),
         Action::GoTo { target: GoToTarget::Object(object) } => format!("going to {}", the(object)),
-        Action::GoTo { target: GoToTarget::Room(room) } => format!("going to the {}", room.name()),
+        Action::GoTo { target: GoToTarget::Room(room) } => format!("going to the {}", room.name_in(catalog)),
         Action::GoTo { target: GoToTarget::Viewpoint(room, number) } => {
-            format!("going to viewpoint {number} in the {}", room.name())
+            format!("going to viewpoint {number} in the {}", room.name_in(catalog))
         }
         Action::GoTo { target: GoToTarget::Point(_) } => "going there".to_owned(),
         Action::PickUp { object } => format!("picking up {}", the(object)),

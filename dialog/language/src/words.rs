@@ -155,6 +155,7 @@ impl Lexicon {
             ..Self::default()
         };
         lexicon.add_words(&file);
+        lexicon.add_named_rooms(catalog);
         lexicon.add_smalls(&file);
         lexicon.add_verbs();
         lexicon.add_classes(catalog, &file.aliases);
@@ -235,6 +236,14 @@ impl Lexicon {
             let room = RoomId::from_id(room).expect("invariant: the file names rooms");
             words.iter().for_each(|word| self.rooms.insert(word, room));
             self.rooms.insert(room.id(), room);
+        }
+    }
+
+    /// What world packs call rooms.
+    fn add_named_rooms(&mut self, catalog: &Catalog) {
+        for names in catalog.named_rooms() {
+            let Some(room) = RoomId::from_id(&names.id) else { continue };
+            std::iter::once(&names.name).chain(&names.words).for_each(|words| self.rooms.insert(words, room));
         }
     }
 

@@ -246,11 +246,12 @@ impl Conversation<'_> {
     /// `did you go to the hallway`.
     fn whether_been(&self, room: RoomId, context: &Context) -> Understanding {
         let is_here = self.scene.robot.room == room;
-        let (been, name) = (is_here || context.deeds.went_to(room), room.name());
+        let (been, name) = (is_here || context.deeds.went_to(room), room.name_in(self.catalog));
+        let here = self.scene.robot.room.name_in(self.catalog);
         let text = match (is_here, been) {
             (true, _) => format!("Yes, I am in the {name}."),
             (false, true) => format!("Yes, I was in the {name}."),
-            (false, false) => format!("No, not that I remember: I am in the {}.", self.scene.robot.room.name()),
+            (false, false) => format!("No, not that I remember: I am in the {here}."),
         };
         Understanding::whether(been, text, Vec::new())
     }

@@ -213,7 +213,10 @@ pub fn hello(
     let rooms: Vec<Value> = layout
         .rooms
         .iter()
-        .map(|room| json!({ "id": room.id.id(), "name": room.id.name(), "rects": room.rects_m, "floor": room.floor.color }))
+        .map(|room| {
+            let (id, name) = (room.id.id(), room.id.name_in(catalog));
+            json!({ "id": id, "name": name, "rects": room.rects_m, "floor": room.floor.color })
+        })
         .collect();
     let openings: Vec<Value> = layout
         .openings
@@ -285,7 +288,7 @@ fn robot(state: StateView<'_>, catalog: &Catalog) -> Value {
         "y": y,
         "yaw": body.yaw_rad,
         "room": room.map(RoomId::id),
-        "room_name": room.map(RoomId::name),
+        "room_name": room.map(|room| room.name_in(catalog)),
         "holding": holding(body, state, catalog),
         "busy": body.busy == 1,
     })
@@ -322,7 +325,7 @@ pub fn seen(thing: Thing, [x, y]: [f32; 2], state: StateView<'_>, catalog: &Cata
             let body = state.bodies.iter().find(|body| body.body == id.0)?;
             (body_kind(body), Some(body.position_m))
         }
-        Thing::Surface(room) => (room.name(), None),
+        Thing::Surface(room) => (room.name_in(catalog), None),
         Thing::Nothing => return None,
     };
     Some(json!({ "type": "seen", "name": name, "x": x, "y": y, "at": at_m.map(|[x, y, _]| [x, y]) }))

@@ -9,7 +9,7 @@ use std::{
 
 use anyhow::Context as _;
 use cohabit_arena::{Arena, Settings};
-use cohabit_cdf::{BodyRequest, Catalog};
+use cohabit_cdf::{BodyRequest, WorldData};
 use cohabit_render::MeshLibrary;
 
 use crate::{
@@ -46,6 +46,8 @@ pub struct Games<'a> {
     pub bodies: &'a [BodyRequest],
     /// What draws.
     pub rendering: Rendering,
+    /// What worlds are made of.
+    pub world: &'a WorldData,
 }
 
 impl ArenaOptions {
@@ -57,13 +59,14 @@ impl ArenaOptions {
     /// Serves existing clients until the user ends it; prints the address as soon as they can connect.
     pub fn serve(&self, port: u16, games: &Games<'_>) -> anyhow::Result<()> {
         let stop = stop::on_request()?;
-        let mission = games.mission.map(|name| MissionFile::find(Some(name))).transpose()?;
+        let mission = games.mission.map(|name| MissionFile::find_in(Some(name), games.world)).transpose()?;
         if let Some(mission) = &mission {
-            mission.plan(games.seed, games.bodies).map_err(bad_input)?.build().map_err(bad_input)?;
+            let plan = mission.plan(games.world.catalog(), games.seed, games.bodies).map_err(bad_input)?;
+            plan.build().map_err(bad_input)?;
         }
         let listener = self.listener(port)?;
         let logs = sessions::folder(self.logs.as_deref())?;
-        let catalog = Arc::new(Catalog::builtin());
+        let catalog = Arc::clone(games.world.catalog());
         let meshes = Arc::new(MeshLibrary::build(&catalog).context("build the models")?);
         let settings = Settings {
             catalog,

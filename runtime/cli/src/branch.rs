@@ -48,11 +48,11 @@ pub struct Branched {
 }
 
 impl BranchPoint {
-    /// Goes there; fails if the session does not come out as it was recorded.
-    pub fn open(&self) -> anyhow::Result<Branched> {
+    /// Goes there, in a world with this catalogue; fails if the session does not come out as it was recorded.
+    pub fn open(&self, catalog: &Arc<Catalog>) -> anyhow::Result<Branched> {
         let log = Log::open(&self.log).map_err(bad_input)?;
         let (name, tick) = (self.log.display(), self.at.tick);
-        let mut replayer = Replayer::new(&log, Arc::new(Catalog::builtin())).map_err(bad_input)?;
+        let mut replayer = Replayer::new(&log, Arc::clone(catalog)).map_err(bad_input)?;
         let [first, last] = replayer.span();
         if !(first..=last).contains(&tick) {
             let [first, last] = [first, last].map(|tick| SessionTime { tick });

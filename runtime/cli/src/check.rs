@@ -9,7 +9,8 @@ use std::{
 };
 
 use cohabit_cdf::{
-    Catalog, Layout,
+    Catalog, Layout, WorldData,
+    layout::LayoutFault,
     mission::{self, Checked, Pointer, Problem, Severity, Source},
 };
 use cohabit_world::{BuildError, World};
@@ -19,6 +20,7 @@ use crate::{
     failure::bad_input,
     mission_file::MissionFile,
     terminal::{shown, shown_json},
+    world::WorldPacks,
 };
 
 /// Endings of the files that are looked for in folders.
@@ -38,8 +40,11 @@ const SEED: u64 = 0;
 #[derive(clap::Args)]
 pub struct Check {
     /// Mission files (CDF), files of many missions (JSON lines, or an object of records), folders of these, or names of
-    /// built-in missions; all of the built-in ones, if none is named
+    /// built-in missions or those of world packs; if none is named, all that is in the world packs that are given, or else all of
+    /// the built-in missions
     files: Vec<String>,
+    #[command(flatten)]
+    packs: WorldPacks,
     /// Print one JSON document
     #[arg(long)]
     json: bool,
@@ -79,10 +84,14 @@ impl Check {
             writeln!(out, "{:#}", mission::schema::schema(&Catalog::builtin()))?;
             return Ok(out.flush()?);
         }
-        let mut checker = Checker { catalog: Arc::new(Catalog::builtin()), layouts: BTreeMap::new() };
+        let world = self.packs.read()?;
+        let mut checker = Checker { catalog: Arc::clone(world.catalog()), world: &world, layouts: BTreeMap::new() };
+        let of_packs = if self.is_of_packs() { checker.of_packs() } else { Vec::new() };
+        let names = if self.is_of_packs() { Vec::new() } else { self.names()? };
         let mut report = Vec::new();
         let (mut all, mut bad) = (0, 0);
-        for verdict in self.names()?.iter().flat_map(|name| checker.verdicts(name)) {
+        let what = if self.is_of_packs() { "floor plans and missions" } else { "missions" };
+        for verdict in of_packs.into_iter().chain(names.iter().flat_map(|name| checker.verdicts(name))) {
             all += 1;
             bad += usize::from(!verdict.playable);
             if self.json {
@@ -94,10 +103,15 @@ impl Check {
         if self.json {
             writeln!(out, "{}", shown_json(format_args!("{:#}", Value::Array(report))))?;
         } else if all > 1 {
-            writeln!(out, "{} of {all} missions are playable", all - bad)?;
+            writeln!(out, "{} of {all} {what} are playable", all - bad)?;
         }
         out.flush()?;
-        if bad > 0 { Err(bad_input(format!("{bad} of {all} missions are not playable"))) } else { Ok(()) }
+        if bad > 0 { Err(bad_input(format!("{bad} of {all} {what} are not playable"))) } else { Ok(()) }
+    }
+
+    /// Whether world packs are checked, and no files besides.
+    fn is_of_packs(&self) -> bool {
+        self.files.is_empty() && !self.packs.is_empty()
     }
 
     /// The files meant, those of folders in the order of their names.
@@ -139,16 +153,48 @@ fn gather(folder: &Path, deeper: usize, found: &mut Vec<PathBuf>) -> io::Result<
 }
 
 /// What missions are checked against.
-struct Checker {
+struct Checker<'a> {
     catalog: Arc<Catalog>,
+    world: &'a WorldData,
     /// The floor plans that were needed so far.
     layouts: BTreeMap<String, Arc<Layout>>,
 }
 
-impl Checker {
+impl Checker<'_> {
+    /// One for each floor plan and each mission of the world packs.
+    fn of_packs(&mut self) -> Vec<Verdict> {
+        let (world, mut verdicts) = (self.world, Vec::new());
+        for pack in world.packs() {
+            verdicts.extend(pack.plans().map(|id| self.plan(id, pack.plan_file(id).unwrap_or(id))));
+            for (file, text) in pack.missions() {
+                verdicts.extend(mission::sources(file, text).iter().map(|source| self.verdict(source)));
+            }
+        }
+        verdicts
+    }
+
+    /// Whether people can live and robots work in a floor plan.
+    fn plan(&self, id: &str, file: &str) -> Verdict {
+        let layout = match Layout::find(id, &self.catalog) {
+            Ok(layout) => layout,
+            Err(error) => return Verdict::unread(file, &error.to_string()),
+        };
+        let problem = |fault: LayoutFault| Problem {
+            severity: Severity::Error,
+            file: file.to_owned(),
+            position: None,
+            pointer: Pointer::default(),
+            message: fault.to_string(),
+            remedy: Some(remedy(&fault).to_owned()),
+        };
+        let problems: Vec<Problem> = layout.faults(&self.catalog).into_iter().map(problem).collect();
+        Verdict { file: file.to_owned(), id: None, playable: problems.is_empty(), problems }
+    }
+
     /// One for each mission in a file; one for the file if it cannot be read.
     fn verdicts(&mut self, name: &str) -> Vec<Verdict> {
-        match MissionFile::find_up_to(Some(name), LARGEST_FILE) {
+        let known: Vec<(&str, &str)> = self.world.missions().collect();
+        match MissionFile::find_up_to(Some(name), LARGEST_FILE, &known) {
             Ok(file) => {
                 let sources = mission::sources(&file.name, &file.text);
                 if sources.is_empty() {
@@ -195,7 +241,7 @@ impl Checker {
         let layout = match self.layouts.get(&mission.layout) {
             Some(known) => Arc::clone(known),
             None => {
-                let found = Layout::builtin(&mission.layout)
+                let found = Layout::find(&mission.layout, &self.catalog)
                     .map_err(|error| (Pointer::default().key("scene").key("layoutOverride"), error.to_string()))?;
                 let found = Arc::new(found);
                 self.layouts.insert(mission.layout.clone(), Arc::clone(&found));
@@ -204,6 +250,23 @@ impl Checker {
         };
         let built = World::new(Arc::clone(&self.catalog), layout, Arc::new(mission.clone()), SEED);
         built.map(drop).map_err(|error| (place(checked, &error), error.to_string()))
+    }
+}
+
+/// What rids a floor plan of a fault.
+const fn remedy(fault: &LayoutFault) -> &'static str {
+    match fault {
+        LayoutFault::UnknownClass { .. } => "begin the instance with a class, and end it with `_` and a number",
+        LayoutFault::Repeated { .. } => "give one of them another number",
+        LayoutFault::OutsideRoom { .. } => "move it 0.06 m or more away from the middle of the walls",
+        LayoutFault::Overlap { .. } => "move one of them",
+        LayoutFault::OpeningOffWall { .. } => "put it on a straight wall that both rooms share",
+        LayoutFault::BlocksOpening { .. } => "keep 0.9 m before doors and passages free, and windows clear",
+        LayoutFault::Unreachable { .. } => "leave a walkway of 0.8 m that leads from the hallway to it",
+        LayoutFault::Crowded { .. } => "leave half of its places free for missions",
+        LayoutFault::LooseLink { .. } => "name what is placed in the same room",
+        LayoutFault::Viewpoint { .. } => "give each room viewpoints 1 to 8, 0.31 m or more away from walls and furniture",
+        LayoutFault::NotePlaces { .. } => "give the room four places, 0.07 m from the middle of its walls",
     }
 }
 

@@ -1,6 +1,6 @@
 //! `cohabit demonstrate`: data sets of what the expert does.
 
-use std::{path::PathBuf, str::FromStr};
+use std::{path::PathBuf, str::FromStr, sync::Arc};
 
 use cohabit_bus::message::Plane;
 use cohabit_demonstrate::{DemonstrateError, MissionText, Recipe, demonstrate};
@@ -10,6 +10,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use crate::{
     failure::{bad_input, environment},
     terminal::shown,
+    world::WorldPacks,
 };
 
 /// Missions left out that are printed at most; the manifest has all.
@@ -42,6 +43,8 @@ pub struct Demonstrate {
     /// Missions that are played side by side; one for each core if not given. They do not change what is made
     #[arg(long, value_name = "N")]
     workers: Option<usize>,
+    #[command(flatten)]
+    packs: WorldPacks,
 }
 
 /// Pixels across and down: `300x300`.
@@ -79,7 +82,9 @@ impl Demonstrate {
     /// Makes the data set, or goes on with it.
     pub fn run(&self) -> anyhow::Result<()> {
         let missions = self.missions()?;
+        let world = self.packs.read()?;
         let recipe = Recipe::new(self.seed, self.size.0, &self.modalities.0).map_err(bad_input)?;
+        let recipe = recipe.in_world(Arc::clone(world.catalog()));
         let recipe = if self.no_questions { recipe.without_questions() } else { recipe };
         let workers = self.workers.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from));
         let bar = ProgressBar::new(missions.len() as u64).with_style(

@@ -16,7 +16,7 @@ use cohabit_eval::{
 };
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::{failure::bad_input, terminal::shown};
+use crate::{failure::bad_input, terminal::shown, world::WorldPacks};
 
 /// Plays missions headless and in lock-step, through the real dialog and agent code or by the expert, and reports what came of
 /// them.
@@ -65,6 +65,8 @@ pub struct Eval {
     /// Write all results to this file, as JSON
     #[arg(long, value_name = "FILE")]
     report: Option<PathBuf>,
+    #[command(flatten)]
+    packs: WorldPacks,
     /// Play the missions that come in, write their results out
     #[arg(long, hide = true)]
     worker: bool,
@@ -130,8 +132,10 @@ impl Eval {
     /// Plays them all; that some are not solved is a result, not a failure.
     pub fn run(&self) -> anyhow::Result<()> {
         if self.worker {
-            return Ok(self.serve()?);
+            return self.serve();
         }
+        // What is wrong with a world pack is said once, before workers read it.
+        self.packs.read()?;
         let tasks = self.tasks()?;
         if let Some(folder) = &self.record {
             std::fs::create_dir_all(folder).map_err(|error| bad_input(format!("{}: {error}", folder.display())))?;
@@ -170,7 +174,8 @@ impl Eval {
         if self.made_up.missions == 0 {
             return Err(bad_input("--missions 0: at least one"));
         }
-        let tasks = generate(self.made_up.missions, self.seed, &self.language()).map_err(bad_input)?;
+        let language = self.language(Arc::clone(self.packs.read()?.catalog()));
+        let tasks = generate(self.made_up.missions, self.seed, &language).map_err(bad_input)?;
         if let Some(path) = &self.made_up.save {
             let mut out = create(path)?;
             tasks.iter().try_for_each(|task| writeln!(out, "{}", task.as_line()))?;
@@ -197,23 +202,24 @@ impl Eval {
         }
     }
 
-    /// The robot's language, of the built-in catalogue.
-    fn language(&self) -> Language {
-        cohabit_dialog::language(Arc::new(Catalog::builtin()), self.understanding)
+    /// The robot's language, of that catalogue.
+    fn language(&self, catalog: Arc<Catalog>) -> Language {
+        cohabit_dialog::language(catalog, self.understanding)
     }
 
-    fn serve(&self) -> io::Result<()> {
+    fn serve(&self) -> anyhow::Result<()> {
+        let catalog = Arc::clone(self.packs.read()?.catalog());
         let (settings, input, output) = (self.settings(), io::stdin().lock(), io::stdout().lock());
-        match self.agent {
+        let served = match self.agent {
             AgentKind::Expert => {
-                let catalog = Arc::new(Catalog::builtin());
                 pool::serve(input, output, |task| solve(task, &settings, &catalog).map_err(io::Error::other))
             }
             AgentKind::Dialog => {
-                let language = self.language();
+                let language = self.language(catalog);
                 pool::serve(input, output, |task| play(task, &settings, &language).map_err(io::Error::other))
             }
-        }
+        };
+        Ok(served?)
     }
 
     fn play(&self, tasks: &[Task]) -> anyhow::Result<Report> {

@@ -17,7 +17,7 @@ use cohabit_render::{
 use cohabit_world::World;
 use indicatif::ProgressBar;
 
-use crate::{failure::bad_input, rendering::Rendering, terminal::shown};
+use crate::{failure::bad_input, rendering::Rendering, terminal::shown, world::WorldPacks};
 
 /// Draws all objects in all their states, all floor plans from above and as maps, and a view of each room, as PNG
 /// files.
@@ -25,6 +25,8 @@ use crate::{failure::bad_input, rendering::Rendering, terminal::shown};
 pub struct Gallery {
     /// The folder to write into
     folder: PathBuf,
+    #[command(flatten)]
+    packs: WorldPacks,
     #[command(flatten)]
     rendering: Rendering,
 }
@@ -46,7 +48,7 @@ impl Gallery {
     /// Draws them all.
     pub fn run(&self) -> anyhow::Result<()> {
         fs::create_dir_all(&self.folder).map_err(|error| bad_input(format!("{}: {error}", self.folder.display())))?;
-        let catalog = Arc::new(Catalog::builtin());
+        let catalog = Arc::clone(self.packs.read()?.catalog());
         let meshes = Arc::new(MeshLibrary::build(&catalog).context("build the models")?);
         let mut renderer = self.rendering.start()?;
         let bar = ProgressBar::new_spinner().with_message("objects");
@@ -55,7 +57,7 @@ impl Gallery {
             self.write(&format!("objects-{}", sheet.name), &picture.rgba, [picture.width, picture.height])?;
             bar.tick();
         }
-        for id in Layout::builtin_ids() {
+        for id in Layout::ids(&catalog) {
             bar.set_message(id.clone());
             self.floor_plan(&id, &catalog, &meshes, &mut *renderer)?;
         }
@@ -71,7 +73,7 @@ impl Gallery {
         meshes: &Arc<MeshLibrary>,
         renderer: &mut dyn Renderer,
     ) -> anyhow::Result<()> {
-        let layout = Arc::new(Layout::builtin(id)?);
+        let layout = Arc::new(Layout::find(id, catalog)?);
         let mission = Mission { layout: id.to_owned(), ..Mission::default() };
         let world = World::new(Arc::clone(catalog), Arc::clone(&layout), Arc::new(mission), 1)?;
         let mut scene = Scene::new(Arc::clone(meshes), &layout);

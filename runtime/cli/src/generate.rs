@@ -16,6 +16,7 @@ use crate::{
     failure::{bad_input, environment},
     splits::{self, Asked},
     terminal::shown,
+    world::WorldPacks,
 };
 
 /// Makes missions from a specification. Each is checked, solved by the planner and played once; a line has the mission, its plan,
@@ -48,6 +49,8 @@ pub struct Generate {
     /// Threads; one for each core if not given. They do not change what is made
     #[arg(long, value_name = "N")]
     workers: Option<usize>,
+    #[command(flatten)]
+    packs: WorldPacks,
 }
 
 fn share(text: &str) -> Result<f64, String> {
@@ -63,7 +66,7 @@ fn split_share(text: &str) -> Result<f64, String> {
 impl Generate {
     /// Makes them all. The file appears once it is whole.
     pub fn run(&self) -> anyhow::Result<()> {
-        let catalog = Arc::new(Catalog::builtin());
+        let catalog = Arc::clone(self.packs.read()?.catalog());
         let spec = self.spec(&catalog)?;
         let workers = self.workers.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from));
         let order = Order { count: self.count, seed: self.seed, workers: workers.max(1) };

@@ -18,6 +18,7 @@ mod guide;
 mod minds;
 mod mission_file;
 mod movement;
+mod new;
 mod page_language;
 mod pddl;
 mod pedestrians;
@@ -40,6 +41,7 @@ mod top;
 mod vision;
 mod voice;
 mod wizard;
+mod world;
 
 use std::{ffi::OsString, io::IsTerminal as _, process::ExitCode};
 
@@ -63,6 +65,8 @@ enum Command {
     Play(Box<play::Play>),
     /// Say what is wrong in mission files, and where
     Check(check::Check),
+    /// Write files to begin with: a world pack
+    New(new::New),
     /// Re-simulate a recorded session and compare it tick by tick
     Replay(replay::Replay),
     /// Lay two recorded sessions beside each other in rerun
@@ -125,6 +129,7 @@ impl Command {
                 rustix::process::umask(Mode::RWXG | Mode::RWXO);
             }
             Self::Check(_)
+            | Self::New(_)
             | Self::Replay(_)
             | Self::Compare(_)
             | Self::Export(_)
@@ -170,6 +175,7 @@ fn run(asked: Cohabit) -> anyhow::Result<()> {
     match asked.command {
         Command::Play(play) => play.run(),
         Command::Check(check) => check.run(),
+        Command::New(new) => new.run(),
         Command::Replay(replay) => replay.run(),
         Command::Compare(compare) => compare.run(),
         Command::Export(export) => export.run(),

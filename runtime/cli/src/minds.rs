@@ -44,24 +44,37 @@ impl MindKind {
 
     /// A mind of this kind for a body; what is random in it follows from `seed`. None, if it has to know the mission first:
     /// [`expert`] makes it once the session is joined, or [`crowd`](crate::pedestrians::crowd) makes several.
-    pub fn mind(self, body: u32, seed: u64, script: Option<&Path>) -> anyhow::Result<Option<Box<dyn Agent>>> {
+    pub fn mind(
+        self,
+        catalog: &Arc<Catalog>,
+        body: u32,
+        seed: u64,
+        script: Option<&Path>,
+    ) -> anyhow::Result<Option<Box<dyn Agent>>> {
         // Two at random in one world do not do the same.
         let seed = seed.wrapping_add(u64::from(body));
         Ok(match self {
             Self::Dialog => Some(Box::new(PlanFollower::new(body))),
-            Self::Random => Some(Box::new(Random::new(seed))),
-            Self::Helper => Some(Box::new(Helper::new(body, seed))),
-            Self::Scripted => Some(Box::new(Scripted::new(body, read_script(script)?))),
+            Self::Random => Some(Box::new(Random::new(seed).knowing(catalog))),
+            Self::Helper => Some(Box::new(Helper::new(body, seed).knowing(catalog))),
+            Self::Scripted => {
+                Some(Box::new(Scripted::new(body, read_script(script, catalog)?).knowing(catalog)))
+            }
             Self::Expert | Self::Pedestrian => None,
         })
     }
 }
 
 /// The mind that plays the mission of the session on `bus` to its goals; `None` if `stop` comes before the mission is known.
-pub fn expert(body: u32, bus: &dyn Transport, stop: &AtomicBool) -> anyhow::Result<Option<Box<dyn Agent>>> {
+pub fn expert(
+    catalog: &Arc<Catalog>,
+    body: u32,
+    bus: &dyn Transport,
+    stop: &AtomicBool,
+) -> anyhow::Result<Option<Box<dyn Agent>>> {
     let Some(mission) = wait_for_mission(bus, stop)? else { return Ok(None) };
-    let catalog = Arc::new(Catalog::builtin());
-    let plan = SessionPlan::new(mission.header.file.as_str(), &mission.text, catalog, mission.header.seed)?;
+    let (file, seed) = (mission.header.file.as_str(), mission.header.seed);
+    let plan = SessionPlan::new(file, &mission.text, Arc::clone(catalog), seed)?;
     let plan = plan.with_bodies(mission.bodies);
     let world = plan.build()?;
     if body as usize >= world.bodies().len() {
@@ -71,11 +84,11 @@ pub fn expert(body: u32, bus: &dyn Transport, stop: &AtomicBool) -> anyhow::Resu
     Ok(Some(Box::new(Expert::new(body, Arc::clone(&plan.mission), world.symbols(BodyId(body))))))
 }
 
-fn read_script(file: Option<&Path>) -> anyhow::Result<Script> {
+fn read_script(file: Option<&Path>, catalog: &Catalog) -> anyhow::Result<Script> {
     let file = file.ok_or_else(|| bad_input("a scripted agent needs a script: `--script FILE`, or in play `=FILE`"))?;
     let name = file.display();
     let text = fs::read_to_string(file).map_err(|error| bad_input(format!("{name}: {error}")))?;
-    Script::parse(&name.to_string(), &text, &Catalog::builtin()).map_err(bad_input)
+    Script::parse(&name.to_string(), &text, catalog).map_err(bad_input)
 }
 
 /// A mind that a session starts with: its kind, perhaps its body, perhaps its script, such as `scripted@1=walk.txt`. Pedestrians
@@ -157,7 +170,7 @@ impl MindRequest {
                 }
             }
             if request.kind == MindKind::Scripted {
-                read_script(request.script.as_deref().map(Path::new))?;
+                read_script(request.script.as_deref().map(Path::new), &plan.catalog)?;
             }
         }
         Ok(())

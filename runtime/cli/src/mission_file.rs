@@ -2,7 +2,7 @@
 
 use std::{fs::File, io::Read as _, path::Path, sync::Arc};
 
-use cohabit_cdf::{BodyRequest, Catalog, mission};
+use cohabit_cdf::{BodyRequest, Catalog, WorldData, mission};
 use cohabit_engine::{BuildError, SessionPlan};
 
 use crate::failure::bad_input;
@@ -21,11 +21,18 @@ pub struct MissionFile {
 impl MissionFile {
     /// The file at that path, or the built-in mission of that name; the default one for `None`.
     pub fn find(name: Option<&str>) -> anyhow::Result<Self> {
-        Self::find_up_to(name, mission::limits::BYTES)
+        Self::find_up_to(name, mission::limits::BYTES, mission::builtin())
     }
 
-    /// The same of a file that may have so many bytes, as it holds many missions. One with more is not read.
-    pub fn find_up_to(name: Option<&str>, most: usize) -> anyhow::Result<Self> {
+    /// The same, or a mission of a world pack.
+    pub fn find_in(name: Option<&str>, world: &WorldData) -> anyhow::Result<Self> {
+        let known: Vec<(&str, &str)> = world.missions().collect();
+        Self::find_up_to(name, mission::limits::BYTES, &known)
+    }
+
+    /// The same of a file that may have so many bytes, as it holds many missions, or of a mission that is `known` by its name. One with more is
+    /// not read.
+    pub fn find_up_to(name: Option<&str>, most: usize, known: &[(&str, &str)]) -> anyhow::Result<Self> {
         let name = name.unwrap_or(DEFAULT);
         if Path::new(name).is_file() {
             let mut bytes = Vec::new();
@@ -39,14 +46,13 @@ impl MissionFile {
             })?;
             return Ok(Self { name: name.to_owned(), text });
         }
-        let known = mission::builtin();
         let wanted = name.trim_end_matches(".json");
         match known.iter().find(|(file, _)| file.trim_end_matches(".json") == wanted) {
             Some((file, text)) => Ok(Self { name: (*file).to_owned(), text: (*text).to_owned() }),
             None => {
                 let names: Vec<&str> = known.iter().map(|(file, _)| file.trim_end_matches(".json")).collect();
                 Err(bad_input(format!(
-                    "{name}: there is no such file, and no built-in mission of that name (there are {})",
+                    "{name}: there is no such file, and no built-in mission of that name, or of a world pack that is given (there are {})",
                     names.join(", ")
                 )))
             }
@@ -54,8 +60,8 @@ impl MissionFile {
     }
 
     /// Checks it; `seed` is taken where the mission leaves it to chance, `bodies` join those of the mission.
-    pub fn plan(&self, seed: u64, bodies: &[BodyRequest]) -> Result<SessionPlan, BuildError> {
-        let plan = SessionPlan::new(&self.name, &self.text, Arc::new(Catalog::builtin()), seed)?;
+    pub fn plan(&self, catalog: &Arc<Catalog>, seed: u64, bodies: &[BodyRequest]) -> Result<SessionPlan, BuildError> {
+        let plan = SessionPlan::new(&self.name, &self.text, Arc::clone(catalog), seed)?;
         Ok(plan.with_bodies(bodies.to_vec()))
     }
 }

@@ -18,6 +18,7 @@ use crate::{
     failure::{bad_input, environment},
     mission_file::MissionFile,
     terminal::shown,
+    world::WorldPacks,
 };
 
 /// The body that plans are for.
@@ -42,12 +43,16 @@ pub struct PddlFiles {
     /// The seed of all that is random, where the mission does not fix it: a plan is for the world of one seed
     #[arg(long, default_value_t = 1)]
     seed: u64,
+    #[command(flatten)]
+    packs: WorldPacks,
 }
 
 impl PddlFiles {
     /// Writes the files, or checks the plan; both, if both are asked for.
     pub fn run(&self) -> anyhow::Result<()> {
-        let plan = MissionFile::find(Some(&self.mission))?.plan(self.seed, &[]).map_err(bad_input)?;
+        let world = self.packs.read()?;
+        let file = MissionFile::find_in(Some(&self.mission), &world)?;
+        let plan = file.plan(world.catalog(), self.seed, &[]).map_err(bad_input)?;
         let mut world = plan.build().map_err(bad_input)?;
         // What is met as the mission begins is met before anybody plans.
         world.step(&[]);

@@ -8,7 +8,7 @@ use std::{
 
 use anyhow::Context as _;
 use cohabit_bus::{CameraId, Session, SessionError, Shm, Topic, message::Plane};
-use cohabit_cdf::BodyRequest;
+use cohabit_cdf::{BodyRequest, WorldData};
 use cohabit_dialog::{Endpoint, Questionnaire, begin_after};
 use cohabit_engine::{CameraPlan, SessionPlan};
 use cohabit_record::{Branch, Log};
@@ -24,6 +24,7 @@ use crate::{
     sessions, stop,
     supervisor::{Role, Supervisor},
     terminal::shown,
+    world::WorldPacks,
 };
 
 /// Starts a simulator, an agent, the dialog service and a recorder, and supervises them.
@@ -69,6 +70,8 @@ pub struct Play {
     #[arg(long = "record-frames", value_name = "CAMERA")]
     frames: Vec<CameraId>,
     #[command(flatten)]
+    packs: WorldPacks,
+    #[command(flatten)]
     rendering: Rendering,
     #[command(flatten)]
     timing: Timing,
@@ -89,7 +92,8 @@ impl Play {
         let stop = stop::on_request()?;
         stop::with_supervisor(self.supervisor)?;
         let seed = self.seed.unwrap_or_else(clock_seed);
-        let (plan, before) = self.plan(seed)?;
+        let world = self.packs.read()?;
+        let (plan, before) = self.plan(seed, &world)?;
         MindRequest::check(&self.minds, &plan)?;
         let robots: Vec<u32> = self.minds.iter().filter_map(MindRequest::spoken_to).collect();
         self.check_frames(&plan)?;
@@ -127,7 +131,8 @@ impl Play {
         let mut noted = self.noted(&plan, &robots, &questionnaires, before.map(|before| before.from));
         noted.settings.push(("page_language".to_owned(), page_texts.language().to_owned()));
         let peers = [Role::record(&log, &noted, self.watching), Role::dialog(&self.listening, &robots)];
-        let roles = std::iter::once(sim).chain(peers).chain(minds);
+        let packs = self.packs.arguments(&world);
+        let roles = std::iter::once(sim).chain(peers).chain(minds).map(|role| role.with(&packs));
         let played = Supervisor::start(&name, roles, began).and_then(|supervisor| supervisor.run(&stop));
         // All of it is wiped now. What iceoryx2 would take back before, it would look up in memory that any program of this
         // user may have overwritten.
@@ -149,14 +154,17 @@ impl Play {
     }
 
     /// What is played, and the session that it goes on from.
-    fn plan(&self, seed: u64) -> anyhow::Result<(SessionPlan, Option<Before>)> {
+    fn plan(&self, seed: u64, world: &WorldData) -> anyhow::Result<(SessionPlan, Option<Before>)> {
         let (plan, before) = match &self.branch {
             Some(point) => {
-                let Branched { plan, from, log, .. } = point.open()?;
+                let Branched { plan, from, log, .. } = point.open(world.catalog())?;
                 println!("Going on from {} (tick {}) of session {}", point.at, from.tick, shown(&from.session));
                 (plan, Some(Before { from, log }))
             }
-            None => (MissionFile::find(self.mission.as_deref())?.plan(seed, &self.bodies).map_err(bad_input)?, None),
+            None => {
+                let file = MissionFile::find_in(self.mission.as_deref(), world)?;
+                (file.plan(world.catalog(), seed, &self.bodies).map_err(bad_input)?, None)
+            }
         };
         let cameras = [plan.cameras.as_slice(), &self.cameras].concat();
         Ok((plan.with_cameras(cameras).map_err(bad_input)?, before))

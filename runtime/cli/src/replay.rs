@@ -13,12 +13,12 @@ use std::{
     time::Instant,
 };
 
-use cohabit_cdf::Catalog;
 use cohabit_engine::{Replayer, replay};
 use cohabit_record::{Log, SessionEntry, entry::fingerprint};
 
 use crate::{
     branch::BranchPoint, failure::bad_input, rendering::Rendering, rerun, session_time::SessionTime, terminal::shown,
+    world::WorldPacks,
 };
 use film::{Film, FilmOptions};
 use page::PageOptions;
@@ -40,6 +40,8 @@ pub struct Replay {
     #[command(flatten)]
     page: PageOptions,
     #[command(flatten)]
+    packs: WorldPacks,
+    #[command(flatten)]
     rendering: Rendering,
     /// Go on live from this time of the session: starts a session as `play` does, whose log says where it went on from
     #[arg(long, value_name = "TIME", conflicts_with_all = ["at", "until", "frames", "video", "page"])]
@@ -60,15 +62,19 @@ impl Replay {
     /// Replays; fails if a tick differs.
     pub fn run(&self) -> anyhow::Result<()> {
         if let Some(out) = &self.rerun {
+            if !self.packs.is_empty() {
+                return Err(bad_input("`--rerun` cannot show a session of a world pack yet: leave `--world` out"));
+            }
             let out = out.clone().unwrap_or_else(|| self.log.with_extension("rrd"));
             return rerun::replay(&self.log, &out, self.film.rate(), &self.planes);
         }
         if let Some(at) = self.branch {
             let point = BranchPoint { log: self.log.clone(), at };
-            return crate::play(std::iter::once(point.argument()).chain(self.play.iter().cloned()));
+            let packs = self.packs.folders();
+            return crate::play(std::iter::once(point.argument()).chain(packs).chain(self.play.iter().cloned()));
         }
         let log = open(&self.log)?;
-        let mut replayer = Replayer::new(&log, Arc::new(Catalog::builtin())).map_err(bad_input)?;
+        let mut replayer = Replayer::new(&log, Arc::clone(self.packs.read()?.catalog())).map_err(bad_input)?;
         tell_what_changed(&log.session, &replayer);
         if let Some(at) = self.at {
             self.go_to(at, &mut replayer)?;

@@ -96,6 +96,12 @@ impl Role {
         Self { name: "dialog", arguments: arguments.map(OsString::from).chain(tls).chain(language).collect() }
     }
 
+    /// The same with more arguments.
+    pub fn with(mut self, arguments: &[OsString]) -> Self {
+        self.arguments.extend_from_slice(arguments);
+        self
+    }
+
     /// The order in which roles are ended: who speaks first, who writes down last.
     fn ends(&self) -> u8 {
         match self.name {

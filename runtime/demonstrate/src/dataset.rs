@@ -40,6 +40,7 @@ pub struct Recipe {
     lens: Lens,
     planes: Vec<Plane>,
     has_questions: bool,
+    catalog: Arc<Catalog>,
 }
 
 impl Recipe {
@@ -50,7 +51,8 @@ impl Recipe {
     /// [`LensError`], where pictures of that size cannot be drawn.
     pub fn new(seed: u64, size: [u32; 2], planes: &[Plane]) -> Result<Self, LensError> {
         let planes = Plane::ALL.into_iter().filter(|plane| planes.contains(plane)).collect();
-        Ok(Self { seed, lens: Camera::lens(size[0], size[1])?, planes, has_questions: true })
+        let (lens, catalog) = (Camera::lens(size[0], size[1])?, Arc::new(Catalog::builtin()));
+        Ok(Self { seed, lens, planes, has_questions: true, catalog })
     }
 
     /// The same without questions about instructions.
@@ -58,6 +60,12 @@ impl Recipe {
     pub const fn without_questions(mut self) -> Self {
         self.has_questions = false;
         self
+    }
+
+    /// The same in a world with this catalogue.
+    #[must_use]
+    pub fn in_world(self, catalog: Arc<Catalog>) -> Self {
+        Self { catalog, ..self }
     }
 
     pub(crate) const fn has_questions(&self) -> bool {
@@ -85,7 +93,7 @@ impl Recipe {
                 hasher.update(part.as_bytes());
             }
         }
-        let recipe = json!({
+        let mut recipe = json!({
             "format": FORMAT,
             "program": env!("CARGO_PKG_VERSION"),
             "seed": self.seed,
@@ -95,6 +103,9 @@ impl Recipe {
             "missions": missions.len(),
             "missions_blake3": hasher.finalize().to_hex().as_str(),
         });
+        if !self.catalog.packs().is_empty() {
+            recipe["world"] = json!(self.catalog.packs());
+        }
         format!("{recipe:#}\n")
     }
 }
@@ -155,7 +166,7 @@ pub fn demonstrate(
     done: &(dyn Fn() + Sync),
 ) -> Result<Summary, DemonstrateError> {
     begin(missions, folder, recipe)?;
-    let catalog = Arc::new(Catalog::builtin());
+    let catalog = Arc::clone(&recipe.catalog);
     let meshes = Arc::new(MeshLibrary::build(&catalog)?);
     let maker = Maker { folder, recipe, catalog, meshes };
     let results = maker.all(missions, workers, done)?;

@@ -83,7 +83,7 @@ impl SessionPlan {
             tracing::warn!("{warning}");
         }
         let mission = Arc::new(checked.mission);
-        let layout = Arc::new(Layout::builtin(&mission.layout)?);
+        let layout = Arc::new(Layout::find(&mission.layout, &catalog)?);
         let seed = mission.seed.unwrap_or(seed);
         Ok(Self {
             file: file.to_owned(),

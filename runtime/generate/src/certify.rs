@@ -52,7 +52,7 @@ pub struct Certificate {
 /// Why it cannot be read, laid out, solved or played, in words.
 pub fn certify(id: &str, cdf: &str, catalog: &Arc<Catalog>, seed: u64) -> Result<Certificate, String> {
     let checked = read_mission(id, cdf, catalog).map_err(|problems| problems.to_string())?;
-    let layout = Layout::builtin(&checked.mission.layout).map_err(|error| error.to_string())?;
+    let layout = Layout::find(&checked.mission.layout, catalog).map_err(|error| error.to_string())?;
     let world = World::new(Arc::clone(catalog), Arc::new(layout), Arc::new(checked.mission), seed);
     let mut world = world.map_err(|error| error.to_string())?;
     // What is met as the mission begins is met before anybody plans.

@@ -83,12 +83,16 @@ impl<'a> Draft<'a> {
         }
         let goals = kind.goals.iter().enumerate().map(|(number, goal)| self.goal(number, goal, kind.then));
         let goals: Vec<Value> = goals.collect::<Option<_>>()?;
-        let start = ROOMS[self.chance.below(ROOMS.len())];
+        let rooms: Vec<RoomId> = ROOMS.into_iter().filter(|room| self.layout.room(*room).is_some()).collect();
+        if rooms.is_empty() {
+            return None;
+        }
+        let start = rooms[self.chance.below(rooms.len())];
         let mut robots = Vec::new();
         if kind.robots > 1 {
             robots.push(robot(1, start));
             for number in 2..=kind.robots {
-                robots.push(robot(number, ROOMS[self.chance.below(ROOMS.len())]));
+                robots.push(robot(number, rooms[self.chance.below(rooms.len())]));
             }
         }
         let (blocker, things) = (self.blocker.take(), std::mem::take(&mut self.things));

@@ -129,8 +129,8 @@ pub fn generate(
     take: &mut dyn FnMut(Generated),
 ) -> Result<BTreeMap<String, GivenUp>, GenerateError> {
     let ids: Vec<String> =
-        if spec.pools.layouts.is_empty() { Layout::builtin_ids().to_vec() } else { spec.pools.layouts.clone() };
-    let layouts = ids.iter().map(|id| Layout::builtin(id)).collect::<Result<Vec<_>, _>>()?;
+        if spec.pools.layouts.is_empty() { Layout::builtin_ids() } else { spec.pools.layouts.clone() };
+    let layouts = ids.iter().map(|id| Layout::find(id, catalog)).collect::<Result<Vec<_>, _>>()?;
     let maker = Maker { spec, catalog, layouts, seed: order.seed };
     let (mut seen, mut made, mut misses, mut next) = (BTreeSet::new(), 0, 0, 0);
     let mut given_up = BTreeMap::<String, GivenUp>::new();

@@ -155,7 +155,7 @@ impl Spec {
         if spec.types.is_empty() {
             return wrong("type", "there is no type of missions; write at least one [[type]]".to_owned());
         }
-        let known = Layout::builtin_ids();
+        let known = Layout::ids(catalog);
         if let Some(layout) = spec.pools.layouts.iter().find(|layout| !known.contains(layout)) {
             return wrong("pools", format!("there is no floor plan `{layout}`; there are {}", known.join(", ")));
         }

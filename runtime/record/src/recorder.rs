@@ -3,7 +3,10 @@
 use std::{
     io::Write,
     path::{Path, PathBuf},
-    sync::atomic::{AtomicBool, Ordering},
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
     time::{Duration, Instant},
 };
 
@@ -72,6 +75,8 @@ pub struct Recorder {
     listener: Box<dyn Listener>,
     heart: Heart,
     turns: Turns,
+    /// The catalogue that the session is played with; the built-in one, if nothing is said.
+    catalog: Option<Arc<Catalog>>,
 }
 
 /// What was published before a recorder took it down.
@@ -98,7 +103,14 @@ impl Recorder {
             listener: bus.listener(Wake::State)?,
             heart: Heart::new(bus, "recorder", NONE)?,
             turns: Turns::new(bus)?,
+            catalog: None,
         })
+    }
+
+    /// The same of a session that is played with this catalogue.
+    #[must_use]
+    pub fn knowing(self, catalog: Arc<Catalog>) -> Self {
+        Self { catalog: Some(catalog), ..self }
     }
 
     /// The same with the frames of these cameras, which are then rendered whether or not anybody else looks.
@@ -133,7 +145,7 @@ impl Recorder {
         caught_up: impl FnOnce(),
     ) -> Result<(), RecordError> {
         let Some(began) = self.wait_for_mission(stop)? else { return Ok(()) };
-        let (entry, now) = (began.entry(facts), wall_nanos());
+        let (entry, now) = (self.entry(&began, facts), wall_nanos());
         let (log, written) = match LogWriter::carry_on(path, &entry, now) {
             Err(LogError::File { source, .. }) if source.kind() == std::io::ErrorKind::NotFound => {
                 (LogWriter::create(path, &entry, now)?, Written::default())
@@ -171,7 +183,7 @@ impl Recorder {
     /// [`RecordError`].
     pub fn begin(mut self, facts: &SessionFacts, path: &Path) -> Result<Recording, RecordError> {
         let began = self.mission()?.ok_or(RecordError::NoMission)?;
-        let log = LogWriter::create(path, &began.entry(facts), wall_nanos())?;
+        let log = LogWriter::create(path, &self.entry(&began, facts), wall_nanos())?;
         Ok(Recording::new(self, process_of(began.run), log, Written::default()))
     }
 
@@ -181,8 +193,15 @@ impl Recorder {
     /// [`RecordError`].
     pub fn begin_in(mut self, facts: &SessionFacts, out: Box<dyn Write + Send>) -> Result<Recording, RecordError> {
         let began = self.mission()?.ok_or(RecordError::NoMission)?;
-        let log = LogWriter::begin(Path::new("the log"), out, &began.entry(facts), wall_nanos())?;
+        let log = LogWriter::begin(Path::new("the log"), out, &self.entry(&began, facts), wall_nanos())?;
         Ok(Recording::new(self, process_of(began.run), log, Written::default()))
+    }
+
+    fn entry(&self, began: &Began, facts: &SessionFacts) -> SessionEntry {
+        match &self.catalog {
+            Some(catalog) => began.entry(facts, catalog),
+            None => began.entry(facts, &Catalog::builtin()),
+        }
     }
 
     fn mission(&mut self) -> Result<Option<Began>, RecordError> {
@@ -205,13 +224,12 @@ impl Recorder {
 }
 
 impl Began {
-    fn entry(&self, facts: &SessionFacts) -> SessionEntry {
+    fn entry(&self, facts: &SessionFacts, catalog: &Catalog) -> SessionEntry {
         let entry = SessionEntry { run: self.run, ..SessionEntry::new(facts, &self.mission) };
-        let catalog = Catalog::builtin();
         // What cannot be read was not played by a simulator of this program.
-        let checked = read_mission(&entry.mission_file, &entry.mission_text, &catalog).ok();
-        match checked.and_then(|checked| Layout::builtin(&checked.mission.layout).ok()) {
-            Some(layout) => entry.with(&catalog, &layout),
+        let checked = read_mission(&entry.mission_file, &entry.mission_text, catalog).ok();
+        match checked.and_then(|checked| Layout::find(&checked.mission.layout, catalog).ok()) {
+            Some(layout) => entry.with(catalog, &layout),
             None => entry,
         }
     }

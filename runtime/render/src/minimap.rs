@@ -75,7 +75,7 @@ pub fn minimap(layout: &Layout, catalog: &Catalog, pixels_per_m: f32) -> Minimap
         draw_opening(&mut paper, layout, opening, scale);
     }
     for room in &layout.rooms {
-        write_name(&mut paper, room);
+        write_name(&mut paper, room, room.id.name_in(catalog));
     }
     let [width, height] = paper.size();
     let picture = Picture { width, height, rgba: paper.into_rgba() };
@@ -146,14 +146,14 @@ fn draw_opening(paper: &mut Paper, layout: &Layout, opening: &Opening, scale: f3
 }
 
 /// A room's name in the middle of its largest rectangle: broken into lines, turned or smaller where it is narrow.
-fn write_name(paper: &mut Paper, room: &Room) {
+fn write_name(paper: &mut Paper, room: &Room, name: &str) {
     let area = |[west, south, east, north]: &[f32; 4]| (east - west) * (north - south);
     let Some([west, south, east, north]) = room.rects_m.iter().max_by(|a, b| area(a).total_cmp(&area(b))) else {
         return;
     };
     let (wide, high) = (east - west - 0.5, north - south - 0.5);
     let middle = [f32::midpoint(*west, *east), f32::midpoint(*south, *north)];
-    let words: Vec<String> = room.id.name().split(' ').map(str::to_uppercase).collect();
+    let words: Vec<String> = name.split(' ').map(str::to_uppercase).collect();
     let upright = fit(&words, wide, high);
     let turned = fit(&words, high, wide);
     // Upright reads better: it is turned only where that makes it much larger.

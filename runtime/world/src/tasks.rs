@@ -173,7 +173,7 @@ impl World {
             GoToTarget::Room(room) => {
                 let points: Vec<Vec2> = viewpoints(room).map(|viewpoint| viewpoint.at_m.into()).collect();
                 let approach = floor.approach_room(&facts, from, room, &points);
-                let approach = approach.ok_or_else(|| no_way(format!("the {}", room.name())))?;
+                let approach = approach.ok_or_else(|| no_way(format!("the {}", room.name_in(facts.catalog))))?;
                 let yaw_rad = self.viewpoint_yaw(&approach).unwrap_or(body.yaw_rad);
                 (approach, Step::Head { yaw_rad })
             }

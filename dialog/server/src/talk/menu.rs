@@ -35,9 +35,9 @@ impl Talk {
                 // Behind a wall the floor is another room's.
                 let is_its = |at_m: &[f32; 2]| self.layout.room_at(at_m[0], at_m[1]) == Some(room);
                 let there = floor_m.filter(is_its).map(|at_m| (Click::Floor { at_m }, "Go there".to_owned()));
-                let into = (Click::Room { room }, format!("Go to the {}", room.name()));
+                let into = (Click::Room { room }, format!("Go to the {}", room.name_in(&self.catalog)));
                 let choices: Vec<_> = there.into_iter().chain([into]).collect();
-                Some(page::menu(body.0, room.name(), &choices))
+                Some(page::menu(body.0, room.name_in(&self.catalog), &choices))
             }
             Thing::Body(_) | Thing::Nothing => None,
         })

@@ -21,6 +21,7 @@ pub const PAGES: &[Page] = pages![
     "talk",
     "understanding",
     "missions",
+    "worlds",
     "vision",
     "voice",
     "together",

@@ -6,6 +6,7 @@ use super::Joining;
 use crate::{
     minds::{MindKind, expert},
     pedestrians::crowd,
+    world::WorldPacks,
 };
 
 /// Runs a mind for one body.
@@ -25,12 +26,16 @@ pub struct Agent {
     /// What a scripted one does: a file with an action a line; or what pedestrians do: a schedule (TOML), which names their bodies
     #[arg(long, value_name = "FILE", required_if_eq_any([("kind", "scripted"), ("kind", "pedestrian")]))]
     script: Option<PathBuf>,
+    #[command(flatten)]
+    packs: WorldPacks,
 }
 
 impl Agent {
     /// Runs the agent.
     pub fn run(&self) -> anyhow::Result<()> {
-        let mind = self.kind.mind(self.body, self.seed, self.script.as_deref())?;
+        let world = self.packs.read()?;
+        let catalog = world.catalog();
+        let mind = self.kind.mind(catalog, self.body, self.seed, self.script.as_deref())?;
         let (bus, stop) = self.joining.join()?;
         if self.kind == MindKind::Pedestrian {
             if let Some(mut crowd) = crowd(self.script.as_deref(), self.seed, &bus, &stop)? {
@@ -38,9 +43,9 @@ impl Agent {
             }
             return Ok(());
         }
-        let mind = mind.map_or_else(|| expert(self.body, &bus, &stop), |mind| Ok(Some(mind)))?;
+        let mind = mind.map_or_else(|| expert(catalog, self.body, &bus, &stop), |mind| Ok(Some(mind)))?;
         if let Some(mut mind) = mind {
-            cohabit_agent::run(&mut *mind, self.body, &bus, &stop)?;
+            cohabit_agent::run_in(catalog, &mut *mind, self.body, &bus, &stop)?;
         }
         Ok(())
     }

@@ -11,6 +11,7 @@ use super::{Joining, Listening, tell_supervisor};
 use crate::{
     failure::{bad_input, environment},
     mission_file::MissionFile,
+    world::WorldPacks,
 };
 
 /// Serves the page, and turns what people say into plans.
@@ -20,6 +21,8 @@ pub struct Dialog {
     joining: Joining,
     #[command(flatten)]
     listening: Listening,
+    #[command(flatten)]
+    packs: WorldPacks,
     /// A body whose robot people speak to; as often as there are
     #[arg(long = "robot", value_name = "BODY", default_value = "0")]
     robots: Vec<u32>,
@@ -28,11 +31,12 @@ pub struct Dialog {
 impl Dialog {
     /// Runs the dialog service. Prints its address, and later the time of the first frame shown, for its supervisor.
     pub fn run(&self) -> anyhow::Result<()> {
+        let world = self.packs.read()?;
         let (bus, stop) = self.joining.join()?;
         let Some(message) = cohabit_agent::wait_for_mission(&bus, &stop)? else { return Ok(()) };
         let file = MissionFile { name: message.header.file.as_str().to_owned(), text: message.text };
-        let SessionPlan { catalog, layout, mission, .. } =
-            file.plan(message.header.seed, &message.bodies).context("the mission that the simulator published")?;
+        let plan = file.plan(world.catalog(), message.header.seed, &message.bodies);
+        let SessionPlan { catalog, layout, mission, .. } = plan.context("the mission that the simulator published")?;
         let config = self.config(message.header.seed, message.cameras)?;
         let served = cohabit_dialog::serve(Arc::new(bus), mission, layout, catalog, config, &stop, tell_addresses);
         served.map_err(|error| match error {
@@ -43,7 +47,7 @@ impl Dialog {
 
     /// How the service is set up for a session with this seed and these cameras.
     fn config(&self, seed: u64, cameras: Vec<CameraRecord>) -> anyhow::Result<DialogConfig> {
-        let Self { joining, listening, robots } = self;
+        let Self { joining, listening, robots, .. } = self;
         Ok(DialogConfig {
             session: joining.session.clone(),
             journal: Some(journal(&Session::new(&joining.session).map_err(bad_input)?)),

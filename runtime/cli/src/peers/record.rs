@@ -1,6 +1,6 @@
 //! The recorder's process.
 
-use std::{ffi::OsString, net::SocketAddr, path::PathBuf};
+use std::{ffi::OsString, net::SocketAddr, path::PathBuf, sync::Arc};
 
 use cohabit_record::{LogError, RecordError, Recorder};
 
@@ -8,6 +8,7 @@ use super::{Joining, Noted, tell_supervisor};
 use crate::{
     failure::{IncompleteLog, bad_input},
     rerun,
+    world::WorldPacks,
 };
 
 /// Writes the session log. Exit code 3 says that some of the session is not in it.
@@ -22,6 +23,8 @@ pub struct Record {
     noted: Noted,
     #[command(flatten)]
     watching: Watching,
+    #[command(flatten)]
+    packs: WorldPacks,
 }
 
 /// Who watches a session besides its pages.
@@ -51,11 +54,12 @@ impl Watching {
 impl Record {
     /// Runs the recorder.
     pub fn run(&self) -> anyhow::Result<()> {
+        let world = self.packs.read()?;
         let (bus, stop) = self.joining.join()?;
         let _live = self.watching.start(&self.joining.session)?;
         let caught_up = || tell_supervisor(&format!("recording {}", self.log.display()));
         let facts = self.noted.facts(&self.joining.session);
-        let recorder = Recorder::new(&bus)?.filming(&bus, &facts.frames)?;
+        let recorder = Recorder::new(&bus)?.knowing(Arc::clone(world.catalog())).filming(&bus, &facts.frames)?;
         let recorder = if facts.audio { recorder.taping(&bus)? } else { recorder };
         recorder.run(&facts, &self.log, &stop, caught_up).map_err(classified)
     }

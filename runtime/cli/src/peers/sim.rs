@@ -3,7 +3,7 @@
 use std::{sync::Arc, thread};
 
 use anyhow::Context as _;
-use cohabit_cdf::BodyRequest;
+use cohabit_cdf::{BodyRequest, WorldData};
 use cohabit_engine::{Appearance, BuildError, CameraPlan, SessionPlan, Simulator};
 use cohabit_render::MeshLibrary;
 use cohabit_world::World;
@@ -15,6 +15,7 @@ use crate::{
     failure::bad_input,
     mission_file::MissionFile,
     rendering::Rendering,
+    world::WorldPacks,
 };
 
 /// Builds the world and steps it in real time; or, with --arena-port, as existing clients command.
@@ -45,6 +46,8 @@ pub struct Sim {
     #[arg(long = "camera", value_name = "NAME=KIND[,OPTION=VALUE]")]
     cameras: Vec<CameraPlan>,
     #[command(flatten)]
+    packs: WorldPacks,
+    #[command(flatten)]
     rendering: Rendering,
     #[command(flatten)]
     timing: Timing,
@@ -53,11 +56,13 @@ pub struct Sim {
 impl Sim {
     /// Runs the simulator.
     pub fn run(&self) -> anyhow::Result<()> {
+        let world = self.packs.read()?;
         if let Some(port) = self.arena.port() {
             let (mission, rendering) = (self.mission.as_deref(), self.rendering);
-            return self.arena.serve(port, &Games { mission, seed: self.seed, bodies: &self.bodies, rendering });
+            let games = Games { mission, seed: self.seed, bodies: &self.bodies, rendering, world: &world };
+            return self.arena.serve(port, &games);
         }
-        let (plan, before) = self.plan()?;
+        let (plan, before) = self.plan(&world)?;
         let cameras = [plan.cameras.as_slice(), &self.cameras].concat();
         let plan = self.timing.of(plan.with_cameras(cameras).map_err(bad_input)?);
         let session = self.session.clone().unwrap_or_default();
@@ -76,15 +81,15 @@ impl Sim {
     }
 
     /// What is simulated, and the world that it goes on from if that is not the mission's.
-    fn plan(&self) -> anyhow::Result<(SessionPlan, Option<(World, Appearance)>)> {
+    fn plan(&self, world: &WorldData) -> anyhow::Result<(SessionPlan, Option<(World, Appearance)>)> {
         match &self.branch {
             Some(point) => {
-                let Branched { plan, world, appearance, .. } = point.open()?;
+                let Branched { plan, world, appearance, .. } = point.open(world.catalog())?;
                 Ok((plan, Some((world, appearance))))
             }
             None => {
-                let file = MissionFile::find(self.mission.as_deref())?;
-                Ok((file.plan(self.seed, &self.bodies).map_err(bad_input)?, None))
+                let file = MissionFile::find_in(self.mission.as_deref(), world)?;
+                Ok((file.plan(world.catalog(), self.seed, &self.bodies).map_err(bad_input)?, None))
             }
         }
     }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use cohabit_bus::message::StateParts;
-use cohabit_cdf::{BodyId, Catalog};
+use cohabit_cdf::{BodyId, Catalog, PackId};
 use cohabit_record::{InputEntry, Log, SessionEntry, Snapshot, TickEntry, entry::hex};
 use cohabit_world::{Input, Report, World};
 
@@ -22,6 +22,23 @@ pub enum ReplayError {
     /// Its mission cannot be built by this program.
     #[error(transparent)]
     Build(#[from] BuildError),
+    /// It was played with a world pack that is not there.
+    #[error(
+        "the session was played with the world pack {pack}, which is not given{given}: name its folder by `--world`, packs \
+         in the order in which they were played with"
+    )]
+    NoPack {
+        /// The pack.
+        pack: PackId,
+        /// What is given in its place, in words.
+        given: String,
+    },
+    /// It was played without a world pack that is there.
+    #[error("the session was played without the world pack {pack}: leave its `--world` out")]
+    OtherPack {
+        /// The pack.
+        pack: PackId,
+    },
     /// One of its cameras cannot.
     #[error("a camera of the session: {0}")]
     Camera(#[from] CameraPlanError),
@@ -82,6 +99,7 @@ impl<'a> Replayer<'a> {
         if let Some([first, second]) = log.disorder() {
             return Err(ReplayError::Disorder { first, second });
         }
+        compare_packs(&log.session.packs, catalog.packs())?;
         let plan = plan(&log.session, catalog)?;
         let world = plan.build()?;
         let mut replayer = Self { log, plan, world, appearance: Appearance::default(), next: 0 };
@@ -226,6 +244,18 @@ impl<'a> Replayer<'a> {
 }
 
 /// What a session played.
+/// A session comes out the same in the world that it was played in alone.
+fn compare_packs(played: &[PackId], given: &[PackId]) -> Result<(), ReplayError> {
+    for (index, pack) in played.iter().enumerate() {
+        if given.get(index) != Some(pack) {
+            let other = given.iter().find(|other| other.name == pack.name).or_else(|| given.get(index));
+            let given = other.map_or_else(String::new, |other| format!(", but {other}"));
+            return Err(ReplayError::NoPack { pack: pack.clone(), given });
+        }
+    }
+    given.get(played.len()).map_or(Ok(()), |pack| Err(ReplayError::OtherPack { pack: pack.clone() }))
+}
+
 fn plan(session: &SessionEntry, catalog: Arc<Catalog>) -> Result<SessionPlan, ReplayError> {
     let plan = SessionPlan::new(&session.mission_file, &session.mission_text, catalog, session.seed)?;
     let cameras = session.cameras.iter().map(|camera| camera.parse()).collect::<Result<Vec<CameraPlan>, _>>()?;

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use cohabit_bus::{CameraId, Envelope, message::MissionMessage};
-use cohabit_cdf::{BodyRequest, Catalog, Layout};
+use cohabit_cdf::{BodyRequest, Catalog, Layout, PackId};
 use serde::{Deserialize, Serialize};
 
 use super::{Entry, fingerprint, is_zero, run};
@@ -41,6 +41,9 @@ pub struct SessionEntry {
     /// Stands for its floor plan.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub layout: String,
+    /// The world packs that it was played with, in their order.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub packs: Vec<PackId>,
     /// What the participant is called in the study: a label, not a name.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub participant: Option<String>,
@@ -124,6 +127,7 @@ impl SessionEntry {
             run: 0,
             catalog: String::new(),
             layout: String::new(),
+            packs: Vec::new(),
             participant,
             settings,
             cameras,
@@ -133,14 +137,19 @@ impl SessionEntry {
         }
     }
 
-    /// The same with what stands for the catalogue and the floor plan that it is played with.
+    /// The same with what stands for the catalogue and the floor plan that it is played with, and with their world packs.
     #[must_use]
-    pub fn with(self, catalog: &Catalog, layout: &Layout) -> Self {
-        Self { catalog: fingerprint(catalog.classes()), layout: fingerprint(layout), ..self }
+    pub fn with(mut self, catalog: &Catalog, layout: &Layout) -> Self {
+        let packs = catalog.packs().to_vec();
+        if !packs.is_empty() {
+            let named: Vec<String> = packs.iter().map(ToString::to_string).collect();
+            self.settings.insert("world".to_owned(), named.join("; "));
+        }
+        Self { catalog: fingerprint(catalog.classes()), layout: fingerprint(layout), packs, ..self }
     }
 }
 
 impl Entry for SessionEntry {
     const TOPIC: &'static str = "/session";
-    const SCHEMA: &'static str = r#"{"title":"Session","type":"object","properties":{"format":{"type":"integer"},"program":{"type":"string"},"build":{"type":"string"},"messages":{"type":"integer"},"session":{"type":"string"},"mission_file":{"type":"string"},"mission_text":{"type":"string"},"seed":{"type":"integer"},"bodies":{"type":"array","items":{"type":"object"}},"run":{"type":"string"},"catalog":{"type":"string"},"layout":{"type":"string"},"participant":{"type":"string"},"settings":{"type":"object"},"cameras":{"type":"array","items":{"type":"string"}},"frames":{"type":"array","items":{"type":"string"}},"audio":{"type":"boolean"},"branched":{"type":"object"}}}"#;
+    const SCHEMA: &'static str = r#"{"title":"Session","type":"object","properties":{"format":{"type":"integer"},"program":{"type":"string"},"build":{"type":"string"},"messages":{"type":"integer"},"session":{"type":"string"},"mission_file":{"type":"string"},"mission_text":{"type":"string"},"seed":{"type":"integer"},"bodies":{"type":"array","items":{"type":"object"}},"run":{"type":"string"},"catalog":{"type":"string"},"layout":{"type":"string"},"packs":{"type":"array","items":{"type":"object"}},"participant":{"type":"string"},"settings":{"type":"object"},"cameras":{"type":"array","items":{"type":"string"}},"frames":{"type":"array","items":{"type":"string"}},"audio":{"type":"boolean"},"branched":{"type":"object"}}}"#;
 }

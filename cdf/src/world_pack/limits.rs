@@ -1,0 +1,198 @@
+//! What no pack may have: paths out of its folder, numbers that are none, sizes that no office has.
+
+use serde::{Deserialize, de::DeserializeOwned};
+use toml::{Table, Value};
+
+use super::PackError;
+use crate::{
+    catalog::{ObjectClass, RoomNames},
+    layout::{Layout, RoomId},
+    model::Model,
+};
+
+/// The largest number: of metres, kilograms or degrees.
+const LARGEST: f64 = 10_000.0;
+/// The longest text, bytes.
+const LONGEST_TEXT: usize = 4096;
+/// The longest list.
+const LONGEST_LIST: usize = 4096;
+/// The most classes of a pack; class numbers have 16 bits.
+const MOST_CLASSES: usize = 2048;
+/// The largest object, m.
+const LARGEST_OBJECT_M: f32 = 10.0;
+/// The heaviest, kg.
+const HEAVIEST_KG: f32 = 5000.0;
+/// The most anchors along a side of a surface.
+const MOST_ANCHORS: u32 = 32;
+/// The most shapes of a model, repeated ones counted each.
+const MOST_SHAPES: u32 = 4096;
+/// The most things that a floor plan places.
+const MOST_PLACEMENTS: usize = 2000;
+/// The longest side of a floor plan, m: the floor is kept as a grid.
+const LONGEST_PLAN_M: f32 = 100.0;
+/// The largest factor by which a placed thing is scaled.
+const LARGEST_SCALE: f32 = 20.0;
+
+/// Reads a file's text.
+pub(super) fn read<T: DeserializeOwned>(file: &str, text: &str) -> Result<T, PackError> {
+    toml::from_str(text).map_err(|source| PackError::Syntax { file: file.to_owned(), source: Box::new(source) })
+}
+
+/// Only what lies in the folder is of the pack.
+pub(super) fn check_path(root: &str, path: &str) -> Result<(), PackError> {
+    let leads_out = path.split('/').any(|part| part.is_empty() || part == "." || part == "..");
+    if leads_out || path.contains(['\\', '\0']) {
+        let reason = format!("`{path}` is no path within the pack");
+        return Err(PackError::at(root, "", reason, "name files by their folders alone, such as objects/things.toml"));
+    }
+    Ok(())
+}
+
+/// All numbers are numbers, and neither lists nor texts go on for ever.
+pub(super) fn check_numbers(file: &str, text: &str) -> Result<(), PackError> {
+    walk(file, "", &Value::Table(read::<Table>(file, text)?))
+}
+
+fn walk(file: &str, at: &str, value: &Value) -> Result<(), PackError> {
+    let fault = |reason: String, remedy: String| Err(PackError::at(file, at, reason, &remedy));
+    match value {
+        Value::Float(number) if !number.is_finite() || number.abs() > LARGEST => {
+            fault(format!("{number} is out of range"), format!("write a number from -{LARGEST} to {LARGEST}"))
+        }
+        Value::Integer(number) if number.unsigned_abs() > LARGEST as u64 => {
+            fault(format!("{number} is out of range"), format!("write a number from -{LARGEST} to {LARGEST}"))
+        }
+        Value::String(text) if text.len() > LONGEST_TEXT => {
+            fault(format!("a text of {} bytes", text.len()), format!("at most {LONGEST_TEXT}"))
+        }
+        Value::Array(list) if list.len() > LONGEST_LIST => {
+            fault(format!("a list of {} items", list.len()), format!("at most {LONGEST_LIST}"))
+        }
+        Value::Array(list) => {
+            list.iter().enumerate().try_for_each(|(index, item)| walk(file, &format!("{at}[{index}]"), item))
+        }
+        Value::Table(table) => table.iter().try_for_each(|(key, item)| {
+            let at = if at.is_empty() { key.clone() } else { format!("{at}.{key}") };
+            walk(file, &at, item)
+        }),
+        _ => Ok(()),
+    }
+}
+
+#[derive(Deserialize)]
+struct ObjectFile {
+    #[serde(default, rename = "object")]
+    objects: Vec<ObjectClass>,
+}
+
+#[derive(Deserialize)]
+struct ModelFile {
+    #[serde(default, rename = "model")]
+    models: Vec<Model>,
+}
+
+/// Classes are of sizes that things have.
+pub(super) fn check_objects(files: &[(String, String)]) -> Result<(), PackError> {
+    let mut classes = 0;
+    for (file, text) in files {
+        for class in read::<ObjectFile>(file, text)?.objects {
+            classes += 1;
+            let fault = |at: &str, reason: String, remedy: String| {
+                Err(PackError::at(file, &format!("object `{}`: {at}", class.id), reason, &remedy))
+            };
+            if class.id.is_empty() || !class.id.chars().all(|c| c.is_ascii_alphanumeric() || c == '_') {
+                return fault("id", "it is no id".to_owned(), "write letters, digits and `_`".to_owned());
+            }
+            if !class.size_m.iter().all(|side| *side > 0.0 && *side <= LARGEST_OBJECT_M) {
+                let remedy = format!("each side is above 0 m, and at most {LARGEST_OBJECT_M} m");
+                return fault("size_m", format!("{:?} is no size", class.size_m), remedy);
+            }
+            if class.mass_kg <= 0.0 || class.mass_kg > HEAVIEST_KG {
+                let remedy = format!("it is above 0 kg, and at most {HEAVIEST_KG} kg");
+                return fault("mass_kg", format!("{} is no mass", class.mass_kg), remedy);
+            }
+            let surfaces = class.receptacle.iter().flat_map(|receptacle| &receptacle.surfaces);
+            if !surfaces.flat_map(|surface| surface.anchors).all(|count| (1..=MOST_ANCHORS).contains(&count)) {
+                let remedy = format!("from 1 to {MOST_ANCHORS} along each side");
+                return fault("receptacle", "its anchors are none, or too many".to_owned(), remedy);
+            }
+            if classes > MOST_CLASSES {
+                return fault("id", "it is one class too many".to_owned(), format!("at most {MOST_CLASSES} in a pack"));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Models are of as many shapes as can be drawn.
+pub(super) fn check_models(files: &[(String, String)]) -> Result<(), PackError> {
+    for (file, text) in files {
+        for model in read::<ModelFile>(file, text)?.models {
+            let counts = model.parts.iter().map(|part| part.repeat.as_ref().map_or(1, |repeat| repeat.count));
+            let shapes = counts.fold(0_u32, u32::saturating_add);
+            if shapes == 0 || shapes > MOST_SHAPES {
+                let at = format!("model `{}`: part", model.id);
+                let remedy = format!("from 1 to {MOST_SHAPES}, repeated ones counted each");
+                return Err(PackError::at(file, &at, format!("{shapes} shapes"), &remedy));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Rooms that are named are rooms, and their names can be said.
+pub(super) fn check_rooms(file: &str, rooms: &[RoomNames]) -> Result<(), PackError> {
+    let is_said = |words: &str| {
+        let fits = words.chars().all(|c| c.is_lowercase() || c.is_ascii_digit() || matches!(c, ' ' | '\''));
+        fits && !words.trim().is_empty() && words.len() <= 64
+    };
+    for (index, room) in rooms.iter().enumerate() {
+        if !RoomId::ALL.iter().any(|known| known.id() == room.id) {
+            let remedy = format!("take one of {}", RoomId::ALL.map(RoomId::id).join(", "));
+            let reason = format!("there is no room `{}`", room.id);
+            return Err(PackError::at(file, &format!("room[{index}].id"), reason, &remedy));
+        }
+        if let Some(words) = std::iter::once(&room.name).chain(&room.words).find(|words| !is_said(words)) {
+            let reason = format!("`{words}` is no name of a room");
+            let remedy = "write small letters, digits and spaces, 64 bytes at most";
+            return Err(PackError::at(file, &format!("room[{index}]"), reason, remedy));
+        }
+    }
+    Ok(())
+}
+
+/// A floor plan has rooms, and is of a size that is walked in.
+pub(super) fn check_plan(file: &str, plan: &Layout) -> Result<(), PackError> {
+    let fault = |at: &str, reason: String, remedy: &str| Err(PackError::at(file, at, reason, remedy));
+    if plan.rooms.is_empty() {
+        return fault("room", "there is none".to_owned(), "write at least one, or name a `base`");
+    }
+    for room in &plan.rooms {
+        let at = format!("room `{}`: rects_m", room.id.id());
+        if room.rects_m.is_empty() {
+            return fault(&at, "there is none".to_owned(), "write [west, south, east, north]");
+        }
+        if let Some(rect) = room.rects_m.iter().find(|rect| rect[2] <= rect[0] || rect[3] <= rect[1]) {
+            return fault(&at, format!("{rect:?} has no inside"), "write [west, south, east, north]");
+        }
+    }
+    let [west, south, east, north] = plan.bounds_m();
+    if east - west > LONGEST_PLAN_M || north - south > LONGEST_PLAN_M {
+        let reason = format!("the plan is {} m by {} m", east - west, north - south);
+        return fault("room", reason, &format!("at most {LONGEST_PLAN_M} m along each side"));
+    }
+    if !(2.0..=6.0).contains(&plan.wall_height_m) {
+        return fault("wall_height_m", format!("{} m", plan.wall_height_m), "from 2 to 6 m");
+    }
+    if plan.placements.len() > MOST_PLACEMENTS {
+        return fault("placement", format!("{} things", plan.placements.len()), &format!("at most {MOST_PLACEMENTS}"));
+    }
+    let is_scale = |factor: &f32| *factor > 0.0 && *factor <= LARGEST_SCALE;
+    match plan.placements.iter().find(|placement| !placement.scale.iter().all(is_scale)) {
+        Some(placement) => {
+            let at = format!("placement `{}`: scale", placement.instance);
+            fault(&at, format!("{:?} is no scale", placement.scale), &format!("above 0, and at most {LARGEST_SCALE}"))
+        }
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,150 @@
+#![allow(clippy::unwrap_used)]
+
+use super::*;
+use crate::{layout::RoomId, mission::read_mission};
+
+fn file(path: &str, text: &str) -> PackFile {
+    PackFile { path: path.to_owned(), bytes: text.as_bytes().to_vec() }
+}
+
+/// The template's files, with these in the place of those of the same path, or beside them.
+fn files(name: &str, more: &[(&str, &str)]) -> Vec<PackFile> {
+    let kept = template(name).into_iter().filter(|(path, _)| more.iter().all(|(other, _)| other != path));
+    let kept: Vec<PackFile> = kept.map(|(path, text)| file(path, &text)).collect();
+    kept.into_iter().chain(more.iter().map(|(path, text)| file(path, text))).collect()
+}
+
+fn world(packs: Vec<Vec<PackFile>>) -> Result<WorldData, PackError> {
+    let folders = ["first", "second", "third"];
+    let packs = packs.into_iter().zip(folders).map(|(files, folder)| WorldPack::parse(folder, files));
+    WorldData::layered(packs.collect::<Result<_, _>>()?)
+}
+
+const HEAD_OF_OTHER: &str = "name = \"other\"\nversion = \"1\"\nlicence = \"MIT\"\ndescription = \"Another one\"\n";
+
+#[test]
+fn the_template_is_a_world_without_faults() {
+    let world = world(vec![files("my-lab", &[])]).unwrap();
+    let catalog = world.catalog();
+    assert_eq!(catalog.packs()[0].name, "my-lab");
+    assert!(catalog.find("Wrench_01").is_some() && catalog.table().is_device("Degreaser_01"));
+    let plan = Layout::find("Workshop", catalog).unwrap();
+    let faults = plan.faults(catalog);
+    assert!(faults.is_empty(), "{faults:?}");
+    assert_eq!(RoomId::SmallOffice.name_in(catalog), "workshop");
+    assert_eq!(RoomId::Hallway.name_in(catalog), "hallway");
+    for (name, text) in world.packs()[0].missions() {
+        let checked = read_mission(name, text, catalog).unwrap();
+        assert!(checked.warnings.is_empty(), "{:?}", checked.warnings);
+        assert_eq!(checked.mission.layout, "Workshop");
+    }
+    assert!(world.missions().any(|(name, _)| name == "clean_wrench.json"));
+}
+
+#[test]
+fn without_packs_it_is_what_is_built_in() {
+    let (layered, builtin) = (world(vec![]).unwrap(), Catalog::builtin());
+    assert_eq!(layered.catalog().classes(), builtin.classes());
+    assert_eq!(Layout::ids(layered.catalog()), Layout::builtin_ids());
+}
+
+#[test]
+fn a_later_pack_may_add_to_an_earlier_one() {
+    let spare = "base = \"Workshop\"\nplacement = [{ instance = \"TrashCan_01_1\", room = \"Hallway\", at_m = [0.4, 7.6, 0.0] }]";
+    let other = vec![file("world.toml", HEAD_OF_OTHER), file("layouts/Spare.toml", spare)];
+    let world = world(vec![files("my-lab", &[]), other]).unwrap();
+    let plan = Layout::find("Spare", world.catalog()).unwrap();
+    assert!(plan.placement("TrashCan_01_1").is_some() && plan.placement("Degreaser_01_1").is_some());
+}
+
+#[test]
+fn the_hash_follows_from_all_files_and_not_from_their_order() {
+    let digest = |files: Vec<PackFile>| WorldPack::parse("pack", files).unwrap().id().digest.clone();
+    let plain = digest(files("my-lab", &[]));
+    let mut turned = files("my-lab", &[]);
+    turned.reverse();
+    assert_eq!(digest(turned), plain);
+    assert_ne!(digest(files("my-lab", &[("README.md", "a note")])), plain);
+    assert_ne!(digest(files("my-lab", &[("missions/clean_wrench.script", "stop")])), plain);
+    assert_ne!(digest(files("your-lab", &[])), plain);
+}
+
+#[test]
+fn what_is_wrong_is_named_with_its_file_its_place_and_what_would_be_right() {
+    let head = |line: &str| format!("{HEAD_OF_OTHER}{line}\n");
+    let object = |line: &str| {
+        let class = "[[object]]\nid = \"Box_99\"\nname = \"Crate\"\ncolor = \"red\"\nmodel = \"Wrench_01\"\n";
+        format!("{class}{line}\n")
+    };
+    let many = format!("[[model]]\nid = \"M\"\npart = [{}]", "{ shape = \"sphere\", radii = [1, 1, 1], repeat = { count = 5000, step = [0, 0, 0] } }");
+    let huge = "room = [{ id = \"Hallway\", rects_m = [[0.0, 0.0, 5000.0, 2.0]], floor = { material = \"tile\", color = \"#ffffff\" }, wall = { material = \"plain\", color = \"#eeeeee\" }, circuit = 1 }]";
+    let itself = "base = \"Workshop\"\nplacement = [{ instance = \"Desk_01_1\", room = \"SmallOffice\", on = \"Degreaser_01_1\" }, { instance = \"Degreaser_01_1\", room = \"SmallOffice\", on = \"Desk_01_1\" }]";
+    let cases: &[(&str, String, &[&str])] = &[
+        ("../world.toml", String::new(), &["first: ", "`../world.toml`", "within the pack"]),
+        ("/etc/objects.toml", String::new(), &["within the pack"]),
+        ("objects/..\\x.toml", String::new(), &["within the pack"]),
+        ("object/things.toml", String::new(), &["first/object/things.toml: ", "put it into objects"]),
+        ("world.toml", "name = 1".to_owned(), &["first/world.toml: ", "name = 1"]),
+        ("world.toml", HEAD_OF_OTHER.replace("other", "../other"), &["first/world.toml: name: ", "small letter"]),
+        ("world.toml", HEAD_OF_OTHER.replace("MIT", ""), &["first/world.toml: licence: "]),
+        ("world.toml", head("[[room]]\nid = \"Attic\"\nname = \"attic\""), &["room[0].id: ", "`Attic`", "BreakRoom"]),
+        ("world.toml", head("[[room]]\nid = \"Lab1\"\nname = \"<b>\""), &["room[0]: ", "small letters"]),
+        ("objects/more.toml", object("mass_kg = nan\nsize_m = [1, 1, 1]"), &["more.toml: object[0].mass_kg: ", "NaN"]),
+        ("objects/more.toml", object("mass_kg = 1\nsize_m = [inf, 1, 1]"), &["object[0].size_m[0]: ", "inf"]),
+        ("objects/more.toml", object("mass_kg = 1\nsize_m = [90, 1, 1]"), &["object `Box_99`: size_m: ", "at most 10 m"]),
+        ("objects/more.toml", object("mass_kg = 0\nsize_m = [1, 1, 1]"), &["object `Box_99`: mass_kg: "]),
+        (
+            "objects/more.toml",
+            object("mass_kg = 1\nsize_m = [1, 1, 1]\nreceptacle = { surface = [{ center_m = [0, 0, 1], size_m = [1, 1], anchors = [900, 900], clearance_m = 1 }] }"),
+            &["object `Box_99`: receptacle: ", "from 1 to 32"],
+        ),
+        ("objects/more.toml", object("mass_kg = 1\nsize_m = [1, 1, 1]").replace("Box_99", "Bowl_01"), &["more.toml: `Bowl_01`", "things.toml"]),
+        ("objects/more.toml", object("mass_kg = 1\nsize_m = [1, 1, 1]").replace("model = \"Wrench_01\"", ""), &["`Box_99` has no model"]),
+        ("models/more.toml", many, &["model `M`: part: ", "5000 shapes"]),
+        ("models/more.toml", "[[model]]\nid = \"Wrench_01\"\npart = [{ shape = \"sphere\", radii = [1, 1, 1] }]".to_owned(), &["first/models/things.toml", "first/models/more.toml", "`Wrench_01`"]),
+        ("table/more.toml", "[[device]]\nclass = [\"Microwave_01\"]\n".to_owned(), &["first/table/more.toml: ", "the built-in devices.toml"]),
+        ("table/more.toml", "[[device]]\nclass = [\"Nothing_01\"]\n".to_owned(), &["`Nothing_01` is no class"]),
+        ("table/more.toml", "[times]\nwork_s = 1\nmoment_s = 2\n".to_owned(), &["first/table/more.toml: times: "]),
+        ("layouts/OfficeLayout1.toml", "base = \"Workshop\"".to_owned(), &["the built-in OfficeLayout1.toml", "first/layouts/OfficeLayout1.toml"]),
+        ("layouts/Circle.toml", "base = \"Circle\"".to_owned(), &["first/layouts/Circle.toml: its bases lead back"]),
+        ("layouts/More.toml", "base = \"../Workshop\"".to_owned(), &["there is no layout `../Workshop`"]),
+        ("layouts/More.toml", itself.to_owned(), &["stands on itself"]),
+        ("layouts/More.toml", huge.to_owned(), &["first/layouts/More.toml: room: ", "at most 100 m"]),
+        ("layouts/More.toml", String::new(), &["first/layouts/More.toml: room: there is none"]),
+        ("layouts/Workshop_mirror.toml", "base = \"Workshop\"".to_owned(), &["first/layouts/Workshop_mirror.toml: ", "another name"]),
+        ("missions/make_cereal.json", "{}".to_owned(), &["the built-in make_cereal.json", "first/missions/make_cereal.json"]),
+    ];
+    for (path, text, expected) in cases {
+        let error = world(vec![files("my-lab", &[(*path, text.as_str())])]).unwrap_err().to_string();
+        for part in *expected {
+            assert!(error.contains(part), "{path}: {part:?} is not in {error}");
+        }
+    }
+}
+
+#[test]
+fn two_packs_with_one_id_are_refused_with_both_files() {
+    let check = |more: &[PackFile], expected: &[&str]| {
+        let error = world(vec![files("my-lab", &[]), more.to_vec()]).unwrap_err().to_string();
+        for part in expected {
+            assert!(error.contains(part), "{part:?} is not in {error}");
+        }
+    };
+    let head = file("world.toml", HEAD_OF_OTHER);
+    check(&files("my-lab", &[]), &["first/world.toml", "second/world.toml", "`my-lab`"]);
+    check(&files("other", &[]), &["first/world.toml", "second/world.toml", "`SmallOffice`"]);
+    let plan = file("layouts/Workshop.toml", "base = \"OfficeLayout1\"");
+    check(&[head.clone(), plan], &["first/layouts/Workshop.toml", "second/layouts/Workshop.toml"]);
+    let mission = file("missions/clean_wrench.json", "{}");
+    check(&[head, mission], &["first/missions/clean_wrench.json", "second/missions/clean_wrench.json"]);
+}
+
+#[test]
+fn bytes_that_are_no_text_and_folders_without_a_head_are_refused() {
+    let mut broken = files("my-lab", &[]);
+    broken.push(PackFile { path: "objects/more.toml".to_owned(), bytes: vec![b'#', 0xff] });
+    let error = world(vec![broken]).unwrap_err().to_string();
+    assert!(error.contains("first/objects/more.toml: byte 1: no UTF-8"), "{error}");
+    let error = world(vec![vec![]]).unwrap_err().to_string();
+    assert!(error.contains("first: there is no `world.toml`"), "{error}");
+}

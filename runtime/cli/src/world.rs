@@ -1,0 +1,62 @@
+//! World packs that a command is given: which folders, and that they are still what they were.
+
+mod folder;
+
+use std::{ffi::OsString, path::PathBuf};
+
+use cohabit_cdf::WorldData;
+
+use crate::failure::bad_input;
+
+/// World packs beside what is built in.
+#[derive(clap::Args, Clone, Debug, Default)]
+pub struct WorldPacks {
+    /// A folder with a world pack: floor plans, objects, devices and missions beside the built-in ones; as often as needed. A
+    /// later one may add to an earlier one
+    #[arg(long = "world", value_name = "FOLDER")]
+    world_folders: Vec<PathBuf>,
+    /// The hashes that these packs have, in their order
+    #[arg(long = "world-hash", hide = true, value_name = "HASH")]
+    world_hashes: Vec<String>,
+}
+
+impl WorldPacks {
+    /// Reads them all.
+    pub fn read(&self) -> anyhow::Result<WorldData> {
+        if self.world_folders.is_empty() {
+            return Ok(WorldData::builtin());
+        }
+        let packs = self.world_folders.iter().map(|path| folder::read(path)).collect::<anyhow::Result<Vec<_>>>()?;
+        for (pack, hash) in packs.iter().zip(&self.world_hashes) {
+            if pack.id().digest != *hash {
+                // A process that is started again must not play on in another world.
+                let message = format!(
+                    "the world pack {} has changed since the session began, when its hash was {hash}: put its files back",
+                    pack.id()
+                );
+                return Err(bad_input(message));
+            }
+        }
+        WorldData::layered(packs).map_err(bad_input)
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.world_folders.is_empty()
+    }
+
+    /// The same as arguments of another process of this session, which then plays in the very same `world` or not at all.
+    pub fn arguments(&self, world: &WorldData) -> Vec<OsString> {
+        let hashes = world.packs().iter().map(|pack| format!("--world-hash={}", pack.id().digest).into());
+        self.folders().chain(hashes).collect()
+    }
+
+    /// The same folders as arguments of another command.
+    pub fn folders(&self) -> impl Iterator<Item = OsString> + '_ {
+        self.world_folders.iter().map(|folder| {
+            let mut argument = OsString::from("--world=");
+            argument.push(folder);
+            argument
+        })
+    }
+}

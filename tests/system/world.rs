@@ -1,0 +1,66 @@
+//! A world pack from its first file to a replay.
+
+use std::path::Path;
+
+use cohabit_tests::{Scratch, run};
+
+use crate::COHABIT;
+
+/// What a command prints, and its exit code.
+fn told(arguments: &[&str]) -> (String, Option<i32>) {
+    let output = run(COHABIT, arguments).unwrap();
+    let text = String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr);
+    (text, output.status.code())
+}
+
+#[test]
+fn a_new_world_is_checked_played_and_replayed_with_its_pack_alone() {
+    let scratch = Scratch::new("world");
+    let (into, logs) = (scratch.path("packs"), scratch.path("logs"));
+    std::fs::create_dir_all(&into).unwrap();
+    let (text, code) = told(&["new", "world", "my-lab", "--into", &into]);
+    assert_eq!(code, Some(0), "{text}");
+    let pack = format!("{into}/my-lab");
+    let (text, code) = told(&["check", "--world", &pack]);
+    assert_eq!(code, Some(0), "{text}");
+    assert!(text.contains("2 of 2 floor plans and missions are playable"), "{text}");
+
+    let mission = format!("{pack}/missions/clean_wrench.json");
+    let how = ["--understanding", "fast", "--knows", "everything", "--workers", "1"];
+    let what = ["eval", mission.as_str(), "--world", pack.as_str(), "--record", logs.as_str()];
+    let (text, code) = told(&[what.as_slice(), how.as_slice()].concat());
+    assert_eq!(code, Some(0), "{text}");
+    assert!(!text.contains("not solved"), "{text}");
+
+    let log = format!("{logs}/clean_wrench.mcap");
+    assert!(Path::new(&log).is_file(), "{text}");
+    let (text, code) = told(&["replay", &log, "--world", &pack]);
+    assert_eq!(code, Some(0), "{text}");
+    assert!(text.contains("no tick differs"), "{text}");
+    let (text, code) = told(&["replay", &log]);
+    assert_eq!(code, Some(2), "{text}");
+    assert!(text.contains("`my-lab` 0.1.0 with hash"), "{text}");
+}
+
+#[test]
+fn what_is_no_world_is_refused() {
+    let scratch = Scratch::new("no-world");
+    let into = scratch.path("packs");
+    std::fs::create_dir_all(&into).unwrap();
+    for name in ["../x", "X", ""] {
+        let (text, code) = told(&["new", "world", name, "--into", &into]);
+        assert_eq!(code, Some(2), "{text}");
+    }
+    let (text, code) = told(&["check", "--world", &into]);
+    assert_eq!(code, Some(2), "{text}");
+    assert!(text.contains("there is no `world.toml`"), "{text}");
+    let (text, code) = told(&["new", "world", "twice", "--into", &into]);
+    assert_eq!(code, Some(0), "{text}");
+    let (text, code) = told(&["new", "world", "twice", "--into", &into]);
+    assert_eq!(code, Some(2), "{text}");
+    assert!(text.contains("exists already"), "{text}");
+    let pack = format!("{into}/twice");
+    let (text, code) = told(&["check", "--world", &pack, "--world", &pack]);
+    assert_eq!(code, Some(2), "{text}");
+    assert!(text.contains("the world pack `twice` is in "), "{text}");
+}
