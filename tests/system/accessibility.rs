@@ -113,7 +113,8 @@ fn an_enlarged_page_can_be_scrolled_to_all_of_it() {
     // Nothing moves by itself for who asked for that.
     let calm = json!({ "features": [{ "name": "prefers-reduced-motion", "value": "reduce" }] });
     tab.call("Emulation.setEmulatedMedia", &calm).unwrap();
-    let moving = "document.getAnimations().filter((one) => one.effect.getComputedTiming().iterations === Infinity).length";
+    let moving =
+        "document.getAnimations().filter((one) => one.effect.getComputedTiming().iterations === Infinity).length";
     assert_eq!(tab.evaluate(moving).unwrap(), json!(0));
     drop((tab, browser));
     play.end().unwrap();

@@ -76,7 +76,10 @@ fn what_is_wrong_is_named_with_its_file_its_place_and_what_would_be_right() {
         let class = "[[object]]\nid = \"Box_99\"\nname = \"Crate\"\ncolor = \"red\"\nmodel = \"Wrench_01\"\n";
         format!("{class}{line}\n")
     };
-    let many = format!("[[model]]\nid = \"M\"\npart = [{}]", "{ shape = \"sphere\", radii = [1, 1, 1], repeat = { count = 5000, step = [0, 0, 0] } }");
+    let many = format!(
+        "[[model]]\nid = \"M\"\npart = [{}]",
+        "{ shape = \"sphere\", radii = [1, 1, 1], repeat = { count = 5000, step = [0, 0, 0] } }"
+    );
     let huge = "room = [{ id = \"Hallway\", rects_m = [[0.0, 0.0, 5000.0, 2.0]], floor = { material = \"tile\", color = \"#ffffff\" }, wall = { material = \"plain\", color = \"#eeeeee\" }, circuit = 1 }]";
     let itself = "base = \"Workshop\"\nplacement = [{ instance = \"Desk_01_1\", room = \"SmallOffice\", on = \"Degreaser_01_1\" }, { instance = \"Degreaser_01_1\", room = \"SmallOffice\", on = \"Desk_01_1\" }]";
     let cases: &[(&str, String, &[&str])] = &[
@@ -91,28 +94,62 @@ fn what_is_wrong_is_named_with_its_file_its_place_and_what_would_be_right() {
         ("world.toml", head("[[room]]\nid = \"Lab1\"\nname = \"<b>\""), &["room[0]: ", "small letters"]),
         ("objects/more.toml", object("mass_kg = nan\nsize_m = [1, 1, 1]"), &["more.toml: object[0].mass_kg: ", "NaN"]),
         ("objects/more.toml", object("mass_kg = 1\nsize_m = [inf, 1, 1]"), &["object[0].size_m[0]: ", "inf"]),
-        ("objects/more.toml", object("mass_kg = 1\nsize_m = [90, 1, 1]"), &["object `Box_99`: size_m: ", "at most 10 m"]),
+        (
+            "objects/more.toml",
+            object("mass_kg = 1\nsize_m = [90, 1, 1]"),
+            &["object `Box_99`: size_m: ", "at most 10 m"],
+        ),
         ("objects/more.toml", object("mass_kg = 0\nsize_m = [1, 1, 1]"), &["object `Box_99`: mass_kg: "]),
         (
             "objects/more.toml",
-            object("mass_kg = 1\nsize_m = [1, 1, 1]\nreceptacle = { surface = [{ center_m = [0, 0, 1], size_m = [1, 1], anchors = [900, 900], clearance_m = 1 }] }"),
+            object(
+                "mass_kg = 1\nsize_m = [1, 1, 1]\nreceptacle = { surface = [{ center_m = [0, 0, 1], size_m = [1, 1], anchors = [900, 900], clearance_m = 1 }] }",
+            ),
             &["object `Box_99`: receptacle: ", "from 1 to 32"],
         ),
-        ("objects/more.toml", object("mass_kg = 1\nsize_m = [1, 1, 1]").replace("Box_99", "Bowl_01"), &["more.toml: `Bowl_01`", "things.toml"]),
-        ("objects/more.toml", object("mass_kg = 1\nsize_m = [1, 1, 1]").replace("model = \"Wrench_01\"", ""), &["`Box_99` has no model"]),
+        (
+            "objects/more.toml",
+            object("mass_kg = 1\nsize_m = [1, 1, 1]").replace("Box_99", "Bowl_01"),
+            &["more.toml: `Bowl_01`", "things.toml"],
+        ),
+        (
+            "objects/more.toml",
+            object("mass_kg = 1\nsize_m = [1, 1, 1]").replace("model = \"Wrench_01\"", ""),
+            &["`Box_99` has no model"],
+        ),
         ("models/more.toml", many, &["model `M`: part: ", "5000 shapes"]),
-        ("models/more.toml", "[[model]]\nid = \"Wrench_01\"\npart = [{ shape = \"sphere\", radii = [1, 1, 1] }]".to_owned(), &["first/models/things.toml", "first/models/more.toml", "`Wrench_01`"]),
-        ("table/more.toml", "[[device]]\nclass = [\"Microwave_01\"]\n".to_owned(), &["first/table/more.toml: ", "the built-in devices.toml"]),
+        (
+            "models/more.toml",
+            "[[model]]\nid = \"Wrench_01\"\npart = [{ shape = \"sphere\", radii = [1, 1, 1] }]".to_owned(),
+            &["first/models/things.toml", "first/models/more.toml", "`Wrench_01`"],
+        ),
+        (
+            "table/more.toml",
+            "[[device]]\nclass = [\"Microwave_01\"]\n".to_owned(),
+            &["first/table/more.toml: ", "the built-in devices.toml"],
+        ),
         ("table/more.toml", "[[device]]\nclass = [\"Nothing_01\"]\n".to_owned(), &["`Nothing_01` is no class"]),
         ("table/more.toml", "[times]\nwork_s = 1\nmoment_s = 2\n".to_owned(), &["first/table/more.toml: times: "]),
-        ("layouts/OfficeLayout1.toml", "base = \"Workshop\"".to_owned(), &["the built-in OfficeLayout1.toml", "first/layouts/OfficeLayout1.toml"]),
+        (
+            "layouts/OfficeLayout1.toml",
+            "base = \"Workshop\"".to_owned(),
+            &["the built-in OfficeLayout1.toml", "first/layouts/OfficeLayout1.toml"],
+        ),
         ("layouts/Circle.toml", "base = \"Circle\"".to_owned(), &["first/layouts/Circle.toml: its bases lead back"]),
         ("layouts/More.toml", "base = \"../Workshop\"".to_owned(), &["there is no layout `../Workshop`"]),
         ("layouts/More.toml", itself.to_owned(), &["stands on itself"]),
         ("layouts/More.toml", huge.to_owned(), &["first/layouts/More.toml: room: ", "at most 100 m"]),
         ("layouts/More.toml", String::new(), &["first/layouts/More.toml: room: there is none"]),
-        ("layouts/Workshop_mirror.toml", "base = \"Workshop\"".to_owned(), &["first/layouts/Workshop_mirror.toml: ", "another name"]),
-        ("missions/make_cereal.json", "{}".to_owned(), &["the built-in make_cereal.json", "first/missions/make_cereal.json"]),
+        (
+            "layouts/Workshop_mirror.toml",
+            "base = \"Workshop\"".to_owned(),
+            &["first/layouts/Workshop_mirror.toml: ", "another name"],
+        ),
+        (
+            "missions/make_cereal.json",
+            "{}".to_owned(),
+            &["the built-in make_cereal.json", "first/missions/make_cereal.json"],
+        ),
     ];
     for (path, text, expected) in cases {
         let error = world(vec![files("my-lab", &[(*path, text.as_str())])]).unwrap_err().to_string();

@@ -265,7 +265,9 @@ const fn remedy(fault: &LayoutFault) -> &'static str {
         LayoutFault::Unreachable { .. } => "leave a walkway of 0.8 m that leads from the hallway to it",
         LayoutFault::Crowded { .. } => "leave half of its places free for missions",
         LayoutFault::LooseLink { .. } => "name what is placed in the same room",
-        LayoutFault::Viewpoint { .. } => "give each room viewpoints 1 to 8, 0.31 m or more away from walls and furniture",
+        LayoutFault::Viewpoint { .. } => {
+            "give each room viewpoints 1 to 8, 0.31 m or more away from walls and furniture"
+        }
         LayoutFault::NotePlaces { .. } => "give the room four places, 0.07 m from the middle of its walls",
     }
 }

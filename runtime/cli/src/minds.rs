@@ -57,9 +57,7 @@ impl MindKind {
             Self::Dialog => Some(Box::new(PlanFollower::new(body))),
             Self::Random => Some(Box::new(Random::new(seed).knowing(catalog))),
             Self::Helper => Some(Box::new(Helper::new(body, seed).knowing(catalog))),
-            Self::Scripted => {
-                Some(Box::new(Scripted::new(body, read_script(script, catalog)?).knowing(catalog)))
-            }
+            Self::Scripted => Some(Box::new(Scripted::new(body, read_script(script, catalog)?).knowing(catalog))),
             Self::Expert | Self::Pedestrian => None,
         })
     }

@@ -98,9 +98,8 @@ fn interaction(own: &Walker, other: &Walker) -> Vec2 {
 
 /// What the nearest of what stands does, m/s².
 fn of_walls(own: &Walker, points: &[Vec2]) -> Vec2 {
-    let nearest = points.iter().min_by(|one, other| {
-        one.distance_squared(own.at_m).total_cmp(&other.distance_squared(own.at_m))
-    });
+    let nearest =
+        points.iter().min_by(|one, other| one.distance_squared(own.at_m).total_cmp(&other.distance_squared(own.at_m)));
     nearest.map_or(Vec2::ZERO, |point| {
         let away = own.at_m - *point;
         away.normalize_or_zero() * (WALL_M_S2 * libm::expf(-away.length() / WALL_M))

@@ -1,6 +1,3 @@
-    let (at, mut from) = way
-        .windows(2)
-        .enumerate()
 //! What one pedestrian decides: where to go next by its schedule, and how to get there.
 
 use std::collections::BTreeMap;
@@ -37,14 +34,7 @@ const REACHED_M: f32 = 0.35;
 /// Who meets somebody stands so far away, m: within personal space, out of intimate space.
 const MEETING_M: f32 = 1.2;
 const FACES_RAD: f32 = 0.15;
-/// The way is         if self.planned.is_some_and(|planned| tick < planned + REPLAN_TICKS) {
-            return self.halt();
-        }
-        // Elsewhere in the same room there may be a way.
-        (self.planned, self.goal) = (Some(tick), None);
-        self.way.clear();
-        self.failures += 1;
-        if self.failures anew after so long, and after so long again where there is none.
+/// The way is looked for anew after so long, and after so long again where there is none.
 const REPLAN_TICKS: u64 = 2 * TICKS_PER_SECOND;
 /// Who finds no way so often does the next thing.
 const MOST_FAILURES: u32 = 5;
@@ -244,12 +234,13 @@ impl Person {
 
     /// There is no way, or nowhere to go: it tries again, or gives up.
     fn fail(&mut self, tick: u64) -> Option<Action> {
-        if self.planned.is_none_or(|planned| tick >= planned) {
-            self.failures += 1;
-            // Elsewhere in the same room there may be a way.
-            self.goal = None;
-            self.planned = Some(tick);
+        if self.planned.is_some_and(|planned| tick < planned + REPLAN_TICKS) {
+            return self.halt();
         }
+        // Elsewhere in the same room there may be a way.
+        (self.planned, self.goal) = (Some(tick), None);
+        self.way.clear();
+        self.failures += 1;
         if self.failures >= MOST_FAILURES {
             tracing::warn!("person {} finds no way to where they are to go, and does the next thing", self.body);
             self.finish(tick);
@@ -275,8 +266,9 @@ impl Person {
 
 /// Behind a door that a way leads through, on the way.
 fn beyond(way: &[Vec2], door: Vec2) -> Option<Vec2> {
-    let stretches = || way.windows(2).enumerate();
-    let (at, mut from) = stretches()
+    let (at, mut from) = way
+        .windows(2)
+        .enumerate()
         .map(|(at, pair)| (at, nearest_on(pair[0], pair[1], door)))
         .find(|(_, point)| point.distance(door) < DOOR_ON_WAY_M)?;
     let mut left_m = DOOR_BEYOND_M;

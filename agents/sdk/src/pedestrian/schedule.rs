@@ -111,7 +111,8 @@ impl Schedule {
     /// [`ScheduleError`] names the file, the entry, what is wrong and what would be right.
     pub fn parse(file: &str, text: &str) -> Result<Self, ScheduleError> {
         let read: Result<Written, _> = toml::from_str(text);
-        let written = read.map_err(|source| ScheduleError::Syntax { file: file.to_owned(), source: Box::new(source) })?;
+        let written =
+            read.map_err(|source| ScheduleError::Syntax { file: file.to_owned(), source: Box::new(source) })?;
         let count = written.entry.len();
         if !(1..=MOST_ENTRIES).contains(&count) {
             return Err(ScheduleError::Count { file: file.to_owned(), count });
