@@ -78,6 +78,7 @@ fn everybody_can_use_the_page_of_a_session() {
     assert_eq!(tab.evaluate(log).unwrap(), json!(["log", "polite"]));
 
     // A card keeps the focus while it is open, and gives it back.
+    tab.evaluate("window.confirm = () => true").unwrap();
     tab.evaluate("{ const open = document.querySelector('#survey-open'); open.focus(); open.click(); }").unwrap();
     tab.wait_until("document.querySelector('#survey').open").unwrap();
     check(&mut tab, "a questionnaire");

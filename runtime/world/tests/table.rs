@@ -228,7 +228,12 @@ fn next_goal(state: &SymbolicState, last: Option<ObjectId>, chance: &mut Chance)
         "Knife_01" => has(id, Property::Cuttable),
         "CoffeeBeans_01" => state.class(id).id == "CoffeeMaker_01",
         "Cereal_Box_01" => state.class(id).id == "Bowl_01",
-        _ => state.class(id).id == table.basin() || (has(held, Property::Fillable) && has(id, Property::Fillable)),
+        _ => {
+            let fills = table.affords(ActionKind::Fill, state.class(id), Some(state.class(held)));
+            fills
+                || state.class(id).id == table.basin()
+                || (has(held, Property::Fillable) && has(id, Property::Fillable))
+        }
     });
     let gates = that(&|id| state.gate(id).is_some() && state.is(id, StateFlag::Toggled));
     let pools = [keyed, machines, suits, gates, that(&|id| has(id, Property::Receptacle))];
@@ -256,7 +261,9 @@ fn purpose(state: &SymbolicState, goal: ObjectId) -> Vec<(ActionKind, ObjectId)>
             ]);
             steps.extend([(Kind::Fill, goal), (Kind::Place, goal), (Kind::Clean, held), (Kind::Fill, held)]);
         }
-        Some(_) => steps.extend([(Kind::Break, goal), (Kind::Pour, goal), (Kind::Open, goal), (Kind::Place, goal)]),
+        Some(_) => {
+            steps.extend([Kind::Break, Kind::Pour, Kind::Fill, Kind::Open, Kind::Place].map(|kind| (kind, goal)))
+        }
     }
     steps.extend(has(Property::Openable).then_some((Kind::Close, goal)));
     steps.extend(has(Property::Toggleable).then_some((Kind::Toggle, goal)));

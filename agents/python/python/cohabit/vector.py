@@ -154,10 +154,11 @@ class VectorEnv(_Base[Observation, npt.NDArray[np.int64], npt.NDArray[Any]]):
             return observation, rewards, terminated, truncated, infos
         final_obs, final_info = self._told(statuses, details, endings)
         last: dict[str, Any] = {}
-        for place in np.flatnonzero(done):
+        over = [int(place) for place in np.flatnonzero(done)]
+        for place in over:
             one = {"final_obs": _row(final_obs, place), "final_info": _row_of_infos(final_info, place)}
-            last = self._add_info(last, one, int(place))
-        anew = [self._begin(int(place), None, {}) for place in np.flatnonzero(done)]
+            last = self._add_info(last, one, place)
+        anew = [self._begin(place, None, {}) for place in over]
         again = self._turn([None] * self.num_envs, anew)
         # What came of the commands of worlds that go on is still to be told.
         statuses, details, endings = (

@@ -30,7 +30,11 @@ fn sources(part: PagePart) -> Vec<(String, String)> {
 /// The keys that a page or a script takes texts by.
 fn keys(name: &str, source: &str) -> BTreeSet<String> {
     let between = |begin: &str, end: char| -> Vec<String> {
-        source.split(begin).skip(1).filter_map(|rest| rest.split_once(end)).map(|(key, _)| key.to_owned()).collect()
+        // `getContext("2d")` takes none.
+        let is_call = |at: usize| !source[..at].ends_with(char::is_alphanumeric);
+        let calls = source.match_indices(begin).filter(|(at, _)| begin == "{" || is_call(*at));
+        let keys = calls.filter_map(|(at, _)| source[at + begin.len()..].split_once(end));
+        keys.map(|(key, _)| key.to_owned()).collect()
     };
     // Where something else is called `text`, scripts import it as `words`.
     let found = if name.ends_with(".html") {
