@@ -16,6 +16,7 @@ use serde_json::Value;
 /// Each package, its level, and the heavy dependencies that it alone may name.
 const LEVELS: &[(&str, u8, &[&str])] = &[
     ("cohabit-cdf", 0, &["serde_json", "schemars"]),
+    ("cohabit-durable", 0, &[]),
     ("cohabit-parquet", 0, &["parquet"]),
     ("cohabit-world", 1, &["rapier3d", "polyanya"]),
     ("cohabit-bus", 1, &["iceoryx2"]),
@@ -56,6 +57,7 @@ const SHARED: &[(&str, &[&str])] = &[
             "cohabit-arena",
             "cohabit-benchmark",
             "cohabit-dialog",
+            "cohabit-durable",
             "cohabit-eval",
             "cohabit-convert",
             "cohabit-demonstrate",

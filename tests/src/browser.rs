@@ -99,7 +99,7 @@ impl Browser {
         Ok(Self { child, profile, socket })
     }
 
-    /// Opens a page of that size.
+    /// Opens a page of that size, and waits until it is read.
     ///
     /// # Errors
     /// When the browser does not answer.
@@ -116,6 +116,7 @@ impl Browser {
             tab.call(domain, &json!({}))?;
         }
         tab.call("Page.navigate", &json!({ "url": address }))?;
+        tab.wait_until("location.href !== 'about:blank' && document.readyState !== 'loading'")?;
         Ok(tab)
     }
 }

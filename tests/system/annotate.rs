@@ -232,7 +232,7 @@ fn write(tab: &mut Tab, text: &str) {
 }
 
 fn wait_for_title(tab: &mut Tab, title: &str) {
-    tab.wait_until(&format!("document.querySelector('#title')?.textContent === '{title}'")).unwrap();
+    tab.wait_until(&format!("document.querySelector('#title').textContent === '{title}'")).unwrap();
 }
 
 /// Presses a key in the element that has the focus.

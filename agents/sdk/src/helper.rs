@@ -3,7 +3,7 @@
 mod roam;
 mod rules;
 
-use std::collections::BTreeMap;
+use std::{collections::BTreeMap, sync::Arc};
 
 use cohabit_bus::message::{BodyRecord, DialogKind, DialogMessage, NONE};
 use cohabit_cdf::{
@@ -47,7 +47,7 @@ const FLOOR_M: f32 = 0.15;
 /// people. It knows what its own camera has shown it, and nothing else: it goes from room to room to see how things are.
 pub struct Helper {
     body: u32,
-    catalog: Catalog,
+    catalog: Arc<Catalog>,
     memory: Memory,
     errand: Errand,
     rounds: Rounds,
@@ -88,9 +88,15 @@ impl Helper {
     /// A helper with that body; its rounds follow from `seed`.
     #[must_use]
     pub fn new(body: u32, seed: u64) -> Self {
+        Self::with_catalog(Arc::new(Catalog::builtin()), body, seed)
+    }
+
+    /// The same in a world with this catalogue.
+    #[must_use]
+    pub fn with_catalog(catalog: Arc<Catalog>, body: u32, seed: u64) -> Self {
         Self {
             body,
-            catalog: Catalog::builtin(),
+            catalog,
             memory: Memory::default(),
             errand: Errand::default(),
             rounds: Rounds::new(seed),
@@ -102,12 +108,6 @@ impl Helper {
             said_at: None,
             tick: 0,
         }
-    }
-
-    /// The same in a world with this catalogue.
-    #[must_use]
-    pub fn knowing(self, catalog: &Catalog) -> Self {
-        Self { catalog: catalog.clone(), ..self }
     }
 
     fn live(&mut self, now: &Now<'_>, deeds: &mut Vec<Deed>) {

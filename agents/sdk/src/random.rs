@@ -63,21 +63,21 @@ impl Random {
     /// An agent whose choices follow from `seed`.
     #[must_use]
     pub fn new(seed: u64) -> Self {
+        Self::with_catalog(Arc::new(Catalog::builtin()), seed)
+    }
+
+    /// The same in a world with this catalogue.
+    #[must_use]
+    pub fn with_catalog(catalog: Arc<Catalog>, seed: u64) -> Self {
         Self {
             rng: ChaCha8Rng::seed_from_u64(seed),
-            catalog: Arc::new(Catalog::builtin()),
+            catalog,
             memory: Memory::default(),
             errand: Errand::default(),
             commands: true,
             pauses_until: 0,
             tick: 0,
         }
-    }
-
-    /// The same in a world with this catalogue.
-    #[must_use]
-    pub fn knowing(self, catalog: &Arc<Catalog>) -> Self {
-        Self { catalog: Arc::clone(catalog), ..self }
     }
 
     /// A number below `count`.

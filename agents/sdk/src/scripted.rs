@@ -1,5 +1,7 @@
 //! An agent that does what a script says.
 
+use std::sync::Arc;
+
 use cohabit_bus::message::{BodyRecord, DialogKind, DialogMessage, NONE, ObjectRecord, StateView};
 use cohabit_cdf::{Action, Catalog, ClassId, GoToTarget, ObjectId};
 
@@ -20,7 +22,7 @@ const IDLE: u64 = 5 * TICKS_PER_SECOND;
 pub struct Scripted {
     body: u32,
     script: Script,
-    catalog: Catalog,
+    catalog: Arc<Catalog>,
     errand: Errand,
     next: usize,
     waits_until: u64,
@@ -33,10 +35,16 @@ impl Scripted {
     /// An agent that has that body do what `script` says.
     #[must_use]
     pub fn new(body: u32, script: Script) -> Self {
+        Self::with_catalog(Arc::new(Catalog::builtin()), body, script)
+    }
+
+    /// The same in a world with this catalogue.
+    #[must_use]
+    pub fn with_catalog(catalog: Arc<Catalog>, body: u32, script: Script) -> Self {
         Self {
             body,
             script,
-            catalog: Catalog::builtin(),
+            catalog,
             errand: Errand::default(),
             next: 0,
             waits_until: 0,
@@ -44,12 +52,6 @@ impl Scripted {
             stopped: false,
             tick: 0,
         }
-    }
-
-    /// The same in a world with this catalogue.
-    #[must_use]
-    pub fn knowing(self, catalog: &Catalog) -> Self {
-        Self { catalog: catalog.clone(), ..self }
     }
 
     fn live(&mut self, now: &Now<'_>, deeds: &mut Vec<Deed>) {

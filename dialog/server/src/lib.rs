@@ -74,7 +74,7 @@ pub use questionnaire::{
     Form, Given, Item, NotAnswered, Questionnaire, QuestionnaireError, Scale, When, questionnaire_text,
 };
 pub use screening::{ScreeningConfig, screen};
-pub use site::{Framing, Site, SiteFile, file, file_routes};
+pub use site::{Framing, Site, SiteFile, file, file_routes, media, site_of_files};
 pub use spoken::meaning;
 pub use texts::{PagePart, PageTexts, PageTextsError, TextProblem, languages};
 pub use tls::{Identity, TlsError};

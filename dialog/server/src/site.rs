@@ -89,17 +89,42 @@ pub struct SiteFile {
     pub bytes: Vec<u8>,
 }
 
-/// Routes of these files; wherever else somebody asks, they get `missing` with the status 404, whatever its path.
+/// The media types of what sites serve most.
+pub mod media {
+    /// A page.
+    pub const HTML: &str = "text/html; charset=utf-8";
+    /// A script.
+    pub const SCRIPT: &str = "text/javascript; charset=utf-8";
+    /// A style sheet.
+    pub const STYLE: &str = "text/css; charset=utf-8";
+    /// A drawing.
+    pub const SVG: &str = "image/svg+xml";
+}
+
+/// Routes of files: path, media type, content.
 ///
 /// # Panics
 /// If two files have the same path, or a path does not begin with `/`.
-pub fn file_routes(files: Vec<SiteFile>, missing: SiteFile) -> Router {
-    let routes = files.into_iter().fold(Router::new(), |router, SiteFile { path, kind, bytes }| {
-        let bytes = Bytes::from(bytes);
-        router.route(&path, get(move || file(kind, bytes)))
-    });
+pub fn file_routes<S, P, B>(files: impl IntoIterator<Item = (P, &'static str, B)>) -> Router<S>
+where
+    S: Clone + Send + Sync + 'static,
+    P: AsRef<str>,
+    B: Into<Bytes>,
+{
+    files.into_iter().fold(Router::new(), |router, (path, kind, bytes)| {
+        let bytes = bytes.into();
+        router.route(path.as_ref(), get(move || file(kind, bytes)))
+    })
+}
+
+/// A site of these files alone; wherever else somebody asks, they get `missing` with the status 404, whatever its path.
+///
+/// # Panics
+/// As [`file_routes`].
+pub fn site_of_files(files: Vec<SiteFile>, missing: SiteFile) -> Router {
     let bytes = Bytes::from(missing.bytes);
-    routes.fallback(async move || (StatusCode::NOT_FOUND, file(missing.kind, bytes).await))
+    file_routes(files.into_iter().map(|SiteFile { path, kind, bytes }| (path, kind, bytes)))
+        .fallback(async move || (StatusCode::NOT_FOUND, file(missing.kind, bytes).await))
 }
 
 /// A file of this media type, which browsers ask for again each time.

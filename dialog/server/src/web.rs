@@ -21,7 +21,7 @@ use crate::{
     same_user::is_same_user,
     screening::Screening,
     seat,
-    site::{Framing, Site, file},
+    site::{Framing, Site, file, file_routes, media},
     survey::Survey,
     talk::Talk,
     texts::{PagePart, PageTexts},
@@ -33,33 +33,30 @@ use crate::{
 
 const INDEX: &str = include_str!("../../web/index.html");
 const SEAT: &str = include_str!("../../web/wizard.html");
-const HTML_TYPE: &str = "text/html; charset=utf-8";
-const STYLE_TYPE: &str = "text/css; charset=utf-8";
-const SCRIPT_TYPE: &str = "text/javascript; charset=utf-8";
 /// The page's other files: path, media type, text.
 const FILES: [(&str, &str, &str); 21] = [
-    ("/app.js", SCRIPT_TYPE, include_str!("../../web/app.js")),
-    ("/dom.js", SCRIPT_TYPE, include_str!("../../web/dom.js")),
-    ("/driving.js", SCRIPT_TYPE, include_str!("../../web/driving.js")),
-    ("/face.js", SCRIPT_TYPE, include_str!("../../web/face.js")),
-    ("/floor.js", SCRIPT_TYPE, include_str!("../../web/floor.js")),
-    ("/goals.js", SCRIPT_TYPE, include_str!("../../web/goals.js")),
-    ("/page.js", SCRIPT_TYPE, include_str!("../../web/page.js")),
-    ("/replay.js", SCRIPT_TYPE, include_str!("../../web/replay.js")),
-    ("/socket.js", SCRIPT_TYPE, include_str!("../../web/socket.js")),
-    ("/survey.js", SCRIPT_TYPE, include_str!("../../web/survey.js")),
-    ("/sound.js", SCRIPT_TYPE, include_str!("../../web/sound.js")),
-    ("/talk.js", SCRIPT_TYPE, include_str!("../../web/talk.js")),
-    ("/texts.js", SCRIPT_TYPE, include_str!("../../web/texts.js")),
-    ("/view.js", SCRIPT_TYPE, include_str!("../../web/view.js")),
-    ("/microphone.js", SCRIPT_TYPE, include_str!("../../web/microphone.js")),
-    ("/voice.js", SCRIPT_TYPE, include_str!("../../web/voice.js")),
-    ("/style.css", STYLE_TYPE, include_str!("../../web/style.css")),
-    ("/access.css", STYLE_TYPE, include_str!("../../web/access.css")),
+    ("/app.js", media::SCRIPT, include_str!("../../web/app.js")),
+    ("/dom.js", media::SCRIPT, include_str!("../../web/dom.js")),
+    ("/driving.js", media::SCRIPT, include_str!("../../web/driving.js")),
+    ("/face.js", media::SCRIPT, include_str!("../../web/face.js")),
+    ("/floor.js", media::SCRIPT, include_str!("../../web/floor.js")),
+    ("/goals.js", media::SCRIPT, include_str!("../../web/goals.js")),
+    ("/page.js", media::SCRIPT, include_str!("../../web/page.js")),
+    ("/replay.js", media::SCRIPT, include_str!("../../web/replay.js")),
+    ("/socket.js", media::SCRIPT, include_str!("../../web/socket.js")),
+    ("/survey.js", media::SCRIPT, include_str!("../../web/survey.js")),
+    ("/sound.js", media::SCRIPT, include_str!("../../web/sound.js")),
+    ("/talk.js", media::SCRIPT, include_str!("../../web/talk.js")),
+    ("/texts.js", media::SCRIPT, include_str!("../../web/texts.js")),
+    ("/view.js", media::SCRIPT, include_str!("../../web/view.js")),
+    ("/microphone.js", media::SCRIPT, include_str!("../../web/microphone.js")),
+    ("/voice.js", media::SCRIPT, include_str!("../../web/voice.js")),
+    ("/style.css", media::STYLE, include_str!("../../web/style.css")),
+    ("/access.css", media::STYLE, include_str!("../../web/access.css")),
     // They are there in every session, so that nobody learns from them whether a wizard takes part.
-    ("/wizard.css", STYLE_TYPE, include_str!("../../web/wizard.css")),
-    ("/menu.js", SCRIPT_TYPE, include_str!("../../web/menu.js")),
-    ("/wizard.js", SCRIPT_TYPE, include_str!("../../web/wizard.js")),
+    ("/wizard.css", media::STYLE, include_str!("../../web/wizard.css")),
+    ("/menu.js", media::SCRIPT, include_str!("../../web/menu.js")),
+    ("/wizard.js", media::SCRIPT, include_str!("../../web/wizard.js")),
 ];
 const ICON: &str = include_str!("../../web/favicon.svg");
 
@@ -143,13 +140,10 @@ pub fn serve(listener: TcpListener, service: Service, over: &dyn Fn() -> bool) -
 }
 
 fn router(service: Service) -> Router {
-    let files = FILES
-        .into_iter()
-        .fold(Router::new(), |router, (path, kind, text)| router.route(path, get(move || file(kind, text))));
-    files
+    file_routes(FILES)
         .route("/", get(index))
         .route("/wizard", get(wizard))
-        .route("/favicon.svg", get(|| file("image/svg+xml", ICON)))
+        .route("/favicon.svg", get(|| file(media::SVG, ICON)))
         .route("/frame.jpg", get(frame))
         .route("/ws", get(socket))
         .with_state(service)
@@ -181,7 +175,7 @@ async fn index(State(service): State<Service>, Extension(ends): Extension<Ends>,
     if let Some(refusal) = refused(&service, &parameters, ends, Role::Participant) {
         return refusal;
     }
-    ([(header::CONTENT_TYPE, HTML_TYPE)], service.texts.page(PagePart::Session, INDEX)).into_response()
+    ([(header::CONTENT_TYPE, media::HTML)], service.texts.page(PagePart::Session, INDEX)).into_response()
 }
 
 async fn wizard(State(service): State<Service>, Extension(ends): Extension<Ends>, parameters: Parameters) -> Response {
@@ -189,7 +183,7 @@ async fn wizard(State(service): State<Service>, Extension(ends): Extension<Ends>
         return refusal;
     }
     // The seat's scripts are those of the session's page; the seat is in English.
-    ([(header::CONTENT_TYPE, HTML_TYPE)], PageTexts::default().page(PagePart::Session, SEAT)).into_response()
+    ([(header::CONTENT_TYPE, media::HTML)], PageTexts::default().page(PagePart::Session, SEAT)).into_response()
 }
 
 async fn frame(State(service): State<Service>, Extension(ends): Extension<Ends>, parameters: Parameters) -> Response {

@@ -12,15 +12,15 @@ mod tests;
 use std::{collections::BTreeMap, path::Path};
 
 use cohabit_convert::native::Dataset;
+use cohabit_durable::{Readers, write_whole};
 
 use crate::{
     agreement_path,
     assign::Board,
-    error::AnnotateError,
+    error::{AnnotateError, at},
     journal::Journal,
     journal_path,
     task::{Annotation, Kind, Segment, Unit},
-    whole::{self, Readers},
 };
 
 pub use report::{csv, lines};
@@ -69,7 +69,8 @@ pub fn measure(folder: &Path) -> Result<Vec<KindAgreement>, AnnotateError> {
         return Err(AnnotateError::Unfit { path: folder.to_owned(), reason: reason.to_owned() });
     }
     let kinds = by_kind(&units);
-    whole::write(&agreement_path(folder), csv(&units, &kinds).as_bytes(), Readers::All)?;
+    let path = agreement_path(folder);
+    write_whole(&path, csv(&units, &kinds).as_bytes(), Readers::All).map_err(at(&path))?;
     Ok(kinds)
 }
 

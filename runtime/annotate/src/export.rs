@@ -11,6 +11,7 @@ use std::{
 };
 
 use cohabit_convert::native::Dataset;
+use cohabit_durable::{Readers, write_whole};
 use serde::Serialize;
 use serde_json::Value;
 
@@ -20,7 +21,6 @@ use crate::{
     journal::Journal,
     journal_path,
     task::{Annotation, Task},
-    whole::{self, Readers},
 };
 
 /// What stands before it: in a file with a line for each member, no text has this in it.
@@ -121,7 +121,7 @@ pub fn export(folder: &Path) -> Result<Exported, AnnotateError> {
         files.push((path, after));
     }
     // Nothing is written before all of it is known to be sound.
-    files.iter().try_for_each(|(path, text)| whole::write(path, text.as_bytes(), Readers::All))?;
+    files.iter().try_for_each(|(path, text)| write_whole(path, text.as_bytes(), Readers::All).map_err(at(path)))?;
     Ok(exported)
 }
 

@@ -2,11 +2,13 @@
 //! crash was never said to be saved, and is dropped.
 
 use std::{
-    fs::{DirBuilder, File, OpenOptions, TryLockError},
-    io::{self, Read as _, Seek as _, SeekFrom, Write as _},
+    fs::{DirBuilder, OpenOptions, TryLockError},
+    io,
     os::unix::fs::{DirBuilderExt as _, OpenOptionsExt as _},
     path::{Path, PathBuf},
 };
+
+use cohabit_durable::{LineFile, sync_folder, whole_lines};
 
 use crate::{
     error::{AnnotateError, at},
@@ -17,9 +19,7 @@ use crate::{
 #[derive(Debug)]
 pub struct Journal {
     path: PathBuf,
-    file: File,
-    /// How long it is, in bytes.
-    length: u64,
+    lines: LineFile,
 }
 
 impl Journal {
@@ -32,23 +32,17 @@ impl Journal {
             DirBuilder::new().recursive(true).mode(0o700).create(folder).map_err(at(folder))?;
         }
         let opened = OpenOptions::new().read(true).write(true).create(true).truncate(false).mode(0o600).open(path);
-        let mut file = opened.map_err(at(path))?;
+        let file = opened.map_err(at(path))?;
         match file.try_lock() {
             Ok(()) => {}
             Err(TryLockError::WouldBlock) => return Err(AnnotateError::Busy { path: path.to_owned() }),
             Err(TryLockError::Error(source)) => return Err(at(path)(source)),
         }
-        // The file's name, too, outlasts a crash.
-        if let Some(folder) = path.parent() {
-            File::open(folder).and_then(|folder| folder.sync_all()).map_err(at(folder))?;
-        }
-        let mut bytes = Vec::new();
-        file.read_to_end(&mut bytes).map_err(at(path))?;
-        let whole = whole(&bytes);
-        let annotations = parsed(path, whole)?;
-        let mut journal = Self { path: path.to_owned(), length: whole.len() as u64, file };
-        journal.cut().map_err(at(path))?;
-        Ok((journal, annotations))
+        sync_folder(path).map_err(at(path))?;
+        let (mut lines, bytes) = LineFile::new(path.to_owned(), file).map_err(at(path))?;
+        let annotations = parsed(path, &bytes)?;
+        lines.drop_rest().map_err(at(path))?;
+        Ok((Self { path: path.to_owned(), lines }, annotations))
     }
 
     /// What is in a journal that somebody else may be writing; nothing, where there is none.
@@ -57,7 +51,7 @@ impl Journal {
     /// [`AnnotateError::File`], [`AnnotateError::Line`].
     pub fn read(path: &Path) -> Result<Vec<Annotation>, AnnotateError> {
         match std::fs::read(path) {
-            Ok(bytes) => parsed(path, whole(&bytes)),
+            Ok(bytes) => parsed(path, whole_lines(&bytes)),
             Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(Vec::new()),
             Err(error) => Err(at(path)(error)),
         }
@@ -68,37 +62,8 @@ impl Journal {
     /// # Errors
     /// [`AnnotateError::File`]; the annotation is not in it then.
     pub fn append(&mut self, annotation: &Annotation) -> Result<(), AnnotateError> {
-        let written = serde_json::to_vec(annotation).map_err(io::Error::from).and_then(|mut bytes| {
-            bytes.push(b'\n');
-            self.file.write_all(&bytes)?;
-            self.file.sync_data()?;
-            Ok(bytes.len() as u64)
-        });
-        match written {
-            Ok(bytes) => {
-                self.length += bytes;
-                Ok(())
-            }
-            Err(source) => {
-                // What came of a part of it, such as on a full disk, is taken back.
-                if let Err(error) = self.cut() {
-                    tracing::error!("{}: {error}", self.path.display());
-                }
-                Err(at(&self.path)(source))
-            }
-        }
+        self.lines.append(annotation).map_err(at(&self.path))
     }
-
-    /// Drops what is behind the last whole line.
-    fn cut(&mut self) -> io::Result<()> {
-        self.file.set_len(self.length)?;
-        self.file.seek(SeekFrom::Start(self.length)).map(drop)
-    }
-}
-
-/// The lines that were not cut off.
-fn whole(bytes: &[u8]) -> &[u8] {
-    &bytes[..bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |at| at + 1)]
 }
 
 fn parsed(path: &Path, bytes: &[u8]) -> Result<Vec<Annotation>, AnnotateError> {
@@ -146,7 +111,7 @@ mod tests {
         assert_eq!(Journal::read(path).unwrap(), all);
         drop(journal);
         let bytes = fs::read(path).unwrap();
-        let last = whole(&bytes[..bytes.len() - 1]).len();
+        let last = whole_lines(&bytes[..bytes.len() - 1]).len();
         for end in last..=bytes.len() {
             fs::write(path, &bytes[..end]).unwrap();
             let (mut journal, known) = Journal::open(path).unwrap();

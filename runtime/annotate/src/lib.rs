@@ -31,7 +31,6 @@ mod journal;
 mod links;
 mod task;
 mod web;
-mod whole;
 
 pub use assign::{Board, Claim, Settings};
 pub use desk::{Desk, Refused};

@@ -3,12 +3,10 @@
 use std::{collections::BTreeMap, fs, io, path::Path};
 
 use cohabit_dialog::token;
+use cohabit_durable::{Readers, write_whole};
 use serde::{Deserialize, Serialize};
 
-use crate::{
-    error::{AnnotateError, at},
-    whole::{self, Readers},
-};
+use crate::error::{AnnotateError, at};
 
 /// The longest pseudonym, in characters.
 const LONGEST_NAME: usize = 32;
@@ -54,7 +52,7 @@ impl Links {
         }
         if links.annotators.len() > known {
             let bytes = serde_json::to_vec_pretty(&links).map_err(|error| at(path)(error.into()))?;
-            whole::write(path, &bytes, Readers::Owner)?;
+            write_whole(path, &bytes, Readers::Owner).map_err(at(path))?;
         }
         Ok(links)
     }

@@ -14,7 +14,7 @@ use axum::{
     response::{IntoResponse, Response},
     routing::{get, post},
 };
-use cohabit_dialog::{Framing, HostName, Identity, ServerLimits, Site, file};
+use cohabit_dialog::{Framing, HostName, Identity, ServerLimits, Site, file, file_routes, media};
 use serde_json::{Value, json};
 
 use crate::{
@@ -22,16 +22,13 @@ use crate::{
     film::Films,
 };
 
-const SCRIPT: &str = "text/javascript; charset=utf-8";
-const STYLE: &str = "text/css; charset=utf-8";
-const HTML: &str = "text/html; charset=utf-8";
 /// The pages' files: path, media type, text. Pages look like those of studies.
 const FILES: [(&str, &str, &str); 5] = [
-    ("/annotate.js", SCRIPT, include_str!("../web/annotate.js")),
-    ("/dom.js", SCRIPT, include_str!("../../study/web/dom.js")),
-    ("/study.css", STYLE, include_str!("../../study/web/study.css")),
-    ("/annotate.css", STYLE, include_str!("../web/annotate.css")),
-    ("/favicon.svg", "image/svg+xml", include_str!("../../../dialog/web/favicon.svg")),
+    ("/annotate.js", media::SCRIPT, include_str!("../web/annotate.js")),
+    ("/dom.js", media::SCRIPT, include_str!("../../study/web/dom.js")),
+    ("/study.css", media::STYLE, include_str!("../../study/web/study.css")),
+    ("/annotate.css", media::STYLE, include_str!("../web/annotate.css")),
+    ("/favicon.svg", media::SVG, include_str!("../../../dialog/web/favicon.svg")),
 ];
 const PAGE: &str = include_str!("../web/annotate.html");
 const STRANGERS_PAGE: &str = include_str!("../web/stranger.html");
@@ -74,10 +71,7 @@ impl AnnotateService {
 }
 
 fn router(service: AnnotateService) -> Router {
-    let files = FILES
-        .into_iter()
-        .fold(Router::new(), |router, (path, kind, text)| router.route(path, get(move || file(kind, text))));
-    files
+    file_routes(FILES)
         .route("/a/{token}", get(page))
         .route("/a/{token}/task", get(task))
         .route("/a/{token}/send", post(send))
@@ -97,7 +91,7 @@ fn now_ms() -> u64 {
 
 /// The page of those whose link is not known.
 async fn stranger() -> Response {
-    (StatusCode::NOT_FOUND, [(header::CONTENT_TYPE, HTML)], STRANGERS_PAGE).into_response()
+    (StatusCode::NOT_FOUND, [(header::CONTENT_TYPE, media::HTML)], STRANGERS_PAGE).into_response()
 }
 
 /// Does something for the annotator with that token, away from the threads that serve: what is written down takes its time. `None`
@@ -117,7 +111,7 @@ async fn for_annotator<T: Send + 'static>(
 
 async fn page(State(service): State<AnnotateService>, Path(token): Path<String>) -> Response {
     match for_annotator(service, token, |_, _| ()).await {
-        Ok(Some(())) => ([(header::CONTENT_TYPE, HTML)], PAGE).into_response(),
+        Ok(Some(())) => ([(header::CONTENT_TYPE, media::HTML)], PAGE).into_response(),
         Ok(None) => stranger().await,
         Err(status) => status.into_response(),
     }

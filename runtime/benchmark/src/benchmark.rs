@@ -3,14 +3,13 @@
 use std::{collections::BTreeMap, sync::Arc};
 
 use cohabit_cdf::Catalog;
-use cohabit_generate::{GenerateError, Generated, Order, Part, Parted, Spec, SpecError, generate, part};
+use cohabit_generate::{GenerateError, Generated, Order, Part, Parted, Spec, SpecError, generate, part, world_of};
 use cohabit_world::World;
 use serde::Deserialize;
 
 use crate::{
     episode::Caps,
     mission::{Instruction, Mission, Split},
-    stage::world,
 };
 
 /// The name and the text of the project's own benchmark.
@@ -157,7 +156,7 @@ fn parted(made: Vec<Generated>, share: f64, seed: u64, catalog: &Arc<Catalog>) -
     let missions = made.into_iter().zip(parts.into_iter().zip(splits));
     missions
         .map(|(generated, (part, split))| {
-            let world = world(&generated.id, &generated.cdf, seed, catalog);
+            let world = world_of(&generated.id, &generated.cdf.to_string(), catalog, seed);
             let world = world.map_err(|reason| format!("{}: {reason}", generated.id))?;
             let steps = &generated.certificate.plan;
             let instructions = steps.iter().map(|step| Instruction {

@@ -7,6 +7,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use cohabit_durable::whole_lines;
 use serde::Serialize;
 
 use crate::{
@@ -41,7 +42,7 @@ impl Draft {
         let path = part_of(out);
         let damaged = |line: usize, reason: String| RunError::Damaged { path: path.clone(), line, reason };
         let text = match fs::read(&path) {
-            Ok(bytes) => String::from_utf8(whole_lines(bytes)).map_err(|error| damaged(1, error.to_string()))?,
+            Ok(bytes) => str::from_utf8(whole_lines(&bytes)).map_err(|error| damaged(1, error.to_string()))?.to_owned(),
             Err(error) if error.kind() == io::ErrorKind::NotFound => String::new(),
             Err(source) => return Err(RunError::File { path: path.clone(), source }),
         };
@@ -101,13 +102,6 @@ pub(crate) fn write(out: &Path, header: &Header, episodes: &[Episode]) -> Result
     fs::rename(&whole, out).map_err(at(out))?;
     let part = part_of(out);
     fs::remove_file(&part).map_err(at(&part))
-}
-
-/// What of a file is whole lines.
-fn whole_lines(mut bytes: Vec<u8>) -> Vec<u8> {
-    let end = bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |last| last + 1);
-    bytes.truncate(end);
-    bytes
 }
 
 fn line(value: &impl Serialize, path: &Path) -> Result<String, RunError> {

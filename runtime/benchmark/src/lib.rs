@@ -22,7 +22,6 @@ mod paper;
 mod random;
 mod replay;
 mod run;
-mod stage;
 mod submission;
 mod table;
 mod totals;

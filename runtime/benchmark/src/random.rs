@@ -1,22 +1,20 @@
 //! An agent that does anything that is allowed: the floor that others are compared with.
 
+use std::convert::Infallible;
+
 use cohabit_cdf::{Action, ActionKind, ObjectId};
-use cohabit_generate::Chance;
+use cohabit_generate::{Chance, Observer, carry_out, world_of};
 use cohabit_record::{InputEntry, entry::hex};
-use cohabit_world::{BodyId, World};
+use cohabit_world::{BodyId, Input, Report, World};
 
 use crate::{
     benchmark::Benchmark,
     episode::{Recording, TickInputs},
     mission::Mission,
-    replay::input,
-    stage::world,
 };
 
 /// The body that acts.
 const BODY: BodyId = BodyId(0);
-/// The longest that it waits for an outcome: two simulated minutes.
-const PATIENCE_TICKS: u64 = 60 * 120;
 
 /// Plays a mission by chance, up to the benchmark's cap of actions: of the actions that the table allows where the robot stands, a
 /// kind is drawn, then a thing. It knows all things, and not what is wanted.
@@ -24,13 +22,15 @@ const PATIENCE_TICKS: u64 = 60 * 120;
 /// # Errors
 /// Why the mission has no world here, in words.
 pub fn random(benchmark: &Benchmark, mission: &Mission, seed: u64) -> Result<Recording, String> {
-    let mut world = world(&mission.id, &mission.cdf, benchmark.seed, &benchmark.catalog)?;
+    let mut world = world_of(&mission.id, &mission.cdf.to_string(), &benchmark.catalog, benchmark.seed)?;
     let mut chance = Chance::new(seed, stream(&mission.id));
     let mut recording = Recording::default();
     world.step(&[]);
     while recording.taken.len() < benchmark.caps.actions as usize && world.finished().is_none() {
         let Some(action) = choose(&world, &mut chance) else { break };
-        act(&mut world, action, &mut recording);
+        let command = Input { command: recording.taken.len() as u64 + 1, body: BODY, action };
+        // What takes too long is left alone.
+        let Ok(_) = carry_out(&mut world, &mut recording, command);
     }
     recording.ticks = world.tick();
     Ok(recording)
@@ -56,16 +56,20 @@ fn choose(world: &World, chance: &mut Chance) -> Option<Action> {
     None
 }
 
-/// Has the body do something, and waits for what comes of it.
-fn act(world: &mut World, action: Action, recording: &mut Recording) {
-    let command = recording.taken.len() as u64 + 1;
-    let entry = InputEntry { command, turn: 0, body: BODY.0, action };
-    let mut outcomes = world.step(&[input(&entry)]).outcomes;
-    recording.taken.push(TickInputs { tick: world.tick(), digest: hex(&world.digest()), inputs: vec![entry] });
-    for _ in 0..PATIENCE_TICKS {
-        if outcomes.iter().any(|outcome| outcome.command == command) {
-            break;
+/// Notes the ticks that take commands in.
+impl Observer for Recording {
+    type Error = Infallible;
+
+    fn note(&mut self, world: &World, inputs: &[Input], _: &Report) -> Result<(), Infallible> {
+        if !inputs.is_empty() {
+            let inputs = inputs.iter().map(|&Input { command, body, action }| InputEntry {
+                command,
+                turn: 0,
+                body: body.0,
+                action,
+            });
+            self.taken.push(TickInputs { tick: world.tick(), digest: hex(&world.digest()), inputs: inputs.collect() });
         }
-        outcomes = world.step(&[]).outcomes;
+        Ok(())
     }
 }

@@ -1,5 +1,6 @@
 //! Commands played again in a world of their own: where all figures come from.
 
+use cohabit_generate::world_of;
 use cohabit_record::{InputEntry, entry::hex};
 use cohabit_world::{BodyId, Ending, Input, World};
 
@@ -7,7 +8,6 @@ use crate::{
     benchmark::Benchmark,
     episode::{Caps, Episode, EpisodeEnd, Recording, TickInputs},
     mission::Mission,
-    stage::world,
 };
 
 /// An episode is over after so long: two simulated hours.
@@ -18,7 +18,7 @@ const MOST_TICKS: u64 = 60 * 60 * 60 * 2;
 /// # Errors
 /// Why the mission has no world here, in words.
 pub fn play_again(benchmark: &Benchmark, mission: &Mission, recording: &Recording) -> Result<Episode, String> {
-    let mut world = world(&mission.id, &mission.cdf, benchmark.seed, &benchmark.catalog)?;
+    let mut world = world_of(&mission.id, &mission.cdf.to_string(), &benchmark.catalog, benchmark.seed)?;
     let (mut actions, mut failed_actions, mut taken) = (0, 0, Vec::new());
     let mut left = recording.taken.iter().peekable();
     let end = loop {
@@ -71,6 +71,6 @@ fn over(world: &World, caps: Caps, [actions, failed]: [u32; 2]) -> Option<Episod
 }
 
 /// A command as the world takes it.
-pub(crate) fn input(entry: &InputEntry) -> Input {
+fn input(entry: &InputEntry) -> Input {
     Input { command: entry.command, body: BodyId(entry.body), action: entry.action }
 }

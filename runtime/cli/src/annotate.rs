@@ -1,7 +1,6 @@
 //! `cohabit annotate`: people write instructions, questions and answers for a data set of demonstrations.
 
 use std::{
-    net::{IpAddr, SocketAddr, TcpListener},
     path::PathBuf,
     sync::atomic::Ordering,
     time::{SystemTime, UNIX_EPOCH},
@@ -12,13 +11,13 @@ use clap::ValueEnum;
 use cohabit_annotate::{
     AnnotateError, AnnotateService, Cut, Desk, Settings, agreement, agreement_path, export, links_path, pseudonyms,
 };
-use cohabit_dialog::{HostName, token};
+use cohabit_dialog::token;
 
 use crate::{
     failure::{bad_input, environment},
+    site::SiteOptions,
     stop,
     terminal::shown,
-    tls::Tls,
 };
 
 /// How many annotate a data set for which nobody is named: as many as write each instruction.
@@ -33,14 +32,8 @@ pub struct Annotate {
     /// The port of the pages; 0 takes any that is free
     #[arg(long, default_value_t = 8790)]
     port: u16,
-    /// The address the pages listen on, such as 0.0.0.0 for other machines
-    #[arg(long, default_value = "127.0.0.1")]
-    listen: IpAddr,
-    /// A name by which browsers may ask for the pages besides those of this machine; as often as needed
-    #[arg(long = "host", value_name = "NAME[:PORT]")]
-    hosts: Vec<HostName>,
     #[command(flatten)]
-    tls: Tls,
+    site: SiteOptions,
     /// How many annotate it: A01, A02 and so on, besides those who have a link already; 3 where nobody has one
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=999))]
     annotators: Option<u16>,
@@ -110,19 +103,10 @@ impl Annotate {
 
     fn serve(&self) -> anyhow::Result<()> {
         let stop = stop::on_request()?;
-        let identity = self.tls.identity(self.listen)?;
+        let identity = self.site.identity()?;
         let desk = self.desk()?;
         let segments = desk.segments();
-        let asked = SocketAddr::new(self.listen, self.port);
-        let listener = TcpListener::bind(asked).map_err(|error| {
-            environment(format!(
-                "serve the pages of annotators on {asked}: {error}; choose another with `--port` (0 takes any that is free)"
-            ))
-        })?;
-        let listening = listener.local_addr().context("the address of the pages")?;
-        if let Some(notice) = self.tls.notice(self.listen, identity.as_ref()) {
-            println!("{notice}");
-        }
+        let (listener, listening) = self.site.listen("the pages of annotators", self.port, identity.as_ref())?;
         let service = AnnotateService::new(desk);
         let site = token::site_address(listening, identity.is_some());
         println!("{segments} segments of {} are to be annotated", shown(self.dataset.display()));
@@ -130,7 +114,7 @@ impl Annotate {
             println!("{name}: {site}{path}");
         }
         println!("Ctrl-C ends it, and the same command goes on with it");
-        let served = service.serve(listener, self.hosts.clone(), identity, &|| stop.load(Ordering::Relaxed));
+        let served = service.serve(listener, self.site.hosts.clone(), identity, &|| stop.load(Ordering::Relaxed));
         served.context("serve the pages of annotators")
     }
 

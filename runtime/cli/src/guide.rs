@@ -9,7 +9,7 @@ mod tests;
 use std::{
     env, fmt,
     io::{self, Write as _},
-    net::{Ipv4Addr, SocketAddr, TcpListener},
+    net::{Ipv4Addr, SocketAddr},
     process::{Command, Stdio},
     sync::atomic::Ordering,
     thread,
@@ -17,12 +17,9 @@ use std::{
 
 use anyhow::Context as _;
 use clap::ValueEnum;
-use cohabit_dialog::{Framing, ServerLimits, Site, file_routes, token};
+use cohabit_dialog::{Framing, ServerLimits, Site, site_of_files, token};
 
-use crate::{
-    failure::{bad_input, environment},
-    stop,
-};
+use crate::{failure::bad_input, site::listen, stop};
 
 /// Shows the guide: serves it to browsers of this machine, without a network, or prints one page of it to the terminal
 #[derive(clap::Args)]
@@ -69,18 +66,14 @@ impl Guide {
     fn serve(&self) -> anyhow::Result<()> {
         let stop = stop::on_request()?;
         let asked = SocketAddr::from((Ipv4Addr::LOCALHOST, self.port));
-        let listener = TcpListener::bind(asked).map_err(|error| {
-            environment(format!(
-                "serve the guide on {asked}: {error}; choose another with `--port` (0 takes any that is free)"
-            ))
-        })?;
-        let address = token::site_address(listener.local_addr().context("the address of the guide")?, false);
+        let (listener, listening) = listen("the guide", asked)?;
+        let address = token::site_address(listening, false);
         println!("Open {address}/  (Ctrl-C ends it)");
         if self.open == Opened::Yes {
             open(address);
         }
         let site = Site {
-            router: file_routes(pages::files(), pages::missing()),
+            router: site_of_files(pages::files(), pages::missing()),
             hosts: Vec::new(),
             identity: None,
             limits: ServerLimits::default(),

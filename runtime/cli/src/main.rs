@@ -30,6 +30,7 @@ mod rerun;
 mod self_test;
 mod session_time;
 mod sessions;
+mod site;
 mod splits;
 mod stop;
 mod study;

@@ -55,9 +55,11 @@ impl MindKind {
         let seed = seed.wrapping_add(u64::from(body));
         Ok(match self {
             Self::Dialog => Some(Box::new(PlanFollower::new(body))),
-            Self::Random => Some(Box::new(Random::new(seed).knowing(catalog))),
-            Self::Helper => Some(Box::new(Helper::new(body, seed).knowing(catalog))),
-            Self::Scripted => Some(Box::new(Scripted::new(body, read_script(script, catalog)?).knowing(catalog))),
+            Self::Random => Some(Box::new(Random::with_catalog(Arc::clone(catalog), seed))),
+            Self::Helper => Some(Box::new(Helper::with_catalog(Arc::clone(catalog), body, seed))),
+            Self::Scripted => {
+                Some(Box::new(Scripted::with_catalog(Arc::clone(catalog), body, read_script(script, catalog)?)))
+            }
             Self::Expert | Self::Pedestrian => None,
         })
     }

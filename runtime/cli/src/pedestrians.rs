@@ -34,11 +34,16 @@ pub fn fault(schedule: &Schedule, kinds: &[BodyKind]) -> Option<String> {
 }
 
 /// The pedestrians of a schedule, for the session on `bus`; `None` if `stop` comes before its mission is known.
-pub fn crowd(file: Option<&Path>, seed: u64, bus: &dyn Transport, stop: &AtomicBool) -> anyhow::Result<Option<Crowd>> {
+pub fn crowd(
+    catalog: &Arc<Catalog>,
+    file: Option<&Path>,
+    seed: u64,
+    bus: &dyn Transport,
+    stop: &AtomicBool,
+) -> anyhow::Result<Option<Crowd>> {
     let schedule = read_schedule(file)?;
     let Some(mission) = wait_for_mission(bus, stop)? else { return Ok(None) };
-    let catalog = Arc::new(Catalog::builtin());
-    let plan = SessionPlan::new(mission.header.file.as_str(), &mission.text, catalog, mission.header.seed)?;
+    let plan = SessionPlan::new(mission.header.file.as_str(), &mission.text, Arc::clone(catalog), mission.header.seed)?;
     let world = plan.with_bodies(mission.bodies).build()?;
     let kinds: Vec<BodyKind> = world.bodies().map(|body| body.kind).collect();
     match fault(&schedule, &kinds) {

@@ -14,7 +14,6 @@ mod wishes;
 
 use std::{
     io::Write as _,
-    net::{IpAddr, SocketAddr, TcpListener},
     path::{Path, PathBuf},
     sync::{
         Arc, Mutex,
@@ -26,7 +25,6 @@ use std::{
 
 use anyhow::Context as _;
 use cohabit_cdf::Catalog;
-use cohabit_dialog::HostName;
 use cohabit_study::{Cycle, Folder, FolderError, Records, Registry, StudyFile, StudyService, export, keep};
 use cohabit_tables::{Played, tables};
 
@@ -34,9 +32,9 @@ use crate::{
     doctor::ensure_room,
     failure::{bad_input, environment},
     movement::with_movement,
+    site::SiteOptions,
     stop,
     terminal::shown,
-    tls::Tls,
 };
 pub use data::without_practice;
 use plan::Plan;
@@ -91,14 +89,8 @@ struct Run {
     /// The port of the pages; 0 takes any that is free
     #[arg(long, default_value_t = 8700)]
     port: u16,
-    /// The address the pages listen on, such as 0.0.0.0 for other machines
-    #[arg(long, default_value = "127.0.0.1")]
-    listen: IpAddr,
-    /// A name by which browsers may ask for the pages besides those of this machine; as often as needed
-    #[arg(long = "host", value_name = "NAME[:PORT]")]
-    hosts: Vec<HostName>,
     #[command(flatten)]
-    tls: Tls,
+    site: SiteOptions,
     /// The ports of the pages of sessions, which other machines have to reach, too, such as 8701-8708: one for each session
     /// at a time; any that are free, if absent
     #[arg(long, value_name = "FIRST-LAST")]
@@ -191,22 +183,13 @@ impl Run {
     fn run(&self) -> anyhow::Result<()> {
         let stop = stop::on_request()?;
         let (file, study) = read(&self.file)?;
-        let (most_sessions, identity) = (self.most_sessions()?, self.tls.identity(self.listen)?);
+        let (most_sessions, identity) = (self.most_sessions()?, self.site.identity()?);
         ensure_room()?;
         let mut files = study.files.clone();
         files.insert("study.toml".to_owned(), file.text);
         let folder = Folder::begin(&self.folder, &files).map_err(refused)?;
         let study_file = Folder::study_file(folder.path());
-        let asked = SocketAddr::new(self.listen, self.port);
-        let listener = TcpListener::bind(asked).map_err(|error| {
-            environment(format!(
-                "serve the study on {asked}: {error}; choose another with `--port` (0 takes any that is free)"
-            ))
-        })?;
-        let listening = listener.local_addr().context("the address of the pages")?;
-        if let Some(notice) = self.tls.notice(self.listen, identity.as_ref()) {
-            println!("{notice}");
-        }
+        let (listener, listening) = self.site.listen("the study", self.port, identity.as_ref())?;
         let title = study.title.clone();
         let page = match &study.page_texts_file {
             Some(file) => format!("--page-texts={file}"),
@@ -216,8 +199,8 @@ impl Run {
         let service = StudyService { registry: Arc::clone(&registry), most_sessions };
         let served = Served {
             listening,
-            hosts: self.hosts.clone(),
-            tls: self.tls.clone(),
+            hosts: self.site.hosts.clone(),
+            tls: self.site.tls.clone(),
             ports: self.session_ports.clone().map(Ports::new),
             page,
         };
@@ -231,7 +214,7 @@ impl Run {
         }
         println!("{most_sessions} at a time play; Ctrl-C ends the study, and the same command goes on with it");
         thread::scope(|scope| {
-            let (hosts, stop) = (self.hosts.clone(), &stop);
+            let (hosts, stop) = (self.site.hosts.clone(), &stop);
             let server = scope.spawn(move || {
                 let ending = Ending(stop);
                 let served = service.serve(listener, hosts, identity, &|| stop.load(Ordering::Relaxed));

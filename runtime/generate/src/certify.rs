@@ -46,15 +46,23 @@ pub struct Certificate {
     pub expanded: usize,
 }
 
+/// The world of a mission before its first tick.
+///
+/// # Errors
+/// Why it cannot be read or laid out, in words.
+pub fn world_of(id: &str, cdf: &str, catalog: &Arc<Catalog>, seed: u64) -> Result<World, String> {
+    let checked = read_mission(id, cdf, catalog).map_err(|problems| problems.to_string())?;
+    let layout = Layout::find(&checked.mission.layout, catalog).map_err(|error| error.to_string())?;
+    let world = World::new(Arc::clone(catalog), Arc::new(layout), Arc::new(checked.mission), seed);
+    world.map_err(|error| error.to_string())
+}
+
 /// Reads, solves and plays a mission.
 ///
 /// # Errors
 /// Why it cannot be read, laid out, solved or played, in words.
 pub fn certify(id: &str, cdf: &str, catalog: &Arc<Catalog>, seed: u64) -> Result<Certificate, String> {
-    let checked = read_mission(id, cdf, catalog).map_err(|problems| problems.to_string())?;
-    let layout = Layout::find(&checked.mission.layout, catalog).map_err(|error| error.to_string())?;
-    let world = World::new(Arc::clone(catalog), Arc::new(layout), Arc::new(checked.mission), seed);
-    let mut world = world.map_err(|error| error.to_string())?;
+    let mut world = world_of(id, cdf, catalog, seed)?;
     // What is met as the mission begins is met before anybody plans.
     world.step(&[]);
     let met: Vec<bool> = world.goals().iter().map(|goal| goal.met).collect();

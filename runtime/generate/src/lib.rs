@@ -19,7 +19,7 @@ mod spec;
 mod splits;
 mod things;
 
-pub use certify::{Certificate, PlannedStep, certify};
+pub use certify::{Certificate, PlannedStep, certify, world_of};
 pub use chance::Chance;
 pub use check_plan::{Accepted, PlanProblem, check_plan};
 pub use draft::Blocker;

@@ -21,13 +21,14 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use cohabit_durable::{Readers, write_whole};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 
 pub use error::FolderError;
 
 use crate::{
     journal::Journal,
-    links::{Links, write_whole},
+    links::Links,
     plan::{place_of, pseudonym},
     progress::Progress,
 };
@@ -125,7 +126,7 @@ impl Folder {
         // First of all, so that nothing is ever in it without.
         let mark = path.join(SYNTHETIC);
         let bytes = serde_json::to_vec_pretty(&Marked { what: run, synthetic: Some(true) });
-        write_whole(&mark, &bytes.map_err(|error| failed(&mark, error.into()))?)
+        write_whole(&mark, &bytes.map_err(|error| failed(&mark, error.into()))?, Readers::Owner)
             .map_err(|source| failed(&mark, source))?;
         Self::take(path, study)
     }
@@ -143,7 +144,7 @@ impl Folder {
                 _ if has_participants => return Err(FolderError::OtherStudy { path, file: file.clone() }),
                 _ => {
                     copy.parent().map_or(Ok(()), make)?;
-                    write_whole(&copy, text.as_bytes()).map_err(|source| failed(&copy, source))?;
+                    write_whole(&copy, text.as_bytes(), Readers::Owner).map_err(|source| failed(&copy, source))?;
                 }
             }
         }
@@ -275,7 +276,7 @@ impl Folder {
     pub fn keep_consent(&self, place: u32, consent: &Consent) -> Result<(), FolderError> {
         let path = self.consent_path(place);
         let bytes = serde_json::to_vec_pretty(&self.marked(consent)).map_err(|error| failed(&path, error.into()))?;
-        write_whole(&path, &bytes).map_err(|source| failed(&path, source))
+        write_whole(&path, &bytes, Readers::Owner).map_err(|source| failed(&path, source))
     }
 
     fn consent_path(&self, place: u32) -> PathBuf {
@@ -390,7 +391,7 @@ impl Folder {
                 serde_json::to_writer(&mut bytes, &self.marked(line))?;
                 bytes.push(b'\n');
             }
-            write_whole(&path, &bytes)
+            write_whole(&path, &bytes, Readers::Owner)
         };
         write().map_err(|source: io::Error| failed(&path, source))
     }

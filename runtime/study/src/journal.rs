@@ -5,12 +5,13 @@
 //! hold that.
 
 use std::{
-    fs::{File, OpenOptions},
-    io::{self, Read as _, Seek as _, SeekFrom, Write as _},
+    fs::OpenOptions,
+    io,
     os::unix::fs::OpenOptionsExt as _,
     path::{Path, PathBuf},
 };
 
+use cohabit_durable::{LineFile, sync_folder, whole_lines};
 use serde::{Deserialize, Serialize};
 
 use crate::{
@@ -91,9 +92,7 @@ enum What {
 #[derive(Debug)]
 pub struct Journal {
     path: PathBuf,
-    file: File,
-    /// How long it is, in bytes.
-    length: u64,
+    lines: LineFile,
 }
 
 impl Journal {
@@ -104,13 +103,13 @@ impl Journal {
     pub fn begin(path: &Path, plan: &Plan, agreed: &Event, at_ms: u64) -> Result<Self, JournalError> {
         let failed = |source| JournalError::File { path: path.to_owned(), source };
         let file = OpenOptions::new().read(true).write(true).create_new(true).mode(0o600).open(path).map_err(failed)?;
-        let mut journal = Self { path: path.to_owned(), file, length: 0 };
+        let (lines, _) = LineFile::new(path.to_owned(), file).map_err(failed)?;
+        let mut journal = Self { path: path.to_owned(), lines };
         let writer = Some(Writer { format: FORMAT, program: VERSION.to_owned() });
         let enrolled = Line { at_ms, what: What::Enrolled(plan.clone()), writer };
         let written = journal.write(&enrolled).and_then(|()| journal.append(agreed, at_ms));
         // The file's name, too, outlasts a crash.
-        let kept = written
-            .and_then(|()| path.parent().map_or(Ok(()), |folder| File::open(folder)?.sync_all()).map_err(failed));
+        let kept = written.and_then(|()| sync_folder(path).map_err(failed));
         if let Err(error) = kept {
             let _ = std::fs::remove_file(path);
             return Err(error);
@@ -124,13 +123,11 @@ impl Journal {
     /// [`JournalError`].
     pub fn open(path: &Path) -> Result<Option<(Self, Progress)>, JournalError> {
         let failed = |source| JournalError::File { path: path.to_owned(), source };
-        let mut file = OpenOptions::new().read(true).write(true).open(path).map_err(failed)?;
-        let mut bytes = Vec::new();
-        file.read_to_end(&mut bytes).map_err(failed)?;
-        let whole = bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |at| at + 1);
-        let progress = restored(path, &bytes[..whole])?;
-        let mut journal = Self { path: path.to_owned(), file, length: whole as u64 };
-        journal.cut().map_err(failed)?;
+        let file = OpenOptions::new().read(true).write(true).open(path).map_err(failed)?;
+        let (mut lines, bytes) = LineFile::new(path.to_owned(), file).map_err(failed)?;
+        let progress = restored(path, &bytes)?;
+        lines.drop_rest().map_err(failed)?;
+        let journal = Self { path: path.to_owned(), lines };
         Ok(progress.filter(Progress::has_consented).map(|progress| (journal, progress)))
     }
 
@@ -140,8 +137,7 @@ impl Journal {
     /// [`JournalError`].
     pub fn read(path: &Path) -> Result<Option<Progress>, JournalError> {
         let bytes = std::fs::read(path).map_err(|source| JournalError::File { path: path.to_owned(), source })?;
-        let whole = bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |at| at + 1);
-        Ok(restored(path, &bytes[..whole])?.filter(Progress::has_consented))
+        Ok(restored(path, whole_lines(&bytes))?.filter(Progress::has_consented))
     }
 
     /// Writes an event down; it is on the disk when this is back.
@@ -153,31 +149,7 @@ impl Journal {
     }
 
     fn write(&mut self, line: &Line) -> Result<(), JournalError> {
-        let written = serde_json::to_vec(line).map_err(io::Error::from).and_then(|mut bytes| {
-            bytes.push(b'\n');
-            self.file.write_all(&bytes)?;
-            self.file.sync_data()?;
-            Ok(bytes.len() as u64)
-        });
-        match written {
-            Ok(bytes) => {
-                self.length += bytes;
-                Ok(())
-            }
-            Err(source) => {
-                // What came of a part of it, such as on a full disk, is taken back.
-                if let Err(error) = self.cut() {
-                    tracing::error!("{}: {error}", self.path.display());
-                }
-                Err(JournalError::File { path: self.path.clone(), source })
-            }
-        }
-    }
-
-    /// Drops what is behind the last whole line.
-    fn cut(&mut self) -> io::Result<()> {
-        self.file.set_len(self.length)?;
-        self.file.seek(SeekFrom::Start(self.length)).map(drop)
+        self.lines.append(line).map_err(|source| JournalError::File { path: self.path.clone(), source })
     }
 }
 

@@ -1,14 +1,9 @@
 //! The tokens of a study's pages: who was given a link may use it, and nobody else. They lie in a file of the owner alone.
 
-use std::{
-    collections::BTreeMap,
-    fs,
-    io::{self, Write as _},
-    os::unix::fs::OpenOptionsExt as _,
-    path::Path,
-};
+use std::{collections::BTreeMap, fs, io, path::Path};
 
 use cohabit_dialog::token;
+use cohabit_durable::{Readers, write_whole};
 use serde::{Deserialize, Serialize};
 
 /// All tokens of a study.
@@ -59,7 +54,7 @@ impl Links {
     /// # Errors
     /// Of the file system; the file is then as it was.
     pub fn save(&self, path: &Path) -> io::Result<()> {
-        write_whole(path, &serde_json::to_vec_pretty(self)?)
+        write_whole(path, &serde_json::to_vec_pretty(self)?, Readers::Owner)
     }
 
     /// The place of the participant with a token.
@@ -68,15 +63,6 @@ impl Links {
         let own = self.participants.iter().find(|(_, token)| token::admits(token, Some(given)));
         own.map(|(place, _)| *place)
     }
-}
-
-/// Writes a file for this user alone, whole or not at all.
-pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let new = path.with_extension("new");
-    let mut file = fs::OpenOptions::new().write(true).create(true).truncate(true).mode(0o600).open(&new)?;
-    file.write_all(bytes)?;
-    file.sync_all()?;
-    fs::rename(&new, path)
 }
 
 #[cfg(test)]

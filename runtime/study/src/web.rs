@@ -15,7 +15,9 @@ use axum::{
     response::{IntoResponse, Redirect, Response},
     routing::{get, post},
 };
-use cohabit_dialog::{Framing, Given, HostName, Identity, PagePart, PageTexts, ServerLimits, Site, file, token};
+use cohabit_dialog::{
+    Framing, Given, HostName, Identity, PagePart, PageTexts, ServerLimits, Site, file_routes, media, token,
+};
 use serde::Deserialize;
 use serde_json::{Value, json};
 
@@ -29,19 +31,17 @@ use crate::{
     registry::{Reading, Registry, StudyFault, Who},
 };
 
-const SCRIPT: &str = "text/javascript; charset=utf-8";
-const HTML: &str = "text/html; charset=utf-8";
 /// The pages' files: path, media type, text.
 const FILES: [(&str, &str, &str); 9] = [
-    ("/study.js", SCRIPT, include_str!("../web/study.js")),
-    ("/forms.js", SCRIPT, include_str!("../web/forms.js")),
-    ("/server.js", SCRIPT, include_str!("../web/server.js")),
-    ("/dom.js", SCRIPT, include_str!("../web/dom.js")),
-    ("/texts.js", SCRIPT, include_str!("../../../dialog/web/texts.js")),
-    ("/experimenter.js", SCRIPT, include_str!("../web/experimenter.js")),
-    ("/wizard.js", SCRIPT, include_str!("../web/wizard.js")),
-    ("/study.css", "text/css; charset=utf-8", include_str!("../web/study.css")),
-    ("/favicon.svg", "image/svg+xml", include_str!("../../../dialog/web/favicon.svg")),
+    ("/study.js", media::SCRIPT, include_str!("../web/study.js")),
+    ("/forms.js", media::SCRIPT, include_str!("../web/forms.js")),
+    ("/server.js", media::SCRIPT, include_str!("../web/server.js")),
+    ("/dom.js", media::SCRIPT, include_str!("../web/dom.js")),
+    ("/texts.js", media::SCRIPT, include_str!("../../../dialog/web/texts.js")),
+    ("/experimenter.js", media::SCRIPT, include_str!("../web/experimenter.js")),
+    ("/wizard.js", media::SCRIPT, include_str!("../web/wizard.js")),
+    ("/study.css", media::STYLE, include_str!("../web/study.css")),
+    ("/favicon.svg", media::SVG, include_str!("../../../dialog/web/favicon.svg")),
 ];
 const STUDY_PAGE: &str = include_str!("../web/study.html");
 const EXPERIMENTER_PAGE: &str = include_str!("../web/experimenter.html");
@@ -109,10 +109,7 @@ pub fn address(listening: SocketAddr, is_encrypted: bool) -> String {
 }
 
 fn router(service: StudyService) -> Router {
-    let files = FILES
-        .into_iter()
-        .fold(Router::new(), |router, (path, kind, text)| router.route(path, get(move || file(kind, text))));
-    files
+    file_routes(FILES)
         .route("/sign-up/{token}", get(sign_up))
         .route("/p/{token}", get(participant))
         .route("/p/{token}/state", get(state))
@@ -128,7 +125,7 @@ fn router(service: StudyService) -> Router {
 
 /// A page with these texts.
 fn page(html: &str, texts: &PageTexts) -> Response {
-    ([(header::CONTENT_TYPE, HTML)], texts.page(PagePart::Study, html)).into_response()
+    ([(header::CONTENT_TYPE, media::HTML)], texts.page(PagePart::Study, html)).into_response()
 }
 
 /// A page of the study's staff: those are in English.
@@ -138,7 +135,7 @@ fn staff_page(html: &str) -> Response {
 
 /// The page of those whose link is not known, with whom to ask.
 fn stranger(study: &Study) -> Response {
-    (StatusCode::NOT_FOUND, [(header::CONTENT_TYPE, HTML)], strangers_page(study)).into_response()
+    (StatusCode::NOT_FOUND, [(header::CONTENT_TYPE, media::HTML)], strangers_page(study)).into_response()
 }
 
 fn strangers_page(Study { page_texts, contact, .. }: &Study) -> String {

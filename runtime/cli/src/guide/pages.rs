@@ -1,6 +1,6 @@
 //! The guide as files that are served: each page within its frame, with all pages at its side.
 
-use cohabit_dialog::SiteFile;
+use cohabit_dialog::{SiteFile, media};
 use pulldown_cmark::HeadingLevel;
 
 use super::{
@@ -8,7 +8,6 @@ use super::{
     markdown::{headings, html},
 };
 
-const HTML: &str = "text/html; charset=utf-8";
 /// What stands around each page.
 const FRAME: &str = include_str!("../../../guide/web/page.html");
 const STYLE: &str = include_str!("../../../guide/web/guide.css");
@@ -18,23 +17,23 @@ const MISSING: &str = "# Not found\n\nThe guide has no such page. Choose one fro
 /// All files. The first page is found at `/`, too.
 pub fn files() -> Vec<SiteFile> {
     let text = |path: &str, kind, text: &str| SiteFile { path: path.to_owned(), kind, bytes: text.as_bytes().to_vec() };
-    let pages = (0..PAGES.len()).map(|place| text(&format!("/{}", PAGES[place].name), HTML, &whole(place)));
+    let pages = (0..PAGES.len()).map(|place| text(&format!("/{}", PAGES[place].name), media::HTML, &whole(place)));
     let pictures = PICTURES.iter().map(|(path, bytes)| SiteFile {
         path: picture_address(path),
         kind: "image/jpeg",
         bytes: bytes.to_vec(),
     });
     let others = [
-        text("/", HTML, &whole(0)),
-        text("/guide.css", "text/css; charset=utf-8", STYLE),
-        text("/favicon.svg", "image/svg+xml", ICON),
+        text("/", media::HTML, &whole(0)),
+        text("/guide.css", media::STYLE, STYLE),
+        text("/favicon.svg", media::SVG, ICON),
     ];
     others.into_iter().chain(pages).chain(pictures).collect()
 }
 
 /// What is served for pages that there are not.
 pub fn missing() -> SiteFile {
-    SiteFile { path: "/".to_owned(), kind: HTML, bytes: framed("Not found", "", MISSING).into_bytes() }
+    SiteFile { path: "/".to_owned(), kind: media::HTML, bytes: framed("Not found", "", MISSING).into_bytes() }
 }
 
 /// The title of a page: its heading of the first level.

@@ -38,7 +38,7 @@ impl Agent {
         let mind = self.kind.mind(catalog, self.body, self.seed, self.script.as_deref())?;
         let (bus, stop) = self.joining.join()?;
         if self.kind == MindKind::Pedestrian {
-            if let Some(mut crowd) = crowd(self.script.as_deref(), self.seed, &bus, &stop)? {
+            if let Some(mut crowd) = crowd(catalog, self.script.as_deref(), self.seed, &bus, &stop)? {
                 crowd.run(&bus, &stop)?;
             }
             return Ok(());
