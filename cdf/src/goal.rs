@@ -7,7 +7,7 @@ use std::fmt;
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    mission::flag_key,
+    flag_key::flag_key,
     state::{Color, Fluid, StateFlag},
 };
 

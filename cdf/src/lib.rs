@@ -10,10 +10,12 @@
 pub mod action;
 pub mod body;
 pub mod catalog;
+pub mod flag_key;
 pub mod goal;
 pub mod layout;
 pub mod mission;
 pub mod model;
+pub mod room;
 pub mod semantic;
 pub mod state;
 pub mod symbolic;
@@ -31,9 +33,10 @@ pub use catalog::{
     table::{self, ActionKind, ActionTable},
 };
 pub use goal::{Expression, Goal, GoalState, InstancePattern, Occasion, Predicate, Relation, StateCondition};
-pub use layout::{Layout, LayoutError, RoomId};
+pub use layout::{Layout, LayoutError};
 pub use mission::{Mission, ObjectRequest};
 pub use model::Model;
+pub use room::RoomId;
 pub use semantic::SemanticClass;
 pub use state::{Color, Fluid, StateFlag, StateFlags};
 pub use world_pack::{PackError, PackFile, WorldData, WorldPack};

@@ -29,7 +29,6 @@ use serde::{Deserialize as _, Serialize};
 
 pub use self::{
     camera::{CameraMovement, CameraView},
-    key::{flag_key, flag_of_key},
     messages::{Message, MessageTime},
     portal::{Era, Portal},
     problem::{Pointer, Problem, Problems, Severity},
@@ -43,7 +42,7 @@ use crate::{
     builtin,
     catalog::Catalog,
     goal::{Goal, StateCondition},
-    layout::RoomId,
+    room::RoomId,
 };
 
 /// A mission, read from a CDF file and checked.

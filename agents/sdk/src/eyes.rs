@@ -8,7 +8,7 @@ use cohabit_bus::{
 };
 use cohabit_cdf::{BodyId, Catalog, ObjectId, SemanticClass};
 
-use crate::peer::PeerError;
+use crate::error::PeerError;
 
 /// A camera that is looked through; while it lives, its frames are rendered.
 pub struct Eyes {

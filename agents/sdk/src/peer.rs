@@ -9,7 +9,7 @@ use std::{
 };
 
 use cohabit_bus::{
-    BusError, CameraId, Envelope, Inbox, Publisher, Sample, Topic, Transport, Wake,
+    CameraId, Envelope, Inbox, Publisher, Sample, Topic, Transport, Wake,
     message::{DialogKind, DialogView, EventKind, EventMessage, Malformed, MissionMessage, StateView},
     monotonic_nanos,
 };
@@ -18,6 +18,7 @@ use cohabit_cdf::Catalog;
 use crate::{
     agent::{Agent, Deed, Heard, Now, Senses, TICKS_PER_SECOND},
     client::{Client, Outcome, outcome},
+    error::PeerError,
     eyes::{Eyes, Glance, Sight},
     past::Past,
 };
@@ -34,20 +35,6 @@ const MOST_PLANS: usize = 4;
 const MOST_REST: u64 = 10 * TICKS_PER_SECOND;
 /// In lock-step the world waits so long for an agent that may hang.
 const PATIENCE: Duration = Duration::from_secs(5);
-
-/// Why an agent left its session.
-#[derive(Debug, thiserror::Error)]
-pub enum PeerError {
-    /// The bus failed.
-    #[error(transparent)]
-    Bus(#[from] BusError),
-    /// A peer sent nonsense.
-    #[error(transparent)]
-    Malformed(#[from] Malformed),
-    /// The session has no such camera.
-    #[error("body {0} has no camera of its own: bodies count from 0")]
-    NoCamera(u32),
-}
 
 /// Runs `agent` for that body on `bus` until `stop`. One that joins in the middle of a plan carries on with it. If
 /// another commands the body, it waits until it can.

@@ -5,6 +5,7 @@ use std::fmt;
 use serde::{Deserialize, Serialize};
 
 use super::Catalog;
+use crate::room::RoomId;
 
 /// A world pack, as logs and messages name it.
 #[derive(Clone, Debug, Deserialize, Eq, PartialEq, Serialize)]
@@ -71,5 +72,13 @@ impl Catalog {
     #[must_use]
     pub fn room_names(&self, id: &str) -> Option<&RoomNames> {
         self.layer.rooms.iter().find(|room| room.id == id)
+    }
+}
+
+impl RoomId {
+    /// What people call it in this world: its name, or the one that a world pack gives it.
+    #[must_use]
+    pub fn name_in(self, catalog: &Catalog) -> &str {
+        catalog.room_names(self.id()).map_or(self.name(), |names| names.name.as_str())
     }
 }

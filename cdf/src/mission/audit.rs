@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{
     catalog::{ClassId, ObjectClass},
-    layout::RoomId,
+    room::RoomId,
 };
 
 /// The beginning of the ids of what makes a printer print.

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::{MessageTime, messages::text_of, occasion::member, problem::Pointer, raw::Entry, reader::Reader};
-use crate::{goal::InstancePattern, layout::RoomId};
+use crate::{goal::InstancePattern, room::RoomId};
 
 /// How long the camera stays where nothing is said, s: long enough to see what is shown.
 const STAY_S: f32 = 3.0;

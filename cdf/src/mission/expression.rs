@@ -3,12 +3,14 @@
 use serde_json::Value;
 
 use super::{
-    key::{flag_keys, flag_of_key},
     problem::Pointer,
     raw::{Condition, Entry, Loose, Scalar},
     reader::{Reader, did_you_mean, shape},
 };
-use crate::goal::{Expression, InstancePattern, StateCondition};
+use crate::{
+    flag_key::{flag_keys, flag_of_key},
+    goal::{Expression, InstancePattern, StateCondition},
+};
 
 /// The kinds of expressions that are no flags.
 pub(super) const KINDS: [&str; 12] = [

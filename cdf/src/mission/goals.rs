@@ -4,12 +4,12 @@ use serde_json::Value;
 
 use super::{
     NoteRequest,
-    key::{flag_keys, flag_of_key},
     problem::Pointer,
     raw::{Loose, Scalar, TaskGoal, Visibility},
     reader::{GoalPlaces, Reader, did_you_mean, shape},
 };
 use crate::{
+    flag_key::{flag_keys, flag_of_key},
     goal::{Goal, GoalState, InstancePattern, Predicate, Relation, StateCondition},
     state::StateFlag,
 };

@@ -6,7 +6,7 @@ use serde_json::Value;
 
 use super::{
     DinoFood, Era, ObjectRequest, Portal,
-    key::{InitialKey, property_of},
+    key::InitialKey,
     names::is_robot,
     problem::Pointer,
     raw::{Entry, Loose, RequiredObject, Scalar},
@@ -15,6 +15,7 @@ use super::{
 };
 use crate::{
     catalog::{ClassId, Property},
+    flag_key::property_of,
     state::{Color, Fluid, StateFlag},
 };
 

@@ -2,13 +2,10 @@
 //!
 //! Only what the catalogue and the mission say for certain counts; where a world might surprise, nothing is said.
 
-use super::{
-    ObjectRequest,
-    key::{flag_key, property_of},
-    names::made,
-};
+use super::{ObjectRequest, names::made};
 use crate::{
     catalog::{Catalog, ClassId, ObjectClass, Property},
+    flag_key::{flag_key, property_of},
     goal::{Expression, GoalState, InstancePattern, Predicate, Relation, StateCondition},
     state::{Fluid, StateFlag},
 };

@@ -7,12 +7,15 @@ use serde::Serialize;
 use serde_json::Value;
 
 use super::{
-    key::flag_of_key,
     problem::Pointer,
     raw::{Entry, Loose},
     reader::{Reader, did_you_mean},
 };
-use crate::{layout::RoomId, state::StateFlag};
+use crate::{
+    flag_key::{flag_keys, flag_of_key},
+    room::RoomId,
+    state::StateFlag,
+};
 
 /// What one item of `simbot_init` asks for.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -161,7 +164,7 @@ impl Reader<'_> {
 
     fn robot_state(&mut self, at: &Pointer, key: &str, value: &Value, robot: &mut RobotRequest) {
         let Some(flag) = flag_of_key(key) else {
-            let remedy = did_you_mean(key, super::key::flag_keys());
+            let remedy = did_you_mean(key, flag_keys());
             return self.error(at, format!("unknown state `{key}`"), remedy);
         };
         let Some(scalar) = self.scalar_of(at, value) else { return };

@@ -8,7 +8,7 @@ use super::{
     raw::{Loose, Scalar, Scene, StickyNote},
     reader::{Reader, did_you_mean},
 };
-use crate::layout::{Layout, RoomId};
+use crate::{layout::Layout, room::RoomId};
 
 /// The layout of a mission that names none.
 pub(super) const DEFAULT_LAYOUT: &str = "OfficeLayout1";

@@ -12,7 +12,7 @@ use serde_json::{Map, Value, json};
 use super::{
     expression::KINDS,
     goals::ALWAYS_UNLOCKED,
-    key::{InitialKey, flag_keys},
+    key::InitialKey,
     limits,
     raw::{Cdf, Loose, Scalar},
     scene::{LAYOUTS, MIRRORED},
@@ -20,7 +20,9 @@ use super::{
 use crate::{
     action::{Status, Verb},
     catalog::Catalog,
-    layout::{Layout, RoomId},
+    flag_key::flag_keys,
+    layout::Layout,
+    room::RoomId,
     state::{Color, Fluid},
 };
 

@@ -6,8 +6,9 @@ use toml::{Table, Value};
 use super::PackError;
 use crate::{
     catalog::{ObjectClass, RoomNames},
-    layout::{Layout, RoomId},
+    layout::Layout,
     model::Model,
+    room::RoomId,
 };
 
 /// The largest number: of metres, kilograms or degrees.

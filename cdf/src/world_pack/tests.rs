@@ -1,7 +1,7 @@
 #![allow(clippy::unwrap_used)]
 
 use super::*;
-use crate::{layout::RoomId, mission::read_mission};
+use crate::{mission::read_mission, room::RoomId};
 
 fn file(path: &str, text: &str) -> PackFile {
     PackFile { path: path.to_owned(), bytes: text.as_bytes().to_vec() }

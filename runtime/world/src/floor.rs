@@ -1,8 +1,8 @@
 //! What never changes about a floor: rooms, walls with their gaps, and how each class of furniture opens. Never knows
 //! what stands where.
 
-use cohabit_cdf::layout::{Layout, OpeningKind, RoomId};
-use cohabit_cdf::{Catalog, ObjectId, model::Axis};
+use cohabit_cdf::layout::{Layout, OpeningKind};
+use cohabit_cdf::{Catalog, ObjectId, RoomId, model::Axis};
 use glam::Vec2;
 
 use crate::{geometry::Footprint, swing::Swings};

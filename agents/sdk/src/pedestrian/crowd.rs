@@ -21,7 +21,8 @@ use super::{
 use crate::{
     agent::TICKS_PER_SECOND,
     client::Client,
-    peer::{PeerError, wait_for_mission},
+    error::PeerError,
+    peer::wait_for_mission,
 };
 
 /// Radii of bodies, m, as the world has them.
