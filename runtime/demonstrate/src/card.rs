@@ -1,6 +1,6 @@
 //! The data card: how the set was made, what it has, and what its files and fields are.
 
-use crate::dataset::{Recipe, Summary};
+use crate::{recipe::Recipe, summary::Summary};
 
 /// What the files and fields are.
 const FILES: &str = include_str!("../data/card.md");

@@ -18,11 +18,11 @@ use cohabit_world::{Input, Report, World};
 
 use crate::{
     camera::Camera,
-    dataset::Recipe,
     error::{DemonstrateError, at},
     objects::Objects,
     picture,
     question::Asker,
+    recipe::Recipe,
     step::{PoseEntry, StepEntry},
 };
 

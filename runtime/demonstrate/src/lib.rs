@@ -16,10 +16,14 @@ mod instruction;
 mod objects;
 mod picture;
 mod question;
+mod recipe;
 mod step;
+mod summary;
 mod truth;
 
-pub use dataset::{MissionText, Recipe, Summary, demonstrate, write_whole};
+pub use dataset::{demonstrate, write_whole};
 pub use error::DemonstrateError;
 pub use objects::ObjectEntry;
 pub use picture::write_plane;
+pub use recipe::{MissionText, Recipe};
+pub use summary::Summary;
