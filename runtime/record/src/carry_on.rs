@@ -93,34 +93,37 @@ fn step(newest: &mut BTreeMap<u64, u64>, run: u64, sequence: u64) -> Option<u64>
     Some(missing)
 }
 
-/// Opens the log at `path` of that session to append to it.
-///
-/// # Errors
-/// [`LogError::File`], [`LogError::Busy`], [`LogError::NotALog`], [`LogError::OtherSession`], [`LogError::Write`].
-pub(crate) fn carry_on(path: &Path, session: &SessionEntry, wall_nanos: u64) -> Result<(LogWriter, Written), LogError> {
-    let failed = |source| LogError::File { path: path.to_owned(), source };
-    let mut file = File::options().read(true).write(true).open(path).map_err(failed)?;
-    file.try_lock().map_err(|_| LogError::Busy { path: path.to_owned() })?;
-    let mut bytes = Vec::new();
-    file.read_to_end(&mut bytes).map_err(failed)?;
-    let mut segments = Segments::new(&bytes);
-    if let Some(Piece::Damaged(range)) = segments.by_ref().find(|piece| matches!(piece, Piece::Damaged(_))) {
-        let reason = format!("it is damaged between byte {} and byte {}", range.start, range.end);
-        return Err(LogError::NotALog { path: path.to_owned(), reason });
+impl LogWriter {
+    /// Opens the log of the same session that an earlier recorder began and did not end, or has ended too early: what it
+    /// holds is kept, but for a torn segment at its end. Gives what it holds.
+    ///
+    /// # Errors
+    /// [`LogError::File`], [`LogError::Busy`], [`LogError::NotALog`], [`LogError::OtherSession`], [`LogError::Write`].
+    pub fn carry_on(path: &Path, session: &SessionEntry, wall_nanos: u64) -> Result<(Self, Written), LogError> {
+        let failed = |source| LogError::File { path: path.to_owned(), source };
+        let mut file = File::options().read(true).write(true).open(path).map_err(failed)?;
+        file.try_lock().map_err(|_| LogError::Busy { path: path.to_owned() })?;
+        let mut bytes = Vec::new();
+        file.read_to_end(&mut bytes).map_err(failed)?;
+        let mut segments = Segments::new(&bytes);
+        if let Some(Piece::Damaged(range)) = segments.by_ref().find(|piece| matches!(piece, Piece::Damaged(_))) {
+            let reason = format!("it is damaged between byte {} and byte {}", range.start, range.end);
+            return Err(LogError::NotALog { path: path.to_owned(), reason });
+        }
+        let sealed = segments.sealed_to();
+        if sealed == 0 {
+            ensure_unbegun(path, &bytes, session)?;
+            // Its recorder was killed before it had written anything.
+            file.set_len(0).and_then(|()| file.rewind()).map_err(failed)?;
+            return Ok((Self::begin(path, Box::new(file), session, wall_nanos)?, Written::default()));
+        }
+        let log = Log::parse(path, &bytes[..sealed])?;
+        ensure_same(path, &log.session, session)?;
+        let written = Written::of(&log);
+        file.set_len(sealed as u64).and_then(|()| file.seek(SeekFrom::Start(sealed as u64))).map_err(failed)?;
+        let there = records(&bytes[..sealed], 0).filter_map(|(kind, body)| mcap::parse_record(kind, &bytes[body]).ok());
+        Ok((Self::after(path, Box::new(file), there, segments.seal())?, written))
     }
-    let sealed = segments.sealed_to();
-    if sealed == 0 {
-        ensure_unbegun(path, &bytes, session)?;
-        // Its recorder was killed before it had written anything.
-        file.set_len(0).and_then(|()| file.rewind()).map_err(failed)?;
-        return Ok((LogWriter::begin(path, Box::new(file), session, wall_nanos)?, Written::default()));
-    }
-    let log = Log::parse(path, &bytes[..sealed])?;
-    ensure_same(path, &log.session, session)?;
-    let written = Written::of(&log);
-    file.set_len(sealed as u64).and_then(|()| file.seek(SeekFrom::Start(sealed as u64))).map_err(failed)?;
-    let there = records(&bytes[..sealed], 0).filter_map(|(kind, body)| mcap::parse_record(kind, &bytes[body]).ok());
-    Ok((LogWriter::after(path, Box::new(file), there, segments.seal())?, written))
 }
 
 fn ensure_same(path: &Path, found: &SessionEntry, session: &SessionEntry) -> Result<(), LogError> {

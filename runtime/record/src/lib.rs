@@ -32,6 +32,7 @@
 //! This crate never knows rerun, the world's rules, or where pixels come from.
 
 mod carry_on;
+mod channels;
 mod copies;
 mod decision;
 pub mod entry;

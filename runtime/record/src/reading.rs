@@ -6,9 +6,9 @@ use mcap::records::Record;
 use serde::de::DeserializeOwned;
 
 use crate::{
+    channels::{CHANNELS, SNAPSHOTS},
     entry::{AnswerEntry, DialogEntry, Entry, EventEntry, GapEntry, SessionEntry, TickEntry},
     snapshot::Snapshot,
-    writer::{CHANNELS, SNAPSHOTS},
 };
 
 /// What was read so far.

@@ -14,7 +14,7 @@ use mcap::{
 };
 
 use crate::{
-    carry_on::{Written, carry_on},
+    channels::SNAPSHOTS,
     copies::Copies,
     entry::{AnswerEntry, DialogEntry, Entry, EventEntry, GapEntry, SessionEntry, TickEntry},
     film::FrameEntry,
@@ -27,21 +27,8 @@ use crate::{
 
 /// What wrote a log.
 pub(crate) const LIBRARY: &str = concat!("cohabit ", env!("CARGO_PKG_VERSION"));
-/// Where snapshots are, in an encoding of their own.
-pub(crate) const SNAPSHOTS: &str = "/snapshots";
+/// How snapshots are encoded: not as JSON.
 const SNAPSHOT_ENCODING: &str = "cohabit-snapshot";
-
-/// The channels that every log has, in the order of their numbers, which count from 1: where the records that say so are
-/// lost, a reader knows the channels by these.
-pub(crate) const CHANNELS: [&str; 7] = [
-    SessionEntry::TOPIC,
-    TickEntry::TOPIC,
-    EventEntry::TOPIC,
-    DialogEntry::TOPIC,
-    AnswerEntry::TOPIC,
-    GapEntry::TOPIC,
-    SNAPSHOTS,
-];
 
 /// An open log, locked for this process if it is a file. What was appended is safe from the end of this process after
 /// [`Self::flush`].
@@ -67,15 +54,6 @@ impl LogWriter {
         let file = File::create_new(path).map_err(|source| LogError::File { path: path.to_owned(), source })?;
         file.try_lock().map_err(|_| LogError::Busy { path: path.to_owned() })?;
         Self::begin(path, Box::new(file), session, wall_nanos)
-    }
-
-    /// Opens the log of the same session that an earlier recorder began and did not end, or has ended too early: what it
-    /// holds is kept, but for a torn segment at its end. Gives what it holds.
-    ///
-    /// # Errors
-    /// [`LogError::File`], [`LogError::Busy`], [`LogError::NotALog`], [`LogError::OtherSession`], [`LogError::Write`].
-    pub fn carry_on(path: &Path, session: &SessionEntry, wall_nanos: u64) -> Result<(Self, Written), LogError> {
-        carry_on(path, session, wall_nanos)
     }
 
     /// Begins a log that goes to `out`; `path` is for messages alone.
