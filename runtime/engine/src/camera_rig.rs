@@ -4,7 +4,7 @@ use cohabit_cdf::Layout;
 use cohabit_render::{Camera, Instance, Lens};
 use libm::{cosf, expf, sinf};
 
-use crate::scene::Standing;
+use crate::standing::Standing;
 
 const BEHIND_M: f32 = 1.9;
 const NEAREST_M: f32 = 0.45;

@@ -25,6 +25,7 @@ mod scene;
 mod shot;
 mod simulator;
 mod snapshot;
+mod standing;
 mod stills;
 mod stopwatch;
 mod studio;

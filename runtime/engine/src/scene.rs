@@ -14,6 +14,7 @@ use crate::{
     appearance::Visible,
     motion::{Gait, Motion, Pour},
     shot::{self, Outlook},
+    standing::Standing,
 };
 
 /// One moment of a world, complete enough to be rendered elsewhere.
@@ -37,19 +38,6 @@ pub struct Moment {
     pub shot: Option<Outlook>,
     /// How often the time had leapt before: a camera does not follow a body from one time to another.
     pub leaps: u64,
-}
-
-/// Where a body stands and looks.
-#[derive(Clone, Copy, Debug)]
-pub struct Standing {
-    /// On the floor, m.
-    pub position_m: [f32; 3],
-    /// Its eye, m.
-    pub eye_m: [f32; 3],
-    /// Heading, rad.
-    pub yaw_rad: f32,
-    /// Pitch of the head, rad.
-    pub head_pitch_rad: f32,
 }
 
 /// The id of an object in the id plane.

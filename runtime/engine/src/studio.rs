@@ -17,7 +17,8 @@ use crate::{
     camera_plan::{CameraPlan, Mount},
     camera_rig::{CameraRig, Tall},
     exposure::{Darkroom, Take},
-    scene::{Moment, Standing, body_instance_id},
+    scene::{Moment, body_instance_id},
+    standing::Standing,
 };
 
 /// What a camera above the whole plan, or above a body, is to scale at, m above the floor.
