@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use cohabit_dialog::{OnTimeout, PageTexts, Phrase, PlannedError, Questionnaire};
+use cohabit_dialog::{PageTexts, Questionnaire};
 use serde::{Deserialize, Serialize};
 
 use crate::{
@@ -10,6 +10,7 @@ use crate::{
     probe::Probe,
     settings::{Settings, has_wizard, merged, response_delay_ms},
     tutorial::Exercise,
+    wizard::Wizard,
 };
 
 /// A study.
@@ -61,21 +62,6 @@ pub struct Study {
     pub instruments: BTreeMap<String, Instrument>,
     /// The texts of all files that it names, by their names.
     pub files: BTreeMap<String, String>,
-}
-
-/// How a wizard takes part.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Wizard {
-    /// How long they may take to decide, s; as long as they like, if absent.
-    pub timeout_s: Option<f64>,
-    /// What follows then.
-    pub on_timeout: OnTimeout,
-    /// What the robot says then, if that is what follows and it is not the usual.
-    pub moment: Option<String>,
-    /// What they can have the robot say by a key.
-    pub phrases: Vec<Phrase>,
-    /// The errors that they can have the robot make.
-    pub errors: Vec<PlannedError>,
 }
 
 /// A text with its version.

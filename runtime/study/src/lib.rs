@@ -68,6 +68,7 @@ pub mod square;
 mod tables;
 mod tutorial;
 mod web;
+mod wizard;
 mod written;
 
 pub use assign::assign;
@@ -93,3 +94,4 @@ pub use simulate::{
 pub use tables::{DataPackageError, TablesError, all as all_tables, export, is_practice};
 pub use tutorial::{Activity, Exercise, Tried};
 pub use web::{Doors, StudyService, address};
+pub use wizard::Wizard;

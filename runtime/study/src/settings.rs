@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use cohabit_dialog::OnTimeout;
 use serde::{Deserialize, Serialize};
 
-use crate::design::Wizard;
+use crate::wizard::Wizard;
 
 /// Settings, by name.
 pub type Settings = BTreeMap<String, Setting>;

@@ -8,8 +8,9 @@ use toml::Spanned;
 
 use super::Checking;
 use crate::{
-    design::{Study, Wizard},
+    design::Study,
     settings::{has_wizard, response_delay_ms},
+    wizard::Wizard,
     written::{BlockKind, Written, WrittenError, WrittenPhrase, WrittenWizard},
 };
 

@@ -11,8 +11,8 @@ use super::{
     listed, rows,
 };
 use crate::{
-    design::Wizard,
     settings::{has_wizard, response_delay_ms},
+    wizard::Wizard,
 };
 
 /// The columns of counts: a head, and the outcomes that it counts.
