@@ -8,8 +8,9 @@ use std::collections::BTreeMap;
 use glam::Vec3;
 
 use crate::camera::{Camera, View};
+use crate::placed::Transform;
 use crate::plan::RoomSurface;
-use crate::scene::{Scene, Transform};
+use crate::scene::Scene;
 use crate::veil::Veil;
 
 mod tests;

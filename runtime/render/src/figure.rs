@@ -4,9 +4,11 @@ use glam::Mat3;
 use glam::Vec3;
 
 use crate::color;
-use crate::scene::{Placed, Scene, Weather};
+use crate::placed::Placed;
+use crate::scene::Scene;
 use crate::soup::{Soup, flat};
 use crate::veil::{Veil, weathered};
+use crate::weather::Weather;
 
 /// A part of an instance that moves as a whole: its body, a door, an arm.
 #[derive(Clone, Debug, PartialEq)]

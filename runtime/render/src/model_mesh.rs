@@ -6,8 +6,8 @@ use glam::{Mat3, Vec3};
 use crate::color;
 use crate::hidden::{self, Cover};
 use crate::kit::{self, Detail, Precision, Solid};
-use crate::library::ModelError;
 use crate::mesh::{Aabb, Mesh, Paint, Surface, is_usual};
+use crate::model_error::ModelError;
 use crate::pattern::Pattern;
 use crate::veil::{self, Veil};
 

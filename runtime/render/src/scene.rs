@@ -11,70 +11,16 @@ use crate::color;
 use crate::instance::{Highlight, Instance, Look};
 use crate::library::MeshLibrary;
 use crate::mesh::Aabb;
+use crate::placed::{Placed, Transform};
 use crate::plan::{HALF_WALL_M, Plan};
 use crate::pose::{self, Pose};
 use crate::rig::{self, Drives};
 use crate::shadow::ShadowMap;
 use crate::signs::{SIGNS, Sign};
+use crate::weather::Weather;
 
 /// What is left of the light where the lamps are off.
 const UNLIT: Vec3 = Vec3::new(0.13, 0.15, 0.20);
-
-/// From an instance's frame, or a moving part's, to the world, and back.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Transform {
-    pub rotation: Mat3,
-    pub offset: Vec3,
-    pub inverse: Mat3,
-}
-
-impl Transform {
-    pub(crate) const IDENTITY: Self = Self { rotation: Mat3::IDENTITY, offset: Vec3::ZERO, inverse: Mat3::IDENTITY };
-
-    fn new(rotation: Mat3, offset: Vec3) -> Self {
-        let inverse = if rotation.determinant().abs() > 1e-12 { rotation.inverse() } else { Mat3::ZERO };
-        Self { rotation, offset, inverse }
-    }
-
-    fn bounds(&self, own: Aabb) -> Aabb {
-        own.corners().iter().fold(Aabb::EMPTY, |all, corner| all.with(self.rotation * *corner + self.offset))
-    }
-}
-
-/// What states do to every surface of an instance.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Weather {
-    pub dirty: bool,
-    pub cold: bool,
-    pub infected: bool,
-}
-
-impl Weather {
-    pub(crate) fn any(self) -> bool {
-        self != Self::default()
-    }
-}
-
-/// An instance, ready to be drawn.
-#[derive(Clone, Debug)]
-pub(crate) struct Placed {
-    pub id: u32,
-    pub model: usize,
-    /// The body's, then each joint's.
-    pub transforms: Vec<Transform>,
-    /// Pieces shown, each with the transform that moves it.
-    pub pieces: Vec<(u16, u16)>,
-    pub center: Vec3,
-    pub radius: f32,
-    pub bounds: Aabb,
-    /// Rooms it touches, as bits.
-    pub rooms: u8,
-    pub room: RoomId,
-    pub tint: Vec3,
-    pub fluid: Vec3,
-    pub weather: Weather,
-    pub casts_shadow: bool,
-}
 
 /// A floor plan and the instances in it.
 #[derive(Debug)]

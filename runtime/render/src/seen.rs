@@ -3,9 +3,10 @@
 use glam::Vec3;
 
 use crate::camera::{Camera, View};
+use crate::placed::Placed;
 use crate::plan::{PlanPart, RoomSurface};
 use crate::portals::Visible;
-use crate::scene::{Placed, Scene};
+use crate::scene::Scene;
 
 /// Radius in pixels above which an instance is drawn finely, and above which it is not drawn coarsely.
 const LEVEL_PX: [f32; 2] = [130.0, 36.0];

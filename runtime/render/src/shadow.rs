@@ -7,7 +7,7 @@ use glam::Vec3;
 
 use crate::library::MeshLibrary;
 use crate::mesh::Aabb;
-use crate::scene::Placed;
+use crate::placed::Placed;
 use crate::veil::Veil;
 
 /// How far light moves along x and y while it falls by one metre.

@@ -6,7 +6,8 @@ use glam::Vec3;
 
 use crate::color;
 use crate::mesh::{Mesh, Paint, Piece};
-use crate::scene::{Placed, Scene, Transform};
+use crate::placed::{Placed, Transform};
+use crate::scene::Scene;
 use crate::veil::Veil;
 
 /// The triangles of one instance, or of one surface of a room.

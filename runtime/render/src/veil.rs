@@ -12,7 +12,7 @@ use glam::Vec3;
 
 use crate::color::from_srgb;
 use crate::pattern::Pattern;
-use crate::scene::Weather;
+use crate::weather::Weather;
 
 /// How a surface is seen through.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]

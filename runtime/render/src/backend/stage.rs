@@ -7,10 +7,12 @@ use glam::{Mat3, Vec3};
 use super::{MeshData, Shadows};
 use crate::camera::{Camera, View};
 use crate::library::MeshLibrary;
+use crate::placed::{Placed, Transform};
 use crate::plan::Plan;
 use crate::portals::Visible;
-use crate::scene::{Placed, Scene, Transform, Weather};
+use crate::scene::Scene;
 use crate::seen;
+use crate::weather::Weather;
 
 /// Which floor plan a scene has; keeps it alive, so that no other is ever equal to it.
 #[derive(Clone, Debug)]

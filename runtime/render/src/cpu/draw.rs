@@ -5,10 +5,12 @@ use glam::{Mat3, Vec3};
 use crate::camera::{Camera, View};
 use crate::library::ModelMesh;
 use crate::mesh::{Mesh, Piece};
+use crate::placed::{Placed, Transform};
 use crate::plan::PlanPart;
 use crate::portals::Visible;
-use crate::scene::{Placed, Scene, Transform, Weather};
+use crate::scene::Scene;
 use crate::seen::{self, Thing};
+use crate::weather::Weather;
 
 /// How much of the surrounding light reaches the corners of a mesh.
 #[derive(Clone, Copy, Debug)]
