@@ -13,6 +13,7 @@ use crate::{
     navigation::blocks_the_way,
     physics, power,
     report::{Ending, Event, SoundKind},
+    rules::Observer,
     state::State,
     works,
 };
@@ -247,7 +248,8 @@ impl Changes<'_> {
         }
         self.state.floor_version += 1;
         if fed {
-            let effects = works::on_power(&self.facts(), circuit);
+            let facts = self.facts();
+            let effects = works::on_power(&facts, &Observer { facts: &facts, body: None }, circuit);
             self.apply(effects);
         }
     }

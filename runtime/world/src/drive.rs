@@ -6,7 +6,7 @@ use glam::Vec2;
 use crate::{
     body::{Body, Controls},
     geometry::{direction, wrap},
-    motion::{DT_S, PITCH_LIMIT_RAD, PITCH_RAD_S, Progress, TURN_RAD_S2, WALK_M_S2, approach, done_if},
+    kinematics::{DT_S, PITCH_LIMIT_RAD, PITCH_RAD_S, Progress, TURN_RAD_S2, WALK_M_S2, approach, done_if},
 };
 
 /// How long a body does what it was told last: half a second, so that it stops if nobody drives it any more.

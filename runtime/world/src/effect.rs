@@ -5,7 +5,7 @@ use glam::Vec3;
 
 use crate::{
     report::{Event, SoundKind},
-    works::Run,
+    run::Run,
 };
 
 /// Where something comes to be.

@@ -4,7 +4,7 @@ use cohabit_cdf::{BodyId, ClassId, Color, Fluid, ObjectClass, ObjectId, RoomId, 
 use glam::{Quat, Vec3};
 use serde::{Deserialize, Serialize};
 
-use crate::{geometry::Pose, works::Run};
+use crate::{geometry::Pose, run::Run};
 
 /// What holds an object where it is.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]

@@ -4,20 +4,11 @@ use cohabit_cdf::{
     Expression, Fluid, Goal, GoalState, InstancePattern, Mission, ObjectId, Occasion, Predicate, Property, Relation,
     StateFlag, StateFlags,
 };
-use serde::{Deserialize, Serialize};
 
 use crate::{anchors::is_full, facts::Facts, sight::sees, state::State};
 
 /// What missions call the robots: `TAM_1`, `TAM_2`, in the order of the bodies.
 const ROBOT: &str = "TAM";
-
-/// How far a mission's goal has come.
-#[derive(Clone, Copy, Debug, Default, Deserialize, Eq, PartialEq, Serialize)]
-pub(crate) struct GoalProgress {
-    pub met: bool,
-    /// Whether a hidden goal was unlocked.
-    pub shown: bool,
-}
 
 /// What everybody outside may know of a goal.
 #[derive(Clone, Debug, Eq, PartialEq)]

@@ -29,6 +29,13 @@
 //! ```
 //!
 //! Frames: see the docs of `cohabit-cdf`; angles are in radians, positive yaw is to the left.
+//!
+//! Its modules form layers; each knows those of its own layer in no circle, and lower ones:
+//! 1. data: `geometry`, `swing`, `floor`, `kinematics`, `body`, `report`, `run`, `entity`, `effect`, `mission_state`, `solver`, `state`
+//! 2. readings and motion: `facts`, `reach`, `sight`, `anchors`, `power`, `pushable`, `navigation`, `approach`, `physics`, `motion`, `drive`
+//! 3. what follows, pure: the `works` of machines, the `rules` of commands, `goals`, the `story`, the `score`
+//! 4. changes: `apply` makes them, `build` makes the first state; `digest`, `snapshot` and `difference` read all of it
+//! 5. the `world`, and what goes on in it: `tasks`, `avoid`, `passage`, `push`; `symbols` of it for planners
 
 mod anchors;
 mod apply;
@@ -45,18 +52,23 @@ mod facts;
 mod floor;
 mod geometry;
 mod goals;
+mod kinematics;
+mod mission_state;
 mod motion;
 mod navigation;
 mod passage;
 mod physics;
 mod power;
 mod push;
+mod pushable;
 mod reach;
 mod report;
 mod rules;
+mod run;
 mod score;
 mod sight;
 mod snapshot;
+mod solver;
 mod state;
 mod story;
 mod swing;

@@ -7,29 +7,12 @@ use crate::{
     body::{Body, Step},
     drive::drive,
     geometry::{direction, heading, wrap},
+    kinematics::{DT_S, PITCH_LIMIT_RAD, PITCH_RAD_S, Progress, TURN_RAD_S2, WALK_M_S2, approach, done_if},
 };
 
-/// Length of a tick, s.
-pub(crate) const DT_S: f32 = 1.0 / 60.0;
-pub(crate) const WALK_M_S2: f32 = 2.5;
-pub(crate) const TURN_RAD_S2: f32 = 14.0;
-pub(crate) const PITCH_RAD_S: f32 = 2.0;
-/// How far the head pitches up and down: 60 degrees each.
-pub(crate) const PITCH_LIMIT_RAD: f32 = std::f32::consts::FRAC_PI_3;
 /// The arm takes 0.4 s out and 0.3 s back.
 const ARM_OUT_PER_S: f32 = 1.0 / 0.4;
 const ARM_BACK_PER_S: f32 = 1.0 / 0.3;
-
-/// How a step stands after a tick.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Progress {
-    /// It goes on.
-    Going,
-    /// It is done.
-    Done,
-    /// Something is in the way.
-    Blocked,
-}
 
 /// Moves `body` one tick along `step`; `is_free` says whether its middle may be at a point.
 pub(crate) fn advance(body: &mut Body, step: &mut Step, is_free: &dyn Fn(Vec2) -> bool) -> Progress {
@@ -67,10 +50,6 @@ pub(crate) fn retract(body: &mut Body) {
     body.arm = (body.arm - ARM_BACK_PER_S * DT_S).max(0.0);
 }
 
-pub(crate) fn done_if(done: bool) -> Progress {
-    if done { Progress::Done } else { Progress::Going }
-}
-
 /// The yaw and pitch that point at `point`.
 fn toward(body: &Body, point: Vec3) -> (f32, f32) {
     let level = point.truncate() - body.position;
@@ -100,10 +79,6 @@ fn turn(body: &mut Body, left_rad: &mut f32) -> bool {
 fn pitch(body: &mut Body, to_rad: f32) -> bool {
     body.head_pitch_rad = approach(body.head_pitch_rad, to_rad, PITCH_RAD_S * DT_S);
     body.head_pitch_rad == to_rad
-}
-
-pub(crate) fn approach(value: f32, wanted: f32, by: f32) -> f32 {
-    if (wanted - value).abs() <= by { wanted } else { value + by * (wanted - value).signum() }
 }
 
 fn straight(body: &mut Body, left_m: &mut f32, is_free: &dyn Fn(Vec2) -> bool) -> Progress {

@@ -10,7 +10,7 @@ use crate::{
     entity::Support,
     facts::Facts,
     geometry::{Footprint, GRID_M, direction},
-    push::is_pushable,
+    pushable::is_pushable,
 };
 
 /// How far a body may be off the mesh (beside a corner, after a push) and still find back, m.

@@ -3,20 +3,18 @@
 //! While nothing flies the solver is empty: what stands around is put in, as it stands then, when the first thing is let
 //! go. So a tick without flights costs nothing, and the solver's state never depends on flights that are over.
 
-use std::collections::BTreeMap;
-
 use cohabit_cdf::{Catalog, ObjectId, Property, catalog::Stands};
 use glam::{Quat, Vec2, Vec3};
 use rapier3d::prelude::*;
-use serde::{Deserialize, Serialize};
 
 use crate::{
     entity::{Object, Support},
     facts::Facts,
     floor::Floor,
     geometry::Pose as ObjectPose,
-    motion::DT_S,
+    kinematics::DT_S,
     navigation::blocks_the_way,
+    solver::{Flight, Physics, Standing},
     state::State,
 };
 
@@ -31,42 +29,7 @@ const WAKE_M: f32 = 0.03;
 /// What was woken and moved less than this was not hit, m.
 const UNMOVED_M: f32 = 0.005;
 
-/// The solver's world, and who is who in it.
-#[derive(Serialize, Deserialize)]
-pub(crate) struct Physics {
-    world: PhysicsWorld,
-    loose: BTreeMap<ObjectId, Flight>,
-    bodies: Vec<RigidBodyHandle>,
-    furniture: BTreeMap<ObjectId, Standing>,
-    furnished: bool,
-}
-
-/// A piece of furniture in the solver, and how it stood when it was put in.
-#[derive(Clone, Serialize, Deserialize)]
-struct Standing {
-    colliders: Vec<ColliderHandle>,
-    pose: ObjectPose,
-    opened: f32,
-}
-
-/// A thing in the solver.
-#[derive(Clone, Copy, Serialize, Deserialize)]
-struct Flight {
-    handle: RigidBodyHandle,
-    ticks: u32,
-    still: u32,
-    /// Whether it lies where it belongs, and is here only because something comes near.
-    rests: bool,
-}
-
 impl Physics {
-    /// An empty solver.
-    pub fn empty() -> Self {
-        let mut world = PhysicsWorld { gravity: Vector::new(0.0, 0.0, -9.81), ..PhysicsWorld::default() };
-        world.integration_parameters.dt = DT_S;
-        Self { world, loose: BTreeMap::new(), bodies: Vec::new(), furniture: BTreeMap::new(), furnished: false }
-    }
-
     /// Puts in the floor, the walls and all that stands around, in the order of ids.
     fn furnish(&mut self, facts: &Facts<'_>) {
         let [west, south, east, north] = facts.floor.bounds;
@@ -137,12 +100,6 @@ impl Physics {
         self.furniture.insert(id, Standing { colliders, pose, opened: object.opened });
     }
 
-    fn insert_box(&mut self, center: Vec3, half: Vec3, rotation: Quat) -> ColliderHandle {
-        let collider =
-            ColliderBuilder::cuboid(half.x, half.y, half.z).position(Pose::from_parts(center, rotation)).friction(0.7);
-        self.world.colliders.insert(collider)
-    }
-
     /// What lies at rest and something that flies is about to touch, in the order of ids.
     fn soon_hit(&self, facts: &Facts<'_>) -> Vec<ObjectId> {
         const SLOW_M_S: f32 = 0.3;
@@ -173,20 +130,6 @@ impl Physics {
                     && is_light(facts, *id)
             })
             .collect()
-    }
-
-    /// Whether anything flies or slides.
-    pub fn is_active(&self) -> bool {
-        !self.loose.is_empty()
-    }
-
-    /// What flies or slides now, with its velocity: the part of the solver that a digest covers.
-    pub fn moving(&self) -> impl Iterator<Item = (ObjectId, [f32; 6])> + '_ {
-        self.loose.iter().map(|(id, flight)| {
-            let body = &self.world.bodies[flight.handle];
-            let (line, turn) = (body.linvel(), body.angvel());
-            (*id, [line.x, line.y, line.z, turn.x, turn.y, turn.z])
-        })
     }
 }
 
@@ -262,24 +205,11 @@ pub(crate) fn add_body(catalog: &Catalog, state: &mut State, object: ObjectId, v
 /// Takes an object out of the solver, if it is in it.
 pub(crate) fn drop_body(state: &mut State, object: ObjectId) {
     if let Some(flight) = state.physics.loose.remove(&object) {
-        remove(&mut state.physics, flight.handle);
+        state.physics.remove(flight.handle);
     }
     if state.physics.loose.is_empty() && state.physics.furnished {
         state.physics = Physics::empty();
     }
-}
-
-fn remove(physics: &mut Physics, handle: RigidBodyHandle) {
-    let world = &mut physics.world;
-    world.bodies.remove(
-        handle,
-        &mut world.islands,
-        &mut world.colliders,
-        &mut world.impulse_joints,
-        &mut world.multibody_joints,
-        &mut world.soft_bodies,
-        true,
-    );
 }
 
 /// What a tick came to for things that fly.

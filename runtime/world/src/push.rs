@@ -3,7 +3,7 @@
 //! The contact is quasi-static: what is pushed gives way along the contact's normal, turns as far as it is hit beside
 //! its middle, and lies still again as soon as nobody pushes. Never knows why a body moves.
 
-use cohabit_cdf::{BodyId, ObjectId, Property, catalog::Stands};
+use cohabit_cdf::{BodyId, ObjectId, Property};
 use glam::Vec2;
 
 use crate::{
@@ -11,16 +11,11 @@ use crate::{
     facts::Facts,
     geometry::{Footprint, Pose, turn},
     navigation::Navigation,
+    pushable::is_pushable,
     report::Event,
     world::World,
 };
 
-/// What a body can push along, with all that stands on it, kg.
-const PUSHED_KG: f32 = 15.0;
-/// Nothing that stands higher than this is on the floor, m.
-const FLOOR_M: f32 = 0.06;
-/// Flat things that nobody carries about (mats, cords, puddles) are walked over, m.
-const FLAT_M: f32 = 0.1;
 /// No pushed thing reaches further from its middle than this, m.
 const REACH_M: f32 = 1.2;
 
@@ -31,27 +26,6 @@ pub(crate) enum Push {
     Moves(Vec<(ObjectId, Pose)>),
     /// This cannot give way.
     Stuck(ObjectId),
-}
-
-/// Whether a body could push an object along the floor.
-pub(crate) fn is_pushable(facts: &Facts<'_>, id: ObjectId) -> bool {
-    let object = facts.object(id);
-    let class = facts.class(id);
-    object.support == Support::Fixed
-        && object.pose.position.z.abs() < FLOOR_M
-        && class.stands != Stands::OnWall
-        && (class.has(Property::Pickupable) || facts.size(id).z > FLAT_M || class.stands == Stands::OnSurface)
-        && facts.floor.swings.of(object.class).is_empty()
-        && mass_kg(facts, id) <= PUSHED_KG
-}
-
-/// What it weighs with all that stands on it, kg.
-fn mass_kg(facts: &Facts<'_>, id: ObjectId) -> f32 {
-    let own = facts.object(id).mass_kg(facts.class(id));
-    if own > PUSHED_KG {
-        return own;
-    }
-    own + facts.state.children(id).map(|child| mass_kg(facts, child)).sum::<f32>()
 }
 
 /// What a body moves out of its way by going from one point to another.

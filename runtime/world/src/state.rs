@@ -8,11 +8,9 @@ use serde::{Deserialize, Serialize};
 use crate::{
     body::Body,
     entity::Object,
-    goals::GoalProgress,
-    physics::Physics,
+    mission_state::{Away, Dinosaur, Gate, GoalProgress},
     report::Ending,
-    story::Away,
-    works::portal::{Dinosaur, Gate},
+    solver::Physics,
 };
 
 /// The changing part of a world.

@@ -5,37 +5,17 @@ use cohabit_cdf::{
     Mission, ObjectId,
     mission::{CameraMovement, CameraView, Message, MessageTime},
 };
-use serde::{Deserialize, Serialize};
 
 use crate::{
     anchors::free_anchors,
     effect::{Effect, Spot},
     entity::Support,
     facts::Facts,
-    geometry::Pose,
     goals,
+    mission_state::{Away, Until},
     report::{CameraTarget, Event},
     works::portal::{foot, open_gate},
 };
-
-/// An object that is not there yet: where it will be, and from when.
-#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
-pub(crate) struct Away {
-    pub support: Support,
-    pub pose: Pose,
-    pub until: Until,
-}
-
-/// What something that is away waits for.
-#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
-pub(crate) enum Until {
-    /// The portal of that name opens.
-    Portal(String),
-    /// The condition of the mission's request with that index holds.
-    Condition(usize),
-    /// What it is in comes.
-    Carrier,
-}
 
 /// What is told and shown as `now` comes, messages first.
 pub(crate) fn due(facts: &Facts<'_>, mission: &Mission, now: &MessageTime) -> Vec<Event> {

@@ -14,7 +14,7 @@ use crate::{
     anchors::{anchors, covers},
     entity::Support,
     facts::Facts,
-    rules,
+    mission_state, rules,
     state::ids,
     works::portal,
     world::World,
@@ -97,7 +97,7 @@ fn covered(facts: &Facts<'_>, id: ObjectId, parent: ObjectId) -> Vec<u16> {
     all.filter(|index| covers(facts, id, parent, *index)).collect()
 }
 
-fn symbolic_gate(gate: &portal::Gate) -> Gate {
+fn symbolic_gate(gate: &mission_state::Gate) -> Gate {
     Gate { ways: gate.ways.iter().map(|way| (way.name.clone(), way.era)).collect(), current: gate.current }
 }
 

@@ -11,10 +11,9 @@ mod recipes;
 mod vending;
 
 use cohabit_cdf::{
-    Catalog, ClassId, Color, ObjectId,
-    catalog::table::{Change, Device, Over, Scope},
+    ClassId, ObjectId,
+    catalog::table::{Change, Over, Scope, View},
 };
-use serde::{Deserialize, Serialize};
 
 pub use self::lab::EMBIGGEN;
 pub(crate) use self::{
@@ -26,87 +25,17 @@ use crate::{
     effect::{Effect, Spot},
     facts::Facts,
     power::lacks_power,
-    rules::Observer,
+    run::Work,
 };
 
-const TICKS_A_SECOND: f32 = 60.0;
-
-/// Ticks from the start of a machine to its effect, and to its end.
-pub(crate) fn ticks(device: &Device) -> [u64; 2] {
-    [device.work_s, device.moment_s].map(|seconds| (seconds * TICKS_A_SECOND).round() as u64)
-}
-
-/// What a machine does.
-#[derive(Clone, Copy, Debug, Deserialize, Eq, PartialEq, Serialize)]
-pub(crate) enum Work {
-    /// Nothing but being on.
-    Nothing,
-    /// What can be heated gets hot.
-    Heat,
-    /// As [`Self::Heat`], and what can be cooked is cooked.
-    Toast,
-    /// What can be chilled gets cold.
-    Chill,
-    /// What is in it becomes what it was yesterday.
-    Yesterday,
-    /// What is in it becomes a carrot.
-    Carrot,
-    /// A cartridge makes its product, beside it.
-    Print,
-    /// What holds fluids gets hot coffee.
-    Brew,
-    /// Coffee becomes beans.
-    Unbrew,
-    /// What is in it takes a colour.
-    Paint(Color),
-    /// What is in it grows, or shrinks back.
-    Embiggen,
-    /// The object at this slot falls into the tray.
-    Vend(u16),
-    /// The work of this number in the table, which is none of those above.
-    Listed(u16),
-}
-
-impl Work {
-    /// The work of that name in the table.
-    pub fn named(catalog: &Catalog, name: &str) -> Self {
-        match name {
-            "heat" => Self::Heat,
-            "toast" => Self::Toast,
-            "chill" => Self::Chill,
-            "yesterday" => Self::Yesterday,
-            "carrot" => Self::Carrot,
-            "print" => Self::Print,
-            "brew" => Self::Brew,
-            "unbrew" => Self::Unbrew,
-            "paint red" => Self::Paint(Color::Red),
-            "paint green" => Self::Paint(Color::Green),
-            "paint blue" => Self::Paint(Color::Blue),
-            "embiggen" => Self::Embiggen,
-            _ => {
-                let slot = name.strip_prefix("vend ").and_then(|slot| slot.parse().ok());
-                let listed = || catalog.table().works().iter().position(|work| work.name == name);
-                let listed = || listed().and_then(|index| u16::try_from(index).ok());
-                slot.map(Self::Vend).or_else(|| listed().map(Self::Listed)).unwrap_or(Self::Nothing)
-            }
-        }
-    }
-}
-
-/// A machine at work for a moment.
-#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
-pub(crate) struct Run {
-    /// The tick in which it came on.
-    pub since: u64,
-    pub work: Work,
-    /// Where the work is done: the machine itself, or what it is aimed at.
-    pub site: ObjectId,
-    /// What is on for as long.
-    pub drives: Option<ObjectId>,
-}
-
-/// What `work` changes at `site`, done by `machine`.
-pub(crate) fn effects(facts: &Facts<'_>, machine: ObjectId, work: Work, site: ObjectId) -> Vec<Effect> {
+/// What `work` changes at `site`, done by `machine`; `view` is how the table finds the world.
+pub(crate) fn effects(
+    facts: &Facts<'_>,
+    view: &impl View,
+    machine: ObjectId,
+    work: Work,
+    site: ObjectId,
+) -> Vec<Effect> {
     let all = |change: fn(&Facts<'_>, ObjectId) -> Vec<Effect>| {
         facts.contents(site).into_iter().flat_map(|id| change(facts, id)).collect()
     };
@@ -126,14 +55,13 @@ pub(crate) fn effects(facts: &Facts<'_>, machine: ObjectId, work: Work, site: Ob
         Work::Paint(color) => direct().map(|id| Effect::Paint(id, color)).collect(),
         Work::Embiggen => direct().flat_map(|id| lab::embiggen(facts, id)).collect(),
         Work::Vend(slot) => vending::vend(facts, machine, site, slot),
-        Work::Listed(index) => listed(facts, index, site),
+        Work::Listed(index) => listed(facts, view, index, site),
     }
 }
 
 /// What a work that the table alone knows changes at `site`.
-fn listed(facts: &Facts<'_>, index: u16, site: ObjectId) -> Vec<Effect> {
+fn listed(facts: &Facts<'_>, view: &impl View, index: u16, site: ObjectId) -> Vec<Effect> {
     let Some(work) = facts.catalog.table().works().get(usize::from(index)) else { return Vec::new() };
-    let observer = Observer { facts, body: None };
     let things = match work.over {
         Over::Contents => facts.contents(site),
         Over::Inside => facts.held_in(site),
@@ -141,7 +69,7 @@ fn listed(facts: &Facts<'_>, index: u16, site: ObjectId) -> Vec<Effect> {
     };
     let change = |thing: ObjectId| {
         let scope = Scope { it: None, thing: Some(thing), machine: Some(site) };
-        let changes = scope.changes(&observer, &work.effects);
+        let changes = scope.changes(view, &work.effects);
         changes.into_iter().flat_map(move |change| thing_effects(facts, change, thing)).collect::<Vec<_>>()
     };
     things.into_iter().flat_map(change).collect()
@@ -163,18 +91,18 @@ fn thing_effects(facts: &Facts<'_>, change: &Change, thing: ObjectId) -> Vec<Eff
 }
 
 /// What something does to its contents once it is shut, or about to be, and has power.
-pub(crate) fn settle(facts: &Facts<'_>, id: ObjectId) -> Vec<Effect> {
+pub(crate) fn settle(facts: &Facts<'_>, view: &impl View, id: ObjectId) -> Vec<Effect> {
     match &facts.catalog.table().device(&facts.class(id).id).shut_work {
-        Some(work) if !lacks_power(facts, id) => effects(facts, id, Work::named(facts.catalog, work), id),
+        Some(work) if !lacks_power(facts, id) => effects(facts, view, id, Work::named(facts.catalog, work), id),
         _ => Vec::new(),
     }
 }
 
 /// What follows once a circuit is fed again: what is shut does its work, computers read the disks that are in them.
-pub(crate) fn on_power(facts: &Facts<'_>, circuit: i32) -> Vec<Effect> {
+pub(crate) fn on_power(facts: &Facts<'_>, view: &impl View, circuit: i32) -> Vec<Effect> {
     let fed = facts.state.existing().filter(|(_, object)| object.circuit == Some(circuit)).map(|(id, _)| id);
     fed.flat_map(|id| {
-        let settled = if facts.is_shut(id) { settle(facts, id) } else { Vec::new() };
+        let settled = if facts.is_shut(id) { settle(facts, view, id) } else { Vec::new() };
         settled.into_iter().chain(disk::read_all(facts, id))
     })
     .collect()

@@ -22,10 +22,10 @@ use crate::{
     facts::Facts,
     floor::Floor,
     geometry::wrap,
-    goals::GoalProgress,
+    mission_state::GoalProgress,
     navigation::Navigation,
-    physics::Physics,
     report::Event,
+    solver::Physics,
     state::{State, ids},
 };
 

@@ -5,9 +5,8 @@ use cohabit_cdf::{Mission, ObjectId, ObjectRequest, StateFlag, mission::Era};
 use super::Builder;
 use crate::{
     entity::Support,
+    mission_state::{Away, Dinosaur, Gate, Until, Way},
     state::ids,
-    story::{Away, Until},
-    works::portal::{Dinosaur, Gate, Way},
 };
 
 const GENERATOR: &str = "PortalGenerator";

@@ -2,7 +2,7 @@
 
 use cohabit_cdf::{ObjectId, Property, StateFlag, Status};
 
-use super::{Ruling, Scene, Verdict, refuse};
+use super::{Observer, Ruling, Scene, Verdict, refuse};
 use crate::{effect::Effect, facts::Facts, report::SoundKind, works};
 
 pub(super) fn open(scene: &Scene<'_>, object: ObjectId) -> Verdict {
@@ -30,7 +30,7 @@ pub(super) fn close(scene: &Scene<'_>, object: ObjectId) -> Verdict {
     }
     clear_doorway(facts, object)?;
     let mut effects = vec![Effect::Set(object, StateFlag::Opened, false), Effect::sound(SoundKind::Close, object)];
-    effects.extend(works::settle(facts, object));
+    effects.extend(works::settle(facts, &Observer { facts, body: None }, object));
     Ok(Ruling::done(format!("I closed {name}"), effects))
 }
 

@@ -10,7 +10,8 @@ use crate::{
     effect::Effect,
     facts::Facts,
     report::SoundKind,
-    works::{Run, Work, portal},
+    run::{Run, Work},
+    works::portal,
 };
 
 pub(super) fn toggle(scene: &Scene<'_>, object: ObjectId) -> Verdict {

@@ -8,7 +8,6 @@
 
 use cohabit_cdf::{ObjectId, Property, StateFlag, Status, mission::DinoFood, mission::Era};
 use glam::{Vec2, Vec3};
-use serde::{Deserialize, Serialize};
 
 use super::lab;
 use crate::{
@@ -16,45 +15,10 @@ use crate::{
     effect::{Effect, Spot},
     facts::Facts,
     geometry::{Footprint, direction},
+    mission_state::Gate,
     power::lacks_power,
     report::SoundKind,
 };
-
-/// One time that a generator leads to.
-#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
-pub(crate) struct Way {
-    /// Its name in the mission.
-    pub name: String,
-    pub era: Era,
-}
-
-/// The times that a generator leads to; never empty.
-#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
-pub(crate) struct Gate {
-    pub ways: Vec<Way>,
-    /// The one it leads to now, or as soon as it is opened.
-    pub current: usize,
-}
-
-/// A dinosaur, and whether it was fed.
-#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
-pub(crate) struct Dinosaur {
-    /// What it eats: all that can be eaten, if nothing is said.
-    pub food: Option<DinoFood>,
-    pub fed: bool,
-}
-
-impl Gate {
-    /// Where it leads.
-    pub fn way(&self) -> &Way {
-        &self.ways[self.current]
-    }
-
-    /// From now on it leads to the next time.
-    pub fn turn(&mut self) {
-        self.current = (self.current + 1) % self.ways.len();
-    }
-}
 
 /// The gate of a generator that is open now.
 pub(crate) fn open_gate<'a>(facts: &Facts<'a>, generator: ObjectId) -> Option<&'a Gate> {

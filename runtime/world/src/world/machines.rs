@@ -5,9 +5,11 @@ use cohabit_cdf::{BodyId, ObjectId, StateFlag};
 use super::World;
 use crate::{
     effect::Effect,
-    motion::DT_S,
+    kinematics::DT_S,
     power,
     report::{Event, SoundKind},
+    rules::Observer,
+    run::ticks,
     state::ids,
     works,
 };
@@ -47,9 +49,10 @@ impl World {
             let dead = power::lacks_power(&facts, id)
                 || run.drives.is_some_and(|driven| power::lacks_power(&facts, driven))
                 || !facts.is(id, StateFlag::Toggled);
-            let [effect, end] = works::ticks(self.catalog.table().device(&facts.class(id).id));
+            let [effect, end] = ticks(self.catalog.table().device(&facts.class(id).id));
             if !dead && tick == run.since + effect {
-                let effects = works::effects(&facts, id, run.work, run.site);
+                let nobody = Observer { facts: &facts, body: None };
+                let effects = works::effects(&facts, &nobody, id, run.work, run.site);
                 self.changes(events).apply(effects);
             }
             if dead || tick >= run.since + end {
