@@ -1,40 +1,35 @@
 //! A running session, joined: what its simulator publishes, and what is said in it.
 
+mod command;
+mod heard;
+mod talk;
+
 use std::{
-    collections::{BTreeMap, VecDeque},
-    sync::{Arc, Mutex, MutexGuard, PoisonError},
-    thread,
+    collections::BTreeMap,
+    sync::{Arc, Mutex},
     time::{Duration, Instant},
 };
 
-use cohabit_agent::Client;
 use cohabit_bus::{
-    BusError, CameraId, Inbox, Publisher, Session as Name, Shm, Subscriber, Topic, Transport, Wake,
-    message::{self, DialogKind, DialogMessage, DialogView, EventKind, EventMessage, MissionMessage, NONE},
-    monotonic_nanos,
+    BusError, CameraId, Inbox, Session as Name, Shm, Subscriber, Topic, Transport, Wake,
+    message::{self, DialogKind, DialogMessage, MissionMessage},
 };
-use cohabit_cdf::Status;
 use pyo3::{exceptions::PyTimeoutError, prelude::*};
 
+pub use self::{command::Command, heard::Heard};
+use self::talk::{Talk, keep_beating, lock};
 use crate::{
     action::PyAction,
     error::{bad_argument, failed},
     frame::Frame,
-    outcome::Outcome,
     senses::{Filling, Sensed, Senses},
     state::State,
 };
 
 /// The longest that Python is kept from looking whether Ctrl-C was pressed.
 const NAP: Duration = Duration::from_millis(50);
-/// How often what came is taken in while Python is busy.
-const BEAT_EVERY: Duration = Duration::from_millis(400);
 /// How long the first state may take where something else is wanted, s.
 const SENSE_S: f64 = 5.0;
-/// What the others call a peer of this kind.
-const PEER: &str = "python";
-/// What was heard and not asked for: the oldest is forgotten beyond it.
-const MOST_HEARD: usize = 1024;
 
 /// The frames of one camera.
 type Frames = Arc<Mutex<Box<dyn Subscriber>>>;
@@ -50,159 +45,10 @@ pub struct Session {
     talk: Arc<Mutex<Talk>>,
 }
 
-/// A command that was given.
-#[pyclass(frozen, module = "cohabit._native")]
-pub struct Command {
-    session: Py<Session>,
-    number: u64,
-    /// Why there is no object of the name that was given.
-    unknown: Option<String>,
-}
-
 /// The newest state.
 struct Latest {
     states: Box<dyn Subscriber>,
     newest: Option<(Arc<Vec<u8>>, u64)>,
-}
-
-/// What is told and said.
-struct Talk {
-    joined_nanos: u64,
-    client: Client,
-    dialog: Inbox,
-    mouth: Box<dyn Publisher>,
-    heard: VecDeque<Heard>,
-    /// In lock-step, whether the world waits for this peer.
-    attends: bool,
-    /// Of commands that were given here and have no outcome yet, nothing; else what came of them.
-    outcomes: BTreeMap<u64, Option<(Status, String)>>,
-}
-
-/// Something that was told or said in a session.
-#[pyclass(frozen, get_all, module = "cohabit._native")]
-#[derive(Clone)]
-pub struct Heard {
-    /// What it is: an event (`outcome`, `started`, `goal_met`, `sound`, …) or dialog (`utterance`, `reply`, …).
-    pub kind: String,
-    /// The tick at which it happened; 0 of dialog.
-    pub tick: u64,
-    /// The body concerned.
-    pub body: Option<u32>,
-    /// The object concerned.
-    pub object: Option<u32>,
-    /// The command concerned; 0 is none.
-    pub command: u64,
-    /// The dialog turn that it belongs to; 0 is none.
-    pub turn: u64,
-    /// A goal's number, or how long something is shown.
-    pub number: i64,
-    /// Of an outcome, one of `STATUSES`.
-    pub status: String,
-    /// A sentence for people.
-    pub text: String,
-}
-
-#[pymethods]
-impl Heard {
-    fn __repr__(&self) -> String {
-        format!("Heard({}, body={:?}, {:?})", self.kind, self.body, self.text)
-    }
-}
-
-fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-fn some(index: u32) -> Option<u32> {
-    (index != NONE).then_some(index)
-}
-
-/// `GoalMet` as `goal_met`.
-fn snake(name: &str) -> String {
-    let mut snake = String::new();
-    for letter in name.chars() {
-        if letter.is_uppercase() && !snake.is_empty() {
-            snake.push('_');
-        }
-        snake.extend(letter.to_lowercase());
-    }
-    snake
-}
-
-impl Heard {
-    fn event(event: &EventMessage, kind: EventKind, tick: u64) -> Self {
-        let status = if kind == EventKind::Outcome { event.status() } else { None };
-        Self {
-            kind: snake(&format!("{kind:?}")),
-            tick,
-            body: some(event.body),
-            object: some(event.object),
-            command: event.command,
-            turn: event.turn,
-            number: event.number,
-            status: status.map_or_else(String::new, |status| format!("{status:?}")),
-            text: event.text.as_str().to_owned(),
-        }
-    }
-
-    fn dialog(view: &DialogView<'_>, kind: DialogKind) -> Self {
-        let ended = matches!(kind, DialogKind::StepEnded | DialogKind::PlanEnded);
-        let status = view.header.status().filter(|_| ended);
-        Self {
-            kind: snake(&format!("{kind:?}")),
-            tick: 0,
-            body: some(view.header.body),
-            object: None,
-            command: 0,
-            turn: view.header.turn,
-            number: i64::from(view.header.step),
-            status: status.map_or_else(String::new, |status| format!("{status:?}")),
-            text: view.header.text.as_str().to_owned(),
-        }
-    }
-}
-
-impl Talk {
-    /// Takes in all that came, and shows that this peer lives.
-    fn pump(&mut self) -> PyResult<()> {
-        self.client.beat().map_err(failed)?;
-        while let Some((envelope, event)) = self.client.event().map_err(failed)? {
-            let Some(kind) = event.kind().filter(|_| envelope.sent_nanos >= self.joined_nanos) else { continue };
-            if kind == EventKind::Outcome {
-                self.note(&event);
-            }
-            self.hear(Heard::event(&event, kind, envelope.tick));
-        }
-        while let Some((sample, ())) =
-            self.dialog.next(|sample| DialogView::new(sample.payload()).map(drop)).map_err(failed)?
-        {
-            let view = DialogView::new(sample.payload()).map_err(failed)?;
-            if let Some(kind) = view.header.kind().filter(|_| sample.envelope().sent_nanos >= self.joined_nanos) {
-                self.hear(Heard::dialog(&view, kind));
-            }
-        }
-        Ok(())
-    }
-
-    /// The number of a command that was just given, whose outcome is to be kept.
-    fn expect(&mut self, number: u64) -> u64 {
-        self.outcomes.insert(number, None);
-        number
-    }
-
-    /// Notes the outcome of a command that was given here.
-    fn note(&mut self, event: &EventMessage) {
-        if let (Some(status), Some(outcome)) = (event.status(), self.outcomes.get_mut(&event.command)) {
-            *outcome = Some((status, event.text.as_str().to_owned()));
-        }
-    }
-
-    fn hear(&mut self, heard: Heard) {
-        if self.heard.len() == MOST_HEARD {
-            self.heard.pop_front();
-        }
-        self.heard.push_back(heard);
-    }
 }
 
 fn seconds(seconds: f64) -> PyResult<Duration> {
@@ -212,19 +58,6 @@ fn seconds(seconds: f64) -> PyResult<Duration> {
 /// The end of a time in seconds; none is for ever.
 fn deadline(timeout_s: Option<f64>) -> PyResult<Option<Instant>> {
     Ok(timeout_s.map(seconds).transpose()?.and_then(|timeout| Instant::now().checked_add(timeout)))
-}
-
-/// Takes in what comes while Python is busy, and shows that this peer lives, for as long as the session is joined.
-fn keep_beating(talk: &Arc<Mutex<Talk>>) {
-    let talk = Arc::downgrade(talk);
-    thread::spawn(move || {
-        while let Some(talk) = talk.upgrade() {
-            // What fails here fails for whoever calls next, too, and is told then.
-            let _ = lock(&talk).pump();
-            drop(talk);
-            thread::sleep(BEAT_EVERY);
-        }
-    });
 }
 
 impl Session {
@@ -315,15 +148,7 @@ impl Session {
         let session = Name::new(&name).map_err(bad_argument)?;
         let bus = Arc::new(py.detach(|| Shm::join(&session)).map_err(failed)?);
         let mut missions = Inbox::new(&*bus, Topic::Mission).map_err(failed)?;
-        let talk = Talk {
-            joined_nanos: monotonic_nanos(),
-            client: Client::join(&*bus, body, PEER).map_err(failed)?,
-            dialog: Inbox::new(&*bus, Topic::Dialog).map_err(failed)?,
-            mouth: bus.publisher(Topic::Dialog).map_err(failed)?,
-            heard: VecDeque::new(),
-            attends: false,
-            outcomes: BTreeMap::new(),
-        };
+        let talk = Talk::join(&*bus, body)?;
         let latest = Latest { states: bus.subscriber(Topic::State).map_err(failed)?, newest: None };
         let talk = Arc::new(Mutex::new(talk));
         keep_beating(&talk);
@@ -522,57 +347,5 @@ impl Drop for Session {
             // The world would wait for it for as long as this process lives. If the session is gone, nobody waits.
             let _ = talk.client.leave();
         }
-    }
-}
-
-#[pymethods]
-impl Command {
-    /// Its number in the session.
-    #[getter]
-    const fn number(&self) -> u64 {
-        self.number
-    }
-
-    /// What came of it; waits up to `timeout` seconds, for ever if none is given. Raises `TimeoutError`.
-    #[pyo3(signature = (timeout=None))]
-    fn wait(&self, py: Python<'_>, timeout: Option<f64>) -> PyResult<Outcome> {
-        let session = self.session.get();
-        let end = session.wait_for(py, Wake::Talk, deadline(timeout)?, || {
-            let mut talk = lock(&session.talk);
-            talk.pump()?;
-            Ok(talk.outcomes.get(&self.number).cloned().flatten())
-        })?;
-        let (status, detail) = end.ok_or_else(|| {
-            let waited = timeout.unwrap_or_default();
-            PyTimeoutError::new_err(format!("command {} has no outcome after {waited} s", self.number))
-        })?;
-        Ok(self.outcome(self.session.get().body(), status, &detail))
-    }
-
-    /// What came of it, if it has ended.
-    fn poll(&self) -> PyResult<Option<Outcome>> {
-        let session = self.session.get();
-        let mut talk = lock(&session.talk);
-        talk.pump()?;
-        let end = talk.outcomes.get(&self.number).cloned().flatten();
-        let body = talk.client.body();
-        Ok(end.map(|(status, detail)| self.outcome(body, status, &detail)))
-    }
-
-    fn __repr__(&self) -> String {
-        format!("Command({})", self.number)
-    }
-}
-
-impl Command {
-    fn outcome(&self, body: u32, status: Status, detail: &str) -> Outcome {
-        Outcome::new(self.number, body, status, detail).or_unknown(self.unknown.as_deref())
-    }
-}
-
-impl Drop for Command {
-    fn drop(&mut self) {
-        // Nobody can ask for it any more.
-        lock(&self.session.get().talk).outcomes.remove(&self.number);
     }
 }
