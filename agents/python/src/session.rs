@@ -16,8 +16,8 @@ use cohabit_bus::{
 };
 use pyo3::{exceptions::PyTimeoutError, prelude::*};
 
-pub use self::{command::Command, heard::Heard};
 use self::talk::{Talk, keep_beating, lock};
+pub use self::{command::Command, heard::Heard};
 use crate::{
     action::PyAction,
     error::{bad_argument, failed},

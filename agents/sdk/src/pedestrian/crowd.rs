@@ -18,12 +18,7 @@ use super::{
     forces::Walker,
     person::{Around, LOOK_TICKS, Person},
 };
-use crate::{
-    agent::TICKS_PER_SECOND,
-    client::Client,
-    error::PeerError,
-    peer::wait_for_mission,
-};
+use crate::{agent::TICKS_PER_SECOND, client::Client, error::PeerError, peer::wait_for_mission};
 
 /// Radii of bodies, m, as the world has them.
 const ROBOT_M: f32 = 0.25;
