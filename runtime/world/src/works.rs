@@ -1,32 +1,25 @@
-//! What machines do to what is in them, once they work.
+//! What machines do to what is in them, once they work, by the works of the table.
 //!
 //! A machine that works for a moment is on first, and only then changes its contents: goals that ask for both the
 //! machine on and the thing in it must be able to see that.
 
-pub(crate) mod disk;
-mod kitchen;
-mod lab;
+pub(crate) mod lab;
 pub(crate) mod portal;
 mod recipes;
-mod vending;
+pub(crate) mod vending;
 
 use cohabit_cdf::{
-    Catalog, ClassId, Color, ObjectId,
-    catalog::table::{Change, Device, Over, Scope},
+    ActionTable, Catalog, ClassId, Color, ObjectId,
+    catalog::table::{Device, Over, Scope, Work as Entry},
 };
 use serde::{Deserialize, Serialize};
 
-pub use self::lab::EMBIGGEN;
-pub(crate) use self::{
-    kitchen::is_beans,
-    vending::{behind_glass, is_slot, vended},
-};
+pub(crate) use self::vending::{behind_glass, is_slot, vended};
 use crate::{
-    anchors::fitting_anchors,
-    effect::{Effect, Spot},
+    effect::Effect,
     facts::Facts,
     power::lacks_power,
-    rules::Observer,
+    rules::{Observer, effects_of},
 };
 
 const TICKS_A_SECOND: f32 = 60.0;
@@ -36,59 +29,62 @@ pub(crate) fn ticks(device: &Device) -> [u64; 2] {
     [device.work_s, device.moment_s].map(|seconds| (seconds * TICKS_A_SECOND).round() as u64)
 }
 
-/// What a machine does.
+/// Which work a machine does, as snapshots and digests write it down. What it changes is the table's to say, by its name.
 #[derive(Clone, Copy, Debug, Deserialize, Eq, PartialEq, Serialize)]
 pub(crate) enum Work {
-    /// Nothing but being on.
+    /// None: it is on, and that is all.
     Nothing,
-    /// What can be heated gets hot.
     Heat,
-    /// As [`Self::Heat`], and what can be cooked is cooked.
     Toast,
-    /// What can be chilled gets cold.
     Chill,
-    /// What is in it becomes what it was yesterday.
     Yesterday,
-    /// What is in it becomes a carrot.
     Carrot,
-    /// A cartridge makes its product, beside it.
     Print,
-    /// What holds fluids gets hot coffee.
     Brew,
-    /// Coffee becomes beans.
     Unbrew,
-    /// What is in it takes a colour.
     Paint(Color),
-    /// What is in it grows, or shrinks back.
     Embiggen,
-    /// The object at this slot falls into the tray.
+    /// `vend` of the slot of this number.
     Vend(u16),
     /// The work of this number in the table, which is none of those above.
     Listed(u16),
 }
 
 impl Work {
+    /// The names of those that have a number of their own.
+    const NAMES: [(Self, &'static str); 12] = [
+        (Self::Heat, "heat"),
+        (Self::Toast, "toast"),
+        (Self::Chill, "chill"),
+        (Self::Yesterday, "yesterday"),
+        (Self::Carrot, "carrot"),
+        (Self::Print, "print"),
+        (Self::Brew, "brew"),
+        (Self::Unbrew, "unbrew"),
+        (Self::Paint(Color::Red), "paint red"),
+        (Self::Paint(Color::Green), "paint green"),
+        (Self::Paint(Color::Blue), "paint blue"),
+        (Self::Embiggen, "embiggen"),
+    ];
+
     /// The work of that name in the table.
     pub fn named(catalog: &Catalog, name: &str) -> Self {
-        match name {
-            "heat" => Self::Heat,
-            "toast" => Self::Toast,
-            "chill" => Self::Chill,
-            "yesterday" => Self::Yesterday,
-            "carrot" => Self::Carrot,
-            "print" => Self::Print,
-            "brew" => Self::Brew,
-            "unbrew" => Self::Unbrew,
-            "paint red" => Self::Paint(Color::Red),
-            "paint green" => Self::Paint(Color::Green),
-            "paint blue" => Self::Paint(Color::Blue),
-            "embiggen" => Self::Embiggen,
-            _ => {
-                let slot = name.strip_prefix("vend ").and_then(|slot| slot.parse().ok());
-                let listed = || catalog.table().works().iter().position(|work| work.name == name);
-                let listed = || listed().and_then(|index| u16::try_from(index).ok());
-                slot.map(Self::Vend).or_else(|| listed().map(Self::Listed)).unwrap_or(Self::Nothing)
-            }
+        let known = Self::NAMES.iter().find(|(_, known)| *known == name).map(|(work, _)| *work);
+        let slot = || name.strip_prefix("vend ").and_then(|slot| slot.parse().ok()).map(Self::Vend);
+        let listed = || {
+            let index = catalog.table().works().iter().position(|work| work.name == name)?;
+            u16::try_from(index).ok().map(Self::Listed)
+        };
+        known.or_else(slot).or_else(listed).unwrap_or(Self::Nothing)
+    }
+
+    /// Its entry in the table.
+    fn entry(self, table: &ActionTable) -> Option<&Entry> {
+        match self {
+            Self::Nothing => None,
+            Self::Vend(slot) => table.work(&format!("vend {slot}")),
+            Self::Listed(index) => table.works().get(usize::from(index)),
+            _ => Self::NAMES.iter().find(|(work, _)| *work == self).and_then(|(_, name)| table.work(name)),
         }
     }
 }
@@ -105,61 +101,26 @@ pub(crate) struct Run {
     pub drives: Option<ObjectId>,
 }
 
-/// What `work` changes at `site`, done by `machine`.
+/// What `work` changes at `site`, once `machine` was pressed for it.
 pub(crate) fn effects(facts: &Facts<'_>, machine: ObjectId, work: Work, site: ObjectId) -> Vec<Effect> {
-    let all = |change: fn(&Facts<'_>, ObjectId) -> Vec<Effect>| {
-        facts.contents(site).into_iter().flat_map(|id| change(facts, id)).collect()
-    };
-    let direct = || facts.held_in(site).into_iter();
-    match work {
-        Work::Nothing => Vec::new(),
-        Work::Heat => all(kitchen::heat),
-        Work::Toast => all(kitchen::toast),
-        Work::Chill => all(kitchen::chill),
-        Work::Yesterday => direct()
-            .flat_map(|id| lab::yesterday(facts, id, Spot::Anchor { parent: site, anchor: lab::anchor_of(facts, id) }))
-            .collect(),
-        Work::Carrot => direct().flat_map(|id| lab::carrot(facts, site, id)).collect(),
-        Work::Print => lab::print(facts, site),
-        Work::Brew => kitchen::brew(facts, site),
-        Work::Unbrew => kitchen::unbrew(facts, site),
-        Work::Paint(color) => direct().map(|id| Effect::Paint(id, color)).collect(),
-        Work::Embiggen => direct().flat_map(|id| lab::embiggen(facts, id)).collect(),
-        Work::Vend(slot) => vending::vend(facts, machine, site, slot),
-        Work::Listed(index) => listed(facts, index, site),
-    }
+    let entry = work.entry(facts.catalog.table());
+    entry.map_or_else(Vec::new, |entry| effects_at(facts, entry, machine, site))
 }
 
-/// What a work that the table alone knows changes at `site`.
-fn listed(facts: &Facts<'_>, index: u16, site: ObjectId) -> Vec<Effect> {
-    let Some(work) = facts.catalog.table().works().get(usize::from(index)) else { return Vec::new() };
+/// What a work of the table changes at `site`; `by` is what was pressed for it.
+fn effects_at(facts: &Facts<'_>, work: &Entry, by: ObjectId, site: ObjectId) -> Vec<Effect> {
     let observer = Observer { facts, body: None };
     let things = match work.over {
         Over::Contents => facts.contents(site),
         Over::Inside => facts.held_in(site),
         Over::Machine => vec![site],
     };
-    let change = |thing: ObjectId| {
-        let scope = Scope { it: None, thing: Some(thing), machine: Some(site) };
-        let changes = scope.changes(&observer, &work.effects);
-        changes.into_iter().flat_map(move |change| thing_effects(facts, change, thing)).collect::<Vec<_>>()
-    };
-    things.into_iter().flat_map(change).collect()
-}
-
-/// What a change of the table does to a thing in a machine.
-fn thing_effects(facts: &Facts<'_>, change: &Change, thing: ObjectId) -> Vec<Effect> {
-    let spot =
-        || facts.object(thing).parent().map(|parent| Spot::Anchor { parent, anchor: lab::anchor_of(facts, thing) });
-    match change {
-        Change::Set(_, flag, value) => vec![Effect::Set(thing, *flag, *value)],
-        Change::Fill(_, fluid) => vec![Effect::Fill(thing, *fluid)],
-        Change::Paint(_, color) => vec![Effect::Paint(thing, *color)],
-        Change::Remove(_) => vec![Effect::Remove(thing)],
-        Change::Resize(_) => lab::embiggen(facts, thing).to_vec(),
-        Change::Restore(_) => spot().map_or_else(Vec::new, |spot| lab::yesterday(facts, thing, spot)),
-        _ => Vec::new(),
-    }
+    let each = things.into_iter().map(|thing| (Some(thing), &work.effects));
+    let all = each.chain([(None, &work.then)]).flat_map(|(thing, effects)| {
+        let scope = Scope { it: Some(by), thing, machine: Some(site) };
+        effects_of(&observer, &scope, &scope.changes(&observer, effects))
+    });
+    all.collect()
 }
 
 /// What something does to its contents once it is shut, or about to be, and has power.
@@ -170,18 +131,25 @@ pub(crate) fn settle(facts: &Facts<'_>, id: ObjectId) -> Vec<Effect> {
     }
 }
 
-/// What follows once a circuit is fed again: what is shut does its work, computers read the disks that are in them.
+/// What follows once a circuit is fed again: what is shut does its work, and what is done as power comes is done.
 pub(crate) fn on_power(facts: &Facts<'_>, circuit: i32) -> Vec<Effect> {
     let fed = facts.state.existing().filter(|(_, object)| object.circuit == Some(circuit)).map(|(id, _)| id);
     fed.flat_map(|id| {
         let settled = if facts.is_shut(id) { settle(facts, id) } else { Vec::new() };
-        settled.into_iter().chain(disk::read_all(facts, id))
+        settled.into_iter().chain(powered(facts, id))
     })
     .collect()
 }
 
+/// What is done to a thing as power comes to it.
+pub(crate) fn powered(facts: &Facts<'_>, id: ObjectId) -> Vec<Effect> {
+    let table = facts.catalog.table();
+    let work = table.power_work().and_then(|work| table.work(work));
+    work.map_or_else(Vec::new, |work| effects_at(facts, work, id, id))
+}
+
 /// The first free instance id of a class.
-pub(crate) fn free_instance(facts: &Facts<'_>, class: &str) -> String {
+fn free_instance(facts: &Facts<'_>, class: &str) -> String {
     numbered(facts, class)
 }
 
@@ -196,13 +164,4 @@ fn numbered(facts: &Facts<'_>, stem: &str) -> String {
         .map(|number| format!("{stem}_{number}"))
         .find(|instance| !facts.state.objects.iter().any(|object| object.is_called(instance)))
         .expect("invariant: fewer objects than numbers")
-}
-
-/// The slice that comes off something, and the place it falls to: a fitting anchor beside what it was cut from.
-pub(crate) fn slice(facts: &Facts<'_>, whole: ObjectId) -> Option<(ClassId, Spot)> {
-    let class = recipes::slice(facts.catalog, facts.object(whole).class)?;
-    let parent = facts.object(whole).parent()?;
-    let size = facts.catalog.class(class).size_m.into();
-    let anchor = fitting_anchors(facts, parent, size).first()?.index;
-    Some((class, Spot::Anchor { parent, anchor }))
 }
