@@ -425,6 +425,11 @@ impl ActionTable {
     }
 
     fn check(&self, file: &str, is_class: &dyn Fn(&str) -> bool) -> Result<(), TableError> {
+        let mut of_works = self.works.iter().flat_map(|work| work.changes().map(move |change| (work, change)));
+        if let Some((work, change)) = of_works.find(|(_, change)| !change.is_of_a_work()) {
+            let (file, work, change) = (file.to_owned(), work.name.clone(), change.clone());
+            return Err(TableError::NotOfAWork { file, work, change });
+        }
         let unknown = self.classes().into_iter().find(|class| !class.ends_with('*') && !is_class(class));
         unknown.map_or(Ok(()), |class| Err(TableError::NoClass { file: file.to_owned(), class }))
     }
@@ -436,11 +441,6 @@ impl ActionTable {
                 let name = device.classes.first().cloned().unwrap_or_default();
                 return Err(TableError::NoPress { file: file.to_owned(), device: name, change: change.clone() });
             }
-        }
-        let of_works = self.works.iter().flat_map(|work| work.changes().map(move |change| (work, change)));
-        if let Some((work, change)) = of_works.into_iter().find(|(_, change)| !change.is_of_a_work()) {
-            let (file, work, change) = (file.to_owned(), work.name.clone(), change.clone());
-            return Err(TableError::NotOfAWork { file, work, change });
         }
         if let Some(work) = self.power_work.clone().filter(|work| self.work(work).is_none()) {
             return Err(TableError::NoWork { file: file.to_owned(), device: "power_work".to_owned(), work });
