@@ -81,7 +81,7 @@ struct RawRule {
     needs: Vec<RawNeed>,
     #[serde(default)]
     effects: Vec<RawEffect>,
-    #[serde(default)]
+    #[serde(default = "plainly_done")]
     done: String,
     #[serde(default)]
     but: Vec<RawNeed>,
@@ -130,6 +130,10 @@ struct RawWork {
     effects: Vec<RawEffect>,
     #[serde(default)]
     then: Vec<RawEffect>,
+}
+
+fn plainly_done() -> String {
+    "done".to_owned()
 }
 
 /// Reads one file's text.
