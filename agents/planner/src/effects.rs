@@ -2,7 +2,7 @@
 
 use cohabit_cdf::{
     Color, Fluid, Property, StateFlag,
-    catalog::table::{Change, Condition, Device, Effect, Over, Site, Term, Test, View as _},
+    catalog::table::{Change, Condition, Device, Effect, Over, Site, Term, Test, UNDONE, View as _},
     mission::Era,
 };
 
@@ -11,9 +11,6 @@ use crate::{
     ground::Grounder,
     problem::{Assign, Cast, Index, Var, place},
 };
-
-/// What a day undoes.
-const UNDONE: [StateFlag; 4] = [StateFlag::Broken, StateFlag::Eaten, StateFlag::Cooked, StateFlag::Cut];
 
 /// What comes of an operator in the making.
 #[derive(Default)]
@@ -45,7 +42,7 @@ impl Grounder<'_> {
         }
     }
 
-    fn work(&mut self, work: &str, site: Index, when: &Cnf, out: &mut Outcome) {
+    fn work(&mut self, work: &str, site: Index, by: Option<Index>, when: &Cnf, out: &mut Outcome) {
         let catalog = self.catalog;
         let Some(work) = catalog.table().work(work) else { return };
         let things = match work.over {
@@ -54,9 +51,11 @@ impl Grounder<'_> {
             Over::Inside => self.contents(site, false),
         };
         for (thing, is_there) in things {
-            let cast = Cast { thing: Some(thing), machine: Some(site), ..Cast::default() };
+            let cast = Cast { it: by, thing: Some(thing), machine: Some(site), ..Cast::default() };
             self.effects(&cast, &work.effects, &is_there.and(when.clone()), None, out);
         }
+        let cast = Cast { it: by, machine: Some(site), ..Cast::default() };
+        self.effects(&cast, &work.then, when, None, out);
     }
 
     fn set(&mut self, thing: Index, flag: StateFlag, value: bool, when: &Cnf, out: &mut Outcome) {
@@ -160,7 +159,7 @@ impl Grounder<'_> {
                 };
                 let (work, site) = (device.work.as_deref()?, site?);
                 out.is_work = true;
-                self.work(work, site, when, out);
+                self.work(work, site, of(term), when, out);
                 out.is_work = false;
             }
             Change::Feed(term, by) => {
@@ -177,7 +176,7 @@ impl Grounder<'_> {
                 let cast = Cast { it: of(term), ..Cast::default() };
                 let powered = Condition { negated: false, term: Term::It, test: Test::Powered };
                 let powered = self.condition(&cast, &powered).and(when.clone());
-                self.work(work, of(term)?, &powered, out);
+                self.work(work, of(term)?, of(term), &powered, out);
             }
             Change::Slice(term) => {
                 let whole = of(term)?;
@@ -215,7 +214,7 @@ impl Grounder<'_> {
                 let there = self.is_at(sold, place::SLOT).and(when.clone());
                 self.put(sold, place::on(of(term)?), &there, out);
             }
-            Change::Approach(_) | Change::Turn(_) => {}
+            Change::Approach(_) | Change::Turn(_) | Change::Scan(_) | Change::Read(_) | Change::Sound(..) => {}
         }
         Some(())
     }

@@ -292,6 +292,15 @@ impl<'a> Grounder<'a> {
                 let fit = inside.into_iter().filter(|(child, _)| pattern.matches(&self.class(*child).id));
                 Cnf::any(fit.map(|(_, is_in)| is_in).collect::<Vec<_>>())
             }
+            Test::HoldsWhole(pattern) => {
+                let mut all = Vec::new();
+                for (child, is_in) in self.contents(thing, false) {
+                    if pattern.matches(&self.class(child).id) {
+                        all.push(is_in.and(self.flag(child, StateFlag::Broken, false)));
+                    }
+                }
+                self.problem.any_of(all)
+            }
             Test::Contains(content) => {
                 let mut all = Vec::new();
                 for (inner, is_in) in self.contents(thing, true) {

@@ -173,7 +173,10 @@ fn classes_spoken_of(state: &SymbolicState) -> BTreeSet<String> {
     let mut patterns: Vec<String> = conditions
         .into_iter()
         .filter_map(|condition| match condition.test {
-            Test::IsA(class) | Test::HoldsA(class) | Test::Contains(Content::Class(class)) => Some(class.0),
+            Test::IsA(class)
+            | Test::HoldsA(class)
+            | Test::HoldsWhole(class)
+            | Test::Contains(Content::Class(class)) => Some(class.0),
             _ => None,
         })
         .collect();
@@ -197,7 +200,7 @@ pub(crate) fn products(state: &SymbolicState, chosen: &[ObjectId], mission: &Mis
         made.extend(state.thing(*id).yesterday.map(|class| (class.0, None)));
         let device = table.device(&class.id);
         let work = device.work.as_ref().and_then(|work| table.work(work));
-        for change in work.iter().flat_map(|work| &work.effects).flat_map(|effect| &effect.changes) {
+        for change in work.iter().flat_map(|work| work.changes()) {
             match change {
                 Change::Become(_, class) | Change::Spawn(_, class) => {
                     made.extend(catalog.find(class).map(|class| (class.0, Some(*id))));

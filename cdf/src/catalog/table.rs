@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 use serde::Deserialize;
 
 pub use self::{
-    change::{Change, Effect},
+    change::{Change, Effect, GROWTH, SoundKind, UNDONE},
     condition::{ClassPattern, Condition, Content, Range, Term, Test},
     kind::ActionKind,
     view::{Judgement, Scope, View, takes},
@@ -63,6 +63,8 @@ pub struct Rule {
     pub needs: Vec<Need>,
     /// What it changes.
     pub effects: Vec<Effect>,
+    /// What is said once it is done, in the words of who did it.
+    pub done: String,
     /// What is to be said although it was done.
     pub but: Vec<Need>,
 }
@@ -149,6 +151,15 @@ pub struct Work {
     pub over: Over,
     /// What it changes about each of them.
     pub effects: Vec<Effect>,
+    /// What it changes about the machine, once and after them.
+    pub then: Vec<Effect>,
+}
+
+impl Work {
+    /// All that it changes, whatever holds.
+    pub fn changes(&self) -> impl Iterator<Item = &Change> {
+        self.effects.iter().chain(&self.then).flat_map(|effect| &effect.changes)
+    }
 }
 
 /// Why a table could not be read.
@@ -180,6 +191,16 @@ pub enum TableError {
         /// The change.
         change: Change,
     },
+    /// The work of a machine cannot change that: it has no hand, and presses nothing.
+    #[error("{file}: the work `{work}` changes what no machine can: {change:?}; make it a rule or a press")]
+    NotOfAWork {
+        /// Which file.
+        file: String,
+        /// The name of the work.
+        work: String,
+        /// The change.
+        change: Change,
+    },
     /// It names a class that the catalogue does not have.
     #[error("{file}: `{class}` is no class of the catalogue")]
     NoClass {
@@ -188,12 +209,12 @@ pub enum TableError {
         /// The id.
         class: String,
     },
-    /// A device does a work that no file has.
-    #[error("{file}: the device `{device}` does `{work}`, which no work is called")]
+    /// A device, or what gets power, does a work that no file has.
+    #[error("{file}: `{device}` does `{work}`, which no work is called")]
     NoWork {
         /// Which file.
         file: String,
-        /// The first class of the device.
+        /// The first class of the device, or `power_work`.
         device: String,
         /// The name.
         work: String,
@@ -209,6 +230,7 @@ pub struct ActionTable {
     works: Vec<Work>,
     plain: Device,
     basin: String,
+    power_work: Option<String>,
     slice: BTreeMap<String, String>,
     prints: BTreeMap<String, String>,
     yesterday: BTreeMap<String, String>,
@@ -244,6 +266,7 @@ impl Default for ActionTable {
             works: Vec::new(),
             plain,
             basin: String::new(),
+            power_work: None,
             slice: BTreeMap::new(),
             prints: BTreeMap::new(),
             yesterday: BTreeMap::new(),
@@ -277,6 +300,7 @@ impl ActionTable {
             if let Some(basin) = &read.basin {
                 table.basin.clone_from(basin);
             }
+            table.power_work = read.power_work.clone().or(table.power_work);
             table.slice.extend(read.slice.clone());
             table.prints.extend(read.prints.clone());
             table.yesterday.extend(read.yesterday.clone());
@@ -328,6 +352,12 @@ impl ActionTable {
     #[must_use]
     pub fn basin(&self) -> &str {
         &self.basin
+    }
+
+    /// The name of the work that is done to each thing as power comes to it.
+    #[must_use]
+    pub fn power_work(&self) -> Option<&str> {
+        self.power_work.as_deref()
     }
 
     /// The class of what comes off when that class is cut.
@@ -382,8 +412,10 @@ impl ActionTable {
             );
         }
         for work in &self.works {
-            all.extend(conditions(&[], &work.effects, &[]));
-            all.extend(changes(&work.effects));
+            for effects in [&work.effects, &work.then] {
+                all.extend(conditions(&[], effects, &[]));
+                all.extend(changes(effects));
+            }
         }
         for recipe in [&self.slice, &self.prints, &self.yesterday] {
             all.extend(recipe.iter().flat_map(|(from, to)| [from.clone(), to.clone()]));
@@ -393,6 +425,11 @@ impl ActionTable {
     }
 
     fn check(&self, file: &str, is_class: &dyn Fn(&str) -> bool) -> Result<(), TableError> {
+        let mut of_works = self.works.iter().flat_map(|work| work.changes().map(move |change| (work, change)));
+        if let Some((work, change)) = of_works.find(|(_, change)| !change.is_of_a_work()) {
+            let (file, work, change) = (file.to_owned(), work.name.clone(), change.clone());
+            return Err(TableError::NotOfAWork { file, work, change });
+        }
         let unknown = self.classes().into_iter().find(|class| !class.ends_with('*') && !is_class(class));
         unknown.map_or(Ok(()), |class| Err(TableError::NoClass { file: file.to_owned(), class }))
     }
@@ -404,6 +441,9 @@ impl ActionTable {
                 let name = device.classes.first().cloned().unwrap_or_default();
                 return Err(TableError::NoPress { file: file.to_owned(), device: name, change: change.clone() });
             }
+        }
+        if let Some(work) = self.power_work.clone().filter(|work| self.work(work).is_none()) {
+            return Err(TableError::NoWork { file: file.to_owned(), device: "power_work".to_owned(), work });
         }
         let names = |device: &Device| [device.work.clone(), device.shut_work.clone()].into_iter().flatten();
         let of_devices = self.devices.iter().flat_map(|device| names(device).map(move |work| (device, work)));
@@ -420,6 +460,7 @@ fn class_of(condition: Condition) -> Option<String> {
     match condition.test {
         T::IsA(ClassPattern(class))
         | T::HoldsA(ClassPattern(class))
+        | T::HoldsWhole(ClassPattern(class))
         | T::Contains(Content::Class(ClassPattern(class))) => Some(class),
         _ => None,
     }

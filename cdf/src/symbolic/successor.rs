@@ -5,16 +5,11 @@ use crate::{
     action::{ObjectId, Status},
     catalog::{
         ClassId, Property,
-        table::{ActionKind, Change, Device, Over, Scope, Site, Term, View},
+        table::{ActionKind, Change, Device, GROWTH, Judgement, Over, Scope, Site, Term, UNDONE, View},
     },
     mission::Era,
     state::{Fluid, StateFlag},
 };
-
-/// How much larger things are made.
-const GROWTH: f32 = 1.8;
-/// What a day undoes.
-const UNDONE: [StateFlag; 4] = [StateFlag::Broken, StateFlag::Eaten, StateFlag::Cooked, StateFlag::Cut];
 
 /// What comes of an action.
 #[derive(Clone, Debug)]
@@ -44,28 +39,43 @@ impl SymbolicState {
         let catalog = std::sync::Arc::clone(&self.catalog);
         let judgement = catalog.table().judge(self, action, it)?;
         let rule = judgement.rule;
-        let scope = Scope::of(it);
-        let mut state = self.clone();
         let done = |status, lack: String, running, state| {
             Some(Successor { status, rule: rule.name.clone(), lack, running, state })
         };
         if let Some(need) = judgement.lack {
+            let mut state = self.clone();
             if need.status == Status::KilledByHazard {
                 state.alive = false;
                 state.let_go();
             }
             return done(need.status, need.words.clone(), None, state);
         }
+        let but = Scope::of(it).lacks(self, &rule.but);
+        let status = but.map_or(Status::ActionSuccessful, |need| need.status);
+        let touches = but.is_none() && action != ActionKind::GoTo;
+        let (running, state) = self.after(&judgement, it, touches);
+        done(status, but.map(|need| need.words.clone()).unwrap_or_default(), running, state)
+    }
+
+    /// The state that an action is meant to lead to, once everything is over: as if it lacked nothing. For who cannot tell
+    /// whether it does; none, if the table has no rule for it.
+    #[must_use]
+    pub fn expected(&self, action: ActionKind, it: ObjectId) -> Option<Self> {
+        let catalog = std::sync::Arc::clone(&self.catalog);
+        let judgement = catalog.table().judge(self, action, it)?;
+        Some(self.after(&judgement, it, action != ActionKind::GoTo).1)
+    }
+
+    /// The state while a machine is on that an action set going, if one was, and the state once everything is over.
+    fn after(&self, judgement: &Judgement<'_>, it: ObjectId, touches: bool) -> (Option<Self>, Self) {
+        let scope = Scope::of(it);
+        let mut state = self.clone();
         let press = judgement.device.map_or(&[][..], |device| &device.press);
         let mut run = None;
-        for change in scope.changes(self, &rule.effects).into_iter().chain(scope.changes(self, press)) {
+        for change in scope.changes(self, &judgement.rule.effects).into_iter().chain(scope.changes(self, press)) {
             state.apply(self, &scope, change, &mut run);
         }
-        let but = scope.lacks(self, &rule.but);
-        let status = but.map_or(Status::ActionSuccessful, |need| need.status);
-        if but.is_none() && action != ActionKind::GoTo {
-            state.things[it.0 as usize].touched = true;
-        }
+        state.at(it).touched |= touches;
         let mut running = None;
         if let (Some(run), Some(device)) = (run, judgement.device) {
             let on = state.clone();
@@ -75,7 +85,7 @@ impl SymbolicState {
                 state.set(id, StateFlag::Toggled, false);
             }
         }
-        done(status, but.map(|need| need.words.clone()).unwrap_or_default(), running, state)
+        (running, state)
     }
 
     /// Does the work of a device that runs.
@@ -86,12 +96,12 @@ impl SymbolicState {
             Site::Target => on.target(run.device),
         };
         if let (Some(site), Some(work)) = (site, &device.work) {
-            self.work_at(on, work, site);
+            self.work_at(on, work, site, run.device);
         }
     }
 
-    /// Does a work to what is at `site`, as it is in `on`.
-    fn work_at(&mut self, on: &Self, work: &str, site: ObjectId) {
+    /// Does a work to what is at `site`, as it is in `on`; `by` is what was pressed for it.
+    fn work_at(&mut self, on: &Self, work: &str, site: ObjectId, by: ObjectId) {
         let catalog = std::sync::Arc::clone(&self.catalog);
         let Some(work) = catalog.table().work(work) else { return };
         let things = match work.over {
@@ -99,9 +109,10 @@ impl SymbolicState {
             Over::Inside => on.inside(site),
             Over::Machine => vec![site],
         };
-        for thing in things {
-            let scope = Scope { it: None, thing: Some(thing), machine: Some(site) };
-            for change in scope.changes(on, &work.effects) {
+        let each = things.into_iter().map(|thing| (Some(thing), &work.effects));
+        for (thing, effects) in each.chain([(None, &work.then)]) {
+            let scope = Scope { it: Some(by), thing, machine: Some(site) };
+            for change in scope.changes(on, effects) {
                 self.apply(on, &scope, change, &mut None);
             }
         }
@@ -116,8 +127,11 @@ impl SymbolicState {
                 Change::Copy(flag, from, to) => self.set(id(*to)?, *flag, before.is(id(*from)?, *flag)),
                 Change::Fill(of, fluid) => self.at(id(*of)?).fluid = *fluid,
                 Change::Pour(from, to) => {
-                    self.at(id(*to)?).fluid = before.fluid(id(*from)?);
-                    self.at(id(*from)?).fluid = Fluid::None;
+                    let (from, to) = (id(*from)?, id(*to)?);
+                    if before.fluid(to) == Fluid::None {
+                        self.at(to).fluid = before.fluid(from);
+                        self.at(from).fluid = Fluid::None;
+                    }
                 }
                 Change::Drain(of, fluid) => {
                     let of = id(*of)?;
@@ -180,6 +194,7 @@ impl SymbolicState {
                     let tray = before.free_anchors(of).into_iter().find(|anchor| !before.is_slot(of, anchor.index))?;
                     self.at(thing).place = before.on(of, tray.index);
                 }
+                Change::Scan(_) | Change::Read(_) | Change::Sound(..) => {}
             }
             Some(())
         })();
@@ -214,9 +229,9 @@ impl SymbolicState {
     }
 
     fn put(&mut self, id: ObjectId, receptacle: ObjectId) {
-        let Some(anchor) = self.place_for(receptacle, id) else { return };
+        let anchors = self.place_for(receptacle, id).into_iter().collect();
         self.let_go();
-        self.at(id).place = self.on(receptacle, anchor);
+        self.at(id).place = Place::On { parent: receptacle, anchors, within: true };
         self.at(id).room = self.thing(receptacle).room;
         self.at(id).access = self.thing(receptacle).access;
     }
@@ -317,7 +332,7 @@ impl SymbolicState {
         let catalog = std::sync::Arc::clone(&self.catalog);
         let work = &catalog.table().device(&before.class(id).id).shut_work;
         if let Some(work) = work.as_ref().filter(|_| before.is_powered(id)) {
-            self.work_at(before, work, id);
+            self.work_at(before, work, id, id);
         }
     }
 
@@ -346,22 +361,11 @@ impl SymbolicState {
                 if powered.is_shut(id) {
                     self.settle(&powered, id);
                 }
-                self.read_disks(&powered, id);
+                if let Some(work) = catalog.table().power_work() {
+                    self.work_at(&powered, work, id, id);
+                }
             }
         }
-    }
-
-    /// What the disks in a computer change as its power comes: an antivirus has the last word.
-    fn read_disks(&mut self, before: &Self, computer: ObjectId) {
-        if !before.class(computer).has(Property::Infectable) || !before.is_powered(computer) {
-            return;
-        }
-        let holds = |class: &str| {
-            let disks = before.children(computer).into_iter().filter(|disk| !before.is(*disk, StateFlag::Broken));
-            disks.into_iter().any(|disk| before.class(disk).id == class)
-        };
-        let infected = before.is(computer, StateFlag::Infected) || holds("Floppy_Virus");
-        self.set(computer, StateFlag::Infected, infected && !holds("Floppy_AntiVirus"));
     }
 
     /// Sends a thing through an open portal: it comes back at its foot.

@@ -21,6 +21,7 @@ pub(super) struct Ids {
 #[serde(default)]
 struct TableIds {
     basin: Option<IgnoredAny>,
+    power_work: Option<IgnoredAny>,
     times: Option<IgnoredAny>,
     rule: Vec<Named>,
     device: Vec<OfClasses>,
@@ -103,10 +104,14 @@ impl Ids {
         }
         for (file, text) in &pack.table {
             let table: TableIds = limits::read(file, text)?;
-            for (at, found) in [("basin", &table.basin), ("times", &table.times)] {
+            for (at, found, remedy) in [
+                ("basin", &table.basin, "leave it out"),
+                ("power_work", &table.power_work, "leave it out; a device has `work` and `shut_work`"),
+                ("times", &table.times, "leave it out; a device has `work_s` and `moment_s`"),
+            ] {
                 if found.is_some() {
                     let reason = "it is of the whole world, and not a pack's to say".to_owned();
-                    return Err(PackError::at(file, at, reason, "leave it out; a device has `work_s` and `moment_s`"));
+                    return Err(PackError::at(file, at, reason, remedy));
                 }
             }
             for (kind, id) in table.all() {

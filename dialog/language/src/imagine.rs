@@ -1,8 +1,9 @@
-//! What the robot expects of its own steps, so that the rest of a sentence is understood in the light of its beginning.
+//! What the robot expects of its own steps, so that the rest of a sentence is understood in the light of its beginning: the table of
+//! actions and devices says what they change, and only where the robot then stands is worked out here.
 
-use cohabit_cdf::{Action, Fluid, GoToTarget, ObjectId, Verb, state::StateFlag};
+use cohabit_cdf::{Action, ActionKind, GoToTarget, ObjectId};
 
-use crate::{known::Known, process::Devices};
+use crate::{known::Known, process::Devices, symbols};
 
 /// How far it stands from what it acts on, m.
 const REACH_M: f32 = 0.8;
@@ -23,18 +24,11 @@ pub(crate) fn apply(scene: &mut Known, action: &Action, devices: &Devices) {
                 scene.objects.iter_mut().for_each(|object| object.visible = false);
             }
         }
-        Action::PickUp { object } => {
-            walk(scene, object);
-            scene.robot.held = Some(object);
-            if let Some(object) = scene.object_mut(object) {
-                object.parent = None;
-                object.flags.set(StateFlag::PickedUp, true);
+        Action::PickUp { .. } | Action::Place { .. } | Action::Interact { .. } => {
+            if let Some((kind, object)) = ActionKind::of(action) {
+                walk(scene, object);
+                symbols::act(scene, kind, object, &devices.catalog);
             }
-        }
-        Action::Place { receptacle } => place(scene, receptacle),
-        Action::Interact { verb, object } => {
-            walk(scene, object);
-            interact(scene, verb, object, devices);
         }
         Action::GoTo { .. }
         | Action::Look { .. }
@@ -66,49 +60,5 @@ fn carry(scene: &mut Known) {
     if let Some(object) = robot.held.and_then(|held| scene.object_mut(held)) {
         object.position_m = robot.position_m;
         object.room = robot.room;
-    }
-}
-
-fn place(scene: &mut Known, receptacle: ObjectId) {
-    walk(scene, receptacle);
-    let position = scene.object(receptacle).map(|object| (object.position_m, object.room));
-    let Some(held) = scene.robot.held.take() else { return };
-    if let (Some(object), Some((position_m, room))) = (scene.object_mut(held), position) {
-        object.parent = Some(receptacle);
-        object.position_m = position_m;
-        object.room = room;
-        object.flags.set(StateFlag::PickedUp, false);
-    }
-}
-
-fn interact(scene: &mut Known, verb: Verb, id: ObjectId, devices: &Devices) {
-    let held = scene.robot.held;
-    let held_fluid = held.and_then(|held| scene.object(held)).map(|object| object.fluid);
-    let Some(object) = scene.object_mut(id) else { return };
-    match verb {
-        Verb::Open => object.flags.set(StateFlag::Opened, true),
-        Verb::Close => object.flags.set(StateFlag::Opened, false),
-        Verb::Break => object.flags.set(StateFlag::Broken, true),
-        Verb::Scan => object.flags.set(StateFlag::Scanned, true),
-        Verb::Examine => object.flags.set(StateFlag::Examined, true),
-        Verb::Toggle => {
-            let on = devices.stays_on(object.class) && !object.has(StateFlag::Toggled);
-            object.flags.set(StateFlag::Toggled, on);
-        }
-        Verb::Pour => match held_fluid.unwrap_or_default() {
-            Fluid::None => object.flags.set(StateFlag::Cereal, true),
-            fluid => object.fluid = fluid,
-        },
-        Verb::Fill => {
-            if let Some(object) = held.and_then(|held| scene.object_mut(held)) {
-                object.fluid = cohabit_cdf::Fluid::Water;
-            }
-        }
-        Verb::Clean => {
-            if let Some(object) = held.and_then(|held| scene.object_mut(held)) {
-                object.flags.set(StateFlag::Dirty, false);
-            }
-        }
-        Verb::Throw => scene.robot.held = None,
     }
 }

@@ -106,7 +106,7 @@ impl Known {
     }
 
     /// Where an object is in the list: at its id, if all are known.
-    fn place(&self, id: ObjectId) -> Option<usize> {
+    pub(crate) fn place(&self, id: ObjectId) -> Option<usize> {
         let is_it = |object: &KnownObject| object.id == id;
         let at_id = Some(id.0 as usize).filter(|at| self.objects.get(*at).is_some_and(is_it));
         at_id.or_else(|| self.objects.iter().position(is_it))

@@ -85,6 +85,7 @@ mod spelling;
 mod spoken;
 mod stop;
 mod swap;
+mod symbols;
 mod table;
 mod tail;
 mod tidy;

@@ -1,6 +1,6 @@
 //! How likely ways to understand an utterance are by what is open: the robot's own question, and what is left of the mission.
 
-use cohabit_cdf::{Action, GoToTarget, Verb};
+use cohabit_cdf::{Action, Fluid, GoToTarget, ObjectId, Property, Verb};
 
 use crate::{
     context::Context, conversation::Conversation, imagine, known::Known, understanding::Step, way::Way,
@@ -46,17 +46,24 @@ impl Conversation<'_> {
     fn is_in_vain(&self, steps: &[Step]) -> bool {
         let mut scene = self.scene.clone();
         steps.iter().any(|step| {
+            let held = scene.robot.held;
             let state = |scene: &Known| {
-                let worked_on = step.object().and_then(|id| scene.object(id));
-                (scene.robot.held, worked_on.map(|object| (object.flags, object.fluid)))
+                let of = |id: Option<ObjectId>| id.and_then(|id| scene.object(id));
+                let worked_on = of(step.object()).map(|object| (object.flags, object.fluid));
+                (scene.robot.held, worked_on, of(held).map(|object| object.fluid))
             };
+            // What comes out of a vessel that is not known to be full nobody knows.
+            let is_unknown = held.and_then(|held| scene.object(held)).is_some_and(|object| {
+                object.fluid == Fluid::None && self.catalog.class(object.class).has(Property::Fillable)
+            });
             let before = state(&scene);
             imagine::apply(&mut scene, &step.action, self.devices);
             let changes = matches!(
                 step.action,
                 Action::Interact { verb: Verb::Break | Verb::Close | Verb::Open | Verb::Pour, .. }
             );
-            changes && state(&scene) == before
+            let pours_unknown = is_unknown && matches!(step.action, Action::Interact { verb: Verb::Pour, .. });
+            changes && !pours_unknown && state(&scene) == before
         })
     }
 

@@ -1,9 +1,12 @@
 //! What it takes to heat, cool, clean, repair and so on: what the language needs of the table of actions and devices, with class names
 //! resolved.
 
+use std::sync::Arc;
+
 use cohabit_cdf::{
-    ActionTable, Catalog, ClassId, Fluid, Property,
-    table::{Change, Device, Site, Term, Test},
+    ActionKind, ActionTable, Catalog, ClassId, Fluid, Property,
+    state::StateFlag,
+    table::{Change, Device, Effect, Rule, Site, Term, Test, Work},
 };
 use serde::Deserialize;
 
@@ -25,8 +28,7 @@ pub(crate) struct Process {
 }
 
 /// What a step of a process does.
-#[derive(Clone, Copy, Debug, Deserialize, Eq, PartialEq)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub(crate) enum Act {
     Hold,
     Open,
@@ -42,6 +44,8 @@ pub(crate) enum Act {
 /// All that is known of devices.
 #[derive(Clone, Debug)]
 pub(crate) struct Devices {
+    /// The table that all of it is taken from.
+    pub(crate) catalog: Arc<Catalog>,
     pub(crate) processes: Vec<Process>,
     /// The names of colours, and what gives them.
     buttons: Vec<(String, ClassId)>,
@@ -52,6 +56,10 @@ pub(crate) struct Devices {
     is_lit: Vec<ClassId>,
     worked: Vec<(ClassId, Vec<ClassId>)>,
     pub(crate) hammers: Vec<ClassId>,
+    /// What feeds and cuts circuits.
+    pub(crate) levers: Vec<ClassId>,
+    /// What machines turn other things into.
+    pub(crate) made: Vec<ClassId>,
     pub(crate) uses: Uses,
 }
 
@@ -61,6 +69,7 @@ struct File {
     way: Vec<WayEntry>,
 }
 
+/// What is asked for, and one of `work`, `makes`, `action` and `kept_in`: how it comes about.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct WayEntry {
@@ -68,20 +77,20 @@ struct WayEntry {
     #[serde(default)]
     work: Option<String>,
     #[serde(default)]
+    makes: Option<String>,
+    #[serde(default)]
+    action: Option<ActionKind>,
+    #[serde(default)]
+    kept_in: Vec<String>,
+    #[serde(default)]
     leaves: bool,
-    #[serde(default)]
-    at: Vec<String>,
-    #[serde(default)]
-    steps: Vec<Act>,
-    #[serde(default)]
-    fluid: Option<String>,
     #[serde(default)]
     object: Vec<String>,
 }
 
 impl Devices {
     /// What the catalogue's table says, and the built-in ways to what people ask for.
-    pub(crate) fn new(catalog: &Catalog) -> Self {
+    pub(crate) fn new(catalog: &Arc<Catalog>) -> Self {
         let file: File = toml::from_str(include_str!("../data/processes.toml"))
             .expect("invariant: the built-in table parses, the tests load it");
         let table = catalog.table();
@@ -91,8 +100,14 @@ impl Devices {
             classes.filter(|(id, class)| fits(*id, table.device(&class.id))).map(|(id, _)| id).collect()
         };
         let has = |class: ClassId, property| catalog.class(class).has(property);
+        let named: Vec<&str> = file.way.iter().filter_map(|way| way.work.as_deref()).collect();
+        let feeds = |device: &Device| pressed(device).any(|change| matches!(change, Change::Feed(..)));
+        let made = table.works().iter().flat_map(Work::changes).filter_map(|change| match change {
+            Change::Become(_, class) => catalog.find(class),
+            _ => None,
+        });
         Self {
-            processes: file.way.iter().flat_map(|way| way.processes(catalog)).collect(),
+            processes: file.way.iter().flat_map(|way| way.processes(catalog, &named)).collect(),
             buttons: buttons(table).filter_map(|(color, class)| Some((color, catalog.find(class)?))).collect(),
             cartridges: table
                 .cartridges()
@@ -110,7 +125,10 @@ impl Devices {
                 .flat_map(|device| known(&device.classes).into_iter().map(|class| (class, known(&device.worked_by))))
                 .collect(),
             hammers: of_class(&|class, _| is_tool(table, &catalog.class(class).id, "break")),
+            levers: of_class(&|_, device| feeds(device)),
+            made: made.collect(),
             uses: Uses::new(catalog),
+            catalog: Arc::clone(catalog),
         }
     }
 
@@ -156,15 +174,52 @@ impl Devices {
 }
 
 impl WayEntry {
-    /// One process for each place where it is done.
-    fn processes(&self, catalog: &Catalog) -> Vec<Process> {
-        let Some(work) = &self.work else {
-            let at = of_ids(catalog, &self.at);
-            return vec![self.process(catalog, at, [Vec::new(), Vec::new()], self.steps.clone())];
-        };
+    /// One process for each place where it is done; `named` are the works that ways name.
+    fn processes(&self, catalog: &Catalog, named: &[&str]) -> Vec<Process> {
         let table = catalog.table();
-        let mut doers: Vec<&Device> = table.devices().iter().filter(|device| does(device, work)).collect();
+        if let Some(action) = self.action {
+            let rules = table.rules().iter().filter(|rule| rule.action == action);
+            return rules.filter_map(|rule| self.by_rule(catalog, rule)).collect();
+        }
+        if !self.kept_in.is_empty() {
+            let steps = vec![Act::Hold, Act::Open, Act::Place, Act::Close];
+            return vec![self.process(of_ids(catalog, &self.kept_in), [Vec::new(), Vec::new()], steps, None, catalog)];
+        }
+        let makes = self.makes.as_ref().map(|text| {
+            let change = text.parse::<Change>();
+            change.expect("invariant: the built-in table parses, the tests load it")
+        });
+        let is_meant = |name: &str| {
+            let kind = name.split(' ').next().unwrap_or(name);
+            let does = |change: &Change| table.work(name).is_some_and(|work| work.changes().any(|one| one == change));
+            self.work.as_deref() == Some(kind) || (!named.contains(&kind) && makes.as_ref().is_some_and(does))
+        };
+        let mut doers: Vec<&Device> = table.devices().iter().filter(|device| works_of(device).any(is_meant)).collect();
         doers.sort_by_key(|device| device.at != Site::It);
+        self.by_devices(catalog, &doers)
+    }
+
+    /// What a rule does with what is held, at things of the class that it names.
+    fn by_rule(&self, catalog: &Catalog, rule: &Rule) -> Option<Process> {
+        let place = rule.when.iter().find_map(|condition| match &condition.test {
+            Test::IsA(pattern) if condition.term == Term::It && !condition.negated => catalog.find(&pattern.0),
+            _ => None,
+        })?;
+        let act = match rule.action {
+            ActionKind::Fill => Act::Fill,
+            ActionKind::Clean => Act::Clean,
+            _ => return None,
+        };
+        let is_on = |test: &Test| *test == Test::Is(StateFlag::Toggled);
+        let conditions = || rule.needs.iter().flat_map(|need| &need.any);
+        let runs = conditions().any(|one| one.term == Term::It && !one.negated && is_on(&one.test));
+        let steps = [Act::Hold].into_iter().chain(runs.then_some(Act::Run)).chain([act]).collect();
+        let fluid = changes(&rule.effects).find_map(fluid_of);
+        Some(self.process(vec![place], [Vec::new(), Vec::new()], steps, fluid, catalog))
+    }
+
+    fn by_devices(&self, catalog: &Catalog, doers: &[&Device]) -> Vec<Process> {
+        let table = catalog.table();
         let mut processes: Vec<Process> = Vec::new();
         for device in doers {
             let at = of_ids(catalog, &places(table, device));
@@ -180,7 +235,9 @@ impl WayEntry {
                 Site::Target => [[machines, classes.clone()].concat(), classes],
             };
             let is_openable = at.iter().any(|class| catalog.class(*class).has(Property::Openable));
-            processes.push(self.process(catalog, at, by, self.steps_at(device, is_openable)));
+            let mut works = works_of(device).filter_map(|name| table.work(name));
+            let fluid = works.find_map(|work| work.changes().find_map(fluid_of));
+            processes.push(self.process(at, by, self.steps_at(device, is_openable), fluid, catalog));
         }
         processes
     }
@@ -200,12 +257,14 @@ impl WayEntry {
 
     fn process(
         &self,
-        catalog: &Catalog,
         at: Vec<ClassId>,
         [also, start]: [Vec<ClassId>; 2],
         steps: Vec<Act>,
+        fluid: Option<Fluid>,
+        catalog: &Catalog,
     ) -> Process {
-        let fluid = self.fluid.as_deref().and_then(Fluid::from_name);
+        // With what counts where it is asked for to be filled.
+        let fluid = fluid.filter(|_| self.intent == Intent::Fill);
         Process { intent: self.intent, at, also, start, steps, fluid, object: of_ids(catalog, &self.object) }
     }
 }
@@ -214,10 +273,25 @@ fn of_ids(catalog: &Catalog, ids: &[String]) -> Vec<ClassId> {
     ids.iter().filter_map(|id| catalog.find(id)).collect()
 }
 
-/// Whether it does a work, or one kind of it: `paint red` is a kind of `paint`.
-fn does(device: &Device, work: &str) -> bool {
-    let is_it = |name: &String| name.split(' ').next() == Some(work);
-    device.work.iter().chain(&device.shut_work).any(is_it)
+/// The names of the works that a device does; `paint red` is a kind of `paint`.
+fn works_of(device: &Device) -> impl Iterator<Item = &str> {
+    device.work.iter().chain(&device.shut_work).map(String::as_str)
+}
+
+fn changes(effects: &[Effect]) -> impl Iterator<Item = &Change> {
+    effects.iter().flat_map(|effect| &effect.changes)
+}
+
+fn pressed(device: &Device) -> impl Iterator<Item = &Change> {
+    changes(&device.press)
+}
+
+/// What a change fills something with.
+fn fluid_of(change: &Change) -> Option<Fluid> {
+    match change {
+        Change::Fill(_, fluid) if *fluid != Fluid::None => Some(*fluid),
+        _ => None,
+    }
 }
 
 /// The classes in or on which a device does its work.
@@ -237,8 +311,7 @@ fn works_in_itself(device: &Device) -> bool {
 fn buttons(table: &ActionTable) -> impl Iterator<Item = (String, &str)> {
     table.devices().iter().flat_map(|device| {
         let work = device.work.as_ref().and_then(|work| table.work(work));
-        let changes = work.into_iter().flat_map(|work| &work.effects).flat_map(|effect| &effect.changes);
-        let colors = changes.filter_map(|change| match change {
+        let colors = work.into_iter().flat_map(Work::changes).filter_map(|change| match change {
             Change::Paint(_, color) => Some(color.name().to_lowercase()),
             _ => None,
         });

@@ -85,15 +85,13 @@ fn closed_place(planner: &Planner<'_>, action: &Action) -> Option<ObjectId> {
         .or_else(|| (is_place && planner.is_shut(object)).then_some(object))
 }
 
-/// The nearest lever or switch of a fuse box in the machine's room.
+/// The nearest lever that feeds a circuit, in the machine's room.
 fn power_lever(planner: &Planner<'_>, machine: ObjectId) -> Option<ObjectId> {
     let room = planner.scene.object(machine)?.room;
-    let boxes = ["FuseBox_01", "FuseBox_02"].into_iter().filter_map(|id| planner.catalog.find(id));
-    let mut levers: Vec<_> =
-        boxes.flat_map(|class| planner.devices.workers(class).unwrap_or_default()).copied().collect();
-    levers.dedup();
     let is_fixed = |object: &&crate::known::KnownObject| {
-        levers.contains(&object.class) && object.parent.is_some() && planner.scene.robot.held != Some(object.id)
+        planner.devices.levers.contains(&object.class)
+            && object.parent.is_some()
+            && planner.scene.robot.held != Some(object.id)
     };
     let known = planner.scene.objects.iter().filter(is_fixed);
     known.min_by_key(|object| (object.room != room, object.id)).map(|object| object.id)

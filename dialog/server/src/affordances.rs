@@ -260,6 +260,7 @@ pub fn addressed(detail: &str) -> String {
 #[cfg(test)]
 mod tests {
     use cohabit_bus::message::{BodyRecord, StateHeader};
+    use cohabit_cdf::{PackFile, WorldData, WorldPack, world_pack::template};
 
     use super::*;
 
@@ -280,14 +281,17 @@ mod tests {
 
     /// What a class in some state affords to a body 1 m before it that holds a thing of another class.
     fn check(held: Option<&str>, class: &str, flags: &[StateFlag], expected: &[&str]) {
-        let catalog = Catalog::builtin();
-        let mut objects = vec![record(&catalog, 7, class, flags, 1.0)];
-        objects.extend(held.map(|held| ObjectRecord { held_by: 1, ..record(&catalog, 8, held, &[], 0.0) }));
+        check_in(&Catalog::builtin(), held, class, flags, expected);
+    }
+
+    fn check_in(catalog: &Catalog, held: Option<&str>, class: &str, flags: &[StateFlag], expected: &[&str]) {
+        let mut objects = vec![record(catalog, 7, class, flags, 1.0)];
+        objects.extend(held.map(|held| ObjectRecord { held_by: 1, ..record(catalog, 8, held, &[], 0.0) }));
         let held = held.map_or(NONE, |_| 8);
         let bodies = [BodyRecord { body: 1, held, ..BodyRecord::default() }];
         let header = StateHeader::default();
         let state = StateView { header: &header, bodies: &bodies, objects: &objects, goals: &[], notes: &[] };
-        let (afforded, _) = afforded(state, 1, ObjectId(7), &catalog);
+        let (afforded, _) = afforded(state, 1, ObjectId(7), catalog);
         let labels: Vec<&str> = afforded.iter().map(|one| one.label.as_str()).collect();
         assert_eq!(labels, expected, "{class} with {held:?}");
     }
@@ -316,6 +320,20 @@ mod tests {
     fn a_key_goes_where_it_belongs() {
         check(Some("Laser_Tip"), "Laser", &[], &["Put the laser tip here", "Look closely", "Throw at it", "Scan"]);
         check(Some("Bowl_01"), "Laser", &[], &["Look closely", "Throw at it", "Scan"]);
+    }
+
+    #[test]
+    fn a_device_of_a_pack_is_offered_by_its_entry_of_the_table() {
+        let files = template("my-lab").into_iter();
+        let files = files.map(|(path, text)| PackFile { path: path.to_owned(), bytes: text.into_bytes() });
+        let world = WorldData::layered(vec![WorldPack::parse("my-lab", files.collect()).unwrap()]).unwrap();
+        let check = |held, flags: &[StateFlag], expected: &[&str]| {
+            check_in(world.catalog(), held, "Degreaser_01", flags, expected);
+        };
+        let offered = ["Put the wrench here", "Switch on", "Look closely", "Throw at it", "Scan"];
+        check(Some("Wrench_01"), &[StateFlag::Powered], &offered);
+        check(None, &[StateFlag::Powered], &["Switch on", "Look closely", "Scan"]);
+        check(None, &[StateFlag::Powered, StateFlag::Toggled], &["Switch off", "Look closely", "Scan"]);
     }
 
     #[test]

@@ -10,7 +10,7 @@ use cohabit_render::{Instance, Look};
 /// An unhurried pace, m/s: at this speed a person's legs swing fully.
 const PACE_M_S: f32 = 1.3;
 /// How much larger the embiggenator makes things.
-const EMBIGGENED: f32 = cohabit_world::EMBIGGEN;
+const EMBIGGENED: f32 = cohabit_cdf::table::GROWTH;
 
 /// How far bodies have come: their wheels turn and their legs swing with it.
 #[derive(Debug, Default)]

@@ -13,9 +13,8 @@ use crate::{
     navigation::blocks_the_way,
     physics, power,
     report::{Ending, Event, SoundKind},
-    rules::Observer,
+    rules::on_power,
     state::State,
-    works,
 };
 
 /// A world's changing part, with what is constant about it, and where its events go.
@@ -249,7 +248,7 @@ impl Changes<'_> {
         self.state.floor_version += 1;
         if fed {
             let facts = self.facts();
-            let effects = works::on_power(&facts, &Observer { facts: &facts, body: None }, circuit);
+            let effects = on_power(&facts, circuit);
             self.apply(effects);
         }
     }

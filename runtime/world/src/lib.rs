@@ -86,5 +86,4 @@ pub use glam::{Quat, Vec2, Vec3};
 pub use goals::GoalStatus;
 pub use report::{CameraTarget, Ending, Event, Input, Outcome, Report, SoundKind};
 pub use snapshot::SnapshotError;
-pub use works::EMBIGGEN;
 pub use world::{DT_NANOS, Phase, World};

@@ -1,5 +1,6 @@
 //! What goes into a tick and what comes out of it.
 
+pub use cohabit_cdf::catalog::table::SoundKind;
 use cohabit_cdf::{Action, BodyId, ObjectId, RoomId, Status};
 use serde::{Deserialize, Serialize};
 
@@ -43,29 +44,6 @@ pub enum Ending {
     AllGoalsMet,
     /// A hazard took the robot.
     KilledByHazard,
-}
-
-/// What a sound is made by.
-#[derive(Clone, Copy, Debug, Deserialize, Eq, PartialEq, Serialize)]
-pub enum SoundKind {
-    /// A door, lid or drawer opens.
-    Open,
-    /// It closes.
-    Close,
-    /// A switch or button.
-    Click,
-    /// A machine starts.
-    Machine,
-    /// Something breaks.
-    Break,
-    /// A fluid runs.
-    Pour,
-    /// An alarm.
-    Alarm,
-    /// A laser or freeze ray fires.
-    Ray,
-    /// A discharge.
-    Spark,
 }
 
 /// What the camera that people watch turns to.

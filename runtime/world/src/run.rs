@@ -1,6 +1,9 @@
 //! A machine at work for a moment: what it does, where, since when and for how long.
 
-use cohabit_cdf::{Catalog, Color, ObjectId, catalog::table::Device};
+use cohabit_cdf::{
+    ActionTable, Catalog, Color, ObjectId,
+    catalog::table::{Device, Work as Entry},
+};
 use serde::{Deserialize, Serialize};
 
 const TICKS_A_SECOND: f32 = 60.0;
@@ -10,59 +13,62 @@ pub(crate) fn ticks(device: &Device) -> [u64; 2] {
     [device.work_s, device.moment_s].map(|seconds| (seconds * TICKS_A_SECOND).round() as u64)
 }
 
-/// What a machine does.
+/// Which work a machine does, as snapshots and digests write it down. What it changes is the table's to say, by its name.
 #[derive(Clone, Copy, Debug, Deserialize, Eq, PartialEq, Serialize)]
 pub(crate) enum Work {
-    /// Nothing but being on.
+    /// None: it is on, and that is all.
     Nothing,
-    /// What can be heated gets hot.
     Heat,
-    /// As [`Self::Heat`], and what can be cooked is cooked.
     Toast,
-    /// What can be chilled gets cold.
     Chill,
-    /// What is in it becomes what it was yesterday.
     Yesterday,
-    /// What is in it becomes a carrot.
     Carrot,
-    /// A cartridge makes its product, beside it.
     Print,
-    /// What holds fluids gets hot coffee.
     Brew,
-    /// Coffee becomes beans.
     Unbrew,
-    /// What is in it takes a colour.
     Paint(Color),
-    /// What is in it grows, or shrinks back.
     Embiggen,
-    /// The object at this slot falls into the tray.
+    /// `vend` of the slot of this number.
     Vend(u16),
     /// The work of this number in the table, which is none of those above.
     Listed(u16),
 }
 
 impl Work {
+    /// The names of those that have a number of their own.
+    const NAMES: [(Self, &'static str); 12] = [
+        (Self::Heat, "heat"),
+        (Self::Toast, "toast"),
+        (Self::Chill, "chill"),
+        (Self::Yesterday, "yesterday"),
+        (Self::Carrot, "carrot"),
+        (Self::Print, "print"),
+        (Self::Brew, "brew"),
+        (Self::Unbrew, "unbrew"),
+        (Self::Paint(Color::Red), "paint red"),
+        (Self::Paint(Color::Green), "paint green"),
+        (Self::Paint(Color::Blue), "paint blue"),
+        (Self::Embiggen, "embiggen"),
+    ];
+
     /// The work of that name in the table.
     pub fn named(catalog: &Catalog, name: &str) -> Self {
-        match name {
-            "heat" => Self::Heat,
-            "toast" => Self::Toast,
-            "chill" => Self::Chill,
-            "yesterday" => Self::Yesterday,
-            "carrot" => Self::Carrot,
-            "print" => Self::Print,
-            "brew" => Self::Brew,
-            "unbrew" => Self::Unbrew,
-            "paint red" => Self::Paint(Color::Red),
-            "paint green" => Self::Paint(Color::Green),
-            "paint blue" => Self::Paint(Color::Blue),
-            "embiggen" => Self::Embiggen,
-            _ => {
-                let slot = name.strip_prefix("vend ").and_then(|slot| slot.parse().ok());
-                let listed = || catalog.table().works().iter().position(|work| work.name == name);
-                let listed = || listed().and_then(|index| u16::try_from(index).ok());
-                slot.map(Self::Vend).or_else(|| listed().map(Self::Listed)).unwrap_or(Self::Nothing)
-            }
+        let known = Self::NAMES.iter().find(|(_, known)| *known == name).map(|(work, _)| *work);
+        let slot = || name.strip_prefix("vend ").and_then(|slot| slot.parse().ok()).map(Self::Vend);
+        let listed = || {
+            let index = catalog.table().works().iter().position(|work| work.name == name)?;
+            u16::try_from(index).ok().map(Self::Listed)
+        };
+        known.or_else(slot).or_else(listed).unwrap_or(Self::Nothing)
+    }
+
+    /// Its entry in the table.
+    pub fn entry(self, table: &ActionTable) -> Option<&Entry> {
+        match self {
+            Self::Nothing => None,
+            Self::Vend(slot) => table.work(&format!("vend {slot}")),
+            Self::Listed(index) => table.works().get(usize::from(index)),
+            _ => Self::NAMES.iter().find(|(work, _)| *work == self).and_then(|(_, name)| table.work(name)),
         }
     }
 }

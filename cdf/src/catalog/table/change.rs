@@ -2,8 +2,38 @@
 
 use std::str::FromStr;
 
+use serde::{Deserialize, Serialize};
+
 use super::condition::{Condition, Term, read_word};
 use crate::state::{Color, Fluid, StateFlag};
+
+/// How much larger `resize` makes small things.
+pub const GROWTH: f32 = 1.8;
+/// What `restore` undoes of what stays of its kind.
+pub const UNDONE: [StateFlag; 4] = [StateFlag::Broken, StateFlag::Eaten, StateFlag::Cooked, StateFlag::Cut];
+
+/// What a sound is made by.
+#[derive(Clone, Copy, Debug, Deserialize, Eq, PartialEq, Serialize)]
+pub enum SoundKind {
+    /// A door, lid or drawer opens.
+    Open,
+    /// It closes.
+    Close,
+    /// A switch or button.
+    Click,
+    /// A machine starts.
+    Machine,
+    /// Something breaks.
+    Break,
+    /// A fluid runs.
+    Pour,
+    /// An alarm.
+    Alarm,
+    /// A laser or freeze ray fires.
+    Ray,
+    /// A discharge.
+    Spark,
+}
 
 /// One change.
 #[derive(Clone, Debug, Eq, PartialEq)]
@@ -14,7 +44,7 @@ pub enum Change {
     Copy(StateFlag, Term, Term),
     /// `fill it Water`, `empty it`.
     Fill(Term, Fluid),
-    /// `pour held it`: what is in the first goes into the second.
+    /// `pour held it`: what is in the first goes into the second, if that is empty.
     Pour(Term, Term),
     /// `drain thing Coffee`: this fluid leaves it, and all that is in it.
     Drain(Term, Fluid),
@@ -58,6 +88,12 @@ pub enum Change {
     Resize(Term),
     /// `vend thing 1`: what is in that slot falls into the tray.
     Vend(Term, u16),
+    /// `scan it`: whoever listens hears that it was scanned.
+    Scan(Term),
+    /// `read it`: what is written on it is told.
+    Read(Term),
+    /// `sound Pour it`: this can be heard from there.
+    Sound(SoundKind, Term),
 }
 
 impl Change {
@@ -74,6 +110,23 @@ impl Change {
                 | Self::Feed(..)
                 | Self::Turn(_)
                 | Self::SwingDoors
+                | Self::Sound(..)
+        )
+    }
+
+    /// Whether the work of a machine can bring it about: nobody is at hand, and nothing is pressed.
+    #[must_use]
+    pub const fn is_of_a_work(&self) -> bool {
+        !matches!(
+            self,
+            Self::Approach(_)
+                | Self::Take(_)
+                | Self::Put(..)
+                | Self::Throw(_)
+                | Self::Send(..)
+                | Self::Run(..)
+                | Self::Scan(_)
+                | Self::Read(_)
         )
     }
 }
@@ -128,6 +181,9 @@ fn read(words: &[&str]) -> Option<Change> {
         ["remove", of] => Change::Remove(term(of)?),
         ["resize", of] => Change::Resize(term(of)?),
         ["vend", of, slot] => Change::Vend(term(of)?, slot.parse().ok()?),
+        ["scan", of] => Change::Scan(term(of)?),
+        ["read", of] => Change::Read(term(of)?),
+        ["sound", kind, of] => Change::Sound(read_word(kind)?, term(of)?),
         _ => return None,
     })
 }
@@ -142,6 +198,9 @@ mod tests {
         check("clear held Dirty", Change::Set(Term::Held, StateFlag::Dirty, false));
         check("flip it and machine", Change::Flip(Term::It, Some(Term::Machine)));
         check("vend thing 2", Change::Vend(Term::Thing, 2));
-        assert!("heat it".parse::<Change>().is_err());
+        check("sound Pour it", Change::Sound(SoundKind::Pour, Term::It));
+        for text in ["heat it", "sound Bang it", "set it"] {
+            assert!(text.parse::<Change>().is_err(), "{text}");
+        }
     }
 }

@@ -136,6 +136,8 @@ pub enum Test {
     Holds(Fluid),
     /// A thing of this class is directly in or on it.
     HoldsA(ClassPattern),
+    /// The same, and that is not broken.
+    HoldsWhole(ClassPattern),
     /// At any depth it contains this.
     Contains(Content),
     /// Its contents are behind a door that is closed.
@@ -234,6 +236,7 @@ fn read_test(words: &[&str]) -> Option<Test> {
         ["is", "a", class] => Test::IsA(ClassPattern((*class).to_owned())),
         ["is", flag] => Test::Is(read_word(flag)?),
         ["affords", property] => Test::Affords(read_word(property)?),
+        ["holds", "a", "whole", class] => Test::HoldsWhole(ClassPattern((*class).to_owned())),
         ["holds", "a", class] => Test::HoldsA(ClassPattern((*class).to_owned())),
         ["holds", fluid] => Test::Holds(Fluid::from_name(fluid)?),
         ["contains", "filled"] => Test::Contains(Content::Filled),
@@ -277,6 +280,8 @@ mod tests {
         check("it is Opened", false, Term::It, Test::Is(StateFlag::Opened));
         check("not held affords FILLABLE", true, Term::Held, Test::Affords(Property::Fillable));
         check("thing is a Floppy_*", false, Term::Thing, Test::IsA(ClassPattern("Floppy_*".to_owned())));
+        let disk = || ClassPattern("Floppy_Virus".to_owned());
+        check("thing holds a whole Floppy_Virus", false, Term::Thing, Test::HoldsWhole(disk()));
         check("it contains Coffee", false, Term::It, Test::Contains(Content::Fluid(Fluid::Coffee)));
         check("never", false, Term::It, Test::Never);
     }

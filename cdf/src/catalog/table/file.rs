@@ -16,6 +16,7 @@ use crate::action::Status;
 #[serde(deny_unknown_fields)]
 pub(super) struct TableFile {
     pub basin: Option<String>,
+    pub power_work: Option<String>,
     #[serde(default)]
     shared: BTreeMap<String, Vec<RawNeed>>,
     #[serde(default, rename = "rule")]
@@ -80,6 +81,8 @@ struct RawRule {
     needs: Vec<RawNeed>,
     #[serde(default)]
     effects: Vec<RawEffect>,
+    #[serde(default = "plainly_done")]
+    done: String,
     #[serde(default)]
     but: Vec<RawNeed>,
 }
@@ -125,6 +128,12 @@ struct RawWork {
     name: String,
     over: super::Over,
     effects: Vec<RawEffect>,
+    #[serde(default)]
+    then: Vec<RawEffect>,
+}
+
+fn plainly_done() -> String {
+    "done".to_owned()
 }
 
 /// Reads one file's text.
@@ -148,6 +157,7 @@ impl Reader<'_> {
                 words: raw.words.clone(),
                 needs: self.needs(&raw.needs, &read.shared, 0)?,
                 effects: self.effects(&raw.effects)?,
+                done: raw.done.clone(),
                 but: self.needs(&raw.but, &read.shared, 0)?,
             })
         };
@@ -180,8 +190,14 @@ impl Reader<'_> {
     }
 
     pub fn works(&self, read: &TableFile) -> Result<Vec<Work>, TableError> {
-        let work =
-            |raw: &RawWork| Ok(Work { name: raw.name.clone(), over: raw.over, effects: self.effects(&raw.effects)? });
+        let work = |raw: &RawWork| {
+            Ok(Work {
+                name: raw.name.clone(),
+                over: raw.over,
+                effects: self.effects(&raw.effects)?,
+                then: self.effects(&raw.then)?,
+            })
+        };
         read.works.iter().map(work).collect()
     }
 

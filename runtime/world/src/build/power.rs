@@ -3,7 +3,7 @@
 use cohabit_cdf::{Fluid, ObjectId, ObjectRequest, Property, StateFlag};
 
 use super::Builder;
-use crate::{effect::Effect, power, state::ids, works::disk};
+use crate::{effect::Effect, power, rules::powered, state::ids};
 
 const LEVER: &str = "FuseBox_01_Lever";
 const CORDS: [&str; 2] = ["Broken_Cord_01", "CableFrayed_01"];
@@ -73,7 +73,7 @@ impl Builder<'_> {
         }
     }
 
-    /// Computers that start with a disk in them have read it, unless the mission says how they are.
+    /// What has power has done what it does as that comes, unless the mission says how it is: computers have read their disks.
     pub(super) fn read_disks(&mut self) {
         let said: Vec<ObjectId> = self
             .requests()
@@ -81,8 +81,8 @@ impl Builder<'_> {
             .map(|(id, _)| id)
             .collect();
         let facts = self.facts();
-        let computers = facts.state.existing().map(|(id, _)| id).filter(|id| !said.contains(id));
-        let effects: Vec<Effect> = computers.filter_map(|id| disk::read_all(&facts, id)).collect();
+        let others = facts.state.existing().map(|(id, _)| id).filter(|id| !said.contains(id));
+        let effects: Vec<Effect> = others.flat_map(|id| powered(&facts, id)).collect();
         self.changes().apply(effects);
     }
 }

@@ -1,6 +1,9 @@
 //! What a mission asks for: which of the plan's things it means, what must be made, where it goes, how it starts.
 
-use cohabit_cdf::{ClassId, Fluid, ObjectId, ObjectRequest, Property, RoomId, StateFlag, catalog::Stands};
+use cohabit_cdf::{
+    ClassId, Fluid, ObjectId, ObjectRequest, Property, RoomId, StateFlag,
+    catalog::{Stands, table::GROWTH},
+};
 use glam::Vec3;
 
 use super::{BuildError, Builder, mentions::mentions, plan::UPRIGHT};
@@ -317,7 +320,7 @@ impl Builder<'_> {
             object.flags.set(*flag, *value);
         }
         if object.flags.has(StateFlag::Embiggenated) {
-            self.changes().scale(id, works::EMBIGGEN);
+            self.changes().scale(id, GROWTH);
         }
     }
 

@@ -1,32 +1,40 @@
 //! The rules: what each command does to the world as it stands, as pure functions from facts to a ruling.
 //!
-//! Nothing here changes anything; `apply` does. One file a family of commands.
+//! What an action needs, changes and answers stands in the table of actions and devices; here it is evaluated. Nothing here
+//! changes anything; `apply` does.
 
-mod fluid;
-mod hand;
-mod opening;
-mod toggle;
-mod tool;
+mod doors;
+mod effects;
+mod machine;
+mod places;
+mod press;
 mod view;
+mod work;
 
+use self::effects::effects_of;
 pub(crate) use self::{
-    hand::keyed_anchors,
-    opening::is_doorway_clear,
-    toggle::{doors_of_buttons, works},
+    doors::{doors_of_buttons, is_doorway_clear},
+    machine::works,
+    places::keyed_anchors,
     view::Observer,
+    work::{effects_of_work, on_power, powered},
 };
 
 use cohabit_cdf::{
-    Action, ActionKind, BodyId, ObjectId, StateFlag, Status, Verb,
-    catalog::table::{Judgement, Scope, Term},
+    Action, ActionKind, BodyId, ObjectId, StateFlag, Status,
+    catalog::table::{Change, Judgement, Need, Range, Scope, Term, Test},
 };
 
-use crate::{effect::Effect, facts::Facts, reach::Barrier, report::SoundKind, works as machines};
+use crate::{
+    effect::Effect,
+    facts::Facts,
+    reach::Barrier,
+    report::SoundKind,
+    works::{self as machines, portal},
+};
 
 /// How far a hand reaches, level, m.
-pub(crate) const REACH_M: f32 = 1.6;
-/// How far things can be looked at closely or scanned, m.
-const LOOK_CLOSELY_M: f32 = 3.0;
+pub(crate) const REACH_M: f32 = Range::Hand.metres();
 
 /// What comes of a command.
 #[derive(Clone, Debug, PartialEq)]
@@ -66,38 +74,24 @@ fn closed(facts: &Facts<'_>, shut: ObjectId) -> String {
     format!("{} is {locked}", facts.name(shut))
 }
 
+/// What people call the things of these classes, each once: `the laser tip or the control panel`.
+fn names_of(facts: &Facts<'_>, classes: &[String]) -> String {
+    let mut names: Vec<String> = Vec::new();
+    for class in classes.iter().filter_map(|class| facts.catalog.find(class)) {
+        let name = facts.catalog.class(class).name.to_lowercase();
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    names.join(" or ")
+}
+
 /// Rules an action of the hand; other actions are motions, and have no rule.
 pub(crate) fn rule(facts: &Facts<'_>, body: BodyId, action: &Action) -> Ruling {
-    let scene = Scene { facts, body };
-    let verdict = match *action {
-        Action::PickUp { object } => hand::pick_up(&scene, object),
-        Action::Place { receptacle } => hand::place(&scene, receptacle),
-        Action::Interact { verb, object } => match verb {
-            Verb::Open => opening::open(&scene, object),
-            Verb::Close => opening::close(&scene, object),
-            Verb::Break => tool::break_or_cut(&scene, object),
-            Verb::Scan => tool::scan(&scene, object),
-            Verb::Examine => tool::examine(&scene, object),
-            Verb::Pour => fluid::pour(&scene, object),
-            Verb::Fill => fluid::fill(&scene, object),
-            Verb::Clean => fluid::clean(&scene, object),
-            Verb::Toggle => toggle::toggle(&scene, object),
-            Verb::Throw => hand::throw(&scene, object),
-        },
-        Action::Move { .. }
-        | Action::Rotate { .. }
-        | Action::Look { .. }
-        | Action::LookAround
-        | Action::GoTo { .. }
-        | Action::Highlight { .. }
-        | Action::Stop
-        | Action::Drive { .. } => Ok(Ruling::done("done", Vec::new())),
-    };
-    let mut ruling = verdict.unwrap_or_else(|refusal| refusal);
-    if let (true, Some(object)) = (ruling.status.is_success(), object_of(action)) {
-        ruling.effects.push(Effect::Touch(object));
+    match ActionKind::of(action) {
+        None | Some((ActionKind::GoTo, _)) => Ruling::done("done", Vec::new()),
+        Some((kind, object)) => Scene { facts, body }.rule(kind, object).unwrap_or_else(|refusal| refusal),
     }
-    ruling
 }
 
 /// What an action is about, if it is about an object.
@@ -116,28 +110,80 @@ struct Scene<'a> {
 }
 
 impl<'a> Scene<'a> {
+    const fn observer(&self) -> Observer<'a> {
+        Observer { facts: self.facts, body: Some(self.body) }
+    }
+
+    /// What an action on an object comes to.
+    fn rule(&self, action: ActionKind, object: ObjectId) -> Verdict {
+        let Judgement { rule, device, .. } = self.check(action, object)?;
+        let (observer, scope) = (self.observer(), Scope::of(object));
+        let pressed = device.map_or_else(Vec::new, |device| scope.changes(&observer, &device.press));
+        let changes = scope.changes(&observer, &rule.effects);
+        let mut effects = effects_of(&observer, &scope, &pressed);
+        effects.extend(device.into_iter().flat_map(|device| press::sounds(&observer, object, device, &pressed)));
+        effects.extend(effects_of(&observer, &scope, &changes));
+        if let Some(need) = scope.lacks(&observer, &rule.but) {
+            return Ok(Ruling { status: need.status, detail: self.told(&need.words, object), effects });
+        }
+        effects.push(Effect::Touch(object));
+        let detail = match device {
+            Some(device) => press::told(&observer, object, device, &pressed),
+            None => self.read(object, &changes).unwrap_or_else(|| self.told(&rule.done, object)),
+        };
+        Ok(Ruling::done(detail, effects))
+    }
+
     /// What the table says of an action, or the refusal that it comes to.
     fn check(&self, action: ActionKind, object: ObjectId) -> Result<Judgement<'a>, Ruling> {
-        let observer = Observer { facts: self.facts, body: Some(self.body) };
-        let Some(judgement) = self.facts.catalog.table().judge(&observer, action, object) else {
+        let Some(judgement) = self.facts.catalog.table().judge(&self.observer(), action, object) else {
             return refuse(Status::UnsupportedAction, "the table of actions has no rule for that");
         };
         let Some(need) = judgement.lack else { return Ok(judgement) };
         if need.is_of_access() {
             // Of what is in the way more can be said than a table knows.
             match action {
-                ActionKind::Scan | ActionKind::Examine => self.near(object, LOOK_CLOSELY_M)?,
+                ActionKind::Scan | ActionKind::Examine => self.near(object, Range::Sight.metres())?,
+                ActionKind::Throw => {}
                 _ => self.touch(object)?,
             }
         }
-        refuse(need.status, self.told(&need.words, object))
+        refuse(need.status, self.more(need, object).unwrap_or_else(|| self.told(&need.words, object)))
+    }
+
+    /// What can be said of a need beyond the words of the table: which lock, keys or time it is about.
+    fn more(&self, need: &Need, object: ObjectId) -> Option<String> {
+        let facts = self.facts;
+        let held = || self.held().map(|held| facts.name(held));
+        let test = need.any.iter().find(|condition| condition.term == Term::It).map(|condition| &condition.test);
+        match test? {
+            Test::Shut => facts.is_shut(object).then(|| closed(facts, object)),
+            Test::TakesHeld => {
+                let keys = &facts.class(object).receptacle.as_ref().filter(|kind| !kind.keys.is_empty())?.keys;
+                let (name, held, keys) = (facts.name(object), held()?, names_of(facts, keys));
+                Some(format!("{name} does not take {held}: it only takes {keys}"))
+            }
+            Test::LetsHeldPass => {
+                let era = portal::era_word(facts.state.portals.get(&object)?.way().era);
+                Some(format!("{} does not go through the portal to the {era}", held()?))
+            }
+            _ => None,
+        }
+    }
+
+    /// What is written on a thing that these changes read.
+    fn read(&self, object: ObjectId, changes: &[&Change]) -> Option<String> {
+        let text = &self.facts.object(object).text;
+        let is_read = changes.iter().any(|change| matches!(change, Change::Read(_))) && !text.is_empty();
+        is_read.then(|| format!("{} says: {text}", self.facts.name(object)))
     }
 
     /// Words of the table, with the names of those that they mean.
     fn told(&self, words: &str, object: ObjectId) -> String {
-        let observer = Observer { facts: self.facts, body: Some(self.body) };
-        let scope = Scope::of(object);
-        Term::ALL.into_iter().fold(words.to_owned(), |words, term| {
+        let (observer, scope) = (self.observer(), Scope::of(object));
+        let fluid = self.held().map_or("", |held| self.facts.object(held).fluid.name());
+        let words = words.replace("{fluid}", &fluid.to_lowercase());
+        Term::ALL.into_iter().fold(words, |words, term| {
             let mark = format!("{{{}}}", term.name());
             match scope.get(&observer, term).filter(|_| words.contains(&mark)) {
                 Some(id) => words.replace(&mark, &self.facts.name(id)),
@@ -156,12 +202,6 @@ impl<'a> Scene<'a> {
     /// What the body holds.
     fn held(&self) -> Option<ObjectId> {
         self.facts.state.bodies[self.body.0 as usize].held
-    }
-
-    /// What the body holds, or the refusal for an empty hand.
-    fn held_or_refuse(&self) -> Result<ObjectId, Ruling> {
-        let empty = "my hand is empty: I have to pick something up first";
-        self.held().map_or_else(|| refuse(Status::ObjectNotPickedUp, empty), Ok)
     }
 
     /// Refuses what is out of reach, behind a wall, shut away, or deadly to touch.
@@ -222,13 +262,5 @@ impl<'a> Scene<'a> {
                 refuse(Status::TargetInaccessible, detail)
             }
         }
-    }
-
-    /// Refuses what does not afford something.
-    fn needs(&self, object: ObjectId, property: cohabit_cdf::Property, what: &str) -> Result<(), Ruling> {
-        if self.facts.has(object, property) {
-            return Ok(());
-        }
-        refuse(Status::UnsupportedAction, format!("{} cannot be {what}", self.facts.name(object)))
     }
 }

@@ -5,7 +5,7 @@ use cohabit_cdf::{
     catalog::table::{Range, View},
 };
 
-use super::{Scene, doors_of_buttons, hand, is_doorway_clear, works};
+use super::{Scene, doors_of_buttons, is_doorway_clear, places, works};
 use crate::{anchors::free_anchors, facts::Facts, works as machines, works::portal};
 
 /// The facts as one body finds them, or as nobody does.
@@ -92,11 +92,11 @@ impl View for Observer<'_> {
     }
 
     fn has_room(&self, id: ObjectId) -> bool {
-        !hand::open_anchors(self.facts, id).is_empty()
+        !places::open_anchors(self.facts, id).is_empty()
     }
 
     fn has_room_for(&self, id: ObjectId, thing: ObjectId) -> bool {
-        self.body.is_some_and(|body| hand::best_anchor(&Scene { facts: self.facts, body }, id, thing).is_some())
+        self.body.is_some_and(|body| places::best_anchor(self.facts, body, id, thing).is_some())
     }
 
     fn has_free_place(&self, id: ObjectId) -> bool {
@@ -117,8 +117,8 @@ impl View for Observer<'_> {
     }
 
     fn lets_pass(&self, gate: ObjectId, thing: ObjectId) -> bool {
-        let Some(gate) = self.facts.state.portals.get(&gate) else { return false };
-        self.facts.state.passes.get(&thing).is_none_or(|names| names.contains(&gate.way().name))
+        let gate = self.facts.state.portals.get(&gate);
+        gate.is_some_and(|gate| portal::lets_pass(self.facts, gate, thing))
     }
 
     fn is_clear(&self, id: ObjectId) -> bool {

@@ -6,7 +6,7 @@
 //! carrot was made of. From the future it comes as it will be: dried up, dusty, and as warm as the room. Behind the
 //! past lives a dinosaur: food does not come back from there untouched.
 
-use cohabit_cdf::{ObjectId, Property, StateFlag, Status, mission::DinoFood, mission::Era};
+use cohabit_cdf::{ObjectId, Property, StateFlag, mission::DinoFood, mission::Era};
 use glam::{Vec2, Vec3};
 
 use super::lab;
@@ -28,23 +28,15 @@ pub(crate) fn open_gate<'a>(facts: &Facts<'a>, generator: ObjectId) -> Option<&'
     open.then_some(gate)
 }
 
-/// What happens to an object that goes through a generator.
-///
-/// # Errors
-/// Why it does not go through, with the status of that.
-pub(crate) fn pass(facts: &Facts<'_>, generator: ObjectId, object: ObjectId) -> Result<Vec<Effect>, (Status, String)> {
-    if lacks_power(facts, generator) {
-        return Err((Status::ObjectUnpowered, "the portal has no power".to_owned()));
-    }
-    let Some(gate) = open_gate(facts, generator) else {
-        let detail = "the portal is closed: the black computer opens it".to_owned();
-        return Err((Status::ReceptacleIsClosed, detail));
-    };
+/// Whether an object may go where a generator leads.
+pub(crate) fn lets_pass(facts: &Facts<'_>, gate: &Gate, object: ObjectId) -> bool {
+    facts.state.passes.get(&object).is_none_or(|names| names.contains(&gate.way().name))
+}
+
+/// What happens to an object that goes through a generator; nothing, if that does not let it pass.
+pub(crate) fn pass(facts: &Facts<'_>, generator: ObjectId, object: ObjectId) -> Option<Vec<Effect>> {
+    let gate = open_gate(facts, generator).filter(|gate| lets_pass(facts, gate, object))?;
     let way = gate.way();
-    if facts.state.passes.get(&object).is_some_and(|names| !names.contains(&way.name)) {
-        let detail = format!("{} does not go through the portal to the {}", facts.name(object), era_word(way.era));
-        return Err((Status::UnsupportedAction, detail));
-    }
     let spot = Spot::Floor(foot(facts, generator));
     let mut effects = vec![Effect::sound(SoundKind::Machine, generator)];
     effects.push(Effect::Put { object, spot });
@@ -53,7 +45,7 @@ pub(crate) fn pass(facts: &Facts<'_>, generator: ObjectId, object: ObjectId) -> 
         Era::Past => effects.extend(to_the_past(facts, object, spot)),
         Era::Future => effects.extend(to_the_future(facts, object)),
     }
-    Ok(effects)
+    Some(effects)
 }
 
 /// What people call where it leads.

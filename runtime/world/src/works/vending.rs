@@ -4,14 +4,13 @@
 
 use std::ops::Range;
 
-use cohabit_cdf::{ObjectId, StateFlag};
+use cohabit_cdf::ObjectId;
 
 use crate::{
-    anchors::{Anchor, anchors, free_anchors},
+    anchors::{anchors, free_anchors},
     effect::{Effect, Spot},
     entity::Support,
     facts::Facts,
-    report::SoundKind,
 };
 
 /// The anchors of a machine that are slots; none for what does not vend.
@@ -49,19 +48,10 @@ pub(crate) fn vended(facts: &Facts<'_>, machine: ObjectId, slot: u16) -> Option<
     })
 }
 
-/// The free place in the tray.
-pub(crate) fn tray_anchor(facts: &Facts<'_>, machine: ObjectId) -> Option<Anchor> {
-    free_anchors(facts, machine).into_iter().find(|anchor| !is_slot(facts, machine, anchor.index))
-}
-
-/// What is in the slot falls into the tray.
-pub(super) fn vend(facts: &Facts<'_>, button: ObjectId, machine: ObjectId, slot: u16) -> Vec<Effect> {
-    let (Some(object), Some(tray)) = (vended(facts, machine, slot), tray_anchor(facts, machine)) else {
-        return Vec::new();
-    };
-    vec![
-        Effect::Put { object, spot: Spot::Anchor { parent: machine, anchor: tray.index } },
-        Effect::Set(machine, StateFlag::Used, true),
-        Effect::sound(SoundKind::Machine, button),
-    ]
+/// What is in the slot falls into the tray, if that has room.
+pub(crate) fn vend(facts: &Facts<'_>, machine: ObjectId, slot: u16) -> Option<Effect> {
+    let object = vended(facts, machine, slot)?;
+    let free = free_anchors(facts, machine).into_iter();
+    let tray = free.map(|anchor| anchor.index).find(|anchor| !is_slot(facts, machine, *anchor))?;
+    Some(Effect::Put { object, spot: Spot::Anchor { parent: machine, anchor: tray } })
 }

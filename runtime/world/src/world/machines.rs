@@ -8,10 +8,9 @@ use crate::{
     kinematics::DT_S,
     power,
     report::{Event, SoundKind},
-    rules::Observer,
+    rules::effects_of_work,
     run::ticks,
     state::ids,
-    works,
 };
 
 /// Doors, lids and drawers take 0.8 s; machines as long to come up to speed.
@@ -51,8 +50,7 @@ impl World {
                 || !facts.is(id, StateFlag::Toggled);
             let [effect, end] = ticks(self.catalog.table().device(&facts.class(id).id));
             if !dead && tick == run.since + effect {
-                let nobody = Observer { facts: &facts, body: None };
-                let effects = works::effects(&facts, &nobody, id, run.work, run.site);
+                let effects = effects_of_work(&facts, id, run.work, run.site);
                 self.changes(events).apply(effects);
             }
             if dead || tick >= run.since + end {

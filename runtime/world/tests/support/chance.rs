@@ -99,7 +99,7 @@ fn is_of_use(catalog: &Catalog, class: &ObjectClass) -> bool {
 }
 
 /// A thing in states that its class may be in.
-fn request(class: &ObjectClass, number: usize, chance: &mut Chance) -> ObjectRequest {
+pub fn request(class: &ObjectClass, number: usize, chance: &mut Chance) -> ObjectRequest {
     const STATES: [(Property, StateFlag, usize); 13] = [
         (Property::Breakable, StateFlag::Broken, 5),
         (Property::Dirtyable, StateFlag::Dirty, 2),
