@@ -72,7 +72,7 @@ impl Said {
     /// Its words, if it has any; of what was said aloud the likeliest.
     pub(super) fn words(&self) -> Option<&str> {
         match self {
-            Self::Text { text, .. } => Some(text),
+            Self::Text { text, .. } => Some(text.as_str()),
             Self::Aloud { spoken, .. } | Self::Shown(spoken) => spoken.first(),
             Self::Choice { .. } => None,
         }
