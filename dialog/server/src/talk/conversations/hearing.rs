@@ -93,7 +93,12 @@ impl Conversations {
                 utterance.tell(FromEar::Shown(None));
                 Ok(())
             }
-            said => said.words().map_or(Ok(()), |words| self.hear_in_vain(words, utterance)),
+            said => {
+                if matches!(said, Said::Aloud { spoken, .. } if spoken.settled.is_none()) {
+                    utterance.tell(FromEar::Page(page::hearing("said")));
+                }
+                said.words().map_or(Ok(()), |words| self.hear_in_vain(words, utterance))
+            }
         };
         if let Err(error) = left {
             tracing::error!("{error}");
