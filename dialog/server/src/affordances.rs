@@ -180,7 +180,7 @@ fn with_empty_hand(seen: &Seen<'_>, object: ObjectId) -> Vec<Affordance> {
 
 /// What can be done to a thing with what is held.
 fn with(seen: &Seen<'_>, held: &ObjectRecord, object: ObjectId) -> Vec<Affordance> {
-    let name = crate::page::name(held, seen.catalog).to_lowercase();
+    let name = seen.class(ObjectId(held.object)).name.to_lowercase();
     let mut all = Vec::new();
     match seen.rule(Deed::Break, object) {
         Some("cut") => all.push(Affordance::new(Deed::Break, "Cut")),

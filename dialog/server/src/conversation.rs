@@ -5,14 +5,12 @@
 mod face;
 mod hearing;
 mod held;
-mod reaction;
+mod interception;
+mod outbox;
 
 use std::collections::{BTreeMap, VecDeque};
 
-use cohabit_bus::{
-    Text,
-    message::{DialogHeader, DialogKind, DialogMessage, PlanStep},
-};
+use cohabit_bus::message::{DialogHeader, DialogKind, DialogMessage};
 use cohabit_cdf::{Action, GoToTarget, ObjectId, Status};
 use cohabit_language::{Clarification, Consulting, Context, Language, Step, Understanding, within_half_turn};
 use serde::{Deserialize, Serialize};
@@ -20,13 +18,14 @@ use serde::{Deserialize, Serialize};
 use crate::{
     expression::FacialExpression,
     known::Knowledge,
-    page::{self, Answer, Line, LineKind, Speaker},
+    page::{Answer, Line, LineKind, Speaker},
     wizard::Holding,
 };
-pub(crate) use hearing::Aloud;
+pub(crate) use hearing::{Aloud, Thought};
 use hearing::{Puzzle, Words};
 use held::Held;
-pub use reaction::{Reaction, TurnEnd};
+pub(crate) use outbox::line_message;
+pub use outbox::{Outgoing, TurnEnd};
 
 /// A conversation with the robot of one body.
 pub struct Conversation {
@@ -129,7 +128,7 @@ impl Conversation {
         Self { language, body, memory: Memory::default(), consulting: Consulting::Never, holding: Holding::default() }
     }
 
-    /// The same, with an interpreter that is asked at these times: [`Reaction::Interpret`] asks it.
+    /// The same, with an interpreter that is asked at these times: [`Outgoing::Interpret`] asks it.
     pub(crate) fn consulting(self, consulting: Consulting) -> Self {
         Self { consulting, ..self }
     }
@@ -164,21 +163,6 @@ impl Conversation {
         &self.memory
     }
 
-    /// What the bus is told of a line of chat: nothing of what the game says, or a mind of its own accord.
-    pub fn message(&self, line: &Line) -> Option<DialogMessage> {
-        let kind = match (line.from, line.kind) {
-            (Speaker::Person, _) => DialogKind::Utterance,
-            (Speaker::Robot, _) if line.turn == 0 => return None,
-            (Speaker::Robot, LineKind::Question) => DialogKind::Question,
-            (Speaker::Robot, _) => DialogKind::Reply,
-            (Speaker::Game, _) => return None,
-        };
-        let mut message = DialogMessage::new(kind, self.body, line.turn, &line.text);
-        message.header.person = line.visitor.unwrap_or(0);
-        message.steps = line.answers.iter().map(Answer::offer).collect();
-        Some(message)
-    }
-
     /// What the robot did, if this tells of a step that succeeded: to be noted before the conversation follows it.
     pub fn deed(&self, header: &DialogHeader) -> Option<Action> {
         let is_done = header.kind() == Some(DialogKind::StepEnded) && header.status().is_some_and(Status::is_success);
@@ -189,7 +173,7 @@ impl Conversation {
     /// The newest plan, if its end was not told yet, once more.
     pub fn plan_under_way(&self) -> Option<DialogMessage> {
         let (turn, plan) = self.memory.plans.last_key_value()?;
-        Some(self.plan_message(*turn, &plan.steps))
+        Some(outbox::plan_message(*turn, &plan.steps, self.body))
     }
 
     /// Whether what was said so far is a whole sentence.
@@ -220,15 +204,15 @@ impl Conversation {
         number: u64,
         understanding: Understanding,
         knowledge: &Knowledge,
-        reactions: &mut Vec<Reaction>,
+        outbox: &mut Vec<Outgoing>,
     ) {
         self.memory.asked = None;
-        self.express(turn, face::shown_with(&understanding), reactions);
+        self.express(turn, face::shown_with(&understanding), outbox);
         match understanding {
             Understanding::Plan { steps, reply } => {
-                self.say(turn, DialogKind::Reply, LineKind::Say, &reply, reactions);
+                self.say(turn, LineKind::Say, &reply, outbox);
                 let (steps, missing) = to_where_it_was(steps, knowledge);
-                self.plan(number, Plan { missing, ..Plan::new(turn, steps) }, reactions);
+                self.plan(number, Plan { missing, ..Plan::new(turn, steps) }, outbox);
             }
             Understanding::Question { kind, text, candidates, options, .. } => {
                 let asked = Asked { kind, candidates: candidates.clone() };
@@ -236,19 +220,18 @@ impl Conversation {
                 let mut line = Line::new(Speaker::Robot, LineKind::Question, turn, text);
                 line.answers = asked.answers(options);
                 self.memory.asked = Some(asked);
-                reactions.extend(self.message(&line).map(|message| Reaction::Bus(Box::new(message))));
-                reactions.push(Reaction::Chat(line));
-                self.point_out(turn, number, &candidates, knowledge, TurnEnd::Asked, reactions);
+                outbox.push(Outgoing::Ask(line));
+                self.point_out(turn, number, &candidates, knowledge, TurnEnd::Asked, outbox);
             }
             Understanding::Answer { text, highlight, .. } => {
-                self.say(turn, DialogKind::Reply, LineKind::Say, &text, reactions);
-                self.point_out(turn, number, &highlight, knowledge, TurnEnd::Answered, reactions);
+                self.say(turn, LineKind::Say, &text, outbox);
+                self.point_out(turn, number, &highlight, knowledge, TurnEnd::Answered, outbox);
             }
             Understanding::Refusal { text, .. } => {
-                self.say(turn, DialogKind::Reply, LineKind::Problem, &text, reactions);
-                reactions.push(Reaction::TurnEnded { turn, end: TurnEnd::Refused });
+                self.say(turn, LineKind::Problem, &text, outbox);
+                outbox.push(Outgoing::TurnEnded { turn, end: TurnEnd::Refused });
             }
-            Understanding::Stop { reply, then } => self.stop(turn, number, reply, then, knowledge, reactions),
+            Understanding::Stop { reply, then } => self.stop(turn, number, reply, then, knowledge, outbox),
         }
     }
 
@@ -260,57 +243,57 @@ impl Conversation {
         reply: String,
         then: Option<Box<Understanding>>,
         knowledge: &Knowledge,
-        reactions: &mut Vec<Reaction>,
+        outbox: &mut Vec<Outgoing>,
     ) {
         let stop = Step { action: Action::Stop, says: String::new() };
         match then.map(|then| *then) {
             Some(Understanding::Plan { mut steps, reply: does }) => {
                 steps.insert(0, stop);
                 let reply = format!("{reply} {does}");
-                self.react(turn, number, Understanding::Plan { steps, reply }, knowledge, reactions);
+                self.react(turn, number, Understanding::Plan { steps, reply }, knowledge, outbox);
             }
             Some(then) => {
-                self.say(turn, DialogKind::Reply, LineKind::Say, &reply, reactions);
+                self.say(turn, LineKind::Say, &reply, outbox);
                 // The turn ends with what is said next, so nobody waits for the end of this plan.
-                reactions.push(Reaction::Bus(Box::new(self.plan_message(number, &[stop]))));
+                outbox.push(Outgoing::Plan { number, steps: vec![stop] });
                 self.memory.turns = self.memory.turns.max(number) + 1;
-                self.react(turn, self.memory.turns, then, knowledge, reactions);
+                self.react(turn, self.memory.turns, then, knowledge, outbox);
             }
             None => {
-                self.say(turn, DialogKind::Reply, LineKind::Say, &reply, reactions);
-                self.plan(number, Plan::new(turn, vec![stop]), reactions);
+                self.say(turn, LineKind::Say, &reply, outbox);
+                self.plan(number, Plan::new(turn, vec![stop]), outbox);
             }
         }
     }
 
     /// The agent told something about a plan.
-    pub fn follow(&mut self, header: &DialogHeader, knowledge: &mut Knowledge) -> Vec<Reaction> {
+    pub fn follow(&mut self, header: &DialogHeader, knowledge: &mut Knowledge) -> Vec<Outgoing> {
         let is_silent = self.is_silent(header.turn);
-        let mut reactions = self.follow_plan(header, knowledge);
+        let mut outbox = self.follow_plan(header, knowledge);
         if is_silent {
-            reactions = self.unsaid(header.turn, reactions);
+            outbox = self.unsaid(header.turn, outbox);
         }
         if matches!(header.kind(), Some(DialogKind::StepEnded | DialogKind::PlanEnded)) {
-            self.propose_again(knowledge, &mut reactions);
+            self.propose_again(knowledge, &mut outbox);
         }
-        reactions
+        outbox
     }
 
-    fn follow_plan(&mut self, header: &DialogHeader, knowledge: &mut Knowledge) -> Vec<Reaction> {
-        let mut reactions = Vec::new();
+    fn follow_plan(&mut self, header: &DialogHeader, knowledge: &mut Knowledge) -> Vec<Outgoing> {
+        let mut outbox = Vec::new();
         let number = header.turn;
-        let (Some(kind), Some(plan)) = (header.kind(), self.memory.plans.get_mut(&number)) else { return reactions };
+        let (Some(kind), Some(plan)) = (header.kind(), self.memory.plans.get_mut(&number)) else { return outbox };
         let turn = plan.turn;
         let count = plan.steps.len();
         let step = plan.steps.get(header.step as usize).cloned();
         match kind {
             DialogKind::StepStarted => {
                 if let Some(step) = step.filter(|step| !step.says.is_empty()) {
-                    reactions.push(Reaction::Page(page::progress(self.body, turn, header.step, count, &step.says)));
+                    outbox.push(Outgoing::Progress { turn, step: header.step, steps: count, says: step.says });
                 }
             }
             DialogKind::StepEnded => {
-                let (Some(step), Some(status)) = (step, header.status()) else { return reactions };
+                let (Some(step), Some(status)) = (step, header.status()) else { return outbox };
                 self.memory.context.note_outcome(&step, status);
                 let whole = status.is_success() && header.step as usize + 1 == count;
                 let failed = status.is_failure();
@@ -322,7 +305,7 @@ impl Conversation {
                     if let Some(known) = knowledge.known() {
                         let text = self.language.report(&step, status, header.text.as_str(), &known);
                         let line = if failed { LineKind::Problem } else { LineKind::Say };
-                        self.say(turn, DialogKind::Reply, line, &text, &mut reactions);
+                        self.say(turn, line, &text, &mut outbox);
                     }
                 }
             }
@@ -330,14 +313,14 @@ impl Conversation {
                 let (told, missing, is_silent) = (plan.told_end, plan.missing, plan.is_silent);
                 self.memory.plans.remove(&number);
                 let status = header.status().unwrap_or(Status::ActionExecutionError);
-                if status.is_success() && missing.is_some_and(|id| self.miss(turn, id, knowledge, &mut reactions)) {
-                    return reactions;
+                if status.is_success() && missing.is_some_and(|id| self.miss(turn, id, knowledge, &mut outbox)) {
+                    return outbox;
                 }
-                if goes_on(status) && self.carry_on(turn, knowledge, &mut reactions) {
-                    return reactions;
+                if goes_on(status) && self.carry_on(turn, knowledge, &mut outbox) {
+                    return outbox;
                 }
                 if !told && status.is_failure() {
-                    self.say(turn, DialogKind::Reply, LineKind::Problem, "That did not work.", &mut reactions);
+                    self.say(turn, LineKind::Problem, "That did not work.", &mut outbox);
                 }
                 let end = match status {
                     Status::Interrupted => TurnEnd::Interrupted,
@@ -345,24 +328,24 @@ impl Conversation {
                     _ => TurnEnd::Failed,
                 };
                 if end == TurnEnd::Failed && !is_silent {
-                    self.express(turn, FacialExpression::Sorry, &mut reactions);
+                    self.express(turn, FacialExpression::Sorry, &mut outbox);
                 }
-                reactions.push(Reaction::TurnEnded { turn, end });
+                outbox.push(Outgoing::TurnEnded { turn, end });
             }
             _ => {}
         }
-        reactions
+        outbox
     }
 
     /// Goes on with a search after one of its plans; tells whether there was more to do.
-    fn carry_on(&mut self, turn: u64, knowledge: &Knowledge, reactions: &mut Vec<Reaction>) -> bool {
+    fn carry_on(&mut self, turn: u64, knowledge: &Knowledge, outbox: &mut Vec<Outgoing>) -> bool {
         if !self.memory.context.awaits_more() {
             return false;
         }
         let Some(known) = knowledge.known() else { return false };
         let Some(understanding) = self.language.carry_on(&known, &mut self.memory.context) else { return false };
         self.memory.turns += 1;
-        self.react(turn, self.memory.turns, understanding, knowledge, reactions);
+        self.react(turn, self.memory.turns, understanding, knowledge, outbox);
         true
     }
 
@@ -373,40 +356,33 @@ impl Conversation {
     }
 
     /// Goes on with what was put off, once its time has come, s, or what it waits for is so.
-    pub fn wake(&mut self, now_s: f64, knowledge: &Knowledge) -> Vec<Reaction> {
-        let mut reactions = Vec::new();
-        let Some(known) = knowledge.known().filter(|_| self.awaits()) else { return reactions };
+    pub fn wake(&mut self, now_s: f64, knowledge: &Knowledge) -> Vec<Outgoing> {
+        let mut outbox = Vec::new();
+        let Some(known) = knowledge.known().filter(|_| self.awaits()) else { return outbox };
         if let Some(understanding) = self.language.wake(now_s, &known, &mut self.memory.context) {
             let turn = self.memory.turns;
             self.memory.turns += 1;
-            self.react(turn, self.memory.turns, understanding, knowledge, &mut reactions);
-            self.propose_again(knowledge, &mut reactions);
+            self.react(turn, self.memory.turns, understanding, knowledge, &mut outbox);
+            self.propose_again(knowledge, &mut outbox);
         }
-        reactions
+        outbox
     }
 
     /// Says that a thing is not where it was, and forgets that it is there; asks whether to look for it.
-    fn miss(&mut self, turn: u64, id: ObjectId, knowledge: &mut Knowledge, reactions: &mut Vec<Reaction>) -> bool {
+    fn miss(&mut self, turn: u64, id: ObjectId, knowledge: &mut Knowledge, outbox: &mut Vec<Outgoing>) -> bool {
         let Some(known) = knowledge.known() else { return false };
         let question = self.language.report_missing(id, &known, &mut self.memory.context);
         knowledge.forget(id);
-        self.react(turn, turn, question, knowledge, reactions);
+        self.react(turn, turn, question, knowledge, outbox);
         true
     }
 
-    fn plan(&mut self, number: u64, plan: Plan, reactions: &mut Vec<Reaction>) {
-        reactions.push(Reaction::Bus(Box::new(self.plan_message(number, &plan.steps))));
+    fn plan(&mut self, number: u64, plan: Plan, outbox: &mut Vec<Outgoing>) {
+        outbox.push(Outgoing::Plan { number, steps: plan.steps.clone() });
         self.memory.plans.insert(number, plan);
         while self.memory.plans.len() > MOST_PLANS {
             self.memory.plans.pop_first();
         }
-    }
-
-    fn plan_message(&self, turn: u64, steps: &[Step]) -> DialogMessage {
-        let mut message = DialogMessage::new(DialogKind::Plan, self.body, turn, "");
-        message.steps =
-            steps.iter().map(|step| PlanStep { action: step.action.into(), says: Text::new(&step.says) }).collect();
-        message
     }
 
     /// Has objects outlined, one after the other, without anything being said about it; the robot turns to those behind it
@@ -418,11 +394,11 @@ impl Conversation {
         objects: &[ObjectId],
         knowledge: &Knowledge,
         end: TurnEnd,
-        reactions: &mut Vec<Reaction>,
+        outbox: &mut Vec<Outgoing>,
     ) {
         let shown = &objects[..objects.len().min(MOST_SHOWN)];
         if shown.is_empty() {
-            reactions.push(Reaction::TurnEnded { turn, end });
+            outbox.push(Outgoing::TurnEnded { turn, end });
             return;
         }
         let known = knowledge.known();
@@ -443,19 +419,14 @@ impl Conversation {
         if back_rad.abs() > f32::EPSILON {
             steps.push(silently(Action::Rotate { yaw_rad: back_rad }));
         }
-        self.plan(number, Plan::new(turn, steps), reactions);
+        self.plan(number, Plan::new(turn, steps), outbox);
     }
 
-    fn say(&mut self, turn: u64, kind: DialogKind, line: LineKind, text: &str, reactions: &mut Vec<Reaction>) {
+    fn say(&mut self, turn: u64, kind: LineKind, text: &str, outbox: &mut Vec<Outgoing>) {
         if !text.is_empty() {
             self.note_line(true, text);
-            reactions.push(self.bus(kind, turn, text));
-            reactions.push(Reaction::Chat(Line::new(Speaker::Robot, line, turn, text)));
+            outbox.push(Outgoing::Say(Line::new(Speaker::Robot, kind, turn, text)));
         }
-    }
-
-    fn bus(&self, kind: DialogKind, turn: u64, text: &str) -> Reaction {
-        Reaction::Bus(Box::new(DialogMessage::new(kind, self.body, turn, text)))
     }
 }
 

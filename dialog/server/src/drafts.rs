@@ -1,5 +1,5 @@
-//! What is said, or is about to be, understood ahead of its turn. The language model takes some tenths of a second for some utterances, and what it
-//! made of one is kept: nobody waits for a lock while it thinks, and who pauses before sending what was typed is answered sooner.
+//! What visitors may say next, as far as they have typed or spoken it. The language model takes some tenths of a second for some utterances, and what it
+//! made of one is kept: who pauses before sending what was typed is answered sooner.
 
 use std::{
     collections::BTreeMap,
@@ -8,8 +8,6 @@ use std::{
     time::Duration,
 };
 
-use cohabit_language::{Context, Known, Language};
-
 use crate::robots::Visitor;
 
 /// The most drafts that wait; what comes then is left out.
@@ -17,21 +15,6 @@ const MOST_WAITING: usize = 16;
 
 /// How often it is seen whether more is to be waited for.
 const LOOKS_EVERY: Duration = Duration::from_millis(100);
-
-/// An utterance as a robot would understand it now.
-pub struct Thought {
-    pub language: Language,
-    pub known: Known,
-    pub context: Context,
-    pub text: String,
-}
-
-impl Thought {
-    /// Has the language model make of it what it will be asked for again in the utterance's turn.
-    pub fn think(mut self) {
-        let _ = self.language.understand(&self.text, &self.known, &mut self.context);
-    }
-}
 
 /// What a visitor may say next. It is told to nobody, and not written down.
 pub struct Draft {

@@ -3,10 +3,7 @@
 
 use std::{
     env,
-    sync::{
-        Weak,
-        mpsc::{Receiver, SyncSender, sync_channel},
-    },
+    sync::mpsc::{Receiver, SyncSender, sync_channel},
     time::{Duration, Instant},
 };
 
@@ -14,8 +11,6 @@ use cohabit_cdf::BodyId;
 use cohabit_language::{Interpreted, Interpreter, Meant, Unclear};
 use serde::Deserialize;
 use serde_json::{Value, json};
-
-use crate::talk::Talk;
 
 /// How long an answer is waited for.
 const PATIENCE: Duration = Duration::from_secs(15);
@@ -38,6 +33,18 @@ pub struct Asked {
     pub unclear: Unclear,
 }
 
+/// What an interpreter made of it.
+pub struct Interpretation {
+    /// For the robot of this body.
+    pub body: BodyId,
+    /// Of what was said in this turn.
+    pub turn: u64,
+    /// What it takes for meant, if it knows.
+    pub meant: Option<Meant>,
+    /// How it came to that, for the log.
+    pub note: String,
+}
+
 /// Where an interpreter is asked.
 pub struct Puzzles(SyncSender<Asked>);
 
@@ -54,8 +61,8 @@ pub fn puzzles() -> (Puzzles, Receiver<Asked>) {
     (Puzzles(sender), receiver)
 }
 
-/// Answers what is asked, as long as there is a conversation.
-pub fn answer(interpreter: &dyn Interpreter, asked: &Receiver<Asked>, talk: &Weak<Talk>) {
+/// Answers what is asked, as long as anybody asks and is told.
+pub fn answer(interpreter: &dyn Interpreter, asked: &Receiver<Asked>, is_told: impl Fn(Interpretation) -> bool) {
     while let Ok(Asked { body, turn, unclear }) = asked.recv() {
         let begun = Instant::now();
         let Interpreted { meant, note } = interpreter.interpret(&unclear).unwrap_or_else(|error| {
@@ -63,9 +70,7 @@ pub fn answer(interpreter: &dyn Interpreter, asked: &Receiver<Asked>, talk: &Wea
             Interpreted { meant: None, note: error }
         });
         let note = format!("{} ms: {note}", begun.elapsed().as_millis());
-        let Some(talk) = talk.upgrade() else { return };
-        if let Err(error) = talk.note_interpretation(body, turn, meant.as_ref(), &note) {
-            tracing::error!("{error}");
+        if !is_told(Interpretation { body, turn, meant, note }) {
             return;
         }
     }

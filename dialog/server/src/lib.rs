@@ -4,7 +4,6 @@
 //! and recorded, by all. It never knows the world's insides.
 
 mod affordances;
-mod alarm;
 mod connections;
 mod conversation;
 mod drafts;
@@ -24,6 +23,7 @@ mod page;
 mod presence;
 mod questionnaire;
 mod recorded;
+mod replay;
 mod robots;
 mod same_user;
 mod screening;
@@ -42,6 +42,7 @@ mod visit;
 mod voice;
 mod web;
 mod wizard;
+mod world_state;
 
 use std::{
     collections::BTreeMap,
@@ -61,7 +62,7 @@ use serde_json::{Value, json};
 
 pub use cohabit_language::{Asking, Consulting, Effort, Interpreter, Knows, Language};
 pub use cohabit_speech::VoiceSettings;
-pub use conversation::{Asked, Conversation, Reaction, TurnEnd};
+pub use conversation::{Asked, Conversation, Outgoing, TurnEnd};
 pub use driving::{Drivable, NotDrivable};
 pub use expression::FacialExpression;
 pub use hidden::{Hidden, NotHidden};
@@ -73,7 +74,7 @@ pub use limits::ServerLimits;
 pub use questionnaire::{
     Form, Given, Item, NotAnswered, Questionnaire, QuestionnaireError, Scale, When, questionnaire_text,
 };
-pub use screening::{ScreeningConfig, screen};
+pub use replay::{ScreeningConfig, screen};
 pub use site::{Framing, Site, SiteFile, file, file_routes, media, site_of_files};
 pub use spoken::meaning;
 pub use texts::{PagePart, PageTexts, PageTextsError, TextProblem, languages};
@@ -85,12 +86,14 @@ use crate::{
     driving::Drivers,
     hub::Hub,
     journal::{Journal, Place},
-    robots::{BodyNames, RobotName, Robots},
+    page::RobotName,
+    robots::{BodyNames, Robots},
     survey::Survey,
-    talk::{Ears, Pages, Talk},
+    talk::{Conversations, Ears, Pages, Talk},
     view::View,
+    visit::Live,
     voice::Voice,
-    web::{Host, Live, Seat, Service},
+    web::{Host, Seat, Service},
 };
 
 /// Settings of a dialog service.
@@ -195,7 +198,7 @@ pub fn serve(
     stop: &AtomicBool,
     ready: impl FnOnce(&Addresses),
 ) -> Result<(), DialogError> {
-    let bodies = talk::wait_for_world(&*bus, &|| stop.load(Ordering::Relaxed))?;
+    let bodies = world_state::wait_for_world(&*bus, &|| stop.load(Ordering::Relaxed))?;
     let told = BodyNames::new(&bodies, &config.names);
     let names = page::body_names(&bodies, &config.names);
     let drivers = Arc::new(Drivers::new(Arc::clone(&bus), config.drivable, &bodies, &names));
@@ -226,36 +229,38 @@ pub fn serve(
     let (tells, plays) = (Arc::clone(&hub), Arc::clone(&hub));
     let (tell, play) = (move |message: &Value| tells.tell(message), move |piece| plays.play(piece));
     let voice = Voice::new(Arc::clone(&bus), voice, tell, play);
+    let (mailbox, mail) = talk::mailbox();
     let (drafts, drafted) = drafts::drafts();
     let (its_hub, its_drivers, its_voice) = (Arc::clone(&hub), Arc::clone(&drivers), Arc::clone(&voice));
-    let pages = Pages { hub: its_hub, drivers: its_drivers, voice: its_voice, drafts, layout };
-    let talk = Talk::new(&*bus, catalog, robots, puzzles, pages, journal)?;
+    let pages = Pages { hub: its_hub, drivers: its_drivers, voice: its_voice, mailbox, drafts, layout };
+    let talk = Talk::new(&*bus, catalog, &robots, puzzles, pages, journal)?;
+    let (mut conversations, thoughts) = Conversations::begin(&*bus, Arc::clone(&talk), robots)?;
     let ears = Ears::new(&*bus)?;
     talk.serve_at(place.clone());
     let Place { address, token, wizard } = place;
     let seat = config.holding.wizard.as_ref().map(|_| Seat::new(&wizard, &config.holding));
     let ended = AtomicBool::new(false);
     let over = || stop.load(Ordering::Relaxed) || ended.load(Ordering::Relaxed);
-    talk.wait_until_it_sees(&*bus, &over)?;
-    talk.leave_puzzles()?;
+    conversations.wait_until_they_see(&*bus, &over)?;
+    conversations.leave_puzzles()?;
     if seat.is_some() {
         talk.offer_seat()?;
     }
-    thread::scope(|scope| {
+    let served = thread::scope(|scope| {
         if let (Some(interpreter), Some(asked)) = (config.interpreter, asked) {
             // It may take long to answer; nobody waits for it at the end.
             let talk = Arc::downgrade(&talk);
-            thread::spawn(move || interpreter::answer(&*interpreter, &asked, &talk));
+            let is_told = move |answer| talk.upgrade().is_some_and(|talk| talk.note_interpretation(answer));
+            thread::spawn(move || interpreter::answer(&*interpreter, &asked, is_told));
         }
         let mut workers = vec![
             scope.spawn(|| until_ended(&ended, || talk::listen(ears, &talk, &over))),
             scope.spawn(|| until_ended(&ended, || talk::show_state(&talk, &survey, STATE_EVERY, &over))),
             scope.spawn(|| until_ended(&ended, || voice.pass_on(&over))),
             scope.spawn(|| until_ended(&ended, || talk.read_ahead(drafted, &over))),
+            scope.spawn(|| until_ended(&ended, || talk.think(thoughts, &over))),
+            scope.spawn(|| until_ended(&ended, || conversations.run(mail, &over))),
         ];
-        if config.holding.holds() {
-            workers.push(scope.spawn(|| until_ended(&ended, || talk.keep_time(&over))));
-        }
         for view in (0..=u8::MAX).zip(&hub.views) {
             let (bus, talk, over, ended) = (&*bus, &talk, &over, &ended);
             let shown = move |shown| talk.note_frame(shown);
@@ -279,12 +284,12 @@ pub fn serve(
         let ending = Ending(&ended);
         let served = web::serve(listener, service, &over).map_err(DialogError::Serve);
         drop(ending);
-        let ended = workers
+        workers
             .into_iter()
             .map(|worker| worker.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
-            .fold(served, Result::and);
-        ended.and_then(|()| talk.close())
-    })
+            .fold(served, Result::and)
+    });
+    served.and_then(|()| conversations.close())
 }
 
 /// Listens where the service before this one did, as open pages know it; where there was none, at that address.

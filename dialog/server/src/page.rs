@@ -7,7 +7,7 @@ use cohabit_bus::{
     message::{BodyRecord, CameraRecord, NONE, ObjectRecord, PlanStep, Plane, StateView, Thing},
 };
 use cohabit_cdf::{
-    Action, BodyKind, Catalog, ClassId, Layout, Mission, ObjectId, RoomId, layout::OpeningKind, model::Axis,
+    Action, BodyId, BodyKind, Catalog, ClassId, Layout, Mission, ObjectId, RoomId, layout::OpeningKind, model::Axis,
 };
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -17,7 +17,6 @@ use crate::{
     driving::DrivableBody,
     expression::FacialExpression,
     latency::Moments,
-    robots::RobotName,
     text::{in_lines, in_one_line},
     wizard::{Click, Holding, LONGEST_SAYING, Proposal},
 };
@@ -132,6 +131,15 @@ impl Line {
 pub struct ViewName {
     /// Which.
     pub camera: CameraId,
+    /// What people call it.
+    pub name: String,
+}
+
+/// A robot that people speak to.
+#[derive(Clone, Debug, Eq, PartialEq)]
+pub struct RobotName {
+    /// Its body.
+    pub body: BodyId,
     /// What people call it.
     pub name: String,
 }

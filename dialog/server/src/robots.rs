@@ -10,9 +10,9 @@ use cohabit_cdf::{BodyId, BodyKind, Catalog, Layout, ObjectId};
 use cohabit_language::{Addressed, Consulting, Knows, Language, Lessons, Roster};
 
 use crate::{
-    conversation::{Conversation, Memory},
-    drafts::Thought,
+    conversation::{Conversation, Memory, Thought},
     known::Knowledge,
+    page::RobotName,
     wizard::Holding,
 };
 
@@ -20,15 +20,6 @@ use crate::{
 const SAME_TALK: Duration = Duration::from_secs(45);
 /// A robot is near who speaks if it is not further off, m.
 const NEAR_M: f32 = 6.0;
-
-/// A robot that people speak to.
-#[derive(Clone, Debug, Eq, PartialEq)]
-pub struct RobotName {
-    /// Its body.
-    pub body: BodyId,
-    /// What people call it.
-    pub name: String,
-}
 
 /// One of them.
 pub struct Robot {
@@ -174,6 +165,12 @@ impl Robots {
         self.asking().filter(is_answered).or_else(|| self.robots.iter().find(is_answered)).map(|robot| robot.body)
     }
 
+    /// What is asked of which the answers are numbered: these objects, in the order of their numbers.
+    pub fn numbered(&self) -> &[ObjectId] {
+        let asked = self.asking().and_then(|robot| robot.conversation.asked());
+        asked.map(|asked| asked.candidates.as_slice()).filter(|all| all.len() > 1).unwrap_or_default()
+    }
+
     /// Notes that one has spoken.
     pub fn note_speech(&mut self, body: BodyId) {
         let at = self.robots.iter().position(|robot| robot.body == body);
@@ -212,6 +209,12 @@ impl Robots {
             self.spoken.insert(visitor.number, (one, nanos));
         }
         (bodies, text)
+    }
+
+    /// Whom a visitor would speak to now.
+    pub fn would_hear(&self, text: &str, visitor: Visitor, state: Option<StateView<'_>>, nanos: u64) -> Vec<BodyId> {
+        let (robots, _) = self.would_be_addressed(text, visitor, state, nanos);
+        robots.into_iter().map(|at| self.robots[at].body).collect()
     }
 
     /// An utterance as those to whom a visitor would say it would understand it now.

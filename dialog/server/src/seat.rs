@@ -8,7 +8,10 @@ use cohabit_bus::message::Thing;
 use cohabit_cdf::BodyId;
 use serde::Deserialize;
 use serde_json::Value;
-use tokio::sync::broadcast;
+use tokio::sync::{
+    broadcast,
+    oneshot::{self, error::RecvError},
+};
 
 use crate::{
     feed::Feed,
@@ -16,7 +19,7 @@ use crate::{
     limits::{Limits, ServerLimits},
     page,
     presence::Presence,
-    talk::Talk,
+    talk::{Talk, UNREACHABLE},
     wizard::Decision,
 };
 
@@ -60,13 +63,18 @@ struct Visit {
     presence: Presence,
     /// When the page was told what can be done with what was clicked last.
     offered: Option<Instant>,
+    /// Where comes what came of a decision that was taken, and not answered yet.
+    deciding: Option<oneshot::Receiver<Decided>>,
 }
+
+/// What is wrong with a decision, if anything.
+type Decided = Result<(), String>;
 
 /// Serves a wizard's page until it goes; `seat` is what it is told of how a wizard takes part.
 pub async fn decide(hub: Arc<Hub>, talk: Arc<Talk>, seat: Arc<Value>, mut socket: WebSocket, server: ServerLimits) {
     let own = hub.for_wizards();
     let (first, messages) = hub.attend();
-    let held = talk.proposals();
+    let held = talk.proposals().await;
     let told = std::iter::once(seat.to_string()).chain(held.iter().map(Value::to_string));
     for message in first.into_iter().chain(told) {
         if socket.send(Message::text(message)).await.is_err() {
@@ -83,7 +91,7 @@ pub async fn decide(hub: Arc<Hub>, talk: Arc<Talk>, seat: Arc<Value>, mut socket
     };
     let feed = Feed::new(view);
     let (limits, presence) = (Limits::new(Instant::now()), Presence::new(server));
-    Visit { hub, talk, feed, limits, presence, offered: None }.run(socket, messages, own).await;
+    Visit { hub, talk, feed, limits, presence, offered: None, deciding: None }.run(socket, messages, own).await;
 }
 
 impl Visit {
@@ -94,12 +102,15 @@ impl Visit {
         mut own: broadcast::Receiver<Arc<str>>,
     ) {
         loop {
+            // A decision is answered before anything that follows from it is told, and before the next is taken.
+            let is_deciding = self.deciding.is_some();
             let answers = tokio::select! {
                 biased;
-                received = socket.recv() => {
+                decided = next_decided(&mut self.deciding) => self.answer_decision(decided),
+                received = socket.recv(), if !is_deciding => {
                     self.presence.note_word();
                     match received {
-                        Some(Ok(Message::Text(text))) => self.answer(&text).await,
+                        Some(Ok(Message::Text(text))) => self.answer(&text),
                         Some(Ok(Message::Close(_)) | Err(_)) | None => return,
                         Some(Ok(_)) => Vec::new(),
                     }
@@ -109,11 +120,11 @@ impl Visit {
                     None => return,
                 },
                 // A page that fell behind is closed: it connects again, and is told all anew.
-                message = own.recv() => match message {
+                message = own.recv(), if !is_deciding => match message {
                     Ok(message) => vec![Message::text(message.to_string())],
                     Err(_) => return,
                 },
-                message = messages.recv() => match message {
+                message = messages.recv(), if !is_deciding => match message {
                     Ok(message) => vec![Message::text(message.to_string())],
                     Err(_) => return,
                 },
@@ -135,13 +146,13 @@ impl Visit {
         self.feed.frame().into_iter().chain(self.feed.marks(&self.hub.marked())).collect()
     }
 
-    async fn answer(&mut self, text: &str) -> Vec<Message> {
-        let answers = self.take(text).await.unwrap_or_else(|problem| vec![page::error(&problem)]);
+    fn answer(&mut self, text: &str) -> Vec<Message> {
+        let answers = self.take(text).unwrap_or_else(|problem| vec![page::error(&problem)]);
         answers.iter().map(|answer| Message::text(answer.to_string())).collect()
     }
 
     /// Takes a message of the page; says what is wrong with it, if anything.
-    async fn take(&mut self, text: &str) -> Result<Vec<Value>, String> {
+    fn take(&mut self, text: &str) -> Result<Vec<Value>, String> {
         let now = Instant::now();
         if !self.limits.all.admits(now) || !self.limits.others.admits(now) {
             return Err("That was a lot at once; wait a moment, please.".to_owned());
@@ -170,7 +181,8 @@ impl Visit {
             }
             FromSeat::Decide { body, decision } => {
                 let decision = self.timed(decision, now);
-                Ok(vec![self.decide(body.map(BodyId), decision).await?])
+                self.deciding = Some(self.talk.decide(body.map(BodyId), decision)?);
+                Ok(Vec::new())
             }
         }
     }
@@ -186,16 +198,20 @@ impl Visit {
         }
     }
 
-    /// What is understood takes its time, so that is done where nothing waits for it.
-    async fn decide(&self, body: Option<BodyId>, decision: Decision) -> Result<Value, String> {
-        let talk = Arc::clone(&self.talk);
-        match tokio::task::spawn_blocking(move || talk.decide(body, decision)).await {
-            Ok(Ok(decided)) => Ok(page::decided(decided.err().as_deref())),
-            Ok(Err(error)) => {
-                tracing::error!("{error}");
-                Err("The robot cannot be reached.".to_owned())
-            }
-            Err(_) => Err("The robot did not answer.".to_owned()),
-        }
+    fn answer_decision(&mut self, decided: Result<Decided, RecvError>) -> Vec<Message> {
+        self.deciding = None;
+        let answer = match decided {
+            Ok(decided) => page::decided(decided.err().as_deref()),
+            Err(_) => page::error(UNREACHABLE),
+        };
+        vec![Message::text(answer.to_string())]
+    }
+}
+
+/// What came of the decision that was taken; pends where none was.
+async fn next_decided(deciding: &mut Option<oneshot::Receiver<Decided>>) -> Result<Decided, RecvError> {
+    match deciding {
+        Some(decided) => decided.await,
+        None => std::future::pending().await,
     }
 }

@@ -17,7 +17,7 @@ use tokio::sync::{
 };
 
 use crate::{
-    driving::Driver,
+    driving::{Driver, Drivers},
     feed::Feed,
     hub::{self, Hub},
     journal::MOST_VISITORS,
@@ -25,16 +25,28 @@ use crate::{
     page,
     presence::Presence,
     spoken::Spoken,
-    survey::Form,
+    survey::{Form, Survey},
     talk::Talk,
     text,
     view::View,
-    voice::{FromEar, Hearer, Hearing},
-    web::Live,
+    voice::{FromEar, Hearer, Hearing, Voice},
 };
 use controls::{Aim, next_news};
 use hearing::next_sound;
 use message::FromPage;
+
+/// What pages of a session that goes on have to do with.
+#[derive(Clone)]
+pub struct Live {
+    /// The conversation.
+    pub talk: Arc<Talk>,
+    /// Who drives.
+    pub drivers: Arc<Drivers>,
+    /// What people are asked.
+    pub survey: Arc<Survey>,
+    /// Voice.
+    pub voice: Arc<Voice>,
+}
 
 /// Serves a page until it goes.
 pub async fn converse(hub: Arc<Hub>, live: Live, mut socket: WebSocket, key: u64, server: ServerLimits) {
@@ -127,7 +139,7 @@ impl Visit {
                 received = socket.recv() => {
                     self.presence.note_word();
                     match received {
-                        Some(Ok(Message::Text(text))) => Ok(self.answer(&text).await),
+                        Some(Ok(Message::Text(text))) => Ok(self.answer(&text)),
                         Some(Ok(Message::Binary(bytes))) => Ok(self.listen(&bytes)),
                         Some(Ok(Message::Close(_)) | Err(_)) | None => Err(Gone),
                         Some(Ok(_)) => Ok(Vec::new()),
@@ -136,7 +148,7 @@ impl Visit {
                 () = self.presence.wait() => self.beat(),
                 () = self.seat.given_away() => Err(Gone),
                 news = next_news(&mut self.driver) => Ok(self.note(&news)),
-                Some(heard) = self.ear.1.recv() => Ok(self.take_heard(heard).await),
+                Some(heard) = self.ear.1.recv() => Ok(self.take_heard(heard)),
                 piece = next_sound(&mut self.sounds) => Ok(vec![Message::binary(piece.to_vec())]),
                 message = messages.recv() => match message {
                     Ok(message) => Ok(vec![Message::text(message.to_string())]),
@@ -170,15 +182,15 @@ impl Visit {
     }
 
     /// What a page gets at once for what it sent; what else comes of it comes by the hub.
-    async fn answer(&mut self, text: &str) -> Vec<Message> {
-        match self.take(text).await {
+    fn answer(&mut self, text: &str) -> Vec<Message> {
+        match self.take(text) {
             Ok(answers) => answers,
             Err(problem) => vec![tell(&page::error(&problem))],
         }
     }
 
     /// Takes a message of the page; says what is wrong with it, if anything.
-    async fn take(&mut self, text: &str) -> Result<Vec<Message>, String> {
+    fn take(&mut self, text: &str) -> Result<Vec<Message>, String> {
         let (received_nanos, now) = (monotonic_nanos(), Instant::now());
         let a_lot = || "That was a lot at once; wait a moment, please.".to_owned();
         if !self.limits.all.admits(now) {
@@ -210,7 +222,7 @@ impl Visit {
             FromPage::Drawn { turn } => self.note_drawn(turn, received_nanos)?,
             FromPage::View { camera } => self.look_through(&camera)?,
             FromPage::Point { camera, tick, x, y } => {
-                return self.point(&camera, tick, [x, y], received_nanos).await;
+                return self.point(&camera, tick, [x, y], received_nanos);
             }
             FromPage::DriveBody { body } => {
                 self.driver = None;
@@ -222,11 +234,11 @@ impl Visit {
                 return Ok(vec![self.survey(&form)]);
             }
             FromPage::Act { deed, object } => return self.act(deed, ObjectId(object)),
-            FromPage::Say { text } => self.say(&text, received_nanos).await?,
-            FromPage::Choose { object } => self.choose(ObjectId(object), received_nanos).await?,
+            FromPage::Say { text } => self.say(&text, received_nanos)?,
+            FromPage::Choose { object } => self.choose(ObjectId(object), received_nanos, false)?,
             FromPage::Listen { rate, held } => self.begin_listening(rate, held)?,
             FromPage::Listened => self.end_listening(),
-            FromPage::Heard { number, text, sure } => self.say_heard(number, text, sure, received_nanos).await?,
+            FromPage::Heard { number, text, sure } => self.say_heard(number, text, sure, received_nanos)?,
             FromPage::Aloud { on } => return Ok(self.hear_robots(on)),
             FromPage::Sounded { turn } => {
                 self.live.talk.note_sounded(turn, received_nanos).map_err(|error| error.to_string())?;

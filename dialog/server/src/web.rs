@@ -13,7 +13,6 @@ use serde_json::Value;
 
 use crate::{
     connections::Ends,
-    driving::Drivers,
     hosts::HostName,
     hub::Hub,
     limits::{LONGEST_MESSAGE, ServerLimits},
@@ -22,12 +21,10 @@ use crate::{
     screening::Screening,
     seat,
     site::{Framing, Site, file, file_routes, media},
-    survey::Survey,
-    talk::Talk,
     texts::{PagePart, PageTexts},
     tls::Identity,
-    token, viewer, visit,
-    voice::Voice,
+    token, viewer,
+    visit::{self, Live},
     wizard::Holding,
 };
 
@@ -117,19 +114,6 @@ pub enum Host {
     Live(Live),
     /// People look.
     Recorded(Arc<Screening>),
-}
-
-/// What pages of a session that goes on have to do with.
-#[derive(Clone)]
-pub struct Live {
-    /// The conversation.
-    pub talk: Arc<Talk>,
-    /// Who drives.
-    pub drivers: Arc<Drivers>,
-    /// What people are asked.
-    pub survey: Arc<Survey>,
-    /// Voice.
-    pub voice: Arc<Voice>,
 }
 
 /// Serves on `listener` until `over`.

@@ -5,7 +5,7 @@ use std::path::Path;
 use cohabit_agent::{Agent, Deed, Heard, PlanFollower};
 use cohabit_bus::message::{DialogKind, DialogMessage, StateView};
 use cohabit_cdf::{Action, BodyId};
-use cohabit_dialog::{Asked, Conversation, Knowledge, Reaction, TurnEnd, known};
+use cohabit_dialog::{Asked, Conversation, Knowledge, Outgoing, TurnEnd, known};
 use cohabit_engine::{SessionPlan, report};
 use cohabit_generate::tick;
 use cohabit_language::Known;
@@ -89,8 +89,8 @@ impl LockStep {
     /// [`LogError`].
     pub fn say_called(&mut self, said: &str, text: &str) -> Result<u64, LogError> {
         self.look();
-        let (turn, reactions) = self.conversation.hear_called(said, text, 0, &self.knowledge);
-        self.carry_on(reactions)?;
+        let (turn, outbox) = self.conversation.hear_called(said, text, 0, &self.knowledge);
+        self.deliver(outbox)?;
         Ok(turn)
     }
 
@@ -168,27 +168,22 @@ impl LockStep {
                     if let Some(action) = conversation.deed(&message.header) {
                         knowledge.note_deed(&action);
                     }
-                    let reactions = conversation.follow(&message.header, knowledge);
-                    self.carry_on(reactions)?;
+                    let outbox = conversation.follow(&message.header, knowledge);
+                    self.deliver(outbox)?;
                 }
             }
         }
         Ok(())
     }
 
-    /// What the conversation wants done.
-    fn carry_on(&mut self, reactions: Vec<Reaction>) -> Result<(), LogError> {
-        for reaction in reactions {
-            match reaction {
-                Reaction::Bus(message) => self.pass_on(&message)?,
-                Reaction::TurnEnded { turn, end } => self.noted.turns.push((turn, end)),
-                Reaction::Chat(_)
-                | Reaction::Page(_)
-                | Reaction::Expresses(_)
-                | Reaction::Interpret(..)
-                | Reaction::Proposes
-                | Reaction::ForWizard(_)
-                | Reaction::Answers { .. } => {}
+    /// Passes on what the conversation lets happen, and takes down which turns ended.
+    fn deliver(&mut self, outbox: Vec<Outgoing>) -> Result<(), LogError> {
+        for item in outbox {
+            if let Some(message) = item.message(BODY.0) {
+                self.pass_on(&message)?;
+            }
+            if let Outgoing::TurnEnded { turn, end } = item {
+                self.noted.turns.push((turn, end));
             }
         }
         Ok(())

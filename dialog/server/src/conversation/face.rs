@@ -1,9 +1,8 @@
 //! What the robot's face shows of the conversation, with a wizard and without.
 
-use cohabit_bus::message::DialogKind;
 use cohabit_language::Understanding;
 
-use super::{Conversation, Reaction};
+use super::{Conversation, Outgoing};
 use crate::expression::FacialExpression;
 
 impl Conversation {
@@ -13,11 +12,10 @@ impl Conversation {
     }
 
     /// Has its face show something from now on, which is told if it is news.
-    pub(super) fn express(&mut self, turn: u64, shown: FacialExpression, reactions: &mut Vec<Reaction>) {
+    pub(super) fn express(&mut self, turn: u64, shown: FacialExpression, outbox: &mut Vec<Outgoing>) {
         if self.memory.expression != shown {
             self.memory.expression = shown;
-            reactions.push(self.bus(DialogKind::Expressed, turn, shown.name()));
-            reactions.push(Reaction::Expresses(shown));
+            outbox.push(Outgoing::Express { turn, shown });
         }
     }
 }

@@ -2,15 +2,13 @@
 
 use cohabit_bus::message::DialogKind;
 use cohabit_cdf::ObjectId;
-use cohabit_language::{Clarification, Context, Known, Meant, Understanding, says_stop};
+use cohabit_language::{Clarification, Context, Known, Language, Meant, Understanding, says_stop};
 use serde::{Deserialize, Serialize};
 
-use super::{Conversation, Reaction, TurnEnd, is_same};
+use super::{Conversation, Outgoing, TurnEnd, is_same};
 use crate::{
-    drafts::Thought,
-    expression::FacialExpression,
     known::Knowledge,
-    page::{Line, LineKind, Speaker},
+    page::LineKind,
     spoken::{Reading, Spoken},
 };
 
@@ -53,9 +51,24 @@ pub(super) struct Meaning {
 /// Words that an interpreter may make something of.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub(super) struct Puzzle {
-    words: Words,
+    pub words: Words,
     /// What the robot itself makes of it, in case that nobody knows better.
-    meaning: Meaning,
+    pub meaning: Meaning,
+}
+
+/// An utterance as a robot would understand it now.
+pub(crate) struct Thought {
+    language: Language,
+    known: Known,
+    context: Context,
+    text: String,
+}
+
+impl Thought {
+    /// Has the language model make of it what it will be asked for again in the utterance's turn.
+    pub fn think(mut self) {
+        let _ = self.language.understand(&self.text, &self.known, &mut self.context);
+    }
 }
 
 /// How something was heard that was said aloud.
@@ -69,7 +82,7 @@ pub(crate) struct Aloud<'a> {
 
 impl Conversation {
     /// Somebody said something. Gives the turn's number and what follows.
-    pub fn hear(&mut self, text: &str, knowledge: &Knowledge) -> (u64, Vec<Reaction>) {
+    pub fn hear(&mut self, text: &str, knowledge: &Knowledge) -> (u64, Vec<Outgoing>) {
         self.hear_called(text, text, 0, knowledge)
     }
 
@@ -80,7 +93,7 @@ impl Conversation {
         text: &str,
         received_nanos: u64,
         knowledge: &Knowledge,
-    ) -> (u64, Vec<Reaction>) {
+    ) -> (u64, Vec<Outgoing>) {
         self.hear_as(said, text, By::Writing, received_nanos, knowledge)
     }
 
@@ -92,7 +105,7 @@ impl Conversation {
         aloud: Aloud<'_>,
         received_nanos: u64,
         knowledge: &Knowledge,
-    ) -> (u64, Vec<Reaction>) {
+    ) -> (u64, Vec<Outgoing>) {
         let by = By::Voice { raw: aloud.raw.to_owned(), is_doubtful: aloud.is_doubtful };
         self.hear_as(said, text, by, received_nanos, knowledge)
     }
@@ -126,6 +139,13 @@ impl Conversation {
         Some(Thought { language, known, context, text: text.to_owned() })
     }
 
+    /// Somebody said something that is over before it is understood: they say stop by now, or too much at once. Gives what follows.
+    pub(crate) fn hear_in_vain(&mut self, said: &str) -> Vec<Outgoing> {
+        self.memory.turns += 1;
+        let turn = self.memory.turns;
+        vec![Outgoing::utterance(turn, said), Outgoing::TurnEnded { turn, end: TurnEnd::Interrupted }]
+    }
+
     fn hear_as(
         &mut self,
         said: &str,
@@ -133,49 +153,34 @@ impl Conversation {
         by: By,
         received_nanos: u64,
         knowledge: &Knowledge,
-    ) -> (u64, Vec<Reaction>) {
+    ) -> (u64, Vec<Outgoing>) {
         self.memory.turns += 1;
         let turn = self.memory.turns;
-        let mut reactions = vec![
-            self.bus(DialogKind::Utterance, turn, said),
-            Reaction::Chat(Line::new(Speaker::Person, LineKind::Say, turn, said)),
-        ];
+        let mut outbox = vec![Outgoing::utterance(turn, said)];
         if knowledge.known().is_none() {
-            self.say(turn, DialogKind::Reply, LineKind::Problem, "I am not there yet; one moment.", &mut reactions);
-            reactions.push(Reaction::TurnEnded { turn, end: TurnEnd::Refused });
-            return (turn, reactions);
+            self.say(turn, LineKind::Problem, "I am not there yet; one moment.", &mut outbox);
+            outbox.push(Outgoing::TurnEnded { turn, end: TurnEnd::Refused });
+            return (turn, outbox);
         }
-        self.leave_puzzle(&mut reactions);
+        self.leave_puzzle(&mut outbox);
         let words = Words { turn, received_nanos, text: text.to_owned(), by };
         if self.is_holding_back() && !says_stop(text) {
-            self.let_wait(words, &mut reactions);
+            self.let_wait(words, &mut outbox);
         } else {
-            self.take_in(words, knowledge, &mut reactions);
+            self.take_in(words, knowledge, &mut outbox);
         }
-        (turn, reactions)
+        (turn, outbox)
     }
 
     /// Understands what somebody told the robot, and answers it.
-    pub(super) fn take_in(&mut self, words: Words, knowledge: &Knowledge, reactions: &mut Vec<Reaction>) {
+    pub(super) fn take_in(&mut self, words: Words, knowledge: &Knowledge, outbox: &mut Vec<Outgoing>) {
         let Some(known) = knowledge.known() else { return };
-        let before = self.memory.said.iter().cloned().collect();
+        let meaning = self.meaning(&words, &known);
+        let interception = self.interception(&meaning, Some(&known));
         if !matches!(words.by, By::Pointing(_)) {
             self.note_line(false, &words.text);
         }
-        let meaning = self.meaning(&words, &known);
-        let consulting = self.consulting;
-        let is_asked = |_: &&String| consulting.is_asked(&meaning.understanding, &meaning.context);
-        let Some(text) = meaning.open.as_ref().filter(is_asked) else {
-            self.answer(words, meaning, knowledge, reactions);
-            return;
-        };
-        let unclear = self.language.unclear(text, &known, before);
-        let turn = words.turn;
-        self.memory.unsure = None;
-        self.memory.puzzle = Some(Puzzle { words, meaning });
-        self.express(turn, FacialExpression::Thinking, reactions);
-        self.say(turn, DialogKind::Reply, LineKind::Say, "One moment, let me think.", reactions);
-        reactions.push(Reaction::Interpret(turn, Box::new(unclear)));
+        self.pass(words, meaning, interception, knowledge, outbox);
     }
 
     /// What the robot itself makes of words, in the conversation as it is.
@@ -228,28 +233,31 @@ impl Conversation {
         meant: Option<&Meant>,
         note: &str,
         knowledge: &Knowledge,
-    ) -> Vec<Reaction> {
-        let mut reactions = Vec::new();
+    ) -> Vec<Outgoing> {
+        let mut outbox = Vec::new();
         let Some(Puzzle { words, meaning: own }) = self.memory.puzzle.take_if(|puzzle| puzzle.words.turn == turn)
         else {
-            return reactions;
+            return outbox;
         };
-        reactions.push(self.bus(DialogKind::Interpreted, turn, note));
+        outbox.push(Outgoing::Note { kind: DialogKind::Interpreted, turn, text: note.to_owned() });
         let mut context = self.memory.context.clone();
         let known = knowledge.known().zip(meant);
         let understood = known.and_then(|(known, meant)| self.language.understand_meant(meant, &known, &mut context));
         let Some(understanding) = understood else {
-            self.answer(words, own, knowledge, &mut reactions);
-            return reactions;
+            let interception = self.interception(&own, None);
+            self.pass(words, own, interception, knowledge, &mut outbox);
+            return outbox;
         };
         let is_other = !is_same(&own.understanding, &understanding);
         if let Some(Meant::Do(requests)) = meant.filter(|_| is_other && !self.holding.holds()) {
             let taken = format!("I take that as: \"{}\".", requests.join(", then "));
-            self.say(turn, DialogKind::Reply, LineKind::Say, &taken, &mut reactions);
+            self.say(turn, LineKind::Say, &taken, &mut outbox);
             context.note_said(true, &taken);
         }
-        self.answer(words, Meaning { understanding, context, unsure: None, open: None }, knowledge, &mut reactions);
-        reactions
+        let meaning = Meaning { understanding, context, unsure: None, open: None };
+        let interception = self.interception(&meaning, None);
+        self.pass(words, meaning, interception, knowledge, &mut outbox);
+        outbox
     }
 
     /// The turn that an interpreter was asked about and has not answered yet.
@@ -258,9 +266,9 @@ impl Conversation {
     }
 
     /// Something else is said meanwhile.
-    fn leave_puzzle(&mut self, reactions: &mut Vec<Reaction>) {
+    fn leave_puzzle(&mut self, outbox: &mut Vec<Outgoing>) {
         if let Some(Puzzle { words, .. }) = self.memory.puzzle.take() {
-            reactions.push(Reaction::TurnEnded { turn: words.turn, end: TurnEnd::Interrupted });
+            outbox.push(Outgoing::TurnEnded { turn: words.turn, end: TurnEnd::Interrupted });
         }
     }
 
@@ -270,7 +278,7 @@ impl Conversation {
         object: ObjectId,
         received_nanos: u64,
         knowledge: &Knowledge,
-    ) -> (u64, Vec<Reaction>) {
+    ) -> (u64, Vec<Outgoing>) {
         let known = knowledge.known();
         let Some(known) = known.filter(|known| known.object(object).is_some()) else {
             return self.hear_called("this one", "this one", received_nanos, knowledge);
@@ -278,17 +286,14 @@ impl Conversation {
         self.memory.turns += 1;
         let turn = self.memory.turns;
         let text = self.language.name(object, &known);
-        let mut reactions = vec![
-            self.bus(DialogKind::Utterance, turn, &text),
-            Reaction::Chat(Line::new(Speaker::Person, LineKind::Say, turn, text.as_str())),
-        ];
+        let mut outbox = vec![Outgoing::utterance(turn, &text)];
         let words = Words { turn, received_nanos, text, by: By::Pointing(object) };
         if self.is_holding_back() {
-            self.let_wait(words, &mut reactions);
+            self.let_wait(words, &mut outbox);
         } else {
-            self.take_in(words, knowledge, &mut reactions);
+            self.take_in(words, knowledge, &mut outbox);
         }
-        (turn, reactions)
+        (turn, outbox)
     }
 }
 

@@ -6,13 +6,13 @@
 
 mod deciding;
 
-use cohabit_bus::message::{DialogKind, DialogMessage};
+use cohabit_bus::message::DialogKind;
 use cohabit_language::{Known, Understanding};
 use cohabit_record::{DecisionOutcome, Proposed, WizardDecision};
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Conversation, Reaction, TurnEnd,
+    Conversation, Outgoing, TurnEnd,
     hearing::{Meaning, Words},
 };
 use crate::{
@@ -110,62 +110,31 @@ impl Conversation {
     }
 
     /// Has words wait until what is held back is answered; of too many the oldest are over.
-    pub(super) fn let_wait(&mut self, words: Words, reactions: &mut Vec<Reaction>) {
+    pub(super) fn let_wait(&mut self, words: Words, outbox: &mut Vec<Outgoing>) {
         self.memory.waiting.push_back(words);
         if self.memory.waiting.len() > MOST_WAITING
             && let Some(Words { turn, .. }) = self.memory.waiting.pop_front()
         {
-            reactions.push(Reaction::TurnEnded { turn, end: TurnEnd::Interrupted });
+            outbox.push(Outgoing::TurnEnded { turn, end: TurnEnd::Interrupted });
         }
-        reactions.push(Reaction::Proposes);
+        outbox.push(Outgoing::Proposes);
     }
 
-    /// Answers what was understood, or holds it back.
-    pub(super) fn answer(
-        &mut self,
-        words: Words,
-        meaning: Meaning,
-        knowledge: &Knowledge,
-        reactions: &mut Vec<Reaction>,
-    ) {
-        let turn = words.turn;
-        if !self.holding.holds() {
-            self.take_up(meaning, turn, turn, knowledge, reactions);
-            return;
-        }
-        match meaning.understanding {
-            Understanding::Stop { reply, then } => {
-                self.stop_held(reactions);
-                let stop = Understanding::Stop { reply, then: None };
-                let after = Meaning { understanding: stop, ..meaning };
-                self.take_up(after, turn, turn, knowledge, reactions);
-                if let Some(then) = then {
-                    // The plan of that number is the stop's.
-                    self.memory.turns += 1;
-                    let context = self.memory.context.clone();
-                    let meaning = Meaning { understanding: *then, context, unsure: None, open: None };
-                    self.hold(words, meaning, reactions);
-                }
-            }
-            // It sounded like a stop, and was none.
-            _ if self.is_holding_back() => self.let_wait(words, reactions),
-            understanding => self.hold(words, Meaning { understanding, ..meaning }, reactions),
-        }
-    }
-
-    fn take_up(
+    /// Answers what was understood: from here on the conversation is the one that it leads to.
+    pub(super) fn take_up(
         &mut self,
         meaning: Meaning,
         turn: u64,
         number: u64,
         knowledge: &Knowledge,
-        reactions: &mut Vec<Reaction>,
+        outbox: &mut Vec<Outgoing>,
     ) {
         (self.memory.context, self.memory.unsure) = (meaning.context, meaning.unsure);
-        self.react(turn, number, meaning.understanding, knowledge, reactions);
+        self.react(turn, number, meaning.understanding, knowledge, outbox);
     }
 
-    fn hold(&mut self, words: Words, meaning: Meaning, reactions: &mut Vec<Reaction>) {
+    /// Holds back what was understood.
+    pub(super) fn hold(&mut self, words: Words, meaning: Meaning, outbox: &mut Vec<Outgoing>) {
         let proposed_nanos = words.received_nanos.max(self.memory.free_since_nanos);
         let held = Held {
             own: proposed(&meaning.understanding),
@@ -178,52 +147,49 @@ impl Conversation {
             decided: None,
         };
         self.memory.held = Some(Box::new(held));
-        reactions.push(Reaction::Proposes);
+        outbox.push(Outgoing::Proposes);
     }
 
     /// The person told the robot to stop: what is held back, and what waits behind it, is over.
-    fn stop_held(&mut self, reactions: &mut Vec<Reaction>) {
+    pub(super) fn stop_held(&mut self, outbox: &mut Vec<Outgoing>) {
         let waiting = std::mem::take(&mut self.memory.waiting);
         if let Some(held) = self.memory.held.take() {
-            self.note_decision(held.words.turn, &held.record(DecisionOutcome::Stopped, None), reactions);
-            reactions.push(Reaction::TurnEnded { turn: held.words.turn, end: TurnEnd::Interrupted });
-            reactions.push(Reaction::Proposes);
+            self.note_decision(held.words.turn, &held.record(DecisionOutcome::Stopped, None), outbox);
+            outbox.push(Outgoing::TurnEnded { turn: held.words.turn, end: TurnEnd::Interrupted });
+            outbox.push(Outgoing::Proposes);
         }
         for words in waiting {
             let record = WizardDecision { said: words.text, ..WizardDecision::of_outcome(DecisionOutcome::Stopped) };
-            self.note_decision(words.turn, &record, reactions);
-            reactions.push(Reaction::TurnEnded { turn: words.turn, end: TurnEnd::Interrupted });
+            self.note_decision(words.turn, &record, outbox);
+            outbox.push(Outgoing::TurnEnded { turn: words.turn, end: TurnEnd::Interrupted });
         }
     }
 
     /// What is noted of what is held back, and waits behind it, when the session ends; it stays, should the session go on.
-    pub(crate) fn left_undecided(&self) -> Vec<DialogMessage> {
+    pub(crate) fn left_undecided(&self) -> Vec<Outgoing> {
         if self.holding.wizard.is_none() {
             return Vec::new();
         }
-        let noted = |turn: u64, record: &WizardDecision| {
-            DialogMessage::new(DialogKind::Decided, self.body, turn, &record.text())
-        };
         let held = self.memory.held.iter().map(|held| {
             let outcome = if held.decided.is_some() { held.outcome() } else { DecisionOutcome::Undecided };
-            noted(held.words.turn, &held.record(outcome, None))
+            decided(held.words.turn, &held.record(outcome, None))
         });
         let waiting = self.memory.waiting.iter().map(|words| {
             let said = words.text.clone();
-            noted(words.turn, &WizardDecision { said, ..WizardDecision::of_outcome(DecisionOutcome::Undecided) })
+            decided(words.turn, &WizardDecision { said, ..WizardDecision::of_outcome(DecisionOutcome::Undecided) })
         });
         held.chain(waiting).collect()
     }
 
     /// Notes a decision for the log; where nobody decides there is none.
-    fn note_decision(&self, turn: u64, record: &WizardDecision, reactions: &mut Vec<Reaction>) {
+    fn note_decision(&self, turn: u64, record: &WizardDecision, outbox: &mut Vec<Outgoing>) {
         if self.holding.wizard.is_some() {
-            reactions.push(self.bus(DialogKind::Decided, turn, &record.text()));
+            outbox.push(decided(turn, record));
         }
     }
 
     /// Understands what is held back anew, in the conversation as it is by now. What is decided stays as it was seen.
-    pub(super) fn propose_again(&mut self, knowledge: &Knowledge, reactions: &mut Vec<Reaction>) {
+    pub(super) fn propose_again(&mut self, knowledge: &Knowledge, outbox: &mut Vec<Outgoing>) {
         let Some(held) = self.memory.held.as_ref().filter(|held| held.decided.is_none()) else { return };
         let Some(known) = knowledge.known() else { return };
         let meaning = match held.edits.last() {
@@ -236,7 +202,7 @@ impl Conversation {
             if held.edits.is_empty() {
                 held.own = proposed(&meaning.understanding);
             }
-            reactions.push(Reaction::Proposes);
+            outbox.push(Outgoing::Proposes);
         }
         held.meaning = meaning;
     }
@@ -278,44 +244,44 @@ impl Conversation {
     }
 
     /// What follows by now without anybody's doing.
-    pub(crate) fn elapse(&mut self, now_nanos: u64, knowledge: &Knowledge) -> Vec<Reaction> {
-        let mut reactions = Vec::new();
-        let Some(held) = &mut self.memory.held else { return reactions };
+    pub(crate) fn elapse(&mut self, now_nanos: u64, knowledge: &Knowledge) -> Vec<Outgoing> {
+        let mut outbox = Vec::new();
+        let Some(held) = &mut self.memory.held else { return outbox };
         match self.holding.next(held.since(), now_nanos) {
             Next::Wait(_) => {}
-            Next::Answer | Next::TimeOut(OnTimeout::Act) => self.release(now_nanos, knowledge, &mut reactions),
+            Next::Answer | Next::TimeOut(OnTimeout::Act) => self.release(now_nanos, knowledge, &mut outbox),
             Next::TimeOut(follows) => {
                 held.is_late = true;
                 let turn = held.words.turn;
                 let moment = self.holding.wizard.as_ref().map(|wizard| wizard.moment.clone());
                 if let (OnTimeout::Say, Some(moment)) = (follows, moment) {
-                    self.say(turn, DialogKind::Reply, LineKind::Say, &moment, &mut reactions);
+                    self.say(turn, LineKind::Say, &moment, &mut outbox);
                 }
-                reactions.push(Reaction::Proposes);
+                outbox.push(Outgoing::Proposes);
             }
         }
-        reactions
+        outbox
     }
 
     /// Answers what is held back, and takes up what was said since.
-    fn release(&mut self, now_nanos: u64, knowledge: &Knowledge, reactions: &mut Vec<Reaction>) {
+    fn release(&mut self, now_nanos: u64, knowledge: &Knowledge, outbox: &mut Vec<Outgoing>) {
         let Some(held) = self.memory.held.take() else { return };
         let record = held.record(held.outcome(), Some(now_nanos));
         let Held { words: Words { turn, received_nanos, text, .. }, meaning, decided, .. } = *held;
         let number = self.number_of(turn);
-        reactions.push(Reaction::Answers { turn: number, received_nanos });
+        outbox.push(Outgoing::Answers { turn: number, received_nanos });
         match decided.and_then(|decided| decided.own) {
             Some(own) => {
                 self.memory.context.note_said(false, &text);
-                self.do_own(turn, number, own, knowledge, reactions);
+                self.do_own(turn, number, own, knowledge, outbox);
             }
-            None => self.take_up(meaning, turn, number, knowledge, reactions),
+            None => self.take_up(meaning, turn, number, knowledge, outbox),
         }
-        self.note_decision(turn, &record, reactions);
-        reactions.push(Reaction::Proposes);
+        self.note_decision(turn, &record, outbox);
+        outbox.push(Outgoing::Proposes);
         self.memory.free_since_nanos = now_nanos;
         if let Some(words) = self.memory.waiting.pop_front() {
-            self.take_in(words, knowledge, reactions);
+            self.take_in(words, knowledge, outbox);
         }
     }
 
@@ -326,6 +292,11 @@ impl Conversation {
         }
         self.memory.turns
     }
+}
+
+/// The note of a decision.
+fn decided(turn: u64, record: &WizardDecision) -> Outgoing {
+    Outgoing::Note { kind: DialogKind::Decided, turn, text: record.text() }
 }
 
 #[cfg(test)]

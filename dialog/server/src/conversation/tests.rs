@@ -28,14 +28,13 @@ pub(super) fn conversation() -> Conversation {
     Conversation::new(Language::new(Arc::new(Catalog::builtin())), 0)
 }
 
-pub(super) fn says(reactions: &[Reaction]) -> String {
-    let lines = reactions.iter().filter_map(Reaction::line).filter(|line| line.from == Speaker::Robot);
+pub(super) fn says(outbox: &[Outgoing]) -> String {
+    let lines = outbox.iter().filter_map(Outgoing::line).filter(|line| line.from == Speaker::Robot);
     lines.map(|line| line.text.clone()).collect::<Vec<_>>().join(" ")
 }
 
-pub(super) fn plans(reactions: &[Reaction]) -> bool {
-    let is_plan = |reaction: &Reaction| matches!(reaction, Reaction::Bus(message) if message.header.kind() == Some(DialogKind::Plan));
-    reactions.iter().any(is_plan)
+pub(super) fn plans(outbox: &[Outgoing]) -> bool {
+    outbox.iter().any(|item| matches!(item, Outgoing::Plan { .. }))
 }
 
 const DOUBTED: Aloud<'_> = Aloud { raw: "go to the main office", is_doubtful: true };
@@ -44,17 +43,17 @@ const DOUBTED: Aloud<'_> = Aloud { raw: "go to the main office", is_doubtful: tr
 fn what_is_doubted_is_asked_about_and_a_yes_means_it() {
     let (mut conversation, knowledge) = (conversation(), knowledge());
     let said = "go to the main office";
-    let (_, reactions) = conversation.hear_aloud(said, said, DOUBTED, 0, &knowledge);
-    assert!(!plans(&reactions));
-    assert!(says(&reactions).contains("\"go to the main office\". Shall I do that?"), "{}", says(&reactions));
-    let question = reactions.iter().filter_map(Reaction::line).find(|line| line.kind == LineKind::Question).unwrap();
+    let (_, outbox) = conversation.hear_aloud(said, said, DOUBTED, 0, &knowledge);
+    assert!(!plans(&outbox));
+    assert!(says(&outbox).contains("\"go to the main office\". Shall I do that?"), "{}", says(&outbox));
+    let question = outbox.iter().filter_map(Outgoing::line).find(|line| line.kind == LineKind::Question).unwrap();
     assert_eq!(question.answers.iter().map(|answer| answer.text.as_str()).collect::<Vec<_>>(), ["yes", "no"]);
     // A yes that is heard makes sense, though no question of the language's waits for it.
     let yes = Spoken { heard: Recognition::trusted("yes", 0.3), ..Spoken::default() };
     let reading = conversation.reading(&yes, &str::to_owned, &knowledge).unwrap();
     assert!(!reading.is_doubtful);
-    let (_, reactions) = conversation.hear("yes", &knowledge);
-    assert!(plans(&reactions), "{}", says(&reactions));
+    let (_, outbox) = conversation.hear("yes", &knowledge);
+    assert!(plans(&outbox), "{}", says(&outbox));
 }
 
 #[test]
@@ -62,52 +61,50 @@ fn what_was_not_said_is_not_done() {
     let (mut conversation, knowledge) = (conversation(), knowledge());
     let said = "go to the main office";
     conversation.hear_aloud(said, said, DOUBTED, 0, &knowledge);
-    let (_, reactions) = conversation.hear("no", &knowledge);
-    assert!(!plans(&reactions) && says(&reactions).contains("once more"), "{}", says(&reactions));
+    let (_, outbox) = conversation.hear("no", &knowledge);
+    assert!(!plans(&outbox) && says(&outbox).contains("once more"), "{}", says(&outbox));
     // Nor later.
-    let (_, reactions) = conversation.hear("yes", &knowledge);
-    assert!(!plans(&reactions), "{}", says(&reactions));
+    let (_, outbox) = conversation.hear("yes", &knowledge);
+    assert!(!plans(&outbox), "{}", says(&outbox));
     // Something else is what it is.
     conversation.hear_aloud(said, said, DOUBTED, 0, &knowledge);
-    let (_, reactions) = conversation.hear("go to the reception", &knowledge);
-    assert!(plans(&reactions) && says(&reactions).contains("reception"), "{}", says(&reactions));
+    let (_, outbox) = conversation.hear("go to the reception", &knowledge);
+    assert!(plans(&outbox) && says(&outbox).contains("reception"), "{}", says(&outbox));
 }
 
 #[test]
 fn a_stop_is_carried_out_before_what_else_was_said() {
     let (mut conversation, knowledge) = (conversation(), knowledge());
-    let actions = |reactions: &[Reaction]| -> Vec<Vec<Action>> {
-        let messages = reactions.iter().filter_map(|reaction| match reaction {
-            Reaction::Bus(message) if message.header.kind() == Some(DialogKind::Plan) => Some(message),
+    let actions = |outbox: &[Outgoing]| -> Vec<Vec<Action>> {
+        let plans = outbox.iter().filter_map(|item| match item {
+            Outgoing::Plan { steps, .. } => Some(steps.iter().map(|step| step.action).collect()),
             _ => None,
         });
-        messages
-            .map(|message| message.steps.iter().map(|step| Action::try_from(step.action).unwrap()).collect())
-            .collect()
+        plans.collect()
     };
     conversation.hear("go to the main office", &knowledge);
-    let (_, reactions) = conversation.hear("Arre stop stop, go to the reception", &knowledge);
-    let [steps] = &actions(&reactions)[..] else { panic!("one plan: {reactions:?}") };
+    let (_, outbox) = conversation.hear("Arre stop stop, go to the reception", &knowledge);
+    let [steps] = &actions(&outbox)[..] else { panic!("one plan: {outbox:?}") };
     assert!(matches!(steps[..], [Action::Stop, Action::GoTo { .. }]), "{steps:?}");
-    assert!(says(&reactions).starts_with("OK, I stop. OK, going to the reception"), "{}", says(&reactions));
+    assert!(says(&outbox).starts_with("OK, I stop. OK, going to the reception"), "{}", says(&outbox));
     // What asks for no motion does not keep it from stopping.
     conversation.hear("go to the main office", &knowledge);
-    let (_, reactions) = conversation.hear("stop! what are you holding?", &knowledge);
-    assert_eq!(actions(&reactions), [[Action::Stop]]);
-    assert_eq!(says(&reactions), "OK, I stop. My hand is empty.");
-    let ends = reactions.iter().filter(|reaction| matches!(reaction, Reaction::TurnEnded { .. })).count();
+    let (_, outbox) = conversation.hear("stop! what are you holding?", &knowledge);
+    assert_eq!(actions(&outbox), [[Action::Stop]]);
+    assert_eq!(says(&outbox), "OK, I stop. My hand is empty.");
+    let ends = outbox.iter().filter(|item| matches!(item, Outgoing::TurnEnded { .. })).count();
     assert_eq!(ends, 1);
 }
 
 #[test]
 fn what_is_put_off_is_done_when_its_time_has_come() {
     let (mut conversation, knowledge) = (conversation(), knowledge());
-    let (_, reactions) = conversation.hear("wait 10 seconds, then go to the main office", &knowledge);
-    assert!(!plans(&reactions) && conversation.awaits(), "{}", says(&reactions));
+    let (_, outbox) = conversation.hear("wait 10 seconds, then go to the main office", &knowledge);
+    assert!(!plans(&outbox) && conversation.awaits(), "{}", says(&outbox));
     assert!(conversation.wake(100.0, &knowledge).is_empty() && conversation.wake(109.9, &knowledge).is_empty());
-    let reactions = conversation.wake(110.0, &knowledge);
-    assert!(plans(&reactions) && !conversation.awaits());
-    assert_eq!(says(&reactions), "10 seconds are over. OK, going to the main office.");
+    let outbox = conversation.wake(110.0, &knowledge);
+    assert!(plans(&outbox) && !conversation.awaits());
+    assert_eq!(says(&outbox), "10 seconds are over. OK, going to the main office.");
     assert!(conversation.wake(500.0, &knowledge).is_empty());
 }
 
@@ -115,8 +112,8 @@ fn what_is_put_off_is_done_when_its_time_has_come() {
 fn what_is_not_known_is_repeated_as_it_was_heard() {
     let (mut conversation, knowledge) = (conversation(), knowledge());
     let aloud = Aloud { raw: "Blorp the zargle.", is_doubtful: false };
-    let (_, reactions) = conversation.hear_aloud("blorp the zargle", "blorp the zargle", aloud, 0, &knowledge);
-    assert!(says(&reactions).starts_with("I heard \"Blorp the zargle\". "), "{}", says(&reactions));
-    let (_, reactions) = conversation.hear("blorp the zargle", &knowledge);
-    assert!(!says(&reactions).contains("I heard"), "who types knows what they typed");
+    let (_, outbox) = conversation.hear_aloud("blorp the zargle", "blorp the zargle", aloud, 0, &knowledge);
+    assert!(says(&outbox).starts_with("I heard \"Blorp the zargle\". "), "{}", says(&outbox));
+    let (_, outbox) = conversation.hear("blorp the zargle", &knowledge);
+    assert!(!says(&outbox).contains("I heard"), "who types knows what they typed");
 }

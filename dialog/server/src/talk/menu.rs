@@ -21,11 +21,10 @@ impl Talk {
         thing: Thing,
         floor_m: Option<[f32; 2]>,
     ) -> Result<Option<Value>, DialogError> {
-        let mut inner = self.lock();
-        inner.refresh()?;
-        let Some(body) = body.or_else(|| inner.robots.iter().next().map(|robot| robot.body)) else { return Ok(None) };
-        let Some(sample) = &inner.newest else { return Ok(None) };
-        let state = StateView::new(sample.payload())?;
+        let Some(body) = body.or_else(|| self.robots.first().copied()) else { return Ok(None) };
+        let mut newest = self.state();
+        newest.refresh()?;
+        let Some(state) = newest.view()? else { return Ok(None) };
         Ok(match thing {
             Thing::Object(object) => state.objects.iter().find(|record| record.object == object.0).map(|record| {
                 let choices = of_object(state, body, object, &self.catalog);

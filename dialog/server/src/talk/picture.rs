@@ -16,35 +16,33 @@ use crate::{
 impl Talk {
     /// What a thing is that somebody points at, at a place of the picture; `None` if it is gone.
     pub fn seen(&self, thing: Thing, place: [f32; 2]) -> Result<Option<Value>, DialogError> {
-        let mut inner = self.lock();
-        inner.refresh()?;
-        let Some(sample) = &inner.newest else { return Ok(None) };
-        Ok(page::seen(thing, place, StateView::new(sample.payload())?, &self.catalog))
+        let mut newest = self.state();
+        newest.refresh()?;
+        Ok(newest.view()?.and_then(|state| page::seen(thing, place, state, &self.catalog)))
     }
 
     /// What a driven body has before it: the first of `things`, the nearest to the middle first, that it can do most with.
     pub fn aim(&self, things: &[Thing], body: u32) -> Result<Value, DialogError> {
-        let mut inner = self.lock();
-        inner.refresh()?;
-        let Some(sample) = &inner.newest else { return Ok(page::aim(None, &[], false)) };
-        let state = StateView::new(sample.payload())?;
+        let mut newest = self.state();
+        newest.refresh()?;
+        let Some(state) = newest.view()? else { return Ok(page::aim(None, &[], false)) };
         Ok(aimed(things, body, state, &self.catalog))
     }
 
     /// A frame was shown.
     pub fn note_frame(&self, Shown { command, tick, sent_nanos }: Shown) -> Result<(), DialogError> {
-        let mut inner = self.lock();
-        let Some(moments) = inner.latency.shown(command, sent_nanos) else { return Ok(()) };
+        let mut delivery = self.delivery();
+        let Some(moments) = delivery.latency.shown(command, sent_nanos) else { return Ok(()) };
         self.hub.tell(&page::latency(&moments, Some(tick)));
         log_latency(&moments);
-        inner.publish_latency(&moments)
+        delivery.publish_latency(&moments)
     }
 
     /// A page has shown the frame in which the robot first moved in a turn.
     pub fn note_drawn(&self, turn: u64, nanos: u64) -> Result<(), DialogError> {
-        let mut inner = self.lock();
-        match inner.latency.drawn(turn, nanos) {
-            Some(moments) => inner.publish_latency(&moments),
+        let mut delivery = self.delivery();
+        match delivery.latency.drawn(turn, nanos) {
+            Some(moments) => delivery.publish_latency(&moments),
             None => Ok(()),
         }
     }

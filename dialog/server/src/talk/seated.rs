@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use cohabit_bus::message::{DialogKind, DialogMessage};
 
-use super::{Inner, Talk};
+use super::{Talk, delivery::Delivery};
 use crate::{DialogError, wizard::SeatState};
 
 /// A wizard's page at the seat, while this lives.
@@ -12,10 +12,10 @@ pub struct Seated(Arc<Talk>);
 
 impl Drop for Seated {
     fn drop(&mut self) {
-        let mut inner = self.0.lock();
-        let before = inner.seat();
-        inner.wizards = inner.wizards.saturating_sub(1);
-        if let Err(error) = inner.tell_of_seat(before) {
+        let mut delivery = self.0.delivery();
+        let before = delivery.seat();
+        delivery.wizards = delivery.wizards.saturating_sub(1);
+        if let Err(error) = delivery.tell_of_seat(before) {
             tracing::error!("{error}");
         }
     }
@@ -24,23 +24,23 @@ impl Drop for Seated {
 impl Talk {
     /// A wizard's page is open from now on, until what this gives is dropped.
     pub fn sit_down(self: &Arc<Self>) -> Result<Seated, DialogError> {
-        let mut inner = self.lock();
-        let before = inner.seat();
-        inner.wizards += 1;
-        inner.tell_of_seat(before)?;
-        drop(inner);
+        let mut delivery = self.delivery();
+        let before = delivery.seat();
+        delivery.wizards += 1;
+        delivery.tell_of_seat(before)?;
+        drop(delivery);
         Ok(Seated(Arc::clone(self)))
     }
 
     /// Tells that a wizard is waited for: where a service before this one had one, they have to come again.
     pub fn offer_seat(&self) -> Result<(), DialogError> {
-        let mut inner = self.lock();
-        let now = inner.seat();
-        inner.publish(&told(now))
+        let mut delivery = self.delivery();
+        let now = delivery.seat();
+        delivery.publish(&told(now))
     }
 }
 
-impl Inner {
+impl Delivery {
     fn seat(&self) -> SeatState {
         if self.wizards == 0 { SeatState::Empty } else { SeatState::Taken }
     }

@@ -103,7 +103,7 @@ impl Visit {
     }
 
     /// Says what somebody points at; who drives may then do something with it.
-    pub(super) async fn point(
+    pub(super) fn point(
         &mut self,
         camera: &str,
         tick: u64,
@@ -121,10 +121,8 @@ impl Visit {
             self.aim.picked = Some(object);
             return Ok(self.look(true).into_iter().collect());
         }
-        if let Thing::Object(object) = thing
-            && self.live.talk.is_answer(object)
-        {
-            self.choose(object, received_nanos).await?;
+        if let Thing::Object(object) = thing {
+            self.choose(object, received_nanos, true)?;
         }
         Ok(seen.iter().map(tell).collect())
     }

@@ -7,13 +7,13 @@ use cohabit_bus::monotonic_nanos;
 use cohabit_speech::Recognition;
 use tokio::sync::broadcast::{self, error::RecvError};
 
-use super::{Visit, tell};
+use super::{Live, Visit, tell};
 use crate::{
     page,
     spoken::{Reading, Spoken},
+    talk::Said,
     text,
     voice::{Audience, EarAt, FromEar, Hearer, Hearing},
-    web::Live,
 };
 
 impl Visit {
@@ -67,45 +67,39 @@ impl Visit {
     }
 
     /// What the page's ear heard.
-    pub(super) async fn take_heard(&mut self, heard: FromEar) -> Vec<Message> {
+    pub(super) fn take_heard(&mut self, heard: FromEar) -> Vec<Message> {
         match heard {
             FromEar::Page(message) => vec![tell(&message)],
             FromEar::Said(spoken) => {
-                let said = self.take_spoken(*spoken).await;
-                said.unwrap_or_else(|problem| vec![tell(&page::error(&problem))])
+                let told = self.take_spoken(spoken).err();
+                told.map(|problem| tell(&page::error(&problem))).into_iter().collect()
             }
+            FromEar::Shown(spoken) => vec![self.show_heard(spoken)],
         }
     }
 
-    /// Shows what was heard for a moment, if it can be changed, or has the robot hear it.
-    async fn take_spoken(&mut self, spoken: Spoken) -> Result<Vec<Message>, String> {
-        let edit = self.live.voice.config.edit;
-        if edit.is_zero() {
+    /// Has the robots hear what was heard, once it was shown for a moment if it can be changed.
+    fn take_spoken(&self, spoken: Box<Spoken>) -> Result<(), String> {
+        if self.live.voice.config.edit.is_zero() {
             let meant_nanos = spoken.text_nanos;
-            return self.say_aloud(spoken, meant_nanos).await;
+            self.tell_robot(Said::Aloud { spoken, meant_nanos })
+        } else {
+            self.tell_robot(Said::Shown(spoken))
         }
-        let read = self.live.talk.read(&spoken, self.visitor()).map_err(|error| error.to_string())?;
-        let Some(reading) = read else { return Ok(vec![tell(&page::hearing("nothing"))]) };
-        self.heard_count += 1;
-        let told = tell(&page::heard(self.heard_count, &reading.text, edit.as_millis()));
-        self.heard = Some((self.heard_count, Spoken { settled: Some(reading), ..spoken }));
-        Ok(vec![told])
     }
 
-    async fn say_aloud(&mut self, spoken: Spoken, meant_nanos: u64) -> Result<Vec<Message>, String> {
-        let (visitor, talk) = (self.visitor(), Arc::clone(&self.live.talk));
-        match tokio::task::spawn_blocking(move || talk.hear_aloud(&spoken, visitor, meant_nanos)).await {
-            Ok(Ok(is_heard)) => Ok(vec![tell(&page::hearing(if is_heard { "said" } else { "nothing" }))]),
-            Ok(Err(error)) => {
-                tracing::error!("{error}");
-                Err("The robot cannot be reached.".to_owned())
-            }
-            Err(_) => Ok(Vec::new()),
-        }
+    /// Shows what was heard, which can be changed for a moment.
+    fn show_heard(&mut self, spoken: Option<Box<Spoken>>) -> Message {
+        let Some(spoken) = spoken else { return tell(&page::hearing("nothing")) };
+        self.heard_count += 1;
+        let text = spoken.first().unwrap_or_default();
+        let told = tell(&page::heard(self.heard_count, text, self.live.voice.config.edit.as_millis()));
+        self.heard = Some((self.heard_count, *spoken));
+        told
     }
 
     /// What was heard is meant, perhaps in other words; or is to be forgotten.
-    pub(super) async fn say_heard(
+    pub(super) fn say_heard(
         &mut self,
         number: u64,
         text: Option<String>,
@@ -118,13 +112,13 @@ impl Visit {
         }
         let Some(text) = text.as_deref().map(text::in_one_line) else { return Ok(()) };
         if text.trim().is_empty() || !text::is_within_limit(&text) {
-            return self.say(&text, received_nanos).await;
+            return self.say(&text, received_nanos);
         }
         let shown = spoken.settled.filter(|reading| reading.text == text);
         let heard = if shown.is_some() { spoken.heard } else { Recognition::sure(text.as_str()) };
         let is_doubtful = !sure && shown.is_some_and(|reading| reading.is_doubtful);
-        let spoken = Spoken { heard, settled: Some(Reading { text, is_doubtful }), ..spoken };
-        self.say_aloud(spoken, received_nanos).await.map(drop)
+        let spoken = Box::new(Spoken { heard, settled: Some(Reading { text, is_doubtful }), ..spoken });
+        self.tell_robot(Said::Aloud { spoken, meant_nanos: received_nanos })
     }
 
     /// Has the page hear what robots say, or not; gives what it is told of the engines.

@@ -1,14 +1,16 @@
 //! What a page tells the robots, and for whom.
 
-use std::sync::Arc;
-
 use cohabit_cdf::{BodyId, ObjectId};
 
 use super::Visit;
-use crate::{DialogError, robots::Visitor, talk::Talk, text};
+use crate::{
+    robots::Visitor,
+    talk::{Said, Utterance},
+    text,
+};
 
 impl Visit {
-    pub(super) async fn say(&mut self, text: &str, received_nanos: u64) -> Result<(), String> {
+    pub(super) fn say(&self, text: &str, received_nanos: u64) -> Result<(), String> {
         let text = text::in_one_line(text.trim());
         if text.is_empty() {
             return Ok(());
@@ -16,13 +18,12 @@ impl Visit {
         if !text::is_within_limit(&text) {
             return Err(format!("That is too long for me. {}", text::too_long(&text)));
         }
-        let visitor = self.visitor();
-        self.tell_robot(move |talk| talk.hear(&text, visitor, received_nanos)).await
+        self.tell_robot(Said::Text { text, received_nanos })
     }
 
-    pub(super) async fn choose(&mut self, object: ObjectId, received_nanos: u64) -> Result<(), String> {
-        let visitor = self.visitor();
-        self.tell_robot(move |talk| talk.choose(object, visitor, received_nanos)).await
+    /// Chooses an object; `is_answer`, if that counts only where a robot asks something that it answers.
+    pub(super) fn choose(&self, object: ObjectId, received_nanos: u64, is_answer: bool) -> Result<(), String> {
+        self.tell_robot(Said::Choice { object, received_nanos, is_answer })
     }
 
     pub(super) fn visitor(&self) -> Visitor {
@@ -30,15 +31,9 @@ impl Visit {
         Visitor { number: self.visitor.number, body: driven.map(|driver| BodyId(driver.body())) }
     }
 
-    async fn tell_robot(
-        &mut self,
-        tell: impl FnOnce(&Talk) -> Result<(), DialogError> + Send + 'static,
-    ) -> Result<(), String> {
-        let talk = Arc::clone(&self.live.talk);
-        if let Ok(Err(error)) = tokio::task::spawn_blocking(move || tell(&talk)).await {
-            tracing::error!("{error}");
-            return Err("The robot cannot be reached.".to_owned());
-        }
-        Ok(())
+    /// What comes of it comes by the page's ear, or by the hub.
+    pub(super) fn tell_robot(&self, said: Said) -> Result<(), String> {
+        let page = Some(self.ear.0.clone());
+        self.live.talk.hear(Utterance { visitor: self.visitor(), said, page })
     }
 }

@@ -56,12 +56,14 @@ enum ToEar {
     Part,
 }
 
-/// What an ear tells its page's visit.
+/// What is told to the visit of the page whose ear it is.
 pub enum FromEar {
     /// To the page.
     Page(Value),
     /// Somebody said this.
     Said(Box<Spoken>),
+    /// What they said, with the reading that is to be shown before robots hear it; nothing, if nobody seems to have said anything.
+    Shown(Option<Box<Spoken>>),
 }
 
 /// Who makes sense of what an ear hears.

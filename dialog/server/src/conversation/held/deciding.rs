@@ -1,6 +1,5 @@
 //! What wizards decide: of what is held back, and of their own accord.
 
-use cohabit_bus::message::{DialogKind, DialogMessage};
 use cohabit_cdf::Action;
 use cohabit_language::{Asking, Context, Step, Understanding};
 use cohabit_record::{DecisionOutcome, WizardDecision};
@@ -8,10 +7,10 @@ use serde::{Deserialize, Serialize};
 
 use super::{Decided, Held};
 use crate::{
-    conversation::{Conversation, Reaction, TurnEnd},
+    conversation::{Conversation, Outgoing, TurnEnd},
     expression::FacialExpression,
     known::Knowledge,
-    page::{LineKind, Speaker},
+    page::LineKind,
     text::in_one_line,
     wizard::{Click, Decision, LONGEST_SAYING},
 };
@@ -76,7 +75,7 @@ impl Conversation {
         decision: Decision,
         now_nanos: u64,
         knowledge: &Knowledge,
-    ) -> Result<Vec<Reaction>, String> {
+    ) -> Result<Vec<Outgoing>, String> {
         match decision {
             Decision::Accept { turn, revision } => {
                 let held = self.undecided(turn)?;
@@ -111,13 +110,13 @@ impl Conversation {
     }
 
     /// What follows from a decision, by now.
-    fn decided(&mut self, now_nanos: u64, knowledge: &Knowledge) -> Vec<Reaction> {
-        let mut reactions = vec![Reaction::Proposes];
-        reactions.extend(self.elapse(now_nanos, knowledge));
-        reactions
+    fn decided(&mut self, now_nanos: u64, knowledge: &Knowledge) -> Vec<Outgoing> {
+        let mut outbox = vec![Outgoing::Proposes];
+        outbox.extend(self.elapse(now_nanos, knowledge));
+        outbox
     }
 
-    fn edit(&mut self, turn: u64, text: &str, knowledge: &Knowledge) -> Result<Vec<Reaction>, String> {
+    fn edit(&mut self, turn: u64, text: &str, knowledge: &Knowledge) -> Result<Vec<Outgoing>, String> {
         self.undecided(turn)?;
         let known = knowledge.known().ok_or(BLIND)?;
         let request = request(text)?;
@@ -126,7 +125,7 @@ impl Conversation {
         held.edits.push(request);
         held.revision += 1;
         held.meaning = meaning;
-        Ok(vec![Reaction::Proposes])
+        Ok(vec![Outgoing::Proposes])
     }
 
     /// Takes what a wizard has the robot say and do in place of what it proposes in a turn, or of its own accord.
@@ -136,7 +135,7 @@ impl Conversation {
         own: Own,
         now_nanos: u64,
         knowledge: &Knowledge,
-    ) -> Result<Vec<Reaction>, String> {
+    ) -> Result<Vec<Outgoing>, String> {
         let Some(turn) = turn else { return self.act(own, knowledge) };
         self.undecided(turn)?.decided = Some(Decided { at_nanos: now_nanos, own: Some(own) });
         Ok(self.decided(now_nanos, knowledge))
@@ -222,25 +221,25 @@ impl Conversation {
     }
 
     /// Has the robot say, do and show something of the wizard's own accord.
-    fn act(&mut self, own: Own, knowledge: &Knowledge) -> Result<Vec<Reaction>, String> {
+    fn act(&mut self, own: Own, knowledge: &Knowledge) -> Result<Vec<Outgoing>, String> {
         if own.is_nothing() {
             return Err("Write what the robot is to say or to do.".to_owned());
         }
-        let mut reactions = Vec::new();
+        let mut outbox = Vec::new();
         let record = own.record(DecisionOutcome::Unprompted);
         let turn = self.memory.turns.max(1);
         // What is held back keeps its number.
         self.memory.turns = turn + u64::from(own.order.is_some());
         let number = self.memory.turns;
         let has_order = own.order.is_some();
-        self.do_own(turn, number, own, knowledge, &mut reactions);
+        self.do_own(turn, number, own, knowledge, &mut outbox);
         if !has_order {
             // No turn ends by what the robot says of its own accord.
-            reactions.retain(|reaction| !matches!(reaction, Reaction::TurnEnded { .. }));
+            outbox.retain(|item| !matches!(item, Outgoing::TurnEnded { .. }));
         }
-        self.note_decision(turn, &record, &mut reactions);
-        self.propose_again(knowledge, &mut reactions);
-        Ok(reactions)
+        self.note_decision(turn, &record, &mut outbox);
+        self.propose_again(knowledge, &mut outbox);
+        Ok(outbox)
     }
 
     /// Says, does and shows what a wizard wrote, picked or clicked.
@@ -250,28 +249,28 @@ impl Conversation {
         number: u64,
         own: Own,
         knowledge: &Knowledge,
-        reactions: &mut Vec<Reaction>,
+        outbox: &mut Vec<Outgoing>,
     ) {
         let Own { say, order, expression, injected, .. } = own;
         let end = if say.is_empty() { TurnEnd::Interrupted } else { TurnEnd::Answered };
         if !say.is_empty() {
             self.memory.asked = None;
-            self.say(turn, DialogKind::Reply, LineKind::Say, &say, reactions);
+            self.say(turn, LineKind::Say, &say, outbox);
         }
         match order {
             Some(Order { steps, context, .. }) => {
                 self.memory.context = context;
                 let silently = Understanding::Plan { steps, reply: String::new() };
-                self.react(turn, number, silently, knowledge, reactions);
+                self.react(turn, number, silently, knowledge, outbox);
                 // What comes of an error is told as of all that the robot does by itself.
                 if injected.is_none() {
                     self.silence(number);
                 }
             }
-            None => reactions.push(Reaction::TurnEnded { turn, end }),
+            None => outbox.push(Outgoing::TurnEnded { turn, end }),
         }
         if let Some(shown) = expression {
-            self.express(turn, shown, reactions);
+            self.express(turn, shown, outbox);
         }
     }
 
@@ -287,19 +286,16 @@ impl Conversation {
     }
 
     /// What came of an order, of which people are told nothing: the wizard reads what the robot would say.
-    pub(in crate::conversation) fn unsaid(&mut self, after: u64, reactions: Vec<Reaction>) -> Vec<Reaction> {
+    pub(in crate::conversation) fn unsaid(&mut self, after: u64, outbox: Vec<Outgoing>) -> Vec<Outgoing> {
         let newest = self.memory.plans.last_key_value().map(|(number, _)| *number);
         if let Some(number) = newest.filter(|number| *number > after) {
             self.silence(number);
         }
-        let is_words =
-            |message: &DialogMessage| matches!(message.header.kind(), Some(DialogKind::Reply | DialogKind::Question));
-        let told = reactions.into_iter().filter_map(|reaction| match reaction {
-            Reaction::Chat(line) if line.from == Speaker::Robot => Some(Reaction::ForWizard(line.text)),
-            Reaction::Bus(message) if is_words(&message) => None,
-            other => Some(other),
-        });
-        told.collect()
+        let unsaid = |item: Outgoing| match item {
+            Outgoing::Say(line) | Outgoing::Ask(line) => Outgoing::ForWizard(line.text),
+            other => other,
+        };
+        outbox.into_iter().map(unsaid).collect()
     }
 }
 

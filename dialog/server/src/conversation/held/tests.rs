@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use cohabit_bus::message::{DialogMessage, PlanStep};
+use cohabit_bus::message::DialogMessage;
 use cohabit_cdf::{Action, GoToTarget, RoomId, Status};
 use cohabit_record::DialogEntry;
 
@@ -42,12 +42,12 @@ fn delayed(delay_ms: u64) -> Conversation {
 
 /// Says something at 1 s; gives its turn.
 fn say(conversation: &mut Conversation, text: &str) -> u64 {
-    let (turn, reactions) = conversation.hear_called(text, text, 1000 * MS, &knowledge());
-    assert!(!plans(&reactions) && says(&reactions).is_empty(), "{reactions:?}");
+    let (turn, outbox) = conversation.hear_called(text, text, 1000 * MS, &knowledge());
+    assert!(!plans(&outbox) && says(&outbox).is_empty(), "{outbox:?}");
     turn
 }
 
-fn decide(conversation: &mut Conversation, decision: Decision, at_ms: u64) -> Vec<Reaction> {
+fn decide(conversation: &mut Conversation, decision: Decision, at_ms: u64) -> Vec<Outgoing> {
     conversation.decide(decision, at_ms * MS, &knowledge()).unwrap()
 }
 
@@ -56,20 +56,17 @@ fn own(turn: Option<u64>, say: &str, order: &str) -> Decision {
 }
 
 /// What was noted for the log.
-fn records(reactions: &[Reaction]) -> Vec<WizardDecision> {
-    let entries = reactions.iter().filter_map(|reaction| match reaction {
-        Reaction::Bus(message) => {
-            let view = cohabit_bus::message::DialogView { header: &message.header, steps: &[] };
-            DialogEntry::new(0, &cohabit_bus::Envelope::default(), view)
-        }
-        _ => None,
+fn records(outbox: &[Outgoing]) -> Vec<WizardDecision> {
+    let entries = outbox.iter().filter_map(|item| item.message(0)).filter_map(|message| {
+        let view = cohabit_bus::message::DialogView { header: &message.header, steps: &[] };
+        DialogEntry::new(0, &cohabit_bus::Envelope::default(), view)
     });
     entries.filter_map(|entry| WizardDecision::of(&entry)).collect()
 }
 
-fn outcome(reactions: &[Reaction]) -> DecisionOutcome {
-    let all = records(reactions);
-    assert_eq!(all.len(), 1, "{reactions:?}");
+fn outcome(outbox: &[Outgoing]) -> DecisionOutcome {
+    let all = records(outbox);
+    assert_eq!(all.len(), 1, "{outbox:?}");
     all[0].outcome
 }
 
@@ -81,11 +78,11 @@ fn what_is_accepted_is_done_as_the_robot_would_have() {
     assert_eq!((proposal.turn, proposal.kind.as_str(), proposal.said.as_str()), (turn, "plan", SAID));
     assert!(proposal.reply.contains("main office") && proposal.left_ms.is_none(), "{proposal:?}");
     assert!(conversation.elapse(3_600_000 * MS, &knowledge()).is_empty(), "nothing follows by itself");
-    let reactions = decide(&mut conversation, Decision::Accept { turn, revision: 0 }, 3500);
+    let outbox = decide(&mut conversation, Decision::Accept { turn, revision: 0 }, 3500);
     let (_, by_itself) = super::super::tests::conversation().hear(SAID, &knowledge());
-    assert!(plans(&reactions));
-    assert_eq!(says(&reactions), says(&by_itself));
-    let record = &records(&reactions)[0];
+    assert!(plans(&outbox));
+    assert_eq!(says(&outbox), says(&by_itself));
+    let record = &records(&outbox)[0];
     assert_eq!((record.outcome, record.said.as_str()), (DecisionOutcome::Accepted, SAID));
     assert_eq!((record.decided_ms, record.answered_ms), (Some(2500.0), Some(2500.0)));
     assert!(conversation.proposal(0).is_none());
@@ -104,9 +101,9 @@ fn an_edit_is_proposed_in_its_place() {
     assert_eq!((proposal.kind.as_str(), proposal.revision), ("plan", 1));
     let stale = conversation.decide(Decision::Accept { turn, revision: 0 }, 0, &knowledge());
     assert_eq!(stale, Err(CHANGED.to_owned()));
-    let reactions = decide(&mut conversation, Decision::Accept { turn, revision: 1 }, 3000);
-    assert!(plans(&reactions) && says(&reactions).contains("reception"), "{}", says(&reactions));
-    let record = &records(&reactions)[0];
+    let outbox = decide(&mut conversation, Decision::Accept { turn, revision: 1 }, 3000);
+    assert!(plans(&outbox) && says(&outbox).contains("reception"), "{}", says(&outbox));
+    let record = &records(&outbox)[0];
     assert_eq!(
         (record.outcome, record.edits.as_slice()),
         (DecisionOutcome::Edited, &["go to the reception".to_owned()][..])
@@ -118,26 +115,26 @@ fn an_edit_is_proposed_in_its_place() {
 fn words_and_orders_take_the_place_of_what_was_proposed() {
     let mut conversation = with_wizard(0, None);
     let turn = say(&mut conversation, SAID);
-    let reactions = decide(&mut conversation, own(Some(turn), "I would rather not.", ""), 2000);
-    assert!(!plans(&reactions));
-    assert_eq!((says(&reactions).as_str(), outcome(&reactions)), ("I would rather not.", DecisionOutcome::Replaced));
+    let outbox = decide(&mut conversation, own(Some(turn), "I would rather not.", ""), 2000);
+    assert!(!plans(&outbox));
+    assert_eq!((says(&outbox).as_str(), outcome(&outbox)), ("I would rather not.", DecisionOutcome::Replaced));
     // An order is carried out without a word, and can go with one.
     let turn = say(&mut conversation, SAID);
-    let reactions = decide(&mut conversation, own(Some(turn), "", "go to the reception"), 2000);
-    assert!(plans(&reactions) && says(&reactions).is_empty(), "{reactions:?}");
-    assert_eq!(records(&reactions)[0].ordered, "go to the reception");
+    let outbox = decide(&mut conversation, own(Some(turn), "", "go to the reception"), 2000);
+    assert!(plans(&outbox) && says(&outbox).is_empty(), "{outbox:?}");
+    assert_eq!(records(&outbox)[0].ordered, "go to the reception");
     let turn = say(&mut conversation, SAID);
-    let reactions = decide(&mut conversation, own(Some(turn), "Off I go.", "go to the reception"), 2000);
-    assert!(plans(&reactions) && says(&reactions) == "Off I go.");
+    let outbox = decide(&mut conversation, own(Some(turn), "Off I go.", "go to the reception"), 2000);
+    assert!(plans(&outbox) && says(&outbox) == "Off I go.");
     let turn = say(&mut conversation, SAID);
     let phrase = Decision::Own { turn: Some(turn), say: String::new(), phrase: Some('h'), order: String::new() };
-    let reactions = decide(&mut conversation, phrase, 2000);
-    assert_eq!((says(&reactions).as_str(), records(&reactions)[0].phrase), ("Hello!", Some('h')));
+    let outbox = decide(&mut conversation, phrase, 2000);
+    assert_eq!((says(&outbox).as_str(), records(&outbox)[0].phrase), ("Hello!", Some('h')));
     // Nothing at all dismisses it.
     let turn = say(&mut conversation, SAID);
-    let reactions = decide(&mut conversation, own(Some(turn), "", ""), 2000);
-    assert!(!plans(&reactions) && says(&reactions).is_empty());
-    assert_eq!(outcome(&reactions), DecisionOutcome::Dismissed);
+    let outbox = decide(&mut conversation, own(Some(turn), "", ""), 2000);
+    assert!(!plans(&outbox) && says(&outbox).is_empty());
+    assert_eq!(outcome(&outbox), DecisionOutcome::Dismissed);
 }
 
 #[test]
@@ -162,16 +159,16 @@ fn what_cannot_be_ordered_is_told_to_the_wizard_and_waits() {
 #[test]
 fn a_wizard_acts_of_their_own_accord() {
     let mut conversation = with_wizard(0, None);
-    let reactions = decide(&mut conversation, own(None, "Hello there.", ""), 2000);
-    assert_eq!((says(&reactions).as_str(), outcome(&reactions)), ("Hello there.", DecisionOutcome::Unprompted));
-    let reactions = decide(&mut conversation, own(None, "", "go to the reception"), 2000);
-    assert!(plans(&reactions) && says(&reactions).is_empty());
+    let outbox = decide(&mut conversation, own(None, "Hello there.", ""), 2000);
+    assert_eq!((says(&outbox).as_str(), outcome(&outbox)), ("Hello there.", DecisionOutcome::Unprompted));
+    let outbox = decide(&mut conversation, own(None, "", "go to the reception"), 2000);
+    assert!(plans(&outbox) && says(&outbox).is_empty());
     // A phrase that waits leaves what is held back as it is.
     let turn = say(&mut conversation, SAID);
     let phrase = Decision::Own { turn: None, say: String::new(), phrase: Some('m'), order: String::new() };
     assert_eq!(says(&decide(&mut conversation, phrase, 2000)), "Hm, let me see.");
-    let reactions = decide(&mut conversation, Decision::Accept { turn, revision: 0 }, 3000);
-    assert!(plans(&reactions) && outcome(&reactions) == DecisionOutcome::Accepted);
+    let outbox = decide(&mut conversation, Decision::Accept { turn, revision: 0 }, 3000);
+    assert!(plans(&outbox) && outcome(&outbox) == DecisionOutcome::Accepted);
 }
 
 #[test]
@@ -183,30 +180,30 @@ fn what_comes_of_an_order_is_told_to_the_wizard_alone() {
         let told = kinds.map(|kind| DialogMessage::new(kind, 0, plan, "").at_step(0, Status::TargetOutOfRange));
         told.iter().flat_map(|message| conversation.follow(&message.header, knowledge)).collect::<Vec<_>>()
     };
-    let reactions = decide(&mut conversation, own(None, "", SAID), 2000);
-    let plan = plan_number(&reactions);
-    let reactions = end(&mut conversation, &mut knowledge, plan);
-    assert!(says(&reactions).is_empty(), "{reactions:?}");
-    assert!(reactions.iter().any(|reaction| matches!(reaction, Reaction::ForWizard(_))), "{reactions:?}");
-    assert!(!reactions.iter().any(is_spoken), "{reactions:?}");
+    let outbox = decide(&mut conversation, own(None, "", SAID), 2000);
+    let plan = plan_number(&outbox);
+    let outbox = end(&mut conversation, &mut knowledge, plan);
+    assert!(says(&outbox).is_empty(), "{outbox:?}");
+    assert!(outbox.iter().any(|item| matches!(item, Outgoing::ForWizard(_))), "{outbox:?}");
+    assert!(!outbox.iter().any(is_spoken), "{outbox:?}");
     // What was asked for is told as ever.
     let turn = say(&mut conversation, SAID);
     let plan = plan_number(&decide(&mut conversation, Decision::Accept { turn, revision: 0 }, 2000));
     assert!(!says(&end(&mut conversation, &mut knowledge, plan)).is_empty());
 }
 
-fn is_spoken(reaction: &Reaction) -> bool {
-    matches!(reaction, Reaction::Bus(message) if matches!(message.header.kind(), Some(DialogKind::Reply | DialogKind::Question)))
+fn is_spoken(item: &Outgoing) -> bool {
+    matches!(item, Outgoing::Say(_) | Outgoing::Ask(_))
 }
 
-fn plan_number(reactions: &[Reaction]) -> u64 {
-    let plan = reactions.iter().find_map(|reaction| match reaction {
-        Reaction::Bus(message) if message.header.kind() == Some(DialogKind::Plan) => Some(message),
+fn plan_number(outbox: &[Outgoing]) -> u64 {
+    let plan = outbox.iter().find_map(|item| match item {
+        Outgoing::Plan { number, steps } => Some((*number, steps)),
         _ => None,
     });
-    let plan: &DialogMessage = plan.unwrap();
-    assert!(plan.steps.iter().all(|step: &PlanStep| step.action != PlanStep::default().action));
-    plan.header.turn
+    let (number, steps) = plan.unwrap();
+    assert!(!steps.is_empty());
+    number
 }
 
 #[test]
@@ -218,19 +215,19 @@ fn a_time_out_has_its_policy() {
         let turn = say(&mut conversation, SAID);
         assert_eq!(conversation.due(1000 * MS), Some(4000 * MS));
         assert!(conversation.elapse(3999 * MS, &knowledge()).is_empty());
-        let reactions = conversation.elapse(4000 * MS, &knowledge());
-        assert_eq!(plans(&reactions), acts);
+        let outbox = conversation.elapse(4000 * MS, &knowledge());
+        assert_eq!(plans(&outbox), acts);
         if acts {
-            let record = &records(&reactions)[0];
+            let record = &records(&outbox)[0];
             assert_eq!((record.outcome, record.is_late), (DecisionOutcome::TimedOut, true));
             assert_eq!((record.decided_ms, record.answered_ms), (None, Some(3000.0)));
             continue;
         }
-        assert_eq!(says(&reactions), moment);
+        assert_eq!(says(&outbox), moment);
         assert!(conversation.due(4000 * MS).is_none() && conversation.elapse(9000 * MS, &knowledge()).is_empty());
         assert!(conversation.proposal(0).unwrap().is_late);
-        let reactions = decide(&mut conversation, Decision::Accept { turn, revision: 0 }, 9000);
-        let record = &records(&reactions)[0];
+        let outbox = decide(&mut conversation, Decision::Accept { turn, revision: 0 }, 9000);
+        let record = &records(&outbox)[0];
         assert_eq!((record.outcome, record.is_late), (DecisionOutcome::Accepted, true));
     }
 }
@@ -241,8 +238,8 @@ fn the_delay_is_the_same_with_and_without_a_wizard() {
     let mut led = with_wizard(800, None);
     let turn = say(&mut alone, SAID);
     assert_eq!(say(&mut led, SAID), turn);
-    let reactions = decide(&mut led, Decision::Accept { turn, revision: 0 }, 1200);
-    assert!(!plans(&reactions) && led.proposal(0).unwrap().is_decided);
+    let outbox = decide(&mut led, Decision::Accept { turn, revision: 0 }, 1200);
+    assert!(!plans(&outbox) && led.proposal(0).unwrap().is_decided);
     for conversation in [&mut alone, &mut led] {
         assert_eq!(conversation.due(1200 * MS), Some(1800 * MS));
         assert!(conversation.elapse(1799 * MS, &knowledge()).is_empty());
@@ -250,9 +247,9 @@ fn the_delay_is_the_same_with_and_without_a_wizard() {
     let (alone, led) = (alone.elapse(1800 * MS, &knowledge()), led.elapse(1800 * MS, &knowledge()));
     assert!(records(&alone).is_empty(), "nobody decided it");
     // To people it is all one.
-    let seen = |reactions: Vec<Reaction>| -> Vec<Reaction> {
-        let is_decision = |reaction: &Reaction| !records(std::slice::from_ref(reaction)).is_empty();
-        reactions.into_iter().filter(|reaction| !is_decision(reaction)).collect()
+    let seen = |outbox: Vec<Outgoing>| -> Vec<Outgoing> {
+        let is_decision = |item: &Outgoing| !records(std::slice::from_ref(item)).is_empty();
+        outbox.into_iter().filter(|item| !is_decision(item)).collect()
     };
     assert_eq!(seen(alone), seen(led));
 }
@@ -267,13 +264,13 @@ fn what_is_said_meanwhile_waits_and_a_stop_does_not() {
     decide(&mut conversation, Decision::Accept { turn: first, revision: 0 }, 2000);
     let proposal = conversation.proposal(2000 * MS).unwrap();
     assert_eq!((proposal.turn, proposal.left_ms), (second, Some(3000)), "time counts from when it could be decided");
-    let (_, reactions) = conversation.hear_called("stop!", "stop!", 2500 * MS, &knowledge());
-    assert!(plans(&reactions) && says(&reactions).contains("stop"), "{}", says(&reactions));
-    let outcomes: Vec<_> = records(&reactions).iter().map(|record| record.outcome).collect();
+    let (_, outbox) = conversation.hear_called("stop!", "stop!", 2500 * MS, &knowledge());
+    assert!(plans(&outbox) && says(&outbox).contains("stop"), "{}", says(&outbox));
+    let outcomes: Vec<_> = records(&outbox).iter().map(|record| record.outcome).collect();
     assert_eq!(outcomes, [DecisionOutcome::Stopped; 2]);
     let ended = |turn: u64| {
-        let over = Reaction::TurnEnded { turn, end: TurnEnd::Interrupted };
-        reactions.contains(&over)
+        let over = Outgoing::TurnEnded { turn, end: TurnEnd::Interrupted };
+        outbox.contains(&over)
     };
     assert!(ended(second) && ended(third) && conversation.proposal(0).is_none());
 }
@@ -282,12 +279,12 @@ fn what_is_said_meanwhile_waits_and_a_stop_does_not() {
 fn what_is_said_with_a_stop_is_held_back_by_itself() {
     let mut conversation = with_wizard(0, None);
     let text = "stop, and go to the reception";
-    let (turn, reactions) = conversation.hear_called(text, text, 1000 * MS, &knowledge());
-    let stop = plan_number(&reactions);
-    assert!(!says(&reactions).contains("reception"), "{}", says(&reactions));
+    let (turn, outbox) = conversation.hear_called(text, text, 1000 * MS, &knowledge());
+    let stop = plan_number(&outbox);
+    assert!(!says(&outbox).contains("reception"), "{}", says(&outbox));
     assert_eq!(conversation.proposal(0).unwrap().kind, "plan");
-    let reactions = decide(&mut conversation, Decision::Accept { turn, revision: 0 }, 2000);
-    assert!(plan_number(&reactions) > stop && says(&reactions).contains("reception"));
+    let outbox = decide(&mut conversation, Decision::Accept { turn, revision: 0 }, 2000);
+    assert!(plan_number(&outbox) > stop && says(&outbox).contains("reception"));
 }
 
 #[test]
@@ -298,12 +295,12 @@ fn what_is_proposed_follows_what_the_robot_does_meanwhile() {
     let held = say(&mut conversation, "what did you do?");
     let before = conversation.proposal(0).unwrap();
     let done = DialogMessage::new(DialogKind::StepEnded, 0, plan, "").at_step(0, Status::ActionSuccessful);
-    let reactions = conversation.follow(&done.header, &mut knowledge());
+    let outbox = conversation.follow(&done.header, &mut knowledge());
     let after = conversation.proposal(0).unwrap();
     assert_eq!(after.turn, held);
     if after.reply != before.reply {
         assert_eq!(after.revision, before.revision + 1);
-        assert!(reactions.contains(&Reaction::Proposes));
+        assert!(outbox.contains(&Outgoing::Proposes));
     }
     assert_ne!(after.reply, before.reply, "it has done something since");
 }
@@ -323,17 +320,17 @@ fn a_conversation_goes_on_with_what_it_held_back() {
 fn clicks_are_done_without_a_word_and_noted() {
     let mut conversation = with_wizard(0, None);
     let click = |turn, click| Decision::Click { turn, click, chosen_ms: Some(700.0) };
-    let reactions = decide(&mut conversation, click(None, Click::Room { room: RoomId::Reception }), 2000);
-    assert!(plans(&reactions) && says(&reactions).is_empty(), "{reactions:?}");
-    let record = &records(&reactions)[0];
+    let outbox = decide(&mut conversation, click(None, Click::Room { room: RoomId::Reception }), 2000);
+    assert!(plans(&outbox) && says(&outbox).is_empty(), "{outbox:?}");
+    let record = &records(&outbox)[0];
     assert_eq!((record.outcome, record.chosen_ms), (DecisionOutcome::Unprompted, Some(700.0)));
     assert_eq!((record.clicked.as_deref(), record.ordered.as_str()), (Some("go_to_room"), "going to the reception"));
     // In place of what was proposed.
     let turn = say(&mut conversation, SAID);
-    let reactions = decide(&mut conversation, click(Some(turn), Click::Point { object: 3 }), 2000);
-    let record = &records(&reactions)[0];
+    let outbox = decide(&mut conversation, click(Some(turn), Click::Point { object: 3 }), 2000);
+    let record = &records(&outbox)[0];
     assert_eq!((record.outcome, record.object), (DecisionOutcome::Replaced, Some(3)));
-    assert!(plans(&reactions) && conversation.proposal(0).is_none());
+    assert!(plans(&outbox) && conversation.proposal(0).is_none());
     let problem = conversation.decide(click(None, Click::Look { object: 3 }), 0, &knowledge()).unwrap_err();
     assert!(problem.contains("in that room"), "{problem}");
 }
@@ -343,19 +340,19 @@ fn planned_errors_take_the_place_of_what_was_proposed_and_are_marked() {
     let mut conversation = with_wizard(0, None);
     let inject = |turn, name: &str| Decision::Inject { turn, error: name.to_owned() };
     let turn = say(&mut conversation, SAID);
-    let reactions = decide(&mut conversation, inject(Some(turn), "wrong room"), 2000);
-    assert!(says(&reactions).contains("main office"), "it says what it would have said: {}", says(&reactions));
+    let outbox = decide(&mut conversation, inject(Some(turn), "wrong room"), 2000);
+    assert!(says(&outbox).contains("main office"), "it says what it would have said: {}", says(&outbox));
     let reception = Action::GoTo { target: GoToTarget::Room(RoomId::Reception) };
-    let does = reactions.iter().any(|reaction| match reaction {
-        Reaction::Bus(message) => message.steps.iter().any(|step| step.action == reception.into()),
+    let does = |item: &Outgoing| match item {
+        Outgoing::Plan { steps, .. } => steps.iter().any(|step| step.action == reception),
         _ => false,
-    });
-    assert!(does, "{reactions:?}");
-    let record = &records(&reactions)[0];
+    };
+    assert!(outbox.iter().any(does), "{outbox:?}");
+    let record = &records(&outbox)[0];
     assert_eq!((record.outcome, record.injected.as_deref()), (DecisionOutcome::Replaced, Some("wrong room")));
-    let reactions = decide(&mut conversation, inject(None, "forgets"), 3000);
-    assert_eq!(says(&reactions), "I forgot what I was about.");
-    assert_eq!(records(&reactions)[0].injected.as_deref(), Some("forgets"));
+    let outbox = decide(&mut conversation, inject(None, "forgets"), 3000);
+    assert_eq!(says(&outbox), "I forgot what I was about.");
+    assert_eq!(records(&outbox)[0].injected.as_deref(), Some("forgets"));
     for (name, part) in [("wrong room", "none is proposed"), ("no such", "No planned error")] {
         let problem = conversation.decide(inject(None, name), 0, &knowledge()).unwrap_err();
         assert!(problem.contains(part), "{problem}");
@@ -364,23 +361,23 @@ fn planned_errors_take_the_place_of_what_was_proposed_and_are_marked() {
 
 #[test]
 fn the_face_follows_the_conversation_and_the_wizard() {
-    let shown = |reactions: &[Reaction]| -> Vec<FacialExpression> {
-        let all = reactions.iter().filter_map(|reaction| match reaction {
-            Reaction::Expresses(shown) => Some(*shown),
+    let shown = |outbox: &[Outgoing]| -> Vec<FacialExpression> {
+        let all = outbox.iter().filter_map(|item| match item {
+            Outgoing::Express { shown, .. } => Some(*shown),
             _ => None,
         });
         all.collect()
     };
     let mut alone = conversation();
-    let (_, reactions) = alone.hear("blorp the zargle", &knowledge());
-    assert_eq!(shown(&reactions), [FacialExpression::Confused], "without a wizard, too");
-    let (_, reactions) = alone.hear(SAID, &knowledge());
-    assert_eq!(shown(&reactions), [FacialExpression::Neutral]);
+    let (_, outbox) = alone.hear("blorp the zargle", &knowledge());
+    assert_eq!(shown(&outbox), [FacialExpression::Confused], "without a wizard, too");
+    let (_, outbox) = alone.hear(SAID, &knowledge());
+    assert_eq!(shown(&outbox), [FacialExpression::Neutral]);
     let mut led = with_wizard(0, None);
     let happy = || Decision::Express { expression: FacialExpression::Happy };
-    let reactions = decide(&mut led, happy(), 2000);
-    assert_eq!((shown(&reactions), outcome(&reactions)), (vec![FacialExpression::Happy], DecisionOutcome::Unprompted));
-    assert_eq!(records(&reactions)[0].expression.as_deref(), Some("happy"));
+    let outbox = decide(&mut led, happy(), 2000);
+    assert_eq!((shown(&outbox), outcome(&outbox)), (vec![FacialExpression::Happy], DecisionOutcome::Unprompted));
+    assert_eq!(records(&outbox)[0].expression.as_deref(), Some("happy"));
     assert!(shown(&decide(&mut led, happy(), 2500)).is_empty(), "that is no news");
 }
 
@@ -389,8 +386,7 @@ fn what_is_undecided_when_the_session_ends_is_noted() {
     let mut led = with_wizard(0, None);
     say(&mut led, SAID);
     say(&mut led, "go to the reception");
-    let left = led.left_undecided().into_iter().map(|message| Reaction::Bus(Box::new(message)));
-    let noted = records(&left.collect::<Vec<_>>()).into_iter().map(|record| (record.outcome, record.said));
+    let noted = records(&led.left_undecided()).into_iter().map(|record| (record.outcome, record.said));
     let undecided = |said: &str| (DecisionOutcome::Undecided, said.to_owned());
     assert_eq!(noted.collect::<Vec<_>>(), [undecided(SAID), undecided("go to the reception")]);
     assert!(led.proposal(0).is_some(), "a service that goes on holds it back yet");
