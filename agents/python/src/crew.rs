@@ -125,7 +125,11 @@ impl Crew {
     ///
     /// # Errors
     /// Those of `work`.
-    pub fn share_out<J: Send, E: Send>(&self, jobs: Vec<J>, work: impl Fn(J) -> Result<(), E> + Sync) -> Result<(), E> {
+    pub fn share_out<J: Send, E: Send>(
+        &mut self,
+        jobs: Vec<J>,
+        work: impl Fn(J) -> Result<(), E> + Sync,
+    ) -> Result<(), E> {
         let threads = (self.helpers.len() + 1).min(jobs.len());
         if threads < 2 {
             return jobs.into_iter().try_for_each(work);
@@ -142,7 +146,7 @@ impl Crew {
     }
 
     /// Has this thread and all helpers that are there in time run `work`, each once; returns when nobody runs it any more.
-    fn round(&self, work: &(dyn Fn(usize) + Sync)) {
+    fn round(&mut self, work: &(dyn Fn(usize) + Sync)) {
         let panicked = Mutex::new(None);
         let run = |thread: usize| {
             if let Err(panic) = catch_unwind(AssertUnwindSafe(|| work(thread))) {
