@@ -155,11 +155,11 @@ impl Crew {
         };
         let run: &(dyn Fn(usize) + Sync) = &run;
         // SAFETY: helpers call it between joining the round and leaving it alone. Nobody joins once the gate is closed, and this
-        // function neither returns nor unwinds before the gate is closed and all who joined have left: `run` catches panics,
-        // and so does nothing between here and there.
-        let shared = unsafe { std::mem::transmute::<&(dyn Fn(usize) + Sync), &'static (dyn Fn(usize) + Sync)>(run) };
+        // function neither returns nor unwinds before the gate is closed and all who joined have left: `run` catches panics, and
+        // nothing else panics between here and there. One round is over before the next begins: `self` is borrowed for it alone.
+        let lent = unsafe { std::mem::transmute::<&(dyn Fn(usize) + Sync), &'static (dyn Fn(usize) + Sync)>(run) };
         let Shared { rounds, gate, work, .. } = &*self.shared;
-        *lock(work) = Some(Work { run: shared, caller: thread::current() });
+        *lock(work) = Some(Work { run: lent, caller: thread::current() });
         gate.store(0, Ordering::Release);
         rounds.fetch_add(1, Ordering::Release);
         self.helpers.iter().for_each(|helper| helper.thread().unpark());
