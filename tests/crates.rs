@@ -182,8 +182,7 @@ fn a_file_is_one_thing_and_no_longer_than_that() {
 fn modules_know_each_other_in_no_circle() {
     let mut wrong = Vec::new();
     for (package, folder) in packages().1 {
-        let all = uses(&folder.join("src"));
-        let circles = circular(&all);
+        let circles = circular(&uses(&folder.join("src")));
         if package == CIRCULAR {
             assert!(!circles.is_empty(), "the modules of {package} know each other in no circle any more");
             continue;

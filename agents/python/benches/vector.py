@@ -45,9 +45,9 @@ def one(planes: tuple[str, ...]) -> Callable[[], int]:
     return step
 
 
-def many(planes: tuple[str, ...]) -> Callable[[], int]:
-    """Steps 16 of them in one call."""
-    envs = cohabit.VectorEnv(None, 16, planes=planes, size=84, ticks_per_step=1, max_steps=500)
+def many(planes: tuple[str, ...], ticks: int | None = 1) -> Callable[[], int]:
+    """Steps 16 of them in one call, so many ticks at a time or each to its outcome."""
+    envs = cohabit.VectorEnv(None, 16, planes=planes, size=84, ticks_per_step=ticks, max_steps=500)
     envs.reset(seed=0)
     actions = np.tile(TURN, (16, 1))
 
@@ -66,8 +66,10 @@ def main() -> None:
         ("one, 84x84, four planes", one(("color", "depth", "normals", "ids"))),
         ("16 in a vector, no pictures", many(())),
         ("16 in a vector, 84x84 colour", many(("color",))),
+        ("16 to their outcomes, no pictures", many((), None)),
+        ("16 to their outcomes, 84x84 colour", many(("color",), None)),
     ]:
-        print(f"{name:30} {rate(step):9.0f} steps/s")
+        print(f"{name:34} {rate(step):9.0f} steps/s")
 
 
 if __name__ == "__main__":

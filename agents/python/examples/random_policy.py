@@ -7,14 +7,6 @@ import numpy as np
 import cohabit
 
 STEPS, WORLDS = 50, 4
-CHOICES = len(cohabit.CHOICES)
-
-
-def chance(masks: np.ndarray, random: np.random.Generator) -> np.ndarray:
-    """A choice and a slot for each world, of those that may be tried."""
-    parts = masks[:, :CHOICES], masks[:, CHOICES:]
-    return np.stack([(part * random.random(part.shape)).argmax(axis=1) for part in parts], axis=1)
-
 
 random = np.random.default_rng(0)
 suite = cohabit.generate(6, seed=3)
@@ -25,11 +17,15 @@ envs = cohabit.VectorEnv(suite, WORLDS, planes=("color",), size=84, ticks_per_st
 envs.reset(seed=0)
 began = time.perf_counter()
 for _ in range(STEPS):
-    observation, rewards, terminated, truncated, infos = envs.step(chance(envs.action_masks(), random))
+    observation, rewards, terminated, truncated, infos = envs.step(envs.sample())
 print(f"{STEPS * WORLDS / (time.perf_counter() - began):.0f} steps/s, pictures of {observation['color'].shape}")
 
 print(
     cohabit.evaluate(
-        lambda observation, infos: chance(infos["action_masks"], random), suite, planes=(), max_steps=20, ticks_per_step=60
+        lambda observation, infos: cohabit.sample_actions(infos["action_masks"], random),
+        suite,
+        planes=(),
+        max_steps=20,
+        ticks_per_step=60,
     )
 )

@@ -1,8 +1,10 @@
 //! What bodies sense of a world: taken from the world itself, or from the records that its simulator published.
 
 use cohabit_bus::message::{BodyRecord, NONE, ObjectRecord};
-use cohabit_cdf::{BodyId, ObjectId};
+use cohabit_cdf::{BodyId, ObjectId, RoomId};
 use cohabit_world::{BodyView, ObjectView, World};
+
+use crate::library::Library;
 
 /// An object, as far as bodies sense it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,6 +50,12 @@ pub trait Around {
 
     /// All objects that are there, by their numbers.
     fn sights(&self) -> impl Iterator<Item = Sight>;
+
+    /// Those of a room that are not hidden, by their numbers.
+    fn sights_in(&self, room: u32) -> impl Iterator<Item = Sight>;
+
+    /// What is known of the classes of objects.
+    fn library(&self) -> &Library;
 }
 
 /// Records of bodies and of objects; those of objects by their numbers.
@@ -55,6 +63,14 @@ pub trait Around {
 pub struct Records<'a> {
     pub bodies: &'a [BodyRecord],
     pub objects: &'a [ObjectRecord],
+    pub library: &'a Library,
+}
+
+/// A world of this process.
+#[derive(Clone, Copy)]
+pub struct Simulated<'a> {
+    pub world: &'a World,
+    pub library: &'a Library,
 }
 
 impl Around for Records<'_> {
@@ -70,20 +86,39 @@ impl Around for Records<'_> {
     fn sights(&self) -> impl Iterator<Item = Sight> {
         self.objects.iter().map(Sight::from)
     }
+
+    fn sights_in(&self, room: u32) -> impl Iterator<Item = Sight> {
+        self.sights().filter(move |object| object.room == room && !object.hidden)
+    }
+
+    fn library(&self) -> &Library {
+        self.library
+    }
 }
 
-impl Around for World {
+impl Around for Simulated<'_> {
     fn posture(&self, body: u32) -> Option<Posture> {
-        self.body(BodyId(body)).map(|view| Posture::from(&view))
+        self.world.body(BodyId(body)).map(|view| Posture::from(&view))
     }
 
     fn sight(&self, object: u32) -> Option<Sight> {
         let id = ObjectId(object);
-        self.object(id).filter(|_| self.exists(id)).map(|view| Sight::from(&view))
+        self.world.object(id).filter(|_| self.world.exists(id)).map(|view| Sight::from(&view))
     }
 
     fn sights(&self) -> impl Iterator<Item = Sight> {
-        self.objects().filter(|view| self.exists(view.id)).map(|view| Sight::from(&view))
+        let world = self.world;
+        world.objects().filter(move |view| world.exists(view.id)).map(|view| Sight::from(&view))
+    }
+
+    fn sights_in(&self, room: u32) -> impl Iterator<Item = Sight> {
+        let world = self.world;
+        let objects = RoomId::from_index(room).into_iter().flat_map(move |room| world.objects_in(room));
+        objects.filter(|view| !view.hidden).map(|view| Sight::from(&view))
+    }
+
+    fn library(&self) -> &Library {
+        self.library
     }
 }
 

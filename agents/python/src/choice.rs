@@ -1,11 +1,14 @@
 //! The discrete actions of environments: what a policy chooses from, and what of it makes sense.
 
-use std::{f32::consts::PI, sync::OnceLock};
+use std::{
+    f32::consts::PI,
+    sync::{Arc, OnceLock},
+};
 
 use cohabit_cdf::{Action, ActionKind, Catalog, GoToTarget, ObjectClass, ObjectId, RoomId, Verb};
 use pyo3::prelude::*;
 
-use crate::{action::PyAction, error::bad_argument, library::catalog};
+use crate::{action::PyAction, error::bad_argument};
 
 /// One step ahead or back, m.
 const STRIDE_M: f32 = 0.5;
@@ -44,9 +47,10 @@ impl Choice {
     ///
     /// # Errors
     /// A `ValueError` if there is none.
-    pub fn numbered(number: usize) -> PyResult<Self> {
+    pub fn numbered(number: i64) -> PyResult<Self> {
+        let choice = usize::try_from(number).ok().and_then(|number| Self::all().nth(number));
         let last = Self::all().count() - 1;
-        Self::all().nth(number).ok_or_else(|| bad_argument(format!("there is no choice {number}: 0 to {last}")))
+        choice.ok_or_else(|| bad_argument(format!("there is no choice {number}: 0 to {last}")))
     }
 
     /// As documents call it.
@@ -107,20 +111,33 @@ impl Choice {
     }
 }
 
-/// The choices that things of a class afford to somebody who holds a thing of another class, or nothing: a bit each, by their
-/// numbers. Worked out for all classes at once when something of a class is held first.
-pub fn afforded(class: u16, held: Option<u16>) -> u64 {
-    static BY_HELD: OnceLock<Vec<OnceLock<Vec<u64>>>> = OnceLock::new();
-    let classes = catalog().classes();
-    let by_held = BY_HELD.get_or_init(|| (0..=classes.len()).map(|_| OnceLock::new()).collect());
-    let held_class = held.and_then(|held| classes.get(usize::from(held)));
-    let place = held.map_or(0, |held| usize::from(held) + 1);
-    let row = |class: &ObjectClass| {
-        let suits = |choice: Choice| u64::from(choice.is_afforded(catalog(), class, held_class));
-        (0_u32..).zip(Choice::all()).fold(0, |bits, (number, choice)| bits | suits(choice) << number)
-    };
-    let rows = by_held.get(place).map(|rows| rows.get_or_init(|| classes.iter().map(row).collect()));
-    rows.and_then(|rows| rows.get(usize::from(class))).copied().unwrap_or(0)
+/// What things of a catalogue's classes afford to somebody, by what they hold.
+pub struct Affordances {
+    catalog: Arc<Catalog>,
+    /// For nothing that is held, then for each class that is: of each class the choices, a bit each by their numbers.
+    by_held: Vec<OnceLock<Vec<u64>>>,
+}
+
+impl Affordances {
+    /// Those of a catalogue, of which nothing is worked out yet.
+    pub fn new(catalog: Arc<Catalog>) -> Self {
+        let by_held = (0..=catalog.classes().len()).map(|_| OnceLock::new()).collect();
+        Self { catalog, by_held }
+    }
+
+    /// The choices that things of a class afford to somebody who holds a thing of another class, or nothing: a bit each, by their
+    /// numbers. Worked out for all classes at once when something of a class is held first.
+    pub fn of(&self, class: u16, held: Option<u16>) -> u64 {
+        let classes = self.catalog.classes();
+        let held_class = held.and_then(|held| classes.get(usize::from(held)));
+        let place = held.map_or(0, |held| usize::from(held) + 1);
+        let row = |class: &ObjectClass| {
+            let suits = |choice: Choice| u64::from(choice.is_afforded(&self.catalog, class, held_class));
+            (0_u32..).zip(Choice::all()).fold(0, |bits, (number, choice)| bits | suits(choice) << number)
+        };
+        let rows = self.by_held.get(place).map(|rows| rows.get_or_init(|| classes.iter().map(row).collect()));
+        rows.and_then(|rows| rows.get(usize::from(class))).copied().unwrap_or(0)
+    }
 }
 
 /// The command that a choice means, done to an object if to one; none for waiting.
@@ -128,6 +145,6 @@ pub fn afforded(class: u16, held: Option<u16>) -> u64 {
 /// # Errors
 /// A `ValueError` if there is no such choice.
 #[pyfunction]
-pub fn choice_action(choice: usize, object: u32) -> PyResult<Option<PyAction>> {
+pub fn choice_action(choice: i64, object: u32) -> PyResult<Option<PyAction>> {
     Ok(Choice::numbered(choice)?.action(ObjectId(object)).map(PyAction::new))
 }

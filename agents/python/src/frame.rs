@@ -6,14 +6,14 @@ use cohabit_bus::{
     Sample,
     message::{FrameView, Malformed, NONE, Plane, SeenRecord, Thing},
 };
-use cohabit_cdf::SemanticClass;
+use cohabit_cdf::{Catalog, SemanticClass};
 use pyo3::{
     exceptions::{PyAttributeError, PyKeyError},
     prelude::*,
 };
 
 use crate::{
-    library::catalog,
+    library::Library,
     memory::{Memory, Owner},
 };
 
@@ -22,6 +22,7 @@ use crate::{
 #[pyclass(frozen, module = "cohabit._native")]
 pub struct Frame {
     owner: Owner,
+    library: Arc<Library>,
     tick: u64,
     header: cohabit_bus::message::FrameHeader,
     /// Where each plane begins in the payload.
@@ -57,11 +58,19 @@ impl Seen {
 }
 
 impl Frame {
-    /// The frame in a message.
+    /// The frame in a message of a session.
     ///
     /// # Errors
     /// [`Malformed`].
     pub fn new(sample: Sample) -> Result<Self, Malformed> {
+        Self::of(sample, Library::builtin())
+    }
+
+    /// The frame in a message about a world that is made of what a library has.
+    ///
+    /// # Errors
+    /// [`Malformed`].
+    pub fn of(sample: Sample, library: &Arc<Library>) -> Result<Self, Malformed> {
         let tick = sample.envelope().tick;
         let (header, plane_at) = {
             let view = FrameView::new(sample.payload())?;
@@ -69,7 +78,8 @@ impl Frame {
             let at = |plane| view.plane(plane).map(|bytes: &[u8]| bytes.as_ptr() as usize - start);
             (view.header, Plane::ALL.map(at))
         };
-        Ok(Self { owner: Owner::Sample(Arc::new(Mutex::new(sample))), tick, header, plane_at })
+        let owner = Owner::Sample(Arc::new(Mutex::new(sample)));
+        Ok(Self { owner, library: Arc::clone(library), tick, header, plane_at })
     }
 
     /// What is seen, by picture, then by id.
@@ -213,7 +223,7 @@ impl Frame {
     /// What is seen, by picture, then by id; empty where the camera delivers no ids.
     #[getter]
     fn seen(&self) -> Vec<Seen> {
-        self.records().iter().map(Seen::new).collect()
+        self.records().iter().map(|record| Seen::new(record, self.library.catalog())).collect()
     }
 
     fn __repr__(&self) -> String {
@@ -232,12 +242,12 @@ pub const fn item_of(plane: Plane) -> &'static str {
 }
 
 impl Seen {
-    fn new(record: &SeenRecord) -> Self {
+    fn new(record: &SeenRecord, catalog: &Catalog) -> Self {
         let class = SemanticClass::from_index(record.class);
-        let name = class.name(catalog());
+        let name = class.name(catalog);
         let class_id = match class {
             SemanticClass::Object(id) => {
-                catalog().classes().get(usize::from(id.0)).map_or(name, |class| class.id.as_str())
+                catalog.classes().get(usize::from(id.0)).map_or(name, |class| class.id.as_str())
             }
             _ => name,
         };

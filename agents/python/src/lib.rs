@@ -33,7 +33,7 @@ mod _native {
         choice::choice_action,
         error::Error,
         frame::{Frame, Seen},
-        library::{class_ids, class_names},
+        library::{class_ids, class_names, pack_missions},
         memory::Memory,
         mission_file::mission_text,
         outcome::Outcome,

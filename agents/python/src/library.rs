@@ -1,37 +1,126 @@
-//! What all worlds of a process share: the catalogue, and the meshes of what it lists.
+//! What worlds of this process share: catalogues with and without world packs, and the meshes of what they list.
 
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::{
+    path::Path,
+    sync::{Arc, Mutex, OnceLock, PoisonError},
+};
 
-use cohabit_cdf::Catalog;
+use cohabit_cdf::{Catalog, WorldData, WorldPack};
+use cohabit_engine::read_world_folder;
 use cohabit_render::{MeshLibrary, ModelError};
-use pyo3::pyfunction;
+use pyo3::prelude::*;
 
-/// The built-in catalogue.
-pub fn catalog() -> &'static Arc<Catalog> {
-    static CATALOG: OnceLock<Arc<Catalog>> = OnceLock::new();
-    CATALOG.get_or_init(|| Arc::new(Catalog::builtin()))
+use crate::{choice::Affordances, error::bad_argument};
+
+/// What is built in, perhaps with world packs on top of it.
+pub struct Library {
+    folders: Vec<String>,
+    data: WorldData,
+    affordances: Affordances,
+    meshes: Mutex<Option<Arc<MeshLibrary>>>,
 }
 
-/// Its meshes, built when the first camera needs them.
-pub fn meshes() -> Result<Arc<MeshLibrary>, ModelError> {
-    static MESHES: Mutex<Option<Arc<MeshLibrary>>> = Mutex::new(None);
-    let mut meshes = MESHES.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some(meshes) = &*meshes {
-        return Ok(Arc::clone(meshes));
+impl Library {
+    fn new(folders: Vec<String>, data: WorldData) -> Self {
+        let affordances = Affordances::new(Arc::clone(data.catalog()));
+        Self { folders, data, affordances, meshes: Mutex::new(None) }
     }
-    let built = Arc::new(MeshLibrary::build(catalog())?);
-    *meshes = Some(Arc::clone(&built));
-    Ok(built)
+
+    /// What is built in alone.
+    pub fn builtin() -> &'static Arc<Self> {
+        static BUILTIN: OnceLock<Arc<Library>> = OnceLock::new();
+        BUILTIN.get_or_init(|| Arc::new(Self::new(Vec::new(), WorldData::builtin())))
+    }
+
+    /// The same with the world packs in these folders, in their order. As long as the folders hold the same, it is the same
+    /// library.
+    ///
+    /// # Errors
+    /// A `ValueError` that names the file and what is wrong with it.
+    pub fn with_packs(folders: &[String]) -> PyResult<Arc<Self>> {
+        static KNOWN: Mutex<Vec<Arc<Library>>> = Mutex::new(Vec::new());
+        if folders.is_empty() {
+            return Ok(Arc::clone(Self::builtin()));
+        }
+        let packs = folders.iter().map(|folder| read_world_folder(Path::new(folder))).collect::<Result<Vec<_>, _>>();
+        let packs = packs.map_err(bad_argument)?;
+        let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
+        let ids = || packs.iter().map(WorldPack::id);
+        let is_same = |one: &&Arc<Self>| one.folders == folders && one.data.packs().iter().map(WorldPack::id).eq(ids());
+        if let Some(library) = known.iter().find(is_same) {
+            return Ok(Arc::clone(library));
+        }
+        let data = WorldData::layered(packs).map_err(bad_argument)?;
+        let library = Arc::new(Self::new(folders.to_vec(), data));
+        known.push(Arc::clone(&library));
+        Ok(library)
+    }
+
+    /// The folders of its world packs, in their order; none, if it has what is built in alone.
+    pub fn folders(&self) -> &[String] {
+        &self.folders
+    }
+
+    /// The objects, devices and floor plans that there are.
+    pub const fn catalog(&self) -> &Arc<Catalog> {
+        self.data.catalog()
+    }
+
+    /// All that worlds are made of.
+    pub const fn data(&self) -> &WorldData {
+        &self.data
+    }
+
+    /// What things afford.
+    pub const fn affordances(&self) -> &Affordances {
+        &self.affordances
+    }
+
+    /// The meshes of the catalogue, built when the first camera needs them.
+    ///
+    /// # Errors
+    /// [`ModelError`], if a model is wrong.
+    pub fn meshes(&self) -> Result<Arc<MeshLibrary>, ModelError> {
+        let mut meshes = self.meshes.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(meshes) = &*meshes {
+            return Ok(Arc::clone(meshes));
+        }
+        let built = Arc::new(MeshLibrary::build(self.catalog())?);
+        *meshes = Some(Arc::clone(&built));
+        Ok(built)
+    }
 }
 
-/// The ids of all classes of objects, in the order of their numbers.
+/// The ids of all classes of objects, in the order of their numbers: built-in ones, then those of the packs in these folders.
+///
+/// # Errors
+/// A `ValueError`, if a folder is no world pack.
 #[pyfunction]
-pub fn class_ids() -> Vec<&'static str> {
-    catalog().classes().iter().map(|class| class.id.as_str()).collect()
+#[pyo3(signature = (world=Vec::new()))]
+pub fn class_ids(world: Vec<String>) -> PyResult<Vec<String>> {
+    let library = Library::with_packs(&world)?;
+    Ok(library.catalog().classes().iter().map(|class| class.id.clone()).collect())
 }
 
 /// What people call them.
+///
+/// # Errors
+/// As [`class_ids`].
 #[pyfunction]
-pub fn class_names() -> Vec<&'static str> {
-    catalog().classes().iter().map(|class| class.name.as_str()).collect()
+#[pyo3(signature = (world=Vec::new()))]
+pub fn class_names(world: Vec<String>) -> PyResult<Vec<String>> {
+    let library = Library::with_packs(&world)?;
+    Ok(library.catalog().classes().iter().map(|class| class.name.clone()).collect())
+}
+
+/// The missions of the packs in these folders, by file name, with their texts.
+///
+/// # Errors
+/// As [`class_ids`].
+#[pyfunction]
+pub fn pack_missions(world: Vec<String>) -> PyResult<Vec<(String, String)>> {
+    let library = Library::with_packs(&world)?;
+    let missions = library.data().packs().iter().flat_map(WorldPack::missions);
+    let named = missions.map(|(file, text)| (file.rsplit('/').next().unwrap_or(file), text));
+    Ok(named.map(|(file, text)| (file.trim_end_matches(".json").to_owned(), text.to_owned())).collect())
 }

@@ -1,11 +1,10 @@
-//! Finds missions: a file, a built-in one, or a text that Python has.
+//! Finds missions: a file, a built-in one or one of a world pack, or a text that Python has.
 
 use std::{fs, path::Path};
 
-use cohabit_cdf::mission;
 use pyo3::prelude::*;
 
-use crate::error::bad_argument;
+use crate::{error::bad_argument, library::Library};
 
 /// The mission played when none is named.
 const DEFAULT: &str = "make_cereal";
@@ -29,11 +28,13 @@ pub enum MissionFileError {
         source: std::io::Error,
     },
     /// It is not there.
-    #[error("{name}: there is no such file, and no built-in mission of that name (there are {known})")]
+    #[error(
+        "{name}: there is no such file, and no built-in mission of that name, or of a world pack that is given (there are {known})"
+    )]
     Unknown {
         /// What was asked for.
         name: String,
-        /// The built-in ones.
+        /// Those that have a name.
         known: String,
     },
 }
@@ -43,43 +44,44 @@ impl MissionFile {
     ///
     /// # Errors
     /// A `ValueError` if there is none.
-    pub fn given(name: Option<String>, text: Option<String>) -> PyResult<Self> {
+    pub fn given(name: Option<String>, text: Option<String>, library: &Library) -> PyResult<Self> {
         match text {
             Some(text) => Ok(Self { name: name.unwrap_or_else(|| "mission".to_owned()), text }),
-            None => Self::find(name.as_deref()).map_err(bad_argument),
+            None => Self::find(name.as_deref(), library).map_err(bad_argument),
         }
     }
 
-    /// The file at that path, or the built-in mission of that name; the default one for `None`.
+    /// The file at that path, or the mission of that name that a library has; the default one for `None`.
     ///
     /// # Errors
     /// [`MissionFileError`].
-    pub fn find(name: Option<&str>) -> Result<Self, MissionFileError> {
+    pub fn find(name: Option<&str>, library: &Library) -> Result<Self, MissionFileError> {
         let name = name.unwrap_or(DEFAULT);
         if Path::new(name).is_file() {
             let read = fs::read_to_string(name);
             let text = read.map_err(|source| MissionFileError::Read { path: name.to_owned(), source })?;
             return Ok(Self { name: name.to_owned(), text });
         }
-        let stem = |file: &'static str| file.trim_end_matches(".json");
-        let known = mission::builtin();
-        match known.iter().find(|(file, _)| stem(file) == name.trim_end_matches(".json")) {
-            Some((file, text)) => Ok(Self { name: (*file).to_owned(), text: (*text).to_owned() }),
+        let wanted = name.trim_end_matches(".json");
+        match library.data().missions().find(|(file, _)| file.trim_end_matches(".json") == wanted) {
+            Some((file, text)) => Ok(Self { name: file.to_owned(), text: text.to_owned() }),
             None => {
-                let known: Vec<&str> = known.iter().map(|(file, _)| stem(file)).collect();
+                let known: Vec<&str> =
+                    library.data().missions().map(|(file, _)| file.trim_end_matches(".json")).collect();
                 Err(MissionFileError::Unknown { name: name.to_owned(), known: known.join(", ") })
             }
         }
     }
 }
 
-/// The name and the text of the mission in that file, or of the built-in one of that name; of the default one for `None`.
+/// The name and the text of the mission in that file, or of the one of that name, built in or of the packs in these folders; of
+/// the default one for `None`.
 ///
 /// # Errors
 /// A `ValueError` if there is none.
 #[pyfunction]
-#[pyo3(signature = (name=None))]
-pub fn mission_text(name: Option<&str>) -> PyResult<(String, String)> {
-    let file = MissionFile::find(name).map_err(bad_argument)?;
+#[pyo3(signature = (name=None, world=Vec::new()))]
+pub fn mission_text(name: Option<&str>, world: Vec<String>) -> PyResult<(String, String)> {
+    let file = MissionFile::find(name, &Library::with_packs(&world)?).map_err(bad_argument)?;
     Ok((file.name, file.text))
 }

@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 
 use crate::{
     around::{Around, Posture, Sight},
-    choice::{Choice, afforded},
+    choice::Choice,
     error::bad_argument,
     frame::Frame,
     memory::Memory,
@@ -109,9 +109,8 @@ fn seen(around: &impl Around, frame: &Frame) -> Vec<Sight> {
 
 fn near(around: &impl Around, body: &Posture) -> Vec<Sight> {
     let at = Vec3::from_array(body.position_m);
-    let in_room = around.sights().filter(|object| object.room == body.room && !object.hidden);
-    let mut objects: Vec<(f32, Sight)> =
-        in_room.map(|object| ((Vec3::from_array(object.position_m) - at).length_squared(), object)).collect();
+    let far = |object: &Sight| (Vec3::from_array(object.position_m) - at).length_squared();
+    let mut objects: Vec<(f32, Sight)> = around.sights_in(body.room).map(|object| (far(&object), object)).collect();
     objects.sort_by(|(one, first), (other, second)| one.total_cmp(other).then(first.object.cmp(&second.object)));
     objects.into_iter().map(|(_, object)| object).collect()
 }
@@ -138,7 +137,8 @@ impl Sensed {
             sensed.positions_m[slot] = seen_from.place(Vec3::from_array(object.position_m));
             sensed.flags[slot] = StateFlag::ALL.map(|flag| i8::from(StateFlags(object.flags).has(flag)));
         }
-        let suits: Vec<u64> = objects.iter().map(|object| afforded(object.class, held)).collect();
+        let affordances = around.library().affordances();
+        let suits: Vec<u64> = objects.iter().map(|object| affordances.of(object.class, held)).collect();
         for (number, (choice, row)) in Choice::all().zip(sensed.afforded.chunks_mut(slots.max(1))).enumerate() {
             if !choice.takes_slot() {
                 row.fill(1);

@@ -1,15 +1,17 @@
 //! A world in this process that goes on only when it is told to: what an environment is made of.
 
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use cohabit_bus::CameraId;
-use cohabit_engine::report;
+use cohabit_render::CpuRenderer;
 use pyo3::{prelude::*, types::PyBytes};
 
 use crate::{
     action::PyAction,
+    choice::Choice,
     error::bad_argument,
     frame::Frame,
+    library::Library,
     mission_file::MissionFile,
     outcome::Outcome,
     senses::{Filling, Senses},
@@ -21,6 +23,7 @@ use crate::{
 #[pyclass(frozen, module = "cohabit._native")]
 pub struct Stage {
     theatre: Mutex<Theatre>,
+    library: Arc<Library>,
     bodies: Vec<String>,
     cameras: Vec<String>,
     threads: usize,
@@ -28,7 +31,7 @@ pub struct Stage {
 }
 
 /// The arguments of [`Stage::new`].
-type MadeOf = (String, String, Vec<String>, Vec<String>, u64, usize, bool);
+type MadeOf = (String, String, Vec<String>, Vec<String>, u64, usize, bool, Vec<String>);
 /// A [`Moment`] as Python keeps it.
 type Saved<'py> = (Bound<'py, PyBytes>, u64, Vec<(u64, u32, Option<String>)>, Vec<Vec<u32>>);
 
@@ -51,11 +54,13 @@ impl Stage {
 
 #[pymethods]
 impl Stage {
-    /// A world. `mission` is a path or the name of a built-in mission, unless its `text` is given; `bodies` and `cameras`
-    /// are written as on the command line. With `randomize`, a mission's own seed gives way to that of each beginning.
+    /// A world. `mission` is a path or the name of a mission, unless its `text` is given; `bodies` and `cameras` are written as
+    /// on the command line. With `randomize`, a mission's own seed gives way to that of each beginning. `world` are the
+    /// folders of world packs.
     #[new]
     #[pyo3(signature = (
-        mission=None, text=None, bodies=Vec::new(), cameras=Vec::new(), seed=0, threads=1, randomize=false
+        mission=None, text=None, bodies=Vec::new(), cameras=Vec::new(), seed=0, threads=1, randomize=false,
+        world=Vec::new()
     ))]
     #[allow(clippy::too_many_arguments)]
     fn new(
@@ -67,21 +72,28 @@ impl Stage {
         seed: u64,
         threads: usize,
         randomize: bool,
+        world: Vec<String>,
     ) -> PyResult<Self> {
-        let file = MissionFile::given(mission, text)?;
-        let cast = Cast { bodies: read_all(&bodies)?, cameras: read_all(&cameras)?, randomize };
+        let library = Library::with_packs(&world)?;
+        let file = MissionFile::given(mission, text, &library)?;
+        let cast = Cast {
+            library: Arc::clone(&library),
+            bodies: read_all(&bodies)?,
+            cameras: read_all(&cameras)?,
+            randomize,
+        };
         py.detach(|| {
-            let theatre = Mutex::new(Theatre::new(&file, cast, seed, threads)?);
-            Ok(Self { theatre, bodies, cameras, threads, randomize })
+            let theatre = Mutex::new(Theatre::new(&file, cast, seed, &CpuRenderer::new(threads))?);
+            Ok(Self { theatre, library, bodies, cameras, threads, randomize })
         })
     }
 
     /// Begins anew, with that seed where the mission leaves something to chance; with another mission, if one is given by a
-    /// path, the name of a built-in one, or its `text`.
+    /// path, its name, or its `text`.
     #[pyo3(signature = (seed, mission=None, text=None))]
     fn reset(&self, py: Python<'_>, seed: u64, mission: Option<String>, text: Option<String>) -> PyResult<()> {
         let is_given = mission.is_some() || text.is_some();
-        let file = is_given.then(|| MissionFile::given(mission, text)).transpose()?;
+        let file = is_given.then(|| MissionFile::given(mission, text, &self.library)).transpose()?;
         self.with(py, |theatre| theatre.reset(seed, file.as_ref()))
     }
 
@@ -89,8 +101,8 @@ impl Stage {
     fn made_of(&self, py: Python<'_>) -> PyResult<MadeOf> {
         self.with(py, |theatre| {
             let plan = theatre.plan();
-            let (bodies, cameras) = (self.bodies.clone(), self.cameras.clone());
-            Ok((plan.file.clone(), plan.text.clone(), bodies, cameras, plan.seed, self.threads, self.randomize))
+            let (bodies, cameras, world) = (self.bodies.clone(), self.cameras.clone(), self.library.folders().to_vec());
+            Ok((plan.file.clone(), plan.text.clone(), bodies, cameras, plan.seed, self.threads, self.randomize, world))
         })
     }
 
@@ -121,13 +133,22 @@ impl Stage {
             Request { body: *body, action: *action, unknown: unknown.clone() }
         };
         let requests = actions.iter().map(request).collect();
-        self.with(py, |theatre| theatre.carry_out(requests, ticks))
+        self.with(py, |theatre| Ok(theatre.carry_out(requests, ticks)))
     }
 
     /// The same with choices, `(body, choice, slot)` each; what is in the slots is what `sense` said last.
     #[pyo3(signature = (choices, ticks=None))]
-    fn choose(&self, py: Python<'_>, choices: Vec<(u32, usize, usize)>, ticks: Option<u64>) -> PyResult<Vec<Outcome>> {
-        self.with(py, |theatre| theatre.choose(&choices, ticks))
+    fn choose(&self, py: Python<'_>, choices: Vec<(u32, i64, i64)>, ticks: Option<u64>) -> PyResult<Vec<Outcome>> {
+        // A slot that there is not is empty.
+        let choice = |(body, choice, slot): (u32, i64, i64)| {
+            Choice::numbered(choice).map(|choice| (body, choice, usize::try_from(slot).unwrap_or(usize::MAX)))
+        };
+        let choices = choices.into_iter().map(choice).collect::<PyResult<Vec<_>>>()?;
+        self.with(py, |theatre| {
+            let chosen = choices.into_iter().filter_map(|(body, choice, slot)| theatre.chosen(body, choice, slot));
+            let requests = chosen.collect();
+            Ok(theatre.carry_out(requests, ticks))
+        })
     }
 
     /// What these cameras see now.
@@ -160,14 +181,15 @@ impl Stage {
         self.with(py, |theatre| {
             let world = theatre.world();
             let ending = ending_name(world.finished());
-            let goals = world.goals().iter().map(|goal| (goal.id, goal.met)).collect();
+            let numbers = world.mission().goals.iter().map(|goal| goal.id);
+            let goals = numbers.zip(world.goals_met()).collect();
             Ok((world.tick(), world.score(), ending, goals))
         })
     }
 
     /// The state of the world.
     fn state(&self, py: Python<'_>) -> PyResult<State> {
-        self.with(py, |theatre| Ok(State::of(&report::state(theatre.world()), theatre.world().tick())))
+        self.with(py, |theatre| Ok(theatre.state()))
     }
 
     /// What the whole simulated state comes down to: equal digests are equal worlds.

@@ -3,19 +3,20 @@
 use std::sync::Arc;
 
 use cohabit_bus::message::{BodyRecord, GoalRecord, Malformed, NONE, ObjectRecord, StateParts, StateView};
-use cohabit_cdf::{BodyKind, Color, Fluid, RoomId, StateFlags};
+use cohabit_cdf::{BodyKind, Catalog, Color, Fluid, RoomId, StateFlags};
 use pyo3::{exceptions::PyKeyError, prelude::*, types::PyBytes};
 
 use crate::{
     around::Records,
     error::bad_argument,
-    library::catalog,
+    library::Library,
     memory::{Memory, Owner},
 };
 
 /// The world at one tick. It is a copy: keep as many as you like.
 #[pyclass(frozen, module = "cohabit._native")]
 pub struct State {
+    library: Arc<Library>,
     words: Arc<[u64]>,
     bytes: usize,
     tick: u64,
@@ -151,9 +152,9 @@ impl From<&BodyRecord> for Body {
     }
 }
 
-impl From<&ObjectRecord> for Object {
-    fn from(record: &ObjectRecord) -> Self {
-        let class = catalog().classes().get(usize::from(record.class));
+impl Object {
+    fn of(record: &ObjectRecord, catalog: &Catalog) -> Self {
+        let class = catalog.classes().get(usize::from(record.class));
         Self {
             id: record.object,
             instance: record.instance.as_str().to_owned(),
@@ -186,18 +187,18 @@ impl From<&GoalRecord> for Goal {
 }
 
 impl State {
-    /// The state that a world would publish.
-    pub fn of(parts: &StateParts, tick: u64) -> Self {
+    /// The state that a world would publish that is made of what a library has.
+    pub fn of(parts: &StateParts, tick: u64, library: &Arc<Library>) -> Self {
         let bytes = parts.bytes();
         let mut words = vec![0_u64; bytes.div_ceil(size_of::<u64>())];
         parts.write(&mut bytemuck::cast_slice_mut(&mut words)[..bytes]);
-        Self { words: words.into(), bytes, tick }
+        Self { library: Arc::clone(library), words: words.into(), bytes, tick }
     }
 
     /// Its bodies and objects.
     pub fn around(&self) -> Records<'_> {
         let StateView { bodies, objects, .. } = self.view();
-        Records { bodies, objects }
+        Records { bodies, objects, library: &self.library }
     }
 
     fn payload(&self) -> &[u8] {
@@ -215,7 +216,7 @@ impl State {
         if let Some(record) = view.objects.iter().find(|record| record.instance.as_str() == name) {
             return Some(record);
         }
-        let classes = catalog().classes();
+        let classes = self.library.catalog().classes();
         let is_called = |class: u16| {
             let class = &classes[usize::from(class)];
             class.id == name || class.name.eq_ignore_ascii_case(name)
@@ -236,10 +237,18 @@ impl State {
 
 #[pymethods]
 impl State {
-    /// The state in the bytes of another one, of that tick.
+    /// The state in the bytes of another one, of that tick, in a world with the packs in these folders.
     #[staticmethod]
-    fn of_payload(payload: &[u8], tick: u64) -> PyResult<Self> {
-        Self::try_from((payload, tick)).map_err(bad_argument)
+    #[pyo3(signature = (payload, tick, world=Vec::new()))]
+    fn of_payload(payload: &[u8], tick: u64, world: Vec<String>) -> PyResult<Self> {
+        let state = Self::try_from((payload, tick)).map_err(bad_argument)?;
+        Ok(Self { library: Library::with_packs(&world)?, ..state })
+    }
+
+    /// The folders of the world's packs.
+    #[getter]
+    fn world(&self) -> Vec<String> {
+        self.library.folders().to_vec()
     }
 
     /// All of it as bytes.
@@ -292,7 +301,7 @@ impl State {
     /// All objects that are in the world, by their numbers.
     #[getter]
     fn objects(&self) -> Vec<Object> {
-        self.view().objects.iter().map(Object::from).collect()
+        self.view().objects.iter().map(|record| Object::of(record, self.library.catalog())).collect()
     }
 
     /// The mission's goals, in its order.
@@ -320,7 +329,7 @@ impl State {
             self.meant(&name.extract::<String>()?, near)
         };
         let missing = || PyKeyError::new_err(format!("there is no object {} in this world", name));
-        found.map(Object::from).ok_or_else(missing)
+        found.map(|record| Object::of(record, self.library.catalog())).ok_or_else(missing)
     }
 
     /// The records of `bodies`, `objects` or `goals` as they were published: `(bytes a record, [count * bytes] u1)`.
@@ -349,11 +358,11 @@ impl State {
 impl TryFrom<(&[u8], u64)> for State {
     type Error = Malformed;
 
-    /// A copy of a state message, and its tick.
+    /// A copy of a state message of a session, and its tick.
     fn try_from((payload, tick): (&[u8], u64)) -> Result<Self, Malformed> {
         StateView::new(payload)?;
         let mut words = vec![0_u64; payload.len().div_ceil(size_of::<u64>())];
         bytemuck::cast_slice_mut(&mut words)[..payload.len()].copy_from_slice(payload);
-        Ok(Self { words: words.into(), bytes: payload.len(), tick })
+        Ok(Self { library: Arc::clone(Library::builtin()), words: words.into(), bytes: payload.len(), tick })
     }
 }

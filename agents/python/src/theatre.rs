@@ -1,25 +1,24 @@
-//! A mission played in this process: its world, its cameras, and who commands its bodies.
+//! A mission played in this process: its world, its cameras, and what its bodies are told.
 
 use std::sync::Arc;
 
-use cohabit_bus::{
-    CameraId, Local, Publisher, Subscriber, Topic, Transport,
-    message::{self, CommandMessage, EventKind, EventMessage},
-};
-use cohabit_cdf::{Action, BodyRequest, Mission, ObjectId};
-use cohabit_engine::{CameraPlan, Engine, SessionPlan, Stills};
+use cohabit_bus::{CameraId, Local, Topic, Transport};
+use cohabit_cdf::{Action, BodyId, BodyRequest, Mission, ObjectId};
+use cohabit_engine::{Appearance, CameraPlan, SessionPlan, Stills, Visible, report, snapshot};
 use cohabit_render::CpuRenderer;
-use cohabit_world::{DT_NANOS, Ending, World};
+use cohabit_world::{Ending, Input, World};
 use pyo3::prelude::*;
 
 use crate::{
+    around::Simulated,
     choice::Choice,
     error::{bad_argument, failed},
     frame::Frame,
-    library,
+    library::Library,
     mission_file::MissionFile,
     outcome::Outcome,
     senses::{Filling, Sensed},
+    state::State,
 };
 
 /// The longest that one command may take: four simulated minutes are twice the way through all rooms.
@@ -28,8 +27,10 @@ const PATIENCE_TICKS: u64 = 60 * 240;
 const WAIT_TICKS: u64 = 60;
 
 /// What is played, and by whom.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone)]
 pub struct Cast {
+    /// What there is to play with.
+    pub library: Arc<Library>,
     /// Bodies beside those of the mission.
     pub bodies: Vec<BodyRequest>,
     /// The cameras.
@@ -44,7 +45,7 @@ impl Cast {
     /// # Errors
     /// A `ValueError` that says what is wrong with the mission.
     fn plan(&self, file: &MissionFile, seed: u64) -> PyResult<SessionPlan> {
-        let plan = SessionPlan::new(&file.name, &file.text, Arc::clone(library::catalog()), seed);
+        let plan = SessionPlan::new(&file.name, &file.text, Arc::clone(self.library.catalog()), seed);
         let plan = plan.map_err(bad_argument)?.with_bodies(self.bodies.clone());
         let plan = plan.with_cameras(self.cameras.clone()).map_err(bad_argument)?;
         if !self.randomize || plan.mission.seed.is_none() {
@@ -56,20 +57,23 @@ impl Cast {
 }
 
 /// A world that is stepped, its cameras, and what its bodies were shown last.
+///
+/// What bodies are told goes to the world itself; only frames go over a bus, so that a view of one is a view of where it was
+/// rendered.
 pub struct Theatre {
     plan: SessionPlan,
-    bus: Local,
-    /// Only absent while it is replaced.
-    engine: Option<Engine>,
     cast: Cast,
+    world: World,
+    /// What cameras see besides; nobody keeps it where there are none.
+    appearance: Appearance,
     stills: Option<Stills>,
-    /// Threads that draw.
-    threads: usize,
-    commands: Box<dyn Publisher>,
-    events: Box<dyn Subscriber>,
+    renderer: CpuRenderer,
+    frames: Local,
     /// The world at its first tick.
     first: Vec<u8>,
     commanded: u64,
+    /// Commands of the next tick.
+    inputs: Vec<Input>,
     /// Commands without an outcome yet.
     pending: Vec<Pending>,
     /// The objects in each body's slots.
@@ -115,46 +119,40 @@ pub const fn ending_name(ending: Option<Ending>) -> &'static str {
 }
 
 /// The cameras of a plan, if there are any.
-fn stills(plan: &SessionPlan, cameras: &[CameraPlan], threads: usize, bus: &Local) -> PyResult<Option<Stills>> {
-    if cameras.is_empty() {
+fn stills(plan: &SessionPlan, cast: &Cast, renderer: &CpuRenderer, frames: &Local) -> PyResult<Option<Stills>> {
+    if cast.cameras.is_empty() {
         return Ok(None);
     }
-    let meshes = library::meshes().map_err(failed)?;
-    let renderer = Box::new(CpuRenderer::new(threads));
-    Stills::new(plan, meshes, renderer, cameras, bus).map(Some).map_err(failed)
+    let meshes = cast.library.meshes().map_err(failed)?;
+    Stills::new(plan, meshes, Box::new(renderer.clone()), &cast.cameras, frames).map(Some).map_err(failed)
 }
 
 impl Theatre {
-    /// A mission at its first tick, with so many threads that draw.
+    /// A mission at its first tick, whose cameras are drawn by a clone of `renderer`.
     ///
     /// # Errors
     /// A `ValueError` if it cannot be played.
-    pub fn new(file: &MissionFile, cast: Cast, seed: u64, threads: usize) -> PyResult<Self> {
+    pub fn new(file: &MissionFile, cast: Cast, seed: u64, renderer: &CpuRenderer) -> PyResult<Self> {
         let plan = cast.plan(file, seed)?;
         let world = plan.build().map_err(bad_argument)?;
-        let bus = Local::new(1);
-        let stills = stills(&plan, &cast.cameras, threads, &bus)?;
-        let commands = bus.publisher(Topic::Commands).map_err(failed)?;
-        let events = bus.subscriber(Topic::Events).map_err(failed)?;
+        let frames = Local::new(1);
+        let stills = stills(&plan, &cast, renderer, &frames)?;
         let slots = vec![Vec::new(); world.bodies().len()];
         let first = world.snapshot();
-        let engine = Some(Engine::new(&plan, world, &cast.cameras, &bus).map_err(failed)?.without_recorder());
-        let mut theatre = Self {
+        Ok(Self {
             plan,
-            bus,
-            engine,
             cast,
+            world,
+            appearance: Appearance::default(),
             stills,
-            threads,
-            commands,
-            events,
+            renderer: renderer.clone(),
+            frames,
             first,
             commanded: 0,
+            inputs: Vec::new(),
             pending: Vec::new(),
             slots,
-        };
-        theatre.claim_all()?;
-        Ok(theatre)
+        })
     }
 
     /// What is played.
@@ -162,13 +160,19 @@ impl Theatre {
         &self.plan
     }
 
-    fn engine(&self) -> &Engine {
-        self.engine.as_ref().expect("invariant: replaced, never taken away")
+    /// The world as it is.
+    pub const fn world(&self) -> &World {
+        &self.world
     }
 
-    /// The world as it is.
-    pub fn world(&self) -> &World {
-        self.engine().world()
+    /// The state that its world would publish.
+    pub fn state(&self) -> State {
+        State::of(&report::state(&self.world), self.world.tick(), &self.cast.library)
+    }
+
+    /// All that can be seen now.
+    const fn visible(&self) -> Visible<'_> {
+        Visible { world: &self.world, appearance: &self.appearance }
     }
 
     /// Begins anew: with another mission, if one is given, and with another world, if the mission leaves something to chance.
@@ -181,34 +185,20 @@ impl Theatre {
             Some(file) => self.cast.plan(file, seed)?,
             None => SessionPlan { seed: self.plan.mission.seed.unwrap_or(seed), ..self.plan.clone() },
         };
-        let world = if file.is_none() && plan.seed == self.plan.seed {
-            let mut world = self.engine.take().expect("invariant: replaced, never taken away").into_world();
-            world.restore(&self.first).map_err(failed)?;
-            world
+        if file.is_none() && plan.seed == self.plan.seed {
+            self.world.restore(&self.first).map_err(failed)?;
         } else {
             let world = plan.build().map_err(bad_argument)?;
             if plan.mission.layout != self.plan.mission.layout {
-                self.stills = None;
-                self.stills = stills(&plan, &self.cast.cameras, self.threads, &self.bus)?;
+                self.stills = stills(&plan, &self.cast, &self.renderer, &self.frames)?;
             }
-            (self.plan, self.first) = (plan, world.snapshot());
-            world
-        };
-        self.engine = None;
-        self.connect(world)?;
+            (self.first, self.world, self.plan) = (world.snapshot(), world, plan);
+        }
+        self.appearance = Appearance::default();
+        self.inputs.clear();
         self.pending.clear();
         self.commanded = 0;
-        let bodies = self.world().bodies().len();
-        self.slots = vec![Vec::new(); bodies];
-        self.claim_all()
-    }
-
-    /// Has the engine go on with `world`.
-    fn connect(&mut self, world: World) -> PyResult<()> {
-        let engine = Engine::new(&self.plan, world, &self.cast.cameras, &self.bus).map_err(failed)?;
-        self.engine = Some(engine.without_recorder());
-        // What the world before still had to tell.
-        while self.events.receive().map_err(failed)?.is_some() {}
+        self.slots = vec![Vec::new(); self.world.bodies().len()];
         Ok(())
     }
 
@@ -216,7 +206,7 @@ impl Theatre {
     pub fn save(&self) -> Moment {
         let pending = self.pending.iter().map(|one| (one.command, one.body, one.unknown.clone())).collect();
         let slots = self.slots.iter().map(|slots| slots.iter().map(|object| object.0).collect()).collect();
-        Moment { state: self.engine().snapshot(), commanded: self.commanded, pending, slots }
+        Moment { state: snapshot::write(self.visible()), commanded: self.commanded, pending, slots }
     }
 
     /// Goes on from where a theatre of the same mission was.
@@ -225,8 +215,7 @@ impl Theatre {
     /// A `ValueError` if it was one of another mission, or of another version.
     pub fn load(&mut self, moment: Moment) -> PyResult<()> {
         let Moment { state, commanded, pending, slots } = moment;
-        let engine = self.engine.as_mut().expect("invariant: replaced, never taken away");
-        engine.restore(&state).map_err(bad_argument)?;
+        self.appearance = snapshot::restore(&mut self.world, &state).map_err(bad_argument)?;
         self.commanded = commanded;
         let pending = pending.into_iter().map(|(command, body, unknown)| Pending { command, body, unknown });
         self.pending = pending.collect();
@@ -237,88 +226,67 @@ impl Theatre {
         Ok(())
     }
 
-    fn command(&mut self, request: Request) -> PyResult<()> {
+    /// Tells a body to do something in the next tick.
+    fn command(&mut self, request: Request) {
         self.commanded += 1;
         let (command, Request { body, action, unknown }) = (self.commanded, request);
-        self.send(&CommandMessage::act(command, 0, body, action))?;
+        self.inputs.push(Input { command, body: BodyId(body), action });
         self.pending.push(Pending { command, body, unknown });
-        Ok(())
     }
 
-    /// Makes this the commander of all bodies.
-    fn claim_all(&mut self) -> PyResult<()> {
-        let bodies = u32::try_from(self.slots.len()).unwrap_or(u32::MAX);
-        (0..bodies).try_for_each(|body| self.send(&CommandMessage::claim(0, body, "environment", true)))
-    }
-
-    fn send(&mut self, message: &CommandMessage) -> PyResult<()> {
-        let tick = self.world().tick();
-        self.commands.send_record(tick, message).map(drop).map_err(failed)
-    }
-
-    fn tick(&mut self, ends: &mut Vec<Outcome>) -> PyResult<()> {
-        let engine = self.engine.as_mut().expect("invariant: replaced, never taken away");
-        // A stamp and never a key: simulated time, so that nothing here depends on when it runs.
-        engine.tick(engine.world().tick() * DT_NANOS).map_err(failed)?;
-        while let Some(sample) = self.events.receive().map_err(failed)? {
-            let event: EventMessage = message::read(sample.payload()).map_err(failed)?;
-            let (Some(EventKind::Outcome), Some(status)) = (event.kind(), event.status()) else { continue };
-            let Some(place) = self.pending.iter().position(|one| one.command == event.command) else { continue };
-            let Pending { command, body, unknown } = self.pending.swap_remove(place);
-            ends.push(Outcome::new(command, body, status, event.text.as_str()).or_unknown(unknown.as_deref()));
+    fn tick(&mut self, ends: &mut Vec<Outcome>) {
+        // Body by body, each body's commands in the order in which they were given: as in a session.
+        self.inputs.sort_by_key(|input| input.body.0);
+        let report = self.world.step(&self.inputs);
+        if self.stills.is_some() {
+            self.appearance.note(&self.world, &self.inputs, &report);
         }
-        Ok(())
+        self.inputs.clear();
+        for outcome in report.outcomes {
+            let Some(place) = self.pending.iter().position(|one| one.command == outcome.command) else { continue };
+            let Pending { command, body, unknown } = self.pending.swap_remove(place);
+            let end = Outcome::new(command, body, outcome.status, &outcome.detail);
+            ends.push(end.or_unknown(unknown.as_deref()));
+        }
     }
 
     /// Has bodies do something, each one thing, until all have ended, or for so many ticks.
-    ///
-    /// # Errors
-    /// When the bus fails.
-    pub fn carry_out(&mut self, requests: Vec<Request>, ticks: Option<u64>) -> PyResult<Vec<Outcome>> {
+    pub fn carry_out(&mut self, requests: Vec<Request>, ticks: Option<u64>) -> Vec<Outcome> {
         let waits = requests.is_empty() && self.pending.is_empty();
-        requests.into_iter().try_for_each(|request| self.command(request))?;
+        requests.into_iter().for_each(|request| self.command(request));
         let mut ends = Vec::new();
         let most = ticks.unwrap_or(if waits { WAIT_TICKS } else { PATIENCE_TICKS });
         for _ in 0..most {
-            self.tick(&mut ends)?;
+            self.tick(&mut ends);
             let done = ticks.is_none() && !waits && self.pending.is_empty();
-            if done || self.world().finished().is_some() {
+            if done || self.world.finished().is_some() {
                 break;
             }
         }
-        if ticks.is_none() && !self.pending.is_empty() && self.world().finished().is_none() {
-            self.give_up(&mut ends)?;
+        if ticks.is_none() && !self.pending.is_empty() && self.world.finished().is_none() {
+            self.give_up(&mut ends);
         }
         ends.sort_by_key(|end| end.command);
-        Ok(ends)
+        ends
     }
 
     /// Stops all that takes too long.
-    fn give_up(&mut self, ends: &mut Vec<Outcome>) -> PyResult<()> {
+    fn give_up(&mut self, ends: &mut Vec<Outcome>) {
         let bodies: Vec<u32> = self.pending.iter().map(|pending| pending.body).collect();
         for body in bodies {
-            self.command(Request { body, action: Action::Stop, unknown: None })?;
+            self.command(Request { body, action: Action::Stop, unknown: None });
             // Nobody asks what came of stopping.
             self.pending.pop();
         }
-        self.tick(ends)
+        self.tick(ends);
     }
 
-    /// Has bodies do what they chose, `(body, choice, slot)` each; what is in the slots is what was sensed last.
-    ///
-    /// # Errors
-    /// A `ValueError` if there is no such choice.
-    pub fn choose(&mut self, choices: &[(u32, usize, usize)], ticks: Option<u64>) -> PyResult<Vec<Outcome>> {
-        let mut requests = Vec::new();
-        for (body, choice, slot) in choices {
-            let chosen = Choice::numbered(*choice)?;
-            // An empty slot is for the world to refuse.
-            let nothing = ObjectId(u32::MAX);
-            let object = self.slots.get(*body as usize).and_then(|slots| slots.get(*slot)).copied();
-            let action = chosen.action(object.unwrap_or(nothing));
-            requests.extend(action.map(|action| Request { body: *body, action, unknown: None }));
-        }
-        self.carry_out(requests, ticks)
+    /// What a body is to do that chose that, done to what is in that slot: what was sensed last is in them. Nothing for waiting.
+    pub fn chosen(&self, body: u32, choice: Choice, slot: usize) -> Option<Request> {
+        let object = self.slots.get(body as usize).and_then(|slots| slots.get(slot)).copied();
+        // An empty slot is for the world to refuse.
+        let action = choice.action(object.unwrap_or(ObjectId(u32::MAX)))?;
+        Some(Request { body, action, unknown: None })
     }
 
     /// What a body senses besides pictures, once its slots are filled anew.
@@ -326,7 +294,8 @@ impl Theatre {
     /// # Errors
     /// A `ValueError` if there is no such body.
     pub fn sense(&mut self, body: u32, slots: usize, filling: Filling, frame: Option<&Frame>) -> PyResult<Sensed> {
-        let sensed = Sensed::of(self.world(), body, slots, filling, frame);
+        let around = Simulated { world: &self.world, library: &self.cast.library };
+        let sensed = Sensed::of(&around, body, slots, filling, frame);
         let sensed = sensed.ok_or_else(|| bad_argument(format!("there is no body {body} here")))?;
         self.slots[body as usize] = sensed.objects();
         Ok(sensed)
@@ -337,16 +306,14 @@ impl Theatre {
     /// # Errors
     /// A `ValueError` if there is no such camera.
     pub fn look(&mut self, names: &[CameraId]) -> PyResult<Vec<Frame>> {
-        let (Some(stills), Some(engine)) = (&mut self.stills, &self.engine) else {
-            return Err(bad_argument("there are no cameras here"));
-        };
-        stills.shoot_all(engine.visible(), names).map_err(failed)?;
+        let Some(stills) = &mut self.stills else { return Err(bad_argument("there are no cameras here")) };
+        stills.shoot_all(Visible { world: &self.world, appearance: &self.appearance }, names).map_err(failed)?;
         let frame = |camera: &CameraId| {
             // A new subscriber is handed the latest frame; one that stayed could only hold so many of them.
-            let mut frames = self.bus.subscriber(Topic::Frames(*camera)).map_err(failed)?;
+            let mut frames = self.frames.subscriber(Topic::Frames(*camera)).map_err(failed)?;
             let sample = frames.latest().map_err(failed)?;
             let sample = sample.ok_or_else(|| bad_argument(format!("there is no camera `{camera}` here")))?;
-            Frame::new(sample).map_err(failed)
+            Frame::of(sample, &self.cast.library).map_err(failed)
         };
         names.iter().map(frame).collect()
     }

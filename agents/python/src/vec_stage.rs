@@ -1,37 +1,51 @@
 //! Many worlds in this process that are stepped in one call: what vectors of environments are made of.
 
-use std::sync::{Mutex, PoisonError};
+use std::{
+    collections::BTreeSet,
+    sync::{Arc, Mutex, PoisonError},
+};
 
-use cohabit_bus::{CameraId, message::Plane};
-use cohabit_engine::{CameraPlan, report};
+use cohabit_bus::{
+    CameraId,
+    message::{Plane, Thing},
+};
+use cohabit_cdf::ObjectId;
+use cohabit_engine::CameraPlan;
+use cohabit_render::CpuRenderer;
 use pyo3::{prelude::*, types::PyBytes};
 
 use crate::{
+    action::PyAction,
     book::{Book, Layout},
     choice::Choice,
     crew::Crew,
     error::bad_argument,
     frame::Frame,
+    library::Library,
     mission_file::MissionFile,
     outcome::Outcome,
     part::{Part, Shown, Sizes, Told},
-    senses::Filling,
+    senses::{Filling, Sensed},
     stage::read_all,
     state::State,
-    theatre::{Cast, Theatre, ending_name},
+    theatre::{Cast, Request, Theatre, ending_name},
 };
 
 /// The body that is played in each world.
 const BODY: u32 = 0;
 /// Points of the score that a reward of 1 stands for.
 const POINTS: f64 = 100.0;
+/// The bytes of a choice and a slot.
+const PAIR_BYTES: usize = 2 * size_of::<i64>();
 
 /// Worlds that are stepped together by threads of their own.
 ///
-/// A world is stepped by whichever thread is free: all of it may be sent from one to another.
+/// A world is mostly stepped by the same thread, but by another one that is free sooner: all of it may be sent there.
 #[pyclass(frozen, module = "cohabit._native")]
 pub struct VecStage {
     troupe: Mutex<Troupe>,
+    library: Arc<Library>,
+    worlds: usize,
 }
 
 struct Troupe {
@@ -51,6 +65,8 @@ struct Rules {
     ticks: Option<u64>,
     /// Steps after which an episode is cut off.
     most_steps: u64,
+    /// Whether it is noted what bodies have seen in the episode.
+    remembers: bool,
 }
 
 /// One world.
@@ -58,14 +74,18 @@ struct Seat {
     theatre: Theatre,
     steps: u64,
     told: Told,
+    /// The numbers of the objects that its body has seen in this episode, if that is noted.
+    known: BTreeSet<u32>,
 }
 
 /// What a world is to do in a turn.
 enum Job {
     /// Begin anew, with another mission if one is given.
     Begin { seed: u64, file: Option<MissionFile> },
-    /// Have its body do something.
-    Step { choice: usize, slot: usize },
+    /// Have its body do what was chosen.
+    Choose { choice: Choice, slot: usize },
+    /// Have its body do something that was said in words.
+    Act(Request),
     /// Stay as it is.
     Keep,
 }
@@ -82,33 +102,33 @@ impl Seat {
         self.theatre.reset(seed, file)?;
         self.steps = 0;
         self.told = Told::default();
-        self.note(&[]);
+        self.known.clear();
+        self.note(Vec::new());
         self.told.reward = 0.0;
         Ok(())
     }
 
-    fn step(&mut self, choice: usize, slot: usize, rules: &Rules) -> PyResult<()> {
-        let outcomes = self.theatre.choose(&[(BODY, choice, slot)], rules.ticks)?;
+    /// Goes on by a step in which its body does that, or nothing.
+    fn step(&mut self, request: Option<Request>, rules: &Rules) {
+        let outcomes = self.theatre.carry_out(request.into_iter().collect(), rules.ticks);
         self.steps += 1;
-        self.note(&outcomes);
+        self.note(outcomes);
         self.told.truncated = !self.told.terminated && self.steps >= rules.most_steps;
-        Ok(())
     }
 
     /// Notes how the world is, and what came of the body's command.
-    fn note(&mut self, outcomes: &[Outcome]) {
+    fn note(&mut self, outcomes: Vec<Outcome>) {
         let world = self.theatre.world();
         let ending = world.finished();
-        let outcome = outcomes.iter().find(|outcome| outcome.body == BODY);
-        let outcome = outcome.map(|outcome| (outcome.status.clone(), outcome.detail.clone()));
-        let (status, detail) = outcome.unwrap_or_default();
+        let outcome = outcomes.into_iter().find(|outcome| outcome.body == BODY);
+        let (status, detail) = outcome.map(|outcome| (outcome.status, outcome.detail)).unwrap_or_default();
         self.told = Told {
             tick: world.tick(),
             score: world.score(),
             reward: (f64::from(world.score()) - f64::from(self.told.score)) / POINTS,
             terminated: ending.is_some(),
             truncated: false,
-            goals: world.goals().iter().map(|goal| goal.met).collect(),
+            goals: world.goals_met().collect(),
             status,
             detail,
             ending: ending_name(ending),
@@ -122,9 +142,24 @@ impl Seat {
             None => None,
         };
         let sensed = self.theatre.sense(BODY, rules.slots, rules.filling, frame.as_ref())?;
+        if rules.remembers {
+            self.remember(&sensed, frame.as_ref());
+        }
         let shown = Shown { frame: frame.as_ref(), sensed: &sensed, told: &self.told };
         parts.iter().zip(rows).for_each(|(part, row)| part.write(row, shown));
         Ok(())
+    }
+
+    /// Notes what is in the body's slots, in its picture and in its hand.
+    fn remember(&mut self, sensed: &Sensed, frame: Option<&Frame>) {
+        let object = |id: u32| match Thing::of_id(id) {
+            Thing::Object(ObjectId(object)) => Some(object),
+            _ => None,
+        };
+        let in_picture = frame.map_or_else(Vec::new, Frame::records);
+        self.known.extend(in_picture.iter().filter_map(|record| object(record.id)));
+        self.known.extend(sensed.objects().iter().map(|object| object.0));
+        self.known.extend(sensed.body.held);
     }
 }
 
@@ -138,7 +173,11 @@ impl Troupe {
         crew.share_out(work, |(((world, seat), job), rows)| {
             match job {
                 Job::Begin { seed, file } => seat.begin(seed, file.as_ref())?,
-                Job::Step { choice, slot } => seat.step(choice, slot, rules)?,
+                Job::Choose { choice, slot } => {
+                    let request = seat.theatre.chosen(BODY, choice, slot);
+                    seat.step(request, rules);
+                }
+                Job::Act(request) => seat.step(Some(request), rules),
                 Job::Keep => {
                     rows.into_iter().zip(book.written(world)).for_each(|(row, written)| row.copy_from_slice(written));
                     return Ok(());
@@ -160,27 +199,46 @@ impl VecStage {
     fn with<T: Send>(&self, py: Python<'_>, work: impl FnOnce(&mut Troupe) -> PyResult<T> + Send) -> PyResult<T> {
         py.detach(|| work(&mut self.troupe.lock().unwrap_or_else(PoisonError::into_inner)))
     }
+
+    /// A job for each world: those of `beginnings` begin anew, the others do what `other` says of their place.
+    fn jobs(&self, beginnings: Vec<Beginning>, mut other: impl FnMut(usize) -> PyResult<Job>) -> PyResult<Vec<Job>> {
+        let mut begun: Vec<Option<Job>> = (0..self.worlds).map(|_| None).collect();
+        for (world, seed, named) in beginnings {
+            let file = named.map(|(name, text)| MissionFile::given(name, text, &self.library)).transpose()?;
+            let place = begun.get_mut(world).ok_or_else(|| bad_argument(format!("there is no world {world}")))?;
+            *place = Some(Job::Begin { seed, file });
+        }
+        begun.into_iter().enumerate().map(|(place, job)| job.map_or_else(|| other(place), Ok)).collect()
+    }
+
+    /// Has all worlds do their jobs.
+    fn play<'py>(&self, py: Python<'py>, jobs: Vec<Job>) -> PyResult<Turn<'py>> {
+        let (mut statuses, mut details, mut endings) = (Vec::new(), Vec::new(), Vec::new());
+        self.with(py, |troupe| {
+            troupe.turn(jobs)?;
+            for Told { status, detail, ending, .. } in troupe.seats.iter().map(|seat| &seat.told) {
+                statuses.push(status.clone());
+                details.push(detail.clone());
+                endings.push(*ending);
+            }
+            Ok(())
+        })?;
+        let pages = self.troupe.lock().unwrap_or_else(PoisonError::into_inner).book.arrays(py)?;
+        Ok((pages, statuses, details, endings))
+    }
+
+    fn check_count(&self, actions: usize) -> PyResult<()> {
+        let worlds = self.worlds;
+        if actions == worlds {
+            return Ok(());
+        }
+        Err(bad_argument(format!("{actions} actions for {worlds} worlds: one for each")))
+    }
 }
 
-/// The jobs of a turn: worlds of `beginnings` begin anew, others do what was chosen for them, or nothing, if nothing was.
-fn jobs(worlds: usize, choices: Vec<Option<[usize; 2]>>, beginnings: Vec<Beginning>) -> PyResult<Vec<Job>> {
-    if choices.len() != worlds {
-        return Err(bad_argument(format!("{} actions for {worlds} worlds: one for each", choices.len())));
-    }
-    let job = |choice: Option<[usize; 2]>| choice.map_or(Job::Keep, |[choice, slot]| Job::Step { choice, slot });
-    let mut jobs: Vec<Job> = choices.into_iter().map(job).collect();
-    for (world, seed, named) in beginnings {
-        let file = named.map(|(name, text)| MissionFile::given(name, text)).transpose()?;
-        let job = jobs.get_mut(world).ok_or_else(|| bad_argument(format!("there is no world {world}")))?;
-        *job = Job::Begin { seed, file };
-    }
-    // Before any world is changed.
-    for job in &jobs {
-        if let Job::Step { choice, .. } = job {
-            Choice::numbered(*choice)?;
-        }
-    }
-    Ok(jobs)
+/// The choice and the slot in their bytes.
+fn pair(bytes: &[u8; PAIR_BYTES]) -> [i64; 2] {
+    bytemuck::cast(*bytes)
 }
 
 /// The sizes of rows where bodies see by that camera.
@@ -193,10 +251,12 @@ fn sizes(eyes: Option<&CameraPlan>, slots: usize) -> Sizes {
 #[pymethods]
 impl VecStage {
     /// A world for each of `missions`. `bodies` and `cameras` are those of each world, and `eyes` is the name of the camera that
-    /// body 0 sees by, whose `planes` are told; slots are filled with what is `seen`, `near`, or `all`.
+    /// body 0 sees by, whose `planes` are told; slots are filled with what is `seen`, `near`, or `all`. With `remembers`, it is
+    /// noted what bodies have seen. `world` are the folders of world packs.
     #[new]
     #[pyo3(signature = (
-        missions, bodies, cameras, eyes, planes, slots, filling, ticks, most_steps, threads, randomize
+        missions, bodies, cameras, eyes, planes, slots, filling, ticks, most_steps, threads, randomize, remembers=false,
+        world=Vec::new()
     ))]
     #[allow(clippy::too_many_arguments)]
     fn new(
@@ -212,30 +272,40 @@ impl VecStage {
         most_steps: u64,
         threads: usize,
         randomize: bool,
+        remembers: bool,
+        world: Vec<String>,
     ) -> PyResult<Self> {
         if missions.is_empty() {
             return Err(bad_argument("0 worlds: at least 1"));
         }
-        let files = missions.into_iter().map(|(name, text)| MissionFile::given(name, text));
+        let library = Library::with_packs(&world)?;
+        let files = missions.into_iter().map(|(name, text)| MissionFile::given(name, text, &library));
         let files = files.collect::<PyResult<Vec<_>>>()?;
-        let cast = Cast { bodies: read_all(&bodies)?, cameras: read_all(&cameras)?, randomize };
+        let cast = Cast {
+            library: Arc::clone(&library),
+            bodies: read_all(&bodies)?,
+            cameras: read_all(&cameras)?,
+            randomize,
+        };
         let eyes = eyes.map(|eyes| eyes.parse::<CameraId>().map_err(bad_argument)).transpose()?;
         let plan = eyes.and_then(|eyes| cast.cameras.iter().find(|camera| camera.id == eyes));
         let is_told = |plane: &Plane| planes.iter().any(|name| name == plane.name());
         let planes: Vec<Part> = Plane::ALL.into_iter().filter(is_told).map(Part::Plane).collect();
         let book = Book::new(&planes, sizes(plan, slots), files.len());
-        let rules = Rules { eyes, slots, filling: Filling::named(filling)?, ticks, most_steps };
+        let rules = Rules { eyes, slots, filling: Filling::named(filling)?, ticks, most_steps, remembers };
         py.detach(|| {
-            let crew = Crew::new(threads.min(files.len()));
+            let mut crew = Crew::new(threads.min(files.len()));
+            // Worlds are many, so each draws its pictures with the thread that steps it.
+            let renderer = CpuRenderer::new(1);
             let mut seats: Vec<Option<Seat>> = files.iter().map(|_| None).collect();
             crew.share_out(seats.iter_mut().zip(&files).collect(), |(seat, file)| {
-                // Worlds are many, so each draws its pictures with the thread that steps it.
-                let theatre = Theatre::new(file, cast.clone(), 0, 1)?;
-                *seat = Some(Seat { theatre, steps: 0, told: Told::default() });
+                let theatre = Theatre::new(file, cast.clone(), 0, &renderer)?;
+                *seat = Some(Seat { theatre, steps: 0, told: Told::default(), known: BTreeSet::new() });
                 PyResult::Ok(())
             })?;
-            let seats = seats.into_iter().flatten().collect();
-            Ok(Self { troupe: Mutex::new(Troupe { seats, rules, book, crew }) })
+            let seats: Vec<Seat> = seats.into_iter().flatten().collect();
+            let worlds = seats.len();
+            Ok(Self { troupe: Mutex::new(Troupe { seats, rules, book, crew }), library, worlds })
         })
     }
 
@@ -244,30 +314,46 @@ impl VecStage {
         self.with(py, |troupe| Ok(troupe.book.layout()))
     }
 
-    /// One turn of all worlds: those of `beginnings`, `(world, seed, mission)` each, begin anew; the others do what was chosen
-    /// for them, `[choice, slot]`, or stay as they are where that is `None`.
+    /// One turn of all worlds: those of `beginnings`, `(world, seed, mission)` each, begin anew; of the others those go on that
+    /// `steps` has a truth for, a byte each, and do what was chosen: `choices` are the bytes of `[worlds, 2]` `i8`, choice and
+    /// slot.
     ///
     /// Gives the pages that say how all worlds are then, which nobody changes while they are referred to, and of each world
     /// the status and the detail of its command, and its ending.
     fn turn<'py>(
         &self,
         py: Python<'py>,
-        choices: Vec<Option<[usize; 2]>>,
+        choices: &[u8],
+        steps: &[u8],
         beginnings: Vec<Beginning>,
     ) -> PyResult<Turn<'py>> {
-        let told = self.with(py, |troupe| {
-            let jobs = jobs(troupe.seats.len(), choices, beginnings)?;
-            troupe.turn(jobs)?;
-            Ok(troupe.seats.iter().map(|seat| seat.told.clone()).collect::<Vec<_>>())
+        let (pairs, _) = choices.as_chunks::<PAIR_BYTES>();
+        self.check_count(pairs.len())?;
+        self.check_count(steps.len())?;
+        let jobs = self.jobs(beginnings, |place| {
+            if steps[place] == 0 {
+                return Ok(Job::Keep);
+            }
+            let [choice, slot] = pair(&pairs[place]);
+            // A slot that there is not is empty.
+            Ok(Job::Choose { choice: Choice::numbered(choice)?, slot: usize::try_from(slot).unwrap_or(usize::MAX) })
         })?;
-        let (mut statuses, mut details, mut endings) = (Vec::new(), Vec::new(), Vec::new());
-        for Told { status, detail, ending, .. } in told {
-            statuses.push(status);
-            details.push(detail);
-            endings.push(ending);
-        }
-        let pages = self.troupe.lock().unwrap_or_else(PoisonError::into_inner).book.arrays(py)?;
-        Ok((pages, statuses, details, endings))
+        self.play(py, jobs)
+    }
+
+    /// The same with an action in words for each world.
+    fn act<'py>(&self, py: Python<'py>, actions: Vec<Py<PyAction>>, beginnings: Vec<Beginning>) -> PyResult<Turn<'py>> {
+        self.check_count(actions.len())?;
+        let jobs = self.jobs(beginnings, |place| {
+            let PyAction { action, unknown } = actions[place].get();
+            Ok(Job::Act(Request { body: BODY, action: *action, unknown: unknown.clone() }))
+        })?;
+        self.play(py, jobs)
+    }
+
+    /// The numbers of the objects that the body of a world has seen in this episode, if that is noted.
+    fn known(&self, py: Python<'_>, world: usize) -> PyResult<Vec<u32>> {
+        self.with(py, |troupe| Ok(troupe.seat(world)?.known.iter().copied().collect()))
     }
 
     /// What a camera of a world sees now.
@@ -279,10 +365,7 @@ impl VecStage {
 
     /// The state of a world.
     fn state(&self, py: Python<'_>, world: usize) -> PyResult<State> {
-        self.with(py, |troupe| {
-            let world = troupe.seat(world)?.theatre.world();
-            Ok(State::of(&report::state(world), world.tick()))
-        })
+        self.with(py, |troupe| Ok(troupe.seat(world)?.theatre.state()))
     }
 
     /// What the whole simulated state of a world comes down to.

@@ -110,6 +110,16 @@ def test_what_makes_no_sense_is_refused_as_data() -> None:
     assert info["status"] == "InvalidObjectClass" and "action_mask" in info
     with pytest.raises(ValueError, match="no choice 99"):
         env.step(np.array([99, 0]))
+    many = cohabit.ParallelEnv(bodies=(), planes=())
+    many.reset(seed=0)
+    for wrong, given in [
+        (np.array([0, 0, 0]), r"shape \(3,\) and type int64"),
+        (np.array([0.0, 1.0]), r"shape \(2,\) and type float64"),
+        (3, r"shape \(\) and type int64"),
+    ]:
+        for step in (lambda: env.step(wrong), lambda: many.step({"robot_0": wrong})):  # noqa: B023
+            with pytest.raises(ValueError, match=given + r": expected an array of shape \(2,\) of integers, a choice and a slot"):
+                step()
 
 
 def test_an_unknown_name_is_refused_as_data() -> None:
@@ -280,6 +290,7 @@ def test_bad_arguments_are_named() -> None:
         ({"slots": 0}, "0 slots"),
         ({"ticks_per_step": 0}, "0 ticks a step"),
         ({"render_mode": "human"}, "no render_mode `human`"),
+        ({"mission": ["make_cereal"]}, "a mission is a name, a path, a dictionary, .*, not of type list"),
     ]:
         with pytest.raises(ValueError, match=problem):
             cohabit.Env(**arguments).reset()

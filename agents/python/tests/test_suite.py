@@ -107,6 +107,54 @@ def test_a_policy_is_evaluated(made: cohabit.Suite, tmp_path: Path) -> None:
     assert alone == told
 
 
+def test_missions_are_named_in_many_ways(made: cohabit.Suite, tmp_path: Path) -> None:
+    def wait(observation: dict[str, Any], infos: dict[str, Any]) -> np.ndarray:
+        return np.zeros((len(infos["tick"]), 2), np.int64)
+
+    made[:3].save(tmp_path / "missions.jsonl")
+    (tmp_path / "one.json").write_text(made[0].text)
+    for missions, named in [
+        ("make_cereal", ["make_cereal"]),
+        (tmp_path / "missions.jsonl", [one.id for one in made[:3]]),
+        (str(tmp_path / "one.json"), ["one"]),
+        (made[:2], [one.id for one in made[:2]]),
+        (made[0], [made[0].id]),
+        (["cold_soda", made[1], tmp_path / "one.json"], ["cold_soda", made[1].id, "one"]),
+        (json.loads(made[0].text), ["mission"]),
+    ]:
+        told = cohabit.evaluate(wait, missions, planes=(), max_steps=1, ticks_per_step=1)
+        assert [episode.mission for episode in told.episodes] == named
+    with pytest.raises(ValueError, match="make_serial: there is no such file, and no built-in mission of that name"):
+        cohabit.evaluate(wait, "make_serial")
+    for wrong in (3, None, b"make_cereal"):
+        with pytest.raises(ValueError, match=f"missions are {wrong!r}: a suite, a mission, a name, a path"):
+            cohabit.evaluate(wait, wrong)
+    with pytest.raises(ValueError, match="0 missions"):
+        cohabit.evaluate(wait, [])
+    with pytest.raises(TypeError, match="a policy is a function of observations and infos, not of type str"):
+        cohabit.evaluate("make_cereal", wait)
+
+
+def test_a_mission_is_printed_in_a_line(made: cohabit.Suite) -> None:
+    for mission in made:
+        cdf = json.loads(mission.text)
+        objects, goals = len(cdf["scene"]["required_objects"]), len(cdf["task_goals"])
+        expected = f"<cohabit.Mission {mission.id} on {mission.layout}: {objects} objects, {goals} goals>"
+        assert repr(mission) == expected and goals > 0
+    assert repr(cohabit.Mission("broken", "{")) == "<cohabit.Mission broken on any floor plan: 0 objects, 0 goals>"
+
+
+def test_scores_and_rewards_stay_between_their_bounds() -> None:
+    env = cohabit.Env("cold_soda", planes=(), ticks_per_step=60 * 100, max_steps=12)
+    _, info = env.reset(seed=0)
+    assert info["score"] == 1000
+    earned = 0.0
+    for _ in range(12):
+        _, reward, _, truncated, info = env.step(np.array([CHOICES.index("wait"), 0]))
+        earned += reward
+    assert truncated and info["score"] == 100 and earned == pytest.approx(-9.0)
+
+
 def test_environments_are_pickled_and_copied() -> None:
     env = cohabit.Env(planes=("color", "ids"), size=24, slots=8, ticks_per_step=3)
     with pytest.raises(gymnasium.error.ResetNeeded):
@@ -151,6 +199,17 @@ def test_ids_that_nobody_asked_for_are_not_drawn() -> None:
     env.reset(seed=0)
     (frame,) = env.office.world.look(["sense-0"])
     assert frame.planes == ["color"]
+
+
+def test_only_a_body_has_tools() -> None:
+    for other in (cohabit.VectorEnv("cold_soda", 2, planes=()), cohabit.ParallelEnv("cold_soda", planes=()), "cold_soda"):
+        with pytest.raises(TypeError, match=f"tools are those of one body.*: a {type(other).__name__} has none"):
+            cohabit.tools(other)
+    wrapped = gymnasium.make("Cohabit/ColdSoda-v0", planes=())
+    tools = cohabit.tools(wrapped)
+    assert tools.call("look_around", {}) == "Refused: no episode has begun: reset the environment first."
+    wrapped.reset(seed=0)
+    assert tools.call("look_around", {}) == "I looked"
 
 
 def test_a_body_has_tools() -> None:

@@ -10,7 +10,7 @@ import pytest
 from gymnasium.vector import AutoresetMode
 
 import cohabit
-from cohabit import CHOICES
+from cohabit import CHOICES, GoTo, PickUp
 
 SHORT = {"ticks_per_step": 10, "max_steps": 5, "size": 24, "slots": 8}
 
@@ -68,8 +68,14 @@ def test_the_contract_of_gymnasium() -> None:
         assert observation in envs.observation_space
         assert rewards.dtype == np.float64 and terminated.dtype == truncated.dtype == np.bool_
         assert infos["_status"].all() and infos["action_masks"].shape == (2, len(CHOICES) + 8)
-    with pytest.raises(ValueError, match="1 actions for 2 worlds"):
-        envs.step(np.zeros((1, 2), np.int64))
+    for wrong, given in [
+        (np.zeros((1, 2), np.int64), r"shape \(1, 2\) and type int64"),
+        (np.zeros(2, np.int64), r"shape \(2,\) and type int64"),
+        (np.zeros((2, 2)), r"shape \(2, 2\) and type float64"),
+        ([[0, 0], [0]], "no array"),
+    ]:
+        with pytest.raises(ValueError, match=given + r".*: expected an array of shape \(2, 2\) of integers"):
+            envs.step(wrong)
     with pytest.raises(ValueError, match="no choice 99"):
         envs.step(np.full((2, 2), 99))
     wrapped = gymnasium.wrappers.vector.RecordEpisodeStatistics(envs)
@@ -127,6 +133,97 @@ def test_pictures_of_a_vector() -> None:
 
 @pytest.mark.parametrize("name", ["MakeCereal", "ColdSoda", "LaserLab", "WarmCoffee"])
 def test_built_in_missions_are_registered(name: str) -> None:
-    env = gymnasium.make(f"Cohabit/{name}-v0", planes=(), render_mode="rgb_array", render_size=(32, 24))
+    shown: dict[str, Any] = {"planes": (), "render_mode": "rgb_array", "render_size": (32, 24)}
+    env = gymnasium.make(f"Cohabit/{name}-v0", **shown)
     _, info = env.reset(seed=0)
     assert info["instruction"] and env.render().shape == (24, 32, 3)
+    envs = gymnasium.make_vec(f"Cohabit/{name}-v0", 2, **shown)
+    assert isinstance(envs.unwrapped, cohabit.VectorEnv) and envs.unwrapped.render_mode == "rgb_array"
+    _, infos = envs.reset(seed=0)
+    assert list(infos["instruction"]) == [info["instruction"]] * 2 and list(infos["mission"]) == [info["mission"]] * 2
+    pictures = envs.render()
+    assert pictures is not None and (pictures[0] == env.render()).all()
+
+
+def test_how_environments_are_shown_is_checked() -> None:
+    for make in (cohabit.Env, cohabit.ParallelEnv, cohabit.VectorEnv):
+        with pytest.raises(ValueError, match="no render_mode `human`: rgb_array"):
+            make(planes=(), render_mode="human")
+    envs = cohabit.VectorEnv("cold_soda", 2, planes=())
+    envs.reset(seed=0)
+    assert envs.render() is None
+
+
+def test_actions_are_sampled_by_masks() -> None:
+    envs = cohabit.VectorEnv("cold_soda", 3, planes=(), **SHORT)
+    with pytest.raises(gymnasium.error.ResetNeeded):
+        envs.sample()
+    _, infos = envs.reset(seed=0)
+    drawn = [envs.sample(seed=1), *[envs.sample() for _ in range(50)]]
+    assert all(one.shape == (3, 2) and one.dtype == np.int64 for one in drawn)
+    again = [envs.sample(infos["action_masks"], seed=1), *[envs.sample(infos["action_masks"]) for _ in range(50)]]
+    assert all((one == other).all() for one, other in zip(drawn, again))
+    for chosen in drawn:
+        for place, (choice, slot) in enumerate(chosen):
+            mask = infos["action_masks"][place]
+            assert mask[choice] and mask[len(CHOICES) + slot]
+    assert len({int(one[0, 0]) for one in drawn}) > 5, "choices vary"
+    only = np.zeros((3, len(CHOICES) + 8), np.int8)
+    only[:, CHOICES.index("turn_left")] = only[:, len(CHOICES) + 5] = 1
+    assert (envs.sample(only) == [CHOICES.index("turn_left"), 5]).all()
+    assert (envs.sample(np.zeros_like(only)) == 0).all()
+    envs.step(envs.sample())
+    with pytest.raises(ValueError, match=r"masks of shape \(3, 4\): expected shape \(3, "):
+        envs.sample(np.ones((3, 4)))
+    with pytest.raises(ValueError, match=r"masks of shape \(4,\): expected \[N, "):
+        cohabit.sample_actions(np.ones(4))
+
+
+def test_worlds_of_a_vector_act_in_words_on_what_was_seen() -> None:
+    same: dict[str, Any] = {"planes": (), "knows": "seen", "slots": 256}
+    envs, env = cohabit.VectorEnv("cold_soda", 2, **same), cohabit.Env("cold_soda", **same)
+    with pytest.raises(gymnasium.error.ResetNeeded, match=r"env.act\(\)"):
+        envs.act([GoTo("Lab1")] * 2)
+    envs.reset(seed=0)
+    env.reset(seed=0)
+    ray, can = GoTo("V_Monitor_FreezeRay_10000"), "CanSodaNew_01_1"
+    ones = [ray, GoTo(can), PickUp(can), GoTo("Lab1"), ray]
+    others = [GoTo(can), ray, GoTo("Lab1"), GoTo("BreakRoom"), ray]
+    for one, other in zip(ones, others):
+        observation, _, _, _, infos = envs.act([one, other])
+        single, *_, info = env.act(one)
+        check_row(observation, 0, single)
+        assert (infos["status"][0], infos["detail"][0]) == (info["status"], info["detail"])
+    assert set(infos["status"]) <= {"ActionSuccessful", "AlternateNavigationUsed"}
+    envs.reset(seed=0)
+    *_, infos = envs.act([ray, ray])
+    assert list(infos["status"]) == ["InvalidObjectClass"] * 2 and "has been seen yet" in infos["detail"][1]
+    with pytest.raises(ValueError, match="1 actions for 2 environments"):
+        envs.act([ray])
+    with pytest.raises(ValueError, match="nobody knows `all`"):
+        cohabit.VectorEnv(knows="all")
+
+
+@pytest.mark.parametrize("threads", [1, 2, 5])
+def test_worlds_whose_steps_last_differently_are_stepped_alike_by_any_threads(threads: int) -> None:
+    def digests(threads: int) -> list[bytes]:
+        envs = cohabit.VectorEnv("cold_soda", 5, planes=(), slots=8, max_steps=4, threads=threads)
+        envs.reset(seed=0)
+        go = [CHOICES.index(name) for name in ("wait", "turn_left", "go_to_Lab1", "go_to_Warehouse", "look_up")]
+        for turn in range(5):
+            envs.step(np.array([[go[(place + turn) % 5], 0] for place in range(5)]))
+        return [envs.stage.digest(place) for place in range(5)]
+
+    assert digests(threads) == digests(3)
+
+
+def test_a_choice_that_there_is_not_changes_no_world() -> None:
+    envs = cohabit.VectorEnv("cold_soda", 2, planes=(), threads=2, **SHORT)
+    envs.reset(seed=0)
+    before = [envs.stage.digest(place) for place in range(2)]
+    for choice in (len(CHOICES), -1):
+        with pytest.raises(ValueError, match=f"no choice {choice}: 0 to {len(CHOICES) - 1}"):
+            envs.step(np.array([[CHOICES.index("turn_left"), 0], [choice, 0]]))
+    assert [envs.stage.digest(place) for place in range(2)] == before
+    *_, infos = envs.step(np.array([[CHOICES.index("pick_up"), -1]] * 2))
+    assert list(infos["status"]) == ["InvalidObjectClass"] * 2

@@ -1,10 +1,9 @@
 //! World packs that a command is given: which folders, and that they are still what they were.
 
-mod folder;
-
 use std::{ffi::OsString, path::PathBuf};
 
 use cohabit_cdf::WorldData;
+use cohabit_engine::read_world_folder;
 
 use crate::failure::bad_input;
 
@@ -26,7 +25,8 @@ impl WorldPacks {
         if self.world_folders.is_empty() {
             return Ok(WorldData::builtin());
         }
-        let packs = self.world_folders.iter().map(|path| folder::read(path)).collect::<anyhow::Result<Vec<_>>>()?;
+        let packs = self.world_folders.iter().map(|path| read_world_folder(path)).collect::<Result<Vec<_>, _>>();
+        let packs = packs.map_err(bad_input)?;
         for (pack, hash) in packs.iter().zip(&self.world_hashes) {
             if pack.id().digest != *hash {
                 // A process that is started again must not play on in another world.

@@ -24,11 +24,12 @@ pub mod report;
 mod scene;
 mod shot;
 mod simulator;
-mod snapshot;
+pub mod snapshot;
 mod standing;
 mod stills;
 mod stopwatch;
 mod studio;
+mod world_folder;
 
 pub use appearance::{Appearance, HIGHLIGHT_TICKS, Visible};
 pub use build::{BuildError, SessionPlan};
@@ -40,3 +41,4 @@ pub use scene::{body_instance_id, furnishings, object_instance_id};
 pub use simulator::Simulator;
 pub use snapshot::RestoreError;
 pub use stills::Stills;
+pub use world_folder::{WorldFolderError, read_world_folder};

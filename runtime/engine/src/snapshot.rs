@@ -19,7 +19,11 @@ pub enum RestoreError {
 }
 
 /// All of a world that is needed to go on from it.
-pub(crate) fn write(visible: Visible<'_>) -> Vec<u8> {
+///
+/// # Panics
+/// Never: a world is plain data, of less than 4 GiB.
+#[must_use]
+pub fn write(visible: Visible<'_>) -> Vec<u8> {
     let state = visible.world.snapshot();
     let length = u32::try_from(state.len()).expect("invariant: a world takes less than 4 GiB");
     let start = [length.to_le_bytes().as_slice(), &state].concat();
@@ -27,7 +31,10 @@ pub(crate) fn write(visible: Visible<'_>) -> Vec<u8> {
 }
 
 /// Has `world`, which must be of the same mission, go on from there; gives what is seen besides.
-pub(crate) fn restore(world: &mut World, bytes: &[u8]) -> Result<Appearance, RestoreError> {
+///
+/// # Errors
+/// [`RestoreError`]; the world is then as it was.
+pub fn restore(world: &mut World, bytes: &[u8]) -> Result<Appearance, RestoreError> {
     let parts = || {
         let (length, rest) = bytes.split_first_chunk()?;
         rest.split_at_checked(usize::try_from(u32::from_le_bytes(*length)).ok()?)

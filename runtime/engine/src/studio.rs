@@ -243,7 +243,14 @@ impl Studio {
     fn expose(&mut self, moment: &Moment, due: Vec<(usize, Duration)>) -> Result<(), BusError> {
         self.set_up(moment);
         let Self { scene, renderer, layout, catalog, posts, classes, table } = self;
-        let tall: Vec<Tall> = moment.instances.iter().filter_map(|instance| tall(instance, catalog, layout)).collect();
+        let any_is = |is: fn(&CameraPlan) -> bool| due.iter().any(|(index, _)| is(&posts[*index].plan));
+        if any_is(|plan| plan.planes.contains(&Plane::Ids)) {
+            classes.set(&moment.instances);
+        }
+        // What a camera must keep off matters to those alone that follow a body from behind.
+        let instances: &[Instance] =
+            if any_is(|plan| matches!(plan.mount, Mount::Behind { .. })) { &moment.instances } else { &[] };
+        let tall: Vec<Tall> = instances.iter().filter_map(|instance| tall(instance, catalog, layout)).collect();
         let mut due = due.into_iter().peekable();
         let mut takes = Vec::new();
         for (index, post) in posts.iter_mut().enumerate() {
@@ -262,7 +269,6 @@ impl Studio {
     fn set_up(&mut self, moment: &Moment) {
         self.scene.set_time(moment.tick * cohabit_world::DT_NANOS);
         self.scene.set_instances(&moment.instances);
-        self.classes.set(&moment.instances);
         self.scene.set_highlights(&moment.highlights);
         for (room, lit) in cohabit_cdf::RoomId::ALL.into_iter().zip(moment.lit) {
             self.scene.set_lights(room, lit);

@@ -19,7 +19,7 @@ mod strip;
 pub(crate) mod vectors;
 mod veil;
 
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::camera::{Camera, View};
 use crate::planes::Planes;
@@ -42,18 +42,19 @@ const BANDS_PER_THREAD: usize = 4;
 /// What the visibility buffer holds where there is nothing.
 const NOTHING: u32 = u32::MAX;
 
-/// Draws on the CPU, with as many threads as it was given. Keeps its buffers from picture to picture.
-#[derive(Debug)]
+/// Draws on the CPU, with as many threads as it was given. Keeps its buffers from picture to picture; clones share threads and
+/// buffers, and may draw at once.
+#[derive(Clone, Debug)]
 pub struct CpuRenderer {
-    crew: Crew,
+    crew: Arc<Crew>,
     /// Nothing makes it do without the widest vectors; the bits are the same.
     wide: Option<Avx2>,
     /// False in tests alone: every room is drawn, whether it can be seen or not.
     through_doors: bool,
     /// One for each picture that is being drawn.
-    canvases: Pool<Canvas>,
+    canvases: Arc<Pool<Canvas>>,
     /// One for each thread at work.
-    scratches: Pool<Scratch>,
+    scratches: Arc<Pool<Scratch>>,
 }
 
 /// What is kept to be used again.
@@ -83,11 +84,11 @@ impl CpuRenderer {
     #[must_use]
     pub fn new(threads: usize) -> Self {
         Self {
-            crew: Crew::new(threads),
+            crew: Arc::new(Crew::new(threads)),
             wide: Avx2::detect(),
             through_doors: true,
-            canvases: Pool::default(),
-            scratches: Pool::default(),
+            canvases: Arc::default(),
+            scratches: Arc::default(),
         }
     }
 
@@ -141,7 +142,7 @@ impl CpuRenderer {
         });
 
         if let Some(color) = planes.color.as_deref_mut().filter(|_| camera.for_people) {
-            smooth::run(self.wide, (&self.crew, threads), color, &mut canvas.smoothing, &canvas.seen, width);
+            smooth::run(self.wide, (&*self.crew, threads), color, &mut canvas.smoothing, &canvas.seen, width);
             if outlined {
                 let ids = planes.ids.as_deref().unwrap_or(&canvas.own_ids);
                 outline::run(color, &mut canvas.mask, ids, &scene.highlights, width);

@@ -1,7 +1,8 @@
 """People and robots in a simulated office: join a session, read its frames in place, train in lock-step.
 
 - :class:`Env` and :class:`ParallelEnv` play missions in lock-step, in this process; :class:`VectorEnv` many at once.
-- :func:`suite` and :func:`generate` have missions by the thousand; :func:`evaluate` scores a policy on them.
+- :func:`suite` and :func:`generate` have missions by the thousand; :func:`evaluate` scores a policy on them, and
+  :func:`sample_actions` is one that does what may be tried, by chance.
 - :func:`tools` describes what a body can do to language models.
 - :func:`join` joins a running session.
 """
@@ -37,7 +38,7 @@ from .evaluation import Evaluation, evaluate
 from .missions import Mission, Suite, generate, suite
 from .parallel import ParallelEnv
 from .records import records
-from .sensing import CHOICES, PLANES
+from .sensing import CHOICES, PLANES, sample_actions
 from .session import Session, join
 from .vector import VectorEnv
 
@@ -88,6 +89,7 @@ __all__ = [
     "generate",
     "join",
     "records",
+    "sample_actions",
     "suite",
     "tools",
 ]

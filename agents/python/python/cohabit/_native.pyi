@@ -19,19 +19,24 @@ STATUSES: list[str]
 
 class Error(Exception): ...
 
-def class_ids() -> list[str]: ...
-def class_names() -> list[str]: ...
-def mission_text(name: Optional[str] = None) -> tuple[str, str]: ...
+def class_ids(world: list[str] = ...) -> list[str]:
+    """The ids of all classes of objects, by their numbers; ``world`` are folders of world packs, here and below."""
+
+def class_names(world: list[str] = ...) -> list[str]: ...
+def mission_text(name: Optional[str] = None, world: list[str] = ...) -> tuple[str, str]: ...
 def builtin_missions() -> list[str]: ...
+def pack_missions(world: list[str]) -> list[tuple[str, str]]:
+    """The names and the texts of the missions of world packs."""
+
 def generate_missions(
-    count: int, seed: int, types: Optional[list[str]], blockers: Optional[float], workers: int
+    count: int, seed: int, types: Optional[list[str]], blockers: Optional[float], workers: int, world: list[str] = ...
 ) -> list[str]:
     """Lines of a file of missions."""
 
 def part_missions(missions: list[tuple[str, str, list[str], list[str]]], share: float, seed: int) -> list[str]:
     """The part that each mission, given by type, floor plan, rooms and things, belongs to."""
 
-def action_table() -> list[tuple[str, list[str], list[tuple[str, str]]]]:
+def action_table(world: list[str] = ...) -> list[tuple[str, list[str], list[tuple[str, str]]]]:
     """What can be done to objects: the name, what people say for it, and how it is refused: statuses with sentences."""
 
 def choice_action(choice: int, object: int) -> Optional[Action]: ...
@@ -283,7 +288,10 @@ class State:
     def notes(self) -> list[tuple[int, str, bool]]:
         """What the sticky notes say: the object's number, the text, whether it was read."""
     @staticmethod
-    def of_payload(payload: bytes, tick: int) -> State: ...
+    def of_payload(payload: bytes, tick: int, world: list[str] = ...) -> State: ...
+    @property
+    def world(self) -> list[str]:
+        """The folders of the world's packs."""
     def payload(self) -> bytes:
         """All of it as bytes."""
     def find(self, name: Union[int, str], near: int = 0) -> Object:
@@ -326,9 +334,10 @@ class Stage:
         seed: int = 0,
         threads: int = 1,
         randomize: bool = False,
+        world: list[str] = ...,
     ) -> Stage: ...
     def reset(self, seed: int, mission: Optional[str] = None, text: Optional[str] = None) -> None: ...
-    def made_of(self) -> tuple[str, str, list[str], list[str], int, int, bool]:
+    def made_of(self) -> tuple[str, str, list[str], list[str], int, int, bool, list[str]]:
         """The arguments of a stage that is the same at its beginning."""
     def save(self) -> tuple[bytes, int, list[tuple[int, int, Optional[str]]], list[list[int]]]:
         """This moment, for :meth:`load`."""
@@ -363,16 +372,27 @@ class VecStage:
         most_steps: int,
         threads: int,
         randomize: bool,
+        remembers: bool = False,
+        world: list[str] = ...,
     ) -> VecStage: ...
     def layout(self) -> list[tuple[str, int, int, list[int], str]]:
         """Where arrays are in pages: name, page, first byte, shape, type."""
     def turn(
         self,
-        choices: list[Optional[list[int]]],
+        choices: bytes,
+        steps: bytes,
         beginnings: list[tuple[int, int, Optional[tuple[Optional[str], Optional[str]]]]],
     ) -> tuple[list[npt.NDArray[np.uint8]], list[str], list[str], list[str]]:
-        """One turn of all worlds. Gives the pages, and of each world the status and the detail of its command, and its
-        ending."""
+        """One turn of all worlds: ``choices`` are the bytes of ``[worlds, 2]`` i8, ``steps`` those of a truth for each world that
+        goes on. Gives the pages, and of each world the status and the detail of its command, and its ending."""
+    def act(
+        self,
+        actions: list[Action],
+        beginnings: list[tuple[int, int, Optional[tuple[Optional[str], Optional[str]]]]],
+    ) -> tuple[list[npt.NDArray[np.uint8]], list[str], list[str], list[str]]:
+        """The same with an action in words for each world."""
+    def known(self, world: int) -> list[int]:
+        """The numbers of the objects that the body of a world has seen in this episode, if that is noted."""
     def look(self, world: int, camera: str) -> Frame: ...
     def state(self, world: int) -> State: ...
     def digest(self, world: int) -> bytes: ...

@@ -19,11 +19,11 @@ def _reduce_stage(stage: _native.Stage) -> tuple[Any, ...]:
 
 
 def _reduce_state(state: _native.State) -> tuple[Any, ...]:
-    return _state, (state.payload(), state.tick)
+    return _state, (state.payload(), state.tick, state.world)
 
 
-def _state(payload: bytes, tick: int) -> _native.State:
-    return _native.State.of_payload(payload, tick)
+def _state(payload: bytes, tick: int, world: list[str]) -> _native.State:
+    return _native.State.of_payload(payload, tick, world)
 
 
 copyreg.pickle(_native.Stage, _reduce_stage)

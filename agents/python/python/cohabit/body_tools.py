@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Literal, Union
+
+from gymnasium.error import ResetNeeded
 
 from . import _native
 from .actions import Action, GoTo, Interact, LookAround, Move, PickUp, Place, Rotate
@@ -34,24 +36,28 @@ class Tools:
 
     def __init__(self, body: Union[Session, Env]) -> None:
         self.body = body
+        self._described = _described(body.office.packs if isinstance(body, Env) else [])
 
     def schemas(self, shape: Literal["openai", "mcp"] = "openai") -> list[dict[str, Any]]:
         """A description of each tool, as ``tools`` of OpenAI's chat completions, or of an answer of MCP's ``tools/list``."""
         if shape not in ("openai", "mcp"):
             raise ValueError(f"there is no shape `{shape}`: openai or mcp")
         if shape == "mcp":
-            return [{"name": name, "description": text, "inputSchema": schema} for name, text, schema in _described()]
-        described = ({"name": name, "description": text, "parameters": schema} for name, text, schema in _described())
+            return [{"name": name, "description": text, "inputSchema": schema} for name, text, schema in self._described]
+        described = ({"name": name, "description": text, "parameters": schema} for name, text, schema in self._described)
         return [{"type": "function", "function": function} for function in described]
 
     def call(self, name: str, arguments: Mapping[str, Any]) -> str:
         """Has the body do it, and says in a sentence what came of it, also where it was refused or made no sense."""
         try:
-            action = _action(name, arguments)
+            action = _action(name, arguments, self._described)
         except ValueError as error:
             return f"Refused: {error}."
         if isinstance(self.body, Env):
-            info = self.body.act(action)[-1]
+            try:
+                info = self.body.act(action)[-1]
+            except ResetNeeded:
+                return "Refused: no episode has begun: reset the environment first."
             status, detail = info["status"], info["detail"]
         else:
             outcome = self.body.do(action)
@@ -61,19 +67,30 @@ class Tools:
         return f"Refused ({status or 'not ended'}): {detail or 'nothing came of it yet'}"
 
 
+Described = Sequence[tuple[str, str, dict[str, Any]]]
+"""Name, description and JSON Schema of each tool."""
+
+
 def tools(body: Union[Session, Env]) -> Tools:
-    """The tools of a body: that of a session that was joined, or of an environment that was reset."""
-    return Tools(body)
+    """The tools of a body: that of a session that was joined, or of an environment, which may be wrapped.
+
+    Raises ``TypeError`` for anything else, such as an environment of many bodies or worlds.
+    """
+    inner = body if isinstance(body, Session) else getattr(body, "unwrapped", body)
+    if not isinstance(inner, (Session, Env)):
+        raise TypeError(
+            f"tools are those of one body, in a session that was joined or in a cohabit.Env: a {type(inner).__name__} has none"
+        )
+    return Tools(inner)
 
 
-def _described() -> list[tuple[str, str, dict[str, Any]]]:
-    """Name, description and JSON Schema of each tool."""
+def _described(packs: list[str]) -> Described:
     described: list[tuple[str, str, dict[str, Any]]] = []
     for name, (text, argument, low, high) in _MOTIONS.items():
         number = {"type": "number", "minimum": low, "maximum": high}
         described.append((name, text, _schema({argument: number})))
     described.append(("look_around", "Turn once around, looking.", _schema({})))
-    for name, spoken, refusals in _native.action_table():
+    for name, spoken, refusals in _native.action_table(packs):
         text = _DEEDS.get(name) or f"{name.capitalize()} an object, with the hand or with what it holds."
         said = ", ".join(f"`{word}`" for word in spoken)
         why = " ".join(_sentence(words) for _, words in refusals[:_MOST_REFUSALS])
@@ -92,9 +109,9 @@ def _schema(properties: dict[str, Any]) -> dict[str, Any]:
     return {"type": "object", "properties": properties, "required": list(properties), "additionalProperties": False}
 
 
-def _action(name: str, arguments: Mapping[str, Any]) -> Action:
+def _action(name: str, arguments: Mapping[str, Any], described: Described) -> Action:
     """The action of a call. Raises ``ValueError`` that says what is wrong with it."""
-    schemas = {known: schema for known, _, schema in _described()}
+    schemas = {known: schema for known, _, schema in described}
     if name not in schemas:
         raise ValueError(f"there is no tool `{name}`: one of {', '.join(schemas)}")
     wanted = schemas[name]["properties"]

@@ -11,7 +11,9 @@ import numpy.typing as npt
 
 from . import _native
 from .actions import Action
+from .missions import World
 from .office import MissionLike, Observation, Office, check_steps, outcome_info
+from .sensing import checked_actions
 from .session import Session
 
 
@@ -24,8 +26,10 @@ class Env(gymnasium.Env[Observation, npt.NDArray[np.int64]]):
     it, and ``info["affordances"]`` (``[choices, slots]``) which choice suits which slot. ``info["instruction"]`` is what the
     robot is told to do. An environment can be pickled and copied, but for one in a session: the copy goes on from there.
 
-    The reward is the change of the score over 100: a goal is worth 1, a simulated second costs 0.01. An episode
-    terminates when the mission ends, and is truncated after ``max_steps``.
+    The reward is the change of the score over 100: a goal is worth 1, and costs 1 if it opens again; a simulated second costs
+    0.01. The score begins at 1000, falls by 1 a second, but not below 100, and has 100 more for each goal met: it is from 100 to
+    1000 + 100 goals, and the rewards of an episode add up to at least -9 and at most the number of goals. An episode terminates
+    when the mission ends, and is truncated after ``max_steps``.
 
     :param ticks_per_step: a step lasts so many ticks (of 1/60 s) whatever the body does, and a new command takes the place
         of one under way; ``wait`` lets it go on. Left out, a step lasts until its command came to its outcome.
@@ -58,6 +62,7 @@ class Env(gymnasium.Env[Observation, npt.NDArray[np.int64]]):
         randomize: bool = False,
         instruction: bool = False,
         knows: str = "everything",
+        world: World = (),
     ) -> None:
         check_steps(render_mode, ticks_per_step)
         if session is not None and render_mode is not None:
@@ -80,6 +85,7 @@ class Env(gymnasium.Env[Observation, npt.NDArray[np.int64]]):
             randomize=randomize,
             instruction=instruction,
             knows=knows,
+            world=world,
         )
         self.observation_space = self.office.observation_space
         self.action_space = self.office.action_space
@@ -92,6 +98,11 @@ class Env(gymnasium.Env[Observation, npt.NDArray[np.int64]]):
     def state(self) -> _native.State:
         """The whole world as it is, for those who may know it."""
         return self.office.world.state()
+
+    @property
+    def classes(self) -> tuple[str, ...]:
+        """The ids of all classes of objects, by their numbers: ``cohabit.CLASSES``, then those of world packs."""
+        return self.office.classes
 
     def reset(
         self, *, seed: Optional[int] = None, options: Optional[dict[str, Any]] = None
@@ -121,10 +132,10 @@ class Env(gymnasium.Env[Observation, npt.NDArray[np.int64]]):
     ) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
         """One command, carried out to its outcome, or for ``ticks_per_step``.
 
-        Raises :class:`gymnasium.error.ResetNeeded` before the first :meth:`reset`.
+        Raises :class:`gymnasium.error.ResetNeeded` before the first :meth:`reset`, and ``ValueError`` for what is no action.
         """
         self.office.check_begun("step")
-        choice, slot = int(action[0]), int(action[1])
+        choice, slot = checked_actions(action).tolist()
         return self._after(self.office.world.choose([(self._body, choice, slot)], self.ticks_per_step))
 
     def act(self, action: Action) -> tuple[Observation, float, bool, bool, dict[str, Any]]:

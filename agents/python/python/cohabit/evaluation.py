@@ -12,7 +12,7 @@ from typing import Any, Optional, Union
 import numpy as np
 import numpy.typing as npt
 
-from .missions import Mission, Suite
+from .missions import Mission, Missions, cores, suite_of
 from .office import Observation
 from .vector import VectorEnv
 
@@ -93,7 +93,7 @@ def wilson_95(good: int, count: int) -> tuple[float, float]:
 
 def evaluate(
     policy: Policy,
-    suite: Suite,
+    missions: Missions,
     episodes: Optional[int] = None,
     *,
     seed: int = 0,
@@ -101,10 +101,11 @@ def evaluate(
     record: Union[None, str, os.PathLike[str]] = None,
     **arguments: Any,
 ) -> Evaluation:
-    """Has a policy play missions of a suite in their order, one episode each, and over again if there are more episodes.
+    """Has a policy play missions in their order, one episode each, and over again if there are more episodes.
 
     What comes of it does not depend on ``num_envs``, as long as the policy does for each world what it would do for it alone.
 
+    :param missions: a suite, a mission, the name of a built-in one, a path that :func:`cohabit.suite` reads, or a list of these.
     :param episodes: how many; one for each mission, if left out.
     :param seed: episode ``i`` begins with ``seed + i``.
     :param num_envs: worlds that are played beside each other.
@@ -112,11 +113,14 @@ def evaluate(
         :class:`cohabit.Env` that is reset with its mission and its seed.
     :param arguments: those of :class:`cohabit.VectorEnv`.
     """
+    if not callable(policy):
+        raise TypeError(f"a policy is a function of observations and infos, not of type {type(policy).__name__}")
+    suite = suite_of(missions, arguments.pop("world", ()))
     count = len(suite) if episodes is None else episodes
     if count < 1:
         raise ValueError(f"{count} episodes: at least 1")
-    worlds = min(count, num_envs or os.cpu_count() or 1)
-    envs = VectorEnv(suite[0], worlds, autoreset_mode="Disabled", **arguments)
+    worlds = min(count, num_envs or cores())
+    envs = VectorEnv(suite[0], worlds, autoreset_mode="Disabled", world=suite.world, **arguments)
     done: list[Episode] = []
     for first in range(0, count, worlds):
         numbers = range(first, min(first + worlds, count))

@@ -1,4 +1,4 @@
-"""Missions by the thousand: suites that environments sample from, read from files or made up."""
+"""Missions: suites that environments sample from, read from files or made up, and the folders of world packs."""
 
 from __future__ import annotations
 
@@ -16,10 +16,20 @@ from . import _native
 _STREAM = 0x5317E
 """Keeps the draw of a mission apart from all else that follows from the same seed."""
 
+World = Union[str, "os.PathLike[str]", Sequence[Union[str, "os.PathLike[str]"]]]
+"""The folder of a world pack, or several of them in their order, each of which may add to those before it."""
 
-@dataclass(frozen=True)
+
+def world_folders(world: World) -> list[str]:
+    """The folders of world packs, as paths that hold wherever this process goes."""
+    folders: list[Union[str, os.PathLike[str]]]
+    folders = [world] if isinstance(world, (str, os.PathLike)) else list(world)
+    return [os.path.abspath(folder) for folder in folders]
+
+
+@dataclass(frozen=True, repr=False)
 class Mission:
-    """A mission of a suite."""
+    """A mission of a suite. Printed, it is short: its ``text`` is not."""
 
     id: str
     text: str
@@ -37,21 +47,41 @@ class Mission:
     line: str = ""
     """The line of the file that it is from."""
 
+    def __repr__(self) -> str:
+        try:
+            cdf = json.loads(self.text.lstrip("\ufeff"))
+        except ValueError:
+            cdf = None
+        scene = cdf.get("scene") if isinstance(cdf, dict) else None
+        objects = _count(scene, "required_objects")
+        goals = _count(cdf, "task_goals")
+        return f"<cohabit.Mission {self.id} on {self.layout or 'any floor plan'}: {objects} objects, {goals} goals>"
+
+
+def _count(whole: Any, name: str) -> int:
+    """How many there are in a list of a mission file."""
+    found = whole.get(name) if isinstance(whole, dict) else None
+    return len(found) if isinstance(found, list) else 0
+
 
 class Suite(Sequence[Mission]):
-    """Missions in an order. An environment that is given one plays a mission of it in each episode."""
+    """Missions in an order. An environment that is given one plays a mission of it in each episode.
 
-    def __init__(self, missions: Sequence[Mission]) -> None:
+    ``world`` are the folders of the world packs that they need: environments take them from there.
+    """
+
+    def __init__(self, missions: Sequence[Mission], world: World = ()) -> None:
         if not missions:
             raise ValueError("a suite of 0 missions: at least 1")
         self.missions = tuple(missions)
+        self.world = tuple(world_folders(world))
 
     @overload
     def __getitem__(self, index: int) -> Mission: ...
     @overload
     def __getitem__(self, index: slice) -> Suite: ...
     def __getitem__(self, index: Union[int, slice]) -> Union[Mission, Suite]:
-        return Suite(self.missions[index]) if isinstance(index, slice) else self.missions[index]
+        return Suite(self.missions[index], self.world) if isinstance(index, slice) else self.missions[index]
 
     def __len__(self) -> int:
         return len(self.missions)
@@ -69,7 +99,7 @@ class Suite(Sequence[Mission]):
         unknown = [name for name in types if name not in self.types]
         if unknown:
             raise ValueError(f"there is no mission of type `{unknown[0]}`: {', '.join(self.types)}")
-        return Suite([mission for mission in self.missions if mission.type in types])
+        return Suite([mission for mission in self.missions if mission.type in types], self.world)
 
     def sample(self, seed: int) -> Mission:
         """The mission that an episode with this seed plays."""
@@ -85,7 +115,7 @@ class Suite(Sequence[Mission]):
         parts: dict[str, list[Mission]] = {}
         for mission, part in zip(self.missions, _native.part_missions(facets, share, seed)):
             parts.setdefault(part, []).append(mission)
-        return {part: Suite(missions) for part, missions in sorted(parts.items())}
+        return {part: Suite(missions, self.world) for part, missions in sorted(parts.items())}
 
     def save(self, path: Union[str, os.PathLike[str]]) -> None:
         """Writes a file of missions, a line each, as ``cohabit eval`` and :func:`suite` read it."""
@@ -114,12 +144,22 @@ def instruction_of(cdf: Any) -> str:
     return "; ".join(one for one in found if isinstance(one, str) and one)
 
 
-def suite(path: Union[str, os.PathLike[str]]) -> Suite:
+def suite(path: Union[None, str, os.PathLike[str]] = None, *, world: World = ()) -> Suite:
     """Reads the missions of a file of missions (``.jsonl``), of a mission file (CDF), of a folder of mission files, or of the
     trajectory data set of Alexa Arena, whose missions have the words of their annotators.
 
     Raises ``ValueError`` that names the file, the line and what is wrong.
+
+    :param world: the folders of world packs that the missions need. Without a path, the suite is the missions of these packs.
     """
+    folders = world_folders(world)
+    if path is None:
+        if not folders:
+            raise ValueError("there is no suite without a path, unless world packs are given")
+        packed = [_of_cdf(name, _parsed(text, name)) for name, text in _native.pack_missions(folders)]
+        if not packed:
+            raise ValueError(f"{', '.join(folders)}: no missions in these world packs")
+        return Suite(packed, folders)
     path = Path(path)
     if path.is_dir():
         missions = [_of_cdf(file.stem, _read_json(file)) for file in sorted(path.glob("*.json"))]
@@ -137,7 +177,45 @@ def suite(path: Union[str, os.PathLike[str]]) -> Suite:
         if mission.id in seen:
             raise ValueError(f"{path}: two missions are named {mission.id}")
         seen.add(mission.id)
-    return Suite(missions)
+    return Suite(missions, folders)
+
+
+Missions = Union[Suite, Mission, str, "os.PathLike[str]", Mapping[str, Any], Sequence[Any]]
+"""What :func:`suite_of` makes a suite of."""
+
+
+def suite_of(missions: Missions, world: World = ()) -> Suite:
+    """A suite of what somebody calls missions: a suite, a mission, the name of one that is built in or of a world pack, a path
+    that :func:`suite` reads, a mission file (CDF) as a dictionary, or a list of these.
+
+    Raises ``ValueError`` for anything else.
+    """
+    folders = world_folders(world)
+    if isinstance(missions, Suite):
+        return Suite(missions.missions, folders) if folders else missions
+    if isinstance(missions, Mission):
+        return Suite([missions], folders)
+    if isinstance(missions, Mapping):
+        return Suite([_of_cdf("mission", dict(missions))], folders)
+    if isinstance(missions, (str, os.PathLike)):
+        name = os.fspath(missions)
+        if name and Path(name).exists():
+            return suite(name, world=folders)
+        file, text = _native.mission_text(name, folders)
+        return Suite([_of_cdf(file.removesuffix(".json"), _parsed(text, file))], folders)
+    if isinstance(missions, Sequence) and not isinstance(missions, (bytes, bytearray)):
+        parts = [suite_of(one, folders) for one in missions]
+        worlds = sorted({part.world for part in parts})
+        if len(worlds) > 1:
+            raise ValueError(f"missions of {len(worlds)} worlds: name the world packs that all of them are played with")
+        return Suite([mission for part in parts for mission in part], worlds[0] if worlds else ())
+    raise ValueError(f"missions are {_shown(missions)}: a suite, a mission, a name, a path, a dictionary, or a list of these")
+
+
+def _shown(value: Any) -> str:
+    """A value in an error, cut off if it is long."""
+    shown = repr(value)
+    return shown if len(shown) <= 80 else f"{shown[:77]}…"
 
 
 def generate(
@@ -146,20 +224,30 @@ def generate(
     types: Optional[Sequence[str]] = None,
     blockers: Optional[float] = None,
     workers: Optional[int] = None,
+    *,
+    world: World = (),
 ) -> Suite:
     """Makes missions up: each is checked, solved by the planner and played once. The same seed makes the same ones.
 
     :param types: of the built-in types, those that are made; all of them, if left out.
     :param blockers: the share of missions in which something stands in the way, from 0 to 1.
     :param workers: threads; one for each core, if left out. They do not change what is made.
+    :param world: the folders of world packs, whose objects missions may be made with.
     """
     if count < 1:
         raise ValueError(f"{count} missions: at least 1")
     if blockers is not None and not 0.0 <= blockers <= 1.0:
         raise ValueError(f"a share of {blockers} blockers: from 0 to 1")
-    threads = workers or os.cpu_count() or 1
-    lines = _native.generate_missions(count, seed, None if types is None else list(types), blockers, threads)
-    return Suite([_of_line(line, "generate") for line in lines])
+    folders, named = world_folders(world), None if types is None else list(types)
+    lines = _native.generate_missions(count, seed, named, blockers, workers or cores(), folders)
+    return Suite([_of_line(line, "generate") for line in lines], folders)
+
+
+def cores() -> int:
+    """The cores that this process may run on."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
 
 
 def _read(path: Path) -> str:
@@ -170,11 +258,15 @@ def _read(path: Path) -> str:
 
 
 def _read_json(path: Path) -> Any:
+    return _parsed(_read(path), str(path))
+
+
+def _parsed(text: str, name: str) -> Any:
     try:
         # Editors of another system put a byte order mark before the text.
-        return json.loads(_read(path).lstrip("\ufeff"))
+        return json.loads(text.lstrip("\ufeff"))
     except json.JSONDecodeError as error:
-        raise ValueError(f"{path}:{error.lineno}: {error.msg}") from None
+        raise ValueError(f"{name}:{error.lineno}: {error.msg}") from None
 
 
 def _of_cdf(name: str, cdf: Any) -> Mission:

@@ -37,7 +37,7 @@ import numpy.typing as npt
 
 from . import _native
 from .actions import Known, Names
-from .missions import Mission, Suite, instruction_of
+from .missions import Mission, Suite, World as Packs, instruction_of, world_folders
 from .records import NONE
 from .sensing import CHOICES, MOST_GOALS, PLANES, Sensing, observable
 from .session import Session
@@ -148,7 +148,7 @@ class Guest:
         """The same with ``(body, choice, slot)``."""
         actions = []
         for body, choice, slot in choices:
-            number = int(self._slots[slot]) - 1 if slot < len(self._slots) and self._slots[slot] else NONE
+            number = int(self._slots[slot]) - 1 if 0 <= slot < len(self._slots) and self._slots[slot] else NONE
             action = _native.choice_action(choice, number)
             if action is not None:
                 actions.append((body, action))
@@ -200,6 +200,8 @@ class Office:
     :param instruction: whether an observation has what the robot is told to do; it is in the info in any case.
     :param knows: which objects an action in words may name: ``"everything"`` there is, or what the body has ``"seen"`` in this
         episode: what was in its slots, in its pictures (if they have ids), or in its hand.
+    :param world: the folder of a world pack, or several in their order: floor plans, objects, devices and missions beside the
+        built-in ones. Left out, it is that of the suite that is played.
     """
 
     def __init__(
@@ -217,10 +219,15 @@ class Office:
         randomize: bool = False,
         instruction: bool = False,
         knows: str = "everything",
+        world: Packs = (),
     ) -> None:
-        if knows not in ("everything", "seen"):
-            raise ValueError(f"nobody knows `{knows}`: everything or seen")
-        self.sensing = Sensing(planes, camera, size, slots, fill, instruction)
+        check_knows(knows)
+        self.packs = packs_of(mission, world)
+        if session is not None and self.packs:
+            raise ValueError("the world of a session is as it was started: there are no world packs to give")
+        self.classes = tuple(_native.class_ids(self.packs))
+        """The ids of all classes of objects, by their numbers."""
+        self.sensing = Sensing(planes, camera, size, slots, fill, instruction, len(self.classes))
         self.planes, self.slots, self.fill = self.sensing.planes, slots, self.sensing.fill
         self.knows = knows
         self._session_camera = camera if session is not None else None
@@ -233,9 +240,9 @@ class Office:
         self.mission_name, self.instruction = "", ""
         self.world: World
         if session is None:
-            name, text = mission_text(*self._played)
+            name, text = mission_text(*self._played, packs=self.packs)
             cameras = self.sensing.cameras(1 + len(bodies), render)
-            self.world = _native.Stage(name, text, list(bodies), cameras, 0, threads, randomize)
+            self.world = _native.Stage(name, text, list(bodies), cameras, 0, threads, randomize, self.packs)
             self._told(name, text)
         else:
             drawn = self.sensing.drawn
@@ -255,7 +262,7 @@ class Office:
         if self._randomize and played[2] is not None:
             seed = played[2]
         if played != self._played:
-            name, text = mission_text(*played)
+            name, text = mission_text(*played, packs=self.packs)
             self.world.reset(seed, name, text)
             self._played = played
             self._told(name, text)
@@ -374,7 +381,15 @@ Played = tuple[MissionLike, Optional[str], Optional[int]]
 """A mission, the layout that it is moved to, and the seed that it is given, if any is."""
 
 
-def mission_text(mission: MissionLike, layout: Optional[str] = None, seed: Optional[int] = None) -> tuple[str, str]:
+def packs_of(mission: MissionLike, world: Packs) -> list[str]:
+    """The folders of the world packs that a mission is played with: those that are given, else those of its suite."""
+    folders = world_folders(world)
+    return list(mission.world) if isinstance(mission, Suite) and not folders else folders
+
+
+def mission_text(
+    mission: MissionLike, layout: Optional[str] = None, seed: Optional[int] = None, *, packs: Sequence[str] = ()
+) -> tuple[str, str]:
     """A mission's name and text, on another layout or with another seed."""
     if isinstance(mission, Suite):
         raise ValueError("a suite has many missions: one of them, such as suite[0]")
@@ -382,8 +397,11 @@ def mission_text(mission: MissionLike, layout: Optional[str] = None, seed: Optio
         name, text = mission.id, mission.text
     elif isinstance(mission, Mapping):
         name, text = "mission", json.dumps(mission)
+    elif mission is None or isinstance(mission, (str, os.PathLike)):
+        name, text = _native.mission_text(None if mission is None else os.fspath(mission), list(packs))
     else:
-        name, text = _native.mission_text(None if mission is None else os.fspath(mission))
+        kinds = "a name, a path, a dictionary, a mission of a suite, or a suite"
+        raise ValueError(f"a mission is {kinds}, not of type {type(mission).__name__}")
     return (name, text) if layout is None and seed is None else _changed(name, text, layout, seed)
 
 
@@ -419,6 +437,12 @@ def check_steps(render_mode: Optional[str], ticks_per_step: Optional[int]) -> No
         raise ValueError(f"there is no render_mode `{render_mode}`: rgb_array")
     if ticks_per_step is not None and ticks_per_step < 1:
         raise ValueError(f"{ticks_per_step} ticks a step: at least 1")
+
+
+def check_knows(knows: str) -> None:
+    """Raises ``ValueError`` if nobody can know that."""
+    if knows not in ("everything", "seen"):
+        raise ValueError(f"nobody knows `{knows}`: everything or seen")
 
 
 def outcome_info(outcomes: Sequence[_native.Outcome], body: int) -> dict[str, Any]:

@@ -12,7 +12,9 @@ import numpy.typing as npt
 
 from . import _native
 from .actions import Action
+from .missions import World
 from .office import OPTIONS, MissionLike, Observation, Office, check_steps, outcome_info
+from .sensing import checked_actions
 
 try:
     from pettingzoo import ParallelEnv as Base  # type: ignore[import-untyped, unused-ignore]
@@ -52,6 +54,7 @@ class ParallelEnv(Base):  # type: ignore[misc, unused-ignore]
         randomize: bool = False,
         instruction: bool = False,
         knows: str = "everything",
+        world: World = (),
     ) -> None:
         check_steps(render_mode, ticks_per_step)
         self.render_mode = render_mode
@@ -71,6 +74,7 @@ class ParallelEnv(Base):  # type: ignore[misc, unused-ignore]
             randomize=randomize,
             instruction=instruction,
             knows=knows,
+            world=world,
         )
         self.possible_agents = [f"{kind}_{number}" for number, kind in enumerate(self.office.kinds)]
         self.agents: list[str] = []
@@ -90,6 +94,11 @@ class ParallelEnv(Base):  # type: ignore[misc, unused-ignore]
     def action_space(self, agent: str) -> gymnasium.spaces.MultiDiscrete:
         """What an agent chooses from."""
         return self.action_spaces[agent]
+
+    @property
+    def classes(self) -> tuple[str, ...]:
+        """The ids of all classes of objects, by their numbers: ``cohabit.CLASSES``, then those of world packs."""
+        return self.office.classes
 
     def state(self) -> _native.State:
         """The whole world as it is, for those who may know it."""
@@ -119,7 +128,8 @@ class ParallelEnv(Base):  # type: ignore[misc, unused-ignore]
         Raises :class:`gymnasium.error.ResetNeeded` before the first :meth:`reset`.
         """
         self.office.check_begun("step")
-        choices = [(self._number[agent], int(action[0]), int(action[1])) for agent, action in actions.items()]
+        chosen = {agent: checked_actions(action).tolist() for agent, action in actions.items()}
+        choices = [(self._number[agent], choice, slot) for agent, (choice, slot) in chosen.items()]
         return self._after(self.office.world.choose(choices, self.ticks_per_step))
 
     def act(self, actions: Mapping[str, Action]) -> Step:

@@ -8,6 +8,7 @@ from typing import Any, Optional, Union
 
 import gymnasium
 import numpy as np
+import numpy.typing as npt
 from gymnasium import spaces
 
 from . import _native
@@ -26,7 +27,6 @@ MOST_CHARACTERS = 1000
 
 _CHARACTERS = string.ascii_letters + string.digits + string.punctuation + " "
 _FARTHEST_M = 1000.0
-_CLASSES = len(_native.class_ids())
 _PLANE_SPACES: dict[str, tuple[float, float, tuple[int, ...], Any]] = {
     "color": (0, 255, (4,), np.uint8),
     "depth": (0.0, np.inf, (), np.float32),
@@ -37,7 +37,8 @@ _VIEWS = {"panorama": 4}
 
 
 class Sensing:
-    """How bodies sense; the parameters are those of :class:`~cohabit.office.Office`."""
+    """How bodies sense; the parameters are those of :class:`~cohabit.office.Office`, and how many classes of objects there
+    are."""
 
     def __init__(
         self,
@@ -47,6 +48,7 @@ class Sensing:
         slots: int,
         fill: Optional[str],
         instruction: bool = False,
+        classes: Optional[int] = None,
     ) -> None:
         unknown = [plane for plane in planes if plane not in PLANES]
         if unknown:
@@ -60,6 +62,7 @@ class Sensing:
         self.camera = camera
         self.kind = camera.split(",", 1)[0]
         self.instruction = instruction
+        self.classes = len(_native.class_ids()) if classes is None else classes
         self.drawn = self.planes + (("ids",) if self.fill == "seen" and "ids" not in self.planes else ())
         """The planes that are drawn, observed or not."""
 
@@ -91,11 +94,11 @@ class Sensing:
         parts["position"] = spaces.Box(-_FARTHEST_M, _FARTHEST_M, (3,), np.float32)
         parts["heading"] = spaces.Box(-2 * np.pi, 2 * np.pi, (2,), np.float32)
         parts["room"] = spaces.Discrete(len(_native.ROOMS))
-        parts["held"] = spaces.Discrete(_CLASSES + 1)
+        parts["held"] = spaces.Discrete(self.classes + 1)
         parts["busy"] = spaces.Discrete(2)
         parts["goals"] = spaces.MultiBinary(MOST_GOALS)
         parts["slot_ids"] = spaces.Box(0, 2**32 - 1, (self.slots,), np.uint32)
-        parts["slot_classes"] = spaces.Box(0, _CLASSES, (self.slots,), np.int64)
+        parts["slot_classes"] = spaces.Box(0, self.classes, (self.slots,), np.int64)
         parts["slot_positions"] = spaces.Box(-_FARTHEST_M, _FARTHEST_M, (self.slots, 3), np.float32)
         parts["slot_states"] = spaces.MultiBinary((self.slots, len(_native.FLAGS)))
         if self.instruction:
@@ -105,6 +108,38 @@ class Sensing:
     def action_space(self) -> spaces.MultiDiscrete:
         """What a body chooses from: a choice, and a slot."""
         return spaces.MultiDiscrete([len(CHOICES), self.slots])
+
+
+def checked_actions(actions: npt.ArrayLike, *worlds: int) -> npt.NDArray[np.int64]:
+    """``[choice, slot]`` as an array, or one for each of so many worlds. Raises ``ValueError`` that says what is expected and what
+    was given."""
+    expected = (*worlds, 2)
+    wanted = f"an array of shape {expected} of integers, a choice and a slot" + (" for each world" if worlds else "")
+    try:
+        given = np.asarray(actions)
+    except ValueError:
+        raise ValueError(f"actions that are no array: expected {wanted}") from None
+    if given.shape != expected or given.dtype.kind not in "iu":
+        raise ValueError(f"actions of shape {given.shape} and type {given.dtype}: expected {wanted}")
+    return given.astype(np.int64, copy=False)
+
+
+def sample_actions(masks: npt.ArrayLike, random: Optional[np.random.Generator] = None) -> npt.NDArray[np.int64]:
+    """An action for each row of masks, ``[N, 2]``: its choice and its slot are drawn of those that may be tried, each as likely
+    as any other. Whether the two go together, ``affordances`` says.
+
+    :param masks: which may be tried, ``[N, choices + slots]``, as ``infos["action_masks"]`` of a vector. Where nothing may be
+        tried, the choice or the slot is 0.
+    :param random: what draws; anew by chance, if left out.
+    """
+    given = np.asarray(masks)
+    if given.ndim != 2 or given.shape[1] <= len(CHOICES):
+        wanted = f"[N, {len(CHOICES)} + slots]: a truth for each choice, then for each slot"
+        raise ValueError(f"masks of shape {given.shape}: expected {wanted}")
+    # Of numbers drawn alike, each is as likely the highest.
+    drawn = (given != 0) * (1.0 + (random or np.random.default_rng()).random(given.shape))
+    choices, slots = drawn[:, : len(CHOICES)], drawn[:, len(CHOICES) :]
+    return np.stack([choices.argmax(axis=1), slots.argmax(axis=1)], axis=1).astype(np.int64, copy=False)
 
 
 def observable(instruction: str) -> str:

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Optional, Union
 
 import gymnasium
@@ -14,31 +13,42 @@ from gymnasium.vector import AutoresetMode, VectorEnv as _Base
 from gymnasium.vector.utils import batch_space
 
 from . import _native
-from .missions import Suite
-from .office import OPTIONS, MissionLike, Observation, check_steps, instruction_in, mission_text
-from .sensing import Sensing, observable
+from .actions import Action, Known, Names
+from .missions import Suite, World, cores
+from .office import OPTIONS, MissionLike, Observation, check_knows, check_steps, instruction_in, mission_text, packs_of
+from .sensing import CHOICES, Sensing, checked_actions, observable, sample_actions
 
 Step = tuple[Observation, npt.NDArray[np.float64], npt.NDArray[np.bool_], npt.NDArray[np.bool_], dict[str, Any]]
 Beginning = tuple[int, int, Optional[tuple[Optional[str], Optional[str]]]]
+Told = tuple[list[npt.NDArray[np.uint8]], list[str], list[str], list[str]]
+Outcomes = tuple[list[str], list[str], list[str]]
+"""Of each world the status and the detail of its command, and its ending."""
 
 _NUMBERS = ("tick", "score", "affordances", "action_masks")
 """The arrays that are told in infos."""
+
+_TEXTS = ("status", "detail", "ending", "mission", "instruction")
+"""What is told there in words."""
+
+_TOLD_OF_ALL = tuple(f"_{name}" for name in (*_NUMBERS, *_TEXTS))
+"""Gymnasium's names for which worlds these are told of: all."""
 
 
 class VectorEnv(_Base[Observation, npt.NDArray[np.int64], npt.NDArray[Any]]):
     """``num_envs`` worlds with one body each. World by world and step by step, they are what as many :class:`cohabit.Env` are.
 
     Observations are arrays of a row for each world, written by the threads that step the worlds; ``infos["action_masks"]`` is
-    ``[N, choices + slots]``, and :meth:`action_masks` the same. Arrays are read-only. Their memory is used again once nobody
-    refers to it, so they can be kept as long as one likes; who keeps one that is no picture keeps all of the step's that are none.
+    ``[N, choices + slots]``, and :meth:`action_masks` the same; :meth:`sample` draws actions by them. Arrays are read-only. Their
+    memory is used again once nobody refers to it, so they can be kept as long as one likes; who keeps one that is no picture keeps
+    all of the step's that are none.
 
     :param mission: what is played: a mission, or a suite, of which each world samples one for each episode by its seed.
-    :param threads: threads that step and draw; one for each core, if left out.
+    :param threads: threads that step and draw; one for each core that this process may run on, if left out.
     :param autoreset_mode: when an episode begins after another: in the ``NextStep`` (gymnasium's default, whose action is
         ignored for that world), in the ``SameStep`` (``infos["final_obs"]`` and ``infos["final_info"]`` are of the episode that
         ended), or ``Disabled``: when ``reset(options={"reset_mask": …})`` says so.
 
-    All other parameters are those of :class:`cohabit.Env`.
+    All other parameters are those of :class:`cohabit.Env`, and so are scores and rewards.
     """
 
     metadata = {"render_modes": ["rgb_array"], "render_fps": 10, "autoreset_mode": AutoresetMode.NEXT_STEP}  # noqa: RUF012
@@ -61,21 +71,28 @@ class VectorEnv(_Base[Observation, npt.NDArray[np.int64], npt.NDArray[Any]]):
         threads: Optional[int] = None,
         randomize: bool = False,
         instruction: bool = False,
+        knows: str = "everything",
+        world: World = (),
         autoreset_mode: Union[str, AutoresetMode] = AutoresetMode.NEXT_STEP,
     ) -> None:
         if num_envs < 1:
             raise ValueError(f"{num_envs} environments: at least 1")
         check_steps(render_mode, ticks_per_step)
+        check_knows(knows)
         self.autoreset_mode = AutoresetMode(autoreset_mode)
         self.metadata = {**self.metadata, "autoreset_mode": self.autoreset_mode}
         self.num_envs = num_envs
         self.render_mode = render_mode
-        sensing = Sensing(planes, camera, size, slots, fill, instruction)
+        self._packs = packs_of(mission, world)
+        self.classes = tuple(_native.class_ids(self._packs))
+        """The ids of all classes of objects, by their numbers: ``cohabit.CLASSES``, then those of world packs."""
+        sensing = Sensing(planes, camera, size, slots, fill, instruction, len(self.classes))
+        self.knows = knows
         self._mission, self._randomize = mission, randomize
         self._played: list[MissionLike] = [mission[0] if isinstance(mission, Suite) else mission] * num_envs
         self._changed = [False] * num_envs
         """Whether a world plays a mission on another layout or with another seed, for one episode."""
-        named = mission_text(self._played[0])
+        named = mission_text(self._played[0], packs=self._packs)
         self._names = [named[0]] * num_envs
         self._instructions = [instruction_in(self._played[0], named[1])] * num_envs
         self.stage = _native.VecStage(
@@ -88,8 +105,10 @@ class VectorEnv(_Base[Observation, npt.NDArray[np.int64], npt.NDArray[Any]]):
             sensing.fill,
             ticks_per_step,
             max_steps,
-            threads or os.cpu_count() or 1,
+            threads or cores(),
             randomize,
+            knows == "seen",
+            self._packs,
         )
         self._layout = [
             (name, page, at, tuple(shape), np.dtype(item)) for name, page, at, shape, item in self.stage.layout()
@@ -104,6 +123,12 @@ class VectorEnv(_Base[Observation, npt.NDArray[np.int64], npt.NDArray[Any]]):
         self._done = np.zeros(num_envs, np.bool_)
         self._has_begun = False
         self._latest: dict[str, npt.NDArray[Any]] = {}
+        self._nobody = np.zeros(num_envs, np.bool_)
+        self._everybody = np.ones(num_envs, np.bool_)
+        self._everybody.flags.writeable = False
+        self._no_choices = np.zeros((num_envs, 2), np.int64)
+        self._slots = slots
+        self._sampler: Optional[np.random.Generator] = None
 
     def reset(  # type: ignore[override, unused-ignore]
         self,
@@ -131,21 +156,40 @@ class VectorEnv(_Base[Observation, npt.NDArray[np.int64], npt.NDArray[Any]]):
             raise ValueError(f"{len(missions)} missions for {self.num_envs} environments: one for each")
         chosen = [place for place in range(self.num_envs) if mask[place]]
         anew = [self._begin(place, seeds[place], {**options, "mission": missions[place]}) for place in chosen]
-        observation, infos = self._told(*self._turn([None] * self.num_envs, anew))
+        observation, infos = self._told(*self._turn(self._no_choices, self._nobody, anew))
         self._has_begun = True
         self._done = self._done & ~mask
         return observation, infos
 
     def step(self, actions: npt.NDArray[np.int64]) -> Step:
-        """A command for each world, ``[N, 2]``, carried out to its outcome, or for ``ticks_per_step``."""
+        """A command for each world, ``[N, 2]``, carried out to its outcome, or for ``ticks_per_step``.
+
+        Raises ``ValueError`` that says what shape and type actions have to have.
+        """
+        self._check_can_step("step")
+        chosen = checked_actions(actions, self.num_envs)
+        return self._step(lambda anew: self._turn(chosen, self._everybody, anew))
+
+    def act(self, actions: Sequence[Action]) -> Step:
+        """The same as :meth:`step` with an action in words for each world, such as ``GoTo("bowl")``."""
+        self._check_can_step("act")
+        if len(actions) != self.num_envs:
+            raise ValueError(f"{len(actions)} actions for {self.num_envs} environments: one for each")
+        plain = [action.plain(self._names_in(place), 0) for place, action in enumerate(actions)]
+        return self._step(lambda anew: self._note(self.stage.act(plain, anew)))
+
+    def _check_can_step(self, method: str) -> None:
         if not self._has_begun:
-            raise gymnasium.error.ResetNeeded("Cannot call env.step() before calling env.reset()")
+            raise gymnasium.error.ResetNeeded(f"Cannot call env.{method}() before calling env.reset()")
         if self.autoreset_mode is AutoresetMode.DISABLED and self._done.any():
             raise _is_over(self._done)
+
+    def _step(self, turn: Callable[[list[Beginning]], Outcomes]) -> Step:
+        """A step that ``turn`` has all worlds make but those that begin anew in it, and autoreset."""
         anew: list[Beginning] = []
         if self.autoreset_mode is AutoresetMode.NEXT_STEP:
             anew = [self._begin(int(place), None, {}) for place in np.flatnonzero(self._done)]
-        statuses, details, endings = self._turn(np.asarray(actions).tolist(), anew)
+        statuses, details, endings = turn(anew)
         rewards = self._latest["reward"].copy()
         terminated, truncated = self._latest["terminated"].copy(), self._latest["truncated"].copy()
         self._done = done = terminated | truncated
@@ -159,7 +203,7 @@ class VectorEnv(_Base[Observation, npt.NDArray[np.int64], npt.NDArray[Any]]):
             one = {"final_obs": _row(final_obs, place), "final_info": _row_of_infos(final_info, place)}
             last = self._add_info(last, one, place)
         anew = [self._begin(place, None, {}) for place in over]
-        again = self._turn([None] * self.num_envs, anew)
+        again = self._turn(self._no_choices, self._nobody, anew)
         # What came of the commands of worlds that go on is still to be told.
         statuses, details, endings = (
             [new if is_over else old for old, new, is_over in zip(olds, news, done)]
@@ -173,15 +217,31 @@ class VectorEnv(_Base[Observation, npt.NDArray[np.int64], npt.NDArray[Any]]):
         """The same for some worlds alone, without any autoreset: the others stay as they are, and earn nothing."""
         if not self._has_begun:
             raise gymnasium.error.ResetNeeded("Cannot call env.step_where() before calling env.reset()")
+        where = np.asarray(where)
+        if where.shape != (self.num_envs,) or where.dtype != np.bool_:
+            raise ValueError(f"`where` is of shape {where.shape} and type {where.dtype}: an array of {self.num_envs} truths")
         if (self._done & where).any():
             raise _is_over(self._done & where)
-        rows = np.asarray(actions).tolist()
-        told = self._turn([row if chosen else None for row, chosen in zip(rows, where)], [])
+        told = self._turn(checked_actions(actions, self.num_envs), where, [])
         rewards = np.where(where, self._latest["reward"], 0.0)
         terminated, truncated = self._latest["terminated"].copy(), self._latest["truncated"].copy()
         self._done = terminated | truncated
         observation, infos = self._told(*told)
         return observation, rewards, terminated, truncated, infos
+
+    def sample(self, masks: Optional[npt.ArrayLike] = None, seed: Optional[int] = None) -> npt.NDArray[np.int64]:
+        """An action for each world, ``[N, 2]``, drawn as by :func:`cohabit.sample_actions`.
+
+        :param masks: which may be tried, ``[N, choices + slots]``, as ``infos["action_masks"]``; the newest ones, if left out.
+        :param seed: begins the series of draws anew.
+        """
+        newest = self.action_masks() if masks is None else np.asarray(masks)
+        expected = (self.num_envs, len(CHOICES) + self._slots)
+        if newest.shape != expected:
+            raise ValueError(f"masks of shape {newest.shape}: expected shape {expected}, a truth for each choice and each slot")
+        if seed is not None or self._sampler is None:
+            self._sampler = np.random.default_rng(seed)
+        return sample_actions(newest, self._sampler)
 
     def action_masks(self) -> npt.NDArray[np.bool_]:
         """Which choices and which slots of each world may be tried, ``[N, choices + slots]``."""
@@ -200,11 +260,20 @@ class VectorEnv(_Base[Observation, npt.NDArray[np.int64], npt.NDArray[Any]]):
         frames = (self.stage.look(place, "watch-0") for place in range(self.num_envs))
         return tuple(np.ascontiguousarray(frame.color[..., :3]) for frame in frames)
 
+    def _names_in(self, place: int) -> Names:
+        """What an action in words may name in a world."""
+        state = self.stage.state(place)
+        return state if self.knows == "everything" else Known(state, set(self.stage.known(place)))
+
     def _turn(
-        self, choices: list[Optional[list[int]]], beginnings: list[Beginning]
-    ) -> tuple[list[str], list[str], list[str]]:
-        """One turn of all worlds; what came of it is the latest then."""
-        pages, statuses, details, endings = self.stage.turn(choices, beginnings)
+        self, choices: npt.NDArray[np.int64], steps: npt.NDArray[np.bool_], beginnings: list[Beginning]
+    ) -> Outcomes:
+        """One turn of all worlds: some begin anew, of the others those step that are to."""
+        return self._note(self.stage.turn(choices.tobytes(), steps.tobytes(), beginnings))
+
+    def _note(self, told: Told) -> Outcomes:
+        """Has what came of a turn be the latest."""
+        pages, statuses, details, endings = told
         self._latest = {
             name: np.ndarray(shape, dtype, pages[page], at) for name, page, at, shape, dtype in self._layout
         }
@@ -226,7 +295,7 @@ class VectorEnv(_Base[Observation, npt.NDArray[np.int64], npt.NDArray[Any]]):
         is_changed = layout is not None or own is not None
         named = None
         if is_changed or self._changed[place] or mission is not self._played[place]:
-            named = mission_text(mission, layout, own)
+            named = mission_text(mission, layout, own, packs=self._packs)
             self._names[place], self._instructions[place] = named[0], instruction_in(mission, named[1])
         self._played[place], self._changed[place] = mission, is_changed
         return place, own if self._randomize and own is not None else episode, named
@@ -243,15 +312,9 @@ class VectorEnv(_Base[Observation, npt.NDArray[np.int64], npt.NDArray[Any]]):
             else:
                 observation[name] = latest[name]
         infos: dict[str, Any] = {name: latest[name] for name in _NUMBERS}
-        for name, values in [
-            ("status", statuses),
-            ("detail", details),
-            ("ending", endings),
-            ("mission", self._names),
-            ("instruction", self._instructions),
-        ]:
+        for name, values in zip(_TEXTS, (statuses, details, endings, self._names, self._instructions)):
             infos[name] = np.array(values, dtype=object)
-        infos |= {f"_{name}": np.ones(self.num_envs, np.bool_) for name in list(infos)}
+        infos |= dict.fromkeys(_TOLD_OF_ALL, self._everybody)
         return observation, infos
 
 

@@ -33,6 +33,12 @@ impl World {
         })
     }
 
+    /// The objects that are in a room now, in the order of their ids.
+    pub fn objects_in(&self, room: RoomId) -> impl Iterator<Item = ObjectView<'_>> {
+        let in_room = self.state.existing().filter(move |(_, object)| object.room == room);
+        in_room.map(|(id, object)| view(&self.facts(), id, object))
+    }
+
     /// One object.
     #[must_use]
     pub fn object(&self, id: ObjectId) -> Option<ObjectView<'_>> {
@@ -70,6 +76,11 @@ impl World {
     #[must_use]
     pub fn goals(&self) -> Vec<GoalStatus> {
         goals::statuses(&self.mission, &self.state)
+    }
+
+    /// Whether each goal is met, in the mission's order.
+    pub fn goals_met(&self) -> impl ExactSizeIterator<Item = bool> + '_ {
+        self.state.goals.iter().map(|goal| goal.met)
     }
 
     /// The score so far: 1000, less one a second down to 100, and 100 for each goal met.
