@@ -17,6 +17,8 @@ use crate::Scratch;
 
 /// How long processes and sessions that were ended may take to go.
 const GRACE: Duration = Duration::from_secs(5);
+/// The folders of the repository that commands may read. Others may be of who works in it, and not be written to.
+const REPOSITORY: [&str; 5] = ["agents", "cdf", "dialog", "runtime", "tests"];
 /// What is not taken over from who runs this: it would have commands behave otherwise than on a bare machine.
 const REMOVED: [&str; 3] = ["DISPLAY", "WAYLAND_DISPLAY", "XDG_DATA_HOME"];
 /// The variables of this program.
@@ -31,8 +33,8 @@ pub struct Place {
 }
 
 impl Place {
-    /// A folder for the page of that name, in which all that the repository has is found, and `binary` as `cohabit`; programs
-    /// in the folders `first` come before those of the machine.
+    /// A folder for the page of that name, in which the folders of the repository are found, and `binary` as `cohabit`;
+    /// programs in the folders `first` come before those of the machine.
     pub fn new(name: &str, binary: &Path, repository: &Path, first: &[PathBuf]) -> io::Result<Self> {
         let scratch = Scratch::new(&format!("guide-{name}"));
         let root = fs::canonicalize(scratch.path(""))?;
@@ -45,12 +47,8 @@ impl Place {
         }
         fs::DirBuilder::new().mode(0o700).create(place.root.join("run"))?;
         symlink(binary, place.program())?;
-        for entry in fs::read_dir(repository)? {
-            let entry = entry?;
-            let name = entry.file_name();
-            if name != "target" && !name.to_string_lossy().starts_with('.') {
-                symlink(entry.path(), place.folder().join(name))?;
-            }
+        for folder in REPOSITORY {
+            symlink(repository.join(folder), place.folder().join(folder))?;
         }
         Ok(place)
     }

@@ -26,7 +26,7 @@ const END_LIMIT: Duration = Duration::from_secs(30);
 pub struct Runner<'a> {
     /// The program, which commands find as `cohabit`.
     pub binary: &'a Path,
-    /// The root of the repository, whose files commands find in their folder.
+    /// The root of the repository, whose folders commands find in their own.
     pub repository: &'a Path,
     /// What blocks may need besides, such as `python`.
     pub has: &'a [&'a str],
