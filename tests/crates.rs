@@ -42,7 +42,7 @@ const LEVELS: &[(&str, u8, &[&str])] = &[
     ("cohabit-study", 5, &[]),
     ("cohabit-vision", 5, &[]),
     ("cohabit-python", 5, &["pyo3", "numpy"]),
-    ("cohabit", 6, &["clap", "anyhow", "indicatif"]),
+    ("cohabit", 6, &["clap", "clap_complete", "clap_mangen", "anyhow", "indicatif"]),
 ];
 
 /// Dependencies that others may name too: the log, pages and existing clients speak JSON, tests report errors of all

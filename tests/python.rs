@@ -1,5 +1,5 @@
 //! The Python package: packed as a wheel around the native module of this very build, installed where nothing else is,
-//! and tried by its own tests, against sessions of this very binary.
+//! and tried by the guide's page on it and by its own tests, against sessions of this very binary.
 #![allow(clippy::unwrap_used)]
 
 use std::{
@@ -8,12 +8,15 @@ use std::{
     process::Command,
 };
 
-use cohabit_tests::{output, python_with};
+use cohabit_tests::{Runner, output, python_with};
 
 /// The binary under test.
 const COHABIT: &str = env!("CARGO_BIN_EXE_cohabit");
 /// The package's sources.
 const PACKAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../agents/python");
+/// The root of the repository, and the page of the guide that needs the package.
+const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
+const PAGE: &str = "runtime/guide/src/python.md";
 /// Where all of it happens.
 const FOLDER: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/python");
 
@@ -58,6 +61,11 @@ fn the_package_passes_its_own_tests() {
     for example in fs::read_dir(examples).unwrap().map(|entry| entry.unwrap().path()) {
         output(Command::new(&python).arg(example)).unwrap();
     }
+    let page = fs::read_to_string(Path::new(ROOT).join(PAGE)).unwrap();
+    let programs = [python.parent().unwrap().to_owned()];
+    let (binary, repository) = (Path::new(COHABIT), Path::new(ROOT));
+    let runner = Runner { binary, repository, has: &["python"], path: &programs };
+    runner.run(PAGE, &page).unwrap_or_else(|problem| panic!("{problem}"));
     let tests = ["-m", "pytest", "--quiet", "-p", "no:cacheprovider", "tests"];
     let tested = output(Command::new(&python).args(tests).current_dir(PACKAGE).env("COHABIT", COHABIT));
     println!("{}", String::from_utf8_lossy(&tested.unwrap().stdout));

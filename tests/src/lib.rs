@@ -9,6 +9,8 @@ mod page;
 mod play;
 mod python;
 mod scratch;
+mod script;
+mod shell;
 mod soak;
 mod socket;
 mod speech;
@@ -19,6 +21,8 @@ pub use page::{Page, Pen, Received, Sound};
 pub use play::{Play, reference_data, run};
 pub use python::{output, python_with};
 pub use scratch::{Scratch, files};
+pub use script::{Block, NotRun, Role, Runner, Told, blocks};
+pub use shell::{Call, commands};
 pub use soak::{Resident, Soaked, soak};
 pub use speech::{SpeechServer, babble, wav};
 

@@ -6,6 +6,7 @@ mod benchmark;
 mod branch;
 mod build;
 mod check;
+mod completions;
 mod convert;
 mod demonstrate;
 mod doctor;
@@ -15,6 +16,7 @@ mod failure;
 mod gallery;
 mod generate;
 mod guide;
+mod man;
 mod minds;
 mod mission_file;
 mod movement;
@@ -94,6 +96,10 @@ enum Command {
     Study(study::Study),
     /// Show the guide in the browser or in the terminal, without a network
     Guide(guide::Guide),
+    /// Print a script by which a shell completes commands and options
+    Completions(completions::Completions),
+    /// Write a manual page of each command into a folder
+    Man(man::Man),
     /// Say what this machine lacks for a session, and what that costs
     Doctor(doctor::Doctor),
     /// Play a mission on this machine from end to end, and say line by line what works and what is missing
@@ -143,6 +149,8 @@ impl Command {
             | Self::Annotate(_)
             | Self::Pddl(_)
             | Self::Guide(_)
+            | Self::Completions(_)
+            | Self::Man(_)
             | Self::Doctor(_)
             | Self::Top(_)
             | Self::Time(_)
@@ -190,6 +198,8 @@ fn run(asked: Cohabit) -> anyhow::Result<()> {
         Command::Pddl(pddl) => pddl.run(),
         Command::Study(study) => study.run(),
         Command::Guide(guide) => guide.run(),
+        Command::Completions(completions) => completions.run(),
+        Command::Man(man) => man.run(),
         Command::Doctor(doctor) => doctor.run(),
         Command::SelfTest(test) => test.run(),
         Command::Top(top) => top.run(),

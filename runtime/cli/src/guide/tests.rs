@@ -7,7 +7,8 @@ use std::{
 };
 
 use clap::Parser as _;
-use pulldown_cmark::{CodeBlockKind, Event, HeadingLevel, Tag, TagEnd};
+use cohabit_tests::{Block, Call, blocks, commands};
+use pulldown_cmark::{Event, HeadingLevel, Tag};
 
 use super::{
     book::{PAGES, PICTURES, SUMMARY, Target, from_root, page, target},
@@ -127,106 +128,22 @@ fn a_page_names_itself_in_the_list_of_pages() {
 #[test]
 fn the_readme_is_short() {
     let (_, readme) = texts().swap_remove(0);
-    assert!(readme.lines().count() <= 180, "{} lines", readme.lines().count());
-}
-
-/// The lines of the blocks of a text that are for the shell; a line that ends with `\` goes on in the next one.
-fn shell_lines(text: &str) -> Vec<String> {
-    let mut lines = Vec::new();
-    let mut block: Option<String> = None;
-    for event in events(text) {
-        match event {
-            Event::Start(Tag::CodeBlock(CodeBlockKind::Fenced(language))) => {
-                block = (&*language == "sh").then(String::new);
-            }
-            Event::Text(text) => {
-                if let Some(block) = &mut block {
-                    block.push_str(&text);
-                }
-            }
-            Event::End(TagEnd::CodeBlock) => {
-                let block = block.take().unwrap_or_default().replace("\\\n", " ");
-                lines.extend(block.lines().map(str::to_owned));
-            }
-            _ => {}
-        }
-    }
-    lines
-}
-
-/// The commands of a line, each as its words. Understands quotes, comments, `&`, `;` and `|`, and no more of a shell.
-fn commands(line: &str) -> Vec<Vec<String>> {
-    let mut commands: Vec<Vec<String>> = vec![Vec::new()];
-    let (mut word, mut quote): (Option<String>, Option<char>) = (None, None);
-    for letter in line.chars() {
-        match (quote, letter) {
-            (Some(open), _) if open == letter => quote = None,
-            (Some(_), _) => word.get_or_insert_default().push(letter),
-            (None, '\'' | '"') => {
-                quote = Some(letter);
-                word.get_or_insert_default();
-            }
-            (None, '#') if word.is_none() => break,
-            (None, ' ' | '&' | ';' | '|') => {
-                let done = word.take();
-                if let Some(last) = commands.last_mut() {
-                    last.extend(done);
-                }
-                if letter != ' ' {
-                    commands.push(Vec::new());
-                }
-            }
-            (None, _) => word.get_or_insert_default().push(letter),
-        }
-    }
-    if let Some(last) = commands.last_mut() {
-        last.extend(word);
-    }
-    commands.retain(|words| !words.is_empty());
-    commands
-}
-
-/// What a command gives this program, the program's name first; `None`, if it starts another one.
-fn own_arguments(words: &[String]) -> Option<Vec<String>> {
-    const BY_CARGO: [&str; 4] = ["cargo", "run", "--release", "--"];
-    let is_variable = |word: &&String| word.split_once('=').is_some_and(|(name, _)| name.starts_with("COHABIT_"));
-    let words = &words[words.iter().take_while(is_variable).count()..];
-    let given = match words.strip_prefix(BY_CARGO.map(str::to_owned).as_slice()) {
-        Some(given) => given,
-        None => words.split_first().filter(|(program, _)| *program == "cohabit")?.1,
-    };
-    Some(std::iter::once("cohabit".to_owned()).chain(given.iter().cloned()).collect())
-}
-
-#[test]
-fn lines_for_the_shell_are_read_as_a_shell_reads_them() {
-    for (line, expected) in [
-        ("cohabit play  # it starts", vec![vec!["cohabit", "play"]]),
-        ("cohabit play --name 'a b' \"c#d\" e#f", vec![vec!["cohabit", "play", "--name", "a b", "c#d", "e#f"]]),
-        ("a & b; c | d", vec![vec!["a"], vec!["b"], vec!["c"], vec!["d"]]),
-        ("a ''", vec![vec!["a", ""]]),
-        ("# nothing", vec![]),
-    ] {
-        assert_eq!(commands(line), expected, "{line}");
-    }
-    let own = |line: &str| own_arguments(&commands(line)[0]);
-    let play = Some(vec!["cohabit".to_owned(), "play".to_owned()]);
-    assert_eq!(own("COHABIT_MODEL=m cohabit play"), play);
-    assert_eq!(own("cargo run --release -- play"), play);
-    assert_eq!(own("cargo test -p cohabit"), None);
-    assert_eq!(shell_lines("```sh\na \\\n  b\n```\n```rust\nc\n```\n"), ["a    b"]);
+    assert!(readme.lines().count() <= 150, "{} lines", readme.lines().count());
 }
 
 #[test]
 fn every_command_is_one_of_this_program() {
     let mut count = 0;
     for (file, text) in texts() {
-        for line in shell_lines(&text) {
-            for arguments in commands(&line).iter().filter_map(|words| own_arguments(words)) {
+        let blocks = blocks(&text).unwrap();
+        for (line, typed) in blocks.iter().filter(|block| block.is_of_shell()).flat_map(Block::commands) {
+            for call in commands(&typed).iter().filter_map(|words| Call::of(words)) {
                 count += 1;
+                let arguments = std::iter::once("cohabit".to_owned()).chain(call.arguments);
                 // The answer to `--help` is an error, too, but none of this kind.
                 let refused = Cohabit::try_parse_from(arguments).err().filter(clap::Error::use_stderr);
-                assert!(refused.is_none(), "{file}: `{line}`: {}", refused.map(|e| e.to_string()).unwrap_or_default());
+                let said = refused.as_ref().map(ToString::to_string).unwrap_or_default();
+                assert!(refused.is_none(), "{file}:{line}: `{typed}`: {said}");
             }
         }
     }
