@@ -14,6 +14,7 @@ pub mod goal;
 pub mod layout;
 pub mod mission;
 pub mod model;
+mod nearest;
 pub mod semantic;
 pub mod state;
 pub mod symbolic;

@@ -8,7 +8,6 @@ mod key;
 pub mod limits;
 mod messages;
 mod names;
-mod nearest;
 mod objects;
 mod occasion;
 mod portal;

@@ -6,9 +6,12 @@ use super::{
     key::{flag_keys, flag_of_key},
     problem::Pointer,
     raw::{Condition, Entry, Loose, Scalar},
-    reader::{Reader, did_you_mean, shape},
+    reader::{Reader, shape},
 };
-use crate::goal::{Expression, InstancePattern, StateCondition};
+use crate::{
+    goal::{Expression, InstancePattern, StateCondition},
+    nearest::did_you_mean,
+};
 
 /// The kinds of expressions that are no flags.
 pub(super) const KINDS: [&str; 12] = [

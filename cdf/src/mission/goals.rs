@@ -7,10 +7,11 @@ use super::{
     key::{flag_keys, flag_of_key},
     problem::Pointer,
     raw::{Loose, Scalar, TaskGoal, Visibility},
-    reader::{GoalPlaces, Reader, did_you_mean, shape},
+    reader::{GoalPlaces, Reader, shape},
 };
 use crate::{
     goal::{Goal, GoalState, InstancePattern, Predicate, Relation, StateCondition},
+    nearest::did_you_mean,
     state::StateFlag,
 };
 

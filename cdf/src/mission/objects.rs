@@ -10,11 +10,12 @@ use super::{
     names::is_robot,
     problem::Pointer,
     raw::{Entry, Loose, RequiredObject, Scalar},
-    reader::{Reader, did_you_mean, shape},
+    reader::{Reader, shape},
     robot::is_blank,
 };
 use crate::{
     catalog::{ClassId, Property},
+    nearest::did_you_mean,
     state::{Color, Fluid, StateFlag},
 };
 

@@ -10,9 +10,9 @@ use super::{
     key::flag_of_key,
     problem::Pointer,
     raw::{Entry, Loose},
-    reader::{Reader, did_you_mean},
+    reader::Reader,
 };
-use crate::{layout::RoomId, state::StateFlag};
+use crate::{layout::RoomId, nearest::did_you_mean, state::StateFlag};
 
 /// What one item of `simbot_init` asks for.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]

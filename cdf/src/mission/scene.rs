@@ -6,9 +6,12 @@ use super::{
     NoteRequest,
     problem::Pointer,
     raw::{Loose, Scalar, Scene, StickyNote},
-    reader::{Reader, did_you_mean},
+    reader::Reader,
 };
-use crate::layout::{Layout, RoomId};
+use crate::{
+    layout::{Layout, RoomId},
+    nearest::did_you_mean,
+};
 
 /// The layout of a mission that names none.
 pub(super) const DEFAULT_LAYOUT: &str = "OfficeLayout1";
