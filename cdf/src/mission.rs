@@ -3,6 +3,7 @@
 mod audit;
 mod camera;
 mod expression;
+mod goal_kind;
 mod goals;
 mod key;
 pub mod limits;
@@ -28,6 +29,7 @@ use serde::{Deserialize as _, Serialize};
 
 pub use self::{
     camera::{CameraMovement, CameraView},
+    goal_kind::{GoalForm, GoalKind, goal_kinds},
     key::{flag_key, flag_of_key},
     messages::{Message, MessageTime},
     portal::{Era, Portal},

@@ -25,6 +25,12 @@ fn a_new_world_is_checked_played_and_replayed_with_its_pack_alone() {
     assert_eq!(code, Some(0), "{text}");
     assert!(text.contains("2 of 2 floor plans and missions are playable"), "{text}");
 
+    let (text, code) = told(&["catalog", "classes", "--json", "--world", &pack]);
+    assert_eq!(code, Some(0), "{text}");
+    assert!(text.contains("\"id\": \"Wrench_01\"") && text.contains("\"id\": \"Bowl_01\""), "{text}");
+    let (text, _) = told(&["catalog", "rooms", "--world", &pack]);
+    assert!(text.lines().any(|line| line.contains("workshop") && line.contains("Workshop")), "{text}");
+
     let mission = format!("{pack}/missions/clean_wrench.json");
     let how = ["--understanding", "fast", "--knows", "everything", "--workers", "1"];
     let what = ["eval", mission.as_str(), "--world", pack.as_str(), "--record", logs.as_str()];

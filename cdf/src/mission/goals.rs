@@ -22,7 +22,7 @@ pub(super) const ALWAYS_UNLOCKED: &str = "ALWAYS UNLOCKED";
 const NOTE: &str = "StickyNote";
 
 /// The keys of goals that are no flags.
-const KEYS: [&str; 5] = ["isFilled", "isEmpty", "Contains", "ContainsFluid", "ColorMetaDataChange"];
+pub(super) const KEYS: [&str; 5] = ["isFilled", "isEmpty", "Contains", "ContainsFluid", "ColorMetaDataChange"];
 
 /// What goals may name.
 pub(super) struct Named<'a> {
