@@ -7,6 +7,7 @@ use std::{
 };
 
 use clap::Parser as _;
+use cohabit_cdf::mission::goal_kinds;
 use pulldown_cmark::{CodeBlockKind, Event, HeadingLevel, Tag, TagEnd};
 
 use super::{
@@ -122,6 +123,15 @@ fn a_page_names_itself_in_the_list_of_pages() {
         assert!(!["{title}", "{version}", "{contents}"].iter().any(|place| text.contains(place)), "{}", file.path);
     }
     assert_eq!(html(SUMMARY).matches("<a href=\"/").count(), PAGES.len());
+}
+
+#[test]
+fn the_page_of_goals_has_all_that_goals_can_ask_for() {
+    let shown = page("goals").unwrap();
+    for kind in goal_kinds() {
+        let line = format!("| `{}` | `{}` | {} |", kind.key, kind.example, kind.meaning);
+        assert!(shown.text.lines().any(|own| own == line), "the page `goals` lacks the line: {line}");
+    }
 }
 
 #[test]
