@@ -19,16 +19,21 @@ const LARGEST_FILE: u64 = 8 << 20;
 /// The most bytes of all files.
 const LARGEST_PACK: u64 = 64 << 20;
 
-/// The pack in a folder. Files and folders whose names begin with a dot are no part of it.
+/// The pack in a folder.
 pub fn read(folder: &Path) -> anyhow::Result<WorldPack> {
+    let name = folder.display().to_string();
+    WorldPack::parse(name.trim_end_matches('/'), files(folder)?).map_err(bad_input)
+}
+
+/// The files of the pack in a folder. Files and folders whose names begin with a dot are no part of it.
+pub fn files(folder: &Path) -> anyhow::Result<Vec<PackFile>> {
     let root = fs::canonicalize(folder).map_err(|error| bad_input(format!("{}: {error}", folder.display())))?;
     if !root.is_dir() {
         return Err(bad_input(format!("{}: no folder: `--world` takes the folder of a world pack", folder.display())));
     }
     let mut reading = Reading { root: &root, files: Vec::new(), bytes: 0 };
     reading.take(folder, "", DEEPEST)?;
-    let name = folder.display().to_string();
-    WorldPack::parse(name.trim_end_matches('/'), reading.files).map_err(bad_input)
+    Ok(reading.files)
 }
 
 struct Reading<'a> {

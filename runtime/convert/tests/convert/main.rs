@@ -43,7 +43,7 @@ impl Native {
 
     fn convert(&self, out: &str, format: Format, limit: usize) -> Result<(PathBuf, Counts), ConvertError> {
         let out = PathBuf::from(self.scratch.path(out));
-        let counts = convert(&self.folder, &out, format, limit, &|_, _| {})?;
+        let counts = convert(&self.folder, &out, format, limit, &Catalog::builtin(), &|_, _| {})?;
         Ok((out, counts))
     }
 
