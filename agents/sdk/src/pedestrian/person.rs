@@ -209,7 +209,8 @@ impl Person {
             return self.halt();
         }
         if let Some(beyond) = self.beyond_door(around) {
-            return self.lead(beyond, tick);
+            // Somebody may stand in it.
+            return self.get_past(beyond, beyond, around);
         }
         if self.is_stuck(tick, at_m) {
             return self.get_past(aim, goal, around);
@@ -247,8 +248,8 @@ impl Person {
         near.find_map(|door| beyond(&way, *door))
     }
 
-    /// What somebody does who is stuck: has its body go on by itself, which goes around who stands there; then waits, and tries
-    /// again; at last does the next thing.
+    /// What somebody does who is stuck, or before a shut door: has its body go on by itself, which opens doors and goes around who
+    /// stands there; then waits, and tries again; at last does the next thing.
     fn get_past(&mut self, aim: Vec2, goal: Vec2, around: &Around<'_>) -> Option<Action> {
         self.stuck += 1;
         let obstacle = self.obstacle(around);
