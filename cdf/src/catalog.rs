@@ -13,7 +13,11 @@ pub(crate) use pack::Layer;
 pub use pack::{PackId, RoomNames};
 use table::{ActionTable, TableError};
 
-use crate::{builtin, model::Model};
+use crate::{
+    builtin,
+    model::Model,
+    nearest::{did_you_mean, nearest},
+};
 
 /// The index of a class in the [`Catalog`].
 #[derive(Clone, Copy, Debug, Default, Deserialize, Eq, Hash, Ord, PartialEq, PartialOrd, Serialize)]
@@ -194,12 +198,28 @@ pub enum CatalogError {
         id: String,
     },
     /// A class names a model that no file has.
-    #[error("object `{object}` has no model: no file defines `{model}`")]
+    #[error("{file}: object `{object}` has no model: no file defines `{model}`: {remedy}")]
     NoModel {
+        /// The file of the class.
+        file: String,
         /// The class.
         object: String,
         /// The model it names.
         model: String,
+        /// What would be right.
+        remedy: String,
+    },
+    /// A receptacle takes or refuses a class that no file has.
+    #[error("{file}: object `{object}`: receptacle: no file defines the class `{class}`: {remedy}")]
+    NoClass {
+        /// The file of the receptacle.
+        file: String,
+        /// The receptacle.
+        object: String,
+        /// The class that it names.
+        class: String,
+        /// What would be right.
+        remedy: String,
     },
 }
 
@@ -249,14 +269,31 @@ impl Catalog {
                 catalog.class_by_id.insert(class.id.clone(), id);
                 let model = class.model.clone().unwrap_or_else(|| class.id.clone());
                 let Some((index, _)) = model_by_id.get(&model) else {
-                    return Err(CatalogError::NoModel { object: class.id, model });
+                    let near = did_you_mean(&model, catalog.models.iter().map(|known| known.id.as_str()));
+                    let remedy = near.unwrap_or_else(|| "add a `[[model]]` with this id".to_owned());
+                    return Err(CatalogError::NoModel { file: (*file).to_owned(), object: class.id, model, remedy });
                 };
                 catalog.model_by_class.push(*index);
                 catalog.classes.push(class);
             }
         }
+        catalog.check_receptacles(&file_of_class)?;
         catalog.names = names::of_classes(&catalog.classes);
         Ok(catalog)
+    }
+
+    /// What receptacles take or refuse by name is there.
+    fn check_receptacles(&self, files: &HashMap<String, &str>) -> Result<(), CatalogError> {
+        for class in &self.classes {
+            let mut named = class.receptacle.iter().flat_map(|own| own.keys.iter().chain(&own.refuses));
+            if let Some(absent) = named.find(|named| self.find(named).is_none()) {
+                let file = files.get(&class.id).copied().unwrap_or_default().to_owned();
+                let near = did_you_mean(absent, self.classes.iter().map(|known| known.id.as_str()));
+                let remedy = near.unwrap_or_else(|| "add an `[[object]]` with this id".to_owned());
+                return Err(CatalogError::NoClass { file, object: class.id.clone(), class: absent.clone(), remedy });
+            }
+        }
+        Ok(())
     }
 
     /// The same with a table of actions and devices, from `(file name, text)`.
@@ -264,7 +301,18 @@ impl Catalog {
     /// # Errors
     /// [`TableError`] names the file and what is wrong in it.
     pub fn with_table(mut self, files: &[(&str, &str)]) -> Result<Self, TableError> {
-        self.table = ActionTable::parse(files, &|class| self.find(class).is_some())?;
+        let is_class = |class: &str| match class.strip_suffix('*') {
+            Some(prefix) => self.classes.iter().any(|known| known.id.starts_with(prefix)),
+            None => self.find(class).is_some(),
+        };
+        let table = ActionTable::parse(files, &is_class).map_err(|error| match error {
+            TableError::NoClass { file, class, .. } => {
+                let near = nearest(&class, self.classes.iter().map(|known| known.id.as_str())).map(str::to_owned);
+                TableError::NoClass { file, class, near }
+            }
+            other => other,
+        });
+        self.table = table?;
         Ok(self)
     }
 
@@ -324,6 +372,17 @@ impl Catalog {
             return Some(id);
         }
         instance.rmatch_indices('_').find_map(|(at, _)| self.find(&instance[..at]))
+    }
+
+    /// What a misspelt class or instance may be: the nearest class, with the same number if there is one.
+    #[must_use]
+    pub fn near(&self, name: &str) -> Option<String> {
+        let classes = || self.classes.iter().map(|class| class.id.as_str());
+        if let Some(class) = nearest(name, classes()) {
+            return Some(class.to_owned());
+        }
+        let (class, number) = name.rsplit_once('_')?;
+        Some(format!("{}_{number}", nearest(class, classes())?))
     }
 
     /// The looks of a class.

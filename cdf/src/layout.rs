@@ -1,10 +1,12 @@
 //! Floor plans: rooms, openings, what stands where, and the circuits that feed it.
 
 mod check;
+mod fault;
 mod file;
 mod floor;
 mod footprint;
 mod mirror;
+mod ways;
 
 use serde::{Deserialize, Serialize};
 
@@ -13,7 +15,7 @@ use crate::catalog::Catalog;
 use crate::room::RoomId;
 use footprint::Footprint;
 
-pub use check::LayoutFault;
+pub use fault::{LayoutFault, NoStand, NoWay};
 pub use floor::FreeFloor;
 
 /// A floor plan, ready to be built: bases resolved, mirrored if its id says so.
@@ -266,6 +268,11 @@ pub struct NotePlace {
     pub yaw_deg: f32,
 }
 
+/// What was meant, if it is near to what was written.
+fn meant(near: &Option<String>) -> String {
+    near.as_ref().map_or_else(String::new, |near| format!(" (did you mean `{near}`?)"))
+}
+
 /// Why a floor plan could not be had.
 #[derive(Debug, thiserror::Error)]
 pub enum LayoutError {
@@ -278,20 +285,24 @@ pub enum LayoutError {
         source: Box<toml::de::Error>,
     },
     /// No file has this id.
-    #[error("there is no layout `{id}`; there are {known}")]
+    #[error("there is no layout `{id}`{}; there are {known}", meant(.near))]
     Unknown {
         /// What was asked for.
         id: String,
+        /// The one that it may have been meant to be.
+        near: Option<String>,
         /// What there is.
         known: String,
     },
     /// A file names an instance that is not there to be removed, or to be stood on.
-    #[error("{file}: there is no `{instance}`: name an instance placed earlier")]
+    #[error("{file}: there is no `{instance}`{}: name an instance placed earlier", meant(.near))]
     NoInstance {
         /// Which file.
         file: String,
         /// The instance it names.
         instance: String,
+        /// The one that it may have been meant to be.
+        near: Option<String>,
     },
     /// Two placements share an id.
     #[error("{file}: `{instance}` is placed twice")]

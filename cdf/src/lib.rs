@@ -15,6 +15,7 @@ pub mod goal;
 pub mod layout;
 pub mod mission;
 pub mod model;
+mod nearest;
 pub mod room;
 pub mod semantic;
 pub mod state;

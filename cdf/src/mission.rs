@@ -3,12 +3,12 @@
 mod audit;
 mod camera;
 mod expression;
+mod goal_kind;
 mod goals;
 mod key;
 pub mod limits;
 mod messages;
 mod names;
-mod nearest;
 mod objects;
 mod occasion;
 mod portal;
@@ -29,6 +29,7 @@ use serde::{Deserialize as _, Serialize};
 
 pub use self::{
     camera::{CameraMovement, CameraView},
+    goal_kind::{GoalForm, GoalKind, goal_kinds},
     messages::{Message, MessageTime},
     portal::{Era, Portal},
     problem::{Pointer, Problem, Problems, Severity},

@@ -105,6 +105,7 @@ impl WorldPack {
         for file in &files {
             pack.take(file)?;
         }
+        limits::check_scripts(root, &files)?;
         limits::check_objects(&pack.objects)?;
         limits::check_models(&pack.models)?;
         Ok(pack)

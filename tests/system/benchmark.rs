@@ -96,5 +96,10 @@ fn wrong_calls_end_with_one_message() {
     refused(&["run", "--logs", "/nowhere", "--out", &out], "--name");
     refused(&["run", "--benchmark", &small, "--agent", "random", "--out", &notes], "it is there already");
     refused(&["run", "--benchmark", "/nowhere.toml", "--out", &out], "/nowhere.toml");
+    let empty = scratch.path("empty");
+    fs::create_dir(&empty).unwrap();
+    refused(&["run", "--logs", &empty, "--name", "mine", "--out", &out], "there are no session logs (*.mcap) in it");
+    refused(&["run", "--logs", &empty, "--name", "mine", "--seed", "2", "--out", &out], "cannot be used with");
+    refused(&["run", "--agent", "random", "--out", "/nowhere/at/all.jsonl"], "there is no such folder: make it first");
     refused(&["verify", &notes, "--benchmark", &small], "not the header of a submission");
 }

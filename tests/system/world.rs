@@ -25,6 +25,12 @@ fn a_new_world_is_checked_played_and_replayed_with_its_pack_alone() {
     assert_eq!(code, Some(0), "{text}");
     assert!(text.contains("2 of 2 floor plans and missions are playable"), "{text}");
 
+    let (text, code) = told(&["catalog", "classes", "--json", "--world", &pack]);
+    assert_eq!(code, Some(0), "{text}");
+    assert!(text.contains("\"id\": \"Wrench_01\"") && text.contains("\"id\": \"Bowl_01\""), "{text}");
+    let (text, _) = told(&["catalog", "rooms", "--world", &pack]);
+    assert!(text.lines().any(|line| line.contains("workshop") && line.contains("Workshop")), "{text}");
+
     let mission = format!("{pack}/missions/clean_wrench.json");
     let how = ["--understanding", "fast", "--knows", "everything", "--workers", "1"];
     let what = ["eval", mission.as_str(), "--world", pack.as_str(), "--record", logs.as_str()];
@@ -40,6 +46,33 @@ fn a_new_world_is_checked_played_and_replayed_with_its_pack_alone() {
     let (text, code) = told(&["replay", &log]);
     assert_eq!(code, Some(2), "{text}");
     assert!(text.contains("`my-lab` 0.1.0 with hash"), "{text}");
+}
+
+#[test]
+fn a_room_without_a_door_is_refused_with_its_name_and_what_to_write() {
+    let scratch = Scratch::new("no-door");
+    let into = scratch.path("packs");
+    std::fs::create_dir_all(&into).unwrap();
+    let (text, code) = told(&["new", "world", "shut", "--into", &into]);
+    assert_eq!(code, Some(0), "{text}");
+    let pack = format!("{into}/shut");
+    let plan = format!("{pack}/layouts/Workshop.toml");
+    let whole = std::fs::read_to_string(&plan).unwrap();
+    let check = |kept: &dyn Fn(&&str) -> bool, expected: &str| {
+        let text: String = whole.lines().filter(kept).map(|line| format!("{line}\n")).collect();
+        std::fs::write(&plan, text).unwrap();
+        for what in ["check", "catalog"] {
+            let (text, code) = told(&[what, "--world", pack.as_str()]);
+            assert_eq!(code, Some(2), "{text}");
+            assert!(text.contains(expected), "{text}");
+        }
+    };
+    check(&|line| !line.contains("kind = \"door\""), "SmallOffice cannot be reached: no door or passage leads into it");
+    // A viewpoint alone that is missing is found by `check`.
+    let text: String = whole.lines().filter(|line| !line.contains("number = 7")).map(|line| format!("{line}\n")).collect();
+    std::fs::write(&plan, text).unwrap();
+    let (text, code) = told(&["check", "--world", &pack]);
+    assert!(code == Some(2) && text.contains("Hallway has no viewpoint 7: each room has viewpoints 1 to 8"), "{text}");
 }
 
 #[test]

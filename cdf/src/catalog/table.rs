@@ -202,12 +202,14 @@ pub enum TableError {
         change: Change,
     },
     /// It names a class that the catalogue does not have.
-    #[error("{file}: `{class}` is no class of the catalogue")]
+    #[error("{file}: `{class}` is no class of the catalogue{}", meant(.near))]
     NoClass {
         /// Which file.
         file: String,
         /// The id.
         class: String,
+        /// The class that it may have been meant to be.
+        near: Option<String>,
     },
     /// A device, or what gets power, does a work that no file has.
     #[error("{file}: `{device}` does `{work}`, which no work is called")]
@@ -219,6 +221,11 @@ pub enum TableError {
         /// The name.
         work: String,
     },
+}
+
+/// What was meant, if it is near to what was written.
+fn meant(near: &Option<String>) -> String {
+    near.as_ref().map_or_else(String::new, |near| format!(": did you mean `{near}`?"))
 }
 
 /// All rules, devices, works and recipes.
@@ -275,8 +282,8 @@ impl Default for ActionTable {
 }
 
 impl ActionTable {
-    /// Reads a table from `(file name, text)`; `is_class` says which classes there are. A later file's device takes the
-    /// place of an earlier one of the same class.
+    /// Reads a table from `(file name, text)`; `is_class` says which classes there are, and which classes begin as it says
+    /// before a `*`. A later file's device takes the place of an earlier one of the same class.
     ///
     /// # Errors
     /// [`TableError`] names the file and what is wrong in it.
@@ -431,7 +438,7 @@ impl ActionTable {
             return Err(TableError::NotOfAWork { file, work, change });
         }
         let unknown = self.classes().into_iter().find(|class| !class.ends_with('*') && !is_class(class));
-        unknown.map_or(Ok(()), |class| Err(TableError::NoClass { file: file.to_owned(), class }))
+        unknown.map_or(Ok(()), |class| Err(TableError::NoClass { file: file.to_owned(), class, near: None }))
     }
 
     fn check_works(&self, file: &str) -> Result<(), TableError> {

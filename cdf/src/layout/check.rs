@@ -2,10 +2,14 @@
 
 use std::collections::HashSet;
 
+use super::fault::{LayoutFault, NOTE_PLACES, NoStand, NoWay, VIEWPOINTS};
+use super::floor::{FreeFloor, START, is_obstacle};
 use super::footprint::{Footprint, is_clear_of_walls};
-use super::{FreeFloor, Layout, Opening, OpeningKind, Placement, Room, RoomId};
+use super::ways::Ways;
+use super::{Layout, Opening, OpeningKind, Placement, Room, RoomId, Viewpoint};
 use crate::catalog::{Catalog, ObjectClass, Property};
 use crate::model::Axis;
+use crate::nearest::nearest;
 
 /// Half the thickness of walls, m.
 const HALF_WALL_M: f32 = 0.06;
@@ -21,102 +25,8 @@ const REACH_M: f32 = 0.85;
 const ROBOT_RADIUS_M: f32 = 0.25;
 /// Half the width of what stands on an anchor, m.
 const ANCHOR_RADIUS_M: f32 = 0.06;
-/// Viewpoints a room has.
-const VIEWPOINTS: u8 = 8;
-/// Places for sticky notes a room has at least.
-const NOTE_PLACES: usize = 4;
-
-/// Something wrong with a floor plan.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum LayoutFault {
-    /// No class fits the instance id.
-    #[error("`{instance}` is of no class in the catalogue")]
-    UnknownClass {
-        /// The instance.
-        instance: String,
-    },
-    /// Two placements share an id.
-    #[error("`{instance}` is placed twice")]
-    Repeated {
-        /// The instance.
-        instance: String,
-    },
-    /// An object reaches into a wall or out of its room.
-    #[error("`{instance}` leaves {room:?}")]
-    OutsideRoom {
-        /// The instance.
-        instance: String,
-        /// Its room.
-        room: RoomId,
-    },
-    /// Two objects fill the same space.
-    #[error("`{instance}` overlaps `{other}`")]
-    Overlap {
-        /// One.
-        instance: String,
-        /// The other.
-        other: String,
-    },
-    /// A gap is not in a wall that its two rooms share, or a window not in an outside wall of its one room.
-    #[error("the {kind:?} at {at_m:?} is in no wall between {between:?}")]
-    OpeningOffWall {
-        /// The gap's kind.
-        kind: OpeningKind,
-        /// Its middle.
-        at_m: [f32; 2],
-        /// Its rooms.
-        between: [RoomId; 2],
-    },
-    /// An object stands in the way before a door or passage, or hangs in a window.
-    #[error("`{instance}` blocks the {kind:?} at {at_m:?}")]
-    BlocksOpening {
-        /// The instance.
-        instance: String,
-        /// The gap's kind.
-        kind: OpeningKind,
-        /// Its middle.
-        at_m: [f32; 2],
-    },
-    /// An object that does something cannot be walked up to.
-    #[error("no walkway leads to `{instance}`")]
-    Unreachable {
-        /// The instance.
-        instance: String,
-    },
-    /// What stands on a receptacle leaves less than half of its anchors.
-    #[error("`{instance}` has {taken} of its {anchors} anchors taken")]
-    Crowded {
-        /// The receptacle.
-        instance: String,
-        /// Anchors covered or used.
-        taken: usize,
-        /// Anchors it has.
-        anchors: usize,
-    },
-    /// An object's `works` or `on` names nothing in its room.
-    #[error("`{instance}` names `{other}`, which is not in its room")]
-    LooseLink {
-        /// The instance.
-        instance: String,
-        /// What it names.
-        other: String,
-    },
-    /// A viewpoint is missing, or not on free floor of its room.
-    #[error("viewpoint {number} of {room:?} is not on floor that can be walked to")]
-    Viewpoint {
-        /// The room.
-        room: RoomId,
-        /// Its number.
-        number: u8,
-    },
-    /// A room has too few places for notes, or one of them is not on a wall.
-    #[error("{room:?} needs {NOTE_PLACES} places for notes, on its walls")]
-    NotePlaces {
-        /// The room.
-        room: RoomId,
-    },
-}
-
+/// A viewpoint that is proposed is so far from all others, m.
+const APART_M: f32 = 0.5;
 impl Layout {
     /// All that is wrong with this plan, given the sizes of things.
     #[must_use]
@@ -130,13 +40,14 @@ impl Layout {
                 faults.push(LayoutFault::Repeated { instance: instance.clone() });
             }
             match catalog.class_of_instance(&instance) {
-                None => faults.push(LayoutFault::UnknownClass { instance }),
+                None => faults.push(LayoutFault::UnknownClass { near: catalog.near(&instance), instance }),
                 Some(class) => {
                     let class = catalog.class(class);
                     solids.push(Solid { placement, class, print: Footprint::of(self, placement, class) });
                 }
             }
         }
+        self.check_names_of_rooms(&mut faults);
         self.check_links(&mut faults);
         self.check_openings(&mut faults);
         self.check_rooms(&solids, &mut faults);
@@ -153,19 +64,39 @@ impl Layout {
         self.openings.iter().any(|opening| opening.door.as_ref() == Some(&placement.instance))
     }
 
+    /// What names a room that is not there.
+    fn check_names_of_rooms(&self, faults: &mut Vec<LayoutFault>) {
+        let placed = self.placements.iter().filter(|placement| !self.is_door(placement));
+        let placed = placed.map(|placement| (format!("`{}`", placement.instance), placement.room));
+        let opened = self.openings.iter().flat_map(|Opening { kind, at_m, between, .. }| {
+            between.map(|room| (format!("the {kind:?} at {at_m:?}"), room))
+        });
+        let viewed = self.viewpoints.iter().map(|view| (format!("viewpoint {}", view.number), view.room));
+        let noted = self.note_places.iter().map(|note| (format!("the place for notes at {:?}", note.at_m), note.room));
+        for (what, room) in placed.chain(opened).chain(viewed).chain(noted) {
+            if self.room(room).is_none() {
+                faults.push(LayoutFault::NoRoom { what, room });
+            }
+        }
+    }
+
     fn check_links(&self, faults: &mut Vec<LayoutFault>) {
         for placement in &self.placements {
             for other in [&placement.on, &placement.works].into_iter().flatten() {
                 if self.placement(other).is_none_or(|found| found.room != placement.room) {
-                    let instance = placement.instance.clone();
-                    faults.push(LayoutFault::LooseLink { instance, other: other.clone() });
+                    let (instance, other) = (placement.instance.clone(), other.clone());
+                    let own = self.placements.iter().filter(|own| own.room == placement.room);
+                    let own = own.map(|own| own.instance.as_str()).filter(|own| *own != instance);
+                    let near = nearest(&other, own).map(str::to_owned);
+                    faults.push(LayoutFault::LooseLink { instance, other, near });
                 }
             }
         }
     }
 
     fn check_openings(&self, faults: &mut Vec<LayoutFault>) {
-        for opening in &self.openings {
+        let has_rooms = |opening: &&Opening| opening.between.iter().all(|id| self.room(*id).is_some());
+        for opening in self.openings.iter().filter(has_rooms) {
             let [first, second] = opening.between;
             let has_wall = |id| self.room(id).is_some_and(|room| has_wall_at(room, opening));
             let is_outside = self.rooms.iter().filter(|room| has_wall_at(room, opening)).count() == 1;
@@ -181,47 +112,102 @@ impl Layout {
         for solid in solids.iter().filter(|solid| !self.is_door(solid.placement)) {
             let Placement { instance, room, .. } = solid.placement;
             let margin_m = HALF_WALL_M - SLACK_M;
-            let fits = self.room(*room).is_some_and(|room| solid.print.fits(room, margin_m));
+            let leaves = self.room(*room).is_some_and(|room| !solid.print.fits(room, margin_m));
             let is_low = solid.print.height_m[1] <= self.wall_height_m + SLACK_M;
-            if !fits || !is_low {
+            if leaves || !is_low {
                 faults.push(LayoutFault::OutsideRoom { instance: instance.clone(), room: *room });
             }
         }
     }
 
     fn check_floor(&self, catalog: &Catalog, solids: &[Solid<'_>], faults: &mut Vec<LayoutFault>) {
+        let standing = FreeFloor::new(self, catalog, ROBOT_RADIUS_M);
+        let ways = Ways::of(self);
+        faults.extend(ways.no_start());
+        let is_reached = |room: &Room| {
+            let margin_m = HALF_WALL_M + ROBOT_RADIUS_M;
+            standing.points_m().any(|(id, point)| id == room.id && is_clear_of_walls(room, point, margin_m))
+        };
+        // Nothing is said of what is in a room that cannot be reached: its door is what is missing.
+        let (reached, out_of_reach): (Vec<&Room>, Vec<&Room>) = self.rooms.iter().partition(|room| is_reached(room));
+        if self.room(START).is_some() {
+            let fault = |room: &&Room| {
+                let why = ways.no_way_into(room.id).unwrap_or(NoWay::Blocked);
+                LayoutFault::OutOfReach { room: room.id, why }
+            };
+            faults.extend(out_of_reach.iter().map(fault));
+        }
         let walkways = FreeFloor::new(self, catalog, WALKWAY_RADIUS_M);
         for solid in solids.iter().filter(|solid| solid.is_operable() && solid.placement.on.is_none()) {
             let near = |(room, point): (RoomId, [f32; 2])| {
                 room == solid.placement.room && solid.print.distance_m(point) <= REACH_M
             };
-            if !walkways.points_m().any(near) && !self.is_door(solid.placement) {
+            let is_of_reached = reached.iter().any(|room| room.id == solid.placement.room);
+            if is_of_reached && !walkways.points_m().any(near) && !self.is_door(solid.placement) {
                 faults.push(LayoutFault::Unreachable { instance: solid.placement.instance.clone() });
             }
         }
-        let standing = FreeFloor::new(self, catalog, ROBOT_RADIUS_M);
         for room in &self.rooms {
-            for number in 1..=VIEWPOINTS {
-                let view = self.viewpoints.iter().find(|view| (view.room, view.number) == (room.id, number));
-                if !view.is_some_and(|view| room.has(view.at_m[0], view.at_m[1]) && standing.has(view.at_m)) {
-                    faults.push(LayoutFault::Viewpoint { room: room.id, number });
-                }
+            self.check_viewpoints(room, solids, reached.contains(&room).then_some(&standing), faults);
+        }
+    }
+
+    /// The viewpoints of a room; whether they can be walked to, if `standing` is where a robot can.
+    fn check_viewpoints(
+        &self,
+        room: &Room,
+        solids: &[Solid<'_>],
+        standing: Option<&FreeFloor>,
+        faults: &mut Vec<LayoutFault>,
+    ) {
+        let own: Vec<&Viewpoint> = self.viewpoints.iter().filter(|view| view.room == room.id).collect();
+        let numbers: Vec<u8> =
+            (1..=VIEWPOINTS).filter(|number| own.iter().all(|view| view.number != *number)).collect();
+        if !numbers.is_empty() {
+            let is_apart = |point: [f32; 2]| {
+                own.iter().all(|view| libm::hypotf(view.at_m[0] - point[0], view.at_m[1] - point[1]) >= APART_M)
+            };
+            let mut free = standing.into_iter().flat_map(FreeFloor::points_m);
+            let free_m = free.find(|(id, point)| *id == room.id && is_apart(*point)).map(|(_, point)| point);
+            faults.push(LayoutFault::NoViewpoint { room: room.id, numbers, free_m });
+        }
+        for view in own.into_iter().filter(|view| (1..=VIEWPOINTS).contains(&view.number)) {
+            if let Some(why) = no_stand(room, view.at_m, solids, standing) {
+                faults.push(LayoutFault::Viewpoint { room: room.id, number: view.number, at_m: view.at_m, why });
             }
         }
     }
 
     fn check_notes(&self, faults: &mut Vec<LayoutFault>) {
         for room in &self.rooms {
-            let places = self.note_places.iter().filter(|note| note.room == room.id);
+            let places: Vec<[f32; 3]> =
+                self.note_places.iter().filter(|note| note.room == room.id).map(|note| note.at_m).collect();
             let is_on_wall = |[x, y, _]: [f32; 3]| {
                 is_clear_of_walls(room, [x, y], HALF_WALL_M) && !is_clear_of_walls(room, [x, y], HALF_WALL_M + 0.05)
             };
-            let are_on_walls = places.clone().all(|note| is_on_wall(note.at_m));
-            if places.count() < NOTE_PLACES || !are_on_walls {
-                faults.push(LayoutFault::NotePlaces { room: room.id });
+            let off_wall = places.iter().filter(|at_m| !is_on_wall(**at_m));
+            faults.extend(off_wall.map(|at_m| LayoutFault::NoteOffWall { room: room.id, at_m: *at_m }));
+            if places.len() < NOTE_PLACES {
+                faults.push(LayoutFault::NotePlaces { room: room.id, count: places.len() });
             }
         }
     }
+}
+
+/// Why nobody can stand at a point of a room, if so.
+fn no_stand(room: &Room, at_m: [f32; 2], solids: &[Solid<'_>], standing: Option<&FreeFloor>) -> Option<NoStand> {
+    if !room.has(at_m[0], at_m[1]) {
+        return Some(NoStand::OutsideRoom);
+    }
+    if standing.is_none_or(|standing| standing.has(at_m)) {
+        return None;
+    }
+    if !is_clear_of_walls(room, at_m, HALF_WALL_M + ROBOT_RADIUS_M) {
+        return Some(NoStand::NearWall);
+    }
+    let on_floor = solids.iter().filter(|solid| solid.placement.on.is_none() && is_obstacle(&solid.print));
+    let mut near = on_floor.filter(|solid| solid.print.distance_m(at_m) < ROBOT_RADIUS_M);
+    Some(near.next().map_or(NoStand::NoWay, |solid| NoStand::Near(solid.placement.instance.clone())))
 }
 
 /// A placement with its class and the space it fills.

@@ -7,6 +7,7 @@ use super::{
     unit_scale,
 };
 use crate::model::Axis;
+use crate::nearest::nearest;
 
 /// One file: every list is added to the base's, and replaces what has the same name there.
 #[derive(Deserialize)]
@@ -125,7 +126,7 @@ impl Layout {
 
     fn remove(&mut self, file: &str, instance: &str) -> Result<(), LayoutError> {
         if self.placement(instance).is_none() {
-            return Err(LayoutError::NoInstance { file: file.to_owned(), instance: instance.to_owned() });
+            return Err(self.no_instance(file, instance));
         }
         let mut gone = vec![instance.to_owned()];
         self.placements.retain(|placement| {
@@ -138,6 +139,13 @@ impl Layout {
         Ok(())
     }
 
+    /// An instance that a file names is not there.
+    fn no_instance(&self, file: &str, instance: &str) -> LayoutError {
+        let placed = self.placements.iter().map(|placement| placement.instance.as_str());
+        let near = nearest(instance, placed).map(str::to_owned);
+        LayoutError::NoInstance { file: file.to_owned(), instance: instance.to_owned(), near }
+    }
+
     fn place(&mut self, file: &str, placements: Vec<Placement>) -> Result<(), LayoutError> {
         for (index, placement) in placements.iter().enumerate() {
             if placements[..index].iter().any(|earlier| earlier.instance == placement.instance) {
@@ -147,7 +155,7 @@ impl Layout {
         for placement in placements {
             let missing = placement.on.as_deref().filter(|on| self.placement(on).is_none());
             if let Some(on) = missing {
-                return Err(LayoutError::NoInstance { file: file.to_owned(), instance: on.to_owned() });
+                return Err(self.no_instance(file, on));
             }
             replace_or_add(&mut self.placements, vec![placement], |a, b| a.instance == b.instance);
         }
@@ -193,7 +201,9 @@ fn chain<'a>(id: &str, files: &[(&'a str, &str)]) -> Result<Vec<(&'a str, Layout
     let mut wanted = Some(id.to_owned());
     while let Some(id) = wanted.take() {
         let Some((name, text)) = files.iter().find(|(name, _)| stem(name) == id) else {
-            return Err(LayoutError::Unknown { id, known: ids(files).join(", ") });
+            let known = ids(files);
+            let near = nearest(&id, known.iter().map(String::as_str)).map(str::to_owned);
+            return Err(LayoutError::Unknown { id, near, known: known.join(", ") });
         };
         if chain.iter().any(|(earlier, _)| earlier == name) {
             return Err(LayoutError::Circle { file: (*name).to_owned() });

@@ -16,6 +16,9 @@ const STEP_M: f32 = 0.07;
 /// What begins higher does not block, m: the robot is lower.
 const HEADROOM_M: f32 = 1.4;
 
+/// The room from which all others are reached.
+pub(super) const START: RoomId = RoomId::Hallway;
+
 /// The cells of floor where a disc of some radius can stand, and that can be reached from the hallway.
 #[derive(Clone, Debug)]
 pub struct FreeFloor {
@@ -72,7 +75,7 @@ impl FreeFloor {
     /// Forgets what cannot be walked to from the hallway's first free cell.
     fn keep_reachable(&mut self) {
         let mut reached = vec![false; self.cells.len()];
-        let start = self.cells.iter().position(|cell| *cell == Some(RoomId::Hallway));
+        let start = self.cells.iter().position(|cell| *cell == Some(START));
         let mut open: VecDeque<usize> = start.into_iter().collect();
         while let Some(index) = open.pop_front() {
             if reached[index] {
@@ -103,7 +106,12 @@ fn obstacles(layout: &Layout, catalog: &Catalog) -> Vec<Footprint> {
         let class = catalog.class(catalog.class_of_instance(&placement.instance)?);
         Some(Footprint::of(layout, placement, class))
     });
-    prints.filter(|print| print.height_m[0] < HEADROOM_M && print.height_m[1] > STEP_M).collect()
+    prints.filter(is_obstacle).collect()
+}
+
+/// Whether a robot does not pass what stands on the floor, over it or below.
+pub(super) fn is_obstacle(print: &Footprint) -> bool {
+    print.height_m[0] < HEADROOM_M && print.height_m[1] > STEP_M
 }
 
 /// The room in which a disc can stand here, walls alone considered; in an opening, the first that it joins.

@@ -139,6 +139,56 @@ fn rays_face_their_shelves() {
     }
 }
 
+/// The pack that `cohabit new world` writes has a plan of two rooms: what is said of it when something of it is changed.
+#[test]
+fn what_is_missing_in_a_plan_is_named_with_what_to_write() {
+    let catalog = Catalog::builtin();
+    let file = crate::world_pack::template("my-lab").into_iter().find(|(path, _)| *path == "layouts/Workshop.toml");
+    let text = file.unwrap().1.replace("Degreaser_01_1", "Microwave_01_1");
+    let check = |text: &str, expected: &[&str]| {
+        let faults = Layout::parse("Workshop", &[("Workshop.toml", text)]).unwrap().faults(&catalog);
+        let said: Vec<String> = faults.iter().map(|fault| format!("{fault}: {}", fault.remedy())).collect();
+        assert_eq!(said.len(), expected.len(), "{said:?}");
+        for (said, expected) in said.iter().zip(expected) {
+            assert!(said.contains(expected), "`{expected}` is not in {said}");
+        }
+    };
+    let without = |parts: &[&str]| {
+        let lines = text.lines().filter(|line| parts.iter().all(|part| !line.contains(part)));
+        lines.collect::<Vec<_>>().join("\n")
+    };
+    check(&text, &[]);
+    check(
+        &without(&["{ kind = \"door\""]),
+        &["SmallOffice cannot be reached: no door or passage leads into it: add to `opening`: { kind = \"door\", \
+           door = \"Door_01_1\", between = [\"SmallOffice\", \"Hallway\"], at_m = [3.00, 5.00], width_m = 1.0, \
+           wall_runs = \"x\" }"],
+    );
+    check(
+        &without(&["\"SmallOffice\", number = 3", "\"SmallOffice\", number = 5"]),
+        &["SmallOffice has no viewpoint 3, 5: each room has viewpoints 1 to 8; add to `viewpoint`: \
+           { room = \"SmallOffice\", number = 3, at_m = ["],
+    );
+    let moved = |to: &str| text.replace("number = 8, at_m = [3.05, 0.85]", &format!("number = 8, at_m = [{to}]"));
+    for (to, expected) in [
+        ("3.05, 9.0", "viewpoint 8 of SmallOffice, at [3.05, 9.0], is not in that room: move it"),
+        ("3.05, 0.2", "is too near to a wall: move it 0.31 m"),
+        ("0.5, 2.5", "is in or too near to `Desk_01_1`"),
+    ] {
+        check(&moved(to), &[expected]);
+    }
+    check(&without(&["[1.95, 7.928, 1.4]"]), &["Hallway has 3 places for notes, and needs 4: add to `note_place`"]);
+    check(&text.replace("[0.072, 6.55, 1.4]", "[1.0, 6.55, 1.4]"), &["[1.0, 6.55, 1.4] is on no wall of Hallway"]);
+    let misspelt = text.replace("\"Desk_01_1\"", "\"Dsk_01_1\"");
+    check(&misspelt, &["`Dsk_01_1` is of no class in the catalogue: did you mean"]);
+    let works = text.replace("{ instance = \"LightSwitch_01_1\",", "{ instance = \"LightSwitch_01_1\", works = \"Dsk_01_1\",");
+    check(&works, &["`LightSwitch_01_1` names `Dsk_01_1`, which is not in its room: did you mean `Desk_01_1`?"]);
+    let started = without(&["\"Hallway\""]);
+    let faults = Layout::parse("Workshop", &[("Workshop.toml", &started)]).unwrap().rooms_without_a_way();
+    assert_eq!(faults.len(), 1, "{faults:?}");
+    assert_eq!(faults[0].to_string(), "there is no room Hallway: the way to all other rooms begins there");
+}
+
 /// A plan and its mirror image aside, no two plans are built alike or look alike.
 #[test]
 fn builtin_plans_differ_in_shape_and_finish() {

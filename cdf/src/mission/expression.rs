@@ -5,11 +5,12 @@ use serde_json::Value;
 use super::{
     problem::Pointer,
     raw::{Condition, Entry, Loose, Scalar},
-    reader::{Reader, did_you_mean, shape},
+    reader::{Reader, shape},
 };
 use crate::{
     flag_key::{flag_keys, flag_of_key},
     goal::{Expression, InstancePattern, StateCondition},
+    nearest::did_you_mean,
 };
 
 /// The kinds of expressions that are no flags.

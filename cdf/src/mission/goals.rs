@@ -6,11 +6,12 @@ use super::{
     NoteRequest,
     problem::Pointer,
     raw::{Loose, Scalar, TaskGoal, Visibility},
-    reader::{GoalPlaces, Reader, did_you_mean, shape},
+    reader::{GoalPlaces, Reader, shape},
 };
 use crate::{
     flag_key::{flag_keys, flag_of_key},
     goal::{Goal, GoalState, InstancePattern, Predicate, Relation, StateCondition},
+    nearest::did_you_mean,
     state::StateFlag,
 };
 
@@ -21,7 +22,7 @@ pub(super) const ALWAYS_UNLOCKED: &str = "ALWAYS UNLOCKED";
 const NOTE: &str = "StickyNote";
 
 /// The keys of goals that are no flags.
-const KEYS: [&str; 5] = ["isFilled", "isEmpty", "Contains", "ContainsFluid", "ColorMetaDataChange"];
+pub(super) const KEYS: [&str; 5] = ["isFilled", "isEmpty", "Contains", "ContainsFluid", "ColorMetaDataChange"];
 
 /// What goals may name.
 pub(super) struct Named<'a> {

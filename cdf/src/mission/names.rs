@@ -1,12 +1,14 @@
 //! Looks up what a mission names: classes of objects, and the instances that will exist.
 
 use super::{
-    nearest::nearest,
     problem::Pointer,
     raw::{Loose, Scalar},
-    reader::{Reader, did_you_mean},
+    reader::Reader,
 };
-use crate::catalog::{ClassId, Property};
+use crate::{
+    catalog::{ClassId, Property},
+    nearest::did_you_mean,
+};
 
 /// What stands between a machine's instance id and the class it makes.
 const SPAWNED: &str = "_Spawned_";
@@ -37,7 +39,7 @@ impl Reader<'_> {
         if self.class_of(at, &name).is_none() {
             self.error(at, format!("unknown object `{name}`"), self.near_class(&name));
             // What is meant is told once: naming it elsewhere is right.
-            self.misspelt.extend(self.near_instance(&name));
+            self.misspelt.extend(self.catalog.near(&name));
             return None;
         }
         if self.listed.contains(&name) {
@@ -151,16 +153,6 @@ impl Reader<'_> {
 
     /// A remedy for a misspelt instance.
     fn near_class(&self, instance: &str) -> Option<String> {
-        self.near_instance(instance).map(|near| format!("did you mean `{near}`?"))
-    }
-
-    /// What a misspelt instance may be: the nearest class, with the same number if there is one.
-    fn near_instance(&self, instance: &str) -> Option<String> {
-        let classes = || self.catalog.classes().iter().map(|class| class.id.as_str());
-        if let Some(class) = nearest(instance, classes()) {
-            return Some(class.to_owned());
-        }
-        let (class, number) = instance.rsplit_once('_')?;
-        Some(format!("{}_{number}", nearest(class, classes())?))
+        self.catalog.near(instance).map(|near| format!("did you mean `{near}`?"))
     }
 }

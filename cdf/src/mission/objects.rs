@@ -10,12 +10,13 @@ use super::{
     names::is_robot,
     problem::Pointer,
     raw::{Entry, Loose, RequiredObject, Scalar},
-    reader::{Reader, did_you_mean, shape},
+    reader::{Reader, shape},
     robot::is_blank,
 };
 use crate::{
     catalog::{ClassId, Property},
     flag_key::property_of,
+    nearest::did_you_mean,
     state::{Color, Fluid, StateFlag},
 };
 

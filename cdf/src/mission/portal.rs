@@ -6,8 +6,9 @@ use serde_json::Value;
 use super::{
     problem::Pointer,
     raw::{Cdf, Loose, PortalEntry, Scalar},
-    reader::{Reader, did_you_mean, shape},
+    reader::{Reader, shape},
 };
+use crate::nearest::did_you_mean;
 
 /// Where a portal leads.
 #[derive(Clone, Copy, Debug, Deserialize, Eq, Hash, PartialEq, Serialize)]

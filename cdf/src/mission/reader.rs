@@ -5,11 +5,10 @@ use std::{cell::OnceCell, collections::BTreeSet};
 use serde_json::Value;
 
 use super::{
-    nearest::nearest,
     problem::{Pointer, Problem, Severity},
     raw::{Fields, Loose, Scalar},
 };
-use crate::{catalog::Catalog, layout::Layout};
+use crate::{catalog::Catalog, layout::Layout, nearest::did_you_mean};
 
 /// One reading of one file.
 pub(super) struct Reader<'a> {
@@ -213,11 +212,6 @@ pub(super) fn shape(value: &Value) -> &'static str {
         Value::Array(_) => "a list",
         Value::Object(_) => "an object",
     }
-}
-
-/// A remedy that names the known name nearest to `name`.
-pub(super) fn did_you_mean<'k>(name: &str, known: impl IntoIterator<Item = &'k str>) -> Option<String> {
-    nearest(name, known).map(|near| format!("did you mean `{near}`?"))
 }
 
 /// A remedy that lists what is known, if that is short enough to be read.

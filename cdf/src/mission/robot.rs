@@ -9,10 +9,11 @@ use serde_json::Value;
 use super::{
     problem::Pointer,
     raw::{Entry, Loose},
-    reader::{Reader, did_you_mean},
+    reader::Reader,
 };
 use crate::{
     flag_key::{flag_keys, flag_of_key},
+    nearest::did_you_mean,
     room::RoomId,
     state::StateFlag,
 };

@@ -6,9 +6,13 @@ use super::{
     NoteRequest,
     problem::Pointer,
     raw::{Loose, Scalar, Scene, StickyNote},
-    reader::{Reader, did_you_mean},
+    reader::Reader,
 };
-use crate::{layout::Layout, room::RoomId};
+use crate::{
+    layout::Layout,
+    nearest::did_you_mean,
+    room::RoomId,
+};
 
 /// The layout of a mission that names none.
 pub(super) const DEFAULT_LAYOUT: &str = "OfficeLayout1";

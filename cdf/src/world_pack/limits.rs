@@ -3,11 +3,12 @@
 use serde::{Deserialize, de::DeserializeOwned};
 use toml::{Table, Value};
 
-use super::PackError;
+use super::{PackError, PackFile};
 use crate::{
     catalog::{ObjectClass, RoomNames},
     layout::Layout,
     model::Model,
+    nearest::did_you_mean,
     room::RoomId,
 };
 
@@ -189,10 +190,29 @@ pub(super) fn check_plan(file: &str, plan: &Layout) -> Result<(), PackError> {
         return fault("placement", format!("{} things", plan.placements.len()), &format!("at most {MOST_PLACEMENTS}"));
     }
     let is_scale = |factor: &f32| *factor > 0.0 && *factor <= LARGEST_SCALE;
-    match plan.placements.iter().find(|placement| !placement.scale.iter().all(is_scale)) {
-        Some(placement) => {
-            let at = format!("placement `{}`: scale", placement.instance);
-            fault(&at, format!("{:?} is no scale", placement.scale), &format!("above 0, and at most {LARGEST_SCALE}"))
+    if let Some(placement) = plan.placements.iter().find(|placement| !placement.scale.iter().all(is_scale)) {
+        let at = format!("placement `{}`: scale", placement.instance);
+        let reason = format!("{:?} is no scale", placement.scale);
+        return fault(&at, reason, &format!("above 0, and at most {LARGEST_SCALE}"));
+    }
+    match plan.rooms_without_a_way().first() {
+        Some(without) => fault("room", without.to_string(), &without.remedy()),
+        None => Ok(()),
+    }
+}
+
+/// What is said in missions is of missions that there are.
+pub(super) fn check_scripts(root: &str, files: &[PackFile]) -> Result<(), PackError> {
+    let named = |ending: &'static str| {
+        let paths = files.iter().filter_map(|file| file.path.strip_prefix("missions/"));
+        paths.filter_map(move |path| path.strip_suffix(ending))
+    };
+    match named(".script").find(|script| named(".json").all(|mission| mission != *script)) {
+        Some(script) => {
+            let file = format!("{root}/missions/{script}.script");
+            let remedy = did_you_mean(script, named(".json"));
+            let remedy = remedy.unwrap_or_else(|| "give it the name of the mission in which it is said".to_owned());
+            Err(PackError::at(&file, "", format!("there is no mission `{script}.json` beside it"), &remedy))
         }
         None => Ok(()),
     }

@@ -82,6 +82,7 @@ fn what_is_wrong_is_named_with_its_file_its_place_and_what_would_be_right() {
     );
     let huge = "room = [{ id = \"Hallway\", rects_m = [[0.0, 0.0, 5000.0, 2.0]], floor = { material = \"tile\", color = \"#ffffff\" }, wall = { material = \"plain\", color = \"#eeeeee\" }, circuit = 1 }]";
     let itself = "base = \"Workshop\"\nplacement = [{ instance = \"Desk_01_1\", room = \"SmallOffice\", on = \"Degreaser_01_1\" }, { instance = \"Degreaser_01_1\", room = \"SmallOffice\", on = \"Desk_01_1\" }]";
+    let alone = "base = \"Workshop\"\nroom = [{ id = \"SmallOffice\", rects_m = [[4.0, 0.0, 6.0, 5.0]], floor = { material = \"tile\", color = \"#ffffff\" }, wall = { material = \"plain\", color = \"#eeeeee\" }, circuit = 1 }, { id = \"Lab1\", rects_m = [[0.0, 0.0, 4.0, 5.0]], floor = { material = \"tile\", color = \"#ffffff\" }, wall = { material = \"plain\", color = \"#eeeeee\" }, circuit = 1 }]";
     let cases: &[(&str, String, &[&str])] = &[
         ("../world.toml", String::new(), &["first: ", "`../world.toml`", "within the pack"]),
         ("/etc/objects.toml", String::new(), &["within the pack"]),
@@ -146,6 +147,37 @@ fn what_is_wrong_is_named_with_its_file_its_place_and_what_would_be_right() {
         ("layouts/More.toml", itself.to_owned(), &["stands on itself"]),
         ("layouts/More.toml", huge.to_owned(), &["first/layouts/More.toml: room: ", "at most 100 m"]),
         ("layouts/More.toml", String::new(), &["first/layouts/More.toml: room: there is none"]),
+        (
+            "layouts/More.toml",
+            alone.to_owned(),
+            &["More.toml: room: Lab1 cannot be reached: no door", "[\"Lab1\", \"Hallway\"], at_m = [2.00, 5.00]"],
+        ),
+        ("layouts/More.toml", "base = \"Workshap\"".to_owned(), &["`Workshap` (did you mean `Workshop`?)"]),
+        (
+            "layouts/More.toml",
+            "base = \"Workshop\"\nremove = [\"Degreaser_1_1\"]".to_owned(),
+            &["More.toml: there is no `Degreaser_1_1` (did you mean `Degreaser_01_1`?)"],
+        ),
+        (
+            "objects/more.toml",
+            object("mass_kg = 1\nsize_m = [1, 1, 1]\nreceptacle = { surface = [], keys = [\"Wrench_1\"] }"),
+            &["first/objects/more.toml: object `Box_99`: receptacle: ", "`Wrench_1`: did you mean `Wrench_01`?"],
+        ),
+        (
+            "objects/more.toml",
+            object("mass_kg = 1\nsize_m = [1, 1, 1]").replace("model = \"Wrench_01\"", "model = \"Wrench_1\""),
+            &["first/objects/more.toml: object `Box_99` has no model", "did you mean `Wrench_01`?"],
+        ),
+        (
+            "table/more.toml",
+            "[[device]]\nclass = [\"Wrench_1\"]\n".to_owned(),
+            &["first/table/more.toml: `Wrench_1` is no class of the catalogue: did you mean `Wrench_01`?"],
+        ),
+        (
+            "missions/clean_wrnch.script",
+            "stop".to_owned(),
+            &["first/missions/clean_wrnch.script: there is no mission", "did you mean `clean_wrench`?"],
+        ),
         (
             "layouts/Workshop_mirror.toml",
             "base = \"Workshop\"".to_owned(),

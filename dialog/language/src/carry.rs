@@ -249,7 +249,7 @@ impl Planner<'_> {
     fn place_at(&mut self, object: ObjectId, goal: &Goal, settled: &Settled) -> Result<(), Fault> {
         match &goal.place {
             Place::Object(phrase) => {
-                let target = self.find_target(phrase, goal, object, settled.intent)?;
+                let target = self.find_target(phrase, goal, object, settled)?;
                 let is_there = self.scene.object(object).is_some_and(|known| known.parent == Some(target));
                 // `bring it to the microwave and put it in` is one errand.
                 let is_done = is_there
@@ -286,7 +286,13 @@ impl Planner<'_> {
     }
 
     /// Where to put it; `next to the lamp` is where the lamp stands.
-    fn find_target(&self, phrase: &Phrase, goal: &Goal, object: ObjectId, intent: Intent) -> Result<ObjectId, Fault> {
+    fn find_target(
+        &self,
+        phrase: &Phrase,
+        goal: &Goal,
+        object: ObjectId,
+        settled: &Settled,
+    ) -> Result<ObjectId, Fault> {
         let is_beside = matches!(goal.preposition, Preposition::Near | Preposition::LeftOf | Preposition::RightOf);
         let affordances: &[Property] = if is_beside { &[] } else { TAKES };
         // `on the counter` is its top, rather than one with doors.
@@ -294,10 +300,19 @@ impl Planner<'_> {
             Preposition::On => self.classes(|class| !self.catalog.class(class).has(Property::Openable)),
             _ => Vec::new(),
         };
-        let want = Want { classes: &open, ..Want::place(intent, affordances, Some(object)) };
+        let origin = self.taken_from(object).filter(|_| !is_beside && !settled.is_back);
+        let want = Want { classes: &open, origin, ..Want::place(settled.intent, affordances, Some(object)) };
         let target = self.find_one(phrase, &want, Some(goal.role))?;
         let parent = self.scene.object(target).and_then(|target| target.parent);
         Ok(parent.filter(|_| is_beside).unwrap_or(target))
+    }
+
+    /// What a thing is on or in, or was when it was taken.
+    fn taken_from(&self, object: ObjectId) -> Option<ObjectId> {
+        if self.scene.robot.held != Some(object) {
+            return self.scene.object(object)?.parent;
+        }
+        self.focus.origins.iter().find(|(taken, _)| *taken == object).map(|(_, origin)| *origin)
     }
 
     pub(crate) fn add_pour(&mut self, settled: &Settled) -> Result<(), Fault> {

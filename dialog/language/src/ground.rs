@@ -65,6 +65,8 @@ pub(crate) struct Want<'a> {
     pub(crate) exclude: Option<ObjectId>,
     /// Whether what is held is meant first.
     pub(crate) held_first: bool,
+    /// Of a place that something is to be put: what it is taken from.
+    pub(crate) origin: Option<ObjectId>,
 }
 
 impl<'a> Want<'a> {
@@ -75,11 +77,12 @@ impl<'a> Want<'a> {
             classes: &[],
             exclude: None,
             held_first: intent.is_about_held(),
+            origin: None,
         }
     }
 
     pub(crate) fn place(intent: Intent, affordances: &'a [Property], exclude: Option<ObjectId>) -> Self {
-        Self { intent, affordances, classes: &[], exclude, held_first: false }
+        Self { intent, affordances, classes: &[], exclude, held_first: false, origin: None }
     }
 }
 
@@ -139,7 +142,29 @@ impl<'a> Ground<'a> {
         if let Some(picked) = self.by_position(phrase, &described.left) {
             return Ok(picked);
         }
-        self.decide(phrase, want, &described)
+        self.decide(phrase, want, &self.likelier_places(phrase, want, described))
+    }
+
+    /// Of places for a thing: a table is no desk where there are both, and where it is taken from is meant only where nothing else in
+    /// that room is called so.
+    fn likelier_places(&self, phrase: &Phrase, want: &Want<'_>, described: Described<'a>) -> Described<'a> {
+        let Some(origin) = want.origin.and_then(|id| self.scene.object(id)) else { return described };
+        let Described { mut base, left } = described;
+        let weight = |object: &KnownObject| phrase.naming(object.class).unwrap_or(1.0);
+        let is_there = |object: &&KnownObject| object.room == origin.room;
+        let best = left.iter().copied().filter(is_there).map(weight).fold(0.0, f32::max);
+        let is_called_so = |object: &&KnownObject| !is_there(object) || weight(object) > best - WORSE_NAME;
+        let mut kept: Vec<&KnownObject> = left.iter().copied().filter(is_called_so).collect();
+        let is_other = |object: &&KnownObject| object.id != origin.id;
+        let fits = |object: &&KnownObject| is_there(object) && is_other(object) && weight(object) >= weight(origin);
+        if kept.iter().any(fits) {
+            kept.retain(is_other);
+        }
+        let is_gone = |object: &KnownObject| {
+            left.iter().any(|one| one.id == object.id) && kept.iter().all(|one| one.id != object.id)
+        };
+        base.retain(|object| !is_gone(object));
+        Described { base, left: kept }
     }
 
     /// All objects that may well be meant, the likeliest first: for answers about each of them.

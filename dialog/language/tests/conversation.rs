@@ -1,8 +1,8 @@
 //! Conversations: questions and their answers, pronouns, failures and their remedies.
 
 use crate::support::{Talk, step_text};
-use cohabit_cdf::Status;
-use cohabit_language::Understanding;
+use cohabit_cdf::{ObjectId, RoomId, Status};
+use cohabit_language::{KnownObject, Understanding};
 
 /// Lines of `> utterance` and what must come of it; `# step status` reports an outcome; `…` ends a prefix.
 fn check(marks: &[&str], script: &str) {
@@ -370,4 +370,45 @@ fn what_is_to_be_done_names_no_thing() {
     let said = "Hello love, could you pick up the boss mug and pop it in the microwave for me, please?";
     let understanding = talk.language.understand(said, &talk.scene, &mut talk.context);
     assert!(matches!(understanding, Understanding::Plan { .. }) && !understanding.reply().contains("pop"));
+}
+
+/// The main office, whose robot has taken the trophy from the table there, with more tables of these classes beside it.
+fn with_tables(classes: &[&str]) -> Talk {
+    let mut talk = Talk::new(&["plan OfficeLayout1 MainOffice", "add Trophy01 on Desk_01"]);
+    let trophy = talk.scene.objects.last().unwrap().clone();
+    let origin = talk.scene.objects.iter().find(|one| Some(one.id) == trophy.parent).unwrap().clone();
+    assert_eq!(origin.room, RoomId::MainOffice);
+    for (number, class) in (9000..).zip(classes) {
+        let [x, y, z] = origin.position_m;
+        talk.scene.objects.push(KnownObject {
+            id: ObjectId(number),
+            instance: (*class).to_owned(),
+            class: talk.language.catalog().find(class).unwrap(),
+            position_m: [x - 2.0, y, z],
+            visible: true,
+            ..origin.clone()
+        });
+    }
+    assert_eq!(talk.say_and_do("pick up the trophy"), "take Trophy01");
+    talk
+}
+
+#[test]
+fn a_table_is_no_desk_where_there_are_both() {
+    let scene = ["plan OfficeLayout1 MainOffice", "add Trophy01 on AP_Prop_Desk_Green"];
+    check(&scene, "> pick up the trophy and put it on the table\ntake Trophy01, put Desk_01");
+}
+
+#[test]
+fn where_a_thing_is_taken_from_is_the_last_place_that_it_is_put() {
+    assert_eq!(with_tables(&["TableRound_02"]).say("put it on the table"), "put TableRound_02");
+    assert_eq!(with_tables(&["TableRound_02"]).say("put it back"), "put Desk_01");
+    // Where there is no other, it is meant.
+    assert_eq!(with_tables(&[]).say("put it on the table"), "put Desk_01");
+}
+
+#[test]
+fn of_several_places_that_fit_it_is_asked_which() {
+    let asked = with_tables(&["TableRound_02", "Table_Metal_01"]).say("put it on the table");
+    assert!(asked.starts_with("? Which"), "{asked}");
 }

@@ -55,12 +55,17 @@ pub struct Robots {
 pub struct BodyNames(Vec<(String, String)>);
 
 impl BodyNames {
-    /// The world counts bodies of a kind from 1.
+    /// The world counts bodies of a kind from 1, where there are several.
     pub fn new(bodies: &[BodyRecord], names: &BTreeMap<u32, String>) -> Self {
+        const TOLD: &str = "is in my way";
         let called = |at: usize| {
-            let kind = BodyKind::ALL.get(bodies[at].kind as usize)?;
-            let number = bodies[..=at].iter().filter(|body| body.kind == bodies[at].kind).count();
-            Some((format!("{} {number} ", kind.name()), format!("{} ", names.get(&bodies[at].body)?)))
+            let kind = BodyKind::ALL.get(bodies[at].kind as usize)?.name();
+            let count = |bodies: &[BodyRecord]| bodies.iter().filter(|body| body.kind == bodies[at].kind).count();
+            let own = match count(bodies) {
+                1 => format!("the {kind} {TOLD}"),
+                _ => format!("{kind} {} {TOLD}", count(&bodies[..=at])),
+            };
+            Some((own, format!("{} {TOLD}", names.get(&bodies[at].body)?)))
         };
         Self((0..bodies.len()).filter_map(called).collect())
     }

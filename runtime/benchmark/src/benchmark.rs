@@ -1,6 +1,6 @@
 //! A benchmark's file, and the missions that follow from it.
 
-use std::{collections::BTreeMap, sync::Arc};
+use std::{collections::BTreeMap, path::Path, sync::Arc};
 
 use cohabit_cdf::Catalog;
 use cohabit_generate::{GenerateError, Generated, Order, Part, Parted, Spec, SpecError, generate, part, world_of};
@@ -9,7 +9,8 @@ use serde::Deserialize;
 
 use crate::{
     episode::Caps,
-    mission::{Instruction, Mission, Split},
+    kept::Kept,
+    mission::{Instruction, Mission, Split, digest},
 };
 
 /// The name and the text of the project's own benchmark.
@@ -90,22 +91,48 @@ struct Written {
     missions: toml::Table,
 }
 
+/// How missions are made; it changes nothing of them.
+#[derive(Clone, Copy)]
+pub struct Making<'a> {
+    /// Threads.
+    pub workers: usize,
+    /// The folder where they are kept for the next time, if they are.
+    pub kept_in: Option<&'a Path>,
+    /// What tells this build of the program from others: missions of a file that names no digest are not taken over from another one.
+    pub build: &'a str,
+    /// Told of each mission that is made: how many are, of how many.
+    pub made: &'a dyn Fn(usize, usize),
+}
+
+impl Making<'_> {
+    /// By so many threads; nothing is kept, and nobody told.
+    #[must_use]
+    pub fn by(workers: usize) -> Self {
+        Self { workers, kept_in: None, build: "", made: &|_, _| {} }
+    }
+}
+
 impl Benchmark {
-    /// The project's own, of which so many threads make the missions.
+    /// The project's own.
     ///
     /// # Errors
     /// [`BenchmarkError`].
-    pub fn builtin(catalog: &Arc<Catalog>, workers: usize) -> Result<Self, BenchmarkError> {
+    pub fn builtin(catalog: &Arc<Catalog>, making: Making<'_>) -> Result<Self, BenchmarkError> {
         let (file, text) = BUILTIN;
-        Self::parse(file, text, catalog, workers)
+        Self::parse(file, text, catalog, making)
     }
 
-    /// Reads a benchmark's file, makes its missions, and compares their digest with the file's, if that names one. The number of
-    /// threads changes nothing.
+    /// Reads a benchmark's file, makes its missions, or takes those that were kept, and compares their digest with the file's, if
+    /// that names one.
     ///
     /// # Errors
     /// [`BenchmarkError`].
-    pub fn parse(file: &str, text: &str, catalog: &Arc<Catalog>, workers: usize) -> Result<Self, BenchmarkError> {
+    pub fn parse(
+        file: &str,
+        text: &str,
+        catalog: &Arc<Catalog>,
+        making: Making<'_>,
+    ) -> Result<Self, BenchmarkError> {
         let wrong = |reason: String| BenchmarkError::Wrong { file: file.to_owned(), reason };
         let written: Result<Written, _> = toml::from_str(text);
         let written =
@@ -115,25 +142,38 @@ impl Benchmark {
         }
         let spec = toml::to_string(&written.missions).map_err(|error| wrong(format!("missions: {error}")))?;
         let spec = Spec::parse(file, &spec, catalog)?;
-        let order = Order { count: written.count, seed: written.seed, workers: workers.max(1) };
-        let mut made = Vec::new();
-        generate(&spec, catalog, order, &mut |mission| made.push(mission))
-            .map_err(|source| BenchmarkError::Generate { file: file.to_owned(), source })?;
-        let missions = parted(made, written.share, written.seed, catalog).map_err(wrong)?;
-        let digest = digest(&missions);
-        match written.digest {
-            Some(expected) if expected != digest => {
-                Err(BenchmarkError::OtherMissions { file: file.to_owned(), expected, found: digest })
+        let kept = making.kept_in.map(|folder| kept(folder, text, &written, catalog, making.build));
+        let missions = match kept.as_ref().and_then(|kept| kept.read(written.digest.as_deref())) {
+            Some(missions) => missions,
+            None => {
+                let order = Order { count: written.count, seed: written.seed, workers: making.workers.max(1) };
+                let mut made = Vec::new();
+                let mut take = |mission: Generated| {
+                    made.push(mission);
+                    (making.made)(made.len(), written.count);
+                };
+                generate(&spec, catalog, order, &mut take)
+                    .map_err(|source| BenchmarkError::Generate { file: file.to_owned(), source })?;
+                let missions = parted(made, written.share, written.seed, catalog).map_err(wrong)?;
+                let found = digest(&missions);
+                if let Some(expected) = written.digest.as_ref().filter(|expected| **expected != found) {
+                    let expected = expected.clone();
+                    return Err(BenchmarkError::OtherMissions { file: file.to_owned(), expected, found });
+                }
+                if let Some(kept) = &kept {
+                    kept.write(&missions);
+                }
+                missions
             }
-            _ => Ok(Self {
-                version: written.version,
-                seed: written.seed,
-                caps: written.caps,
-                digest,
-                missions,
-                catalog: Arc::clone(catalog),
-            }),
-        }
+        };
+        Ok(Self {
+            version: written.version,
+            seed: written.seed,
+            caps: written.caps,
+            digest: digest(&missions),
+            missions,
+            catalog: Arc::clone(catalog),
+        })
     }
 
     /// The missions of these splits, in order.
@@ -146,6 +186,13 @@ impl Benchmark {
     pub fn mission(&self, id: &str) -> Option<&Mission> {
         self.missions.iter().find(|mission| mission.id == id)
     }
+}
+
+/// Where the missions of a benchmark's file are kept. Those that have a digest there are the same whatever program made them.
+fn kept(folder: &Path, text: &str, written: &Written, catalog: &Catalog, build: &str) -> Kept {
+    let packs: Vec<String> = catalog.packs().iter().map(ToString::to_string).collect();
+    let build = if written.digest.is_some() { "" } else { build };
+    Kept::of(folder, &[text, &packs.join("\n"), build])
 }
 
 /// The missions with what they are for, and what is said in them; why one cannot be laid out, in words.
@@ -197,14 +244,6 @@ fn described(world: &World, instance: &str) -> Option<String> {
     Some(format!("the {name}{} in the {}", place.unwrap_or_default(), thing.room.name()))
 }
 
-fn digest(missions: &[Mission]) -> String {
-    let mut hasher = blake3::Hasher::new();
-    for mission in missions {
-        hasher.update(format!("{}\n", mission.as_line()).as_bytes());
-    }
-    hasher.finalize().to_hex().to_string()
-}
-
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
 mod tests {
@@ -237,7 +276,7 @@ mod tests {
             (format!("{head}{caps}{}", kind.replace("Apple", "Nix")), "`Nix`"),
             (format!("{head}digest = \"00\"\n{caps}{kind}"), "the digest"),
         ] {
-            let error = Benchmark::parse("b.toml", &text, &catalog, 1).unwrap_err().to_string();
+            let error = Benchmark::parse("b.toml", &text, &catalog, Making::by(1)).unwrap_err().to_string();
             assert!(error.starts_with("b.toml") && error.contains(expected), "{error}");
         }
     }

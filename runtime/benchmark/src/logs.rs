@@ -50,27 +50,39 @@ pub enum LogsError {
     },
 }
 
-/// What was done in the logs of a folder (`.mcap`), by mission; logs of missions that are not the benchmark's are passed over.
+/// What was done in the logs of a folder.
+#[derive(Clone, Debug, Default)]
+pub struct Recordings {
+    /// By the names of the benchmark's missions.
+    pub by_mission: BTreeMap<String, Recording>,
+    /// Logs of missions that the benchmark does not have.
+    pub others: Vec<PathBuf>,
+}
+
+/// What was done in the logs of a folder (`.mcap`).
 ///
 /// # Errors
 /// [`LogsError`].
-pub fn recordings(folder: &Path, benchmark: &Benchmark) -> Result<BTreeMap<String, Recording>, LogsError> {
+pub fn recordings(folder: &Path, benchmark: &Benchmark) -> Result<Recordings, LogsError> {
     let failed = |source| LogsError::Folder { path: folder.to_owned(), source };
     let entries = fs::read_dir(folder).map_err(failed)?;
     let mut paths = entries.map(|entry| Ok(entry.map_err(failed)?.path())).collect::<Result<Vec<_>, LogsError>>()?;
     paths.retain(|path| path.extension().is_some_and(|extension| extension == "mcap"));
     paths.sort();
-    let mut found = BTreeMap::<String, (PathBuf, Recording)>::new();
+    let (mut found, mut others) = (BTreeMap::<String, (PathBuf, Recording)>::new(), Vec::new());
     for path in paths {
         let log = Log::open(&path)?;
-        let Some(mission) = mission_of(&log, benchmark) else { continue };
+        let Some(mission) = mission_of(&log, benchmark) else {
+            others.push(path);
+            continue;
+        };
         if let Some((other, _)) = found.get(&mission.id) {
             return Err(LogsError::Twice { path, other: other.clone(), mission: mission.id.clone() });
         }
         let recording = recording(&log, benchmark).map_err(|reason| LogsError::Unfit { path: path.clone(), reason })?;
         found.insert(mission.id.clone(), (path, recording));
     }
-    Ok(found.into_iter().map(|(id, (_, recording))| (id, recording)).collect())
+    Ok(Recordings { by_mission: found.into_iter().map(|(id, (_, recording))| (id, recording)).collect(), others })
 }
 
 /// The mission of the benchmark that a log is of: clients may write its file in another way, so it is compared by what it says.
@@ -90,6 +102,9 @@ pub fn recording(log: &Log, benchmark: &Benchmark) -> Result<Recording, String> 
     }
     if session.branched.is_some() || log.ticks.first().is_some_and(|entry| entry.tick != 1) {
         return Err("the session did not begin at the beginning; play the mission again".to_owned());
+    }
+    if session.packs != benchmark.catalog.packs() {
+        return Err("the session had other world packs than this call; give those of the session by `--world`".to_owned());
     }
     if !session.bodies.is_empty() {
         return Err("the session had bodies beside those of the mission; play it without `--body`".to_owned());

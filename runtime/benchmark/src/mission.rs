@@ -60,6 +60,26 @@ pub struct Instruction {
 }
 
 impl Mission {
+    /// The mission of such a line as [`Self::as_line`] gives.
+    pub(crate) fn of_line(line: &Value) -> Option<Self> {
+        let text = |key: &str| line[key].as_str().map(str::to_owned);
+        let texts = |key: &str| -> Option<Vec<String>> {
+            line[key].as_array()?.iter().map(|text| text.as_str().map(str::to_owned)).collect()
+        };
+        let (said, answers) = (texts("utterances")?, texts("answers")?);
+        let named = |name: &str| Split::ALL.into_iter().find(|split| split.name() == name);
+        let of_part = |name: &str| Part::ALL.into_iter().find(|part| part.name() == name);
+        let instructions = said.into_iter().zip(answers).map(|(text, answer)| Instruction { text, answer });
+        Some(Self {
+            id: text("id")?,
+            kind: text("type")?,
+            split: named(line["split"].as_str()?)?,
+            part: of_part(line["part"].as_str()?)?,
+            instructions: instructions.collect(),
+            cdf: line.get("cdf")?.clone(),
+        })
+    }
+
     /// As a line of a file of missions, which `eval` and `check` read.
     #[must_use]
     pub fn as_line(&self) -> Value {
@@ -75,4 +95,13 @@ impl Mission {
             "cdf": self.cdf,
         })
     }
+}
+
+/// The digest of missions (BLAKE3, in hexadecimal).
+pub(crate) fn digest(missions: &[Mission]) -> String {
+    let mut hasher = blake3::Hasher::new();
+    for mission in missions {
+        hasher.update(format!("{}\n", mission.as_line()).as_bytes());
+    }
+    hasher.finalize().to_hex().to_string()
 }

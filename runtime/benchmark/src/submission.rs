@@ -6,6 +6,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use cohabit_cdf::PackId;
 use serde::{Deserialize, Serialize};
 
 use crate::{benchmark::Benchmark, episode::Episode, mission::Split, totals::Totals};
@@ -57,6 +58,9 @@ pub struct Header {
     pub benchmark: u32,
     /// The digest of its missions.
     pub missions: String,
+    /// The world packs that it is played with, in their order.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub world: Vec<PackId>,
     /// The splits that were played.
     pub splits: Vec<Split>,
     /// Who played.
@@ -80,6 +84,7 @@ impl Header {
             format: Self::FORMAT,
             benchmark: benchmark.version,
             missions: benchmark.digest.clone(),
+            world: benchmark.catalog.packs().to_vec(),
             splits: splits.to_vec(),
             agent,
             program: env!("CARGO_PKG_VERSION").to_owned(),

@@ -242,6 +242,7 @@ mod tests {
             format: Header::FORMAT,
             benchmark: 1,
             missions: String::new(),
+            world: Vec::new(),
             splits: vec![Split::Test],
             agent: AgentCard { name: name.to_owned(), ..AgentCard::default() },
             program: "0".to_owned(),

@@ -5,6 +5,7 @@ use std::{
     convert::Infallible,
 };
 
+use cohabit_cdf::PackId;
 use cohabit_generate::side_by_side;
 
 use crate::{
@@ -129,9 +130,14 @@ pub fn verify(
 
 /// How the benchmark that was played differs from this one.
 fn of_benchmark(benchmark: &Benchmark, header: &Header) -> Vec<Difference> {
+    let named = |packs: &[PackId]| match packs {
+        [] => "none".to_owned(),
+        packs => packs.iter().map(ToString::to_string).collect::<Vec<_>>().join(", "),
+    };
     let fields = [
         ("version", header.benchmark.to_string(), benchmark.version.to_string()),
         ("digest", header.missions.clone(), benchmark.digest.clone()),
+        ("world packs", named(&header.world), named(benchmark.catalog.packs())),
     ];
     let differ = fields.into_iter().filter(|(_, claimed, found)| claimed != found);
     let mut differences: Vec<Difference> =

@@ -12,7 +12,7 @@ use std::{
 };
 
 use cohabit_benchmark::{
-    AgentCard, Benchmark, Check, Difference, Entry, Header, Mission, Recording, RunError, Split, Submission, grids,
+    AgentCard, Benchmark, Check, Difference, Entry, Header, Making, Mission, Recording, RunError, Split, Submission, grids,
     page, random, run, verify,
 };
 use cohabit_cdf::Catalog;
@@ -37,7 +37,7 @@ goals = ["device isToggledOn=true"]
 "#;
 
 fn small() -> Benchmark {
-    Benchmark::parse("small.toml", SMALL, &Arc::new(Catalog::builtin()), 2).unwrap()
+    Benchmark::parse("small.toml", SMALL, &Arc::new(Catalog::builtin()), Making::by(2)).unwrap()
 }
 
 fn header(benchmark: &Benchmark) -> Header {
@@ -71,10 +71,10 @@ fn differences(benchmark: &Benchmark, text: &str) -> Vec<Difference> {
 
 #[test]
 fn the_same_file_makes_the_same_missions_with_any_number_of_workers() {
-    let (one, other) = (small(), Benchmark::parse("s.toml", SMALL, &Arc::new(Catalog::builtin()), 1).unwrap());
+    let (one, other) = (small(), Benchmark::parse("s.toml", SMALL, &Arc::new(Catalog::builtin()), Making::by(1)).unwrap());
     assert_eq!((&one.digest, &one.missions), (&other.digest, &other.missions));
     let named = |digest: &str| SMALL.replace("version = 7", &format!("version = 7\ndigest = \"{digest}\""));
-    let parse = |text: &str| Benchmark::parse("s.toml", text, &Arc::new(Catalog::builtin()), 2);
+    let parse = |text: &str| Benchmark::parse("s.toml", text, &Arc::new(Catalog::builtin()), Making::by(2));
     assert!(parse(&named(&one.digest)).is_ok());
     let error = parse(&named("abc")).unwrap_err().to_string();
     assert!(error.contains(&one.digest) && error.contains("abc"), "{error}");
@@ -85,8 +85,41 @@ fn the_same_file_makes_the_same_missions_with_any_number_of_workers() {
 }
 
 #[test]
+fn missions_that_were_made_are_kept_and_taken_only_if_they_are_those_of_the_file() {
+    let scratch = Scratch::new("benchmark-kept");
+    let folder = PathBuf::from(scratch.path("kept"));
+    let made = AtomicUsize::new(0);
+    let told = |done: usize, all: usize| {
+        assert!(done <= all && all == 10, "{done} of {all}");
+        made.fetch_add(1, Ordering::Relaxed);
+    };
+    let parse = |text: &str, build: &str| {
+        made.store(0, Ordering::Relaxed);
+        let making = Making { workers: 2, kept_in: Some(&folder), build, made: &told };
+        let benchmark = Benchmark::parse("s.toml", text, &Arc::new(Catalog::builtin()), making).unwrap();
+        (benchmark, made.load(Ordering::Relaxed))
+    };
+    let (first, count) = parse(SMALL, "one");
+    assert_eq!(count, 10);
+    let (again, count) = parse(SMALL, "one");
+    assert_eq!((count, &again.digest, &again.missions), (0, &first.digest, &first.missions));
+    // Another build may make others, unless the file names their digest.
+    assert_eq!(parse(SMALL, "two").1, 10);
+    let named = SMALL.replace("version = 7", &format!("version = 7\ndigest = \"{}\"", first.digest));
+    assert_eq!((parse(&named, "one").1, parse(&named, "two").1), (10, 0));
+    // What is damaged is made again, and then is right.
+    for entry in fs::read_dir(&folder).unwrap() {
+        let path = entry.unwrap().path();
+        let text = fs::read_to_string(&path).unwrap();
+        fs::write(&path, text.replacen("pickup", "pickap", 2)).unwrap();
+    }
+    assert_eq!(parse(&named, "one").1, 10);
+    assert_eq!((parse(&named, "one").1, parse(SMALL, "one").0.missions), (0, first.missions));
+}
+
+#[test]
 fn the_benchmark_of_the_project_names_the_digest_of_its_missions() {
-    let benchmark = Benchmark::builtin(&Arc::new(Catalog::builtin()), 2).unwrap();
+    let benchmark = Benchmark::builtin(&Arc::new(Catalog::builtin()), Making::by(2)).unwrap();
     for split in Split::PLAYED {
         let missions = benchmark.of(&[split]).count();
         assert!(missions >= 100, "{}: {missions}", split.name());

@@ -9,13 +9,17 @@ use std::{
     sync::Arc,
 };
 
-use cohabit_benchmark::{Check, Entry, Header, Mission, Split, Submission, grids, page, run, text, verify};
-use cohabit_cdf::Catalog;
+use cohabit_benchmark::{
+    Check, Entry, Header, Making, Mission, RunError, Split, Submission, grids, page, run, text, verify,
+};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::{
+    build,
     failure::{bad_input, environment},
+    sessions,
     terminal::{shown, shown_lines},
+    world::WorldPacks,
 };
 use players::{Asked, Player};
 
@@ -47,6 +51,11 @@ struct Which {
     /// Threads; one for each core if not given. They do not change what comes of it
     #[arg(long, value_name = "N")]
     workers: Option<usize>,
+    /// Make the missions again, although they were made before
+    #[arg(long)]
+    anew: bool,
+    #[command(flatten)]
+    packs: WorldPacks,
 }
 
 #[derive(clap::Args)]
@@ -136,14 +145,30 @@ impl Which {
         self.workers.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from)).max(1)
     }
 
+    /// The benchmark with its missions: those that were made before, or else they are made now, which is shown.
     fn read(&self) -> anyhow::Result<cohabit_benchmark::Benchmark> {
-        let catalog = Arc::new(Catalog::builtin());
-        let Some(path) = &self.benchmark else {
-            return cohabit_benchmark::Benchmark::builtin(&catalog, self.workers()).map_err(bad_input);
+        let world = self.packs.read()?;
+        let (catalog, folder) = (Arc::clone(world.catalog()), sessions::data_folder().join("benchmark"));
+        let bar = bar("missions made");
+        let made = |done: usize, all: usize| {
+            bar.set_length(all as u64);
+            bar.set_position(done as u64);
         };
-        let file = path.display().to_string();
-        let text = fs::read_to_string(path).map_err(|error| bad_input(format!("{file}: {error}")))?;
-        cohabit_benchmark::Benchmark::parse(&file, &text, &catalog, self.workers()).map_err(bad_input)
+        let build = build::id().unwrap_or_default();
+        // Without a name a build cannot be told from another one, whose missions may be others.
+        let is_kept = !self.anew && !build.is_empty();
+        let kept_in = is_kept.then_some(folder.as_path());
+        let making = Making { workers: self.workers(), kept_in, build: &build, made: &made };
+        let read = match &self.benchmark {
+            None => cohabit_benchmark::Benchmark::builtin(&catalog, making),
+            Some(path) => {
+                let file = path.display().to_string();
+                let text = fs::read_to_string(path).map_err(|error| bad_input(format!("{file}: {error}")))?;
+                cohabit_benchmark::Benchmark::parse(&file, &text, &catalog, making)
+            }
+        };
+        bar.finish_and_clear();
+        read.map_err(bad_input)
     }
 }
 
@@ -153,11 +178,12 @@ impl Run {
         if splits.contains(&Split::Train) {
             return Err(bad_input("--split train: nobody is scored by it; `benchmark missions` writes its missions"));
         }
+        self.check_places()?;
         let benchmark = self.which.read()?;
         let missions: Vec<&Mission> = benchmark.of(&splits).collect();
         let player = Player::new(&self.asked, &benchmark, &missions)?;
         let header = Header::new(&benchmark, &splits, self.asked.card(), &machine());
-        let bar = bar(missions.len());
+        let bar = bar_of(missions.len(), "played");
         let play = |mission: &Mission| player.play(&benchmark, mission);
         let played = run(&benchmark, header, &self.out, self.which.workers(), &play, &|| bar.inc(1));
         bar.finish_and_clear();
@@ -167,6 +193,19 @@ impl Run {
         let own: Vec<_> = grids(&[entry]).into_iter().filter(|grid| !grid.title.contains("paper")).collect();
         print!("{}", shown_lines(text(&own)));
         println!("{} missions: {}", missions.len(), shown(self.out.display()));
+        Ok(())
+    }
+
+    /// What is wrong with where it reads and writes is said before missions are made and played.
+    fn check_places(&self) -> anyhow::Result<()> {
+        self.asked.check()?;
+        let parent = self.out.parent().filter(|parent| !parent.as_os_str().is_empty());
+        if let Some(parent) = parent.filter(|parent| !parent.is_dir()) {
+            return Err(bad_input(format!("{}: there is no such folder: make it first", parent.display())));
+        }
+        if self.out.exists() && Submission::read(&self.out).is_err() {
+            return Err(bad_input(RunError::Exists { path: self.out.clone() }));
+        }
         Ok(())
     }
 }
@@ -200,7 +239,7 @@ impl Verify {
     fn run(&self) -> anyhow::Result<()> {
         let submission = Submission::read(&self.file).map_err(bad_input)?;
         let benchmark = self.which.read()?;
-        let bar = bar(submission.lines.len());
+        let bar = bar_of(submission.lines.len(), "played again");
         let differences = verify(&benchmark, &submission, self.which.workers(), &|| bar.inc(1));
         bar.finish_and_clear();
         for difference in &differences {
@@ -243,7 +282,7 @@ impl Table {
     }
 
     fn check(&self, benchmark: &cohabit_benchmark::Benchmark, submission: &Submission) -> Check {
-        let bar = bar(submission.lines.len());
+        let bar = bar_of(submission.lines.len(), "played again");
         let differences = verify(benchmark, submission, self.which.workers(), &|| bar.inc(1));
         bar.finish_and_clear();
         if differences.is_empty() { Check::Verified } else { Check::Differs(differences.len()) }
@@ -270,9 +309,15 @@ fn machine() -> String {
     format!("{} {}, {cores} cores", std::env::consts::OS, std::env::consts::ARCH)
 }
 
-fn bar(count: usize) -> ProgressBar {
-    ProgressBar::new(count as u64).with_style(
-        ProgressStyle::with_template("{bar:30} {pos}/{len} played, {elapsed} ({eta} left)")
-            .unwrap_or_else(|_| ProgressStyle::default_bar()),
-    )
+/// A bar that says what was done so often; it is shown once something was.
+fn bar(done: &'static str) -> ProgressBar {
+    let style = ProgressStyle::with_template("{bar:30} {pos}/{len} {msg}, {elapsed} ({eta} left)");
+    ProgressBar::no_length().with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar())).with_message(done)
+}
+
+/// The same of so many.
+fn bar_of(count: usize, done: &'static str) -> ProgressBar {
+    let bar = bar(done);
+    bar.set_length(count as u64);
+    bar
 }

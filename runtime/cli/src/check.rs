@@ -179,15 +179,15 @@ impl Checker<'_> {
             Ok(layout) => layout,
             Err(error) => return Verdict::unread(file, &error.to_string()),
         };
-        let problem = |fault: LayoutFault| Problem {
+        let problem = |fault: &LayoutFault| Problem {
             severity: Severity::Error,
             file: file.to_owned(),
             position: None,
             pointer: Pointer::default(),
             message: fault.to_string(),
-            remedy: Some(remedy(&fault).to_owned()),
+            remedy: Some(fault.remedy()),
         };
-        let problems: Vec<Problem> = layout.faults(&self.catalog).into_iter().map(problem).collect();
+        let problems: Vec<Problem> = layout.faults(&self.catalog).iter().map(problem).collect();
         Verdict { file: file.to_owned(), id: None, playable: problems.is_empty(), problems }
     }
 
@@ -250,25 +250,6 @@ impl Checker<'_> {
         };
         let built = World::new(Arc::clone(&self.catalog), layout, Arc::new(mission.clone()), SEED);
         built.map(drop).map_err(|error| (place(checked, &error), error.to_string()))
-    }
-}
-
-/// What rids a floor plan of a fault.
-const fn remedy(fault: &LayoutFault) -> &'static str {
-    match fault {
-        LayoutFault::UnknownClass { .. } => "begin the instance with a class, and end it with `_` and a number",
-        LayoutFault::Repeated { .. } => "give one of them another number",
-        LayoutFault::OutsideRoom { .. } => "move it 0.06 m or more away from the middle of the walls",
-        LayoutFault::Overlap { .. } => "move one of them",
-        LayoutFault::OpeningOffWall { .. } => "put it on a straight wall that both rooms share",
-        LayoutFault::BlocksOpening { .. } => "keep 0.9 m before doors and passages free, and windows clear",
-        LayoutFault::Unreachable { .. } => "leave a walkway of 0.8 m that leads from the hallway to it",
-        LayoutFault::Crowded { .. } => "leave half of its places free for missions",
-        LayoutFault::LooseLink { .. } => "name what is placed in the same room",
-        LayoutFault::Viewpoint { .. } => {
-            "give each room viewpoints 1 to 8, 0.31 m or more away from walls and furniture"
-        }
-        LayoutFault::NotePlaces { .. } => "give the room four places, 0.07 m from the middle of its walls",
     }
 }
 

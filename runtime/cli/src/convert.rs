@@ -8,6 +8,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use crate::{
     failure::{bad_input, environment},
     terminal::shown,
+    world::WorldPacks,
 };
 
 /// Writes a data set of `demonstrate` in another format, without simulating again. The folder is there once it is whole; a call that was
@@ -25,6 +26,8 @@ pub struct Convert {
     /// How large a file gets at most, in MiB
     #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=65536))]
     file_size: u32,
+    #[command(flatten)]
+    packs: WorldPacks,
 }
 
 /// `lerobot`.
@@ -49,7 +52,8 @@ impl Convert {
                 .unwrap_or_else(|_| ProgressStyle::default_bar()),
         );
         let limit = (self.file_size as usize) << 20;
-        let converted = convert(&self.dataset, &self.out, self.to.0, limit, &|done, all| {
+        let world = self.packs.read()?;
+        let converted = convert(&self.dataset, &self.out, self.to.0, limit, world.catalog(), &|done, all| {
             bar.set_length(all as u64);
             bar.set_position(done as u64);
         });

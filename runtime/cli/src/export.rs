@@ -3,11 +3,9 @@
 use std::{
     fs,
     path::{Path, PathBuf},
-    sync::Arc,
 };
 
 use anyhow::Context as _;
-use cohabit_cdf::Catalog;
 use cohabit_tables::{NOTEBOOK, Played, Summary, codebook, plots, tables, write_csv};
 
 use crate::{
@@ -16,6 +14,7 @@ use crate::{
     rerun,
     study::without_practice,
     terminal::{shown, shown_json, shown_lines},
+    world::WorldPacks,
 };
 
 /// Writes turns, actions, goals and sessions as tables with a codebook, or sums them up by condition. Of sessions with people, a
@@ -46,6 +45,8 @@ pub struct Export {
     /// Print the summary as JSON
     #[arg(long, requires = "summary")]
     json: bool,
+    #[command(flatten)]
+    packs: WorldPacks,
 }
 
 /// How tables are written.
@@ -61,14 +62,19 @@ impl Export {
     /// Writes and prints what is asked for.
     pub fn run(&self) -> anyhow::Result<()> {
         let logs = logs(&self.logs, self.practice)?;
+        let world = self.packs.read()?;
+        if matches!(self.format, Format::Parquet) && !self.packs.is_empty() {
+            let remedy = "leave `--world` out, or write CSV";
+            return Err(bad_input(format!("`--format parquet` writes no sessions of world packs yet: {remedy}")));
+        }
         if let (Some(folder), Format::Parquet) = (&self.out, self.format) {
             rerun::tables(&logs, folder)?;
             if !self.summary {
                 return Ok(());
             }
         }
-        let catalog = Arc::new(Catalog::builtin());
-        let played = with_movement(Played::open_all(&logs, &catalog).map_err(bad_input)?, &catalog);
+        let catalog = world.catalog();
+        let played = with_movement(Played::open_all(&logs, catalog).map_err(bad_input)?, catalog);
         if let (Some(folder), Format::Csv) = (&self.out, self.format) {
             write(&played, folder, self.json)?;
         }

@@ -5,6 +5,7 @@ mod arena;
 mod benchmark;
 mod branch;
 mod build;
+mod catalog;
 mod check;
 mod completions;
 mod convert;
@@ -68,6 +69,8 @@ enum Command {
     Play(Box<play::Play>),
     /// Say what is wrong in mission files, and where
     Check(check::Check),
+    /// List what missions may name: classes, devices, rooms, goals and floor plans
+    Catalog(catalog::List),
     /// Write files to begin with: a world pack
     New(new::New),
     /// Re-simulate a recorded session and compare it tick by tick
@@ -136,6 +139,7 @@ impl Command {
                 rustix::process::umask(Mode::RWXG | Mode::RWXO);
             }
             Self::Check(_)
+            | Self::Catalog(_)
             | Self::New(_)
             | Self::Replay(_)
             | Self::Compare(_)
@@ -184,6 +188,7 @@ fn run(asked: Cohabit) -> anyhow::Result<()> {
     match asked.command {
         Command::Play(play) => play.run(),
         Command::Check(check) => check.run(),
+        Command::Catalog(list) => list.run(),
         Command::New(new) => new.run(),
         Command::Replay(replay) => replay.run(),
         Command::Compare(compare) => compare.run(),

@@ -19,12 +19,7 @@ pub struct MissionFile {
 }
 
 impl MissionFile {
-    /// The file at that path, or the built-in mission of that name; the default one for `None`.
-    pub fn find(name: Option<&str>) -> anyhow::Result<Self> {
-        Self::find_up_to(name, mission::limits::BYTES, mission::builtin())
-    }
-
-    /// The same, or a mission of a world pack.
+    /// The file at that path, or the mission of that name that is built in or of a world pack; the default one for `None`.
     pub fn find_in(name: Option<&str>, world: &WorldData) -> anyhow::Result<Self> {
         let known: Vec<(&str, &str)> = world.missions().collect();
         Self::find_up_to(name, mission::limits::BYTES, &known)

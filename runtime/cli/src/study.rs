@@ -24,7 +24,7 @@ use std::{
 };
 
 use anyhow::Context as _;
-use cohabit_cdf::Catalog;
+use cohabit_cdf::WorldData;
 use cohabit_study::{Cycle, Folder, FolderError, Records, Registry, StudyFile, StudyService, export, keep};
 use cohabit_tables::{Played, tables};
 
@@ -35,6 +35,7 @@ use crate::{
     site::SiteOptions,
     stop,
     terminal::shown,
+    world::WorldPacks,
 };
 pub use data::without_practice;
 use plan::Plan;
@@ -144,6 +145,12 @@ fn read(path: &Path) -> anyhow::Result<(StudyFile, cohabit_study::Study)> {
     Ok((file, study))
 }
 
+/// What the sessions of a study were played in whose files lie in a folder.
+fn world_of(study: &cohabit_study::Study, folder: &Path) -> anyhow::Result<WorldData> {
+    let packs = study.worlds.iter().map(|world| (world.folder.as_str(), &world.id));
+    WorldPacks::beside(folder, packs).read()
+}
+
 impl Check {
     fn run(&self) -> anyhow::Result<()> {
         let Some(file) = self.file.as_ref().filter(|_| !self.schema) else {
@@ -162,6 +169,9 @@ impl Check {
             within,
             study.participants
         );
+        for world in &study.worlds {
+            println!("World pack in {}: {}", shown(&world.folder), shown(&world.id));
+        }
         if let Some(note) = study.wizard_note() {
             println!("note: {note}");
         }
@@ -286,11 +296,12 @@ fn not_now(error: FolderError) -> anyhow::Error {
 
 impl Export {
     fn run(&self) -> anyhow::Result<()> {
-        let (_, study) = read(&Folder::study_file(&self.folder))?;
+        let (file, study) = read(&Folder::study_file(&self.folder))?;
+        let world = world_of(&study, file.folder())?;
         let records = Records::read(study, &self.folder).map_err(refused)?;
         let logs = data::logs(&self.folder, &records.progress, self.practice)?;
-        let catalog = Arc::new(Catalog::builtin());
-        let played = with_movement(Played::open_all(&logs, &catalog).map_err(bad_input)?, &catalog);
+        let catalog = world.catalog();
+        let played = with_movement(Played::open_all(&logs, catalog).map_err(bad_input)?, catalog);
         std::fs::create_dir_all(&self.out).map_err(|error| bad_input(format!("{}: {error}", self.out.display())))?;
         for path in export(&records, tables(&played), self.practice, &self.out)? {
             println!("{}", shown(path.display()));

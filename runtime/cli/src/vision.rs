@@ -9,6 +9,7 @@ use crate::{
     demonstrate::Size,
     failure::{bad_input, environment},
     terminal::shown,
+    world::WorldPacks,
 };
 
 /// Images of Alexa Arena's vision data set.
@@ -46,6 +47,8 @@ pub struct Vision {
     /// Images are drawn anew that look like an earlier one of the same room but for so many of 64 bits, from 0 to 16
     #[arg(long, value_name = "BITS", default_value_t = Filters::default().near_bits)]
     near_bits: u32,
+    #[command(flatten)]
+    packs: WorldPacks,
 }
 
 impl Vision {
@@ -53,7 +56,8 @@ impl Vision {
     pub fn run(&self) -> anyhow::Result<()> {
         let Self { min_pixels, min_things, near_bits, .. } = *self;
         let filters = Filters { min_pixels, min_things, near_bits };
-        let recipe = Recipe::new(self.seed, self.size.0, &self.plans, filters).map_err(bad_input)?;
+        let world = self.packs.read()?;
+        let recipe = Recipe::new(self.seed, self.size.0, &self.plans, filters, world.catalog()).map_err(bad_input)?;
         let workers = self.workers.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from));
         let bar = ProgressBar::new(self.images as u64).with_style(
             ProgressStyle::with_template("{bar:30} {pos}/{len} images, {elapsed} ({eta} left)")

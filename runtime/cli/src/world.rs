@@ -1,11 +1,15 @@
 //! World packs that a command is given: which folders, and that they are still what they were.
 
-use std::{ffi::OsString, path::PathBuf};
+use std::{
+    ffi::OsString,
+    path::{Path, PathBuf},
+};
 
-use cohabit_cdf::WorldData;
+use cohabit_cdf::{PackId, WorldData};
 use cohabit_engine::read_world_folder;
 
 use crate::failure::bad_input;
+
 
 /// World packs beside what is built in.
 #[derive(clap::Args, Clone, Debug, Default)]
@@ -20,6 +24,12 @@ pub struct WorldPacks {
 }
 
 impl WorldPacks {
+    /// Those that lie in these folders of a folder, and are still what they were.
+    pub fn beside<'a>(folder: &Path, packs: impl Iterator<Item = (&'a str, &'a PackId)>) -> Self {
+        let (folders, hashes) = packs.map(|(name, id)| (folder.join(name), id.digest.clone())).unzip();
+        Self { world_folders: folders, world_hashes: hashes }
+    }
+
     /// Reads them all.
     pub fn read(&self) -> anyhow::Result<WorldData> {
         if self.world_folders.is_empty() {

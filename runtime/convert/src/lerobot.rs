@@ -37,9 +37,10 @@ pub(crate) fn write(
     dataset: &Dataset,
     output: &Output,
     limit: usize,
+    catalog: &Catalog,
     done: &dyn Fn(usize, usize),
 ) -> Result<Counts, ConvertError> {
-    let names: Vec<String> = Catalog::builtin().classes().iter().map(|class| class.id.clone()).collect();
+    let names: Vec<String> = catalog.classes().iter().map(|class| class.id.clone()).collect();
     let classes: BTreeMap<String, i64> = names.iter().cloned().zip(0..).collect();
     let frames = Frames { dataset, classes: &classes };
     let (mut data, mut episodes) = (Rolling::new(output, "data", limit), Episodes::new(output, limit));

@@ -18,6 +18,8 @@ mod tar;
 
 use std::path::Path;
 
+use cohabit_cdf::{Catalog, PackId};
+
 pub use error::ConvertError;
 
 use crate::{native::Dataset, output::Output};
@@ -60,7 +62,8 @@ pub struct Counts {
 }
 
 /// Converts the data set in a folder into another folder, which must not be there. Files have `limit_bytes` at most, where a format
-/// has many, unless one episode (or sample of shards) is larger. `done` is told of each episode: how many are done, of how many.
+/// has many, unless one episode (or sample of shards) is larger. The catalogue is that of the world in which it was made: it numbers the
+/// classes. `done` is told of each episode: how many are done, of how many.
 ///
 /// # Errors
 /// [`ConvertError`]. Nothing is in the folder then; the same call begins anew.
@@ -69,16 +72,25 @@ pub fn convert(
     out: &Path,
     format: Format,
     limit_bytes: usize,
+    catalog: &Catalog,
     done: &dyn Fn(usize, usize),
 ) -> Result<Counts, ConvertError> {
     let dataset = Dataset::open(dataset)?;
+    if dataset.recipe.world != catalog.packs() {
+        let reason = format!(
+            "it was made with {}, and `--world` gives {}: give the same packs in the same order",
+            named(&dataset.recipe.world),
+            named(catalog.packs())
+        );
+        return Err(ConvertError::Unfit { path: dataset.folder, reason });
+    }
     if dataset.episodes.is_empty() {
         let reason = "it has no episodes: all missions were left out; its manifest.json says why".to_owned();
         return Err(ConvertError::Unfit { path: dataset.folder, reason });
     }
     let output = Output::begin(out)?;
     let written = match format {
-        Format::LeRobot => lerobot::write(&dataset, &output, limit_bytes, done),
+        Format::LeRobot => lerobot::write(&dataset, &output, limit_bytes, catalog, done),
         Format::Shards => shards::write(&dataset, &output, limit_bytes, done),
         Format::Arena => arena::write(&dataset, &output, done),
     };
@@ -89,4 +101,10 @@ pub fn convert(
             Err(error)
         }
     }
+}
+
+/// World packs in a message.
+fn named(packs: &[PackId]) -> String {
+    let names: Vec<String> = packs.iter().map(|pack| format!("the world pack {pack}")).collect();
+    if names.is_empty() { "no world packs".to_owned() } else { names.join(" and ") }
 }

@@ -6,7 +6,7 @@ use std::{
     path::{Component, Path, PathBuf},
 };
 
-use cohabit_cdf::Status;
+use cohabit_cdf::{PackId, Status};
 use serde::{Deserialize, de::DeserializeOwned};
 
 use crate::error::{ConvertError, at};
@@ -42,6 +42,9 @@ pub struct Recipe {
     pub missions: usize,
     /// The digest of the missions, in hexadecimal.
     pub missions_blake3: String,
+    /// The world packs that they are played with, in their order.
+    #[serde(default)]
+    pub world: Vec<PackId>,
 }
 
 #[derive(Debug, Deserialize)]

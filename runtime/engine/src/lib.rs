@@ -41,4 +41,4 @@ pub use scene::{body_instance_id, furnishings, object_instance_id};
 pub use simulator::Simulator;
 pub use snapshot::RestoreError;
 pub use stills::Stills;
-pub use world_folder::{WorldFolderError, read_world_folder};
+pub use world_folder::{WorldFolderError, read_world_folder, world_folder_files};

@@ -65,14 +65,22 @@ pub enum WorldFolderError {
 /// # Errors
 /// [`WorldFolderError`] names the file or the folder, and what is wrong with it.
 pub fn read_world_folder(folder: &Path) -> Result<WorldPack, WorldFolderError> {
+    let name = folder.display().to_string();
+    Ok(WorldPack::parse(name.trim_end_matches('/'), world_folder_files(folder)?)?)
+}
+
+/// The files of the pack in a folder. Files and folders whose names begin with a dot are no part of it.
+///
+/// # Errors
+/// [`WorldFolderError`] names the file or the folder, and what is wrong with it.
+pub fn world_folder_files(folder: &Path) -> Result<Vec<PackFile>, WorldFolderError> {
     let root = fs::canonicalize(folder).map_err(|source| failed(folder, source))?;
     if !root.is_dir() {
         return Err(WorldFolderError::NoFolder(folder.to_owned()));
     }
     let mut reading = Reading { root: &root, files: Vec::new(), bytes: 0 };
     reading.take(folder, "", DEEPEST)?;
-    let name = folder.display().to_string();
-    Ok(WorldPack::parse(name.trim_end_matches('/'), reading.files)?)
+    Ok(reading.files)
 }
 
 fn failed(path: &Path, source: io::Error) -> WorldFolderError {

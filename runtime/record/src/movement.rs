@@ -53,4 +53,7 @@ pub struct Travel {
     /// Length of the shortest way over the walkable floor from where it was to where it ended, m; `None` if there is none
     /// now.
     pub shortest_m: Option<f64>,
+    /// Length of the shortest way, other bodies left out, from where it was to where it was sent, as the floor was then, m;
+    /// `None` if there was none.
+    pub possible_m: Option<f64>,
 }

@@ -41,7 +41,7 @@ pub fn begin(study: &Study, place: u32) -> Plan {
             Block::Mission { .. } | Block::Missions(_) => {}
         }
     }
-    Plan { place, steps, awaits_assignment: true, ..Plan::default() }
+    Plan { place, steps, awaits_assignment: true, world: study.world_ids(), ..Plan::default() }
 }
 
 /// What the participant at a place does whose levels of covariates are these, by minimisation among all who have a condition.
@@ -86,7 +86,7 @@ fn plan(study: &Study, between: &[Condition], seat: &Seat) -> Plan {
         }
     }
     let place = u32::try_from(seat.place).unwrap_or(u32::MAX);
-    Plan { place, between: condition.choices.clone(), steps, ..Plan::default() }
+    Plan { place, between: condition.choices.clone(), steps, world: study.world_ids(), ..Plan::default() }
 }
 
 fn asked(name: &str, about: Option<usize>) -> Step {

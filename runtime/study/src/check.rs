@@ -7,6 +7,7 @@ mod probes;
 mod tutorial;
 mod whole;
 mod wizard;
+mod worlds;
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -15,7 +16,10 @@ use std::{
     path::{Component, Path, PathBuf},
 };
 
-use cohabit_cdf::mission::{Pointer, Problems};
+use cohabit_cdf::{
+    PackFile, WorldData,
+    mission::{Pointer, Problems},
+};
 use cohabit_dialog::{PageTexts, Questionnaire};
 use serde::Deserialize as _;
 use toml::{
@@ -40,11 +44,17 @@ pub trait Program {
     /// What is wrong with them.
     fn check_arguments(&self, arguments: &[String]) -> Result<(), String>;
 
-    /// Finds out whether there is such a mission, and it can be played.
+    /// Finds out whether there is such a mission, and it can be played in the world of the study's packs, if it has any.
     ///
     /// # Errors
     /// What is wrong with it.
-    fn check_mission(&self, name: &str) -> Result<(), String>;
+    fn check_mission(&self, name: &str, world: Option<&WorldData>) -> Result<(), String>;
+
+    /// The files of the world pack in a folder.
+    ///
+    /// # Errors
+    /// Why there is none.
+    fn pack_files(&self, folder: &Path) -> Result<Vec<PackFile>, String>;
 }
 
 /// Why a study cannot be run.
@@ -64,7 +74,7 @@ pub enum StudyError {
 }
 
 /// Flags of `play` that the study's server itself sets for each session, or that would part its page from the study's.
-const OWN_FLAGS: [&str; 15] = [
+const OWN_FLAGS: [&str; 17] = [
     "branch",
     "framed-by",
     "hide",
@@ -80,6 +90,8 @@ const OWN_FLAGS: [&str; 15] = [
     "tls",
     "tls-certificate",
     "tls-key",
+    "world",
+    "world-hash",
 ];
 
 /// A study's file with its text.
@@ -145,6 +157,8 @@ struct Checking<'a, 'f> {
     knows_wizards: bool,
     /// What participants read on their pages.
     texts: PageTexts,
+    /// What missions are checked in, if it is not what is built in alone.
+    world: Option<WorldData>,
 }
 
 impl<'a, 'f> Checking<'a, 'f> {
@@ -159,6 +173,7 @@ impl<'a, 'f> Checking<'a, 'f> {
             keeps_audio: None,
             knows_wizards: true,
             texts: PageTexts::default(),
+            world: None,
         }
     }
 }
@@ -169,6 +184,7 @@ impl Checking<'_, '_> {
         let (page_texts, page_texts_file) = self.page_texts(written).unwrap_or_default();
         // The usual exercises of tutorials are in the same language.
         self.texts = page_texts.clone();
+        let worlds = self.worlds(written.world.as_ref());
         let blocks = self.blocks(&written.block, &root.key("block"));
         let participants = written.participants.as_ref();
         if let Some(none) = participants.filter(|count| *count.get_ref() == 0) {
@@ -180,6 +196,7 @@ impl Checking<'_, '_> {
         let minimisation = self.minimisation(written.minimisation.as_ref(), &factors, &blocks);
         let mut study = Study {
             probes,
+            worlds,
             wizard,
             minimisation,
             page_texts,

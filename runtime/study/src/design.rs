@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use cohabit_cdf::PackId;
 use cohabit_dialog::{PageTexts, Questionnaire};
 use serde::{Deserialize, Serialize};
 
@@ -32,6 +33,8 @@ pub struct Study {
     pub minimisation: Option<Minimisation>,
     /// The missions of the block of missions.
     pub missions: Vec<String>,
+    /// The world packs of all sessions, in their order.
+    pub worlds: Vec<StudyWorld>,
     /// Settings of all sessions.
     pub settings: Settings,
     /// What participants read first.
@@ -62,6 +65,23 @@ pub struct Study {
     pub instruments: BTreeMap<String, Instrument>,
     /// The texts of all files that it names, by their names.
     pub files: BTreeMap<String, String>,
+}
+
+/// A world pack of a study.
+#[derive(Clone, Debug, Eq, PartialEq)]
+pub struct StudyWorld {
+    /// Its folder, from that of the study's file.
+    pub folder: String,
+    /// Its name, version and hash.
+    pub id: PackId,
+}
+
+impl StudyWorld {
+    /// The arguments of `cohabit play` by which a session has it, and no other one.
+    #[must_use]
+    pub fn arguments(&self) -> [String; 2] {
+        [format!("--world={}", self.folder), format!("--world-hash={}", self.id.digest)]
+    }
 }
 
 /// A text with its version.
@@ -342,6 +362,12 @@ impl Study {
              participants cannot tell them apart by it"
                 .to_owned()
         })
+    }
+
+    /// The names, versions and hashes of its world packs.
+    #[must_use]
+    pub fn world_ids(&self) -> Vec<PackId> {
+        self.worlds.iter().map(|world| world.id.clone()).collect()
     }
 
     /// The questionnaire of that name.

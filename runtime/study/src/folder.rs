@@ -137,6 +137,12 @@ impl Folder {
         PARTS.iter().try_for_each(|part| make(&path.join(part)))?;
         let folder = Self::lock(&path)?;
         let has_participants = !folder.places()?.is_empty();
+        if !has_participants {
+            // A file that the study names no more would count as one of its world packs' files.
+            let copies = path.join(STUDY);
+            fs::remove_dir_all(&copies).map_err(|source| failed(&copies, source))?;
+            make(&copies)?;
+        }
         for (file, text) in study {
             let copy = path.join(STUDY).join(file);
             match fs::read_to_string(&copy) {

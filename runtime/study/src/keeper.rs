@@ -11,6 +11,7 @@ use std::{
 };
 
 use crate::{
+    design::StudyWorld,
     plan::{Step, pseudonym},
     probe::{self, Happening},
     progress::{Ending, Event, Phase},
@@ -213,10 +214,12 @@ impl Registry {
         let Some(participant) = self.participants.get(&place) else { return };
         let Some((step, mission, _)) = participant.progress.mission() else { return };
         let name = session_name(place, step, attempt);
+        let own = session_arguments(&mission.settings, participant.progress.agrees_to_audio(), &self.study.wizard);
+        let worlds = self.study.worlds.iter().flat_map(StudyWorld::arguments);
         let wanted = Wanted {
             participant: pseudonym(place),
             mission: mission.mission.clone(),
-            arguments: session_arguments(&mission.settings, participant.progress.agrees_to_audio(), &self.study.wizard),
+            arguments: own.into_iter().chain(worlds).collect(),
             log: self.folder.log_path(&name),
             before: self.before(place, step, attempt),
             seed: self.study.seed,

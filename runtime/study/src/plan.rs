@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use cohabit_cdf::PackId;
 use serde::{Deserialize, Serialize};
 
 use crate::{
@@ -25,6 +26,9 @@ pub struct Plan {
     /// The level of each covariate that the condition was assigned by.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub covariates: BTreeMap<String, String>,
+    /// The world packs that all missions are played with.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub world: Vec<PackId>,
     /// The level of each between-participants factor.
     pub between: Vec<Choice>,
     /// What is done, in order.

@@ -1,6 +1,12 @@
 //! What tests share: folders, and a program that takes everything.
 
-use std::{env, fs, path::PathBuf, process};
+use std::{
+    env, fs,
+    path::{Path, PathBuf},
+    process,
+};
+
+use cohabit_cdf::{PackFile, WorldData};
 
 use crate::check::Program;
 
@@ -39,7 +45,11 @@ impl Program for Anything {
         Ok(())
     }
 
-    fn check_mission(&self, _: &str) -> Result<(), String> {
+    fn check_mission(&self, _: &str, _: Option<&WorldData>) -> Result<(), String> {
         Ok(())
+    }
+
+    fn pack_files(&self, _: &Path) -> Result<Vec<PackFile>, String> {
+        Ok(Vec::new())
     }
 }

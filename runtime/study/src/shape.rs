@@ -104,6 +104,11 @@ pub const STUDY: &[Key] = &[
         "the missions of the block of kind `missions`: names of built-in missions, or files",
     ),
     optional(
+        "world",
+        Kind::Texts,
+        "world packs that all sessions are played with, in their order: folders within that of the study, which are kept with its data",
+    ),
+    optional(
         "settings",
         Kind::Settings,
         "settings of all sessions: flags of `cohabit play`; and `score` and `clock`, true if participants are to see them",

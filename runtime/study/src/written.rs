@@ -29,6 +29,7 @@ pub(crate) struct Written {
     pub block_size: Option<Spanned<usize>>,
     pub minimisation: Option<Spanned<WrittenMinimisation>>,
     pub missions: Option<Spanned<Words>>,
+    pub world: Option<Words>,
     pub settings: WrittenSettings,
     pub completion_code: Option<Spanned<String>>,
     pub return_url: Option<Spanned<String>>,

@@ -20,7 +20,7 @@ use crate::{
 };
 use measures::{Near, Walk};
 
-const FIELDS: [Field; 19] = [
+const FIELDS: [Field; 21] = [
     Field::new("session", Text, "", "the session, as in the table of sessions"),
     Field::new("robot", Whole, "", "the robot's body"),
     Field::new("person", Whole, "", "the person's body"),
@@ -49,15 +49,29 @@ const FIELDS: [Field; 19] = [
         "path irregularity: how far the direction of the robot's motion turned, left or right, per metre of path",
     ),
     Field::new("travels", Whole, "", "commands to go somewhere that ended, but for those where it was there already"),
-    Field::new("arrived", Whole, "", "those of them after which it was there; the next three are about these"),
+    Field::new("arrived", Whole, "", "those of them after which it was there; the next five are about these"),
     Field::new("time_to_goal_s", Real, "s", "simulated time that one took, mean"),
-    Field::new("path_efficiency", Real, "", "the shortest way as a share of the way that was gone, mean"),
+    Field::new(
+        "path_efficiency",
+        Real,
+        "",
+        "the shortest way as a share of the way that was gone, mean: the shortest way knows walls, furniture and doors as they are at \
+         the arrival, and no bodies, so a detour around a person makes it less, as one without a reason does",
+    ),
     Field::new(
         "shortest",
         Text,
         "",
         "what the shortest way is: over the `floor`, around what stands there; a `straight line`, where the floor has none; \
          or `both`",
+    ),
+    Field::new("gone_m", Real, "m", "length of the way that was gone, mean"),
+    Field::new(
+        "possible_m",
+        Real,
+        "m",
+        "length of the shortest way, other bodies left out, as the floor was when the robot was sent, mean: what was possible had \
+         nobody been there, and nothing changed",
     ),
     Field::new(
         "stalled_s",
@@ -120,7 +134,7 @@ fn near_cells(near: &Near) -> [Cell; 7] {
     ]
 }
 
-fn walk_cells(walk: &Walk) -> [Cell; 8] {
+fn walk_cells(walk: &Walk) -> [Cell; 10] {
     [
         Cell::Real(walk.path_m),
         Cell::maybe(walk.irregularity_rad_m, Cell::Real),
@@ -129,6 +143,8 @@ fn walk_cells(walk: &Walk) -> [Cell; 8] {
         Cell::maybe(walk.time_to_goal_s, Cell::Real),
         Cell::maybe(walk.efficiency, Cell::Real),
         Cell::maybe(walk.shortest, Cell::text),
+        Cell::maybe(walk.gone_m, Cell::Real),
+        Cell::maybe(walk.possible_m, Cell::Real),
         Cell::Real(walk.stalled_s),
     ]
 }

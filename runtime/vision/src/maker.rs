@@ -40,10 +40,10 @@ pub(crate) struct Maker<'a> {
 
 impl<'a> Maker<'a> {
     pub fn new(folder: &'a Path, recipe: &'a Recipe) -> Result<Self, VisionError> {
-        let catalog = Arc::new(Catalog::builtin());
+        let catalog = Arc::clone(recipe.catalog());
         let meshes = Arc::new(MeshLibrary::build(&catalog)?);
         let layouts: Result<Vec<Arc<Layout>>, LayoutError> =
-            recipe.plans().iter().map(|plan| Layout::builtin(plan).map(Arc::new)).collect();
+            recipe.plans().iter().map(|plan| Layout::find(plan, &catalog).map(Arc::new)).collect();
         Ok(Self { folder, recipe, catalog, meshes, layouts: layouts? })
     }
 

@@ -1,6 +1,8 @@
 //! What a data set follows from, but for how many images it has.
 
-use cohabit_cdf::Layout;
+use std::sync::Arc;
+
+use cohabit_cdf::{Catalog, Layout};
 use cohabit_render::Lens;
 use serde_json::json;
 
@@ -39,26 +41,33 @@ pub struct Recipe {
     lens: Lens,
     plans: Vec<String>,
     filters: Filters,
+    catalog: Arc<Catalog>,
 }
 
 impl Recipe {
-    /// Image `i` follows from `seed + i`; pictures have `size` pixels across and down; floor plans are these, or all if none is
-    /// named.
+    /// Image `i` follows from `seed + i`; pictures have `size` pixels across and down; floor plans are these of the world, or all
+    /// if none is named.
     ///
     /// # Errors
     /// [`VisionError::Lens`], [`VisionError::NoSuchPlan`], [`VisionError::Near`].
-    pub fn new(seed: u64, size: [u32; 2], plans: &[String], filters: Filters) -> Result<Self, VisionError> {
+    pub fn new(
+        seed: u64,
+        size: [u32; 2],
+        plans: &[String],
+        filters: Filters,
+        catalog: &Arc<Catalog>,
+    ) -> Result<Self, VisionError> {
         let lens = Lens::new(size[0], size[1], FOV_Y_DEG)?;
-        let known = Layout::builtin_ids();
+        let known = Layout::ids(catalog);
         if let Some(plan) = plans.iter().find(|plan| !known.contains(plan)) {
             return Err(VisionError::NoSuchPlan { plan: plan.clone(), known });
         }
         if filters.near_bits > MOST_NEAR_BITS {
             return Err(VisionError::Near { bits: filters.near_bits, most: MOST_NEAR_BITS });
         }
-        // In the order of the built-in plans, whatever order they were named in.
+        // In the order of the world's plans, whatever order they were named in.
         let plans = known.into_iter().filter(|plan| plans.is_empty() || plans.contains(plan)).collect();
-        Ok(Self { seed, lens, plans, filters })
+        Ok(Self { seed, lens, plans, filters, catalog: Arc::clone(catalog) })
     }
 
     /// The seed of an image.
@@ -82,10 +91,14 @@ impl Recipe {
         self.filters
     }
 
+    pub(crate) const fn catalog(&self) -> &Arc<Catalog> {
+        &self.catalog
+    }
+
     /// What must be the same for two data sets to be the same, as far as the shorter one goes.
     pub(crate) fn text(&self) -> String {
         let Filters { min_pixels, min_things, near_bits } = self.filters;
-        let recipe = json!({
+        let mut recipe = json!({
             "format": FORMAT,
             "program": env!("CARGO_PKG_VERSION"),
             "seed": self.seed,
@@ -96,6 +109,9 @@ impl Recipe {
             "min_things": min_things,
             "near_bits": near_bits,
         });
+        if !self.catalog.packs().is_empty() {
+            recipe["world"] = json!(self.catalog.packs());
+        }
         format!("{recipe:#}\n")
     }
 }
@@ -113,15 +129,18 @@ mod tests {
             ([8, 64], &[], near(4), "8x64"),
             ([64, 64], &[], near(40), "at most 16"),
         ] {
-            let error = Recipe::new(1, size, &plans(names), filters).unwrap_err();
+            let error = Recipe::new(1, size, &plans(names), filters, &Arc::new(Catalog::builtin())).unwrap_err();
             assert!(error.to_string().contains(expected) && error.is_bad_input(), "{error}");
         }
     }
 
     #[test]
     fn plans_have_one_order() {
-        let made =
-            |names: [&str; 2]| Recipe::new(1, [64, 64], &names.map(str::to_owned), Filters::default()).unwrap().text();
+        let catalog = Arc::new(Catalog::builtin());
+        let made = |names: [&str; 2]| {
+            let recipe = Recipe::new(1, [64, 64], &names.map(str::to_owned), Filters::default(), &catalog);
+            recipe.unwrap().text()
+        };
         assert_eq!(made(["OfficeLayout3", "OfficeLayout1"]), made(["OfficeLayout1", "OfficeLayout3"]));
     }
 }

@@ -7,8 +7,10 @@ use std::{
     collections::BTreeSet,
     fs,
     path::{Path, PathBuf},
+    sync::Arc,
 };
 
+use cohabit_cdf::Catalog;
 use cohabit_render::instance_of_color;
 use cohabit_tests::files;
 use cohabit_vision::{Filters, Recipe, Rle, Summary, VisionError, make, masks};
@@ -25,7 +27,8 @@ fn folder(name: &str) -> PathBuf {
 }
 
 fn recipe(seed: u64) -> Recipe {
-    Recipe::new(seed, SIZE, &["OfficeLayout1".to_owned(), "OfficeLayout2_mirror".to_owned()], FILTERS).unwrap()
+    let (plans, catalog) = (["OfficeLayout1", "OfficeLayout2_mirror"].map(str::to_owned), Arc::new(Catalog::builtin()));
+    Recipe::new(seed, SIZE, &plans, FILTERS, &catalog).unwrap()
 }
 
 fn made(images: usize, folder: &Path, workers: usize) -> Summary {
@@ -121,7 +124,8 @@ fn what_cannot_be_made_is_said_and_leaves_no_image() {
     let folder = folder("never");
     assert!(matches!(make(0, &folder, &recipe(1), 1, &|| {}), Err(VisionError::NoImages)));
     let filters = Filters { min_things: 500, ..FILTERS };
-    let crowded = Recipe::new(1, [16, 16], &["OfficeLayout1".to_owned()], filters).unwrap();
+    let catalog = Arc::new(Catalog::builtin());
+    let crowded = Recipe::new(1, [16, 16], &["OfficeLayout1".to_owned()], filters, &catalog).unwrap();
     let error = make(2, &folder, &crowded, 1, &|| {}).unwrap_err();
     assert!(matches!(error, VisionError::Exhausted { index: 0, .. }) && error.is_bad_input(), "{error}");
     assert!(files(&folder).keys().all(|path| path == Path::new("recipe.json")));

@@ -1,6 +1,6 @@
 //! What stops a body on its way: other bodies, doors on the move, heavy things, walls. Never changes anything.
 
-use cohabit_cdf::{BodyId, BodyKind, GoToTarget, ObjectId, StateFlag};
+use cohabit_cdf::{BodyId, GoToTarget, ObjectId, StateFlag};
 use glam::Vec2;
 
 use crate::{
@@ -119,7 +119,7 @@ impl World {
         (0_u32..).map(BodyId).zip(&self.state.bodies).filter(move |(other, _)| *other != id)
     }
 
-    /// What people call an obstruction: `robot 2 is in my way`.
+    /// What people call an obstruction: `person 2 is in my way`.
     pub(crate) fn complaint(&self, obstruction: Option<Obstruction>) -> String {
         let facts = self.facts();
         match obstruction {
@@ -135,13 +135,13 @@ impl World {
         }
     }
 
-    /// `robot 2`, `person 1`: counted by kind, as they came.
+    /// `the person`, where there is one; `person 2` of several, counted by kind, as they came. The number of a body is another one.
     fn body_name(&self, id: BodyId) -> String {
         let kind = self.state.bodies[id.0 as usize].kind;
-        let number = self.state.bodies[..=id.0 as usize].iter().filter(|body| body.kind == kind).count();
-        match kind {
-            BodyKind::Robot => format!("robot {number}"),
-            BodyKind::Person => format!("person {number}"),
+        let count = |bodies: &[Body]| bodies.iter().filter(|body| body.kind == kind).count();
+        match count(&self.state.bodies) {
+            1 => format!("the {}", kind.name()),
+            _ => format!("{} {}", kind.name(), count(&self.state.bodies[..=id.0 as usize])),
         }
     }
 

@@ -78,11 +78,15 @@ fn who_stands_in_the_way_is_named() {
     let mut play = Play::new(floor(&corridor(1.0), "", &[], RoomId::Reception));
     play.join(BodyKind::Person, RoomId::Hallway);
     let outcomes = play.run_watched(&[(0, view(RoomId::Warehouse, 1))], keep_apart);
-    let named = (Status::TargetInaccessible, "person 1 is in my way");
+    let named = (Status::TargetInaccessible, "the person is in my way");
     assert_eq!((outcomes[0].status, outcomes[0].detail.as_str()), named);
     // The same for a plain step forward.
     let outcomes = play.run_watched(&[(0, ahead(3.0))], keep_apart);
     assert_eq!((outcomes[0].status, outcomes[0].detail.as_str()), named);
+    // Of several people it is said which, counted as people.
+    play.join(BodyKind::Person, RoomId::Reception);
+    let outcomes = play.run_watched(&[(0, ahead(3.0))], keep_apart);
+    assert_eq!(outcomes[0].detail, "person 1 is in my way");
 }
 
 #[test]

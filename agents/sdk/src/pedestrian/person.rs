@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use cohabit_cdf::{Action, GoToTarget};
+use cohabit_cdf::{Action, BodyKind, GoToTarget};
 use glam::Vec2;
 use rand_chacha::{
     ChaCha8Rng,
@@ -41,6 +41,13 @@ const MOST_FAILURES: u32 = 5;
 /// Who comes no further than this in that time is stuck.
 const STUCK_TICKS: u64 = 5 * TICKS_PER_SECOND;
 const STUCK_M: f32 = 0.3;
+/// Who is stuck waits so long before trying again, and after so many times without getting nearer does the next thing.
+const WAIT_TICKS: u64 = 3 * TICKS_PER_SECOND;
+const MOST_STUCK: u32 = 6;
+/// A way that is shorter than any before by this is progress, m.
+const PROGRESS_M: f32 = 0.5;
+/// Who stands no further away, m, is in the way of somebody who is stuck.
+const IN_THE_WAY_M: f32 = 1.5;
 /// A shut door this near to oneself and to the way is gone through by the body's own walking, which opens it.
 const DOOR_NEAR_M: f32 = 1.4;
 const DOOR_ON_WAY_M: f32 = 0.4;
@@ -57,6 +64,8 @@ pub(super) struct Around<'a> {
     pub is_busy: bool,
     /// All bodies, itself too, by number.
     pub bodies: &'a BTreeMap<u32, Walker>,
+    /// What kinds of bodies they are.
+    pub kinds: &'a BTreeMap<u32, BodyKind>,
     /// Where doors are shut, m.
     pub shut: &'a [Vec2],
     pub floor: &'a Floor,
@@ -76,6 +85,10 @@ pub(super) struct Person {
     failures: u32,
     /// Where it was, some time ago.
     mark: Option<(u64, Vec2)>,
+    /// How often it was stuck since it last got nearer, how long the way then was, m, and until when it waits.
+    stuck: u32,
+    left_m: f32,
+    waits_until: u64,
     /// Since when its body walks by itself.
     led: Option<u64>,
     drives: bool,
@@ -97,6 +110,9 @@ impl Person {
             planned: None,
             failures: 0,
             mark: None,
+            stuck: 0,
+            left_m: f32::INFINITY,
+            waits_until: 0,
             led: None,
             drives: false,
         }
@@ -119,6 +135,9 @@ impl Person {
                 return None;
             }
             self.forget();
+        }
+        if around.tick < self.waits_until {
+            return self.halt();
         }
         let Some(errand) = self.diary.now(around.tick) else { return self.halt() };
         let began = *self.began.get_or_insert(around.tick);
@@ -170,6 +189,10 @@ impl Person {
         }
         if self.planned.is_none_or(|planned| tick >= planned + REPLAN_TICKS) {
             let Some(way) = (around.floor.path)(at_m, goal) else { return self.fail(tick) };
+            let left_m = length(at_m, &way);
+            if left_m < self.left_m - PROGRESS_M {
+                (self.left_m, self.stuck) = (left_m, 0);
+            }
             (self.way, self.failures, self.planned) = (way, 0, Some(tick));
         }
         let passed = self.way.iter().take_while(|point| point.distance(at_m) < REACHED_M).count();
@@ -180,14 +203,17 @@ impl Person {
             // The end of the way may lie beside a goal that nobody can stand on.
             if near_m > 0.0 {
                 self.finish(tick);
+            } else if self.is_stuck(tick, at_m) {
+                return self.get_past(aim, goal, around);
             }
             return self.halt();
         }
         if let Some(beyond) = self.beyond_door(around) {
-            return self.lead(beyond, tick);
+            // Somebody may stand in it.
+            return self.get_past(beyond, beyond, around);
         }
         if self.is_stuck(tick, at_m) {
-            return self.lead(aim, tick);
+            return self.get_past(aim, goal, around);
         }
         self.drives = true;
         let wanted_m_s = (aim - at_m).normalize_or_zero() * self.pace_m_s.min(at_m.distance(goal) / RELAXATION_S);
@@ -222,6 +248,37 @@ impl Person {
         near.find_map(|door| beyond(&way, *door))
     }
 
+    /// What somebody does who is stuck, or before a shut door: has its body go on by itself, which opens doors and goes around who
+    /// stands there; then waits, and tries again; at last does the next thing.
+    fn get_past(&mut self, aim: Vec2, goal: Vec2, around: &Around<'_>) -> Option<Action> {
+        self.stuck += 1;
+        let obstacle = self.obstacle(around);
+        if self.stuck >= MOST_STUCK {
+            tracing::warn!("person {} does not get past {obstacle}, and does the next thing", self.body);
+            self.finish(around.tick);
+            return self.halt();
+        }
+        if self.stuck % 2 == 1 {
+            // Somebody may stand where the next stretch ends.
+            return self.lead(if self.stuck == 1 { aim } else { goal }, around.tick);
+        }
+        tracing::info!("person {} waits: {obstacle} is in the way", self.body);
+        (self.waits_until, self.mark) = (around.tick + WAIT_TICKS, None);
+        self.plan_anew();
+        self.halt()
+    }
+
+    /// What people call what is in its way: the nearest body, if one is near.
+    fn obstacle(&self, around: &Around<'_>) -> String {
+        let others = around.bodies.iter().filter(|(body, _)| **body != self.body);
+        let apart_m = others.map(|(body, other)| (body, other.at_m.distance(around.own.at_m)));
+        let nearest = apart_m.filter(|(_, apart_m)| *apart_m < IN_THE_WAY_M);
+        let Some((body, _)) = nearest.min_by(|(_, one), (_, other)| one.total_cmp(other)) else {
+            return "what stands there".to_owned();
+        };
+        format!("the {} of body {body}", around.kinds.get(body).copied().unwrap_or_default().name())
+    }
+
     /// Whether it has hardly moved for long, while it meant to.
     fn is_stuck(&mut self, tick: u64, at_m: Vec2) -> bool {
         let (since, was_m) = *self.mark.get_or_insert((tick, at_m));
@@ -251,6 +308,7 @@ impl Person {
     fn finish(&mut self, tick: u64) {
         self.diary.done(tick);
         (self.began, self.goal, self.failures, self.mark) = (None, None, 0, None);
+        (self.stuck, self.left_m) = (0, f32::INFINITY);
         self.plan_anew();
     }
 
@@ -262,6 +320,11 @@ impl Person {
     fn halt(&mut self) -> Option<Action> {
         std::mem::take(&mut self.drives).then(|| turn(0.0, 0.0))
     }
+}
+
+/// How long a way is, m.
+fn length(from: Vec2, way: &[Vec2]) -> f32 {
+    std::iter::once(&from).chain(way).zip(way).map(|(one, next)| one.distance(*next)).sum()
 }
 
 /// Behind a door that a way leads through, on the way.

@@ -8,7 +8,9 @@ use std::{
 };
 
 use clap::ValueEnum as _;
-use cohabit_benchmark::{AgentCard, Benchmark, Instruction, Mission, Recording, random, recording, recordings};
+use cohabit_benchmark::{
+    AgentCard, Benchmark, Instruction, Mission, Recording, Recordings, Split, random, recording, recordings,
+};
 use cohabit_dialog::{Asking, Effort, Knows, Language};
 use cohabit_eval::{Answer, Caps, Line, Settings, Task, play, solve};
 use cohabit_record::Log;
@@ -25,8 +27,9 @@ pub struct Asked {
     /// the simulator knows; or `random`, which does anything that is allowed
     #[arg(long, value_name = "KIND", default_value = "dialog")]
     agent: AgentKind,
-    /// Score the session logs (.mcap) of this folder instead, one of each mission, whoever played them
-    #[arg(long, value_name = "DIR", conflicts_with = "agent", requires = "name")]
+    /// Score the session logs (.mcap) of this folder instead, one of each mission, whoever played them. Needs `--name`; what they are
+    /// played with is in the logs
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["agent", "knows", "ask", "understanding"], requires = "name")]
     logs: Option<PathBuf>,
     /// The agent's name in tables; that of its kind, if absent
     #[arg(long)]
@@ -40,8 +43,9 @@ pub struct Asked {
     /// The questions of who left the logs were answered
     #[arg(long, requires = "logs")]
     questions: bool,
-    /// What the agent leaves to chance
-    #[arg(long, default_value_t = 1)]
+    /// The seed of what `--agent random` draws. `dialog` and `expert` draw nothing; the missions and their worlds follow from the seed
+    /// in the benchmark's file, whatever is given here
+    #[arg(long, default_value_t = 1, conflicts_with = "logs")]
     seed: u64,
     /// What the robot may know: `everything` there is, or what it has `seen` so far
     #[arg(long, default_value_t)]
@@ -72,6 +76,20 @@ impl AgentKind {
 }
 
 impl Asked {
+    /// Whether there are logs, if logs are to be scored: which missions they are of shows once the missions are made.
+    pub fn check(&self) -> anyhow::Result<()> {
+        let Some(folder) = &self.logs else { return Ok(()) };
+        let failed = |error| bad_input(format!("{}: {error}", folder.display()));
+        let mut entries = fs::read_dir(folder).map_err(failed)?.flatten();
+        if entries.any(|entry| entry.path().extension().is_some_and(|ending| ending == "mcap")) {
+            return Ok(());
+        }
+        Err(bad_input(format!(
+            "{}: there are no session logs (*.mcap) in it: play the missions that `benchmark missions` writes, with `--log`",
+            folder.display()
+        )))
+    }
+
     /// What a submission says of who plays.
     pub fn card(&self) -> AgentCard {
         let is_recorded = self.logs.is_some();
@@ -157,18 +175,31 @@ impl Player {
 
 /// Whoever left logs of these missions.
 fn recorded(folder: &Path, benchmark: &Benchmark, missions: &[&Mission]) -> anyhow::Result<Player> {
-    let found = recordings(folder, benchmark).map_err(bad_input)?;
-    let missing: Vec<&str> =
-        missions.iter().map(|mission| mission.id.as_str()).filter(|id| !found.contains_key(*id)).collect();
-    if let Some(first) = missing.first() {
-        return Err(bad_input(format!(
-            "{}: {} of {} missions have no log in it, such as {first}; play them, or name one `--split`",
-            folder.display(),
-            missing.len(),
-            missions.len()
-        )));
-    }
-    Ok(Player::Recorded(found))
+    let Recordings { by_mission, others } = recordings(folder, benchmark).map_err(bad_input)?;
+    let missing: Vec<&Mission> =
+        missions.iter().copied().filter(|mission| !by_mission.contains_key(&mission.id)).collect();
+    let Some(first) = missing.first() else { return Ok(Player::Recorded(by_mission)) };
+    let whole = |split: &Split| {
+        let is_of_it = |mission: &&Mission| mission.split == *split;
+        missions.iter().any(is_of_it) && !missing.iter().any(is_of_it)
+    };
+    let remedy = match (Split::PLAYED.into_iter().find(whole), others.first()) {
+        (Some(split), _) => format!("all of the split `{0}` have one: score that alone, by `--split {0}`", split.name()),
+        (None, Some(other)) => format!(
+            "{} logs are of missions that this benchmark does not have, such as {}: give the `--benchmark` and the `--world` that \
+             they were written with by `benchmark missions`",
+            others.len(),
+            other.display()
+        ),
+        (None, None) => "play them, or name one `--split`".to_owned(),
+    };
+    Err(bad_input(format!(
+        "{}: {} of {} missions have no log in it, such as {}; {remedy}",
+        folder.display(),
+        missing.len(),
+        missions.len(),
+        first.id
+    )))
 }
 
 /// A mission with what is said in it.

@@ -21,6 +21,7 @@ pub const PAGES: &[Page] = pages![
     "talk",
     "understanding",
     "missions",
+    "goals",
     "worlds",
     "vision",
     "voice",

@@ -7,8 +7,9 @@ use std::{
 };
 
 use clap::Parser as _;
+use cohabit_cdf::mission::goal_kinds;
 use cohabit_tests::{Block, Call, blocks, commands};
-use pulldown_cmark::{Event, HeadingLevel, Tag};
+use pulldown_cmark::{Event, HeadingLevel, Tag, TagEnd};
 
 use super::{
     book::{PAGES, PICTURES, SUMMARY, Target, from_root, page, target},
@@ -123,6 +124,15 @@ fn a_page_names_itself_in_the_list_of_pages() {
         assert!(!["{title}", "{version}", "{contents}"].iter().any(|place| text.contains(place)), "{}", file.path);
     }
     assert_eq!(html(SUMMARY).matches("<a href=\"/").count(), PAGES.len());
+}
+
+#[test]
+fn the_page_of_goals_has_all_that_goals_can_ask_for() {
+    let shown = page("goals").unwrap();
+    for kind in goal_kinds() {
+        let line = format!("| `{}` | `{}` | {} |", kind.key, kind.example, kind.meaning);
+        assert!(shown.text.lines().any(|own| own == line), "the page `goals` lacks the line: {line}");
+    }
 }
 
 #[test]

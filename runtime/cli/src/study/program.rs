@@ -1,13 +1,13 @@
 //! What this program knows of the settings and missions that a study names.
 
-use std::{ffi::OsString, sync::Arc};
+use std::{ffi::OsString, path::Path, sync::Arc};
 
 use clap::{Parser, error::ErrorKind};
-use cohabit_cdf::Catalog;
+use cohabit_cdf::{PackFile, WorldData};
 use cohabit_engine::SessionPlan;
 use cohabit_study::Program;
 
-use crate::{mission_file::MissionFile, play::Play};
+use crate::{mission_file::MissionFile, play::Play, world};
 
 /// This program.
 pub struct ThisProgram;
@@ -31,11 +31,23 @@ impl Program for ThisProgram {
         }
     }
 
-    fn check_mission(&self, name: &str) -> Result<(), String> {
-        let file = MissionFile::find(Some(name)).map_err(|error| format!("{error:#}"))?;
-        let catalog = Arc::new(Catalog::builtin());
+    fn check_mission(&self, name: &str, world: Option<&WorldData>) -> Result<(), String> {
+        let builtin;
+        let world = match world {
+            Some(world) => world,
+            None => {
+                builtin = WorldData::builtin();
+                &builtin
+            }
+        };
+        let file = MissionFile::find_in(Some(name), world).map_err(|error| format!("{error:#}"))?;
+        let catalog = Arc::clone(world.catalog());
         let plan = SessionPlan::new(&file.name, &file.text, catalog, 0).map_err(|error| error.to_string())?;
         plan.build().map(drop).map_err(|error| error.to_string())
+    }
+
+    fn pack_files(&self, folder: &Path) -> Result<Vec<PackFile>, String> {
+        cohabit_engine::world_folder_files(folder).map_err(|error| format!("{error:#}"))
     }
 }
 
@@ -78,8 +90,8 @@ mod tests {
 
     #[test]
     fn missions_are_those_that_can_be_played() {
-        assert_eq!(ThisProgram.check_mission("cold_soda"), Ok(()));
-        let said = ThisProgram.check_mission("warm_soda").expect_err("no mission");
+        assert_eq!(ThisProgram.check_mission("cold_soda", None), Ok(()));
+        let said = ThisProgram.check_mission("warm_soda", None).expect_err("no mission");
         assert!(said.contains("there are"), "{said}");
     }
 }

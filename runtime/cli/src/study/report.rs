@@ -1,13 +1,12 @@
 //! `cohabit study report`: the methods sheet of a study.
 
-use std::{fs, path::PathBuf, sync::Arc};
+use std::{fs, path::PathBuf};
 
-use cohabit_cdf::Catalog;
 use cohabit_record::{Log, entry::fingerprint};
 use cohabit_study::{Apparatus, Folder, Records, all_tables, is_practice, report};
 use cohabit_tables::{Played, tables};
 
-use super::{data, read, refused};
+use super::{data, read, refused, world_of};
 use crate::{
     failure::bad_input,
     movement::with_movement,
@@ -27,9 +26,10 @@ pub struct Report {
 impl Report {
     /// Writes it.
     pub fn run(&self) -> anyhow::Result<()> {
-        let (_, study) = read(&Folder::study_file(&self.folder))?;
+        let (file, study) = read(&Folder::study_file(&self.folder))?;
+        let world = world_of(&study, file.folder())?;
         let records = Records::read(study, &self.folder).map_err(refused)?;
-        let catalog = Arc::new(Catalog::builtin());
+        let catalog = world.catalog();
         let (mut apparatus, mut played) = (Apparatus::default(), Vec::new());
         for path in data::logs(&self.folder, &records.progress, true)? {
             let log = Log::open(&path).map_err(bad_input)?;
@@ -39,9 +39,9 @@ impl Report {
                 continue;
             }
             note_settings(&mut apparatus, &log);
-            played.push(Played::new(&name, log, &catalog).map_err(bad_input)?);
+            played.push(Played::new(&name, log, catalog).map_err(bad_input)?);
         }
-        let played = with_movement(played, &catalog);
+        let played = with_movement(played, catalog);
         let text = report(&records, &apparatus, &all_tables(&records, tables(&played), false));
         let Some(out) = &self.out else {
             print!("{}", shown_lines(text));

@@ -9,6 +9,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use super::{
     read, refused,
     speakers::{Speakers, unheeded},
+    world_of,
 };
 use crate::{failure::bad_input, terminal::shown};
 
@@ -47,12 +48,12 @@ impl Simulate {
             people: people.unwrap_or_default(),
             program: env!("CARGO_PKG_VERSION").to_owned(),
         };
-        let has_wizard = study.has_wizard();
+        let (has_wizard, world) = (study.has_wizard(), world_of(&study, file.folder())?);
         let passed_over = unheeded(&study.all_settings());
         let mut files = study.files.clone();
         files.insert("study.toml".to_owned(), file.text.clone());
         let folder = Folder::begin_synthetic(&self.folder, &files, &run).map_err(refused)?;
-        let speakers = Speakers::new(file.folder()).context("a folder for logs")?;
+        let speakers = Speakers::new(file.folder(), world).context("a folder for logs")?;
         let cores = thread::available_parallelism().map_or(1, usize::from);
         let workers = self.workers.map_or(cores, usize::from);
         let bar = ProgressBar::new(u64::from(run.participants)).with_style(

@@ -9,7 +9,7 @@ use std::{
 };
 
 use clap::Parser;
-use cohabit_cdf::{BodyRequest, Catalog};
+use cohabit_cdf::{BodyRequest, WorldData};
 use cohabit_dialog::{Asking, Effort, Knows, Language};
 use cohabit_engine::SessionPlan;
 use cohabit_eval::{Settings, Style, Task, play, solve};
@@ -59,7 +59,7 @@ pub struct Speakers {
     folder: PathBuf,
     /// Where logs lie until the study keeps them; goes with this.
     scratch: PathBuf,
-    catalog: Arc<Catalog>,
+    world: WorldData,
     fast: OnceLock<Language>,
     full: OnceLock<Language>,
 }
@@ -104,15 +104,14 @@ struct Conditions {
 }
 
 impl Speakers {
-    /// Those of a study in that folder.
+    /// Those of a study in that folder, which is played in that world.
     ///
     /// # Errors
     /// Of the file system.
-    pub fn new(folder: &Path) -> std::io::Result<Self> {
+    pub fn new(folder: &Path, world: WorldData) -> std::io::Result<Self> {
         let scratch = std::env::temp_dir().join(format!("cohabit-simulate-{}", std::process::id()));
         fs::create_dir_all(&scratch)?;
-        let catalog = Arc::new(Catalog::builtin());
-        Ok(Self { folder: folder.to_owned(), scratch, catalog, fast: OnceLock::new(), full: OnceLock::new() })
+        Ok(Self { folder: folder.to_owned(), scratch, world, fast: OnceLock::new(), full: OnceLock::new() })
     }
 
     fn language(&self, effort: Effort) -> &Language {
@@ -120,19 +119,20 @@ impl Speakers {
             Effort::Fast => &self.fast,
             Effort::Full => &self.full,
         };
-        cell.get_or_init(|| cohabit_dialog::language(Arc::clone(&self.catalog), effort))
+        cell.get_or_init(|| cohabit_dialog::language(Arc::clone(self.world.catalog()), effort))
     }
 
     fn task(&self, wanted: &SimulatedMission) -> Result<(MissionFile, Task), String> {
         let beside = self.folder.join(&wanted.mission);
         let name = if beside.is_file() { beside.to_string_lossy().into_owned() } else { wanted.mission.clone() };
-        let file = MissionFile::find(Some(&name)).map_err(|error| format!("{error:#}"))?;
+        let file = MissionFile::find_in(Some(&name), &self.world).map_err(|error| format!("{error:#}"))?;
         let [world, people] = wanted.seeds;
-        let plan = SessionPlan::new(&file.name, &file.text, Arc::clone(&self.catalog), world);
+        let catalog = self.world.catalog();
+        let plan = SessionPlan::new(&file.name, &file.text, Arc::clone(catalog), world);
         let plan = plan.map_err(|error| error.to_string())?;
         // How somebody speaks follows from the task's name.
         let id = format!("{}#{people:x}", wanted.name);
-        let mut script = wishes(&plan.mission, &self.catalog, wanted.speaking.own_words, &mut Chance::new(people, 0));
+        let mut script = wishes(&plan.mission, catalog, wanted.speaking.own_words, &mut Chance::new(people, 0));
         if wanted.gives_up {
             // Half of what they would say first: the other half of all goals stays open.
             script.truncate(plan.mission.goals.len().div_ceil(2).min(plan.mission.goals.len().saturating_sub(1)));
@@ -235,7 +235,7 @@ impl SimulatedPlayer for Speakers {
             record: Some(self.scratch.clone()),
         };
         let played = if conditions.is_expert {
-            solve(&task, &settings, &self.catalog)
+            solve(&task, &settings, self.world.catalog())
         } else {
             play(&task, &settings, self.language(conditions.effort))
         };

@@ -41,15 +41,17 @@ fn read_out(text: &str) -> Line {
 mod tests {
     use std::sync::Arc;
 
+    use cohabit_cdf::WorldData;
     use cohabit_engine::SessionPlan;
 
     use super::*;
     use crate::mission_file::MissionFile;
 
     fn lines(mission: &str, own_words: f64) -> Vec<String> {
-        let (file, catalog) = (MissionFile::find(Some(mission)).expect("a mission"), Arc::new(Catalog::builtin()));
-        let plan = SessionPlan::new(&file.name, &file.text, Arc::clone(&catalog), 0).expect("a plan");
-        let wishes = wishes(&plan.mission, &catalog, own_words, &mut Chance::new(1, 0));
+        let world = WorldData::builtin();
+        let file = MissionFile::find_in(Some(mission), &world).expect("a mission");
+        let plan = SessionPlan::new(&file.name, &file.text, Arc::clone(world.catalog()), 0).expect("a plan");
+        let wishes = wishes(&plan.mission, world.catalog(), own_words, &mut Chance::new(1, 0));
         wishes
             .iter()
             .map(|line| format!("{}: {line}", if matches!(line, Line::Meant(_)) { "own" } else { "read" }))

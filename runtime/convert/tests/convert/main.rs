@@ -11,7 +11,7 @@ use std::{
 };
 
 use cohabit_bus::message::Plane;
-use cohabit_cdf::mission;
+use cohabit_cdf::{Catalog, mission};
 use cohabit_convert::{ConvertError, Counts, Format, convert};
 use cohabit_demonstrate::{MissionText, Recipe, demonstrate};
 use cohabit_tests::{Scratch, files};
@@ -43,7 +43,7 @@ impl Native {
 
     fn convert(&self, out: &str, format: Format, limit: usize) -> Result<(PathBuf, Counts), ConvertError> {
         let out = PathBuf::from(self.scratch.path(out));
-        let counts = convert(&self.folder, &out, format, limit, &|_, _| {})?;
+        let counts = convert(&self.folder, &out, format, limit, &Catalog::builtin(), &|_, _| {})?;
         Ok((out, counts))
     }
 
@@ -98,6 +98,12 @@ fn what_is_wrong_with_a_data_set_is_named_and_nothing_is_left() {
         }
     };
     refused(Format::Arena, &["32x24", "--size 300x300"]);
+    let recipe = native.folder.join("recipe.json");
+    let plain = fs::read_to_string(&recipe).unwrap();
+    let pack = "\"world\": [{ \"name\": \"my-lab\", \"version\": \"1\", \"digest\": \"12ab\" }], \"seed\":";
+    fs::write(&recipe, plain.replacen("\"seed\":", pack, 1)).unwrap();
+    refused(Format::LeRobot, &["the world pack `my-lab` 1 with hash 12ab", "no world packs"]);
+    fs::write(&recipe, plain).unwrap();
     let steps = native.folder.join("episodes/000000/steps.jsonl");
     let whole = fs::read_to_string(&steps).unwrap();
     fs::write(&steps, whole.replacen("\"kind\":\"", "\"kind\":\"un", 1)).unwrap();

@@ -52,6 +52,8 @@ struct Sent {
     command: u64,
     from: u64,
     start: Vec2,
+    /// Length of the shortest way there was then, m.
+    possible_m: Option<f64>,
 }
 
 impl Watched {
@@ -64,7 +66,7 @@ impl Watched {
                 return Some(difference.to_string());
             }
             for input in &replayed.inputs {
-                self.note_input(replayed.entry.tick.saturating_sub(1), input, &before);
+                self.note_input(replayed.entry.tick.saturating_sub(1), input, &before, replayer.world());
             }
             for outcome in &replayed.report.outcomes {
                 self.note_outcome(replayer.world(), outcome);
@@ -73,19 +75,22 @@ impl Watched {
         }
     }
 
-    fn note_input(&mut self, from: u64, input: &Input, before: &[Vec2]) {
+    fn note_input(&mut self, from: u64, input: &Input, before: &[Vec2], world: &World) {
         let Input { command, body, action } = *input;
         // A way that is interrupted is none.
         self.sent.remove(&body.0);
-        if let (Action::GoTo { .. }, Some(start)) = (action, before.get(body.0 as usize).copied()) {
-            self.sent.insert(body.0, Sent { command, from, start });
+        if let (Action::GoTo { target }, Some(start)) = (action, before.get(body.0 as usize).copied()) {
+            // The tick in which it set out is over.
+            let set_out_m = world.body(body).map_or(0.0, |own| own.position_m.truncate().distance(start));
+            let possible_m = world.way_m(body, target).map(|way_m| f64::from(set_out_m + way_m));
+            self.sent.insert(body.0, Sent { command, from, start, possible_m });
         }
     }
 
     fn note_outcome(&mut self, world: &World, outcome: &Outcome) {
         let body = outcome.body.0;
         let is_this = |sent: &&Sent| sent.command == outcome.command;
-        let Some(Sent { from, start, .. }) = self.sent.get(&body).filter(is_this).copied() else { return };
+        let Some(Sent { from, start, possible_m, .. }) = self.sent.get(&body).filter(is_this).copied() else { return };
         self.sent.remove(&body);
         let end = world.body(outcome.body).map_or(start, |body| body.position_m.truncate());
         self.movement.travels.push(Travel {
@@ -94,6 +99,7 @@ impl Watched {
             to: world.tick(),
             success: outcome.status.is_success(),
             shortest_m: world.path(start, end).map(|(_, length_m)| f64::from(length_m)),
+            possible_m,
         });
     }
 

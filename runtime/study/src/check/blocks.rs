@@ -154,7 +154,7 @@ impl Checking<'_, '_> {
 
     pub(super) fn mission(&mut self, name: &Spanned<String>, at: &Pointer) {
         let path = self.beside(name, at);
-        if let Err(problem) = self.program.check_mission(&path) {
+        if let Err(problem) = self.program.check_mission(&path, self.world.as_ref()) {
             let remedy = "name a built-in mission, or a file from the folder of the study; `cohabit check` says more";
             self.findings.add(name.span(), at, problem, remedy);
         }

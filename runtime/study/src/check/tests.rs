@@ -33,12 +33,23 @@ impl Program for Stub {
         }
     }
 
-    fn check_mission(&self, name: &str) -> Result<(), String> {
+    fn check_mission(&self, name: &str, world: Option<&WorldData>) -> Result<(), String> {
+        if world.is_some_and(|world| world.missions().any(|(file, _)| file.strip_suffix(".json") == Some(name))) {
+            return Ok(());
+        }
         if name.ends_with("soda") || name.ends_with("cereal") {
             Ok(())
         } else {
             Err(format!("there is no mission {name}"))
         }
+    }
+
+    fn pack_files(&self, folder: &Path) -> Result<Vec<PackFile>, String> {
+        if !folder.ends_with("my-lab") {
+            return Err(format!("{}: there is no such folder", folder.display()));
+        }
+        let files = cohabit_cdf::world_pack::template("my-lab").into_iter();
+        Ok(files.map(|(path, text)| PackFile { path: path.to_owned(), bytes: text.into_bytes() }).collect())
     }
 }
 
@@ -130,6 +141,27 @@ fn check(name: &str, text: &str) -> Result<Study, String> {
     let _ = scratch.write("after.toml", "title = 'After'\n[[item]]\nask = 'Why?'\nwords = true");
     let path = scratch.write("study.toml", text);
     StudyFile::read(&path).unwrap().check(&Stub).map_err(|error| error.to_string())
+}
+
+#[test]
+fn a_study_keeps_its_world_packs_and_plays_their_missions() {
+    let text = STUDY.replacen("[\"soda\", \"cereal\"]", "[\"soda\", \"clean_wrench\"]", 1);
+    let with = |world: &str| text.replacen("seed = 1", &format!("seed = 1\nworld = {world}"), 1);
+    let study = check("world", &with("[\"packs/my-lab/\"]")).unwrap();
+    let [world] = study.worlds.as_slice() else { panic!("{:?}", study.worlds) };
+    assert_eq!((world.folder.as_str(), world.id.name.as_str()), ("packs/my-lab", "my-lab"));
+    assert_eq!(world.arguments(), ["--world=packs/my-lab".to_owned(), format!("--world-hash={}", world.id.digest)]);
+    assert!(study.files.contains_key("packs/my-lab/layouts/Workshop.toml"), "{:?}", study.files.keys());
+    assert_eq!(crate::assign(&study, 1).world, study.world_ids());
+    for (text, part) in [
+        (text.clone(), "there is no mission clean_wrench"),
+        (with("[\"../my-lab\"]"), "it lies outside the folder of the study"),
+        (with("[\"your-lab\"]"), "there is no such folder"),
+        (with("[\"my-lab\", \"other/my-lab\"]"), "`my-lab`"),
+    ] {
+        let said = check("no-world", &text).unwrap_err();
+        assert!(said.contains(part), "`{part}` is not in {said}");
+    }
 }
 
 #[test]

@@ -205,8 +205,10 @@ pub(super) fn apparatus(known: &Known<'_>) -> String {
     let varied = |(name, values): (&String, &std::collections::BTreeSet<String>)| {
         vec![format!("`{name}`"), values.iter().cloned().collect::<Vec<_>>().join(", ")]
     };
+    let packs: Vec<String> = study.world_ids().iter().map(ToString::to_string).collect();
+    let packs = if packs.is_empty() { String::new() } else { format!(" World packs: {}.", listed(&packs)) };
     format!(
-        "{versions} All sessions have: {}. The seed of all worlds is {}. Fingerprint of the object catalogue: {}.\n\n{}\n\n{}",
+        "{versions} All sessions have: {}. The seed of all worlds is {}. Fingerprint of the object catalogue: {}.{packs}\n\n{}\n\n{}",
         settings(&study.settings),
         study.seed,
         listed(&catalogs),

@@ -78,6 +78,9 @@ pub struct Walk {
     pub time_to_goal_s: Option<f64>,
     pub efficiency: Option<f64>,
     pub shortest: Option<&'static str>,
+    /// The way that was gone, and the one that was possible when it began.
+    pub gone_m: Option<f64>,
+    pub possible_m: Option<f64>,
     pub stalled_s: f64,
 }
 
@@ -96,6 +99,8 @@ impl Walk {
             time_to_goal_s: of_arrived(|leg| seconds(leg.travel.to - leg.travel.from)),
             efficiency: of_arrived(efficiency),
             shortest: shortest(&arrived),
+            gone_m: of_arrived(|leg| leg.gone_m),
+            possible_m: mean(&arrived.iter().filter_map(|leg| leg.travel.possible_m).collect::<Vec<_>>()),
             stalled_s: own.iter().map(|leg| stalled_s(leg.stops)).sum(),
         }
     }

@@ -65,7 +65,7 @@ fn a_stop_on_the_way() {
     // Within 0.45 m it is while it stands, and on either side of that place.
     let beside_s = chord_s(0.45 + RADII_M, 0.3 + RADII_M);
     assert_near(near.intimate_s, 3.0 + beside_s, 3.0 * TICK_S);
-    let travel = Travel { body: 0, from: 0, to: 420, success: true, shortest_m: None };
+    let travel = Travel { body: 0, from: 0, to: 420, success: true, shortest_m: None, possible_m: None };
     let walk = Walk::new(&robot, &[travel]);
     assert_near(walk.stalled_s, 3.0, 2.0 * TICK_S);
     assert_near(walk.time_to_goal_s.unwrap(), 7.0, 1e-3);
@@ -92,11 +92,13 @@ fn a_circle_around_a_person() {
     let walk = Walk::new(&robot, &[]);
     assert_near(walk.irregularity_rad_m.unwrap(), 1.0 / radius_m, 0.01);
     // Half of it, of which the straight line is the diameter.
-    let half = Travel { body: 0, from: 0, to: ticks / 2, success: true, shortest_m: None };
+    let half = Travel { body: 0, from: 0, to: ticks / 2, success: true, shortest_m: None, possible_m: None };
     assert_near(Walk::new(&robot, &[half]).efficiency.unwrap(), 2.0 / std::f64::consts::PI, 1e-3);
     // Had the floor a way of 4.4 m, and none for another travel.
-    let floor = Travel { shortest_m: Some(4.4), ..half };
+    let floor = Travel { shortest_m: Some(4.4), possible_m: Some(4.2), ..half };
     let walk = Walk::new(&robot, &[floor, half]);
+    assert_eq!(walk.possible_m, Some(4.2));
+    assert_near(walk.gone_m.unwrap(), std::f64::consts::PI * radius_m, 0.05);
     assert_near(walk.efficiency.unwrap(), (4.4 + 4.0) / 2.0 / (std::f64::consts::PI * radius_m), 1e-3);
     assert_eq!((walk.travels, walk.arrived, walk.shortest), (2, 2, Some("both")));
 }
@@ -113,7 +115,7 @@ fn contacts_are_counted_once_each() {
 #[test]
 fn travels_of_others_and_to_where_it_was_are_none() {
     let (robot, _) = pair(120, |time_s| [time_s, 0.0], [9.0, 9.0]);
-    let travel = Travel { body: 0, from: 0, to: 60, success: true, shortest_m: Some(1.0) };
+    let travel = Travel { body: 0, from: 0, to: 60, success: true, shortest_m: Some(1.0), possible_m: None };
     let others = Travel { body: 2, ..travel };
     let there = Travel { from: 60, to: 61, shortest_m: Some(0.01), ..travel };
     let failed = Travel { from: 60, to: 61, success: false, shortest_m: None, ..travel };

@@ -2,12 +2,12 @@
 
 use std::sync::Arc;
 
-use cohabit_cdf::{BodyId, Catalog, Layout, Mission, ObjectId, RoomId};
+use cohabit_cdf::{BodyId, Catalog, GoToTarget, Layout, Mission, ObjectId, RoomId};
 use glam::Vec2;
 
 use super::World;
 use crate::{
-    body::BodyView,
+    body::{BodyView, Step},
     entity::{Object, ObjectView},
     facts::Facts,
     goals::{self, GoalStatus},
@@ -122,6 +122,19 @@ impl World {
     #[must_use]
     pub fn path(&self, from_m: Vec2, to_m: Vec2) -> Option<(Vec<Vec2>, f32)> {
         self.navigation.path(from_m, to_m)
+    }
+
+    /// Length of the way that a body would take to a target now, were it alone, m; `None` if there is no way, or no such target.
+    #[must_use]
+    pub fn way_m(&self, body: BodyId, target: GoToTarget) -> Option<f32> {
+        if let GoToTarget::Object(object) = target {
+            self.state.object(object)?;
+        }
+        let body = self.state.bodies.get(body.0 as usize)?;
+        let (steps, _) = self.plan_walk(body, target, &self.navigation).ok()?;
+        let Some(Step::Walk { path, .. }) = steps.last() else { return Some(0.0) };
+        let ends = std::iter::once(&body.position).chain(path);
+        Some(ends.zip(path).map(|(from, to)| from.distance(*to)).sum())
     }
 
     /// The outlines of all that bodies cannot walk through, m: corners counter-clockwise, convex. Closed doors that are not

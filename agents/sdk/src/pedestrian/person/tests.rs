@@ -27,7 +27,8 @@ fn play(person: &mut Person, looks: u64, other_m: Vec2, shut: &[Vec2]) -> (Vec<V
     for look in 0..looks {
         let bodies = BTreeMap::from([(1, own), (2, still(other_m))]);
         let tick = look * LOOK_TICKS;
-        let around = Around { tick, own, yaw_rad, is_busy: false, bodies: &bodies, shut, floor: &floor };
+        let kinds = BTreeMap::new();
+        let around = Around { tick, own, yaw_rad, is_busy: false, bodies: &bodies, kinds: &kinds, shut, floor: &floor };
         match person.act(&around) {
             Some(Action::Drive { forward_m_s, turn_rad_s, .. }) => {
                 yaw_rad += turn_rad_s * LOOK_S;
@@ -85,6 +86,36 @@ fn who_finds_no_way_does_the_next_thing() {
     let text = "[[entry]]\nperson = 1\ngo_to = \"200.0 0.0\"\n[[entry]]\nperson = 1\ngo_to = \"2.0 0.0\"";
     let (places, _) = play(&mut person(text, 1), 300, AWAY, &[]);
     assert!(places[299].distance(Vec2::new(2.0, 0.0)) < 0.6, "{}", places[299]);
+}
+
+#[test]
+fn who_is_stuck_goes_around_waits_and_at_last_does_the_next_thing() {
+    let text = "[[entry]]\nperson = 1\ngo_to = \"6.0 0.0\"\n[[entry]]\nperson = 1\ngo_to = \"0.0 6.0\"";
+    let (mut person, floor) = (person(text, 1), floor());
+    let still = |at_m| Walker { at_m, velocity_m_s: Vec2::ZERO, radius_m: 0.22 };
+    let own = still(Vec2::ZERO);
+    let bodies = BTreeMap::from([(1, own), (2, still(Vec2::new(0.6, 0.0)))]);
+    let kinds = BTreeMap::from([(1, BodyKind::Person), (2, BodyKind::Robot)]);
+    let (mut walks, mut named) = (Vec::new(), String::new());
+    for look in 0..600 {
+        let (tick, yaw_rad) = (look * LOOK_TICKS, 0.0);
+        let around = Around {
+            tick,
+            own,
+            yaw_rad,
+            is_busy: false,
+            bodies: &bodies,
+            kinds: &kinds,
+            shut: &[],
+            floor: &floor,
+        };
+        named = person.obstacle(&around);
+        if let Some(Action::GoTo { target: GoToTarget::Point(point) }) = person.act(&around) {
+            walks.push(point);
+        }
+    }
+    assert_eq!(named, "the robot of body 2");
+    assert_eq!(walks[..4], [[6.0, 0.0], [6.0, 0.0], [6.0, 0.0], [0.0, 6.0]], "{walks:?}");
 }
 
 #[test]

@@ -3,7 +3,7 @@
 /// The name of `known` that is fewest edits away from `name`, if near enough to be a slip of the pen.
 ///
 /// Case does not count. Of names equally near the first one wins.
-pub(super) fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+pub(crate) fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let name = lower(name);
     let most = (name.len() / 3).max(1);
     known
@@ -11,6 +11,11 @@ pub(super) fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) 
         .filter_map(|known| Some((edits(&name, &lower(known), most)?, known)))
         .min_by_key(|(edits, _)| *edits)
         .map(|(_, known)| known)
+}
+
+/// A remedy that names the known name nearest to `name`.
+pub(crate) fn did_you_mean<'k>(name: &str, known: impl IntoIterator<Item = &'k str>) -> Option<String> {
+    nearest(name, known).map(|near| format!("did you mean `{near}`?"))
 }
 
 fn lower(text: &str) -> Vec<char> {
