@@ -18,7 +18,7 @@ pub struct Wanted {
     /// What the participant is called; in a study of pairs, what the pair is.
     pub participant: String,
     /// How many people have a page of their own in it; 0 if one participant plays it, at the page that all have.
-    pub seats: u8,
+    pub seats: u32,
     /// The mission, as the study names it.
     pub mission: String,
     /// Flags of `cohabit play`.
