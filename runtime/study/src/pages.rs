@@ -48,10 +48,10 @@ impl Registry {
         let progress = &participant.progress;
         let Some((index, step, doing)) = progress.step_now() else {
             return match progress.phase() {
-                Phase::Finished => finished(&self.study),
+                Phase::Finished => ended("finished", &self.study),
                 Phase::Excluded => json!({ "page": "excluded" }),
                 Phase::Assigning => json!({ "page": "starting" }),
-                Phase::Parted => json!({ "page": "parted", "completion": self.study.completion }),
+                Phase::Parted => ended("parted", &self.study),
                 _ => json!({ "page": "withdrawn" }),
             };
         };
@@ -213,9 +213,10 @@ fn shown_box(one: &ConsentBox) -> Value {
     json!({ "text": one.text, "is_required": one.is_required })
 }
 
-fn finished(study: &Study) -> Value {
+/// The last page of somebody whose answers are kept.
+fn ended(page: &str, study: &Study) -> Value {
     let text = study.debriefing.as_deref().map(html);
-    json!({ "page": "finished", "html": text, "completion": study.completion })
+    json!({ "page": page, "html": text, "completion": study.completion })
 }
 
 /// The session of a mission. How much time is left is told only if the study shows a clock.
