@@ -51,7 +51,11 @@ impl SimulatedPlayer for Stage {
 }
 
 fn run(scratch: &Scratch, data: &str, seed: u64, threads: usize) -> (Simulated, Records) {
-    for (name, text) in [("sheet.md", "Read."), ("study.toml", STUDY), ("one.toml", ITEM), ("two.toml", ITEM)] {
+    run_study(STUDY, scratch, data, seed, threads)
+}
+
+fn run_study(study: &str, scratch: &Scratch, data: &str, seed: u64, threads: usize) -> (Simulated, Records) {
+    for (name, text) in [("sheet.md", "Read."), ("study.toml", study), ("one.toml", ITEM), ("two.toml", ITEM)] {
         let _ = scratch.write(name, text);
     }
     let study = StudyFile::read(&scratch.path("study.toml")).unwrap().check(&Anything).unwrap();
@@ -148,4 +152,43 @@ fn a_dry_run_is_never_mixed_with_people() {
         let error = refused.unwrap_err().to_string();
         assert!(error.contains("holds a dry run") && error.contains("choose another folder"), "{error}");
     }
+}
+
+#[test]
+fn pairs_are_played_by_two_people_together() {
+    let scratch = Scratch::new("simulate-pairs");
+    let pairs = "participants = 4\nparticipants_per_session = 2\npair = { partner_absent = \"alone\", skip = \"either\" }";
+    let study = STUDY.replace("participants = 4", pairs);
+    let export = |data: &str, threads| {
+        let (simulated, records) = run_study(&study, &scratch, data, 1, threads);
+        (simulated, records, tables_in(&scratch.path(data)))
+    };
+    let (simulated, records, tables) = export("one", 1);
+    let (_, _, again) = export("again", 3);
+    assert_eq!(tables, again);
+    assert!(simulated.finished > 10 && simulated.withdrawn > 0, "{simulated:?}");
+    let plays = |place: u32| records.progress.iter().find(|one| one.plan().place == place);
+    let (mut together, mut alone) = (0, 0);
+    for progress in &records.progress {
+        let place = progress.plan().place;
+        let Some(partner) = plays(crate::pair::partner_of(place)) else { continue };
+        assert_eq!(progress.plan().steps, partner.plan().steps);
+        for done in progress.done().iter().filter(|done| done.ending.is_some()) {
+            let theirs = partner.done().iter().find(|other| other.step == done.step);
+            together += usize::from(done.together == 1);
+            alone += usize::from(done.together == 0);
+            // What both played is the same session, for as long.
+            let is_same = |other: &crate::progress::Done| other.together == done.together;
+            assert!(done.together == 0 || theirs.is_some_and(is_same), "{done:?} {theirs:?}");
+        }
+    }
+    assert!(together > 60 && alone > 0, "{together} {alone}");
+    let logs = fs::read_dir(scratch.path("one/logs")).unwrap().flatten().map(|entry| entry.file_name());
+    let logs: Vec<String> = logs.map(|name| name.to_string_lossy().into_owned()).collect();
+    let withdrawn: Vec<u32> = records.withdrawn.iter().filter_map(|name| crate::plan::place_of(name)).collect();
+    for place in withdrawn {
+        let pair = format!("{}-", crate::pair::pair_label(crate::pair::pair_of(place)));
+        assert!(!logs.iter().any(|log| log.starts_with(&pair)), "{pair}: {logs:?}");
+    }
+    assert!(logs.iter().any(|log| log.starts_with("pair")), "{logs:?}");
 }
