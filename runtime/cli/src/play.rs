@@ -80,7 +80,7 @@ pub struct Play {
 }
 
 /// How logs note how many people have a page of their own.
-const SEATS: &str = "seats";
+pub const SEATS: &str = "seats";
 
 /// A session that this one goes on from.
 struct Before {

@@ -29,6 +29,7 @@ use crate::{
     minds::MindRequest,
     mission_file::MissionFile,
     peers::{Listening, NAME_OF, Timing},
+    play::SEATS,
 };
 
 /// The settings of sessions that a dry run acts out: those that make a difference without a page, a sound or a picture.
@@ -258,11 +259,15 @@ impl SimulatedPlayer for Speakers {
         let log = Log::open(raw).map_err(|error| error.to_string())?;
         let pace = conditions.pace(speaking.line_s, wanted.is_heard);
         let log = SyntheticLog::new(log, pace, wanted.ends_by_s);
+        let mut noted = conditions.noted();
+        if wanted.partner.is_some() {
+            noted.insert(SEATS.to_owned(), PAIR_SIZE.to_string());
+        }
         let facts = Facts {
             session: wanted.name.clone(),
             participant: wanted.participant.clone(),
             mission_file: if is_file { wanted.mission.clone() } else { file.name },
-            settings: conditions.noted(),
+            settings: noted,
             has_wizard: conditions.has_wizard,
             people: if wanted.partner.is_some() { PAIR_SIZE } else { 0 },
             began_ms: wanted.began_ms,
