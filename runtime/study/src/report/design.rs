@@ -27,7 +27,7 @@ pub(super) fn assignment(known: &Known<'_>) -> String {
     };
     let factors = [
         factor(FactorKind::Between, if study.pairing.is_some() { "between pairs of" } else { "between" }),
-        factor(FactorKind::Own, "between the two of a pair, and"),
+        factor(FactorKind::Own, "between single"),
         factor(FactorKind::Within, "within"),
     ]
     .concat();
