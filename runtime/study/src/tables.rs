@@ -21,7 +21,7 @@ pub use datapackage::DataPackageError;
 use crate::{
     design::{Block, Choice, FactorKind, Study},
     folder::{Folder, FolderError, Note},
-    pair::{pair_label, pair_of, seat_of},
+    pair::{PAIR_SIZE, pair_label, pair_of, seat_of},
     plan::{Plan, Step, place_of, pseudonym},
     progress::{Doing, Done, Phase, Progress},
     records::Records,
@@ -375,7 +375,7 @@ fn seat_at(whose: Whose, person: &Cell) -> Cell {
     match (whose, person) {
         (Whose::Participant(place), _) => whole(seat_of(place) + 1),
         // Pages of seats have the first numbers; what nobody said at a page has none.
-        (Whose::Pair(_), Cell::Whole(number)) if *number > 0 => Cell::Whole(*number),
+        (Whose::Pair(_), Cell::Whole(number)) if (1..=i64::from(PAIR_SIZE)).contains(number) => Cell::Whole(*number),
         (Whose::Pair(_), _) => Cell::Nothing,
     }
 }
