@@ -2,7 +2,7 @@
 // It knows the messages of the service's socket and nothing of the world behind them.
 
 import { byId, limitTexts, narrow, toast } from "./dom.js";
-import { buildDriving, showHeld, takeActed, takeAim, takeDriving, takeKey } from "./driving.js";
+import { buildDriving, showHeld, takeActed, takeAim, takeDriving, takeKey, takeSeat } from "./driving.js";
 import { meetFaces, takeExpression } from "./face.js";
 import { enlargeMap, floor } from "./floor.js";
 import { expandGoals, takeState } from "./goals.js";
@@ -67,6 +67,7 @@ keepWatch();
 listen({
   you: (you) => {
     takeYou(you);
+    takeSeat(you.seat);
     noteAnswered(you.answered);
   },
   hello: takeHello,

@@ -35,6 +35,8 @@ const OFFER_KEYS = ["E", "Q", "X", "C", "Z"];
 const OWN_KEYS = { throw: "T", scan: "V" };
 
 let bodies = [];
+/** The seat of this page, if each person has one: it drives the avatar of that seat alone. */
+let seat = null;
 let driven = null;
 let before = null;
 let labelBefore = "";
@@ -54,9 +56,14 @@ export const isDriving = () => driven !== null;
 
 // ---------------------------------------------------------------------------------------------- walking in and out
 
+/** Takes in which seat this page has, before it is told which bodies there are. */
+export function takeSeat(own) {
+  seat = own ?? null;
+}
+
 /** Takes in which bodies this session lets people drive. */
 export function buildDriving(all) {
-  bodies = all;
+  bodies = seat ? all.filter(({ body }) => body === seat.body) : all;
   byId("walk-in").hidden = !bodies.length || isDriving();
   closeMenu();
   stopDriving("");

@@ -102,6 +102,31 @@ fn people_at_several_pages_are_told_apart_and_the_robot_comes_to_who_calls() {
 }
 
 #[test]
+fn each_seat_has_a_page_of_its_own_that_drives_one_avatar() {
+    let arguments = ["make_cereal", "--body", "person", "--body", "person", "--seats", "2"];
+    let mut play = Play::spawn(COHABIT, &arguments).unwrap();
+    let seats = [1, 2].map(|number| {
+        let line = play.wait_for_line(&format!("Seat {number} (body {number}): http")).unwrap();
+        line.split_once("://").unwrap().1.to_owned()
+    });
+    play.wait_until_ready().unwrap();
+    // The second one comes first, and is the second one all the same.
+    for (number, seat) in [(2, &seats[1]), (1, &seats[0])] {
+        let mut page = Page::open(seat).unwrap();
+        let you = page.wait("whose page it is", |_, message| message["type"] == "you").unwrap();
+        assert_eq!((&you["visitor"], &you["seat"]), (&json!(number), &json!({ "body": number })));
+        page.send(&json!({ "type": "drive_body", "body": 3 - number })).unwrap();
+        page.wait("that it may not", |_, message| message["type"] == "error").unwrap();
+        page.send(&json!({ "type": "drive_body", "body": number })).unwrap();
+        page.wait("the avatar", |_, message| message["type"] == "driving" && message["body"] == number).unwrap();
+    }
+    let mut page = Page::open(play.authority()).unwrap();
+    let you = page.wait("whose page it is", |_, message| message["type"] == "you").unwrap();
+    assert_eq!((&you["visitor"], &you["seat"]), (&json!(3), &Value::Null), "the page for all has no seat");
+    play.end().unwrap();
+}
+
+#[test]
 fn what_a_mind_says_of_its_own_accord_is_shown() {
     let scratch = Scratch::new("says");
     let mind = format!("scripted@1={}", scratch.write("script.txt", "wait 1\nsay Here you are.\n"));

@@ -1,6 +1,7 @@
 //! A study from its file to its data: two participants, pages, a killed session, a killed server, a withdrawal.
 
 mod pages;
+mod pairs;
 mod practice;
 mod wizard;
 

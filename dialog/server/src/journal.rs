@@ -36,6 +36,9 @@ pub struct Place {
     pub token: String,
     /// The word that lets a wizard's page in.
     pub wizard: String,
+    /// The words that let in the pages of people who have a seat each.
+    #[serde(default)]
+    pub seats: Vec<String>,
 }
 
 /// What follows from one message.
@@ -321,8 +324,12 @@ mod tests {
     fn what_was_written_is_there_again_and_what_was_not_told_is_known() {
         let file = Scratch::new("again");
         let mut journal = file.open();
-        let place =
-            Place { address: "127.0.0.1:80".parse().unwrap(), token: "secret".to_owned(), wizard: "other".to_owned() };
+        let place = Place {
+            address: "127.0.0.1:80".parse().unwrap(),
+            token: "secret".to_owned(),
+            wizard: "other".to_owned(),
+            seats: vec!["one".to_owned(), "two".to_owned()],
+        };
         journal.serve_at(place.clone());
         journal.will_tell(deed(3, "one"));
         journal.told();

@@ -20,6 +20,7 @@ pub mod known;
 mod latency;
 mod limits;
 mod page;
+mod person_seats;
 mod presence;
 mod questionnaire;
 mod recorded;
@@ -87,6 +88,7 @@ use crate::{
     hub::Hub,
     journal::{Journal, Place},
     page::RobotName,
+    person_seats::PersonSeats,
     robots::{BodyNames, Robots},
     survey::Survey,
     talk::{Conversations, Ears, Pages, Talk},
@@ -114,6 +116,8 @@ pub struct DialogConfig {
     pub cameras: Vec<CameraRecord>,
     /// Which bodies people may drive from the page.
     pub drivable: Drivable,
+    /// How many people have a page of their own, each at an address of its own.
+    pub seats: usize,
     /// What the robot may know.
     pub knows: Knows,
     /// When it asks.
@@ -183,6 +187,16 @@ pub struct Addresses {
     pub page: String,
     /// That of the wizard, if one takes part.
     pub wizard: Option<String>,
+    /// Those of people who have a page of their own, in the order of their seats.
+    pub seats: Vec<SeatAddress>,
+}
+
+/// Where the page of a seat can be opened.
+pub struct SeatAddress {
+    /// The address.
+    pub page: String,
+    /// The avatar that it drives, if there is one for it.
+    pub body: Option<u32>,
 }
 
 /// Serves a session until `stop`; `ready` is given the pages' addresses as soon as they can be opened.
@@ -214,7 +228,7 @@ pub fn serve(
     let views = views.into_iter().map(|view| View::new(view.camera)).collect();
     let hub = Arc::new(Hub::new(hello, views, config.on_first_frame));
     let journal = Journal::open(config.journal.as_deref());
-    let (listener, place) = listen(config.listen, journal.past().place.as_ref())?;
+    let (listener, place) = listen(config.listen, config.seats, journal.past().place.as_ref())?;
     if config.effort == Effort::Full {
         // It takes some tenths of a second to load: who speaks first need not wait for that.
         std::thread::spawn(cohabit_rewriter::builtin);
@@ -237,7 +251,14 @@ pub fn serve(
     let (mut conversations, thoughts) = Conversations::begin(&*bus, Arc::clone(&talk), robots)?;
     let ears = Ears::new(&*bus)?;
     talk.serve_at(place.clone());
-    let Place { address, token, wizard } = place;
+    let Place { address, token, wizard, seats } = place;
+    let people = Arc::new(PersonSeats::new(seats, &bodies));
+    for number in 0..config.seats {
+        // So people have the numbers of their seats, whoever comes first.
+        if let Some((visitor, _)) = talk.enter(people.comer(number).key) {
+            talk.leave(visitor);
+        }
+    }
     let seat = config.holding.wizard.as_ref().map(|_| Seat::new(&wizard, &config.holding));
     let ended = AtomicBool::new(false);
     let over = || stop.load(Ordering::Relaxed) || ended.load(Ordering::Relaxed);
@@ -272,6 +293,13 @@ pub fn serve(
         ready(&Addresses {
             page: token::page_address(address, is_encrypted, &token),
             wizard: seat.as_ref().map(|_| token::wizard_address(address, is_encrypted, &wizard)),
+            seats: people
+                .all()
+                .map(|(token, seat)| SeatAddress {
+                    page: token::page_address(address, is_encrypted, token),
+                    body: seat.body,
+                })
+                .collect(),
         });
         let (hub, limits) = (Arc::clone(&hub), ServerLimits::default());
         let (survey, voice) = (Arc::clone(&survey), Arc::clone(&voice));
@@ -280,7 +308,8 @@ pub fn serve(
         let framing = Framing { framed_by: config.framed_by, frames_ports: false };
         let texts = Arc::new(config.texts);
         let admits_own_user = true;
-        let service = Service { hub, host, token, seat, admits_own_user, identity, hosts, limits, framing, texts };
+        let service =
+            Service { hub, host, token, seat, people, admits_own_user, identity, hosts, limits, framing, texts };
         let ending = Ending(&ended);
         let served = web::serve(listener, service, &over).map_err(DialogError::Serve);
         drop(ending);
@@ -293,7 +322,11 @@ pub fn serve(
 }
 
 /// Listens where the service before this one did, as open pages know it; where there was none, at that address.
-fn listen(address: SocketAddr, before: Option<&Place>) -> Result<(TcpListener, Place), DialogError> {
+fn listen(
+    address: SocketAddr,
+    seats: usize,
+    before: Option<&Place>,
+) -> Result<(TcpListener, Place), DialogError> {
     let is_as_asked = |place: &&Place| address.port() == 0 || place.address.port() == address.port();
     if let Some(place) = before.filter(|place| place.address.ip() == address.ip()).filter(is_as_asked) {
         match TcpListener::bind(place.address) {
@@ -303,8 +336,9 @@ fn listen(address: SocketAddr, before: Option<&Place>) -> Result<(TcpListener, P
     }
     let listener = TcpListener::bind(address).map_err(|source| DialogError::Listen { address, source })?;
     let (token, wizard) = (token::fresh().map_err(DialogError::Serve)?, token::fresh().map_err(DialogError::Serve)?);
+    let seats = PersonSeats::tokens(seats).map_err(DialogError::Serve)?;
     let address = listener.local_addr().map_err(DialogError::Serve)?;
-    Ok((listener, Place { address, token, wizard }))
+    Ok((listener, Place { address, token, wizard, seats }))
 }
 
 /// Runs one of the service's loops; if it fails or panics, all end.

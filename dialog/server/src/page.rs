@@ -17,6 +17,7 @@ use crate::{
     driving::DrivableBody,
     expression::FacialExpression,
     latency::Moments,
+    person_seats::PersonSeat,
     text::{in_lines, in_one_line},
     wizard::{Click, Holding, LONGEST_SAYING, Proposal},
 };
@@ -192,9 +193,13 @@ pub fn views(cameras: &[CameraRecord], names: &[String], robots: usize) -> Vec<V
     views
 }
 
-/// Which number a page has among all, and the questionnaires that it has answered.
-pub fn you(visitor: u32, answered: &[String]) -> Value {
-    json!({ "type": "you", "visitor": visitor, "answered": answered })
+/// Which number a page has among all, the questionnaires that it has answered, and its seat, if it has one.
+pub fn you(visitor: u32, answered: &[String], seat: Option<PersonSeat>) -> Value {
+    let mut you = json!({ "type": "you", "visitor": visitor, "answered": answered });
+    if let Some(seat) = seat {
+        you["seat"] = json!(seat);
+    }
+    you
 }
 
 /// A questionnaire is answered, or is not, and why.

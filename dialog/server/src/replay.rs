@@ -100,7 +100,9 @@ pub fn screen(
         let (token, framing) = (token.into(), Framing::default());
         let (identity, seat, texts) = (None, None, Arc::default());
         let admits_own_user = true;
-        let service = Service { hub, host, token, seat, admits_own_user, identity, hosts, limits, framing, texts };
+        let people = Arc::default();
+        let service =
+            Service { hub, host, token, seat, people, admits_own_user, identity, hosts, limits, framing, texts };
         let served = web::serve(listener, service, &over).map_err(DialogError::Serve);
         ended.store(true, Ordering::Relaxed);
         workers

@@ -23,6 +23,7 @@ use crate::{
     journal::MOST_VISITORS,
     limits::{Limits, ServerLimits},
     page,
+    person_seats::{Comer, PersonSeat},
     presence::Presence,
     spoken::Spoken,
     survey::{Form, Survey},
@@ -49,18 +50,18 @@ pub struct Live {
 }
 
 /// Serves a page until it goes.
-pub async fn converse(hub: Arc<Hub>, live: Live, mut socket: WebSocket, key: u64, server: ServerLimits) {
+pub async fn converse(hub: Arc<Hub>, live: Live, mut socket: WebSocket, comer: Comer, server: ServerLimits) {
     let Some((first, messages, seat)) = hub.join(&server) else {
         let _ = socket.send(tell(&page::full(server.most_pages))).await;
         return;
     };
-    let Some((number, answered)) = live.talk.enter(key) else {
+    let Some((number, answered)) = live.talk.enter(comer.key) else {
         let text = format!("{MOST_VISITORS} people have been here; for more, start another session.");
         let _ = socket.send(tell(&page::error(&text))).await;
         return;
     };
-    let visitor = Entered { talk: Arc::clone(&live.talk), number };
-    for message in std::iter::once(page::you(number, &answered).to_string()).chain(first) {
+    let visitor = Entered { talk: Arc::clone(&live.talk), number, seat: comer.seat };
+    for message in std::iter::once(page::you(number, &answered, comer.seat).to_string()).chain(first) {
         if socket.send(Message::text(message)).await.is_err() {
             return;
         }
@@ -73,6 +74,8 @@ pub async fn converse(hub: Arc<Hub>, live: Live, mut socket: WebSocket, key: u64
 struct Entered {
     talk: Arc<Talk>,
     number: u32,
+    /// Their seat, if they have one.
+    seat: Option<PersonSeat>,
 }
 
 impl Drop for Entered {
@@ -225,6 +228,7 @@ impl Visit {
                 return self.point(&camera, tick, [x, y], received_nanos);
             }
             FromPage::DriveBody { body } => {
+                self.check_seat(body)?;
                 self.driver = None;
                 self.driver = Some(Driver::claim(&self.live.drivers, body)?);
             }

@@ -17,6 +17,7 @@ use crate::{
     hub::Hub,
     limits::{LONGEST_MESSAGE, ServerLimits},
     page,
+    person_seats::PersonSeats,
     same_user::is_same_user,
     screening::Screening,
     seat,
@@ -68,6 +69,8 @@ pub struct Service {
     pub token: Arc<str>,
     /// The wizard's seat, if a wizard takes part.
     pub seat: Option<Seat>,
+    /// The seats of people who have a page of their own, if any do.
+    pub people: Arc<PersonSeats>,
     /// Whether the user who runs the session is let in on this machine without the token, too.
     pub admits_own_user: bool,
     /// The hosts that it is served as, besides those of this machine.
@@ -103,6 +106,8 @@ impl Seat {
 enum Role {
     /// That of somebody who speaks with the robot, or looks at what was recorded.
     Participant,
+    /// The same of somebody with a seat, by its number.
+    Seated(usize),
     /// The wizard's.
     Wizard,
 }
@@ -141,13 +146,20 @@ fn role(service: &Service, parameters: &Parameters, ends: Ends) -> Option<Role> 
     if service.seat.as_ref().is_some_and(|seat| token::admits(&seat.token, given)) {
         return Some(Role::Wizard);
     }
+    if let Some(number) = service.people.find(given) {
+        return Some(Role::Seated(number));
+    }
     let is_own_user = || service.admits_own_user && is_same_user(ends.client, ends.server);
     (token::admits(&service.token, given) || given.is_none() && is_own_user()).then_some(Role::Participant)
 }
 
 /// The refusal of who asks for the page of a role and has another one or none: the same, whether a wizard takes part or not.
 fn refused(service: &Service, parameters: &Parameters, ends: Ends, wanted: Role) -> Option<Response> {
-    (role(service, parameters, ends) != Some(wanted)).then(refusal)
+    let wanted_page = |found: Role| match found {
+        Role::Seated(_) => wanted == Role::Participant,
+        other => other == wanted,
+    };
+    (!role(service, parameters, ends).is_some_and(wanted_page)).then(refusal)
 }
 
 fn refusal() -> Response {
@@ -189,13 +201,17 @@ async fn socket(
     let Some(role) = role(&service, &parameters, ends) else { return refusal() };
     // A page keeps its key when it connects again; one that has none is somebody new.
     let key = parameters.get("visitor").and_then(|key| key.parse().ok()).unwrap_or_else(cohabit_bus::monotonic_nanos);
+    let comer = match role {
+        Role::Seated(number) => service.people.comer(number),
+        Role::Participant | Role::Wizard => PersonSeats::stranger(key),
+    };
     let Service { hub, host, limits, seat, .. } = service;
     upgrade.max_message_size(LONGEST_MESSAGE).on_upgrade(move |socket| async move {
         match (host, role, seat) {
             (Host::Live(live), Role::Wizard, Some(seat)) => {
                 seat::decide(hub, live.talk, seat.told, socket, limits).await;
             }
-            (Host::Live(live), ..) => visit::converse(hub, live, socket, key, limits).await,
+            (Host::Live(live), ..) => visit::converse(hub, live, socket, comer, limits).await,
             (Host::Recorded(screening), ..) => viewer::watch(hub, screening, socket, limits).await,
         }
     })

@@ -79,6 +79,9 @@ pub struct Play {
     watching: Watching,
 }
 
+/// How logs note how many people have a page of their own.
+pub const SEATS: &str = "seats";
+
 /// A session that this one goes on from.
 struct Before {
     from: Branch,
@@ -207,7 +210,7 @@ impl Play {
         branched: Option<Branch>,
     ) -> Noted {
         let minds = self.minds.iter().map(ToString::to_string).collect::<Vec<_>>().join(" ");
-        let Listening { drive, knows, ask, understanding, model: model_asked, names, voice, hide, wizard, .. } =
+        let Listening { drive, knows, ask, understanding, model: model_asked, names, voice, hide, wizard, seats, .. } =
             &self.listening;
         let robots = robots.iter().map(u32::to_string).collect::<Vec<_>>().join(",");
         let settings = [
@@ -233,7 +236,8 @@ impl Play {
         });
         let settings =
             settings.into_iter().chain(asked).chain(hidden).chain(model.into_iter().flatten()).chain(voice.settings());
-        let settings = settings.chain(wizard.settings());
+        let seats = (*seats > 0).then(|| (SEATS, seats.to_string()));
+        let settings = settings.chain(wizard.settings()).chain(seats);
         let settings = settings.map(|(name, value)| (name.to_owned(), value));
         let names = names.iter().map(|one| (format!("{NAME_OF}{}", one.body), one.name.clone()));
         let settings = settings.chain(names).collect();

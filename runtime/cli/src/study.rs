@@ -163,11 +163,12 @@ impl Check {
         let (between, within) =
             (count(cohabit_study::design::FactorKind::Between), count(cohabit_study::design::FactorKind::Within));
         println!(
-            "{}: can be run: {} between-participants and {} within-participant conditions, {} participants planned",
+            "{}: can be run: {} between-participants and {} within-participant conditions, {} participants planned{}",
             shown(file.display()),
             between,
             within,
-            study.participants
+            study.participants,
+            if study.pairing.is_some() { ", in pairs" } else { "" }
         );
         for world in &study.worlds {
             println!("World pack in {}: {}", shown(&world.folder), shown(&world.id));
@@ -319,7 +320,7 @@ mod tests {
         let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../study/studies"));
         let entries = std::fs::read_dir(folder).expect("studies ship").map(|entry| entry.expect("a file").path());
         let studies: Vec<PathBuf> = entries.filter(|path| path.extension().is_some_and(|own| own == "toml")).collect();
-        assert_eq!(studies.len(), 4, "{studies:?}");
+        assert_eq!(studies.len(), 5, "{studies:?}");
         for path in studies {
             let checked = read(&path);
             if let Err(error) = checked {

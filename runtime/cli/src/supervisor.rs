@@ -90,7 +90,8 @@ impl Role {
         let arguments = arguments.map(str::to_owned).chain(names).chain(robots).chain(questionnaires);
         let framed_by = listening.framed_by.map(|port| format!("--framed-by={port}"));
         let hidden = listening.hide.iter().map(|part| format!("--hide={part}"));
-        let arguments = arguments.chain(hosts).chain(framed_by).chain(hidden);
+        let seats = (listening.seats > 0).then(|| format!("--seats={}", listening.seats));
+        let arguments = arguments.chain(hosts).chain(framed_by).chain(hidden).chain(seats);
         let arguments = arguments.chain(listening.voice.arguments()).chain(listening.wizard.arguments());
         let (tls, language) = (listening.tls.arguments(), listening.language.arguments());
         Self { name: "dialog", arguments: arguments.map(OsString::from).chain(tls).chain(language).collect() }
@@ -370,6 +371,7 @@ fn relay(out: ChildStdout, told: &Told, works: &AtomicBool) {
                 }
             }
             Some(("wizard", address)) => println!("Wizard's seat: {address}"),
+            Some(("seat", seat)) => println!("Seat {seat}"),
             Some(("recording", _)) => works.store(true, Ordering::Relaxed),
             None if line == "shown" => {
                 if !told.frame.swap(true, Ordering::Relaxed) {

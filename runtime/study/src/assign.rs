@@ -1,4 +1,7 @@
 //! Who meets which conditions, in which order, with which missions: a function of the study and a participant's place.
+//!
+//! In a study of pairs all of it is assigned to pairs, so that both of one do the same; but for conditions of their own, which are of
+//! their pages alone.
 
 use std::collections::BTreeMap;
 
@@ -6,8 +9,9 @@ use crate::{
     chance::{Purpose, chance},
     design::{Assignment, Block, Condition, FactorKind, Minimisation, MissionOrder, Missions, Study},
     minimise::minimise,
+    pair::{PAIR_SIZE, pair_of, seat_of},
     plan::{Plan, PlannedMission, Step},
-    settings::Settings,
+    settings::{Settings, merged},
     square,
 };
 
@@ -18,10 +22,13 @@ use crate::{
 ///   rows of a Latin square, in random order, its conditions labelled at random.
 /// - Missions stand in the order that the block of missions says; the first ones are played under the first condition, and
 ///   so on.
+/// - Of a study of pairs, this holds of pairs. Conditions of participants' own are as frequent in each group of participants, pair after
+///   pair, as there are such conditions, in random order.
 #[must_use]
 pub fn assign(study: &Study, place: u32) -> Plan {
     let between = study.conditions(FactorKind::Between);
-    plan(study, &between, &Seat::new(study, place, between.len()))
+    let unit = if study.pairing.is_some() { pair_of(place) } else { place };
+    plan(study, &between, place, &Position::new(study, unit, between.len()))
 }
 
 /// What a participant does before a condition is assigned that depends on what they answer.
@@ -57,12 +64,12 @@ pub fn assign_among(
     let choices: Vec<_> = between.iter().map(|condition| condition.choices.clone()).collect();
     let condition = minimise((minimisation, study.seed), &choices, (place, &covariates), others);
     let before = others.iter().filter(|plan| plan.between == choices[condition]).count();
-    let seat = Seat { place: u64::from(place), condition, before };
-    Plan { covariates, ..plan(study, &between, &seat) }
+    let position = Position { unit: u64::from(place), condition, before };
+    Plan { covariates, ..plan(study, &between, place, &position) }
 }
 
-fn plan(study: &Study, between: &[Condition], seat: &Seat) -> Plan {
-    let condition = &between[seat.condition];
+fn plan(study: &Study, between: &[Condition], place: u32, position: &Position) -> Plan {
+    let condition = &with_own(study, &between[position.condition], place, position);
     let mut steps = Vec::new();
     for (number, block) in study.blocks.iter().enumerate() {
         match block {
@@ -80,31 +87,44 @@ fn plan(study: &Study, between: &[Condition], seat: &Seat) -> Plan {
             }
             Block::Missions(missions) => {
                 let settings = |within: &Condition| study.settings_of(block, condition, within);
-                add_missions(&mut steps, study, (number, missions), seat, &settings);
+                add_missions(&mut steps, study, (number, missions), position, &settings);
             }
             Block::Break { limit_s, .. } => steps.push(Step::Break { block: number, limit_s: *limit_s }),
         }
     }
-    let place = u32::try_from(seat.place).unwrap_or(u32::MAX);
     Plan { place, between: condition.choices.clone(), steps, world: study.world_ids(), ..Plan::default() }
+}
+
+/// A condition between participants with the one that a participant of a pair has by themselves.
+fn with_own(study: &Study, condition: &Condition, place: u32, position: &Position) -> Condition {
+    let all = study.conditions(FactorKind::Own);
+    let index = position.before * PAIR_SIZE as usize + seat_of(place) as usize;
+    let (group, within) = (index / all.len(), index % all.len());
+    let order = chance(study.seed, Purpose::Own, position.group(group)).order(all.len());
+    let own = &all[order[within]];
+    Condition {
+        choices: [condition.choices.clone(), own.choices.clone()].concat(),
+        settings: merged(&[&condition.settings, &own.settings]),
+    }
 }
 
 fn asked(name: &str, about: Option<usize>) -> Step {
     Step::Questionnaire { name: name.to_owned(), about }
 }
 
-/// Where a participant is in the design.
-struct Seat {
-    place: u64,
+/// Where a participant, or a pair, is in the design.
+struct Position {
+    /// Their place in the order of all, from 1.
+    unit: u64,
     /// The number of the between-participants condition.
     condition: usize,
-    /// How many participants before have the same one.
+    /// How many before have the same one.
     before: usize,
 }
 
-impl Seat {
-    fn new(study: &Study, place: u32, conditions: usize) -> Self {
-        let index = place.max(1) as usize - 1;
+impl Position {
+    fn new(study: &Study, unit: u32, conditions: usize) -> Self {
+        let index = unit.max(1) as usize - 1;
         let each = (study.block_size / conditions).max(1);
         let size = each * conditions;
         let (block, within) = (index / size, index % size);
@@ -112,41 +132,41 @@ impl Seat {
         let condition = |slot: &usize| slot / each;
         let own = condition(&order[within]);
         let before = block * each + order[..within].iter().filter(|slot| condition(slot) == own).count();
-        Self { place: u64::from(place), condition: own, before }
+        Self { unit: u64::from(unit), condition: own, before }
     }
 
-    /// A number for what is drawn once for the `group`-th group of participants with this between-participants condition.
+    /// A number for what is drawn once for the `group`-th group with this between-participants condition.
     fn group(&self, group: usize) -> u64 {
         (self.condition as u64) << 32 | group as u64
     }
 }
 
-/// The order of the within-participant conditions, and the number of the group of participants that share a square.
-fn order(study: &Study, seat: &Seat, conditions: usize) -> (Vec<usize>, usize) {
+/// The order of the within-participant conditions, and the number of the group that shares a square.
+fn order(study: &Study, position: &Position, conditions: usize) -> (Vec<usize>, usize) {
     let rows = match study.assignment {
         Assignment::LatinSquare => square::latin(conditions),
         Assignment::BalancedLatinSquare => square::balanced(conditions),
         Assignment::BlockRandom => {
-            return (chance(study.seed, Purpose::Conditions, seat.place).order(conditions), seat.before);
+            return (chance(study.seed, Purpose::Conditions, position.unit).order(conditions), position.before);
         }
     };
-    let (group, row) = (seat.before / rows.len(), seat.before % rows.len());
-    let mut drawn = chance(study.seed, Purpose::Conditions, seat.group(group));
+    let (group, row) = (position.before / rows.len(), position.before % rows.len());
+    let mut drawn = chance(study.seed, Purpose::Conditions, position.group(group));
     let (labels, order) = (drawn.order(conditions), drawn.order(rows.len()));
     (rows[order[row]].iter().map(|condition| labels[*condition]).collect(), group)
 }
 
 /// The missions in the order in which they are played.
-fn sequence<'a>(study: &'a Study, order: MissionOrder, seat: &Seat, group: usize) -> Vec<&'a str> {
+fn sequence<'a>(study: &'a Study, order: MissionOrder, position: &Position, group: usize) -> Vec<&'a str> {
     let mut missions: Vec<&str> = study.missions.iter().map(String::as_str).collect();
     match order {
         MissionOrder::Fixed => {}
-        MissionOrder::Random => chance(study.seed, Purpose::Missions, seat.place).shuffle(&mut missions),
-        // Within a group of participants each mission keeps its position, and meets all conditions; over as many groups as
+        MissionOrder::Random => chance(study.seed, Purpose::Missions, position.unit).shuffle(&mut missions),
+        // Within a group each mission keeps its position, and meets all conditions; over as many groups as
         // there are missions it moves through all positions.
         MissionOrder::Balanced => {
             let count = missions.len().max(1);
-            chance(study.seed, Purpose::Missions, seat.group(group / count)).shuffle(&mut missions);
+            chance(study.seed, Purpose::Missions, position.group(group / count)).shuffle(&mut missions);
             missions.rotate_left(group % count);
         }
     }
@@ -157,12 +177,12 @@ fn add_missions(
     steps: &mut Vec<Step>,
     study: &Study,
     (block, asked_for): (usize, &Missions),
-    seat: &Seat,
+    position: &Position,
     settings: &dyn Fn(&Condition) -> Settings,
 ) {
     let within = study.conditions(FactorKind::Within);
-    let (order, group) = order(study, seat, within.len());
-    let missions = sequence(study, asked_for.order, seat, group);
+    let (order, group) = order(study, position, within.len());
+    let missions = sequence(study, asked_for.order, position, group);
     let each = (missions.len() / within.len()).max(1);
     for (index, mission) in missions.iter().enumerate() {
         let condition = &within[order[(index / each).min(order.len() - 1)]];

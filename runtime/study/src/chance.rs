@@ -17,6 +17,8 @@ pub(crate) enum Purpose {
     Person = 5,
     /// What a simulated person answers.
     Answers = 6,
+    /// Which condition each participant of a pair has by themselves.
+    Own = 7,
 }
 
 /// The draws of a seed for the `number`-th of a purpose.

@@ -3,6 +3,7 @@
 mod blocks;
 mod language;
 mod minimisation;
+mod pairs;
 mod probes;
 mod tutorial;
 mod whole;
@@ -74,7 +75,7 @@ pub enum StudyError {
 }
 
 /// Flags of `play` that the study's server itself sets for each session, or that would part its page from the study's.
-const OWN_FLAGS: [&str; 17] = [
+const OWN_FLAGS: [&str; 18] = [
     "branch",
     "framed-by",
     "hide",
@@ -85,6 +86,7 @@ const OWN_FLAGS: [&str; 17] = [
     "page-texts",
     "participant",
     "port",
+    "seats",
     "session",
     "supervisor",
     "tls",
@@ -191,10 +193,12 @@ impl Checking<'_, '_> {
             self.findings.add(none.span(), &root.key("participants"), "nobody takes part", "plan one at least");
         }
         let probes = self.probes(&written.probe, &root.key("probe"));
-        let factors = self.factors(&written.factor, &root.key("factor"));
+        let pairing = self.pairing(written);
+        let factors = self.factors(&written.factor, pairing.is_some(), &root.key("factor"));
         let wizard = self.wizard(written.wizard.as_ref());
         let minimisation = self.minimisation(written.minimisation.as_ref(), &factors, &blocks);
         let mut study = Study {
+            pairing,
             probes,
             worlds,
             wizard,
@@ -291,11 +295,12 @@ impl Checking<'_, '_> {
         false
     }
 
-    fn factors(&mut self, factors: &[Spanned<WrittenFactor>], at: &Pointer) -> Vec<Factor> {
+    fn factors(&mut self, factors: &[Spanned<WrittenFactor>], has_pairs: bool, at: &Pointer) -> Vec<Factor> {
         let mut names = BTreeSet::new();
         let mut all = Vec::new();
         for (index, factor) in factors.iter().enumerate() {
             let (place, span) = (at.item(index), factor.span());
+            let kind = self.kind(factor, has_pairs, &place);
             let factor = factor.get_ref();
             let name = self.name(factor.name.as_ref(), &mut names, &place);
             if (1..2).contains(&factor.level.len()) {
@@ -309,7 +314,7 @@ impl Checking<'_, '_> {
                 Level { name, settings: self.settings(&level.get_ref().settings, &place.key("settings")) }
             };
             let levels = factor.level.iter().enumerate().map(level).collect();
-            all.push(Factor { name, kind: factor.kind, levels });
+            all.push(Factor { name, kind, levels });
         }
         all
     }

@@ -16,8 +16,10 @@ pub struct Cycle {
     pub positions: usize,
     /// Between-participants conditions.
     pub between: usize,
-    /// Participants of a block in which each between-participants condition is as frequent.
+    /// Participants of a block, or pairs of one, in which each between-participants condition is as frequent.
     pub block_size: usize,
+    /// Participants of a session, to all of whom the same is assigned: 2 in a study of pairs.
+    pub session_size: usize,
 }
 
 impl Cycle {
@@ -35,12 +37,18 @@ impl Cycle {
             positions: if is_balanced { study.missions.len().max(1) } else { 1 },
             between: study.conditions(FactorKind::Between).len(),
             block_size: study.block_size.max(1),
+            session_size: study.session_size() as usize,
         }
     }
 
     /// How many participants it takes: whole squares in each between-participants condition, and whole blocks.
     #[must_use]
     pub fn participants(&self) -> usize {
+        self.units() * self.session_size
+    }
+
+    /// The same in what conditions are assigned to: participants, or pairs.
+    fn units(&self) -> usize {
         let squares = self.orders * self.positions * self.between;
         (1..=self.block_size)
             .map(|count| count * squares)
@@ -72,8 +80,11 @@ impl fmt::Display for Cycle {
             counted(self.positions, "position", " of missions"),
             counted(self.between, "between-participants condition", ""),
         ];
-        write!(f, "{}: {}", counted(self.participants(), "participant", ""), factors.join(" x "))?;
-        if self.block_size == self.between { Ok(()) } else { write!(f, ", in whole blocks of {}", self.block_size) }
+        let is_of_pairs = self.session_size > 1;
+        let pairs = if is_of_pairs { format!(" in {}", counted(self.units(), "pair", "")) } else { String::new() };
+        write!(f, "{}{pairs}: {}", counted(self.participants(), "participant", ""), factors.join(" x "))?;
+        let of = if is_of_pairs { " pairs" } else { "" };
+        if self.block_size == self.between { Ok(()) } else { write!(f, ", in whole blocks of {}{of}", self.block_size) }
     }
 }
 
@@ -87,9 +98,15 @@ mod tests {
 
     #[test]
     fn a_cycle_is_told_with_its_factors() {
-        let check = |[orders, positions, between, block_size]: [usize; 4], expected: &str| {
-            assert_eq!(Cycle { orders, positions, between, block_size }.to_string(), expected);
+        let told = |[orders, positions, between, block_size]: [usize; 4], session_size: usize| {
+            Cycle { orders, positions, between, block_size, session_size }.to_string()
         };
+        let check = |counts: [usize; 4], expected: &str| assert_eq!(told(counts, 1), expected);
+        assert_eq!(
+            told([2, 1, 2, 4], 2),
+            "8 participants in 4 pairs: 2 orders of conditions x 1 position of missions x 2 between-participants conditions, in whole \
+             blocks of 4 pairs"
+        );
         check(
             [1, 1, 1, 1],
             "1 participant: 1 order of conditions x 1 position of missions x 1 between-participants condition",
@@ -106,7 +123,7 @@ mod tests {
 
     #[test]
     fn participants_that_are_no_whole_cycles_are_noted() {
-        let cycle = Cycle { orders: 6, positions: 3, between: 1, block_size: 1 };
+        let cycle = Cycle { orders: 6, positions: 3, between: 1, block_size: 1, session_size: 1 };
         assert_eq!((cycle.note(18), cycle.note(36)), (None, None));
         for (planned, instead) in [(4, "; 18 are"), (24, "; 18 or 36 are")] {
             let note = cycle.note(planned).unwrap_or_default();

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     instrument::Instrument,
+    pair::{PAIR_SIZE, Pairing},
     probe::Probe,
     settings::{Settings, has_wizard, merged, response_delay_ms},
     tutorial::Exercise,
@@ -25,9 +26,11 @@ pub struct Study {
     pub seed: u64,
     /// How many participants are planned.
     pub participants: u32,
+    /// How two of them go together, if a session is of two; else it is of one.
+    pub pairing: Option<Pairing>,
     /// How the order of within-participant conditions is assigned.
     pub assignment: Assignment,
-    /// Participants of a block in which each between-participants condition is as frequent.
+    /// Participants of a block, or pairs of one, in which each between-participants condition is as frequent.
     pub block_size: usize,
     /// How between-participants conditions are assigned, if not in blocks.
     pub minimisation: Option<Minimisation>,
@@ -171,11 +174,14 @@ pub struct Factor {
 #[derive(Clone, Copy, Debug, Default, Deserialize, Eq, PartialEq)]
 #[serde(rename_all = "snake_case")]
 pub enum FactorKind {
-    /// Each participant one of them.
+    /// Each participant one of them; of a pair, both the same.
     #[default]
     Between,
     /// Each participant all of them.
     Within,
+    /// Each participant one of them, whatever that of their partner is.
+    #[serde(skip)]
+    Own,
 }
 
 /// A level of a factor.
@@ -303,6 +309,18 @@ impl Study {
                 conditions.iter().flat_map(|condition| factor.levels.iter().map(move |level| with(condition, level)));
             all.collect()
         })
+    }
+
+    /// How many participants a session is of.
+    #[must_use]
+    pub const fn session_size(&self) -> u32 {
+        if self.pairing.is_some() { PAIR_SIZE } else { 1 }
+    }
+
+    /// What conditions are assigned to: participants, or pairs of them.
+    #[must_use]
+    pub const fn unit(&self) -> &'static str {
+        if self.pairing.is_some() { "pair" } else { "participant" }
     }
 
     /// The settings of a session of a block, under a condition of each kind. Those of levels count more than those of the

@@ -5,7 +5,7 @@
 //! | `study/` | the study as it was when the first participant came: `study.toml`, and the files that it names |
 //! | `participants.csv`, `answers.csv` | tables, written anew from the journals |
 //! | `journals/P01.jsonl` | what happened to a participant, an event a line; what they filled in before they sent it, too |
-//! | `logs/P01-03-1.mcap` | sessions: participant, step, and which try |
+//! | `logs/P01-03-1.mcap` | sessions: participant, step, and which try; those of a pair begin with what it is called, as `pair01-03-1.mcap` |
 //! | `consent/P01.json` | to which version of the form they agreed, to which of its sentences, and when |
 //! | `private/links.json` | the tokens of all pages |
 //! | `notes.jsonl`, `withdrawn.jsonl` | the experimenter's notes; whose data were removed, and when |
@@ -29,6 +29,7 @@ pub use error::FolderError;
 use crate::{
     journal::Journal,
     links::Links,
+    pair::{pair_label, pair_of},
     plan::{place_of, pseudonym},
     progress::Progress,
 };
@@ -67,6 +68,9 @@ pub struct Withdrawal {
     pub participant: String,
     /// When, ms since 1970.
     pub at_ms: u64,
+    /// What their pair is called, whose sessions were removed with them: what their partner answered stays.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pair: Option<String>,
 }
 
 /// A study's folder, held by this process alone.
@@ -329,8 +333,9 @@ impl Folder {
         lines(&path.join("withdrawn.jsonl"))
     }
 
-    /// Removes all data of a participant: journal, logs, consent, notes about them, link; and the tables, which are written
-    /// anew without them. That it was done is kept, first of all: what is interrupted can be done again.
+    /// Removes all data of a participant: journal, logs, also those of sessions that they played with a partner, consent, notes about
+    /// them, link; and the tables, which are written anew without them. That it was done is kept, first of all: what is interrupted can
+    /// be done again.
     ///
     /// # Errors
     /// [`FolderError`].
@@ -342,13 +347,16 @@ impl Folder {
             pseudonym: pseudonym.to_owned(),
             known: if known.is_empty() { "none".to_owned() } else { known.join(", ") },
         })?;
+        let logs = self.path.join("logs");
+        let pair = pair_label(pair_of(place));
+        let [own, shared] = [pseudonym, pair.as_str()].map(|label| format!("{label}-"));
+        let recorded = names(&logs)?;
         if !self.withdrawals()?.iter().any(|one| one.participant == pseudonym) {
-            self.append("withdrawn.jsonl", &Withdrawal { participant: pseudonym.to_owned(), at_ms })?;
+            let pair = recorded.iter().any(|name| name.starts_with(&shared)).then_some(pair);
+            self.append("withdrawn.jsonl", &Withdrawal { participant: pseudonym.to_owned(), at_ms, pair })?;
         }
         TABLES.iter().try_for_each(|table| remove(&self.path.join(table)))?;
-        let logs = self.path.join("logs");
-        let prefix = format!("{pseudonym}-");
-        for name in names(&logs)?.iter().filter(|name| name.starts_with(&prefix)) {
+        for name in recorded.iter().filter(|name| name.starts_with(&own) || name.starts_with(&shared)) {
             remove(&logs.join(name))?;
         }
         let notes: Vec<Note> = self.notes()?;

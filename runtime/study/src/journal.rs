@@ -59,8 +59,9 @@ pub enum JournalError {
     },
 }
 
-/// The format that is written: 2 since journals say so, and by which version they were begun; 3 since tutorials are in them.
-const FORMAT: u32 = 3;
+/// The format that is written: 2 since journals say so, and by which version they were begun; 3 since tutorials are in them; 4 since
+/// pairs are.
+const FORMAT: u32 = 4;
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// A line.
@@ -249,16 +250,16 @@ mod tests {
         }
         // What another version wrote is for that one.
         let (first, rest) = whole.split_once('\n').unwrap();
-        let later = first.replace("\"format\":3", "\"format\":4").replace(VERSION, "9.9.9");
-        let earlier = first.replace("\"format\":3", "\"form\":3").replace("\"place\"", "\"seat\"");
+        let later = first.replace("\"format\":4", "\"format\":5").replace(VERSION, "9.9.9");
+        let earlier = first.replace("\"format\":4", "\"form\":4").replace("\"place\"", "\"seat\"");
         for (first, part) in
-            [(later, "format 4, written by 9.9.9"), (earlier, "format 1, written by an earlier version")]
+            [(later, "format 5, written by 9.9.9"), (earlier, "format 1, written by an earlier version")]
         {
             fs::write(&path, format!("{first}\n{rest}")).unwrap();
             let error = Journal::read(&path).unwrap_err().to_string();
             assert!(error.contains(part) && error.contains("go on with the version"), "{error}");
         }
-        let unsaid = first.replace("\"format\":3", "\"form\":3");
+        let unsaid = first.replace("\"format\":4", "\"form\":4");
         fs::write(&path, format!("{unsaid}\n{rest}")).unwrap();
         assert!(Journal::read(&path).unwrap().is_some(), "what can be read of an earlier version is");
         // Who was cut off before they had agreed has not.

@@ -12,12 +12,14 @@ use std::{
 
 use crate::{
     design::StudyWorld,
-    plan::{Step, pseudonym},
+    pair::{pair_label, pair_of, partner_of},
+    plan::{PlannedMission, Step, pseudonym},
     probe::{self, Happening},
-    progress::{Ending, Event, Phase},
-    registry::{Live, Registry, StudyFault},
-    session::{Look, Player, Wanted, session_name},
+    progress::{Doing, Ending, Event, Phase, Progress},
+    registry::{Live, Participant, Registry, StudyFault},
+    session::{Look, Player, Wanted, name_of_try},
     settings::session_arguments,
+    shared,
     tables,
     tutorial::{self, Activity},
 };
@@ -89,26 +91,36 @@ enum News {
 impl Registry {
     fn look_after(&mut self, player: &mut dyn Player, most_sessions: usize) {
         self.bury();
-        for place in self.participants.keys().copied().collect::<Vec<_>>() {
+        let places: Vec<u32> = self.participants.keys().copied().collect();
+        places.iter().for_each(|place| self.follow_partner(*place));
+        for place in places {
             if let Some(news) = self.look_at(place) {
                 self.take(place, news);
             }
             self.end_break(place);
             self.remove_withdrawn(place);
         }
-        let running = |state: &Self| state.participants.values().filter(|one| one.live.is_some()).count();
-        for place in self.queue() {
-            let may_start = self
-                .participants
-                .get(&place)
-                .is_some_and(|one| one.is_here() && one.retry_at.is_none_or(|at| at <= Instant::now()));
-            if may_start && running(self) + self.to_start.len() + self.ending.len() < most_sessions {
-                self.note(place, &Event::Started);
+        for party in self.queue() {
+            let is_ready = |one: &Participant| one.is_here() && one.retry_at.is_none_or(|at| at <= Instant::now());
+            let may_start = party.iter().all(|place| self.participants.get(place).is_some_and(is_ready));
+            let starting = self.to_start.iter().filter(|(place, _)| self.stands_for_session(*place)).count();
+            if may_start && self.running() + starting + self.ending.len() < most_sessions {
+                self.note_started(&party);
             }
         }
         for (place, attempt) in std::mem::take(&mut self.to_start) {
             self.start(place, attempt, player);
         }
+    }
+
+    /// Notes that a session is started for one participant, or for a pair.
+    fn note_started(&mut self, party: &[u32]) {
+        if let [place] = party {
+            return self.note(*place, &Event::Started);
+        }
+        let before = party.iter().filter_map(|place| Some(self.participants.get(place)?.progress.attempts())).max();
+        let attempt = before.unwrap_or(0) + 1;
+        party.iter().for_each(|place| self.note(*place, &Event::StartedTogether { attempt }));
     }
 
     /// Drops sessions that have ended.
@@ -201,7 +213,7 @@ impl Registry {
     }
 
     /// Has something happen to a participant; that it cannot is told to the experimenter's terminal.
-    fn note(&mut self, place: u32, event: &Event) {
+    pub(crate) fn note(&mut self, place: u32, event: &Event) {
         match self.apply(place, event) {
             Ok(()) => {}
             Err(StudyFault::Journal(error)) => tracing::error!("{error}"),
@@ -210,37 +222,71 @@ impl Registry {
         }
     }
 
+    /// Starts the session of a participant; that of a pair for both, when the first of them is to get one.
     fn start(&mut self, place: u32, attempt: u32, player: &mut dyn Player) {
-        let Some(participant) = self.participants.get(&place) else { return };
-        let Some((step, mission, _)) = participant.progress.mission() else { return };
-        let name = session_name(place, step, attempt);
-        let own = session_arguments(&mission.settings, participant.progress.agrees_to_audio(), &self.study.wizard);
+        let Some(participant) = self.participants.get(&place).filter(|one| one.live.is_none()) else { return };
+        let progress = &participant.progress;
+        let Some((step, mission, Doing::Playing)) = progress.mission() else { return };
+        let is_shared = progress.plays_together().is_some();
+        let party = match self.playmate(place) {
+            Some(partner) => vec![place.min(partner), place.max(partner)],
+            None => vec![place],
+        };
+        if is_shared && party.len() == 1 {
+            // That it is started could not be written down for the partner.
+            self.take(place, News::Interrupted("it could not be started for both".to_owned()));
+            return;
+        }
+        // Whoever does not want to be heard is not: the microphone of a session is there for all who play it, or for nobody.
+        let agrees = |place: &u32| self.participants.get(place).is_some_and(|one| one.progress.agrees_to_audio());
+        let is_heard = party.iter().all(agrees);
+        let own = session_arguments(&mission.settings, is_heard, &self.study.wizard);
         let worlds = self.study.worlds.iter().flat_map(StudyWorld::arguments);
-        let wanted = Wanted {
-            participant: pseudonym(place),
+        let arguments = own.into_iter().chain(worlds).collect();
+        let wanted = self.wanted(&party, progress, (step, mission, attempt), arguments);
+        match player.start(&wanted) {
+            Ok(playing) => {
+                let parts = if is_shared { shared::parts(playing, party.len()) } else { vec![playing] };
+                for (place, playing) in party.iter().zip(parts) {
+                    let looked = Instant::now();
+                    let live = Live { playing, page: None, is_heard, looked, unsaved_s: 0.0, over: None };
+                    if let Some(participant) = self.participants.get_mut(place) {
+                        participant.live = Some(live);
+                    }
+                }
+            }
+            Err(reason) => party.into_iter().for_each(|place| self.take(place, News::Interrupted(reason.clone()))),
+        }
+    }
+
+    /// What is wanted of the player for a mission of these, the progress of one of whom this is.
+    fn wanted(
+        &self,
+        party: &[u32],
+        progress: &Progress,
+        (step, mission, attempt): (usize, &PlannedMission, u32),
+        arguments: Vec<String>,
+    ) -> Wanted {
+        let (place, together) = (progress.plan().place, progress.together());
+        let is_of_pairs = self.study.pairing.is_some();
+        let name = name_of_try(place, step, attempt, together);
+        Wanted {
+            participant: if is_of_pairs { pair_label(pair_of(place)) } else { pseudonym(place) },
+            seats: if party.len() > 1 { self.study.session_size() } else { 0 },
             mission: mission.mission.clone(),
-            arguments: own.into_iter().chain(worlds).collect(),
+            arguments,
             log: self.folder.log_path(&name),
-            before: self.before(place, step, attempt),
+            before: self.before(place, step, attempt, together),
             seed: self.study.seed,
             is_tutorial: mission.is_tutorial(),
             name,
-        };
-        match player.start(&wanted) {
-            Ok(playing) => {
-                let live = Live { playing, page: None, looked: Instant::now(), unsaved_s: 0.0, over: None };
-                if let Some(participant) = self.participants.get_mut(&place) {
-                    participant.live = Some(live);
-                }
-            }
-            Err(reason) => self.take(place, News::Interrupted(reason)),
         }
     }
 
     /// The logs of the last tries. One that cannot be gone on from leaves none, so after a few a mission begins anew.
-    fn before(&self, place: u32, step: usize, attempt: u32) -> Vec<PathBuf> {
+    fn before(&self, place: u32, step: usize, attempt: u32, together: u32) -> Vec<PathBuf> {
         let tries = (1..attempt).rev().take(TRIES_BEFORE);
-        let logs = tries.map(|attempt| self.folder.log_path(&session_name(place, step, attempt)));
+        let logs = tries.map(|attempt| self.folder.log_path(&name_of_try(place, step, attempt, together)));
         logs.filter(|log| log.is_file()).collect()
     }
 
@@ -257,8 +303,10 @@ impl Registry {
 
     /// Removes what is kept of somebody who has withdrawn, once no session is left that could write.
     fn remove_withdrawn(&mut self, place: u32) {
-        let is_withdrawn = |one: &crate::registry::Participant| *one.progress.phase() == Phase::Withdrawn;
+        let is_withdrawn = |one: &Participant| *one.progress.phase() == Phase::Withdrawn;
+        let plays_on = |one: &Participant| one.live.is_some() && one.progress.plays_together().is_some();
         if self.ending.is_empty()
+            && !self.participants.get(&partner_of(place)).is_some_and(plays_on)
             && self.participants.get(&place).is_some_and(is_withdrawn)
             && let Err(error) = self.remove(place)
         {

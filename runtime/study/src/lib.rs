@@ -20,6 +20,8 @@
 //! - A tutorial goes on until each of its exercises was tried, or its time is up; what was tried, its session tells.
 //! - A probe is asked once in a mission, while it goes on, and no other one before it is answered.
 //! - What is filled in of a questionnaire is kept as it is typed, and is no answer before it is sent.
+//! - Two participants of a pair have the same conditions, and play each mission in one session, at a page each; what they answer is each
+//!   one's own. Nobody is waited for without end, and who withdraws takes the pair's sessions along.
 //! - A mission runs as a session of its own, whose page the participant's page shows within it. How sessions are played
 //!   this crate does not know: it asks a [`Player`].
 //!
@@ -40,6 +42,7 @@
 mod assign;
 mod chance;
 mod check;
+mod company;
 mod cycle;
 pub mod design;
 mod findings;
@@ -51,6 +54,7 @@ mod links;
 mod markdown;
 mod minimise;
 mod pages;
+pub mod pair;
 mod plan;
 mod probe;
 mod progress;
@@ -63,6 +67,7 @@ mod scratch;
 mod session;
 pub mod settings;
 mod shape;
+mod shared;
 mod simulate;
 pub mod square;
 mod tables;

@@ -3,8 +3,10 @@
 use serde_json::{Value, json};
 
 use crate::{
+    company::Company,
     design::{Block, ConsentBox, Study},
     markdown::html,
+    pair::{PartnerAbsent, pair_label, pair_of, seat_of},
     plan::{Plan, PlannedMission, Step, pseudonym},
     progress::{Doing, Phase, Progress},
     registry::{Live, Participant, Reading, Registry, Who},
@@ -46,9 +48,10 @@ impl Registry {
         let progress = &participant.progress;
         let Some((index, step, doing)) = progress.step_now() else {
             return match progress.phase() {
-                Phase::Finished => finished(&self.study),
+                Phase::Finished => ended("finished", &self.study),
                 Phase::Excluded => json!({ "page": "excluded" }),
                 Phase::Assigning => json!({ "page": "starting" }),
+                Phase::Parted => ended("parted", &self.study),
                 _ => json!({ "page": "withdrawn" }),
             };
         };
@@ -69,19 +72,42 @@ impl Registry {
                 "limit_s": mission.limits.limit_s,
                 "skip_after_s": mission.limits.skip_after_s,
             }),
-            (Step::Mission(_), Doing::Queued { .. }) => {
-                let ahead = self.queue().iter().position(|place| *place == progress.plan().place);
-                json!({ "page": "waiting", "ahead": ahead })
-            }
+            (Step::Mission(_), Doing::Queued { .. }) => self.waiting(progress.plan().place),
             (Step::Mission(mission), Doing::Playing) => {
                 let mut page = played(participant, mission);
                 page["probe"] = self.open_probe(progress);
+                page["skip"] = self.skipped_by(progress.plan().place);
                 page
             }
         };
+        if self.study.pairing.is_some() {
+            page["is_with_partner"] = json!(self.partner(progress.plan().place).is_some());
+        }
         page["step"] = json!(index + 1);
         page["steps"] = json!(progress.plan().steps.len());
         page
+    }
+
+    /// What somebody waits for before a mission: a session, or their partner.
+    fn waiting(&self, place: u32) -> Value {
+        if self.company(place) == Company::Awaited {
+            let may = self.may_instead(place);
+            return json!({ "page": "partner", "is_late": may.is_some(), "may": may.map(PartnerAbsent::name) });
+        }
+        let ahead = self.queue().iter().position(|party| party.contains(&place));
+        json!({ "page": "waiting", "ahead": ahead })
+    }
+
+    /// Of a mission that is played with a partner: who has to agree that it is skipped, and who wants to.
+    fn skipped_by(&self, place: u32) -> Value {
+        match (&self.study.pairing, self.playmate(place)) {
+            (Some(pairing), Some(partner)) => json!({
+                "by": pairing.skip.name(),
+                "is_asked": self.wants_to_skip(place),
+                "is_wanted": self.wants_to_skip(partner),
+            }),
+            _ => Value::Null,
+        }
     }
 
     /// What a participant is asked during a mission and has not answered yet.
@@ -102,17 +128,17 @@ impl Registry {
         }
     }
 
-    /// What the experimenter's page shows, `running` of at most `most` sessions being played.
+    /// What the experimenter's page shows, where at most `most` sessions are played.
     pub(crate) fn overview(&self, most: usize) -> Value {
-        let running = self.participants.values().filter(|one| one.live.is_some()).count();
         let places = self.links.participants.keys().chain(self.participants.keys());
         let places: std::collections::BTreeSet<u32> = places.copied().collect();
         json!({
             "title": self.study.title,
             "planned": self.study.participants,
+            "has_pairs": self.study.pairing.is_some(),
             "sign_up": format!("/sign-up/{}", self.links.sign_up),
             "wizard": self.study.has_wizard().then(|| format!("/wizard/{}", self.links.wizard)),
-            "sessions": { "running": running, "most": most },
+            "sessions": { "running": self.running(), "most": most },
             "participants": places.into_iter().map(|place| self.row(place)).collect::<Vec<_>>(),
             "notes": self.notes,
         })
@@ -120,25 +146,30 @@ impl Registry {
 
     /// What the wizard's page shows: the sessions that a wizard takes part in now, with what lets the seat's page in.
     pub(crate) fn seats(&self) -> Value {
-        let seat = |participant: &Participant| {
-            let live = participant.live.as_ref()?;
+        let seat = |(place, participant): (&u32, &Participant)| {
+            let live = participant.live.as_ref().filter(|_| self.stands_for_session(*place))?;
             let page = live.page.as_ref()?;
             let (_, mission, _) = participant.progress.mission()?;
+            let is_shared = self.playmate(*place).is_some();
+            let label = if is_shared { pair_label(pair_of(*place)) } else { pseudonym(*place) };
             Some(json!({
-                "participant": pseudonym(participant.progress.plan().place),
+                "participant": label,
                 "mission": mission.mission,
                 "port": page.port,
                 "token": page.wizard.as_ref()?,
                 "is_over": live.over.is_some(),
             }))
         };
-        let seats: Vec<Value> = self.participants.values().filter_map(seat).collect();
+        let seats: Vec<Value> = self.participants.iter().filter_map(seat).collect();
         json!({ "title": self.study.title, "seats": seats })
     }
 
     fn row(&self, place: u32) -> Value {
         let link = self.links.participants.get(&place).map(|token| format!("/p/{token}"));
         let mut row = json!({ "participant": pseudonym(place), "link": link });
+        if self.study.pairing.is_some() {
+            row["pair"] = json!(format!("{}, seat {}", pair_label(pair_of(place)), seat_of(place) + 1));
+        }
         let Some(participant) = self.participants.get(&place) else {
             row["progress"] = json!("not begun");
             return row;
@@ -151,6 +182,8 @@ impl Registry {
         row["steps"] = json!(progress.plan().steps.len());
         row["since_ms"] = json!(progress.since_ms());
         row["away_s"] = json!(participant.seen.map(|seen| seen.elapsed().as_secs()));
+        row["waited_s"] = json!(self.waited_s(place));
+        row["partner_is_late"] = json!(self.may_instead(place).is_some());
         if let Some((_, mission, _)) = progress.mission() {
             row["mission"] = json!(mission.mission);
             row["now"] = json!(levels(&mission.within));
@@ -180,9 +213,10 @@ fn shown_box(one: &ConsentBox) -> Value {
     json!({ "text": one.text, "is_required": one.is_required })
 }
 
-fn finished(study: &Study) -> Value {
+/// The last page of somebody whose answers are kept.
+fn ended(page: &str, study: &Study) -> Value {
     let text = study.debriefing.as_deref().map(html);
-    json!({ "page": "finished", "html": text, "completion": study.completion })
+    json!({ "page": page, "html": text, "completion": study.completion })
 }
 
 /// The session of a mission. How much time is left is told only if the study shows a clock.
@@ -200,7 +234,7 @@ fn played(participant: &Participant, mission: &PlannedMission) -> Value {
         exercises.map(|(number, one)| json!({ "text": one.text, "is_tried": is_tried(number) })).collect();
     json!({
         "page": "mission",
-        "session": { "port": page.port, "token": page.token, "has_microphone": progress.agrees_to_audio() },
+        "session": { "port": page.port, "token": page.token, "has_microphone": live.is_some_and(|live| live.is_heard) },
         "is_over": is_over,
         "left_s": rest(progress.left_s().filter(|_| is_on(&mission.settings, CLOCK))),
         "skip_in_s": skip_in_s,

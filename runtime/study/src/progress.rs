@@ -2,9 +2,15 @@
 //!
 //! Information → consent → the steps of their plan → finished; or withdrawn, or excluded. A mission is first ready, then
 //! queued until a session is free, then played. Nothing here reads a clock: events come with their time.
+//!
+//! Of a pair each has a progress of their own, which knows the other one only by what happens: that a session is played together, and
+//! that the partner skips, goes alone or leaves.
+
+mod event;
 
 use cohabit_dialog::Given;
-use serde::{Deserialize, Serialize};
+
+pub use event::{Ending, Event};
 
 use crate::{
     plan::{Plan, PlannedMission, Step},
@@ -25,6 +31,10 @@ pub struct Progress {
     played_s: f64,
     /// How often its session was started.
     attempts: u32,
+    /// The last of these times at which it was played with their partner; 0 if at none.
+    together: u32,
+    /// Whether they go on without their partner.
+    is_alone: bool,
     /// Whether they agreed to be heard by a microphone.
     agrees_to_audio: bool,
     /// What they have filled in of the present questionnaire so far: no answers yet.
@@ -57,6 +67,8 @@ pub enum Phase {
     Withdrawn,
     /// Was excluded by the experimenter.
     Excluded,
+    /// Has no partner any more, without whom the study does not go on.
+    Parted,
 }
 
 /// How far a step has come.
@@ -71,118 +83,6 @@ pub enum Doing {
     },
     /// A mission is played.
     Playing,
-}
-
-/// Something that happens to a participant.
-#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Event {
-    /// They have read the information.
-    Read,
-    /// They agree.
-    Consented {
-        /// The version of the consent form.
-        version: String,
-        /// The boxes that they ticked, by number, from 0.
-        ticked: Vec<usize>,
-        /// Whether one of them is about being heard: as the study's form has it, whatever a page says.
-        #[serde(default)]
-        audio: bool,
-    },
-    /// They do not agree.
-    Declined,
-    /// They have filled in some of a questionnaire.
-    Drafted {
-        /// Its name.
-        questionnaire: String,
-        /// What stands in each question so far.
-        answers: Vec<Option<Given>>,
-    },
-    /// They answer a questionnaire.
-    Answered {
-        /// Its name.
-        questionnaire: String,
-        /// An answer to each question.
-        answers: Vec<Option<Given>>,
-    },
-    /// Their condition is assigned.
-    Assigned {
-        /// What they do: what they have done, and all the rest.
-        plan: Box<Plan>,
-    },
-    /// They want to begin a mission, or go on after a break or a tutorial.
-    GoesOn,
-    /// Their mission's session is started.
-    Started,
-    /// Their mission was played on.
-    Played {
-        /// For so long, s.
-        seconds: f64,
-    },
-    /// They are asked something during their mission.
-    Probed {
-        /// Which of the study's probes.
-        probe: usize,
-    },
-    /// They answer that.
-    ProbeAnswered {
-        /// Which of the study's probes.
-        probe: usize,
-        /// The answer.
-        answer: Option<Given>,
-    },
-    /// They have tried something in a tutorial.
-    Tried {
-        /// Which of its exercises, from 0.
-        exercise: usize,
-    },
-    /// Their mission's session ended before its time.
-    Interrupted {
-        /// Why.
-        reason: String,
-    },
-    /// Their mission is over.
-    Over {
-        /// How.
-        ending: Ending,
-    },
-    /// They take no part any more.
-    Withdrew,
-    /// They are excluded.
-    Excluded {
-        /// Why.
-        reason: String,
-    },
-}
-
-/// How a mission ends.
-#[derive(Clone, Copy, Debug, Deserialize, Eq, PartialEq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Ending {
-    /// All of its goals are met; of a tutorial: all was tried.
-    Complete,
-    /// Its goals cannot be met any more.
-    Failed,
-    /// Its time is up.
-    TimeUp,
-    /// The participant skipped it; of a tutorial: went on before all was tried.
-    Skipped,
-    /// The experimenter ended it.
-    Stopped,
-}
-
-impl Ending {
-    /// As tables have it.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Complete => "complete",
-            Self::Failed => "failed",
-            Self::TimeUp => "time_up",
-            Self::Skipped => "skipped",
-            Self::Stopped => "stopped",
-        }
-    }
 }
 
 /// What follows from an event, once it is written down.
@@ -216,6 +116,8 @@ pub struct Done {
     pub played_s: f64,
     /// Of a mission: how often its session was started.
     pub attempts: u32,
+    /// Of these, the last one at which it was played with their partner; 0 if none was.
+    pub together: u32,
     /// Of a questionnaire: the answers.
     pub answers: Vec<Option<Given>>,
     /// Of a mission: what was asked meanwhile.
@@ -242,6 +144,8 @@ impl Progress {
             since_ms: 0,
             played_s: 0.0,
             attempts: 0,
+            together: 0,
+            is_alone: false,
             agrees_to_audio: false,
             draft: Vec::new(),
             drafts: 0,
@@ -278,6 +182,39 @@ impl Progress {
     #[must_use]
     pub const fn played_s(&self) -> f64 {
         self.played_s
+    }
+
+    /// How often the session of the present mission was started.
+    #[must_use]
+    pub const fn attempts(&self) -> u32 {
+        self.attempts
+    }
+
+    /// Of these times, the last one at which it was played with their partner; 0 if at none.
+    #[must_use]
+    pub const fn together(&self) -> u32 {
+        self.together
+    }
+
+    /// Whether they go on without their partner from now on.
+    #[must_use]
+    pub const fn is_alone(&self) -> bool {
+        self.is_alone
+    }
+
+    /// Whether they are under way: have agreed, and are not at the end.
+    #[must_use]
+    pub const fn is_under_way(&self) -> bool {
+        matches!(self.phase, Phase::At(..) | Phase::Assigning)
+    }
+
+    /// Whether they play a session with their partner, and which step it is.
+    #[must_use]
+    pub const fn plays_together(&self) -> Option<usize> {
+        match self.phase {
+            Phase::At(index, Doing::Playing) if self.together == self.attempts && self.together > 0 => Some(index),
+            _ => None,
+        }
     }
 
     /// Whether they agreed to be heard by a microphone.
@@ -379,6 +316,12 @@ impl Progress {
                 self.phase = Phase::Excluded;
                 return Ok(effects);
             }
+            (Phase::At(..) | Phase::Assigning, Event::PartnerLeft) if !self.is_alone => {
+                let effects = self.end_session();
+                self.phase = Phase::Parted;
+                return Ok(effects);
+            }
+            (Phase::At(..) | Phase::Assigning, Event::PartnerGoesAlone) if !self.is_alone => self.is_alone = true,
             (Phase::At(index, doing), event) => return self.step_at(*index, *doing, event, at_ms),
             _ => return Err(OUT_OF_TURN),
         }
@@ -410,6 +353,17 @@ impl Progress {
                 self.phase = Phase::At(index, Doing::Playing);
                 return Ok(vec![Effect::StartSession { attempt: self.attempts }]);
             }
+            (Some(Step::Mission(_)), Doing::Queued { .. }, Event::StartedTogether { attempt })
+                if *attempt > self.attempts && !self.is_alone =>
+            {
+                (self.attempts, self.together) = (*attempt, *attempt);
+                self.phase = Phase::At(index, Doing::Playing);
+                return Ok(vec![Effect::StartSession { attempt: *attempt }]);
+            }
+            (Some(Step::Mission(_)), Doing::Queued { .. }, Event::GoesAlone) if !self.is_alone => self.is_alone = true,
+            (Some(Step::Mission(_)), Doing::Queued { .. }, Event::StopsWaiting) if !self.is_alone => {
+                self.phase = Phase::Parted;
+            }
             (Some(Step::Mission(_)), Doing::Playing, Event::Played { seconds }) => self.played_s += seconds,
             (Some(Step::Mission(_)), Doing::Playing, Event::Probed { probe }) => {
                 if self.probed.iter().any(|one| one.probe == *probe || one.answer.is_none()) {
@@ -438,6 +392,10 @@ impl Progress {
             }
             (Some(Step::Mission(_)), Doing::Playing, Event::Over { ending }) => {
                 return self.over(index, *ending, at_ms);
+            }
+            (Some(Step::Mission(_)), Doing::Playing, Event::PartnerSkipped) if self.plays_together().is_some() => {
+                self.complete(index, Some(Ending::Skipped), Vec::new(), at_ms);
+                return Ok(vec![Effect::EndSession]);
             }
             // The experimenter may end what has not begun.
             (Some(Step::Mission(_)), _, Event::Over { ending: Ending::Stopped }) => {
@@ -470,16 +428,16 @@ impl Progress {
     }
 
     fn complete(&mut self, step: usize, ending: Option<Ending>, answers: Vec<Option<Given>>, at_ms: u64) {
-        let (played_s, attempts) = (self.played_s, self.attempts);
+        let (played_s, attempts, together) = (self.played_s, self.attempts, self.together);
         let (probed, tried) = (std::mem::take(&mut self.probed), std::mem::take(&mut self.tried));
         let (began_ms, ended_ms) = (self.since_ms, at_ms);
-        let done = Done { step, began_ms, ended_ms, ending, played_s, attempts, answers, probed, tried };
+        let done = Done { step, began_ms, ended_ms, ending, played_s, attempts, together, answers, probed, tried };
         self.done.push(done);
         self.begin(step + 1, at_ms);
     }
 
     fn begin(&mut self, step: usize, at_ms: u64) {
-        (self.since_ms, self.played_s, self.attempts) = (at_ms, 0.0, 0);
+        (self.since_ms, self.played_s, self.attempts, self.together) = (at_ms, 0.0, 0, 0);
         (self.draft, self.drafts) = (Vec::new(), 0);
         self.phase = match self.plan.awaits_assignment {
             _ if step < self.plan.steps.len() => Phase::At(step, Doing::Ready),

@@ -1,7 +1,7 @@
 //! All participants of a study that runs: who they are, where they are, and what happens to them, written down first.
 
 use std::{
-    collections::{BTreeMap, VecDeque},
+    collections::{BTreeMap, BTreeSet, VecDeque},
     time::{Duration, Instant, SystemTime, UNIX_EPOCH},
 };
 
@@ -14,7 +14,8 @@ use crate::{
     journal::{Journal, JournalError},
     links::Links,
     minimise::level_of,
-    plan::{Plan, Step, pseudonym},
+    pair::{partner_of, seat_of},
+    plan::{Plan, Step, place_of, pseudonym},
     progress::{Doing, Effect, Ending, Event, Phase, Progress, Refused},
     session::{PageAddress, Playing},
 };
@@ -53,6 +54,10 @@ pub(crate) struct Participant {
     pub retry_at: Option<Instant>,
     /// When they came into the queue: a count.
     pub queued: u64,
+    /// Since when they have waited for their partner, while they are here.
+    pub waits_since: Option<Instant>,
+    /// The step of the mission that they want to skip, which their partner has not agreed to yet.
+    pub skip_wanted: Option<usize>,
 }
 
 /// A session that is played.
@@ -60,6 +65,8 @@ pub(crate) struct Live {
     pub playing: Box<dyn Playing>,
     /// Where its page is, once there is one.
     pub page: Option<PageAddress>,
+    /// Whether all who play it agreed to be heard, so that they have a microphone.
+    pub is_heard: bool,
     /// When it was last looked at.
     pub looked: Instant,
     /// Time played that is not written down yet, s.
@@ -133,6 +140,8 @@ pub struct Registry {
     pub(crate) notes: Vec<Note>,
     /// The tokens of those who have withdrawn since the server started.
     withdrawn: Vec<String>,
+    /// The places of all who have withdrawn.
+    pub(crate) gone: BTreeSet<u32>,
     /// Sessions that were asked to end.
     pub(crate) ending: Vec<Box<dyn Playing>>,
     /// Sessions that are to be started, with the attempt's number.
@@ -149,6 +158,7 @@ impl Registry {
     /// [`FolderError`].
     pub fn new(study: Study, folder: Folder) -> Result<Self, FolderError> {
         let (links, notes, journals) = (folder.links()?, folder.notes()?, folder.journals()?);
+        let gone = folder.withdrawals()?.iter().filter_map(|one| place_of(&one.participant)).collect();
         let mut registry = Self {
             clock: Clock::Wall,
             study,
@@ -158,6 +168,7 @@ impl Registry {
             newcomers: VecDeque::new(),
             notes,
             withdrawn: Vec::new(),
+            gone,
             ending: Vec::new(),
             to_start: Vec::new(),
             has_news: true,
@@ -168,8 +179,7 @@ impl Registry {
             let place = progress.plan().place;
             unassigned.extend((*progress.phase() == Phase::Assigning).then_some(place));
             let was_playing = matches!(progress.phase(), Phase::At(_, Doing::Playing));
-            let participant = Participant { progress, journal, seen: None, live: None, retry_at: None, queued: 0 };
-            registry.participants.insert(place, participant);
+            registry.participants.insert(place, Participant::new(progress, journal));
             if was_playing {
                 let reason = "the study's server was started again".to_owned();
                 match registry.apply(place, &Event::Interrupted { reason }) {
@@ -285,7 +295,7 @@ impl Registry {
         let is_out = |place: &u32| {
             self.participants
                 .get(place)
-                .is_some_and(|one| matches!(one.progress.phase(), Phase::Excluded | Phase::Withdrawn))
+                .is_some_and(|one| matches!(one.progress.phase(), Phase::Excluded | Phase::Withdrawn | Phase::Parted))
         };
         let taken = self.links.participants.keys().filter(|place| !is_out(place)).count();
         if taken < self.study.participants as usize {
@@ -295,12 +305,13 @@ impl Registry {
         Err(StudyFault::NotNow(page_texts.study_text("study_full").replace("{contact}", contact)))
     }
 
-    /// A place for the next participant, with a link of its own.
+    /// A place for the next participant, with a link of its own: of a pair that somebody waits in, if there is one. Nobody comes into a
+    /// pair that somebody has left, or in which somebody goes alone.
     pub(crate) fn reserve(&mut self, token: Option<String>) -> Result<u32, StudyFault> {
-        let withdrawn = self.folder.withdrawals()?;
-        let withdrawn = withdrawn.iter().filter_map(|one| crate::plan::place_of(&one.participant));
-        let taken = self.links.participants.keys().chain(self.participants.keys()).copied().chain(withdrawn);
-        let place = taken.max().unwrap_or(0) + 1;
+        let taken = self.links.participants.keys().chain(self.participants.keys()).chain(&self.gone);
+        let next = taken.max().copied().unwrap_or(0) + 1;
+        let is_second = self.study.pairing.is_some() && seat_of(next) > 0;
+        let place = if is_second && !self.is_open(partner_of(next)) { next + 1 } else { next };
         let token = match token {
             Some(token) => token,
             None => token::fresh().map_err(|error| StudyFault::NotNow(error.to_string()))?,
@@ -312,6 +323,11 @@ impl Registry {
         self.links = links;
         self.has_news = true;
         Ok(place)
+    }
+
+    /// Whether the pair of somebody can be joined.
+    fn is_open(&self, place: u32) -> bool {
+        !self.has_left(place) && self.partner(place).is_some()
     }
 
     /// A newcomer agrees: they get their place, and their plan. All of this is written down before they go on, their
@@ -330,6 +346,11 @@ impl Registry {
         let (agreed, declined) = (texts(agreed), texts(declined));
         let parameters = newcomer.parameters.clone();
         let place = match newcomer.place {
+            Some(place) if self.study.pairing.is_some() && self.has_left(partner_of(place)) => {
+                let Study { page_texts, contact, .. } = &self.study;
+                let text = page_texts.study_text("partner_gone").replace("{contact}", contact);
+                return Err(StudyFault::NotNow(text));
+            }
             Some(place) => place,
             None => {
                 self.check_room()?;
@@ -347,7 +368,7 @@ impl Registry {
         progress.step(&Event::Read, at_ms)?;
         progress.step(&agreed, at_ms)?;
         let seen = Some(Instant::now());
-        self.participants.insert(place, Participant { progress, journal, seen, live: None, retry_at: None, queued: 0 });
+        self.participants.insert(place, Participant { seen, ..Participant::new(progress, journal) });
         self.newcomers.remove(index);
         self.has_news = true;
         Ok(())
@@ -396,24 +417,27 @@ impl Registry {
         self.folder.withdraw(&pseudonym(place), self.clock.now_ms())?;
         self.participants.remove(&place);
         self.withdrawn.extend(self.links.participants.remove(&place));
+        self.gone.insert(place);
         self.notes = self.folder.notes()?;
         self.has_news = true;
         Ok(())
     }
-
-    /// Those who wait for a session, in the order in which they get one: whose session had ended too early comes first.
-    pub(crate) fn queue(&self) -> Vec<u32> {
-        let waits = |(place, one): (&u32, &Participant)| match one.progress.phase() {
-            Phase::At(_, Doing::Queued { again }) => Some((!again, one.queued, *place)),
-            _ => None,
-        };
-        let mut waiting: Vec<_> = self.participants.iter().filter_map(waits).collect();
-        waiting.sort_unstable();
-        waiting.into_iter().map(|(.., place)| place).collect()
-    }
 }
 
 impl Participant {
+    fn new(progress: Progress, journal: Journal) -> Self {
+        Self {
+            progress,
+            journal,
+            seen: None,
+            live: None,
+            retry_at: None,
+            queued: 0,
+            waits_since: None,
+            skip_wanted: None,
+        }
+    }
+
     /// Whether their page was heard of a moment ago.
     pub(crate) fn is_here(&self) -> bool {
         self.seen.is_some_and(|seen| seen.elapsed() < AWAY_AFTER)

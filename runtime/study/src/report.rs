@@ -3,6 +3,7 @@
 
 mod design;
 mod latencies;
+mod pairs;
 mod participants;
 mod questionnaires;
 mod riek;

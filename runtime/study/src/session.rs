@@ -2,15 +2,23 @@
 
 use std::path::PathBuf;
 
-use crate::{plan::pseudonym, probe::Happening, progress::Ending, tutorial::Activity};
+use crate::{
+    pair::{pair_called, pair_label, pair_of},
+    plan::{place_of, pseudonym},
+    probe::Happening,
+    progress::Ending,
+    tutorial::Activity,
+};
 
 /// A session that is to be played.
 #[derive(Clone, Debug, Eq, PartialEq)]
 pub struct Wanted {
-    /// What it is found by in the study: participant, step, and which try.
+    /// What it is found by in the study: participant or pair, step, and which try.
     pub name: String,
-    /// The participant's pseudonym.
+    /// What the participant is called; in a study of pairs, what the pair is.
     pub participant: String,
+    /// How many people have a page of their own in it; 0 if one participant plays it, at the page that all have.
+    pub seats: u32,
     /// The mission, as the study names it.
     pub mission: String,
     /// Flags of `cohabit play`.
@@ -34,6 +42,8 @@ pub struct PageAddress {
     pub token: String,
     /// What lets the wizard's page in, if a wizard takes part.
     pub wizard: Option<String>,
+    /// What lets the page of each seat in, if people have seats.
+    pub seats: Vec<String>,
 }
 
 /// How a session is.
@@ -69,6 +79,9 @@ pub trait Playing: Send {
     /// What the participant has done in it since it was last looked at; of a tutorial alone.
     fn tried(&mut self) -> Vec<Activity>;
 
+    /// The same of whoever has a seat, from 0.
+    fn tried_at(&mut self, seat: usize) -> Vec<Activity>;
+
     /// Whether a wizard is to take part, and nobody sits at the seat.
     fn lacks_wizard(&self) -> bool {
         false
@@ -78,20 +91,69 @@ pub trait Playing: Send {
     fn end(&mut self);
 }
 
-/// What a session is called: participant, step from 1, and which try from 1.
-#[must_use]
-pub fn session_name(place: u32, step: usize, attempt: u32) -> String {
-    format!("{}-{:02}-{attempt}", pseudonym(place), step + 1)
+/// Whose a session is.
+#[derive(Clone, Copy, Debug, Eq, Ord, PartialEq, PartialOrd)]
+pub enum Whose {
+    /// That of the participant at a place.
+    Participant(u32),
+    /// That of a pair, by its number.
+    Pair(u32),
 }
 
-/// The participant's place and the step, from 0, of a session that is called so.
+impl Whose {
+    /// What they are called.
+    #[must_use]
+    pub fn label(self) -> String {
+        match self {
+            Self::Participant(place) => pseudonym(place),
+            Self::Pair(pair) => pair_label(pair),
+        }
+    }
+
+    fn called(label: &str) -> Option<Self> {
+        place_of(label).map(Self::Participant).or_else(|| pair_called(label).map(Self::Pair))
+    }
+
+    /// The number of the pair that it is, or belongs to.
+    #[must_use]
+    pub const fn pair(self) -> u32 {
+        match self {
+            Self::Participant(place) => pair_of(place),
+            Self::Pair(pair) => pair,
+        }
+    }
+
+    /// Whether the participant at a place is among them.
+    #[must_use]
+    pub const fn includes(self, place: u32) -> bool {
+        match self {
+            Self::Participant(own) => own == place,
+            Self::Pair(pair) => pair == pair_of(place),
+        }
+    }
+}
+
+/// What a session is called: whose it is, step from 1, and which try from 1.
 #[must_use]
-pub fn step_of(session: &str) -> Option<(u32, usize)> {
+pub fn session_name(whose: Whose, step: usize, attempt: u32) -> String {
+    format!("{}-{:02}-{attempt}", whose.label(), step + 1)
+}
+
+/// What a try at a mission of the participant at a place is called, the first `together` of which their pair played.
+#[must_use]
+pub fn name_of_try(place: u32, step: usize, attempt: u32, together: u32) -> String {
+    let whose = if attempt <= together { Whose::Pair(pair_of(place)) } else { Whose::Participant(place) };
+    session_name(whose, step, attempt)
+}
+
+/// Whose session it is that is called so, and of which step, from 0.
+#[must_use]
+pub fn step_of(session: &str) -> Option<(Whose, usize)> {
     let mut parts = session.split('-');
-    let (participant, step, attempt) = (parts.next()?, parts.next()?, parts.next()?);
+    let (whose, step, attempt) = (parts.next()?, parts.next()?, parts.next()?);
     attempt.parse::<u32>().ok()?;
-    let place = crate::plan::place_of(participant)?;
-    parts.next().is_none().then_some((place, step.parse::<usize>().ok()?.checked_sub(1)?))
+    let whose = Whose::called(whose)?;
+    parts.next().is_none().then_some((whose, step.parse::<usize>().ok()?.checked_sub(1)?))
 }
 
 #[cfg(test)]
@@ -100,9 +162,13 @@ mod tests {
 
     #[test]
     fn names_of_sessions_say_whose_they_are() {
-        assert_eq!(session_name(7, 2, 3), "P07-03-3");
-        assert_eq!(step_of("P07-03-3"), Some((7, 2)));
-        for other in ["", "P07", "P07-00-1", "P07-03", "P07-03-3-1", "play-17", "P7-03-1"] {
+        assert_eq!(session_name(Whose::Participant(7), 2, 3), "P07-03-3");
+        assert_eq!(step_of("P07-03-3"), Some((Whose::Participant(7), 2)));
+        assert_eq!(step_of("pair04-03-3"), Some((Whose::Pair(4), 2)));
+        let tries = [1, 2, 3].map(|attempt| name_of_try(7, 2, attempt, 2));
+        assert_eq!(tries, ["pair04-03-1", "pair04-03-2", "P07-03-3"]);
+        assert!(Whose::Pair(4).includes(8) && !Whose::Pair(4).includes(9) && Whose::Participant(7).includes(7));
+        for other in ["", "P07", "P07-00-1", "P07-03", "P07-03-3-1", "play-17", "P7-03-1", "pair4-03-1"] {
             assert_eq!(step_of(other), None, "{other}");
         }
     }

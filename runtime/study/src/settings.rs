@@ -28,6 +28,8 @@ pub const SCORE: &str = "score";
 pub const CLOCK: &str = "clock";
 /// The settings that are of the study's pages and no flags of `cohabit play`: true or false, false if absent.
 pub const OF_PAGES: [&str; 2] = [SCORE, CLOCK];
+/// Those of these in which the two of a pair can differ: their session is the same.
+pub const OF_OWN_PAGE: [&str; 1] = [CLOCK];
 /// The setting by which a wizard takes part: `yes`, or `no`.
 pub const WIZARD: &str = "wizard";
 /// The setting by which answers are delayed, ms, and how it may be written, too.
@@ -59,19 +61,29 @@ pub fn has_wizard(settings: &Settings) -> bool {
     settings.get(WIZARD) == Some(&Setting::Value("yes".to_owned()))
 }
 
+/// How many avatars there are.
+#[must_use]
+pub fn avatars(settings: &Settings) -> usize {
+    let is_person = |body: &&String| body.split('@').next() == Some("person");
+    match settings.get(BODY) {
+        Some(Setting::Value(body)) => usize::from(is_person(&body)),
+        Some(Setting::Values(bodies)) => bodies.iter().filter(is_person).count(),
+        _ => 0,
+    }
+}
+
+/// Whether people may drive all bodies.
+#[must_use]
+pub fn drives_all(settings: &Settings) -> bool {
+    settings.get(DRIVE) == Some(&Setting::Value("all".to_owned()))
+}
+
 /// Whether participants have a body to walk with: an avatar, or any, where people may drive all.
 #[must_use]
 pub fn has_avatar(settings: &Settings) -> bool {
-    let is_person = |body: &String| body.split('@').next() == Some("person");
-    let has_person = match settings.get(BODY) {
-        Some(Setting::Value(body)) => is_person(body),
-        Some(Setting::Values(bodies)) => bodies.iter().any(is_person),
-        _ => false,
-    };
     match settings.get(DRIVE) {
-        Some(Setting::Value(whom)) if whom == "all" => true,
         Some(Setting::Value(whom)) if whom == "none" => false,
-        _ => has_person,
+        _ => drives_all(settings) || avatars(settings) > 0,
     }
 }
 
@@ -165,6 +177,8 @@ mod tests {
         ] {
             assert_eq!(has_avatar(&all), expected, "{all:?}");
         }
+        let two = Setting::Values(["person", "robot", "person@Lab1"].map(str::to_owned).to_vec());
+        assert_eq!((avatars(&settings(&[(BODY, two)])), avatars(&settings(&[(DRIVE, value("all"))]))), (2, 0));
         assert!(may_ask(&settings(&[])) && !may_ask(&settings(&[(ASK, value("never"))])));
     }
 

@@ -64,6 +64,8 @@ const LARGEST_ITEM: u64 = 100;
 const LARGEST_STEP: u64 = 100;
 /// The longest that is counted in seconds.
 pub const LONGEST_SECONDS: f64 = 600.0;
+/// The most participants of one session.
+const LARGEST_SESSION: u64 = 2;
 /// The longest block of a random assignment.
 const LARGEST_BLOCK: u64 = 1_000;
 
@@ -84,6 +86,12 @@ pub const STUDY: &[Key] = &[
         "how many participants are planned; the sign-up link admits no more",
     ),
     optional(
+        "participants_per_session",
+        Kind::Whole(LARGEST_SESSION),
+        "how many participants play a session together, each at their own page: 1, if absent, or 2",
+    ),
+    optional("pair", Kind::Table(PAIR), "of two participants a session: how they wait for each other, and skip missions"),
+    optional(
         "assignment",
         Kind::OneOf(&["latin_square", "balanced_latin_square", "block_random"]),
         "how the order of within-participant conditions is assigned; block_random, if absent",
@@ -91,7 +99,8 @@ pub const STUDY: &[Key] = &[
     optional(
         "block_size",
         Kind::Whole(LARGEST_BLOCK),
-        "participants of a block in which each between-participants condition is as frequent; as many as there are, if absent",
+        "participants of a block, or pairs of one, in which each between-participants condition is as frequent; as many as there are, \
+         if absent",
     ),
     optional(
         "minimisation",
@@ -124,6 +133,21 @@ pub const STUDY: &[Key] = &[
         "wizard",
         Kind::Table(WIZARD),
         "how a wizard (Wizard of Oz) takes part in sessions with the setting wizard = \"yes\"",
+    ),
+];
+
+const PAIR: &[Key] = &[
+    optional(
+        "partner_absent",
+        Kind::OneOf(&["wait", "alone", "end"]),
+        "what follows when somebody has waited for their partner so long: they wait on (wait, if absent), may go on alone, or may \
+         stop, which ends the study for both; the experimenter is alarmed each time",
+    ),
+    optional("partner_minutes", Kind::Minutes, "how long somebody waits for their partner until then; 5, if absent"),
+    optional(
+        "skip",
+        Kind::OneOf(&["both", "either"]),
+        "who has to agree that a mission is skipped, which it is for both; both, if absent",
     ),
 ];
 
@@ -208,6 +232,12 @@ const BOX: &[Key] = &[
 const FACTOR: &[Key] = &[
     required("name", Kind::Text, "what it is called in tables: letters, digits and _"),
     required("kind", Kind::OneOf(&["between", "within"]), "whether a participant meets one of its levels, or all"),
+    optional(
+        "unit",
+        Kind::OneOf(&["pair", "participant"]),
+        "of a factor between participants in a study of pairs: whether both of a pair meet the same level (pair, if absent), or each a \
+         level of their own, which can set `clock` alone",
+    ),
     required("level", Kind::Tables(LEVEL), "its levels, two or more"),
 ];
 

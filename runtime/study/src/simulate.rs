@@ -1,6 +1,7 @@
 //! A dry run: a whole study with simulated people, before anybody comes. Everything goes through the same assignment, checks,
 //! journals, tables and folder as with people, and is marked synthetic; its times are those of a year long gone.
 
+mod pair_walk;
 mod people;
 mod person;
 mod walk;
@@ -20,11 +21,13 @@ use serde::Serialize;
 use crate::{
     design::{Covariate, CovariateSource, Minimisation, Study},
     folder::{Folder, FolderError},
+    pair::pair_of,
     progress::{Event, Phase, Progress, Refused},
     registry::{Clock, Registry, StudyFault, Who},
     tables::{self, TablesError},
     web::{Sent, newcomers_event, participants_event},
 };
+use pair_walk::PairWalk;
 pub use people::{Answering, Leaving, People, PeopleError, Shift, Speaking};
 use person::Person;
 use walk::{Setting, Walk};
@@ -134,20 +137,34 @@ pub fn simulate(
     let ways = {
         let (study, logs) = (&registry.study, &registry.folder);
         let setting = Setting { study, speaking: &run.people.speaking, logs, player };
-        let way = |(_, person, progress): &(u32, &Person<'_>, Progress)| {
-            let events = Walk::new(&setting, person, progress.clone()).run();
-            done();
+        let way = |party: &Vec<&Member<'_>>| {
+            let walks = party.iter().map(|(_, person, progress)| Walk::new(&setting, person, progress.clone()));
+            let events = match study.pairing {
+                Some(pairing) => PairWalk::new(&setting, pairing, walks.collect()).run(),
+                None => walks.map(Walk::run).collect(),
+            };
+            party.iter().for_each(|_| done());
             events
         };
-        on_threads(&here, threads, &way)?
+        on_threads(&parties(study, &here), threads, &way)?
     };
-    for ((number, _, progress), events) in here.iter().zip(ways) {
+    for ((number, _, progress), events) in here.iter().zip(ways.into_iter().flatten()) {
         write_down(&mut registry, progress.plan().place, events)
             .map_err(|fault| SimulateError::Fault { number: *number, fault })?;
     }
     let progress: Vec<Progress> = registry.participants.values().map(|one| one.progress.clone()).collect();
     tables::write(&registry.study, &progress, &registry.folder)?;
     Ok(Simulated { withdrawn: here.len() - progress.len(), consented: here.len(), ..counts(&progress) })
+}
+
+/// Somebody who has come: which of all, who, and where they are.
+type Member<'a> = (u32, &'a Person<'a>, Progress);
+
+/// Those who play together, in the order of their places: pairs, or each alone.
+fn parties<'m, 'a>(study: &Study, all: &'m [Member<'a>]) -> Vec<Vec<&'m Member<'a>>> {
+    let pair = |(.., progress): &Member<'_>| pair_of(progress.plan().place);
+    let are_together = |one: &Member<'_>, other: &Member<'_>| study.pairing.is_some() && pair(one) == pair(other);
+    all.chunk_by(are_together).map(|party| party.iter().collect()).collect()
 }
 
 fn comes_ms(number: u32) -> u64 {

@@ -8,7 +8,7 @@ mod missions;
 pub(crate) mod probes;
 mod scores;
 
-use std::{borrow::Cow, collections::BTreeMap, path::PathBuf};
+use std::{borrow::Cow, path::PathBuf};
 
 use cohabit_tables::{
     Cell, CsvError, Field,
@@ -21,10 +21,11 @@ pub use datapackage::DataPackageError;
 use crate::{
     design::{Block, Choice, FactorKind, Study},
     folder::{Folder, FolderError, Note},
+    pair::{PAIR_SIZE, pair_label, pair_of, seat_of},
     plan::{Plan, Step, place_of, pseudonym},
     progress::{Doing, Done, Phase, Progress},
     records::Records,
-    session::step_of,
+    session::{Whose, step_of},
 };
 
 /// Why a study's tables could not be written.
@@ -60,8 +61,8 @@ pub fn write(study: &Study, all: &[Progress], folder: &Folder) -> Result<(), Tab
 /// Whether a session of that name was for practice.
 #[must_use]
 pub fn is_practice(all: &[Progress], session: &str) -> bool {
-    let Some((place, step)) = step_of(session) else { return false };
-    all.iter().any(|progress| progress.plan().place == place && progress.plan().is_practice(step))
+    let Some((whose, step)) = step_of(session) else { return false };
+    all.iter().any(|progress| whose.includes(progress.plan().place) && progress.plan().is_practice(step))
 }
 
 /// All tables of a study, with those of its logs, which get columns for whose they are and under which conditions, and a
@@ -146,13 +147,19 @@ fn covariates(study: &Study) -> impl Iterator<Item = &str> {
     study.minimisation.iter().flat_map(|all| &all.covariates).map(|covariate| covariate.name.as_str())
 }
 
-const BOTH: [FactorKind; 2] = [FactorKind::Between, FactorKind::Within];
+const ALL_KINDS: [FactorKind; 3] = [FactorKind::Between, FactorKind::Own, FactorKind::Within];
+/// The kinds of which each participant meets one level.
+const BETWEEN: [FactorKind; 2] = [FactorKind::Between, FactorKind::Own];
+
+/// Columns of participants before those of their pairs.
+const PLACE_CELLS: usize = 2;
 
 fn participants(study: &Study, all: &[Progress], withdrawn: &[String]) -> Table {
-    let fields = [
+    let fields: [Field; PLACE_CELLS] = [
         field("participant", Text, "", "what the participant is called"),
         field("place", Whole, "", "their place in the order of all, from 1"),
     ];
+    let fields: Vec<Field> = fields.into_iter().chain(pair_fields(study)).collect();
     let more = [
         field(
             "missions",
@@ -160,7 +167,12 @@ fn participants(study: &Study, all: &[Progress], withdrawn: &[String]) -> Table 
             "",
             "their missions in order, each with the levels of within-participant factors, or that it is for practice",
         ),
-        field("progress", Text, "", "where they are: the kind of step, or finished, excluded, withdrawn"),
+        field(
+            "progress",
+            Text,
+            "",
+            "where they are: the kind of step, or finished, excluded, withdrawn; or parted, whose partner takes no part any more",
+        ),
         field("steps_done", Whole, "", "steps of their plan that they have done"),
         field("steps", Whole, "", "steps of their plan"),
         field("consented_ms", Whole, "ms", "wall time at which they agreed to take part, since 1970"),
@@ -168,11 +180,13 @@ fn participants(study: &Study, all: &[Progress], withdrawn: &[String]) -> Table 
     ];
     let covariates = covariates(study)
         .map(|name| field(format!("covariate_{name}"), Text, "", "its level, by which their condition was assigned"));
-    let between: Vec<Field> = factor_fields(study, &[FactorKind::Between]).into_iter().chain(covariates).collect();
+    let between: Vec<Field> = factor_fields(study, &BETWEEN).into_iter().chain(covariates).collect();
     let count = fields.len() + between.len() + more.len();
     let gone = |name: &String| {
         let mut row = vec![Cell::Nothing; count];
         row[0] = text(name);
+        let pair = place_of(name).map(|place| pair_cells(study, place)).unwrap_or_default();
+        pair.into_iter().enumerate().for_each(|(at, cell)| row[PLACE_CELLS + at] = cell);
         row[count - more.len() + 1] = text("withdrawn");
         row
     };
@@ -184,7 +198,7 @@ fn participants(study: &Study, all: &[Progress], withdrawn: &[String]) -> Table 
 
 fn participant(study: &Study, progress: &Progress) -> Vec<Cell> {
     let (plan, done) = (progress.plan(), progress.done());
-    let first = [text(pseudonym(plan.place)), whole(plan.place)];
+    let first = [text(pseudonym(plan.place)), whole(plan.place)].into_iter().chain(pair_cells(study, plan.place));
     let more = [
         text(missions_of(plan)),
         text(progress_name(progress)),
@@ -194,9 +208,9 @@ fn participant(study: &Study, progress: &Progress) -> Vec<Cell> {
         done.last().map_or(Cell::Nothing, |done| whole(done.ended_ms)),
     ];
     let covariate = |name: &str| plan.covariates.get(name).map_or(Cell::Nothing, text);
-    let between = factor_cells(study, &[FactorKind::Between], &plan.between);
+    let between = factor_cells(study, &BETWEEN, &plan.between);
     let between = between.into_iter().chain(covariates(study).map(covariate));
-    first.into_iter().chain(between).chain(more).collect()
+    first.chain(between).chain(more).collect()
 }
 
 /// Such as `laser_lab (practice), make_cereal (ask=never), cold_soda (ask=always)`.
@@ -225,6 +239,7 @@ pub(crate) fn progress_name(progress: &Progress) -> &'static str {
         (Phase::Finished, _) => "finished",
         (Phase::Withdrawn, _) => "withdrawn",
         (Phase::Excluded, _) => "excluded",
+        (Phase::Parted, _) => "parted",
         (_, Some((_, Step::Questionnaire { .. }, _))) => "questionnaire",
         (_, Some((_, Step::Break { .. }, _))) => "break",
         (_, Some((_, _, Doing::Queued { .. }))) => "waiting",
@@ -234,11 +249,28 @@ pub(crate) fn progress_name(progress: &Progress) -> &'static str {
 }
 
 /// Which step of a participant's plan a row is about.
-fn step_fields() -> [Field; 2] {
-    [
-        field("participant", Text, "", "what the participant is called"),
-        field("step", Whole, "", "which step of their plan, from 1"),
+fn step_fields(study: &Study) -> Vec<Field> {
+    let participant = field("participant", Text, "", "what the participant is called");
+    let step = field("step", Whole, "", "which step of their plan, from 1");
+    std::iter::once(participant).chain(pair_fields(study)).chain([step]).collect()
+}
+
+/// In a study of pairs: which pair a participant belongs to.
+fn pair_fields(study: &Study) -> Vec<Field> {
+    if study.pairing.is_none() {
+        return Vec::new();
+    }
+    vec![
+        field("pair", Text, "", "what their pair is called, which is in the names of the sessions that it played"),
+        field("seat", Whole, "", "their seat in it, 1 or 2: the number of their page in sessions"),
     ]
+}
+
+fn pair_cells(study: &Study, place: u32) -> Vec<Cell> {
+    if study.pairing.is_none() {
+        return Vec::new();
+    }
+    vec![text(pair_label(pair_of(place))), whole(seat_of(place) + 1)]
 }
 
 /// A table of what came of steps that were done, with the conditions under which they were.
@@ -250,7 +282,7 @@ fn of_steps(
     more: impl IntoIterator<Item = Field>,
     rows: fn(&Study, &Plan, &Done) -> Vec<Vec<Cell>>,
 ) -> Table {
-    let fields = step_fields().into_iter().chain(factor_fields(study, &BOTH)).chain(more).collect();
+    let fields = step_fields(study).into_iter().chain(factor_fields(study, &ALL_KINDS)).chain(more).collect();
     let of_one = |progress: &Progress| -> Vec<Vec<Cell>> {
         progress.done().iter().flat_map(|done| rows(study, progress.plan(), done)).collect()
     };
@@ -265,8 +297,9 @@ fn mission_about(plan: &Plan, about: Option<usize>) -> Cell {
     }
 }
 
-fn step_cells(plan: &Plan, done: &Done) -> [Cell; 2] {
-    [text(pseudonym(plan.place)), whole(done.step + 1)]
+fn step_cells(study: &Study, plan: &Plan, done: &Done) -> Vec<Cell> {
+    let participant = text(pseudonym(plan.place));
+    std::iter::once(participant).chain(pair_cells(study, plan.place)).chain([whole(done.step + 1)]).collect()
 }
 
 /// What practice is called in tables.
@@ -294,24 +327,56 @@ fn notes(all: &[Note]) -> Table {
     Table { name: "notes", meaning: "a note of the experimenter's", fields, rows: all.iter().map(row).collect() }
 }
 
-/// Adds to tables of logs, by the name of the session, which step it was, whether for practice, and the levels of all factors.
+/// Adds to tables of logs, by the name of the session, which step it was, whether for practice, and the levels of all factors; in a
+/// study of pairs also whose it was. A session of a pair has the levels that both met.
 fn add_conditions(study: &Study, all: &[Progress], tables: &mut [Table]) {
-    let plans: BTreeMap<u32, &Plan> = all.iter().map(|progress| (progress.plan().place, progress.plan())).collect();
     for table in tables {
         let Some(column) = table.fields.iter().position(|field| field.name == "session") else { continue };
+        let person = table.fields.iter().position(|field| field.name == "person");
+        let is_of_pairs = study.pairing.is_some();
+        table.fields.extend(is_of_pairs.then(|| field("pair", Text, "", "what the pair is called whose session it is")));
+        let seat = person.filter(|_| is_of_pairs);
+        table.fields.extend(seat.map(|_| field("seat", Whole, "", "whose page it was: the seat in the pair, 1 or 2")));
         table.fields.push(field("step", Whole, "", "which step of the participant's plan it belongs to, from 1"));
         table.fields.push(practice_field());
-        table.fields.extend(factor_fields(study, &BOTH));
+        table.fields.extend(factor_fields(study, &ALL_KINDS));
         for row in &mut table.rows {
             let of = match &row[column] {
                 Cell::Text(session) => step_of(session),
                 _ => None,
             };
-            let of = of.and_then(|(place, step)| Some((*plans.get(&place)?, step)));
-            row.push(of.map_or(Cell::Nothing, |(_, step)| whole(step + 1)));
-            row.push(of.map_or(Cell::Nothing, |(plan, step)| Cell::Flag(plan.is_practice(step))));
-            row.extend(factor_cells(study, &BOTH, &of.map(|(plan, step)| plan.choices(step)).unwrap_or_default()));
+            if is_of_pairs {
+                row.push(of.map_or(Cell::Nothing, |(whose, _)| text(pair_label(whose.pair()))));
+            }
+            if let Some(person) = seat {
+                let seat = of.map_or(Cell::Nothing, |(whose, _)| seat_at(whose, &row[person]));
+                row.push(seat);
+            }
+            let plans: Vec<&Plan> = of.map_or_else(Vec::new, |(whose, _)| {
+                all.iter().map(Progress::plan).filter(|plan| whose.includes(plan.place)).collect()
+            });
+            let step = of.map(|(_, step)| step).filter(|_| !plans.is_empty());
+            row.push(step.map_or(Cell::Nothing, |step| whole(step + 1)));
+            row.push(step.map_or(Cell::Nothing, |step| Cell::Flag(plans[0].is_practice(step))));
+            row.extend(factor_cells(study, &ALL_KINDS, &step.map(|step| choices_of(&plans, step)).unwrap_or_default()));
         }
+    }
+}
+
+/// The levels of all factors under which a step was done by all of these.
+fn choices_of(plans: &[&Plan], step: usize) -> Vec<Choice> {
+    let mut met = plans.first().map(|plan| plan.choices(step)).unwrap_or_default();
+    met.retain(|choice| plans.iter().all(|plan| plan.choices(step).contains(choice)));
+    met
+}
+
+/// The seat of whoever's page has that number in a session.
+fn seat_at(whose: Whose, person: &Cell) -> Cell {
+    match (whose, person) {
+        (Whose::Participant(place), _) => whole(seat_of(place) + 1),
+        // Pages of seats have the first numbers; what nobody said at a page has none.
+        (Whose::Pair(_), Cell::Whole(number)) if (1..=i64::from(PAIR_SIZE)).contains(number) => Cell::Whole(*number),
+        (Whose::Pair(_), _) => Cell::Nothing,
     }
 }
 

@@ -26,6 +26,7 @@ use crate::{
     folder::Note,
     keeper::lock,
     markdown::escaped,
+    pair::PartnerAbsent,
     plan::place_of,
     progress::{Ending, Event},
     registry::{Reading, Registry, StudyFault, Who},
@@ -295,8 +296,14 @@ pub(crate) fn participants_event(registry: &mut Registry, place: u32, sent: &Sen
                 .map_err(|problem| StudyFault::NotNow(problem.to_string()))?;
         }
         Event::Withdrew => {}
+        Event::GoesAlone => registry.check_may(place, PartnerAbsent::Alone)?,
+        Event::StopsWaiting => registry.check_may(place, PartnerAbsent::End)?,
         // A tutorial may be left once it was played for so long.
-        Event::GoesOn | Event::Over { ending: Ending::Skipped } => registry.save_played(place),
+        Event::GoesOn => registry.save_played(place),
+        Event::Over { ending: Ending::Skipped } => {
+            registry.save_played(place);
+            return registry.skip(place);
+        }
         // All else happens without their doing.
         _ => return Ok(()),
     }
@@ -409,9 +416,11 @@ impl Registry {
                 Ok(())
             }
             Command::EndMission { participant } => {
-                let place = place(&participant)?;
-                self.save_played(place);
-                self.apply(place, &Event::Over { ending: Ending::Stopped })
+                for place in self.ended_with(place(&participant)?)? {
+                    self.save_played(place);
+                    self.apply(place, &Event::Over { ending: Ending::Stopped })?;
+                }
+                Ok(())
             }
             Command::Exclude { participant, reason } => {
                 self.apply(place(&participant)?, &Event::Excluded { reason: short(&reason)? })

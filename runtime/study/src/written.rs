@@ -7,6 +7,7 @@ use toml::Spanned;
 
 use crate::{
     design::{Assignment, FactorKind, MissionOrder},
+    pair::{PartnerAbsent, SkippedBy},
     settings::Setting,
 };
 
@@ -25,6 +26,8 @@ pub(crate) struct Written {
     pub page_texts: Option<Spanned<String>>,
     pub seed: u64,
     pub participants: Option<Spanned<u32>>,
+    pub participants_per_session: Option<Spanned<u32>>,
+    pub pair: Option<Spanned<WrittenPair>>,
     pub assignment: Option<Spanned<Assignment>>,
     pub block_size: Option<Spanned<usize>>,
     pub minimisation: Option<Spanned<WrittenMinimisation>>,
@@ -39,6 +42,14 @@ pub(crate) struct Written {
     pub block: Vec<Spanned<WrittenBlock>>,
     pub probe: Vec<Spanned<WrittenProbe>>,
     pub wizard: Option<Spanned<WrittenWizard>>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(default)]
+pub(crate) struct WrittenPair {
+    pub partner_absent: PartnerAbsent,
+    pub partner_minutes: Option<Spanned<f64>>,
+    pub skip: SkippedBy,
 }
 
 #[derive(Default, Deserialize)]
@@ -122,7 +133,16 @@ pub(crate) enum WrittenBox {
 pub(crate) struct WrittenFactor {
     pub name: Option<Spanned<String>>,
     pub kind: FactorKind,
+    pub unit: Option<Spanned<Unit>>,
     pub level: Vec<Spanned<WrittenLevel>>,
+}
+
+/// To what the levels of a factor between participants are assigned.
+#[derive(Clone, Copy, Debug, Deserialize, Eq, PartialEq)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Unit {
+    Pair,
+    Participant,
 }
 
 #[derive(Default, Deserialize)]

@@ -30,6 +30,7 @@ async function order(command) {
 }
 
 function showRows() {
+  byId("pair-head").hidden = !state.has_pairs;
   const form = state.participants.map(({ participant, progress, mission }) => [participant, progress, mission]);
   if (JSON.stringify(form) !== built) {
     built = JSON.stringify(form);
@@ -45,34 +46,40 @@ function showRows() {
 function rowOf(one) {
   const name = element("th", "", one.participant);
   name.scope = "row";
-  const cells = Array.from({ length: 6 }, () => element("td"));
+  const cells = Array.from({ length: state.has_pairs ? 7 : 6 }, () => element("td"));
   return element("tr", "", name, ...cells, element("td", "buttons", ...actionsOf(one)));
 }
 
 function fill(row, one) {
   const steps = one.steps === undefined ? "" : `${one.done} of ${one.steps}`;
   const now = one.mission ? [one.mission, one.now, one.played_s ? clock(one.played_s) : ""].filter(Boolean).join(" · ") : "";
-  const texts = [one.progress, steps, one.between ?? "", (one.order ?? []).join(" → "), now, pageOf(one)];
+  const texts = [...(state.has_pairs ? [one.pair] : []), one.progress, steps, one.between ?? "", (one.order ?? []).join(" → "), now, pageOf(one)];
   texts.forEach((text, index) => {
     const cell = row.children[index + 1];
     if (cell.textContent !== text) cell.textContent = text;
   });
-  row.classList.toggle("alarm", isSilent(one) || Boolean(one.lacks_wizard));
+  row.classList.toggle("alarm", isSilent(one) || Boolean(one.lacks_wizard || one.partner_is_late));
 }
 
-const isOut = ({ progress }) => ["not begun", "finished", "excluded", "withdrawn"].includes(progress);
+const isOut = ({ progress }) => ["not begun", "finished", "excluded", "withdrawn", "parted"].includes(progress);
 const isSilent = (one) => !isOut(one) && (one.away_s === null || one.away_s > SILENT_S);
 
 function pageOf(one) {
   if (isOut(one)) return "";
   const page = one.away_s === null ? "not open" : one.away_s > SILENT_S ? `silent for ${clock(one.away_s)}` : "open";
-  return one.lacks_wizard ? `${page} · no wizard at the seat` : page;
+  const waits = one.waited_s === null || one.waited_s === undefined ? "" : ` · waits for a partner: ${clock(one.waited_s)}`;
+  return `${page}${waits}${one.lacks_wizard ? " · no wizard at the seat" : ""}`;
 }
 
 /** What is the same is not told anew to who listens to the page. */
 function showAlarm() {
   const lacking = state.participants.filter((one) => one.lacks_wizard).map(({ participant }) => participant);
-  const text = lacking.length ? `Nobody sits at the wizard's seat: ${lacking.join(", ")}` : "";
+  const waiting = state.participants.filter((one) => one.partner_is_late).map(({ participant }) => participant);
+  const alarms = [
+    lacking.length ? `Nobody sits at the wizard's seat: ${lacking.join(", ")}` : "",
+    waiting.length ? `The partner does not come: ${waiting.join(", ")}` : "",
+  ];
+  const text = alarms.filter(Boolean).join(". ");
   if (byId("alarm").textContent !== text) byId("alarm").textContent = text;
 }
 
@@ -85,9 +92,9 @@ function actionsOf(one) {
   const made = [];
   if (one.link) made.push(labelled(button("quiet", "Copy link", (event) => copy(event.target, one.link)), "Copy link"));
   if (one.progress === "mission") {
-    made.push(labelled(button("quiet", "End mission", () => confirm(`End ${participant}'s mission?`) && order({ end_mission: { participant } })), "End mission"));
+    made.push(labelled(button("quiet", "End mission", () => confirm(state.has_pairs ? `End the mission of ${participant} and their partner?` : `End ${participant}'s mission?`) && order({ end_mission: { participant } })), "End mission"));
   }
-  if (!["not begun", "excluded", "withdrawn"].includes(one.progress)) {
+  if (!["not begun", "excluded", "withdrawn", "parted"].includes(one.progress)) {
     made.push(
       labelled(button("quiet", "Exclude", () => {
         const reason = prompt(`Why is ${participant} excluded? Their data stay.`);
@@ -97,7 +104,7 @@ function actionsOf(one) {
   }
   if (!["not begun", "withdrawn"].includes(one.progress)) {
     made.push(
-      labelled(button("danger", "Withdraw", () => confirm(`Delete all data of ${participant}? This cannot be undone.`) && order({ withdraw: { participant } })), "Withdraw"),
+      labelled(button("danger", "Withdraw", () => confirm(`Delete all data of ${participant}${state.has_pairs ? ", with the sessions of their pair" : ""}? This cannot be undone.`) && order({ withdraw: { participant } })), "Withdraw"),
     );
   }
   return made;

@@ -6,7 +6,7 @@ import { endFollowing, follow, tell, tellQuietly } from "./server.js";
 import { text as words } from "./texts.js";
 
 /** Pages after which nothing follows. */
-const LAST = ["finished", "withdrawn", "excluded", "unknown"];
+const LAST = ["finished", "withdrawn", "excluded", "parted", "unknown"];
 
 /** What is shown, so that it is built once; and how it takes in what changes. */
 let shown = "";
@@ -19,13 +19,16 @@ let step = null;
  */
 let kept = { takesPart: false };
 
+/** Whether it is the last page of somebody whose answers are kept. */
+const hasEnded = (page) => page === "finished" || page === "parted";
+
 const send = (event) => tell("event", { step, event });
 
 function show(answer) {
   const state = answer.page === "unknown" ? { ...kept, page: kept.takesPart ? "withdrawn" : "unknown" } : answer;
-  const takesPart = kept.takesPart || Boolean(state.step) || state.page === "finished";
+  const takesPart = kept.takesPart || Boolean(state.step) || hasEnded(state.page);
   kept = { title: state.title, contact: state.contact, takesPart };
-  const key = JSON.stringify([state.page, state.step, state.session]);
+  const key = JSON.stringify([state.page, state.step, state.session, state.may]);
   step = state.step ?? null;
   if (key !== shown) {
     shown = key;
@@ -55,8 +58,9 @@ function showBar(state) {
   byId("bar-step").textContent = state.step ? words("step_of", { step: state.step, steps: state.steps }) : "";
   const isTimed = state.page === "mission" && !state.is_over && state.left_s !== null;
   byId("bar-time").textContent = isTimed ? words("time_left", { time: clock(state.left_s) }) : "";
-  const mayLeave = Boolean(state.step) || state.page === "finished";
+  const mayLeave = Boolean(state.step) || hasEnded(state.page);
   byId("leave").hidden = !mayLeave;
+  byId("leave-pair").hidden = !state.is_with_partner;
   byId("contact").textContent = state.contact ? words("contact", { contact: state.contact }) : "";
   if (state.page !== "mission" || state.is_over) byId("skip-card").close();
 }
@@ -118,6 +122,31 @@ function exerciseList(exercises) {
   };
 }
 
+/** Who of a pair wants to skip the mission, and what follows if this one does. */
+function showSkipOfPair(line, ofPair) {
+  const text = ofPair?.is_asked ? words("skip_asked") : ofPair?.is_wanted ? words("skip_wanted") : "";
+  if (line.textContent !== text) line.textContent = text;
+  line.hidden = !text;
+  const follows = byId("skip-pair");
+  follows.hidden = !ofPair;
+  follows.textContent = ofPair ? (ofPair.by === "both" ? words("skip_both") : words("skip_either")) : "";
+}
+
+/** What shows that somebody took part, if anything does. */
+function proof(completion) {
+  const parts = [];
+  if (completion?.code) {
+    const code = element("output", "code", completion.code);
+    parts.push(element("p", "", words("completion_code"), code));
+  }
+  if (completion?.return) {
+    const link = element("a", "chief", words("completion_return"));
+    link.href = completion.return;
+    parts.push(element("p", "actions", link));
+  }
+  return parts;
+}
+
 const PAGES = {
   information: ({ html }) => [heading(words("information")), sheet(html), going(words("information_read"), () => "read")],
 
@@ -160,8 +189,9 @@ const PAGES = {
     return [heading(questionnaire.title), about, questionnaireForm(questionnaire, draft, answer, keep)];
   },
 
-  ready({ html, is_tutorial: isTutorial, limit_s, skip_after_s }) {
+  ready({ html, is_tutorial: isTutorial, is_with_partner: isWithPartner, limit_s, skip_after_s }) {
     const lines = [];
+    if (isWithPartner) lines.push(words("ready_pair"));
     if (isTutorial) lines.push(words("ready_tutorial"));
     if (limit_s !== null) lines.push(words("ready_limit", { while: whileOf(limit_s) }));
     if (skip_after_s !== null) {
@@ -183,6 +213,21 @@ const PAGES = {
     return [heading(words("waiting")), element("p", "", words("waiting_about")), place];
   },
 
+  partner({ may }) {
+    const late = element("p", "", "");
+    late.role = "status";
+    update = ({ is_late: isLate }) => {
+      const text = isLate ? words("partner_late") : "";
+      if (late.textContent !== text) late.textContent = text;
+    };
+    const instead = {
+      alone: () => [element("p", "", words("partner_alone_about")), going(words("partner_alone"), () => "goes_alone")],
+      end: () => [element("p", "", words("partner_stop_about")), going(words("partner_stop"), () => "stops_waiting")],
+    };
+    const offered = instead[may]?.() ?? [];
+    return [heading(words("partner_waiting")), element("p", "", words("partner_about")), late, ...offered];
+  },
+
   starting() {
     const text = element("p", "", words("starting_about"));
     text.role = "status";
@@ -200,13 +245,16 @@ const PAGES = {
     const skip = button("quiet", words("skip"), () => byId("skip-card").showModal());
     skip.id = "skip";
     const offer = element("div", "offer", element("p", "", words("skip_offer")), skip);
+    const wish = element("p", "wish", "");
+    wish.role = "status";
     const probes = element("div", "probes");
     probes.role = "status";
     let asked = null;
     const list = exercises.length > 0 ? exerciseList(exercises) : null;
-    update = ({ is_over: isOver, skip_in_s: skipInS, probe, exercises: now, may_go_on: mayGoOn }) => {
+    update = ({ is_over: isOver, skip_in_s: skipInS, skip: ofPair, probe, exercises: now, may_go_on: mayGoOn }) => {
       over.hidden = !isOver;
-      offer.hidden = list !== null || isOver || skipInS !== 0;
+      offer.hidden = list !== null || isOver || skipInS !== 0 || Boolean(ofPair?.is_asked);
+      showSkipOfPair(wish, isOver ? null : ofPair);
       list?.update(now, mayGoOn, isOver);
       const number = isOver ? null : (probe?.number ?? null);
       if (number === asked) return;
@@ -215,7 +263,7 @@ const PAGES = {
       probes.replaceChildren(...(number === null ? [] : [probeForm(probe.item, answer)]));
     };
     const beside = list ? element("div", "beside", frame, list.shown) : frame;
-    return [element("h1", "unseen", list ? words("tutorial") : words("mission")), over, offer, beside, probes];
+    return [element("h1", "unseen", list ? words("tutorial") : words("mission")), over, wish, offer, beside, probes];
   },
 
   break({ html }) {
@@ -230,16 +278,13 @@ const PAGES = {
     const parts = [heading(words("finished"))];
     if (html) parts.push(sheet(html));
     else parts.push(element("p", "", words("finished_about")));
-    if (completion?.code) {
-      const code = element("output", "code", completion.code);
-      parts.push(element("p", "", words("completion_code"), code));
-    }
-    if (completion?.return) {
-      const link = element("a", "chief", words("completion_return"));
-      link.href = completion.return;
-      parts.push(element("p", "actions", link));
-    }
-    return parts;
+    return [...parts, ...proof(completion)];
+  },
+
+  parted({ html, completion }) {
+    const parts = [heading(words("parted")), element("p", "", words("parted_about"))];
+    if (html) parts.push(sheet(html));
+    return [...parts, ...proof(completion)];
   },
 
   withdrawn: () => [

@@ -15,7 +15,7 @@ use crate::{
 
 const FIELDS: [Field; 13] = [
     Field::new("session", Text, "", "the session, as in the table of sessions"),
-    Field::new("participant", Text, "", "what the participant is called in the study"),
+    Field::new("participant", Text, "", "what the participant is called in the study, or the pair that plays together"),
     Field::new("person", Whole, "", "the number of the person's page, as in the table of turns"),
     Field::new("questionnaire", Text, "", "the questionnaire"),
     Field::new("item", Whole, "", "which of its questions, from 1"),

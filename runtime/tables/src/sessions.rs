@@ -14,7 +14,7 @@ use crate::{
 
 const FIELDS: [Field; 24] = [
     Field::new("session", Text, "", "the session, by the name of its log"),
-    Field::new("participant", Text, "", "what the participant is called in the study"),
+    Field::new("participant", Text, "", "what the participant is called in the study, or the pair that plays together"),
     Field::new("mission", Text, "", "the mission's file"),
     Field::new("layout", Text, "", "the mission's floor plan"),
     Field::new("seed", Text, "", "the seed of all that was random"),

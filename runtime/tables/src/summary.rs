@@ -21,14 +21,17 @@ use outcomes::Outcome;
 /// Outcomes by condition, and how they depend on the conditions.
 ///
 /// Where some participant has several sessions, these are not independent: means and intervals are then of participants'
-/// means, and fits have a random intercept for each participant. Else each session is an observation of its own. Success is
+/// means, and fits have a random intercept for each participant. Where a session is of a pair, what comes of it is the pair's: that takes
+/// the participant's place, and there is one intercept for each pair. Else each session is an observation of its own. Success is
 /// fitted as the number 0 or 1, so its terms are differences of shares (a linear probability model).
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Summary {
     /// Sessions.
     pub sessions: usize,
-    /// Participants, where some have several sessions.
+    /// Participants, where some have several sessions; pairs of them, where these play together.
     pub participants: Option<usize>,
+    /// Whose several sessions are: each `participant`'s, or each `pair`'s or `group`'s of those who play together.
+    pub unit: &'static str,
     /// The conditions by which they are compared.
     pub conditions: Vec<String>,
     /// All sessions, then those of each combination of the conditions.
@@ -101,6 +104,7 @@ impl Summary {
         Self {
             sessions: compared.len(),
             participants: compared.is_repeated.then(|| compared.participants_of(&everybody)),
+            unit: compared.unit,
             conditions: compared.conditions.clone(),
             groups: std::iter::once(all).chain(each).collect(),
             fits: if has_conditions { fits(compared) } else { Vec::new() },

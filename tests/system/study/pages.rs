@@ -9,7 +9,7 @@ use super::{STUDY, Server, study};
 use crate::accessibility;
 
 /// Clicks the chief button of the page, once it is there.
-fn go_on(tab: &mut Tab, text: &str) {
+pub fn go_on(tab: &mut Tab, text: &str) {
     let button =
         format!("[...document.querySelectorAll('#content button.chief')].find((one) => one.textContent === '{text}')");
     tab.wait_until(&format!("{button} !== undefined && !{button}.disabled")).unwrap();

@@ -85,6 +85,14 @@ impl Visit {
         vec![tell(&page::driving(None, why))]
     }
 
+    /// Says why a page with a seat may not drive a body: it is not the avatar of that seat.
+    pub(super) fn check_seat(&self, body: u32) -> Result<(), String> {
+        match self.visitor.seat {
+            Some(seat) if seat.body != Some(body) => Err("From this page only your own avatar can be driven.".to_owned()),
+            _ => Ok(()),
+        }
+    }
+
     pub(super) fn drive(&mut self, speeds: [f32; 3]) -> Result<Vec<Message>, String> {
         let Some(driver) = &mut self.driver else { return Ok(Vec::new()) };
         let [forward, turn, pitch] = speeds.map(|speed| speed.clamp(-FASTEST, FASTEST));

@@ -63,6 +63,7 @@ impl Served {
             host,
             token: TOKEN.into(),
             seat,
+            people: Arc::default(),
             admits_own_user,
             hosts,
             limits,

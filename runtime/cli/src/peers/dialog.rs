@@ -64,6 +64,7 @@ impl Dialog {
             robots: robots.clone(),
             names: listening.names.iter().map(|one| (one.body, one.name.clone())).collect(),
             drivable: listening.drive,
+            seats: usize::from(listening.seats),
             questionnaires: listening.questionnaires()?,
             voice: listening.voice.config(seed),
             hidden: listening.hide.clone(),
@@ -75,9 +76,13 @@ impl Dialog {
 }
 
 fn tell_addresses(addresses: &Addresses) {
-    // Whoever reads what the supervisor says knows the seat when they know the page.
+    // Whoever reads what the supervisor says knows all seats when they know the page.
     if let Some(address) = &addresses.wizard {
         tell_supervisor(&format!("wizard {address}"));
+    }
+    for (number, seat) in (1..).zip(&addresses.seats) {
+        let avatar = seat.body.map(|body| format!(" (body {body})")).unwrap_or_default();
+        tell_supervisor(&format!("seat {number}{avatar}: {}", seat.page));
     }
     tell_supervisor(&format!("page {}", addresses.page));
 }

@@ -7,6 +7,9 @@ use cohabit_dialog::{Asking, Consulting, Drivable, Effort, Hidden, HostName, Kno
 use super::body_name::BodyName;
 use crate::{failure::bad_input, page_language::PageLanguage, tls::Tls, voice::VoiceOptions, wizard::WizardOptions};
 
+/// More people than fit into the office.
+const MOST_SEATS: i64 = 8;
+
 /// Where the page is served.
 #[derive(clap::Args, Clone)]
 pub struct Listening {
@@ -34,6 +37,10 @@ pub struct Listening {
     /// so long, or `none`
     #[arg(long, default_value_t)]
     pub drive: Drivable,
+    /// How many people have a page of their own, each at an address of its own, which is printed: it drives no avatar but theirs, the
+    /// first page that of the first avatar, and so on
+    #[arg(long, value_name = "COUNT", default_value_t = 0, value_parser = clap::value_parser!(u8).range(0..=MOST_SEATS))]
+    pub seats: u8,
     /// What the robot may know: `everything` there is, or what it has `seen` so far, beside the floor plan
     #[arg(long, default_value_t)]
     pub knows: Knows,

@@ -22,19 +22,20 @@ pub struct Plan {
     /// between
     #[arg(long, value_name = "DIFFERENCES", value_delimiter = ',', allow_hyphen_values = true, required = true)]
     differences: Vec<f64>,
-    /// How much participants differ: the standard deviation of their means, in the outcome's unit
+    /// How much participants differ, or in a study of pairs, how much pairs do: the standard deviation of their means, in the outcome's
+    /// unit
     #[arg(long, value_name = "SD")]
     participant_sd: f64,
-    /// How much the sessions of one participant differ under the same condition: the standard deviation of residuals
+    /// How much the sessions of one participant, or pair, differ under the same condition: the standard deviation of residuals
     #[arg(long, value_name = "SD")]
     residual_sd: f64,
     /// The power that is wanted
     #[arg(long, default_value_t = 0.8, conflicts_with = "participants")]
     power: f64,
-    /// Say what power so many participants have instead
+    /// Say what power so many participants, or pairs, have instead
     #[arg(long, value_name = "COUNT")]
     participants: Option<usize>,
-    /// The most participants that can be had
+    /// The most participants, or pairs, that can be had
     #[arg(long, value_name = "COUNT", default_value_t = 500)]
     most: usize,
     /// How many studies are simulated for each number of participants
@@ -85,7 +86,7 @@ fn design(study: &Study, factor: &Factor) -> Result<Design, String> {
     let sessions: usize = study.blocks.iter().map(single).sum();
     let (varies, sessions) = match factor.kind {
         FactorKind::Within => (Varies::Within, study.missions.len() / factor.levels.len()),
-        FactorKind::Between => (Varies::Between, sessions),
+        FactorKind::Between | FactorKind::Own => (Varies::Between, sessions),
     };
     if sessions == 0 {
         return Err("no mission is played under the levels of this factor; add a block of missions".to_owned());
@@ -99,8 +100,11 @@ fn tell(study: &Study, factor: &Factor, design: &Design, found: &Power) {
         Varies::Between => "each meets one",
     };
     let [low, high] = found.interval_95;
+    // What both of a pair meet is the pair's.
+    let is_own = factor.kind == FactorKind::Own;
+    let (unit, size) = if is_own { ("participant", 1) } else { (study.unit(), study.session_size()) };
     println!(
-        "{} participants have a power of {:.3} (95 % interval {low:.3} to {high:.3}, {} simulated studies) to find the effect of `{}`: \
+        "{} {unit}s have a power of {:.3} (95 % interval {low:.3} to {high:.3}, {} simulated studies) to find the effect of `{}`: \
          {} levels, of which {how}, with {} {} at each",
         found.participants,
         found.power,
@@ -110,10 +114,9 @@ fn tell(study: &Study, factor: &Factor, design: &Design, found: &Power) {
         design.sessions,
         if design.sessions == 1 { "session" } else { "sessions" }
     );
-    println!("The study plans {}", study.participants);
-    if let (None, Some(note)) =
-        (&study.minimisation, Cycle::of(study).note(u32::try_from(found.participants).unwrap_or(u32::MAX)))
-    {
+    println!("The study plans {}", study.participants / size);
+    let participants = u32::try_from(found.participants).unwrap_or(u32::MAX).saturating_mul(size);
+    if let (None, Some(note)) = (&study.minimisation, Cycle::of(study).note(participants)) {
         println!("note: {note}");
     }
 }

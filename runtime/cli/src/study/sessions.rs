@@ -24,7 +24,7 @@ use cohabit_study::{Activity, Ending, Happening, Look, PageAddress, Player, Play
 use rustix::process::{Pid, Signal, kill_process};
 
 use super::{
-    activities::{Activities, of_inputs, stops},
+    activities::{Activities, Doer, of_inputs, stops},
     ports::{Ports, Taken},
 };
 use crate::{terminal::shown, tls::Tls};
@@ -73,6 +73,7 @@ impl Sessions {
             .args(tls.arguments())
             .arg(&self.served.page)
             .args(["--participant", &wanted.participant])
+            .args((wanted.seats > 0).then(|| format!("--seats={}", wanted.seats)))
             .arg("--log")
             .arg(&wanted.log)
             // Each page has a port of its own: a name is one at any.
@@ -146,10 +147,11 @@ impl Player for Sessions {
             last_line,
             page: None,
             wizard: None,
+            seats: Vec::new(),
             seat: SeatState::default(),
             heard: None,
             happened: Vec::new(),
-            activities: wanted.is_tutorial.then(Activities::default),
+            activities: wanted.is_tutorial.then(|| Activities::new(wanted.seats as usize)),
             over,
             ends_by: None,
         }))
@@ -198,13 +200,15 @@ struct PlayedSession {
     page: Option<PageAddress>,
     /// What lets a wizard in, once it was told.
     wizard: Option<String>,
+    /// The seats of people that were told so far.
+    seats: Vec<ToldSeat>,
     /// Whether a wizard sits at the seat.
     seat: SeatState,
     /// What its bus tells of the world, and of what is said.
     heard: Option<Heard>,
     /// What has happened and was not asked for yet.
     happened: Vec<Happening>,
-    /// What the participant does, if it is a tutorial.
+    /// What participants do, if it is a tutorial.
     activities: Option<Activities>,
     /// How its mission had ended before it began, if it goes on from such a point.
     over: Option<Ending>,
@@ -226,14 +230,27 @@ impl PlayedSession {
             match self.lines.try_recv() {
                 Ok(line) => {
                     self.wizard = wizards_token(&line).or_else(|| self.wizard.take());
-                    if let Some(page) = page_address(&line) {
-                        self.page = Some(PageAddress { wizard: self.wizard.clone(), ..page });
+                    if let Some(seat) = told_seat(&line) {
+                        self.note_seat(seat);
+                    } else if let Some(page) = page_address(&line) {
+                        let seats = self.seats.iter().map(|seat| seat.token.clone()).collect();
+                        self.page = Some(PageAddress { wizard: self.wizard.clone(), seats, ..page });
                     }
                     self.last_line = line;
                 }
                 Err(TryRecvError::Empty | TryRecvError::Disconnected) => return,
             }
         }
+    }
+
+    /// Notes a seat; it is told again when the service that gives seats is started again.
+    fn note_seat(&mut self, seat: ToldSeat) {
+        if let (Some(activities), Some(body)) = (&mut self.activities, seat.body) {
+            activities.seat(seat.number, body);
+        }
+        self.seats.retain(|known| known.number != seat.number);
+        self.seats.push(seat);
+        self.seats.sort_by_key(|seat| seat.number);
     }
 
     /// How its mission has ended, if it has; what else happened is kept.
@@ -249,14 +266,18 @@ impl PlayedSession {
         if let (Some(activities), Some(ticks)) = (&mut self.activities, ticks) {
             let commanded = |view: TickView<'_>| of_inputs(view.inputs);
             while let Some((_, told)) = ticks.next(|sample| TickView::new(sample.payload()).map(commanded))? {
-                told.into_iter().for_each(|activity| activities.note(activity));
+                told.into_iter().for_each(|(doer, activity)| activities.note(doer, activity));
             }
         }
-        let told =
-            |view: DialogView<'_>| (view.header.kind(), stops(view.steps), SeatState::of(view.header.text.as_str()));
-        while let Some((_, (kind, stops, seat))) = dialog.next(|sample| DialogView::new(sample.payload()).map(told))? {
+        let told = |view: DialogView<'_>| {
+            let header = view.header;
+            (header.kind(), Doer::at_page(header.person), stops(view.steps), SeatState::of(header.text.as_str()))
+        };
+        while let Some((_, (kind, doer, stops, seat))) =
+            dialog.next(|sample| DialogView::new(sample.payload()).map(told))?
+        {
             if let (Some(activities), Some(kind)) = (&mut self.activities, kind) {
-                activities.hear(kind, stops);
+                activities.hear(kind, doer, stops);
             }
             match kind {
                 Some(DialogKind::Question) => self.happened.push(Happening::QuestionAsked),
@@ -271,7 +292,7 @@ impl PlayedSession {
                 Some(EventKind::GoalMet) => {
                     self.happened.push(Happening::GoalMet);
                     if let Some(activities) = &mut self.activities {
-                        activities.note(Activity::Goal);
+                        activities.note(Doer::All, Activity::Goal);
                     }
                 }
                 Some(EventKind::Outcome) if event.turn > 0 && event.status().is_some_and(Status::is_failure) => {
@@ -301,7 +322,29 @@ fn page_address(line: &str) -> Option<PageAddress> {
     let address = line.split_whitespace().find(|word| word.starts_with("http"))?;
     let (site, token) = address.split_once("/?token=")?;
     let port = site.rsplit_once(':')?.1.parse().ok()?;
-    Some(PageAddress { port, token: token.to_owned(), wizard: None })
+    Some(PageAddress { port, token: token.to_owned(), wizard: None, seats: Vec::new() })
+}
+
+/// A person's seat, as `play` tells of it.
+#[derive(Clone, Debug, Eq, PartialEq)]
+struct ToldSeat {
+    /// Its number, from 1.
+    number: usize,
+    /// The avatar that its page drives, if there is one for it.
+    body: Option<u32>,
+    /// What lets its page in.
+    token: String,
+}
+
+/// The seat that a line of `play` tells of, such as `Seat 1 (body 2): http://…/?token=ab`: it comes before the page.
+fn told_seat(line: &str) -> Option<ToldSeat> {
+    let (seat, address) = line.strip_prefix("Seat ")?.split_once(": ")?;
+    let (number, body) = match seat.split_once(" (body ") {
+        Some((number, body)) => (number, Some(body.strip_suffix(')')?.parse().ok()?)),
+        None => (seat, None),
+    };
+    let (_, token) = address.split_once("/?token=")?;
+    Some(ToldSeat { number: number.parse().ok()?, body, token: token.to_owned() })
 }
 
 impl Playing for PlayedSession {
@@ -335,7 +378,11 @@ impl Playing for PlayedSession {
     }
 
     fn tried(&mut self) -> Vec<Activity> {
-        self.activities.as_mut().map(Activities::take).unwrap_or_default()
+        self.activities.as_mut().map(Activities::take_all).unwrap_or_default()
+    }
+
+    fn tried_at(&mut self, seat: usize) -> Vec<Activity> {
+        self.activities.as_mut().map(|activities| activities.take(seat)).unwrap_or_default()
     }
 
     fn lacks_wizard(&self) -> bool {
@@ -379,7 +426,7 @@ mod tests {
 
     #[test]
     fn pages_are_read_from_what_play_says() {
-        let page = |port, token: &str| Some(PageAddress { port, token: token.to_owned(), wizard: None });
+        let page = |port, token: &str| Some(PageAddress { port, token: token.to_owned(), wizard: None, seats: Vec::new() });
         for (line, expected) in [
             (
                 "Open http://127.0.0.1:40123/?token=ab12  (ready after 0.50 s; Ctrl-C ends the session)",
@@ -394,5 +441,11 @@ mod tests {
         }
         let seat = wizards_token("Wizard's seat: http://127.0.0.1:40123/wizard?token=cd34");
         assert_eq!((seat.as_deref(), wizards_token("Open http://127.0.0.1:9/?token=x")), (Some("cd34"), None));
+        let seat = |number, body| Some(ToldSeat { number, body, token: "ef56".to_owned() });
+        assert_eq!(told_seat("Seat 2 (body 3): http://[::1]:9/?token=ef56"), seat(2, Some(3)));
+        assert_eq!(told_seat("Seat 1: http://127.0.0.1:9/?token=ef56"), seat(1, None));
+        for other in ["Open http://127.0.0.1:9/?token=x", "Seat one: http://127.0.0.1:9/?token=x", "Seat 1"] {
+            assert_eq!(told_seat(other), None, "{other}");
+        }
     }
 }

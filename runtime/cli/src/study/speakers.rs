@@ -12,10 +12,11 @@ use clap::Parser;
 use cohabit_cdf::{BodyRequest, WorldData};
 use cohabit_dialog::{Asking, Effort, Knows, Language};
 use cohabit_engine::SessionPlan;
-use cohabit_eval::{Settings, Style, Task, play, solve};
+use cohabit_eval::{Line, Settings, Style, Task, play, solve};
 use cohabit_record::Log;
 use cohabit_study::{
     SimulatedMission, SimulatedPlayer, SimulatedSession,
+    pair::PAIR_SIZE,
     settings::{Setting, Settings as StudySettings, WIZARD, arguments, has_wizard},
 };
 use cohabit_tables::Chance;
@@ -28,6 +29,7 @@ use crate::{
     minds::MindRequest,
     mission_file::MissionFile,
     peers::{Listening, NAME_OF, Timing},
+    play::SEATS,
 };
 
 /// The settings of sessions that a dry run acts out: those that make a difference without a page, a sound or a picture.
@@ -132,7 +134,11 @@ impl Speakers {
         let plan = plan.map_err(|error| error.to_string())?;
         // How somebody speaks follows from the task's name.
         let id = format!("{}#{people:x}", wanted.name);
-        let mut script = wishes(&plan.mission, catalog, wanted.speaking.own_words, &mut Chance::new(people, 0));
+        let of_one = |seed| wishes(&plan.mission, catalog, wanted.speaking.own_words, &mut Chance::new(seed, 0));
+        let mut script = match wanted.partner {
+            Some(partner) => in_turn(of_one(people), of_one(partner)),
+            None => of_one(people),
+        };
         if wanted.gives_up {
             // Half of what they would say first: the other half of all goals stays open.
             script.truncate(plan.mission.goals.len().div_ceil(2).min(plan.mission.goals.len().saturating_sub(1)));
@@ -187,6 +193,12 @@ impl Conditions {
         let name = self.name.iter().map(|name| (format!("{NAME_OF}{BODY}"), name.clone()));
         noted.into_iter().map(|(name, value)| (name.to_owned(), value)).chain(name).collect()
     }
+}
+
+/// What two people say who ask for one thing after the other in turn: every other line of each.
+fn in_turn(first: Vec<Line>, second: Vec<Line>) -> Vec<Line> {
+    let both = first.into_iter().zip(second).enumerate();
+    both.map(|(number, (own, others))| if number.is_multiple_of(2) { own } else { others }).collect()
 }
 
 /// Those of a study's settings that a dry run cannot act out.
@@ -247,12 +259,17 @@ impl SimulatedPlayer for Speakers {
         let log = Log::open(raw).map_err(|error| error.to_string())?;
         let pace = conditions.pace(speaking.line_s, wanted.is_heard);
         let log = SyntheticLog::new(log, pace, wanted.ends_by_s);
+        let mut noted = conditions.noted();
+        if wanted.partner.is_some() {
+            noted.insert(SEATS.to_owned(), PAIR_SIZE.to_string());
+        }
         let facts = Facts {
             session: wanted.name.clone(),
             participant: wanted.participant.clone(),
             mission_file: if is_file { wanted.mission.clone() } else { file.name },
-            settings: conditions.noted(),
+            settings: noted,
             has_wizard: conditions.has_wizard,
+            people: if wanted.partner.is_some() { PAIR_SIZE } else { 0 },
             began_ms: wanted.began_ms,
         };
         log.write(&wanted.log, facts).map_err(|error| error.to_string())?;

@@ -40,6 +40,8 @@ pub struct Facts {
     pub settings: BTreeMap<String, String>,
     /// Whether a wizard takes part: then each answer counts as a proposal that was accepted.
     pub has_wizard: bool,
+    /// How many people speak in turn, at a page each; 0 if one does, of whom no page is noted.
+    pub people: u32,
     /// When it began, ms since 1970.
     pub began_ms: u64,
 }
@@ -93,7 +95,8 @@ impl SyntheticLog {
     /// # Errors
     /// [`LogError`].
     pub fn write(&self, path: &Path, facts: Facts) -> Result<(), LogError> {
-        let Facts { session, participant, mission_file, mut settings, has_wizard, began_ms } = facts;
+        let Facts { session, participant, mission_file, mut settings, has_wizard, people, began_ms } = facts;
+        let mut turns = Turns::new(people);
         settings.insert(SYNTHETIC.to_owned(), true.to_string());
         let entry = SessionEntry {
             session,
@@ -121,7 +124,8 @@ impl SyntheticLog {
                 out.event(event, began_nanos + at)?;
             }
             while let Some(entry) = dialog.next_if(|entry: &&DialogEntry| entry.tick <= number) {
-                let entry = DialogEntry { sent_nanos: at, ..entry.clone() };
+                let person = turns.person(&entry.kind).unwrap_or(entry.person);
+                let entry = DialogEntry { sent_nanos: at, person, ..entry.clone() };
                 out.dialog(&entry, began_nanos + at)?;
                 if has_wizard && entry.kind == "Utterance" {
                     out.dialog(&accepted(&entry), began_nanos + at)?;
@@ -129,6 +133,37 @@ impl SyntheticLog {
             }
         }
         out.finish()
+    }
+}
+
+/// Whose turn it is to speak: one asks after the other, and whoever asked answers what the robot asks.
+struct Turns {
+    people: u32,
+    /// How many things were asked for so far.
+    asked: u32,
+    /// Whether the robot waits for an answer.
+    is_questioned: bool,
+}
+
+impl Turns {
+    const fn new(people: u32) -> Self {
+        Self { people, asked: 0, is_questioned: false }
+    }
+
+    /// The number of the page at which the next message of that kind is said, if it is said at one of several.
+    fn person(&mut self, kind: &str) -> Option<u32> {
+        match kind {
+            "Question" => self.is_questioned = true,
+            "Reply" => self.is_questioned = false,
+            "Utterance" if self.people > 0 => {
+                if !std::mem::take(&mut self.is_questioned) || self.asked == 0 {
+                    self.asked += 1;
+                }
+                return Some((self.asked - 1) % self.people + 1);
+            }
+            _ => {}
+        }
+        None
     }
 }
 
@@ -151,5 +186,19 @@ fn happening(event: &EventEntry) -> Option<Happening> {
             Some(Happening::ActionFailed)
         }
         _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn who_asked_for_something_answers_what_the_robot_asks_about_it() {
+        let mut turns = Turns::new(2);
+        let said = ["Utterance", "Question", "Utterance", "Reply", "Utterance", "Question", "Utterance", "Utterance"];
+        let people: Vec<u32> = said.into_iter().filter_map(|kind| turns.person(kind)).collect();
+        assert_eq!(people, [1, 1, 2, 2, 1]);
+        assert_eq!(Turns::new(0).person("Utterance"), None);
     }
 }

@@ -8,6 +8,7 @@ use super::*;
 use crate::{
     cycle::Cycle,
     design::{Factor, Level, Limits},
+    pair::{Pairing, PartnerAbsent, SkippedBy, partner_of},
     settings::{Setting, merged},
 };
 
@@ -144,6 +145,71 @@ proptest! {
     }
 }
 
+const PAIRING: Pairing = Pairing { wait_s: 60.0, partner_absent: PartnerAbsent::Wait, skip: SkippedBy::Both };
+
+/// The plans of all pairs, the first participant's alone: the other one's is the same.
+fn pairs(study: &Study, pairs: u32) -> Vec<Plan> {
+    (0..pairs).map(|pair| assign(study, pair * PAIR_SIZE + 1)).collect()
+}
+
+proptest! {
+    #[test]
+    fn both_of_a_pair_do_the_same(
+        seed: u64, place in 1_u32..200, between in 1_usize..4, within in 1_usize..4, order in 0_usize..3
+    ) {
+        let order = [MissionOrder::Fixed, MissionOrder::Random, MissionOrder::Balanced][order];
+        for assignment in SQUARES.into_iter().chain([Assignment::BlockRandom]) {
+            let study = Study { pairing: Some(PAIRING), ..study(seed, assignment, [between, within, 2], order) };
+            let (plan, partners) = (assign(&study, place), assign(&study, partner_of(place)));
+            prop_assert_eq!((&plan.between, &plan.steps), (&partners.between, &partners.steps));
+            prop_assert_eq!(plan.place, place);
+            // What a pair does is what a participant at its place would do.
+            let alone = assign(&Study { pairing: None, ..study.clone() }, pair_of(place));
+            prop_assert_eq!(Plan { place, ..alone }, plan);
+        }
+    }
+
+    #[test]
+    fn squares_and_blocks_are_balanced_over_pairs(
+        seed: u64, between in 1_usize..3, within in 1_usize..4, each in 1_usize..3, blocks in 1_usize..3
+    ) {
+        for assignment in SQUARES {
+            let study = Study {
+                pairing: Some(PAIRING),
+                block_size: between * blocks,
+                ..study(seed, assignment, [between, within, each], MissionOrder::Balanced)
+            };
+            let (cycle, missions) = (Cycle::of(&study), within * each);
+            let plans = pairs(&study, u32::try_from(cycle.participants()).unwrap() / PAIR_SIZE);
+            let counts = count(plans.iter().map(|plan| plan.between.clone()));
+            prop_assert!(is_even(&counts, between), "{counts:?}");
+            let met = plans.iter().flat_map(|plan| {
+                let played = played(plan).into_iter().enumerate();
+                played.map(|at| (plan.between.clone(), at)).collect::<Vec<_>>()
+            });
+            prop_assert!(is_even(&count(met), between * missions * missions * within));
+        }
+    }
+
+    #[test]
+    fn own_conditions_of_a_pair_are_balanced_over_participants(
+        seed: u64, own in 1_usize..4, between in 1_usize..3, groups in 1_usize..4
+    ) {
+        let mut study = study(seed, Assignment::BlockRandom, [between, 1, 1], MissionOrder::Fixed);
+        study.pairing = Some(PAIRING);
+        study.factors.push(factor("o", FactorKind::Own, own));
+        // Each group takes as many participants of one condition as there are own ones, and whole pairs of them.
+        let people = u32::try_from(between * own * groups * 2).unwrap();
+        let plans: Vec<_> = (1..=people).map(|place| assign(&study, place)).collect();
+        prop_assert!(is_even(&count(plans.iter().map(|plan| plan.between.clone())), between * own));
+        for pair in plans.chunks(2) {
+            let (first, second) = (&pair[0].between, &pair[1].between);
+            prop_assert_eq!(&first[0], &second[0], "the condition of the session is the pair's");
+            prop_assert!(own != 2 || first[1] != second[1], "of two, each has one");
+        }
+    }
+}
+
 #[test]
 fn cycles_are_of_what_is_balanced() {
     let check = |assignment, counts, order, block_size, expected| {
@@ -155,6 +221,8 @@ fn cycles_are_of_what_is_balanced() {
     check(Assignment::LatinSquare, [2, 3, 2], MissionOrder::Balanced, 2, 36);
     check(Assignment::LatinSquare, [2, 2, 1], MissionOrder::Random, 6, 12);
     check(Assignment::BlockRandom, [2, 3, 1], MissionOrder::Fixed, 4, 4);
+    let pairs = study(1, Assignment::LatinSquare, [2, 3, 2], MissionOrder::Balanced);
+    assert_eq!(Cycle::of(&Study { pairing: Some(PAIRING), ..pairs }).participants(), 72);
 }
 
 #[test]

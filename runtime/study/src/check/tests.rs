@@ -5,6 +5,7 @@ use cohabit_dialog::OnTimeout;
 use super::*;
 use crate::{
     design::{Block, FactorKind, Limits},
+    pair::{Pairing, PartnerAbsent, SkippedBy},
     schema,
     scratch::Scratch,
     settings::is_on,
@@ -23,6 +24,8 @@ impl Program for Stub {
             "--wizard=yes",
             "--wizard=no",
             "--response-delay-ms=2000",
+            "--body=person",
+            "--drive=all",
         ];
         let is_known = |one: &&String| known.contains(&one.as_str());
         let is_alone = |one: &&String| !one.starts_with("--wizard=");
@@ -340,6 +343,71 @@ fn what_is_wrong_is_said_with_its_place_and_a_remedy() {
         let said = check(&format!("wrong-{index}"), &STUDY.replacen(right, instead, 1)).expect_err(instead);
         assert!(said.contains(part), "no `{part}` in {said}");
         assert!(said.lines().all(|line| line.contains("study.toml:")), "{said}");
+    }
+}
+
+/// The study in pairs, with more at its beginning.
+fn in_pairs(more: &str) -> String {
+    STUDY.replacen("participants = 4\n", &format!("participants = 4\nparticipants_per_session = 2\n{more}\n"), 1)
+}
+
+/// A factor between participants with these keys, one level of which sets the first, the other one the second.
+fn between(keys: &str, levels: [&str; 2]) -> String {
+    let [first, second] = levels;
+    format!(
+        "[[factor]]\nname = \"own\"\nkind = \"between\"\n{keys}\nlevel = [{{ name = \"a\", settings = {{ {first} }} }}, \
+         {{ name = \"b\", settings = {{ {second} }} }}]\n\n[[factor]]"
+    )
+}
+
+#[test]
+fn pairs_are_read_and_a_factor_of_the_pages_can_be_each_participants() {
+    let pairing = |more: &str| check("pairs", &in_pairs(more)).unwrap().pairing;
+    let usual = Pairing { wait_s: 300.0, partner_absent: PartnerAbsent::Wait, skip: SkippedBy::Both };
+    assert_eq!((check("no-pairs", STUDY).unwrap().pairing, pairing("")), (None, Some(usual)));
+    let more = "pair = { partner_absent = \"alone\", partner_minutes = 0.5, skip = \"either\" }";
+    let other = Pairing { wait_s: 30.0, partner_absent: PartnerAbsent::Alone, skip: SkippedBy::Either };
+    assert_eq!(pairing(more), Some(other));
+    for (unit, kind) in [("participant", FactorKind::Own), ("pair", FactorKind::Between)] {
+        let clock = between(&format!("unit = \"{unit}\""), ["clock = true", "clock = false"]);
+        let study = check("unit", &in_pairs("").replacen("[[factor]]", &clock, 1)).unwrap();
+        assert_eq!((study.factors[0].kind, study.conditions(kind).len()), (kind, 2));
+    }
+}
+
+#[test]
+fn what_is_ambiguous_about_pairs_is_refused() {
+    let clock = ["clock = true", "clock = false"];
+    let asks = ["ask = \"never\"", "ask = \"always\""];
+    let factor = |keys: &str, levels| in_pairs("").replacen("[[factor]]", &between(keys, levels), 1);
+    let alone = |keys: &str, levels| STUDY.replacen("[[factor]]", &between(keys, levels), 1);
+    let minimisation = "[minimisation]\n[[minimisation.covariate]]\nname = \"a\"\nparameter = \"a\"\n\n[[factor]]";
+    let within = in_pairs("").replacen("kind = \"within\"", "kind = \"within\"\nunit = \"pair\"", 1);
+    let sessions = |settings: &str| {
+        let block = format!("settings = {{ {settings} }}\nminutes = 0.5");
+        in_pairs("").replacen("minutes = 0.5", &block, 1)
+    };
+    for (index, (text, part)) in [
+        (STUDY.replacen("participants = 4", "participants = 4\nparticipants_per_session = 0", 1), "nobody plays a session"),
+        (STUDY.replacen("participants = 4", "participants = 4\nparticipants_per_session = 3", 1), "a whole number from 0 to 2"),
+        (STUDY.replacen("participants = 4", "participants = 4\npair = {}", 1), "not of a pair; write participants_per_session"),
+        (in_pairs("pair = { partner_absent = \"leave\" }"), "write one of \"wait\", \"alone\", \"end\""),
+        (in_pairs("pair = { skip = \"none\" }"), "write one of \"both\", \"either\""),
+        (in_pairs("").replacen("participants = 4", "participants = 5", 1), "5 participants are no whole pairs; plan an even"),
+        (in_pairs("").replacen("[[factor]]", minimisation, 1), "a condition is the pair's; leave it out"),
+        (factor("", clock), "write unit = \"pair\" or unit = \"participant\""),
+        (factor("unit = \"participant\"", asks), "`ask` is of the session, which both of a pair play; leave `unit` out"),
+        (alone("unit = \"pair\"", asks), "there are no pairs; leave it out, or write participants_per_session"),
+        (within, "both of a pair meet all levels of a factor within participants"),
+        (sessions("body = \"person\""), "there is one avatar for two participants; write body"),
+        (sessions("drive = \"all\""), "each drives their own avatar, and nobody the robot; leave `drive` out"),
+        (sessions("seats = 2"), "`seats` is not a study's to set"),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let said = check(&format!("pairs-{index}"), &text).expect_err(part);
+        assert!(said.contains(part), "no `{part}` in {said}");
     }
 }
 

@@ -29,6 +29,7 @@ impl Checking<'_, '_> {
         study.block_size = if knows_factors { self.block_size(study, written) } else { 1 };
         self.combinations(study, written, blocks);
         self.can_be_tried(study, blocks);
+        self.who_drives(study, blocks);
         self.audio(study, &written.consent);
         if knows_factors && knows_blocks {
             self.takes_part(study, written);

@@ -53,6 +53,21 @@ fn who_withdraws_leaves_nothing_but_that() {
 }
 
 #[test]
+fn who_withdraws_from_a_pair_takes_its_sessions_along_and_none_of_the_partners_answers() {
+    let scratch = Scratch::new("withdraw-pair");
+    let folder = with_participants(&scratch);
+    for session in ["pair06-02-1", "P11-03-1", "pair01-02-1"] {
+        fs::write(folder.log_path(session), "log").unwrap();
+    }
+    folder.withdraw("P12", 77).unwrap();
+    let mut left = names(&folder.path().join("logs")).unwrap();
+    left.sort();
+    assert_eq!(left, ["P01-00-1.mcap", "P11-03-1.mcap", "pair01-02-1.mcap"]);
+    let expected = Withdrawal { participant: "P12".to_owned(), at_ms: 77, pair: Some("pair06".to_owned()) };
+    assert_eq!(folder.withdrawals().unwrap(), [expected]);
+}
+
+#[test]
 fn a_folder_has_one_study_and_one_holder() {
     let scratch = Scratch::new("folder");
     let path = scratch.path("data");

@@ -1,5 +1,7 @@
 //! Participants keep their places and conditions, whatever dies.
 
+mod pairs;
+
 use std::{collections::BTreeMap, fs, path::Path, sync::Arc};
 
 use cohabit_dialog::Given;
@@ -62,7 +64,9 @@ impl Player for Stage {
     fn start(&mut self, wanted: &Wanted) -> Result<Box<dyn Playing>, String> {
         fs::write(&wanted.log, "log").unwrap();
         let mut all = self.0.lock().unwrap();
-        all.push((wanted.clone(), Look::Open(PageAddress { port: 1, token: "t".to_owned(), wizard: None })));
+        let seats = (0..wanted.seats).map(|seat| format!("seat {seat}")).collect();
+        let page = PageAddress { port: 1, token: "t".to_owned(), wizard: None, seats };
+        all.push((wanted.clone(), Look::Open(page)));
         Ok(Box::new(Act { stage: self.clone(), number: all.len() - 1 }))
     }
 }
@@ -78,6 +82,10 @@ impl Playing for Act {
 
     fn tried(&mut self) -> Vec<Activity> {
         std::mem::take(&mut *self.stage.2.lock().unwrap())
+    }
+
+    fn tried_at(&mut self, _: usize) -> Vec<Activity> {
+        self.tried()
     }
 
     fn lacks_wizard(&self) -> bool {
@@ -250,7 +258,7 @@ fn the_wizards_page_is_led_to_the_seat_and_the_participants_page_is_as_ever() {
     assert_eq!((&before["page"], &case.registry().seats()["seats"]), (&"mission".into(), &serde_json::json!([])));
     let lacks_wizard = |case: &mut Case| case.registry().overview(1)["participants"][0]["lacks_wizard"].clone();
     assert_eq!(lacks_wizard(&mut case), false);
-    let led = PageAddress { port: 1, token: "t".to_owned(), wizard: Some("w".to_owned()) };
+    let led = PageAddress { port: 1, token: "t".to_owned(), wizard: Some("w".to_owned()), seats: Vec::new() };
     case.stage.set(0, Look::Open(led));
     case.look_after(1);
     let seat = &case.registry().seats()["seats"][0];

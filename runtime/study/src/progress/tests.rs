@@ -171,6 +171,52 @@ fn who_does_not_agree_is_asked_again_when_they_come_back() {
     assert!(progress.step(&Event::Read, 0).is_err());
 }
 
+#[test]
+fn a_mission_is_played_with_a_partner_until_one_of_them_goes_alone() {
+    let mut progress = Progress::new(plan());
+    let started = |attempt| Event::StartedTogether { attempt };
+    run(&mut progress, &[Event::Read, consented(), Event::GoesOn]);
+    assert!(progress.step(&Event::PartnerSkipped, 0).is_err(), "nothing is played yet");
+    // The partner's session was started once before this one's was.
+    assert_eq!(run(&mut progress, &[started(2)]), [Effect::StartSession { attempt: 2 }]);
+    assert_eq!((progress.plays_together(), progress.together()), (Some(0), 2));
+    assert!(progress.step(&Event::GoesAlone, 0).is_err(), "who plays does not wait");
+    run(&mut progress, &[interrupted()]);
+    assert!(progress.step(&started(2), 0).is_err(), "each time has its number");
+    run(&mut progress, &[Event::GoesAlone, Event::Started]);
+    assert!(progress.is_alone() && progress.plays_together().is_none());
+    assert!(progress.step(&Event::PartnerLeft, 0).is_err(), "nobody is waited for any more");
+    run(&mut progress, &[over(Ending::Complete)]);
+    assert_eq!((progress.done()[0].attempts, progress.done()[0].together), (3, 2));
+    assert_eq!((progress.attempts(), progress.together()), (0, 0));
+}
+
+#[test]
+fn who_has_no_partner_any_more_comes_to_an_end() {
+    let waiting = || {
+        let mut progress = Progress::new(plan());
+        run(&mut progress, &[Event::Read, consented(), Event::GoesOn]);
+        progress
+    };
+    let mut stops = waiting();
+    assert_eq!(run(&mut stops, &[Event::StopsWaiting]), []);
+    let mut skips = waiting();
+    assert_eq!(
+        run(&mut skips, &[Event::StartedTogether { attempt: 1 }, Event::PartnerSkipped]),
+        [Effect::StartSession { attempt: 1 }, Effect::EndSession],
+        "when the partner may, whatever one's own time is"
+    );
+    assert_eq!(skips.done()[0].ending, Some(Ending::Skipped));
+    let mut left = waiting();
+    let events = [Event::StartedTogether { attempt: 1 }, Event::PartnerLeft];
+    assert_eq!(run(&mut left, &events), [Effect::StartSession { attempt: 1 }, Effect::EndSession]);
+    for mut progress in [stops, left] {
+        assert_eq!((progress.phase(), progress.is_under_way()), (&Phase::Parted, false));
+        assert!(progress.step(&Event::GoesOn, 0).is_err());
+        assert_eq!(run(&mut progress, &[Event::Withdrew]), [Effect::RemoveData], "their data are theirs");
+    }
+}
+
 fn any_event() -> impl Strategy<Value = Event> {
     let endings = [Ending::Complete, Ending::Failed, Ending::TimeUp, Ending::Skipped, Ending::Stopped];
     prop_oneof![
@@ -183,6 +229,12 @@ fn any_event() -> impl Strategy<Value = Event> {
         Just(Event::Started),
         (0.0..20.0).prop_map(|seconds| Event::Played { seconds }),
         Just(interrupted()),
+        (1_u32..4).prop_map(|attempt| Event::StartedTogether { attempt }),
+        Just(Event::PartnerSkipped),
+        Just(Event::GoesAlone),
+        Just(Event::PartnerGoesAlone),
+        Just(Event::StopsWaiting),
+        Just(Event::PartnerLeft),
         (0_usize..3).prop_map(|probe| Event::Probed { probe }),
         (0_usize..3).prop_map(|probe| Event::ProbeAnswered { probe, answer: Some(Given::Value(1)) }),
         proptest::sample::select(endings.to_vec()).prop_map(over),

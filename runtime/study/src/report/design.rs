@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{Known, counted, listed, rows};
+use super::{Known, counted, listed, pairs, rows};
 use crate::{
     design::{Assignment, Block, Choice, FactorKind, Limits, Minimisation, MissionOrder, Study},
     plan::Step,
@@ -25,8 +25,14 @@ pub(super) fn assignment(known: &Known<'_>) -> String {
         };
         of_kind.map(one).collect::<Vec<_>>()
     };
-    let factors = [factor(FactorKind::Between, "between"), factor(FactorKind::Within, "within")].concat();
-    format!("{}\n\n{}\n\n{}", factors.join("\n"), methods(study), counts(known))
+    let factors = [
+        factor(FactorKind::Between, if study.pairing.is_some() { "between pairs of" } else { "between" }),
+        factor(FactorKind::Own, "between single"),
+        factor(FactorKind::Within, "within"),
+    ]
+    .concat();
+    let analysis = pairs::analysis(known).map(|text| format!("\n\n{text}")).unwrap_or_default();
+    format!("{}\n\n{}\n\n{}{analysis}", factors.join("\n"), methods(study), counts(known))
 }
 
 /// Settings as flags, and what participants are shown.
@@ -50,7 +56,7 @@ fn methods(study: &Study) -> String {
     } else if between > 1 {
         said.push(format!(
             "The {between} between-participants conditions were assigned in random order within blocks of {}.",
-            counted(study.block_size, "participant")
+            counted(study.block_size, study.unit())
         ));
     }
     if within > 1 {
@@ -59,6 +65,7 @@ fn methods(study: &Study) -> String {
             Assignment::BalancedLatinSquare => {
                 "by the rows of Latin squares balanced for first-order carry-over (Williams, 1949), taken in random order"
             }
+            Assignment::BlockRandom if study.pairing.is_some() => "in a random order for each pair",
             Assignment::BlockRandom => "in a random order for each participant",
         };
         said.push(format!("The {within} within-participant conditions were met {order}."));
@@ -66,6 +73,7 @@ fn methods(study: &Study) -> String {
     if let Some(missions) = study.missions_block() {
         let order = match missions.order {
             MissionOrder::Fixed => "in the same order by all",
+            MissionOrder::Random if study.pairing.is_some() => "in a random order for each pair",
             MissionOrder::Random => "in a random order for each participant",
             MissionOrder::Balanced => {
                 "in orders in which each meets each condition, and stands at each position, as often"
@@ -171,6 +179,9 @@ pub(super) fn procedure(known: &Known<'_>) -> String {
     let probes: Vec<String> = study.probes.iter().map(probe).collect();
     let numbered = steps.iter().enumerate().map(|(number, step)| format!("{}. {step}", number + 1));
     let mut text = numbered.collect::<Vec<_>>().join("\n");
+    if let Some(pairs) = pairs::procedure(known) {
+        text += &format!("\n\n{pairs}");
+    }
     if !probes.is_empty() {
         text += &format!("\n\nDuring each mission, which went on meanwhile, they were asked {}.", listed(&probes));
     }

@@ -1,6 +1,6 @@
 //! Who took part.
 
-use super::{Known, counted};
+use super::{Known, counted, pairs};
 use crate::progress::{Phase, Progress};
 
 pub(super) fn section(known: &Known<'_>) -> String {
@@ -17,6 +17,9 @@ pub(super) fn section(known: &Known<'_>) -> String {
         counted(consented, "participant"),
         if excluded == 1 { "was" } else { "were" },
     );
+    if let Some(pairs) = pairs::counts(known) {
+        text += &format!(" {pairs}");
+    }
     if let Some((first, last)) = times(all) {
         text += &format!(" The first consented on {first}, and the last step ended on {last}.");
     }

@@ -177,3 +177,24 @@ fn quantiles_and_days_are_those_of_others() {
         assert_eq!(day(at_s * 1000), expected);
     }
 }
+
+#[test]
+fn a_sheet_counts_pairs_and_says_what_is_theirs() {
+    let mut records = records(false);
+    records.study.pairing = Some(crate::pair::Pairing {
+        wait_s: 120.0,
+        partner_absent: crate::pair::PartnerAbsent::Alone,
+        skip: crate::pair::SkippedBy::Both,
+    });
+    let text = report(&records, &Apparatus::default(), &[]);
+    for part in [
+        "They took part in 2 pairs: 0 finished together, in 0 somebody went on without their partner, and of 1 the second participant",
+        "`ask` varied between pairs of participants",
+        "within blocks of 2 pairs",
+        "Who had waited for 2 min could go on alone. A mission was skipped when both agreed.",
+        "a random intercept for each pair",
+        "(1 | pair/participant)",
+    ] {
+        assert!(text.contains(part), "no `{part}` in {text}");
+    }
+}

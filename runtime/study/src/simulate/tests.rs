@@ -5,7 +5,8 @@ use std::{collections::BTreeMap, fs, path::Path};
 use super::*;
 use crate::{
     check::StudyFile,
-    plan::Step,
+    pair::{pair_label, partner_of},
+    plan::{Step, place_of},
     probe::Happening,
     progress::Ending,
     records::Records,
@@ -51,16 +52,20 @@ impl SimulatedPlayer for Stage {
 }
 
 fn run(scratch: &Scratch, data: &str, seed: u64, threads: usize) -> (Simulated, Records) {
-    for (name, text) in [("sheet.md", "Read."), ("study.toml", STUDY), ("one.toml", ITEM), ("two.toml", ITEM)] {
+    let leaving = Leaving { declines: 0.1, withdraws: 0.1, stops: 0.1, ..Leaving::default() };
+    let people = People { leaving, ..People::default() };
+    let run = DryRun { participants: 31, seed, people, program: "1".to_owned() };
+    run_study(STUDY, scratch, data, &run, threads)
+}
+
+fn run_study(study: &str, scratch: &Scratch, data: &str, run: &DryRun, threads: usize) -> (Simulated, Records) {
+    for (name, text) in [("sheet.md", "Read."), ("study.toml", study), ("one.toml", ITEM), ("two.toml", ITEM)] {
         let _ = scratch.write(name, text);
     }
+    let files = BTreeMap::from([("study.toml".to_owned(), study.to_owned())]);
     let study = StudyFile::read(&scratch.path("study.toml")).unwrap().check(&Anything).unwrap();
-    let mut people = People::default();
-    (people.leaving.declines, people.leaving.withdraws, people.leaving.stops) = (0.1, 0.1, 0.1);
-    let run = DryRun { participants: 31, seed, people, program: "1".to_owned() };
-    let files = BTreeMap::from([("study.toml".to_owned(), STUDY.to_owned())]);
-    let folder = Folder::begin_synthetic(&scratch.path(data), &files, &run).unwrap();
-    let simulated = simulate(study.clone(), folder, &run, &Stage, threads, &|| {}).unwrap();
+    let folder = Folder::begin_synthetic(&scratch.path(data), &files, run).unwrap();
+    let simulated = simulate(study.clone(), folder, run, &Stage, threads, &|| {}).unwrap();
     (simulated, Records::read(study, &scratch.path(data)).unwrap())
 }
 
@@ -147,5 +152,59 @@ fn a_dry_run_is_never_mixed_with_people() {
     for refused in [Folder::begin(&dry, &files), Folder::begin_synthetic(&dry, &files, &note)] {
         let error = refused.unwrap_err().to_string();
         assert!(error.contains("holds a dry run") && error.contains("choose another folder"), "{error}");
+    }
+}
+
+/// The study in pairs, where this follows when somebody waits in vain.
+fn in_pairs(partner_absent: &str) -> String {
+    let pair = format!("pair = {{ partner_absent = \"{partner_absent}\", skip = \"either\" }}");
+    STUDY.replace("participants = 4", &format!("participants = 4\nparticipants_per_session = 2\n{pair}"))
+}
+
+#[test]
+fn pairs_are_played_by_two_people_together() {
+    let scratch = Scratch::new("simulate-pairs");
+    let leaving = Leaving { declines: 0.1, withdraws: 0.1, stops: 0.1, ..Leaving::default() };
+    let people = People { leaving, ..People::default() };
+    let run = DryRun { participants: 31, seed: 1, people, program: "1".to_owned() };
+    let (simulated, records) = run_study(&in_pairs("alone"), &scratch, "one", &run, 1);
+    let _ = run_study(&in_pairs("alone"), &scratch, "again", &run, 3);
+    assert_eq!(tables_in(&scratch.path("one")), tables_in(&scratch.path("again")));
+    assert!(simulated.finished > 10 && simulated.withdrawn > 0, "{simulated:?}");
+    let at = |place: u32| records.progress.iter().find(|one| one.plan().place == place);
+    let mut together = 0;
+    for progress in &records.progress {
+        let Some(partner) = at(partner_of(progress.plan().place)) else { continue };
+        assert_eq!(progress.plan().steps, partner.plan().steps);
+        for done in progress.done().iter().filter(|done| done.together > 0) {
+            // What both played is the same session, and ended alike.
+            let theirs = partner.done().iter().find(|other| other.step == done.step);
+            assert!(theirs.is_some_and(|other| (other.together, other.attempts) == (1, 1)), "{done:?} {theirs:?}");
+            together += 1;
+        }
+    }
+    assert!(together > 40, "{together}");
+    let logs = fs::read_dir(scratch.path("one/logs")).unwrap().flatten().map(|entry| entry.file_name());
+    let logs: Vec<String> = logs.map(|name| name.to_string_lossy().into_owned()).collect();
+    assert!(logs.iter().any(|log| log.starts_with("pair")), "{logs:?}");
+    for place in records.withdrawn.iter().filter_map(|name| place_of(name)) {
+        let pair = format!("{}-", pair_label(pair_of(place)));
+        assert!(!logs.iter().any(|log| log.starts_with(&pair)), "{pair}: {logs:?}");
+    }
+}
+
+#[test]
+fn who_has_no_partner_waits_and_goes_alone_or_stops_as_the_study_says() {
+    for (partner_absent, progress, alone) in [("alone", "finished", 4), ("end", "parted", 0), ("wait", "waiting", 0)] {
+        let scratch = Scratch::new(&format!("simulate-alone-{partner_absent}"));
+        let leaving = Leaving { withdraws: 0.0, stops: 0.0, ..Leaving::default() };
+        let people = People { leaving, ..People::default() };
+        let run = DryRun { participants: 3, seed: 1, people, program: "1".to_owned() };
+        let (_, records) = run_study(&in_pairs(partner_absent), &scratch, "data", &run, 1);
+        let last = &records.progress[2];
+        assert_eq!((records.progress.len(), tables::progress_name(last)), (3, progress));
+        let missions = last.done().iter().filter(|done| done.ending.is_some() && done.together == 0).count();
+        assert_eq!(missions, alone, "{last:?}");
+        assert!(records.progress[..2].iter().all(|one| one.phase() == &Phase::Finished));
     }
 }

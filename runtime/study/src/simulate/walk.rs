@@ -5,10 +5,11 @@ use std::path::PathBuf;
 use crate::{
     design::{Limits, Study},
     folder::Folder,
+    pair::{pair_label, pair_of},
     plan::{Plan, PlannedMission, Step, pseudonym},
     probe::{self, Happening},
     progress::{Ending, Event, Progress},
-    session::session_name,
+    session::name_of_try,
     settings::Settings,
     simulate::{
         SimulateError,
@@ -30,7 +31,7 @@ const GIVES_UP_AFTER_S: f64 = 10.0;
 pub struct SimulatedMission {
     /// What its session is called.
     pub name: String,
-    /// The participant's pseudonym.
+    /// What the participant is called; in a study of pairs, what the pair is.
     pub participant: String,
     /// The mission, as the study names it.
     pub mission: String,
@@ -40,6 +41,8 @@ pub struct SimulatedMission {
     pub seeds: [u64; 2],
     /// How they speak, with the time that this person takes for a line.
     pub speaking: Speaking,
+    /// The seed of how their partner speaks, if two people play it; they speak in turn, about one goal after the other.
+    pub partner: Option<u64>,
     /// Whether they speak aloud, as those do who agreed to be heard, rather than write.
     pub is_heard: bool,
     /// Whether they give it up halfway.
@@ -80,12 +83,21 @@ pub(super) struct Setting<'a> {
     pub player: &'a dyn SimulatedPlayer,
 }
 
+impl Setting<'_> {
+    /// What comes of a session.
+    pub fn play(&self, wanted: &SimulatedMission) -> Result<SimulatedSession, SimulateError> {
+        let failed = |reason| SimulateError::Session { session: wanted.name.clone(), reason };
+        self.player.play(wanted).map_err(failed)
+    }
+}
+
 /// What happens to one person.
 pub(super) struct Walk<'a> {
     setting: &'a Setting<'a>,
     person: &'a Person<'a>,
-    progress: Progress,
-    at_ms: u64,
+    pub(super) progress: Progress,
+    /// The time that they have come to, ms since 1970.
+    pub(super) at_ms: u64,
     events: Vec<(u64, Event)>,
 }
 
@@ -98,20 +110,32 @@ impl<'a> Walk<'a> {
 
     /// Goes on to the end, or until they leave, or until a condition has to be assigned.
     pub fn run(mut self) -> Result<Vec<(u64, Event)>, SimulateError> {
+        self.go_on(false)?;
+        Ok(self.events)
+    }
+
+    /// What has happened to them.
+    pub fn into_events(self) -> Vec<(u64, Event)> {
+        self.events
+    }
+
+    /// Goes on so far; if missions wait for a partner, to the next one. Whether there is one.
+    pub(super) fn go_on(&mut self, waits: bool) -> Result<bool, SimulateError> {
         let steps = self.progress.plan().steps.len();
         while let Some((index, step, _)) = self.progress.step_now() {
             let step = step.clone();
             match self.person.leaves_at(index, steps).filter(|_| !self.progress.plan().awaits_assignment) {
-                Some(Leaves::Stops) => break,
+                Some(Leaves::Stops) => return Ok(false),
                 Some(Leaves::Withdraws) => self.happens(Event::Withdrew)?,
                 Some(Leaves::IsExcluded) => self.happens(Event::Excluded { reason: "as simulated".to_owned() })?,
+                None if waits && matches!(step, Step::Mission(_)) => return Ok(true),
                 None => self.step(index, &step)?,
             }
         }
-        Ok(self.events)
+        Ok(false)
     }
 
-    fn happens(&mut self, event: Event) -> Result<(), SimulateError> {
+    pub(super) fn happens(&mut self, event: Event) -> Result<(), SimulateError> {
         let participant = pseudonym(self.progress.plan().place);
         let refused = |refused| SimulateError::Refused { participant, event: format!("{event:?}"), refused };
         self.progress.step(&event, self.at_ms).map_err(refused)?;
@@ -119,7 +143,7 @@ impl<'a> Walk<'a> {
         Ok(())
     }
 
-    fn passes(&mut self, seconds: f64) {
+    pub(super) fn passes(&mut self, seconds: f64) {
         self.at_ms += (seconds * 1000.0).round() as u64;
     }
 
@@ -130,7 +154,10 @@ impl<'a> Walk<'a> {
                 self.passes(limit_s.map_or(REST_S, |limit| limit.min(REST_S)));
                 self.happens(Event::GoesOn)
             }
-            Step::Mission(mission) => self.mission(index, mission),
+            Step::Mission(_) => {
+                self.gets_ready()?;
+                self.plays_alone(index)
+            }
         }
     }
 
@@ -141,16 +168,28 @@ impl<'a> Walk<'a> {
         self.happens(Event::Answered { questionnaire: name.to_owned(), answers })
     }
 
-    fn mission(&mut self, index: usize, mission: &PlannedMission) -> Result<(), SimulateError> {
+    /// They read what is said before a mission, and want to begin.
+    pub(super) fn gets_ready(&mut self) -> Result<(), SimulateError> {
         self.passes(self.person.answering_s(1));
-        self.happens(Event::GoesOn)?;
+        self.happens(Event::GoesOn)
+    }
+
+    /// They play the mission of a step, for which they wait, in a session of their own.
+    pub(super) fn plays_alone(&mut self, index: usize) -> Result<(), SimulateError> {
         self.happens(Event::Started)?;
-        let session = self.play(index, mission)?;
+        let Some(wanted) = self.wanted(index) else { return Ok(()) };
+        let session = self.setting.play(&wanted)?;
+        self.lives_through(index, &session)
+    }
+
+    /// What comes of a session for them.
+    pub(super) fn lives_through(&mut self, index: usize, session: &SimulatedSession) -> Result<(), SimulateError> {
+        let Some(Step::Mission(mission)) = self.progress.plan().steps.get(index).cloned() else { return Ok(()) };
         if mission.is_tutorial() {
-            return self.tutorial(index, mission, &session);
+            return self.tutorial(index, &mission, session);
         }
-        let (ending, played_s) = ending(&session, mission.limits);
-        self.probes(index, mission, &session, played_s)?;
+        let (ending, played_s) = ending(session, mission.limits);
+        self.probes(index, &mission, session, played_s)?;
         let left_s = played_s - self.progress.played_s();
         self.plays(left_s)?;
         self.passes(if matches!(ending, Ending::Complete | Ending::Failed) { ENDING_SEEN_S } else { 0.0 });
@@ -192,24 +231,27 @@ impl<'a> Walk<'a> {
         self.happens(Event::Over { ending })
     }
 
-    fn play(&self, index: usize, mission: &PlannedMission) -> Result<SimulatedSession, SimulateError> {
-        let Setting { study, speaking, logs, player } = self.setting;
+    /// The session in which they play the mission of a step; their first one of it.
+    pub(super) fn wanted(&self, index: usize) -> Option<SimulatedMission> {
+        let Setting { study, speaking, logs, .. } = self.setting;
         let Plan { place, .. } = *self.progress.plan();
-        let name = session_name(place, index, 1);
-        let wanted = SimulatedMission {
-            participant: pseudonym(place),
+        let Some(Step::Mission(mission)) = self.progress.plan().steps.get(index) else { return None };
+        let name = name_of_try(place, index, 1, self.progress.together());
+        let is_of_pairs = study.pairing.is_some();
+        Some(SimulatedMission {
+            participant: if is_of_pairs { pair_label(pair_of(place)) } else { pseudonym(place) },
             mission: mission.mission.clone(),
             settings: mission.settings.clone(),
             seeds: [study.seed, self.person.speaker(index)],
             speaking: Speaking { line_s: self.person.line_s(), ..(*speaking).clone() },
+            partner: None,
             is_heard: self.progress.agrees_to_audio(),
             gives_up: self.person.gives_up(index),
             ends_by_s: mission.limits.limit_s,
             began_ms: self.at_ms,
             log: logs.log_path(&name),
             name,
-        };
-        player.play(&wanted).map_err(|reason| SimulateError::Session { session: wanted.name, reason })
+        })
     }
 
     /// They play on for so long.

@@ -7,7 +7,7 @@ use cohabit_tables::{
     Table,
 };
 
-use super::{BOTH, factor_cells, field, mission_about, of_steps, step_cells, text, whole};
+use super::{ALL_KINDS, factor_cells, field, mission_about, of_steps, step_cells, text, whole};
 use crate::{
     design::Study,
     plan::{Plan, Step},
@@ -39,7 +39,7 @@ fn answer_rows(study: &Study, plan: &Plan, done: &Done) -> Vec<Vec<Cell>> {
     // What was taken was checked; it is the questionnaire that may be another one by now.
     let messages = asked.and_then(|asked| asked.answered(plan.place, &done.answers).ok()).unwrap_or_default();
     let mission = mission_about(plan, *about);
-    let factors = factor_cells(study, &BOTH, &plan.choices(done.step));
+    let factors = factor_cells(study, &ALL_KINDS, &plan.choices(done.step));
     let attentive = |item: u32| {
         let number = (item as usize).checked_sub(1)?;
         study.instrument(name)?.is_attentive(number, done.answers.get(number)?.as_ref())
@@ -48,7 +48,7 @@ fn answer_rows(study: &Study, plan: &Plan, done: &Done) -> Vec<Vec<Cell>> {
     let row = |message: &cohabit_bus::message::AnswerMessage| {
         let kind = message.kind();
         let of_scale = |cell: Cell| if kind == Some(AnswerKind::Scale) { cell } else { Cell::Nothing };
-        let first = step_cells(plan, done);
+        let first = step_cells(study, plan, done);
         let more = [
             mission.clone(),
             text(name),

@@ -7,7 +7,7 @@ use cohabit_tables::{
     Table,
 };
 
-use super::{BOTH, factor_cells, field, of_steps, step_cells, text, whole};
+use super::{ALL_KINDS, factor_cells, field, of_steps, step_cells, text, whole};
 use crate::{
     design::Study,
     plan::{Plan, Step},
@@ -30,7 +30,7 @@ pub(crate) fn table(study: &Study, all: &[Progress]) -> Table {
 fn rows(study: &Study, plan: &Plan, done: &Done) -> Vec<Vec<Cell>> {
     let Some(Step::Mission(mission)) = plan.steps.get(done.step) else { return Vec::new() };
     let tried_ms = |number: usize| done.tried.iter().find(|one| one.exercise == number).map(|one| one.at_ms);
-    let factors = factor_cells(study, &BOTH, &plan.choices(done.step));
+    let factors = factor_cells(study, &ALL_KINDS, &plan.choices(done.step));
     let row = |(number, exercise): (usize, &Exercise)| {
         let more = [
             text(&mission.mission),
@@ -39,7 +39,7 @@ fn rows(study: &Study, plan: &Plan, done: &Done) -> Vec<Vec<Cell>> {
             text(&exercise.text),
             tried_ms(number).map_or(Cell::Nothing, whole),
         ];
-        step_cells(plan, done).into_iter().chain(factors.clone()).chain(more).collect()
+        step_cells(study, plan, done).into_iter().chain(factors.clone()).chain(more).collect()
     };
     mission.exercises.iter().enumerate().map(row).collect()
 }

@@ -6,12 +6,12 @@ use cohabit_tables::{
     Table,
 };
 
-use super::{BOTH, factor_cells, factor_fields, field, practice_field, step_cells, step_fields, text, whole};
+use super::{ALL_KINDS, factor_cells, factor_fields, field, practice_field, step_cells, step_fields, text, whole};
 use crate::{
     design::Study,
     plan::Step,
     progress::{Done, Progress},
-    session::session_name,
+    session::name_of_try,
 };
 
 pub(super) fn table(study: &Study, all: &[Progress], with_practice: bool) -> Table {
@@ -31,8 +31,8 @@ pub(super) fn table(study: &Study, all: &[Progress], with_practice: bool) -> Tab
             return None;
         }
         let sessions: Vec<_> =
-            (1..=done.attempts).map(|attempt| session_name(plan.place, done.step, attempt)).collect();
-        let first = step_cells(plan, done);
+            (1..=done.attempts).map(|attempt| name_of_try(plan.place, done.step, attempt, done.together)).collect();
+        let first = step_cells(study, plan, done);
         let more = [
             Cell::Flag(mission.is_practice),
             text(&mission.mission),
@@ -42,10 +42,10 @@ pub(super) fn table(study: &Study, all: &[Progress], with_practice: bool) -> Tab
             whole(done.began_ms),
             whole(done.ended_ms),
         ];
-        let factors = factor_cells(study, &BOTH, &plan.choices(done.step));
+        let factors = factor_cells(study, &ALL_KINDS, &plan.choices(done.step));
         Some(first.into_iter().chain(factors).chain(more).collect())
     };
     let rows = all.iter().flat_map(|progress| progress.done().iter().filter_map(move |done| row(progress, done)));
-    let fields = step_fields().into_iter().chain(factor_fields(study, &BOTH)).chain(more).collect();
+    let fields = step_fields(study).into_iter().chain(factor_fields(study, &ALL_KINDS)).chain(more).collect();
     Table { name: "missions", meaning: "a mission that a participant played", fields, rows: rows.collect() }
 }

@@ -7,7 +7,7 @@ use cohabit_tables::{
     Table,
 };
 
-use super::{BOTH, factor_cells, factor_fields, field, step_cells, step_fields, text, whole};
+use super::{ALL_KINDS, factor_cells, factor_fields, field, step_cells, step_fields, text, whole};
 use crate::{
     design::Study,
     plan::Step,
@@ -33,8 +33,8 @@ pub(crate) fn table(study: &Study, all: &[Progress], with_practice: bool) -> Tab
         if mission.is_practice && !with_practice {
             return Vec::new();
         }
-        let factors = factor_cells(study, &BOTH, &plan.choices(done.step));
-        let first = step_cells(plan, done);
+        let factors = factor_cells(study, &ALL_KINDS, &plan.choices(done.step));
+        let first = step_cells(study, plan, done);
         let row = |probed: &Probed| {
             let more = probe_cells(study, &mission.mission, plan.place, probed)?;
             Some(first.iter().chain(&factors).cloned().chain(more).collect())
@@ -43,7 +43,7 @@ pub(crate) fn table(study: &Study, all: &[Progress], with_practice: bool) -> Tab
     };
     let rows = all.iter().flat_map(|progress| progress.done().iter().flat_map(move |done| of_done(progress, done)));
     let rows = rows.collect();
-    let fields = step_fields().into_iter().chain(factor_fields(study, &BOTH)).chain(more).collect();
+    let fields = step_fields(study).into_iter().chain(factor_fields(study, &ALL_KINDS)).chain(more).collect();
     Table {
         name: "probes",
         meaning: "a question that a participant was asked while a mission was played",

@@ -6,7 +6,7 @@ use cohabit_tables::{
     Table,
 };
 
-use super::{BOTH, factor_cells, field, mission_about, of_steps, step_cells, text, whole};
+use super::{ALL_KINDS, factor_cells, field, mission_about, of_steps, step_cells, text, whole};
 use crate::{
     design::Study,
     plan::{Plan, Step},
@@ -34,7 +34,7 @@ fn rows(study: &Study, plan: &Plan, done: &Done) -> Vec<Vec<Cell>> {
     let mission = mission_about(plan, *about);
     let failed = |(item, given): (usize, &Option<_>)| instrument.is_attentive(item, given.as_ref()) == Some(false);
     let failed = done.answers.iter().enumerate().filter(|one| failed(*one)).count();
-    let factors = factor_cells(study, &BOTH, &plan.choices(done.step));
+    let factors = factor_cells(study, &ALL_KINDS, &plan.choices(done.step));
     let row = |score: &crate::instrument::Score| {
         let more = [
             mission.clone(),
@@ -44,7 +44,7 @@ fn rows(study: &Study, plan: &Plan, done: &Done) -> Vec<Vec<Cell>> {
             text(&score.meaning),
             whole(failed),
         ];
-        step_cells(plan, done).into_iter().chain(factors.clone()).chain(more).collect()
+        step_cells(study, plan, done).into_iter().chain(factors.clone()).chain(more).collect()
     };
     instrument.scores.iter().map(row).collect()
 }

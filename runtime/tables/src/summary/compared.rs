@@ -14,12 +14,16 @@ use crate::{
 const MISSION: &str = "mission";
 /// The other one.
 const PARTICIPANT: &str = "participant";
+/// The setting that notes how many people have a page of their own in a session: it is then theirs together.
+const SEATS: &str = "seats";
 
 /// Sessions to be compared by conditions.
 #[derive(Clone, Debug)]
 pub(crate) struct Compared {
     /// Of each session: what each condition was.
     pub own: Vec<Conditions>,
+    /// Whose each was: a participant's, or a pair's or group's who play together.
+    pub unit: &'static str,
     /// Of each session: whose it was. A session without a name counts as a participant of its own.
     pub participants: Vec<String>,
     /// Sessions without a participant's name.
@@ -50,7 +54,8 @@ impl Compared {
         let names = played.iter().map(|played| played.log.session.participant.clone().filter(|name| !name.is_empty()));
         let by = if by.is_empty() { differing(played, &own) } else { by.to_vec() };
         let participants = names.zip(played).map(|(name, played)| (name, played.name.as_str()));
-        Self::of(own, participants.collect(), Outcome::all(played), &by)
+        let unit = unit(played);
+        Ok(Self { unit, ..Self::of(own, participants.collect(), Outcome::all(played), &by)? })
     }
 
     /// Sessions of these conditions, participants (by name, or else by the session's name) and outcomes.
@@ -72,7 +77,7 @@ impl Compared {
             _ => format!("session {session}"),
         };
         let participants = participants.into_iter().map(label).collect();
-        Ok(Self { own, participants, unnamed, conditions, terms, is_repeated, outcomes })
+        Ok(Self { own, unit: PARTICIPANT, participants, unnamed, conditions, terms, is_repeated, outcomes })
     }
 
     /// Sessions.
@@ -135,6 +140,16 @@ impl Compared {
 /// The mean of values.
 pub(crate) fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
+}
+
+/// Whose sessions these are.
+fn unit(played: &[Played]) -> &'static str {
+    let seats = played.iter().filter_map(|one| one.log.session.settings.get(SEATS)?.parse::<u32>().ok());
+    match seats.max().unwrap_or(0) {
+        0 | 1 => PARTICIPANT,
+        2 => "pair",
+        _ => "group",
+    }
 }
 
 /// All that a session may be compared by.

@@ -122,3 +122,20 @@ fn shares_that_are_alike_have_an_interval_all_the_same() {
     // Wilson's of none of nine participants.
     assert!(low == 0.0 && (high - 0.2991).abs() < 1e-4, "{low} {high}");
 }
+
+#[test]
+fn sessions_of_pairs_are_the_pairs() {
+    let pairs = Compared { unit: "pair", ..compared(&["ask", "wizard"], |_| true) };
+    let summary = Summary::of(&pairs);
+    check_text(
+        &summary,
+        &[
+            "27 sessions of 9 pairs; means of pairs' means",
+            "linear mixed model (REML) with a random intercept per pair, each outcome on ask and wizard",
+            "  9 pairs: standard deviation 1.70 between them",
+            "  varies within pairs: ask; between pairs: wizard",
+            "  d_av: within pairs, by the mean variance of both levels",
+        ],
+    );
+    assert!(!summary.to_string().contains("participant"), "{summary}");
+}

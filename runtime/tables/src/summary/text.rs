@@ -10,7 +10,7 @@ use crate::{
 
 impl fmt::Display for Summary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let sessions = self.sessions;
+        let (sessions, unit) = (self.sessions, self.unit);
         match self.participants {
             None => writeln!(
                 f,
@@ -18,12 +18,12 @@ impl fmt::Display for Summary {
             )?,
             Some(count) => writeln!(
                 f,
-                "{sessions} sessions of {count} participants; means of participants' means, and in brackets their 95 % intervals\n\
+                "{sessions} sessions of {count} {unit}s; means of {unit}s' means, and in brackets their 95 % intervals\n\
                  (of success Wilson's where each has one session, else Student's)"
             )?,
         }
         write_groups(f, &self.groups)?;
-        self.notes.iter().try_for_each(|note| writeln!(f, "{note}"))?;
+        self.notes.iter().try_for_each(|note| writeln!(f, "{}", of_unit(note, unit)))?;
         if self.fits.is_empty() {
             return writeln!(
                 f,
@@ -31,13 +31,13 @@ impl fmt::Display for Summary {
             );
         }
         let model = if self.participants.is_some() {
-            "linear mixed model (REML) with a random intercept per participant"
+            format!("linear mixed model (REML) with a random intercept per {unit}")
         } else {
-            "least squares"
+            "least squares".to_owned()
         };
         writeln!(f, "\n{model}, each outcome on {}", self.conditions.join(" and "))?;
-        self.fits.iter().try_for_each(|fit| write_fit(f, fit))?;
-        write_effects(f, &self.effects)
+        self.fits.iter().try_for_each(|fit| write_fit(f, fit, unit))?;
+        write_effects(f, &self.effects, unit)
     }
 }
 
@@ -87,12 +87,12 @@ fn number(value: f64) -> String {
     if text == "-0.00" { "0.00".to_owned() } else { text }
 }
 
-fn write_fit(f: &mut fmt::Formatter<'_>, fit: &Fit) -> fmt::Result {
+fn write_fit(f: &mut fmt::Formatter<'_>, fit: &Fit, unit: &str) -> fmt::Result {
     let explained = fit.r_squared.map_or_else(String::new, |share| format!(", R² {share:.2}"));
     writeln!(f, "\n{}: {} sessions{explained}", with_unit(&fit.outcome, fit.unit), fit.sessions)?;
     if let Some(reason) = &fit.reason {
-        writeln!(f, "  not fitted: {reason}")?;
-        return write_notes(f, fit);
+        writeln!(f, "  not fitted: {}", of_unit(reason, unit))?;
+        return write_notes(f, fit, unit);
     }
     let row = |term: &Term| {
         let [low, high] = term.interval_95.map(number);
@@ -111,15 +111,15 @@ fn write_fit(f: &mut fmt::Formatter<'_>, fit: &Fit) -> fmt::Result {
         writeln!(f, "  {}: F({numerator}, {denominator:.1}) = {}, {}", test.condition, number(test.f), p(test.p))?;
     }
     if let Some(random) = &fit.random_intercept {
-        write_random_intercept(f, random)?;
+        write_random_intercept(f, random, unit)?;
     }
-    write_notes(f, fit)
+    write_notes(f, fit, unit)
 }
 
-fn write_random_intercept(f: &mut fmt::Formatter<'_>, random: &RandomIntercept) -> fmt::Result {
+fn write_random_intercept(f: &mut fmt::Formatter<'_>, random: &RandomIntercept, unit: &str) -> fmt::Result {
     writeln!(
         f,
-        "  {} participants: standard deviation {} between them, {} within; intraclass correlation {:.2}",
+        "  {} {unit}s: standard deviation {} between them, {} within; intraclass correlation {:.2}",
         random.participants,
         number(random.standard_deviation),
         number(random.residual_standard_deviation),
@@ -129,20 +129,20 @@ fn write_random_intercept(f: &mut fmt::Formatter<'_>, random: &RandomIntercept) 
     let vary: Vec<String> = vary
         .into_iter()
         .filter(|(_, names)| !names.is_empty())
-        .map(|(how, names)| format!("{how} participants: {}", names.join(", ")))
+        .map(|(how, names)| format!("{how} {unit}s: {}", names.join(", ")))
         .collect();
     writeln!(f, "  varies {}", vary.join("; "))
 }
 
-fn write_notes(f: &mut fmt::Formatter<'_>, fit: &Fit) -> fmt::Result {
-    fit.notes.iter().try_for_each(|note| writeln!(f, "  {note}"))?;
+fn write_notes(f: &mut fmt::Formatter<'_>, fit: &Fit, unit: &str) -> fmt::Result {
+    fit.notes.iter().try_for_each(|note| writeln!(f, "  {}", of_unit(note, unit)))?;
     if fit.left_out.is_empty() {
         return Ok(());
     }
     writeln!(f, "  not to be told apart from these: {}", fit.left_out.join("; "))
 }
 
-fn write_effects(f: &mut fmt::Formatter<'_>, effects: &[Effect]) -> fmt::Result {
+fn write_effects(f: &mut fmt::Formatter<'_>, effects: &[Effect], unit: &str) -> fmt::Result {
     if effects.is_empty() {
         return Ok(());
     }
@@ -150,7 +150,7 @@ fn write_effects(f: &mut fmt::Formatter<'_>, effects: &[Effect]) -> fmt::Result 
     let used =
         |symbol: &str| effects.iter().flat_map(|effect| &effect.sizes).any(|size| size.measure.symbol() == symbol);
     for (symbol, meaning) in LEGEND.into_iter().filter(|(symbol, _)| used(symbol)) {
-        writeln!(f, "  {symbol}: {meaning}")?;
+        writeln!(f, "  {symbol}: {}", of_unit(meaning, unit))?;
     }
     let row = |effect: &Effect| {
         let size = |size: &EffectSize| {
@@ -176,6 +176,11 @@ const LEGEND: [(&str, &str); 4] = [
     ("d_av", "within participants, by the mean variance of both levels; compares with g"),
     ("difference", "of shares, by Newcombe's intervals; Student's where a share is of several sessions"),
 ];
+
+/// What is said of participants, said of those whose sessions are compared.
+fn of_unit(text: &str, unit: &str) -> String {
+    text.replace("participant", unit)
+}
 
 fn p(p: f64) -> String {
     if p < 0.001 { "p < 0.001".to_owned() } else { format!("p = {p:.3}") }
