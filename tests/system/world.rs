@@ -69,7 +69,8 @@ fn a_room_without_a_door_is_refused_with_its_name_and_what_to_write() {
     };
     check(&|line| !line.contains("kind = \"door\""), "SmallOffice cannot be reached: no door or passage leads into it");
     // A viewpoint alone that is missing is found by `check`.
-    let text: String = whole.lines().filter(|line| !line.contains("number = 7")).map(|line| format!("{line}\n")).collect();
+    let text: String =
+        whole.lines().filter(|line| !line.contains("number = 7")).map(|line| format!("{line}\n")).collect();
     std::fs::write(&plan, text).unwrap();
     let (text, code) = told(&["check", "--world", &pack]);
     assert!(code == Some(2) && text.contains("Hallway has no viewpoint 7: each room has viewpoints 1 to 8"), "{text}");

@@ -76,12 +76,8 @@ impl Stage {
     ) -> PyResult<Self> {
         let library = Library::with_packs(&world)?;
         let file = MissionFile::given(mission, text, &library)?;
-        let cast = Cast {
-            library: Arc::clone(&library),
-            bodies: read_all(&bodies)?,
-            cameras: read_all(&cameras)?,
-            randomize,
-        };
+        let cast =
+            Cast { library: Arc::clone(&library), bodies: read_all(&bodies)?, cameras: read_all(&cameras)?, randomize };
         py.detach(|| {
             let theatre = Mutex::new(Theatre::new(&file, cast, seed, &CpuRenderer::new(threads))?);
             Ok(Self { theatre, library, bodies, cameras, threads, randomize })

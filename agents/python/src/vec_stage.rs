@@ -281,12 +281,8 @@ impl VecStage {
         let library = Library::with_packs(&world)?;
         let files = missions.into_iter().map(|(name, text)| MissionFile::given(name, text, &library));
         let files = files.collect::<PyResult<Vec<_>>>()?;
-        let cast = Cast {
-            library: Arc::clone(&library),
-            bodies: read_all(&bodies)?,
-            cameras: read_all(&cameras)?,
-            randomize,
-        };
+        let cast =
+            Cast { library: Arc::clone(&library), bodies: read_all(&bodies)?, cameras: read_all(&cameras)?, randomize };
         let eyes = eyes.map(|eyes| eyes.parse::<CameraId>().map_err(bad_argument)).transpose()?;
         let plan = eyes.and_then(|eyes| cast.cameras.iter().find(|camera| camera.id == eyes));
         let is_told = |plane: &Plane| planes.iter().any(|name| name == plane.name());

@@ -181,7 +181,8 @@ fn what_is_missing_in_a_plan_is_named_with_what_to_write() {
     check(&text.replace("[0.072, 6.55, 1.4]", "[1.0, 6.55, 1.4]"), &["[1.0, 6.55, 1.4] is on no wall of Hallway"]);
     let misspelt = text.replace("\"Desk_01_1\"", "\"Dsk_01_1\"");
     check(&misspelt, &["`Dsk_01_1` is of no class in the catalogue: did you mean"]);
-    let works = text.replace("{ instance = \"LightSwitch_01_1\",", "{ instance = \"LightSwitch_01_1\", works = \"Dsk_01_1\",");
+    let works =
+        text.replace("{ instance = \"LightSwitch_01_1\",", "{ instance = \"LightSwitch_01_1\", works = \"Dsk_01_1\",");
     check(&works, &["`LightSwitch_01_1` names `Dsk_01_1`, which is not in its room: did you mean `Desk_01_1`?"]);
     let started = without(&["\"Hallway\""]);
     let faults = Layout::parse("Workshop", &[("Workshop.toml", &started)]).unwrap().rooms_without_a_way();

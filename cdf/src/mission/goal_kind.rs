@@ -124,9 +124,10 @@ fn of_kind(kind: &str) -> (&'static str, &'static str) {
         "isFilledWith" => {
             (r#"{"isFilledWith": {"target": "Bowl_01_1", "fluid": "Milk"}}"#, "This fluid is in the target.")
         }
-        "isFilled" => {
-            (r#"{"isFilled": {"target": "Bowl_01_1", "value": true}}"#, "Some fluid is in the target; or the one named.")
-        }
+        "isFilled" => (
+            r#"{"isFilled": {"target": "Bowl_01_1", "value": true}}"#,
+            "Some fluid is in the target; or the one named.",
+        ),
         "CanBeSeen" => (
             r#"{"CanBeSeen": {"target": "Apple_1", "distance": 2.0}}"#,
             "A robot or a person sees the target from no more than so many metres.",

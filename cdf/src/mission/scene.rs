@@ -8,11 +8,7 @@ use super::{
     raw::{Loose, Scalar, Scene, StickyNote},
     reader::Reader,
 };
-use crate::{
-    layout::Layout,
-    nearest::did_you_mean,
-    room::RoomId,
-};
+use crate::{layout::Layout, nearest::did_you_mean, room::RoomId};
 
 /// The layout of a mission that names none.
 pub(super) const DEFAULT_LAYOUT: &str = "OfficeLayout1";

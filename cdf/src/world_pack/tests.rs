@@ -131,7 +131,11 @@ fn what_is_wrong_is_named_with_its_file_its_place_and_what_would_be_right() {
         ),
         ("table/more.toml", "[[device]]\nclass = [\"Nothing_01\"]\n".to_owned(), &["`Nothing_01` is no class"]),
         ("table/more.toml", "[times]\nwork_s = 1\nmoment_s = 2\n".to_owned(), &["first/table/more.toml: times: "]),
-        ("table/more.toml", "power_work = \"degrease\"\n".to_owned(), &["first/table/more.toml: power_work: ", "shut_work"]),
+        (
+            "table/more.toml",
+            "power_work = \"degrease\"\n".to_owned(),
+            &["first/table/more.toml: power_work: ", "shut_work"],
+        ),
         (
             "table/more.toml",
             "[[work]]\nname = \"grab\"\nover = \"inside\"\neffects = [\"take thing\"]\n".to_owned(),

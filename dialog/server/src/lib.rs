@@ -322,11 +322,7 @@ pub fn serve(
 }
 
 /// Listens where the service before this one did, as open pages know it; where there was none, at that address.
-fn listen(
-    address: SocketAddr,
-    seats: usize,
-    before: Option<&Place>,
-) -> Result<(TcpListener, Place), DialogError> {
+fn listen(address: SocketAddr, seats: usize, before: Option<&Place>) -> Result<(TcpListener, Place), DialogError> {
     let is_as_asked = |place: &&Place| address.port() == 0 || place.address.port() == address.port();
     if let Some(place) = before.filter(|place| place.address.ip() == address.ip()).filter(is_as_asked) {
         match TcpListener::bind(place.address) {

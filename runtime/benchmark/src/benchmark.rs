@@ -127,12 +127,7 @@ impl Benchmark {
     ///
     /// # Errors
     /// [`BenchmarkError`].
-    pub fn parse(
-        file: &str,
-        text: &str,
-        catalog: &Arc<Catalog>,
-        making: Making<'_>,
-    ) -> Result<Self, BenchmarkError> {
+    pub fn parse(file: &str, text: &str, catalog: &Arc<Catalog>, making: Making<'_>) -> Result<Self, BenchmarkError> {
         let wrong = |reason: String| BenchmarkError::Wrong { file: file.to_owned(), reason };
         let written: Result<Written, _> = toml::from_str(text);
         let written =

@@ -104,7 +104,9 @@ pub fn recording(log: &Log, benchmark: &Benchmark) -> Result<Recording, String> 
         return Err("the session did not begin at the beginning; play the mission again".to_owned());
     }
     if session.packs != benchmark.catalog.packs() {
-        return Err("the session had other world packs than this call; give those of the session by `--world`".to_owned());
+        return Err(
+            "the session had other world packs than this call; give those of the session by `--world`".to_owned()
+        );
     }
     if !session.bodies.is_empty() {
         return Err("the session had bodies beside those of the mission; play it without `--body`".to_owned());

@@ -12,8 +12,8 @@ use std::{
 };
 
 use cohabit_benchmark::{
-    AgentCard, Benchmark, Check, Difference, Entry, Header, Making, Mission, Recording, RunError, Split, Submission, grids,
-    page, random, run, verify,
+    AgentCard, Benchmark, Check, Difference, Entry, Header, Making, Mission, Recording, RunError, Split, Submission,
+    grids, page, random, run, verify,
 };
 use cohabit_cdf::Catalog;
 use cohabit_tests::Scratch;
@@ -71,7 +71,8 @@ fn differences(benchmark: &Benchmark, text: &str) -> Vec<Difference> {
 
 #[test]
 fn the_same_file_makes_the_same_missions_with_any_number_of_workers() {
-    let (one, other) = (small(), Benchmark::parse("s.toml", SMALL, &Arc::new(Catalog::builtin()), Making::by(1)).unwrap());
+    let (one, other) =
+        (small(), Benchmark::parse("s.toml", SMALL, &Arc::new(Catalog::builtin()), Making::by(1)).unwrap());
     assert_eq!((&one.digest, &one.missions), (&other.digest, &other.missions));
     let named = |digest: &str| SMALL.replace("version = 7", &format!("version = 7\ndigest = \"{digest}\""));
     let parse = |text: &str| Benchmark::parse("s.toml", text, &Arc::new(Catalog::builtin()), Making::by(2));

@@ -143,8 +143,7 @@ impl Sheet {
 
 /// Classes, with what people call them and what can be done with them.
 fn classes(catalog: &Catalog) -> Sheet {
-    let carried: Vec<&ObjectClass> =
-        catalog.classes().iter().filter(|class| class.has(Property::Pickupable)).collect();
+    let carried: Vec<&ObjectClass> = catalog.classes().iter().filter(|class| class.has(Property::Pickupable)).collect();
     let row = |class: &ObjectClass| {
         let table = catalog.table();
         let is_afforded = |action: &ActionKind| {

@@ -210,8 +210,9 @@ impl Play {
         branched: Option<Branch>,
     ) -> Noted {
         let minds = self.minds.iter().map(ToString::to_string).collect::<Vec<_>>().join(" ");
-        let Listening { drive, knows, ask, understanding, model: model_asked, names, voice, hide, wizard, seats, .. } =
-            &self.listening;
+        let Listening {
+            drive, knows, ask, understanding, model: model_asked, names, voice, hide, wizard, seats, ..
+        } = &self.listening;
         let robots = robots.iter().map(u32::to_string).collect::<Vec<_>>().join(",");
         let settings = [
             ("agents", minds),

@@ -10,7 +10,6 @@ use cohabit_engine::read_world_folder;
 
 use crate::failure::bad_input;
 
-
 /// World packs beside what is built in.
 #[derive(clap::Args, Clone, Debug, Default)]
 pub struct WorldPacks {

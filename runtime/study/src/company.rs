@@ -172,8 +172,7 @@ impl Registry {
     pub(crate) fn ended_with(&self, place: u32) -> Result<Vec<u32>, StudyFault> {
         let step = |place: u32| self.participants.get(&place)?.progress.step_now().map(|(index, ..)| index);
         let Some(partner) = self.partner(place) else { return Ok(vec![place]) };
-        let has_finished =
-            self.participants.get(&partner).is_some_and(|one| *one.progress.phase() == Phase::Finished);
+        let has_finished = self.participants.get(&partner).is_some_and(|one| *one.progress.phase() == Phase::Finished);
         match (step(place), step(partner)) {
             (Some(own), Some(other)) if own == other => Ok(vec![place, partner]),
             (Some(own), Some(other)) if own > other => Err(not_at_it(partner)),

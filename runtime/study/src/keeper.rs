@@ -19,8 +19,7 @@ use crate::{
     registry::{Live, Participant, Registry, StudyFault},
     session::{Look, Player, Wanted, name_of_try},
     settings::session_arguments,
-    shared,
-    tables,
+    shared, tables,
     tutorial::{self, Activity},
 };
 

@@ -90,7 +90,11 @@ pub const STUDY: &[Key] = &[
         Kind::Whole(LARGEST_SESSION),
         "how many participants play a session together, each at their own page: 1, if absent, or 2",
     ),
-    optional("pair", Kind::Table(PAIR), "of two participants a session: how they wait for each other, and skip missions"),
+    optional(
+        "pair",
+        Kind::Table(PAIR),
+        "of two participants a session: how they wait for each other, and skip missions",
+    ),
     optional(
         "assignment",
         Kind::OneOf(&["latin_square", "balanced_latin_square", "block_random"]),

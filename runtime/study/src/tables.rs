@@ -334,7 +334,9 @@ fn add_conditions(study: &Study, all: &[Progress], tables: &mut [Table]) {
         let Some(column) = table.fields.iter().position(|field| field.name == "session") else { continue };
         let person = table.fields.iter().position(|field| field.name == "person");
         let is_of_pairs = study.pairing.is_some();
-        table.fields.extend(is_of_pairs.then(|| field("pair", Text, "", "what the pair is called whose session it is")));
+        table
+            .fields
+            .extend(is_of_pairs.then(|| field("pair", Text, "", "what the pair is called whose session it is")));
         let seat = person.filter(|_| is_of_pairs);
         table.fields.extend(seat.map(|_| field("seat", Whole, "", "whose page it was: the seat in the pair, 1 or 2")));
         table.fields.push(field("step", Whole, "", "which step of the participant's plan it belongs to, from 1"));

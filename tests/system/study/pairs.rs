@@ -52,7 +52,8 @@ fn open(address: &str) -> (Page, Value) {
 fn skip(tab: &mut Tab) {
     tab.wait_until("document.querySelector('.offer')?.hidden === false").unwrap();
     tab.evaluate("document.querySelector('#skip').click()").unwrap();
-    tab.wait_until("document.querySelector('#skip-card').open && !document.querySelector('#skip-pair').hidden").unwrap();
+    tab.wait_until("document.querySelector('#skip-card').open && !document.querySelector('#skip-pair').hidden")
+        .unwrap();
     tab.evaluate("document.querySelector('#skip-now').click()").unwrap();
 }
 
@@ -156,7 +157,10 @@ fn a_pair_plays_one_mission_together_and_ends_in_the_same_condition() {
     assert_eq!(asked[0], asked[1]);
     let turns = read("turns");
     assert!(turns.lines().next().unwrap().contains(",pair,seat,"), "{turns}");
-    assert!(turns.contains("go to the main office") && turns.contains(",pair01,1,") && turns.contains(",pair01,2,"), "{turns}");
+    assert!(
+        turns.contains("go to the main office") && turns.contains(",pair01,1,") && turns.contains(",pair01,2,"),
+        "{turns}"
+    );
     let sheet = run(COHABIT, &["study", "report", "--folder", &data]).unwrap();
     let sheet = String::from_utf8_lossy(&sheet.stdout).into_owned();
     assert!(sheet.contains("They took part in 1 pair: 0 finished together"), "{sheet}");

@@ -213,7 +213,8 @@ fn passes(view: &impl View, id: ObjectId, test: &Test) -> bool {
         Test::Holds(fluid) => view.fluid(id) == *fluid,
         Test::HoldsA(pattern) => view.children(id).into_iter().any(|child| pattern.matches(&view.class(child).id)),
         Test::HoldsWhole(pattern) => {
-            let is_it = |child: &ObjectId| pattern.matches(&view.class(*child).id) && !view.is(*child, StateFlag::Broken);
+            let is_it =
+                |child: &ObjectId| pattern.matches(&view.class(*child).id) && !view.is(*child, StateFlag::Broken);
             view.children(id).iter().any(is_it)
         }
         Test::Contains(content) => view.contents(id).into_iter().any(|inner| match content {

@@ -88,7 +88,9 @@ impl Visit {
     /// Says why a page with a seat may not drive a body: it is not the avatar of that seat.
     pub(super) fn check_seat(&self, body: u32) -> Result<(), String> {
         match self.visitor.seat {
-            Some(seat) if seat.body != Some(body) => Err("From this page only your own avatar can be driven.".to_owned()),
+            Some(seat) if seat.body != Some(body) => {
+                Err("From this page only your own avatar can be driven.".to_owned())
+            }
             _ => Ok(()),
         }
     }

@@ -184,7 +184,9 @@ fn recorded(folder: &Path, benchmark: &Benchmark, missions: &[&Mission]) -> anyh
         missions.iter().any(is_of_it) && !missing.iter().any(is_of_it)
     };
     let remedy = match (Split::PLAYED.into_iter().find(whole), others.first()) {
-        (Some(split), _) => format!("all of the split `{0}` have one: score that alone, by `--split {0}`", split.name()),
+        (Some(split), _) => {
+            format!("all of the split `{0}` have one: score that alone, by `--split {0}`", split.name())
+        }
         (None, Some(other)) => format!(
             "{} logs are of missions that this benchmark does not have, such as {}: give the `--benchmark` and the `--world` that \
              they were written with by `benchmark missions`",

@@ -170,6 +170,9 @@ mod tests {
         driven.into_iter().for_each(|(doer, activity)| activities.note(doer, activity));
         activities.note(Doer::All, Activity::Goal);
         assert_eq!(activities.take(0), [Activity::Move, Activity::Goal]);
-        assert_eq!((activities.take(1), activities.take(1)), (vec![Activity::Say, Activity::Stop, Activity::Goal], Vec::new()));
+        assert_eq!(
+            (activities.take(1), activities.take(1)),
+            (vec![Activity::Say, Activity::Stop, Activity::Goal], Vec::new())
+        );
     }
 }

@@ -426,7 +426,8 @@ mod tests {
 
     #[test]
     fn pages_are_read_from_what_play_says() {
-        let page = |port, token: &str| Some(PageAddress { port, token: token.to_owned(), wizard: None, seats: Vec::new() });
+        let page =
+            |port, token: &str| Some(PageAddress { port, token: token.to_owned(), wizard: None, seats: Vec::new() });
         for (line, expected) in [
             (
                 "Open http://127.0.0.1:40123/?token=ab12  (ready after 0.50 s; Ctrl-C ends the session)",

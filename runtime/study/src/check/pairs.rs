@@ -30,7 +30,12 @@ impl Checking<'_, '_> {
         if !has_pairs {
             if let Some(pair) = written.pair.as_ref().filter(|_| !self.findings.is_unread(&root.key(SIZE))) {
                 let remedy = "write participants_per_session = 2, or leave this out";
-                self.findings.add(pair.span(), &root.key("pair"), "a session is of one participant, not of a pair", remedy);
+                self.findings.add(
+                    pair.span(),
+                    &root.key("pair"),
+                    "a session is of one participant, not of a pair",
+                    remedy,
+                );
             }
             return None;
         }
@@ -101,8 +106,7 @@ impl Checking<'_, '_> {
         }
         for (block, (span, at)) in study.blocks.iter().zip(blocks) {
             let all = conditions_of(study, block);
-            let all: Vec<_> =
-                all.iter().map(|(between, within)| study.settings_of(block, between, within)).collect();
+            let all: Vec<_> = all.iter().map(|(between, within)| study.settings_of(block, between, within)).collect();
             if all.iter().any(|settings| avatars(settings) == 1) {
                 let message = "there is one avatar for two participants";
                 let remedy = "write body = [\"person\", \"person\"] into the settings, or leave the avatar out";

@@ -388,15 +388,30 @@ fn what_is_ambiguous_about_pairs_is_refused() {
         in_pairs("").replacen("minutes = 0.5", &block, 1)
     };
     for (index, (text, part)) in [
-        (STUDY.replacen("participants = 4", "participants = 4\nparticipants_per_session = 0", 1), "nobody plays a session"),
-        (STUDY.replacen("participants = 4", "participants = 4\nparticipants_per_session = 3", 1), "a whole number from 0 to 2"),
-        (STUDY.replacen("participants = 4", "participants = 4\npair = {}", 1), "not of a pair; write participants_per_session"),
+        (
+            STUDY.replacen("participants = 4", "participants = 4\nparticipants_per_session = 0", 1),
+            "nobody plays a session",
+        ),
+        (
+            STUDY.replacen("participants = 4", "participants = 4\nparticipants_per_session = 3", 1),
+            "a whole number from 0 to 2",
+        ),
+        (
+            STUDY.replacen("participants = 4", "participants = 4\npair = {}", 1),
+            "not of a pair; write participants_per_session",
+        ),
         (in_pairs("pair = { partner_absent = \"leave\" }"), "write one of \"wait\", \"alone\", \"end\""),
         (in_pairs("pair = { skip = \"none\" }"), "write one of \"both\", \"either\""),
-        (in_pairs("").replacen("participants = 4", "participants = 5", 1), "5 participants are no whole pairs; plan an even"),
+        (
+            in_pairs("").replacen("participants = 4", "participants = 5", 1),
+            "5 participants are no whole pairs; plan an even",
+        ),
         (in_pairs("").replacen("[[factor]]", minimisation, 1), "a condition is the pair's; leave it out"),
         (factor("", clock), "write unit = \"pair\" or unit = \"participant\""),
-        (factor("unit = \"participant\"", asks), "`ask` is of the session, which both of a pair play; leave `unit` out"),
+        (
+            factor("unit = \"participant\"", asks),
+            "`ask` is of the session, which both of a pair play; leave `unit` out",
+        ),
         (alone("unit = \"pair\"", asks), "there are no pairs; leave it out, or write participants_per_session"),
         (within, "both of a pair meet all levels of a factor within participants"),
         (sessions("body = \"person\""), "there is one avatar for two participants; write body"),

@@ -22,7 +22,8 @@ impl Checking<'_, '_> {
                     packs.push(pack);
                 }
                 Err(problem) => {
-                    let remedy = "name the folder of a world pack in the folder of the study; `cohabit check --world` says more";
+                    let remedy =
+                        "name the folder of a world pack in the folder of the study; `cohabit check --world` says more";
                     self.findings.add(name.span(), &at.item(index), problem, remedy);
                 }
             }
@@ -47,7 +48,8 @@ impl Checking<'_, '_> {
         for file in &files {
             let name = format!("{folder}/{}", file.path);
             let text = str::from_utf8(&file.bytes);
-            let text = text.map_err(|_| format!("{name}: a study keeps packs of text files alone: take this file out"))?;
+            let text =
+                text.map_err(|_| format!("{name}: a study keeps packs of text files alone: take this file out"))?;
             self.files.insert(name, text.to_owned());
         }
         WorldPack::parse(folder, files).map_err(|problem| problem.to_string())

@@ -27,8 +27,5 @@ pub(super) fn swing(facts: &Facts<'_>) -> Vec<Effect> {
     let doors = doors_of_buttons(facts);
     let open = opens(facts, &doors);
     let sound = if open { SoundKind::Open } else { SoundKind::Close };
-    doors
-        .iter()
-        .flat_map(|door| [Effect::Set(*door, StateFlag::Opened, open), Effect::sound(sound, *door)])
-        .collect()
+    doors.iter().flat_map(|door| [Effect::Set(*door, StateFlag::Opened, open), Effect::sound(sound, *door)]).collect()
 }

@@ -99,16 +99,8 @@ fn who_is_stuck_goes_around_waits_and_at_last_does_the_next_thing() {
     let (mut walks, mut named) = (Vec::new(), String::new());
     for look in 0..600 {
         let (tick, yaw_rad) = (look * LOOK_TICKS, 0.0);
-        let around = Around {
-            tick,
-            own,
-            yaw_rad,
-            is_busy: false,
-            bodies: &bodies,
-            kinds: &kinds,
-            shut: &[],
-            floor: &floor,
-        };
+        let around =
+            Around { tick, own, yaw_rad, is_busy: false, bodies: &bodies, kinds: &kinds, shut: &[], floor: &floor };
         named = person.obstacle(&around);
         if let Some(Action::GoTo { target: GoToTarget::Point(point) }) = person.act(&around) {
             walks.push(point);
