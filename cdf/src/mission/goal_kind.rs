@@ -1,11 +1,11 @@
 //! All that goals can ask for, with an example of each: for lists and guides.
 
-use super::{
-    expression::KINDS,
-    goals::KEYS,
-    key::{flag_key, property_of},
+use super::{expression::KINDS, goals::KEYS};
+use crate::{
+    catalog::Property,
+    flag_key::{flag_key, property_of},
+    state::StateFlag,
 };
-use crate::{catalog::Property, state::StateFlag};
 
 /// Where a mission file says it.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
