@@ -43,7 +43,7 @@ use crate::{
     builtin,
     catalog::Catalog,
     goal::{Goal, StateCondition},
-    layout::RoomId,
+    room::RoomId,
 };
 
 /// A mission, read from a CDF file and checked.

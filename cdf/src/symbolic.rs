@@ -18,7 +18,7 @@ use crate::{
         Catalog, ClassId, ObjectClass,
         table::{Range, View},
     },
-    layout::RoomId,
+    room::RoomId,
     mission::Era,
     state::{Color, Fluid, StateFlag, StateFlags},
 };

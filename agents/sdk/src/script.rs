@@ -265,7 +265,7 @@ mod tests {
         let bowl = catalog.find("Bowl_01").unwrap();
         let ninety = Action::Rotate { yaw_rad: 90f32.to_radians() };
         let there = Action::GoTo { target: GoToTarget::Point([1.5, -2.0]) };
-        let viewpoint = Action::GoTo { target: GoToTarget::Viewpoint(RoomId::Lab2, 8) };
+        let viewpoint = Action::GoTo { target: GoToTarget::Viewpoint(RoomId::LAB2, 8) };
         for (line, order) in [
             ("rotate 90", Order::Act(ninety)),
             ("goto point 1.5 -2", Order::Act(there)),

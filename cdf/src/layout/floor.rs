@@ -16,7 +16,8 @@ const STEP_M: f32 = 0.07;
 /// What begins higher does not block, m: the robot is lower.
 const HEADROOM_M: f32 = 1.4;
 
-/// The cells of floor where a disc of some radius can stand, and that can be reached from the hallway.
+/// The cells of floor where a disc of some radius can stand, and that can be reached from the plan's first corridor, or from
+/// its first room if it has no corridor.
 #[derive(Clone, Debug)]
 pub struct FreeFloor {
     west_south_m: [f32; 2],
@@ -39,7 +40,10 @@ impl FreeFloor {
             let is_free = || obstacles.iter().all(|obstacle| obstacle.distance_m(point) >= radius_m);
             floor.cells[index] = standing_room(layout, point, radius_m).filter(|_| is_free());
         }
-        floor.keep_reachable();
+        let is_corridor = |room: &RoomId| catalog.rooms().is_corridor(*room);
+        let mut rooms = layout.rooms.iter().map(|room| room.id);
+        let first = rooms.clone().find(is_corridor).or_else(|| rooms.next());
+        floor.keep_reachable(first);
         floor
     }
 
@@ -69,10 +73,10 @@ impl FreeFloor {
         [middle(self.west_south_m[0], column), middle(self.west_south_m[1], row)]
     }
 
-    /// Forgets what cannot be walked to from the hallway's first free cell.
-    fn keep_reachable(&mut self) {
+    /// Forgets what cannot be walked to from the first free cell of a room.
+    fn keep_reachable(&mut self, first: Option<RoomId>) {
         let mut reached = vec![false; self.cells.len()];
-        let start = self.cells.iter().position(|cell| *cell == Some(RoomId::Hallway));
+        let start = self.cells.iter().position(|cell| cell.is_some() && *cell == first);
         let mut open: VecDeque<usize> = start.into_iter().collect();
         while let Some(index) = open.pop_front() {
             if reached[index] {

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     goal::Occasion,
-    layout::RoomId,
+    room::RoomId,
     state::{Color, Fluid, StateFlag},
 };
 

@@ -13,7 +13,7 @@ use crate::{
 };
 
 /// The two labs, as they are called in full.
-const LABS: [RoomId; 2] = [RoomId::Lab1, RoomId::Lab2];
+const LABS: [RoomId; 2] = [RoomId::LAB1, RoomId::LAB2];
 
 /// Asks which one is meant.
 pub(crate) fn question() -> Understanding {

@@ -14,7 +14,7 @@
 //! use cohabit_language::{Context, Known, KnownRobot, Language, Understanding};
 //!
 //! let language = Language::new(Arc::new(Catalog::parse(&[], &[])?));
-//! let robot = KnownRobot { position_m: [0.0; 3], yaw_rad: 0.0, room: RoomId::Lab1, held: None };
+//! let robot = KnownRobot { position_m: [0.0; 3], yaw_rad: 0.0, room: RoomId::LAB1, held: None };
 //! let scene = Known { robot, objects: vec![], mission: String::new(), goals: vec![], floor: None, person: None };
 //! let meant = language.understand("Could you go to the kitchen, please?", &scene, &mut Context::default());
 //! assert!(matches!(meant, Understanding::Plan { steps, .. } if steps.len() == 1));

@@ -115,7 +115,7 @@ mod tests {
     }
 
     fn scene() -> Known {
-        let robot = KnownRobot { position_m: [0.0; 3], yaw_rad: 0.0, room: RoomId::BreakRoom, held: None };
+        let robot = KnownRobot { position_m: [0.0; 3], yaw_rad: 0.0, room: RoomId::BREAK_ROOM, held: None };
         Known { robot, objects: vec![], mission: String::new(), goals: vec![], floor: None, person: None }
     }
 
@@ -157,7 +157,7 @@ mod tests {
             id: ObjectId(1),
             instance: String::new(),
             class: language.catalog().find(class).unwrap(),
-            room: RoomId::BreakRoom,
+            room: RoomId::BREAK_ROOM,
             position_m: [0.0; 3],
             yaw_rad: 0.0,
             flags: StateFlags::default(),

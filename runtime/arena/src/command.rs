@@ -378,11 +378,11 @@ mod tests {
         check(go(json!({"instanceIdOfObject": "Bowl_01_1"})), Command::GoTo(Destination::Object(object())));
         check(
             go(json!({"officeRoom": "Lab1", "instanceIdOfObject": ""})),
-            Command::GoTo(Destination::Room(RoomId::Lab1)),
+            Command::GoTo(Destination::Room(RoomId::LAB1)),
         );
         check(
             go(json!({"goToPoint": "Lab2_8", "officeRoom": null})),
-            Command::GoTo(Destination::Viewpoint(RoomId::Lab2, 8)),
+            Command::GoTo(Destination::Viewpoint(RoomId::LAB2, 8)),
         );
         let place = Place { x: 1.0, y: 0.0, z: 3.0 };
         check(go(json!({"position": {"x": 1, "y": 2, "z": 3}})), Command::GoTo(Destination::Place(place)));

@@ -34,7 +34,7 @@ fn objects_and_rooms_of_a_pack_are_drawn_with_their_ids() {
         let object = session.find(instance).unwrap();
         assert!(seen.iter().any(|id| Thing::of_id(*id) == Thing::Object(object)), "{instance} is not to be seen");
     }
-    for room in [RoomId::SmallOffice, RoomId::Hallway] {
+    for room in [RoomId::SMALL_OFFICE, RoomId::HALLWAY] {
         assert!(seen.iter().any(|id| Thing::of_id(*id) == Thing::Surface(room)), "{room:?} is not to be seen");
     }
 }

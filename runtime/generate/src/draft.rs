@@ -18,13 +18,13 @@ const DOORS: u32 = 7;
 const LEVER: &str = "FuseBox_01_Lever";
 /// Where people leave and look for things: not in the way of every door.
 const ROOMS: [RoomId; 7] = [
-    RoomId::BreakRoom,
-    RoomId::MainOffice,
-    RoomId::SmallOffice,
-    RoomId::Lab1,
-    RoomId::Lab2,
-    RoomId::Reception,
-    RoomId::Warehouse,
+    RoomId::BREAK_ROOM,
+    RoomId::MAIN_OFFICE,
+    RoomId::SMALL_OFFICE,
+    RoomId::LAB1,
+    RoomId::LAB2,
+    RoomId::RECEPTION,
+    RoomId::WAREHOUSE,
 ];
 
 /// Something that stands in the way of a mission's goals.

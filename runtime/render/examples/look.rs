@@ -159,7 +159,7 @@ fn view(
             color: Color::Original,
             opened: 0.0,
             running: 0.0,
-            room: room.map_or(RoomId::Hallway, |room| room.id),
+            room: room.map_or(RoomId::HALLWAY, |room| room.id),
             visible: true,
         });
         scene.set_highlights(&[Highlight { id: 5000, color: [255, 190, 60] }]);

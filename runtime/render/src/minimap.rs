@@ -85,14 +85,14 @@ pub fn minimap(layout: &Layout, catalog: &Catalog, pixels_per_m: f32) -> Minimap
 /// A colour for each room, the same in every plan.
 const fn tint(room: RoomId) -> Ink {
     let color = match room {
-        RoomId::BreakRoom => [246, 221, 190],
-        RoomId::MainOffice => [203, 222, 240],
-        RoomId::SmallOffice => [226, 210, 236],
-        RoomId::Lab1 => [244, 205, 200],
-        RoomId::Lab2 => [205, 232, 230],
-        RoomId::Reception => [240, 233, 194],
-        RoomId::Warehouse => [216, 221, 206],
-        RoomId::Hallway => [232, 232, 230],
+        RoomId::BREAK_ROOM => [246, 221, 190],
+        RoomId::MAIN_OFFICE => [203, 222, 240],
+        RoomId::SMALL_OFFICE => [226, 210, 236],
+        RoomId::LAB1 => [244, 205, 200],
+        RoomId::LAB2 => [205, 232, 230],
+        RoomId::RECEPTION => [240, 233, 194],
+        RoomId::WAREHOUSE => [216, 221, 206],
+        RoomId::HALLWAY => [232, 232, 230],
     };
     Ink(color, 1.0)
 }
@@ -126,7 +126,7 @@ fn draw_opening(paper: &mut Paper, layout: &Layout, opening: &Opening, scale: f3
         OpeningKind::Window => paper.rect(rect(thick * 0.5), GLASS),
         OpeningKind::Door | OpeningKind::Passage => {
             // Each room's floor reaches half-way into the gap.
-            let [own, other] = opening.between.map(|id| layout.room(id).map_or(tint(RoomId::Hallway), |r| tint(r.id)));
+            let [own, other] = opening.between.map(|id| layout.room(id).map_or(tint(RoomId::HALLWAY), |r| tint(r.id)));
             let (low, high) = match opening.wall_runs {
                 Axis::X => ([x - half, y - thick - 0.01, x + half, y], [x - half, y, x + half, y + thick + 0.01]),
                 _ => ([x - thick - 0.01, y - half, x, y + half], [x, y - half, x + thick + 0.01, y + half]),

@@ -50,7 +50,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut walker = again()?;
     print("step, walking", steps(|tick| walk(&mut walker, tick)));
     let mut crowd = again()?;
-    for room in [RoomId::MainOffice, RoomId::BreakRoom] {
+    for room in [RoomId::MAIN_OFFICE, RoomId::BREAK_ROOM] {
         crowd.add_body(BodyKind::Robot, room)?;
     }
     let mut life = Life::new("crowd", crowd, 1);

@@ -97,7 +97,7 @@ impl Changes<'_> {
             Spot::Anchor { parent, .. } => (self.state.at(parent).room, self.state.at(parent).pose),
             Spot::Floor(at) => {
                 let room = self.floor.room_at(at.truncate()).or_else(|| by.map(|by| self.state.at(by).room));
-                (room.unwrap_or(RoomId::Hallway), Pose::level(at, 0.0))
+                (room.unwrap_or(RoomId::HALLWAY), Pose::level(at, 0.0))
             }
         };
         let mut object = Object::new(instance, class, room, pose);

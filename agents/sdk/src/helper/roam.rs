@@ -27,7 +27,7 @@ impl Rounds {
         if self.left.is_empty() {
             self.begin(room);
         }
-        self.left.pop().unwrap_or(GoToTarget::Room(RoomId::Hallway))
+        self.left.pop().unwrap_or(GoToTarget::Room(RoomId::HALLWAY))
     }
 
     fn begin(&mut self, room: Option<RoomId>) {
@@ -60,7 +60,7 @@ mod tests {
     #[test]
     fn a_round_goes_through_all_rooms_from_the_present_one() {
         let mut rounds = Rounds::new(7);
-        let places: Vec<_> = (0..RoomId::ALL.len() * VISITS).map(|_| rounds.next(Some(RoomId::Lab2))).collect();
+        let places: Vec<_> = (0..RoomId::ALL.len() * VISITS).map(|_| rounds.next(Some(RoomId::LAB2))).collect();
         let rooms: Vec<_> = places
             .iter()
             .map(|place| match place {
@@ -68,7 +68,7 @@ mod tests {
                 other => panic!("{other:?}"),
             })
             .collect();
-        assert_eq!(rooms[0], RoomId::Lab2 as u8);
+        assert_eq!(rooms[0], RoomId::LAB2 as u8);
         assert_eq!(rooms.iter().collect::<BTreeSet<_>>().len(), RoomId::ALL.len());
     }
 }

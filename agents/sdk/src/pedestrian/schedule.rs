@@ -262,7 +262,7 @@ mod tests {
         assert_eq!(schedule.people().collect::<Vec<_>>(), [1, 2]);
         assert_eq!(schedule.entries(2)[0].errand, Errand::Meet(1));
         let mut diary = Diary::new(schedule.entries(1));
-        let first = Some(Errand::GoTo(Place::Viewpoint(RoomId::MainOffice, 2)));
+        let first = Some(Errand::GoTo(Place::Viewpoint(RoomId::MAIN_OFFICE, 2)));
         assert_eq!(diary.now(0), first);
         diary.done(60);
         assert_eq!((diary.now(599), diary.now(600)), (None, Some(Errand::Stay(150))));

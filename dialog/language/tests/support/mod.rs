@@ -172,7 +172,7 @@ pub fn scene(catalog: &Catalog, marks: &[&str]) -> Known {
         let at = lines.iter().position(|line| line[0] == instance).unwrap_or_else(|| panic!("no {instance}"));
         ObjectId(at as u32)
     };
-    let robot = KnownRobot { position_m: [0.0; 3], yaw_rad: 0.0, room: RoomId::BreakRoom, held: None };
+    let robot = KnownRobot { position_m: [0.0; 3], yaw_rad: 0.0, room: RoomId::BREAK_ROOM, held: None };
     let mut known = Known {
         robot,
         objects: Vec::new(),

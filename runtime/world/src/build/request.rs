@@ -227,7 +227,7 @@ impl Builder<'_> {
         let open: Vec<ObjectId> = facts
             .state
             .existing()
-            .filter(|(_, object)| room.map_or(object.room != RoomId::Hallway, |room| object.room == room))
+            .filter(|(_, object)| room.map_or(object.room != RoomId::HALLWAY, |room| object.room == room))
             .map(|(other, _)| other)
             .filter(|other| *other != id && !facts.has(*other, Property::Pickupable))
             .filter(|other| !facts.has(*other, Property::Toggleable) && !facts.has(*other, Property::Powerable))

@@ -148,7 +148,7 @@ impl Press<'_> {
 
 /// The doors that security buttons work: those of the reception.
 pub(crate) fn doors_of_buttons(facts: &Facts<'_>) -> Vec<ObjectId> {
-    let at_reception = facts.floor.gaps.iter().filter(|gap| gap.between.contains(&RoomId::Reception));
+    let at_reception = facts.floor.gaps.iter().filter(|gap| gap.between.contains(&RoomId::RECEPTION));
     at_reception.filter_map(|gap| gap.door_object).filter(|door| facts.object(*door).exists()).collect()
 }
 

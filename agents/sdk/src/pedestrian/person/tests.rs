@@ -8,7 +8,7 @@ use crate::pedestrian::Schedule;
 fn floor() -> Floor {
     Floor {
         obstacles: Vec::new(),
-        viewpoints: vec![(RoomId::Lab1, 1, Vec2::new(0.0, 4.0)), (RoomId::Lab1, 2, Vec2::new(4.0, 4.0))],
+        viewpoints: vec![(RoomId::LAB1, 1, Vec2::new(0.0, 4.0)), (RoomId::LAB1, 2, Vec2::new(4.0, 4.0))],
         doors: Vec::new(),
         path: Box::new(|_: Vec2, to: Vec2| (to.x < 100.0).then(|| vec![to])),
     }
