@@ -176,7 +176,7 @@ impl Before<'_> {
 }
 
 fn room_of(object: &Value) -> &'static str {
-    RoomId::from_id(object["room"].as_str().unwrap()).unwrap().name()
+    RoomId::new(object["room"].as_str().unwrap()).unwrap().name()
 }
 
 /// Checks all questions of a data set; gives their types.

@@ -166,7 +166,7 @@ fn view(
     }
     scene.set_instances(&instances);
     if options.contains(&"dark") {
-        RoomId::ALL.into_iter().for_each(|room| scene.set_lights(room, false));
+        RoomId::BUILTIN.into_iter().for_each(|room| scene.set_lights(room, false));
     }
     let size = options
         .iter()

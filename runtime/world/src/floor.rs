@@ -1,8 +1,8 @@
 //! What never changes about a floor: rooms, walls with their gaps, and how each class of furniture opens. Never knows
 //! what stands where.
 
-use cohabit_cdf::layout::{Layout, OpeningKind, RoomId};
-use cohabit_cdf::{Catalog, ObjectId, model::Axis};
+use cohabit_cdf::layout::{Layout, OpeningKind};
+use cohabit_cdf::{Catalog, ObjectId, RoomId, model::Axis};
 use glam::Vec2;
 
 use crate::{geometry::Footprint, swing::Swings};
@@ -102,6 +102,15 @@ impl Floor {
             .iter()
             .find(|(_, rect)| point.x >= rect[0] && point.x <= rect[2] && point.y >= rect[1] && point.y <= rect[3])
             .map(|(id, _)| *id)
+    }
+
+    /// The room whose floor is nearest to `point`; `None` on a floor without rooms.
+    pub fn nearest_room(&self, point: Vec2) -> Option<RoomId> {
+        let away_m = |[west, south, east, north]: [f32; 4]| {
+            point.distance(point.clamp(Vec2::new(west, south), Vec2::new(east, north)))
+        };
+        let nearest = self.rooms.iter().min_by(|(_, one), (_, other)| away_m(*one).total_cmp(&away_m(*other)));
+        nearest.map(|(id, _)| *id)
     }
 
     /// The rectangles of a room, `[west, south, east, north]`, m.

@@ -219,7 +219,7 @@ fn refer(catalog: &Catalog, scene: &Known, object: &KnownObject, habits: Habits,
                     continue;
                 }
                 rivals.retain(|rival| rival.room == object.room);
-                let room = if errs { *chance.pick(&cohabit_cdf::RoomId::ALL) } else { object.room };
+                let room = if errs { *chance.pick(&cohabit_cdf::RoomId::BUILTIN) } else { object.room };
                 place = format!(" in the {}", room.name());
             }
         }

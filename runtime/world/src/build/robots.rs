@@ -30,7 +30,7 @@ impl Builder<'_> {
             Some(place) => place,
             None => {
                 let (position, yaw_rad) = start(&self.facts(), floor, self.layout, room)
-                    .ok_or_else(|| BuildError::NoFreeSpot { object: NAME.to_owned(), room })?;
+                    .ok_or_else(|| self.no_free_spot(NAME, room))?;
                 (position, yaw_rad, room)
             }
         };

@@ -1,7 +1,7 @@
 //! Toggling: what the table says that a device needs, and what it sets going.
 
 use cohabit_cdf::{
-    ActionKind, ObjectId, RoomId, StateFlag,
+    ActionKind, ObjectId, StateFlag,
     catalog::table::{Change, Device, Scope, Site, Term, View as _},
 };
 
@@ -146,10 +146,11 @@ impl Press<'_> {
     }
 }
 
-/// The doors that security buttons work: those of the reception.
+/// The doors that security buttons work: those of secured rooms, such as the reception.
 pub(crate) fn doors_of_buttons(facts: &Facts<'_>) -> Vec<ObjectId> {
-    let at_reception = facts.floor.gaps.iter().filter(|gap| gap.between.contains(&RoomId::RECEPTION));
-    at_reception.filter_map(|gap| gap.door_object).filter(|door| facts.object(*door).exists()).collect()
+    let rooms = facts.catalog.rooms();
+    let secured = facts.floor.gaps.iter().filter(|gap| gap.between.iter().any(|room| rooms.is_secured(*room)));
+    secured.filter_map(|gap| gap.door_object).filter(|door| facts.object(*door).exists()).collect()
 }
 
 /// What a device works, or aims at: as the layout says, else the nearest of its kind in the room.

@@ -293,7 +293,7 @@ impl Candidate<'_> {
 }
 
 fn room(pick: u16) -> RoomId {
-    RoomId::ALL[usize::from(pick) % RoomId::ALL.len()]
+    RoomId::BUILTIN[usize::from(pick) % RoomId::BUILTIN.len()]
 }
 
 /// What a command is called where commands are counted.

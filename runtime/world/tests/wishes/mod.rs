@@ -19,7 +19,7 @@ pub fn request(line: &str) -> ObjectRequest {
         let mut next = || words.next().unwrap().to_owned();
         match word {
             "in" => request.inside = Some(next()),
-            "at" => request.room = RoomId::from_id(&next()),
+            "at" => request.room = RoomId::new(&next()),
             "yesterday" => request.yesterday = Some(next()),
             "prints" => request.prints = Some(next()),
             "filled" => request.fluid = Fluid::from_name(&next()),
