@@ -1,7 +1,7 @@
 //! What bodies sense of a world: taken from the world itself, or from the records that its simulator published.
 
 use cohabit_bus::message::{BodyRecord, NONE, ObjectRecord};
-use cohabit_cdf::{BodyId, ObjectId};
+use cohabit_cdf::{BodyId, Catalog, ObjectId};
 use cohabit_world::{BodyView, ObjectView, World};
 
 /// An object, as far as bodies sense it.
@@ -74,16 +74,16 @@ impl Around for Records<'_> {
 
 impl Around for World {
     fn posture(&self, body: u32) -> Option<Posture> {
-        self.body(BodyId(body)).map(|view| Posture::from(&view))
+        self.body(BodyId(body)).map(|view| posture_of(&view, self.catalog()))
     }
 
     fn sight(&self, object: u32) -> Option<Sight> {
         let id = ObjectId(object);
-        self.object(id).filter(|_| self.exists(id)).map(|view| Sight::from(&view))
+        self.object(id).filter(|_| self.exists(id)).map(|view| sight_of(&view, self.catalog()))
     }
 
     fn sights(&self) -> impl Iterator<Item = Sight> {
-        self.objects().filter(|view| self.exists(view.id)).map(|view| Sight::from(&view))
+        self.objects().filter(|view| self.exists(view.id)).map(|view| sight_of(&view, self.catalog()))
     }
 }
 
@@ -100,16 +100,15 @@ impl From<&ObjectRecord> for Sight {
     }
 }
 
-impl From<&ObjectView<'_>> for Sight {
-    fn from(view: &ObjectView<'_>) -> Self {
-        Self {
-            object: view.id.0,
-            class: view.class.0,
-            room: view.room as u32,
-            hidden: view.hidden,
-            flags: view.flags.0,
-            position_m: view.position_m.to_array(),
-        }
+fn sight_of(view: &ObjectView<'_>, catalog: &Catalog) -> Sight {
+    Sight {
+        object: view.id.0,
+        class: view.class.0,
+        // As its record has it.
+        room: catalog.room_index(view.room).unwrap_or(u8::MAX).into(),
+        hidden: view.hidden,
+        flags: view.flags.0,
+        position_m: view.position_m.to_array(),
     }
 }
 
@@ -126,15 +125,13 @@ impl From<&BodyRecord> for Posture {
     }
 }
 
-impl From<&BodyView> for Posture {
-    fn from(view: &BodyView) -> Self {
-        Self {
-            position_m: view.position_m.to_array(),
-            yaw_rad: view.yaw_rad,
-            head_pitch_rad: view.head_pitch_rad,
-            room: view.room as u32,
-            held: view.held.map(|object| object.0),
-            busy: view.busy,
-        }
+fn posture_of(view: &BodyView, catalog: &Catalog) -> Posture {
+    Posture {
+        position_m: view.position_m.to_array(),
+        yaw_rad: view.yaw_rad,
+        head_pitch_rad: view.head_pitch_rad,
+        room: catalog.room_index(view.room).map_or(NONE, u32::from),
+        held: view.held.map(|object| object.0),
+        busy: view.busy,
     }
 }
