@@ -1,6 +1,6 @@
 //! Pedestrians with bodies that do at once as they are told, on bare floors.
 
-use cohabit_cdf::RoomId;
+use cohabit_cdf::{Catalog, RoomId};
 
 use super::*;
 use crate::pedestrian::Schedule;
@@ -15,7 +15,7 @@ fn floor() -> Floor {
 }
 
 fn person(schedule: &str, seed: u64) -> Person {
-    let schedule = Schedule::parse("a.toml", schedule).unwrap();
+    let schedule = Schedule::parse("a.toml", schedule, &Catalog::builtin()).unwrap();
     Person::new(1, schedule.entries(1), seed)
 }
 
