@@ -164,9 +164,9 @@ pub struct RoomEntry {
     /// What people say; the name need not be repeated.
     #[serde(default)]
     pub words: Vec<String>,
-    /// What several rooms are called, of which one is meant, such as `lab`.
+    /// What people call several rooms of which they mean one, such as `lab`.
     #[serde(default)]
-    pub kind: Option<String>,
+    pub kind: Vec<String>,
     /// Its colour on maps, `#rrggbb`; one that follows from its place in the table, if absent.
     #[serde(default)]
     pub color: Option<String>,
@@ -191,7 +191,9 @@ impl RoomEntry {
         let before = std::mem::replace(&mut self.name, name);
         self.words.push(before);
         self.words.extend(words);
-        self.kind = kind.or_else(|| self.kind.take());
+        if !kind.is_empty() {
+            self.kind = kind;
+        }
         self.color = color.or_else(|| self.color.take());
         self.corridor |= corridor;
         self.secured |= secured;

@@ -9,7 +9,7 @@ use crate::{
 /// What a pack says of rooms can be said and drawn.
 pub(super) fn check(file: &str, rooms: &[RoomEntry]) -> Result<(), PackError> {
     for (index, room) in rooms.iter().enumerate() {
-        if let Some(words) = room.names().chain(room.kind.as_deref()).find(|words| !is_said(words)) {
+        if let Some(words) = room.names().chain(room.kind.iter().map(String::as_str)).find(|words| !is_said(words)) {
             let reason = format!("`{words}` is no name of a room");
             let remedy = "write small letters, digits and spaces, 64 bytes at most";
             return Err(PackError::at(file, &format!("room[{index}]"), reason, remedy));

@@ -3,7 +3,7 @@
 
 use std::{collections::BTreeSet, sync::Arc};
 
-use cohabit_cdf::{Property, RoomId};
+use cohabit_cdf::Property;
 
 use crate::{
     Language,
@@ -57,7 +57,7 @@ impl Language {
             let into = if class.has(Property::Pickupable) { &mut names.things } else { &mut names.places };
             into.extend(std::iter::once(&class.name).chain(&class.words).map(|name| name.to_lowercase()));
         }
-        names.rooms = RoomId::ALL.iter().map(|room| room.name_in(&self.catalog).to_lowercase()).collect();
+        names.rooms = scene.room_names(&self.catalog).map(str::to_lowercase).collect();
         names.words = Arc::clone(&self.lexicon.known);
         names
     }
@@ -116,7 +116,7 @@ mod tests {
 
     fn scene() -> Known {
         let robot = KnownRobot { position_m: [0.0; 3], yaw_rad: 0.0, room: RoomId::BREAK_ROOM, held: None };
-        Known { robot, objects: vec![], mission: String::new(), goals: vec![], floor: None, person: None }
+        Known { robot, objects: vec![], mission: String::new(), goals: vec![], rooms: vec![], floor: None, person: None }
     }
 
     #[test]
