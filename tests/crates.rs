@@ -98,7 +98,6 @@ const CIRCULAR: &str = "cohabit-language";
 /// Of other crates, who uses whom in a circle yet: without these there are none. Each goes from here when it is undone.
 const CIRCLES: &[(&str, &str, &str)] = &[
     ("cohabit-agent", "eyes", "peer"),
-    ("cohabit-cdf", "action", "layout"),
     ("cohabit-cdf", "goal", "mission"),
     ("cohabit-demonstrate", "card", "dataset"),
     ("cohabit-demonstrate", "episode", "dataset"),

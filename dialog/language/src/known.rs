@@ -103,7 +103,7 @@ impl Known {
     }
 
     /// What the rooms that there are are called, in the order of the catalogue.
-    pub(crate) fn room_names<'c>(&self, catalog: &'c Catalog) -> impl Iterator<Item = &'c str> + use<'c, '_> {
+    pub(crate) fn room_names<'c>(&self, catalog: &'c Catalog) -> impl Iterator<Item = &'c str> {
         let there = catalog.rooms().all().iter().filter(|room| self.may_have_room(room.id));
         there.map(|room| room.name.as_str())
     }

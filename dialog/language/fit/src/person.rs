@@ -220,7 +220,7 @@ fn refer(catalog: &Catalog, scene: &Known, object: &KnownObject, habits: Habits,
                 }
                 rivals.retain(|rival| rival.room == object.room);
                 let room = if errs { *chance.pick(&cohabit_cdf::RoomId::BUILTIN) } else { object.room };
-                place = format!(" in the {}", room.name());
+                place = format!(" in the {}", room.name_in(catalog));
             }
         }
     }
