@@ -13,7 +13,11 @@ pub(crate) use pack::Layer;
 pub use pack::PackId;
 use table::{ActionTable, TableError};
 
-use crate::{builtin, model::Model, room::{RoomId, Rooms}};
+use crate::{
+    builtin,
+    model::Model,
+    room::{RoomId, Rooms},
+};
 
 /// The index of a class in the [`Catalog`].
 #[derive(Clone, Copy, Debug, Default, Deserialize, Eq, Hash, Ord, PartialEq, PartialOrd, Serialize)]

@@ -18,8 +18,8 @@ use crate::{
         Catalog, ClassId, ObjectClass,
         table::{Range, View},
     },
-    room::RoomId,
     mission::Era,
+    room::RoomId,
     state::{Color, Fluid, StateFlag, StateFlags},
 };
 

@@ -7,8 +7,7 @@ use std::{collections::BTreeMap, sync::Arc};
 
 use cohabit_bus::message::{BodyRecord, DialogKind, DialogMessage, NONE};
 use cohabit_cdf::{
-    Action, ActionTable, BodyKind, Catalog, ObjectClass, ObjectId, Property, SemanticClass, Status,
-    catalog::Stands,
+    Action, ActionTable, BodyKind, Catalog, ObjectClass, ObjectId, Property, SemanticClass, Status, catalog::Stands,
 };
 
 use crate::{

@@ -164,7 +164,8 @@ impl Reader<'_> {
         let room = self.catalog.rooms().find(text);
         if room.is_none() {
             let (rooms, layout) = (self.catalog.rooms(), self.layout);
-            let (ids, names) = (rooms.all().iter().map(|room| room.id.id()), rooms.all().iter().map(|room| &*room.name));
+            let (ids, names) =
+                (rooms.all().iter().map(|room| room.id.id()), rooms.all().iter().map(|room| &*room.name));
             let there = || layout.map_or_else(|| rooms.listed(), listed);
             let remedy = did_you_mean(text, ids.chain(names)).unwrap_or_else(|| format!("there are {}", there()));
             self.error(at, format!("unknown room `{text}`"), Some(remedy));

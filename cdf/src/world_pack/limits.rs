@@ -4,11 +4,7 @@ use serde::{Deserialize, de::DeserializeOwned};
 use toml::{Table, Value};
 
 use super::PackError;
-use crate::{
-    catalog::ObjectClass,
-    layout::Layout,
-    model::Model,
-};
+use crate::{catalog::ObjectClass, layout::Layout, model::Model};
 
 /// The largest number: of metres, kilograms or degrees.
 const LARGEST: f64 = 10_000.0;

@@ -3,7 +3,9 @@
 //! A search goes from leg to leg: look around, go to a viewpoint, open what may hold it. After each, the request is
 //! grounded again on what is known by then, and carried on as soon as that succeeds.
 
-use cohabit_cdf::{Action, Catalog, ClassId, GoToTarget, ObjectClass, ObjectId, Property, RoomId, StateFlag, Status, Verb};
+use cohabit_cdf::{
+    Action, Catalog, ClassId, GoToTarget, ObjectClass, ObjectId, Property, RoomId, StateFlag, Status, Verb,
+};
 use serde::{Deserialize, Serialize};
 
 use crate::{

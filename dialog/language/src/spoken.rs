@@ -116,7 +116,15 @@ mod tests {
 
     fn scene() -> Known {
         let robot = KnownRobot { position_m: [0.0; 3], yaw_rad: 0.0, room: RoomId::BREAK_ROOM, held: None };
-        Known { robot, objects: vec![], mission: String::new(), goals: vec![], rooms: vec![], floor: None, person: None }
+        Known {
+            robot,
+            objects: vec![],
+            mission: String::new(),
+            goals: vec![],
+            rooms: vec![],
+            floor: None,
+            person: None,
+        }
     }
 
     #[test]

@@ -6,9 +6,7 @@ use cohabit_bus::{
     CameraId, Text,
     message::{BodyRecord, CameraRecord, NONE, ObjectRecord, PlanStep, Plane, StateView, Thing},
 };
-use cohabit_cdf::{
-    Action, BodyKind, Catalog, ClassId, Layout, Mission, ObjectId, layout::OpeningKind, model::Axis,
-};
+use cohabit_cdf::{Action, BodyKind, Catalog, ClassId, Layout, Mission, ObjectId, layout::OpeningKind, model::Axis};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 

@@ -73,8 +73,7 @@ mod tests {
     #[test]
     fn bodies_of_a_schedule_are_people_of_the_session() {
         let catalog = Catalog::builtin();
-        let check =
-            |text: &str, kinds: &[BodyKind]| fault(&Schedule::parse("a.toml", text, &catalog).unwrap(), kinds);
+        let check = |text: &str, kinds: &[BodyKind]| fault(&Schedule::parse("a.toml", text, &catalog).unwrap(), kinds);
         let text = "[[entry]]\nperson = 1\nmeet = 2";
         let (robot, person) = (BodyKind::Robot, BodyKind::Person);
         assert_eq!(check(text, &[robot, person, robot]), None);

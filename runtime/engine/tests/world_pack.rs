@@ -7,9 +7,7 @@ mod twenty_rooms;
 use std::{collections::BTreeSet, sync::Arc};
 
 use cohabit_bus::message::Thing;
-use cohabit_cdf::{
-    Action, BodyId, GoToTarget, PackFile, RoomId, Verb, WorldData, WorldPack, world_pack::template,
-};
+use cohabit_cdf::{Action, BodyId, GoToTarget, PackFile, RoomId, Verb, WorldData, WorldPack, world_pack::template};
 use cohabit_engine::{SessionPlan, furnishings, report};
 use cohabit_render::{
     Camera, CpuRenderer, Lens, MeshLibrary, Planes, Renderer as _, RoomSurface, Scene, minimap, room_surface_id,

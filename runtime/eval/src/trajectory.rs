@@ -59,9 +59,9 @@ fn place(value: &Value, world: &World) -> Result<GoToTarget, String> {
         return Ok(GoToTarget::Room(found));
     }
     if let Some(point) = text("goToPoint") {
-        let viewpoint = point
-            .rsplit_once('_')
-            .and_then(|(room, number)| Some(GoToTarget::Viewpoint(world.catalog().rooms().find(room)?, number.parse().ok()?)));
+        let viewpoint = point.rsplit_once('_').and_then(|(room, number)| {
+            Some(GoToTarget::Viewpoint(world.catalog().rooms().find(room)?, number.parse().ok()?))
+        });
         return viewpoint.ok_or_else(|| format!("there is no viewpoint \"{point}\""));
     }
     object(value, world).map(GoToTarget::Object)

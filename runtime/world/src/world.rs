@@ -84,12 +84,9 @@ impl World {
             return Err(build::no_such_room(&self.catalog, &self.layout, &format!("the {}", kind.name()), room));
         }
         self.refresh_navigation();
-        let full = || BuildError::NoFreeSpot {
-            object: "the robot".to_owned(),
-            room: room.name_in(&self.catalog).to_owned(),
-        };
-        let (position, yaw_rad) =
-            build::start(&self.facts(), &self.navigation, &self.layout, room).ok_or_else(full)?;
+        let full =
+            || BuildError::NoFreeSpot { object: "the robot".to_owned(), room: room.name_in(&self.catalog).to_owned() };
+        let (position, yaw_rad) = build::start(&self.facts(), &self.navigation, &self.layout, room).ok_or_else(full)?;
         let id = BodyId(u32::try_from(self.state.bodies.len()).expect("invariant: few bodies"));
         self.state.bodies.push(Body::new(kind, position, yaw_rad, room));
         self.is_judged = false;

@@ -117,7 +117,7 @@ impl TryFrom<ActionRecord> for Action {
         let object = ObjectId(record.object);
         let room = || {
             let index = usize::try_from(record.room).ok();
-            index.and_then(|index| RoomId::BUILTIN.get(index)).copied().ok_or(Malformed("no such room"))
+            index.and_then(|index| RoomId::BUILTIN.get(index).copied()).ok_or(Malformed("no such room"))
         };
         let viewpoint = |number: u32| u8::try_from(number).map_err(|_| Malformed("no such viewpoint"));
         let number = |value: f32| if value.is_finite() { Ok(value) } else { Err(Malformed("not a finite number")) };
@@ -128,9 +128,7 @@ impl TryFrom<ActionRecord> for Action {
             LOOK_AROUND => Self::LookAround,
             GO_TO_OBJECT => Self::GoTo { target: GoToTarget::Object(object) },
             GO_TO_ROOM => Self::GoTo { target: GoToTarget::Room(room()?) },
-            GO_TO_VIEWPOINT => {
-                Self::GoTo { target: GoToTarget::Viewpoint(room()?, viewpoint(record.number)?) }
-            }
+            GO_TO_VIEWPOINT => Self::GoTo { target: GoToTarget::Viewpoint(room()?, viewpoint(record.number)?) },
             GO_TO_NAMED_ROOM | GO_TO_NAMED_VIEWPOINT => {
                 let record: NamedRoomRecord = bytemuck::cast(record);
                 let room = room::of_text(&record.room)?;

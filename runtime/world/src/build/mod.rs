@@ -39,7 +39,9 @@ pub enum BuildError {
         object: String,
     },
     /// The floor plan lacks a room.
-    #[error("build the world: `{object}` must be in the {room}, which the floor plan `{layout}` does not have; it has {rooms}")]
+    #[error(
+        "build the world: `{object}` must be in the {room}, which the floor plan `{layout}` does not have; it has {rooms}"
+    )]
     NoSuchRoom {
         /// The instance id, or `the robot`.
         object: String,
@@ -225,12 +227,7 @@ pub(crate) fn no_such_room(catalog: &Catalog, layout: &Layout, object: &str, roo
     // One that the world lacks has no name.
     let name = catalog.rooms().get(room).map_or_else(|| room.to_string(), |entry| entry.name.clone());
     let rooms: Vec<&str> = layout.rooms.iter().map(|room| room.id.id()).collect();
-    BuildError::NoSuchRoom {
-        object: object.to_owned(),
-        room: name,
-        layout: layout.id.clone(),
-        rooms: rooms.join(", "),
-    }
+    BuildError::NoSuchRoom { object: object.to_owned(), room: name, layout: layout.id.clone(), rooms: rooms.join(", ") }
 }
 
 /// Where a new body can stand in a room, and its heading.
