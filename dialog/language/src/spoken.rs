@@ -105,7 +105,7 @@ impl Language {
 mod tests {
     use std::sync::Arc;
 
-    use cohabit_cdf::{Catalog, Color, Fluid, ObjectId, state::StateFlags};
+    use cohabit_cdf::{Catalog, Color, Fluid, ObjectId, RoomId, state::StateFlags};
 
     use super::*;
     use crate::known::{KnownObject, KnownRobot};

@@ -101,6 +101,10 @@ fn all_of_twenty_rooms_are_walked_to_and_lit_by_themselves() {
         }
     }
     assert_eq!(dark.len(), rooms.len());
+    let mut again = plan.build().unwrap();
+    again.restore(&world.snapshot()).unwrap();
+    assert_eq!(again.digest(), world.digest());
+    assert_eq!(again.body(BodyId(0)).unwrap().room, world.body(BodyId(0)).unwrap().room);
 }
 
 #[test]

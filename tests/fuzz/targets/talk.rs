@@ -21,7 +21,8 @@ static OFFICE: LazyLock<(Language, Known)> = LazyLock::new(|| {
     let objects = KnownObject::furniture(&catalog, &layout);
     let robot = KnownRobot { position_m: [8.0, 11.5, 0.0], yaw_rad: 0.0, room: RoomId::BREAK_ROOM, held: None };
     let floor = Some(Floor::new(Arc::new(FloorPlan::new(&layout))));
-    (Language::new(catalog), Known { robot, objects, goals: Vec::new(), floor, person: None })
+    let (mission, goals, rooms) = (String::new(), Vec::new(), Vec::new());
+    (Language::new(catalog), Known { robot, objects, mission, goals, rooms, floor, person: None })
 });
 
 fuzz_target!(|text: &str| {
@@ -44,9 +45,7 @@ fn check(understanding: &Understanding) {
             assert!(!steps.is_empty());
             reply
         }
-        Understanding::Question { text, .. }
-        | Understanding::Answer { text, .. }
-        | Understanding::Refusal { text, .. } => text,
+        Understanding::Question { text, .. } | Understanding::Answer { text, .. } | Understanding::Refusal { text, .. } => text,
         Understanding::Stop { reply, .. } => reply,
     };
     assert!(!says.is_empty());
