@@ -12,6 +12,7 @@ fn main() {
     let out = std::env::var("OUT_DIR").expect("cargo sets OUT_DIR");
     let mut code = String::new();
     for (name, folder, ending) in [
+        ("ROOMS", "catalog", "toml"),
         ("OBJECTS", "catalog/objects", "toml"),
         ("MODELS", "catalog/models", "toml"),
         ("TABLE", "catalog/table", "toml"),

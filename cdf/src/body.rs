@@ -4,7 +4,7 @@ use std::{fmt, str::FromStr};
 
 use serde::{Deserialize, Serialize};
 
-use crate::room::RoomId;
+use crate::room::{ROOM_ID_RULE, RoomId};
 
 /// What kind of body it is.
 #[derive(Clone, Copy, Debug, Default, Deserialize, Eq, Hash, PartialEq, Serialize)]
@@ -48,8 +48,8 @@ pub enum BodyRequestError {
     /// There is no such kind.
     #[error("there is no body `{0}`: robot or person, such as `person@BreakRoom`")]
     Kind(String),
-    /// There is no such room.
-    #[error("there is no room `{0}`: one of {names}", names = RoomId::ALL.map(RoomId::id).join(", "))]
+    /// No room can have this id.
+    #[error("there is no room `{0}`: {ROOM_ID_RULE}")]
     Room(String),
 }
 
@@ -61,7 +61,7 @@ impl FromStr for BodyRequest {
         let is_meant = |known: &BodyKind| known.name().eq_ignore_ascii_case(kind.trim());
         let kind =
             BodyKind::ALL.into_iter().find(is_meant).ok_or_else(|| BodyRequestError::Kind(kind.trim().to_owned()))?;
-        let known = |room: &str| RoomId::from_id(room.trim()).ok_or_else(|| BodyRequestError::Room(room.to_owned()));
+        let known = |room: &str| RoomId::new(room.trim()).ok_or_else(|| BodyRequestError::Room(room.to_owned()));
         Ok(Self { kind, room: room.map(known).transpose()? })
     }
 }
@@ -80,10 +80,10 @@ mod tests {
 
     #[test]
     fn requests_read_as_they_print() {
-        for text in ["robot", "person", "robot@Lab1", "person@BreakRoom"] {
+        for text in ["robot", "person", "robot@Lab1", "person@BreakRoom", "person@SunLounge"] {
             assert_eq!(text.parse::<BodyRequest>().unwrap().to_string(), text);
         }
         assert_eq!("dog".parse::<BodyRequest>(), Err(BodyRequestError::Kind("dog".to_owned())));
-        assert_eq!("robot@Attic".parse::<BodyRequest>(), Err(BodyRequestError::Room("Attic".to_owned())));
+        assert_eq!("robot@the attic".parse::<BodyRequest>(), Err(BodyRequestError::Room("the attic".to_owned())));
     }
 }

@@ -10,13 +10,14 @@ use serde::{Deserialize, Serialize};
 
 pub use names::ClassNames;
 pub(crate) use pack::Layer;
-pub use pack::{PackId, RoomNames};
+pub use pack::PackId;
 use table::{ActionTable, TableError};
 
 use crate::{
     builtin,
     model::Model,
     nearest::{did_you_mean, nearest},
+    room::{RoomId, Rooms},
 };
 
 /// The index of a class in the [`Catalog`].
@@ -161,6 +162,7 @@ pub struct Catalog {
     model_by_class: Vec<usize>,
     names: Vec<ClassNames>,
     table: ActionTable,
+    rooms: Rooms,
     layer: Layer,
 }
 
@@ -234,7 +236,7 @@ impl Catalog {
         catalog.with_table(builtin::TABLE).expect("invariant: the built-in table parses")
     }
 
-    /// Builds a catalogue from `(file name, text)` of object files and of model files.
+    /// Builds a catalogue from `(file name, text)` of object files and of model files, with the built-in rooms.
     ///
     /// # Errors
     /// [`CatalogError`] names the file and the id.
@@ -246,6 +248,7 @@ impl Catalog {
             model_by_class: Vec::new(),
             names: Vec::new(),
             table: ActionTable::default(),
+            rooms: Rooms::builtin(),
             layer: Layer::default(),
         };
         let mut model_by_id: HashMap<String, (usize, &str)> = HashMap::new();
@@ -335,6 +338,24 @@ impl Catalog {
         &self.table
     }
 
+    /// The rooms that floor plans may have, and what each is called.
+    #[must_use]
+    pub const fn rooms(&self) -> &Rooms {
+        &self.rooms
+    }
+
+    /// The index of a room, as messages have it; `None` for one that the world lacks.
+    #[must_use]
+    pub fn room_index(&self, room: RoomId) -> Option<u8> {
+        self.rooms.index(room)
+    }
+
+    /// The room with this index.
+    #[must_use]
+    pub fn room_at(&self, index: u32) -> Option<RoomId> {
+        self.rooms.at(index)
+    }
+
     /// All classes, in the order of their [`ClassId`]s.
     #[must_use]
     pub fn classes(&self) -> &[ObjectClass] {
@@ -401,6 +422,15 @@ impl Catalog {
     #[must_use]
     pub fn model_index(&self, id: ClassId) -> usize {
         self.model_by_class[usize::from(id.0)]
+    }
+}
+
+impl RoomId {
+    /// What people call it in this world.
+    #[must_use]
+    pub fn name_in(self, catalog: &Catalog) -> &str {
+        // No floor plan has a room that its catalogue lacks.
+        catalog.rooms.get(self).map_or("room", |entry| entry.name.as_str())
     }
 }
 

@@ -30,14 +30,14 @@ mod builtin {
 pub use action::{Action, BodyId, GoToTarget, ObjectId, Status, Verb};
 pub use body::{BodyKind, BodyRequest};
 pub use catalog::{
-    Catalog, CatalogError, ClassId, ClassNames, ObjectClass, PackId, Property, RoomNames,
+    Catalog, CatalogError, ClassId, ClassNames, ObjectClass, PackId, Property,
     table::{self, ActionKind, ActionTable},
 };
 pub use goal::{Expression, Goal, GoalState, InstancePattern, Occasion, Predicate, Relation, StateCondition};
 pub use layout::{Layout, LayoutError};
 pub use mission::{Mission, ObjectRequest};
 pub use model::Model;
-pub use room::RoomId;
+pub use room::{RoomEntry, RoomId, Rooms};
 pub use semantic::SemanticClass;
 pub use state::{Color, Fluid, StateFlag, StateFlags};
 pub use world_pack::{PackError, PackFile, WorldData, WorldPack};

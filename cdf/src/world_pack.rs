@@ -1,11 +1,11 @@
-//! World packs: floor plans, objects, models, devices, names of rooms and missions from outside, beside what is built in.
+//! World packs: floor plans, objects, models, devices, rooms and missions from outside, beside what is built in.
 //!
 //! A pack is a folder. Whoever reads it hands its files over as bytes; here they become a [`WorldPack`], and several of
 //! those, in their order, a [`WorldData`]. A later pack may add to what was there; it takes the place of nothing.
 //!
 //! | file | what it holds |
 //! |---|---|
-//! | `world.toml` | name, version, licence, description, names of rooms |
+//! | `world.toml` | name, version, licence, description, rooms |
 //! | `layouts/ID.toml` | a floor plan |
 //! | `objects/*.toml`, `models/*.toml` | classes of objects, and what they look like |
 //! | `table/*.toml` | rules of actions, devices and works |
@@ -16,6 +16,7 @@
 mod error;
 mod ids;
 mod limits;
+mod rooms;
 mod template;
 
 use std::sync::Arc;
@@ -27,8 +28,9 @@ pub use template::{NAME_RULE, files as template, is_name};
 
 use crate::{
     builtin,
-    catalog::{Catalog, Layer, PackId, RoomNames},
+    catalog::{Catalog, Layer, PackId},
     layout::Layout,
+    room::{RoomEntry, Rooms},
 };
 use ids::Ids;
 
@@ -55,7 +57,7 @@ struct Head {
     licence: String,
     description: String,
     #[serde(default, rename = "room")]
-    rooms: Vec<RoomNames>,
+    rooms: Vec<RoomEntry>,
 }
 
 /// `(file name, text)`; a file's name begins with the pack's folder.
@@ -68,7 +70,7 @@ pub struct WorldPack {
     id: PackId,
     licence: String,
     description: String,
-    rooms: Vec<RoomNames>,
+    rooms: Vec<RoomEntry>,
     objects: Texts,
     models: Texts,
     table: Texts,
@@ -124,7 +126,12 @@ impl WorldPack {
                 return Err(PackError::at(file, at, reason, &format!("write one line of at most {most} bytes")));
             }
         }
-        limits::check_rooms(file, &self.rooms)
+        rooms::check(file, &self.rooms)
+    }
+
+    /// Its head, as messages name it.
+    fn head_file(&self) -> String {
+        format!("{}/{HEAD}", self.root)
     }
 
     /// Takes a file in, by the folder that it lies in.
@@ -220,12 +227,15 @@ impl WorldData {
         let layer = Layer {
             packs: packs.iter().map(|pack| pack.id.clone()).collect(),
             plans: packs.iter().flat_map(|pack| pack.layouts.iter().cloned()).collect(),
-            rooms: packs.iter().flat_map(|pack| pack.rooms.iter().cloned()).collect(),
         };
-        let catalog = Catalog::parse(&objects, &models)?.with_table(&table)?.with_layer(layer);
+        let mut rooms = Rooms::builtin();
+        packs.iter().try_for_each(|pack| rooms::add(&pack.head_file(), &mut rooms, &pack.rooms))?;
+        let catalog = Catalog::parse(&objects, &models)?.with_table(&table)?.with_layer(rooms, layer);
         for pack in &packs {
             for (file, _) in &pack.layouts {
-                limits::check_plan(file, &Layout::find(ids::stem(file), &catalog)?)?;
+                let plan = Layout::find(ids::stem(file), &catalog)?;
+                limits::check_plan(file, &plan)?;
+                rooms::check_plan(file, &plan, catalog.rooms())?;
             }
         }
         Ok(Self { catalog: Arc::new(catalog), packs })

@@ -85,7 +85,7 @@ fn scenes_and_games() {
     assert_ne!(mission.layout, "OfficeLayout1");
     let expected = RobotRequest {
         name: Some("TAM_1".into()),
-        room: Some(RoomId::Lab1),
+        room: Some(RoomId::LAB1),
         at_m: Some([1.5, -2.0]),
         yaw_deg: Some(90.0),
         holds: Some("Hammer_1".into()),
@@ -159,9 +159,9 @@ fn camera_movements_are_read_in_many_shapes() {
         found,
         [
             (bowl, 2.5, None),
-            (CameraView::Room(RoomId::Lab1), 3.0, Some("The lab")),
-            (CameraView::Viewpoint(RoomId::Lab1, 3), 1.5, None),
-            (CameraView::Room(RoomId::Reception), 3.0, None),
+            (CameraView::Room(RoomId::LAB1), 3.0, Some("The lab")),
+            (CameraView::Viewpoint(RoomId::LAB1, 3), 1.5, None),
+            (CameraView::Room(RoomId::RECEPTION), 3.0, None),
             (CameraView::Point([1.0, 2.0, 0.5]), 3.0, None),
         ]
     );

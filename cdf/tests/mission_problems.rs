@@ -120,10 +120,11 @@ fn scenes_are_checked() {
         "m.json: /scene/roomLocation/0: unknown room `Lab3`; did you mean `Lab1`?\n\
          m.json: /scene/roomLocation/1: warning: only the first is used",
     );
+    check("/scene/roomLocation", json!(["robotics lab"]), "");
     check(
         "/scene/roomLocation",
-        json!(["robotics lab"]),
-        "m.json: /scene/roomLocation/0: unknown room `robotics lab`; did you mean `Lab1`?",
+        json!(["attic"]),
+        "m.json: /scene/roomLocation/0: unknown room `attic`; there are BreakRoom, MainOffice, SmallOffice, Lab1, Lab2, Reception, Warehouse, Hallway",
     );
     check(
         "/scene/roomLocation",
@@ -309,10 +310,10 @@ fn what_was_read_is_what_was_written() {
     let checked = read_mission("m.json", &sound().to_string(), &CATALOG).unwrap();
     let mission = &checked.mission;
     assert_eq!((mission.name.as_str(), mission.layout.as_str()), ("m.json", "OfficeLayout1"));
-    assert_eq!((mission.seed, mission.start_room), (None, RoomId::BreakRoom));
+    assert_eq!((mission.seed, mission.start_room), (None, RoomId::BREAK_ROOM));
     assert_eq!(mission.objects[1].inside.as_deref(), Some("TableRound_02_1"));
     assert_eq!(mission.objects[1].flags, [(StateFlag::Dirty, true)]);
-    assert_eq!((mission.notes[0].room, mission.notes[0].place), (RoomId::Lab1, 1));
+    assert_eq!((mission.notes[0].room, mission.notes[0].place), (RoomId::LAB1, 1));
     let states: Vec<_> = mission.goals.iter().flat_map(|goal| &goal.states).map(ToString::to_string).collect();
     let hammer = "Printer_3D_1_Spawned_Hammer_*: isPickedUp=true";
     assert_eq!(states, ["FoodPlate_01_1: isPickedUp=true", "FoodPlate_01_1: Tidy=true", hammer]);

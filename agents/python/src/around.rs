@@ -1,7 +1,7 @@
 //! What bodies sense of a world: taken from the world itself, or from the records that its simulator published.
 
 use cohabit_bus::message::{BodyRecord, NONE, ObjectRecord};
-use cohabit_cdf::{BodyId, ObjectId, RoomId};
+use cohabit_cdf::{BodyId, ObjectId};
 use cohabit_world::{BodyView, ObjectView, World};
 
 use crate::library::Library;
@@ -98,23 +98,24 @@ impl Around for Records<'_> {
 
 impl Around for Simulated<'_> {
     fn posture(&self, body: u32) -> Option<Posture> {
-        self.world.body(BodyId(body)).map(|view| Posture::from(&view))
+        self.world.body(BodyId(body)).map(|view| posture_of(&view, self.world.catalog()))
     }
 
     fn sight(&self, object: u32) -> Option<Sight> {
         let id = ObjectId(object);
-        self.world.object(id).filter(|_| self.world.exists(id)).map(|view| Sight::from(&view))
+        let world = self.world;
+        world.object(id).filter(|_| world.exists(id)).map(|view| sight_of(&view, world.catalog()))
     }
 
     fn sights(&self) -> impl Iterator<Item = Sight> {
         let world = self.world;
-        world.objects().filter(move |view| world.exists(view.id)).map(|view| Sight::from(&view))
+        world.objects().filter(move |view| world.exists(view.id)).map(|view| sight_of(&view, world.catalog()))
     }
 
     fn sights_in(&self, room: u32) -> impl Iterator<Item = Sight> {
         let world = self.world;
-        let objects = RoomId::from_index(room).into_iter().flat_map(move |room| world.objects_in(room));
-        objects.filter(|view| !view.hidden).map(|view| Sight::from(&view))
+        let objects = world.catalog().room_at(room).into_iter().flat_map(move |room| world.objects_in(room));
+        objects.filter(|view| !view.hidden).map(|view| sight_of(&view, world.catalog()))
     }
 
     fn library(&self) -> &Library {
@@ -135,16 +136,15 @@ impl From<&ObjectRecord> for Sight {
     }
 }
 
-impl From<&ObjectView<'_>> for Sight {
-    fn from(view: &ObjectView<'_>) -> Self {
-        Self {
-            object: view.id.0,
-            class: view.class.0,
-            room: view.room as u32,
-            hidden: view.hidden,
-            flags: view.flags.0,
-            position_m: view.position_m.to_array(),
-        }
+fn sight_of(view: &ObjectView<'_>, catalog: &Catalog) -> Sight {
+    Sight {
+        object: view.id.0,
+        class: view.class.0,
+        // As its record has it.
+        room: catalog.room_index(view.room).unwrap_or(u8::MAX).into(),
+        hidden: view.hidden,
+        flags: view.flags.0,
+        position_m: view.position_m.to_array(),
     }
 }
 
@@ -161,15 +161,13 @@ impl From<&BodyRecord> for Posture {
     }
 }
 
-impl From<&BodyView> for Posture {
-    fn from(view: &BodyView) -> Self {
-        Self {
-            position_m: view.position_m.to_array(),
-            yaw_rad: view.yaw_rad,
-            head_pitch_rad: view.head_pitch_rad,
-            room: view.room as u32,
-            held: view.held.map(|object| object.0),
-            busy: view.busy,
-        }
+fn posture_of(view: &BodyView, catalog: &Catalog) -> Posture {
+    Posture {
+        position_m: view.position_m.to_array(),
+        yaw_rad: view.yaw_rad,
+        head_pitch_rad: view.head_pitch_rad,
+        room: catalog.room_index(view.room).map_or(NONE, u32::from),
+        held: view.held.map(|object| object.0),
+        busy: view.busy,
     }
 }

@@ -40,7 +40,7 @@ impl Choice {
         use Choice::{GoTo, LookDown, LookUp, MoveAhead, MoveBack, PickUp, Place, TurnLeft, TurnRight, Wait};
         let moves = [Wait, MoveAhead, MoveBack, TurnLeft, TurnRight, LookUp, LookDown];
         let acts = [GoTo, PickUp, Place].into_iter().chain(Verb::ALL.map(Self::Interact));
-        moves.into_iter().chain(RoomId::ALL.map(Self::GoToRoom)).chain(acts)
+        moves.into_iter().chain(catalog().rooms().ids().map(Self::GoToRoom)).chain(acts)
     }
 
     /// The choice of that number.

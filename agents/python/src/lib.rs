@@ -49,13 +49,13 @@ mod _native {
 
     #[pymodule_init]
     fn tables(module: &Bound<'_, PyModule>) -> PyResult<()> {
-        use cohabit_cdf::{BodyKind, Color, Fluid, RoomId, StateFlag, Status, Verb};
+        use cohabit_cdf::{BodyKind, Color, Fluid, StateFlag, Status, Verb};
 
-        use crate::choice::Choice;
+        use crate::{choice::Choice, library::catalog};
 
         module.add("VERSION", env!("CARGO_PKG_VERSION"))?;
         module.add("CHOICES", Choice::all().map(|choice| (choice.name(), choice.takes_slot())).collect::<Vec<_>>())?;
-        module.add("ROOMS", RoomId::ALL.map(RoomId::id).to_vec())?;
+        module.add("ROOMS", catalog().rooms().all().iter().map(|room| room.id.id()).collect::<Vec<_>>())?;
         module.add("KINDS", BodyKind::ALL.map(BodyKind::name).to_vec())?;
         module.add("COLORS", Color::ALL.map(Color::name).to_vec())?;
         module.add("FLUIDS", Fluid::ALL.map(Fluid::name).to_vec())?;

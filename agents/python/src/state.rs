@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use cohabit_bus::message::{BodyRecord, GoalRecord, Malformed, NONE, ObjectRecord, StateParts, StateView};
-use cohabit_cdf::{BodyKind, Catalog, Color, Fluid, RoomId, StateFlags};
+use cohabit_cdf::{BodyKind, Catalog, Color, Fluid, StateFlags};
 use pyo3::{exceptions::PyKeyError, prelude::*, types::PyBytes};
 
 use crate::{
@@ -126,7 +126,7 @@ fn some(index: u32) -> Option<u32> {
 }
 
 fn room_id(index: u32) -> &'static str {
-    RoomId::from_index(index).map_or("", RoomId::id)
+    catalog().rooms().all().get(index as usize).map_or("", |room| room.id.id())
 }
 
 fn flag_names(bits: u32) -> Vec<String> {
@@ -289,7 +289,8 @@ impl State {
     #[getter]
     fn lit_rooms(&self) -> Vec<&'static str> {
         let bits = self.view().header.lit_rooms;
-        RoomId::ALL.into_iter().filter(|room| bits & 1 << *room as u32 != 0).map(RoomId::id).collect()
+        let rooms = (0_u64..).zip(catalog().rooms().all());
+        rooms.filter(|(index, _)| bits >> index & 1 == 1).map(|(_, room)| room.id.id()).collect()
     }
 
     /// All bodies, by their numbers.

@@ -7,8 +7,7 @@ use std::{collections::BTreeMap, sync::Arc};
 
 use cohabit_bus::message::{BodyRecord, DialogKind, DialogMessage, NONE};
 use cohabit_cdf::{
-    Action, ActionTable, BodyKind, Catalog, ObjectClass, ObjectId, Property, RoomId, SemanticClass, Status,
-    catalog::Stands,
+    Action, ActionTable, BodyKind, Catalog, ObjectClass, ObjectId, Property, SemanticClass, Status, catalog::Stands,
 };
 
 use crate::{
@@ -94,12 +93,13 @@ impl Helper {
     /// The same in a world with this catalogue.
     #[must_use]
     pub fn with_catalog(catalog: Arc<Catalog>, body: u32, seed: u64) -> Self {
+        let rounds = Rounds::new(seed, catalog.rooms().ids());
         Self {
             body,
             catalog,
             memory: Memory::default(),
             errand: Errand::default(),
-            rounds: Rounds::new(seed),
+            rounds,
             chore: Chore::Nothing,
             bans: BTreeMap::new(),
             commands: true,
@@ -225,7 +225,8 @@ impl Helper {
             Action::LookAround
         } else {
             self.chore = Chore::Walk;
-            Action::GoTo { target: self.rounds.next(RoomId::from_index(own.room)) }
+            let next = self.rounds.next(self.catalog.room_at(own.room));
+            next.map_or(Action::LookAround, |target| Action::GoTo { target })
         };
         deeds.push(Deed::Act { turn: 0, action: self.errand.begin(action) });
     }

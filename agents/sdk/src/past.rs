@@ -57,7 +57,7 @@ mod tests {
     const OK: Status = Status::ActionSuccessful;
 
     fn steps() -> Vec<PlanStep> {
-        let room = Action::GoTo { target: GoToTarget::Room(RoomId::Lab1) };
+        let room = Action::GoTo { target: GoToTarget::Room(RoomId::LAB1) };
         let actions = [room, Action::PickUp { object: MUG }];
         actions.map(|action| PlanStep { action: action.into(), ..PlanStep::default() }).to_vec()
     }
@@ -77,7 +77,7 @@ mod tests {
     #[test]
     fn what_is_left_of_a_plan_is_done() {
         let go_to_mug = Action::GoTo { target: GoToTarget::Object(MUG) };
-        assert_eq!(after(&[]), Some(Action::GoTo { target: GoToTarget::Room(RoomId::Lab1) }));
+        assert_eq!(after(&[]), Some(Action::GoTo { target: GoToTarget::Room(RoomId::LAB1) }));
         assert_eq!(after(&[(1, OK), (2, OK)]), Some(go_to_mug));
         assert_eq!(after(&[(2, OK), (2, OK)]), Some(Action::PickUp { object: MUG }));
         assert_eq!(after(&[(2, OK), (2, OK), (2, OK)]), None);

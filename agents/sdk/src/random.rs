@@ -106,7 +106,8 @@ impl Random {
         let tenths = |of: u64| of as f32 / 10.0;
         match self.habit() {
             Habit::Stroll => {
-                let room = self.one_of(&RoomId::ALL)?;
+                let rooms: Vec<RoomId> = self.catalog.rooms().ids().collect();
+                let room = self.one_of(&rooms)?;
                 let viewpoint = u8::try_from(1 + self.below(VIEWPOINTS)).unwrap_or(1);
                 Some(Action::GoTo { target: GoToTarget::Viewpoint(room, viewpoint) })
             }

@@ -17,7 +17,7 @@
 //! loop                         # from the start again; the last line
 //! ```
 
-use cohabit_cdf::{Action, Catalog, ClassId, GoToTarget, RoomId, Verb};
+use cohabit_cdf::{Action, Catalog, ClassId, GoToTarget, Verb};
 
 use crate::agent::TICKS_PER_SECOND;
 
@@ -187,8 +187,8 @@ fn order(word: &str, rest: &str, catalog: &Catalog) -> Result<Order, String> {
 
 fn go_to(rest: &str, catalog: &Catalog) -> Result<Order, String> {
     let room = |name: &str| {
-        let rooms = RoomId::ALL.map(RoomId::id).join(", ");
-        RoomId::from_id(name).ok_or_else(|| format!("there is no room `{name}`: one of {rooms}"))
+        let rooms = catalog.rooms();
+        rooms.find(name).ok_or_else(|| format!("there is no room `{name}`: one of {}", rooms.listed()))
     };
     let (word, place) = rest.split_once(char::is_whitespace).unwrap_or((rest, ""));
     let place = place.trim();
@@ -244,6 +244,8 @@ fn named(word: &str, text: &str, catalog: &Catalog) -> Result<Named, String> {
 
 #[cfg(test)]
 mod tests {
+    use cohabit_cdf::RoomId;
+
     use super::*;
 
     fn parse(text: &str) -> Result<Script, String> {
@@ -265,7 +267,7 @@ mod tests {
         let bowl = catalog.find("Bowl_01").unwrap();
         let ninety = Action::Rotate { yaw_rad: 90f32.to_radians() };
         let there = Action::GoTo { target: GoToTarget::Point([1.5, -2.0]) };
-        let viewpoint = Action::GoTo { target: GoToTarget::Viewpoint(RoomId::Lab2, 8) };
+        let viewpoint = Action::GoTo { target: GoToTarget::Viewpoint(RoomId::LAB2, 8) };
         for (line, order) in [
             ("rotate 90", Order::Act(ninety)),
             ("goto point 1.5 -2", Order::Act(there)),

@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use cohabit_bus::message::{NONE, ObjectRecord, StateView};
 use cohabit_cdf::{
-    Action, ActionKind, ClassId, Color, Fluid, ObjectId, Property, RoomId, StateFlag, StateFlags,
+    Action, ActionKind, Catalog, ClassId, Color, Fluid, ObjectId, Property, RoomId, StateFlag, StateFlags,
     symbolic::{Place, SymbolicState, Thing},
 };
 
@@ -51,7 +51,8 @@ impl Symbols {
         let records: Vec<&ObjectRecord> = view.objects.iter().filter(is_sound).collect();
         for record in &records {
             while !self.knows(record.object) {
-                self.state.things.push(unknown(record));
+                let thing = unknown(record, &self.state.catalog);
+                self.state.things.push(thing);
             }
         }
         let there: BTreeSet<u32> = records.iter().map(|record| record.object).collect();
@@ -77,12 +78,13 @@ impl Symbols {
     fn note(&mut self, record: &ObjectRecord) {
         let works = Some(record.works).filter(|works| self.knows(*works)).map(ObjectId);
         let held_by_me = record.held_by == self.body;
+        let room = self.state.catalog.room_at(u32::from(record.room));
         let thing = &mut self.state.things[record.object as usize];
         if thing.instance != record.instance.as_str() {
             record.instance.as_str().clone_into(&mut thing.instance);
         }
         thing.class = ClassId(record.class);
-        thing.room = RoomId::from_index(u32::from(record.room)).unwrap_or(thing.room);
+        thing.room = room.unwrap_or(thing.room);
         thing.flags = StateFlags(record.flags);
         thing.fluid = Fluid::ALL.get(usize::from(record.fluid)).copied().unwrap_or_default();
         thing.color = Color::ALL.get(usize::from(record.color)).copied().unwrap_or_default();
@@ -128,8 +130,8 @@ impl Symbols {
 }
 
 /// A thing that came into the world, or left it before anything was heard of it.
-fn unknown(record: &ObjectRecord) -> Thing {
-    let room = RoomId::from_index(u32::from(record.room)).unwrap_or(RoomId::ALL[0]);
+fn unknown(record: &ObjectRecord, catalog: &Catalog) -> Thing {
+    let room = catalog.room_at(u32::from(record.room)).unwrap_or(RoomId::BREAK_ROOM);
     Thing::new(String::new(), ClassId(record.class), room, Place::Gone)
 }
 
@@ -142,7 +144,6 @@ mod tests {
         Text,
         message::{BodyRecord, StateHeader},
     };
-    use cohabit_cdf::Catalog;
 
     use super::*;
 
@@ -154,7 +155,7 @@ mod tests {
         let thing = |class: &str, place| {
             let id = catalog.find(class).unwrap();
             let record = ObjectRecord { class: id.0, ..ObjectRecord::default() };
-            Thing { instance: format!("{class}_1"), place, ..unknown(&record) }
+            Thing { instance: format!("{class}_1"), place, ..unknown(&record, &catalog) }
         };
         let things = vec![thing("Bowl_01", Place::Loose), thing("TableRound_02", Place::Own)];
         let (circuits, gates, passes, eaters) = Default::default();

@@ -135,9 +135,9 @@ impl Agent for Director {
             && !std::mem::replace(&mut self.told, true)
         {
             let actions = [
-                Action::GoTo { target: GoToTarget::Room(RoomId::BreakRoom) },
+                Action::GoTo { target: GoToTarget::Room(RoomId::BREAK_ROOM) },
                 Action::LookAround,
-                Action::GoTo { target: GoToTarget::Room(RoomId::MainOffice) },
+                Action::GoTo { target: GoToTarget::Room(RoomId::MAIN_OFFICE) },
             ];
             let mut plan = DialogMessage::new(DialogKind::Plan, self.for_body, 1, "");
             plan.steps = actions.iter().map(|act| PlanStep { action: (*act).into(), ..PlanStep::default() }).collect();
@@ -320,7 +320,7 @@ fn pedestrians(ticks: u64) -> Played {
         doors: plan.layout.openings.iter().filter_map(|own| Some((own.door.clone()?, at_m(own.at_m)))).collect(),
         path: Box::new(move |from: Vec2, to: Vec2| world.path(from, to).map(|(way, _)| way)),
     };
-    let mut crowd = Crowd::new(&Schedule::parse("test", SCHEDULE).unwrap(), floor, SEED);
+    let mut crowd = Crowd::new(&Schedule::parse("test", SCHEDULE, &catalog()).unwrap(), floor, SEED);
     let (bus, stop) = (Local::new(1), AtomicBool::new(false));
     thread::scope(|scope| {
         scope.spawn(|| crowd.run(&bus, &stop).unwrap());
@@ -334,8 +334,11 @@ fn pedestrians(ticks: u64) -> Played {
 fn pedestrians_get_where_they_are_to_go_and_walk_the_same_in_every_run() {
     const TICKS: u64 = 3600;
     let played = pedestrians(TICKS);
-    let was_in = |body: u32, room: RoomId| played.rooms[&body].contains(&(room as u32));
-    assert!(was_in(1, RoomId::MainOffice) && was_in(2, RoomId::BreakRoom), "{:?}", played.rooms);
+    let was_in = |body: u32, room: RoomId| {
+        let index = room.builtin_index().map(u32::from).unwrap();
+        played.rooms[&body].contains(&index)
+    };
+    assert!(was_in(1, RoomId::MAIN_OFFICE) && was_in(2, RoomId::BREAK_ROOM), "{:?}", played.rooms);
     assert_same(&played, &pedestrians(TICKS));
     assert_eq!(played.timeouts, 0);
 }

@@ -1,11 +1,11 @@
-//! What world packs add to a catalogue beside classes and devices: floor plans, names of rooms, and which packs they are.
+//! What world packs add to a catalogue beside classes and devices: floor plans, rooms, and which packs they are.
 
 use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
 use super::Catalog;
-use crate::room::RoomId;
+use crate::room::Rooms;
 
 /// A world pack, as logs and messages name it.
 #[derive(Clone, Debug, Deserialize, Eq, PartialEq, Serialize)]
@@ -24,31 +24,17 @@ impl fmt::Display for PackId {
     }
 }
 
-/// What people call a room.
-#[derive(Clone, Debug, Deserialize, Eq, PartialEq, Serialize)]
-#[serde(deny_unknown_fields)]
-pub struct RoomNames {
-    /// The room's id in floor plans and missions, such as `SmallOffice`.
-    pub id: String,
-    /// What people read, in lower case.
-    pub name: String,
-    /// What people say; the name need not be repeated.
-    #[serde(default)]
-    pub words: Vec<String>,
-}
-
-/// All that packs add beside classes and devices.
+/// Which packs there are, and their floor plans.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Layer {
     pub packs: Vec<PackId>,
     /// `(file name, text)` of floor plans.
     pub plans: Vec<(String, String)>,
-    pub rooms: Vec<RoomNames>,
 }
 
 impl Catalog {
-    pub(crate) fn with_layer(self, layer: Layer) -> Self {
-        Self { layer, ..self }
+    pub(crate) fn with_layer(self, rooms: Rooms, layer: Layer) -> Self {
+        Self { rooms, layer, ..self }
     }
 
     /// The world packs that it has, in their order; none, if all of it is built in.
@@ -60,25 +46,5 @@ impl Catalog {
     /// `(file name, text)` of the packs' floor plans.
     pub(crate) fn plans(&self) -> impl Iterator<Item = (&str, &str)> {
         self.layer.plans.iter().map(|(file, text)| (file.as_str(), text.as_str()))
-    }
-
-    /// The rooms that packs name.
-    #[must_use]
-    pub fn named_rooms(&self) -> &[RoomNames] {
-        &self.layer.rooms
-    }
-
-    /// What packs call the room with this id, if they name it.
-    #[must_use]
-    pub fn room_names(&self, id: &str) -> Option<&RoomNames> {
-        self.layer.rooms.iter().find(|room| room.id == id)
-    }
-}
-
-impl RoomId {
-    /// What people call it in this world: its name, or the one that a world pack gives it.
-    #[must_use]
-    pub fn name_in(self, catalog: &Catalog) -> &str {
-        catalog.room_names(self.id()).map_or(self.name(), |names| names.name.as_str())
     }
 }

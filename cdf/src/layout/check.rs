@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 
 use super::fault::{LayoutFault, NOTE_PLACES, NoStand, NoWay, VIEWPOINTS};
-use super::floor::{FreeFloor, START, is_obstacle};
+use super::floor::{FreeFloor, is_obstacle};
 use super::footprint::{Footprint, is_clear_of_walls};
 use super::ways::Ways;
 use super::{Layout, Opening, OpeningKind, Placement, Room, RoomId, Viewpoint};
@@ -122,21 +122,18 @@ impl Layout {
 
     fn check_floor(&self, catalog: &Catalog, solids: &[Solid<'_>], faults: &mut Vec<LayoutFault>) {
         let standing = FreeFloor::new(self, catalog, ROBOT_RADIUS_M);
-        let ways = Ways::of(self);
-        faults.extend(ways.no_start());
+        let ways = Ways::of(self, catalog);
         let is_reached = |room: &Room| {
             let margin_m = HALF_WALL_M + ROBOT_RADIUS_M;
             standing.points_m().any(|(id, point)| id == room.id && is_clear_of_walls(room, point, margin_m))
         };
         // Nothing is said of what is in a room that cannot be reached: its door is what is missing.
         let (reached, out_of_reach): (Vec<&Room>, Vec<&Room>) = self.rooms.iter().partition(|room| is_reached(room));
-        if self.room(START).is_some() {
-            let fault = |room: &&Room| {
-                let why = ways.no_way_into(room.id).unwrap_or(NoWay::Blocked);
-                LayoutFault::OutOfReach { room: room.id, why }
-            };
-            faults.extend(out_of_reach.iter().map(fault));
-        }
+        let fault = |room: &&Room| {
+            let why = ways.no_way_into(room.id).unwrap_or(NoWay::Blocked);
+            LayoutFault::OutOfReach { room: room.id, why }
+        };
+        faults.extend(out_of_reach.iter().map(fault));
         let walkways = FreeFloor::new(self, catalog, WALKWAY_RADIUS_M);
         for solid in solids.iter().filter(|solid| solid.is_operable() && solid.placement.on.is_none()) {
             let near = |(room, point): (RoomId, [f32; 2])| {

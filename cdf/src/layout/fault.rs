@@ -28,12 +28,6 @@ pub enum LayoutFault {
         /// The room.
         room: RoomId,
     },
-    /// The room is missing from which all others are reached.
-    #[error("there is no room {}: the way to all other rooms begins there", .room.id())]
-    NoStart {
-        /// The room.
-        room: RoomId,
-    },
     /// A room cannot be walked to.
     #[error("{} cannot be reached: {why}", .room.id())]
     OutOfReach {
@@ -220,9 +214,6 @@ impl LayoutFault {
                 return meant(near).unwrap_or_else(|| "name what is placed in the same room".to_owned());
             }
             Self::NoRoom { .. } => "name a room of the plan, or add it as a `room`",
-            Self::NoStart { room } => {
-                return format!("add a `room` with `id = \"{}\"`, and doors between it and other rooms", room.id());
-            }
             Self::OutOfReach { room, why: NoWay::NoDoor { entry } | NoWay::Elsewhere { entry, .. } } => {
                 return entry.as_ref().map_or_else(
                     || format!("give {} a wall in common with a room that can be reached, and a door in it", room.id()),

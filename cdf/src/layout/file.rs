@@ -101,11 +101,7 @@ impl Layout {
         }
         self.place(name, file.placement)?;
         replace_or_add(&mut self.viewpoints, file.viewpoint, |a, b| (a.room, a.number) == (b.room, b.number));
-        for room in RoomId::ALL {
-            if file.note_place.iter().any(|note| note.room == room) {
-                self.note_places.retain(|note| note.room != room);
-            }
-        }
+        self.note_places.retain(|note| file.note_place.iter().all(|new| new.room != note.room));
         self.note_places.extend(file.note_place);
         Ok(())
     }

@@ -16,10 +16,13 @@ const STEP_M: f32 = 0.07;
 /// What begins higher does not block, m: the robot is lower.
 const HEADROOM_M: f32 = 1.4;
 
-/// The room from which all others are reached.
-pub(super) const START: RoomId = RoomId::Hallway;
+/// The room from which all others are reached: a plan's first corridor, or its first room if it has no corridor.
+pub(super) fn start(layout: &Layout, catalog: &Catalog) -> Option<RoomId> {
+    let mut rooms = layout.rooms.iter().map(|room| room.id);
+    rooms.clone().find(|room| catalog.rooms().is_corridor(*room)).or_else(|| rooms.next())
+}
 
-/// The cells of floor where a disc of some radius can stand, and that can be reached from the hallway.
+/// The cells of floor where a disc of some radius can stand, and that can be reached from the room where all ways begin.
 #[derive(Clone, Debug)]
 pub struct FreeFloor {
     west_south_m: [f32; 2],
@@ -42,7 +45,7 @@ impl FreeFloor {
             let is_free = || obstacles.iter().all(|obstacle| obstacle.distance_m(point) >= radius_m);
             floor.cells[index] = standing_room(layout, point, radius_m).filter(|_| is_free());
         }
-        floor.keep_reachable();
+        floor.keep_reachable(start(layout, catalog));
         floor
     }
 
@@ -72,10 +75,10 @@ impl FreeFloor {
         [middle(self.west_south_m[0], column), middle(self.west_south_m[1], row)]
     }
 
-    /// Forgets what cannot be walked to from the hallway's first free cell.
-    fn keep_reachable(&mut self) {
+    /// Forgets what cannot be walked to from the first free cell of a room.
+    fn keep_reachable(&mut self, first: Option<RoomId>) {
         let mut reached = vec![false; self.cells.len()];
-        let start = self.cells.iter().position(|cell| *cell == Some(START));
+        let start = self.cells.iter().position(|cell| cell.is_some() && *cell == first);
         let mut open: VecDeque<usize> = start.into_iter().collect();
         while let Some(index) = open.pop_front() {
             if reached[index] {

@@ -30,7 +30,7 @@ fn builtin_plans_have_room_to_walk() {
 fn builtin_plans_have_what_missions_name() {
     const NAMED: &[(RoomId, &[&str])] = &[
         (
-            RoomId::BreakRoom,
+            RoomId::BREAK_ROOM,
             &[
                 "Microwave_01_10000",
                 "FridgeLower_02_10000",
@@ -46,7 +46,7 @@ fn builtin_plans_have_what_missions_name() {
             ],
         ),
         (
-            RoomId::MainOffice,
+            RoomId::MAIN_OFFICE,
             &[
                 "AP_Prop_Desk_Green_10000",
                 "AP_Prop_Desk_Red_10000",
@@ -59,9 +59,9 @@ fn builtin_plans_have_what_missions_name() {
                 "Computer_Monitor_01_5",
             ],
         ),
-        (RoomId::SmallOffice, &["ManagerDesk_10000", "ManagerDesk_10001"]),
+        (RoomId::SMALL_OFFICE, &["ManagerDesk_10000", "ManagerDesk_10001"]),
         (
-            RoomId::Lab1,
+            RoomId::LAB1,
             &[
                 "Desk_01_10006",
                 "Desk_01_10007",
@@ -76,7 +76,7 @@ fn builtin_plans_have_what_missions_name() {
             ],
         ),
         (
-            RoomId::Lab2,
+            RoomId::LAB2,
             &[
                 "Desk_01_10008",
                 "EAC_Machine_1",
@@ -93,8 +93,8 @@ fn builtin_plans_have_what_missions_name() {
                 "TAMPrototypeHead_01_1",
             ],
         ),
-        (RoomId::Warehouse, &["KitchenCabinet_02_10000", "ForkLift_1", "Shelves_Tall_01_10000", "PackingBox_10000"]),
-        (RoomId::Reception, &["ReceptionDesk_1", "Security_Button_10000"]),
+        (RoomId::WAREHOUSE, &["KitchenCabinet_02_10000", "ForkLift_1", "Shelves_Tall_01_10000", "PackingBox_10000"]),
+        (RoomId::RECEPTION, &["ReceptionDesk_1", "Security_Button_10000"]),
     ];
     for id in Layout::builtin_ids() {
         let plan = Layout::builtin(&id).unwrap();
@@ -112,7 +112,7 @@ fn builtin_plans_have_what_missions_name() {
         }
         let switched: Vec<RoomId> =
             (1..=8).map(|number| plan.placement(&format!("LightSwitch_01_{number}")).unwrap().room).collect();
-        assert!(RoomId::ALL.iter().all(|room| switched.contains(room)), "{id}: a room without a light switch");
+        assert!(RoomId::BUILTIN.iter().all(|room| switched.contains(room)), "{id}: a room without a light switch");
         for room in &plan.rooms {
             let feeds = |placement: &&Placement| {
                 let circuit = plan.room(placement.room).map(|room| room.circuit);
@@ -120,7 +120,7 @@ fn builtin_plans_have_what_missions_name() {
             };
             assert_eq!(plan.placements.iter().filter(feeds).count(), 1, "{id}: fuse boxes of {:?}", room.id);
         }
-        let at_reception = plan.openings.iter().filter(|opening| opening.between.contains(&RoomId::Reception));
+        let at_reception = plan.openings.iter().filter(|opening| opening.between.contains(&RoomId::RECEPTION));
         assert_eq!(at_reception.filter(|opening| opening.door.is_some()).count(), 2, "{id}: doors at reception");
     }
 }
@@ -228,7 +228,7 @@ fn viewpoints_are_apart_and_show_their_room() {
     const SHOWN: usize = 4;
     for id in Layout::builtin_ids() {
         let plan = Layout::builtin(&id).unwrap();
-        for room in RoomId::ALL {
+        for room in RoomId::BUILTIN {
             let views: Vec<&Viewpoint> = plan.viewpoints.iter().filter(|view| view.room == room).collect();
             assert_eq!(views.len(), 8, "{id}: {room:?}");
             for (index, view) in views.iter().enumerate() {

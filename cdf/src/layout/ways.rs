@@ -3,9 +3,9 @@
 use std::collections::BTreeSet;
 
 use super::fault::{LayoutFault, NoWay};
-use super::floor::START;
+use super::floor::start;
 use super::{Layout, OpeningKind, Room, RoomId};
-use crate::model::Axis;
+use crate::{catalog::Catalog, model::Axis};
 
 /// Width of a door that is proposed, m.
 const DOOR_M: f32 = 1.0;
@@ -19,24 +19,21 @@ const DOOR: &str = "Door_01";
 /// The rooms of a plan, and which of them are joined with the room where all ways begin.
 pub(super) struct Ways<'a> {
     layout: &'a Layout,
+    /// The room where all ways begin.
+    start: Option<RoomId>,
     joined: BTreeSet<RoomId>,
 }
 
 impl<'a> Ways<'a> {
-    pub fn of(layout: &'a Layout) -> Self {
-        let mut ways = Self { layout, joined: BTreeSet::new() };
-        let mut open: Vec<RoomId> = layout.room(START).map(|room| room.id).into_iter().collect();
+    pub fn of(layout: &'a Layout, catalog: &Catalog) -> Self {
+        let mut ways = Self { layout, start: start(layout, catalog), joined: BTreeSet::new() };
+        let mut open: Vec<RoomId> = ways.start.into_iter().collect();
         while let Some(room) = open.pop() {
             if ways.joined.insert(room) {
                 open.extend(ways.neighbours(room));
             }
         }
         ways
-    }
-
-    /// The room is missing where all ways begin.
-    pub fn no_start(&self) -> Option<LayoutFault> {
-        self.layout.room(START).is_none().then_some(LayoutFault::NoStart { room: START })
     }
 
     /// The rooms that a room has a door or a passage to.
@@ -65,7 +62,7 @@ impl<'a> Ways<'a> {
         let own = self.layout.room(room)?;
         let others = self.layout.rooms.iter().filter(|other| self.joined.contains(&other.id));
         let walls = others.flat_map(|other| shared_walls(own, other));
-        let rank = |wall: &Wall| (wall.between.contains(&START), wall.length_m);
+        let rank = |wall: &Wall| (self.start.is_some_and(|start| wall.between.contains(&start)), wall.length_m);
         let wall = walls.max_by(|one, other| {
             let ((one_starts, one_m), (other_starts, other_m)) = (rank(one), rank(other));
             one_starts.cmp(&other_starts).then(one_m.total_cmp(&other_m))
@@ -85,11 +82,8 @@ impl<'a> Ways<'a> {
 impl Layout {
     /// The rooms that no doors and passages lead into, whatever stands in them, each with why and what to write.
     #[must_use]
-    pub fn rooms_without_a_way(&self) -> Vec<LayoutFault> {
-        let ways = Ways::of(self);
-        if let Some(fault) = ways.no_start() {
-            return vec![fault];
-        }
+    pub fn rooms_without_a_way(&self, catalog: &Catalog) -> Vec<LayoutFault> {
+        let ways = Ways::of(self, catalog);
         let without = self.rooms.iter().filter_map(|room| Some((room.id, ways.no_way_into(room.id)?)));
         without.map(|(room, why)| LayoutFault::OutOfReach { room, why }).collect()
     }

@@ -76,7 +76,8 @@ impl Reader<'_> {
         if let (Some(room), Some(outer_room)) = (object.room, outer_room)
             && room != outer_room
         {
-            let message = format!("`{inside}` is in the {}, not in the {}", outer_room.name(), room.name());
+            let [outer_name, name] = [outer_room, room].map(|room| room.name_in(self.catalog));
+            let message = format!("`{inside}` is in the {outer_name}, not in the {name}");
             self.warn(&at, message, Some("the receptacle counts".to_owned()));
         }
         if let (Some(class), Some(receptacle)) = (self.class_id(&object.instance), self.class_id(inside)) {

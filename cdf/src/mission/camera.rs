@@ -110,10 +110,10 @@ impl Reader<'_> {
     /// A viewpoint, a room or an object by its name.
     fn view_named(&mut self, at: &Pointer, name: &str) -> Option<CameraView> {
         let name = name.trim();
-        if let Some(room) = RoomId::from_id(name) {
-            return self.room(at, room.id()).map(CameraView::Room);
+        if let Some(room) = self.catalog.rooms().find(name) {
+            return Some(CameraView::Room(room));
         }
-        if name.rsplit_once('_').is_some_and(|(room, _)| RoomId::from_id(room).is_some()) {
+        if name.rsplit_once('_').is_some_and(|(room, _)| self.catalog.rooms().find(room).is_some()) {
             return self.viewpoint(at, name).map(|(room, number)| CameraView::Viewpoint(room, number));
         }
         self.reference(at, name);

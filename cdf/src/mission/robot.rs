@@ -175,7 +175,7 @@ impl Reader<'_> {
     /// A viewpoint such as `Lab1_3`; none and a problem if there is none of that name.
     pub fn viewpoint(&mut self, at: &Pointer, name: &str) -> Option<(RoomId, u8)> {
         let named = name.rsplit_once('_').and_then(|(room, number)| {
-            let room = RoomId::from_id(room)?;
+            let room = self.catalog.rooms().find(room)?;
             Some((room, number.parse::<u8>().ok().filter(|number| (1..=8).contains(number))?))
         });
         if named.is_none() {

@@ -13,8 +13,8 @@ use crate::{layout::Layout, nearest::did_you_mean, room::RoomId};
 /// The layout of a mission that names none.
 pub(super) const DEFAULT_LAYOUT: &str = "OfficeLayout1";
 
-/// The start room of a mission that names none.
-pub(super) const DEFAULT_ROOM: RoomId = RoomId::BreakRoom;
+/// The start room of a mission that names none, if its layout has it; the layout's first room otherwise.
+pub(super) const DEFAULT_ROOM: RoomId = RoomId::BREAK_ROOM;
 
 /// The layouts of the format; each has a `_mirror` too. There may be no floor plan for some of them.
 pub(super) const LAYOUTS: [&str; 5] =
@@ -140,29 +140,35 @@ impl Reader<'_> {
         match self.first_text(at, field) {
             Some((at, id)) => {
                 let room = self.room(&at, &id);
-                room.inspect(|room| self.room_in_layout(&at, *room)).unwrap_or(DEFAULT_ROOM)
+                room.inspect(|room| self.room_in_layout(&at, *room)).unwrap_or_else(|| self.default_room())
             }
             None => {
+                let room = self.default_room();
                 if !misfit {
-                    let remedy = format!("taken as `{}`", DEFAULT_ROOM.id());
+                    let remedy = format!("taken as `{room}`");
                     self.warn(at, "the mission does not say where the robot starts", Some(remedy));
                 }
-                DEFAULT_ROOM
+                room
             }
         }
     }
 
-    /// The room of that id; none and a problem if there is none.
-    pub fn room(&mut self, at: &Pointer, id: &str) -> Option<RoomId> {
-        let room = RoomId::from_id(id);
+    fn default_room(&self) -> RoomId {
+        let first = |layout: &Layout| layout.rooms.first().map(|room| room.id);
+        let missing = self.layout.filter(|layout| layout.room(DEFAULT_ROOM).is_none());
+        missing.and_then(first).unwrap_or(DEFAULT_ROOM)
+    }
+
+    /// The room of that id, or of that name in this world; none and a problem if there is none.
+    pub fn room(&mut self, at: &Pointer, text: &str) -> Option<RoomId> {
+        let room = self.catalog.rooms().find(text);
         if room.is_none() {
-            let by_name = RoomId::ALL.iter().find(|room| room.name().eq_ignore_ascii_case(id));
-            match by_name {
-                Some(room) => {
-                    self.error(at, format!("unknown room `{id}`"), Some(format!("did you mean `{}`?", room.id())));
-                }
-                None => self.unknown(at, "room", id, RoomId::ALL.iter().map(|room| room.id())),
-            }
+            let (rooms, layout) = (self.catalog.rooms(), self.layout);
+            let (ids, names) =
+                (rooms.all().iter().map(|room| room.id.id()), rooms.all().iter().map(|room| &*room.name));
+            let there = || layout.map_or_else(|| rooms.listed(), listed);
+            let remedy = did_you_mean(text, ids.chain(names)).unwrap_or_else(|| format!("there are {}", there()));
+            self.error(at, format!("unknown room `{text}`"), Some(remedy));
         }
         room
     }
@@ -213,10 +219,16 @@ impl Reader<'_> {
         if let (Some(layout), Some(room)) = (self.layout, room) {
             let places = places(layout);
             if place >= places {
-                let message = format!("the {} has {places} places for notes; the last one is taken", room.name());
+                let name = room.name_in(self.catalog);
+                let message = format!("the {name} has {places} places for notes; the last one is taken");
                 self.warn(at, message, None);
             }
         }
         place
     }
+}
+
+/// The rooms of a floor plan.
+fn listed(layout: &Layout) -> String {
+    layout.rooms.iter().map(|room| room.id.id()).collect::<Vec<_>>().join(", ")
 }

@@ -22,7 +22,6 @@ use crate::{
     catalog::Catalog,
     flag_key::flag_keys,
     layout::Layout,
-    room::RoomId,
     state::{Color, Fluid},
 };
 
@@ -57,7 +56,7 @@ fn vocabulary(catalog: &Catalog) -> Map<String, Value> {
             "InstancePattern",
             pattern("An instance, or a beginning and `*` for any that begins so.", "^[A-Za-z][A-Za-z0-9_]*\\*?$"),
         ),
-        ("Room", words("A room.", rooms_known())),
+        ("Room", room_schema(catalog)),
         ("Layout", words("A layout.", layouts_known())),
         ("Fluid", words("What fills an object.", Fluid::ALL.iter().map(|fluid| fluid.name()))),
         ("Color", words("A colour.", Color::ALL.iter().map(|color| color.name()))),
@@ -82,9 +81,11 @@ fn vocabulary(catalog: &Catalog) -> Map<String, Value> {
     defined.into_iter().map(|(name, schema)| (name.to_owned(), schema)).collect()
 }
 
-/// Files write the break room in two ways.
-fn rooms_known() -> Vec<&'static str> {
-    RoomId::ALL.iter().map(|room| room.id()).chain(["Breakroom"]).collect()
+/// World packs have rooms of their own, so that any id or name may be right.
+fn room_schema(catalog: &Catalog) -> Value {
+    let known: Vec<&str> = catalog.rooms().all().iter().map(|room| room.id.id()).collect();
+    let description = "A room of the world, by its id or its name.";
+    json!({"description": description, "type": "string", "minLength": 1, "examples": known})
 }
 
 fn layouts_known() -> Vec<String> {

@@ -87,10 +87,10 @@ impl Ids {
     /// # Errors
     /// [`PackError`], where one of them was there before.
     pub fn add(&mut self, pack: &WorldPack) -> Result<(), PackError> {
-        let head = format!("{}/{}", pack.root, super::HEAD);
+        let head = pack.head_file();
         self.note("world pack", &pack.id.name, &head)?;
         for room in &pack.rooms {
-            self.note("name of the room", &room.id, &head)?;
+            self.note("room", room.id.id(), &head)?;
         }
         for (file, _) in &pack.layouts {
             if stem(file).ends_with(MIRRORED) {

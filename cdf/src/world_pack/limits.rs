@@ -5,11 +5,10 @@ use toml::{Table, Value};
 
 use super::{PackError, PackFile};
 use crate::{
-    catalog::{ObjectClass, RoomNames},
+    catalog::ObjectClass,
     layout::Layout,
     model::Model,
     nearest::did_you_mean,
-    room::RoomId,
 };
 
 /// The largest number: of metres, kilograms or degrees.
@@ -137,27 +136,6 @@ pub(super) fn check_models(files: &[(String, String)]) -> Result<(), PackError> 
                 let remedy = format!("from 1 to {MOST_SHAPES}, repeated ones counted each");
                 return Err(PackError::at(file, &at, format!("{shapes} shapes"), &remedy));
             }
-        }
-    }
-    Ok(())
-}
-
-/// Rooms that are named are rooms, and their names can be said.
-pub(super) fn check_rooms(file: &str, rooms: &[RoomNames]) -> Result<(), PackError> {
-    let is_said = |words: &str| {
-        let fits = words.chars().all(|c| c.is_lowercase() || c.is_ascii_digit() || matches!(c, ' ' | '\''));
-        fits && !words.trim().is_empty() && words.len() <= 64
-    };
-    for (index, room) in rooms.iter().enumerate() {
-        if !RoomId::ALL.iter().any(|known| known.id() == room.id) {
-            let remedy = format!("take one of {}", RoomId::ALL.map(RoomId::id).join(", "));
-            let reason = format!("there is no room `{}`", room.id);
-            return Err(PackError::at(file, &format!("room[{index}].id"), reason, &remedy));
-        }
-        if let Some(words) = std::iter::once(&room.name).chain(&room.words).find(|words| !is_said(words)) {
-            let reason = format!("`{words}` is no name of a room");
-            let remedy = "write small letters, digits and spaces, 64 bytes at most";
-            return Err(PackError::at(file, &format!("room[{index}]"), reason, remedy));
         }
     }
     Ok(())

@@ -31,8 +31,11 @@ fn the_template_is_a_world_without_faults() {
     let plan = Layout::find("Workshop", catalog).unwrap();
     let faults = plan.faults(catalog);
     assert!(faults.is_empty(), "{faults:?}");
-    assert_eq!(RoomId::SmallOffice.name_in(catalog), "workshop");
-    assert_eq!(RoomId::Hallway.name_in(catalog), "hallway");
+    let workshop = RoomId::new("Workshop").unwrap();
+    assert_eq!((workshop.name_in(catalog), catalog.room_index(workshop)), ("workshop", Some(8)));
+    assert_eq!((catalog.room_at(8), catalog.room_at(9)), (Some(workshop), None));
+    assert_eq!(plan.rooms[0].id, workshop);
+    assert_eq!(RoomId::HALLWAY.name_in(catalog), "hallway");
     for (name, text) in world.packs()[0].missions() {
         let checked = read_mission(name, text, catalog).unwrap();
         assert!(checked.warnings.is_empty(), "{:?}", checked.warnings);
@@ -80,9 +83,11 @@ fn what_is_wrong_is_named_with_its_file_its_place_and_what_would_be_right() {
         "[[model]]\nid = \"M\"\npart = [{}]",
         "{ shape = \"sphere\", radii = [1, 1, 1], repeat = { count = 5000, step = [0, 0, 0] } }"
     );
+    let many_rooms: String =
+        (0..57).map(|number| format!("[[room]]\nid = \"Room{number}\"\nname = \"room {number}\"\n")).collect();
     let huge = "room = [{ id = \"Hallway\", rects_m = [[0.0, 0.0, 5000.0, 2.0]], floor = { material = \"tile\", color = \"#ffffff\" }, wall = { material = \"plain\", color = \"#eeeeee\" }, circuit = 1 }]";
-    let itself = "base = \"Workshop\"\nplacement = [{ instance = \"Desk_01_1\", room = \"SmallOffice\", on = \"Degreaser_01_1\" }, { instance = \"Degreaser_01_1\", room = \"SmallOffice\", on = \"Desk_01_1\" }]";
-    let alone = "base = \"Workshop\"\nroom = [{ id = \"SmallOffice\", rects_m = [[4.0, 0.0, 6.0, 5.0]], floor = { material = \"tile\", color = \"#ffffff\" }, wall = { material = \"plain\", color = \"#eeeeee\" }, circuit = 1 }, { id = \"Lab1\", rects_m = [[0.0, 0.0, 4.0, 5.0]], floor = { material = \"tile\", color = \"#ffffff\" }, wall = { material = \"plain\", color = \"#eeeeee\" }, circuit = 1 }]";
+    let itself = "base = \"Workshop\"\nplacement = [{ instance = \"Desk_01_1\", room = \"Workshop\", on = \"Degreaser_01_1\" }, { instance = \"Degreaser_01_1\", room = \"Workshop\", on = \"Desk_01_1\" }]";
+    let alone = "base = \"Workshop\"\nroom = [{ id = \"Workshop\", rects_m = [[4.0, 0.0, 6.0, 5.0]], floor = { material = \"tile\", color = \"#ffffff\" }, wall = { material = \"plain\", color = \"#eeeeee\" }, circuit = 1 }, { id = \"Lab1\", rects_m = [[0.0, 0.0, 4.0, 5.0]], floor = { material = \"tile\", color = \"#ffffff\" }, wall = { material = \"plain\", color = \"#eeeeee\" }, circuit = 1 }]";
     let cases: &[(&str, String, &[&str])] = &[
         ("../world.toml", String::new(), &["first: ", "`../world.toml`", "within the pack"]),
         ("/etc/objects.toml", String::new(), &["within the pack"]),
@@ -91,7 +96,24 @@ fn what_is_wrong_is_named_with_its_file_its_place_and_what_would_be_right() {
         ("world.toml", "name = 1".to_owned(), &["first/world.toml: ", "name = 1"]),
         ("world.toml", HEAD_OF_OTHER.replace("other", "../other"), &["first/world.toml: name: ", "small letter"]),
         ("world.toml", HEAD_OF_OTHER.replace("MIT", ""), &["first/world.toml: licence: "]),
-        ("world.toml", head("[[room]]\nid = \"Attic\"\nname = \"attic\""), &["room[0].id: ", "`Attic`", "BreakRoom"]),
+        ("world.toml", head("[[room]]\nid = \"the attic\"\nname = \"attic\""), &["`the attic`", "1 to 24 letters"]),
+        (
+            "world.toml",
+            head("[[room]]\nid = \"Workroom\"\nname = \"quantum lab\""),
+            &["first/world.toml: room[0].name: ", "`Lab2`", "another name"],
+        ),
+        (
+            "world.toml",
+            head("[[room]]\nid = \"Attic\"\nname = \"attic\"\n[[room]]\nid = \"ATTIC\"\nname = \"loft\""),
+            &["room[1].id: ", "`ATTIC`", "capital letters"],
+        ),
+        ("world.toml", head(&many_rooms), &["room[56].id: ", "one room too many", "at most 64"]),
+        (
+            "world.toml",
+            head("[[room]]\nid = \"Attic\"\nname = \"attic\"\ncolor = \"red\""),
+            &["room[0].color: ", "#rrggbb"],
+        ),
+        ("world.toml", HEAD_OF_OTHER.to_owned(), &["first/layouts/Workshop.toml: room `Workshop`: ", "[[room]]"]),
         ("world.toml", head("[[room]]\nid = \"Lab1\"\nname = \"<b>\""), &["room[0]: ", "small letters"]),
         ("objects/more.toml", object("mass_kg = nan\nsize_m = [1, 1, 1]"), &["more.toml: object[0].mass_kg: ", "NaN"]),
         ("objects/more.toml", object("mass_kg = 1\nsize_m = [inf, 1, 1]"), &["object[0].size_m[0]: ", "inf"]),
@@ -211,7 +233,7 @@ fn two_packs_with_one_id_are_refused_with_both_files() {
     };
     let head = file("world.toml", HEAD_OF_OTHER);
     check(&files("my-lab", &[]), &["first/world.toml", "second/world.toml", "`my-lab`"]);
-    check(&files("other", &[]), &["first/world.toml", "second/world.toml", "`SmallOffice`"]);
+    check(&files("other", &[]), &["first/world.toml", "second/world.toml", "`Workshop`"]);
     let plan = file("layouts/Workshop.toml", "base = \"OfficeLayout1\"");
     check(&[head.clone(), plan], &["first/layouts/Workshop.toml", "second/layouts/Workshop.toml"]);
     let mission = file("missions/clean_wrench.json", "{}");

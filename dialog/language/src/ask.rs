@@ -189,10 +189,10 @@ pub(crate) fn direction() -> Understanding {
 }
 
 /// Which room is meant?
-pub(crate) fn which_lab(names: &[String]) -> Understanding {
-    let text = format!("Which lab do you mean: {}?", names.join(" or "));
+pub(crate) fn which_room(kind: &str, names: &[String]) -> Understanding {
+    let text = format!("Which {kind} do you mean: {}?", names.join(" or "));
     let options: Vec<&str> = names.iter().map(String::as_str).collect();
-    of_kind(Clarification::Reference, "lab", text, &options)
+    of_kind(Clarification::Reference, kind, text, &options)
 }
 
 /// What shall I do with what you spoke of?

@@ -10,12 +10,11 @@ use crate::{
     ground::{Ground, Miss, Want},
     hearing,
     intent::Intent,
-    lab,
     lexicon::{Direction, Preposition, Pronoun, Side, Small},
     phrase::{Phrase, Place, Reader, Relation},
     plan::Fault,
     question::{self, QuestionKind},
-    reply, token,
+    reply, room_kind, token,
     understanding::Understanding,
 };
 
@@ -122,9 +121,10 @@ impl Conversation<'_> {
         let mut then = Context { pending: pending.cloned(), later: Vec::new(), ..context.clone() };
         let understanding = match pending? {
             Pending::Lab { words: before, at } => {
-                let room = lab::answered(self.lexicon, self.scene, first)?;
+                let kind = room_kind::standing_at(self.lexicon, self.scene, before, *at)?;
+                let room = kind.answered(self.lexicon, self.scene, first)?;
                 then.pending = None;
-                self.understand_words(lab::named(before, *at, room), &mut then)
+                self.understand_words(kind.named(before, room, self.catalog), &mut then)
             }
             _ => self.answer_to_pending(first, &clause::parts(self.lexicon, self.catalog, first), &mut then)?,
         };

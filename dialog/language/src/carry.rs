@@ -271,7 +271,7 @@ impl Planner<'_> {
                 self.place_on(target);
                 Ok(())
             }
-            Place::Room(room) | Place::Viewpoint(room, _) => self.bring_to_room(object, *room, settled.intent),
+            Place::Room(room) | Place::Viewpoint(room, _) => self.bring_to_room(object, room.id, settled.intent),
             Place::Here | Place::Side(_) | Place::Viewpoints(_) => {
                 self.hold(object)?;
                 self.put_down(None)

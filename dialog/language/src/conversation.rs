@@ -19,7 +19,6 @@ use crate::{
     intent::Intent,
     judge::Judge,
     known::Known,
-    lab,
     lexicon::{Lexicon, Small},
     phrase::{Phrase, Place, RelationKind},
     plan::{Fault, Planner},
@@ -27,6 +26,7 @@ use crate::{
     question::{self, QuestionKind},
     remedy, reply,
     rewritten::Rewrite,
+    room_kind,
     search::Search,
     spelling,
     stop::{self, Firmness, Stop},
@@ -161,9 +161,10 @@ impl Conversation<'_> {
             if context.pending.is_some() || self.pauses_to_ask(&words) { self.without_pause(words) } else { words };
         if let Some(Pending::Lab { words: before, at }) = &context.pending
             && !self.asks_for_more(&words)
-            && let Some(room) = lab::answered(self.lexicon, self.scene, &words)
+            && let Some(kind) = room_kind::standing_at(self.lexicon, self.scene, before, *at)
+            && let Some(room) = kind.answered(self.lexicon, self.scene, &words)
         {
-            let words = lab::named(before, *at, room);
+            let words = kind.named(before, room, self.catalog);
             let later = std::mem::take(&mut context.later);
             let open = context.pending.take();
             let understanding = self.understand_words(words, context);
@@ -187,21 +188,22 @@ impl Conversation<'_> {
         if let Some(understanding) = self.answered_first(&words, open.as_ref(), context) {
             return understanding;
         }
-        if let Some(at) = lab::bare(self.lexicon, &words).filter(|at| !clause::is_forbidden(self.lexicon, &words, *at))
-        {
-            let furnished = || lab::furnished(self.lexicon, self.catalog, self.scene, &words);
-            if let Some(room) = lab::described(self.lexicon, self.scene, &words[at + 1..])
-                .or_else(|| lab::beside(self.lexicon, &words))
+        let kind = room_kind::bare(self.lexicon, self.scene, &words);
+        if let Some(kind) = kind.filter(|kind| !clause::is_forbidden(self.lexicon, &words, kind.at)) {
+            let furnished = || kind.furnished(self.lexicon, self.catalog, self.scene, &words);
+            if let Some(room) = kind
+                .described(self.lexicon, self.scene, kind.after(&words))
+                .or_else(|| kind.beside(self.lexicon, &words))
                 .or_else(furnished)
             {
-                return self.understand_words(lab::named(&words, at, room), context);
+                return self.understand_words(kind.named(&words, room, self.catalog), context);
             }
-            let guessed = || (self.judge.asking == Asking::Never).then(|| lab::guessed(self.scene));
-            if let Some(room) = lab::here(self.scene.robot.room).or_else(guessed) {
-                return self.understand_words(lab::named(&words, at, room), context);
+            let guessed = || (self.judge.asking == Asking::Never).then(|| kind.guessed(self.scene));
+            if let Some(room) = kind.here(self.scene.robot.room).or_else(guessed) {
+                return self.understand_words(kind.named(&words, room, self.catalog), context);
             }
-            context.pending = Some(Pending::Lab { words, at });
-            return lab::question();
+            context.pending = Some(Pending::Lab { words, at: kind.at });
+            return kind.question(self.catalog);
         }
         let understanding = self.fresh(&words, parts, context);
         // What was said in between leaves the robot's own question open.

@@ -7,7 +7,7 @@ use crate::{
     ask,
     context::{Context, Guess, Pending},
     conversation::Conversation,
-    lab, reply, stop, tail, token,
+    reply, room_kind, stop, tail, token,
     understanding::{Asking, Clarification, Step, Understanding},
     way::Way,
     wording::Wording,
@@ -74,7 +74,7 @@ impl Conversation<'_> {
     /// What an utterance means, and how likely it is what was meant.
     pub(crate) fn understand_whole(&self, utterance: &str, context: &mut Context) -> (Understanding, f32) {
         let wording = self.wording(utterance);
-        if let Some(named) = self.with_lab_named(&wording, lab::beside(self.lexicon, &wording.words)) {
+        if let Some(named) = self.with_room_named(&wording, room_kind::beside(self.lexicon, &wording.words)) {
             return self.understand_whole(&named, context);
         }
         let is_plain = self.is_plain(&wording);
@@ -174,13 +174,13 @@ impl Conversation<'_> {
         }
     }
 
-    /// The utterance with the name of the lab that `the lab` means: one that is named besides, or that the robot is in.
-    pub(crate) fn with_lab_named(&self, wording: &Wording<'_>, named: Option<RoomId>) -> Option<String> {
-        let at = lab::bare(self.lexicon, &wording.words)?;
-        let room = named.or_else(|| lab::here(self.scene.robot.room))?;
-        let is_told = lab::described(self.lexicon, self.scene, &wording.words[at + 1..]).is_some();
+    /// The utterance with the name of the room that `the lab` means: one that is named besides, or that the robot is in.
+    pub(crate) fn with_room_named(&self, wording: &Wording<'_>, named: Option<RoomId>) -> Option<String> {
+        let kind = room_kind::bare(self.lexicon, self.scene, &wording.words)?;
+        let room = named.and_then(|room| kind.has(room)).or_else(|| kind.here(self.scene.robot.room))?;
+        let is_told = kind.described(self.lexicon, self.scene, kind.after(&wording.words)).is_some();
         let mark = if wording.utterance.trim_end().ends_with('?') { "?" } else { "" };
-        (!is_told).then(|| format!("{}{mark}", token::sentence(&lab::named(&wording.words, at, room))))
+        (!is_told).then(|| format!("{}{mark}", token::sentence(&kind.named(&wording.words, room, self.catalog))))
     }
 
     /// Asks which of the likeliest plans is meant, instead of carrying any out; nothing, where none is likely at all.

@@ -67,6 +67,11 @@ impl FloorPlan {
         }
     }
 
+    /// Its rooms.
+    pub(crate) fn rooms(&self) -> impl Iterator<Item = RoomId> {
+        self.rooms.iter().map(|(room, _)| *room)
+    }
+
     /// Whether it shows this door.
     pub(crate) fn has_door(&self, instance: &str) -> bool {
         self.doors.iter().any(|door| door == instance)

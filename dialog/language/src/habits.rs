@@ -36,17 +36,20 @@ fn placed(layouts: impl Iterator<Item = Layout>) -> Vec<Placed> {
 /// Counts of classes by room, and by what encloses them.
 #[derive(Debug)]
 pub(crate) struct Habits {
-    rooms: BTreeMap<ClassId, [f32; RoomId::ALL.len()]>,
+    /// By the index of rooms.
+    rooms: BTreeMap<ClassId, Vec<f32>>,
     enclosed: BTreeMap<(ClassId, ClassId), f32>,
 }
 
 impl Habits {
     /// Counts in the built-in plans, and in those of world packs, what the catalogue has.
     pub(crate) fn new(catalog: &Catalog) -> Self {
+        let none = vec![0.0; catalog.rooms().all().len()];
         let mut habits = Self { rooms: BTreeMap::new(), enclosed: BTreeMap::new() };
         for (instance, room, on) in PLACES.iter().chain(&places_of_packs(catalog)) {
             let Some(class) = catalog.class_of_instance(instance) else { continue };
-            habits.rooms.entry(class).or_default()[*room as usize] += 1.0;
+            let Some(index) = catalog.room_index(*room) else { continue };
+            habits.rooms.entry(class).or_insert_with(|| none.clone())[usize::from(index)] += 1.0;
             let place = on.as_deref().and_then(|on| catalog.class_of_instance(on));
             let encloses =
                 |place: &ClassId| catalog.class(*place).receptacle.as_ref().is_some_and(|kind| kind.enclosed);
@@ -57,16 +60,16 @@ impl Habits {
         habits
     }
 
-    /// How likely a thing of one of these classes is in each room; the sum is 1.
-    pub(crate) fn by_room(&self, catalog: &Catalog, classes: &[ClassId]) -> [f32; RoomId::ALL.len()] {
-        let mut sums = [ANYWHERE; RoomId::ALL.len()];
+    /// How likely a thing of one of these classes is in each room, by its index; the sum is 1.
+    pub(crate) fn by_room(&self, catalog: &Catalog, classes: &[ClassId]) -> Vec<f32> {
+        let mut sums = vec![ANYWHERE; catalog.rooms().all().len()];
         for (class, counts) in &self.rooms {
             let weight = weight(catalog, classes, *class);
             let all: f32 = counts.iter().sum();
             sums.iter_mut().zip(counts).for_each(|(sum, count)| *sum += weight * count / all);
         }
         let all: f32 = sums.iter().sum();
-        sums.map(|sum| sum / all)
+        sums.into_iter().map(|sum| sum / all).collect()
     }
 
     /// How likely such a thing is in something of class `place` with a closed door, if one of those is where it is.

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeSet;
 
-use cohabit_cdf::{Property, RoomId};
+use cohabit_cdf::Property;
 
 use crate::{
     Language,
@@ -121,7 +121,7 @@ impl Language {
             things: things.into_iter().collect(),
             facts: told.take(MOST_FACTS).collect(),
             goals: scene.goals.iter().filter(|goal| !goal.met).map(|goal| goal.text.clone()).collect(),
-            rooms: RoomId::ALL.iter().map(|room| room.name_in(self.catalog()).to_owned()).collect(),
+            rooms: scene.room_names(self.catalog()).map(str::to_owned).collect(),
             held: scene.robot.held.map(bare),
             room: scene.robot.room.name_in(self.catalog()).to_owned(),
         }

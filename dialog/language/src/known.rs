@@ -20,6 +20,8 @@ pub struct Known {
     pub mission: String,
     /// The goals that people may read, in their order.
     pub goals: Vec<KnownGoal>,
+    /// The rooms of the floor plan; empty, where nobody told.
+    pub rooms: Vec<RoomId>,
     /// The floor, as far as what it does not know may be looked for; `None` for who knows everything.
     pub floor: Option<Floor>,
     /// Who speaks to it, if they are there themselves.
@@ -95,6 +97,17 @@ pub struct KnownGoal {
 }
 
 impl Known {
+    /// Whether there is this room; where nobody told, there may be any.
+    pub(crate) fn may_have_room(&self, room: RoomId) -> bool {
+        self.rooms.is_empty() || self.rooms.contains(&room)
+    }
+
+    /// What the rooms that there are are called, in the order of the catalogue.
+    pub(crate) fn room_names<'c>(&self, catalog: &'c Catalog) -> impl Iterator<Item = &'c str> {
+        let there = catalog.rooms().all().iter().filter(|room| self.may_have_room(room.id));
+        there.map(|room| room.name.as_str())
+    }
+
     /// The object with this id.
     #[must_use]
     pub fn object(&self, id: ObjectId) -> Option<&KnownObject> {

@@ -1,6 +1,9 @@
 //! All words the robot understands: its own tables, and the names of the catalogue's classes.
 
-use std::{collections::BTreeSet, sync::Arc};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    sync::Arc,
+};
 
 use cohabit_cdf::{ClassId, Fluid, RoomId, state::StateFlag};
 use serde::{Deserialize, Serialize};
@@ -21,6 +24,14 @@ use crate::{
     wish::Wishes,
     yes_no::YesNo,
 };
+
+/// A room that somebody spoke of.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub(crate) struct NamedRoom {
+    pub(crate) id: RoomId,
+    /// What it is called first of all in this world.
+    pub(crate) name: String,
+}
 
 /// A class that a word may mean, and how much it means it: 1 for its name, less for words further down its list.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
@@ -204,6 +215,13 @@ pub(crate) struct Lexicon {
     pub(crate) brings_about: PhraseTable<Vec<String>>,
     pub(crate) fluids: PhraseTable<Fluid>,
     pub(crate) rooms: PhraseTable<RoomId>,
+    /// What people call several rooms of which they mean one.
+    pub(crate) room_kinds: PhraseTable<Vec<RoomId>>,
+    pub(crate) rooms_of_kinds: BTreeSet<RoomId>,
+    /// What each room is called first of all.
+    pub(crate) room_names: BTreeMap<RoomId, String>,
+    /// Rooms by their ids, in lower case.
+    pub(crate) room_ids: BTreeMap<String, RoomId>,
     pub(crate) small: PhraseTable<BTreeSet<Small>>,
     pub(crate) verbs: PhraseTable<Vec<Intent>>,
     /// The first words of all verbs.
@@ -244,6 +262,11 @@ pub(crate) struct Lexicon {
 }
 
 impl Lexicon {
+    /// The room, with what it is called first of all.
+    pub(crate) fn named_room(&self, id: RoomId) -> NamedRoom {
+        NamedRoom { id, name: self.room_names.get(&id).cloned().unwrap_or_default() }
+    }
+
     /// Whether it only joins other words, and nobody mistakes it.
     pub(crate) fn is_small_word(&self, word: &str) -> bool {
         let word = [word.to_owned()];

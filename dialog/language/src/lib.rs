@@ -14,8 +14,9 @@
 //! use cohabit_language::{Context, Known, KnownRobot, Language, Understanding};
 //!
 //! let language = Language::new(Arc::new(Catalog::parse(&[], &[])?));
-//! let robot = KnownRobot { position_m: [0.0; 3], yaw_rad: 0.0, room: RoomId::Lab1, held: None };
-//! let scene = Known { robot, objects: vec![], mission: String::new(), goals: vec![], floor: None, person: None };
+//! let robot = KnownRobot { position_m: [0.0; 3], yaw_rad: 0.0, room: RoomId::LAB1, held: None };
+//! let (mission, goals, rooms) = (String::new(), vec![], vec![]);
+//! let scene = Known { robot, objects: vec![], mission, goals, rooms, floor: None, person: None };
 //! let meant = language.understand("Could you go to the kitchen, please?", &scene, &mut Context::default());
 //! assert!(matches!(meant, Understanding::Plan { steps, .. } if steps.len() == 1));
 //! # Ok::<(), cohabit_cdf::CatalogError>(())
@@ -55,7 +56,6 @@ mod intent;
 mod interpret;
 mod judge;
 mod known;
-mod lab;
 mod later;
 mod lexicon;
 mod memory;
@@ -75,6 +75,7 @@ mod reply;
 mod report;
 mod requests;
 mod rewritten;
+mod room_kind;
 mod saying;
 mod search;
 mod setting;

@@ -174,7 +174,8 @@ impl Memory {
         let robot = self.robot.clone()?;
         let objects = self.things.values().cloned().collect();
         let (goals, floor) = (self.goals.clone(), Some(self.floor.clone()));
-        Some(Known { robot, objects, mission: String::new(), goals, floor, person: None })
+        let (mission, rooms) = (String::new(), self.floor.plan.rooms().collect());
+        Some(Known { robot, objects, mission, goals, rooms, floor, person: None })
     }
 
     /// Where what an action is about is remembered to be, m, if it is not there: others moved it while nobody looked.

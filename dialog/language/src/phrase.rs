@@ -4,7 +4,7 @@ use cohabit_cdf::{ClassId, Fluid, ObjectId, RoomId};
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    lexicon::{Lexicon, Naming, Preposition, Pronoun, Side, StateWord},
+    lexicon::{Lexicon, NamedRoom, Naming, Preposition, Pronoun, Side, StateWord},
     saying, token,
 };
 
@@ -76,8 +76,8 @@ pub(crate) enum RelationKind {
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[allow(clippy::large_enum_variant, reason = "a request has one or two")]
 pub(crate) enum Place {
-    Room(RoomId),
-    Viewpoint(RoomId, u8),
+    Room(NamedRoom),
+    Viewpoint(NamedRoom, u8),
     Viewpoints(u8),
     Object(Phrase),
     Side(Side),
@@ -164,7 +164,7 @@ impl Place {
     /// The place in words, for questions about it.
     fn text(&self, preposition: Preposition) -> String {
         match self {
-            Self::Room(room) | Self::Viewpoint(room, _) => format!("in the {}", room.name()),
+            Self::Room(room) | Self::Viewpoint(room, _) => format!("in the {}", room.name),
             Self::Here => "here".to_owned(),
             Self::Side(side) => format!("on the {}", format!("{side:?}").to_lowercase()),
             Self::Viewpoints(number) => format!("at viewpoint {number}"),
@@ -347,7 +347,7 @@ impl<'a> Reader<'a> {
         }
         if let Some(room) = reader.of_room() {
             *self = reader;
-            return Some((Preposition::In, Place::Room(room)));
+            return Some((Preposition::In, Place::Room(reader.lexicon.named_room(room))));
         }
         let (length, preposition) = reader.lexicon.prepositions.longest(reader.rest())?;
         reader.at += length;
@@ -397,7 +397,7 @@ impl<'a> Reader<'a> {
         {
             reader.at += length;
             *self = reader;
-            return Some(Place::Room(*room));
+            return Some(Place::Room(reader.lexicon.named_room(*room)));
         }
         let mut reader = *self;
         let phrase = reader.phrase()?;
@@ -409,10 +409,10 @@ impl<'a> Reader<'a> {
     fn viewpoint(&mut self) -> Option<Place> {
         if let Some(word) = self.rest().first()
             && let Some((room, number)) = word.rsplit_once('_')
-            && let (Some(room), Ok(number)) = (RoomId::from_id(room), number.parse())
+            && let (Some(room), Ok(number)) = (self.lexicon.room_ids.get(room), number.parse())
         {
             self.at += 1;
-            return Some(Place::Viewpoint(room, number));
+            return Some(Place::Viewpoint(self.lexicon.named_room(*room), number));
         }
         let mut reader = *self;
         reader.skip(|lexicon| &lexicon.articles);
@@ -561,7 +561,7 @@ impl Phrase {
     pub(crate) fn attach(&mut self, preposition: Preposition, place: Place) {
         self.text = format!("{} {}", self.text, place.text(preposition)).trim().to_owned();
         match place {
-            Place::Room(room) | Place::Viewpoint(room, _) => self.room = Some(room),
+            Place::Room(room) | Place::Viewpoint(room, _) => self.room = Some(room.id),
             Place::Here => self.is_here = true,
             Place::Side(side) => self.side = Some(side),
             Place::Viewpoints(_) => {}

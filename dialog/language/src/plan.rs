@@ -421,7 +421,7 @@ impl Planner<'_> {
         // `go to the kitchen by the fridge`: the fridge, in the kitchen.
         if let (Place::Room(room), [(_, Place::Object(phrase)), more @ ..]) = (&target, rest) {
             let mut phrase = phrase.clone();
-            phrase.room = Some(*room);
+            phrase.room = Some(room.id);
             target = Place::Object(phrase);
             rest = more;
         }
@@ -429,8 +429,8 @@ impl Planner<'_> {
             rest.iter().for_each(|(preposition, place)| phrase.attach(*preposition, place.clone()));
         }
         match target {
-            Place::Room(room) => self.go_to_room(room),
-            Place::Viewpoint(room, number) => self.go_to_viewpoint(room, number),
+            Place::Room(room) => self.go_to_room(room.id),
+            Place::Viewpoint(room, number) => self.go_to_viewpoint(room.id, number),
             Place::Viewpoints(number) => self.go_to_viewpoint(self.scene.robot.room, number),
             Place::Here => self.notes.push("I am here already".to_owned()),
             Place::Side(side) => self.turn_to_side(side),

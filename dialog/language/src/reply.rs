@@ -85,7 +85,7 @@ fn clause_in_words(clause: &Clause) -> String {
     let objects: Vec<String> = clause.objects.iter().map(said).collect();
     let places = clause.places.iter().filter_map(|(preposition, place)| {
         Some(match place {
-            Place::Room(room) | Place::Viewpoint(room, _) => place_of(preposition, format!("the {}", room.name())),
+            Place::Room(room) | Place::Viewpoint(room, _) => place_of(preposition, format!("the {}", room.name)),
             Place::Object(phrase) => place_of(preposition, said(phrase)),
             Place::Viewpoints(_) | Place::Side(_) | Place::Here => return None,
         })

@@ -1,14 +1,14 @@
 //! Requests, one after the other: what is asked first is answered first, then what is to be done is done; what follows that waits until then.
 
-use crate::{context::Context, conversation::Conversation, lab, understanding::Understanding};
+use crate::{context::Context, conversation::Conversation, room_kind, understanding::Understanding};
 
 impl Conversation<'_> {
     /// What plain requests mean, with `; ` between them; nothing, where the grammar does not read all words of one of them.
     pub(crate) fn requested(&self, requests: &str, context: &mut Context) -> Option<Understanding> {
-        let lab = lab::beside(self.lexicon, &self.wording(requests).words);
-        let with_lab =
-            |request: &str| self.with_lab_named(&self.wording(request), lab).unwrap_or_else(|| request.to_owned());
-        let requests: Vec<String> = requests.split("; ").map(with_lab).collect();
+        let room = room_kind::beside(self.lexicon, &self.wording(requests).words);
+        let with_room =
+            |request: &str| self.with_room_named(&self.wording(request), room).unwrap_or_else(|| request.to_owned());
+        let requests: Vec<String> = requests.split("; ").map(with_room).collect();
         let reads: Vec<bool> = requests.iter().map(|request| self.reads_all(&self.wording(request))).collect();
         let is_lost = |(request, is_read): (&String, &bool)| !is_read && !is_question(request);
         // A question that it cannot answer takes nothing from what else was said.

@@ -3,7 +3,9 @@
 //! A search goes from leg to leg: look around, go to a viewpoint, open what may hold it. After each, the request is
 //! grounded again on what is known by then, and carried on as soon as that succeeds.
 
-use cohabit_cdf::{Action, ClassId, GoToTarget, ObjectClass, ObjectId, Property, RoomId, StateFlag, Status, Verb};
+use cohabit_cdf::{
+    Action, Catalog, ClassId, GoToTarget, ObjectClass, ObjectId, Property, RoomId, StateFlag, Status, Verb,
+};
 use serde::{Deserialize, Serialize};
 
 use crate::{
@@ -68,8 +70,8 @@ pub(crate) struct Target {
     classes: Vec<ClassId>,
     /// The rooms where it may be.
     rooms: Vec<RoomId>,
-    /// How likely it is in each room, by their order.
-    likely: [f32; RoomId::ALL.len()],
+    /// How likely it is in each room, by its index.
+    likely: Vec<f32>,
     /// What it was said to be in or on.
     at: Option<ObjectId>,
     /// Whether one is known already, and a look around is all that is wanted.
@@ -406,7 +408,7 @@ impl Conversation<'_> {
             };
             let other = ground.one(&relation.to, &Want::place(Intent::Find, &[], None)).ok();
             if let Some(room) = other.and_then(|id| self.scene.object(id)).map(|object| object.room) {
-                target.likely[room as usize] *= 10.0;
+                target.likely_in(room, self.catalog).into_iter().for_each(|likely| *likely *= 10.0);
             } else {
                 let rooms = self.habits.by_room(self.catalog, &classes_of(&relation.to));
                 target.likely.iter_mut().zip(rooms).for_each(|(likely, share)| *likely *= share);
@@ -431,7 +433,7 @@ impl Conversation<'_> {
 
     fn target(&self, said: String, classes: Vec<ClassId>, room: Option<RoomId>) -> Target {
         let likely = self.habits.by_room(self.catalog, &classes);
-        let rooms = room.map_or_else(|| RoomId::ALL.to_vec(), |room| vec![room]);
+        let rooms = room.map_or_else(|| self.catalog.rooms().ids().collect(), |room| vec![room]);
         Target { said, classes, rooms, likely, at: None, is_hasty: false, from: self.scene.robot.room }
     }
 
@@ -469,7 +471,7 @@ impl Conversation<'_> {
             new += plan.around(room, at_m, reach_m).filter(|cell| !floor.is_looked_at(*cell, reach_m)).count();
             let gain = new as f32 / all.max(1) as f32;
             let is_open_to = target.rooms.contains(&room) && !search.unreachable.contains(&room);
-            let chance = target.chance(room) * gain;
+            let chance = target.chance(room, self.catalog) * gain;
             (is_open_to && gain >= LEAST_GAIN).then_some(Leg { spot, room, chance, takes_s: takes_s + LOOK_S })
         };
         let is_fresh = |at_m: [f32; 2]| search.looked_m.iter().all(|before| flat_m(*before, at_m) > SAME_SPOT_M);
@@ -568,9 +570,14 @@ impl Conversation<'_> {
 }
 
 impl Target {
-    fn chance(&self, room: RoomId) -> f32 {
+    fn chance(&self, room: RoomId, catalog: &Catalog) -> f32 {
         let here = if room == self.from { HERE } else { 1.0 };
-        self.likely[room as usize] * here
+        let index = catalog.room_index(room).map(usize::from);
+        index.and_then(|index| self.likely.get(index)).map_or(0.0, |likely| likely * here)
+    }
+
+    fn likely_in(&mut self, room: RoomId, catalog: &Catalog) -> Option<&mut f32> {
+        self.likely.get_mut(usize::from(catalog.room_index(room)?))
     }
 }
 

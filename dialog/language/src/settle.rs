@@ -139,7 +139,7 @@ impl Settled {
         match (&mut self.goal, place) {
             // `put it in the kitchen on the table`
             (Some(Goal { place: Place::Room(room), .. }), Place::Object(phrase)) => {
-                let phrase = Phrase { room: Some(*room), ..phrase.clone() };
+                let phrase = Phrase { room: Some(room.id), ..phrase.clone() };
                 self.goal = Some(Goal { preposition, place: Place::Object(phrase), role });
             }
             (Some(Goal { place: Place::Object(phrase), .. }), _) if preposition == Preposition::Near => {

@@ -3,7 +3,7 @@
 
 use std::{collections::BTreeSet, sync::Arc};
 
-use cohabit_cdf::{Property, RoomId};
+use cohabit_cdf::Property;
 
 use crate::{
     Language,
@@ -57,7 +57,7 @@ impl Language {
             let into = if class.has(Property::Pickupable) { &mut names.things } else { &mut names.places };
             into.extend(std::iter::once(&class.name).chain(&class.words).map(|name| name.to_lowercase()));
         }
-        names.rooms = RoomId::ALL.iter().map(|room| room.name_in(&self.catalog).to_lowercase()).collect();
+        names.rooms = scene.room_names(&self.catalog).map(str::to_lowercase).collect();
         names.words = Arc::clone(&self.lexicon.known);
         names
     }
@@ -105,7 +105,7 @@ impl Language {
 mod tests {
     use std::sync::Arc;
 
-    use cohabit_cdf::{Catalog, Color, Fluid, ObjectId, state::StateFlags};
+    use cohabit_cdf::{Catalog, Color, Fluid, ObjectId, RoomId, state::StateFlags};
 
     use super::*;
     use crate::known::{KnownObject, KnownRobot};
@@ -115,8 +115,16 @@ mod tests {
     }
 
     fn scene() -> Known {
-        let robot = KnownRobot { position_m: [0.0; 3], yaw_rad: 0.0, room: RoomId::BreakRoom, held: None };
-        Known { robot, objects: vec![], mission: String::new(), goals: vec![], floor: None, person: None }
+        let robot = KnownRobot { position_m: [0.0; 3], yaw_rad: 0.0, room: RoomId::BREAK_ROOM, held: None };
+        Known {
+            robot,
+            objects: vec![],
+            mission: String::new(),
+            goals: vec![],
+            rooms: vec![],
+            floor: None,
+            person: None,
+        }
     }
 
     #[test]
@@ -157,7 +165,7 @@ mod tests {
             id: ObjectId(1),
             instance: String::new(),
             class: language.catalog().find(class).unwrap(),
-            room: RoomId::BreakRoom,
+            room: RoomId::BREAK_ROOM,
             position_m: [0.0; 3],
             yaw_rad: 0.0,
             flags: StateFlags::default(),

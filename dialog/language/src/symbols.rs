@@ -101,12 +101,12 @@ mod tests {
     /// A scene of classes, each in or on the one of that number.
     fn scene(catalog: &Catalog, things: &[(&str, Option<u32>)], held: Option<u32>) -> Known {
         let held = held.map(ObjectId);
-        let robot = KnownRobot { position_m: [0.0; 3], yaw_rad: 0.0, room: RoomId::BreakRoom, held };
+        let robot = KnownRobot { position_m: [0.0; 3], yaw_rad: 0.0, room: RoomId::BREAK_ROOM, held };
         let objects = (0_u32..).zip(things).map(|(id, (class, parent))| KnownObject {
             id: ObjectId(id),
             instance: format!("{class}_1"),
             class: catalog.find(class).unwrap(),
-            room: RoomId::BreakRoom,
+            room: RoomId::BREAK_ROOM,
             position_m: [id as f32, 0.0, 0.0],
             yaw_rad: 0.0,
             flags: StateFlags::default(),

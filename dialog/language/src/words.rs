@@ -5,7 +5,7 @@ use std::{
     sync::Arc,
 };
 
-use cohabit_cdf::{Catalog, Fluid, Property, RoomId, state::StateFlag};
+use cohabit_cdf::{Catalog, Fluid, Property, state::StateFlag};
 use serde::Deserialize;
 
 use crate::{
@@ -67,7 +67,6 @@ struct WordFile {
     states: BTreeMap<String, Vec<String>>,
     fill_words: FillWords,
     fluids: BTreeMap<String, Vec<String>>,
-    rooms: BTreeMap<String, Vec<String>>,
     aliases: BTreeMap<String, Vec<String>>,
     yes: Words,
     no: Words,
@@ -155,7 +154,7 @@ impl Lexicon {
             ..Self::default()
         };
         lexicon.add_words(&file);
-        lexicon.add_named_rooms(catalog);
+        lexicon.add_rooms(catalog);
         lexicon.add_smalls(&file);
         lexicon.add_verbs();
         lexicon.add_classes(catalog, &file.aliases);
@@ -232,19 +231,22 @@ impl Lexicon {
             let fluid = Fluid::from_name(fluid).expect("invariant: the file names fluids");
             words.iter().for_each(|word| self.fluids.insert(word, fluid));
         }
-        for (room, words) in &file.rooms {
-            let room = RoomId::from_id(room).expect("invariant: the file names rooms");
-            words.iter().for_each(|word| self.rooms.insert(word, room));
-            self.rooms.insert(room.id(), room);
-        }
     }
 
-    /// What world packs call rooms.
-    fn add_named_rooms(&mut self, catalog: &Catalog) {
-        for names in catalog.named_rooms() {
-            let Some(room) = RoomId::from_id(&names.id) else { continue };
-            std::iter::once(&names.name).chain(&names.words).for_each(|words| self.rooms.insert(words, room));
+    /// What rooms are called in this world.
+    fn add_rooms(&mut self, catalog: &Catalog) {
+        let rooms = catalog.rooms().all();
+        for entry in rooms {
+            let room = entry.id;
+            entry.words.iter().for_each(|words| self.rooms.insert(words, room));
+            self.rooms.insert(room.id(), room);
+            self.room_ids.insert(room.id().to_lowercase(), room);
+            self.room_names.insert(room, entry.name.clone());
+            entry.kind.iter().for_each(|kind| self.room_kinds.entry(kind).push(room));
+            self.rooms_of_kinds.extend((!entry.kind.is_empty()).then_some(room));
         }
+        // The name of one is no other word for another one.
+        rooms.iter().for_each(|entry| self.rooms.insert(&entry.name, entry.id));
     }
 
     fn add_smalls(&mut self, file: &WordFile) {
@@ -378,6 +380,7 @@ impl Lexicon {
         self.states.words().for_each(&mut learn);
         self.fluids.words().for_each(&mut learn);
         self.rooms.words().for_each(&mut learn);
+        self.room_kinds.words().for_each(&mut learn);
         self.small.words().for_each(&mut learn);
         self.verbs.words().for_each(&mut learn);
         self.questions.words().for_each(&mut learn);

@@ -259,7 +259,7 @@ impl Conversation<'_> {
 
 const fn room_of(place: &Place) -> Option<RoomId> {
     match place {
-        Place::Room(room) | Place::Viewpoint(room, _) => Some(*room),
+        Place::Room(room) | Place::Viewpoint(room, _) => Some(room.id),
         _ => None,
     }
 }

@@ -377,7 +377,7 @@ fn with_tables(classes: &[&str]) -> Talk {
     let mut talk = Talk::new(&["plan OfficeLayout1 MainOffice", "add Trophy01 on Desk_01"]);
     let trophy = talk.scene.objects.last().unwrap().clone();
     let origin = talk.scene.objects.iter().find(|one| Some(one.id) == trophy.parent).unwrap().clone();
-    assert_eq!(origin.room, RoomId::MainOffice);
+    assert_eq!(origin.room, RoomId::MAIN_OFFICE);
     for (number, class) in (9000..).zip(classes) {
         let [x, y, z] = origin.position_m;
         talk.scene.objects.push(KnownObject {

@@ -13,17 +13,17 @@ use cohabit_language::{
 };
 
 const ROOMS: [(RoomId, [f32; 4]); 5] = [
-    (RoomId::BreakRoom, [-5.0, -4.0, 7.0, 4.0]),
-    (RoomId::MainOffice, [7.0, -4.0, 16.0, 4.0]),
-    (RoomId::Lab1, [3.0, 8.0, 14.0, 15.0]),
-    (RoomId::Lab2, [18.0, 8.0, 26.0, 15.0]),
-    (RoomId::Hallway, [7.0, 4.0, 26.0, 8.0]),
+    (RoomId::BREAK_ROOM, [-5.0, -4.0, 7.0, 4.0]),
+    (RoomId::MAIN_OFFICE, [7.0, -4.0, 16.0, 4.0]),
+    (RoomId::LAB1, [3.0, 8.0, 14.0, 15.0]),
+    (RoomId::LAB2, [18.0, 8.0, 26.0, 15.0]),
+    (RoomId::HALLWAY, [7.0, 4.0, 26.0, 8.0]),
 ];
 const GATES: [([RoomId; 2], [f32; 2]); 4] = [
-    ([RoomId::BreakRoom, RoomId::MainOffice], [7.0, 0.0]),
-    ([RoomId::MainOffice, RoomId::Hallway], [10.0, 4.0]),
-    ([RoomId::Hallway, RoomId::Lab1], [8.0, 8.0]),
-    ([RoomId::Hallway, RoomId::Lab2], [20.0, 8.0]),
+    ([RoomId::BREAK_ROOM, RoomId::MAIN_OFFICE], [7.0, 0.0]),
+    ([RoomId::MAIN_OFFICE, RoomId::HALLWAY], [10.0, 4.0]),
+    ([RoomId::HALLWAY, RoomId::LAB1], [8.0, 8.0]),
+    ([RoomId::HALLWAY, RoomId::LAB2], [20.0, 8.0]),
 ];
 
 fn plan() -> Arc<FloorPlan> {
@@ -254,7 +254,7 @@ fn what_is_not_there_any_more_is_forgotten_once_that_is_seen() {
     let place = |id| robot.memory.mistaken_place(&Action::PickUp { object: id }, &world);
     assert_eq!(place(mug), Some((mug, [3.0, 0.4])));
     assert_eq!(place(robot.id("Banana_01_1")), None);
-    robot.stand(RoomId::BreakRoom, [0.0, 0.0], 2.0);
+    robot.stand(RoomId::BREAK_ROOM, [0.0, 0.0], 2.0);
     robot.look(false);
     assert!(robot.knows("CoffeeMug_Boss_1"), "it looked another way");
     robot.look(true);
@@ -269,12 +269,12 @@ fn what_is_not_there_any_more_is_forgotten_once_that_is_seen() {
 fn it_knows_what_is_in_its_hand_and_what_it_did() {
     let mut robot = Robot::new(&[]);
     robot.say("pick up the red mug", 3);
-    robot.stand(RoomId::Lab2, [20.0, 9.0], 0.0);
+    robot.stand(RoomId::LAB2, [20.0, 9.0], 0.0);
     robot.look(false);
     let known = robot.memory.known().unwrap();
     assert_eq!(known.robot.held, Some(robot.id("CoffeeMug_Boss_1")));
     assert!(robot.knows("CoffeeMug_Boss_1"));
-    robot.stand(RoomId::BreakRoom, [0.0, 0.0], 0.0);
+    robot.stand(RoomId::BREAK_ROOM, [0.0, 0.0], 0.0);
     robot.look(true);
     robot.say("open the fridge", 1);
     let known = robot.memory.known().unwrap();

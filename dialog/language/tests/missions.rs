@@ -18,7 +18,15 @@ fn known(catalog: &Catalog, layout: &Layout, mission: &Mission) -> Known {
         held: None,
     };
     let objects = KnownObject::furniture(catalog, layout);
-    let mut known = Known { robot, objects, mission: String::new(), goals: Vec::new(), floor: None, person: None };
+    let mut known = Known {
+        robot,
+        objects,
+        mission: String::new(),
+        goals: Vec::new(),
+        rooms: Vec::new(),
+        floor: None,
+        person: None,
+    };
     for request in mission.objects.iter().filter(|request| request.remove_initial_contents) {
         let class = catalog.class_of_instance(&request.instance);
         let emptied: Vec<ObjectId> =

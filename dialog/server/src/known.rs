@@ -32,6 +32,8 @@ pub struct Knowledge {
     /// The body of who spoke last, and where that is.
     speaker: Option<BodyId>,
     person: Option<KnownPerson>,
+    /// The rooms of the floor plan.
+    rooms: Vec<RoomId>,
 }
 
 impl Knowledge {
@@ -40,7 +42,8 @@ impl Knowledge {
     pub fn new(knows: Knows, catalog: Arc<Catalog>, layout: &Layout, body: BodyId) -> Self {
         let memory = Memory::new(Arc::new(FloorPlan::new(layout)));
         let (mission, world, gaze, speaker, person) = (String::new(), None, None, None, None);
-        Self { knows, catalog, body, mission, memory, world, gaze, looked_at: 0, speaker, person }
+        let rooms = layout.rooms.iter().map(|room| room.id).collect();
+        Self { knows, catalog, body, mission, memory, world, gaze, looked_at: 0, speaker, person, rooms }
     }
 
     /// The same, told what people are asked to get done.
@@ -66,17 +69,17 @@ impl Knowledge {
     /// Notes who speaks to it: whoever walks about in this body, if in any.
     pub fn note_speaker(&mut self, body: Option<BodyId>, state: StateView<'_>) {
         self.speaker = body.filter(|body| *body != self.body);
-        self.person = self.speaker.and_then(|body| person(state, body));
+        self.person = self.speaker.and_then(|body| person(state, body, &self.catalog));
     }
 
     /// Looks at the world as it is at a tick.
     pub fn look(&mut self, state: StateView<'_>, tick: u64) {
-        self.person = self.speaker.and_then(|body| person(state, body));
+        self.person = self.speaker.and_then(|body| person(state, body, &self.catalog));
         if self.world.is_some() && self.looked_at == tick {
             return;
         }
         let Some(record) = state.bodies.iter().find(|record| record.body == self.body.0) else { return };
-        let Some(world) = everything(state, self.body) else { return };
+        let Some(world) = everything(state, self.body, &self.catalog) else { return };
         let gaze = Gaze {
             eye_m: record.eye_m,
             room: world.robot.room,
@@ -110,7 +113,10 @@ impl Knowledge {
             Knows::Everything => self.world.clone(),
             Knows::Seen => self.memory.known(),
         };
-        known.map(|known| Known { mission: self.mission.clone(), person: self.person, ..known })
+        known.map(|known| {
+            let (mission, rooms) = (self.mission.clone(), self.rooms.clone());
+            Known { mission, rooms, person: self.person, ..known }
+        })
     }
 
     /// Where the robot believes what it would act on to be, m, if it is wrong: others moved it while it did not look.
@@ -150,27 +156,27 @@ impl Knowledge {
 
 /// All there is, of which `body` is the robot; nothing, if there is no such body.
 #[must_use]
-pub fn everything(state: StateView<'_>, body: BodyId) -> Option<Known> {
+pub fn everything(state: StateView<'_>, body: BodyId, catalog: &Catalog) -> Option<Known> {
     let record = state.bodies.iter().find(|record| record.body == body.0)?;
     let robot = KnownRobot {
         position_m: record.position_m,
         yaw_rad: record.yaw_rad,
-        room: RoomId::from_index(record.room)?,
+        room: catalog.room_at(record.room)?,
         held: object_id(record.held),
     };
-    let objects = state.objects.iter().filter_map(|object| known_object(state, &robot, object)).collect();
+    let objects = state.objects.iter().filter_map(|object| known_object(state, &robot, object, catalog)).collect();
     let goals = state
         .goals
         .iter()
         .filter(|goal| goal.hidden == 0)
         .map(|goal| KnownGoal { text: goal.description.as_str().to_owned(), met: goal.met == 1 })
         .collect();
-    Some(Known { robot, objects, mission: String::new(), goals, floor: None, person: None })
+    Some(Known { robot, objects, mission: String::new(), goals, rooms: Vec::new(), floor: None, person: None })
 }
 
-fn person(state: StateView<'_>, body: BodyId) -> Option<KnownPerson> {
+fn person(state: StateView<'_>, body: BodyId, catalog: &Catalog) -> Option<KnownPerson> {
     let record = state.bodies.iter().find(|record| record.body == body.0)?;
-    let room = RoomId::from_index(record.room)?;
+    let room = catalog.room_at(record.room)?;
     Some(KnownPerson { position_m: record.position_m, yaw_rad: record.yaw_rad, room })
 }
 
@@ -178,8 +184,13 @@ fn object_id(index: u32) -> Option<ObjectId> {
     (index != NONE).then_some(ObjectId(index))
 }
 
-fn known_object(state: StateView<'_>, robot: &KnownRobot, object: &ObjectRecord) -> Option<KnownObject> {
-    let room = RoomId::from_index(u32::from(object.room))?;
+fn known_object(
+    state: StateView<'_>,
+    robot: &KnownRobot,
+    object: &ObjectRecord,
+    catalog: &Catalog,
+) -> Option<KnownObject> {
+    let room = catalog.room_at(u32::from(object.room))?;
     let note = state.notes.iter().find(|note| note.object == object.object);
     let [x, y, z, w] = object.rotation;
     Some(KnownObject {

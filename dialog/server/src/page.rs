@@ -7,7 +7,7 @@ use cohabit_bus::{
     message::{BodyRecord, CameraRecord, NONE, ObjectRecord, PlanStep, Plane, StateView, Thing},
 };
 use cohabit_cdf::{
-    Action, BodyId, BodyKind, Catalog, ClassId, Layout, Mission, ObjectId, RoomId, layout::OpeningKind, model::Axis,
+    Action, BodyId, BodyKind, Catalog, ClassId, Layout, Mission, ObjectId, layout::OpeningKind, model::Axis,
 };
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -294,13 +294,13 @@ pub fn state(tick: u64, state: StateView<'_>, driven: &[u32], catalog: &Catalog)
 fn robot(state: StateView<'_>, catalog: &Catalog) -> Value {
     let Some(body) = state.bodies.first() else { return Value::Null };
     let [x, y, _] = body.position_m;
-    let room = RoomId::from_index(body.room);
+    let room = catalog.room_at(body.room);
     json!({
         "body": body.body,
         "x": x,
         "y": y,
         "yaw": body.yaw_rad,
-        "room": room.map(RoomId::id),
+        "room": room.map(|room| room.to_string()),
         "room_name": room.map(|room| room.name_in(catalog)),
         "holding": holding(body, state, catalog),
         "busy": body.busy == 1,
@@ -338,7 +338,7 @@ pub fn seen(thing: Thing, [x, y]: [f32; 2], state: StateView<'_>, catalog: &Cata
             let body = state.bodies.iter().find(|body| body.body == id.0)?;
             (body_kind(body), Some(body.position_m))
         }
-        Thing::Surface(room) => (room.name_in(catalog), None),
+        Thing::Surface(room) => (catalog.room_at(room)?.name_in(catalog), None),
         Thing::Nothing => return None,
     };
     Some(json!({ "type": "seen", "name": name, "x": x, "y": y, "at": at_m.map(|[x, y, _]| [x, y]) }))

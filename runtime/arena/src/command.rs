@@ -1,6 +1,6 @@
 //! Commands as clients write them, read from JSON. Never knows what is in the world.
 
-use cohabit_cdf::{RoomId, Status, Verb};
+use cohabit_cdf::{RoomId, Rooms, Status, Verb};
 use cohabit_render::Lens;
 use serde_json::Value;
 
@@ -145,12 +145,12 @@ pub const VERBS: [(&str, Verb); 10] = [
 ];
 
 impl Command {
-    /// Reads the command at `index` of a batch. Fields that it does not use are not looked at.
+    /// Reads the command at `index` of a batch, in a world with these rooms. Fields that it does not use are not looked at.
     ///
     /// # Errors
     /// [`CommandError`].
-    pub fn read(index: usize, value: &Value) -> Result<Self, CommandError> {
-        let fields = Fields { at: format!("/{index}"), value };
+    pub fn read(index: usize, value: &Value, rooms: &Rooms) -> Result<Self, CommandError> {
+        let fields = Fields { at: format!("/{index}"), value, rooms };
         let name = fields.text("commandType")?;
         match COMMANDS.iter().find(|(known, _)| *known == name) {
             Some((_, read)) => read(&fields),
@@ -184,14 +184,14 @@ fn destination(fields: &Fields<'_>) -> Result<Destination, CommandError> {
         "instanceIdOfObject" => fields.object(kind).map(Destination::Object),
         "officeRoom" => {
             let room = fields.text(kind)?;
-            RoomId::from_id(room).map(Destination::Room).ok_or_else(|| {
-                let known = RoomId::ALL.map(RoomId::id).join(", ");
+            fields.rooms.find(room).map(Destination::Room).ok_or_else(|| {
+                let known = fields.rooms.listed();
                 fields.wrong(Status::InvalidCommand, kind, format!("there is no room `{room}`: {known}"))
             })
         }
         "goToPoint" => {
             let point = fields.text(kind)?;
-            viewpoint(point).ok_or_else(|| {
+            viewpoint(point, fields.rooms).ok_or_else(|| {
                 let problem = format!("`{point}` is no viewpoint: a room and a number, such as `Lab1_3`");
                 fields.wrong(Status::InvalidCommand, kind, problem)
             })
@@ -205,9 +205,9 @@ fn destination(fields: &Fields<'_>) -> Result<Destination, CommandError> {
     }
 }
 
-fn viewpoint(point: &str) -> Option<Destination> {
+fn viewpoint(point: &str, rooms: &Rooms) -> Option<Destination> {
     let (room, number) = point.rsplit_once('_')?;
-    Some(Destination::Viewpoint(RoomId::from_id(room)?, number.parse().ok()?))
+    Some(Destination::Viewpoint(rooms.find(room)?, number.parse().ok()?))
 }
 
 fn interact(fields: &Fields<'_>) -> Result<Command, CommandError> {
@@ -240,10 +240,11 @@ fn camera_change(fields: &Fields<'_>) -> Result<Command, CommandError> {
     }
 }
 
-/// The fields of an object, and where that is in the message.
+/// The fields of an object, where that is in the message, and the rooms that it may name.
 struct Fields<'a> {
     at: String,
     value: &'a Value,
+    rooms: &'a Rooms,
 }
 
 impl<'a> Fields<'a> {
@@ -273,7 +274,7 @@ impl<'a> Fields<'a> {
     fn inside(&self, field: &str) -> Result<Fields<'a>, CommandError> {
         let value = self.value.get(field).filter(|value| value.is_object());
         let value = value.ok_or_else(|| self.malformed(field, "an object"))?;
-        Ok(Fields { at: format!("{}/{field}", self.at), value })
+        Ok(Fields { at: format!("{}/{field}", self.at), value, rooms: self.rooms })
     }
 
     fn text(&self, field: &str) -> Result<&'a str, CommandError> {
@@ -314,7 +315,7 @@ impl<'a> Fields<'a> {
 
     /// A place in a picture, as `{x, y}` or `[x, y]`.
     fn pixel(&self, field: &str) -> Result<[f32; 2], CommandError> {
-        let inner = Fields { at: format!("{}/{field}", self.at), value: &self.value[field] };
+        let inner = Fields { at: format!("{}/{field}", self.at), value: &self.value[field], rooms: self.rooms };
         let pixel = match inner.value {
             Value::Array(pair) => match &pair[..] {
                 [x, y] => x.as_f64().zip(y.as_f64()).map(|(x, y)| [x as f32, y as f32]),
@@ -345,13 +346,17 @@ pub const fn kind(value: &Value) -> &'static str {
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
 mod tests {
+    use std::sync::LazyLock;
+
     use proptest::prelude::*;
     use serde_json::json;
 
     use super::*;
 
+    static ROOMS: LazyLock<Rooms> = LazyLock::new(Rooms::builtin);
+
     fn check(value: Value, expected: Command) {
-        assert_eq!(Command::read(0, &value), Ok(expected), "{value}");
+        assert_eq!(Command::read(0, &value, &ROOMS), Ok(expected), "{value}");
     }
 
     #[test]
@@ -378,11 +383,11 @@ mod tests {
         check(go(json!({"instanceIdOfObject": "Bowl_01_1"})), Command::GoTo(Destination::Object(object())));
         check(
             go(json!({"officeRoom": "Lab1", "instanceIdOfObject": ""})),
-            Command::GoTo(Destination::Room(RoomId::Lab1)),
+            Command::GoTo(Destination::Room(RoomId::LAB1)),
         );
         check(
             go(json!({"goToPoint": "Lab2_8", "officeRoom": null})),
-            Command::GoTo(Destination::Viewpoint(RoomId::Lab2, 8)),
+            Command::GoTo(Destination::Viewpoint(RoomId::LAB2, 8)),
         );
         let place = Place { x: 1.0, y: 0.0, z: 3.0 };
         check(go(json!({"position": {"x": 1, "y": 2, "z": 3}})), Command::GoTo(Destination::Place(place)));
@@ -412,7 +417,7 @@ mod tests {
     #[test]
     fn what_is_wrong_is_named_with_its_place() {
         let check = |value: Value, status: Status, parts: &[&str]| {
-            let error = Command::read(2, &value).unwrap_err();
+            let error = Command::read(2, &value, &ROOMS).unwrap_err();
             let text = error.to_string();
             assert_eq!(error.status, status, "{text}");
             assert!(parts.iter().all(|part| text.contains(part)), "{text}");
@@ -484,7 +489,7 @@ mod tests {
     proptest! {
         #[test]
         fn no_value_upsets_it(value in values()) {
-            if let Err(error) = Command::read(7, &value) {
+            if let Err(error) = Command::read(7, &value, &ROOMS) {
                 prop_assert!(error.at.starts_with("/7") && !error.problem.is_empty());
             }
         }

@@ -170,7 +170,7 @@ impl Game {
             return Ok(Batch { end: (Status::IncorrectActionFormat, problem), ..batch });
         }
         for (index, value) in commands.iter().enumerate() {
-            let command = Command::read(index, value);
+            let command = Command::read(index, value, self.world().catalog().rooms());
             batch.end = match &command {
                 Ok(command) => self.carry_out(index, command)?,
                 Err(error) => (error.status, error.to_string()),

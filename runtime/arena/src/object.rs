@@ -1,6 +1,6 @@
 //! Objects and robots as clients are told of them.
 
-use cohabit_cdf::{BodyId, Fluid, ObjectClass, Property, StateFlag};
+use cohabit_cdf::{BodyId, Fluid, ObjectClass, Property, RoomId, StateFlag};
 use cohabit_engine::{body_instance_id, object_instance_id};
 use cohabit_render::instance_color;
 use cohabit_world::{BodyView, ObjectView, Quat, World};
@@ -20,7 +20,7 @@ pub struct ObjectRecord {
     object_type: String,
     position: Place,
     rotation: Rotation,
-    current_room: &'static str,
+    current_room: RoomId,
     supported_verbs: Vec<&'static str>,
     pub supported_states: Vec<&'static str>,
     pub current_states: Vec<&'static str>,
@@ -125,7 +125,7 @@ fn robot_record(body: &BodyView) -> ObjectRecord {
         object_type: ROBOT.to_owned(),
         position: Place::of(body.position_m),
         rotation: Rotation::of(Quat::from_rotation_z(body.yaw_rad)),
-        current_room: body.room.id(),
+        current_room: body.room,
         supported_verbs: Vec::new(),
         supported_states: StateFlag::MOODS.map(name).to_vec(),
         current_states: body.flags.iter().map(name).collect(),
@@ -145,7 +145,7 @@ fn object_record(world: &World, object: &ObjectView<'_>) -> ObjectRecord {
         object_type: class.id.clone(),
         position: Place::of(object.position_m),
         rotation: Rotation::of(object.rotation),
-        current_room: object.room.id(),
+        current_room: object.room,
         supported_verbs: once_each(of_class(class, &VERBS_OF_ALL, &VERBS)),
         supported_states,
         current_states,

@@ -236,7 +236,7 @@ fn described(world: &World, instance: &str) -> Option<String> {
         format!(" {} the {}", if is_enclosed { "in" } else { "on" }, class.name.to_lowercase())
     });
     let name = catalog.class(thing.class).name.to_lowercase();
-    Some(format!("the {name}{} in the {}", place.unwrap_or_default(), thing.room.name()))
+    Some(format!("the {name}{} in the {}", place.unwrap_or_default(), thing.room.name_in(catalog)))
 }
 
 #[cfg(test)]

@@ -51,7 +51,7 @@ pub struct Envelope {
 
 impl Envelope {
     /// Counts changes of any message's layout.
-    pub const VERSION: u32 = 6;
+    pub const VERSION: u32 = 7;
 }
 
 const _: () = assert!(size_of::<Envelope>() == size_of::<Block>());

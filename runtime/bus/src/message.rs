@@ -12,6 +12,7 @@ mod frame;
 mod layout;
 mod mission;
 mod pulse;
+mod room;
 mod snapshot;
 mod state;
 mod step;

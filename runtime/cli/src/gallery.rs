@@ -87,7 +87,7 @@ impl Gallery {
         shoot(&format!("plan-{id}"), Camera::above(layout.bounds_m(), TABLE_M, PLAN_PX_M))?;
         let Picture { width, height, rgba } = minimap(&layout, catalog, MAP_PX_M).picture;
         self.write(&format!("map-{id}"), &rgba, [width, height])?;
-        for room in RoomId::ALL {
+        for room in layout.rooms.iter().map(|room| room.id) {
             if let Some(camera) = inside(&layout, room) {
                 shoot(&format!("room-{id}-{}", room.id()), camera)?;
             }

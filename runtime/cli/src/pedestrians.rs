@@ -14,12 +14,12 @@ use cohabit_world::{Vec2, World};
 
 use crate::failure::bad_input;
 
-/// The schedule in a file.
-pub fn read_schedule(file: Option<&Path>) -> anyhow::Result<Schedule> {
+/// The schedule in a file, for a world with this catalogue.
+pub fn read_schedule(file: Option<&Path>, catalog: &Catalog) -> anyhow::Result<Schedule> {
     let file = file.ok_or_else(|| bad_input("pedestrians need a schedule: `--script FILE`, or in play `=FILE`"))?;
     let name = file.display();
     let text = fs::read_to_string(file).map_err(|error| bad_input(format!("{name}: {error}")))?;
-    Schedule::parse(&name.to_string(), &text).map_err(bad_input)
+    Schedule::parse(&name.to_string(), &text, catalog).map_err(bad_input)
 }
 
 /// Says what is wrong with a schedule in a session of bodies of these kinds; nothing, if all is right.
@@ -41,7 +41,7 @@ pub fn crowd(
     bus: &dyn Transport,
     stop: &AtomicBool,
 ) -> anyhow::Result<Option<Crowd>> {
-    let schedule = read_schedule(file)?;
+    let schedule = read_schedule(file, catalog)?;
     let Some(mission) = wait_for_mission(bus, stop)? else { return Ok(None) };
     let plan = SessionPlan::new(mission.header.file.as_str(), &mission.text, Arc::clone(catalog), mission.header.seed)?;
     let world = plan.with_bodies(mission.bodies).build()?;
@@ -72,7 +72,8 @@ mod tests {
 
     #[test]
     fn bodies_of_a_schedule_are_people_of_the_session() {
-        let check = |text: &str, kinds: &[BodyKind]| fault(&Schedule::parse("a.toml", text).unwrap(), kinds);
+        let catalog = Catalog::builtin();
+        let check = |text: &str, kinds: &[BodyKind]| fault(&Schedule::parse("a.toml", text, &catalog).unwrap(), kinds);
         let text = "[[entry]]\nperson = 1\nmeet = 2";
         let (robot, person) = (BodyKind::Robot, BodyKind::Person);
         assert_eq!(check(text, &[robot, person, robot]), None);

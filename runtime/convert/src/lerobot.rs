@@ -11,9 +11,9 @@ mod stats;
 mod tasks;
 mod vectors;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
-use cohabit_cdf::Catalog;
+use cohabit_cdf::{Catalog, RoomId};
 use serde_json::{Value, json};
 
 use self::{
@@ -42,7 +42,8 @@ pub(crate) fn write(
 ) -> Result<Counts, ConvertError> {
     let names: Vec<String> = catalog.classes().iter().map(|class| class.id.clone()).collect();
     let classes: BTreeMap<String, i64> = names.iter().cloned().zip(0..).collect();
-    let frames = Frames { dataset, classes: &classes };
+    let rooms = rooms(dataset)?;
+    let frames = Frames { dataset, classes: &classes, rooms: &rooms };
     let (mut data, mut episodes) = (Rolling::new(output, "data", limit), Episodes::new(output, limit));
     let (mut tasks, mut stats, mut first) = (Tasks::default(), Stats::default(), 0_i64);
     for (number, episode) in dataset.episodes.iter().enumerate() {
@@ -68,7 +69,7 @@ pub(crate) fn write(
     }
     let counts = Counts { episodes: dataset.episodes.len(), samples: first as usize, files: data.finish()? };
     episodes.finish()?;
-    write_json(output, "meta/info.json", &info(dataset, &counts, tasks.count(), limit))?;
+    write_json(output, "meta/info.json", &info(dataset, &rooms, &counts, tasks.count(), limit))?;
     write_json(output, "meta/stats.json", &stats.json())?;
     write_json(output, "meta/classes.json", &json!(names))?;
     tasks.write(output)?;
@@ -76,7 +77,19 @@ pub(crate) fn write(
     Ok(counts)
 }
 
-fn info(dataset: &Dataset, counts: &Counts, tasks: usize, limit: usize) -> Value {
+/// The rooms that robots may be in: the built-in ones, then those of world packs that robots were in.
+fn rooms(dataset: &Dataset) -> Result<Vec<String>, ConvertError> {
+    let mut rooms: Vec<String> = RoomId::BUILTIN.iter().map(|room| room.id().to_owned()).collect();
+    let mut others = BTreeSet::new();
+    for episode in &dataset.episodes {
+        let poses = dataset.lines(episode)?.into_iter().filter_map(|line| line.step.pose);
+        others.extend(poses.map(|pose| pose.room).filter(|room| !rooms.contains(room)));
+    }
+    rooms.extend(others);
+    Ok(rooms)
+}
+
+fn info(dataset: &Dataset, rooms: &[String], counts: &Counts, tasks: usize, limit: usize) -> Value {
     let megabytes = limit.div_ceil(1 << 20);
     json!({
         "codebase_version": CODEBASE_VERSION,
@@ -91,7 +104,7 @@ fn info(dataset: &Dataset, counts: &Counts, tasks: usize, limit: usize) -> Value
         "splits": { "train": format!("0:{}", counts.episodes) },
         "data_path": "data/chunk-{chunk_index:03d}/file-{file_index:03d}.parquet",
         "video_path": null,
-        "features": features::features(&dataset.recipe),
+        "features": features::features(&dataset.recipe, rooms),
     })
 }
 

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use cohabit_cdf::{Color, Fluid, ObjectId};
+use cohabit_cdf::{Color, Fluid, ObjectId, RoomId};
 use cohabit_world::{ObjectView, World};
 use serde::Serialize;
 
@@ -11,7 +11,7 @@ use serde::Serialize;
 pub struct ObjectEntry {
     instance: String,
     class: String,
-    room: &'static str,
+    room: RoomId,
     /// Its origin in the world, m.
     position_m: [f32; 3],
     /// World from object: x, y, z, w.
@@ -57,7 +57,7 @@ impl ObjectEntry {
         Self {
             instance: view.instance.to_owned(),
             class: world.catalog().class(view.class).id.clone(),
-            room: view.room.id(),
+            room: view.room,
             position_m: view.position_m.to_array(),
             rotation: view.rotation.to_array(),
             parent: view.parent.and_then(|parent| world.object(parent)).map(|parent| parent.instance.to_owned()),

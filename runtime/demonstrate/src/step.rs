@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use cohabit_bus::message::{FrameHeader, FrameView, SeenRecord, Thing};
-use cohabit_cdf::{Action, ActionKind, BodyId, ObjectId, SemanticClass, Status};
+use cohabit_cdf::{Action, ActionKind, BodyId, ObjectId, RoomId, SemanticClass, Status};
 use cohabit_render::instance_color;
 use cohabit_world::{Outcome, World};
 use serde::Serialize;
@@ -65,7 +65,7 @@ pub(crate) struct PoseEntry {
     position_m: [f32; 3],
     yaw_rad: f32,
     head_pitch_rad: f32,
-    room: &'static str,
+    room: RoomId,
     held: Option<String>,
 }
 
@@ -132,7 +132,7 @@ impl PoseEntry {
             position_m: view.position_m.to_array(),
             yaw_rad: view.yaw_rad,
             head_pitch_rad: view.head_pitch_rad,
-            room: view.room.id(),
+            room: view.room,
             held: view.held.and_then(name),
         })
     }

@@ -17,7 +17,8 @@ pub(crate) fn everything(world: &World, body: BodyId) -> Option<Known> {
         KnownRobot { position_m: view.position_m.to_array(), yaw_rad: view.yaw_rad, room: view.room, held: view.held };
     let present = world.objects().filter(|object| world.exists(object.id));
     let objects = present.map(|object| known(&object, &robot)).collect();
-    Some(Known { robot, objects, mission: String::new(), goals: Vec::new(), floor: None, person: None })
+    let rooms = world.layout().rooms.iter().map(|room| room.id).collect();
+    Some(Known { robot, objects, mission: String::new(), goals: Vec::new(), rooms, floor: None, person: None })
 }
 
 fn known(object: &ObjectView<'_>, robot: &KnownRobot) -> KnownObject {

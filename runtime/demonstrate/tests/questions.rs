@@ -9,7 +9,7 @@ use std::{
     path::Path,
 };
 
-use cohabit_cdf::{Catalog, Layout, RoomId, mission};
+use cohabit_cdf::{Catalog, Layout, RoomId, Rooms, mission};
 use cohabit_demonstrate::{MissionText, Recipe, demonstrate};
 use cohabit_tests::Scratch;
 use proptest::prelude::*;
@@ -129,7 +129,7 @@ impl Before<'_> {
             }
             "reference" => {
                 assert_eq!(question, format!("Which {noun} are you referring to?"));
-                let parts = [self.plain(object).to_owned(), self.color(object), room_of(object).to_owned()];
+                let parts = [self.plain(object).to_owned(), self.color(object), room_of(object)];
                 assert!(parts.iter().all(|part| answer.contains(part)), "{parts:?}: {why}");
             }
             _ => panic!("there is no such type: {why}"),
@@ -175,8 +175,9 @@ impl Before<'_> {
     }
 }
 
-fn room_of(object: &Value) -> &'static str {
-    RoomId::from_id(object["room"].as_str().unwrap()).unwrap().name()
+fn room_of(object: &Value) -> String {
+    let (rooms, id) = (Rooms::builtin(), RoomId::new(object["room"].as_str().unwrap()).unwrap());
+    rooms.get(id).unwrap().name.clone()
 }
 
 /// Checks all questions of a data set; gives their types.

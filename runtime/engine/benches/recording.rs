@@ -68,7 +68,7 @@ fn run(plan: &SessionPlan, ticks: u64, log: Option<&PathBuf>) -> Vec<f64> {
     let mut times = Vec::new();
     for tick in 0..ticks {
         if tick.is_multiple_of(ERRAND_EVERY) {
-            let room = RoomId::ALL[(tick / ERRAND_EVERY) as usize % RoomId::ALL.len()];
+            let room = RoomId::BUILTIN[(tick / ERRAND_EVERY) as usize % RoomId::BUILTIN.len()];
             let action = Action::GoTo { target: GoToTarget::Room(room) };
             commands.send_record(0, &CommandMessage::act(2 + tick, 0, 0, action)).unwrap();
         }

@@ -151,7 +151,7 @@ mod tests {
             color: cohabit_cdf::Color::Original,
             opened: 0.0,
             running: 0.0,
-            room: cohabit_cdf::RoomId::BreakRoom,
+            room: cohabit_cdf::RoomId::BREAK_ROOM,
             visible: true,
         };
         let cupboard = [0.4, 1.0, 0.7];

@@ -6,7 +6,7 @@ use cohabit_bus::{
         BodyRecord, EventKind, EventMessage, GoalRecord, NONE, NoteRecord, ObjectRecord, StateHeader, StateParts,
     },
 };
-use cohabit_cdf::{RoomId, StateFlag};
+use cohabit_cdf::{Catalog, StateFlag};
 use cohabit_world::{BodyView, CameraTarget, Ending, Event, GoalStatus, Input, ObjectView, World};
 
 /// A command was taken up.
@@ -63,17 +63,19 @@ pub fn state(world: &World) -> StateParts {
         Some(Ending::AllGoalsMet) => 1,
         Some(Ending::KilledByHazard) => 2,
     };
-    let lit_rooms = RoomId::ALL.iter().fold(0, |bits, room| bits | u32::from(world.room_lit(*room)) << (*room as u32));
+    let catalog = world.catalog();
+    let lit = world.layout().rooms.iter().map(|room| room.id).filter(|room| world.room_lit(*room));
+    let lit_rooms = lit.filter_map(|room| catalog.room_index(room)).fold(0, |bits, index| bits | 1_u64 << index);
     let goals = world.goals();
     let mut parts = StateParts {
         header: StateHeader { score: world.score(), ending, lit_rooms, ..StateHeader::default() },
-        bodies: world.bodies().map(|body| body_record(&body)).collect(),
+        bodies: world.bodies().map(|body| body_record(&body, catalog)).collect(),
         objects: Vec::with_capacity(world.objects().len()),
         goals: goals.iter().map(goal_record).collect(),
         notes: Vec::new(),
     };
     for object in present(world) {
-        parts.objects.push(object_record(&object));
+        parts.objects.push(object_record(&object, catalog));
         if !object.text.is_empty() {
             parts.notes.push(note_record(&object));
         }
@@ -103,10 +105,10 @@ fn note_record(object: &ObjectView<'_>) -> NoteRecord {
     }
 }
 
-fn body_record(body: &BodyView) -> BodyRecord {
+fn body_record(body: &BodyView, catalog: &Catalog) -> BodyRecord {
     BodyRecord {
         body: body.id.0,
-        room: body.room as u32,
+        room: catalog.room_index(body.room).map_or(NONE, u32::from),
         held: body.held.map_or(NONE, |object| object.0),
         busy: u32::from(body.busy),
         kind: body.kind as u32,
@@ -120,12 +122,12 @@ fn body_record(body: &BodyView) -> BodyRecord {
     }
 }
 
-fn object_record(object: &ObjectView<'_>) -> ObjectRecord {
+fn object_record(object: &ObjectView<'_>, catalog: &Catalog) -> ObjectRecord {
     ObjectRecord {
         object: object.id.0,
         flags: object.flags.0,
         class: object.class.0,
-        room: object.room as u8,
+        room: catalog.room_index(object.room).unwrap_or(u8::MAX),
         color: object.color as u8,
         fluid: object.fluid as u8,
         hidden: u8::from(object.hidden),

@@ -30,8 +30,8 @@ pub struct Moment {
     pub instances: Vec<Instance>,
     /// What is pointed out.
     pub highlights: Vec<Highlight>,
-    /// Whether the lights are on, a room each.
-    pub lit: [bool; RoomId::ALL.len()],
+    /// Whether the lights are on, for each room of the floor plan.
+    pub lit: Vec<(RoomId, bool)>,
     /// Where each body is, and where its eye.
     pub bodies: Vec<Standing>,
     /// What the mission shows to the people who watch, instead of their body.
@@ -190,7 +190,7 @@ impl Moment {
                 .highlighted()
                 .map(|object| Highlight { id: object_instance_id(object), color: HIGHLIGHT_COLOR })
                 .collect(),
-            lit: RoomId::ALL.map(|room| world.room_lit(room)),
+            lit: world.layout().rooms.iter().map(|room| (room.id, world.room_lit(room.id))).collect(),
             bodies: world
                 .bodies()
                 .map(|body| Standing {

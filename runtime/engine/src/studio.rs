@@ -251,6 +251,7 @@ impl Studio {
         let instances: &[Instance] =
             if any_is(|plan| matches!(plan.mount, Mount::Behind { .. })) { &moment.instances } else { &[] };
         let tall: Vec<Tall> = instances.iter().filter_map(|instance| tall(instance, catalog, layout)).collect();
+        let rooms = layout.rooms.len();
         let mut due = due.into_iter().peekable();
         let mut takes = Vec::new();
         for (index, post) in posts.iter_mut().enumerate() {
@@ -258,7 +259,7 @@ impl Studio {
             let cameras = post.aim(moment, layout, &tall, since);
             if !cameras.is_empty() {
                 let Post { plan, publisher, .. } = post;
-                let layout = frame_layout(plan, classes);
+                let layout = frame_layout(plan, classes, rooms);
                 let body = plan.body().map_or(NONE, u32::from);
                 takes.push(Take { publisher: &mut **publisher, layout, cameras, body });
             }
@@ -270,8 +271,8 @@ impl Studio {
         self.scene.set_time(moment.tick * cohabit_world::DT_NANOS);
         self.scene.set_instances(&moment.instances);
         self.scene.set_highlights(&moment.highlights);
-        for (room, lit) in cohabit_cdf::RoomId::ALL.into_iter().zip(moment.lit) {
-            self.scene.set_lights(room, lit);
+        for (room, lit) in &moment.lit {
+            self.scene.set_lights(*room, *lit);
         }
     }
 }
@@ -293,9 +294,9 @@ fn tall(instance: &Instance, catalog: &Catalog, layout: &Layout) -> Option<Tall>
 }
 
 /// Where the parts of a camera's frames lie: with room for all that may be seen, if ids are.
-fn frame_layout(plan: &CameraPlan, classes: &Classes) -> FrameLayout {
+fn frame_layout(plan: &CameraPlan, classes: &Classes, rooms: usize) -> FrameLayout {
     let ([width, height], views) = (plan.lens.size(), plan.views());
-    let most = classes.most().min((width * height) as usize);
+    let most = classes.most(rooms).min((width * height) as usize);
     let room = if plan.planes.contains(&Plane::Ids) { u32::try_from(most).unwrap_or(u32::MAX) * views } else { 0 };
     FrameLayout::new(width, height, views, &plan.planes, room)
 }

@@ -2,12 +2,17 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod twenty_rooms;
+
 use std::{collections::BTreeSet, sync::Arc};
 
 use cohabit_bus::message::Thing;
-use cohabit_cdf::{PackFile, RoomId, WorldData, WorldPack, world_pack::template};
-use cohabit_engine::{SessionPlan, furnishings};
-use cohabit_render::{Camera, CpuRenderer, MeshLibrary, Planes, Renderer as _, Scene};
+use cohabit_cdf::{Action, BodyId, GoToTarget, PackFile, RoomId, Verb, WorldData, WorldPack, world_pack::template};
+use cohabit_engine::{SessionPlan, furnishings, report};
+use cohabit_render::{
+    Camera, CpuRenderer, Lens, MeshLibrary, Planes, Renderer as _, RoomSurface, Scene, minimap, room_surface_id,
+};
+use cohabit_world::{Input, Vec2, World};
 
 /// Pixels a metre of the floor plan: a wrench is some ten pixels long.
 const PX_M: f32 = 50.0;
@@ -34,7 +39,101 @@ fn objects_and_rooms_of_a_pack_are_drawn_with_their_ids() {
         let object = session.find(instance).unwrap();
         assert!(seen.iter().any(|id| Thing::of_id(*id) == Thing::Object(object)), "{instance} is not to be seen");
     }
-    for room in [RoomId::SmallOffice, RoomId::Hallway] {
-        assert!(seen.iter().any(|id| Thing::of_id(*id) == Thing::Surface(room)), "{room:?} is not to be seen");
+    for room in plan.layout.rooms.iter().map(|room| room.id) {
+        let index = plan.catalog.room_index(room).unwrap();
+        assert!(seen.iter().any(|id| Thing::of_id(*id) == Thing::Surface(index.into())), "{room:?} is not to be seen");
     }
+}
+
+/// Has the first body do something, to its end.
+fn carry_out(world: &mut World, command: u64, action: Action) {
+    const LONGEST_TICKS: u32 = 60 * 120;
+    let input = Input { command, body: BodyId(0), action };
+    let mut report = world.step(std::slice::from_ref(&input));
+    for _ in 0..LONGEST_TICKS {
+        if let Some(outcome) = report.outcomes.iter().find(|outcome| outcome.command == command) {
+            assert!(outcome.status.is_success(), "{action:?}: {}", outcome.detail);
+            return;
+        }
+        report = world.step(&[]);
+    }
+    panic!("{action:?} did not end");
+}
+
+fn plan_of_twenty() -> SessionPlan {
+    let world = twenty_rooms::world();
+    let (name, text) = world.packs()[0].missions().next().unwrap();
+    SessionPlan::new(name, text, Arc::clone(world.catalog()), 1).unwrap()
+}
+
+#[test]
+fn all_of_twenty_rooms_are_walked_to_and_lit_by_themselves() {
+    let plan = plan_of_twenty();
+    let mut world = plan.build().unwrap();
+    let rooms: Vec<RoomId> = plan.layout.rooms.iter().map(|room| room.id).collect();
+    assert_eq!(rooms.len(), 20);
+    assert_eq!(world.body(BodyId(0)).unwrap().room, RoomId::new("SunLounge").unwrap());
+    for from in &plan.layout.viewpoints {
+        for to in &plan.layout.viewpoints {
+            let way = world.path(Vec2::from(from.at_m), Vec2::from(to.at_m));
+            assert!(way.is_some(), "from {} to {}", from.room, to.room);
+        }
+    }
+    let mut command = 0;
+    let mut dark = BTreeSet::new();
+    for switched in plan.layout.placements.iter().filter(|thing| thing.instance.starts_with("LightSwitch_01_")) {
+        let switch = world.find(&switched.instance).unwrap();
+        for action in [
+            Action::GoTo { target: GoToTarget::Room(switched.room) },
+            Action::GoTo { target: GoToTarget::Object(switch) },
+            Action::Interact { verb: Verb::Toggle, object: switch },
+        ] {
+            command += 1;
+            carry_out(&mut world, command, action);
+        }
+        assert_eq!(world.body(BodyId(0)).unwrap().room, switched.room);
+        dark.insert(switched.room);
+        let lit = report::state(&world).header.lit_rooms;
+        for room in &rooms {
+            let index = plan.catalog.room_index(*room).unwrap();
+            assert_eq!(world.room_lit(*room), !dark.contains(room), "{room}");
+            assert_eq!(lit >> index & 1 == 1, world.room_lit(*room), "{room}");
+        }
+    }
+    assert_eq!(dark.len(), rooms.len());
+    let mut again = plan.build().unwrap();
+    again.restore(&world.snapshot()).unwrap();
+    assert_eq!(again.digest(), world.digest());
+    assert_eq!(again.body(BodyId(0)).unwrap().room, world.body(BodyId(0)).unwrap().room);
+}
+
+#[test]
+fn the_twentieth_room_is_drawn_and_is_on_the_map() {
+    let plan = plan_of_twenty();
+    let lounge = RoomId::new("SunLounge").unwrap();
+    let index = plan.catalog.room_index(lounge).unwrap();
+    assert_eq!(index, 27);
+    let mut scene = Scene::new(Arc::new(MeshLibrary::build(&plan.catalog).unwrap()), &plan.layout);
+    scene.set_instances(&furnishings(&plan.build().unwrap()).collect::<Vec<_>>());
+    let view = plan.layout.viewpoints.iter().find(|view| view.room == lounge).unwrap();
+    let lens = Lens::new(120, 90, 90.0).unwrap();
+    let [x, y] = view.at_m;
+    let camera = Camera::fixed(lens, [x, y, 1.6], view.yaw_deg.to_radians(), -0.5);
+    let (mut lit, mut dark) = (vec![0; camera.pixels() * 4], vec![0; camera.pixels() * 4]);
+    let mut ids = vec![0; camera.pixels()];
+    let mut renderer = CpuRenderer::new(1);
+    let mut shoot = |scene: &Scene, color: &mut [u8]| {
+        let mut planes = Planes { color: Some(color), depth_m: None, normals: None, ids: Some(&mut ids) };
+        renderer.render(scene, &camera, &mut planes);
+    };
+    shoot(&scene, &mut lit);
+    scene.set_lights(lounge, false);
+    shoot(&scene, &mut dark);
+    assert_ne!(lit, dark);
+    assert!(ids.contains(&room_surface_id(index, RoomSurface::Floor)));
+    let map = minimap(&plan.layout, &plan.catalog, 16.0);
+    let [west, south, ..] = plan.layout.room(lounge).unwrap().rects_m[0];
+    let [x, y] = map.pixel_of([west + 0.3, south + 0.3]).map(|place| place as usize);
+    let start = (y * map.picture.width as usize + x) * 4;
+    assert_eq!(map.picture.rgba[start..start + 3], twenty_rooms::LOUNGE_COLOR);
 }

@@ -214,7 +214,7 @@ impl LockStep {
 
 /// All that is true in a world, as somebody would know it who is everywhere.
 pub(crate) fn truth(world: &World) -> Option<Known> {
-    with_state(world, |state| known::everything(state, BODY)).flatten()
+    with_state(world, |state| known::everything(state, BODY, world.catalog())).flatten()
 }
 
 /// Looks at the state of the world as it would be published.

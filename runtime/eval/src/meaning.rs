@@ -11,8 +11,8 @@ use serde::{Deserialize, Serialize};
 #[serde(tag = "want", rename_all = "snake_case")]
 #[allow(missing_docs, reason = "the names of the fields say all")]
 pub enum Meaning {
-    /// Be in a room.
-    GoTo { room: RoomId },
+    /// Be in a room, which people call that.
+    GoTo { room: RoomId, name: String },
     /// Hold something.
     PickUp { object: String },
     /// Have something on or in something else.

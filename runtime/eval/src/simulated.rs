@@ -75,7 +75,7 @@ impl User {
         let object = self.refer(meaning.object(), truth, style);
         let target = self.refer(meaning.target(), truth, style);
         let rest = match meaning {
-            Meaning::GoTo { room } => room.name().to_owned(),
+            Meaning::GoTo { name, .. } => name.clone(),
             Meaning::Color { color, .. } => color.name().to_lowercase(),
             _ => String::new(),
         };

@@ -2,7 +2,7 @@
 
 use std::f32::consts::PI;
 
-use cohabit_cdf::{Action, GoToTarget, ObjectId, RoomId, Verb};
+use cohabit_cdf::{Action, GoToTarget, ObjectId, Verb};
 use cohabit_world::World;
 use serde_json::Value;
 
@@ -55,13 +55,13 @@ fn number(value: &Value) -> Result<f32, String> {
 fn place(value: &Value, world: &World) -> Result<GoToTarget, String> {
     let text = |key: &str| value[key].as_str();
     if let Some(room) = text("officeRoom") {
-        let found = RoomId::from_id(room).ok_or_else(|| format!("there is no room \"{room}\""))?;
+        let found = world.catalog().rooms().find(room).ok_or_else(|| format!("there is no room \"{room}\""))?;
         return Ok(GoToTarget::Room(found));
     }
     if let Some(point) = text("goToPoint") {
-        let viewpoint = point
-            .rsplit_once('_')
-            .and_then(|(room, number)| Some(GoToTarget::Viewpoint(RoomId::from_id(room)?, number.parse().ok()?)));
+        let viewpoint = point.rsplit_once('_').and_then(|(room, number)| {
+            Some(GoToTarget::Viewpoint(world.catalog().rooms().find(room)?, number.parse().ok()?))
+        });
         return viewpoint.ok_or_else(|| format!("there is no viewpoint \"{point}\""));
     }
     object(value, world).map(GoToTarget::Object)

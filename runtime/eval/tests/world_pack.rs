@@ -3,6 +3,10 @@
 
 #![allow(clippy::unwrap_used)]
 
+#[allow(dead_code, reason = "shared with the tests of the engine")]
+#[path = "../../engine/tests/twenty_rooms/mod.rs"]
+mod twenty_rooms;
+
 use std::{fs, sync::Arc};
 
 use cohabit_cdf::{Catalog, PackFile, WorldData, WorldPack, world_pack::template};
@@ -149,4 +153,25 @@ fn a_device_of_a_pack_is_one_entry_of_its_table() {
     // Nothing happens while it is empty.
     let played = play(&task("warm_soup", &text, &["turn on the kettle stand"]), &settings, &language).unwrap();
     assert!(!played.success, "{:#?}", played.transcript);
+}
+
+#[test]
+fn a_pack_of_twenty_rooms_is_spoken_of_in_its_own_words() {
+    let world = twenty_rooms::world();
+    let (_, text) = world.packs()[0].missions().next().unwrap();
+    let said = ["go to the music room", "which room are you in?", "go to the winter garden", "which room are you in?"];
+    let task = Task {
+        id: "tour".to_owned(),
+        family: None,
+        cdf: text.to_owned(),
+        preparation: Vec::new(),
+        script: said.map(Line::utterance).into(),
+    };
+    let settings = Settings { seed: 1, knows: Knows::Everything, ..Settings::default() };
+    let played = play(&task, &settings, &Language::new(Arc::clone(world.catalog()))).unwrap();
+    assert_eq!(played.first_trouble, None, "{:#?}", played.transcript);
+    for (place, room) in [(1, "music room"), (3, "sun lounge")] {
+        let replies = &played.transcript[place].replies;
+        assert!(replies.iter().any(|reply| reply.contains(room)), "{room}: {replies:?}");
+    }
 }

@@ -16,16 +16,6 @@ use crate::{
 const DOORS: u32 = 7;
 /// What switches a circuit.
 const LEVER: &str = "FuseBox_01_Lever";
-/// Where people leave and look for things: not in the way of every door.
-const ROOMS: [RoomId; 7] = [
-    RoomId::BreakRoom,
-    RoomId::MainOffice,
-    RoomId::SmallOffice,
-    RoomId::Lab1,
-    RoomId::Lab2,
-    RoomId::Reception,
-    RoomId::Warehouse,
-];
 
 /// Something that stands in the way of a mission's goals.
 #[derive(Clone, Debug, Eq, PartialEq, Serialize)]
@@ -83,7 +73,10 @@ impl<'a> Draft<'a> {
         }
         let goals = kind.goals.iter().enumerate().map(|(number, goal)| self.goal(number, goal, kind.then));
         let goals: Vec<Value> = goals.collect::<Option<_>>()?;
-        let rooms: Vec<RoomId> = ROOMS.into_iter().filter(|room| self.layout.room(*room).is_some()).collect();
+        // Where people leave and look for things: not in the way of every door.
+        let known = self.catalog.rooms();
+        let is_lived_in = |room: &RoomId| !known.is_corridor(*room) && self.layout.room(*room).is_some();
+        let rooms: Vec<RoomId> = known.ids().filter(is_lived_in).collect();
         if rooms.is_empty() {
             return None;
         }
@@ -212,7 +205,7 @@ impl<'a> Draft<'a> {
         };
         let fit: Vec<String> = all
             .iter()
-            .filter(|placement| ROOMS.contains(&placement.room))
+            .filter(|placement| !self.catalog.rooms().is_corridor(placement.room))
             .filter(|placement| class_of(placement).is_some_and(&is_fit))
             .filter(is_alone)
             .map(|placement| placement.instance.clone())

@@ -52,7 +52,7 @@ fn the_expert_meets_all_goals_and_each_tick_is_noted() {
 #[test]
 fn a_world_goes_no_further_than_what_can_be_noted() {
     let mut world = world("make_cereal");
-    let action = Action::GoTo { target: GoToTarget::Room(RoomId::Warehouse) };
+    let action = Action::GoTo { target: GoToTarget::Room(RoomId::WAREHOUSE) };
     let command = Input { command: 7, body: BodyId(0), action };
     let error = carry_out(&mut world, &mut Count { last: Some(10), ..Count::default() }, command).unwrap_err();
     assert_eq!((error, world.tick()), (10, 10));

@@ -116,8 +116,8 @@ fn states_lights_and_effects(name: &str, mut renderer: Box<dyn Renderer>) {
         println!("{name}, {id}, all states: {worst:?}");
         // What changed is seen, and what is hidden is not.
         scene.set_time(700_000_000);
-        for room in RoomId::ALL {
-            scene.set_lights(room, (room as u8).is_multiple_of(2));
+        for (index, room) in RoomId::BUILTIN.into_iter().enumerate() {
+            scene.set_lights(room, index.is_multiple_of(2));
         }
         let hiding: Vec<Camera> = cameras.iter().map(|camera| Camera { hide: Some(5), ..*camera }).collect();
         let worst = check(name, &mut *renderer, &scene, &hiding);

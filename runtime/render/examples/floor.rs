@@ -35,10 +35,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         return Err("write: floor OUT_FOLDER LAYOUT... [from=FOLDER] [above] [ROOM...]".into());
     };
     let files = words.iter().find_map(|word| word.strip_prefix("from=")).map(read_plans).transpose()?;
-    let rooms: Vec<RoomId> = words.iter().filter_map(|word| RoomId::from_id(word)).collect();
-    let only_above = words.iter().any(|word| word == "above");
-    let is_layout = |word: &&String| RoomId::from_id(word).is_none() && !word.contains('=') && *word != "above";
     let catalog = Catalog::builtin();
+    let rooms: Vec<RoomId> = words.iter().filter_map(|word| catalog.rooms().find(word)).collect();
+    let only_above = words.iter().any(|word| word == "above");
+    let is_layout = |word: &&String| catalog.rooms().find(word).is_none() && !word.contains('=') && *word != "above";
     let meshes = Arc::new(MeshLibrary::build(&catalog)?);
     for id in words.iter().filter(is_layout) {
         let plan = match &files {
@@ -54,9 +54,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         if rooms.is_empty() {
             studio.above().write(Path::new(out).join(format!("{id}-above.png")).as_path())?;
         }
-        let all = if only_above { &[][..] } else { &RoomId::ALL };
-        for room in all.iter().filter(|room| rooms.is_empty() || rooms.contains(room)) {
-            studio.room(&plan, *room).write(Path::new(out).join(format!("{id}-{}.png", room.id())).as_path())?;
+        let all = if only_above { &[][..] } else { &plan.rooms[..] };
+        for room in all.iter().map(|room| room.id).filter(|room| rooms.is_empty() || rooms.contains(room)) {
+            studio.room(&plan, room).write(Path::new(out).join(format!("{id}-{}.png", room.id())).as_path())?;
         }
     }
     Ok(())

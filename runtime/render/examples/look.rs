@@ -159,14 +159,14 @@ fn view(
             color: Color::Original,
             opened: 0.0,
             running: 0.0,
-            room: room.map_or(RoomId::Hallway, |room| room.id),
+            room: room.map_or(RoomId::HALLWAY, |room| room.id),
             visible: true,
         });
         scene.set_highlights(&[Highlight { id: 5000, color: [255, 190, 60] }]);
     }
     scene.set_instances(&instances);
     if options.contains(&"dark") {
-        RoomId::ALL.into_iter().for_each(|room| scene.set_lights(room, false));
+        RoomId::BUILTIN.into_iter().for_each(|room| scene.set_lights(room, false));
     }
     let size = options
         .iter()

@@ -14,9 +14,14 @@ const KNEE: f32 = 0.6;
 
 /// The linear light of `#rrggbb`, or nothing if it is not of that form.
 pub(crate) fn parse_hex(text: &str) -> Option<Vec3> {
+    srgb_of_hex(text).map(from_srgb)
+}
+
+/// The display bytes of `#rrggbb`, or nothing if it is not of that form.
+pub(crate) fn srgb_of_hex(text: &str) -> Option<[u8; 3]> {
     let digits = text.strip_prefix('#').filter(|rest| rest.len() == 6 && rest.is_ascii())?;
     let value = u32::from_str_radix(digits, 16).ok()?;
-    Some(from_srgb([(value >> 16) as u8, (value >> 8) as u8, value as u8]))
+    Some([(value >> 16) as u8, (value >> 8) as u8, value as u8])
 }
 
 /// The linear light of display bytes.

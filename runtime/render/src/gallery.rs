@@ -191,7 +191,7 @@ fn plain(look: Look) -> Instance {
         color: Color::Original,
         opened: 0.0,
         running: 0.0,
-        room: RoomId::Lab1,
+        room: RoomId::LAB1,
         visible: true,
     }
 }
@@ -346,7 +346,7 @@ pub fn stage(meshes: &Arc<MeshLibrary>) -> Scene {
 fn studio() -> Layout {
     let finish = |color: &str| Finish { material: Material::Plain, color: color.to_owned() };
     let room = Room {
-        id: RoomId::Lab1,
+        id: RoomId::LAB1,
         rects_m: vec![[-20.0, -20.0, 20.0, 20.0]],
         floor: finish("#b9b6ae"),
         wall: finish("#c8c6be"),

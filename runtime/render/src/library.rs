@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use cohabit_cdf::catalog::Stands;
 use cohabit_cdf::model::{Model, When};
-use cohabit_cdf::{Catalog, ClassId, Property};
+use cohabit_cdf::{Catalog, ClassId, Property, RoomId};
 use glam::Vec3;
 
 use crate::color;
@@ -92,6 +92,8 @@ pub struct MeshLibrary {
     models: Vec<ModelMesh>,
     classes: Vec<ClassLook>,
     bodies: Bodies,
+    /// By index: ids of surfaces have that.
+    rooms: Vec<RoomId>,
 }
 
 /// Where in the library the looks lie that belong to no class.
@@ -147,7 +149,7 @@ impl MeshLibrary {
             bodies.signs.push(frames.collect::<Result<_, _>>()?);
         }
         let classes = class_looks(catalog)?;
-        Ok(Self { models, classes, bodies })
+        Ok(Self { models, classes, bodies, rooms: catalog.rooms().ids().collect() })
     }
 
     /// Bakes what has not been seen yet, so that no later picture has to wait for it: for a thread of its own, after the
@@ -190,6 +192,11 @@ impl MeshLibrary {
         let look = self.classes.get(usize::from(class.0));
         let levels = look.map(|look| &self.models[look.model].levels);
         levels.into_iter().flatten().map(Mesh::triangles_at_once).collect()
+    }
+
+    /// The rooms that floor plans may have, by index.
+    pub(crate) fn rooms(&self) -> &[RoomId] {
+        &self.rooms
     }
 
     pub(crate) fn model(&self, index: usize) -> &ModelMesh {

@@ -4,6 +4,7 @@ use cohabit_cdf::layout::{Layout, Opening, OpeningKind, Room};
 use cohabit_cdf::model::Axis;
 use cohabit_cdf::{Catalog, RoomId};
 
+use crate::color;
 use crate::gallery::Picture;
 use crate::ink::{Ink, Paper};
 use crate::kit;
@@ -61,7 +62,7 @@ pub fn minimap(layout: &Layout, catalog: &Catalog, pixels_per_m: f32) -> Minimap
     let mut paper = Paper::new(sides_m, origin_m, scale);
     for room in &layout.rooms {
         for rect in &room.rects_m {
-            paper.rect(*rect, tint(room.id));
+            paper.rect(*rect, tint(catalog, room.id));
         }
     }
     for corners in layout.furniture_outlines_m(catalog) {
@@ -72,29 +73,30 @@ pub fn minimap(layout: &Layout, catalog: &Catalog, pixels_per_m: f32) -> Minimap
         draw_walls(&mut paper, room, scale);
     }
     for opening in &layout.openings {
-        draw_opening(&mut paper, layout, opening, scale);
+        draw_opening(&mut paper, (layout, catalog), opening, scale);
     }
     for room in &layout.rooms {
-        write_name(&mut paper, room, room.id.name_in(catalog));
+        write_name(&mut paper, room, catalog);
     }
     let [width, height] = paper.size();
     let picture = Picture { width, height, rgba: paper.into_rgba() };
     Minimap { picture, west_m: origin_m[0], north_m: origin_m[1], pixels_per_m: scale }
 }
 
-/// A colour for each room, the same in every plan.
-const fn tint(room: RoomId) -> Ink {
-    let color = match room {
-        RoomId::BreakRoom => [246, 221, 190],
-        RoomId::MainOffice => [203, 222, 240],
-        RoomId::SmallOffice => [226, 210, 236],
-        RoomId::Lab1 => [244, 205, 200],
-        RoomId::Lab2 => [205, 232, 230],
-        RoomId::Reception => [240, 233, 194],
-        RoomId::Warehouse => [216, 221, 206],
-        RoomId::Hallway => [232, 232, 230],
-    };
-    Ink(color, 1.0)
+/// A colour for each room, the same in every plan: the one that the world gives it, or a light one of its own.
+fn tint(catalog: &Catalog, room: RoomId) -> Ink {
+    let given = catalog.rooms().get(room).and_then(|entry| color::srgb_of_hex(entry.color.as_deref()?));
+    Ink(given.unwrap_or_else(|| own_tint(catalog.room_index(room).unwrap_or_default())), 1.0)
+}
+
+/// A light colour for the room with this index: hues that follow each other at the golden angle are apart.
+fn own_tint(index: u8) -> [u8; 3] {
+    const GOLDEN_TURN: f32 = 0.618_034;
+    let turn = (f32::from(index) * GOLDEN_TURN).fract();
+    [0.0, 1.0 / 3.0, 2.0 / 3.0].map(|shift| {
+        let away = ((turn + shift).fract() - 0.5).abs() * 2.0;
+        (200.0 + 45.0 * away) as u8
+    })
 }
 
 /// Half a wall's thickness as it is drawn, m: never too thin to be seen.
@@ -115,7 +117,7 @@ fn draw_walls(paper: &mut Paper, room: &Room, scale: f32) {
     }
 }
 
-fn draw_opening(paper: &mut Paper, layout: &Layout, opening: &Opening, scale: f32) {
+fn draw_opening(paper: &mut Paper, (layout, catalog): (&Layout, &Catalog), opening: &Opening, scale: f32) {
     let [x, y] = opening.at_m;
     let (half, thick) = (opening.width_m / 2.0, half_wall_m(scale));
     let rect = |half_across: f32| match opening.wall_runs {
@@ -126,7 +128,7 @@ fn draw_opening(paper: &mut Paper, layout: &Layout, opening: &Opening, scale: f3
         OpeningKind::Window => paper.rect(rect(thick * 0.5), GLASS),
         OpeningKind::Door | OpeningKind::Passage => {
             // Each room's floor reaches half-way into the gap.
-            let [own, other] = opening.between.map(|id| layout.room(id).map_or(tint(RoomId::Hallway), |r| tint(r.id)));
+            let [own, other] = opening.between.map(|id| tint(catalog, id));
             let (low, high) = match opening.wall_runs {
                 Axis::X => ([x - half, y - thick - 0.01, x + half, y], [x - half, y, x + half, y + thick + 0.01]),
                 _ => ([x - thick - 0.01, y - half, x, y + half], [x, y - half, x + thick + 0.01, y + half]),
@@ -146,14 +148,14 @@ fn draw_opening(paper: &mut Paper, layout: &Layout, opening: &Opening, scale: f3
 }
 
 /// A room's name in the middle of its largest rectangle: broken into lines, turned or smaller where it is narrow.
-fn write_name(paper: &mut Paper, room: &Room, name: &str) {
+fn write_name(paper: &mut Paper, room: &Room, catalog: &Catalog) {
     let area = |[west, south, east, north]: &[f32; 4]| (east - west) * (north - south);
     let Some([west, south, east, north]) = room.rects_m.iter().max_by(|a, b| area(a).total_cmp(&area(b))) else {
         return;
     };
     let (wide, high) = (east - west - 0.5, north - south - 0.5);
     let middle = [f32::midpoint(*west, *east), f32::midpoint(*south, *north)];
-    let words: Vec<String> = name.split(' ').map(str::to_uppercase).collect();
+    let words: Vec<String> = room.id.name_in(catalog).split(' ').map(str::to_uppercase).collect();
     let upright = fit(&words, wide, high);
     let turned = fit(&words, high, wide);
     // Upright reads better: it is turned only where that makes it much larger.
@@ -169,7 +171,7 @@ fn write_name(paper: &mut Paper, room: &Room, name: &str) {
         };
         strokes.extend(own.into_iter().map(|[a, b]| [place(a), place(b)]));
     }
-    paper.strokes(&strokes, capital * EDGE, Ink(tint(room.id).0, 0.82));
+    paper.strokes(&strokes, capital * EDGE, Ink(tint(catalog, room.id).0, 0.82));
     paper.strokes(&strokes, capital * STROKE, LETTERS);
 }
 
@@ -209,7 +211,7 @@ mod tests {
             let map = minimap(&bare, &catalog, 24.0);
             assert_eq!(rgba(&map, [map.west_m + 0.05, map.north_m - 0.05])[3], 0, "{id}: beyond the walls");
             for room in &layout.rooms {
-                let Ink([red, green, blue], _) = tint(room.id);
+                let Ink([red, green, blue], _) = tint(&catalog, room.id);
                 let [west, south, ..] = room.rects_m[0];
                 assert_eq!(rgba(&map, [west + 0.3, south + 0.3]), [red, green, blue, 255], "{id} {:?}", room.id);
                 let corner = [west, south + 0.2];

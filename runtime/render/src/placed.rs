@@ -1,6 +1,5 @@
 //! What is drawn of an instance, and where.
 
-use cohabit_cdf::RoomId;
 use glam::{Mat3, Vec3};
 
 use crate::mesh::Aabb;
@@ -40,8 +39,10 @@ pub(crate) struct Placed {
     pub radius: f32,
     pub bounds: Aabb,
     /// Rooms it touches, as bits.
-    pub rooms: u8,
-    pub room: RoomId,
+    pub rooms: u64,
+    /// The index of the room whose lamps light it, and what tells that apart in the map of shadows.
+    pub room: u8,
+    pub shadow_room: u8,
     pub tint: Vec3,
     pub fluid: Vec3,
     pub weather: Weather,

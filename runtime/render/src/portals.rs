@@ -1,8 +1,10 @@
 //! Which rooms a camera sees, and through which part of the picture: its own, and others through gaps in walls.
 
+use cohabit_cdf::room::MOST_ROOMS;
+
 use crate::camera::{Camera, NEAR_M, Rect, View};
 use crate::mesh::Aabb;
-use crate::plan::Plan;
+use crate::plan::{Plan, rooms_of};
 
 /// Gaps looked through one behind the other.
 const DEPTH: u32 = 8;
@@ -10,13 +12,15 @@ const DEPTH: u32 = 8;
 /// For each room the part of the picture in which it may be seen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Visible {
-    rects: [Option<Rect>; 8],
+    rects: [Option<Rect>; MOST_ROOMS],
+    /// The rooms that have one, as bits.
+    seen: u64,
 }
 
 impl Visible {
     /// Every room, in the whole picture.
     pub(crate) fn everything(view: &View) -> Self {
-        Self { rects: [Some(view.screen()); 8] }
+        Self { rects: [Some(view.screen()); MOST_ROOMS], seen: u64::MAX }
     }
 
     /// What is seen from where the camera stands.
@@ -26,17 +30,16 @@ impl Visible {
         if !camera.ceiling || !inside || own == 0 {
             return Self::everything(view);
         }
-        let mut visible = Self { rects: [None; 8] };
-        for room in 0..8 {
-            if own >> room & 1 == 1 {
-                visible.look(plan, view, room, view.screen(), DEPTH);
-            }
+        let mut visible = Self { rects: [None; MOST_ROOMS], seen: 0 };
+        for room in rooms_of(own) {
+            visible.look(plan, view, room, view.screen(), DEPTH);
         }
         visible
     }
 
     fn look(&mut self, plan: &Plan, view: &View, room: usize, rect: Rect, depth: u32) {
         self.rects[room] = Some(self.rects[room].map_or(rect, |known| known.union(rect)));
+        self.seen |= 1 << room;
         if depth == 0 {
             return;
         }
@@ -51,9 +54,9 @@ impl Visible {
     }
 
     /// Whether something in these rooms, within this part of the picture, may be seen.
-    pub(crate) fn sees(&self, rooms: u8, rect: Rect) -> bool {
-        let mut rects = self.rects.iter().enumerate().filter(|(room, _)| rooms >> room & 1 == 1);
-        rects.any(|(_, own)| own.is_some_and(|own| own.intersection(rect).is_some()))
+    pub(crate) fn sees(&self, rooms: u64, rect: Rect) -> bool {
+        let mut rects = rooms_of(rooms & self.seen).filter_map(|room| self.rects[room]);
+        rects.any(|own| own.intersection(rect).is_some())
     }
 }
 

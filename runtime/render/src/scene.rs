@@ -4,6 +4,7 @@ use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard};
 
 use cohabit_cdf::layout::Layout;
 use cohabit_cdf::model::When;
+use cohabit_cdf::room::MOST_ROOMS;
 use cohabit_cdf::{Fluid, RoomId, StateFlag};
 use glam::{Mat3, Quat, Vec3};
 
@@ -32,7 +33,8 @@ pub struct Scene {
     placed: Vec<Placing>,
     /// Simulated time, ns.
     nanos: u64,
-    pub(crate) lit: [bool; 8],
+    /// By the index of rooms.
+    pub(crate) lit: [bool; MOST_ROOMS],
     pub(crate) highlights: Vec<Highlight>,
     /// Brought up to date by the first renderer that wants shadows after a change.
     pub(crate) shadows: RwLock<ShadowMap>,
@@ -42,7 +44,7 @@ impl Scene {
     /// An empty office: the layout's rooms and openings, no instances, all lamps on.
     #[must_use]
     pub fn new(meshes: Arc<MeshLibrary>, layout: &Layout) -> Self {
-        let plan = Arc::new(Plan::new(layout));
+        let plan = Arc::new(Plan::new(layout, meshes.rooms()));
         let shadows = RwLock::new(ShadowMap::new(plan.bounds));
         Self {
             meshes,
@@ -50,7 +52,7 @@ impl Scene {
             instances: Vec::new(),
             placed: Vec::new(),
             nanos: 0,
-            lit: [true; 8],
+            lit: [true; MOST_ROOMS],
             highlights: Vec::new(),
             shadows,
         }
@@ -98,7 +100,7 @@ impl Scene {
 
     /// Switches a room's lamps.
     pub fn set_lights(&mut self, room: RoomId, lit: bool) {
-        self.lit[room as usize] = lit;
+        self.lit[usize::from(self.plan.index_of(room))] = lit;
     }
 
     /// Takes over all highlights.
@@ -113,8 +115,13 @@ impl Scene {
     }
 
     /// The light in a room, as a factor.
-    pub(crate) fn light(&self, room: usize) -> Vec3 {
-        if self.lit[room] { Vec3::ONE } else { UNLIT }
+    pub(crate) fn light(&self, room: u8) -> Vec3 {
+        if self.is_lit(room) { Vec3::ONE } else { UNLIT }
+    }
+
+    /// Whether the lamps of a room are on.
+    pub(crate) fn is_lit(&self, room: u8) -> bool {
+        self.lit[usize::from(room)]
     }
 
     /// The map of shadows, brought up to date.
@@ -285,6 +292,7 @@ fn finish(
 ) -> Placed {
     let rect = [bounds.min.x, bounds.min.y, bounds.max.x, bounds.max.y];
     let touched = plan.rooms_touching(rect, HALF_WALL_M);
+    let room = plan.index_of(instance.room);
     Placed {
         id: instance.id,
         model,
@@ -294,8 +302,9 @@ fn finish(
         radius: bounds.size().length() * 0.5,
         bounds,
         // What stands outside of all rooms is seen from everywhere.
-        rooms: if touched == 0 { 0xFF } else { touched },
-        room: instance.room,
+        rooms: if touched == 0 { u64::MAX } else { touched },
+        room,
+        shadow_room: plan.shadow_room(room),
         tint: Vec3::ONE,
         fluid: color::of_fluid(instance.fluid),
         weather: Weather::default(),

@@ -149,7 +149,7 @@ impl ShadowMap {
 
     fn draw(&mut self, meshes: &MeshLibrary, placed: &Placed, clip: [i32; 4]) {
         let mesh = &meshes.model(placed.model).levels[1];
-        let room = placed.room as u16;
+        let room = u16::from(placed.shadow_room);
         let mut corners = Vec::new();
         for (piece, transform) in &placed.pieces {
             let (piece, transform) = (&mesh.pieces[usize::from(*piece)], &placed.transforms[usize::from(*transform)]);

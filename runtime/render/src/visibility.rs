@@ -1,6 +1,7 @@
 //! What can be seen in a picture of ids: which things, how much of each, and where.
 
-use cohabit_cdf::{RoomId, SemanticClass};
+use cohabit_cdf::SemanticClass;
+use cohabit_cdf::room::MOST_ROOMS;
 
 use crate::instance::{Instance, Look};
 use crate::plan::{RoomSurface, SURFACE_IDS};
@@ -62,11 +63,12 @@ impl Look {
     }
 }
 
-/// The room and the surface behind an id of [`crate::room_surface_id`]; `None` for any other.
+/// The index of the room, and the surface, behind an id of [`crate::room_surface_id`]; `None` for any other.
 #[must_use]
-pub fn room_surface_of_id(id: u32) -> Option<(RoomId, RoomSurface)> {
+pub fn room_surface_of_id(id: u32) -> Option<(u8, RoomSurface)> {
     let place = SURFACE_IDS.contains(&id).then(|| id - SURFACE_IDS.start)?;
-    Some((RoomId::from_index(place >> 8)?, *RoomSurface::ALL.get(place as usize & 0xFF)?))
+    let room = Some((place >> 8) as u8).filter(|room| usize::from(*room) < MOST_ROOMS)?;
+    Some((room, *RoomSurface::ALL.get(place as usize & 0xFF)?))
 }
 
 impl Classes {
@@ -86,10 +88,10 @@ impl Classes {
         room_surface_of_id(id).map_or(SemanticClass::Unknown, |(_, surface)| surface.class())
     }
 
-    /// How many ids there can be in a picture at most.
+    /// How many ids there can be in a picture of so many rooms at most.
     #[must_use]
-    pub fn most(&self) -> usize {
-        self.instances.len() + RoomId::ALL.len() * RoomSurface::ALL.len()
+    pub fn most(&self, rooms: usize) -> usize {
+        self.instances.len() + rooms * RoomSurface::ALL.len()
     }
 }
 
@@ -224,7 +226,7 @@ mod tests {
     #[test]
     fn surfaces_have_their_class_and_room() {
         let classes = Classes::default();
-        for room in RoomId::ALL {
+        for room in [0, 7, 8, 63] {
             for surface in RoomSurface::ALL {
                 let id = room_surface_id(room, surface);
                 assert_eq!(room_surface_of_id(id), Some((room, surface)));
@@ -232,5 +234,6 @@ mod tests {
             }
         }
         assert_eq!((room_surface_of_id(7), classes.of(7)), (None, SemanticClass::Unknown));
+        assert_eq!(room_surface_of_id(room_surface_id(64, RoomSurface::Floor)), None);
     }
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use cohabit_bus::message::{BodyRecord, NONE, ObjectRecord, StateView};
-use cohabit_cdf::{BodyId, BodyKind, ClassId, Color, Fluid, ObjectId, RoomId, StateFlag, StateFlags};
+use cohabit_cdf::{BodyId, BodyKind, Catalog, ClassId, Color, Fluid, ObjectId, RoomId, StateFlag, StateFlags};
 use cohabit_engine::{body_instance_id, object_instance_id};
 use cohabit_render::{Instance, Look};
 
@@ -40,12 +40,12 @@ impl Gaits {
 }
 
 /// All instances of a state, bodies first.
-pub fn instances(tick: u64, state: &StateView<'_>, gaits: &mut Gaits) -> Vec<Instance> {
-    let bodies = state.bodies.iter().map(|body| self::body(body, gaits.note(tick, body)));
-    bodies.chain(state.objects.iter().map(object)).collect()
+pub fn instances(tick: u64, state: &StateView<'_>, gaits: &mut Gaits, catalog: &Catalog) -> Vec<Instance> {
+    let bodies = state.bodies.iter().map(|body| self::body(body, gaits.note(tick, body), catalog));
+    bodies.chain(state.objects.iter().map(|record| object(record, catalog))).collect()
 }
 
-fn body(record: &BodyRecord, gait: Gait) -> Instance {
+fn body(record: &BodyRecord, gait: Gait, catalog: &Catalog) -> Instance {
     let (head_pitch_rad, holds, arm) = (record.head_pitch_rad, record.held != NONE, 0.0);
     let look = if kind(record) == BodyKind::Robot {
         Look::Robot { head_pitch_rad, arm, holds, rolled_m: gait.way_m }
@@ -65,12 +65,12 @@ fn body(record: &BodyRecord, gait: Gait) -> Instance {
         color: Color::Original,
         opened: 0.0,
         running: 0.0,
-        room: room(record.room),
+        room: room(record.room, catalog),
         visible: true,
     }
 }
 
-fn object(record: &ObjectRecord) -> Instance {
+fn object(record: &ObjectRecord, catalog: &Catalog) -> Instance {
     let flags = StateFlags(record.flags);
     let share = |flag| f32::from(u8::from(flags.has(flag)));
     Instance {
@@ -84,7 +84,7 @@ fn object(record: &ObjectRecord) -> Instance {
         color: Color::ALL.get(usize::from(record.color)).copied().unwrap_or(Color::Original),
         opened: share(StateFlag::Opened),
         running: share(StateFlag::Toggled),
-        room: room(u32::from(record.room)),
+        room: room(u32::from(record.room), catalog),
         visible: record.hidden == 0,
     }
 }
@@ -99,8 +99,8 @@ pub fn body_name(record: &BodyRecord) -> String {
     format!("{}_{}", kind(record).name(), record.body)
 }
 
-fn room(index: u32) -> RoomId {
-    RoomId::from_index(index).unwrap_or(RoomId::ALL[0])
+fn room(index: u32, catalog: &Catalog) -> RoomId {
+    catalog.room_at(index).unwrap_or(RoomId::BREAK_ROOM)
 }
 
 /// The states of an object in words, such as `opened, dirty, milk`; empty where nothing has happened to it.

@@ -6,7 +6,7 @@ use std::{
 };
 
 use cohabit_bus::message::{BodyRecord, ObjectRecord, StateView};
-use cohabit_cdf::{BodyId, Layout, ObjectId, RoomId, layout::Room};
+use cohabit_cdf::{BodyId, Catalog, Layout, ObjectId, RoomId, layout::Room};
 use cohabit_engine::{body_instance_id, object_instance_id};
 use cohabit_render::{Figure, MeshLibrary, RoomSurface, Scene, Shape, Soup, room_surface_of_id};
 use re_sdk_types::{
@@ -43,6 +43,7 @@ type Pose = [f32; 12];
 
 /// One session's office.
 pub struct Office {
+    catalog: Arc<Catalog>,
     scene: Scene,
     gaits: Gaits,
     /// By instance and part: what was logged.
@@ -66,22 +67,28 @@ struct Way {
 
 impl Office {
     /// The office of a floor plan; tells what never changes.
-    pub fn new(recording: &Recording, layout: &Layout, meshes: Arc<MeshLibrary>) -> anyhow::Result<Self> {
+    pub fn new(
+        recording: &Recording,
+        layout: &Layout,
+        catalog: Arc<Catalog>,
+        meshes: Arc<MeshLibrary>,
+    ) -> anyhow::Result<Self> {
         let scene = Scene::new(meshes, layout);
         recording.log_always("world", &ViewCoordinates::RIGHT_HAND_Z_UP())?;
-        for (room, surfaces) in surfaces(&scene) {
+        for (room, surfaces) in surfaces(&scene, &catalog) {
             for (name, soup) in surfaces {
                 // Walls look into their room alone: one sees in from outside.
                 let mesh = mesh(&soup).with_face_rendering(MeshFaceRendering::Front);
                 recording.log_always(&format!("world/plan/{}/{name}", room.id()), &mesh)?;
             }
         }
-        let named = |room: &Room| Some((middle(room.rects_m.first()?), room.id.name()));
+        let named = |room: &Room| Some((middle(room.rects_m.first()?), room.id.name_in(&catalog).to_owned()));
         let names = layout.rooms.iter().filter_map(named);
         let (places, names): (Vec<_>, Vec<_>) = names.unzip();
         let labels = Points3D::new(places).with_labels(names).with_radii([0.0_f32]).with_colors([PLAN_NAMES]);
         recording.log_always("world/plan/names", &labels.with_show_labels(ShowLabels(Bool(true))))?;
         Ok(Self {
+            catalog,
             scene,
             gaits: Gaits::default(),
             known: BTreeMap::new(),
@@ -100,7 +107,7 @@ impl Office {
             let path = || format!("world/objects/{}", part(object.instance.as_str()));
             self.paths.entry(object_instance_id(ObjectId(object.object))).or_insert_with(path);
         }
-        self.scene.set_instances(&looks::instances(tick, state, &mut self.gaits));
+        self.scene.set_instances(&looks::instances(tick, state, &mut self.gaits, &self.catalog));
         let figures = self.scene.figures();
         self.forget(recording, &figures)?;
         let mut base = None;
@@ -191,10 +198,11 @@ impl Office {
 }
 
 /// The surfaces of each room that are seen from above, by name.
-fn surfaces(scene: &Scene) -> BTreeMap<RoomId, BTreeMap<&'static str, Soup>> {
+fn surfaces(scene: &Scene, catalog: &Catalog) -> BTreeMap<RoomId, BTreeMap<&'static str, Soup>> {
     let mut rooms = BTreeMap::<RoomId, BTreeMap<&'static str, Soup>>::new();
     for soup in scene.soups(0) {
         let Some((room, surface)) = room_surface_of_id(soup.id) else { continue };
+        let Some(room) = catalog.room_at(u32::from(room)) else { continue };
         let name = match surface {
             RoomSurface::Floor => "floor",
             RoomSurface::EastWall | RoomSurface::NorthWall | RoomSurface::WestWall | RoomSurface::SouthWall => "walls",

@@ -7,7 +7,7 @@ use cohabit_bus::{
     CameraId,
     message::{FrameHeader, FrameView, Plane, StateView, Thing},
 };
-use cohabit_cdf::{BodyId, Catalog, ClassId, ObjectId, RoomId, SemanticClass};
+use cohabit_cdf::{BodyId, Catalog, ClassId, ObjectId, RoomEntry, SemanticClass};
 use cohabit_engine::{body_instance_id, object_instance_id};
 use cohabit_render::{RoomSurface, instance_color, room_surface_id, room_surface_of_id};
 use jpeg_encoder::{ColorType, Encoder};
@@ -60,7 +60,7 @@ impl Pictures {
     pub fn name(&mut self, recording: &Recording, catalog: &Catalog, state: &StateView<'_>) -> anyhow::Result<()> {
         let before = self.classes.len();
         if before == 0 {
-            self.classes.extend(surfaces().map(|(id, name)| (class_of(id), (name, instance_color(id)))));
+            self.classes.extend(surfaces(catalog).map(|(id, name)| (class_of(id), (name, instance_color(id)))));
         }
         for body in state.bodies {
             let id = body_instance_id(BodyId(body.body));
@@ -187,18 +187,18 @@ fn class_of(id: u32) -> u16 {
         Thing::Body(body) => small(body.0, FIRST_BODY).min(FIRST_SURFACE - 1),
         Thing::Surface(_) => {
             let place = room_surface_of_id(id)
-                .map_or(0, |(room, surface)| room as u32 * RoomSurface::ALL.len() as u32 + surface as u32);
+                .map_or(0, |(room, surface)| u32::from(room) * RoomSurface::ALL.len() as u32 + surface as u32);
             small(place, FIRST_SURFACE)
         }
     }
 }
 
 /// The ids and names of all surfaces that rooms may have.
-fn surfaces() -> impl Iterator<Item = (u32, String)> {
-    let of_room = |room: RoomId| {
-        RoomSurface::ALL.map(|surface| (room_surface_id(room, surface), format!("{surface:?} ({})", room.name())))
+fn surfaces(catalog: &Catalog) -> impl Iterator<Item = (u32, String)> {
+    let of_room = |(index, room): (u8, &RoomEntry)| {
+        RoomSurface::ALL.map(|surface| (room_surface_id(index, surface), format!("{surface:?} ({})", room.name)))
     };
-    RoomId::ALL.into_iter().flat_map(of_room)
+    (0..).zip(catalog.rooms().all()).flat_map(of_room)
 }
 
 #[cfg(test)]
@@ -209,7 +209,8 @@ mod tests {
     fn every_id_has_a_class_of_its_own() {
         let objects = (0..2000).map(|object| object_instance_id(ObjectId(object)));
         let bodies = (0..200).map(|body| body_instance_id(BodyId(body)));
-        let ids: Vec<u32> = objects.chain(bodies).chain(surfaces().map(|(id, _)| id)).collect();
+        let surfaces: Vec<u32> = surfaces(&Catalog::builtin()).map(|(id, _)| id).collect();
+        let ids: Vec<u32> = objects.chain(bodies).chain(surfaces).collect();
         let mut classes: Vec<u16> = ids.iter().map(|id| class_of(*id)).collect();
         classes.sort_unstable();
         classes.dedup();

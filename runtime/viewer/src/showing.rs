@@ -45,7 +45,7 @@ impl Showing {
     ) -> anyhow::Result<Self> {
         recording.log_always("mission", &TextDocument::from_markdown(mission(&plan, about)))?;
         Ok(Self {
-            office: Office::new(&recording, &plan.layout, Arc::clone(&meshes))?,
+            office: Office::new(&recording, &plan.layout, Arc::clone(&plan.catalog), Arc::clone(&meshes))?,
             pictures: Pictures::default(),
             talk: Talk::new(&recording)?,
             deeds: Deeds::new(&recording)?,

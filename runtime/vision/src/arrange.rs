@@ -35,7 +35,7 @@ pub(crate) struct Arrangement {
 impl Arrangement {
     /// Draws all of it.
     pub fn draw(catalog: &Catalog, layout: &Layout, chance: &mut Chance) -> Self {
-        let room = chance.pick(&layout.rooms).map_or(RoomId::BreakRoom, |room| room.id);
+        let room = chance.pick(&layout.rooms).map_or(RoomId::BREAK_ROOM, |room| room.id);
         let seed = chance.number();
         let mut arranger = Arranger { catalog, layout, room, chance };
         let mut objects = arranger.switched_off();

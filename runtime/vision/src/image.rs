@@ -83,8 +83,10 @@ pub(crate) fn annotate(world: &World, masks: &[Mask], min_pixels: u32) -> (Vec<A
 
 /// The state of a scene: the camera, the lamps, and every object of the room or in the picture.
 pub(crate) fn scene(world: &World, room: RoomId, camera: &Camera, masks: &[Mask]) -> Value {
-    let lights = RoomId::ALL.map(|room| (room.id().to_owned(), Value::from(world.room_lit(room))));
-    let lights: Map<String, Value> = lights.into_iter().collect();
+    let mut rooms: Vec<RoomId> = world.layout().rooms.iter().map(|room| room.id).collect();
+    rooms.sort();
+    let lights: Map<String, Value> =
+        rooms.into_iter().map(|room| (room.to_string(), world.room_lit(room).into())).collect();
     let is_seen = |id: u32| masks.binary_search_by_key(&id, |mask| mask.id).is_ok();
     let entry = |view: ObjectView<'_>| {
         let id = object_instance_id(view.id);

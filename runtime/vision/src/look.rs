@@ -66,9 +66,9 @@ mod tests {
         let one = look(&picture(size, waves), size);
         let other = look(&picture(size, |x, y| waves(x, y) + u8::from(x == y)), size);
         let mut looks = Looks::default();
-        looks.add("plan", RoomId::Lab1, one);
-        assert!(looks.has_near("plan", RoomId::Lab1, other, 4));
-        assert!(!looks.has_near("plan", RoomId::Lab2, other, 4) && !looks.has_near("other", RoomId::Lab1, other, 4));
-        assert!(!looks.has_near("plan", RoomId::Lab1, !one, 16));
+        looks.add("plan", RoomId::LAB1, one);
+        assert!(looks.has_near("plan", RoomId::LAB1, other, 4));
+        assert!(!looks.has_near("plan", RoomId::LAB2, other, 4) && !looks.has_near("other", RoomId::LAB1, other, 4));
+        assert!(!looks.has_near("plan", RoomId::LAB1, !one, 16));
     }
 }

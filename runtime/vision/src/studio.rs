@@ -3,7 +3,6 @@
 use std::{collections::BTreeMap, path::Path, sync::Arc};
 
 use cohabit_bus::message::Plane;
-use cohabit_cdf::RoomId;
 use cohabit_demonstrate::write_plane;
 use cohabit_engine::furnishings;
 use cohabit_render::{Camera, CpuRenderer, Instance, MeshLibrary, Planes, Renderer as _, Scene};
@@ -43,8 +42,8 @@ impl Studio {
         let scene = scenes.entry(layout.id.clone()).or_insert_with(|| Scene::new(Arc::clone(meshes), layout));
         let instances: Vec<Instance> = furnishings(world).collect();
         scene.set_instances(&instances);
-        for room in RoomId::ALL {
-            scene.set_lights(room, world.room_lit(room));
+        for room in &layout.rooms {
+            scene.set_lights(room.id, world.room_lit(room.id));
         }
         picture.resize([camera.width, camera.height]);
         let mut planes = Planes {

@@ -50,7 +50,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut walker = again()?;
     print("step, walking", steps(|tick| walk(&mut walker, tick)));
     let mut crowd = again()?;
-    for room in [RoomId::MainOffice, RoomId::BreakRoom] {
+    for room in [RoomId::MAIN_OFFICE, RoomId::BREAK_ROOM] {
         crowd.add_body(BodyKind::Robot, room)?;
     }
     let mut life = Life::new("crowd", crowd, 1);
@@ -88,7 +88,7 @@ fn machine() {
 
 /// Sends the first body to another room every ten seconds.
 fn walk(world: &mut World, tick: u32) {
-    let room = RoomId::ALL[(tick / 600) as usize % RoomId::ALL.len()];
+    let room = RoomId::BUILTIN[(tick / 600) as usize % RoomId::BUILTIN.len()];
     let action = Action::GoTo { target: GoToTarget::Room(room) };
     let walk = Input { command: tick.into(), body: BodyId(0), action };
     world.step(if tick.is_multiple_of(600) { std::slice::from_ref(&walk) } else { &[] });

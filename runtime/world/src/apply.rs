@@ -1,6 +1,6 @@
 //! The only place where a world changes because somebody did something: effects in, state and events out.
 
-use cohabit_cdf::{BodyId, Catalog, ClassId, ObjectId, Property, RoomId, StateFlag};
+use cohabit_cdf::{BodyId, Catalog, ClassId, ObjectId, Property, StateFlag};
 use glam::{Quat, Vec3};
 
 use crate::{
@@ -97,7 +97,8 @@ impl Changes<'_> {
             Spot::Anchor { parent, .. } => (self.state.at(parent).room, self.state.at(parent).pose),
             Spot::Floor(at) => {
                 let room = self.floor.room_at(at.truncate()).or_else(|| by.map(|by| self.state.at(by).room));
-                (room.unwrap_or(RoomId::Hallway), Pose::level(at, 0.0))
+                let Some(room) = room.or_else(|| self.floor.nearest_room(at.truncate())) else { return };
+                (room, Pose::level(at, 0.0))
             }
         };
         let mut object = Object::new(instance, class, room, pose);

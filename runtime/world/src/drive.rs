@@ -79,7 +79,7 @@ mod tests {
     const RUN: Controls = Controls { forward_m_s: 1.3, turn_rad_s: 0.0, pitch_rad_s: 0.0 };
 
     fn person(yaw_rad: f32) -> Body {
-        Body::new(BodyKind::Person, Vec2::ZERO, yaw_rad, RoomId::Lab1)
+        Body::new(BodyKind::Person, Vec2::ZERO, yaw_rad, RoomId::LAB1)
     }
 
     /// Ticks until it is done, with so many ticks of these controls.

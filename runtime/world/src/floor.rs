@@ -104,6 +104,15 @@ impl Floor {
             .map(|(id, _)| *id)
     }
 
+    /// The room whose floor is nearest to `point`; `None` on a floor without rooms.
+    pub fn nearest_room(&self, point: Vec2) -> Option<RoomId> {
+        let away_m = |[west, south, east, north]: [f32; 4]| {
+            point.distance(point.clamp(Vec2::new(west, south), Vec2::new(east, north)))
+        };
+        let nearest = self.rooms.iter().min_by(|(_, one), (_, other)| away_m(*one).total_cmp(&away_m(*other)));
+        nearest.map(|(id, _)| *id)
+    }
+
     /// The rectangles of a room, `[west, south, east, north]`, m.
     pub fn rects(&self, room: RoomId) -> impl Iterator<Item = [f32; 4]> + '_ {
         self.rooms.iter().filter(move |(id, _)| *id == room).map(|(_, rect)| *rect)

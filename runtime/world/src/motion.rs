@@ -145,7 +145,7 @@ mod tests {
     use cohabit_cdf::BodyKind;
 
     fn run(step: Step) -> (Body, usize) {
-        let (mut body, mut step) = (Body::new(BodyKind::Robot, Vec2::ZERO, 0.0, RoomId::Lab1), step);
+        let (mut body, mut step) = (Body::new(BodyKind::Robot, Vec2::ZERO, 0.0, RoomId::LAB1), step);
         for tick in 1..2000 {
             if advance(&mut body, &mut step, &|_| true) == Progress::Done {
                 return (body, tick);

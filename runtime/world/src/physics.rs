@@ -322,12 +322,12 @@ mod tests {
     fn world(things: &[&str]) -> World {
         let request = |thing: &&str| ObjectRequest {
             instance: (*thing).to_owned(),
-            room: Some(RoomId::Reception),
+            room: Some(RoomId::RECEPTION),
             ..ObjectRequest::default()
         };
         let mission = Mission {
             layout: "OfficeLayout1".to_owned(),
-            start_room: RoomId::Reception,
+            start_room: RoomId::RECEPTION,
             objects: things.iter().map(request).collect(),
             ..Mission::default()
         };
@@ -361,7 +361,7 @@ mod tests {
     #[test]
     fn what_is_dropped_from_a_hand_falls_to_the_floor_and_lies() {
         let mut world = world(&["Apple_1"]);
-        world.add_body(BodyKind::Person, RoomId::MainOffice).unwrap();
+        world.add_body(BodyKind::Person, RoomId::MAIN_OFFICE).unwrap();
         let mut events = Vec::new();
         let apple = world.find("Apple_1").unwrap();
         world.changes(&mut events).apply(vec![crate::effect::Effect::Hold(apple, BodyId(1))]);

@@ -78,11 +78,15 @@ impl World {
     /// Adds a body of a kind at a free viewpoint of a room.
     ///
     /// # Errors
-    /// [`BuildError::NoFreeSpot`] if the room has no place left to stand.
+    /// [`BuildError::NoSuchRoom`], and [`BuildError::NoFreeSpot`] if the room has no place left to stand.
     pub fn add_body(&mut self, kind: BodyKind, room: RoomId) -> Result<BodyId, BuildError> {
+        if self.layout.room(room).is_none() {
+            return Err(build::no_such_room(&self.catalog, &self.layout, &format!("the {}", kind.name()), room));
+        }
         self.refresh_navigation();
-        let (position, yaw_rad) = build::start(&self.facts(), &self.navigation, &self.layout, room)
-            .ok_or_else(|| BuildError::NoFreeSpot { object: "the robot".to_owned(), room })?;
+        let full =
+            || BuildError::NoFreeSpot { object: "the robot".to_owned(), room: room.name_in(&self.catalog).to_owned() };
+        let (position, yaw_rad) = build::start(&self.facts(), &self.navigation, &self.layout, room).ok_or_else(full)?;
         let id = BodyId(u32::try_from(self.state.bodies.len()).expect("invariant: few bodies"));
         self.state.bodies.push(Body::new(kind, position, yaw_rad, room));
         self.is_judged = false;

@@ -35,10 +35,10 @@ fn two_meet_in_a_corridor_and_both_arrive() {
     for width_m in [2.4, 1.4, 1.3, 1.0] {
         for first in [0, 1] {
             for kind in [BodyKind::Robot, BodyKind::Person] {
-                let mut play = Play::new(floor(&corridor(width_m), "", &[], RoomId::Reception));
-                play.join(kind, RoomId::Warehouse);
-                let there = (0, view(RoomId::Warehouse, 1));
-                let back = (1, view(RoomId::Reception, 1));
+                let mut play = Play::new(floor(&corridor(width_m), "", &[], RoomId::RECEPTION));
+                play.join(kind, RoomId::WAREHOUSE);
+                let there = (0, view(RoomId::WAREHOUSE, 1));
+                let back = (1, view(RoomId::RECEPTION, 1));
                 let orders = if first == 0 { [there, back] } else { [back, there] };
                 let outcomes = play.run_watched(&orders, keep_apart);
                 for outcome in outcomes {
@@ -52,11 +52,11 @@ fn two_meet_in_a_corridor_and_both_arrive() {
 
 #[test]
 fn two_that_pass_do_not_stop_where_there_is_room() {
-    let mut alone = Play::new(floor(&corridor(2.4), "", &[], RoomId::Reception));
-    alone.must(0, view(RoomId::Warehouse, 1));
-    let mut play = Play::new(floor(&corridor(2.4), "", &[], RoomId::Reception));
-    play.join(BodyKind::Robot, RoomId::Warehouse);
-    play.run_watched(&[(0, view(RoomId::Warehouse, 1)), (1, view(RoomId::Reception, 1))], keep_apart);
+    let mut alone = Play::new(floor(&corridor(2.4), "", &[], RoomId::RECEPTION));
+    alone.must(0, view(RoomId::WAREHOUSE, 1));
+    let mut play = Play::new(floor(&corridor(2.4), "", &[], RoomId::RECEPTION));
+    play.join(BodyKind::Robot, RoomId::WAREHOUSE);
+    play.run_watched(&[(0, view(RoomId::WAREHOUSE, 1)), (1, view(RoomId::RECEPTION, 1))], keep_apart);
     let (alone, both) = (alone.world.tick(), play.world.tick());
     assert!(both < alone + 90, "{both} ticks with somebody coming, {alone} alone");
 }
@@ -64,10 +64,10 @@ fn two_that_pass_do_not_stop_where_there_is_room() {
 #[test]
 fn a_robot_goes_around_a_person_who_stands() {
     for width_m in [2.4, 1.8] {
-        let mut play = Play::new(floor(&corridor(width_m), "", &[], RoomId::Reception));
-        play.join(BodyKind::Person, RoomId::Hallway);
+        let mut play = Play::new(floor(&corridor(width_m), "", &[], RoomId::RECEPTION));
+        play.join(BodyKind::Person, RoomId::HALLWAY);
         let stood = play.body(1).position_m;
-        let outcomes = play.run_watched(&[(0, view(RoomId::Warehouse, 1))], keep_apart);
+        let outcomes = play.run_watched(&[(0, view(RoomId::WAREHOUSE, 1))], keep_apart);
         assert!(outcomes[0].status.is_success(), "{width_m}: {outcomes:?}");
         assert_eq!(play.body(1).position_m, stood);
     }
@@ -75,26 +75,26 @@ fn a_robot_goes_around_a_person_who_stands() {
 
 #[test]
 fn who_stands_in_the_way_is_named() {
-    let mut play = Play::new(floor(&corridor(1.0), "", &[], RoomId::Reception));
-    play.join(BodyKind::Person, RoomId::Hallway);
-    let outcomes = play.run_watched(&[(0, view(RoomId::Warehouse, 1))], keep_apart);
+    let mut play = Play::new(floor(&corridor(1.0), "", &[], RoomId::RECEPTION));
+    play.join(BodyKind::Person, RoomId::HALLWAY);
+    let outcomes = play.run_watched(&[(0, view(RoomId::WAREHOUSE, 1))], keep_apart);
     let named = (Status::TargetInaccessible, "the person is in my way");
     assert_eq!((outcomes[0].status, outcomes[0].detail.as_str()), named);
     // The same for a plain step forward.
     let outcomes = play.run_watched(&[(0, ahead(3.0))], keep_apart);
     assert_eq!((outcomes[0].status, outcomes[0].detail.as_str()), named);
     // Of several people it is said which, counted as people.
-    play.join(BodyKind::Person, RoomId::Reception);
+    play.join(BodyKind::Person, RoomId::RECEPTION);
     let outcomes = play.run_watched(&[(0, ahead(3.0))], keep_apart);
     assert_eq!(outcomes[0].detail, "person 1 is in my way");
 }
 
 #[test]
 fn a_robot_that_has_nothing_to_do_makes_way() {
-    let mut play = Play::new(floor(&corridor(1.0), "", &[], RoomId::Reception));
-    play.join(BodyKind::Robot, RoomId::Hallway);
+    let mut play = Play::new(floor(&corridor(1.0), "", &[], RoomId::RECEPTION));
+    play.join(BodyKind::Robot, RoomId::HALLWAY);
     let stood = play.body(1).position_m;
-    let outcomes = play.run_watched(&[(0, view(RoomId::Warehouse, 1))], keep_apart);
+    let outcomes = play.run_watched(&[(0, view(RoomId::WAREHOUSE, 1))], keep_apart);
     // Nobody asked it to, so nobody is told of it.
     assert_eq!(outcomes.len(), 1, "{outcomes:?}");
     assert!(outcomes[0].status.is_success(), "{outcomes:?}");
@@ -103,21 +103,21 @@ fn a_robot_that_has_nothing_to_do_makes_way() {
 
 #[test]
 fn who_walks_ahead_is_followed() {
-    let mut play = Play::new(floor(&corridor(1.0), "", &[], RoomId::Reception));
-    play.join(BodyKind::Person, RoomId::Hallway);
-    let outcomes = play.run_watched(&[(0, view(RoomId::Warehouse, 1)), (1, view(RoomId::Warehouse, 2))], keep_apart);
+    let mut play = Play::new(floor(&corridor(1.0), "", &[], RoomId::RECEPTION));
+    play.join(BodyKind::Person, RoomId::HALLWAY);
+    let outcomes = play.run_watched(&[(0, view(RoomId::WAREHOUSE, 1)), (1, view(RoomId::WAREHOUSE, 2))], keep_apart);
     assert!(outcomes.iter().all(|outcome| outcome.status.is_success()), "{outcomes:?}");
 }
 
 #[test]
 fn six_cross_one_floor() {
-    let mut play = Play::new(floor(TWO_ROOMS, "", &[], RoomId::Reception));
+    let mut play = Play::new(floor(TWO_ROOMS, "", &[], RoomId::RECEPTION));
     for (kind, room) in [
-        (BodyKind::Person, RoomId::Reception),
-        (BodyKind::Robot, RoomId::Reception),
-        (BodyKind::Robot, RoomId::Hallway),
-        (BodyKind::Person, RoomId::Hallway),
-        (BodyKind::Robot, RoomId::Hallway),
+        (BodyKind::Person, RoomId::RECEPTION),
+        (BodyKind::Robot, RoomId::RECEPTION),
+        (BodyKind::Robot, RoomId::HALLWAY),
+        (BodyKind::Person, RoomId::HALLWAY),
+        (BodyKind::Robot, RoomId::HALLWAY),
     ] {
         play.join(kind, room);
     }
@@ -148,8 +148,8 @@ fn each_has_its_own_figure_hand_and_outcomes() {
   { instance = "Apple_1", room = "Reception", on = "Table_Metal_01_1", anchor = true },
   { instance = "Apple_2", room = "Reception", on = "Table_Metal_01_1", anchor = true },
 "#;
-    let mut play = Play::new(floor(TWO_ROOMS, apples, &[], RoomId::Reception));
-    play.join(BodyKind::Person, RoomId::Reception);
+    let mut play = Play::new(floor(TWO_ROOMS, apples, &[], RoomId::RECEPTION));
+    play.join(BodyKind::Person, RoomId::RECEPTION);
     assert!(play.body(1).eye.z > play.body(0).eye.z + 0.2 && play.body(1).height_m > play.body(0).height_m);
     let fetch: Vec<(u32, Action)> = [(0, "Apple_1"), (1, "Apple_2")]
         .map(|(body, apple)| (body, Action::GoTo { target: GoToTarget::Object(play.id(apple)) }))
@@ -168,49 +168,49 @@ fn each_has_its_own_figure_hand_and_outcomes() {
 
 #[test]
 fn a_closed_door_stops_who_just_walks_on_and_opens_for_who_goes_through() {
-    let mut play = Play::new(floor(TWO_ROOMS, "", &["Door_01_1 -Opened"], RoomId::Reception));
-    play.must(0, view(RoomId::Reception, 3));
+    let mut play = Play::new(floor(TWO_ROOMS, "", &["Door_01_1 -Opened"], RoomId::RECEPTION));
+    play.must(0, view(RoomId::RECEPTION, 3));
     let detail = play.refused(0, ahead(1.5), Status::TargetInaccessible);
     assert!(detail.contains("door"), "{detail}");
     assert!(play.body(0).position_m.y < 4.75, "{}", play.body(0).position_m);
-    play.must(0, view(RoomId::Hallway, 1));
+    play.must(0, view(RoomId::HALLWAY, 1));
     assert!(play.world.object(play.id("Door_01_1")).unwrap().opened > 0.9);
 }
 
 #[test]
 fn a_locked_door_is_no_way() {
-    let mut play = Play::new(floor(TWO_ROOMS, "", &["Door_01_1 -Opened +Locked"], RoomId::Reception));
-    let detail = play.refused(0, view(RoomId::Hallway, 1), Status::UnsupportedNavigation);
+    let mut play = Play::new(floor(TWO_ROOMS, "", &["Door_01_1 -Opened +Locked"], RoomId::RECEPTION));
+    let detail = play.refused(0, view(RoomId::HALLWAY, 1), Status::UnsupportedNavigation);
     assert!(detail.contains("locked"), "{detail}");
 }
 
 #[test]
 fn a_door_stops_at_who_stands_in_its_swing() {
     // One stands in the swing, another one asks for the door.
-    let mut play = Play::new(floor(TWO_ROOMS, "", &["Door_01_1 -Opened"], RoomId::Reception));
-    play.join(BodyKind::Person, RoomId::Hallway);
-    play.must(1, view(RoomId::Hallway, 3));
-    play.must(0, view(RoomId::Reception, 3));
+    let mut play = Play::new(floor(TWO_ROOMS, "", &["Door_01_1 -Opened"], RoomId::RECEPTION));
+    play.join(BodyKind::Person, RoomId::HALLWAY);
+    play.must(1, view(RoomId::HALLWAY, 3));
+    play.must(0, view(RoomId::RECEPTION, 3));
     let door = play.id("Door_01_1");
     play.must(0, Action::Interact { verb: Verb::Open, object: door });
     play.wait(120);
     let opened = play.world.object(door).unwrap().opened;
     assert!(opened > 0.0 && opened < 0.9, "the leaf went through the person: {opened}");
-    play.must(1, view(RoomId::Hallway, 2));
+    play.must(1, view(RoomId::HALLWAY, 2));
     play.wait(60);
     assert!(play.world.object(door).unwrap().opened > 0.99, "the leaf goes on once the person is gone");
 }
 
 #[test]
 fn who_stands_in_the_swing_steps_out_of_it_to_go_through() {
-    let mut play = Play::new(floor(TWO_ROOMS, "", &["Door_01_1 -Opened"], RoomId::Hallway));
-    play.must(0, view(RoomId::Hallway, 3));
-    play.must(0, view(RoomId::Reception, 1));
+    let mut play = Play::new(floor(TWO_ROOMS, "", &["Door_01_1 -Opened"], RoomId::HALLWAY));
+    play.must(0, view(RoomId::HALLWAY, 3));
+    play.must(0, view(RoomId::RECEPTION, 1));
 }
 
 #[test]
 fn an_open_door_leaf_is_walked_around() {
-    let mut play = Play::new(floor(TWO_ROOMS, "", &["Door_01_1 +Opened"], RoomId::Hallway));
+    let mut play = Play::new(floor(TWO_ROOMS, "", &["Door_01_1 +Opened"], RoomId::HALLWAY));
     // The leaf stands along x = 3.5 from y = 5 to y = 6.
     for _ in 0..2 {
         let west = Action::GoTo { target: GoToTarget::Point([2.8, 5.6]) };
@@ -231,12 +231,12 @@ fn an_open_door_leaf_is_walked_around() {
 #[test]
 fn meetings_are_the_same_every_time_and_from_a_snapshot() {
     let build = || {
-        let mut play = Play::new(floor(&corridor(1.3), "", &[], RoomId::Reception));
-        play.join(BodyKind::Person, RoomId::Warehouse);
+        let mut play = Play::new(floor(&corridor(1.3), "", &[], RoomId::RECEPTION));
+        play.join(BodyKind::Person, RoomId::WAREHOUSE);
         play
     };
     let (mut one, mut two, mut three) = (build(), build(), build());
-    let orders = [(0, view(RoomId::Warehouse, 1)), (1, view(RoomId::Reception, 1))];
+    let orders = [(0, view(RoomId::WAREHOUSE, 1)), (1, view(RoomId::RECEPTION, 1))];
     one.tell_all(&orders);
     two.tell_all(&orders);
     for tick in 0..900 {

@@ -155,7 +155,7 @@ fn other_bytes_are_refused() {
     let middle = damaged.len() / 2;
     damaged[middle] ^= 1;
     let catalog = Arc::new(Catalog::builtin());
-    let other = build(&catalog, plain_mission(RoomId::Lab1), 1).snapshot();
+    let other = build(&catalog, plain_mission(RoomId::LAB1), 1).snapshot();
     assert_eq!(world.restore(b"nothing"), Err(SnapshotError::NotASnapshot { bytes: 7 }));
     assert_eq!(world.restore(&damaged), Err(SnapshotError::Damaged));
     assert_eq!(world.restore(&snapshot[..100]), Err(SnapshotError::Damaged));
@@ -167,7 +167,7 @@ fn other_bytes_are_refused() {
 #[test]
 fn a_new_command_interrupts_the_old_one() {
     let mut world = cereal();
-    let walk = Input { command: 1, body: BodyId(0), action: Action::GoTo { target: GoToTarget::Room(RoomId::Lab2) } };
+    let walk = Input { command: 1, body: BodyId(0), action: Action::GoTo { target: GoToTarget::Room(RoomId::LAB2) } };
     assert!(world.step(&[walk]).outcomes.is_empty());
     let turn = Input { command: 2, body: BodyId(0), action: Action::Rotate { yaw_rad: 0.5 } };
     let outcomes = world.step(&[turn]).outcomes;

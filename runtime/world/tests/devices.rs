@@ -38,7 +38,7 @@ fn switches_flip() {
         (&["V_Monitor_Portal_10000 -Toggled"], "V_Monitor_Portal_10000"),
         (&["FuseBox_01_1 +Opened"], "FuseBox_01_Lever_10000"),
     ] {
-        let before = on(&player(RoomId::BreakRoom, wishes), device);
+        let before = on(&player(RoomId::BREAK_ROOM, wishes), device);
         let mut player = press(wishes, device, OK);
         assert_eq!(on(&player, device), !before, "{device}");
         player.must(&["wait 130"]);
@@ -114,7 +114,7 @@ fn some_devices_are_worked_by_others() {
     ] {
         press(&[], device, NEVER);
     }
-    let mut player = player(RoomId::Lab1, &["Laser_1"]);
+    let mut player = player(RoomId::LAB1, &["Laser_1"]);
     player.must(&["goto Laser_1"]);
     assert!(player.run("toggle Laser_1").detail.contains("red computer"));
 }
@@ -277,7 +277,7 @@ fn disks_infect_and_clean_every_kind_of_computer() {
         assert_eq!(inside(&player, "Floppy_Virus_1").as_deref(), Some(computer));
         assert!(!is(&player, computer, StateFlag::Infected), "{computer}");
     }
-    let player = player(RoomId::Lab1, &["V_Monitor_Laser_10000", "Floppy_Virus_1 in V_Monitor_Laser_10000"]);
+    let player = player(RoomId::LAB1, &["V_Monitor_Laser_10000", "Floppy_Virus_1 in V_Monitor_Laser_10000"]);
     assert!(is(&player, "V_Monitor_Laser_10000", StateFlag::Infected), "a disk that starts in it was read");
 }
 
@@ -449,7 +449,7 @@ fn the_vending_machine_gives_what_is_in_the_slot() {
     let lines: Vec<String> = goods.iter().map(|item| format!("{item} in VendingMachine_01")).collect();
     let wishes: Vec<&str> =
         ["VendingMachine_01 emptied +Opened"].into_iter().chain(lines.iter().map(String::as_str)).collect();
-    let mut player = player(RoomId::BreakRoom, &wishes);
+    let mut player = player(RoomId::BREAK_ROOM, &wishes);
     player.must(&["goto VendingMachine_01"]);
     let behind = player.run("pickup Apple_1");
     assert_eq!(behind.status, Status::TargetInaccessible, "{}", behind.detail);
@@ -472,7 +472,7 @@ fn the_vending_machine_gives_what_is_in_the_slot() {
 
 #[test]
 fn the_gravity_pad_lifts_what_stands_in_its_field() {
-    let mut player = player(RoomId::Lab2, &["Apple_1 in GravityPad_1"]);
+    let mut player = player(RoomId::LAB2, &["Apple_1 in GravityPad_1"]);
     let height = |player: &Player| player.world.object(player.id("Apple_1")).unwrap().position_m.z;
     let low = height(&player);
     player.must(&["goto V_Monitor_Gravity_10000", "toggle V_Monitor_Gravity_10000", "wait 90"]);
@@ -485,12 +485,12 @@ fn the_gravity_pad_lifts_what_stands_in_its_field() {
 fn the_security_button_works_all_doors_of_the_reception() {
     let doors = |player: &Player| -> Vec<bool> {
         let layout = player.world.layout();
-        let of_reception = layout.openings.iter().filter(|opening| opening.between.contains(&RoomId::Reception));
+        let of_reception = layout.openings.iter().filter(|opening| opening.between.contains(&RoomId::RECEPTION));
         let doors: Vec<&str> = of_reception.filter_map(|opening| opening.door.as_deref()).collect();
         assert_eq!(doors.len(), 2);
         doors.into_iter().map(|door| is(player, door, StateFlag::Opened)).collect()
     };
-    let mut player = player(RoomId::Reception, &["Security_Button_10000"]);
+    let mut player = player(RoomId::RECEPTION, &["Security_Button_10000"]);
     let before = doors(&player);
     player.must(&["goto Security_Button_10000", "toggle Security_Button_10000"]);
     let after = doors(&player);
@@ -502,7 +502,7 @@ fn the_security_button_works_all_doors_of_the_reception() {
 #[test]
 fn a_lever_cuts_and_feeds_its_circuit_and_clears_what_is_wrong() {
     let wishes = ["FuseBox_01_1 +Opened", "Broken_Cord_01_1 +Toggled", "V_Monitor_Laser_10000 +Overloaded"];
-    let mut player = player(RoomId::Warehouse, &wishes);
+    let mut player = player(RoomId::WAREHOUSE, &wishes);
     let circuit = |instance: &str, player: &Player| {
         let room = player.world.object(player.id(instance)).unwrap().room;
         player.world.layout().rooms.iter().find(|plan| plan.id == room).unwrap().circuit
@@ -522,25 +522,25 @@ fn a_lever_cuts_and_feeds_its_circuit_and_clears_what_is_wrong() {
     assert!(!is(&player, "Broken_Cord_01_1", StateFlag::Sparking));
     assert!(!is(&player, "V_Monitor_Laser_10000", StateFlag::Powered));
     assert!(is(&player, "V_Monitor_Laser_10000", StateFlag::Overloaded));
-    assert!(!on(&player, fuse_box) && !player.world.room_lit(RoomId::Lab1));
+    assert!(!on(&player, fuse_box) && !player.world.room_lit(RoomId::LAB1));
     player.must(&[&format!("toggle {lever}")]);
     assert!(!is(&player, "Broken_Cord_01_1", StateFlag::Sparking), "it stays off until it is switched on");
     assert!(is(&player, "V_Monitor_Laser_10000", StateFlag::Powered));
     assert!(!is(&player, "V_Monitor_Laser_10000", StateFlag::Overloaded));
-    assert!(on(&player, fuse_box) && player.world.room_lit(RoomId::Lab1));
+    assert!(on(&player, fuse_box) && player.world.room_lit(RoomId::LAB1));
 }
 
 #[test]
 fn machines_stop_when_the_power_goes() {
     let mut player = player(
-        RoomId::Lab1,
+        RoomId::LAB1,
         &["RoboticArm_01_1 +Toggled", "FuseBox_01_1 +Opened", "FuseBox_01_2 +Opened", "FuseBox_02_1 +Opened"],
     );
     for lever in ["FuseBox_01_Lever_10000", "FuseBox_01_Lever_10001", "FuseBox_01_Lever_10002"] {
         player.must(&[&format!("goto {lever}"), &format!("toggle {lever}")]);
     }
     assert!(!on(&player, "RoboticArm_01_1"));
-    assert!(RoomId::ALL.iter().all(|room| !player.world.room_lit(*room)));
+    assert!(RoomId::BUILTIN.iter().all(|room| !player.world.room_lit(*room)));
     let switches = player.world.objects().filter(|view| view.instance.starts_with("LightSwitch_01"));
     assert!(switches.into_iter().all(|view| view.flags.has(StateFlag::Toggled)), "switches stay as they are");
 }
@@ -548,7 +548,7 @@ fn machines_stop_when_the_power_goes() {
 #[test]
 fn every_device_of_the_catalogue_answers_a_press() {
     // Whatever can be toggled comes to a status that the reference gives for a press, and says something.
-    let world = player(RoomId::BreakRoom, &[]).world;
+    let world = player(RoomId::BREAK_ROOM, &[]).world;
     let catalog = world.catalog().clone();
     let devices: Vec<String> = world
         .objects()
@@ -557,7 +557,7 @@ fn every_device_of_the_catalogue_answers_a_press() {
         .collect();
     assert!(devices.len() > 30, "{devices:?}");
     for device in devices {
-        let mut player = player(RoomId::BreakRoom, &[]);
+        let mut player = player(RoomId::BREAK_ROOM, &[]);
         player.must(&[&format!("goto {device}")]);
         let outcome = player.run(&format!("toggle {device}"));
         let known = [OK, FAILS, NEVER, FULL, CLOSED, Status::TargetInaccessible];

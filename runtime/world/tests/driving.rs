@@ -25,9 +25,9 @@ fn drive(forward_m_s: f32, turn_rad_s: f32) -> Action {
 
 /// A person at a viewpoint of the reception, heading as wanted, with a robot in the hallway.
 fn person(number: u8, yaw_deg: f32, wishes: &[&str]) -> Play {
-    let mut play = Play::new(floor(TWO_ROOMS, "", wishes, RoomId::Hallway));
-    play.join(BodyKind::Person, RoomId::Reception);
-    let target = cohabit_world::GoToTarget::Viewpoint(RoomId::Reception, number);
+    let mut play = Play::new(floor(TWO_ROOMS, "", wishes, RoomId::HALLWAY));
+    play.join(BodyKind::Person, RoomId::RECEPTION);
+    let target = cohabit_world::GoToTarget::Viewpoint(RoomId::RECEPTION, number);
     play.must(1, Action::GoTo { target });
     let turn = yaw_deg.to_radians() - play.body(1).yaw_rad;
     play.must(1, Action::Rotate { yaw_rad: turn });
@@ -113,7 +113,7 @@ fn a_hand_ends_the_driving_and_driving_ends_a_walk() {
     tell(&mut play, 900, drive(1.0, 0.0));
     let ended = tell(&mut play, 901, Action::Interact { verb: Verb::Examine, object: apple });
     assert_eq!((ended[0].command, ended[0].status), (900, Status::Interrupted));
-    tell(&mut play, 902, Action::GoTo { target: cohabit_world::GoToTarget::Room(RoomId::Hallway) });
+    tell(&mut play, 902, Action::GoTo { target: cohabit_world::GoToTarget::Room(RoomId::HALLWAY) });
     let ended = tell(&mut play, 903, drive(1.0, 0.0));
     assert_eq!((ended[0].command, ended[0].status), (902, Status::Interrupted));
     // Nonsense stops what was driven.
@@ -133,7 +133,7 @@ struct Floor {
 impl Floor {
     fn new(catalog: &Arc<Catalog>, layout: &str) -> Self {
         let mut world = kitchen(catalog, layout);
-        for room in [RoomId::MainOffice, RoomId::BreakRoom] {
+        for room in [RoomId::MAIN_OFFICE, RoomId::BREAK_ROOM] {
             world.add_body(BodyKind::Person, room).unwrap();
         }
         let (walls, start) = (Walls::new(world.layout()), world.snapshot());

@@ -45,7 +45,7 @@ fn player(goals: Vec<Goal>, conditions: Vec<StateCondition>) -> Player {
             Message { when: MessageTime::Beginning, text: "hello".to_owned() },
             Message { when: MessageTime::GoalMet(0), text: "well done".to_owned() },
         ],
-        ..plain_mission(RoomId::BreakRoom)
+        ..plain_mission(RoomId::BREAK_ROOM)
     };
     Player::new(build(&Arc::new(Catalog::builtin()), mission, 2))
 }

@@ -45,12 +45,12 @@ fn with_condition(wishes: &[&str], expression: Expression) -> Mission {
     Mission {
         conditions: vec![condition],
         goals: vec![goal(0, vec![state], Relation::And)],
-        ..mission(RoomId::BreakRoom, wishes)
+        ..mission(RoomId::BREAK_ROOM, wishes)
     }
 }
 
 fn with_goal(wishes: &[&str], states: Vec<GoalState>, relation: Relation) -> Mission {
-    Mission { goals: vec![goal(0, states, relation)], ..mission(RoomId::BreakRoom, wishes) }
+    Mission { goals: vec![goal(0, states, relation)], ..mission(RoomId::BREAK_ROOM, wishes) }
 }
 
 fn met(player: &Player) -> bool {
@@ -82,7 +82,7 @@ fn objects_start_as_they_are_asked_for() {
         "ForkLift_1 +Toggled",
         "TAMPrototypeHead_01_1 +Neutral +Happy",
     ];
-    let player = player(RoomId::BreakRoom, &wishes);
+    let player = player(RoomId::BREAK_ROOM, &wishes);
     for (instance, flag) in [
         ("Bowl_01_1", StateFlag::Broken),
         ("CoffeeMug_Boss_1", StateFlag::Hot),
@@ -105,7 +105,7 @@ fn objects_start_as_they_are_asked_for() {
 #[test]
 fn some_objects_stay_away() {
     let count = |wishes: &[&str], class: &str| {
-        let player = player(RoomId::BreakRoom, wishes);
+        let player = player(RoomId::BREAK_ROOM, wishes);
         let found = player.world.catalog().find(class).unwrap();
         player.world.objects().filter(|view| view.class == found && player.world.exists(view.id)).count()
     };
@@ -113,8 +113,8 @@ fn some_objects_stay_away() {
     assert_eq!(count(&["CoffeeMug_Boss_1 blacklisted"], "CoffeeMug_Boss"), 0);
     assert_eq!(count(&["CoffeeMug_Boss_1 unique in TableRound_02_1"], "CoffeeMug_Boss"), 1);
     assert_eq!(count(&["CoffeeMug_Boss_1 removed", "CoffeeMug_Boss_2 unique in TableRound_02_1"], "CoffeeMug_Boss"), 1);
-    let emptied = player(RoomId::BreakRoom, &["FridgeLower_02_1 emptied"]);
-    let empty = player(RoomId::BreakRoom, &["FridgeLower_02_1 empty"]);
+    let emptied = player(RoomId::BREAK_ROOM, &["FridgeLower_02_1 emptied"]);
+    let empty = player(RoomId::BREAK_ROOM, &["FridgeLower_02_1 empty"]);
     for player in [emptied, empty] {
         assert!(player.world.objects().all(|view| view.parent != Some(player.id("FridgeLower_02_1"))));
     }
@@ -124,7 +124,7 @@ fn some_objects_stay_away() {
 fn chance_follows_the_missions_own_seed() {
     let place = |seed: Option<u64>, session: u64| {
         let mission =
-            Mission { seed, ..mission(RoomId::BreakRoom, &["Apple_1", "Bowl_01_1", "Hammer_1", "Donut_01_1"]) };
+            Mission { seed, ..mission(RoomId::BREAK_ROOM, &["Apple_1", "Bowl_01_1", "Hammer_1", "Donut_01_1"]) };
         let world = build(&Arc::new(Catalog::builtin()), mission, session);
         ["Apple_1", "Bowl_01_1", "Hammer_1", "Donut_01_1"].map(|name| {
             let view = world.object(world.find(name).unwrap()).unwrap();
@@ -282,7 +282,7 @@ fn a_state_that_lasts_a_moment_counts() {
             Goal { can_reset: false, ..goal(0, vec![on.clone()], Relation::And) },
             goal(1, vec![on], Relation::And),
         ],
-        ..mission(RoomId::BreakRoom, &["Microwave_01_1"])
+        ..mission(RoomId::BREAK_ROOM, &["Microwave_01_1"])
     };
     let mut player = play(lasting);
     player.must(&["goto Microwave_01_1", "toggle Microwave_01_1"]);
@@ -304,8 +304,8 @@ fn messages_and_camera_movements_come_when_they_are_due() {
     ];
     let views = [
         CameraView::Object(pattern("Apple_1")),
-        CameraView::Room(RoomId::Lab1),
-        CameraView::Viewpoint(RoomId::Lab2, 3),
+        CameraView::Room(RoomId::LAB1),
+        CameraView::Viewpoint(RoomId::LAB2, 3),
         CameraView::Point([1.0, 2.0, 0.5]),
     ];
     let movements = times.iter().zip(views);
@@ -323,7 +323,7 @@ fn messages_and_camera_movements_come_when_they_are_due() {
             can_reset: false,
             ..goal(0, vec![flag("Apple_1", StateFlag::PickedUp, true)], Relation::And)
         }],
-        ..mission(RoomId::BreakRoom, &[TABLE, "Apple_1 in TableRound_02_1"])
+        ..mission(RoomId::BREAK_ROOM, &[TABLE, "Apple_1 in TableRound_02_1"])
     };
     let mut player = play(told);
     player.must(&["wait 1"]);
@@ -338,7 +338,7 @@ fn messages_and_camera_movements_come_when_they_are_due() {
         .filter_map(|event| if let Event::CameraMovement { target, .. } = event { Some(*target) } else { None })
         .collect();
     let point = CameraTarget::Point([1.0, 2.0, 0.5]);
-    let (room, view) = (CameraTarget::Room(RoomId::Lab1), CameraTarget::Viewpoint(RoomId::Lab2, 3));
+    let (room, view) = (CameraTarget::Room(RoomId::LAB1), CameraTarget::Viewpoint(RoomId::LAB2, 3));
     assert_eq!(shown, [CameraTarget::Object(player.id("Apple_1")), point, room, view, point]);
 }
 
@@ -347,7 +347,7 @@ fn a_note_unlocks_a_hidden_goal() {
     let note = NoteRequest {
         instance: "StickyNote_3".to_owned(),
         text: "Hungry?".to_owned(),
-        room: RoomId::BreakRoom,
+        room: RoomId::BREAK_ROOM,
         place: 1,
     };
     let hidden = Goal {
@@ -358,7 +358,7 @@ fn a_note_unlocks_a_hidden_goal() {
     let secret = Mission {
         notes: vec![note],
         goals: vec![hidden],
-        ..mission(RoomId::BreakRoom, &["Apple_1 in TableRound_02_1"])
+        ..mission(RoomId::BREAK_ROOM, &["Apple_1 in TableRound_02_1"])
     };
     let mut player = play(secret);
     player.must(&["wait 2"]);
@@ -380,7 +380,7 @@ fn anything_done_to_its_key_unlocks_a_hidden_goal() {
             unlocked_by: Some("FridgeLower_02_1".to_owned()),
             ..goal(0, vec![flag("Bowl_01_1", StateFlag::PickedUp, true)], Relation::And)
         };
-        let mut player = play(Mission { goals: vec![hidden], ..mission(RoomId::BreakRoom, &["Bowl_01_1"]) });
+        let mut player = play(Mission { goals: vec![hidden], ..mission(RoomId::BREAK_ROOM, &["Bowl_01_1"]) });
         player.must(&["wait 2", lines[0]]);
         assert!(player.world.goals()[0].hidden);
         player.must(&[lines[1]]);
@@ -391,7 +391,7 @@ fn anything_done_to_its_key_unlocks_a_hidden_goal() {
 #[test]
 fn circuits_are_fed_and_cut_as_asked() {
     let powered =
-        |wishes: &[&str], instance: &str| is(&player(RoomId::BreakRoom, wishes), instance, StateFlag::Powered);
+        |wishes: &[&str], instance: &str| is(&player(RoomId::BREAK_ROOM, wishes), instance, StateFlag::Powered);
     assert!(powered(&[], "Microwave_01_10000"));
     assert!(powered(&["Microwave_01_1 circuit 9"], "Microwave_01_1"), "a circuit that nobody switches is fed");
     assert!(!powered(&["Microwave_01_1 circuit -1"], "Microwave_01_1"));
@@ -400,7 +400,7 @@ fn circuits_are_fed_and_cut_as_asked() {
     assert!(powered(&["Microwave_01_1 circuit 9", "FuseBox_01_1 feeds 9 power true"], "Microwave_01_1"));
     // The lever of that box feeds that circuit.
     let wishes = ["Microwave_01_1 circuit 9", "FuseBox_01_1 feeds 9 power false +Opened"];
-    let mut player = player(RoomId::Warehouse, &wishes);
+    let mut player = player(RoomId::WAREHOUSE, &wishes);
     assert!(
         !is(&player, "FuseBox_01_1", StateFlag::Toggled) && !is(&player, "FuseBox_01_Lever_10000", StateFlag::Toggled)
     );
@@ -422,13 +422,13 @@ fn what_is_live_kills_who_touches_it_and_who_steps_on_it() {
 #[test]
 fn robots_start_as_asked() {
     let robot = RobotRequest {
-        room: Some(RoomId::Lab2),
+        room: Some(RoomId::LAB2),
         yaw_deg: Some(90.0),
         holds: Some("Apple_1".to_owned()),
         flags: vec![(StateFlag::Scared, true)],
         ..RobotRequest::default()
     };
-    let second = RobotRequest { room: Some(RoomId::Lab1), viewpoint: Some(2), ..RobotRequest::default() };
+    let second = RobotRequest { room: Some(RoomId::LAB1), viewpoint: Some(2), ..RobotRequest::default() };
     let happy = vec![flag("TAM_1", StateFlag::Scared, true)];
     let staffed = Mission {
         robots: vec![robot, second],
@@ -437,7 +437,7 @@ fn robots_start_as_asked() {
     let mut player = play(staffed);
     let bodies: Vec<_> = player.world.bodies().collect();
     assert_eq!(bodies.len(), 2);
-    assert_eq!((bodies[0].room, bodies[1].room), (RoomId::Lab2, RoomId::Lab1));
+    assert_eq!((bodies[0].room, bodies[1].room), (RoomId::LAB2, RoomId::LAB1));
     assert!((bodies[0].yaw_rad - std::f32::consts::FRAC_PI_2).abs() < 1e-4);
     assert_eq!(bodies[0].held, Some(player.id("Apple_1")));
     assert!(bodies[0].flags.has(StateFlag::Scared));
@@ -447,9 +447,9 @@ fn robots_start_as_asked() {
 
 #[test]
 fn a_room_takes_more_bodies_than_it_has_viewpoints() {
-    let mut world = player(RoomId::MainOffice, &[]).world;
+    let mut world = player(RoomId::MAIN_OFFICE, &[]).world;
     for _ in 0..19 {
-        world.add_body(BodyKind::Robot, RoomId::MainOffice).unwrap();
+        world.add_body(BodyKind::Robot, RoomId::MAIN_OFFICE).unwrap();
     }
     let places: Vec<_> = world.bodies().map(|body| body.position_m).collect();
     let apart = |index: usize| places[..index].iter().all(|other| other.distance(places[index]) > 0.5);
@@ -461,7 +461,7 @@ fn portals(wishes: &[&str], open: bool) -> Mission {
     let portal = |name: &str, era, open| Portal { name: name.to_owned(), era, open };
     Mission {
         portals: vec![portal("past", Era::Past, open), portal("future", Era::Future, false)],
-        ..mission(RoomId::Lab2, wishes)
+        ..mission(RoomId::LAB2, wishes)
     }
 }
 
@@ -571,7 +571,7 @@ fn a_dinosaur_in_the_office_eats_what_lies_before_it() {
 #[test]
 fn an_object_with_a_condition_appears_once_that_holds() {
     let mut surprise =
-        mission(RoomId::BreakRoom, &[TABLE, "Apple_1 in TableRound_02_1", "Donut_01_1 in TableRound_02_1"]);
+        mission(RoomId::BREAK_ROOM, &[TABLE, "Apple_1 in TableRound_02_1", "Donut_01_1 in TableRound_02_1"]);
     surprise.objects[2].condition =
         Some(Occasion::States(vec![flag("Apple_1", StateFlag::PickedUp, true)], Relation::And));
     let mut player = play(surprise);
@@ -601,6 +601,6 @@ fn a_snapshot_keeps_all_of_it() {
 
 #[test]
 fn a_plain_mission_has_nothing_of_this() {
-    let player = Player::new(build(&Arc::new(Catalog::builtin()), plain_mission(RoomId::Lab1), 1));
+    let player = Player::new(build(&Arc::new(Catalog::builtin()), plain_mission(RoomId::LAB1), 1));
     assert!(player.world.goals().is_empty() && player.world.finished().is_none());
 }

@@ -47,7 +47,7 @@ const TABLES: &str = r#"
 
 /// With the apple in hand.
 fn with_apple() -> Play {
-    let mut play = Play::new(floor(TWO_ROOMS, TABLES, &[], RoomId::Reception));
+    let mut play = Play::new(floor(TWO_ROOMS, TABLES, &[], RoomId::RECEPTION));
     let apple = play.id("Apple_1");
     play.must(0, to(apple));
     play.must(0, Action::PickUp { object: apple });
@@ -95,7 +95,7 @@ fn what_is_thrown_flies_and_comes_to_rest_on_what_is_below() {
 fn who_dies_lets_go_and_what_was_held_falls_to_the_floor() {
     let cord = r#"{ instance = "CableFrayed_01_1", room = "Reception", at_m = [5.0, 4.0, 0.0] },"#;
     let placements = format!("{TABLES}{cord}");
-    let mut play = Play::new(floor(TWO_ROOMS, &placements, &[], RoomId::Reception));
+    let mut play = Play::new(floor(TWO_ROOMS, &placements, &[], RoomId::RECEPTION));
     let (apple, cord) = (play.id("Apple_1"), play.id("CableFrayed_01_1"));
     play.must(0, to(apple));
     play.must(0, Action::PickUp { object: apple });
@@ -152,7 +152,7 @@ fn what_is_held_follows_the_hand() {
 /// Something on the floor in the middle of the room, run into from the west.
 fn run_into(class: &str, distance_m: f32) -> (Play, Vec3, cohabit_world::Outcome) {
     let thing = format!(r#"{{ instance = "{class}_1", room = "Reception", at_m = [3.0, 2.5, 0.0] }},"#);
-    let mut play = Play::new(floor(TWO_ROOMS, &thing, &[], RoomId::Reception));
+    let mut play = Play::new(floor(TWO_ROOMS, &thing, &[], RoomId::RECEPTION));
     stand(&mut play, 1.5, 2.5, 0.0);
     let before = play.at(&format!("{class}_1"));
     let outcome = play.run(0, ahead(distance_m));
@@ -193,7 +193,7 @@ fn what_stands_on_a_pushed_thing_comes_along() {
   { instance = "TableRoundSmall_02_1", room = "Reception", at_m = [3.0, 2.5, 0.0] },
   { instance = "Apple_1", room = "Reception", on = "TableRoundSmall_02_1", anchor = true },
 "#;
-    let mut play = Play::new(floor(TWO_ROOMS, things, &[], RoomId::Reception));
+    let mut play = Play::new(floor(TWO_ROOMS, things, &[], RoomId::RECEPTION));
     stand(&mut play, 1.5, 2.5, 0.0);
     let (table, apple) = (play.at("TableRoundSmall_02_1"), play.at("Apple_1"));
     play.must(0, ahead(1.8));
@@ -209,7 +209,7 @@ fn what_stands_on_a_pushed_thing_comes_along() {
 #[test]
 fn a_push_beside_the_middle_turns_a_box() {
     let thing = r#"{ instance = "PackingBox_1", room = "Reception", at_m = [3.0, 2.7, 0.0] },"#;
-    let mut play = Play::new(floor(TWO_ROOMS, thing, &[], RoomId::Reception));
+    let mut play = Play::new(floor(TWO_ROOMS, thing, &[], RoomId::RECEPTION));
     stand(&mut play, 1.5, 2.5, 0.0);
     let before = play.world.object(play.id("PackingBox_1")).unwrap().rotation;
     play.must(0, ahead(1.6));
@@ -220,9 +220,9 @@ fn a_push_beside_the_middle_turns_a_box() {
 #[test]
 fn nobody_pushes_a_box_through_somebody() {
     let thing = r#"{ instance = "PackingBox_1", room = "Reception", at_m = [3.9, 2.5, 0.0] },"#;
-    let mut play = Play::new(floor(TWO_ROOMS, thing, &[], RoomId::Reception));
+    let mut play = Play::new(floor(TWO_ROOMS, thing, &[], RoomId::RECEPTION));
     // The person stands at the second viewpoint, behind the box.
-    play.join(BodyKind::Person, RoomId::Reception);
+    play.join(BodyKind::Person, RoomId::RECEPTION);
     stand(&mut play, 2.5, 2.5, 0.0);
     play.run(0, ahead(3.0));
     let (at, person) = (play.at("PackingBox_1"), play.body(1).position_m);
@@ -241,15 +241,15 @@ fn reach_and_obstruction_are_real() {
         ("Door_01_1 -Opened", (3.0, 4.6), Status::TargetInaccessible),
         ("Door_01_1 -Opened", (1.5, 1.0), Status::TargetOutOfRange),
     ] {
-        let mut play = Play::new(floor(TWO_ROOMS, things, &[door], RoomId::Reception));
+        let mut play = Play::new(floor(TWO_ROOMS, things, &[door], RoomId::RECEPTION));
         stand(&mut play, at.0, at.1, 1.5);
         play.refused(0, Action::PickUp { object: play.id("Apple_1") }, status);
     }
-    let mut play = Play::new(floor(TWO_ROOMS, things, &["Door_01_1 +Opened"], RoomId::Reception));
+    let mut play = Play::new(floor(TWO_ROOMS, things, &["Door_01_1 +Opened"], RoomId::RECEPTION));
     stand(&mut play, 3.0, 4.6, 1.5);
     play.must(0, Action::PickUp { object: play.id("Apple_1") });
     // Shut in, too far, and behind the open door of the fridge.
-    let mut play = Play::new(floor(TWO_ROOMS, things, &[], RoomId::Reception));
+    let mut play = Play::new(floor(TWO_ROOMS, things, &[], RoomId::RECEPTION));
     let (fridge, milk) = (play.id("FridgeLower_02_1"), play.id("MilkCarton_01_1"));
     play.must(0, to(fridge));
     play.refused(0, Action::PickUp { object: milk }, Status::ReceptacleIsClosed);
@@ -270,7 +270,7 @@ fn what_is_in_an_open_fridge_is_reached_though_its_door_fills_the_way() {
   { instance = "MilkCarton_01_1", room = "Reception", on = "FridgeLower_02_1", anchor = true },
   { instance = "Warehouse_Boxes_1", room = "Reception", at_m = [2.5, 4.3, 0.0] },
 "#;
-    let mut play = Play::new(floor(TWO_ROOMS, things, &[], RoomId::Reception));
+    let mut play = Play::new(floor(TWO_ROOMS, things, &[], RoomId::RECEPTION));
     let (fridge, milk) = (play.id("FridgeLower_02_1"), play.id("MilkCarton_01_1"));
     play.must(0, to(fridge));
     play.must(0, act(Verb::Open, fridge));
@@ -286,7 +286,7 @@ fn what_is_in_an_open_fridge_is_reached_though_its_door_fills_the_way() {
 #[test]
 fn an_open_drawer_is_walked_around_and_closes_against_nobody() {
     let things = r#"{ instance = "KitchenCounterDrawer_02_1", room = "Reception", at_m = [0.4, 2.5, 0.0] },"#;
-    let mut play = Play::new(floor(TWO_ROOMS, things, &[], RoomId::Reception));
+    let mut play = Play::new(floor(TWO_ROOMS, things, &[], RoomId::RECEPTION));
     let drawer = play.id("KitchenCounterDrawer_02_1");
     play.must(0, to(drawer));
     play.must(0, act(Verb::Open, drawer));
@@ -315,13 +315,13 @@ fn goes_on_the_same(mut one: Play, mut other: Play, orders: &[(u32, Action)], be
 fn a_push_and_a_throw_go_on_from_a_snapshot() {
     let thing = r#"{ instance = "PackingBox_1", room = "Reception", at_m = [3.0, 2.6, 0.0] },"#;
     let build = || {
-        let mut play = Play::new(floor(TWO_ROOMS, thing, &[], RoomId::Reception));
-        play.join(BodyKind::Person, RoomId::Reception);
+        let mut play = Play::new(floor(TWO_ROOMS, thing, &[], RoomId::RECEPTION));
+        play.join(BodyKind::Person, RoomId::RECEPTION);
         stand(&mut play, 1.5, 2.5, 0.0);
         play
     };
     for before in [20, 45, 70] {
-        let orders = [(0, ahead(2.0)), (1, view(RoomId::Hallway, 2))];
+        let orders = [(0, ahead(2.0)), (1, view(RoomId::HALLWAY, 2))];
         goes_on_the_same(build(), build(), &orders, before, 200);
     }
     let build = || {
@@ -342,7 +342,7 @@ fn plan(layout: &str) -> World {
         name: "plain".to_owned(),
         layout: layout.to_owned(),
         seed: Some(0),
-        start_room: RoomId::Reception,
+        start_room: RoomId::RECEPTION,
         ..Mission::default()
     };
     let layout = std::sync::Arc::new(Layout::builtin(layout).unwrap());

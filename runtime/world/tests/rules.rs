@@ -64,7 +64,7 @@ fn what_stands_on_what_is_carried_comes_along() {
     let player = check(&wishes, &["goto FoodPlate_01_1", "pickup FoodPlate_01_1", "room MainOffice"], OK);
     let apple = player.world.object(player.id("Apple_1")).unwrap();
     assert_eq!(apple.parent, Some(player.id("FoodPlate_01_1")));
-    assert_eq!(apple.room, RoomId::MainOffice);
+    assert_eq!(apple.room, RoomId::MAIN_OFFICE);
     assert!(apple.position_m.distance(player.world.body(BodyId(0)).unwrap().position_m) < 1.2);
 }
 
@@ -145,10 +145,10 @@ fn notes_are_read_and_things_scanned() {
     let mission = Mission {
         objects: vec![ObjectRequest {
             text: Some("Mind the step.".into()),
-            room: Some(RoomId::Lab1),
+            room: Some(RoomId::LAB1),
             ..request("StickyNote_1")
         }],
-        ..plain_mission(RoomId::Lab1)
+        ..plain_mission(RoomId::LAB1)
     };
     let mut player = Player::new(build(&Arc::new(Catalog::builtin()), mission, 5));
     player.must(&["goto StickyNote_1", "examine StickyNote_1", "scan StickyNote_1"]);
@@ -308,11 +308,11 @@ fn power() {
     assert_eq!(player.world.finished(), Some(Ending::KilledByHazard));
     assert!(!player.world.body(BodyId(0)).unwrap().alive);
     let mut player = check(&[], &["wait 1"], OK);
-    assert!(player.world.room_lit(RoomId::BreakRoom));
+    assert!(player.world.room_lit(RoomId::BREAK_ROOM));
     let switches: Vec<ObjectId> = player
         .world
         .objects()
-        .filter(|view| view.instance.starts_with("LightSwitch_01") && view.room == RoomId::BreakRoom)
+        .filter(|view| view.instance.starts_with("LightSwitch_01") && view.room == RoomId::BREAK_ROOM)
         .map(|view| view.id)
         .collect();
     for switch in switches {
@@ -320,7 +320,7 @@ fn power() {
         let press = Action::Interact { verb: Verb::Toggle, object: switch };
         assert!(player.play(press).status.is_success());
     }
-    assert!(!player.world.room_lit(RoomId::BreakRoom));
+    assert!(!player.world.room_lit(RoomId::BREAK_ROOM));
 }
 
 #[test]
@@ -337,12 +337,12 @@ fn a_lever_cycles_its_circuit() {
 
 #[test]
 fn nonsense_is_refused() {
-    let mut player = player(RoomId::BreakRoom, &[]);
+    let mut player = player(RoomId::BREAK_ROOM, &[]);
     for (action, expected) in [
         (Action::Move { distance_m: f32::NAN }, Status::IncorrectActionFormat),
         (Action::Rotate { yaw_rad: 1e9 }, Status::IncorrectActionFormat),
         (Action::PickUp { object: ObjectId(100_000) }, Status::InvalidObjectClass),
-        (Action::GoTo { target: GoToTarget::Viewpoint(RoomId::Lab1, 99) }, Status::InvalidCommand),
+        (Action::GoTo { target: GoToTarget::Viewpoint(RoomId::LAB1, 99) }, Status::InvalidCommand),
         (Action::GoTo { target: GoToTarget::Point([500.0, 500.0]) }, Status::UnsupportedNavigation),
     ] {
         assert_eq!(player.play(action).status, expected, "{action:?}");
@@ -440,14 +440,14 @@ fn check_sentence(detail: &str, helps: bool, status: Status) {
 #[test]
 fn every_status_has_its_situation_and_its_sentence() {
     for (status, helps, wishes, lines) in SITUATIONS {
-        let mut player = player(RoomId::BreakRoom, wishes);
+        let mut player = player(RoomId::BREAK_ROOM, wishes);
         let (last, before) = lines.split_last().unwrap();
         player.must(before);
         let outcome = player.run(last);
         assert_eq!(outcome.status, *status, "{wishes:?} {lines:?}: {}", outcome.detail);
         check_sentence(&outcome.detail, *helps, *status);
     }
-    let mut player = player(RoomId::BreakRoom, &[]);
+    let mut player = player(RoomId::BREAK_ROOM, &[]);
     for (action, status) in [
         (Action::Move { distance_m: f32::INFINITY }, Status::IncorrectActionFormat),
         (Action::PickUp { object: ObjectId(u32::MAX) }, Status::InvalidObjectClass),
@@ -457,7 +457,7 @@ fn every_status_has_its_situation_and_its_sentence() {
         check_sentence(&outcome.detail, false, status);
     }
     // Whoever is told something else while at it was interrupted; a place in a wall is gone to as near as can be.
-    let walk = Action::GoTo { target: GoToTarget::Room(RoomId::Warehouse) };
+    let walk = Action::GoTo { target: GoToTarget::Room(RoomId::WAREHOUSE) };
     let input = |command, action| cohabit_world::Input { command, body: BodyId(0), action };
     let report = player.world.step(&[input(900, walk), input(901, Action::Stop)]);
     let interrupted = report.outcomes.iter().find(|outcome| outcome.command == 900).unwrap();
@@ -482,10 +482,10 @@ fn every_status_has_its_situation_and_its_sentence() {
 
 #[test]
 fn decor_can_only_be_looked_at() {
-    let mut player = player(RoomId::MainOffice, &[]);
+    let mut player = player(RoomId::MAIN_OFFICE, &[]);
     let catalog = player.world.catalog().clone();
     let decor = |view: &cohabit_world::ObjectView<'_>| catalog.class(view.class).properties == [Property::Decor];
-    let room = RoomId::MainOffice;
+    let room = RoomId::MAIN_OFFICE;
     let found =
         player.world.objects().find(|view| decor(view) && view.room == room && view.position_m.z < 1.5).unwrap();
     let (id, instance) = (found.id, found.instance.to_owned());

@@ -336,7 +336,7 @@ fn number(name: &str, default: usize) -> usize {
 /// A room with a thing of a class in it, and one that may be taken in hand before, both in states drawn at random.
 fn room(catalog: &Arc<Catalog>, class: &ObjectClass, tool: &ObjectClass, chance: &mut Chance) -> Option<World> {
     let mut objects = vec![chance::request(class, 7, chance), chance::request(tool, 8, chance)];
-    objects.iter_mut().for_each(|object| object.room = Some(RoomId::Reception));
+    objects.iter_mut().for_each(|object| object.room = Some(RoomId::RECEPTION));
     let placed = objects.iter().zip([[4.5, 2.5], [1.5, 1.0]]).map(|(object, [x, y])| {
         format!("  {{ instance = \"{}\", room = \"Reception\", at_m = [{x:?}, {y:?}, 0.0] }},\n", object.instance)
     });
@@ -346,7 +346,7 @@ fn room(catalog: &Arc<Catalog>, class: &ObjectClass, tool: &ObjectClass, chance:
         name: "encounter".to_owned(),
         layout: "Bare".to_owned(),
         seed: Some(0),
-        start_room: RoomId::Reception,
+        start_room: RoomId::RECEPTION,
         objects,
         ..Mission::default()
     };

@@ -19,9 +19,10 @@ static OFFICE: LazyLock<(Language, Known)> = LazyLock::new(|| {
     let catalog = Arc::new(Catalog::builtin());
     let layout = Layout::builtin("OfficeLayout1").expect("the project's own floor plan");
     let objects = KnownObject::furniture(&catalog, &layout);
-    let robot = KnownRobot { position_m: [8.0, 11.5, 0.0], yaw_rad: 0.0, room: RoomId::BreakRoom, held: None };
+    let robot = KnownRobot { position_m: [8.0, 11.5, 0.0], yaw_rad: 0.0, room: RoomId::BREAK_ROOM, held: None };
     let floor = Some(Floor::new(Arc::new(FloorPlan::new(&layout))));
-    (Language::new(catalog), Known { robot, objects, goals: Vec::new(), floor, person: None })
+    let (mission, goals, rooms) = (String::new(), Vec::new(), Vec::new());
+    (Language::new(catalog), Known { robot, objects, mission, goals, rooms, floor, person: None })
 });
 
 fuzz_target!(|text: &str| {

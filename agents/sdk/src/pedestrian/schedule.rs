@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use cohabit_cdf::RoomId;
+use cohabit_cdf::{Catalog, RoomId};
 use serde::Deserialize;
 
 use crate::agent::TICKS_PER_SECOND;
@@ -105,11 +105,11 @@ struct WrittenEntry {
 }
 
 impl Schedule {
-    /// Reads a schedule that comes from `file`.
+    /// Reads a schedule that comes from `file`; its rooms are those of the catalogue.
     ///
     /// # Errors
     /// [`ScheduleError`] names the file, the entry, what is wrong and what would be right.
-    pub fn parse(file: &str, text: &str) -> Result<Self, ScheduleError> {
+    pub fn parse(file: &str, text: &str, catalog: &Catalog) -> Result<Self, ScheduleError> {
         let read: Result<Written, _> = toml::from_str(text);
         let written =
             read.map_err(|source| ScheduleError::Syntax { file: file.to_owned(), source: Box::new(source) })?;
@@ -126,7 +126,7 @@ impl Schedule {
                 let remedy = "repeat = true belongs to the last entry of a person";
                 return Err(wrong(format!("person {person} begins again before it: {remedy}")));
             }
-            own.push(Entry::of(&written).map_err(wrong)?);
+            own.push(Entry::of(&written, catalog).map_err(wrong)?);
         }
         Ok(Self { entries })
     }
@@ -156,9 +156,9 @@ impl Schedule {
 }
 
 impl Entry {
-    fn of(written: &WrittenEntry) -> Result<Self, String> {
+    fn of(written: &WrittenEntry, catalog: &Catalog) -> Result<Self, String> {
         let errand = match (&written.go_to, written.stay_s, written.meet) {
-            (Some(place), None, None) => Errand::GoTo(place_of(place)?),
+            (Some(place), None, None) => Errand::GoTo(place_of(place, catalog)?),
             (None, Some(stay_s), None) => Errand::Stay(ticks("stay_s", stay_s)?),
             (None, None, Some(other)) if other == written.person => {
                 return Err(format!("meet = {other}: nobody meets themselves, name another body"));
@@ -179,14 +179,14 @@ fn ticks(name: &str, seconds: f64) -> Result<u64, String> {
 }
 
 /// A room, a viewpoint such as `BreakRoom_3`, or a point such as `4.0 10.5`.
-fn place_of(text: &str) -> Result<Place, String> {
-    let text = text.trim();
-    if let Some(room) = RoomId::from_id(text) {
+fn place_of(text: &str, catalog: &Catalog) -> Result<Place, String> {
+    let (text, rooms) = (text.trim(), catalog.rooms());
+    if let Some(room) = rooms.find(text) {
         return Ok(Place::Room(room));
     }
     let viewpoint = text.rsplit_once('_').and_then(|(room, number)| {
         let number = number.parse().ok().filter(|number| (1..=VIEWPOINTS).contains(number))?;
-        Some(Place::Viewpoint(RoomId::from_id(room)?, number))
+        Some(Place::Viewpoint(rooms.find(room)?, number))
     });
     let coordinate = |text: &str| text.trim().parse::<f32>().ok().filter(|own| own.abs() <= FURTHEST_M);
     let point = || {
@@ -194,7 +194,7 @@ fn place_of(text: &str) -> Result<Place, String> {
         Some(Place::Point([coordinate(x)?, coordinate(y)?]))
     };
     viewpoint.or_else(point).ok_or_else(|| {
-        let rooms = RoomId::ALL.map(RoomId::id).join(", ");
+        let rooms = rooms.listed();
         format!(
             "go_to = \"{text}\": write a room ({rooms}), a viewpoint such as \"BreakRoom_3\" (1 to {VIEWPOINTS} of each \
              room), or a point in metres such as \"4.0 10.5\""
@@ -258,11 +258,11 @@ mod tests {
 
     #[test]
     fn people_do_one_thing_after_the_other_and_begin_again() {
-        let schedule = Schedule::parse("a.toml", OFFICE).unwrap();
+        let schedule = Schedule::parse("a.toml", OFFICE, &Catalog::builtin()).unwrap();
         assert_eq!(schedule.people().collect::<Vec<_>>(), [1, 2]);
         assert_eq!(schedule.entries(2)[0].errand, Errand::Meet(1));
         let mut diary = Diary::new(schedule.entries(1));
-        let first = Some(Errand::GoTo(Place::Viewpoint(RoomId::MainOffice, 2)));
+        let first = Some(Errand::GoTo(Place::Viewpoint(RoomId::MAIN_OFFICE, 2)));
         assert_eq!(diary.now(0), first);
         diary.done(60);
         assert_eq!((diary.now(599), diary.now(600)), (None, Some(Errand::Stay(150))));
@@ -279,6 +279,7 @@ mod tests {
 
     #[test]
     fn what_is_wrong_is_named_with_its_place_and_a_remedy() {
+        let catalog = Catalog::builtin();
         for (text, part) in [
             ("", "a.toml: a schedule has 1 to 10000 entries, and this one has 0"),
             ("[[entry]]\nperson = 1", "a.toml: entry 1: write one of go_to, stay_s and meet"),
@@ -292,11 +293,11 @@ mod tests {
             ("[[entry]]\nperson = 1\ngo_to = \"nan 1\"", "go_to = \"nan 1\""),
             ("[[entry]]\nwho = 1", "unknown field `who`"),
         ] {
-            let found = Schedule::parse("a.toml", text).unwrap_err().to_string();
+            let found = Schedule::parse("a.toml", text, &catalog).unwrap_err().to_string();
             assert!(found.contains(part), "`{part}` is not in {found}");
         }
         let twice = "[[entry]]\nperson = 1\nstay_s = 1\nrepeat = true\n[[entry]]\nperson = 1\nstay_s = 1";
-        let found = Schedule::parse("a.toml", twice).unwrap_err().to_string();
+        let found = Schedule::parse("a.toml", twice, &catalog).unwrap_err().to_string();
         assert!(found.contains("entry 2: person 1 begins again before it"), "{found}");
     }
 }

@@ -219,8 +219,8 @@ fn refer(catalog: &Catalog, scene: &Known, object: &KnownObject, habits: Habits,
                     continue;
                 }
                 rivals.retain(|rival| rival.room == object.room);
-                let room = if errs { *chance.pick(&cohabit_cdf::RoomId::ALL) } else { object.room };
-                place = format!(" in the {}", room.name());
+                let room = if errs { *chance.pick(&cohabit_cdf::RoomId::BUILTIN) } else { object.room };
+                place = format!(" in the {}", room.name_in(catalog));
             }
         }
     }

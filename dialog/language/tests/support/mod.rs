@@ -172,7 +172,7 @@ pub fn scene(catalog: &Catalog, marks: &[&str]) -> Known {
         let at = lines.iter().position(|line| line[0] == instance).unwrap_or_else(|| panic!("no {instance}"));
         ObjectId(at as u32)
     };
-    let robot = KnownRobot { position_m: [0.0; 3], yaw_rad: 0.0, room: RoomId::BreakRoom, held: None };
+    let robot = KnownRobot { position_m: [0.0; 3], yaw_rad: 0.0, room: RoomId::BREAK_ROOM, held: None };
     let mut known = Known {
         robot,
         objects: Vec::new(),
@@ -190,7 +190,7 @@ pub fn scene(catalog: &Catalog, marks: &[&str]) -> Known {
             id: id(line[0]),
             instance: line[0].to_owned(),
             class: catalog.class_of_instance(line[0]).unwrap(),
-            room: RoomId::from_id(line[1]).unwrap(),
+            room: RoomId::new(line[1]).unwrap(),
             position_m: [(); 3].map(|()| position.next().unwrap()),
             yaw_rad: 0.0,
             flags: StateFlags::default(),
@@ -228,7 +228,7 @@ fn change(known: &mut Known, id: &dyn Fn(&str) -> ObjectId, mark: &str) {
             (object.parent, object.room, object.position_m) = (None, robot.room, robot.position_m);
         }
         ["at", room, x, y] => {
-            known.robot.room = RoomId::from_id(room).unwrap();
+            known.robot.room = RoomId::new(room).unwrap();
             known.robot.position_m = [x.parse().unwrap(), y.parse().unwrap(), 0.0];
             let room = known.robot.room;
             known.objects.iter_mut().for_each(|object| object.visible = object.room == room);

@@ -12,7 +12,7 @@ pub fn talk(marks: &[&str]) -> Option<(&'static Language, Known)> {
     let (plan, marks) = marks.split_first()?;
     let (layout, room) = plan.strip_prefix("plan ")?.split_once(' ')?;
     let language = LANGUAGE.get_or_init(|| super::language(Arc::new(Catalog::builtin())));
-    let mut known = furnished(language.catalog(), layout, RoomId::from_id(room).unwrap());
+    let mut known = furnished(language.catalog(), layout, RoomId::new(room).unwrap());
     for mark in marks {
         match mark.split(' ').collect::<Vec<_>>().as_slice() {
             ["add", class, "in" | "on", parent] => add(language.catalog(), &mut known, class, parent),

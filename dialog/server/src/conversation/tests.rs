@@ -13,7 +13,7 @@ use crate::spoken::Spoken;
 /// What a robot knows that stands in an empty break room.
 pub(super) fn knowledge() -> Knowledge {
     let (catalog, layout) = (Arc::new(Catalog::builtin()), Layout::builtin("OfficeLayout1").unwrap());
-    let room = RoomId::ALL.iter().position(|room| *room == RoomId::BreakRoom).unwrap() as u32;
+    let room = RoomId::BUILTIN.iter().position(|room| *room == RoomId::BREAK_ROOM).unwrap() as u32;
     let body = BodyRecord { room, held: NONE, position_m: [4.0, 10.0, 0.0], ..BodyRecord::default() };
     let parts = StateParts { bodies: vec![body], ..StateParts::default() };
     let mut bytes = vec![0_u64; parts.bytes().div_ceil(8)];

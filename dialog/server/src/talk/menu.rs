@@ -30,7 +30,8 @@ impl Talk {
                 let choices = of_object(state, body, object, &self.catalog);
                 page::menu(body.0, page::name(record, &self.catalog), &choices)
             }),
-            Thing::Surface(room) => {
+            Thing::Surface(index) => {
+                let Some(room) = self.catalog.room_at(index) else { return Ok(None) };
                 // Behind a wall the floor is another room's.
                 let is_its = |at_m: &[f32; 2]| self.layout.room_at(at_m[0], at_m[1]) == Some(room);
                 let there = floor_m.filter(is_its).map(|at_m| (Click::Floor { at_m }, "Go there".to_owned()));
@@ -44,8 +45,9 @@ impl Talk {
 
     /// The same for a point of the floor plan, m, in the world.
     pub fn floor_menu(&self, body: Option<BodyId>, at_m: [f32; 2]) -> Result<Option<Value>, DialogError> {
-        match self.layout.room_at(at_m[0], at_m[1]) {
-            Some(room) => self.menu(body, Thing::Surface(room), Some(at_m)),
+        let room = self.layout.room_at(at_m[0], at_m[1]);
+        match room.and_then(|room| self.catalog.room_index(room)) {
+            Some(index) => self.menu(body, Thing::Surface(index.into()), Some(at_m)),
             None => Ok(None),
         }
     }

@@ -116,7 +116,7 @@ mod tests {
             (Click::Look { object: 7 }, "look", Action::Rotate { yaw_rad: 0.5 }),
             (Click::Act { deed: Deed::PickUp, object: 7 }, "pick_up", Action::PickUp { object: ObjectId(7) }),
             (Click::Floor { at_m: [1.0, 2.0] }, "go_to_point", Action::GoTo { target: GoToTarget::Point([1.0, 2.0]) }),
-            (Click::Room { room: RoomId::Lab1 }, "go_to_room", Action::GoTo { target: GoToTarget::Room(RoomId::Lab1) }),
+            (Click::Room { room: RoomId::LAB1 }, "go_to_room", Action::GoTo { target: GoToTarget::Room(RoomId::LAB1) }),
             (Click::Turn { yaw_rad: 9.0 }, "turn", Action::Rotate { yaw_rad: PI }),
             (Click::Move { distance_m: -9.0 }, "move", Action::Move { distance_m: -FURTHEST_M }),
         ] {

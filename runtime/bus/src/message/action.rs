@@ -3,9 +3,10 @@
 use bytemuck::{Pod, Zeroable};
 use cohabit_cdf::{Action, GoToTarget, ObjectId, RoomId, Verb};
 
-use super::Malformed;
+use super::{Malformed, room};
 
-/// An [`Action`] in fixed form; fields that its kind does not use are zero.
+/// An [`Action`] in fixed form; fields that its kind does not use are zero. Of a room that is not built in it is a
+/// `NamedRoomRecord` instead.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct ActionRecord {
@@ -15,7 +16,7 @@ pub struct ActionRecord {
     object: u32,
     /// `Verb`.
     verb: u32,
-    /// `RoomId`.
+    /// `RoomId`, of those that are built in.
     room: u32,
     /// Which of the room's viewpoints, from 1.
     number: u32,
@@ -23,6 +24,18 @@ pub struct ActionRecord {
     value: f32,
     /// On the floor, x and y in m; or how fast to turn and to pitch the head, rad/s.
     point: [f32; 2],
+}
+
+/// What an [`ActionRecord`] is of `GO_TO_NAMED_ROOM` and `GO_TO_NAMED_VIEWPOINT`.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+struct NamedRoomRecord {
+    /// As of an `ActionRecord`.
+    kind: u32,
+    /// Which of the room's viewpoints, from 1.
+    number: u32,
+    /// The room's id, and zeroes behind it.
+    room: [u8; 24],
 }
 
 /// Move by `value` m; negative is backwards.
@@ -35,9 +48,9 @@ const LOOK: u32 = 3;
 const LOOK_AROUND: u32 = 4;
 /// Walk to where `object` is in reach.
 const GO_TO_OBJECT: u32 = 5;
-/// Walk into `room`.
+/// Walk into `room`, which is built in.
 const GO_TO_ROOM: u32 = 6;
-/// Walk to viewpoint `number` of `room`.
+/// Walk to viewpoint `number` of `room`, which is built in.
 const GO_TO_VIEWPOINT: u32 = 7;
 /// Walk to `point`.
 const GO_TO_POINT: u32 = 8;
@@ -53,6 +66,10 @@ const HIGHLIGHT: u32 = 12;
 const STOP: u32 = 13;
 /// Keep moving by `value` m/s, turning and pitching by `point` rad/s.
 const DRIVE: u32 = 14;
+/// Walk into the `room` of a `NamedRoomRecord`.
+const GO_TO_NAMED_ROOM: u32 = 15;
+/// Walk to viewpoint `number` of the `room` of a `NamedRoomRecord`.
+const GO_TO_NAMED_VIEWPOINT: u32 = 16;
 
 impl From<Action> for ActionRecord {
     fn from(action: Action) -> Self {
@@ -64,9 +81,9 @@ impl From<Action> for ActionRecord {
             Action::LookAround => of(LOOK_AROUND),
             Action::GoTo { target } => match target {
                 GoToTarget::Object(object) => Self { object: object.0, ..of(GO_TO_OBJECT) },
-                GoToTarget::Room(room) => Self { room: room as u32, ..of(GO_TO_ROOM) },
+                GoToTarget::Room(room) => Self::to_room([GO_TO_ROOM, GO_TO_NAMED_ROOM], room, 0),
                 GoToTarget::Viewpoint(room, number) => {
-                    Self { room: room as u32, number: u32::from(number), ..of(GO_TO_VIEWPOINT) }
+                    Self::to_room([GO_TO_VIEWPOINT, GO_TO_NAMED_VIEWPOINT], room, number)
                 }
                 GoToTarget::Point(point) => Self { point, ..of(GO_TO_POINT) },
             },
@@ -82,12 +99,27 @@ impl From<Action> for ActionRecord {
     }
 }
 
+impl ActionRecord {
+    /// Of the first kind if the room is built in, of the second if it is not.
+    fn to_room([builtin, named]: [u32; 2], room: RoomId, number: u8) -> Self {
+        let number = u32::from(number);
+        match room.builtin_index() {
+            Some(index) => Self { kind: builtin, room: u32::from(index), number, ..Self::default() },
+            None => bytemuck::cast(NamedRoomRecord { kind: named, number, room: room::text_of(room) }),
+        }
+    }
+}
+
 impl TryFrom<ActionRecord> for Action {
     type Error = Malformed;
 
     fn try_from(record: ActionRecord) -> Result<Self, Malformed> {
         let object = ObjectId(record.object);
-        let room = || RoomId::from_index(record.room).ok_or(Malformed("no such room"));
+        let room = || {
+            let index = usize::try_from(record.room).ok();
+            index.and_then(|index| RoomId::BUILTIN.get(index).copied()).ok_or(Malformed("no such room"))
+        };
+        let viewpoint = |number: u32| u8::try_from(number).map_err(|_| Malformed("no such viewpoint"));
         let number = |value: f32| if value.is_finite() { Ok(value) } else { Err(Malformed("not a finite number")) };
         Ok(match record.kind {
             MOVE => Self::Move { distance_m: number(record.value)? },
@@ -96,9 +128,16 @@ impl TryFrom<ActionRecord> for Action {
             LOOK_AROUND => Self::LookAround,
             GO_TO_OBJECT => Self::GoTo { target: GoToTarget::Object(object) },
             GO_TO_ROOM => Self::GoTo { target: GoToTarget::Room(room()?) },
-            GO_TO_VIEWPOINT => {
-                let viewpoint = u8::try_from(record.number).map_err(|_| Malformed("no such viewpoint"))?;
-                Self::GoTo { target: GoToTarget::Viewpoint(room()?, viewpoint) }
+            GO_TO_VIEWPOINT => Self::GoTo { target: GoToTarget::Viewpoint(room()?, viewpoint(record.number)?) },
+            GO_TO_NAMED_ROOM | GO_TO_NAMED_VIEWPOINT => {
+                let record: NamedRoomRecord = bytemuck::cast(record);
+                let room = room::of_text(&record.room)?;
+                let target = if record.kind == GO_TO_NAMED_ROOM {
+                    GoToTarget::Room(room)
+                } else {
+                    GoToTarget::Viewpoint(room, viewpoint(record.number)?)
+                };
+                Self::GoTo { target }
             }
             GO_TO_POINT => {
                 Self::GoTo { target: GoToTarget::Point([number(record.point[0])?, number(record.point[1])?]) }
@@ -122,6 +161,7 @@ impl TryFrom<ActionRecord> for Action {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
 
@@ -141,7 +181,8 @@ mod tests {
             Action::Drive { forward_m_s: -1.0, turn_rad_s: 0.5, pitch_rad_s: 0.25 },
         ];
         actions.extend(Verb::ALL.map(|verb| Action::Interact { verb, object: ObjectId(9) }));
-        for room in RoomId::ALL {
+        let lounge = RoomId::new("Sun-Lounge_on_the_2nd_fl").unwrap();
+        for room in RoomId::BUILTIN.into_iter().chain([lounge]) {
             actions.push(Action::GoTo { target: GoToTarget::Room(room) });
             actions.push(Action::GoTo { target: GoToTarget::Viewpoint(room, 8) });
         }
@@ -159,6 +200,9 @@ mod tests {
             ActionRecord { kind: DRIVE, point: [0.0, f32::INFINITY], ..ActionRecord::default() },
             ActionRecord { kind: INTERACT, verb: 99, ..ActionRecord::default() },
             ActionRecord { kind: GO_TO_ROOM, room: 99, ..ActionRecord::default() },
+            ActionRecord { kind: GO_TO_NAMED_ROOM, ..ActionRecord::default() },
+            bytemuck::cast(NamedRoomRecord { kind: GO_TO_NAMED_ROOM, number: 0, room: [0xFF; 24] }),
+            bytemuck::cast(NamedRoomRecord { kind: GO_TO_NAMED_VIEWPOINT, number: 256, room: [b'A'; 24] }),
         ] {
             assert!(Action::try_from(record).is_err(), "{record:?}");
         }

@@ -4,7 +4,7 @@
 //! header says where in the payload each part begins.
 
 use bytemuck::{Pod, Zeroable};
-use cohabit_cdf::{BodyId, ObjectId, RoomId};
+use cohabit_cdf::{BodyId, ObjectId, room::MOST_ROOMS};
 
 use super::Malformed;
 
@@ -115,8 +115,8 @@ pub enum Thing {
     Object(ObjectId),
     /// A robot or a person.
     Body(BodyId),
-    /// A floor, a wall or another part of a room.
-    Surface(RoomId),
+    /// A floor, a wall or another part of the room with this index.
+    Surface(u32),
     /// Nothing that is known.
     Nothing,
 }
@@ -134,7 +134,10 @@ impl Thing {
             0 => Self::Nothing,
             _ if id < Self::FIRST_BODY => Self::Object(ObjectId(id - 1)),
             _ if id < Self::FIRST_SURFACE => Self::Body(BodyId(id - Self::FIRST_BODY)),
-            _ => RoomId::from_index((id - Self::FIRST_SURFACE) >> 8).map_or(Self::Nothing, Self::Surface),
+            _ => match (id - Self::FIRST_SURFACE) >> 8 {
+                room if (room as usize) < MOST_ROOMS => Self::Surface(room),
+                _ => Self::Nothing,
+            },
         }
     }
 }

@@ -1,9 +1,9 @@
 //! The mission that a simulator plays.
 
 use bytemuck::{Pod, Zeroable};
-use cohabit_cdf::{BodyKind, BodyRequest, RoomId};
+use cohabit_cdf::{BodyKind, BodyRequest};
 
-use super::{CameraRecord, Malformed, NONE, layout};
+use super::{CameraRecord, Malformed, layout, room};
 use crate::text::Text;
 
 /// What stands before a mission's text.
@@ -30,13 +30,13 @@ pub struct MissionHeader {
 struct BodyRequestRecord {
     /// `BodyKind`.
     kind: u32,
-    /// The room's index, or [`NONE`].
-    room: u32,
+    /// Its room's id, and zeroes behind it; zeroes alone if it has none.
+    room: [u8; 24],
 }
 
 impl From<&BodyRequest> for BodyRequestRecord {
     fn from(request: &BodyRequest) -> Self {
-        Self { kind: request.kind as u32, room: request.room.map_or(NONE, |room| room as u32) }
+        Self { kind: request.kind as u32, room: request.room.map_or([0; 24], room::text_of) }
     }
 }
 
@@ -45,8 +45,7 @@ impl TryFrom<&BodyRequestRecord> for BodyRequest {
 
     fn try_from(record: &BodyRequestRecord) -> Result<Self, Malformed> {
         let kind = BodyKind::ALL.get(record.kind as usize).copied().ok_or(Malformed("no such kind of body"))?;
-        let known = |index| RoomId::from_index(index).ok_or(Malformed("no such room"));
-        let room = (record.room != NONE).then(|| known(record.room)).transpose()?;
+        let room = (record.room != [0; 24]).then(|| room::of_text(&record.room)).transpose()?;
         Ok(Self { kind, room })
     }
 }

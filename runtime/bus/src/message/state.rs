@@ -21,10 +21,12 @@ pub struct StateHeader {
     pub score: u32,
     /// 0 while the mission runs, 1 complete, 2 failed.
     pub ending: u32,
-    /// Rooms whose lights are on: bit `i` for `RoomId::ALL[i]`.
-    pub lit_rooms: u32,
+    /// Rooms whose lights are on: bit `i` for the room with index `i`.
+    pub lit_rooms: u64,
     /// 1 while the world waits.
     pub paused: u32,
+    /// Zero.
+    pub reserved: u32,
 }
 
 /// A robot or a human avatar.
@@ -33,7 +35,7 @@ pub struct StateHeader {
 pub struct BodyRecord {
     /// Its index.
     pub body: u32,
-    /// Its room's index.
+    /// Its room's index, or [`NONE`](super::NONE).
     pub room: u32,
     /// The object it holds, or [`NONE`](super::NONE).
     pub held: u32,
@@ -67,7 +69,7 @@ pub struct ObjectRecord {
     pub flags: u32,
     /// Its class's index in the catalogue.
     pub class: u16,
-    /// Its room's index.
+    /// Its room's index, or 255.
     pub room: u8,
     /// `Color`.
     pub color: u8,

@@ -74,7 +74,7 @@ fn shared_numbers() -> Vec<(&'static str, String)> {
     vec![
         ("Status", list(&Status::ALL)),
         ("Verb", list(&Verb::ALL)),
-        ("RoomId", list(&RoomId::ALL)),
+        ("RoomId", list(&RoomId::BUILTIN)),
         ("BodyKind", list(&BodyKind::ALL)),
         ("Color", list(&Color::ALL)),
         ("Fluid", list(&Fluid::ALL)),

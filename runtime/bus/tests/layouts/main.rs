@@ -52,7 +52,7 @@ const SIZES: &[(&str, usize)] = &sizes![
 ];
 
 /// Records that cannot be: the sizes of those that messages hold show in payloads.
-const PRIVATE: &[&str] = &["BodyRequestRecord", "Strokes"];
+const PRIVATE: &[&str] = &["BodyRequestRecord", "NamedRoomRecord", "Strokes"];
 
 fn source() -> Source {
     Source::read(&Path::new(FOLDER).join("src"))

@@ -83,7 +83,7 @@ impl Payload {
                 ", then each plane at its `plane_at` on a 64-byte boundary (row-major, the pictures of a panorama one \
                  after the other: color `[views, height, width, 4]` u8, depth `[views, height, width]` f32 in m along \
                  the camera's z, normals `[views, height, width, 4]` i8, ids `[views, height, width]` u32: 0 nothing, below 2^20 an \
-                 object's index + 1, below 2^24 a body's index + 2^20, else 2^24 + 256 × the `RoomId` of a surface), then SeenRecord × `seen_room` \
+                 object's index + 1, below 2^24 a body's index + 2^20, else 2^24 + 256 × the index of a surface's room), then SeenRecord × `seen_room` \
                  at `seen_at`, of which `seen` count",
             ),
         };

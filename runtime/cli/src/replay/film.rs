@@ -205,7 +205,10 @@ fn name(id: u32, replayer: &Replayer<'_>) -> String {
     match Thing::of_id(id) {
         Thing::Object(id) => replayer.world().object(id).map_or_else(String::new, |object| object.instance.to_owned()),
         Thing::Body(id) => format!("body {}", id.0),
-        Thing::Surface(room) => format!("surfaces of {}", room.name()),
+        Thing::Surface(room) => {
+            let catalog = replayer.world().catalog();
+            catalog.room_at(room).map_or_else(String::new, |room| format!("surfaces of {}", room.name_in(catalog)))
+        }
         Thing::Nothing => "nothing".to_owned(),
     }
 }

@@ -139,7 +139,10 @@ fn is_in(world: &World, id: u32) -> bool {
     match Thing::of_id(id) {
         Thing::Object(object) => world.exists(object),
         Thing::Body(body) => world.body(body).is_some(),
-        Thing::Surface(room) => world.layout().rooms.iter().any(|one| one.id == room),
+        Thing::Surface(room) => {
+            let room = world.catalog().room_at(room);
+            room.is_some_and(|room| world.layout().room(room).is_some())
+        }
         Thing::Nothing => false,
     }
 }

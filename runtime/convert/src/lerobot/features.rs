@@ -19,14 +19,14 @@ pub(crate) fn pictures(recipe: &Recipe) -> impl Iterator<Item = (&'static str, &
 }
 
 /// All features, in the order of the columns.
-pub(crate) fn features(recipe: &Recipe) -> Value {
+pub(crate) fn features(recipe: &Recipe, rooms: &[String]) -> Value {
     let one = |kind: &str| json!({ "dtype": kind, "shape": [1], "names": null });
     let vector = |names: Vec<String>| json!({ "dtype": "float32", "shape": [names.len()], "names": names });
     let [width, height] = recipe.size;
     let picture = |channels: u32| json!({ "dtype": "image", "shape": [height, width, channels], "names": ["height", "width", "channels"] });
     let mut all = Map::new();
     let mut add = |name: &str, feature: Value| drop(all.insert(name.to_owned(), feature));
-    add("observation.state", vector(vectors::state_names()));
+    add("observation.state", vector(vectors::state_names(rooms)));
     add("action", vector(vectors::action_names()));
     pictures(recipe).for_each(|(_, name, channels)| add(name, picture(channels)));
     for (name, kind) in [

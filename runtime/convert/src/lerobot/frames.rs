@@ -30,6 +30,8 @@ pub(crate) struct Frames<'a> {
     pub dataset: &'a Dataset,
     /// The index of each class of objects.
     pub classes: &'a BTreeMap<String, i64>,
+    /// The rooms that robots may be in.
+    pub rooms: &'a [String],
 }
 
 impl Frames<'_> {
@@ -57,7 +59,8 @@ impl Frames<'_> {
 
     fn states(&self, episode: &Episode, lines: &[Line]) -> Result<Vec<Vec<f32>>, ConvertError> {
         let state = |(number, line): (usize, &Line)| {
-            vectors::state(&line.step).ok_or_else(|| self.wrong(episode, number, "it does not say where the robot is"))
+            let state = vectors::state(&line.step, self.rooms);
+            state.ok_or_else(|| self.wrong(episode, number, "it does not say where the robot is"))
         };
         (1..).zip(lines).map(state).collect()
     }

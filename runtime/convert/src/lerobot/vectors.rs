@@ -1,25 +1,25 @@
 //! What the robot's state and its actions are as vectors of numbers.
 
-use cohabit_cdf::{ActionKind, RoomId};
+use cohabit_cdf::ActionKind;
 
 use crate::native::Step;
 
 /// The name of the action that ends an episode.
 const STOP: &str = "stop";
 
-/// What each number of a state is.
-pub(crate) fn state_names() -> Vec<String> {
+/// What each number of a state is, where robots may be in these rooms.
+pub(crate) fn state_names(rooms: &[String]) -> Vec<String> {
     let pose = ["x_m", "y_m", "z_m", "yaw_rad", "head_pitch_rad", "is_holding"].map(str::to_owned);
-    let rooms = RoomId::ALL.map(|room| format!("is_in_{}", room.id()));
+    let rooms = rooms.iter().map(|room| format!("is_in_{room}"));
     pose.into_iter().chain(rooms).collect()
 }
 
 /// The robot before a step; none where the step does not say where it is.
-pub(crate) fn state(step: &Step) -> Option<Vec<f32>> {
+pub(crate) fn state(step: &Step, rooms: &[String]) -> Option<Vec<f32>> {
     let pose = step.pose.as_ref()?;
     let [x_m, y_m, z_m] = pose.position_m;
     let numbers = [x_m, y_m, z_m, pose.yaw_rad, pose.head_pitch_rad, one_if(pose.held.is_some())];
-    let rooms = RoomId::ALL.map(|room| one_if(room.id() == pose.room));
+    let rooms = rooms.iter().map(|room| one_if(*room == pose.room));
     Some(numbers.into_iter().chain(rooms).collect())
 }
 
@@ -75,9 +75,10 @@ mod tests {
         let told = |expected: &[(&str, f32)]| -> Vec<(String, f32)> {
             expected.iter().map(|(name, number)| ((*name).to_owned(), *number)).collect()
         };
+        let rooms = ["BreakRoom", "Lab1", "Attic"].map(str::to_owned);
         let state = [("x_m", 1.5), ("y_m", 2.0), ("yaw_rad", 0.5), ("head_pitch_rad", -0.25), ("is_holding", 1.0)];
         assert_eq!(
-            named(state_names(), super::state(&step).unwrap()),
+            named(state_names(&rooms), super::state(&step, &rooms).unwrap()),
             told(&[&state[..], &[("is_in_Lab1", 1.0)]].concat())
         );
         let action = [("left", 0.1), ("top", 0.1), ("right", 0.3), ("bottom", 0.2)];
@@ -90,7 +91,7 @@ mod tests {
         let mut step: Step =
             serde_json::from_value(json!({"tick": 7, "action": null, "outcome": null, "pose": null})).unwrap();
         assert_eq!(named(action_names(), action(&step, [1, 1]).unwrap()), [("is_stop".to_owned(), 1.0)]);
-        assert_eq!(state(&step), None);
+        assert_eq!(state(&step, &[]), None);
         step.action =
             serde_json::from_value(json!({"kind": "fly", "object": "x", "class": "x", "id": 1, "is_seen": false}))
                 .unwrap();

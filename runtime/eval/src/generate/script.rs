@@ -74,7 +74,8 @@ impl<'a> Script<'a> {
     fn go(&mut self, instance: &str) -> Option<()> {
         let room = self.world.object(self.world.find(instance)?)?.room;
         if self.at.replace(room) != Some(room) {
-            self.lines.push(Meaning::GoTo { room });
+            let name = room.name_in(self.world.catalog()).to_owned();
+            self.lines.push(Meaning::GoTo { room, name });
         }
         Some(())
     }

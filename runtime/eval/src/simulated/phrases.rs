@@ -59,7 +59,7 @@ pub(super) const OPENERS: [&str; 8] = ["ok ", "now ", "hey robot, ", "alright, "
 /// The same in the words that mean one thing alone.
 pub(super) fn exact(meaning: &Meaning) -> String {
     match meaning {
-        Meaning::GoTo { room } => format!("go to the {}", room.name()),
+        Meaning::GoTo { name, .. } => format!("go to the {name}"),
         Meaning::PickUp { object } => format!("pick up {object}"),
         Meaning::Place { object, receptacle } => format!("put {object} on {receptacle}"),
         Meaning::Insert { object, device } => format!("put {object} in {device}"),

@@ -38,9 +38,11 @@ pub(super) fn describe(id: ObjectId, truth: &Known, catalog: &Catalog, style: St
         text.push(format!("{} the {name}", if encloses { "in" } else { "on" }));
     }
     if qualities.contains(&Quality::Room) {
-        let other = RoomId::ALL.into_iter().find(|room| *room != object.room).unwrap_or(object.room);
+        let mut rooms: Vec<RoomId> = truth.objects.iter().map(|other| other.room).collect();
+        rooms.sort();
+        let other = rooms.into_iter().find(|room| *room != object.room).unwrap_or(object.room);
         let room = if mistaken == Some(Quality::Room) { other } else { object.room };
-        text.push(format!("in the {}", room.name()));
+        text.push(format!("in the {}", room.name_in(catalog)));
     }
     text.join(" ")
 }

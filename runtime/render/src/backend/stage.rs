@@ -147,13 +147,12 @@ impl<'a> Stage<'a> {
         let (mut things, mut pieces) = (Vec::with_capacity(1024), Vec::with_capacity(2048));
         for part in &scene.plan.parts {
             things.push(Thing { model: None, first: pieces.len() as u32, count: 1 });
-            let room = part.room as usize;
             pieces.push(Piece {
                 piece: part.piece,
                 id: part.id,
                 tint: Vec3::ONE,
                 fluid: Vec3::ONE,
-                ..plain(scene, Transform::IDENTITY, Weather::default(), room)
+                ..plain(scene, Transform::IDENTITY, Weather::default(), part.room)
             });
         }
         for placed in scene.placed() {
@@ -194,11 +193,11 @@ fn piece(scene: &Scene, placed: &Placed, (piece, transform): (u16, u16)) -> Piec
         id: placed.id,
         tint: placed.tint,
         fluid: placed.fluid,
-        ..plain(scene, placed.transforms[usize::from(transform)], placed.weather, placed.room as usize)
+        ..plain(scene, placed.transforms[usize::from(transform)], placed.weather, placed.room)
     }
 }
 
-fn plain(scene: &Scene, transform: Transform, weather: Weather, room: usize) -> Piece {
+fn plain(scene: &Scene, transform: Transform, weather: Weather, room: u8) -> Piece {
     let Weather { dirty, cold, infected } = weather;
     Piece {
         piece: 0,
@@ -212,7 +211,7 @@ fn plain(scene: &Scene, transform: Transform, weather: Weather, room: usize) -> 
         cold,
         infected,
         light: scene.light(room),
-        lit: scene.lit[room],
-        room: room as u32,
+        lit: scene.is_lit(room),
+        room: scene.plan.shadow_room(room).into(),
     }
 }

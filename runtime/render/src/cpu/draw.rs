@@ -45,6 +45,7 @@ pub(super) struct Draw<'a> {
     /// The light in its room, as a factor.
     pub light: Vec3,
     pub lit: bool,
+    /// Its room, as the shadows know it.
     pub room: u16,
     /// From the mesh's frame to the camera's.
     pub to_camera: (Mat3, Vec3),
@@ -88,7 +89,7 @@ fn of_placed<'a>(
 ) -> impl Iterator<Item = Draw<'a>> {
     let model = scene.meshes.model(placed.model);
     let mesh = &model.levels[level];
-    let room = placed.room as usize;
+    let room = placed.room;
     let pieces = placed.pieces.iter().map(|(piece, transform)| (&mesh.pieces[usize::from(*piece)], transform));
     pieces.filter(move |(piece, _)| piece.veil.is_some() == veils).map(move |(piece, transform)| {
         let transform = placed.transforms[usize::from(*transform)];
@@ -102,8 +103,8 @@ fn of_placed<'a>(
             fluid: placed.fluid,
             weather: placed.weather,
             light: scene.light(room),
-            lit: scene.lit[room],
-            room: room as u16,
+            lit: scene.is_lit(room),
+            room: placed.shadow_room.into(),
             to_camera: to_camera(view, &transform),
             eye: transform.inverse * (view.eye - transform.offset),
         }
@@ -111,7 +112,7 @@ fn of_placed<'a>(
 }
 
 fn of_part<'a>(scene: &'a Scene, part: &PlanPart, view: &View) -> Draw<'a> {
-    let room = part.room as usize;
+    let room = part.room;
     Draw {
         mesh: &scene.plan.mesh,
         ambient: Ambient::Known(&scene.plan.ambient),
@@ -122,8 +123,8 @@ fn of_part<'a>(scene: &'a Scene, part: &PlanPart, view: &View) -> Draw<'a> {
         fluid: Vec3::ONE,
         weather: Weather::default(),
         light: scene.light(room),
-        lit: scene.lit[room],
-        room: room as u16,
+        lit: scene.is_lit(room),
+        room: scene.plan.shadow_room(room).into(),
         to_camera: to_camera(view, &Transform::IDENTITY),
         eye: view.eye,
     }

@@ -6,7 +6,7 @@ use glam::{Mat3, Vec3};
 
 use super::light::{GRID_M, Lamps, RoomLight};
 use super::outline::{WallRun, walls};
-use super::{Gap, HALF_WALL_M, Plan, RoomSurface};
+use super::{Gap, HALF_WALL_M, Plan, RoomSurface, rooms_of};
 use crate::color;
 use crate::kit::{self, Detail, Precision, Solid};
 use crate::mesh::{Paint, Surface};
@@ -21,15 +21,15 @@ const TRIM_END_M: f32 = 0.002;
 /// How wide a frame is, and how far it stands out of the wall, m.
 const FRAME_M: [f32; 2] = [0.075, 0.018];
 
-/// Adds everything of `room` to the plan.
-pub(super) fn build(plan: &mut Plan, room: &Room) {
+/// Adds everything of `room`, which has that index, to the plan.
+pub(super) fn build(plan: &mut Plan, room: &Room, index: u8) {
     let lamps: Vec<Lamps> = room.rects_m.iter().map(|rect| Lamps::new(*rect)).collect();
     let light = RoomLight { rects: &room.rects_m, lamps: &lamps, height_m: plan.height_m };
-    let bit = 1 << room.id as u8;
+    let bit = 1 << index;
     let floor = floor_surface(&room.floor);
     let ceiling = flat(Pattern::Ceiling, [236, 235, 230]);
     for (surface, finish) in [(RoomSurface::Floor, floor), (RoomSurface::Ceiling, ceiling)] {
-        plan.begin(room.id, bit, surface);
+        plan.begin(index, bit, surface);
         let first = plan.mesh.positions.len();
         for rect in &room.rects_m {
             let z = if surface == RoomSurface::Floor { 0.0 } else { plan.height_m };
@@ -48,11 +48,11 @@ pub(super) fn build(plan: &mut Plan, room: &Room) {
             (false, true) => RoomSurface::WestWall,
             (false, false) => RoomSurface::EastWall,
         };
-        plan.begin(room.id, bit, surface);
-        wall(plan, room, &run, &light);
+        plan.begin(index, bit, surface);
+        wall(plan, (room, bit), &run, &light);
         plan.end();
     }
-    plan.begin(room.id, bit, RoomSurface::Lamp);
+    plan.begin(index, bit, RoomSurface::Lamp);
     for lamps in &lamps {
         panels(plan, lamps);
     }
@@ -61,7 +61,7 @@ pub(super) fn build(plan: &mut Plan, room: &Room) {
 
 /// A strip under every door and passage, once for both rooms: their floors meet there, divided differently, and rounding
 /// leaves a pixel between them now and then.
-fn seams(plan: &mut Plan, bit: u8, finish: Surface) {
+fn seams(plan: &mut Plan, bit: u64, finish: Surface) {
     /// How far the strip reaches under the floors, and how far it lies below them, m.
     const STRIP_M: [f32; 2] = [0.06, 0.003];
     for gap in plan.gaps.clone() {
@@ -182,13 +182,12 @@ fn hole_levels(gap: &Gap) -> [f32; 2] {
     [low, gap.bounds.max.z + 0.01]
 }
 
-fn wall(plan: &mut Plan, room: &Room, run: &WallRun, light: &RoomLight<'_>) {
+fn wall(plan: &mut Plan, (room, bit): (&Room, u64), run: &WallRun, light: &RoomLight<'_>) {
     let holes = run.holes(&plan.gaps);
     let along = if run.runs_x { Vec3::X } else { Vec3::Y };
     let upper = wall_surface(&room.wall, along, false);
     let lower = room.wainscot.as_ref().map_or(upper, |finish| wall_surface(finish, along, true));
     // The same for all walls of a room: where two meet, their corners do too, and nothing shines through between them.
-    let bit = 1 << room.id as u8;
     let gaps = plan.gaps.iter().filter(|gap| gap.rooms & bit != 0);
     let mut levels: Vec<f32> = gaps.flat_map(hole_levels).filter(|z| *z > 0.0).collect();
     if room.wainscot.is_some() {
@@ -295,8 +294,8 @@ fn panels(plan: &mut Plan, lamps: &Lamps) {
 /// The frames in all gaps, and the sky behind those that lead outside.
 pub(super) fn frames(plan: &mut Plan) {
     for gap in plan.gaps.clone() {
-        let Some(room) = cohabit_cdf::RoomId::from_index(gap.rooms.trailing_zeros()) else { continue };
-        plan.begin(room, gap.rooms, RoomSurface::Frame);
+        let Some(room) = rooms_of(gap.rooms).next() else { continue };
+        plan.begin(room as u8, gap.rooms, RoomSurface::Frame);
         frame(plan, &gap);
         plan.end();
     }

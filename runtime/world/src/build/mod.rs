@@ -39,14 +39,18 @@ pub enum BuildError {
         object: String,
     },
     /// The floor plan lacks a room.
-    #[error("build the world: `{object}` must be in {room}, which the floor plan `{layout}` does not have", room = room.id())]
+    #[error(
+        "build the world: `{object}` must be in the {room}, which the floor plan `{layout}` does not have; it has {rooms}"
+    )]
     NoSuchRoom {
         /// The instance id, or `the robot`.
         object: String,
-        /// The room.
-        room: RoomId,
+        /// The room, as people call it.
+        room: String,
         /// The floor plan.
         layout: String,
+        /// The rooms that it has, by their ids.
+        rooms: String,
     },
     /// An object must be in or on something that is not there.
     #[error("build the world: `{object}` must be in `{receptacle}`, which neither the mission nor the floor plan has")]
@@ -75,12 +79,12 @@ pub enum BuildError {
         receptacle: String,
     },
     /// There is no room left on the floor or the walls.
-    #[error("build the world: no free place was found for `{object}` in {room}", room = room.id())]
+    #[error("build the world: no free place was found for `{object}` in the {room}")]
     NoFreeSpot {
         /// The instance id.
         object: String,
-        /// The room.
-        room: RoomId,
+        /// The room, as people call it.
+        room: String,
     },
     /// The floor plan names something that stands on what comes later, or is not there.
     #[error(
@@ -193,7 +197,7 @@ impl Builder<'_> {
         if self.floor.rects(room).next().is_some() {
             return Ok(room);
         }
-        Err(BuildError::NoSuchRoom { object: object.to_owned(), room, layout: self.layout.id.clone() })
+        Err(no_such_room(self.catalog, self.layout, object, room))
     }
 
     /// Gives each gap its door.
@@ -216,6 +220,14 @@ impl Builder<'_> {
             }
         }
     }
+}
+
+/// A floor plan lacks a room.
+pub(crate) fn no_such_room(catalog: &Catalog, layout: &Layout, object: &str, room: RoomId) -> BuildError {
+    // One that the world lacks has no name.
+    let name = catalog.rooms().get(room).map_or_else(|| room.to_string(), |entry| entry.name.clone());
+    let rooms: Vec<&str> = layout.rooms.iter().map(|room| room.id.id()).collect();
+    BuildError::NoSuchRoom { object: object.to_owned(), room: name, layout: layout.id.clone(), rooms: rooms.join(", ") }
 }
 
 /// Where a new body can stand in a room, and its heading.

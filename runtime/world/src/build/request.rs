@@ -230,7 +230,9 @@ impl Builder<'_> {
         let open: Vec<ObjectId> = facts
             .state
             .existing()
-            .filter(|(_, object)| room.map_or(object.room != RoomId::Hallway, |room| object.room == room))
+            .filter(|(_, object)| {
+                room.map_or_else(|| !facts.catalog.rooms().is_corridor(object.room), |room| object.room == room)
+            })
             .map(|(other, _)| other)
             .filter(|other| *other != id && !facts.has(*other, Property::Pickupable))
             .filter(|other| !facts.has(*other, Property::Toggleable) && !facts.has(*other, Property::Powerable))

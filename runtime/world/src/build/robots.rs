@@ -29,8 +29,8 @@ impl Builder<'_> {
         let (position, yaw_rad, room) = match self.wanted_place(floor, request, room) {
             Some(place) => place,
             None => {
-                let (position, yaw_rad) = start(&self.facts(), floor, self.layout, room)
-                    .ok_or_else(|| BuildError::NoFreeSpot { object: NAME.to_owned(), room })?;
+                let (position, yaw_rad) =
+                    start(&self.facts(), floor, self.layout, room).ok_or_else(|| self.no_free_spot(NAME, room))?;
                 (position, yaw_rad, room)
             }
         };

@@ -46,7 +46,7 @@ impl Builder<'_> {
                 return Ok(());
             }
         }
-        Err(BuildError::NoFreeSpot { object: self.state.at(id).instance.clone(), room })
+        Err(self.no_free_spot(&self.state.at(id).instance, room))
     }
 
     /// Hangs an object somewhere free on a wall of a room.
@@ -72,7 +72,12 @@ impl Builder<'_> {
                 return Ok(());
             }
         }
-        Err(BuildError::NoFreeSpot { object: self.state.at(id).instance.clone(), room })
+        Err(self.no_free_spot(&self.state.at(id).instance, room))
+    }
+
+    /// A room is full.
+    pub(super) fn no_free_spot(&self, object: &str, room: RoomId) -> BuildError {
+        BuildError::NoFreeSpot { object: object.to_owned(), room: room.name_in(self.catalog).to_owned() }
     }
 
     fn fix(&mut self, id: ObjectId, pose: Pose, room: RoomId) {

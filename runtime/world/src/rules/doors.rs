@@ -1,6 +1,6 @@
 //! Doors between rooms: who stands in them, and those that security buttons work.
 
-use cohabit_cdf::{ObjectId, RoomId, StateFlag};
+use cohabit_cdf::{ObjectId, StateFlag};
 
 use crate::{effect::Effect, facts::Facts, report::SoundKind};
 
@@ -11,10 +11,11 @@ pub(crate) fn is_doorway_clear(facts: &Facts<'_>, door: ObjectId) -> bool {
     })
 }
 
-/// The doors that security buttons work: those of the reception.
+/// The doors that security buttons work: those of secured rooms, such as the reception.
 pub(crate) fn doors_of_buttons(facts: &Facts<'_>) -> Vec<ObjectId> {
-    let at_reception = facts.floor.gaps.iter().filter(|gap| gap.between.contains(&RoomId::Reception));
-    at_reception.filter_map(|gap| gap.door_object).filter(|door| facts.object(*door).exists()).collect()
+    let rooms = facts.catalog.rooms();
+    let secured = facts.floor.gaps.iter().filter(|gap| gap.between.iter().any(|room| rooms.is_secured(*room)));
+    secured.filter_map(|gap| gap.door_object).filter(|door| facts.object(*door).exists()).collect()
 }
 
 /// Whether a press of a security button opens its doors: one of them is shut.

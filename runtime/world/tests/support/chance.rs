@@ -40,7 +40,7 @@ impl Chance {
 /// A world of a floor plan drawn at random, with things and devices in states drawn at random.
 pub fn world(catalog: &Arc<Catalog>, chance: &mut Chance) -> Option<World> {
     let layout = Layout::builtin(&Layout::builtin_ids()[chance.below(Layout::builtin_ids().len())]).unwrap();
-    let rooms: Vec<RoomId> = layout.rooms.iter().map(|room| room.id).filter(|room| *room != RoomId::Hallway).collect();
+    let rooms: Vec<RoomId> = layout.rooms.iter().map(|room| room.id).filter(|room| *room != RoomId::HALLWAY).collect();
     let start_room = rooms[chance.below(rooms.len())];
     let classes = catalog.classes();
     let tools: Vec<usize> = named(classes, |class| is_of_use(catalog, class));

@@ -73,7 +73,7 @@ impl Player {
         let interact = |verb| Action::Interact { verb, object: id(what) };
         match verb {
             "goto" => Action::GoTo { target: GoToTarget::Object(id(what)) },
-            "room" => Action::GoTo { target: GoToTarget::Room(RoomId::from_id(what).unwrap()) },
+            "room" => Action::GoTo { target: GoToTarget::Room(RoomId::new(what).unwrap()) },
             "pickup" => Action::PickUp { object: id(what) },
             "place" => Action::Place { receptacle: id(what) },
             "open" => interact(Verb::Open),

@@ -35,7 +35,7 @@ pub fn life(catalog: &Arc<Catalog>, number: usize) -> Option<Life> {
     let missions = cohabit_cdf::mission::builtin();
     if let Some((name, text)) = missions.get(number) {
         let mut world = world(name, text, 11);
-        world.add_body(BodyKind::Robot, RoomId::MainOffice).unwrap();
+        world.add_body(BodyKind::Robot, RoomId::MAIN_OFFICE).unwrap();
         return Some(Life::new(name.trim_end_matches(".json"), world, number as u64));
     }
     let layouts = cohabit_cdf::Layout::builtin_ids();

@@ -293,7 +293,7 @@ impl Candidate<'_> {
 }
 
 fn room(pick: u16) -> RoomId {
-    RoomId::ALL[usize::from(pick) % RoomId::ALL.len()]
+    RoomId::BUILTIN[usize::from(pick) % RoomId::BUILTIN.len()]
 }
 
 /// What a command is called where commands are counted.
@@ -322,8 +322,8 @@ pub fn verbs() -> Vec<String> {
         Action::Stop,
         Action::Drive { forward_m_s: 0.0, turn_rad_s: 0.0, pitch_rad_s: 0.0 },
         Action::GoTo { target: GoToTarget::Object(object) },
-        Action::GoTo { target: GoToTarget::Room(RoomId::Lab1) },
-        Action::GoTo { target: GoToTarget::Viewpoint(RoomId::Lab1, 1) },
+        Action::GoTo { target: GoToTarget::Room(RoomId::LAB1) },
+        Action::GoTo { target: GoToTarget::Viewpoint(RoomId::LAB1, 1) },
         Action::GoTo { target: GoToTarget::Point([0.0; 2]) },
     ];
     all.extend(Verb::ALL.map(|verb| Action::Interact { verb, object }));

@@ -209,12 +209,12 @@ const LABORATORY_ERRANDS: &[&[&str]] = &[
 
 /// The world of [`Scene::kitchen`].
 pub fn kitchen(catalog: &Arc<Catalog>, layout: &str) -> World {
-    furnished(catalog, layout, RoomId::BreakRoom, KITCHEN)
+    furnished(catalog, layout, RoomId::BREAK_ROOM, KITCHEN)
 }
 
 /// The world of [`Scene::laboratory`].
 pub fn laboratory(catalog: &Arc<Catalog>, layout: &str) -> World {
-    furnished(catalog, layout, RoomId::Lab1, LABORATORY)
+    furnished(catalog, layout, RoomId::LAB1, LABORATORY)
 }
 
 /// A world of a mission that asks for these things in a room, with another robot there, and a person in the main office.
@@ -234,7 +234,7 @@ fn furnished(catalog: &Arc<Catalog>, layout: &str, room: RoomId, things: &[Thing
     };
     let layout = Arc::new(Layout::builtin(layout).unwrap());
     let mut world = World::new(Arc::clone(catalog), layout, Arc::new(mission), 5).unwrap();
-    world.add_body(BodyKind::Person, RoomId::MainOffice).unwrap();
+    world.add_body(BodyKind::Person, RoomId::MAIN_OFFICE).unwrap();
     world.add_body(BodyKind::Robot, room).unwrap();
     world
 }

@@ -19,7 +19,7 @@ pub fn request(line: &str) -> ObjectRequest {
         let mut next = || words.next().unwrap().to_owned();
         match word {
             "in" => request.inside = Some(next()),
-            "at" => request.room = RoomId::from_id(&next()),
+            "at" => request.room = RoomId::new(&next()),
             "yesterday" => request.yesterday = Some(next()),
             "prints" => request.prints = Some(next()),
             "filled" => request.fluid = Fluid::from_name(&next()),
@@ -61,7 +61,7 @@ pub fn play(mission: Mission) -> Player {
 
 /// Runs `lines`, of which the last must come to `expected`; all before must succeed.
 pub fn check(wishes: &[&str], lines: &[&str], expected: Status) -> Player {
-    let mut player = player(RoomId::BreakRoom, wishes);
+    let mut player = player(RoomId::BREAK_ROOM, wishes);
     let (last, before) = lines.split_last().unwrap();
     player.must(before);
     let outcome = player.run(last);

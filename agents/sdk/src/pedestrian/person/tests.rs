@@ -1,6 +1,6 @@
 //! Pedestrians with bodies that do at once as they are told, on bare floors.
 
-use cohabit_cdf::RoomId;
+use cohabit_cdf::{Catalog, RoomId};
 
 use super::*;
 use crate::pedestrian::Schedule;
@@ -8,14 +8,14 @@ use crate::pedestrian::Schedule;
 fn floor() -> Floor {
     Floor {
         obstacles: Vec::new(),
-        viewpoints: vec![(RoomId::Lab1, 1, Vec2::new(0.0, 4.0)), (RoomId::Lab1, 2, Vec2::new(4.0, 4.0))],
+        viewpoints: vec![(RoomId::LAB1, 1, Vec2::new(0.0, 4.0)), (RoomId::LAB1, 2, Vec2::new(4.0, 4.0))],
         doors: Vec::new(),
         path: Box::new(|_: Vec2, to: Vec2| (to.x < 100.0).then(|| vec![to])),
     }
 }
 
 fn person(schedule: &str, seed: u64) -> Person {
-    let schedule = Schedule::parse("a.toml", schedule).unwrap();
+    let schedule = Schedule::parse("a.toml", schedule, &Catalog::builtin()).unwrap();
     Person::new(1, schedule.entries(1), seed)
 }
 

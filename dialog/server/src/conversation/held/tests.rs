@@ -320,7 +320,7 @@ fn a_conversation_goes_on_with_what_it_held_back() {
 fn clicks_are_done_without_a_word_and_noted() {
     let mut conversation = with_wizard(0, None);
     let click = |turn, click| Decision::Click { turn, click, chosen_ms: Some(700.0) };
-    let outbox = decide(&mut conversation, click(None, Click::Room { room: RoomId::Reception }), 2000);
+    let outbox = decide(&mut conversation, click(None, Click::Room { room: RoomId::RECEPTION }), 2000);
     assert!(plans(&outbox) && says(&outbox).is_empty(), "{outbox:?}");
     let record = &records(&outbox)[0];
     assert_eq!((record.outcome, record.chosen_ms), (DecisionOutcome::Unprompted, Some(700.0)));
@@ -342,7 +342,7 @@ fn planned_errors_take_the_place_of_what_was_proposed_and_are_marked() {
     let turn = say(&mut conversation, SAID);
     let outbox = decide(&mut conversation, inject(Some(turn), "wrong room"), 2000);
     assert!(says(&outbox).contains("main office"), "it says what it would have said: {}", says(&outbox));
-    let reception = Action::GoTo { target: GoToTarget::Room(RoomId::Reception) };
+    let reception = Action::GoTo { target: GoToTarget::Room(RoomId::RECEPTION) };
     let does = |item: &Outgoing| match item {
         Outgoing::Plan { steps, .. } => steps.iter().any(|step| step.action == reception),
         _ => false,

@@ -63,7 +63,7 @@ impl Stage {
         let bus: Arc<dyn Transport> = Arc::new(Local::new(1));
         let catalog = Arc::clone(language.catalog());
         let layout = Arc::new(Layout::builtin("OfficeLayout1").unwrap());
-        let room = RoomId::ALL.iter().position(|room| *room == RoomId::BreakRoom).unwrap() as u32;
+        let room = RoomId::BUILTIN.iter().position(|room| *room == RoomId::BREAK_ROOM).unwrap() as u32;
         let body = BodyRecord { room, held: NONE, position_m: [4.0, 10.0, 0.0], ..BodyRecord::default() };
         let names = [RobotName { body: BodyId(0), name: "robot".to_owned() }];
         let (knows, told) = (Knows::Everything, BodyNames::default());

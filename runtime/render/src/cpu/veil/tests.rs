@@ -52,7 +52,7 @@ fn scene(things: &[(&str, f32)]) -> (Scene, Vec<Instance>) {
         color: Color::Original,
         opened: 0.0,
         running: 0.0,
-        room: RoomId::Lab1,
+        room: RoomId::LAB1,
         visible: true,
     };
     let instances: Vec<Instance> = things.iter().enumerate().map(of).collect();
