@@ -234,7 +234,7 @@ impl WorldData {
         for pack in &packs {
             for (file, _) in &pack.layouts {
                 let plan = Layout::find(ids::stem(file), &catalog)?;
-                limits::check_plan(file, &plan)?;
+                limits::check_plan(file, &plan, &catalog)?;
                 rooms::check_plan(file, &plan, catalog.rooms())?;
             }
         }

@@ -1,7 +1,7 @@
 //! What bodies sense of a world: taken from the world itself, or from the records that its simulator published.
 
 use cohabit_bus::message::{BodyRecord, NONE, ObjectRecord};
-use cohabit_cdf::{BodyId, ObjectId};
+use cohabit_cdf::{BodyId, Catalog, ObjectId};
 use cohabit_world::{BodyView, ObjectView, World};
 
 use crate::library::Library;

@@ -51,11 +51,14 @@ mod _native {
     fn tables(module: &Bound<'_, PyModule>) -> PyResult<()> {
         use cohabit_cdf::{BodyKind, Color, Fluid, StateFlag, Status, Verb};
 
-        use crate::{choice::Choice, library::catalog};
+        use crate::{choice::Choice, library::Library};
 
         module.add("VERSION", env!("CARGO_PKG_VERSION"))?;
         module.add("CHOICES", Choice::all().map(|choice| (choice.name(), choice.takes_slot())).collect::<Vec<_>>())?;
-        module.add("ROOMS", catalog().rooms().all().iter().map(|room| room.id.id()).collect::<Vec<_>>())?;
+        module.add(
+            "ROOMS",
+            Library::builtin().catalog().rooms().all().iter().map(|room| room.id.id()).collect::<Vec<_>>(),
+        )?;
         module.add("KINDS", BodyKind::ALL.map(BodyKind::name).to_vec())?;
         module.add("COLORS", Color::ALL.map(Color::name).to_vec())?;
         module.add("FLUIDS", Fluid::ALL.map(Fluid::name).to_vec())?;

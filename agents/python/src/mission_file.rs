@@ -82,6 +82,7 @@ impl MissionFile {
 #[pyfunction]
 #[pyo3(signature = (name=None, world=Vec::new()))]
 pub fn mission_text(name: Option<&str>, world: Vec<String>) -> PyResult<(String, String)> {
-    let file = MissionFile::find(name, &Library::with_packs(&world)?).map_err(bad_argument)?;
+    let library = Library::with_packs(&world)?;
+    let file = MissionFile::find(name, &library).map_err(bad_argument)?;
     Ok((file.name, file.text))
 }

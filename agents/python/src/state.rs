@@ -30,7 +30,7 @@ pub struct Body {
     /// `robot` or `person`.
     pub kind: &'static str,
     /// Its room's id.
-    pub room: &'static str,
+    pub room: String,
     /// The number of the object that it holds.
     pub held: Option<u32>,
     /// Whether it carries out a command.
@@ -63,7 +63,7 @@ pub struct Object {
     /// What people call it.
     pub name: String,
     /// Its room's id.
-    pub room: &'static str,
+    pub room: String,
     /// The states it is in, of `FLAGS`.
     pub flags: Vec<String>,
     /// One of `COLORS`.
@@ -125,20 +125,20 @@ fn some(index: u32) -> Option<u32> {
     (index != NONE).then_some(index)
 }
 
-fn room_id(index: u32) -> &'static str {
-    catalog().rooms().all().get(index as usize).map_or("", |room| room.id.id())
+fn room_id(index: u32, catalog: &Catalog) -> String {
+    catalog.rooms().at(index).map_or_else(String::new, |room| room.id().to_owned())
 }
 
 fn flag_names(bits: u32) -> Vec<String> {
     StateFlags(bits).iter().map(|flag| format!("{flag:?}")).collect()
 }
 
-impl From<&BodyRecord> for Body {
-    fn from(record: &BodyRecord) -> Self {
+impl Body {
+    fn of(record: &BodyRecord, catalog: &Catalog) -> Self {
         Self {
             id: record.body,
             kind: BodyKind::ALL.get(record.kind as usize).map_or("", |kind| kind.name()),
-            room: room_id(record.room),
+            room: room_id(record.room, catalog),
             held: some(record.held),
             busy: record.busy != 0,
             command: record.command,
@@ -160,7 +160,7 @@ impl Object {
             instance: record.instance.as_str().to_owned(),
             class_id: class.map_or_else(String::new, |class| class.id.clone()),
             name: class.map_or_else(String::new, |class| class.name.clone()),
-            room: room_id(u32::from(record.room)),
+            room: room_id(u32::from(record.room), catalog),
             flags: flag_names(record.flags),
             color: Color::ALL.get(usize::from(record.color)).map_or("", |color| color.name()),
             fluid: Fluid::ALL.get(usize::from(record.fluid)).map_or("", |fluid| fluid.name()),
@@ -287,16 +287,16 @@ impl State {
 
     /// The ids of the rooms whose lights are on.
     #[getter]
-    fn lit_rooms(&self) -> Vec<&'static str> {
+    fn lit_rooms(&self) -> Vec<String> {
         let bits = self.view().header.lit_rooms;
-        let rooms = (0_u64..).zip(catalog().rooms().all());
-        rooms.filter(|(index, _)| bits >> index & 1 == 1).map(|(_, room)| room.id.id()).collect()
+        let rooms = (0_u64..).zip(self.library.catalog().rooms().ids());
+        rooms.filter(|(index, _)| bits >> index & 1 == 1).map(|(_, room)| room.id().to_owned()).collect()
     }
 
     /// All bodies, by their numbers.
     #[getter]
     fn bodies(&self) -> Vec<Body> {
-        self.view().bodies.iter().map(Body::from).collect()
+        self.view().bodies.iter().map(|record| Body::of(record, self.library.catalog())).collect()
     }
 
     /// All objects that are in the world, by their numbers.

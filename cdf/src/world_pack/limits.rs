@@ -5,7 +5,7 @@ use toml::{Table, Value};
 
 use super::{PackError, PackFile};
 use crate::{
-    catalog::ObjectClass,
+    catalog::{Catalog, ObjectClass},
     layout::Layout,
     model::Model,
     nearest::did_you_mean,
@@ -142,7 +142,7 @@ pub(super) fn check_models(files: &[(String, String)]) -> Result<(), PackError> 
 }
 
 /// A floor plan has rooms, and is of a size that is walked in.
-pub(super) fn check_plan(file: &str, plan: &Layout) -> Result<(), PackError> {
+pub(super) fn check_plan(file: &str, plan: &Layout, catalog: &Catalog) -> Result<(), PackError> {
     let fault = |at: &str, reason: String, remedy: &str| Err(PackError::at(file, at, reason, remedy));
     if plan.rooms.is_empty() {
         return fault("room", "there is none".to_owned(), "write at least one, or name a `base`");
@@ -173,7 +173,7 @@ pub(super) fn check_plan(file: &str, plan: &Layout) -> Result<(), PackError> {
         let reason = format!("{:?} is no scale", placement.scale);
         return fault(&at, reason, &format!("above 0, and at most {LARGEST_SCALE}"));
     }
-    match plan.rooms_without_a_way().first() {
+    match plan.rooms_without_a_way(catalog).first() {
         Some(without) => fault("room", without.to_string(), &without.remedy()),
         None => Ok(()),
     }

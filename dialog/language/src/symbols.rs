@@ -120,7 +120,15 @@ mod tests {
             in_mission: false,
         });
         let objects = objects.collect();
-        Known { robot, objects, mission: String::new(), goals: Vec::new(), floor: None, person: None }
+        Known {
+            robot,
+            objects,
+            mission: String::new(),
+            goals: Vec::new(),
+            rooms: Vec::new(),
+            floor: None,
+            person: None,
+        }
     }
 
     #[test]

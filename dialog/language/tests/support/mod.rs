@@ -181,6 +181,7 @@ pub fn scene(catalog: &Catalog, marks: &[&str]) -> Known {
             KnownGoal { text: "Repair the bowl".to_owned(), met: true },
             KnownGoal { text: "Pour milk into the bowl".to_owned(), met: false },
         ],
+        rooms: Vec::new(),
         floor: None,
         person: None,
     };

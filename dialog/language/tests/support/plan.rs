@@ -37,7 +37,7 @@ fn furnished(catalog: &Catalog, layout: &str, room: RoomId) -> Known {
     let viewpoint = layout.viewpoints.iter().find(|viewpoint| viewpoint.room == room).unwrap();
     let [x, y] = viewpoint.at_m;
     let robot = KnownRobot { position_m: [x, y, 0.0], yaw_rad: 0.0, room, held: None };
-    Known { robot, objects, mission: String::new(), goals: Vec::new(), floor: None, person: None }
+    Known { robot, objects, mission: String::new(), goals: Vec::new(), rooms: Vec::new(), floor: None, person: None }
 }
 
 /// Puts a thing of the mission on or in the nearest of `parent`.

@@ -89,7 +89,7 @@ impl Checking<'_, '_> {
             }
             (_, Unit::Pair) => *kind,
             (_, Unit::Participant) => {
-                if let Some(other) = set.iter().find(|name| !is_own(*name)) {
+                if let Some(other) = set.iter().find(|name| !is_own(name)) {
                     let message = format!("`{}` is of the session, which both of a pair play", other.get_ref());
                     let remedy = format!("leave `unit` out: the two of a pair can differ in {own} alone");
                     self.findings.add(other.span(), &place, message, remedy);
