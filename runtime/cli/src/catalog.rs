@@ -203,7 +203,7 @@ fn rooms(catalog: &Catalog, plans: &[Layout]) -> Sheet {
         }
     }
     let row = |(room, plans): (RoomId, Vec<String>)| {
-        let words = catalog.room_names(room.id()).map(|names| names.words.clone()).unwrap_or_default();
+        let words = catalog.rooms().get(room).map(|entry| entry.words.clone()).unwrap_or_default();
         let name = room.name_in(catalog).to_owned();
         vec![Cell::Text(room.id().to_owned()), Cell::Text(name), Cell::Several(words), Cell::Several(plans)]
     };

@@ -9,7 +9,7 @@ use std::{
 use clap::Parser as _;
 use cohabit_cdf::mission::goal_kinds;
 use cohabit_tests::{Block, Call, blocks, commands};
-use pulldown_cmark::{Event, HeadingLevel, Tag, TagEnd};
+use pulldown_cmark::{Event, HeadingLevel, Tag};
 
 use super::{
     book::{PAGES, PICTURES, SUMMARY, Target, from_root, page, target},

@@ -7,7 +7,7 @@ use cohabit_cdf::{PackFile, WorldData};
 use cohabit_engine::SessionPlan;
 use cohabit_study::Program;
 
-use crate::{mission_file::MissionFile, play::Play, world};
+use crate::{mission_file::MissionFile, play::Play};
 
 /// This program.
 pub struct ThisProgram;
