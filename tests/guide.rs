@@ -81,6 +81,7 @@ pages! {
     evaluation: "runtime/guide/src/evaluation.md",
     expert: "runtime/guide/src/expert.md",
     first_session: "runtime/guide/src/first-session.md",
+    goals: "runtime/guide/src/goals.md",
     how_it_works: "runtime/guide/src/how-it-works.md",
     language_model: "runtime/guide/src/language-model.md",
     latency: "runtime/guide/src/latency.md",

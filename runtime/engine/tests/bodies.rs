@@ -106,5 +106,5 @@ fn there_can_be_many() {
     let world = plan(&crowd).build().unwrap();
     assert_eq!(world.bodies().len(), 13);
     let full = plan(&["robot@SmallOffice"; 200]).build().err().unwrap().to_string();
-    assert!(full.contains("no free place") && full.contains("SmallOffice"), "{full}");
+    assert!(full.contains("no free place") && full.contains("small office"), "{full}");
 }

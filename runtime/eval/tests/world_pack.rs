@@ -65,7 +65,7 @@ effects = [{ if = ["thing affords HEATABLE"], do = ["set thing Hot", "clear thin
         "layouts/Galley.toml",
         r#"
 base = "Workshop"
-placement = [{ instance = "KettleStand_01_1", room = "SmallOffice", at_m = [5.60, 1.2, 0.0], yaw_deg = 180.0 }]
+placement = [{ instance = "KettleStand_01_1", room = "Workshop", at_m = [5.60, 1.2, 0.0], yaw_deg = 180.0 }]
 "#,
     ),
 ];
@@ -127,7 +127,7 @@ fn warm_soup(world: &WorldData) -> String {
         ("Degreaser_01_1", "KettleStand_01_1"),
         (", {\"isDirty\": \"true\"}", ""),
         ("isDirty=false", "isHot=true"),
-        ("\"Workshop\"", "\"Galley\""),
+        ("\"layoutOverride\": \"Workshop\"", "\"layoutOverride\": \"Galley\""),
     ]
     .into_iter()
     .fold(text.to_owned(), |text, (from, to)| {
