@@ -67,7 +67,8 @@ function labelOf({ id, name, rects }) {
   }
   const [x, y] = [(west + east) / 2, -(south + north) / 2];
   const turn = turned ? ` rotate(-90)` : "";
-  return drawn("text", { class: "map-label", "data-room": id, transform: `translate(${x} ${y})${turn}` },
+  const size = Math.min(1, room / Math.max(...lines.map(width)));
+  return drawn("text", { class: "map-label", "data-room": id, transform: `translate(${x} ${y})${turn} scale(${size})` },
     ...lines.map((line, index) => {
       const span = drawn("tspan", { x: 0, y: (index - (lines.length - 1) / 2) * LINE_M + LABEL_M * 0.35 });
       span.textContent = line;
@@ -84,9 +85,11 @@ class Floor {
     this.steppedAt = 0;
     this.moving = false;
     this.notesShown = "";
+    this.plan = [];
   }
 
   build({ rooms, openings, furniture }) {
+    this.plan = rooms;
     const rects = rooms.flatMap((room) => room.rects);
     const [west, south] = [0, 1].map((side) => Math.min(...rects.map((rect) => rect[side])) - MARGIN_M);
     const [east, north] = [2, 3].map((side) => Math.max(...rects.map((rect) => rect[side])) + MARGIN_M);

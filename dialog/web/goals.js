@@ -2,7 +2,7 @@
 
 import { byId, calm, capitalised, drawn, element, narrow } from "./dom.js";
 import { floor } from "./floor.js";
-import { endDoing, input } from "./talk.js";
+import { endDoing, input, offerRoom } from "./talk.js";
 import { language, text } from "./texts.js";
 
 let goalsShown = "";
@@ -16,6 +16,7 @@ export function takeState(state) {
   showScore(state.score);
   showRobot(state.robot);
   floor.follow(state.robot);
+  if (state.robot && !byId("chips").hidden) offerRoom(floor.plan, state.robot.room);
   floor.showOthers(state.others);
   floor.showNotes(state.notes);
   showGoals(state.goals);

@@ -31,6 +31,15 @@ export function meet(robots) {
   byId("called").textContent = named.length ? words("call_by_name", { names: named.join(", ") }) : "";
 }
 
+/** Offers a walk to the largest room that the robot is not in. */
+export function offerRoom(rooms, here) {
+  const area = ({ rects }) => rects.reduce((sum, [w, s, e, n]) => sum + (e - w) * (n - s), 0);
+  const others = rooms.filter(({ id }) => id !== here).sort((a, b) => area(b) - area(a));
+  const chip = byId("chip-room");
+  chip.hidden = !others.length;
+  chip.textContent = others.length ? `go to the ${others[0].name}` : "";
+}
+
 /** Who says a line: a name where it is neither this person nor the one robot. */
 function speakerOf({ from, body, visitor: by }) {
   if (from === "person") return by === undefined || by === visitor ? "" : words("person_number", { number: by });
