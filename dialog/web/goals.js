@@ -124,11 +124,13 @@ function placeGoals() {
   else byId("view").after(byId("goals"));
 }
 
-// What does not fit is scrolled by the keyboard, too.
-new ResizeObserver(([{ target }]) => {
-  if (target.scrollHeight > target.clientHeight) target.tabIndex = 0;
-  else target.removeAttribute("tabindex");
-}).observe(byId("goals-body"));
+// What does not fit is scrolled by the keyboard, too, also if it has grown within a place that has not.
+const body = byId("goals-body");
+const fitting = new ResizeObserver(() => {
+  if (body.scrollHeight > body.clientHeight) body.tabIndex = 0;
+  else body.removeAttribute("tabindex");
+});
+for (const part of [body, ...body.children]) fitting.observe(part);
 byId("goals-toggle").addEventListener("click", () => expandGoals(byId("goals").classList.contains("collapsed")));
 narrow.addEventListener("change", () => {
   placeGoals();

@@ -12,7 +12,7 @@ use std::{
 use cohabit_tests::{Browser, Scratch, Tab, files, run};
 use serde_json::{Value, json};
 
-use crate::COHABIT;
+use crate::{COHABIT, accessibility};
 
 /// The longest that an answer is waited for.
 const WATCHDOG: Duration = Duration::from_secs(60);
@@ -243,19 +243,22 @@ fn press(tab: &mut Tab, key: &str) {
 }
 
 #[test]
-#[cfg_attr(not(browser), ignore = "needs a browser")]
+#[cfg_attr(not(all(browser, python)), ignore = "needs a browser, and Python 3.10 or later with venv")]
 fn two_people_annotate_an_episode_in_a_browser() {
     let scratch = Scratch::new("annotate-browser");
     let folder = dataset(&scratch, "color");
     let server = Server::start(&folder, "ana,bo");
     let browser = Browser::start().unwrap();
     let address = |number: usize| format!("http://{}{}", server.host, server.pages[number]);
+    let mut stranger = browser.open(&format!("http://{}/a/unknown", server.host), 390, 844).unwrap();
+    stranger.wait_until("document.querySelector('h1')?.textContent === 'This link is not known'").unwrap();
+    accessibility::check(&mut stranger, "a link that no annotator has");
     let mut ana = browser.open(&address(0), 390, 844).unwrap();
     wait_for_title(&mut ana, "What would you tell the robot?");
     // The pictures are there, and are played by the keyboard alone.
     ana.wait_until("document.querySelector('#picture').naturalWidth === 64").unwrap();
-    crate::accessibility::check(&mut ana, "an annotator's page");
-    crate::accessibility::check_keyboard(&mut ana, "an annotator's page");
+    accessibility::check(&mut ana, "an annotator's page with a segment");
+    accessibility::check_keyboard(&mut ana, "an annotator's page with a segment");
     let at = "document.querySelector('#scrub').value";
     ana.evaluate("document.querySelector('#film').focus()").unwrap();
     press(&mut ana, "ArrowRight");
@@ -274,6 +277,7 @@ fn two_people_annotate_an_episode_in_a_browser() {
     ana.wait_until("document.querySelector('#text')?.value === 'Make me '").unwrap();
     write(&mut ana, "cereal");
     wait_for_title(&mut ana, "Nothing to do at the moment");
+    accessibility::check(&mut ana, "an annotator's page without a task");
 
     let mut bo = browser.open(&address(1), 1280, 800).unwrap();
     wait_for_title(&mut bo, "What would you ask?");
@@ -281,8 +285,10 @@ fn two_people_annotate_an_episode_in_a_browser() {
     assert_eq!(bo.evaluate("document.querySelector('#scrub').max").unwrap(), json!("0"), "before the first step");
     bo.evaluate("document.querySelector('#send').click()").unwrap();
     bo.wait_until("document.querySelector('#problem').textContent.startsWith('Please write something')").unwrap();
+    accessibility::check(&mut bo, "an annotator's page that lacks a text");
     bo.evaluate("document.querySelector('#skip').click()").unwrap();
     bo.wait_until("document.querySelectorAll('#reasons [data-reason]').length === 3").unwrap();
+    accessibility::check(&mut bo, "the question why a task is skipped");
     press(&mut bo, "Escape");
     bo.evaluate("document.querySelector('#skip-card').close()").unwrap();
     write(&mut bo, "Which bowl?");
@@ -293,6 +299,7 @@ fn two_people_annotate_an_episode_in_a_browser() {
     assert_eq!(ana.evaluate("document.querySelectorAll('#read dd')[1].textContent").unwrap(), json!("Which bowl?"));
     ana.evaluate("document.querySelector('#own-list button').click()").unwrap();
     ana.wait_until("document.querySelector('#own-card').open").unwrap();
+    accessibility::check(&mut ana, "a text of an annotator's that is corrected");
     ana.evaluate("document.querySelector('#own-text').value = 'Make cereal'").unwrap();
     ana.evaluate("document.querySelector('#own-form .chief').click()").unwrap();
     ana.wait_until("!document.querySelector('#own-card').open").unwrap();
@@ -301,7 +308,7 @@ fn two_people_annotate_an_episode_in_a_browser() {
     let problems: Vec<_> = ana.problems().iter().chain(bo.problems()).collect();
     assert_eq!(problems, [] as [&String; 0]);
 
-    drop((ana, bo, browser, server));
+    drop((ana, bo, stranger, browser, server));
     let (text, code) = cohabit(&["annotate", &folder, "--export", "--agreement"]);
     assert!(code == Some(0) && text.contains("1 instructions, 1 questions and 1 answers"), "{text}");
     let episode = fs::read_to_string(format!("{folder}/episodes/000000/episode.json")).unwrap();

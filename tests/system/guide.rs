@@ -7,8 +7,9 @@ use std::{
     time::Duration,
 };
 
-use cohabit_tests::{Browser, run};
+use cohabit_tests::{Browser, Tab, run};
 use rustix::process::{Pid, Signal, kill_process};
+use serde_json::{Value, json};
 
 use crate::{COHABIT, accessibility};
 
@@ -56,6 +57,13 @@ impl Drop for Served {
     }
 }
 
+/// A page of the guide in a browser.
+fn open(browser: &Browser, served: &Served, path: &str) -> Tab {
+    let mut tab = browser.open(&format!("http://{}{path}", served.address), 1280, 800).unwrap();
+    tab.wait_until("document.readyState === 'complete' && document.querySelector('main h1') !== null").unwrap();
+    tab
+}
+
 /// Addresses of this site that a page refers to, without headings.
 fn addresses(html: &str) -> Vec<String> {
     let parts = ["href=\"/", "src=\"/"].into_iter().flat_map(|mark| html.split(mark).skip(1));
@@ -93,15 +101,29 @@ fn each_page_and_all_that_it_refers_to_is_served_and_nothing_to_other_sites() {
 }
 
 #[test]
-#[cfg_attr(not(browser), ignore = "needs a browser")]
+#[cfg_attr(not(all(browser, python)), ignore = "needs a browser, and Python 3.10 or later with venv")]
 fn everybody_can_use_the_guide() {
     let served = Served::start();
     let browser = Browser::start().unwrap();
     for path in ["/", "/study", "/nowhere"] {
-        let mut tab = browser.open(&format!("http://{}{path}", served.address), 1280, 800).unwrap();
-        tab.wait_until("document.readyState === 'complete' && document.querySelector('main h1') !== null").unwrap();
-        accessibility::check(&mut tab, path);
+        let mut tab = open(&browser, &served, path);
+        for scheme in ["dark", "light"] {
+            accessibility::wish(&mut tab, "prefers-color-scheme", scheme);
+            accessibility::check(&mut tab, &format!("{path}, {scheme}"));
+        }
+        accessibility::check_with_more_contrast(&mut tab, path);
         accessibility::check_keyboard(&mut tab, path);
+    }
+    // All others are looked over at one size.
+    let mut tab = open(&browser, &served, "/");
+    let list = "[...document.querySelectorAll('.contents a')].map((one) => one.pathname)";
+    let paths = tab.evaluate(list).unwrap();
+    let paths: Vec<&str> = paths.as_array().unwrap().iter().filter_map(Value::as_str).collect();
+    assert!(paths.contains(&"/study"), "{paths:?}");
+    for path in paths {
+        tab.call("Page.navigate", &json!({ "url": format!("http://{}{path}", served.address) })).unwrap();
+        tab.wait_until(&format!("location.pathname === '{path}' && document.readyState === 'complete'")).unwrap();
+        accessibility::check_here(&mut tab, path);
     }
 }
 

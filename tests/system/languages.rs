@@ -10,7 +10,7 @@ use crate::{COHABIT, accessibility};
 const GERMAN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../dialog/web/texts/de.toml");
 
 #[test]
-#[cfg_attr(not(browser), ignore = "needs a browser")]
+#[cfg_attr(not(all(browser, python)), ignore = "needs a browser, and Python 3.10 or later with venv")]
 fn a_german_page_is_german_and_says_that_the_robot_speaks_english() {
     let browser = Browser::start().unwrap();
     let german = ["cold_soda", "--seed", "5", "--page-language", "de", "--body", "person"];

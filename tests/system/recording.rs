@@ -16,7 +16,7 @@ use cohabit_tests::{Browser, Page, Play, run};
 use rustix::process::{Pid, Signal, kill_process};
 use serde_json::json;
 
-use crate::COHABIT;
+use crate::{COHABIT, accessibility};
 
 /// What `cohabit replay` says of a log, which it must find to be the same.
 fn replayed(log: &Path, options: &[&str]) -> String {
@@ -226,7 +226,7 @@ fn a_session_is_played_again_on_the_page() {
 }
 
 #[test]
-#[cfg_attr(not(browser), ignore = "needs a browser")]
+#[cfg_attr(not(all(browser, python)), ignore = "needs a browser, and Python 3.10 or later with venv")]
 fn a_browser_plays_a_session_again() {
     let ended = play("cold_soda", &[]);
     let last = Log::open(&ended.log).unwrap().ticks.last().unwrap().tick;
@@ -240,6 +240,7 @@ fn a_browser_plays_a_session_again() {
         .unwrap();
     tab.wait_until(&format!("window.cohabit.state.tick === {last}")).unwrap();
     tab.wait_until("document.querySelectorAll('#chat .from-person').length > 0").unwrap();
+    accessibility::check(&mut tab, "a recorded session");
     let key = |key: &str| format!("document.dispatchEvent(new KeyboardEvent('keydown', {{ key: '{key}' }}))");
     tab.evaluate(&key("Home")).unwrap();
     tab.wait_until("window.cohabit.state.tick === 0 && document.querySelectorAll('#chat .from-person').length === 0")

@@ -1,5 +1,6 @@
 //! A study from its file to its data: two participants, pages, a killed session, a killed server, a withdrawal.
 
+mod accessible;
 mod pages;
 mod pairs;
 mod practice;
@@ -254,6 +255,19 @@ impl Person {
             assert!(Instant::now() < deadline, "waited in vain for {page}: {state}");
             thread::park_timeout(Duration::from_millis(100));
         }
+    }
+
+    /// Skips the mission that they play as soon as they may, and answers what is asked about it.
+    fn skip(&self, server: &Server) {
+        let deadline = Instant::now() + WATCHDOG;
+        while self.state(server)["skip_in_s"] != 0.0 {
+            assert!(Instant::now() < deadline, "the mission cannot be skipped");
+            thread::park_timeout(Duration::from_millis(50));
+        }
+        self.tell(server, &json!({ "over": { "ending": "skipped" } }));
+        self.wait_for(server, "questionnaire");
+        let answers = json!([{ "value": 3 }, null]);
+        self.tell(server, &json!({ "answered": { "questionnaire": "short", "answers": answers } }));
     }
 
     /// Opens the page of the session that they play.

@@ -6,10 +6,10 @@ use std::{
 };
 
 use cohabit_record::{DecisionOutcome, Log, WizardDecision};
-use cohabit_tests::{Browser, Page, Play, run};
+use cohabit_tests::{Browser, Page, Play, Tab, run};
 use serde_json::{Value, json};
 
-use crate::COHABIT;
+use crate::{COHABIT, accessibility};
 
 /// A session, and where its wizard sits: `host:port/?token=…`, as pages are opened in tests.
 fn play(arguments: &[&str]) -> (Play, String) {
@@ -266,22 +266,70 @@ fn a_late_wizard_leaves_it_to_the_policy_and_a_killed_service_holds_what_was_hel
     play.end().unwrap();
 }
 
-#[test]
-#[cfg_attr(not(browser), ignore = "needs a browser")]
-fn a_wizard_needs_nothing_but_a_keyboard() {
-    let (play, seat) = play(&["--wizard", "yes", "--wizard-phrase", "h=Hello!"]);
-    let mut page = Page::open(play.authority()).unwrap();
-    let browser = Browser::start().unwrap();
+/// The seat in a browser, once it shows what the robot sees.
+fn sit_down(browser: &Browser, seat: &str) -> Tab {
     let address = format!("http://{}", seat.replace("/?", "/wizard?"));
     let mut tab = browser.open(&address, 1280, 800).unwrap();
     tab.wait_until("window.cohabit?.frames > 0 && window.cohabit.seat !== null").unwrap();
     assert_eq!(tab.evaluate("window.cohabit.view").unwrap(), json!("eyes/0"), "what the robot sees");
-    let press = |tab: &mut cohabit_tests::Tab, key: &str| {
-        let event = format!(
-            "document.activeElement.dispatchEvent(new KeyboardEvent('keydown', {{ key: {key:?}, bubbles: true }}))"
-        );
-        tab.evaluate(&event).unwrap();
-    };
+    tab
+}
+
+/// Presses a key in the element that has the focus.
+fn press(tab: &mut Tab, key: &str) {
+    let event = format!(
+        "document.activeElement.dispatchEvent(new KeyboardEvent('keydown', {{ key: {key:?}, bubbles: true }}))"
+    );
+    tab.evaluate(&event).unwrap();
+}
+
+/// The numbers of a list.
+fn numbers<const COUNT: usize>(list: &Value) -> [f64; COUNT] {
+    std::array::from_fn(|at| list[at].as_f64().unwrap())
+}
+
+/// Clicks with the mouse, px from the left and from the top of the window.
+fn click(tab: &mut Tab, [x, y]: [f64; 2]) {
+    for kind in ["mousePressed", "mouseReleased"] {
+        let event = json!({ "type": kind, "x": x, "y": y, "button": "left", "clickCount": 1 });
+        tab.call("Input.dispatchMouseEvent", &event).unwrap();
+    }
+}
+
+/// Clicks here and there in the picture until a menu opens that is of a thing, not of the floor or of a wall.
+fn click_on_a_thing(tab: &mut Tab) {
+    let view = "(() => { const box = document.querySelector('#view').getBoundingClientRect(); \
+        return [box.x, box.y, box.width, box.height]; })()";
+    let [left, top, width, height] = numbers(&tab.evaluate(view).unwrap());
+    // What was offered by then, or nothing: there are places where nothing is.
+    let offered = "new Promise((done) => { const look = (tries) => window.cohabit.menu !== null || tries === 0 \
+        ? done(window.cohabit.menu) : setTimeout(look, 20, tries - 1); look(100); })";
+    for y in [0.5, 0.6, 0.4, 0.7] {
+        for x in [0.5, 0.35, 0.65, 0.2, 0.8] {
+            tab.evaluate("window.cohabit.menu = null").unwrap();
+            click(tab, [left + width * x, top + height * y]);
+            let choices = tab.evaluate(offered).unwrap().as_array().cloned().unwrap_or_default();
+            if choices.iter().any(|choice| choice["label"] == "Look at it") {
+                return;
+            }
+            // An open menu may lie over the next place.
+            if !choices.is_empty() {
+                press(tab, "Escape");
+            }
+        }
+    }
+    panic!("no thing in the picture has a menu");
+}
+
+#[test]
+#[cfg_attr(not(all(browser, python)), ignore = "needs a browser, and Python 3.10 or later with venv")]
+fn a_wizard_needs_nothing_but_a_keyboard() {
+    let (play, seat) = play(&["--wizard", "yes", "--wizard-phrase", "h=Hello!"]);
+    let browser = Browser::start().unwrap();
+    let mut tab = sit_down(&browser, &seat);
+    accessibility::check(&mut tab, "the wizard's seat while nothing is proposed");
+    accessibility::resize(&mut tab, [1280, 800]);
+    let mut page = Page::open(play.authority()).unwrap();
     page.say("blorp the zargle").unwrap();
     tab.wait_until("window.cohabit.proposal?.kind === 'refusal'").unwrap();
     // Written words begin with what was said.
@@ -306,7 +354,59 @@ fn a_wizard_needs_nothing_but_a_keyboard() {
         .unwrap();
     page.wait("what was typed", |page, _| page.chat.iter().any(|(_, text)| text == "Here I am.")).unwrap();
     tab.wait_until("document.querySelector('#say').value === ''").unwrap();
-    crate::accessibility::check(&mut tab, "the wizard's seat");
     drop(page);
+    accessibility::check(&mut tab, "the wizard's seat after a conversation");
+    let mut page = Page::open(play.authority()).unwrap();
+    page.say("go to the break room").unwrap();
+    tab.wait_until("window.cohabit.proposal?.kind === 'plan'").unwrap();
+    drop(page);
+    accessibility::check(&mut tab, "the wizard's seat with a proposal");
+    accessibility::check_with_more_contrast(&mut tab, "the wizard's seat with a proposal");
+    drop((tab, browser));
     play.end().unwrap();
+}
+
+#[test]
+#[cfg_attr(not(all(browser, python)), ignore = "needs a browser, and Python 3.10 or later with venv")]
+fn a_wizard_clicks_on_a_thing_in_the_picture_and_the_robot_does_what_is_chosen() {
+    let (play, seat) = play(&["--wizard", "yes"]);
+    let browser = Browser::start().unwrap();
+    let mut tab = sit_down(&browser, &seat);
+    let mut page = Page::open(play.authority()).unwrap();
+    page.say("blorp the zargle").unwrap();
+    tab.wait_until("window.cohabit.proposal?.kind === 'refusal'").unwrap();
+    // Who reads nothing for a while is taken for gone.
+    drop(page);
+    click_on_a_thing(&mut tab);
+    let focused = "document.querySelector('#menu button') === document.activeElement";
+    assert_eq!(tab.evaluate(focused).unwrap(), json!(true), "the keyboard can choose at once");
+    accessibility::check_here(&mut tab, "the menu of a thing");
+    press(&mut tab, "ArrowDown");
+    assert_eq!(tab.evaluate(focused).unwrap(), json!(false), "an arrow goes on to the next choice");
+    // Escape closes the menu, and nothing else comes of it.
+    press(&mut tab, "Escape");
+    assert_eq!(tab.evaluate("document.querySelector('#menu').hidden").unwrap(), json!(true));
+    assert_eq!(tab.evaluate("window.cohabit.proposal.is_decided").unwrap(), json!(false));
+
+    click_on_a_thing(&mut tab);
+    let mut page = Page::open(play.authority()).unwrap();
+    page.wait("the greeting", |_, message| message["type"] == "hello").unwrap();
+    let go_there = "(() => { const all = [...document.querySelectorAll('#menu button')]; \
+        const box = all.find((one) => one.textContent.startsWith('Go there')).getBoundingClientRect(); \
+        return [box.x + box.width / 2, box.y + box.height / 2]; })()";
+    let place = numbers(&tab.evaluate(go_there).unwrap());
+    click(&mut tab, place);
+    page.wait("a step of the plan", |_, message| message["type"] == "progress").unwrap();
+    page.wait("its end", |_, message| message["type"] == "turn" && message["ended"] == true).unwrap();
+    tab.wait_until("window.cohabit.proposal === null").unwrap();
+    assert_eq!(tab.evaluate("document.querySelector('#problem').textContent").unwrap(), json!(""));
+    assert_eq!(tab.problems(), [] as [&str; 0]);
+    drop((page, tab, browser));
+    let ended = play.end().unwrap();
+    let log = Log::open(&ended.log).unwrap();
+    let decisions: Vec<WizardDecision> = log.dialog.iter().filter_map(WizardDecision::of).collect();
+    let [decision] = &decisions[..] else { panic!("not one decision: {decisions:#?}") };
+    assert_eq!((decision.outcome, decision.said.as_str()), (DecisionOutcome::Replaced, "blorp the zargle"));
+    assert_eq!(decision.clicked.as_deref(), Some("go_to"));
+    assert!(decision.object.is_some() && decision.chosen_ms.is_some(), "{decision:?}");
 }

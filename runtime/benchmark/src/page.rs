@@ -22,6 +22,7 @@ p { max-width: 60rem; color: #555; }
 </style>
 </head>
 <body>
+<main>
 <h1>Cohabit benchmark</h1>
 "#;
 
@@ -30,7 +31,7 @@ p { max-width: 60rem; color: #555; }
 pub fn page(grids: &[Grid]) -> String {
     let mut page = HEAD.to_owned();
     for grid in grids {
-        let _ = writeln!(page, "<h2>{}</h2>\n<div class=\"grid\"><table>", escaped(&grid.title));
+        let _ = writeln!(page, "<h2>{}</h2>\n<div class=\"grid\" tabindex=\"0\"><table>", escaped(&grid.title));
         let _ = writeln!(page, "<thead>{}</thead>\n<tbody>", row("<th scope=\"col\">", "</th>", &grid.head));
         for cells in &grid.rows {
             let _ = writeln!(page, "{}", row("<td>", "</td>", cells));
@@ -40,7 +41,7 @@ pub fn page(grids: &[Grid]) -> String {
             let _ = writeln!(page, "<p>{}</p>", escaped(&grid.note));
         }
     }
-    page.push_str("</body>\n</html>\n");
+    page.push_str("</main>\n</body>\n</html>\n");
     page
 }
 
@@ -76,5 +77,6 @@ mod tests {
         assert!(!page.contains("<script"), "{page}");
         assert_eq!(page.matches("&lt;script&gt;alert(&quot;x&quot;) &amp; more").count(), 4, "{page}");
         assert!(page.starts_with("<!doctype html>") && page.ends_with("</html>\n"));
+        assert!(page.contains("<body>\n<main>\n") && page.contains("</main>\n</body>"), "all of it is the main part: {page}");
     }
 }

@@ -93,6 +93,15 @@ function going(text, event) {
   return element("div", "actions", made, problem);
 }
 
+/** Lets the keyboard scroll what does not fit its place: there may be nothing in it that takes the focus. */
+function scrollByKeyboard(box) {
+  const fitting = new ResizeObserver(() => {
+    if (box.scrollHeight > box.clientHeight) box.tabIndex = 0;
+    else box.removeAttribute("tabindex");
+  });
+  for (const part of [box, ...box.children]) fitting.observe(part);
+}
+
 /** What is to be tried in a tutorial, ticked as it is; and the button that goes on from there. */
 function exerciseList(exercises) {
   const count = element("p", "soft", "");
@@ -103,6 +112,7 @@ function exerciseList(exercises) {
   const goOn = go.querySelector("button");
   const shown = element("section", "exercises", element("h2", "", words("try_this")), element("ol", "", ...items), count, go);
   shown.setAttribute("aria-label", words("things_to_try"));
+  scrollByKeyboard(shown);
   let told = "";
   return {
     shown,

@@ -1,11 +1,6 @@
 // Looks over the page that it runs in, and gives what keeps people from using it. It knows no page in particular.
 (() => {
   const problems = [];
-  // What moves is looked at when it has come to rest.
-  for (const moving of document.getAnimations()) {
-    if (moving.effect.getComputedTiming().iterations === Infinity) moving.cancel();
-    else moving.finish();
-  }
   const all = (selector, root = document) => [...root.querySelectorAll(selector)];
   const tell = (what, node) => problems.push(`${what}: ${node.outerHTML.slice(0, 160)}`);
   const isShown = (node) => node.checkVisibility({ visibilityProperty: true });

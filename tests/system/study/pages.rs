@@ -16,6 +16,11 @@ pub fn go_on(tab: &mut Tab, text: &str) {
     tab.evaluate(&format!("{button}.click()")).unwrap();
 }
 
+/// Whether the page has that heading.
+pub fn heading(text: &str) -> String {
+    format!("document.querySelector('h1')?.textContent === '{text}'")
+}
+
 /// The page of a session, which is within the study's, by itself: what participants see of it on a phone.
 fn look_at_session(browser: &Browser, address: &Value) {
     let mut tab = browser.open(address.as_str().unwrap(), 390, 740).unwrap();
@@ -42,10 +47,11 @@ fn look_at_session(browser: &Browser, address: &Value) {
         document.querySelector('#chat').getBoundingClientRect().top + 1";
     assert_eq!(tab.evaluate(above).unwrap(), json!(true));
     assert_eq!(tab.evaluate("document.documentElement.scrollWidth <= 390").unwrap(), json!(true));
+    accessibility::check(&mut tab, "what participants see of a session");
 }
 
 #[test]
-#[cfg_attr(not(browser), ignore = "needs a browser")]
+#[cfg_attr(not(all(browser, python)), ignore = "needs a browser, and Python 3.10 or later with venv")]
 fn a_person_takes_part_in_a_browser() {
     let scratch = study("study-browser");
     let probe = "[[probe]]\nquestionnaire = \"annoyed.toml\"\nat = \"minutes\"\nminutes = 0.01\n";
@@ -79,6 +85,7 @@ fn a_person_takes_part_in_a_browser() {
     accessibility::check(&mut tab, "a mission with a question in between");
     tab.evaluate("document.querySelector('.probe .chief').click()").unwrap();
     tab.wait_until("document.querySelector('.probe .problem').textContent === 'Please answer the question.'").unwrap();
+    accessibility::check(&mut tab, "a question in between that lacks an answer");
     tab.evaluate("document.querySelectorAll('.probe input')[2].click()").unwrap();
     tab.evaluate("document.querySelector('.probe .chief').click()").unwrap();
     tab.wait_until("document.querySelector('.probe') === null").unwrap();
@@ -88,12 +95,15 @@ fn a_person_takes_part_in_a_browser() {
     assert_eq!(tab.evaluate("document.querySelector('.bar #skip')").unwrap(), Value::Null);
     tab.evaluate("document.querySelector('#skip').click()").unwrap();
     tab.wait_until("document.querySelector('#skip-card').open").unwrap();
+    accessibility::check(&mut tab, "the question whether to skip a mission");
     tab.evaluate("document.querySelector('#skip-now').click()").unwrap();
     tab.wait_until("document.querySelectorAll('.item').length === 2").unwrap();
     accessibility::check(&mut tab, "a questionnaire of a study");
     go_on(&mut tab, "Send and go on");
     tab.wait_until("document.querySelector('.problem').textContent === 'Question 1 has no answer yet.'").unwrap();
     assert_eq!(tab.evaluate("document.activeElement.type").unwrap(), json!("radio"));
+    accessibility::check(&mut tab, "a questionnaire of a study that lacks an answer");
+    accessibility::check_with_more_contrast(&mut tab, "a questionnaire of a study that lacks an answer");
     // What was filled in is there again after a reload, also what was typed a moment before.
     tab.evaluate("document.querySelectorAll('.places input')[3].click()").unwrap();
     let type_words = "const area = document.querySelector('textarea'); area.value = 'so far'; \
@@ -113,13 +123,16 @@ fn a_person_takes_part_in_a_browser() {
     lab.evaluate(type_note).unwrap();
     lab.type_and_enter("took her time").unwrap();
     lab.wait_until("document.querySelector('#notes li')?.textContent.includes('took her time')").unwrap();
+    accessibility::check(&mut lab, "the experimenter's page with a note");
+    accessibility::check_with_more_contrast(&mut lab, "the experimenter's page with a note");
 
     // Who leaves is asked once more, and then nothing is left.
     tab.evaluate("document.querySelector('#leave').click()").unwrap();
     tab.wait_until("document.querySelector('#leave-card').open").unwrap();
     accessibility::check(&mut tab, "the question whether to leave");
     tab.evaluate("document.querySelector('#leave-card .danger').click()").unwrap();
-    tab.wait_until("document.querySelector('h1').textContent === 'You have left the study'").unwrap();
+    tab.wait_until(&heading("You have left the study")).unwrap();
+    accessibility::check(&mut tab, "the page of who has left the study");
     // The session's page does not take the focus from the study's: the browser says so.
     let problems = tab.problems().iter().chain(lab.problems());
     let problems: Vec<_> = problems.filter(|one| !one.starts_with("Blocked autofocusing")).collect();
@@ -130,7 +143,7 @@ fn a_person_takes_part_in_a_browser() {
 }
 
 #[test]
-#[cfg_attr(not(browser), ignore = "needs a browser")]
+#[cfg_attr(not(all(browser, python)), ignore = "needs a browser, and Python 3.10 or later with venv")]
 fn a_person_takes_part_in_german() {
     let scratch = study("study-german");
     let _ = scratch.write("study.toml", &format!("language = \"de\"\n{STUDY}"));

@@ -6,7 +6,11 @@ use cohabit_tests::{Browser, Page, Tab, run};
 use rustix::process::Signal;
 use serde_json::{Value, json};
 
-use super::{STUDY, Server, asked_of, conditions, pages::go_on, study};
+use super::{
+    STUDY, Server, asked_of, conditions,
+    pages::{go_on, heading},
+    study,
+};
 use crate::{COHABIT, accessibility};
 
 /// The study in pairs, each with an avatar of their own.
@@ -28,10 +32,6 @@ fn begin(browser: &Browser, server: &Server) -> Tab {
     go_on(&mut tab, "I agree to take part");
     go_on(&mut tab, "Begin");
     tab
-}
-
-fn heading(text: &str) -> String {
-    format!("document.querySelector('h1')?.textContent === '{text}'")
 }
 
 /// The address of the session's page within somebody's page, once it is another one than that.
@@ -58,7 +58,7 @@ fn skip(tab: &mut Tab) {
 }
 
 #[test]
-#[cfg_attr(not(browser), ignore = "needs a browser")]
+#[cfg_attr(not(all(browser, python)), ignore = "needs a browser, and Python 3.10 or later with venv")]
 fn a_pair_plays_one_mission_together_and_ends_in_the_same_condition() {
     let scratch = study("study-pairs");
     let _ = scratch.write("study.toml", &in_pairs());

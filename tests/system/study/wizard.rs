@@ -5,11 +5,11 @@ use std::{
     time::{Duration, Instant},
 };
 
-use cohabit_tests::{Page, run};
+use cohabit_tests::{Browser, Page, run};
 use serde_json::{Value, json};
 
-use super::{Person, STUDY, Server, WATCHDOG, study};
-use crate::COHABIT;
+use super::{Person, STUDY, Server, WATCHDOG, pages::heading, study};
+use crate::{COHABIT, accessibility};
 
 const WIZARD: &str = r#"
 [wizard]
@@ -77,15 +77,7 @@ fn the_wizards_page_leads_to_the_seat_and_participants_see_no_difference() {
             seat.send(&json!({ "type": "decide", "decision": accept })).unwrap();
             page.wait("the main office", |page, _| page.state["robot"]["room"] == "MainOffice").unwrap();
         }
-        let deadline = Instant::now() + WATCHDOG;
-        while person.state(&server)["skip_in_s"] != 0.0 {
-            assert!(Instant::now() < deadline);
-            thread::park_timeout(Duration::from_millis(50));
-        }
-        person.tell(&server, &json!({ "over": { "ending": "skipped" } }));
-        person.wait_for(&server, "questionnaire");
-        let answers = json!([{ "value": 3 }, null]);
-        person.tell(&server, &json!({ "answered": { "questionnaire": "short", "answers": answers } }));
+        person.skip(&server);
     }
     assert_eq!(shown[0], shown[1]);
     server.end();
@@ -98,4 +90,35 @@ fn the_wizards_page_leads_to_the_seat_and_participants_see_no_difference() {
     let sheet = run(COHABIT, &["study", "report", "--folder", &data]).unwrap();
     let sheet = String::from_utf8_lossy(&sheet.stdout).into_owned();
     assert!(sheet.contains("Of 1 decision, 0 were interventions"), "{sheet}");
+}
+
+#[test]
+#[cfg_attr(not(all(browser, python)), ignore = "needs a browser, and Python 3.10 or later with venv")]
+fn everybody_can_use_the_wizards_page() {
+    let scratch = study("study-wizard-page");
+    let _ = scratch.write("study.toml", &with_wizard());
+    let server = Server::start(&scratch, "0");
+    let wizard = server.get(&format!("{}/state", server.experimenter))["wizard"].as_str().unwrap().to_owned();
+    let browser = Browser::start().unwrap();
+    let mut tab = browser.open(&format!("http://{}{wizard}", server.host), 1280, 800).unwrap();
+    tab.wait_until(&heading("A short study")).unwrap();
+    accessibility::check(&mut tab, "the wizard's page while no session has a wizard");
+    let person = Person::sign_up(&server);
+    person.agree(&server);
+    let has_seat = || server.get(&format!("{wizard}/state"))["seats"].as_array().is_some_and(|seats| !seats.is_empty());
+    let play = || {
+        person.tell(&server, &json!("goes_on"));
+        person.wait_for(&server, "mission");
+    };
+    play();
+    // The wizard takes part in one of the two missions.
+    if !has_seat() {
+        person.skip(&server);
+        play();
+    }
+    assert!(has_seat());
+    tab.wait_until("document.querySelector('iframe.session') !== null").unwrap();
+    accessibility::check(&mut tab, "the wizard's page with a seat");
+    drop((tab, browser));
+    server.end();
 }
