@@ -67,7 +67,7 @@ fn a_room_without_a_door_is_refused_with_its_name_and_what_to_write() {
             assert!(text.contains(expected), "{text}");
         }
     };
-    check(&|line| !line.contains("kind = \"door\""), "SmallOffice cannot be reached: no door or passage leads into it");
+    check(&|line| !line.contains("kind = \"door\""), "Workshop cannot be reached: no door or passage leads into it");
     // A viewpoint alone that is missing is found by `check`.
     let text: String =
         whole.lines().filter(|line| !line.contains("number = 7")).map(|line| format!("{line}\n")).collect();

@@ -331,6 +331,11 @@ fn is_joint(word: &str) -> bool {
     token::is_punctuation(word) || matches!(word, "and" | "then" | "but")
 }
 
+/// Whether a condition is told in full: `if the coffee is cold`, not `if so`.
+pub(crate) fn has_condition(lexicon: &Lexicon, words: &[String]) -> bool {
+    condition_at(lexicon, words).is_some()
+}
+
 /// Whether something is asked for on a condition.
 pub(crate) fn is_conditional(lexicon: &Lexicon, words: &[String]) -> bool {
     condition_at(lexicon, words).is_some() || lexicon.conditions.occurs_in(words)

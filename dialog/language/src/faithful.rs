@@ -5,10 +5,18 @@ use std::collections::BTreeSet;
 
 use cohabit_cdf::{ObjectClass, Property};
 
-use crate::{conversation::Conversation, lexicon::Lexicon, token, yes_no};
+use crate::{
+    condition,
+    conversation::Conversation,
+    lexicon::Lexicon,
+    question::{self, QuestionKind},
+    token, yes_no,
+};
 
 /// How likely what was said is meant the other way round, or a question is a request.
 const TURNED_ROUND: f32 = 0.2;
+/// What says that a question is about this room; the first is how a plain one says so.
+const HERE: [&str; 3] = ["in this room", "in here", "around here"];
 /// Within so many words after `if` its `not` is said.
 const CLAUSE: usize = 6;
 
@@ -25,6 +33,10 @@ pub(crate) struct Source {
     has_denial: bool,
     /// Whether all that was said asks how things are: `is the bowl clean?`.
     only_asks: bool,
+    /// Whether a condition was told.
+    has_condition: bool,
+    /// Whether it is about this room.
+    is_here: bool,
 }
 
 impl Source {
@@ -36,6 +48,8 @@ impl Source {
             said: said.iter().cloned().collect(),
             is_denied: denies_condition(lexicon, said),
             only_asks: only_asks(lexicon, said),
+            has_condition: condition::has_condition(lexicon, said),
+            is_here: HERE.iter().any(|here| format!(" {} ", said.join(" ")).contains(&format!(" {here} "))),
             has_denial: said.iter().any(|word| lexicon.ifs.negations.contains(word)),
             words: said.iter().cloned().chain(before.into_iter().flatten()).collect(),
         }
@@ -71,6 +85,20 @@ impl Conversation<'_> {
         kept.collect::<Vec<_>>().join(" ")
     }
 
+    /// Plain requests of which those that count things do so in this room, where that was said.
+    pub(crate) fn with_this_room(&self, text: &str, source: &Source) -> String {
+        let counts_anywhere = |request: &str| {
+            let asked = question::read(self.lexicon, &token::words(request));
+            let about = asked.filter(|asked| asked.kind == QuestionKind::Count).and_then(|asked| asked.about);
+            about.is_some_and(|about| about.room.is_none() && about.relations.is_empty())
+        };
+        let here = |request: &str| match request.strip_suffix('?') {
+            Some(asked) if source.is_here && counts_anywhere(request) => format!("{asked} {}?", HERE[0]),
+            _ => request.to_owned(),
+        };
+        text.split("; ").map(here).collect::<Vec<_>>().join("; ")
+    }
+
     /// How likely it is what was said, by what its conditions deny, and by whether it asks what was asked.
     pub(crate) fn faithfulness(&self, text: &str, source: &Source) -> f32 {
         let conditions: Vec<Vec<String>> = text
@@ -83,9 +111,15 @@ impl Conversation<'_> {
         let (denied, claimed): (Vec<_>, Vec<_>) = conditions.into_iter().partition(denies);
         let asks = |request: &str| request.ends_with('?') || request.starts_with("if ");
         let turns_to_deed = source.only_asks && !text.split("; ").any(asks) && !matches!(text, "social" | "none" | "?");
+        let is_free = |request: &str| {
+            let is_deed = !request.ends_with('?') && !matches!(request, "social" | "none" | "stop");
+            let words = token::words(request);
+            is_deed && !condition::has_condition(self.lexicon, &words) && self.said_of_waiting(&words).is_none()
+        };
+        let loses = source.has_condition && text.split("; ").all(is_free);
         let adds = !source.has_denial && !denied.is_empty();
         let drops = source.is_denied && denied.is_empty() && claimed.iter().any(is_said);
-        if adds || drops || turns_to_deed { TURNED_ROUND } else { 1.0 }
+        if adds || drops || loses || turns_to_deed { TURNED_ROUND } else { 1.0 }
     }
 }
 

@@ -1,9 +1,14 @@
 //! How likely ways to understand an utterance are by what is open: the robot's own question, and what is left of the mission.
 
-use cohabit_cdf::{Action, Fluid, GoToTarget, ObjectId, Property, Verb};
+use cohabit_cdf::{Action, Fluid, GoToTarget, ObjectId, Property, StateFlag, Verb};
 
 use crate::{
-    context::Context, conversation::Conversation, imagine, known::Known, understanding::Step, way::Way,
+    context::Context,
+    conversation::Conversation,
+    imagine,
+    known::{Known, KnownObject},
+    understanding::Step,
+    way::Way,
     wording::Wording,
 };
 
@@ -31,7 +36,7 @@ impl Conversation<'_> {
             };
             way.probability *= match way.steps() {
                 None if way.context.is_met => IN_VAIN,
-                Some(steps) if self.is_in_vain(steps) => IN_VAIN,
+                Some(steps) if self.is_in_vain(steps) || self.ends_as_it_was(steps) => IN_VAIN,
                 Some(steps) if self.goes_astray(steps) => ASTRAY,
                 _ if is_denied => 1.0,
                 _ if way.is_asked_about(context) => ASKED_ABOUT,
@@ -65,6 +70,23 @@ impl Conversation<'_> {
             let pours_unknown = is_unknown && matches!(step.action, Action::Interact { verb: Verb::Pour, .. });
             changes && !pours_unknown && state(&scene) == before
         })
+    }
+
+    /// Whether things are taken and put, and all is as before: what was just thrown away is thrown away.
+    fn ends_as_it_was(&self, steps: &[Step]) -> bool {
+        let moves = |step: &Step| matches!(step.action, Action::PickUp { .. } | Action::Place { .. });
+        let state = |scene: &Known| {
+            let of = |object: &KnownObject| {
+                let mut flags = object.flags;
+                flags.set(StateFlag::PickedUp, false);
+                flags.set(StateFlag::Used, false);
+                (object.parent, object.fluid, flags)
+            };
+            (scene.robot.held, scene.objects.iter().map(of).collect::<Vec<_>>())
+        };
+        let mut scene = self.scene.clone();
+        steps.iter().for_each(|step| imagine::apply(&mut scene, &step.action, self.devices));
+        steps.iter().any(moves) && state(&scene) == state(self.scene)
     }
 
     /// Whether it goes to a room to act on what is in another one.

@@ -32,7 +32,7 @@ impl Conversation<'_> {
         let (mut ways, mut is_doubtful) = (Vec::<Way>::new(), false);
         let source = Source::new(self.lexicon, &wording.words, context.lines());
         for (at, (text, probability)) in self.rewritings(wording.utterance, context).iter().enumerate() {
-            let text = &self.without_invention(text, &source);
+            let text = &self.with_this_room(&self.without_invention(text, &source), &source);
             let probability = probability * self.faithfulness(text, &source);
             let way = match self.of_rewriting(text, probability, wording, context) {
                 Some(way) => way,

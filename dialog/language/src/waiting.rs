@@ -169,7 +169,7 @@ impl Conversation<'_> {
         Understanding::answer(text)
     }
 
-    fn said_of_waiting(&self, words: &[String]) -> Option<Said> {
+    pub(crate) fn said_of_waiting(&self, words: &[String]) -> Option<Said> {
         let begins = |at: &usize| {
             let before = at.checked_sub(1).map(|before| words[before].as_str());
             before.is_none_or(|word| token::is_punctuation(word) || matches!(word, "and" | "then" | "please" | "but"))

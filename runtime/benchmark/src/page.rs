@@ -77,6 +77,9 @@ mod tests {
         assert!(!page.contains("<script"), "{page}");
         assert_eq!(page.matches("&lt;script&gt;alert(&quot;x&quot;) &amp; more").count(), 4, "{page}");
         assert!(page.starts_with("<!doctype html>") && page.ends_with("</html>\n"));
-        assert!(page.contains("<body>\n<main>\n") && page.contains("</main>\n</body>"), "all of it is the main part: {page}");
+        assert!(
+            page.contains("<body>\n<main>\n") && page.contains("</main>\n</body>"),
+            "all of it is the main part: {page}"
+        );
     }
 }
