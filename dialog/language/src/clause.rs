@@ -6,11 +6,11 @@ use cohabit_cdf::{Catalog, Fluid, Property};
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    amend, chatter, gloss,
+    chatter,
     intent::Intent,
     lexicon::{Direction, Lexicon, Manner, Preposition, Pronoun},
     phrase::{Phrase, Place, Reader},
-    reading, token, verbless, wish,
+    reading, token, wish,
 };
 
 /// One request.
@@ -66,28 +66,6 @@ impl Clause {
         }
     }
 
-    /// Takes a place that was said after a pause: where to put it, or where what was named is.
-    pub(crate) fn take_where(&mut self, preposition: Preposition, place: Place) {
-        let is_vague = |place: &Place| matches!(place, Place::Object(phrase) if phrase.pronoun == Some(Pronoun::Place));
-        let is_put = matches!(self.intent, Intent::Place | Intent::Bring | Intent::Drop | Intent::Pour | Intent::Throw);
-        match (self.intent, self.places.last_mut()) {
-            (_, Some((_, said))) if is_vague(said) => *said = place,
-            // `I want the apple, on the plate please`
-            (Intent::PickUp, None) if self.is_wish || preposition == Preposition::To => {
-                self.intent = Intent::Place;
-                self.places.push((preposition, place));
-            }
-            // `get it out of the fridge and onto the counter`
-            (Intent::PickUp, Some((Preposition::From, _))) if preposition == Preposition::To => {
-                self.intent = Intent::Place;
-                self.places.push((preposition, place));
-            }
-            (_, None) if is_put => self.places.push((preposition, place)),
-            (Intent::GoTo, Some((_, Place::Object(phrase)))) => phrase.attach(preposition, place),
-            _ => self.objects.last_mut().into_iter().for_each(|phrase| phrase.attach(preposition, place.clone())),
-        }
-    }
-
     pub(crate) fn about(intent: Intent, verb: &str, phrase: Phrase) -> Self {
         Self { objects: vec![phrase], ..Self::new(intent, verb) }
     }
@@ -129,10 +107,6 @@ pub(crate) enum Part {
     Fragment(Phrase),
     /// Something spoken of in passing.
     Mention(Phrase),
-    /// What was named just before, said more exactly.
-    Gloss(Phrase),
-    /// Where what was asked for just before is to be done.
-    Where(Preposition, Place),
     /// Talk that asks for nothing; the words it does not know.
     Aside(Vec<String>),
     /// What is asked for, but not understood; the words it does not know.
@@ -145,29 +119,23 @@ pub(crate) fn parts(lexicon: &Lexicon, catalog: &Catalog, words: &[String]) -> V
     for cut in cuts(lexicon, words) {
         let before = parts.len();
         let is_consequence = cut.start > 0 && words[cut.start - 1] == "so" || words[cut.start] == "so";
-        let follows = cut.start > 0 && words[cut.start - 1] == "then";
-        match verbless::late_place(lexicon, &words[cut.clone()])
-            .filter(|(_, _, used)| follows && *used == cut.len() && puts_away(&parts))
-        {
-            // `the plate washed, then on the counter`
-            Some((preposition, place, _)) => {
-                let it = Phrase { pronoun: Some(Pronoun::Thing), text: "it".to_owned(), ..Phrase::default() };
-                let places = vec![(preposition, place)];
-                parts.push(Part::Clause(Clause { places, ..Clause::about(Intent::Place, "put", it) }));
-            }
-            None => read_segment(lexicon, catalog, &words[cut], &mut parts),
-        }
+        read_segment(lexicon, catalog, &words[cut], &mut parts);
         let asks = |part: &Part| matches!(part, Part::Clause(clause) if !clause.is_wish);
         if is_consequence && parts[before..].iter().any(asks) {
-            parts[..before].iter_mut().for_each(gloss::demote);
+            parts[..before].iter_mut().for_each(demote);
         }
     }
-    gloss::folded(parts)
+    parts
 }
 
-/// Whether what was asked for last is about a thing that can be put somewhere afterwards.
-fn puts_away(parts: &[Part]) -> bool {
-    matches!(parts.last(), Some(Part::Clause(clause)) if clause.intent != Intent::GoTo && !clause.objects.is_empty())
+/// `i could use a coffee, so take the mug`: what was wished for is the reason.
+fn demote(part: &mut Part) {
+    if let Part::Clause(clause) = part
+        && clause.is_wish
+    {
+        let phrase = clause.objects.first().cloned();
+        *part = phrase.map_or_else(|| Part::Aside(Vec::new()), Part::Mention);
+    }
 }
 
 /// The request to put a thing where it is said to be.
@@ -265,13 +233,7 @@ fn cuts(lexicon: &Lexicon, words: &[String]) -> Vec<Range<usize>> {
                 reader.at = at + 1;
                 let forbids = lexicon.negation.longest(reader.rest()).is_some();
                 reader.skip(|lexicon| &lexicon.lead);
-                forbids
-                    || reader.next_is("with") && verbless::begins_with_tool(reader)
-                    || reader.at_verb()
-                    || lexicon.negation.longest(reader.rest()).is_some()
-                    || at > 0
-                        && lexicon.numbers.longest(&words[at - 1..at]).is_none()
-                        && verbless::implied_motion(lexicon, chatter::chunk(reader.rest())).is_some()
+                forbids || reader.at_verb() || lexicon.negation.longest(reader.rest()).is_some()
             };
         if is_end || is_joint {
             cuts.push(start..at);
@@ -299,21 +261,6 @@ fn read_segment(lexicon: &Lexicon, catalog: &Catalog, segment: &[String], parts:
     let mut rest = segment;
     while !rest.is_empty() {
         let skipped = leading(lexicon, rest);
-        let going = (0..=skipped).find_map(|at| {
-            let chunk = chatter::chunk(&rest[at..]);
-            verbless::implied_going(lexicon, chunk).map(|clause| (clause, at + chunk.len()))
-        });
-        if let Some((clause, used)) = going {
-            parts.push(continued(parts.last(), clause));
-            rest = &rest[used..];
-            continue;
-        }
-        let is_told = parts.iter().any(|part| matches!(part, Part::Clause(_)));
-        let taken = (0..=skipped).find_map(|at| Some(at + wish::taken_over(lexicon, &rest[at..])?));
-        if let Some(used) = taken.filter(|_| is_told) {
-            rest = &rest[used..];
-            continue;
-        }
         rest = &rest[skipped..];
         if rest.is_empty() {
             break;
@@ -330,22 +277,6 @@ fn read_segment(lexicon: &Lexicon, catalog: &Catalog, segment: &[String], parts:
         }
         parts.push(part);
         rest = &rest[used.clamp(1, rest.len())..];
-    }
-}
-
-/// `put the bowl, into the freezer`: where it is to be put, rather than where to go.
-fn continued(before: Option<&Part>, clause: Clause) -> Part {
-    let is_put = |part: &Part| match part {
-        Part::Clause(before) => {
-            matches!(before.intent, Intent::Place | Intent::Bring | Intent::Drop) && before.places.is_empty()
-        }
-        _ => false,
-    };
-    match clause.places.as_slice() {
-        [(_, place)] if clause.intent == Intent::GoTo && before.is_some_and(is_put) => {
-            Part::Where(Preposition::To, place.clone())
-        }
-        _ => Part::Clause(clause),
     }
 }
 
@@ -401,51 +332,17 @@ fn read_part(lexicon: &Lexicon, catalog: &Catalog, words: &[String], before: &[P
         let chunk = chatter::chunk(words);
         return (Part::Forbidden(chatter::mention(lexicon, chunk).map(|(phrase, _)| phrase)), chunk.len());
     }
-    if let Some((clause, used)) =
-        verbless::with_tool_first(lexicon, catalog, words).or_else(|| reading::read(lexicon, catalog, words))
-    {
-        return (Part::Clause(clause), used);
-    }
-    if let Some((clause, used)) = verbless::implied_motion(lexicon, words) {
-        return (Part::Clause(clause), used);
-    }
-    let chunk = chatter::chunk(words);
-    if let Some(clause) = verbless::implied_placing(lexicon, chunk) {
-        return (Part::Clause(clause), chunk.len());
-    }
-    if let Some(Part::Clause(_)) = before.last()
-        && let Some((preposition, place, used)) = verbless::late_place(lexicon, words)
-    {
-        return (Part::Where(preposition, place), used);
-    }
-    // `turn it on, then off again`
-    let chunk = chatter::chunk(words);
-    if let Some(Part::Clause(previous)) = before.last()
-        && matches!(previous.intent, Intent::TurnOn | Intent::TurnOff | Intent::Toggle)
-        && let Some(intent) = amend::switched(chunk, |word| lexicon.trail.exact(std::slice::from_ref(word)).is_some())
-    {
-        let it = Phrase { pronoun: Some(Pronoun::Thing), text: "it".to_owned(), ..Phrase::default() };
-        return (Part::Clause(Clause::about(intent, intent.verb(), it)), chunk.len());
-    }
-    // `open the fridge, take the milk, close`
-    let is_named = lexicon.classes.longest(words).is_some();
-    if let Some((clause, used)) = verbless::gap(lexicon, catalog, words)
-        .filter(|_| !before.is_empty())
-        .filter(|(clause, _)| !is_named && clause.intent.needs_object())
-    {
+    if let Some((clause, used)) = reading::read(lexicon, catalog, words) {
         return (Part::Clause(clause), used);
     }
     let mut reader = Reader::new(lexicon, words);
     if let Some(Part::Clause(previous)) = before.last()
         && reading::takes_objects(previous.intent)
         && !tells_of_it(lexicon, words)
-        && let Some((clause, used)) =
-            reading::read_as(lexicon, previous.intent, &previous.verb, words, 0).filter(|(clause, _)| {
-                reading::is_complete(clause, catalog) && !gloss::is_gloss(clause) && clause.names_any()
-            })
+        && let Some((clause, used)) = reading::read_as(lexicon, previous.intent, &previous.verb, words, 0)
+            .filter(|(clause, _)| reading::is_complete(clause, catalog) && clause.names_any())
     {
-        let part = gloss::of(previous, &clause).map_or(Part::Clause(clause), Part::Gloss);
-        return (part, used);
+        return (Part::Clause(clause), used);
     }
     if let Some(phrase) = reader.phrase_with_place().filter(|phrase| !phrase.is_empty() && phrase.unknown.is_empty()) {
         reader.skip(|lexicon| &lexicon.trail);
@@ -453,9 +350,6 @@ fn read_part(lexicon: &Lexicon, catalog: &Catalog, words: &[String], before: &[P
         if is_whole {
             return (Part::Fragment(phrase), reader.at);
         }
-    }
-    if let Some((clause, used)) = verbless::gap(lexicon, catalog, words).filter(|_| !before.is_empty()) {
-        return (Part::Clause(clause), used);
     }
     chatter::read(lexicon, catalog, words)
 }

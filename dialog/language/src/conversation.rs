@@ -4,7 +4,6 @@
 use cohabit_cdf::{Catalog, ObjectId};
 
 use crate::{
-    amend,
     answer::HINT,
     ask::{self, Ask},
     asked::plain,
@@ -15,7 +14,6 @@ use crate::{
     describe,
     ground::{Ground, Miss, Want},
     habits::Habits,
-    inquiry,
     intent::Intent,
     judge::Judge,
     known::Known,
@@ -224,9 +222,6 @@ impl Conversation<'_> {
         if let Some(understanding) = self.on_condition(words, context) {
             return understanding;
         }
-        if let Some(understanding) = self.asked_twice(words, context) {
-            return understanding;
-        }
         // `when you get a minute, bring me the knife` asks for no time.
         let is_asked_to = |question: &question::Question| {
             let is_when = words
@@ -240,50 +235,10 @@ impl Conversation<'_> {
                 && parts.iter().any(asks)
         };
         if let Some(question) = question::read(self.lexicon, words).filter(|question| !is_asked_to(question)) {
-            // `who left the mug here? bring it to the kitchen`
-            let later = inquiry::later_sentences(words);
-            // `what a lovely bowl! is it broken?`
-            if let Some(next) = question::read(self.lexicon, later).filter(|_| inquiry::is_exclaimed(words)) {
-                question.about.into_iter().for_each(|phrase| self.mention(&Part::Mention(phrase), context));
-                return self.answer(&next, context);
-            }
-            // `is the mug empty? if so, fill it`
-            if let Some((length, holds)) = self.lexicon.conditions.longest(later) {
-                let answer = self.answer(&question, context);
-                let later = &later[length..];
-                if *holds == answer.denies() || later.iter().all(|word| token::is_punctuation(word)) {
-                    return answer;
-                }
-                context.pending = None;
-                return self.request(later, clause::parts(self.lexicon, self.catalog, later), context);
-            }
-            let asked = clause::parts(self.lexicon, self.catalog, later);
-            if !asked.iter().any(|part| matches!(part, Part::Clause(clause) if chatter::is_clear(clause))) {
-                return self.answer(&question, context);
-            }
-            let about = question.about.clone().filter(|phrase| !phrase.is_empty() && phrase.unknown.is_empty());
-            // `what is on the desk? get it`: what the answer would be about.
-            if question.kind == QuestionKind::Contents {
-                let _ = self.answer(&question, context);
-                context.pending = None;
-                return self.request(later, asked, context);
-            }
-            let parts = about.map(Part::Mention).into_iter().chain(asked).collect();
-            return self.request(later, parts, context);
-        }
-        if let Some(question) = self.asked_after_talk(words, &parts) {
-            parts.iter().for_each(|part| self.mention(part, context));
             return self.answer(&question, context);
         }
         if self.is_foreign(words) {
             return self.unclear(&clause::unknown_words(self.lexicon, words));
-        }
-        if let Some(clauses) = amend::amended(self.lexicon, words, &parts, &context.request) {
-            // What was taken instead is in the way of what was meant.
-            return self.plan(clauses, Consent { may_put_down: true, ..Consent::default() }, context);
-        }
-        if let Some(understanding) = self.asked_afterwards(words, context) {
-            return understanding;
         }
         self.request(words, parts, context)
     }
@@ -344,10 +299,7 @@ impl Conversation<'_> {
                     is_forbidden = true;
                     clauses.extend(about.map(Clause::mention));
                 }
-                Part::Mention(phrase) | Part::Gloss(phrase) | Part::Where(_, Place::Object(phrase)) => {
-                    clauses.push(Clause::mention(phrase))
-                }
-                Part::Where(..) => {}
+                Part::Mention(phrase) => clauses.push(Clause::mention(phrase)),
                 Part::Fragment(phrase) if self.is_to_be_there(&phrase, context) => {
                     clauses.extend(clause::placing(phrase))
                 }
@@ -588,7 +540,7 @@ impl Conversation<'_> {
         let words = plain(words);
         let known = |words: &[String]| self.lexicon.small.exact(words).map(|smalls| smalls.iter().copied().collect());
         let plainly = || -> Vec<String> {
-            words.iter().filter(|word| !self.lexicon.amends.adverbs.contains(*word)).cloned().collect()
+            words.iter().filter(|word| !self.lexicon.fillers.adverbs.contains(*word)).cloned().collect()
         };
         let several = || self.several_smalls(&words).and_then(known);
         known(&words).or_else(several).or_else(|| known(&plainly())).unwrap_or_default()

@@ -71,7 +71,7 @@ impl Conversation<'_> {
 
     /// The words without `wait` and such at their start, if there are more.
     pub(crate) fn without_pause(&self, words: Vec<String>) -> Vec<String> {
-        let Some((length, ())) = self.lexicon.amends.pauses.longest(&words) else { return words };
+        let Some((length, ())) = self.lexicon.fillers.pauses.longest(&words) else { return words };
         let rest = words[length..].iter().position(|word| !token::is_punctuation(word)).map(|at| &words[length + at..]);
         let goes_on = |rest: &[String]| {
             self.lexicon.verbs.longest(rest).is_none_or(|(_, intents)| !intents.contains(&Intent::Stop))
@@ -83,7 +83,7 @@ impl Conversation<'_> {
     pub(crate) fn pauses_to_ask(&self, words: &[String]) -> bool {
         let asks =
             |rest: &[String]| question::read(self.lexicon, rest).is_some_and(|one| one.kind != QuestionKind::Unknown);
-        let length = self.lexicon.amends.pauses.longest(words).map_or(0, |(length, ())| length);
+        let length = self.lexicon.fillers.pauses.longest(words).map_or(0, |(length, ())| length);
         length > 0 && words.iter().any(|word| word == "?") && asks(&words[length..])
     }
 

@@ -59,7 +59,7 @@ pub(crate) fn is_puzzled(parts: &[Part], words: &[String]) -> bool {
         Part::Unclear(_) => true,
         Part::Aside(_) => !parts.iter().any(|part| matches!(part, Part::Clause(_))),
         Part::Fragment(phrase) | Part::Mention(phrase) => !phrase.unknown.is_empty(),
-        Part::Forbidden(_) | Part::Gloss(_) | Part::Where(..) => false,
+        Part::Forbidden(_) => false,
     })
 }
 

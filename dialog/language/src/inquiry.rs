@@ -5,7 +5,7 @@ use cohabit_cdf::ObjectId;
 use crate::{
     answer::Answerer,
     claim::asked_state,
-    clause::{Clause, Part},
+    clause::Clause,
     contents,
     context::{Consent, Context, Pending},
     conversation::Conversation,
@@ -18,30 +18,6 @@ use crate::{
 };
 
 impl Conversation<'_> {
-    /// `I have lost my trophy. Have you seen it?`: the question, where nothing was asked for before it.
-    pub(crate) fn asked_after_talk(&self, words: &[String], parts: &[Part]) -> Option<question::Question> {
-        let asks = |part: &Part| matches!(part, Part::Clause(_) | Part::Forbidden(_));
-        let later = later_sentences(words);
-        if parts.iter().any(asks) {
-            return None;
-        }
-        // `the note on the wall, what does it say?`
-        let after = (0..words.len()).filter(|at| words[*at] == ",").map(|at| &words[at + 1..]);
-        let mut later = std::iter::once(later).chain(after).filter(|later| !later.is_empty());
-        later.find_map(|later| {
-            question::read(self.lexicon, later).filter(|question| question.kind != QuestionKind::Unknown)
-        })
-    }
-
-    /// What talk is about is what `it` stands for after it.
-    pub(crate) fn mention(&self, part: &Part, context: &mut Context) {
-        let (Part::Mention(phrase) | Part::Fragment(phrase)) = part else { return };
-        let mut planner = self.planner(context.focus.clone());
-        if planner.run(&[Clause::mention(phrase.clone())]).is_ok() {
-            context.focus = planner.focus;
-        }
-    }
-
     pub(crate) fn answerer<'c>(&'c self, context: &'c Context, told: usize) -> Answerer<'c> {
         let Self { catalog, lexicon, devices, scene, judge, .. } = *self;
         Answerer { catalog, lexicon, devices, scene, judge, context, told }
@@ -134,15 +110,4 @@ impl Conversation<'_> {
         }
         answer
     }
-}
-
-/// Whether the first sentence ends as no question does.
-pub(crate) fn is_exclaimed(words: &[String]) -> bool {
-    words.iter().find(|word| token::ends_sentence(word)).is_some_and(|end| end != "?")
-}
-
-/// What is said after the first sentence.
-pub(crate) fn later_sentences(words: &[String]) -> &[String] {
-    let end = words.iter().position(|word| token::ends_sentence(word)).unwrap_or(words.len());
-    words.get(end + 1..).unwrap_or_default()
 }

@@ -1,14 +1,12 @@
 //! What comes after the plan under way: what is left of the mission, and what was asked about its outcome.
 
 use crate::{
-    chatter,
-    clause::{self, Clause, Part},
+    clause::Clause,
     context::{Context, Pending},
     conversation::Conversation,
     describe,
     lexicon::Small,
-    question::{self, QuestionKind},
-    tidy, token,
+    tidy,
     understanding::Understanding,
 };
 
@@ -98,62 +96,5 @@ impl Conversation<'_> {
             Understanding::Refusal { is_lost: true, .. } | Understanding::Answer { .. } => lost(),
             understanding => understanding,
         }
-    }
-
-    /// `open the fridge and tell me what is inside`: the question waits until that is done. `the plate, is it clean` only asks.
-    pub(crate) fn asked_afterwards(&self, words: &[String], context: &mut Context) -> Option<Understanding> {
-        let (before, question) = self.breaks(words).find(|(_, after)| self.asks(after))?;
-        let parts = clause::parts(self.lexicon, self.catalog, before);
-        if !parts.iter().any(|part| matches!(part, Part::Clause(clause) if chatter::is_clear(clause))) {
-            parts.iter().for_each(|part| self.mention(part, context));
-            return Some(self.answer(&question::read(self.lexicon, question)?, context));
-        }
-        if !self.is_surely_asked(question) {
-            return None;
-        }
-        let understanding = self.request(before, parts, context);
-        let question = token::sentence(question);
-        if matches!(understanding, Understanding::Answer { .. }) {
-            // It is so already.
-            let answer = self.understand_words(self.lexicon.normalise(&question).0, context);
-            return Some(answer.after(understanding.reply()));
-        }
-        Some(context.keep(vec![question], understanding))
-    }
-
-    /// `is the fridge open and is the microwave on?`: one answer after the other.
-    pub(crate) fn asked_twice(&self, words: &[String], context: &mut Context) -> Option<Understanding> {
-        let (first, second) = self.breaks(words).find(|(before, after)| self.asks(before) && self.asks(after))?;
-        let first = self.answer(&question::read(self.lexicon, first)?, context);
-        if !matches!(first, Understanding::Answer { .. }) {
-            return None;
-        }
-        let second = self
-            .asked_twice(second, context)
-            .or_else(|| Some(self.answer(&question::read(self.lexicon, second)?, context)))?;
-        Some(second.after(first.reply()))
-    }
-
-    /// What is said before and after each pause and each `and`.
-    fn breaks<'w>(&self, words: &'w [String]) -> impl Iterator<Item = (&'w [String], &'w [String])> + use<'w> {
-        let is_break = |word: &String| token::is_punctuation(word) || word == "and";
-        let breaks = words.iter().enumerate().filter(move |(_, word)| is_break(word)).map(|(at, _)| at);
-        breaks
-            .map(|at| (&words[..at], &words[at + 1..]))
-            .filter(|(before, after)| !before.is_empty() && !after.is_empty())
-    }
-
-    /// Whether it is a question that the robot can answer.
-    fn asks(&self, words: &[String]) -> bool {
-        question::read(self.lexicon, words).is_some_and(|question| {
-            question.kind != QuestionKind::Unknown && question.about.is_none_or(|about| about.unknown.is_empty())
-        })
-    }
-
-    /// Whether nothing else can be meant than that it is answered.
-    fn is_surely_asked(&self, words: &[String]) -> bool {
-        let said = &words[clause::leading(self.lexicon, words)..];
-        words.last().is_some_and(|last| last == "?")
-            || [&self.lexicon.tells, &self.lexicon.reports].iter().any(|tells| tells.longest(said).is_some())
     }
 }

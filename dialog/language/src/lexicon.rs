@@ -9,7 +9,6 @@ use cohabit_cdf::{ClassId, Fluid, RoomId, state::StateFlag};
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    amend::Amends,
     chatter::Chatter,
     condition::Conditions,
     inflect,
@@ -19,6 +18,7 @@ use crate::{
     sound::Sounding,
     spelling::{self, Vocabulary},
     table::PhraseTable,
+    tidy::Fillers,
     token,
     waiting::WaitingWords,
     wish::Wishes,
@@ -251,7 +251,7 @@ pub(crate) struct Lexicon {
     /// All words of the vocabulary, for who hears them.
     pub(crate) known: Arc<BTreeSet<String>>,
     pub(crate) wishes: Wishes,
-    pub(crate) amends: Amends,
+    pub(crate) fillers: Fillers,
     pub(crate) chatter: Chatter,
     pub(crate) ifs: Conditions,
     pub(crate) waiting: WaitingWords,

@@ -23,7 +23,6 @@
 //! ```
 
 mod address;
-mod amend;
 mod answer;
 mod ask;
 mod asked;
@@ -44,7 +43,6 @@ mod device;
 mod facts;
 mod faithful;
 mod floor;
-mod gloss;
 mod ground;
 mod habits;
 mod heard;
@@ -63,7 +61,6 @@ mod misheard;
 mod naming;
 mod noun;
 mod oracle;
-mod order;
 mod phrase;
 mod plan;
 mod prior;
@@ -93,7 +90,6 @@ mod tidy;
 mod token;
 mod understanding;
 mod undo;
-mod verbless;
 mod waiting;
 mod way;
 mod wish;

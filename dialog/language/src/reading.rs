@@ -4,7 +4,6 @@ use cohabit_cdf::Catalog;
 
 use crate::{
     clause::{Amount, Clause},
-    gloss,
     intent::Intent,
     lexicon::{Direction, Lexicon, Manner, Preposition, Pronoun},
     phrase::{Phrase, Place, Reader},
@@ -257,7 +256,7 @@ pub(crate) fn read_objects(reader: &mut Reader<'_>, clause: &mut Clause) {
         // `one of the apples, whichever is nearer`: which one that is.
         if reader.next_is(",")
             && let Some(said) =
-                clause.objects.last_mut().filter(|said| phrase.is_one_of_kind() && gloss::tells_more(said, &phrase))
+                clause.objects.last_mut().filter(|said| phrase.is_one_of_kind() && tail::tells_more(said, &phrase))
         {
             *said = Phrase { namings: said.namings.clone(), pronoun: None, ..phrase };
             *reader = next;

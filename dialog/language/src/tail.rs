@@ -3,7 +3,6 @@
 use crate::{
     chatter,
     clause::{self, Clause},
-    gloss,
     intent::Intent,
     lexicon::{Preposition, Pronoun},
     phrase::{Phrase, Place, Reader},
@@ -156,7 +155,7 @@ impl Reader<'_> {
         let Some(mut phrase) = reader.phrase().filter(is_noun) else { return false };
         // `the apple the green one`
         if phrase.namings.is_empty() {
-            let Some(said) = clause.last_phrase().filter(|said| gloss::tells_more(said, &phrase)) else {
+            let Some(said) = clause.last_phrase().filter(|said| tells_more(said, &phrase)) else {
                 return false;
             };
             (phrase.namings, phrase.pronoun) = (said.namings.clone(), None);
@@ -169,7 +168,7 @@ impl Reader<'_> {
             clause.objects.push(phrase);
         } else if clause.intent == Intent::Carrot && clause.places.is_empty() {
             clause.places.push((Preposition::In, Place::Object(phrase)));
-        } else if let Some(said) = clause.last_phrase().filter(|said| gloss::tells_more(said, &phrase)) {
+        } else if let Some(said) = clause.last_phrase().filter(|said| tells_more(said, &phrase)) {
             *said = phrase;
         } else {
             return false;
@@ -252,4 +251,15 @@ impl Reader<'_> {
     pub(crate) fn at_long_verb(&self) -> bool {
         self.at_verb() && self.lexicon.verbs.longest(self.rest()).is_some_and(|(length, _)| length > 1)
     }
+}
+
+/// Whether a phrase says which one is meant by what was said before it.
+pub(crate) fn tells_more(said: &Phrase, phrase: &Phrase) -> bool {
+    let is_vague = said.pronoun == Some(Pronoun::Thing) && !said.is_described()
+        || said.pronoun == Some(Pronoun::One) && said.namings.is_empty();
+    let is_same = phrase.namings.iter().any(|naming| said.naming(naming.class).is_some());
+    let tells = phrase.is_described() || phrase.side.is_some() || phrase.ordinal.is_some() || !phrase.states.is_empty();
+    let told = said.is_described() || said.side.is_some() || said.ordinal.is_some() || said.is_all;
+    let is_one = phrase.pronoun == Some(Pronoun::One);
+    is_vague && !phrase.namings.is_empty() || !told && tells && (is_same || is_one)
 }

@@ -131,11 +131,6 @@ impl Understanding {
             other => other,
         }
     }
-
-    /// Whether it leaves what was asked denied, or open.
-    pub(crate) const fn denies(&self) -> bool {
-        !matches!(self, Self::Answer { holds: None | Some(true), .. })
-    }
 }
 
 /// Kinds of questions the robot asks: the four of Alexa Arena (location, appearance, direction, reference), a

@@ -12,7 +12,6 @@ use crate::{
     phrase::Reader,
     reading,
     table::PhraseTable,
-    token,
 };
 
 /// The words of wishing: `data/wishes.toml` says what each list is.
@@ -31,8 +30,6 @@ pub(crate) struct Wishes {
     removers: PhraseTable<()>,
     ensurers: PhraseTable<()>,
     performers: PhraseTable<()>,
-    takeovers: PhraseTable<()>,
-    taken: BTreeSet<String>,
     undoes: BTreeMap<String, String>,
     pub(crate) subjecters: BTreeSet<String>,
     pub(crate) infecters: BTreeSet<String>,
@@ -45,43 +42,6 @@ pub(crate) fn request(lexicon: &Lexicon, words: &[String]) -> Option<(Vec<String
     let wished = spoken(lexicon, chunk).or_else(|| stated(lexicon, chunk))?;
     Some((wished, chunk.len()))
 }
-
-/// `do it for me`, `take care of that`: how many words hand over what was told before them.
-pub(crate) fn taken_over(lexicon: &Lexicon, words: &[String]) -> Option<usize> {
-    let (length, ()) = lexicon.wishes.takeovers.longest(words)?;
-    let is_told = words.get(length).is_some_and(|word| matches!(word.as_str(), "it" | "that" | "this" | "so" | "them"));
-    let used =
-        length + 1 + words.get(length + 1..)?.iter().take_while(|word| lexicon.wishes.taken.contains(*word)).count();
-    let is_end = words.get(used).is_none_or(|word| {
-        token::is_punctuation(word) || matches!(word.as_str(), "and" | "that" | "it" | "because" | "so" | "but" | "i")
-    });
-    (is_told && is_end).then_some(used)
-}
-
-/// `i was told to chill the banana but I have no time, can you do it`: what was told is asked for, where it is handed over.
-pub(crate) fn told_to_take_over(lexicon: &Lexicon, words: Vec<String>) -> Vec<String> {
-    let begins = |before: &[String]| token::is_punctuation(&before[0]) || lexicon.lead.exact(before).is_some();
-    let is_asked = |at: usize| begins(&words[at - 1..at]);
-    let Some(end) = (1..words.len()).find(|at| is_asked(*at) && taken_over(lexicon, &words[*at..]).is_some()) else {
-        return words;
-    };
-    let is_told = |start: &usize, to: &usize| {
-        let teller = &words[*start..*to];
-        let reports = |word: &String| lexicon.chatter.reports.contains(word);
-        matches!(teller[0].as_str(), "i" | "we") && teller.iter().any(reports) && words[*to] == "to"
-    };
-    let told = (0..end).find_map(|start| {
-        let to = (start + 1..end.min(start + LONGEST_TELLER)).find(|to| is_told(&start, to))?;
-        Reader::new(lexicon, &words[to + 1..]).at_verb().then_some((start, to))
-    });
-    match told {
-        Some((start, to)) => [&words[..start], &words[to + 1..]].concat(),
-        None => words,
-    }
-}
-
-/// Most words that say who told it whom: `i have been told by my boss to`.
-const LONGEST_TELLER: usize = 8;
 
 /// Whether a wish with words of its own begins there.
 pub(crate) fn is_said(lexicon: &Lexicon, words: &[String]) -> bool {

@@ -85,8 +85,8 @@ impl Conversation<'_> {
         let parts = clause::parts(self.lexicon, self.catalog, &wording.tidied);
         let is_read = |part: &Part| match part {
             Part::Clause(clause) => chatter::is_clear(clause) && clause.unknown.is_empty() && !clause.has_stray_noun,
-            Part::Mention(phrase) | Part::Gloss(phrase) | Part::Fragment(phrase) => phrase.unknown.is_empty(),
-            Part::Forbidden(_) | Part::Where(..) => true,
+            Part::Mention(phrase) | Part::Fragment(phrase) => phrase.unknown.is_empty(),
+            Part::Forbidden(_) => true,
             Part::Aside(_) | Part::Unclear(_) => false,
         };
         parts.iter().any(|part| matches!(part, Part::Clause(_))) && parts.iter().all(is_read)

@@ -146,7 +146,7 @@ impl Lexicon {
         let file: WordFile = parse(include_str!("../data/words.toml"));
         let mut lexicon = Self {
             wishes: parse(include_str!("../data/wishes.toml")),
-            amends: parse(include_str!("../data/amends.toml")),
+            fillers: parse(include_str!("../data/fillers.toml")),
             chatter: parse(include_str!("../data/chatter.toml")),
             ifs: parse(include_str!("../data/conditions.toml")),
             waiting: parse(include_str!("../data/waiting.toml")),
