@@ -99,6 +99,11 @@ impl Conversation<'_> {
         self.said_of_waiting(words).is_some_and(|said| reads(trimmed(&words[..said.at])) && reads(&said.then))
     }
 
+    /// Whether something is to be done later: at a time, or once something is so.
+    pub(crate) fn is_for_later(&self, words: &[String]) -> bool {
+        self.said_of_waiting(words).is_some()
+    }
+
     /// Goes on with what was put off, if its time has come: nothing before that, or while there is something else to do.
     pub(crate) fn wake(&self, now_s: f64, context: &mut Context) -> Option<Understanding> {
         let waited_s = now_s - *context.awaited.as_mut()?.since_s.get_or_insert(now_s);
@@ -169,7 +174,7 @@ impl Conversation<'_> {
         Understanding::answer(text)
     }
 
-    pub(crate) fn said_of_waiting(&self, words: &[String]) -> Option<Said> {
+    fn said_of_waiting(&self, words: &[String]) -> Option<Said> {
         let begins = |at: &usize| {
             let before = at.checked_sub(1).map(|before| words[before].as_str());
             before.is_none_or(|word| token::is_punctuation(word) || matches!(word, "and" | "then" | "please" | "but"))
