@@ -39,13 +39,14 @@ const LEVELS: &[(&str, u8, &[&str])] = &[
     ("cohabit-dialog", 4, &["tokio", "axum", "hyper", "hyper-util", "rustls", "tokio-rustls", "rcgen"]),
     ("cohabit-annotate", 5, &[]),
     ("cohabit-eval", 5, &[]),
+    ("cohabit-mcp", 5, &[]),
     ("cohabit-study", 5, &[]),
     ("cohabit-vision", 5, &[]),
     ("cohabit-python", 5, &["pyo3", "numpy"]),
     ("cohabit", 6, &["clap", "clap_complete", "clap_mangen", "anyhow", "indicatif"]),
 ];
 
-/// Dependencies that others may name too: the log, pages and existing clients speak JSON, tests report errors of all
+/// Dependencies that others may name too: the log, pages, existing clients and those of tools speak JSON, tests report errors of all
 /// kinds, there are two programs, data sets are tables too, and studies and annotators have routes of their own.
 const SHARED: &[(&str, &[&str])] = &[
     (
@@ -62,6 +63,7 @@ const SHARED: &[(&str, &[&str])] = &[
             "cohabit-convert",
             "cohabit-demonstrate",
             "cohabit-generate",
+            "cohabit-mcp",
             "cohabit-study",
             "cohabit-vision",
             "cohabit",

@@ -86,6 +86,7 @@ pages! {
     language_model: "runtime/guide/src/language-model.md",
     latency: "runtime/guide/src/latency.md",
     limits: "runtime/guide/src/limits.md",
+    mcp: "runtime/guide/src/mcp.md",
     missions: "runtime/guide/src/missions.md",
     pedestrians: "runtime/guide/src/pedestrians.md",
     performance: "runtime/guide/src/performance.md",

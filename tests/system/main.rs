@@ -6,6 +6,7 @@ mod annotate;
 mod arena;
 mod bad_input;
 mod benchmark;
+mod bridge;
 mod browser;
 mod check;
 mod convert;

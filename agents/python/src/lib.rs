@@ -41,7 +41,7 @@ mod _native {
         session::{Command, Heard, Session},
         stage::Stage,
         state::{Body, Goal, Object, State},
-        suite::{action_table, builtin_missions, generate_missions, part_missions},
+        suite::{body_tools, builtin_missions, generate_missions, part_missions},
         vec_stage::VecStage,
     };
 

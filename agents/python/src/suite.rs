@@ -1,6 +1,7 @@
-//! Missions by the thousand for environments: made up, parted for training and tests; and the table of what can be done.
+//! Missions by the thousand for environments: made up, parted for training and tests; and the tools of a body.
 
-use cohabit_cdf::{ActionKind, mission};
+use cohabit_agent::{Tool, ToolArgument, tools};
+use cohabit_cdf::mission;
 use cohabit_generate::{Facets, Order, Spec, generate, part};
 use pyo3::prelude::*;
 
@@ -8,8 +9,8 @@ use crate::{error::bad_argument, library::Library};
 
 /// A mission's type, its floor plan, the rooms that its plan leads to, and the classes of the things that its goals are about.
 type FacetTuple = (String, String, Vec<String>, Vec<String>);
-/// An action on an object: its name, what people say for it, and how it is refused: statuses, each with a sentence.
-type TableRow = (&'static str, Vec<String>, Vec<(String, String)>);
+/// A tool: its name, what it does, and what it takes, if anything: the argument's name and, of a number, the lowest and the highest.
+type ToolRow = (&'static str, String, Option<(&'static str, Option<(f64, f64)>)>);
 
 /// Lines of a file of missions, made up and solved once each; of these types alone, if any are given; with the packs in these
 /// folders.
@@ -59,27 +60,20 @@ pub fn builtin_missions() -> Vec<&'static str> {
     mission::builtin().iter().map(|(file, _)| file.trim_end_matches(".json")).collect()
 }
 
-/// What can be done to objects, by the table of actions, with the packs in these folders.
+/// The tools of a body, with the packs in these folders.
 ///
 /// # Errors
 /// A `ValueError`, if a folder is no world pack.
 #[pyfunction]
 #[pyo3(signature = (world=Vec::new()))]
-pub fn action_table(world: Vec<String>) -> PyResult<Vec<TableRow>> {
+pub fn body_tools(world: Vec<String>) -> PyResult<Vec<ToolRow>> {
     let library = Library::with_packs(&world)?;
-    let row = |kind: ActionKind| {
-        let (mut words, mut refusals): (Vec<String>, Vec<(String, String)>) = Default::default();
-        for rule in library.catalog().table().rules().iter().filter(|rule| rule.action == kind) {
-            let new: Vec<String> = rule.words.iter().filter(|word| !words.contains(*word)).cloned().collect();
-            words.extend(new);
-            for need in &rule.needs {
-                let refusal = (format!("{:?}", need.status), need.words.clone());
-                if !refusals.contains(&refusal) {
-                    refusals.push(refusal);
-                }
-            }
-        }
-        (kind.name(), words, refusals)
+    let row = |tool: Tool| {
+        let argument = tool.deed.argument().map(|argument| match argument {
+            ToolArgument::Object => ("object", None),
+            ToolArgument::Number { name, low, high } => (name, Some((low, high))),
+        });
+        (tool.deed.name(), tool.description, argument)
     };
-    Ok(ActionKind::ALL.into_iter().map(row).collect())
+    Ok(tools(library.catalog().table()).into_iter().map(row).collect())
 }

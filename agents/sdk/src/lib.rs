@@ -10,6 +10,8 @@
 //!
 //! A [`Crowd`] is many at once: pedestrians who walk by social forces, to where a [`Schedule`] has them go.
 //!
+//! [`tools`] describes what a body can be told to do to whoever plays it by calls, as language models do.
+//!
 //! This crate never knows the world's insides: an agent acts by commands and learns by outcomes. In lock-step it hears
 //! and acts in its turns alone, so what comes of it depends neither on the machine nor on where it runs.
 //!
@@ -59,6 +61,7 @@ mod random;
 mod script;
 mod scripted;
 mod symbols;
+mod tool;
 
 pub use agent::{Agent, Deed, Heard, Now, Senses, TICKS_PER_SECOND};
 pub use client::{Client, Outcome, outcome};
@@ -73,3 +76,4 @@ pub use plan_follower::PlanFollower;
 pub use random::Random;
 pub use script::{Script, ScriptError};
 pub use scripted::Scripted;
+pub use tool::{Tool, ToolArgument, ToolDeed, tools};

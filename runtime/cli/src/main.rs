@@ -119,6 +119,8 @@ enum Command {
     Sim(peers::Sim),
     /// One robot's mind
     Agent(peers::Agent),
+    /// A body of a running session for programs that speak another protocol: language models, by tools
+    Bridge(peers::Bridge),
     /// The page, and the understanding of what people say
     Dialog(peers::Dialog),
     /// The session log
@@ -132,6 +134,7 @@ impl Command {
             Self::Play(_)
             | Self::Sim(_)
             | Self::Agent(_)
+            | Self::Bridge(_)
             | Self::Dialog(_)
             | Self::Record(_)
             | Self::Study(_)
@@ -213,6 +216,7 @@ fn run(asked: Cohabit) -> anyhow::Result<()> {
         Command::Gallery(gallery) => gallery.run(),
         Command::Sim(sim) => sim.run(),
         Command::Agent(agent) => agent.run(),
+        Command::Bridge(bridge) => bridge.run(),
         Command::Dialog(dialog) => dialog.run(),
         Command::Record(record) => record.run(),
     }

@@ -2,6 +2,7 @@
 
 mod agent;
 mod body_name;
+mod bridge;
 mod dialog;
 mod listening;
 mod noted;
@@ -22,6 +23,7 @@ use crate::{
 };
 
 pub use agent::Agent;
+pub use bridge::Bridge;
 pub use dialog::{Dialog, journal};
 pub use listening::Listening;
 pub use noted::{NAME_OF, Noted, label};

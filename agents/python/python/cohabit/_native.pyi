@@ -36,8 +36,8 @@ def generate_missions(
 def part_missions(missions: list[tuple[str, str, list[str], list[str]]], share: float, seed: int) -> list[str]:
     """The part that each mission, given by type, floor plan, rooms and things, belongs to."""
 
-def action_table(world: list[str] = ...) -> list[tuple[str, list[str], list[tuple[str, str]]]]:
-    """What can be done to objects: the name, what people say for it, and how it is refused: statuses with sentences."""
+def body_tools(world: list[str] = ...) -> list[tuple[str, str, Optional[tuple[str, Optional[tuple[float, float]]]]]]:
+    """The tools of a body: the name, what it does, and its argument, if any: the name and, of a number, lowest and highest."""
 
 def choice_action(choice: int, object: int) -> Optional[Action]: ...
 @final

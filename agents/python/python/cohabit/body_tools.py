@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, Literal, Union
+from typing import Any, Literal, Optional, Union
 
 from gymnasium.error import ResetNeeded
 
@@ -13,22 +12,11 @@ from .actions import Action, GoTo, Interact, LookAround, Move, PickUp, Place, Ro
 from .env import Env
 from .session import Session
 
-_OBJECT = {
+_OBJECT: dict[str, Any] = {
     "type": "string",
     "minLength": 1,
     "description": "the object: what people call it, its class, or its instance id, such as `Bowl_01_1`",
 }
-_MOTIONS: dict[str, tuple[str, str, float, float]] = {
-    "move": ("Move along the heading; a negative distance is backwards.", "distance_m", -10.0, 10.0),
-    "turn": ("Turn on the spot; a positive angle is to the left.", "yaw_rad", -6.3, 6.3),
-}
-_DEEDS = {
-    "go_to": "Walk to an object, so that it is within reach, or into a room.",
-    "pick_up": "Take an object into the empty hand.",
-    "place": "Put what is held onto or into a receptacle.",
-}
-_NAMES = {"it": "the object", "held": "what is held", "cover": "what covers it", "holder": "what holds it"}
-_MOST_REFUSALS = 6
 
 
 class Tools:
@@ -86,23 +74,14 @@ def tools(body: Union[Session, Env]) -> Tools:
 
 def _described(packs: list[str]) -> Described:
     described: list[tuple[str, str, dict[str, Any]]] = []
-    for name, (text, argument, low, high) in _MOTIONS.items():
-        number = {"type": "number", "minimum": low, "maximum": high}
-        described.append((name, text, _schema({argument: number})))
-    described.append(("look_around", "Turn once around, looking.", _schema({})))
-    for name, spoken, refusals in _native.action_table(packs):
-        text = _DEEDS.get(name) or f"{name.capitalize()} an object, with the hand or with what it holds."
-        said = ", ".join(f"`{word}`" for word in spoken)
-        why = " ".join(_sentence(words) for _, words in refusals[:_MOST_REFUSALS])
-        text += (f" People say {said}." if said else "") + (f" It is refused with: {why}" if why else "")
-        described.append((name, text, _schema({"object": _OBJECT})))
+    for name, text, argument in _native.body_tools(packs):
+        properties: dict[str, Any] = {} if argument is None else {argument[0]: _property(argument[1])}
+        described.append((name, text, _schema(properties)))
     return described
 
 
-def _sentence(words: str) -> str:
-    """A refusal of the table, with words for names."""
-    sentence = re.sub(r"\{(\w+)\}", lambda name: _NAMES.get(name[1], "it"), words)
-    return sentence[:1].upper() + sentence[1:].rstrip(".") + "."
+def _property(bounds: Optional[tuple[float, float]]) -> dict[str, Any]:
+    return _OBJECT if bounds is None else {"type": "number", "minimum": bounds[0], "maximum": bounds[1]}
 
 
 def _schema(properties: dict[str, Any]) -> dict[str, Any]:
@@ -119,9 +98,9 @@ def _action(name: str, arguments: Mapping[str, Any], described: Described) -> Ac
         raise ValueError(f"`{name}` takes {', '.join(wanted) or 'no arguments'}, not {', '.join(arguments) or 'nothing'}")
     if name == "look_around":
         return LookAround()
-    if name in _MOTIONS:
-        _, argument, low, high = _MOTIONS[name]
-        value = arguments[argument]
+    if name in ("move", "turn"):
+        ((argument, bounds),) = wanted.items()
+        value, low, high = arguments[argument], bounds["minimum"], bounds["maximum"]
         if isinstance(value, bool) or not isinstance(value, (int, float)) or not low <= value <= high:
             raise ValueError(f"`{argument}` is {value!r}: a number from {low} to {high}")
         return Move(value) if name == "move" else Rotate(value)

@@ -42,6 +42,7 @@ pub const PAGES: &[Page] = pages![
     "benchmark",
     "arena",
     "language-model",
+    "mcp",
     "performance",
     "latency",
     "limits",

@@ -1,0 +1,182 @@
+//! Which thing a client means: by number, by instance id, by class, or by a description, which the robot's language reads.
+
+use std::sync::Arc;
+
+use cohabit_cdf::{Catalog, GoToTarget, ObjectId, RoomId};
+use cohabit_language::{Context, Features, Known, KnownObject, Language, Referent};
+
+use crate::limits::MOST_FITTING;
+
+/// A thing whose name fits less well than that of another one by so much is not meant: as the language has it.
+const WORSE_NAME: f32 = 0.2;
+/// Articles, which a description may begin with.
+const ARTICLES: [&str; 3] = ["the ", "a ", "an "];
+
+/// The words for things.
+pub(crate) struct Things {
+    language: Language,
+}
+
+impl Things {
+    /// The words for things of these classes.
+    pub fn new(catalog: &Arc<Catalog>) -> Self {
+        Self { language: Language::new(Arc::clone(catalog)) }
+    }
+
+    /// What people would call a thing: `the red mug on the desk`.
+    pub fn name(&self, object: ObjectId, scene: &Known) -> String {
+        self.language.name(object, scene)
+    }
+
+    /// Where to walk: to a room, or to the one thing that is meant.
+    ///
+    /// # Errors
+    /// Why it is not clear which, or that there is none.
+    pub fn place(&self, text: &str, scene: &Known) -> Result<GoToTarget, String> {
+        match self.room(text) {
+            Some(room) => Ok(GoToTarget::Room(room)),
+            None => self.object(text, scene).map(GoToTarget::Object),
+        }
+    }
+
+    /// The one thing that is meant.
+    ///
+    /// # Errors
+    /// Why it is not clear which, or that there is none.
+    pub fn object(&self, text: &str, scene: &Known) -> Result<ObjectId, String> {
+        if let Ok(number) = text.parse() {
+            let object = scene.object(ObjectId(number)).map(|object| object.id);
+            return object.ok_or_else(|| format!("there is no thing of number {number}: `look` lists those in sight"));
+        }
+        match self.fitting(text, scene).as_slice() {
+            [] => Err(self.nothing(text, scene)),
+            [one] => Ok(*one),
+            several => Err(self.several(text, several, scene)),
+        }
+    }
+
+    fn room(&self, text: &str) -> Option<RoomId> {
+        let text = bare(text);
+        let is_called = |name: &str| name.eq_ignore_ascii_case(&text);
+        let rooms = self.language.catalog().rooms().all();
+        let found = rooms.iter().find(|room| is_called(room.id.id()) || room.names().any(is_called));
+        found.map(|room| room.id)
+    }
+
+    /// All things that are meant, the likeliest first.
+    fn fitting(&self, text: &str, scene: &Known) -> Vec<ObjectId> {
+        let of_instance = all(scene, |object| object.instance.eq_ignore_ascii_case(text));
+        if !of_instance.is_empty() {
+            return of_instance;
+        }
+        match self.language.catalog().find(text) {
+            Some(class) => all(scene, |object| object.class == class),
+            None => self.described(text, scene),
+        }
+    }
+
+    /// Those that are as they are described.
+    fn described(&self, text: &str, scene: &Known) -> Vec<ObjectId> {
+        let request = format!("go to the {}", bare(text));
+        let referents = self.language.referents(&request, scene, &Context::default());
+        let candidates = referents.map(|referents| referents.candidates).unwrap_or_default();
+        let fitting: Vec<&Referent> = candidates.iter().filter(|one| is_as_described(&one.features)).collect();
+        let named = |one: &Referent| feature(&one.features, "name");
+        let best = fitting.iter().map(|one| named(one)).fold(0.0, f32::max);
+        fitting.into_iter().filter(|one| named(one) > best - WORSE_NAME).map(|one| one.object).collect()
+    }
+
+    fn nothing(&self, text: &str, scene: &Known) -> String {
+        let catalog = self.language.catalog();
+        let is_there = |name: &String| {
+            let class = catalog.class_of_instance(name);
+            class.is_some_and(|class| scene.objects.iter().any(|object| object.class == class))
+        };
+        let near = catalog.near(text).filter(is_there);
+        let meant = near.map_or_else(String::new, |near| format!("did you mean `{near}`? "));
+        format!("nothing here is `{text}`: {meant}`look` lists what is in sight")
+    }
+
+    fn several(&self, text: &str, objects: &[ObjectId], scene: &Known) -> String {
+        let named = |id: &ObjectId| format!("{} is {}", id.0, self.name(*id, scene));
+        let listed: Vec<String> = objects.iter().take(MOST_FITTING).map(named).collect();
+        let rest = objects.len().saturating_sub(MOST_FITTING);
+        let more = if rest > 0 { format!("; and {rest} more") } else { String::new() };
+        format!("several things are `{text}`: {}{more}. Name one by its number", listed.join("; "))
+    }
+}
+
+/// A description without its article, in small letters.
+fn bare(text: &str) -> String {
+    let text = text.trim().to_lowercase();
+    let bare = ARTICLES.iter().find_map(|article| text.strip_prefix(article)).map(str::to_owned);
+    bare.unwrap_or(text)
+}
+
+fn all(scene: &Known, is: impl Fn(&KnownObject) -> bool) -> Vec<ObjectId> {
+    scene.objects.iter().filter(|object| is(object)).map(|object| object.id).collect()
+}
+
+/// Whether nothing that was said of a thing is otherwise.
+fn is_as_described(features: &Features) -> bool {
+    Features::NAMES.iter().filter(|name| name.ends_with("_mismatch")).all(|name| feature(features, name) == 0.0)
+}
+
+fn feature(features: &Features, name: &str) -> f32 {
+    let at = Features::NAMES.iter().position(|known| *known == name);
+    at.and_then(|at| features.values.get(at)).copied().unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::scene;
+
+    #[test]
+    fn a_thing_is_found_by_number_by_id_and_by_description() {
+        let catalog = Arc::new(Catalog::builtin());
+        let (things, scene) = (Things::new(&catalog), scene(&catalog));
+        for (text, expected) in [
+            ("1", 1),
+            ("CoffeeMug_Yellow_1", 1),
+            ("coffeemug_boss_1", 0),
+            ("Bowl_01", 2),
+            ("bowl", 2),
+            ("The bowl", 2),
+            ("the yellow mug", 1),
+            ("a yellow cup", 1),
+        ] {
+            assert_eq!(things.object(text, &scene), Ok(ObjectId(expected)), "{text}");
+        }
+    }
+
+    #[test]
+    fn where_several_things_fit_they_are_named_and_where_none_does_that_is_said() {
+        let catalog = Arc::new(Catalog::builtin());
+        let (things, scene) = (Things::new(&catalog), scene(&catalog));
+        let several = things.object("mug", &scene).unwrap_err();
+        assert!(several.starts_with("several things are `mug`: ") && !several.contains("bowl"), "{several}");
+        assert!(["0 is the ", "1 is the ", "yellow"].iter().all(|part| several.contains(part)), "{several}");
+        for (text, part) in [
+            ("9", "no thing of number 9"),
+            ("the green mug", "nothing here is `the green mug`"),
+            ("hammer", "nothing here is `hammer`: `look`"),
+            ("xylophone", "nothing here is `xylophone`: `look`"),
+        ] {
+            let refused = things.object(text, &scene).unwrap_err();
+            assert!(refused.contains(part), "{text}: {refused}");
+        }
+        let near = things.nothing("Bowl_02", &scene);
+        assert!(near.contains("did you mean `Bowl_01`?"), "{near}");
+    }
+
+    #[test]
+    fn rooms_are_places_to_walk_to() {
+        let catalog = Arc::new(Catalog::builtin());
+        let (things, scene) = (Things::new(&catalog), scene(&catalog));
+        for text in ["BreakRoom", "the break room", "Kitchen"] {
+            assert_eq!(things.place(text, &scene), Ok(GoToTarget::Room(RoomId::BREAK_ROOM)), "{text}");
+        }
+        assert_eq!(things.place("bowl", &scene), Ok(GoToTarget::Object(ObjectId(2))));
+    }
+}
