@@ -250,8 +250,24 @@ mod tests {
         let names: BTreeSet<&str> = all.iter().map(|tool| tool.name).collect();
         assert_eq!(names.len(), all.len());
         for name in [
-            "look", "look_around", "go_to", "move", "turn", "pick_up", "put", "open", "close", "toggle", "pour",
-            "point_out", "say", "ask", "listen", "goals", "wait", "stop",
+            "look",
+            "look_around",
+            "go_to",
+            "move",
+            "turn",
+            "pick_up",
+            "put",
+            "open",
+            "close",
+            "toggle",
+            "pour",
+            "point_out",
+            "say",
+            "ask",
+            "listen",
+            "goals",
+            "wait",
+            "stop",
         ] {
             assert!(names.contains(name), "{name}: {names:?}");
         }
