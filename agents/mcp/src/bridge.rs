@@ -9,7 +9,7 @@ use std::{
 };
 
 use cohabit_agent::{Eyes, Glance, PeerError, ToolDeed};
-use cohabit_bus::message::DialogKind;
+use cohabit_bus::message::{DialogKind, GoalRecord};
 use cohabit_cdf::{Action, ActionKind, ObjectId};
 use serde_json::{Map, Value};
 
@@ -284,7 +284,9 @@ impl<'a> Bridge<'a> {
         let (shown, hidden): (Vec<_>, Vec<_>) = state.goals.iter().partition(|goal| goal.hidden == 0);
         let mut lines: Vec<String> = shown
             .iter()
-            .map(|goal| format!("{}: {}", if goal.met == 1 { "met" } else { "open" }, goal.description.as_str()))
+            .map(|goal: &GoalRecord| {
+                format!("{}: {}", if goal.met == 1 { "met" } else { "open" }, goal.description.as_str())
+            })
             .collect();
         if !hidden.is_empty() {
             lines.push(format!("and {} that are not known yet", hidden.len()));
