@@ -3,7 +3,7 @@
 use cohabit_cdf::{Action, GoToTarget, ObjectId, RoomId, Verb};
 use pyo3::prelude::*;
 
-use crate::{error::bad_argument, library::Library};
+use crate::{error::bad_argument, known_rooms};
 
 /// One thing that a body can be told to do; objects are given by their number.
 #[pyclass(frozen, name = "Action", module = "cohabit._native")]
@@ -39,8 +39,8 @@ impl PyAction {
 
 /// The room that is called that in missions, in any case.
 fn room_of(id: &str) -> PyResult<RoomId> {
-    let known = || Library::builtin().catalog().rooms().listed();
-    Library::room(id).ok_or_else(|| bad_argument(format!("there is no room `{id}`: one of {}", known())))
+    let known = || known_rooms::builtin().listed();
+    known_rooms::find(id).ok_or_else(|| bad_argument(format!("there is no room `{id}`: one of {}", known())))
 }
 
 fn finite(what: &str, value: f32) -> PyResult<f32> {

@@ -8,7 +8,7 @@ use std::{
 use cohabit_cdf::{Action, ActionKind, Catalog, GoToTarget, ObjectClass, ObjectId, RoomId, Verb};
 use pyo3::prelude::*;
 
-use crate::{action::PyAction, error::bad_argument, library::Library};
+use crate::{action::PyAction, error::bad_argument, known_rooms};
 
 /// One step ahead or back, m.
 const STRIDE_M: f32 = 0.5;
@@ -40,7 +40,7 @@ impl Choice {
         use Choice::{GoTo, LookDown, LookUp, MoveAhead, MoveBack, PickUp, Place, TurnLeft, TurnRight, Wait};
         let moves = [Wait, MoveAhead, MoveBack, TurnLeft, TurnRight, LookUp, LookDown];
         let acts = [GoTo, PickUp, Place].into_iter().chain(Verb::ALL.map(Self::Interact));
-        moves.into_iter().chain(Library::builtin().catalog().rooms().ids().map(Self::GoToRoom)).chain(acts)
+        moves.into_iter().chain(known_rooms::builtin().ids().map(Self::GoToRoom)).chain(acts)
     }
 
     /// The choice of that number.

@@ -11,6 +11,7 @@ mod choice;
 mod crew;
 mod error;
 mod frame;
+mod known_rooms;
 mod library;
 mod memory;
 mod mission_file;
@@ -51,13 +52,13 @@ mod _native {
     fn tables(module: &Bound<'_, PyModule>) -> PyResult<()> {
         use cohabit_cdf::{BodyKind, Color, Fluid, StateFlag, Status, Verb};
 
-        use crate::{choice::Choice, library::Library};
+        use crate::{choice::Choice, known_rooms};
 
         module.add("VERSION", env!("CARGO_PKG_VERSION"))?;
         module.add("CHOICES", Choice::all().map(|choice| (choice.name(), choice.takes_slot())).collect::<Vec<_>>())?;
         module.add(
             "ROOMS",
-            Library::builtin().catalog().rooms().all().iter().map(|room| room.id.id()).collect::<Vec<_>>(),
+            known_rooms::builtin().all().iter().map(|room| room.id.id()).collect::<Vec<_>>(),
         )?;
         module.add("KINDS", BodyKind::ALL.map(BodyKind::name).to_vec())?;
         module.add("COLORS", Color::ALL.map(Color::name).to_vec())?;

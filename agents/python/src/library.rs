@@ -5,15 +5,12 @@ use std::{
     sync::{Arc, Mutex, OnceLock, PoisonError},
 };
 
-use cohabit_cdf::{Catalog, RoomId, WorldData, WorldPack};
+use cohabit_cdf::{Catalog, WorldData, WorldPack};
 use cohabit_engine::read_world_folder;
 use cohabit_render::{MeshLibrary, ModelError};
 use pyo3::prelude::*;
 
-use crate::{choice::Affordances, error::bad_argument};
-
-/// All libraries with world packs.
-static KNOWN: Mutex<Vec<Arc<Library>>> = Mutex::new(Vec::new());
+use crate::{choice::Affordances, error::bad_argument, known_rooms};
 
 /// What is built in, perhaps with world packs on top of it.
 pub struct Library {
@@ -41,6 +38,7 @@ impl Library {
     /// # Errors
     /// A `ValueError` that names the file and what is wrong with it.
     pub fn with_packs(folders: &[String]) -> PyResult<Arc<Self>> {
+        static KNOWN: Mutex<Vec<Arc<Library>>> = Mutex::new(Vec::new());
         if folders.is_empty() {
             return Ok(Arc::clone(Self::builtin()));
         }
@@ -54,14 +52,9 @@ impl Library {
         }
         let data = WorldData::layered(packs).map_err(bad_argument)?;
         let library = Arc::new(Self::new(folders.to_vec(), data));
+        known_rooms::note(library.catalog());
         known.push(Arc::clone(&library));
         Ok(library)
-    }
-
-    /// The room with this id or name, of what is built in or of a pack that was read.
-    pub fn room(text: &str) -> Option<RoomId> {
-        let find = |library: &Arc<Self>| library.catalog().rooms().find(text);
-        find(Self::builtin()).or_else(|| KNOWN.lock().unwrap_or_else(PoisonError::into_inner).iter().find_map(find))
     }
 
     /// The folders of its world packs, in their order; none, if it has what is built in alone.

@@ -1,27 +1,28 @@
 //! What was said, meant and done before.
 
-use cohabit_cdf::{Action, GoToTarget, ObjectId, RoomId, Status};
+pub(crate) mod awaited;
+mod deeds;
+pub(crate) mod search;
+
+use cohabit_cdf::{ObjectId, Status};
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    clause::Clause,
-    deeds::Deeds,
-    describe,
+    context::{
+        awaited::Awaited,
+        deeds::Deeds,
+        search::{Consent, Search},
+    },
+    ground::focus::Focus,
     known::Known,
-    lexicon::Preposition,
-    phrase::{Phrase, Place},
-    question::{Question, QuestionKind},
-    reply,
-    search::Search,
+    read::{clause::Clause, question::Question, slot::Slot},
+    say::reply,
     understanding::{Step, Understanding},
-    waiting::Awaited,
+    words::{prose, question_kind::QuestionKind},
 };
 
 /// How many lines of the dialog are remembered.
 const LINES: usize = 4;
-
-/// How many objects a pronoun may reach back.
-const MEMORY: usize = 8;
 
 /// The conversation so far; [`Default`] is its beginning. It can be written down, and read again by the same build.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
@@ -91,30 +92,6 @@ pub(crate) struct Failure {
     pub(crate) rest: Vec<Step>,
 }
 
-/// What the conversation is about.
-#[derive(Clone, Debug, Default, Deserialize, Serialize)]
-pub(crate) struct Focus {
-    /// The objects spoken of, the latest first.
-    pub(crate) recent: Vec<ObjectId>,
-    /// Several that were spoken of together.
-    #[serde(default)]
-    pub(crate) group: Vec<ObjectId>,
-    /// The last thing gone to, opened or put things into.
-    pub(crate) place: Option<ObjectId>,
-    /// The room spoken of last, if it was spoken of after that.
-    #[serde(default)]
-    pub(crate) room: Option<RoomId>,
-    /// What was taken, and from where, the latest first.
-    pub(crate) origins: Vec<(ObjectId, ObjectId)>,
-    /// What was put somewhere last.
-    pub(crate) placed: Option<ObjectId>,
-    /// Where the robot stood when it last set out, m.
-    pub(crate) start_m: Option<[f32; 2]>,
-    /// What was spoken of last, if that has not been seen: what `it` then stands for.
-    #[serde(default)]
-    pub(crate) unseen: Option<Phrase>,
-}
-
 /// A question of the robot's that waits for its answer.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub(crate) enum Pending {
@@ -148,95 +125,6 @@ pub(crate) struct Guess {
     later: Vec<String>,
     request: Vec<Clause>,
     reason: String,
-}
-
-/// What a person has agreed to in answers to questions about a request.
-#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize)]
-pub(crate) struct Consent {
-    /// That what is held is put down first.
-    pub(crate) may_put_down: bool,
-    /// That it is done.
-    pub(crate) is_agreed: bool,
-}
-
-/// A phrase in a request.
-#[derive(Clone, Copy, Debug, Deserialize, Eq, PartialEq, Serialize)]
-pub(crate) struct Slot {
-    pub(crate) clause: usize,
-    pub(crate) role: Role,
-}
-
-/// What part a phrase plays in its clause.
-#[derive(Clone, Copy, Debug, Deserialize, Eq, PartialEq, Serialize)]
-pub(crate) enum Role {
-    Object(usize),
-    Place(usize),
-}
-
-impl Slot {
-    /// A place that was left out gets a phrase, for the answer that says it.
-    pub(crate) fn make_room(self, clauses: &mut [Clause]) {
-        if let (Role::Place(index), Some(clause)) = (self.role, clauses.get_mut(self.clause))
-            && clause.places.len() == index
-        {
-            clause.places.push((Preposition::In, Place::Object(Phrase::default())));
-        }
-    }
-}
-
-impl Focus {
-    pub(crate) fn mention(&mut self, object: ObjectId) {
-        self.recent.retain(|known| *known != object);
-        self.recent.insert(0, object);
-        self.unseen = None;
-        self.recent.truncate(MEMORY);
-    }
-
-    /// Remembers what is taken from where, and what is put down, before the step is done.
-    pub(crate) fn remember(&mut self, scene: &Known, action: &Action) {
-        match *action {
-            Action::PickUp { object } => {
-                if let Some(origin) = scene.object(object).and_then(|object| object.parent) {
-                    self.origins.retain(|(taken, _)| *taken != object);
-                    self.origins.insert(0, (object, origin));
-                    self.origins.truncate(MEMORY);
-                }
-            }
-            Action::Place { .. } => self.placed = scene.robot.held,
-            _ => {}
-        }
-    }
-
-    /// Follows what a step is about.
-    pub(crate) fn follow(&mut self, action: &Action) {
-        match *action {
-            Action::GoTo { target: GoToTarget::Object(object) } => {
-                self.mention(object);
-                (self.place, self.room) = (Some(object), None);
-            }
-            Action::GoTo { target: GoToTarget::Room(room) } => (self.place, self.room) = (None, Some(room)),
-            Action::GoTo { .. } => (self.place, self.room) = (None, None),
-            Action::Place { receptacle } => (self.place, self.room) = (Some(receptacle), None),
-            Action::PickUp { object } | Action::Highlight { object } => {
-                if !self.group.contains(&object) {
-                    self.group.clear();
-                }
-                self.mention(object);
-            }
-            Action::Interact { verb, object } => {
-                self.mention(object);
-                if matches!(verb, cohabit_cdf::Verb::Open) {
-                    self.place = Some(object);
-                }
-            }
-            Action::Move { .. }
-            | Action::Rotate { .. }
-            | Action::Look { .. }
-            | Action::LookAround
-            | Action::Stop
-            | Action::Drive { .. } => {}
-        }
-    }
 }
 
 impl Context {
@@ -342,7 +230,7 @@ impl Context {
         let is_done_first = search.as_ref().is_none_or(|search| !search.is_under_way());
         let first = (is_done_first || sought.is_none()).then(|| reply::plan_in_words(steps));
         let then = sought.iter().chain(&later).map(|text| format!("\"{text}\""));
-        let name = describe::list(&first.into_iter().chain(then).collect::<Vec<_>>(), "and then");
+        let name = prose::list(&first.into_iter().chain(then).collect::<Vec<_>>(), "and then");
         Guess { name, steps: steps.to_vec(), search, later, request, reason }
     }
 
@@ -394,8 +282,10 @@ impl Context {
 
 #[cfg(test)]
 mod tests {
+    use cohabit_cdf::Action;
+
     use super::*;
-    use crate::search::Search;
+    use crate::read::phrase::Phrase;
 
     #[test]
     fn what_was_guessed_right_goes_on_as_it_would_have() {

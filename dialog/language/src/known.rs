@@ -1,5 +1,16 @@
 //! What the robot knows of its world: the only facts language is grounded on.
 
+pub(crate) mod contents;
+pub(crate) mod describe;
+pub(crate) mod floor;
+pub(crate) mod habits;
+pub(crate) mod imagine;
+pub(crate) mod memory;
+pub(crate) mod process;
+pub(crate) mod sight;
+mod symbols;
+mod uses;
+
 use cohabit_cdf::{
     Catalog, ClassId, Color, Fluid, Layout, ObjectId, RoomId,
     layout::Placement,
@@ -7,7 +18,7 @@ use cohabit_cdf::{
 };
 use serde::{Deserialize, Serialize};
 
-use crate::floor::Floor;
+use crate::known::floor::Floor;
 
 /// The robot, the objects it knows of, and the goals.
 #[derive(Clone, Debug, PartialEq)]
@@ -145,7 +156,7 @@ impl Known {
 
     /// The horizontal distance from the robot, m.
     pub(crate) fn distance_m(&self, object: &KnownObject) -> f32 {
-        distance_m(self.robot.position_m, object.position_m)
+        floor::distance_m(self.robot.position_m, object.position_m)
     }
 
     /// The direction of an object that is in the robot's room and not in its hand: positive to its left, within a half
@@ -206,10 +217,4 @@ impl KnownObject {
     pub(crate) fn has(&self, flag: StateFlag) -> bool {
         self.flags.has(flag)
     }
-}
-
-/// The horizontal distance of two points, m.
-pub(crate) fn distance_m(one: [f32; 3], other: [f32; 3]) -> f32 {
-    let (dx, dy) = (one[0] - other[0], one[1] - other[1]);
-    (dx * dx + dy * dy).sqrt()
 }

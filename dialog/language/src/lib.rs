@@ -5,8 +5,20 @@
 //!
 //! On the way: words ([`Language::understand`] repairs their spelling) → clauses, each one verb with its objects and
 //! places → referring expressions → objects → steps, every clause grounded on what the steps before it will have
-//! done. What remains open is asked for, and the request waits in the [`Context`] for the answer. What is not said plainly a rewriter
-//! ([`Language::with_rewriter`]) says again in plain requests, which go the same way.
+//! done. What remains open is asked for, and the request waits in the [`Context`] for the answer. What is not said
+//! plainly a rewriter ([`Language::with_rewriter`]) says again in plain requests, which go the same way.
+//!
+//! The modules form layers, each a folder that uses only those before it:
+//!
+//! - `words`: tables of words, spelling, sound, English; then `stop`, and the types of `understanding`
+//! - `read`: words → phrases, clauses, questions
+//! - `known`: what the robot knows of its world, and how it speaks of that
+//! - `ground`: phrases → objects, and whether to ask
+//! - `say`: questions, replies and reports of the robot
+//! - `plan`: clauses → steps
+//! - `context`: the conversation so far
+//! - `answer`: questions → answers
+//! - `talk`: one turn, from all of these
 //!
 //! ```
 //! use std::sync::Arc;
@@ -22,109 +34,53 @@
 //! # Ok::<(), cohabit_cdf::CatalogError>(())
 //! ```
 
-mod address;
 mod answer;
-mod ask;
-mod asked;
-mod cache;
-mod carry;
-mod chatter;
-mod claim;
-mod clause;
-mod condition;
-mod confidence;
-mod contents;
 mod context;
-mod conversation;
-mod decide;
-mod deeds;
-mod describe;
-mod device;
-mod facts;
-mod faithful;
-mod floor;
 mod ground;
-mod habits;
-mod heard;
-mod hearing;
-mod imagine;
-mod inflect;
-mod inquiry;
-mod intent;
-mod interpret;
-mod judge;
 mod known;
-mod later;
-mod lexicon;
-mod memory;
-mod misheard;
-mod naming;
-mod noun;
-mod oracle;
-mod phrase;
 mod plan;
-mod prior;
-mod process;
-mod question;
-mod reading;
-mod remedy;
-mod reply;
-mod report;
-mod requests;
-mod rewritten;
-mod room_kind;
-mod saying;
-mod search;
+mod read;
+mod say;
 mod setting;
-mod settle;
-mod sight;
-mod sound;
-mod spelling;
-mod spoken;
 mod stop;
-mod swap;
-mod symbols;
-mod table;
-mod tail;
-mod tidy;
-mod token;
+mod talk;
 mod understanding;
-mod undo;
-mod waiting;
-mod way;
-mod wish;
-mod worded;
-mod wording;
 mod words;
-mod yes_no;
 
 use std::sync::Arc;
 
 use cohabit_cdf::{Action, Catalog, ObjectId, Status};
 
-pub use address::{Addressed, Roster};
-pub use confidence::{Doubt, Features, Referent, Referents};
 pub use context::Context;
-
-pub use floor::{Floor, FloorPlan};
-pub use interpret::{Consulting, Interpreted, Interpreter, Meant, Unclear};
-pub use known::{Known, KnownGoal, KnownObject, KnownPerson, KnownRobot, within_half_turn};
-pub use memory::{Knows, Lessons, Memory};
-pub use oracle::Oracle;
-pub use rewritten::Rewrite;
-pub use sight::Gaze;
-pub use spoken::{SpokenNames, says_stop, says_stop_already};
-pub use stop::{Firmness, Stop, find_stop, mentions_stop};
+pub use ground::confidence::{Doubt, Features, Referent, Referents};
+pub use known::{
+    Known, KnownGoal, KnownObject, KnownPerson, KnownRobot,
+    floor::{Floor, FloorPlan},
+    memory::{Knows, Lessons, Memory},
+    sight::Gaze,
+    within_half_turn,
+};
+pub use say::oracle::Oracle;
+pub use stop::{Stop, find_stop, mentions_stop, said::Firmness};
+pub use talk::{
+    conversation::Rewrite,
+    interpret::{Consulting, Interpreted, Interpreter, Meant, Unclear},
+    spoken::{SpokenNames, says_stop, says_stop_already},
+};
 pub use understanding::{Asking, Clarification, Effort, Step, Understanding};
+pub use words::address::{Addressed, Roster};
 
 use crate::{
-    confidence::Weights,
-    context::Focus,
-    conversation::Conversation,
-    habits::Habits,
-    judge::{Costs, Judge},
-    lexicon::Lexicon,
-    process::Devices,
+    ground::{
+        confidence::Weights,
+        focus::Focus,
+        judge::{Costs, Judge},
+    },
+    known::{describe, habits::Habits, imagine, process::Devices},
+    plan::remedy,
+    say::{ask, report, worded},
+    talk::conversation::Conversation,
+    words::{lexicon::Lexicon, prose},
 };
 
 /// The robot's language: its words, what it knows of devices, and when it asks.
@@ -231,7 +187,7 @@ impl Language {
     pub fn report_missing(&self, id: ObjectId, scene: &Known, context: &mut Context) -> Understanding {
         let the = describe::short(&self.catalog, scene, id);
         context.await_search();
-        let gone = describe::sentence(&format!("{the} is not there any more"));
+        let gone = prose::sentence(&format!("{the} is not there any more"));
         ask::confirmation(format!("{gone} Shall I look for it?"))
     }
 

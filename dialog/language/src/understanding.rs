@@ -3,7 +3,7 @@
 use cohabit_cdf::{Action, GoToTarget, ObjectId, Verb};
 use serde::{Deserialize, Serialize};
 
-use crate::{describe, setting::named_in_a_word};
+use crate::{setting::named_in_a_word, words::prose};
 
 /// What the robot makes of what it was told.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
@@ -88,7 +88,7 @@ impl Understanding {
 
     /// The same to a question that wants no yes or no.
     pub(crate) fn without_yes(self) -> Self {
-        self.saying(describe::without_yes)
+        self.saying(prose::without_yes)
     }
 
     /// The same with another reply.
@@ -125,7 +125,7 @@ impl Understanding {
             Self::Answer { text, highlight, holds: Some(holds) } if is_asked => {
                 let has_one = text.starts_with("Yes") || text.starts_with("No");
                 let start = if holds { "Yes" } else { "No" };
-                let text = if has_one { text } else { format!("{start}, {}", describe::within_sentence(&text)) };
+                let text = if has_one { text } else { format!("{start}, {}", prose::within_sentence(&text)) };
                 Self::Answer { text, highlight, holds: Some(holds) }
             }
             other => other,

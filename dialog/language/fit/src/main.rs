@@ -120,7 +120,7 @@ fn head([fitted, judged_on]: [usize; 2], plans: &[String], held_out: &[String], 
     let Calibration { error, accuracy, .. } = judged;
     format!(
         "# How much each feature counts, in nats per unit of it: of a candidate for being the one meant, and for none of\n\
-         # them being meant. `src/confidence.rs` says what the features are. Written, with seed {SEED}, by\n\
+         # them being meant. `src/ground/confidence.rs` says what the features are. Written, with seed {SEED}, by\n\
          #\n\
          #     cargo run --release --manifest-path dialog/language/fit/Cargo.toml\n\
          #\n\

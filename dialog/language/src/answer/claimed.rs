@@ -1,0 +1,270 @@
+//! Whether what is claimed of a thing is so.
+//!
+//! What the robot cannot tell is neither true nor false: it says so, and what it knows of the thing instead.
+
+use cohabit_cdf::{Fluid, ObjectId, Property, state::StateFlag};
+
+use crate::{
+    answer::{
+        Answerer,
+        claim::{Claim, Filling},
+    },
+    ground::{has_state, want::Want},
+    known::{KnownObject, contents, describe},
+    read::{
+        phrase::{Phrase, RelationKind},
+        question::Question,
+    },
+    understanding::Understanding,
+    words::{intent::Intent, lexicon::StateWord, prose},
+};
+
+impl Answerer<'_> {
+    /// Whether what is asked of a thing is so.
+    pub(crate) fn claim(&self, phrase: &Phrase, question: &Question) -> Understanding {
+        let claim = Claim::read(self.lexicon, phrase, &question.rest);
+        let bare = Phrase { relations: Vec::new(), room: None, ..phrase.clone() };
+        if let (Claim::Placed | Claim::Present | Claim::Done, Some(filling)) =
+            (&claim, Filling::named(self.lexicon, phrase))
+            && let Some(answer) = self.filled(phrase, filling)
+        {
+            return answer;
+        }
+        if bare.is_empty() {
+            return Understanding::lost("I do not know what you mean.");
+        }
+        match claim {
+            Claim::State(state, words) if bare.is_all || bare.is_many() => self.are_in_state(&bare, state, words),
+            Claim::State(state, words) => {
+                self.with_object_that(may_be(state), &bare, |id| self.is_in_state(id, state, words))
+            }
+            Claim::Full(filling) => self.with_known(&bare, |object| self.is_filled(object, filling)),
+            Claim::Color(asked) => {
+                let color = bare.color.clone().filter(|color| color != asked);
+                let colorless = Phrase { color, ..bare };
+                self.with_known(&colorless, |object| self.is_of_color(object, asked))
+            }
+            Claim::Sound(is_asked) => self.with_known(&bare, |object| {
+                let trouble = self.facts().trouble(object);
+                let the = self.short(object.id);
+                let text = match &trouble {
+                    Some(_) if describe::bare(self.catalog, self.scene, object.id).contains("broken") => {
+                        format!("{the} does not work")
+                    }
+                    Some(trouble) => format!("there is something wrong with {the}: {trouble}"),
+                    None => format!("I see nothing wrong with {the}"),
+                };
+                self.told(trouble.is_none() == is_asked, &text, object.id)
+            }),
+            Claim::Done => self.with_known(&bare, |object| self.is_done(object)),
+            Claim::For => self.with_known(&bare, |object| {
+                if object.works.is_none() {
+                    return self.cannot_tell(object);
+                }
+                let holds = self.ground().narrow(phrase, &[object.id]) == [object.id];
+                let start = if holds { "Yes" } else { "No, as far as I know" };
+                let text = format!("{start}: {}", prose::within_sentence(&self.facts().purpose(object)));
+                Understanding::whether(holds, text, vec![object.id])
+            }),
+            Claim::Same(other) => self.is_same(phrase, &other),
+            Claim::Placed => self.with_object(&bare, |id| {
+                let holds = self.ground().narrow(phrase, &[id]) == [id];
+                self.told(holds, &self.place_sentence(id), id)
+            }),
+            Claim::Present => self.place_of(&bare),
+            Claim::Untold => self.with_known(&bare, |object| self.cannot_tell(object)),
+        }
+    }
+
+    fn told(&self, holds: bool, text: &str, id: ObjectId) -> Understanding {
+        let start = if holds { "Yes" } else { "No" };
+        Understanding::whether(holds, format!("{start}, {text}."), vec![id])
+    }
+
+    /// Whether what is described is what is named; or where the latter is, if nothing is known that fits the description.
+    fn is_same(&self, described: &Phrase, named: &Phrase) -> Understanding {
+        let want = Want::place(Intent::Find, &[], None);
+        let Ok(id) = self.ground().one(described, &want) else { return self.place_of(named) };
+        if self.ground().narrow(named, &[id]) == [id] {
+            return self.told(true, &format!("that is {}", self.full(id)), id);
+        }
+        let instead = match self.ground().one(named, &want) {
+            Ok(other) => format!(", and {}", self.place_sentence(other)),
+            Err(_) => String::new(),
+        };
+        self.told(false, &format!("that is {}{instead}", self.short(id)), id)
+    }
+
+    fn is_in_state(&self, id: ObjectId, state: StateWord, words: &[String]) -> Understanding {
+        let holds = self.scene.object(id).is_some_and(|object| self.is_so(object, state));
+        let (the, words) = (self.short(id), words.join(" "));
+        let is_lit = self.scene.object(id).is_some_and(|object| self.devices.is_lit(object.class));
+        let is_switched = matches!(state, StateWord::Flag(StateFlag::Toggled, _));
+        let text = if is_switched && is_lit {
+            let state = if holds { "" } else { "not " };
+            format!("{the} is {state}{words}: it runs for a moment only, and its screen stays lit")
+        } else if holds {
+            format!("{the} {} {words}", prose::is(&the))
+        } else if self.may_have_changed(id, state) {
+            format!("{the} {} not {words} when I last saw {}", prose::was(&the), prose::it(&the))
+        } else {
+            format!("{the} {} not {words}", prose::is(&the))
+        };
+        self.told(holds, &text, id)
+    }
+
+    /// Whether all of several are in a state, and which are not.
+    fn are_in_state(&self, phrase: &Phrase, state: StateWord, words: &[String]) -> Understanding {
+        let Ok(all) = self.ground().all(phrase, &Want::place(Intent::Find, may_be(state), None)) else {
+            return self.unseen(phrase);
+        };
+        let is_not = |id: &&ObjectId| !self.scene.object(**id).is_some_and(|object| self.is_so(object, state));
+        let others: Vec<ObjectId> = all.iter().filter(is_not).copied().collect();
+        let (words, named) = (words.join(" "), |ids: &[ObjectId]| {
+            prose::list(&ids.iter().take(contents::LIST).map(|id| self.full(*id)).collect::<Vec<_>>(), "and")
+        });
+        let text = match (others.len(), all.len()) {
+            (0, 1) => return self.is_in_state(all[0], state, &[words]),
+            (0, _) => format!("Yes, they are all {words}."),
+            (1, _) => format!("No, {} {} not {words}.", named(&others), prose::is(&self.short(others[0]))),
+            (count, total) if count == total => format!("No, none of them is {words}."),
+            _ => format!("No, {} are not {words}.", named(&others)),
+        };
+        Understanding::whether(others.is_empty(), text, all)
+    }
+
+    /// What is in a state here: `is anything broken`.
+    pub(crate) fn all_in_state(&self, state: StateWord, words: &[String], is_whether: bool) -> Understanding {
+        // What is so needs no leave to be so.
+        let may = if matches!(state, StateWord::Flag(_, true)) { &[] } else { may_be(state) };
+        let is_in = |object: &&KnownObject| {
+            let class = self.catalog.class(object.class);
+            object.room == self.scene.robot.room
+                && (may.is_empty() || may.iter().any(|property| class.has(*property)))
+                && self.is_so(object, state)
+        };
+        let found: Vec<ObjectId> = self.scene.objects.iter().filter(is_in).map(|object| object.id).collect();
+        if found.is_empty() {
+            let start = if is_whether { "No, " } else { "" };
+            let text = prose::sentence(&format!("{start}I know of nothing {} here", words.join(" ")));
+            return Understanding::whether(false, text, Vec::new());
+        }
+        let named: Vec<String> = found.iter().take(contents::LIST).map(|id| self.full(*id)).collect();
+        let start = if is_whether { "yes: " } else { "" };
+        let text = prose::sentence(&format!("{start}{}", prose::list(&named, "and")));
+        Understanding::whether(true, text, found)
+    }
+
+    fn is_of_color(&self, object: &KnownObject, asked: &str) -> Understanding {
+        let color = describe::color(self.catalog, object);
+        if color.is_empty() {
+            return self.cannot_tell(object);
+        }
+        let the = format!("the {}", describe::name(self.catalog, object.class));
+        self.told(color.contains(asked), &format!("{the} {} {color}", prose::is(&the)), object.id)
+    }
+
+    /// Whether something poured is in what is named, or anywhere; nothing, where it is spoken of as a thing: `is the milk in the fridge`.
+    pub(crate) fn filled(&self, phrase: &Phrase, filling: Filling) -> Option<Understanding> {
+        let fills = filling.name();
+        let Some(relation) = phrase.relations.iter().find(|relation| relation.kind == RelationKind::Inside) else {
+            let is_thing = !phrase.namings.is_empty() || phrase.room.is_some();
+            let found = || self.scene.objects.iter().filter(|object| filling.is_in(object)).map(|object| object.id);
+            let full: Vec<String> = found().take(contents::LIST).map(|id| self.full(id)).collect();
+            return (!is_thing).then(|| match full.is_empty() {
+                true => Understanding::whether(false, format!("I have seen no {fills}."), Vec::new()),
+                false => {
+                    let text = format!("Yes, there is {fills} in {}.", prose::list(&full, "and"));
+                    Understanding::whether(true, text, found().collect())
+                }
+            });
+        };
+        let id = self.ground().one(&relation.to, &Want::place(Intent::Find, &[], None)).ok()?;
+        let object = self.scene.object(id)?;
+        let is_thing =
+            !phrase.namings.is_empty() && (!self.can_be_filled(object) || self.scene.contents(id).next().is_some());
+        (!is_thing).then(|| self.is_filled(object, filling))
+    }
+
+    fn is_filled(&self, object: &KnownObject, filling: Filling) -> Understanding {
+        let (id, fills) = (object.id, filling.name());
+        let within = self.scene.contents(id).find(|inner| filling.is_in(inner));
+        if let Some(full) = std::iter::once(object).find(|object| filling.is_in(object)).or(within) {
+            let text = format!("there is {fills} in {}", self.short(full.id));
+            return self.told(true, &text, full.id);
+        }
+        if !self.can_be_filled(object) {
+            return self.cannot_tell(object);
+        }
+        let instead = match self.fillings(id) {
+            None => "it is empty".to_owned(),
+            Some(other) => format!("there is {other} in it"),
+        };
+        self.told(false, &format!("there is no {fills} in {}: {instead}", self.short(id)), id)
+    }
+
+    /// Whether a machine has run its time, or what is to be warm is so.
+    fn is_done(&self, object: &KnownObject) -> Understanding {
+        let (class, the) = (self.catalog.class(object.class), self.short(object.id));
+        let is_on = object.has(StateFlag::Toggled);
+        match () {
+            () if class.has(Property::Toggleable) => self.told(
+                !is_on,
+                &format!("{the} {} {}", prose::is(&the), if is_on { "still on" } else { "off" }),
+                object.id,
+            ),
+            () if class.has(Property::Heatable) => {
+                let is_warm = object.has(StateFlag::Hot) || object.has(StateFlag::Cooked);
+                let not = if is_warm { "" } else { "not " };
+                self.told(is_warm, &format!("{the} {} {not}warm", prose::is(&the)), object.id)
+            }
+            () => self.cannot_tell(object),
+        }
+    }
+
+    fn can_be_filled(&self, object: &KnownObject) -> bool {
+        self.catalog.class(object.class).has(Property::Fillable)
+    }
+
+    /// The same, of a question whose beginning does not tell that it wants a yes or a no: `does the radio work`.
+    pub(crate) fn claim_told(&self, phrase: &Phrase, question: &Question) -> Option<Understanding> {
+        let claim = Claim::read(self.lexicon, phrase, &question.rest);
+        matches!(claim, Claim::Sound(_) | Claim::Full(_) | Claim::Color(_)).then(|| self.claim(phrase, question))
+    }
+
+    /// Whether a thing is in a state as people say it: coffee that is no longer hot is cold.
+    pub(crate) fn is_so(&self, object: &KnownObject, state: StateWord) -> bool {
+        match state {
+            StateWord::Flag(StateFlag::Cold, is_cold) if object.fluid == Fluid::Coffee => {
+                object.has(StateFlag::Hot) != is_cold
+            }
+            // What things stand in is not empty.
+            StateWord::Filled(is_full) if self.scene.contents(object.id).next().is_some() => is_full,
+            StateWord::Flag(StateFlag::Broken, is_broken) => self.facts().is_broken(object) == is_broken,
+            state => has_state(object, state),
+        }
+    }
+
+    fn cannot_tell(&self, object: &KnownObject) -> Understanding {
+        self.all_known(object, "I cannot tell")
+    }
+
+    /// Whether a machine may have made it hot or cold since the robot saw it.
+    pub(crate) fn may_have_changed(&self, id: ObjectId, state: StateWord) -> bool {
+        let is_warmth = matches!(state, StateWord::Flag(StateFlag::Hot | StateFlag::Cold, _));
+        let is_seen = self.scene.robot.held == Some(id) || self.scene.object(id).is_some_and(|object| object.visible);
+        is_warmth && !is_seen
+    }
+}
+
+/// What things afford that may be in a state.
+const fn may_be(state: StateWord) -> &'static [Property] {
+    match state {
+        StateWord::Flag(StateFlag::Dirty, _) => &[Property::Dirtyable],
+        StateWord::Flag(StateFlag::Broken, _) => &[Property::Breakable],
+        StateWord::Flag(StateFlag::Opened, _) => &[Property::Openable],
+        StateWord::Flag(StateFlag::Toggled, _) => &[Property::Toggleable, Property::Powerable],
+        StateWord::Filled(_) => &[Property::Fillable],
+        StateWord::Flag(..) => &[],
+    }
+}

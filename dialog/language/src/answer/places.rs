@@ -1,0 +1,188 @@
+//! Answers about where things are, and what is somewhere.
+
+use cohabit_cdf::{ObjectId, Property, RoomId};
+
+use crate::{
+    answer::{Answerer, NEIGHBOURS},
+    ground::{self, want::Want},
+    known::{KnownObject, contents, describe, floor},
+    read::phrase::Phrase,
+    say::reply::HINT,
+    understanding::Understanding,
+    words::{intent::Intent, prose},
+};
+
+impl Answerer<'_> {
+    pub(crate) fn holder(&self, id: ObjectId) -> Understanding {
+        let is_held = self.scene.robot.held == Some(id);
+        let who = if is_held { "I have it" } else { "Nobody that I know of" };
+        Understanding::about(format!("{who}: {}.", self.place_sentence(id)), vec![id])
+    }
+
+    /// Where it was taken from, or where it is, if it was not taken.
+    pub(crate) fn origin(&self, id: ObjectId) -> Understanding {
+        let taken = self.context.focus.origins.iter().find(|(taken, _)| *taken == id);
+        match taken {
+            Some((_, from)) => {
+                let text = format!("I took {} from {}.", self.short(id), self.full(*from));
+                Understanding::about(text, vec![*from])
+            }
+            None => Understanding::about(prose::sentence(&self.place_sentence(id)), vec![id]),
+        }
+    }
+
+    pub(crate) fn seeing(&self) -> Understanding {
+        let visible: Vec<&KnownObject> = self.scene.objects.iter().filter(|object| object.visible).collect();
+        let here: Vec<&KnownObject> =
+            self.scene.objects.iter().filter(|object| object.room == self.scene.robot.room).collect();
+        let (list, start) = if visible.is_empty() { (here, "Around me there is") } else { (visible, "I see") };
+        if list.is_empty() {
+            return Understanding::whether(false, "I see nothing of note here.", Vec::new());
+        }
+        Understanding::answer(format!("{start} {}.", self.listed(&list)))
+    }
+
+    /// The room that words name.
+    pub(crate) fn room_in(&self, words: &[String]) -> Option<RoomId> {
+        (0..words.len()).find_map(|at| self.lexicon.rooms.longest(&words[at..]).map(|(_, room)| *room))
+    }
+
+    pub(crate) fn way_to(&self, room: RoomId) -> String {
+        let name = room.name_in(self.catalog);
+        if room == self.scene.robot.room {
+            return format!("This is the {name}.");
+        }
+        format!("I know the way to the {name}: say \"go to the {name}\", and I will show you.")
+    }
+
+    pub(crate) fn place_of(&self, phrase: &Phrase) -> Understanding {
+        let want = Want::place(Intent::Find, &[], None);
+        let Ok(found) = self.ground().plausible(phrase, &want) else { return self.elsewhere(phrase) };
+        let places: Vec<String> = found.iter().take(contents::LIST).map(|id| self.place_sentence(*id)).collect();
+        Understanding::whether(true, prose::sentence(&prose::list(&places, "and")), found)
+    }
+
+    /// What is not where it was asked for may be known to be somewhere else.
+    fn elsewhere(&self, phrase: &Phrase) -> Understanding {
+        let bare = Phrase { room: None, is_here: false, relations: Vec::new(), ..phrase.clone() };
+        let want = Want::place(Intent::Find, &[], None);
+        match self.ground().plausible(&bare, &want) {
+            Ok(found) if bare != *phrase && !found.is_empty() => {
+                let places: Vec<String> =
+                    found.iter().take(contents::LIST).map(|id| self.place_sentence(*id)).collect();
+                Understanding::whether(false, format!("No, but {}.", prose::list(&places, "and")), found)
+            }
+            _ => self.unseen(phrase),
+        }
+    }
+
+    pub(crate) fn place_sentence(&self, id: ObjectId) -> String {
+        let (place, the) = (describe::location(self.catalog, self.scene, id), self.short(id));
+        if !place.is_empty() {
+            return format!("{the} {} {place}", prose::is(&the));
+        }
+        let side = self.scene.object(id).map_or("", |object| {
+            let bearing = self.scene.bearing_rad(object);
+            match bearing {
+                _ if bearing.abs() < 0.6 => "in front of me",
+                _ if bearing.abs() > 2.4 => "behind me",
+                _ if bearing > 0.0 => "to my left",
+                _ => "to my right",
+            }
+        });
+        format!("{the} {} here in the {}, {side}", prose::is(&the), self.scene.robot.room.name_in(self.catalog))
+    }
+
+    pub(crate) fn room_contents(&self, room: RoomId) -> Understanding {
+        let there: Vec<&KnownObject> = self.scene.objects.iter().filter(|object| object.room == room).collect();
+        let place = format!("in the {}", room.name_in(self.catalog));
+        if there.is_empty() {
+            return Understanding::whether(false, format!("I have seen nothing {place} yet."), Vec::new());
+        }
+        let verb = if there.len() > 1 { "are" } else { "is" };
+        let text = format!("{} there {verb} {}.", prose::sentence(&place).trim_end_matches('.'), self.listed(&there));
+        Understanding::whether(true, text, Vec::new())
+    }
+
+    /// What lies about on the floor of this room.
+    pub(crate) fn on_floor(&self) -> Understanding {
+        let lies = |object: &&KnownObject| {
+            let is_carried = self.catalog.class(object.class).has(Property::Pickupable);
+            is_carried && object.parent.is_none() && object.room == self.scene.robot.room
+        };
+        let there: Vec<&KnownObject> = self.scene.objects.iter().filter(lies).collect();
+        let ids = there.iter().map(|object| object.id).collect();
+        let verb = if there.len() > 1 { "are" } else { "is" };
+        match there.is_empty() {
+            true => Understanding::whether(false, "I see nothing on the floor here but furniture.", ids),
+            false => Understanding::whether(true, format!("On the floor there {verb} {}.", self.listed(&there)), ids),
+        }
+    }
+
+    pub(crate) fn contents(&self, id: ObjectId) -> Understanding {
+        if let Some(text) = contents::inside(self.catalog, self.scene, id, self.told) {
+            let highlight = self.scene.contents(id).map(|object| object.id).collect();
+            return Understanding::whether(true, prose::sentence(&text), highlight);
+        }
+        if let Some(note) = self.scene.object(id).filter(|object| !object.text.is_empty()) {
+            return self.read_out(note);
+        }
+        let place = self.short(id);
+        if let Some(filling) = self.fillings(id) {
+            return Understanding::whether(true, format!("There is {filling} in {place}."), vec![id]);
+        }
+        let is_vessel = |object: &KnownObject| {
+            let class = self.catalog.class(object.class);
+            class.has(Property::Fillable) && class.has(Property::Pickupable)
+        };
+        if self.scene.object(id).is_some_and(is_vessel) {
+            return Understanding::whether(false, prose::sentence(&format!("{place} is empty")), vec![id]);
+        }
+        // `what is on the screen of the computer?`
+        let carries = |object: &&KnownObject| self.catalog.class(object.class).receptacle.is_some();
+        match self.scene.object(id).filter(|object| !carries(object)) {
+            Some(object) => {
+                let purpose = if self.facts().has_use(object) { self.facts().purpose(object) } else { String::new() };
+                let text = format!("There is nothing on {place} that I could read or take. {purpose}");
+                Understanding::whether(false, text.trim(), vec![id])
+            }
+            None => {
+                let preposition = describe::preposition(self.catalog, self.scene, id);
+                Understanding::whether(false, format!("I know of nothing {preposition} {place}."), Vec::new())
+            }
+        }
+    }
+
+    /// What is next to a thing, the nearest first.
+    pub(crate) fn neighbours(&self, id: ObjectId) -> Understanding {
+        let Some(object) = self.scene.object(id) else { return Understanding::refusal(HINT) };
+        let apart_m = |other: &KnownObject| floor::distance_m(object.position_m, other.position_m);
+        let is_free = |other: &&KnownObject| {
+            let is_within = |inner: ObjectId, outer: ObjectId| self.scene.ancestors(inner).any(|one| one.id == outer);
+            other.id != id
+                && other.room == object.room
+                && self.scene.robot.held != Some(other.id)
+                && !is_within(other.id, id)
+                && !is_within(id, other.id)
+                && apart_m(other) < ground::NEAR_M
+        };
+        let mut near: Vec<&KnownObject> = self.scene.objects.iter().filter(is_free).collect();
+        near.sort_by(|one, other| apart_m(one).total_cmp(&apart_m(other)).then(one.id.cmp(&other.id)));
+        near.truncate(NEIGHBOURS);
+        let the = self.short(id);
+        if near.is_empty() {
+            return Understanding::whether(false, format!("I know of nothing next to {the}."), Vec::new());
+        }
+        let names: Vec<String> = near.iter().map(|other| self.short(other.id)).collect();
+        let verb = if near.len() > 1 { "are" } else { "is" };
+        let text = format!("Next to {the} {verb} {}.", prose::list(&names, "and"));
+        Understanding::whether(true, text, near.iter().map(|other| other.id).collect())
+    }
+
+    pub(crate) fn distance(&self, id: ObjectId) -> Understanding {
+        let Some(object) = self.scene.object(id) else { return Understanding::refusal(HINT) };
+        let meters = self.scene.distance_m(object);
+        let text = format!("{} is {meters:.1} m away from me.", self.short(id));
+        Understanding::about(prose::sentence(&text), vec![id])
+    }
+}

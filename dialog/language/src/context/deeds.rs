@@ -1,0 +1,286 @@
+//! What the robot did, as it remembers it: for questions about that.
+
+use cohabit_cdf::{Action, GoToTarget, ObjectId, RoomId, Verb};
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    understanding::Step,
+    words::{intent::Intent, prose},
+};
+
+/// How many deeds are remembered.
+const MEMORY: usize = 40;
+/// How many deeds an answer tells, and one about all that was done.
+const TOLD: usize = 5;
+const ALL_TOLD: usize = 10;
+/// How many of earlier requests are told behind those for the last one.
+const EARLIER: usize = 4;
+
+/// A step that succeeded.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub(crate) struct Deed {
+    pub(crate) step: Step,
+    /// Why: `you asked me to open the fridge`.
+    pub(crate) reason: String,
+    /// The goals of the mission that were met by then, and not before.
+    #[serde(default)]
+    pub(crate) goals: Vec<String>,
+}
+
+/// All that it remembers to have done, the latest last.
+#[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]
+#[serde(transparent)]
+pub(crate) struct Deeds(Vec<Deed>);
+
+/// How what steps say is told once it is done.
+const PAST: [(&str, &str); 25] = [
+    ("breaking", "broke"),
+    ("bringing", "brought"),
+    ("closing", "closed"),
+    ("coming", "came"),
+    ("cutting", "cut"),
+    ("examining", "examined"),
+    ("filling", "filled"),
+    ("going", "went"),
+    ("looking", "looked"),
+    ("moving", "moved"),
+    ("opening", "opened"),
+    ("picking", "picked"),
+    ("pointing", "pointed"),
+    ("pouring", "poured"),
+    ("pressing", "pressed"),
+    ("putting", "put"),
+    ("reading", "read"),
+    ("scanning", "scanned"),
+    ("stopping", "stopped"),
+    ("switching", "switched"),
+    ("taking", "took"),
+    ("throwing", "threw"),
+    ("turning", "turned"),
+    ("washing", "washed"),
+    ("cleaning", "cleaned"),
+];
+
+impl Deed {
+    /// What was done: `opened the fridge`.
+    pub(crate) fn in_words(&self) -> String {
+        past(&self.step.says)
+    }
+}
+
+impl Deeds {
+    pub(crate) fn add(&mut self, step: &Step, reason: &str) {
+        if !step.commits() || step.says.is_empty() {
+            return;
+        }
+        self.0.push(Deed { step: step.clone(), reason: reason.to_owned(), goals: Vec::new() });
+        let surplus = self.0.len().saturating_sub(MEMORY);
+        self.0.drain(..surplus);
+    }
+
+    /// The last deed has met what goals are met now and were not before.
+    pub(crate) fn credit<'g>(&mut self, met: impl Iterator<Item = &'g str>) {
+        let is_new = |goal: &&str| !self.0.iter().any(|deed| deed.goals.iter().any(|known| known == goal));
+        let new: Vec<String> = met.filter(is_new).map(str::to_owned).collect();
+        if let Some(last) = self.0.last_mut() {
+            last.goals.extend(new);
+        }
+    }
+
+    /// What it did for the last request, in words, and before: `I opened the fridge and picked up the milk. Before that I closed the door`;
+    /// nothing, where it did nothing yet.
+    pub(crate) fn told(&self) -> Option<String> {
+        let last = self.0.last()?;
+        let same = self.0.iter().rev().take_while(|deed| deed.reason == last.reason).count();
+        let (earlier, of_last) = self.0.split_at(self.0.len() - same);
+        let told = format!("I {}", listed(of_last.iter(), TOLD));
+        let before = listed(main_deeds(earlier), EARLIER);
+        Some(if before.is_empty() { told } else { format!("{told}. Before that I {before}") })
+    }
+
+    /// Why it did something of that kind last, to this thing or with it where one is named, and what goals that met; nothing, where no deed
+    /// could tell.
+    pub(crate) fn why(&self, intent: Option<Intent>, id: Option<ObjectId>) -> Option<String> {
+        let is_about = |deed: &&Deed| id.is_none_or(|id| self.is_about(deed, id));
+        let is_of_kind = |deed: &&Deed| intent.is_some_and(|intent| is_of(&deed.step.action, intent));
+        let of_kind = self.0.iter().rfind(|deed| is_of_kind(deed) && is_about(deed));
+        let deed = of_kind.or_else(|| self.0.iter().rfind(|deed| id.is_some() && is_about(deed)))?;
+        Some(format!("I {}, since {}{}", deed.in_words(), deed.reason, self.goals_of(&deed.reason)))
+    }
+
+    /// What goals deeds of this reason met, as a sentence to follow another one; empty, where they met none.
+    pub(crate) fn goals_of(&self, reason: &str) -> String {
+        let of_reason = self.0.iter().rev().skip_while(|deed| deed.reason != reason);
+        let goals = of_reason.take_while(|deed| deed.reason == reason).flat_map(|deed| &deed.goals);
+        let mut goals: Vec<&str> = goals.map(|goal| goal.trim_end_matches('.')).collect();
+        goals.reverse();
+        if goals.is_empty() { String::new() } else { format!(". The mission wanted it: {}", goals.join("; ")) }
+    }
+
+    /// What it did for all requests, in words: the last that it changed for each, or else the last that it did.
+    pub(crate) fn all_told(&self) -> Option<String> {
+        let start = if main_deeds(&self.0).count() > ALL_TOLD { "Of late" } else { "So far" };
+        let told = listed(main_deeds(&self.0), ALL_TOLD);
+        (!told.is_empty()).then(|| format!("{start} I {told}"))
+    }
+
+    /// The last deed that changed this thing, or took it or put it away.
+    pub(crate) fn to(&self, id: ObjectId) -> Option<&Deed> {
+        self.0.iter().rev().find(|deed| deed.step.object() == Some(id))
+    }
+
+    /// What it did with this thing for the last request that was about it, in words; nothing, where it did nothing with it.
+    pub(crate) fn told_of(&self, id: ObjectId) -> Option<String> {
+        let last = self.0.iter().rposition(|deed| deed.step.object() == Some(id))?;
+        let put_away = |deed: &&Deed| matches!(deed.step.action, Action::Place { .. });
+        let later = &self.0[last + 1..];
+        let until =
+            later.iter().position(|deed| deed.step.action == Action::PickUp { object: id }).unwrap_or(later.len());
+        let put = later[..until].iter().find(put_away).filter(|_| self.is_taken(last, id));
+        let first = self.0[..last]
+            .iter()
+            .rposition(|deed| deed.step.object() == Some(id) && deed.reason == self.0[last].reason);
+        let of_it = first.into_iter().chain([last]).map(|at| &self.0[at]).chain(put);
+        Some(format!("I {}", listed(of_it, TOLD)))
+    }
+
+    /// Whether this thing was in the hand after that deed.
+    fn is_taken(&self, at: usize, id: ObjectId) -> bool {
+        held_after(&self.0[..=at]) == Some(id)
+    }
+
+    /// Whether a deed was done to this thing, or with it in the hand.
+    fn is_about(&self, deed: &Deed, id: ObjectId) -> bool {
+        let before = self.0.iter().position(|other| std::ptr::eq(other, deed)).map_or(&[][..], |at| &self.0[..at]);
+        deed.step.object() == Some(id) || deed.step.changes() && held_after(before) == Some(id)
+    }
+
+    /// Whether it did something of that kind to this thing or with it.
+    pub(crate) fn did(&self, intent: Intent, id: ObjectId) -> bool {
+        // Who did anything to a thing went there, and touched it.
+        let did = |deed: &Deed| match intent {
+            Intent::GoTo => deed.step.object() == Some(id),
+            _ => is_of_step(&deed.step, intent) && self.is_about(deed, id),
+        };
+        self.0.iter().any(did)
+    }
+
+    /// Whether it went to this room.
+    pub(crate) fn went_to(&self, room: RoomId) -> bool {
+        let went = |deed: &Deed| match deed.step.action {
+            Action::GoTo { target: GoToTarget::Room(to) | GoToTarget::Viewpoint(to, _) } => to == room,
+            _ => false,
+        };
+        self.0.iter().any(went)
+    }
+}
+
+/// Whether a step is what such a request comes to; to switch is one action, whichever way.
+fn is_of_step(step: &Step, intent: Intent) -> bool {
+    let other_way = match intent {
+        Intent::TurnOn => "turning off",
+        Intent::TurnOff => "turning on",
+        _ => return is_of(&step.action, intent),
+    };
+    is_of(&step.action, intent) && !step.says.starts_with(other_way)
+}
+
+/// `opening the fridge` → `opened the fridge`.
+fn past(says: &str) -> String {
+    let (first, rest) = says.split_once(' ').unwrap_or((says, ""));
+    let done = PAST.iter().find(|(doing, _)| *doing == first).map_or(first, |(_, done)| done);
+    format!("{done} {rest}").trim_end().to_owned()
+}
+
+/// What deeds came to, the last few, in words.
+fn listed<'d>(deeds: impl Iterator<Item = &'d Deed>, most: usize) -> String {
+    let mut said: Vec<String> = deeds.map(Deed::in_words).collect();
+    said.dedup();
+    let left_out = said.len().saturating_sub(most);
+    said.drain(..left_out);
+    prose::list(&said, "and")
+}
+
+/// What it changed last for each request, or else did last.
+fn main_deeds(deeds: &[Deed]) -> impl Iterator<Item = &Deed> {
+    let of_requests = deeds.chunk_by(|one, next| one.reason == next.reason);
+    of_requests.filter_map(|deeds| deeds.iter().rfind(|deed| deed.step.is_lasting()).or(deeds.last()))
+}
+
+/// Whether an action is what such a request comes to.
+fn is_of(action: &Action, intent: Intent) -> bool {
+    let verb = match action {
+        Action::PickUp { .. } => return matches!(intent, Intent::PickUp | Intent::Bring),
+        Action::Place { .. } => return matches!(intent, Intent::Place | Intent::Drop | Intent::Bring),
+        Action::GoTo { .. } => return matches!(intent, Intent::GoTo | Intent::Travel | Intent::Find),
+        Action::Rotate { .. } => return intent == Intent::Turn,
+        Action::Interact { verb, .. } => verb,
+        _ => return false,
+    };
+    match intent {
+        Intent::Open => *verb == Verb::Open,
+        Intent::Close => *verb == Verb::Close,
+        Intent::Break => *verb == Verb::Break,
+        Intent::Scan => *verb == Verb::Scan,
+        Intent::Pour => *verb == Verb::Pour,
+        Intent::Throw => *verb == Verb::Throw,
+        Intent::Fill => *verb == Verb::Fill,
+        Intent::Clean => *verb == Verb::Clean,
+        Intent::Examine | Intent::LookIn | Intent::LookUnder => *verb == Verb::Examine,
+        Intent::Toggle | Intent::TurnOn | Intent::TurnOff | Intent::Use => *verb == Verb::Toggle,
+        _ => false,
+    }
+}
+
+/// What is in the hand after deeds.
+fn held_after(deeds: &[Deed]) -> Option<ObjectId> {
+    let held = |deed: &Deed| match deed.step.action {
+        Action::PickUp { object } => Some(Some(object)),
+        Action::Place { .. } => Some(None),
+        _ => None,
+    };
+    deeds.iter().rev().find_map(held).flatten()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn step(action: Action, says: &str) -> Step {
+        Step { action, says: says.to_owned() }
+    }
+
+    #[test]
+    fn what_was_done_for_the_last_request_is_told() {
+        let (fridge, milk) = (ObjectId(1), ObjectId(2));
+        let mut deeds = Deeds::default();
+        assert_eq!(deeds.told(), None);
+        deeds.add(
+            &step(Action::Interact { verb: Verb::Open, object: ObjectId(9) }, "opening the door"),
+            "open the door",
+        );
+        deeds.add(&step(Action::Interact { verb: Verb::Open, object: fridge }, "opening the fridge"), "get the milk");
+        deeds.add(&step(Action::LookAround, "looking around"), "get the milk");
+        deeds.add(&step(Action::PickUp { object: milk }, "picking up the milk"), "get the milk");
+        deeds.credit(["Take the milk."].into_iter());
+        deeds.credit(["Take the milk."].into_iter());
+        let told = "I opened the fridge and picked up the milk. Before that I opened the door";
+        assert_eq!(deeds.told().as_deref(), Some(told));
+        let why = "I picked up the milk, since get the milk. The mission wanted it: Take the milk";
+        assert_eq!(deeds.why(Some(Intent::PickUp), Some(milk)).as_deref(), Some(why));
+        assert_eq!(deeds.why(Some(Intent::Pour), None), None);
+        assert!(deeds.did(Intent::PickUp, milk));
+        assert!(!deeds.did(Intent::Place, milk));
+        assert!(deeds.did(Intent::GoTo, fridge), "who opened it was there");
+        assert_eq!(deeds.to(fridge).map(|deed| deed.reason.as_str()), Some("get the milk"));
+    }
+
+    #[test]
+    fn only_so_much_is_remembered() {
+        let mut deeds = Deeds::default();
+        for number in 0..100 {
+            deeds.add(&step(Action::PickUp { object: ObjectId(number) }, "picking it up"), "");
+        }
+        assert_eq!(deeds.0.len(), MEMORY);
+    }
+}

@@ -1,0 +1,177 @@
+//! A request that waits until what it names is found, and where that was looked for.
+
+use cohabit_cdf::{Action, Catalog, ClassId, GoToTarget, ObjectId, RoomId, Status, Verb};
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    read::{clause::Clause, phrase::Phrase, slot},
+    understanding::Step,
+    words::intent::Intent,
+};
+
+/// How much likelier things are where they are spoken of than elsewhere.
+pub(crate) const HERE: f32 = 4.0;
+
+/// A request that waits until what it names is found.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+pub(crate) struct Search {
+    pub(crate) clauses: Vec<Clause>,
+    pub(crate) consent: Consent,
+    /// What is looked for; nothing yet, while the beginning of the request is done first.
+    pub(crate) target: Option<Target>,
+    /// Where it looked all around, m.
+    pub(crate) looked_m: Vec<[f32; 2]>,
+    pub(crate) tried: Vec<Spot>,
+    pub(crate) unreachable: Vec<RoomId>,
+    /// What it opened in vain.
+    pub(crate) to_close: Option<ObjectId>,
+    pub(crate) legs: u16,
+    /// Whether somebody told it to look, where it asked.
+    #[serde(default)]
+    pub(crate) is_told: bool,
+}
+
+/// What is looked for.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub(crate) struct Target {
+    /// In words, such as `a red mug`.
+    pub(crate) said: String,
+    pub(crate) classes: Vec<ClassId>,
+    /// The rooms where it may be.
+    pub(crate) rooms: Vec<RoomId>,
+    /// How likely it is in each room, by its index.
+    pub(crate) likely: Vec<f32>,
+    /// What it was said to be in or on.
+    pub(crate) at: Option<ObjectId>,
+    /// Whether one is known already, and a look around is all that is wanted.
+    pub(crate) is_hasty: bool,
+    /// Where the robot was when it was asked for.
+    pub(crate) from: RoomId,
+}
+
+/// Somewhere to look from, or into.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
+pub(crate) enum Spot {
+    Here([f32; 2]),
+    Viewpoint(RoomId, u8),
+    Thing(ObjectId),
+}
+
+impl Search {
+    /// Whether it is to do the same with the same in the end, wherever it begins to look: a pronoun may stand for what the other one names.
+    pub(crate) fn comes_to(&self, other: &Self) -> bool {
+        let (own, others) = (self.deeds(), other.deeds());
+        let is_alike = |(one, other): (&&Clause, &&Clause)| {
+            let (one_named, other_named) = (slot::named(one), slot::named(other));
+            one.intent == other.intent
+                && one_named.len() == other_named.len()
+                && one_named.iter().zip(&other_named).all(|(one, other)| may_mean_the_same(one, other))
+        };
+        own.len() == others.len() && own.iter().zip(&others).all(is_alike)
+    }
+
+    /// What it is for, without what only brings the robot there and what is only spoken of, if there is more to it.
+    pub(crate) fn deeds(&self) -> Vec<&Clause> {
+        let only_goes =
+            |clause: &&Clause| matches!(clause.intent, Intent::GoTo | Intent::Find | Intent::Look | Intent::Mention);
+        let deeds: Vec<&Clause> = self.clauses.iter().filter(|clause| !only_goes(clause)).collect();
+        if deeds.is_empty() { self.clauses.iter().collect() } else { deeds }
+    }
+
+    pub(crate) fn new(clauses: Vec<Clause>, consent: Consent) -> Self {
+        Self {
+            clauses,
+            consent,
+            target: None,
+            looked_m: Vec::new(),
+            tried: Vec::new(),
+            unreachable: Vec::new(),
+            to_close: None,
+            legs: 0,
+            is_told: false,
+        }
+    }
+
+    /// The same, of which somebody said that it is to look for what it does not know.
+    pub(crate) fn told(clauses: Vec<Clause>, consent: Consent) -> Self {
+        Self { is_told: true, ..Self::new(clauses, consent) }
+    }
+
+    /// Whether it is under way, and not waiting for the beginning of the request to be done.
+    pub(crate) const fn is_under_way(&self) -> bool {
+        self.target.is_some()
+    }
+
+    /// A leg could not be walked.
+    pub(crate) fn note_failure(&mut self, step: &Step, status: Status) {
+        if status == Status::Interrupted {
+            return;
+        }
+        if let (Action::GoTo { target: GoToTarget::Viewpoint(room, _) }, Status::UnsupportedNavigation) =
+            (step.action, status)
+        {
+            self.unreachable.push(room);
+        }
+        if let Action::Interact { .. } = step.action {
+            self.to_close = None;
+        }
+    }
+
+    /// Where it was on its way to when something came between is still to be looked at, and what it was about to close to be closed.
+    pub(crate) fn take_back(&mut self, step: &Step) {
+        if let Some(Spot::Here(_)) = self.tried.pop() {
+            self.looked_m.pop();
+        }
+        self.to_close = match step.action {
+            Action::Interact { verb: Verb::Close, object } => Some(object),
+            _ => None,
+        };
+    }
+
+    pub(crate) fn is_for(&self, target: &Target) -> bool {
+        self.target.as_ref().is_some_and(|before| !before.is_hasty && before.classes == target.classes)
+    }
+
+    pub(crate) fn look_for(&mut self, target: Target) -> bool {
+        let is_same = |before: &Target| before.classes == target.classes && before.is_hasty == target.is_hasty;
+        let is_new = !self.target.as_ref().is_some_and(is_same);
+        if is_new {
+            self.looked_m.clear();
+            self.tried.clear();
+            self.target = Some(target);
+        } else if let Some(before) = &mut self.target {
+            before.at = target.at;
+        }
+        is_new
+    }
+}
+
+/// Whether two phrases may mean the same: one is a pronoun, or both name things of one class in the same color.
+fn may_mean_the_same(one: &Phrase, other: &Phrase) -> bool {
+    let shares_class = || one.namings.iter().any(|naming| other.naming(naming.class).is_some());
+    one.text == other.text
+        || one.is_bare_pronoun()
+        || other.is_bare_pronoun()
+        || one.color == other.color && one.room == other.room && shares_class()
+}
+
+impl Target {
+    pub(crate) fn chance(&self, room: RoomId, catalog: &Catalog) -> f32 {
+        let here = if room == self.from { HERE } else { 1.0 };
+        let index = catalog.room_index(room).map(usize::from);
+        index.and_then(|index| self.likely.get(index)).map_or(0.0, |likely| likely * here)
+    }
+
+    pub(crate) fn likely_in(&mut self, room: RoomId, catalog: &Catalog) -> Option<&mut f32> {
+        self.likely.get_mut(usize::from(catalog.room_index(room)?))
+    }
+}
+
+/// What a person has agreed to in answers to questions about a request.
+#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize)]
+pub(crate) struct Consent {
+    /// That what is held is put down first.
+    pub(crate) may_put_down: bool,
+    /// That it is done.
+    pub(crate) is_agreed: bool,
+}

@@ -1,0 +1,88 @@
+//! What a conversation is about: what `it`, `there` and such may stand for.
+
+use cohabit_cdf::{Action, GoToTarget, ObjectId, RoomId};
+use serde::{Deserialize, Serialize};
+
+use crate::{known::Known, read::phrase::Phrase};
+
+/// How many objects a pronoun may reach back.
+const MEMORY: usize = 8;
+
+/// What the conversation is about.
+#[derive(Clone, Debug, Default, Deserialize, Serialize)]
+pub(crate) struct Focus {
+    /// The objects spoken of, the latest first.
+    pub(crate) recent: Vec<ObjectId>,
+    /// Several that were spoken of together.
+    #[serde(default)]
+    pub(crate) group: Vec<ObjectId>,
+    /// The last thing gone to, opened or put things into.
+    pub(crate) place: Option<ObjectId>,
+    /// The room spoken of last, if it was spoken of after that.
+    #[serde(default)]
+    pub(crate) room: Option<RoomId>,
+    /// What was taken, and from where, the latest first.
+    pub(crate) origins: Vec<(ObjectId, ObjectId)>,
+    /// What was put somewhere last.
+    pub(crate) placed: Option<ObjectId>,
+    /// Where the robot stood when it last set out, m.
+    pub(crate) start_m: Option<[f32; 2]>,
+    /// What was spoken of last, if that has not been seen: what `it` then stands for.
+    #[serde(default)]
+    pub(crate) unseen: Option<Phrase>,
+}
+
+impl Focus {
+    pub(crate) fn mention(&mut self, object: ObjectId) {
+        self.recent.retain(|known| *known != object);
+        self.recent.insert(0, object);
+        self.unseen = None;
+        self.recent.truncate(MEMORY);
+    }
+
+    /// Remembers what is taken from where, and what is put down, before the step is done.
+    pub(crate) fn remember(&mut self, scene: &Known, action: &Action) {
+        match *action {
+            Action::PickUp { object } => {
+                if let Some(origin) = scene.object(object).and_then(|object| object.parent) {
+                    self.origins.retain(|(taken, _)| *taken != object);
+                    self.origins.insert(0, (object, origin));
+                    self.origins.truncate(MEMORY);
+                }
+            }
+            Action::Place { .. } => self.placed = scene.robot.held,
+            _ => {}
+        }
+    }
+
+    /// Follows what a step is about.
+    pub(crate) fn follow(&mut self, action: &Action) {
+        match *action {
+            Action::GoTo { target: GoToTarget::Object(object) } => {
+                self.mention(object);
+                (self.place, self.room) = (Some(object), None);
+            }
+            Action::GoTo { target: GoToTarget::Room(room) } => (self.place, self.room) = (None, Some(room)),
+            Action::GoTo { .. } => (self.place, self.room) = (None, None),
+            Action::Place { receptacle } => (self.place, self.room) = (Some(receptacle), None),
+            Action::PickUp { object } | Action::Highlight { object } => {
+                if !self.group.contains(&object) {
+                    self.group.clear();
+                }
+                self.mention(object);
+            }
+            Action::Interact { verb, object } => {
+                self.mention(object);
+                if matches!(verb, cohabit_cdf::Verb::Open) {
+                    self.place = Some(object);
+                }
+            }
+            Action::Move { .. }
+            | Action::Rotate { .. }
+            | Action::Look { .. }
+            | Action::LookAround
+            | Action::Stop
+            | Action::Drive { .. } => {}
+        }
+    }
+}

@@ -1,0 +1,103 @@
+//! What pronouns and positions pick out: `it`, `there`, the second, the leftmost, the biggest.
+
+use cohabit_cdf::{ObjectId, state::StateFlag};
+
+use crate::{
+    ground::{self, Ground, want::Want},
+    known::KnownObject,
+    read::phrase::Phrase,
+    words::{
+        intent::Intent,
+        lexicon::{Pronoun, Side},
+    },
+};
+
+/// By how much the volume of what was made bigger is taken to grow.
+const ENLARGED: f32 = 4.0;
+
+impl Ground<'_> {
+    /// The object that `it`, `there` and such stand for.
+    pub(crate) fn referent(&self, pronoun: Pronoun, want: &Want<'_>) -> Option<ObjectId> {
+        let held = self.scene.robot.held.filter(|held| Some(*held) != want.exclude);
+        if pronoun != Pronoun::Place && want.held_first && held.is_some() {
+            return held;
+        }
+        let affords = |id: &ObjectId| {
+            let Some(object) = self.scene.object(*id) else { return false };
+            let class = self.catalog.class(object.class);
+            want.affordances.is_empty() || want.affordances.iter().any(|affordance| class.has(*affordance))
+        };
+        let is_free = |id: &ObjectId| {
+            let is_held = self.scene.robot.held == Some(*id) && matches!(want.intent, Intent::PickUp | Intent::GoTo);
+            Some(*id) != want.exclude && !is_held
+        };
+        let place = self.focus.place.into_iter();
+        let mut spoken = self.focus.recent.clone();
+        spoken.retain(|id| pronoun != Pronoun::Place || Some(*id) != self.focus.place);
+        let at = if pronoun == Pronoun::Place { 0 } else { spoken.len() };
+        // `put the bread in the toaster and turn it on`: the place is meant where nothing else spoken of fits.
+        spoken.splice(at..at, place);
+        spoken.retain(is_free);
+        let fits = spoken.iter().find(|id| affords(id) && self.suits(want.intent, **id));
+        let fitting = fits.or_else(|| spoken.iter().find(|id| affords(id))).copied();
+        let fitting = fitting.or_else(|| held.filter(|held| affords(held)));
+        fitting.or_else(|| self.only_one_in_need(want)).or_else(|| spoken.first().copied()).or(held)
+    }
+
+    /// `shut it`, where nothing was spoken of: the only thing in the room that is open.
+    fn only_one_in_need(&self, want: &Want<'_>) -> Option<ObjectId> {
+        if !matches!(want.intent, Intent::Close | Intent::TurnOff | Intent::Repair | Intent::Clean) {
+            return None;
+        }
+        let is_in_need = |object: &&KnownObject| {
+            object.room == self.scene.robot.room
+                && ground::fitting_state(want.intent, object) == Some(true)
+                && want.affordances.iter().any(|affordance| self.catalog.class(object.class).has(*affordance))
+        };
+        let mut in_need = self.scene.objects.iter().filter(is_in_need);
+        in_need.next().filter(|_| in_need.next().is_none()).map(|object| object.id)
+    }
+
+    /// Whether its state makes sense of the request: one closes what is open.
+    fn suits(&self, intent: Intent, id: ObjectId) -> bool {
+        self.scene.object(id).is_some_and(|object| ground::fitting_state(intent, object) != Some(false))
+    }
+
+    /// The leftmost, second, nearest and so on of those that are left.
+    pub(crate) fn by_position(&self, phrase: &Phrase, left: &[&KnownObject]) -> Option<ObjectId> {
+        let mut near: Vec<&KnownObject> = left.to_vec();
+        ground::keep_if_any(&mut near, |object| object.room == self.scene.robot.room);
+        near.sort_by(|one, other| {
+            let (one_at, other_at) = (self.scene.bearing_rad(one), self.scene.bearing_rad(other));
+            other_at.total_cmp(&one_at).then(one.id.cmp(&other.id))
+        });
+        let by_distance = |one: &&&KnownObject, other: &&&KnownObject| {
+            self.scene.distance_m(one).total_cmp(&self.scene.distance_m(other)).then(one.id.cmp(&other.id))
+        };
+        if let Some(ordinal) = phrase.ordinal {
+            return ground::at_ordinal(&near, ordinal);
+        }
+        let picked = match phrase.side? {
+            Side::Left => near.first().copied(),
+            Side::Right => near.last().copied(),
+            Side::Middle => near.get(near.len() / 2).copied(),
+            Side::Nearest => near.iter().min_by(by_distance).copied(),
+            Side::Farthest => near.iter().max_by(by_distance).copied(),
+            Side::Biggest | Side::Smallest => return self.by_size(left, phrase.side == Some(Side::Biggest)),
+            Side::Front | Side::Behind | Side::Other => None,
+        };
+        picked.map(|object| object.id)
+    }
+
+    /// The biggest or the smallest, where one alone is.
+    fn by_size(&self, left: &[&KnownObject], is_biggest: bool) -> Option<ObjectId> {
+        let size = |object: &KnownObject| {
+            let volume: f32 = self.catalog.class(object.class).size_m.iter().product();
+            let larger = if object.has(StateFlag::Embiggenated) { ENLARGED } else { 1.0 };
+            if is_biggest { volume * larger } else { -volume * larger }
+        };
+        let best = left.iter().max_by(|one, other| size(one).total_cmp(&size(other)))?;
+        let is_alone = left.iter().filter(|object| size(object) >= size(best)).count() == 1;
+        is_alone.then_some(best.id)
+    }
+}

@@ -1,0 +1,67 @@
+//! Lists of things, as they are told: what is in a cupboard, what the robot sees.
+
+use std::collections::BTreeMap;
+
+use cohabit_cdf::{Catalog, ObjectId, Property};
+
+use crate::{
+    known::{Known, KnownObject, describe, floor},
+    words::prose,
+};
+
+/// How many things a list names before it says `and more`.
+pub(crate) const LIST: usize = 8;
+/// So many more are named, too, where that is all.
+const LIST_TO_END: usize = 5;
+
+/// How far from a thing's rim something is still under it or behind it, m.
+const BESIDE_M: f32 = 0.2;
+
+/// `a cup, two plates and 3 more`, without the first so many, which were told before.
+pub(crate) fn listed(catalog: &Catalog, scene: &Known, objects: &[&KnownObject], told: usize) -> String {
+    // By name, how many there are, and whether people carry them about: such come first.
+    let mut counts: BTreeMap<String, (bool, usize)> = BTreeMap::new();
+    for object in objects {
+        let (is_carried, count) = counts.entry(describe::bare(catalog, scene, object.id)).or_default();
+        *is_carried |= catalog.class(object.class).has(Property::Pickupable);
+        *count += 1;
+    }
+    let mut counts: Vec<(String, (bool, usize))> = counts.into_iter().collect();
+    counts.sort_by_key(|(_, (is_carried, _))| !is_carried);
+    let left = counts.len().saturating_sub(told);
+    let most = if left <= LIST + LIST_TO_END { left } else { LIST };
+    let named = counts.iter().skip(told).take(most).map(|(name, (_, count))| prose::counted(name, *count));
+    let more = (left > most).then(|| format!("{} more", left - most));
+    let names: Vec<String> = named.chain(more).collect();
+    if names.is_empty() { "nothing else".to_owned() } else { prose::list(&names, "and") }
+}
+
+/// `under the desk there is a golf ball`: what stands on the floor where this thing does; nothing, where nothing is known to.
+pub(crate) fn under(catalog: &Catalog, scene: &Known, id: ObjectId) -> Option<String> {
+    let thing = scene.object(id)?;
+    let [width, _, depth] = catalog.class(thing.class).size_m;
+    let reach_m = 0.5 * width.max(depth) + BESIDE_M;
+    let is_there = |other: &&KnownObject| {
+        other.id != id
+            && other.room == thing.room
+            && other.parent.is_none()
+            && thing.parent != Some(other.id)
+            && catalog.class(other.class).size_m.into_iter().fold(0.0, f32::max) < reach_m
+            && floor::distance_m(thing.position_m, other.position_m) < reach_m
+    };
+    let there: Vec<&KnownObject> = scene.objects.iter().filter(is_there).collect();
+    let verb = if there.len() > 1 { "are" } else { "is" };
+    let place = describe::short(catalog, scene, id);
+    (!there.is_empty()).then(|| format!("on the floor by {place} there {verb} {}", listed(catalog, scene, &there, 0)))
+}
+
+/// `in the fridge there are a milk and an apple`; nothing, where nothing is known to be there.
+pub(crate) fn inside(catalog: &Catalog, scene: &Known, id: ObjectId, told: usize) -> Option<String> {
+    let inside: Vec<&KnownObject> = scene.contents(id).collect();
+    if inside.is_empty() {
+        return None;
+    }
+    let verb = if inside.len() > 1 { "are" } else { "is" };
+    let (preposition, place) = (describe::preposition(catalog, scene, id), describe::short(catalog, scene, id));
+    Some(format!("{preposition} {place} there {verb} {}", listed(catalog, scene, &inside, told)))
+}

@@ -1,0 +1,443 @@
+//! Plans with machines: switching them, and getting things heated, cooled, cleaned, repaired, coloured and printed.
+
+use cohabit_cdf::{Action, ClassId, Fluid, ObjectId, Property, Verb, state::StateFlag};
+
+use crate::{
+    ground::want::{Miss, Want},
+    known::process::{Act, Process},
+    plan::{
+        Fault, Planner,
+        settle::{Goal, Settled},
+    },
+    read::{
+        phrase::{Phrase, Place},
+        slot::Role,
+    },
+    words::{intent::Intent, prose},
+};
+
+impl Planner<'_> {
+    pub(crate) fn add_toggle(&mut self, settled: &Settled) -> Result<(), Fault> {
+        let want = Want { affordances: &[Property::Toggleable, Property::Powerable], ..Want::object(settled.intent) };
+        if let Some(machine) = self.machine_of_button(settled) {
+            return self.switch(machine, settled.intent);
+        }
+        for object in self.find_objects(settled, &want)? {
+            self.switch(object, settled.intent)?;
+        }
+        Ok(())
+    }
+
+    /// `approach the printer, press the red button`: where no button is in the room, it is the machine's own.
+    fn machine_of_button(&self, settled: &Settled) -> Option<ObjectId> {
+        let phrase = settled.objects.first()?;
+        let is_button = !phrase.namings.is_empty() && phrase.namings.iter().all(|naming| self.is_button(naming.class));
+        let has_buttons = || {
+            let mut here = self.scene.objects.iter().filter(|object| object.room == self.scene.robot.room);
+            here.any(|object| phrase.naming(object.class).is_some())
+        };
+        if is_button && let [relation] = phrase.relations.as_slice() {
+            let want = Want::place(Intent::Toggle, &[Property::Toggleable], None);
+            let machine = self.ground().one(&relation.to, &want).ok()?;
+            let has_own = self.scene.objects.iter().any(|object| {
+                let is_near =
+                    object.works == Some(machine) || self.ground().narrow(phrase, &[object.id]) == [object.id];
+                self.is_button(object.class) && is_near
+            });
+            return (!has_own && self.has(machine, Property::Toggleable)).then_some(machine);
+        }
+        let machine = self.focus.place.filter(|place| self.has(*place, Property::Toggleable))?;
+        (is_button && phrase.room.is_none() && !has_buttons()).then_some(machine)
+    }
+
+    /// Switches a machine by whatever works it.
+    pub(crate) fn switch(&mut self, object: ObjectId, intent: Intent) -> Result<(), Fault> {
+        let worker = self.worker(object)?;
+        if worker == object && !self.has(object, Property::Toggleable) {
+            return Err(Fault::Cannot(format!("I cannot switch {}.", self.the(object))));
+        }
+        let is_on = [object, worker]
+            .into_iter()
+            .filter_map(|id| self.scene.object(id))
+            .any(|known| known.has(StateFlag::Toggled));
+        let wanted = match intent {
+            Intent::TurnOn => Some(true),
+            Intent::TurnOff => Some(false),
+            _ => None,
+        };
+        if wanted == Some(is_on) {
+            let state = if is_on { "on" } else { "off" };
+            self.focus.mention(object);
+            self.notes.push(self.already(object, state));
+            return Ok(());
+        }
+        // `I want to see the laser fire, turn it on`
+        let toggles = Action::Interact { verb: Verb::Toggle, object: worker };
+        if wanted == Some(true) && self.steps.last().is_some_and(|step| step.action == toggles) {
+            return Ok(());
+        }
+        if wanted != Some(false) {
+            self.shut_to_run(worker);
+        }
+        let participle = match wanted {
+            Some(true) => "turning on",
+            Some(false) => "turning off",
+            None if self.scene.object(worker).is_some_and(|known| self.is_button(known.class)) => "pressing",
+            None => "switching",
+        };
+        self.interact(Verb::Toggle, worker, participle);
+        if worker != object {
+            self.focus.mention(object);
+        }
+        Ok(())
+    }
+
+    /// That it is so already. A machine that runs for a moment was on a moment ago, and its screen may be lit yet.
+    fn already(&self, object: ObjectId, state: &str) -> String {
+        let the = self.the(object);
+        let is_lit = self.scene.object(object).is_some_and(|known| self.devices.is_lit(known.class));
+        if is_lit && state == "off" {
+            return format!("{the} is off: it runs for a moment only, and its screen stays lit");
+        }
+        format!("{the} is already {state}")
+    }
+
+    fn is_button(&self, class: ClassId) -> bool {
+        self.catalog.class(class).name.ends_with("Button")
+    }
+
+    /// A microwave runs with its door shut: the wish to run it implies closing it.
+    fn shut_to_run(&mut self, machine: ObjectId) {
+        let is_open = self
+            .scene
+            .object(machine)
+            .is_some_and(|known| self.devices.must_be_shut(known.class) && known.has(StateFlag::Opened));
+        if is_open {
+            // What this very plan opens is no news.
+            let opens = Action::Interact { verb: Verb::Open, object: machine };
+            if !self.steps.iter().any(|step| step.action == opens) {
+                self.notes.push(format!("{} is open, so I close it first", self.the(machine)));
+            }
+            self.interact(Verb::Close, machine, "closing");
+        }
+    }
+
+    /// What must be switched to run a machine: its monitor, lever or button, or itself.
+    fn worker(&self, object: ObjectId) -> Result<ObjectId, Fault> {
+        let Some(known) = self.scene.object(object) else { return Ok(object) };
+        let Some(classes) = self.devices.workers(known.class) else { return Ok(object) };
+        let mut workers: Vec<ObjectId> =
+            self.scene.objects.iter().filter(|other| other.works == Some(object)).map(|other| other.id).collect();
+        if workers.is_empty() && self.may_find(classes) {
+            return Err(self.need(classes, format!("I do not know what works {}.", self.the(object))));
+        }
+        if workers.is_empty() {
+            let fits = |class: &&ClassId| self.scene.objects.iter().any(|other| other.class == **class);
+            workers = classes.iter().filter(fits).filter_map(|class| self.nearest(&[*class])).collect();
+        }
+        match workers.as_slice() {
+            [] => Ok(object),
+            [one] => Ok(*one),
+            _ => {
+                let phrase = Phrase { text: self.the(object), ..Phrase::default() };
+                Err(self.miss(&phrase, Miss::Several(workers), Intent::Toggle, Some(Role::Object(0))))
+            }
+        }
+    }
+
+    /// `use the hammer on the mug`, `use the microwave`.
+    pub(crate) fn add_use(&mut self, settled: &Settled) -> Result<(), Fault> {
+        let Some(phrase) = settled.objects.first() else { return Ok(()) };
+        let Some(Goal { place: Place::Object(target), role, .. }) = &settled.goal else {
+            let settled = Settled { intent: Intent::TurnOn, ..settled.clone() };
+            return self.add_toggle(&settled);
+        };
+        let tool = self.find_one(phrase, &Want::place(Intent::Use, &[], None), Some(Role::Object(0)))?;
+        let class = self.scene.object(tool).map(|known| known.class);
+        let is_hammer = class.is_some_and(|class| self.devices.hammers.contains(&class));
+        let process = class.and_then(|class| self.devices.processes.iter().find(|process| process.is_done_at(class)));
+        let intent = match process {
+            _ if is_hammer => Intent::Break,
+            Some(process) => process.intent,
+            // `use the antivirus disk on the computer`
+            None => Intent::Place,
+        };
+        if intent == Intent::Place {
+            return self.add_place(&Settled { intent, ..settled.clone() });
+        }
+        let object = self.find_one(target, &Want::object(intent), Some(*role))?;
+        let chosen = |id: ObjectId, phrase: &Phrase| Phrase { chosen: Some(id), ..phrase.clone() };
+        let settled = Settled {
+            intent,
+            objects: vec![chosen(object, target)],
+            goal: None,
+            tool: Some((chosen(tool, phrase), Role::Object(0))),
+            ..settled.clone()
+        };
+        if is_hammer { self.add_break(&settled) } else { self.add_process(&settled) }
+    }
+
+    /// Heating, cooling, cleaning and all else that takes several steps at a device.
+    pub(crate) fn add_process(&mut self, settled: &Settled) -> Result<(), Fault> {
+        let mut settled = settled.clone();
+        self.describe_by_goal(&mut settled);
+        if settled.objects.is_empty() && settled.intent == Intent::Brew {
+            settled.objects.push(Phrase::default());
+        }
+        for index in 0..settled.objects.len() {
+            if self.is_plain_switch(&settled, index)? {
+                continue;
+            }
+            // Each of several in its turn: there is but one hand.
+            if settled.objects[index].is_all {
+                let want = Want { held_first: false, ..Want::object(settled.intent) };
+                let phrase = settled.objects[index].clone();
+                for id in self.find_each(&phrase, &want, Some(Role::Object(index)))? {
+                    let one = Phrase { chosen: Some(id), is_all: false, ..phrase.clone() };
+                    self.add_process(&Settled { objects: vec![one], ..settled.clone() })?;
+                }
+                continue;
+            }
+            let object = self.process_object(&settled, index)?;
+            if settled.intent == Intent::Fill && settled.fluid == Some(Fluid::Milk) {
+                let cartons: Vec<ClassId> = self.catalog.find("MilkCarton_01").into_iter().collect();
+                let milk = self.milk().ok_or_else(|| self.need(&cartons, "I do not know where any milk is."))?;
+                self.pour(milk, object)?;
+                continue;
+            }
+            if settled.intent == Intent::Fill
+                && !self.has(object, Property::Fillable)
+                && self.has(object, Property::Dirtyable)
+            {
+                // Water over a plate: it is to be washed.
+                settled.intent = Intent::Clean;
+            }
+            // `fill the bowl with it`, of what can be carried
+            if settled.intent == Intent::Fill
+                && let Some((phrase, role)) = &settled.tool
+                && let Ok(source) = self.find_one(phrase, &Want::object(Intent::Pour), Some(*role))
+                && source != object
+                && self.has(source, Property::Pickupable)
+            {
+                self.pour(source, object)?;
+                continue;
+            }
+            let is_big = self.scene.object(object).is_some_and(|object| object.has(StateFlag::Embiggenated));
+            if settled.intent == Intent::Resize && is_big {
+                self.notes.push(format!("{} is big already", self.the(object)));
+                continue;
+            }
+            if settled.intent == Intent::Shrink && !is_big {
+                let text =
+                    format!("{} has its usual size, and no machine that I know of makes it smaller.", self.the(object));
+                return Err(Fault::Cannot(prose::sentence(&text)));
+            }
+            let is_once = matches!(settled.intent, Intent::Repair | Intent::Clean | Intent::Heat | Intent::Cool);
+            if is_once && self.brought_about.contains(&(settled.intent, object)) {
+                continue;
+            }
+            self.brought_about.push((settled.intent, object));
+            let (process, place) = self.choose_process(&settled)?;
+            self.carry_out(&process, object, place, settled.color.as_deref())?;
+        }
+        Ok(())
+    }
+
+    /// `heat the mug on the table`: the table is no device, so it says where the mug is.
+    fn describe_by_goal(&self, settled: &mut Settled) {
+        let Some(Goal { preposition, place: Place::Object(phrase), .. }) = &settled.goal else { return };
+        let is_made = self.devices.made.iter().any(|class| phrase.naming(*class).is_some());
+        if settled.intent == Intent::Carrot && is_made {
+            settled.goal = None;
+            return;
+        }
+        let names_device = self.processes(settled.intent, settled.fluid).any(|process| {
+            process.at.iter().chain(&process.also).chain(&process.start).any(|class| phrase.naming(*class).is_some())
+        });
+        let is_described = !names_device && phrase.chosen.is_none() && phrase.instance.is_none();
+        if is_described && let Some(object) = settled.objects.last_mut() {
+            object.attach(*preposition, Place::Object(phrase.clone()));
+            settled.goal = None;
+        }
+    }
+
+    /// `fill the sink`, `wash the sink`: the water is turned on, and that is all.
+    fn is_plain_switch(&mut self, settled: &Settled, index: usize) -> Result<bool, Fault> {
+        let sinks: Vec<ClassId> = self
+            .processes(Intent::Fill, None)
+            .filter(|process| process.steps.contains(&Act::Run))
+            .flat_map(|process| process.at.clone())
+            .collect();
+        let phrase = &settled.objects[index];
+        let is_sink = matches!(settled.intent, Intent::Fill | Intent::Clean)
+            && sinks.iter().any(|class| phrase.naming(*class).is_some());
+        if is_sink {
+            let want = Want { classes: &sinks, ..Want::place(Intent::TurnOn, &[], None) };
+            let sink = self.find_one(phrase, &want, Some(Role::Object(index)))?;
+            self.switch(sink, Intent::TurnOn)?;
+        }
+        Ok(is_sink)
+    }
+
+    fn process_object(&self, settled: &Settled, index: usize) -> Result<ObjectId, Fault> {
+        let (phrase, role) = (&settled.objects[index], Some(Role::Object(index)));
+        let want = Want::object(settled.intent);
+        if settled.intent == Intent::Brew {
+            let cups: Vec<ClassId> =
+                self.processes(Intent::Brew, None).flat_map(|process| process.object.clone()).collect();
+            let held = self.scene.robot.held.filter(|held| self.has(*held, Property::Fillable));
+            let cup = held.or_else(|| self.nearest(&cups));
+            return cup.ok_or_else(|| self.need(&cups, "I do not know where a mug is."));
+        }
+        if settled.intent == Intent::Print {
+            return self.cartridge(phrase, role);
+        }
+        let object = self.find_one(phrase, &want, role)?;
+        if !self.has(object, Property::Pickupable) {
+            let (verb, the) = (settled.intent.verb(), self.the(object));
+            return Err(Fault::Cannot(format!("I cannot {verb} {the}: I cannot carry it.")));
+        }
+        Ok(object)
+    }
+
+    /// The cartridge that prints what was asked for.
+    fn cartridge(&self, phrase: &Phrase, role: Option<Role>) -> Result<ObjectId, Fault> {
+        let printed = phrase.namings.iter().flat_map(|naming| self.devices.cartridges(naming.class));
+        let mut classes: Vec<ClassId> = printed.collect();
+        let all = phrase.namings.iter().map(|naming| naming.class);
+        // `print the hammer cartridge`: the cartridge itself was named.
+        classes.extend(all.filter(|class| self.devices.printed_by(*class).is_some()));
+        if phrase.namings.is_empty() {
+            return self.find_one(phrase, &Want::object(Intent::Print), role);
+        }
+        self.nearest(&classes).ok_or_else(|| {
+            let said = crate::read::saying::said(phrase);
+            self.need(&classes, format!("I do not know how to make {said}: I have seen no cartridge for it."))
+        })
+    }
+
+    fn milk(&self) -> Option<ObjectId> {
+        let filled = self.scene.objects.iter().filter(|object| object.fluid == Fluid::Milk);
+        let carton = self.catalog.find("MilkCarton_01").and_then(|class| self.nearest(&[class]));
+        carton.or_else(|| filled.map(|object| object.id).next())
+    }
+
+    fn processes(&self, intent: Intent, fluid: Option<Fluid>) -> impl Iterator<Item = &Process> {
+        let fits = move |process: &&Process| {
+            process.intent == intent && (fluid.is_none() || process.fluid.is_none() || process.fluid == fluid)
+        };
+        self.devices.processes.iter().filter(fits)
+    }
+
+    /// The device that was named, or the first that is known.
+    fn choose_process(&self, settled: &Settled) -> Result<(Process, ObjectId), Fault> {
+        let named = match (&settled.goal, &settled.tool) {
+            (Some(Goal { place: Place::Object(phrase), role, .. }), _) => Some((phrase, *role)),
+            (_, Some((phrase, role))) => Some((phrase, *role)),
+            _ => None,
+        };
+        let Some((phrase, role)) = named else { return self.first_process(settled) };
+        let processes: Vec<&Process> = self.processes(settled.intent, settled.fluid).collect();
+        let classes: Vec<ClassId> =
+            processes.iter().flat_map(|process| process.at.iter().chain(&process.also)).copied().collect();
+        let want = Want { classes: &classes, ..Want::place(Intent::Use, &[], None) };
+        let device = self.find_one(phrase, &want, Some(role))?;
+        let class = self.scene.object(device).map(|known| known.class).unwrap_or_default();
+        let verb = settled.intent.verb();
+        let cannot = || Fault::Cannot(format!("I cannot {verb} things with {}.", self.the(device)));
+        let process = processes.into_iter().find(|process| process.is_done_at(class)).ok_or_else(cannot)?;
+        let place = if process.at.contains(&class) { Some(device) } else { self.nearest(&process.at) };
+        match (place, cannot()) {
+            (Some(place), _) => Ok((process.clone(), place)),
+            (None, Fault::Cannot(text)) => Err(self.need(&process.at, text)),
+            (None, fault) => Err(fault),
+        }
+    }
+
+    fn first_process(&self, settled: &Settled) -> Result<(Process, ObjectId), Fault> {
+        let mut known = self
+            .processes(settled.intent, settled.fluid)
+            .filter_map(|process| Some((process, self.nearest(&process.at)?)));
+        known.next().map(|(process, place)| (process.clone(), place)).ok_or_else(|| {
+            let places = self.processes(settled.intent, settled.fluid).flat_map(|process| process.at.clone());
+            let classes: Vec<ClassId> = places.collect();
+            self.need(&classes, format!("I do not know of anything here to {} it with.", settled.intent.verb()))
+        })
+    }
+
+    fn carry_out(
+        &mut self,
+        process: &Process,
+        object: ObjectId,
+        place: ObjectId,
+        color: Option<&str>,
+    ) -> Result<(), Fault> {
+        let is_inside = self.scene.object(object).is_some_and(|known| known.parent == Some(place));
+        for act in &process.steps {
+            match act {
+                // What is in the device already stays there, unless it must be in the hand for what follows.
+                Act::Hold if is_inside && process.steps.contains(&Act::Place) => {}
+                Act::Hold => self.hold(object)?,
+                Act::Place if is_inside => {}
+                Act::Place => self.place_on(place),
+                Act::Open => self.open_quietly(place),
+                Act::Close => self.close_quietly(place),
+                Act::Start => self.start(process, place, color)?,
+                Act::Run => self.run_water(place),
+                Act::Take => self.take(object),
+                Act::Fill => self.interact(Verb::Fill, place, "filling it at"),
+                Act::Clean => self.interact(Verb::Clean, place, "washing it in"),
+            }
+        }
+        Ok(())
+    }
+
+    fn open_quietly(&mut self, place: ObjectId) {
+        if self.is_shut(place) {
+            self.interact(Verb::Open, place, "opening");
+        }
+    }
+
+    fn close_quietly(&mut self, place: ObjectId) {
+        let is_open = self.scene.object(place).is_some_and(|known| known.has(StateFlag::Opened));
+        if is_open {
+            self.interact(Verb::Close, place, "closing");
+        }
+    }
+
+    fn take(&mut self, object: ObjectId) {
+        let says = format!("taking {}", self.the(object));
+        self.push(cohabit_cdf::Action::PickUp { object }, says);
+    }
+
+    fn run_water(&mut self, sink: ObjectId) {
+        let runs = self.scene.object(sink).is_some_and(|known| known.has(StateFlag::Toggled));
+        if !runs {
+            self.interact(Verb::Toggle, sink, "turning on");
+        }
+    }
+
+    fn start(&mut self, process: &Process, place: ObjectId, color: Option<&str>) -> Result<(), Fault> {
+        if let Some(color) = color {
+            let class: Vec<ClassId> = self.devices.button(color).into_iter().collect();
+            let button = self.nearest(&class).ok_or_else(|| {
+                let text = format!("I cannot make things {color}: the colour changer has red, green and blue.");
+                self.need(&class, text)
+            })?;
+            self.interact(Verb::Toggle, button, "pressing");
+            return Ok(());
+        }
+        if !process.start.is_empty() && self.may_find(&process.start) {
+            return Err(self.need(&process.start, format!("I do not know what works {}.", self.the(place))));
+        }
+        let starter = if process.start.is_empty() { Some(place) } else { self.nearest(&process.start) };
+        self.interact(Verb::Toggle, starter.unwrap_or(place), "turning on");
+        Ok(())
+    }
+}
+
+impl Process {
+    fn is_done_at(&self, class: ClassId) -> bool {
+        self.at.contains(&class) || self.also.contains(&class) || self.start.contains(&class)
+    }
+}

@@ -1,0 +1,134 @@
+//! Plans of pouring.
+
+use cohabit_cdf::{Action, Fluid, ObjectId, Property, StateFlag, Verb};
+
+use crate::{
+    ground::want::{Miss, Want},
+    known::KnownObject,
+    plan::{
+        Fault, Planner,
+        carry::TAKES,
+        settle::{Goal, Settled},
+    },
+    read::{
+        phrase::{Phrase, Place, RelationKind},
+        slot::Role,
+    },
+    words::intent::Intent,
+};
+
+/// What is poured though it holds nothing.
+const CEREAL: &str = "Cereal_Box_01";
+
+impl Planner<'_> {
+    pub(crate) fn add_pour(&mut self, settled: &Settled) -> Result<(), Fault> {
+        let held = self.scene.robot.held;
+        // `pour in the bowl`, of the milk in the hand
+        let full = held.filter(|held| self.scene.object(*held).is_some_and(|held| held.fluid != Fluid::None));
+        if let (Some(full), [phrase], None) = (full, settled.objects.as_slice(), &settled.goal)
+            && phrase.pronoun.is_none()
+            && phrase.fluid.is_none()
+        {
+            let want = Want::place(Intent::Use, &TAKES[1..], None);
+            let target = self.find_one(phrase, &want, Some(Role::Object(0)))?;
+            if target != full {
+                return self.pour(full, target);
+            }
+        }
+        let source = match settled.objects.first() {
+            // `pour it`, `pour the milk`, `pour`: what is held, if it is that.
+            Some(phrase) => self.find_one(phrase, &Want::object(Intent::Pour), Some(Role::Object(0)))?,
+            None => held.ok_or_else(|| Fault::Cannot("I am not holding anything to pour.".to_owned()))?,
+        };
+        if !self.has(source, Property::Pickupable) {
+            return Err(Fault::Cannot("I have nothing of that to pour. Tell me what to fill first.".to_owned()));
+        }
+        if !self.can_be_poured(source) {
+            return Err(Fault::Cannot(format!("I cannot pour {}.", self.the(source))));
+        }
+        let target = match &settled.goal {
+            Some(Goal { place: Place::Object(phrase), role, .. }) => self.vessel(phrase, *role, source)?,
+            _ if settled.is_away => self.nearest_sink()?,
+            _ => self.vessel_spoken_of(source)?,
+        };
+        self.pour(source, target)
+    }
+
+    /// What a phrase says to pour something into.
+    fn vessel(&self, phrase: &Phrase, role: Role, source: ObjectId) -> Result<ObjectId, Fault> {
+        // `pour it in there`: into what holds it, of all that was spoken of.
+        let takes = if phrase.pronoun.is_some() { &TAKES[1..] } else { TAKES };
+        let want = Want::place(Intent::Use, takes, Some(source));
+        let found = self.find_one(phrase, &want, Some(role)).map(|target| self.vessel_with(target));
+        // `over the cereal in the bowl`: what was poured is no thing any more, but what it is in is.
+        let around = phrase.relations.iter().find(|relation| relation.kind == RelationKind::Inside);
+        found.or_else(|fault| around.map_or(Err(fault), |around| self.find_one(&around.to, &want, Some(role))))
+    }
+
+    /// Whether there is anything to it that flows.
+    fn can_be_poured(&self, source: ObjectId) -> bool {
+        let is_cereal = |known: &KnownObject| Some(known.class) == self.catalog.find(CEREAL);
+        self.has(source, Property::Fillable) || self.scene.object(source).is_some_and(is_cereal)
+    }
+
+    /// Whether it is empty, and of the kind of what it is to be poured into: `the bowl into the bowl`.
+    fn is_empty_twin(&self, source: ObjectId, target: ObjectId) -> bool {
+        let [source, target] = [source, target].map(|id| self.scene.object(id));
+        source.zip(target).is_some_and(|(source, target)| source.class == target.class && source.fluid == Fluid::None)
+    }
+
+    /// Whether it can be filled, or lets what is poured into it run off.
+    fn can_be_poured_into(&self, target: ObjectId) -> bool {
+        let drains = |class| {
+            self.devices.processes.iter().any(|process| process.intent == Intent::Clean && process.at.contains(&class))
+        };
+        self.has(target, Property::Fillable) || self.scene.object(target).is_some_and(|known| drains(known.class))
+    }
+
+    /// `over the cereal`: what that was poured into.
+    fn vessel_with(&self, target: ObjectId) -> ObjectId {
+        let is_vessel = TAKES.iter().any(|takes| self.has(target, *takes));
+        let filled = self.scene.objects.iter().find(|object| object.has(StateFlag::Cereal));
+        filled.filter(|_| !is_vessel).map_or(target, |filled| filled.id)
+    }
+
+    /// What was spoken of last that can be filled; a question, if nothing was.
+    fn vessel_spoken_of(&self, source: ObjectId) -> Result<ObjectId, Fault> {
+        let spoken = self.focus.place.iter().chain(&self.focus.recent).copied();
+        let vessel = spoken
+            .filter(|id| *id != source && self.has(*id, Property::Fillable))
+            .find(|id| self.scene.object(*id).is_some_and(|object| object.fluid == Fluid::None));
+        vessel.ok_or_else(|| self.miss(&Phrase::default(), Miss::NoReferent, Intent::Pour, Some(Role::Place(0))))
+    }
+
+    pub(crate) fn pour(&mut self, source: ObjectId, target: ObjectId) -> Result<(), Fault> {
+        if source == target || !self.can_be_poured_into(target) {
+            let (what, into) = (self.the(source), self.the(target));
+            return Err(Fault::Cannot(format!("I cannot pour {what} into {into}.")));
+        }
+        if self.is_empty_twin(source, target) {
+            return Err(Fault::Cannot(format!("There is nothing in {} to pour.", self.the(source))));
+        }
+        self.hold(source)?;
+        self.open_around(target, false);
+        let says = format!("pouring {} into {}", self.what_is_in(source), self.the(target));
+        self.push(Action::Interact { verb: Verb::Pour, object: target }, says);
+        Ok(())
+    }
+
+    /// What comes out of a thing that is poured: `the coffee`, `the cereal`.
+    fn what_is_in(&self, source: ObjectId) -> String {
+        let fluid = self.scene.object(source).map_or(Fluid::None, |object| object.fluid);
+        let the = self.the(source);
+        match fluid {
+            Fluid::None => the.strip_suffix(" box").map_or(the.clone(), str::to_owned),
+            fluid => format!("the {}", fluid.name().to_lowercase()),
+        }
+    }
+
+    fn nearest_sink(&self) -> Result<ObjectId, Fault> {
+        let sinks = self.devices.processes.iter().filter(|process| process.intent == Intent::Clean).flat_map(|p| &p.at);
+        let classes: Vec<_> = sinks.copied().collect();
+        self.nearest(&classes).ok_or_else(|| self.need(&classes, "Tell me what to pour it into."))
+    }
+}

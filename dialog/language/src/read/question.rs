@@ -1,0 +1,345 @@
+//! What a question asks for, and what it is about.
+
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    read::{phrase::Phrase, reader::Reader, segments},
+    words::{
+        lexicon::{Lexicon, Preposition, Pronoun},
+        question_kind::{QuestionKind, Shape},
+        table::PhraseTable,
+        token,
+    },
+};
+
+impl Shape {
+    /// What stands between its beginning and its end, if the words are of this shape.
+    fn between<'w>(&self, lexicon: &Lexicon, words: &'w [String]) -> Option<&'w [String]> {
+        let (begin, ()) = self.begins.longest(words)?;
+        let rest = &words[begin..];
+        let has = |at: usize| self.has.longest(&rest[at..]).is_some();
+        if !self.has.is_empty() && !(0..rest.len()).any(has) {
+            return None;
+        }
+        let is_spare =
+            |word: &String| token::is_punctuation(word) || lexicon.trail.exact(std::slice::from_ref(word)).is_some();
+        let counts = |word: &String| {
+            token::digits(word).is_some() || lexicon.numbers.exact(std::slice::from_ref(word)).is_some()
+        };
+        if self.ends.is_empty() {
+            return (!self.is_whole || rest.iter().all(|word| is_spare(word) || counts(word))).then_some(rest);
+        }
+        let cut = |end: &String| {
+            let end = token::words(end);
+            let mut rest = rest;
+            loop {
+                if let Some(between) = rest.strip_suffix(end.as_slice()) {
+                    return Some(between);
+                }
+                rest = rest.split_last().filter(|(last, _)| is_spare(last)).map(|(_, before)| before)?;
+            }
+        };
+        self.ends.iter().find_map(cut)
+    }
+}
+
+/// A question, and what it is about.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+pub(crate) struct Question {
+    pub(crate) kind: QuestionKind,
+    pub(crate) about: Option<Phrase>,
+    /// What follows the start.
+    pub(crate) rest: Vec<String>,
+    /// Whether it wants a yes or a no.
+    pub(crate) is_whether: bool,
+}
+
+impl Question {
+    pub(crate) const fn new(kind: QuestionKind, about: Option<Phrase>, rest: Vec<String>) -> Self {
+        Self { kind, about, rest, is_whether: false }
+    }
+
+    /// Whether it asks for safety, and not for danger.
+    pub(crate) fn asks_for_safety(&self) -> bool {
+        self.rest.iter().any(|word| matches!(word.as_str(), "safe" | "harmless"))
+    }
+}
+
+/// The question that these words ask, if they ask one.
+pub(crate) fn read(lexicon: &Lexicon, words: &[String]) -> Option<Question> {
+    let segments = segments::segments(lexicon, words);
+    let first = segments.first()?;
+    let question = read_sentence(lexicon, first)?;
+    let is_whether = |(at, _): (usize, usize)| {
+        first.get(at).is_some_and(|word| {
+            matches!(word.as_str(), "is" | "are" | "was" | "were" | "have" | "has" | "did" | "does" | "any")
+        })
+    };
+    let is_whether = starts(lexicon, first).into_iter().any(is_whether);
+    Some(Question { is_whether, ..question })
+}
+
+fn read_sentence(lexicon: &Lexicon, first: &[String]) -> Option<Question> {
+    if let Some(question) = shaped(lexicon, first) {
+        return Some(question);
+    }
+    let asked = put_plainly(lexicon, first);
+    if let Some(question) = asked.as_ref().and_then(|asked| shaped(lexicon, asked)) {
+        return Some(question);
+    }
+    let asked = asked.filter(|asked| {
+        start(lexicon, asked).is_some_and(|(kind, _)| !matches!(kind, QuestionKind::Unknown | QuestionKind::Look))
+    });
+    let first = asked.as_deref().unwrap_or(first);
+    let (kind, start) = start(lexicon, first)?;
+    let mut rest: Vec<String> = first[start..].to_vec();
+    rest.retain(|word| !token::is_punctuation(word));
+    if kind == QuestionKind::Abilities && rest.len() > 2 {
+        return None;
+    }
+    if matches!(kind, QuestionKind::Unknown | QuestionKind::Look) && lexicon.goal_words.occurs_in(&rest) {
+        return Some(Question::new(QuestionKind::Goals, None, rest));
+    }
+    let has = |table: &PhraseTable<()>| table.occurs_in(&rest);
+    if matches!(kind, QuestionKind::Unknown | QuestionKind::Look)
+        && has(&lexicon.hand_words)
+        && first.iter().any(|word| word == "you" || word == "your")
+    {
+        return Some(Question::new(QuestionKind::Holding, None, rest));
+    }
+    if matches!(kind, QuestionKind::Unknown | QuestionKind::Look | QuestionKind::Where) && has(&lexicon.text_words) {
+        let about = named(lexicon, &rest);
+        return Some(Question::new(QuestionKind::Text, about, rest));
+    }
+    if kind == QuestionKind::Unknown
+        && let Some(about) = which_holds(lexicon, &rest)
+    {
+        return Some(Question::new(QuestionKind::Where, Some(about), rest));
+    }
+    // `show me where is the mug`
+    if kind == QuestionKind::Where {
+        let skipped =
+            rest.iter().take_while(|word| matches!(word.as_str(), "is" | "are" | "it" | "was" | "exactly")).count();
+        let is_named = Reader { at: skipped, ..Reader::new(lexicon, &rest) }.starts_noun();
+        rest.drain(..if is_named { skipped } else { 0 });
+    }
+    if kind == QuestionKind::Count {
+        rest = without_existence(&rest);
+    }
+    let kind = told_by_words(&rest, kind);
+    let first = || at_start(lexicon, &rest);
+    let about = match kind {
+        // `why did you open the fridge`
+        QuestionKind::Why => named(lexicon, &rest),
+        _ => {
+            // `is the blue computer the one for the laser`
+            let works = which_works(lexicon, &rest).filter(|_| kind == QuestionKind::State);
+            let first_said = || first().filter(|phrase| !phrase.is_empty());
+            works.or_else(first_said).or_else(|| named(lexicon, &rest)).or_else(|| owner(&rest)).or_else(first)
+        }
+    };
+    Some(Question::new(kind, about, rest))
+}
+
+/// The question that words ask by their shape.
+fn shaped(lexicon: &Lexicon, words: &[String]) -> Option<Question> {
+    starts(lexicon, words).into_iter().find_map(|(at, _)| {
+        lexicon.question_shapes.iter().find_map(|shape| {
+            let between = shape.between(lexicon, &words[at..])?;
+            let rest: Vec<String> = between.iter().filter(|word| !token::is_punctuation(word)).cloned().collect();
+            let about = match shape.kind {
+                QuestionKind::Which => which_is_so(lexicon, &rest),
+                _ => at_start(lexicon, &rest).filter(|phrase| !phrase.is_empty()).or_else(|| named(lexicon, &rest)),
+            };
+            (about.is_some() || shape.kind.stands_alone()).then_some(Question::new(shape.kind, about, rest))
+        })
+    })
+}
+
+/// `what is its color`, `and their colors`, `colors do they have`: what these stand for.
+fn owner(words: &[String]) -> Option<Phrase> {
+    let (text, pronoun) = words.iter().find_map(|word| match word.as_str() {
+        "its" | "it" => Some(("it", Pronoun::Thing)),
+        "their" | "they" | "them" => Some(("them", Pronoun::Things)),
+        _ => None,
+    })?;
+    Some(Phrase { text: text.to_owned(), pronoun: Some(pronoun), ..Phrase::default() })
+}
+
+/// The phrase that words begin with.
+fn at_start(lexicon: &Lexicon, words: &[String]) -> Option<Phrase> {
+    Reader::new(lexicon, words).phrase_with_place()
+}
+
+/// `computer controls the laser`: the computer for the laser.
+fn which_works(lexicon: &Lexicon, words: &[String]) -> Option<Phrase> {
+    let (at, length) = (1..words.len()).find_map(|at| Some((at, lexicon.control_words.longest(&words[at..])?.0)))?;
+    let is_spare = |word: &&String| !matches!(word.as_str(), "is" | "are" | "one");
+    let thing: Vec<String> = words[..at].iter().filter(is_spare).cloned().collect();
+    let mut what = Reader::new(lexicon, &thing).phrase().filter(|phrase| !phrase.namings.is_empty())?;
+    let place = Reader::new(lexicon, &words[at + length..]).destination()?;
+    what.attach(Preposition::For, place);
+    Some(what)
+}
+
+/// `shelves do you see there`: the shelves.
+fn which_seen(lexicon: &Lexicon, words: &[String]) -> Option<Phrase> {
+    let sees = |words: &[String]| matches!(words, [helper, you, see] if matches!(helper.as_str(), "do" | "can") && you == "you" && see == "see");
+    let at = words.windows(3).position(sees)?;
+    Reader::new(lexicon, &words[..at]).phrase().filter(|phrase| !phrase.namings.is_empty())
+}
+
+/// `mug is red`, `one is the biggest`: the red mug.
+fn which_is_so(lexicon: &Lexicon, words: &[String]) -> Option<Phrase> {
+    if let Some(phrase) = which_works(lexicon, words).or_else(|| which_seen(lexicon, words)) {
+        return Some(phrase);
+    }
+    // `mug has coffee in it`: the mug with coffee in it.
+    if let Some(verb) = words.iter().position(|word| matches!(word.as_str(), "has" | "have" | "contains" | "contain")) {
+        let mut said = words.to_vec();
+        "with".clone_into(&mut said[verb]);
+        let mut reader = Reader::new(lexicon, &said);
+        return reader.phrase_with_place().filter(|phrase| reader.is_done() && phrase.is_described());
+    }
+    let verb = words.iter().position(|word| matches!(word.as_str(), "is" | "are"))?;
+    let is_joint = |word: &&String| !matches!(word.as_str(), "and" | "a" | "an" | "the");
+    let said: Vec<String> = words[verb + 1..].iter().chain(&words[..verb]).filter(is_joint).cloned().collect();
+    let mut reader = Reader::new(lexicon, &said);
+    let phrase = reader.phrase().filter(|phrase| !phrase.is_empty() && phrase.unknown.is_empty())?;
+    let is_told = phrase.color.is_some() || !phrase.states.is_empty() || phrase.side.is_some();
+    (reader.is_done() && is_told).then_some(phrase)
+}
+
+/// `mugs there are on the table`, of `how many`: the mugs on the table.
+fn without_existence(words: &[String]) -> Vec<String> {
+    const SAYS: [&[&str]; 6] =
+        [&["there", "are"], &["there", "is"], &["are", "there"], &["is", "there"], &["do", "you", "see"], &["are"]];
+    let found = (0..words.len()).find_map(|at| {
+        let says =
+            |said: &&&[&str]| words[at..].len() >= said.len() && said.iter().zip(&words[at..]).all(|(a, b)| a == b);
+        SAYS.iter().find(says).map(|said| (at, said.len()))
+    });
+    match found {
+        Some((at, length)) => words[..at].iter().chain(&words[at + length..]).cloned().collect(),
+        None => words.to_vec(),
+    }
+}
+
+/// The first thing that the words name.
+pub(crate) fn named(lexicon: &Lexicon, words: &[String]) -> Option<Phrase> {
+    (0..words.len()).find_map(|at| {
+        let mut reader = Reader::new(lexicon, words);
+        reader.at = at;
+        reader.phrase_with_place().filter(|phrase| !phrase.namings.is_empty() && phrase.unknown.is_empty())
+    })
+}
+
+/// What a question whose beginning tells nothing asks, by what else is in it.
+fn told_by_words(rest: &[String], kind: QuestionKind) -> QuestionKind {
+    let has = |any: &[&str]| rest.iter().any(|word| any.contains(&word.as_str()));
+    match kind {
+        QuestionKind::Unknown | QuestionKind::Look if has(&["color", "colors"]) => QuestionKind::Color,
+        QuestionKind::Unknown if has(&["seen", "see", "find", "left", "lies", "stands", "located"]) => {
+            QuestionKind::Where
+        }
+        QuestionKind::Unknown
+            if has(&["i", "we"])
+                && has(&["do", "doing", "done"])
+                && has(&["have", "supposed", "must", "should", "need", "left", "still", "next", "meant", "ought"]) =>
+        {
+            QuestionKind::Goals
+        }
+        kind => kind,
+    }
+}
+
+/// `check whether the fridge is open`: `is the fridge open`. `state your location`: `what is your location`.
+fn put_plainly(lexicon: &Lexicon, words: &[String]) -> Option<Vec<String>> {
+    let start = segments::leading(lexicon, words);
+    let asked = &words[start..];
+    // `tell me, where is it?`
+    let told = ["tell me ,", "say ,", "look ,", "listen ,"].iter().map(|start| token::words(start));
+    if let Some(rest) = told.into_iter().find_map(|start| asked.strip_prefix(start.as_slice())) {
+        return Some(rest.to_vec());
+    }
+    let (length, ()) = lexicon.reports.longest(asked).unwrap_or((0, &()));
+    if length > 0 && asked.get(length).is_some_and(|word| matches!(word.as_str(), "the" | "your" | "its" | "our")) {
+        let what_is = ["what", "is"].map(str::to_owned);
+        return Some(what_is.iter().chain(&asked[length..]).cloned().collect());
+    }
+    // `show me how many mugs there are`
+    let is_wh = |word: &String| matches!(word.as_str(), "how" | "what" | "where" | "which" | "who" | "why");
+    let shown = lexicon.tells.longest(asked).map(|(length, ())| &asked[length..]);
+    if let Some(rest) = shown.filter(|rest| rest.first().is_some_and(is_wh)) {
+        return Some(rest.to_vec());
+    }
+    // `list all objects on the table`
+    let spare =
+        |word: &String| matches!(word.as_str(), "all" | "every" | "the" | "any" | "contents" | "content" | "of");
+    let skipped = asked[length..]
+        .iter()
+        .take_while(|word| spare(word) || lexicon.generic.exact(std::slice::from_ref(*word)).is_some())
+        .count();
+    let linked = &asked[length + skipped..];
+    let named = &linked[lexicon.link.longest(linked).map_or(0, |(link, ())| link)..];
+    if length > 0 && skipped > 0 && lexicon.prepositions.longest(named).is_some() {
+        let what_is = ["what", "is"].map(str::to_owned);
+        return Some(what_is.iter().chain(named).cloned().collect());
+    }
+    let at = asked.iter().take(2).position(|word| word == "check").filter(|at| *at == 0 || asked[0] == "go")?;
+    let asked = asked[at + 1..].strip_prefix(&["whether".to_owned()])?;
+    let verb = asked.iter().position(|word| matches!(word.as_str(), "is" | "are"))?;
+    Some(asked[verb..=verb].iter().chain(&asked[..verb]).chain(&asked[verb + 1..]).cloned().collect())
+}
+
+/// `which machine is the bowl on`: where the bowl is.
+fn which_holds(lexicon: &Lexicon, words: &[String]) -> Option<Phrase> {
+    let mut reader = Reader::new(lexicon, words);
+    reader.phrase().filter(|phrase| !phrase.is_empty())?;
+    if !reader.next_is("is") && !reader.next_is("are") {
+        return None;
+    }
+    reader.at += 1;
+    let about = reader.phrase().filter(|phrase| !phrase.is_empty() && phrase.unknown.is_empty())?;
+    let (length, _) = lexicon.prepositions.longest(reader.rest()).filter(|_| !reader.is_done())?;
+    reader.at += length;
+    // `which table is the can on, the round one?`
+    let is_guess = |mut reader: Reader<'_>| reader.phrase().is_some() && reader.is_done();
+    (reader.is_done() || is_guess(reader)).then_some(about)
+}
+
+/// Where a question may begin: at the words as they are, then after each polite word at the start, each with the length of the next
+/// polite words.
+fn starts(lexicon: &Lexicon, words: &[String]) -> Vec<(usize, usize)> {
+    let mut found = Vec::new();
+    let mut at = 0;
+    while at < words.len() {
+        let rest = &words[at..];
+        let lead = lexicon.lead.longest(rest).map_or(0, |(length, ())| length);
+        let talk = lexicon.talk.longest(rest).map_or(0, |(length, ())| length);
+        let polite = if talk == rest.len() { lead } else { lead.max(talk) };
+        found.push((at, polite));
+        match polite {
+            1.. => at += polite,
+            0 if token::is_punctuation(&rest[0]) => at += 1,
+            0 => break,
+        }
+    }
+    found
+}
+
+/// What the beginning of a question says of it: `can you see` must win over the polite `can you`.
+fn start(lexicon: &Lexicon, words: &[String]) -> Option<(QuestionKind, usize)> {
+    let longer = |(at, polite): (usize, usize)| {
+        let (length, kind) = lexicon.questions.longest(&words[at..]).filter(|(length, _)| polite < *length)?;
+        Some((at, length, *kind))
+    };
+    let (at, length, kind) = starts(lexicon, words).into_iter().find_map(longer)?;
+    (!is_statement(&words[..at], &words[at])).then_some((kind, at + length))
+}
+
+/// `you are driving me mad`: who speaks so says, and does not ask.
+fn is_statement(before: &[String], first: &str) -> bool {
+    let is_subject = before.last().is_some_and(|word| matches!(word.as_str(), "you" | "i" | "we" | "that" | "there"));
+    is_subject && matches!(first, "are" | "am" | "is" | "was" | "were" | "do" | "did" | "have" | "has")
+}

@@ -1,0 +1,143 @@
+//! The sentences around a plan: what the robot is about to do, what it must ask, why it cannot.
+
+use cohabit_cdf::{Action, Verb};
+
+use crate::{
+    ground::want::Miss,
+    read::{
+        clause::Clause,
+        phrase::{Phrase, Place},
+        saying,
+        slot::Role,
+    },
+    understanding::{Step, Understanding},
+    words::{intent::Intent, lexicon::Preposition, prose},
+};
+
+/// One or two of them, where a reply has something else to say first.
+pub(crate) const HINT: &str =
+    "You can tell me, for example, \"go to the break room\" or \"pick up the mug\", or ask \"what can you do?\"";
+
+/// Why something is done: who says it so plainly that there is nothing to interpret has asked for it.
+pub(crate) const ASKED_TO: &str = "you asked me to ";
+pub(crate) const UNDERSTOOD_TO: &str = "I understood that I should ";
+
+/// How many steps are named at most.
+const NAMED: usize = 6;
+/// How many of them name what is only on the way, too.
+const FEW: usize = 4;
+
+/// `The fridge is closed, so I open it first. OK, picking up the milk.`
+pub(crate) fn plan_reply(steps: &[Step], notes: &[String]) -> String {
+    let mut parts: Vec<String> = Vec::new();
+    for note in notes.iter().map(|note| prose::sentence(note)) {
+        if !parts.contains(&note) {
+            parts.push(note);
+        }
+    }
+    if !steps.is_empty() {
+        parts.push(prose::sentence(&format!("OK, {}", plan_in_words(steps))));
+    }
+    parts.join(" ")
+}
+
+/// `picking up the milk and then putting the milk on the table`
+pub(crate) fn plan_in_words(steps: &[Step]) -> String {
+    let named = |is_told: &dyn Fn(&Step) -> bool| {
+        let mut says: Vec<String> = steps.iter().filter(|step| is_told(step)).map(|step| step.says.clone()).collect();
+        says.dedup();
+        says
+    };
+    let mut says = named(&|_| true);
+    if says.len() > FEW {
+        // What is opened and closed on the way goes without saying.
+        let is_on_the_way = |step: &Step| {
+            matches!(step.action, Action::Interact { verb: Verb::Open | Verb::Close, .. } | Action::GoTo { .. })
+        };
+        says = Some(named(&|step| !is_on_the_way(step))).filter(|says| !says.is_empty()).unwrap_or(says);
+    }
+    if says.len() > NAMED {
+        let last = says.last().cloned();
+        says.truncate(NAMED - 1);
+        says.push("so on".to_owned());
+        return format!("{} until {}", prose::list(&says, "and"), last.unwrap_or_default());
+    }
+    prose::list(&says, "and then")
+}
+
+/// `find the bowl and then put it on the table`: what is asked for, in plain words.
+pub(crate) fn request_in_words(clauses: &[Clause]) -> String {
+    let asked: Vec<String> =
+        clauses.iter().filter(|clause| clause.intent != Intent::Mention).map(clause_in_words).collect();
+    prose::list(&asked, "and then")
+}
+
+fn clause_in_words(clause: &Clause) -> String {
+    // Words have lost their apostrophes: no other one ends like `boss's`.
+    let said = |phrase: &Phrase| match phrase.text.as_str() {
+        "" => "it".to_owned(),
+        text => text.replace("sss ", "ss's "),
+    };
+    let verb = clause.intent.verb();
+    // `go to the table`, of who goes to it
+    let word = |preposition: &Preposition| Some(preposition.word()).filter(|word| !verb.ends_with(&format!(" {word}")));
+    let place_of = |preposition: &Preposition, place: String| match word(preposition) {
+        Some(word) => format!("{word} {place}"),
+        None => place,
+    };
+    let objects: Vec<String> = clause.objects.iter().map(said).collect();
+    let places = clause.places.iter().filter_map(|(preposition, place)| {
+        Some(match place {
+            Place::Room(room) | Place::Viewpoint(room, _) => place_of(preposition, format!("the {}", room.name)),
+            Place::Object(phrase) => place_of(preposition, said(phrase)),
+            Place::Viewpoints(_) | Place::Side(_) | Place::Here => return None,
+        })
+    });
+    let color = clause.color.clone();
+    let words = std::iter::once(verb.to_owned());
+    let words = words.chain([prose::list(&objects, "and")]).chain(color).chain(places);
+    words.filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" ")
+}
+
+/// The names of plans without the steps that all of them begin with.
+pub(crate) fn apart(plans: &[&[Step]]) -> Vec<String> {
+    let first = plans.first().copied().unwrap_or_default();
+    let shared = (0..first.len()).take_while(|at| plans.iter().all(|plan| plan.get(*at) == Some(&first[*at]))).count();
+    let shared = if plans.iter().all(|plan| plan.len() > shared) { shared } else { 0 };
+    plans.iter().map(|plan| plan_in_words(&plan[shared..])).collect()
+}
+
+/// What to say where a phrase found nothing; mismatches and several candidates are questions of their own.
+pub(crate) fn miss(phrase: &Phrase, miss: &Miss, intent: Intent, role: Option<Role>) -> String {
+    if !phrase.unknown.is_empty() && phrase.namings.is_empty() {
+        let words = phrase.unknown.join(" ");
+        return format!(
+            "I do not know what \"{words}\" is. Name me something in the office, such as the mug or the fridge."
+        );
+    }
+    let what = || saying::what_for(intent, role);
+    match miss {
+        Miss::NoReferent if phrase.text.is_empty() => what(),
+        Miss::NoReferent => format!("{} {}", what(), saying::unresolved(phrase)),
+        Miss::Unknown => what(),
+        _ if saying::noun(phrase).is_none() => {
+            format!("{} {}", saying::unresolved(phrase), what())
+        }
+        _ => format!("I have not seen {}.", saying::said(phrase)),
+    }
+}
+
+/// What is said when nothing was understood.
+pub(crate) fn unclear(words: &[String]) -> Understanding {
+    if words.is_empty() {
+        return Understanding::lost(format!("I did not understand that. {HINT}"));
+    }
+    Understanding::lost(format!("{} What shall I do? {HINT}", unknown(words)))
+}
+
+/// That it does not know these words.
+pub(crate) fn unknown(words: &[String]) -> String {
+    let quoted: Vec<String> = words.iter().take(3).map(|word| format!("\"{word}\"")).collect();
+    let noun = if quoted.len() == 1 { "the word" } else { "the words" };
+    format!("I do not know {noun} {}.", prose::list(&quoted, "and"))
+}

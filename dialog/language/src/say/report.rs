@@ -1,0 +1,165 @@
+//! What the robot says when a plan has finished or a step has failed.
+
+use cohabit_cdf::{Action, Catalog, GoToTarget, ObjectId, Status, Verb, state::StateFlag};
+
+use crate::{
+    known::{Known, contents, describe, process::Devices},
+    understanding::Step,
+    words::prose,
+};
+
+/// How a step that looks under a thing or behind it is called.
+pub(crate) const LOOKS_UNDER: &str = "looking under";
+
+/// What is said after success: what is so now.
+pub(crate) fn success(catalog: &Catalog, devices: &Devices, scene: &Known, step: &Step, status: Status) -> String {
+    let the = |id: ObjectId| describe::short(catalog, scene, id);
+    if status == Status::AlternateNavigationUsed {
+        return "I got as close as I could.".to_owned();
+    }
+    let text = match step.action {
+        Action::PickUp { object } => format!("I have {}", the(object)),
+        Action::Place { receptacle } => match scene.contents(receptacle).last() {
+            Some(_) => {
+                format!("done, it is {} {} now", describe::preposition(catalog, scene, receptacle), the(receptacle))
+            }
+            None => "done".to_owned(),
+        },
+        Action::GoTo { target: GoToTarget::Room(room) } => format!("I am in the {}", room.name_in(catalog)),
+        Action::GoTo { target: GoToTarget::Point(_) } => match step.says.strip_prefix("bringing you ") {
+            Some(what) => format!("here is {what}"),
+            None if step.says == "coming to you" => "here I am".to_owned(),
+            None => "I am back".to_owned(),
+        },
+        Action::GoTo { target: GoToTarget::Object(object) } => format!("I am at {}", the(object)),
+        Action::GoTo { .. } => "I am there".to_owned(),
+        Action::Interact { verb, object } => interaction(&the(object), catalog, devices, scene, step, verb, object),
+        Action::Highlight { object } => format!("this is {}", describe::full(catalog, scene, object)),
+        Action::LookAround => "I have looked around".to_owned(),
+        Action::Stop => "I have stopped".to_owned(),
+        Action::Drive { .. } => "done".to_owned(),
+        Action::Move { .. } | Action::Rotate { .. } | Action::Look { .. } if step.says.is_empty() => "done".to_owned(),
+        Action::Move { .. } | Action::Rotate { .. } | Action::Look { .. } => format!("I am done {}", step.says),
+    };
+    prose::sentence(&text)
+}
+
+fn interaction(
+    the: &str,
+    catalog: &Catalog,
+    devices: &Devices,
+    scene: &Known,
+    step: &Step,
+    verb: Verb,
+    object: ObjectId,
+) -> String {
+    match verb {
+        Verb::Open => format!("{the} is open"),
+        Verb::Close => match scene.robot.held.filter(|held| *held != object) {
+            Some(held) => format!("{the} is closed, and I have {}", describe::short(catalog, scene, held)),
+            None => format!("{the} is closed"),
+        },
+        Verb::Break => format!("{the} is broken"),
+        Verb::Scan => format!("I have scanned {the}"),
+        Verb::Pour => format!("I have poured it into {the}"),
+        Verb::Toggle => toggled(the, devices, scene, step, object),
+        Verb::Throw => format!("I have thrown it at {the}"),
+        Verb::Fill => "it is full now".to_owned(),
+        Verb::Clean => "it is clean now".to_owned(),
+        Verb::Examine if step.says.starts_with(LOOKS_UNDER) => match contents::under(catalog, scene, object) {
+            Some(found) => found,
+            None => format!("I see nothing under {the} or behind it"),
+        },
+        Verb::Examine => match scene.object(object).filter(|object| !object.text.is_empty()) {
+            Some(object) => format!("it says: \"{}\"", object.text),
+            None => contents::inside(catalog, scene, object, 0)
+                .unwrap_or_else(|| format!("I have had a close look at {the}")),
+        },
+    }
+}
+
+/// What was switched, and that it is on where it stays so.
+fn toggled(the: &str, devices: &Devices, scene: &Known, step: &Step, id: ObjectId) -> String {
+    let device = scene.object(id).and_then(|object| object.works);
+    let is_on = [Some(id), device]
+        .into_iter()
+        .flatten()
+        .filter_map(|id| scene.object(id))
+        .any(|object| object.has(StateFlag::Toggled) && devices.stays_on(object.class));
+    let did = [("turning on", "turned on"), ("turning off", "turned off"), ("pressing", "pressed")]
+        .into_iter()
+        .find_map(|(doing, done)| step.says.starts_with(doing).then_some(done));
+    match did {
+        Some("turned on") | None if is_on => format!("{the} is on"),
+        done => format!("I have {} {the}", done.unwrap_or("switched")),
+    }
+}
+
+/// What is said after a failure: the world's own sentence, which may end in `: ` and what would help, or else what the
+/// status means; and what would help, unless an `offer` follows.
+pub(crate) fn failure(
+    catalog: &Catalog,
+    scene: &Known,
+    step: &Step,
+    status: Status,
+    detail: &str,
+    offer: Option<&str>,
+) -> String {
+    if status == Status::Interrupted {
+        return "I stopped.".to_owned();
+    }
+    let detail = if detail.trim().is_empty() { cause(status) } else { detail };
+    let (cause, remedy) = detail.split_once(": ").map_or((detail, None), |(cause, remedy)| (cause, Some(remedy)));
+    let help = match (offer, remedy) {
+        (Some(offer), _) => offer.to_owned(),
+        (None, Some(remedy)) => prose::sentence(remedy),
+        (None, None) => help(catalog, scene, step, status),
+    };
+    format!("{} {help}", prose::sentence(cause)).trim().to_owned()
+}
+
+pub(crate) const fn cause(status: Status) -> &'static str {
+    match status {
+        Status::ActionSuccessful | Status::AlternateNavigationUsed => "that worked",
+        Status::UnsupportedAction => "that does not work with it",
+        Status::UnsupportedNavigation => "I find no way there",
+        Status::AlreadyHoldingObject => "my hand is full",
+        Status::ReceptacleIsFull => "there is no room left",
+        Status::ReceptacleIsClosed => "it is closed",
+        Status::TargetInaccessible => "something is in the way",
+        Status::KilledByHazard => "ouch, that was dangerous and it ended the mission",
+        Status::TargetOutOfRange => "it is too far away",
+        Status::ObjectUnpowered => "it has no power",
+        Status::ObjectOverloaded => "it is overloaded",
+        Status::InvalidCommand => "that makes no sense here",
+        Status::ObjectNotPickedUp => "my hand is empty",
+        Status::ArenaUnavailable => "the world is not running",
+        Status::IncorrectActionFormat | Status::InvalidObjectClass => "I do not know how to do that",
+        Status::ActionExecutionError | Status::PostProcessError => "that did not work",
+        Status::Interrupted => "I was interrupted",
+    }
+}
+
+fn help(catalog: &Catalog, scene: &Known, step: &Step, status: Status) -> String {
+    match (status, &step.action) {
+        (Status::ReceptacleIsFull, _) => "Tell me another place, or what to take away.".to_owned(),
+        (Status::ObjectNotPickedUp, Action::Interact { verb: Verb::Break, .. }) => {
+            "I need the hammer for that.".to_owned()
+        }
+        (Status::ObjectNotPickedUp, _) => "Tell me what to pick up first.".to_owned(),
+        (Status::TargetInaccessible, Action::Move { .. }) => "Tell me another way.".to_owned(),
+        (Status::ObjectUnpowered, _) => "The room's power must be switched on at the fuse box.".to_owned(),
+        (Status::ObjectOverloaded, _) => {
+            "Switching the room's power off and on at the fuse box clears that.".to_owned()
+        }
+        (Status::UnsupportedAction, Action::Interact { object, .. }) => {
+            let place = describe::location(catalog, scene, *object);
+            if place.is_empty() {
+                String::new()
+            } else {
+                format!("I tried it with {}.", describe::full(catalog, scene, *object))
+            }
+        }
+        _ => String::new(),
+    }
+}

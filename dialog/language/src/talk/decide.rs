@@ -1,0 +1,287 @@
+//! What an utterance means: what the grammar reads to the last word, or what the rewriter makes of it. What is likely enough is carried out; of what
+//! is less likely the robot asks.
+
+use cohabit_cdf::RoomId;
+
+use crate::{
+    context::{Context, Guess, Pending},
+    read::tail,
+    say::{ask, reply},
+    stop,
+    talk::{conversation::Conversation, room_kind, way::Way, wording::Wording},
+    understanding::{Asking, Clarification, Step, Understanding},
+    words::token,
+};
+
+/// How likely steps must be meant for them to be taken without a question, where what they change is not simply put back and where it is.
+const TO_CHANGE: f32 = 0.75;
+const TO_MOVE: f32 = 0.6;
+/// The same where nothing but the robot itself is moved.
+const TO_LOOK: f32 = 0.45;
+/// How likely what is said must be the right reply, where nothing is done.
+const TO_REPLY: f32 = 0.2;
+/// How likely steps must be meant to be proposed, and to be taken where nothing may be asked.
+const TO_PROPOSE: f32 = 0.05;
+const TO_GUESS: f32 = 0.3;
+/// The same of a stop, where the robot is busy: to stop is the lesser mistake.
+const TO_STOP: f32 = 0.2;
+/// What is proposed beside the likeliest is at least so likely, of that.
+const RIVAL: f32 = 0.25;
+/// How many plans are proposed at most.
+const MOST_PROPOSED: usize = 3;
+/// Below this, what is done is said to be what the robot thinks.
+const SURELY: f32 = 0.7;
+const UNSURE: &str = "If I understand you right:";
+/// How likely that is meant of which the grammar leaves words out.
+const BY_GRAMMAR: f32 = 0.7;
+/// One in so many words that nobody ever met is too much to guess at: an unknown verb is no deed, and of another language nothing is guessed.
+const STRANGE: usize = 6;
+/// Up to how many words a refusal, or a question what shall be done, is believed, and an answer to the robot's question is likely nothing else.
+const SHORT: usize = 5;
+const LONGEST_ANSWER: usize = 24;
+/// From how many words on the rewriter may be right where the grammar reads something else, from how many on it rather is, and how sure it must be
+/// for the one and the other.
+const SOME: usize = 4;
+const LONG: usize = 10;
+const TO_OVERRULE_SHORT: f32 = 0.94;
+const TO_OVERRULE: f32 = 0.7;
+
+/// How much of an utterance the grammar reads.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+enum Reading {
+    /// As much as anybody could.
+    Sure,
+    /// All of it, some words: it may be meant otherwise.
+    Short,
+    /// All of it, but it is long: some of it is rather meant otherwise.
+    Long,
+    /// Not all of it.
+    Partial,
+}
+
+impl Reading {
+    /// How likely another reading must be meant to count instead.
+    const fn to_overrule(self) -> f32 {
+        match self {
+            Self::Short => TO_OVERRULE_SHORT,
+            Self::Long => TO_OVERRULE,
+            Self::Sure | Self::Partial => 0.0,
+        }
+    }
+}
+
+impl Conversation<'_> {
+    /// What an utterance means, and how likely it is what was meant.
+    pub(crate) fn understand_whole(&self, utterance: &str, context: &mut Context) -> (Understanding, f32) {
+        let wording = self.wording(utterance);
+        if let Some(named) = self.with_room_named(&wording, room_kind::beside(self.lexicon, &wording.words)) {
+            return self.understand_whole(&named, context);
+        }
+        let is_plain = self.is_plain(&wording);
+        let by_grammar = self.by_grammar(&wording, is_plain, context);
+        let reading = self.reading(&wording, is_plain, &by_grammar, context);
+        if reading == Reading::Sure {
+            return by_grammar.taken(context);
+        }
+        let mut ways = self.rewritten(&wording, context);
+        if stop::denies_stop(utterance) {
+            ways.retain(|way| !way.stops());
+        }
+        // A robot that does nothing, and asks nothing, need not stop.
+        if !context.is_busy() && context.pending.is_none() {
+            ways.retain(|way| !matches!(way.understanding, Understanding::Stop { then: None, .. }));
+        }
+        let stops = |way: &&Way| way.stops() && way.probability >= TO_STOP && context.is_busy();
+        if let Some(stop) = ways.iter().find(stops) {
+            return stop.taken(context);
+        }
+        if let Some(settled) = settled(&ways) {
+            return settled.taken(context);
+        }
+        // Questions have more shades than plain ones: of what is short, only another deed is rather meant.
+        if reading == Reading::Short {
+            ways.retain(|way| way.steps().is_some());
+        }
+        let least = |way: &Way| way.least().max(reading.to_overrule());
+        if let Some(likeliest) = ways.first().filter(|likeliest| likeliest.probability >= least(likeliest)) {
+            return likeliest.taken(context);
+        }
+        if reading == Reading::Partial
+            && let Some((begun, more)) = begun(&ways)
+        {
+            let (understanding, probability) = begun.taken(context);
+            // Nobody wants a question that they never asked.
+            if more.contains('?') {
+                return (understanding, probability);
+            }
+            let left = format!("I am not sure about {more}: tell me if you want that, too.");
+            return (understanding.before(&left), probability);
+        }
+        // What the grammar leaves words out of is a guess too.
+        let has_plan = ways.iter().any(|way| way.steps().is_some());
+        let guesses = if has_plan { ways.as_slice() } else { std::slice::from_ref(&by_grammar) };
+        if reading == Reading::Partial
+            && self.rewriter.is_some()
+            && let Some(question) = self.proposed(guesses, context)
+        {
+            return (question, 0.0);
+        }
+        by_grammar.taken(context)
+    }
+
+    /// What the grammar makes of it.
+    fn by_grammar(&self, wording: &Wording<'_>, is_plain: bool, context: &Context) -> Way {
+        let mut then = context.at_new_utterance();
+        let understanding = self.understand_said(wording.utterance, &mut then);
+        let probability = if is_plain { 1.0 } else { BY_GRAMMAR };
+        Way { understanding, probability, context: then }
+    }
+
+    /// How much of it the grammar reads.
+    fn reading(&self, wording: &Wording<'_>, is_plain: bool, by_grammar: &Way, context: &Context) -> Reading {
+        let said = wording.length();
+        let asks_for_lab = |context: &Context| matches!(context.pending, Some(Pending::Lab { .. }));
+        let is_of_lab = asks_for_lab(&by_grammar.context) && !asks_for_lab(context);
+        let is_strange = context.pending.is_none() && is_strange(wording);
+        let is_too_long = wording.utterance.chars().nth(token::MAX_CHARS).is_some();
+        let is_conditional = by_grammar.is_understood() && self.is_plain_conditional(&wording.tidied, context);
+        let is_answer =
+            by_grammar.steps().is_some() && said <= LONGEST_ANSWER && self.answers(&wording.tidied, context);
+        let is_wait = by_grammar.is_understood() && self.is_plain_wait(&wording.words);
+        if is_of_lab || is_strange || is_too_long || is_conditional || is_answer || is_wait {
+            return Reading::Sure;
+        }
+        // `pour the milk`: where to; `drop it`: nothing is there.
+        let is_known = matches!(
+            by_grammar.understanding,
+            Understanding::Refusal { is_lost: false, .. }
+                | Understanding::Question { kind: Clarification::Request, .. }
+        );
+        // `the other one` is none that was just taken.
+        let is_done = by_grammar.repeats(&context.last_plan) && self.small(&wording.tidied).is_empty();
+        // What `it` is the rewriter has from what was said alone.
+        let is_it = |at: usize| {
+            self.lexicon.pronouns.longest(&wording.tidied[at..]).is_some_and(|(_, pronoun)| tail::is_thing(*pronoun))
+        };
+        let speaks_of_it = (0..wording.tidied.len()).any(is_it);
+        match is_plain && !is_done && (by_grammar.is_understood() || is_known && said <= SHORT) {
+            true if said < SOME || said < LONG && (speaks_of_it || !by_grammar.changes_or_asks_which()) => {
+                Reading::Sure
+            }
+            true if said < LONG => Reading::Short,
+            true => Reading::Long,
+            false => Reading::Partial,
+        }
+    }
+
+    /// The utterance with the name of the room that `the lab` means: one that is named besides, or that the robot is in.
+    pub(crate) fn with_room_named(&self, wording: &Wording<'_>, named: Option<RoomId>) -> Option<String> {
+        let kind = room_kind::bare(self.lexicon, self.scene, &wording.words)?;
+        let room = named.and_then(|room| kind.has(room)).or_else(|| kind.here(self.scene.robot.room))?;
+        let is_told = kind.described(self.lexicon, self.scene, kind.after(&wording.words)).is_some();
+        let mark = if wording.utterance.trim_end().ends_with('?') { "?" } else { "" };
+        (!is_told).then(|| format!("{}{mark}", token::sentence(&kind.named(&wording.words, room, self.catalog))))
+    }
+
+    /// Asks which of the likeliest plans is meant, instead of carrying any out; nothing, where none is likely at all.
+    fn proposed(&self, ways: &[Way], context: &mut Context) -> Option<Understanding> {
+        let mut plans = ways.iter().filter_map(|way| Some((way, way.steps()?))).peekable();
+        let (likeliest, _) = *plans.peek().filter(|(way, _)| way.probability >= TO_PROPOSE)?;
+        // Who is asked about it and says it again means it.
+        let may_ask = self.judge.asking != Asking::Never && !likeliest.is_asked_about(context);
+        if !may_ask {
+            return (likeliest.probability >= TO_GUESS).then(|| likeliest.taken(context).0);
+        }
+        let is_rival = |way: &Way| {
+            let is_part = likeliest.beyond(way).is_some() || way.beyond(likeliest).is_some();
+            way.probability >= likeliest.probability * RIVAL && !is_part
+        };
+        let rivals = plans.filter(|(way, _)| is_rival(way));
+        let mut guesses: Vec<Guess> = Vec::new();
+        for guess in rivals.take(MOST_PROPOSED).map(|(way, steps)| way.context.guess(steps)) {
+            if guesses.iter().all(|other| other.name != guess.name) {
+                guesses.push(guess);
+            }
+        }
+        if guesses.len() > 1 && guesses.iter().all(|guess| guess.search.is_none()) {
+            let plans: Vec<&[Step]> = guesses.iter().map(|guess| guess.steps.as_slice()).collect();
+            let names = reply::apart(&plans);
+            guesses.iter_mut().zip(names).for_each(|(guess, name)| guess.name = name);
+            // What is called alike nobody can choose between.
+            let mut told: Vec<String> = Vec::new();
+            guesses.retain(|guess| {
+                let is_new = !told.contains(&guess.name);
+                told.push(guess.name.clone());
+                is_new
+            });
+        }
+        let names: Vec<&str> = guesses.iter().map(|guess| guess.name.as_str()).collect();
+        let question = match names.as_slice() {
+            [name] => ask::is_it(name),
+            names => ask::which_plan(names),
+        };
+        context.pending = Some(Pending::Guess { guesses });
+        Some(match likeliest.context.answered.as_str() {
+            "" => question,
+            answered => question.after(answered),
+        })
+    }
+}
+
+/// The plan of a way beside which the likeliest only asks which thing is meant: other words for the same leave no doubt.
+fn settled(ways: &[Way]) -> Option<Way> {
+    let (asking, others) = ways.split_first()?;
+    if !matches!(asking.understanding, Understanding::Question { kind: Clarification::Reference, .. }) {
+        return None;
+    }
+    let plan = others.iter().find(|way| way.steps().is_some())?;
+    let probability = plan.probability.hypot(asking.probability);
+    let settled = Way { probability, ..plan.clone() };
+    (plan.probability >= TO_GUESS && probability >= settled.least()).then_some(settled)
+}
+
+/// A plan that several ways begin with, together likely enough to be carried out, and what they may go on with.
+fn begun(ways: &[Way]) -> Option<(Way, String)> {
+    ways.iter().find_map(|way| {
+        let (longer, more): (Vec<&Way>, Vec<String>) =
+            ways.iter().filter_map(|other| Some((other, other.beyond(way)?))).unzip();
+        // The square is the share of the rewriter's mass.
+        let squares = longer.into_iter().chain([way]).map(|one| one.probability * one.probability);
+        let begun = Way { probability: squares.sum::<f32>().sqrt(), ..way.clone() };
+        (begun.probability >= begun.least()).then_some((begun, more.into_iter().next()?))
+    })
+}
+
+/// Whether it has no words, or too many that nobody ever met.
+fn is_strange(wording: &Wording<'_>) -> bool {
+    let said = wording.length();
+    said == 0 || !wording.unheard.is_empty() && wording.unheard.len() * STRANGE >= said
+}
+
+impl Way {
+    /// This is what was meant.
+    fn taken(&self, context: &mut Context) -> (Understanding, f32) {
+        *context = self.context.clone();
+        let is_said = self.probability < SURELY && self.steps().is_some();
+        let understanding = self.understanding.clone();
+        (if is_said { understanding.after(UNSURE) } else { understanding }, self.probability)
+    }
+
+    /// Whether it would change anything, or asks which thing is meant.
+    fn changes_or_asks_which(&self) -> bool {
+        matches!(self.understanding, Understanding::Question { kind: Clarification::Reference, .. })
+            || self.steps().is_some() && !self.only_looks()
+    }
+
+    /// How likely it must be meant to be carried out, or said.
+    fn least(&self) -> f32 {
+        match &self.understanding {
+            Understanding::Plan { .. } if self.is_lasting() => TO_CHANGE,
+            Understanding::Plan { .. } if self.only_looks() => TO_LOOK,
+            Understanding::Plan { .. } | Understanding::Stop { .. } => TO_MOVE,
+            // That it does not know what to do with a thing is worth saying only where there is no guess.
+            Understanding::Question { kind: Clarification::Request, .. } => f32::INFINITY,
+            _ => TO_REPLY,
+        }
+    }
+}

@@ -1,0 +1,142 @@
+//! Whether plain requests keep to what was said: a rewriter that has read of many red mugs may write of one that nobody spoke of, and a
+//! condition may lose its `not`.
+
+use std::collections::BTreeSet;
+
+use cohabit_cdf::{ObjectClass, Property};
+
+use crate::{
+    read::{
+        question::{self, QuestionKind},
+        whether,
+    },
+    talk::{condition, conversation::Conversation},
+    words::{lexicon::Lexicon, token},
+};
+
+/// How likely what was said is meant the other way round, or a question is a request.
+const TURNED_ROUND: f32 = 0.2;
+/// What says that a question is about this room; the first is how a plain one says so.
+const HERE: [&str; 3] = ["in this room", "in here", "around here"];
+/// Within so many words after `if` its `not` is said.
+const CLAUSE: usize = 6;
+
+/// What a rewriting was made of: what was said, and before.
+pub(crate) struct Source {
+    words: BTreeSet<String>,
+    /// The words that were said now.
+    said: BTreeSet<String>,
+    /// Each two words that stood beside each other before.
+    pairs: BTreeSet<[String; 2]>,
+    /// Whether a condition was denied: `if it is not`.
+    is_denied: bool,
+    /// Whether anything was.
+    has_denial: bool,
+    /// Whether all that was said asks how things are: `is the bowl clean?`.
+    only_asks: bool,
+    /// Whether a condition was told.
+    has_condition: bool,
+    /// Whether it is about this room.
+    is_here: bool,
+}
+
+impl Source {
+    pub(crate) fn new(lexicon: &Lexicon, said: &[String], lines: &[(bool, String)]) -> Self {
+        let before: Vec<Vec<String>> = lines.iter().map(|(_, line)| lexicon.normalise(line).0).collect();
+        let pairs = before.iter().flat_map(|line| line.windows(2)).map(|pair| [pair[0].clone(), pair[1].clone()]);
+        Self {
+            pairs: pairs.collect(),
+            said: said.iter().cloned().collect(),
+            is_denied: denies_condition(lexicon, said),
+            only_asks: only_asks(lexicon, said),
+            has_condition: condition::has_condition(lexicon, said),
+            is_here: HERE.iter().any(|here| format!(" {} ", said.join(" ")).contains(&format!(" {here} "))),
+            has_denial: said.iter().any(|word| lexicon.ifs.negations.contains(word)),
+            words: said.iter().cloned().chain(before.into_iter().flatten()).collect(),
+        }
+    }
+}
+
+impl Conversation<'_> {
+    /// Plain requests without the colours of things that nobody named: `the red mug` where no red was spoken of, `the blue desk` where
+    /// `the desk` was said and something else was blue. Devices may be called by theirs.
+    pub(crate) fn without_invention(&self, text: &str, source: &Source) -> String {
+        let words: Vec<&str> = text.split(' ').collect();
+        let lexicon = self.lexicon;
+        let is_all = |rest: &[String], fits: &dyn Fn(&ObjectClass) -> bool| {
+            let named = lexicon.classes.longest(rest).map(|(_, namings)| namings);
+            named.is_some_and(|namings| namings.iter().all(|naming| fits(self.catalog.class(naming.class))))
+        };
+        let is_invented = |at: usize| {
+            let color = words[at].to_owned();
+            let rest: Vec<String> = words[at + 1..].iter().flat_map(|word| token::words(word)).collect();
+            let Some(noun) = rest.first().filter(|_| lexicon.colors.exact(std::slice::from_ref(&color)).is_some())
+            else {
+                return false;
+            };
+            if !source.words.contains(&color) {
+                return is_all(&rest, &|class| class.has(Property::Pickupable));
+            }
+            let is_of_another = source.said.contains(noun)
+                && !source.said.contains(&color)
+                && !source.pairs.contains(&[color, noun.clone()]);
+            is_of_another && is_all(&rest, &|class| !class.has(Property::Toggleable))
+        };
+        let kept = (0..words.len()).filter(|at| !is_invented(*at)).map(|at| words[at]);
+        kept.collect::<Vec<_>>().join(" ")
+    }
+
+    /// Plain requests of which those that count things do so in this room, where that was said.
+    pub(crate) fn with_this_room(&self, text: &str, source: &Source) -> String {
+        let counts_anywhere = |request: &str| {
+            let asked = question::read(self.lexicon, &token::words(request));
+            let about = asked.filter(|asked| asked.kind == QuestionKind::Count).and_then(|asked| asked.about);
+            about.is_some_and(|about| about.room.is_none() && about.relations.is_empty())
+        };
+        let here = |request: &str| match request.strip_suffix('?') {
+            Some(asked) if source.is_here && counts_anywhere(request) => format!("{asked} {}?", HERE[0]),
+            _ => request.to_owned(),
+        };
+        text.split("; ").map(here).collect::<Vec<_>>().join("; ")
+    }
+
+    /// How likely it is what was said, by what its conditions deny, and by whether it asks what was asked.
+    pub(crate) fn faithfulness(&self, text: &str, source: &Source) -> f32 {
+        let conditions: Vec<Vec<String>> = text
+            .split("; ")
+            .filter_map(|request| request.strip_prefix("if "))
+            .map(|request| token::words(request.split(',').next().unwrap_or(request)))
+            .collect();
+        let denies = |words: &Vec<String>| words.iter().any(|word| self.lexicon.ifs.negations.contains(word));
+        let is_said = |words: &Vec<String>| words.last().is_some_and(|last| source.words.contains(last));
+        let (denied, claimed): (Vec<_>, Vec<_>) = conditions.into_iter().partition(denies);
+        let asks = |request: &str| request.ends_with('?') || request.starts_with("if ");
+        let turns_to_deed = source.only_asks && !text.split("; ").any(asks) && !matches!(text, "social" | "none" | "?");
+        let is_free = |request: &str| {
+            let is_deed = !request.ends_with('?') && !matches!(request, "social" | "none" | "stop");
+            let words = token::words(request);
+            is_deed && !condition::has_condition(self.lexicon, &words) && !self.is_for_later(&words)
+        };
+        let loses = source.has_condition && text.split("; ").all(is_free);
+        let adds = !source.has_denial && !denied.is_empty();
+        let drops = source.is_denied && denied.is_empty() && claimed.iter().any(is_said);
+        if adds || drops || loses || turns_to_deed { TURNED_ROUND } else { 1.0 }
+    }
+}
+
+/// Whether every sentence wants a yes or a no, and requests nothing.
+fn only_asks(lexicon: &Lexicon, words: &[String]) -> bool {
+    let mut sentences =
+        words.split(|word| token::ends_sentence(word)).filter(|sentence| !sentence.is_empty()).peekable();
+    sentences.peek().is_some() && sentences.all(|sentence| whether::asked_at(lexicon, sentence).is_some())
+}
+
+/// `if it is not`, `if not`, `unless`.
+fn denies_condition(lexicon: &Lexicon, words: &[String]) -> bool {
+    let after = |at: usize| lexicon.ifs.holds.longest(&words[at..]).map(|(length, ())| at + length);
+    (0..words.len()).filter_map(after).any(|start| {
+        let end =
+            words[start..].iter().position(|word| token::is_punctuation(word)).map_or(words.len(), |end| start + end);
+        words[start..end.min(start + CLAUSE)].iter().any(|word| lexicon.ifs.negations.contains(word))
+    })
+}

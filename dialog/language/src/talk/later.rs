@@ -1,0 +1,98 @@
+//! What comes after the plan under way: what is left of the mission, and what was asked about its outcome.
+
+use crate::{
+    context::{Context, Pending},
+    read::{clause::Clause, tidy},
+    talk::conversation::Conversation,
+    understanding::Understanding,
+    words::{lexicon::Small, prose},
+};
+
+impl Conversation<'_> {
+    /// What is left to do once a plan has ended: the search that it is a part of, or what is next.
+    pub(crate) fn carry_on(&self, context: &mut Context) -> Option<Understanding> {
+        let later = context.later.clone();
+        if let Some(search) = context.search.take() {
+            let understanding = self.proceed(search, context);
+            return Some(context.keep(later, understanding));
+        }
+        // Who is asked something answers first.
+        if context.pending.is_some() {
+            return None;
+        }
+        let is_met = |text: &String| self.scene.goals.iter().any(|goal| goal.met && goal.text == *text);
+        let left: Vec<String> = later.into_iter().filter(|text| !is_met(text)).collect();
+        context.later.clear();
+        self.one_after_the_other(left, context, |text, context| self.understand_later(text, context))
+    }
+
+    /// What was left for later; nothing, where it is not understood: nobody is asked what a remark might want.
+    fn understand_later(&self, text: &str, context: &mut Context) -> Option<Understanding> {
+        let wording = self.wording(text);
+        let understanding = if self.reads_all(&wording) {
+            self.understand_said(text, context)
+        } else {
+            self.understand_whole(text, context).0
+        };
+        let is_guess = matches!(context.pending, Some(Pending::Guess { .. }));
+        (!understanding.is_lost() && (!is_guess || self.names_anything(&wording.words))).then_some(understanding)
+    }
+
+    /// Whether the mission, or what is left of it, speaks of the same things.
+    pub(crate) fn is_of_mission(&self, clause: &Clause) -> bool {
+        let is_named = |words: &[String]| {
+            let found = self.lexicon.classes.longest(words);
+            let mut classes = found.into_iter().flat_map(|(_, namings)| namings).map(|naming| naming.class);
+            classes.any(|class| clause.objects.iter().any(|phrase| phrase.naming(class).is_some()))
+        };
+        let names = |text: &str| {
+            let (words, _) = self.lexicon.normalise(text);
+            (0..words.len()).any(|at| is_named(&words[at..]))
+        };
+        self.open_goals().next().is_some() && (names(&self.scene.mission) || self.open_goals().any(names))
+    }
+
+    /// Does what is left of the mission, one goal after the other.
+    pub(crate) fn pursue(&self, context: &mut Context) -> Understanding {
+        let goals: Vec<String> = self.open_goals().map(str::to_owned).collect();
+        let understanding = self.next_goal(context);
+        let Some((_, later)) = goals.split_first().filter(|(_, later)| !later.is_empty()) else { return understanding };
+        match &understanding {
+            Understanding::Plan { .. } | Understanding::Question { .. } => {
+                let named: Vec<String> = goals.iter().map(|goal| goal.trim_end_matches('.').to_owned()).collect();
+                let said = prose::sentence(&format!("I do these one after the other: {}", named.join("; ")));
+                context.keep(later.to_vec(), understanding.after(&said))
+            }
+            _ => understanding,
+        }
+    }
+
+    pub(crate) fn open_goals(&self) -> impl Iterator<Item = &str> {
+        self.scene.goals.iter().filter(|goal| !goal.met && !goal.text.is_empty()).map(|goal| goal.text.as_str())
+    }
+
+    /// What a goal says, as if the person had said it.
+    pub(crate) fn words_of_goal(&self, goal: &str) -> Vec<String> {
+        tidy::tidied(self.lexicon, &self.lexicon.normalise(goal).0)
+    }
+
+    /// Does what the next goal says, as if the person had said it.
+    pub(crate) fn next_goal(&self, context: &mut Context) -> Understanding {
+        let Some(goal) = self.open_goals().next() else {
+            return Understanding::answer("There is nothing left to do that I know of.");
+        };
+        let words = self.words_of_goal(goal);
+        let lost = || {
+            let text = goal.trim_end_matches('.');
+            Understanding::lost(format!("The next goal is: {text}. Tell me what to do for it, step by step."))
+        };
+        let small = self.small(&words);
+        if small.contains(&Small::Goal) || small.contains(&Small::Mission) {
+            return lost();
+        }
+        match self.understand_words(words, context) {
+            Understanding::Refusal { is_lost: true, .. } | Understanding::Answer { .. } => lost(),
+            understanding => understanding,
+        }
+    }
+}

@@ -1,0 +1,107 @@
+//! How likely ways to understand an utterance are by what is open: the robot's own question, and what is left of the mission.
+
+use cohabit_cdf::{Action, Fluid, GoToTarget, ObjectId, Property, StateFlag, Verb};
+
+use crate::{
+    context::Context,
+    known::{Known, KnownObject, imagine},
+    talk::{conversation::Conversation, way::Way, wording::Wording},
+    understanding::Step,
+};
+
+/// How many times likelier a way is that the robot has just asked about, one that meets the next open goal or leads to it, and one for a later
+/// goal. By judgement: labelled utterances have no goals.
+const ASKED_ABOUT: f32 = 4.0;
+const FOR_NEXT_GOAL: f32 = 3.0;
+const FOR_LATER_GOAL: f32 = 1.5;
+/// The same of one that does what is so already, and of one that goes to a room and acts in another.
+const IN_VAIN: f32 = 0.3;
+const ASTRAY: f32 = 0.5;
+
+impl Conversation<'_> {
+    /// Gives ways their probability in the light of what is open.
+    pub(crate) fn weigh(&self, ways: &mut [Way], wording: &Wording<'_>, context: &Context) {
+        // Who forbids something may well mean what is open.
+        let is_denied = self.lexicon.negation.occurs_in(&wording.words);
+        let goals: Vec<Way> = if is_denied { Vec::new() } else { self.goals_as_ways(context) };
+        let unknown = 1.0 - ways.iter().map(|way| way.probability).sum::<f32>().min(1.0);
+        for way in ways.iter_mut() {
+            let for_goal = match goals.iter().position(|goal| way.leads_to(goal)) {
+                Some(0) => FOR_NEXT_GOAL,
+                Some(_) => FOR_LATER_GOAL,
+                None => 1.0,
+            };
+            way.probability *= match way.steps() {
+                None if way.context.is_met => IN_VAIN,
+                Some(steps) if self.is_in_vain(steps) || self.ends_as_it_was(steps) => IN_VAIN,
+                Some(steps) if self.goes_astray(steps) => ASTRAY,
+                _ if is_denied => 1.0,
+                _ if way.is_asked_about(context) => ASKED_ABOUT,
+                _ => for_goal,
+            };
+        }
+        let all = unknown + ways.iter().map(|way| way.probability).sum::<f32>();
+        ways.iter_mut().for_each(|way| way.probability /= all);
+    }
+
+    /// Whether a step leaves what it works on as it is: cereal is poured into a bowl of cereal.
+    fn is_in_vain(&self, steps: &[Step]) -> bool {
+        let mut scene = self.scene.clone();
+        steps.iter().any(|step| {
+            let held = scene.robot.held;
+            let state = |scene: &Known| {
+                let of = |id: Option<ObjectId>| id.and_then(|id| scene.object(id));
+                let worked_on = of(step.object()).map(|object| (object.flags, object.fluid));
+                (scene.robot.held, worked_on, of(held).map(|object| object.fluid))
+            };
+            // What comes out of a vessel that is not known to be full nobody knows.
+            let is_unknown = held.and_then(|held| scene.object(held)).is_some_and(|object| {
+                object.fluid == Fluid::None && self.catalog.class(object.class).has(Property::Fillable)
+            });
+            let before = state(&scene);
+            imagine::apply(&mut scene, &step.action, self.devices);
+            let changes = matches!(
+                step.action,
+                Action::Interact { verb: Verb::Break | Verb::Close | Verb::Open | Verb::Pour, .. }
+            );
+            let pours_unknown = is_unknown && matches!(step.action, Action::Interact { verb: Verb::Pour, .. });
+            changes && !pours_unknown && state(&scene) == before
+        })
+    }
+
+    /// Whether things are taken and put, and all is as before: what was just thrown away is thrown away.
+    fn ends_as_it_was(&self, steps: &[Step]) -> bool {
+        let moves = |step: &Step| matches!(step.action, Action::PickUp { .. } | Action::Place { .. });
+        let state = |scene: &Known| {
+            let of = |object: &KnownObject| {
+                let mut flags = object.flags;
+                flags.set(StateFlag::PickedUp, false);
+                flags.set(StateFlag::Used, false);
+                (object.parent, object.fluid, flags)
+            };
+            (scene.robot.held, scene.objects.iter().map(of).collect::<Vec<_>>())
+        };
+        let mut scene = self.scene.clone();
+        steps.iter().for_each(|step| imagine::apply(&mut scene, &step.action, self.devices));
+        steps.iter().any(moves) && state(&scene) == state(self.scene)
+    }
+
+    /// Whether it goes to a room to act on what is in another one.
+    fn goes_astray(&self, steps: &[Step]) -> bool {
+        steps.windows(2).any(|pair| {
+            let Action::GoTo { target: GoToTarget::Room(room) } = pair[0].action else { return false };
+            let acted_on = pair[1].object().filter(|id| self.scene.robot.held != Some(*id));
+            acted_on.and_then(|id| self.scene.object(id)).is_some_and(|object| object.room != room)
+        })
+    }
+
+    /// What the goals that are open ask for.
+    fn goals_as_ways(&self, context: &Context) -> Vec<Way> {
+        let goals = self.open_goals().map(|goal| {
+            let mut then = Context { pending: None, ..context.at_new_utterance() };
+            let understanding = self.understand_words(self.words_of_goal(goal), &mut then);
+            Way { understanding, probability: 1.0, context: then }
+        });
+        goals.filter(|way| way.steps().is_some()).collect()
+    }
+}

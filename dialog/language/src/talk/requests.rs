@@ -1,0 +1,106 @@
+//! Requests, one after the other: what is asked first is answered first, then what is to be done is done; what follows that waits until then.
+
+use crate::{
+    context::Context,
+    talk::{conversation::Conversation, room_kind},
+    understanding::Understanding,
+};
+
+impl Conversation<'_> {
+    /// What plain requests mean, with `; ` between them; nothing, where the grammar does not read all words of one of them.
+    pub(crate) fn requested(&self, requests: &str, context: &mut Context) -> Option<Understanding> {
+        let room = room_kind::beside(self.lexicon, &self.wording(requests).words);
+        let with_room =
+            |request: &str| self.with_room_named(&self.wording(request), room).unwrap_or_else(|| request.to_owned());
+        let requests: Vec<String> = requests.split("; ").map(with_room).collect();
+        let reads: Vec<bool> = requests.iter().map(|request| self.reads_all(&self.wording(request))).collect();
+        let is_lost = |(request, is_read): (&String, &bool)| !is_read && !is_question(request);
+        // A question that it cannot answer takes nothing from what else was said.
+        if !reads.contains(&true) || requests.iter().zip(&reads).any(is_lost) {
+            return None;
+        }
+        let mut then = context.at_new_utterance();
+        let understand = |text: &str, context: &mut Context| Some(self.understand_said(text, context));
+        let understanding = self.one_after_the_other(self.together(&requests), &mut then, understand)?;
+        (!understanding.is_lost()).then(|| {
+            *context = then;
+            understanding
+        })
+    }
+
+    /// What texts mean, each where those before it lead to; what `understand` makes nothing of is passed over.
+    pub(crate) fn one_after_the_other(
+        &self,
+        texts: Vec<String>,
+        context: &mut Context,
+        understand: impl Fn(&str, &mut Context) -> Option<Understanding>,
+    ) -> Option<Understanding> {
+        let mut said: Vec<String> = Vec::new();
+        let mut texts = texts.into_iter();
+        while let Some(text) = texts.next() {
+            let mut then = Context { later: Vec::new(), ..context.clone() };
+            let Some(understanding) = understand(&text, &mut then) else { continue };
+            let is_last = texts.len() == 0;
+            match &understanding {
+                // Whether to look for what was only asked about is not worth a question where more is asked for.
+                Understanding::Question { text: asked, .. } if !is_last && is_question(&text) => {
+                    said.push(without_offer(asked));
+                }
+                Understanding::Refusal { is_lost: true, .. }
+                    if is_question(&text) && (!is_last || !said.is_empty()) =>
+                {
+                    said.push(format!("I do not know the answer to \"{text}\"."));
+                }
+                // What follows waits, too.
+                Understanding::Answer { .. } if then.awaited.is_some() && then.awaited != context.awaited => {
+                    *context = then;
+                    context.awaited.iter_mut().for_each(|awaited| awaited.then.extend(texts.by_ref()));
+                    let is_first = said.is_empty();
+                    return Some(if is_first { understanding } else { understanding.after(&said.join(" ")) });
+                }
+                Understanding::Answer { text: reply, .. } | Understanding::Refusal { text: reply, is_lost: false }
+                    if !is_last || said.contains(reply) =>
+                {
+                    if !said.contains(reply) {
+                        said.push(reply.clone());
+                    }
+                    *context = then;
+                }
+                _ => {
+                    *context = then;
+                    context.later.extend(texts);
+                    context.answered = said.join(" ");
+                    let is_first = said.is_empty();
+                    return Some(if is_first { understanding } else { understanding.after(&context.answered) });
+                }
+            }
+        }
+        (!said.is_empty()).then(|| Understanding::answer(said.join(" ")))
+    }
+
+    /// Requests of which those that follow each other are one text; questions, and what is no request by itself (`undo`), stay alone.
+    fn together(&self, requests: &[String]) -> Vec<String> {
+        let mut texts: Vec<String> = Vec::new();
+        let mut may_go_on = false;
+        for request in requests {
+            let words = self.wording(request).tidied;
+            let is_deed = !is_question(request) && self.small(&words).is_empty() && self.chat(&words).is_none();
+            match texts.last_mut().filter(|_| may_go_on && is_deed) {
+                Some(last) => *last = format!("{last}. {request}"),
+                None => texts.push(request.clone()),
+            }
+            may_go_on = is_deed;
+        }
+        texts
+    }
+}
+
+fn is_question(text: &str) -> bool {
+    text.ends_with('?')
+}
+
+/// `I have not seen a can yet. Shall I look for it?` without the offer.
+fn without_offer(text: &str) -> String {
+    let end = text.trim_end_matches('?').rfind(". ").map_or(text.len(), |at| at + 1);
+    text[..end].to_owned()
+}

@@ -1,0 +1,115 @@
+//! What a rewriter makes of an utterance: plain requests, which the grammar understands.
+
+use std::sync::LazyLock;
+
+use crate::{
+    context::Context,
+    read::{chatter, clause::Part, parts, segments},
+    say::reply,
+    talk::{cache::Cache, conversation::Conversation, faithful::Source, way::Way, wording::Wording},
+    understanding::{Clarification, Understanding},
+};
+
+/// How likely the others are at most where the grammar does not read the likeliest: enough to be proposed.
+const DOUBTFUL: f32 = 0.4;
+/// What is said to who asks for nothing.
+const SEEN: &str = "I see. Tell me when there is something to do.";
+const AGREED: &str = "OK.";
+
+impl Conversation<'_> {
+    /// What the rewriter takes an utterance for, the likeliest first; nothing, where the likeliest names something that nobody
+    /// knows: others are mere guesses then.
+    pub(crate) fn rewritten(&self, wording: &Wording<'_>, context: &Context) -> Vec<Way> {
+        let (mut ways, mut is_doubtful) = (Vec::<Way>::new(), false);
+        let source = Source::new(self.lexicon, &wording.words, context.lines());
+        for (at, (text, probability)) in self.rewritings(wording.utterance, context).iter().enumerate() {
+            let text = &self.with_this_room(&self.without_invention(text, &source), &source);
+            let probability = probability * self.faithfulness(text, &source);
+            let way = match self.of_rewriting(text, probability, wording, context) {
+                Some(way) => way,
+                None if at == 0 && self.names_unknown(text) => {
+                    return self.asked_about(text, probability, context).into_iter().collect();
+                }
+                None => {
+                    is_doubtful |= at == 0;
+                    continue;
+                }
+            };
+            match ways.iter_mut().find(|other| other.is_same(&way)) {
+                Some(other) => other.probability += way.probability,
+                None => ways.push(way),
+            }
+        }
+        self.weigh(&mut ways, wording, context);
+        // What it gives a probability of p is right about as often as √p, by writers that it was not fitted to: others may have said it otherwise.
+        let most = if is_doubtful { DOUBTFUL } else { 1.0 };
+        ways.iter_mut().for_each(|way| way.probability = way.probability.sqrt().min(most));
+        ways.sort_by(|one, other| other.probability.total_cmp(&one.probability));
+        ways
+    }
+
+    /// Whether plain requests name something that nobody knows; of the verb they begin with another one may be meant.
+    fn names_unknown(&self, text: &str) -> bool {
+        let parts = parts::parts(self.lexicon, self.catalog, &self.wording(text).tidied);
+        let is_unclear = |part: &Part| matches!(part, Part::Clause(clause) if !chatter::is_clear(clause));
+        let is_unheard = |(_, named): (&str, &str)| !self.wording(named).unheard.is_empty();
+        parts.iter().any(is_unclear) || text.split("; ").filter_map(|request| request.split_once(' ')).any(is_unheard)
+    }
+
+    /// What the robot asks about plain requests that it does not know all words of, such as what a thing looks like.
+    fn asked_about(&self, text: &str, probability: f32, context: &Context) -> Option<Way> {
+        let mut then = context.at_new_utterance();
+        let understanding = self.understand_said(&text.replace("; ", ". "), &mut then);
+        let asks = matches!(understanding, Understanding::Question { kind: Clarification::Appearance, .. });
+        asks.then(|| Way { understanding, probability: probability.sqrt(), context: then })
+    }
+
+    fn of_rewriting(&self, text: &str, probability: f32, wording: &Wording<'_>, context: &Context) -> Option<Way> {
+        let mut then = context.at_new_utterance();
+        let understanding = match asking(text).as_str() {
+            "?" => return None,
+            "none" => Understanding::answer(AGREED),
+            "social" => self.reply_to_talk(wording),
+            "stop" => self.stopped("", &mut then),
+            requests => {
+                if let Some(rest) = requests.strip_prefix("stop; ") {
+                    let stopped = self.stopped("", &mut then);
+                    let rest = self.requested(rest, &mut then)?;
+                    Understanding::Stop { reply: stopped.reply().to_owned(), then: Some(Box::new(rest)) }
+                } else {
+                    self.requested(requests, &mut then)?
+                }
+            }
+        };
+        then.reason = then.reason.replacen(reply::ASKED_TO, reply::UNDERSTOOD_TO, 1);
+        Some(Way { understanding, probability, context: then })
+    }
+
+    /// What is said to who asks for nothing: thanks, praise and such have a reply.
+    fn reply_to_talk(&self, wording: &Wording<'_>) -> Understanding {
+        let chat = segments::segments(self.lexicon, &wording.words).into_iter().find_map(|part| self.chat(part));
+        let kind = || self.lexicon.talk_kinds.iter().find(|(words, _)| words.occurs_in(&wording.words));
+        Understanding::answer(chat.or_else(|| kind().map(|(_, reply)| reply.as_str())).unwrap_or(SEEN))
+    }
+
+    fn rewritings(&self, utterance: &str, context: &Context) -> Vec<(String, f32)> {
+        // The same words are often heard again: as an answer that a question offers, or when a setting is tried.
+        static WRITTEN: LazyLock<Cache<Vec<(String, f32)>>> = LazyLock::new(Cache::default);
+        let Some(rewrite) = self.rewriter else { return Vec::new() };
+        let lines = context.lines();
+        WRITTEN.get_or_insert_with(&transcript(utterance, lines), || rewrite(utterance, lines))
+    }
+}
+
+/// Plain requests without talk beside them.
+fn asking(text: &str) -> String {
+    let asks = |request: &&str| !matches!(*request, "social" | "none");
+    let requests: Vec<&str> = text.split("; ").filter(asks).collect();
+    if requests.is_empty() { text.to_owned() } else { requests.join("; ") }
+}
+
+/// An utterance behind the lines before it, as text.
+fn transcript(utterance: &str, lines: &[(bool, String)]) -> String {
+    let before = lines.iter().map(|(by_robot, text)| format!("{}{text}\n", if *by_robot { '<' } else { '>' }));
+    before.chain([utterance.to_owned()]).collect()
+}

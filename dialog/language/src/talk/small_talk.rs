@@ -1,0 +1,106 @@
+//! What is a whole utterance by itself: yes and no, thanks, a greeting, again, undo.
+
+use crate::{
+    context::Context,
+    read::{question, tidy::plain},
+    talk::conversation::Conversation,
+    understanding::Understanding,
+    words::{lexicon::Small, question_kind::QuestionKind},
+};
+
+impl Conversation<'_> {
+    /// The reply to what asks for nothing to be done.
+    pub(crate) fn chat(&self, words: &[String]) -> Option<&str> {
+        self.lexicon.chat.exact(&plain(words)).map(String::as_str)
+    }
+
+    pub(crate) fn small(&self, words: &[String]) -> Vec<Small> {
+        let words = plain(words);
+        let known = |words: &[String]| self.lexicon.small.exact(words).map(|smalls| smalls.iter().copied().collect());
+        let plainly = || -> Vec<String> {
+            words.iter().filter(|word| !self.lexicon.fillers.adverbs.contains(*word)).cloned().collect()
+        };
+        let several = || self.several_smalls(&words).and_then(known);
+        known(&words).or_else(several).or_else(|| known(&plainly())).unwrap_or_default()
+    }
+
+    /// `neither, leave it`, `ok, once more please`: the first of several that make up all of it.
+    fn several_smalls<'w>(&self, words: &'w [String]) -> Option<&'w [String]> {
+        let (mut at, mut first) = (0, None);
+        while at < words.len() {
+            let rest = &words[at..];
+            let small = self.lexicon.small.longest(rest).map_or(0, |(length, _)| length);
+            let polite = matches!(
+                rest[0].as_str(),
+                "please" | "ok" | "okay" | "well" | "hmm" | "oh" | "then" | "and" | "so" | "which"
+            );
+            if small == 0 && !polite {
+                return None;
+            }
+            if small > 0 && !(polite && small == 1) {
+                first = first.or(Some(&rest[..small]));
+            }
+            at += small.max(1);
+        }
+        first
+    }
+
+    /// Whether the words are a yes or a no, alone or before something else: `yes, please open it`.
+    pub(crate) fn small_at_start(&self, words: &[String], small: Small) -> bool {
+        let exact = self.small(words);
+        if !exact.is_empty() {
+            return exact.contains(&small);
+        }
+        words.first().is_some_and(|word| match small {
+            Small::Yes => matches!(word.as_str(), "yes" | "yeah" | "yep" | "yup" | "sure"),
+            Small::No => matches!(word.as_str(), "no" | "nope" | "nah"),
+            _ => false,
+        })
+    }
+
+    pub(crate) fn small_talk(&self, words: &[String], context: &mut Context) -> Option<Understanding> {
+        let small = self.small(words);
+        let is = |kind| small.contains(&kind);
+        if is(Small::Again) && !context.last_plan.is_empty() {
+            let steps = context.failed.take().map_or_else(
+                || context.last_plan.clone(),
+                |failure| std::iter::once(failure.step).chain(failure.rest).collect(),
+            );
+            return Some(self.go(steps, context));
+        }
+        // `why not?` asks, where the robot did not.
+        let is_why = || question::read(self.lexicon, words).is_some_and(|asked| asked.kind == QuestionKind::Why);
+        if (is(Small::Yes) || is(Small::No)) && !is_why() {
+            let failure = context.failed.take();
+            return Some(match failure {
+                Some(failure) if is(Small::Yes) => self.mend(&failure, context),
+                _ if is(Small::Yes) => Understanding::answer("OK. What shall I do?"),
+                _ => Understanding::answer("All right."),
+            });
+        }
+        if is(Small::Goal) {
+            return Some(self.next_goal(context));
+        }
+        if is(Small::Mission) {
+            return Some(self.pursue(context));
+        }
+        if is(Small::Undo) || self.is_undo(words) {
+            return Some(self.undo(context));
+        }
+        if is(Small::Thanks) {
+            return Some(Understanding::answer("You are welcome!"));
+        }
+        if is(Small::Hello) {
+            return Some(Understanding::answer("Hello! What can I do for you?"));
+        }
+        self.chat(words).map(Understanding::answer)
+    }
+
+    /// `undo the previous command`.
+    fn is_undo(&self, words: &[String]) -> bool {
+        let words = plain(words);
+        let spare = |word: &String| self.lexicon.undone.exact(std::slice::from_ref(word)).is_some();
+        let (verb, rest) = words.split_first().map_or(("", &[][..]), |(verb, rest)| (verb.as_str(), rest));
+        matches!(verb, "undo" | "revert" | "reverse") && !rest.is_empty() && rest.iter().all(spare)
+    }
+}

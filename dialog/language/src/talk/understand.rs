@@ -1,0 +1,364 @@
+//! One turn of a conversation: answers to the robot's own questions first (see [`crate::talk::asked`]), then questions, then
+//! requests.
+
+use cohabit_cdf::ObjectId;
+
+use crate::{
+    context::{Context, Pending, search::Consent},
+    ground::{
+        Ground,
+        confidence::Referents,
+        judge::Judge,
+        want::{Miss, Want},
+    },
+    plan::remedy,
+    read::{
+        chatter,
+        clause::{self, Clause, Part},
+        parts,
+        phrase::{Phrase, Place, RelationKind},
+        question, segments, tidy,
+    },
+    say::{
+        ask,
+        reply::{self, HINT},
+    },
+    stop::{self, Stop, said::Firmness},
+    talk::{conversation::Conversation, room_kind, way::Way},
+    understanding::{Asking, Understanding},
+    words::{
+        intent::Intent,
+        question_kind::QuestionKind,
+        spelling,
+        token::{self, MAX_CHARS},
+    },
+};
+
+/// What it says when it stops.
+const STOPS: &str = "OK, I stop.";
+
+impl Conversation<'_> {
+    pub(crate) fn understand(&self, utterance: &str, context: &mut Context) -> Understanding {
+        context.unwatched = None;
+        let (understanding, sureness) = self.understand_surely(utterance, context);
+        let is_lost = matches!(understanding, Understanding::Refusal { is_lost: true, .. });
+        context.sureness = if is_lost { 0.0 } else { sureness };
+        self.with_a_look(utterance, understanding, context)
+    }
+
+    /// The same with how likely it is what was meant.
+    fn understand_surely(&self, utterance: &str, context: &mut Context) -> (Understanding, f32) {
+        if let Some(understanding) = self.chosen_by_name(utterance, context) {
+            return (understanding, 1.0);
+        }
+        if let Some(stop) = stop::find_stop(utterance).filter(|stop| is_heeded(stop, context))
+            && (context.is_busy() || !self.is_wait(&self.lexicon.normalise(utterance).0))
+        {
+            return self
+                .asked_at_rest(&stop, utterance, context)
+                .unwrap_or_else(|| (self.stopped(&stop.rest, context), 1.0));
+        }
+        self.understand_whole(utterance, context)
+    }
+
+    /// `that will do, off with it`, to a robot that does nothing: what is asked for beside the stop, said before it or after it.
+    fn asked_at_rest(&self, stop: &Stop, utterance: &str, context: &mut Context) -> Option<(Understanding, f32)> {
+        if stop.is_all || context.is_busy() || context.pending.is_some() || context.awaits() {
+            return None;
+        }
+        let ways = self.rewritten(&self.wording(utterance), context);
+        if ways.first().is_none_or(Way::stops) {
+            return None;
+        }
+        let mut then = context.clone();
+        let understood = self.understand_whole(utterance, &mut then);
+        let is_reply = matches!(understood.0, Understanding::Plan { .. } | Understanding::Answer { .. });
+        is_reply.then(|| {
+            *context = then;
+            understood
+        })
+    }
+
+    /// It stops, and then does what else was asked for.
+    pub(crate) fn stopped(&self, rest: &str, context: &mut Context) -> Understanding {
+        context.pending = None;
+        context.running.clear();
+        context.failed = None;
+        context.search = None;
+        context.awaited = None;
+        context.later.clear();
+        let then = self.asks_for_anything(rest).then(|| Box::new(self.understand_whole(rest, context).0));
+        Understanding::Stop { reply: STOPS.to_owned(), then }
+    }
+
+    /// Whether there is a request or a question in a text, rather than the reason for a stop.
+    pub(crate) fn asks_for_anything(&self, text: &str) -> bool {
+        if text.is_empty() || text.chars().nth(MAX_CHARS).is_some() {
+            return !text.is_empty();
+        }
+        let (words, _) = self.lexicon.normalise(text);
+        let words = tidy::tidied(self.lexicon, &words);
+        let asks = |part: &Part| {
+            let Part::Clause(clause) = part else { return false };
+            !matches!(clause.intent, Intent::Stop | Intent::Mention) && !clause.is_wish && chatter::is_clear(clause)
+        };
+        let is_question = || question::read(self.lexicon, &words).is_some_and(|one| one.kind != QuestionKind::Unknown);
+        parts::parts(self.lexicon, self.catalog, &words).iter().any(asks) || is_question()
+    }
+
+    /// What the grammar makes of what was said.
+    pub(crate) fn understand_said(&self, utterance: &str, context: &mut Context) -> Understanding {
+        if utterance.chars().nth(MAX_CHARS).is_some() {
+            return Understanding::refusal("That is too much for me at once. Please say it in a few short sentences.");
+        }
+        let (words, repairs) = self.lexicon.normalise(utterance);
+        if let Some(understanding) = self.waits(&words, context) {
+            return understanding;
+        }
+        let words = tidy::tidied(self.lexicon, &words);
+        let this = Self { judge: Judge { repairs, ..self.judge }, ..*self };
+        // What a recogniser took for other words is best told from those words, not from repaired ones.
+        let as_said = tidy::tidied(self.lexicon, &self.lexicon.as_said(utterance));
+        let others = (as_said != words).then_some(as_said);
+        this.understand_heard(words, others, context)
+    }
+
+    /// The candidates for the first referring expression of an utterance.
+    pub(crate) fn referents(&self, utterance: &str, context: &Context) -> Option<Referents> {
+        let (words, repairs) = self.lexicon.normalise(utterance);
+        let judge = Judge { repairs, ..self.judge };
+        let ground = Ground { catalog: self.catalog, scene: self.scene, focus: &context.focus, judge };
+        parts::parts(self.lexicon, self.catalog, &words).iter().find_map(|part| {
+            let Part::Clause(clause) = part else { return None };
+            let place = clause.places.iter().find_map(|(_, place)| match place {
+                Place::Object(phrase) => Some(phrase),
+                _ => None,
+            });
+            let planner = remedy::planner(self.catalog, self.devices, judge, self.scene, context.focus.clone());
+            let settled = crate::plan::settle::settle(&planner, clause);
+            let phrase = settled.objects.first().or(place)?;
+            ground.referents(phrase, &Want::object(clause.intent))
+        })
+    }
+
+    pub(crate) fn understand_all(&self, words: Vec<String>, context: &mut Context) -> Understanding {
+        if words.iter().all(|word| token::is_punctuation(word)) {
+            return Understanding::refusal(format!("I did not hear anything. {HINT}"));
+        }
+        // `wait, how many are there?`, in answer to a question
+        let words =
+            if context.pending.is_some() || self.pauses_to_ask(&words) { self.without_pause(words) } else { words };
+        if let Some(Pending::Lab { words: before, at }) = &context.pending
+            && !self.asks_for_more(&words)
+            && let Some(kind) = room_kind::standing_at(self.lexicon, self.scene, before, *at)
+            && let Some(room) = kind.answered(self.lexicon, self.scene, &words)
+        {
+            let words = kind.named(before, room, self.catalog);
+            let later = std::mem::take(&mut context.later);
+            let open = context.pending.take();
+            let understanding = self.understand_words(words, context);
+            return context.keep_both(later, open.as_ref(), understanding);
+        }
+        self.understand_words(words, context)
+    }
+
+    pub(crate) fn understand_words(&self, words: Vec<String>, context: &mut Context) -> Understanding {
+        let parts = parts::parts(self.lexicon, self.catalog, &words);
+        // `why did you stop` asks.
+        if stops(&parts) && question::read(self.lexicon, &words).is_none() {
+            return self.stopped("", context);
+        }
+        let open = context.pending.clone();
+        let later = std::mem::take(&mut context.later);
+        if let Some(understanding) = self.answer_to_pending(&words, &parts, context) {
+            return context.keep_both(later, open.as_ref(), understanding);
+        }
+        context.later = later;
+        if let Some(understanding) = self.answered_first(&words, open.as_ref(), context) {
+            return understanding;
+        }
+        let kind = room_kind::bare(self.lexicon, self.scene, &words);
+        if let Some(kind) = kind.filter(|kind| !segments::is_forbidden(self.lexicon, &words, kind.at)) {
+            let furnished = || kind.furnished(self.lexicon, self.catalog, self.scene, &words);
+            if let Some(room) = kind
+                .described(self.lexicon, self.scene, kind.after(&words))
+                .or_else(|| kind.beside(self.lexicon, &words))
+                .or_else(furnished)
+            {
+                return self.understand_words(kind.named(&words, room, self.catalog), context);
+            }
+            let guessed = || (self.judge.asking == Asking::Never).then(|| kind.guessed(self.scene));
+            if let Some(room) = kind.here(self.scene.robot.room).or_else(guessed) {
+                return self.understand_words(kind.named(&words, room, self.catalog), context);
+            }
+            context.pending = Some(Pending::Lab { words, at: kind.at });
+            return kind.question(self.catalog);
+        }
+        let understanding = self.fresh(&words, parts, context);
+        // What was said in between leaves the robot's own question open.
+        if matches!(understanding, Understanding::Answer { .. } | Understanding::Refusal { .. }) {
+            context.pending = context.pending.take().or(open);
+        }
+        understanding
+    }
+
+    /// What was said, if it is no answer to a question of the robot's.
+    fn fresh(&self, words: &[String], parts: Vec<Part>, context: &mut Context) -> Understanding {
+        if let Some(understanding) = self.small_talk(words, context) {
+            return understanding;
+        }
+        if let Some(understanding) = self.answered_yes_or_no(words, context) {
+            return understanding;
+        }
+        if let Some(understanding) = self.on_condition(words, context) {
+            return understanding;
+        }
+        // `when you get a minute, bring me the knife` asks for no time.
+        let is_asked_to = |question: &question::Question| {
+            let is_when = words
+                .iter()
+                .find(|word| !token::is_punctuation(word))
+                .is_some_and(|word| word == "when" || word == "what");
+            let asks = |part: &Part| matches!(part, Part::Clause(clause) if chatter::is_clear(clause));
+            question.kind == QuestionKind::Unknown
+                && is_when
+                && words.iter().any(|word| word == ",")
+                && parts.iter().any(asks)
+        };
+        if let Some(question) = question::read(self.lexicon, words).filter(|question| !is_asked_to(question)) {
+            return self.answer(&question, context);
+        }
+        if self.is_foreign(words) {
+            return self.unclear(&segments::unknown_words(self.lexicon, words));
+        }
+        self.request(words, parts, context)
+    }
+
+    /// `go there`, `put it there`, after an answer about `id`: itself, or what carries it.
+    pub(crate) fn place_spoken_of(&self, id: ObjectId) -> Option<ObjectId> {
+        let object = self.scene.object(id)?;
+        let is_carried = self.catalog.class(object.class).has(cohabit_cdf::Property::Pickupable);
+        if is_carried { object.parent } else { Some(id) }
+    }
+
+    /// Whether most of the words are not known: then a verb among them is chance.
+    fn is_foreign(&self, words: &[String]) -> bool {
+        let said = words.iter().filter(|word| !token::is_punctuation(word)).count();
+        segments::unknown_words(self.lexicon, words).iter().filter(|word| !word.contains('_')).count() * 2 > said
+    }
+
+    pub(crate) fn request(&self, words: &[String], parts: Vec<Part>, context: &mut Context) -> Understanding {
+        context.search = None;
+        context.later.clear();
+        context.reason = format!("you said \"{}\"", token::sentence(words));
+        let mut clauses = Vec::new();
+        let mut unclear: Option<Vec<String>> = None;
+        let (mut fragment, mut aside) = (None, Vec::new());
+        let mut is_forbidden = false;
+        for part in parts {
+            match part {
+                Part::Clause(clause) if clause.intent == Intent::Stop => {}
+                Part::Clause(clause) => clauses.push(clause),
+                Part::Forbidden(about) => {
+                    is_forbidden = true;
+                    clauses.extend(about.map(Clause::mention));
+                }
+                Part::Mention(phrase) => clauses.push(Clause::mention(phrase)),
+                Part::Fragment(phrase) if self.is_to_be_there(&phrase, context) => {
+                    clauses.extend(clause::placing(phrase))
+                }
+                Part::Fragment(phrase) => {
+                    clauses.push(Clause::mention(phrase.clone()));
+                    fragment = fragment.or(Some(phrase));
+                }
+                Part::Aside(words) => aside.extend(words),
+                Part::Unclear(words) => unclear = unclear.or(Some(words)),
+            }
+        }
+        if clauses.iter().all(|clause| clause.intent == Intent::Mention) {
+            if let Some(clause) = parts::to_room(self.lexicon, words) {
+                return self.plan(vec![clause], Consent::default(), context);
+            }
+            // `and the trophy`, after `where is the knife`
+            let goes_on = context.question.is_some() && matches!(words[0].as_str(), "and" | "or" | "how" | "what");
+            let mentioned = clauses.into_iter().flat_map(|clause| clause.objects).next();
+            return match (fragment.or(mentioned), unclear) {
+                _ if is_forbidden => Understanding::answer("All right, I will not do that."),
+                (_, Some(words)) if !words.is_empty() => self.unclear(&words),
+                (Some(phrase), _) if words.last().is_some_and(|word| word == "?") || goes_on => {
+                    let kind = context.question.filter(|_| goes_on).unwrap_or(QuestionKind::Where);
+                    let question = question::Question::new(kind, Some(phrase), words.to_vec());
+                    self.answer(&question, context)
+                }
+                (Some(phrase), _) => self.fragment(&phrase, context),
+                (None, _) => self.unclear(&aside),
+            };
+        }
+        // A part with unknown words could change all the rest: better to ask than to do half of it.
+        if let Some(words) = unclear.filter(|words| !words.is_empty()) {
+            return self.unclear(&words);
+        }
+        // `make me a bowl of cereal`: no cartridge is for that, but it is what the mission is about.
+        if let [clause] = clauses.as_slice()
+            && self.prints_nothing(clause)
+            && self.is_of_mission(clause)
+        {
+            return self.pursue(context);
+        }
+        let clauses = clauses.into_iter().map(|clause| clause::poured(self.catalog, clause)).collect();
+        self.plan(clause::joined(clauses), Consent::default(), context)
+    }
+
+    /// That nothing was understood, and the words that nobody ever met.
+    pub(crate) fn unclear(&self, words: &[String]) -> Understanding {
+        reply::unclear(&words.iter().filter(|word| !spelling::is_english(word)).cloned().collect::<Vec<_>>())
+    }
+
+    /// `both apples on the plate`, of such as are not on it: there they are to be.
+    fn is_to_be_there(&self, phrase: &Phrase, context: &Context) -> bool {
+        let [relation] = phrase.relations.as_slice() else { return false };
+        if relation.kind != RelationKind::Inside || phrase.namings.is_empty() || relation.to.namings.is_empty() {
+            return false;
+        }
+        let ground = Ground { catalog: self.catalog, scene: self.scene, focus: &context.focus, judge: self.judge };
+        let bare = Phrase { relations: Vec::new(), ..phrase.clone() };
+        let want = Want::object(Intent::Place);
+        let is_carried = |id: &ObjectId| {
+            let object = self.scene.object(*id);
+            object.is_some_and(|object| self.catalog.class(object.class).has(cohabit_cdf::Property::Pickupable))
+        };
+        let elsewhere = ground.all(&bare, &want).is_ok_and(|found| found.iter().all(is_carried));
+        let place = ground.all(&relation.to, &Want::place(Intent::Place, &[], None)).is_ok();
+        elsewhere && place && matches!(ground.all(phrase, &want), Err(Miss::Mismatch(_)))
+    }
+
+    /// An object without a verb.
+    fn fragment(&self, phrase: &Phrase, context: &mut Context) -> Understanding {
+        let ground = Ground { catalog: self.catalog, scene: self.scene, focus: &context.focus, judge: self.judge };
+        let want = Want::place(Intent::Find, &[], None);
+        match ground.one(phrase, &want) {
+            Ok(object) => {
+                context.focus.mention(object);
+                self.ask().what_with(object)
+            }
+            Err(_) => ask::what(),
+        }
+    }
+}
+
+/// Whether a stop is meant as one: "leave it" may answer the robot's question, and "that's plenty" and "never mind" say nothing to a
+/// robot that does nothing.
+fn is_heeded(stop: &Stop, context: &Context) -> bool {
+    match stop.firmness {
+        Firmness::Firm => true,
+        Firmness::Weak => context.pending.is_none() && (context.is_busy() || stop.is_plain),
+        Firmness::Dismissal => context.pending.is_none() && (context.is_busy() || context.awaits()),
+    }
+}
+
+/// Whether nothing but to stop is asked for.
+fn stops(parts: &[Part]) -> bool {
+    let mut asked =
+        parts.iter().filter_map(|part| if let Part::Clause(clause) = part { Some(clause) } else { None }).peekable();
+    asked.peek().is_some() && asked.all(|clause| clause.intent == Intent::Stop)
+}

@@ -1,0 +1,130 @@
+//! The words of an utterance, and how much of them the grammar reads.
+
+use cohabit_cdf::ClassId;
+
+use crate::{
+    context::Context,
+    read::{
+        chatter,
+        clause::{Clause, Part},
+        parts,
+        question::{self, Question},
+        segments, tidy,
+    },
+    talk::{condition, conversation::Conversation},
+    understanding::Understanding,
+    words::{intent::Intent, question_kind::QuestionKind, spelling, token},
+};
+
+/// An utterance and its words.
+pub(crate) struct Wording<'a> {
+    pub(crate) utterance: &'a str,
+    /// With their spelling repaired.
+    pub(crate) words: Vec<String>,
+    /// Without those that ask for nothing.
+    pub(crate) tidied: Vec<String>,
+    /// The words that are neither the grammar's nor common English.
+    pub(crate) unheard: Vec<String>,
+}
+
+impl Conversation<'_> {
+    pub(crate) fn wording<'a>(&self, utterance: &'a str) -> Wording<'a> {
+        let (words, _) = self.lexicon.normalise(utterance);
+        let tidied = tidy::tidied(self.lexicon, &words);
+        let mut unheard = segments::unknown_words(self.lexicon, &words);
+        unheard.retain(|word| !spelling::is_english(word) && !stands_apart(&words, word));
+        Wording { utterance, words, tidied, unheard }
+    }
+
+    /// Whether the grammar reads it to the last word, as one that it knows: requests, or a question, or small talk.
+    pub(crate) fn is_plain(&self, Wording { tidied, .. }: &Wording<'_>) -> bool {
+        if !self.small(tidied).is_empty() || self.chat(tidied).is_some() {
+            return true;
+        }
+        // `did you close the fridge`
+        let answer = self.answered_yes_or_no(tidied, &mut Context::default());
+        if matches!(answer, Some(Understanding::Answer { holds: Some(_), .. })) {
+            return !self.asks_beside(tidied);
+        }
+        if let Some(question) = question::read(self.lexicon, tidied) {
+            let is_known = question.kind != QuestionKind::Unknown && knows_what_about(&question);
+            return is_known && !self.asks_beside(tidied);
+        }
+        let parts = parts::parts(self.lexicon, self.catalog, tidied);
+        let is_read = |part: &Part| match part {
+            Part::Clause(clause) => {
+                (chatter::is_clear(clause) || clause.intent == Intent::Impossible && parts.len() == 1)
+                    && clause.unknown.is_empty()
+                    && !clause.has_stray_noun
+                    && !clause.is_wish
+                    && (!self.prints_nothing(clause) || self.is_of_mission(clause))
+            }
+            Part::Forbidden(_) => true,
+            // `the microwave`
+            Part::Fragment(phrase) => parts.len() == 1 && phrase.unknown.is_empty(),
+            _ => false,
+        };
+        !parts.is_empty() && parts.iter().all(is_read)
+    }
+
+    /// Whether it is to make what no cartridge is for: `make us some cereal` rather asks for something else.
+    pub(crate) fn prints_nothing(&self, clause: &Clause) -> bool {
+        let is_printed = |class: ClassId| {
+            self.devices.cartridges(class).next().is_some() || self.devices.printed_by(class).is_some()
+        };
+        let mut named = clause.objects.iter().flat_map(|phrase| &phrase.namings).peekable();
+        clause.intent == Intent::Print && named.peek().is_some() && !named.any(|naming| is_printed(naming.class))
+    }
+
+    /// Whether the grammar knows all words of a plain request, although it may make something of it by a rule of thumb: `make coffee`.
+    pub(crate) fn reads_all(&self, wording: &Wording<'_>) -> bool {
+        if self.is_wait(&wording.words) {
+            return true;
+        }
+        if self.is_plain(wording) || condition::is_conditional(self.lexicon, &wording.tidied) {
+            return true;
+        }
+        let parts = parts::parts(self.lexicon, self.catalog, &wording.tidied);
+        let is_read = |part: &Part| match part {
+            Part::Clause(clause) => chatter::is_clear(clause) && clause.unknown.is_empty() && !clause.has_stray_noun,
+            Part::Mention(phrase) | Part::Fragment(phrase) => phrase.unknown.is_empty(),
+            Part::Forbidden(_) => true,
+            Part::Aside(_) | Part::Unclear(_) => false,
+        };
+        parts.iter().any(|part| matches!(part, Part::Clause(_))) && parts.iter().all(is_read)
+    }
+
+    /// Whether more is asked for after a pause or an `and`: `what is in the fridge, and bring me the milk`.
+    fn asks_beside(&self, words: &[String]) -> bool {
+        let parts = words.split(|word| token::is_punctuation(word) || word == "and").filter(|part| !part.is_empty());
+        parts.skip(1).any(|part| self.asks_for_anything(&part.join(" ")))
+    }
+
+    /// Whether any of these words names a thing or a room.
+    pub(crate) fn names_anything(&self, words: &[String]) -> bool {
+        (0..words.len()).any(|at| {
+            let rest = &words[at..];
+            self.lexicon.rooms.longest(rest).is_some() || self.lexicon.classes.longest(rest).is_some()
+        })
+    }
+}
+
+impl Wording<'_> {
+    /// How many words there are.
+    pub(crate) fn length(&self) -> usize {
+        self.words.iter().filter(|word| !token::is_punctuation(word)).count()
+    }
+}
+
+/// Whether a word is set off from all others, as names and exclamations are: `put it back, habibi`, `arrey no`.
+fn stands_apart(words: &[String], word: &str) -> bool {
+    let is_alone =
+        |segment: &[String]| segment.len() == 1 || segment[0] == word && matches!(segment[1].as_str(), "no" | "yes");
+    let mut segments = words.split(|word| token::is_punctuation(word)).filter(|segment| !segment.is_empty());
+    let is_all = segments.clone().nth(1).is_none() && words.len() == 1;
+    !is_all && segments.all(|segment| !segment.iter().any(|other| other == word) || is_alone(segment))
+}
+
+fn knows_what_about(question: &Question) -> bool {
+    question.about.as_ref().is_none_or(|about| about.unknown.is_empty())
+}

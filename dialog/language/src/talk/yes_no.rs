@@ -1,0 +1,180 @@
+//! Questions that want a yes or a no: "did you close the fridge?" asks, while "can you close the fridge?" requests.
+
+use cohabit_cdf::{RoomId, state::StateFlag};
+
+use crate::{
+    answer::claim::asked_state,
+    context::Context,
+    ground::{Ground, want::Want},
+    known::describe,
+    read::{
+        chatter,
+        clause::{Clause, Part},
+        parts,
+        phrase::Place,
+        question::{self, Question},
+        whether,
+    },
+    talk::conversation::Conversation,
+    understanding::Understanding,
+    words::{intent::Intent, prose, question_kind::QuestionKind},
+};
+
+impl Conversation<'_> {
+    /// The answer to a question among what was said that would otherwise be carried out; nothing, where there is none.
+    pub(crate) fn answered_yes_or_no(&self, words: &[String], context: &mut Context) -> Option<Understanding> {
+        let sentences = whether::sentences(words);
+        let at = sentences.iter().position(|sentence| whether::asked_at(self.lexicon, sentence).is_some())?;
+        let start = whether::asked_at(self.lexicon, sentences[at])?;
+        let asked = &sentences[at][start..];
+        // What is asked for in other sentences is done.
+        let requests = |sentence: &&&[String]| {
+            let parts = parts::parts(self.lexicon, self.catalog, sentence);
+            whether::asked_at(self.lexicon, sentence).is_none()
+                && parts.iter().any(|part| matches!(part, Part::Clause(clause) if chatter::is_clear(clause)))
+        };
+        let others: Vec<&[String]> = sentences.iter().filter(requests).copied().collect();
+        let does_ask = question::read(self.lexicon, asked).is_some_and(|one| one.kind != QuestionKind::Unknown);
+        if others.is_empty() {
+            let parts = || parts::parts(self.lexicon, self.catalog, words);
+            // What is a question anyway is read with what was said before it.
+            let is_safe = does_ask && !parts().iter().any(|part| matches!(part, Part::Clause(_)));
+            return (!is_safe).then(|| self.whether(asked, context));
+        }
+        // `is the mug empty? if so, fill it` is told by what comes after it.
+        let is_condition = |sentence: &&&[String]| self.lexicon.conditions.longest(sentence).is_some();
+        if at == 0 && (does_ask || others.iter().any(|sentence| is_condition(&sentence))) {
+            return None;
+        }
+        let answer = self.whether(asked, &mut context.clone());
+        let rest = others.join(&".".to_owned());
+        let then = self.understand_all(rest, context);
+        Some(match answer {
+            Understanding::Answer { text, .. } => then.after(&text),
+            _ => then,
+        })
+    }
+
+    /// Whether what is asked is so.
+    fn whether(&self, asked: &[String], context: &mut Context) -> Understanding {
+        if let Some(answer) = self.whether_done(asked, context) {
+            return answer;
+        }
+        if let Some(answer) = self.whether_touched(asked, context) {
+            return answer;
+        }
+        match question::read(self.lexicon, asked) {
+            Some(question) if question.kind != QuestionKind::Unknown || question.about.is_some() => {
+                self.answer(&question, context)
+            }
+            // `did somebody leave the toaster on`
+            Some(question) if asked_state(self.lexicon, &question.rest).is_some() => {
+                let about = question::named(self.lexicon, &question.rest);
+                self.answer(&Question { kind: QuestionKind::State, about, ..question }, context)
+            }
+            _ => Understanding::answer("I cannot say. Tell me to do it, and I will try."),
+        }
+    }
+
+    /// `did you close the fridge`: whether it did, as it remembers, and how things are now.
+    fn whether_done(&self, asked: &[String], context: &mut Context) -> Option<Understanding> {
+        if let [helper, subject, done @ ..] = asked
+            && self.lexicon.yes_no.past.contains(helper)
+            && subject == "you"
+            && let Some(waited) = self.whether_waited(done, context)
+        {
+            return Some(waited);
+        }
+        let clause = whether::deed_asked_about(self.lexicon, self.catalog, asked)?;
+        if let Some(room) =
+            clause.places.iter().find_map(|(_, place)| room_of(place)).filter(|_| clause.objects.is_empty())
+        {
+            return Some(self.whether_been(room, context));
+        }
+        let phrase = clause.objects.first()?;
+        let ground = Ground { catalog: self.catalog, scene: self.scene, focus: &context.focus, judge: self.judge };
+        let Ok(id) = ground.one(phrase, &Want::place(Intent::Find, &[], None)) else {
+            let is_search = clause.intent == Intent::Find && !phrase.is_empty();
+            return is_search.then(|| Understanding::whether(false, "No, I have not found it yet.", Vec::new()));
+        };
+        context.focus.mention(id);
+        let place = self.answerer(context, 0).place_sentence(id);
+        if clause.intent == Intent::Find {
+            return Some(Understanding::whether(true, format!("Yes, {place}."), vec![id]));
+        }
+        let state = state_after(&clause);
+        let is_so = |(flag, expected, _): &(StateFlag, bool, _)| {
+            self.scene.object(id).is_some_and(|object| object.has(*flag)) == *expected
+        };
+        let did =
+            context.deeds.did(clause.intent, id) || state.as_ref().is_some_and(is_so) && context.deeds.to(id).is_some();
+        let stated = state.map(|state| {
+            let (_, expected, states) = state;
+            let the = describe::short(self.catalog, self.scene, id);
+            let state = if is_so(&state) == expected { states[0] } else { states[1] };
+            format!("{the} {} {state}", prose::is(&the))
+        });
+        let is_put = clause.intent == Intent::Place && !clause.places.is_empty();
+        let text = match (did, stated) {
+            (true, Some(stated)) => format!("Yes, I did: {stated}."),
+            (false, Some(stated)) if state.as_ref().is_some_and(is_so) => format!("No, but {stated}."),
+            (false, Some(stated)) => format!("No, {stated}."),
+            (true, None) => format!("Yes, I did: {place}."),
+            (false, None) if is_put => format!("No, {place}."),
+            (false, None) => format!("No, not that I remember: {place}."),
+        };
+        Some(Understanding::whether(did, text, vec![id]))
+    }
+
+    /// `did you touch the plant`: what it did with it, whatever that verb means.
+    fn whether_touched(&self, asked: &[String], context: &mut Context) -> Option<Understanding> {
+        let words = &self.lexicon.yes_no;
+        let [helper, subject, done @ ..] = asked else { return None };
+        if !words.past.contains(helper) || subject != "you" {
+            return None;
+        }
+        let question = Question::new(QuestionKind::Done, question::named(self.lexicon, done), Vec::new());
+        let ground = Ground { catalog: self.catalog, scene: self.scene, focus: &context.focus, judge: self.judge };
+        let id = ground.one(question.about.as_ref()?, &Want::place(Intent::Find, &[], None)).ok()?;
+        let has_touched = context.deeds.told_of(id).is_some();
+        let answer = self.answer(&question, context);
+        Some(Understanding::whether(has_touched, answer.reply(), vec![id]))
+    }
+
+    /// `did you go to the hallway`.
+    fn whether_been(&self, room: RoomId, context: &Context) -> Understanding {
+        let is_here = self.scene.robot.room == room;
+        let (been, name) = (is_here || context.deeds.went_to(room), room.name_in(self.catalog));
+        let here = self.scene.robot.room.name_in(self.catalog);
+        let text = match (is_here, been) {
+            (true, _) => format!("Yes, I am in the {name}."),
+            (false, true) => format!("Yes, I was in the {name}."),
+            (false, false) => format!("No, not that I remember: I am in the {here}."),
+        };
+        Understanding::whether(been, text, Vec::new())
+    }
+}
+
+const fn room_of(place: &Place) -> Option<RoomId> {
+    match place {
+        Place::Room(room) | Place::Viewpoint(room, _) => Some(room.id),
+        _ => None,
+    }
+}
+
+/// The state that a request brings about, and how it is called where it holds and where it does not.
+fn state_after(clause: &Clause) -> Option<(StateFlag, bool, [&'static str; 2])> {
+    Some(match clause.intent {
+        Intent::Open => (StateFlag::Opened, true, ["open", "closed"]),
+        Intent::Close => (StateFlag::Opened, false, ["open", "closed"]),
+        Intent::TurnOn => (StateFlag::Toggled, true, ["on", "off"]),
+        Intent::TurnOff => (StateFlag::Toggled, false, ["on", "off"]),
+        Intent::Break => (StateFlag::Broken, true, ["broken", "whole"]),
+        Intent::Repair => (StateFlag::Broken, false, ["broken", "whole"]),
+        Intent::Clean => (StateFlag::Dirty, false, ["dirty", "clean"]),
+        Intent::Heat => (StateFlag::Hot, true, ["hot", "not hot"]),
+        Intent::Cool => (StateFlag::Cold, true, ["cold", "not cold"]),
+        Intent::Toast => (StateFlag::Cooked, true, ["toasted", "not toasted"]),
+        _ => return None,
+    })
+}
