@@ -56,10 +56,7 @@ mod _native {
 
         module.add("VERSION", env!("CARGO_PKG_VERSION"))?;
         module.add("CHOICES", Choice::all().map(|choice| (choice.name(), choice.takes_slot())).collect::<Vec<_>>())?;
-        module.add(
-            "ROOMS",
-            known_rooms::builtin().all().iter().map(|room| room.id.id()).collect::<Vec<_>>(),
-        )?;
+        module.add("ROOMS", known_rooms::builtin().all().iter().map(|room| room.id.id()).collect::<Vec<_>>())?;
         module.add("KINDS", BodyKind::ALL.map(BodyKind::name).to_vec())?;
         module.add("COLORS", Color::ALL.map(Color::name).to_vec())?;
         module.add("FLUIDS", Fluid::ALL.map(Fluid::name).to_vec())?;
