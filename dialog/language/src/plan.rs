@@ -25,10 +25,7 @@ use crate::{
         slot::{Role, Slot},
     },
     understanding::Step,
-    words::{
-        intent::Intent,
-        lexicon::{Direction, Pronoun},
-    },
+    words::{intent::Intent, lexicon::Pronoun},
 };
 
 /// How near what is seen is taken without another look, m.

@@ -6,12 +6,9 @@ use std::collections::BTreeSet;
 use cohabit_cdf::{ObjectClass, Property};
 
 use crate::{
-    read::{
-        question::{self, QuestionKind},
-        whether,
-    },
+    read::{question, whether},
     talk::{condition, conversation::Conversation},
-    words::{lexicon::Lexicon, token},
+    words::{lexicon::Lexicon, question_kind::QuestionKind, token},
 };
 
 /// How likely what was said is meant the other way round, or a question is a request.
