@@ -98,7 +98,7 @@ fn read_part(lexicon: &Lexicon, catalog: &Catalog, words: &[String], before: &[P
         let chunk = segments::chunk(words);
         return (Part::Forbidden(chatter::mention(lexicon, chunk).map(|(phrase, _)| phrase)), chunk.len());
     }
-    if let Some((clause, used)) = reading::read(lexicon, catalog, words) {
+    if let Some((clause, used)) = reading::read(lexicon, catalog, words).or_else(|| reading::motion(lexicon, words)) {
         return (Part::Clause(clause), used);
     }
     let mut reader = Reader::new(lexicon, words);

@@ -17,6 +17,24 @@ use crate::{
     },
 };
 
+/// `left`, `forward 2 meters`: motion without a verb, and nothing besides.
+pub(crate) fn motion(lexicon: &Lexicon, words: &[String]) -> Option<(Clause, usize)> {
+    let mut reader = Reader::new(lexicon, words);
+    if read_amount(&mut reader).is_none() {
+        reader.at = a_bit(words).unwrap_or_default();
+    }
+    let (_, direction) = lexicon.directions.longest(reader.rest())?;
+    let intent = match direction {
+        Direction::Forward | Direction::Backward => Intent::Travel,
+        Direction::Left | Direction::Right | Direction::Around => Intent::Turn,
+        Direction::Up | Direction::Down => Intent::Look,
+    };
+    let (mut clause, used) = read_as(lexicon, intent, intent.verb(), words, 0)?;
+    clause.verb.clear();
+    let is_motion = clause.direction.is_some() && clause.places.is_empty() && is_whole(&clause);
+    (is_motion && used == words.len()).then_some((clause, used))
+}
+
 /// The best reading of a clause that begins with a verb, and how many words it took.
 pub(crate) fn read(lexicon: &Lexicon, catalog: &Catalog, words: &[String]) -> Option<(Clause, usize)> {
     let (longest, _) = lexicon.verbs.longest(words).unwrap_or((0, &Vec::new()));

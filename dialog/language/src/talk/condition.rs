@@ -312,7 +312,7 @@ fn is_joint(word: &str) -> bool {
 
 /// Whether a condition is told in full: `if the coffee is cold`, not `if so`.
 pub(crate) fn has_condition(lexicon: &Lexicon, words: &[String]) -> bool {
-    condition_at(lexicon, words).is_some()
+    condition_at(lexicon, &with_copula(lexicon, words)).is_some()
 }
 
 /// Whether something is asked for on a condition.
