@@ -43,7 +43,7 @@ PARTICIPANTS = corpus.CRATE.parent / "language/tests/participants"
 TALKS = [*sorted(PARTICIPANTS.glob("*.txt")), *sorted((corpus.CRATE / "corpus/talks").glob("*.txt"))]
 #: Nothing is fitted to these talks and writers: they are to measure with.
 UNSEEN_TALKS = {"oona", "bram", "sofia", "niamh", "piotr", "winifred", "bernard", "vikram"}
-UNSEEN = set("o v w x y al am an ao ap aq av aw bb bc bd be bg bh bi bp bs bv by ca cb ce ck cn dc de df".split())
+UNSEEN = set("o v w x y al am an ao ap aq av aw bb bc bd be bg bh bi bp bs bv by ca cb ce ck cn dc de df dq dr ds".split())
 
 
 def main():
