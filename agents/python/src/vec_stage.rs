@@ -290,7 +290,7 @@ impl VecStage {
         let book = Book::new(&planes, sizes(plan, slots), files.len());
         let rules = Rules { eyes, slots, filling: Filling::named(filling)?, ticks, most_steps, remembers };
         py.detach(|| {
-            let mut crew = Crew::new(threads.min(files.len()));
+            let crew = Crew::new(threads.min(files.len()));
             // Worlds are many, so each draws its pictures with the thread that steps it.
             let renderer = CpuRenderer::new(1);
             let mut seats: Vec<Option<Seat>> = files.iter().map(|_| None).collect();
