@@ -73,7 +73,7 @@ fn a_room_without_a_door_is_refused_with_its_name_and_what_to_write() {
         whole.lines().filter(|line| !line.contains("number = 7")).map(|line| format!("{line}\n")).collect();
     std::fs::write(&plan, text).unwrap();
     let (text, code) = told(&["check", "--world", &pack]);
-    assert!(code == Some(2) && text.contains("Hallway has no viewpoint 7: each room has viewpoints 1 to 8"), "{text}");
+    assert!(code == Some(2) && text.contains("Hallway has no viewpoint 7; each room has viewpoints 1 to 8"), "{text}");
 }
 
 #[test]
