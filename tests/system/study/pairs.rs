@@ -76,9 +76,12 @@ fn a_pair_plays_one_mission_together_and_ends_in_the_same_condition() {
     let assigned = conditions(&server);
     assert_eq!(assigned[0], assigned[1]);
 
-    // Each has a number and an avatar, and hears what the other one says.
+    // Each has a number and an avatar, and hears what the other one says. Who reads nothing for long is let go, so one comes after the other.
     let (mut anas, you) = open(&addresses[0]);
     assert_eq!((&you["visitor"], &you["seat"]["body"]), (&json!(1), &json!(1)));
+    anas.do_and_wait("go to the main office").unwrap();
+    anas.do_and_wait("yes").unwrap();
+    anas.wait("the main office", |page, _| page.state["robot"]["room"] == "MainOffice").unwrap();
     let (mut bens, you) = open(&addresses[1]);
     assert_eq!((&you["visitor"], &you["seat"]["body"]), (&json!(2), &json!(2)));
     bens.send(&json!({ "type": "drive_body", "body": 1 })).unwrap();
@@ -88,9 +91,6 @@ fn a_pair_plays_one_mission_together_and_ends_in_the_same_condition() {
     .unwrap();
     bens.send(&json!({ "type": "drive_body", "body": 2 })).unwrap();
     bens.wait("his avatar", |_, message| message["type"] == "driving" && message["body"] == 2).unwrap();
-    anas.do_and_wait("go to the main office").unwrap();
-    anas.do_and_wait("yes").unwrap();
-    anas.wait("the main office", |page, _| page.state["robot"]["room"] == "MainOffice").unwrap();
     bens.wait("what she said", |page, _| page.chat.iter().any(|(_, text)| text == "go to the main office")).unwrap();
     bens.say("turn right").unwrap();
     anas.wait("what he said", |_, message| message["visitor"] == 2).unwrap();
