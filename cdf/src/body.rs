@@ -49,7 +49,7 @@ pub enum BodyRequestError {
     #[error("there is no body `{0}`: robot or person, such as `person@BreakRoom`")]
     Kind(String),
     /// No room can have this id.
-    #[error("there is no room `{0}`: {ROOM_ID_RULE}")]
+    #[error("`{0}` is no id of a room: {ROOM_ID_RULE}")]
     Room(String),
 }
 

@@ -10,7 +10,7 @@
 pub mod action;
 pub mod body;
 pub mod catalog;
-pub mod flag_key;
+mod flag_key;
 pub mod goal;
 pub mod layout;
 pub mod mission;

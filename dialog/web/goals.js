@@ -16,7 +16,7 @@ export function takeState(state) {
   showScore(state.score);
   showRobot(state.robot);
   floor.follow(state.robot);
-  if (state.robot && !byId("chips").hidden) offerRoom(floor.plan, state.robot.room);
+  if (state.robot) offerRoom(floor.plan, state.robot.room);
   floor.showOthers(state.others);
   floor.showNotes(state.notes);
   showGoals(state.goals);

@@ -31,8 +31,13 @@ export function meet(robots) {
   byId("called").textContent = named.length ? words("call_by_name", { names: named.join(", ") }) : "";
 }
 
+/** The room from which a walk was offered. */
+let offeredFrom;
+
 /** Offers a walk to the largest room that the robot is not in. */
 export function offerRoom(rooms, here) {
+  if (here === offeredFrom) return;
+  offeredFrom = here;
   const area = ({ rects }) => rects.reduce((sum, [w, s, e, n]) => sum + (e - w) * (n - s), 0);
   const others = rooms.filter(({ id }) => id !== here).sort((a, b) => area(b) - area(a));
   const chip = byId("chip-room");
@@ -52,6 +57,7 @@ export function clearChat() {
   log.replaceChildren();
   byId("trail").replaceChildren();
   lastSpeaker = "";
+  offeredFrom = undefined;
   byId("chips").hidden = false;
 }
 

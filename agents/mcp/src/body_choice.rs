@@ -19,21 +19,16 @@ impl BodyChoice {
     pub(crate) fn among(self, bodies: &[BodyRecord]) -> Option<u32> {
         let is_meant = |record: &&BodyRecord| match self {
             Self::Number(number) => record.body == number,
-            Self::First(kind) => kind_of(record) == Some(kind),
+            Self::First(kind) => record.kind() == Some(kind),
         };
         bodies.iter().find(is_meant).map(|record| record.body)
     }
 }
 
-/// The kind of a body; none if a peer wrote one that does not exist.
-pub(crate) fn kind_of(record: &BodyRecord) -> Option<BodyKind> {
-    usize::try_from(record.kind).ok().and_then(|kind| BodyKind::ALL.get(kind).copied())
-}
-
 /// The numbers and kinds of bodies, in words.
 pub(crate) fn listed(bodies: &[BodyRecord]) -> String {
     let named = |record: &BodyRecord| {
-        let kind = kind_of(record).map_or("unknown", BodyKind::name);
+        let kind = record.kind().map_or("unknown", BodyKind::name);
         format!("{} ({kind})", record.body)
     };
     bodies.iter().map(named).collect::<Vec<_>>().join(", ")

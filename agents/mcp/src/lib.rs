@@ -14,8 +14,7 @@
 //!   body's camera shows.
 //!
 //! The protocol is written here with `serde_json` alone, from its specification: a server of tools needs four of its methods and two of
-//! its notifications. The usual crate for it, `rmcp`, would bring an asynchronous runtime into a process that has nothing else to do
-//! with one.
+//! its notifications. The usual crate for it, `rmcp`, would run it on an asynchronous runtime.
 //!
 //! It never knows the world's insides, and no other transport than that it is given.
 

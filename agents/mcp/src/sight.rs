@@ -7,7 +7,7 @@ use cohabit_cdf::{Catalog, Fluid, ObjectId, Property, StateFlag};
 use cohabit_language::{Known, KnownObject, within_half_turn};
 use jpeg_encoder::{ColorType, Encoder, EncodingError};
 
-use crate::{body_choice::kind_of, limits::MOST_SEEN, things::Things};
+use crate::{limits::MOST_SEEN, things::Things};
 
 /// What shows fewer pixels is overlooked, as agents do.
 const LEAST_PIXELS: u32 = 12;
@@ -106,7 +106,7 @@ fn object_line(things: &Things, catalog: &Catalog, scene: &Known, object: &Known
 
 fn body_line(scene: &Known, body: &BodyRecord) -> (f32, String) {
     let (distance_m, place) = direction(scene, body.position_m);
-    let kind = kind_of(body).map_or("somebody", |kind| kind.name());
+    let kind = body.kind().map_or("somebody", |kind| kind.name());
     (distance_m, format!("body {}, a {kind}; {place}", body.body))
 }
 

@@ -3,12 +3,10 @@
 use std::sync::Arc;
 
 use cohabit_cdf::{Catalog, GoToTarget, ObjectId, RoomId};
-use cohabit_language::{Context, Features, Known, KnownObject, Language, Referent};
+use cohabit_language::{Context, Known, KnownObject, Language};
 
 use crate::limits::MOST_FITTING;
 
-/// A thing whose name fits less well than that of another one by so much is not meant: as the language has it.
-const WORSE_NAME: f32 = 0.2;
 /// Articles, which a description may begin with.
 const ARTICLES: [&str; 3] = ["the ", "a ", "an "];
 
@@ -79,11 +77,7 @@ impl Things {
     fn described(&self, text: &str, scene: &Known) -> Vec<ObjectId> {
         let request = format!("go to the {}", bare(text));
         let referents = self.language.referents(&request, scene, &Context::default());
-        let candidates = referents.map(|referents| referents.candidates).unwrap_or_default();
-        let fitting: Vec<&Referent> = candidates.iter().filter(|one| is_as_described(&one.features)).collect();
-        let named = |one: &Referent| feature(&one.features, "name");
-        let best = fitting.iter().map(|one| named(one)).fold(0.0, f32::max);
-        fitting.into_iter().filter(|one| named(one) > best - WORSE_NAME).map(|one| one.object).collect()
+        referents.map(|referents| referents.fitting()).unwrap_or_default()
     }
 
     fn nothing(&self, text: &str, scene: &Known) -> String {
@@ -115,16 +109,6 @@ fn bare(text: &str) -> String {
 
 fn all(scene: &Known, is: impl Fn(&KnownObject) -> bool) -> Vec<ObjectId> {
     scene.objects.iter().filter(|object| is(object)).map(|object| object.id).collect()
-}
-
-/// Whether nothing that was said of a thing is otherwise.
-fn is_as_described(features: &Features) -> bool {
-    Features::NAMES.iter().filter(|name| name.ends_with("_mismatch")).all(|name| feature(features, name) == 0.0)
-}
-
-fn feature(features: &Features, name: &str) -> f32 {
-    let at = Features::NAMES.iter().position(|known| *known == name);
-    at.and_then(|at| features.values.get(at)).copied().unwrap_or_default()
 }
 
 #[cfg(test)]

@@ -110,7 +110,7 @@ const OWN: [(Kind, &str, &str, &[Argument]); 8] = [
     (Kind::Listen, "listen", "Tell what was said, and what the mission told people, since this was last called.", &[]),
     (Kind::Goals, "goals", "Tell the goals of the mission: which are met, and which are left.", &[]),
     (Kind::Wait, "wait", "Let time go by; if an action is still under way, until it has ended at most.", &[SECONDS]),
-    (Kind::Stop, "stop", "Let go of whatever the body is doing, now.", &[]),
+    (Kind::Stop, "stop", "Stop whatever the body is doing, now.", &[]),
 ];
 
 /// All tools of a body in a world with this table; that which tells goals only where clients may know them.

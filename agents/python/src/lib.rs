@@ -34,7 +34,7 @@ mod _native {
         choice::choice_action,
         error::Error,
         frame::{Frame, Seen},
-        library::{class_ids, class_names, pack_missions},
+        library::{class_ids, pack_missions, room_id, room_ids},
         memory::Memory,
         mission_file::mission_text,
         outcome::Outcome,

@@ -103,15 +103,21 @@ pub fn class_ids(world: Vec<String>) -> PyResult<Vec<String>> {
     Ok(library.catalog().classes().iter().map(|class| class.id.clone()).collect())
 }
 
-/// What people call them.
+/// The ids of all rooms, in the order of their numbers: built-in ones, then those of the packs in these folders.
 ///
 /// # Errors
 /// As [`class_ids`].
 #[pyfunction]
 #[pyo3(signature = (world=Vec::new()))]
-pub fn class_names(world: Vec<String>) -> PyResult<Vec<String>> {
+pub fn room_ids(world: Vec<String>) -> PyResult<Vec<String>> {
     let library = Library::with_packs(&world)?;
-    Ok(library.catalog().classes().iter().map(|class| class.name.clone()).collect())
+    Ok(library.catalog().rooms().ids().map(|room| room.id().to_owned()).collect())
+}
+
+/// The id of the room that is called that, of what is built in or of a pack that was read.
+#[pyfunction]
+pub fn room_id(text: &str) -> Option<String> {
+    known_rooms::find(text).map(|room| room.id().to_owned())
 }
 
 /// The missions of the packs in these folders, by file name, with their texts.

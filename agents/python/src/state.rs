@@ -137,7 +137,7 @@ impl Body {
     fn of(record: &BodyRecord, catalog: &Catalog) -> Self {
         Self {
             id: record.body,
-            kind: BodyKind::ALL.get(record.kind as usize).map_or("", |kind| kind.name()),
+            kind: record.kind().map_or("", BodyKind::name),
             room: room_id(record.room, catalog),
             held: some(record.held),
             busy: record.busy != 0,

@@ -437,7 +437,7 @@ impl ActionTable {
             let (file, work, change) = (file.to_owned(), work.name.clone(), change.clone());
             return Err(TableError::NotOfAWork { file, work, change });
         }
-        let unknown = self.classes().into_iter().find(|class| !class.ends_with('*') && !is_class(class));
+        let unknown = self.classes().into_iter().find(|class| !is_class(class));
         unknown.map_or(Ok(()), |class| Err(TableError::NoClass { file: file.to_owned(), class, near: None }))
     }
 

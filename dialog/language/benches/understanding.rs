@@ -56,5 +56,5 @@ fn office(catalog: &Catalog, layout: &Layout) -> Known {
     };
     let mut objects = KnownObject::furniture(catalog, layout);
     objects.iter_mut().for_each(|object| object.visible = object.room == robot.room);
-    Known { robot, objects, mission: String::new(), goals: Vec::new(), rooms: Vec::new(), floor: None, person: None }
+    Known::new(robot, objects)
 }

@@ -108,6 +108,12 @@ pub struct KnownGoal {
 }
 
 impl Known {
+    /// These things and this robot, of which nothing else was told.
+    #[must_use]
+    pub const fn new(robot: KnownRobot, objects: Vec<KnownObject>) -> Self {
+        Self { robot, objects, mission: String::new(), goals: Vec::new(), rooms: Vec::new(), floor: None, person: None }
+    }
+
     /// Whether there is this room; where nobody told, there may be any.
     pub(crate) fn may_have_room(&self, room: RoomId) -> bool {
         self.rooms.is_empty() || self.rooms.contains(&room)
@@ -129,11 +135,12 @@ impl Known {
         self.place(id).map(|at| &mut self.objects[at])
     }
 
-    /// Where an object is in the list: at its id, if all are known.
+    /// Where an object is in the list: at its id, if all are known; else found by halves, if they are in the order of their ids.
     pub(crate) fn place(&self, id: ObjectId) -> Option<usize> {
         let is_it = |object: &KnownObject| object.id == id;
         let at_id = Some(id.0 as usize).filter(|at| self.objects.get(*at).is_some_and(is_it));
-        at_id.or_else(|| self.objects.iter().position(is_it))
+        let in_order = || self.objects.binary_search_by_key(&id, |object| object.id).ok();
+        at_id.or_else(in_order).or_else(|| self.objects.iter().position(is_it))
     }
 
     /// What stands on or lies in `id`, itself not included.
@@ -184,6 +191,28 @@ pub fn within_half_turn(angle_rad: f32) -> f32 {
 }
 
 impl KnownObject {
+    /// A thing in no state, on nothing and out of sight.
+    #[must_use]
+    pub fn new(id: ObjectId, instance: String, class: ClassId, room: RoomId, position_m: [f32; 3]) -> Self {
+        Self {
+            id,
+            instance,
+            class,
+            room,
+            position_m,
+            yaw_rad: 0.0,
+            flags: StateFlags::default(),
+            fluid: Fluid::None,
+            color: Color::Original,
+            parent: None,
+            text: String::new(),
+            visible: false,
+            is_hidden: false,
+            works: None,
+            in_mission: false,
+        }
+    }
+
     /// All that a floor plan has, as it is known to who has seen it once and sees none of it now; the number of each is
     /// its place in the plan.
     #[must_use]

@@ -3,7 +3,7 @@
 use std::{path::Path, sync::Arc};
 
 use crate::support::text;
-use cohabit_cdf::{Catalog, Color, Fluid, Layout, Mission, ObjectId, RoomId, state::StateFlags};
+use cohabit_cdf::{Catalog, Layout, Mission, ObjectId, RoomId};
 use cohabit_language::{Context, Known, KnownObject, KnownRobot, Language, Understanding};
 
 /// A few less than led to a plan when this was written: 1,318 of 1,331.
@@ -18,15 +18,7 @@ fn known(catalog: &Catalog, layout: &Layout, mission: &Mission) -> Known {
         held: None,
     };
     let objects = KnownObject::furniture(catalog, layout);
-    let mut known = Known {
-        robot,
-        objects,
-        mission: String::new(),
-        goals: Vec::new(),
-        rooms: Vec::new(),
-        floor: None,
-        person: None,
-    };
+    let mut known = Known::new(robot, objects);
     for request in mission.objects.iter().filter(|request| request.remove_initial_contents) {
         let class = catalog.class_of_instance(&request.instance);
         let emptied: Vec<ObjectId> =
@@ -86,23 +78,8 @@ fn object(known: &mut Known, id: ObjectId) -> Option<&mut KnownObject> {
 
 fn add(known: &mut Known, catalog: &Catalog, instance: &str, room: RoomId, position_m: [f32; 3]) -> ObjectId {
     let id = ObjectId(known.objects.last().map_or(0, |object| object.id.0 + 1));
-    known.objects.push(KnownObject {
-        id,
-        instance: instance.to_owned(),
-        class: catalog.class_of_instance(instance).unwrap(),
-        room,
-        position_m,
-        yaw_rad: 0.0,
-        flags: StateFlags::default(),
-        fluid: Fluid::None,
-        color: Color::Original,
-        parent: None,
-        text: String::new(),
-        visible: false,
-        is_hidden: false,
-        works: None,
-        in_mission: false,
-    });
+    let class = catalog.class_of_instance(instance).unwrap();
+    known.objects.push(KnownObject::new(id, instance.to_owned(), class, room, position_m));
     id
 }
 

@@ -118,8 +118,7 @@ pub struct Drivers {
 impl Drivers {
     /// Nobody drives yet any of `bodies`, of which those may be driven that `drivable` includes.
     pub fn new(bus: Arc<dyn Transport>, drivable: Drivable, bodies: &[BodyRecord], names: &[String]) -> Self {
-        let may =
-            |record: &BodyRecord| BodyKind::ALL.get(record.kind as usize).is_some_and(|kind| drivable.includes(*kind));
+        let may = |record: &BodyRecord| record.kind().is_some_and(|kind| drivable.includes(kind));
         let bodies = bodies.iter().zip(names).filter(|(record, _)| may(record)).filter_map(|(record, name)| {
             let camera = CameraId::Eyes(u8::try_from(record.body).ok()?);
             Some(DrivableBody { body: record.body, name: name.clone(), camera })

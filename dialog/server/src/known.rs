@@ -171,7 +171,7 @@ pub fn everything(state: StateView<'_>, body: BodyId, catalog: &Catalog) -> Opti
         .filter(|goal| goal.hidden == 0)
         .map(|goal| KnownGoal { text: goal.description.as_str().to_owned(), met: goal.met == 1 })
         .collect();
-    Some(Known { robot, objects, mission: String::new(), goals, rooms: Vec::new(), floor: None, person: None })
+    Some(Known { goals, ..Known::new(robot, objects) })
 }
 
 fn person(state: StateView<'_>, body: BodyId, catalog: &Catalog) -> Option<KnownPerson> {

@@ -18,6 +18,9 @@ const DRAFTS_PER_SECOND: f64 = 4.0;
 /// All other messages a second.
 const OTHERS_PER_SECOND: f64 = 10.0;
 
+/// What somebody is told who sends more than is taken.
+pub const A_LOT: &str = "That was a lot at once; wait a moment, please.";
+
 /// How long anybody may keep a place of the page's server, and how many places there are. Tests take shorter times.
 #[derive(Clone, Copy, Debug)]
 pub struct ServerLimits {

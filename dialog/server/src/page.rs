@@ -324,7 +324,7 @@ fn others(state: StateView<'_>, catalog: &Catalog) -> Vec<Value> {
 }
 
 fn body_kind(body: &BodyRecord) -> &'static str {
-    BodyKind::ALL.get(body.kind as usize).map_or("somebody", |kind| kind.name())
+    body.kind().map_or("somebody", BodyKind::name)
 }
 
 /// What somebody points at, at a place of the picture.

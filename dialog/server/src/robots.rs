@@ -6,7 +6,7 @@ use cohabit_bus::{
     Text,
     message::{BodyRecord, StateView},
 };
-use cohabit_cdf::{BodyId, BodyKind, Catalog, Layout, ObjectId};
+use cohabit_cdf::{BodyId, Catalog, Layout, ObjectId};
 use cohabit_language::{Addressed, Consulting, Knows, Language, Lessons, Roster};
 
 use crate::{
@@ -59,7 +59,7 @@ impl BodyNames {
     pub fn new(bodies: &[BodyRecord], names: &BTreeMap<u32, String>) -> Self {
         const TOLD: &str = "is in my way";
         let called = |at: usize| {
-            let kind = BodyKind::ALL.get(bodies[at].kind as usize)?.name();
+            let kind = bodies[at].kind()?.name();
             let count = |bodies: &[BodyRecord]| bodies.iter().filter(|body| body.kind == bodies[at].kind).count();
             let own = match count(bodies) {
                 1 => format!("the {kind} {TOLD}"),

@@ -16,7 +16,7 @@ use tokio::sync::{
 use crate::{
     feed::Feed,
     hub::Hub,
-    limits::{Limits, ServerLimits},
+    limits::{A_LOT, Limits, ServerLimits},
     page,
     presence::Presence,
     talk::{Talk, UNREACHABLE},
@@ -155,7 +155,7 @@ impl Visit {
     fn take(&mut self, text: &str) -> Result<Vec<Value>, String> {
         let now = Instant::now();
         if !self.limits.all.admits(now) || !self.limits.others.admits(now) {
-            return Err("That was a lot at once; wait a moment, please.".to_owned());
+            return Err(A_LOT.to_owned());
         }
         let message: FromSeat =
             serde_json::from_str(text).map_err(|error| format!("The page sent nonsense: {error}"))?;

@@ -10,7 +10,7 @@ use tokio::sync::broadcast;
 use crate::{
     feed::Feed,
     hub::{Hub, Visit},
-    limits::{Limits, ServerLimits},
+    limits::{A_LOT, Limits, ServerLimits},
     page,
     presence::Presence,
     screening::Screening,
@@ -111,7 +111,7 @@ impl Viewer {
     /// Takes a message of the page; says what is wrong with it, if anything.
     fn take(&mut self, text: &str) -> Result<Option<serde_json::Value>, String> {
         if !self.limits.all.admits(Instant::now()) {
-            return Err("That was a lot at once; wait a moment, please.".to_owned());
+            return Err(A_LOT.to_owned());
         }
         let message: FromPage =
             serde_json::from_str(text).map_err(|error| format!("The page sent nonsense: {error}"))?;

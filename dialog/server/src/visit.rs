@@ -21,7 +21,7 @@ use crate::{
     feed::Feed,
     hub::{self, Hub},
     journal::MOST_VISITORS,
-    limits::{Limits, ServerLimits},
+    limits::{A_LOT, Limits, ServerLimits},
     page,
     person_seats::{Comer, PersonSeat},
     presence::Presence,
@@ -195,7 +195,7 @@ impl Visit {
     /// Takes a message of the page; says what is wrong with it, if anything.
     fn take(&mut self, text: &str) -> Result<Vec<Message>, String> {
         let (received_nanos, now) = (monotonic_nanos(), Instant::now());
-        let a_lot = || "That was a lot at once; wait a moment, please.".to_owned();
+        let a_lot = || A_LOT.to_owned();
         if !self.limits.all.admits(now) {
             return Err(a_lot());
         }

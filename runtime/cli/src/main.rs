@@ -119,7 +119,7 @@ enum Command {
     Sim(peers::Sim),
     /// One robot's mind
     Agent(peers::Agent),
-    /// A body of a running session for programs that speak another protocol: language models, by tools
+    /// Lets another program, such as a client of a language model, control a body of a running session
     Bridge(peers::Bridge),
     /// The page, and the understanding of what people say
     Dialog(peers::Dialog),

@@ -11,9 +11,9 @@ mod stats;
 mod tasks;
 mod vectors;
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
-use cohabit_cdf::{Catalog, RoomId};
+use cohabit_cdf::Catalog;
 use serde_json::{Value, json};
 
 use self::{
@@ -42,7 +42,7 @@ pub(crate) fn write(
 ) -> Result<Counts, ConvertError> {
     let names: Vec<String> = catalog.classes().iter().map(|class| class.id.clone()).collect();
     let classes: BTreeMap<String, i64> = names.iter().cloned().zip(0..).collect();
-    let rooms = rooms(dataset)?;
+    let rooms: Vec<String> = catalog.rooms().ids().map(|room| room.id().to_owned()).collect();
     let frames = Frames { dataset, classes: &classes, rooms: &rooms };
     let (mut data, mut episodes) = (Rolling::new(output, "data", limit), Episodes::new(output, limit));
     let (mut tasks, mut stats, mut first) = (Tasks::default(), Stats::default(), 0_i64);
@@ -75,18 +75,6 @@ pub(crate) fn write(
     tasks.write(output)?;
     output.write("README.md", format!("{FRONT_MATTER}{}", card::text(dataset, &counts, "LeRobot v3", CARD)))?;
     Ok(counts)
-}
-
-/// The rooms that robots may be in: the built-in ones, then those of world packs that robots were in.
-fn rooms(dataset: &Dataset) -> Result<Vec<String>, ConvertError> {
-    let mut rooms: Vec<String> = RoomId::BUILTIN.iter().map(|room| room.id().to_owned()).collect();
-    let mut others = BTreeSet::new();
-    for episode in &dataset.episodes {
-        let poses = dataset.lines(episode)?.into_iter().filter_map(|line| line.step.pose);
-        others.extend(poses.map(|pose| pose.room).filter(|room| !rooms.contains(room)));
-    }
-    rooms.extend(others);
-    Ok(rooms)
 }
 
 fn info(dataset: &Dataset, rooms: &[String], counts: &Counts, tasks: usize, limit: usize) -> Value {

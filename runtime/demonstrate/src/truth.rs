@@ -18,7 +18,7 @@ pub(crate) fn everything(world: &World, body: BodyId) -> Option<Known> {
     let present = world.objects().filter(|object| world.exists(object.id));
     let objects = present.map(|object| known(&object, &robot)).collect();
     let rooms = world.layout().rooms.iter().map(|room| room.id).collect();
-    Some(Known { robot, objects, mission: String::new(), goals: Vec::new(), rooms, floor: None, person: None })
+    Some(Known { rooms, ..Known::new(robot, objects) })
 }
 
 fn known(object: &ObjectView<'_>, robot: &KnownRobot) -> KnownObject {

@@ -64,8 +64,8 @@ pub fn state(world: &World) -> StateParts {
         Some(Ending::KilledByHazard) => 2,
     };
     let catalog = world.catalog();
-    let lit = world.layout().rooms.iter().map(|room| room.id).filter(|room| world.room_lit(*room));
-    let lit_rooms = lit.filter_map(|room| catalog.room_index(room)).fold(0, |bits, index| bits | 1_u64 << index);
+    let lit = world.lights().filter(|(_, is_lit)| *is_lit);
+    let lit_rooms = lit.filter_map(|(room, _)| catalog.room_index(room)).fold(0, |bits, index| bits | 1_u64 << index);
     let goals = world.goals();
     let mut parts = StateParts {
         header: StateHeader { score: world.score(), ending, lit_rooms, ..StateHeader::default() },

@@ -190,7 +190,7 @@ impl Moment {
                 .highlighted()
                 .map(|object| Highlight { id: object_instance_id(object), color: HIGHLIGHT_COLOR })
                 .collect(),
-            lit: world.layout().rooms.iter().map(|room| (room.id, world.room_lit(room.id))).collect(),
+            lit: world.lights().collect(),
             bodies: world
                 .bodies()
                 .map(|body| Standing {

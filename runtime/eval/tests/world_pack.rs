@@ -160,13 +160,7 @@ fn a_pack_of_twenty_rooms_is_spoken_of_in_its_own_words() {
     let world = twenty_rooms::world();
     let (_, text) = world.packs()[0].missions().next().unwrap();
     let said = ["go to the music room", "which room are you in?", "go to the winter garden", "which room are you in?"];
-    let task = Task {
-        id: "tour".to_owned(),
-        family: None,
-        cdf: text.to_owned(),
-        preparation: Vec::new(),
-        script: said.map(Line::utterance).into(),
-    };
+    let task = task("tour", text, &said);
     let settings = Settings { seed: 1, knows: Knows::Everything, ..Settings::default() };
     let played = play(&task, &settings, &Language::new(Arc::clone(world.catalog()))).unwrap();
     assert_eq!(played.first_trouble, None, "{:#?}", played.transcript);

@@ -91,7 +91,7 @@ fn object(record: &ObjectRecord, catalog: &Catalog) -> Instance {
 
 /// What a body is.
 pub fn kind(record: &BodyRecord) -> BodyKind {
-    BodyKind::ALL.get(record.kind as usize).copied().unwrap_or(BodyKind::Robot)
+    record.kind().unwrap_or(BodyKind::Robot)
 }
 
 /// What a body is called in paths, such as `robot_0`.

@@ -22,7 +22,12 @@ class Error(Exception): ...
 def class_ids(world: list[str] = ...) -> list[str]:
     """The ids of all classes of objects, by their numbers; ``world`` are folders of world packs, here and below."""
 
-def class_names(world: list[str] = ...) -> list[str]: ...
+def room_id(text: str) -> Optional[str]:
+    """The id of the room that is called that, built in or of a pack that was read."""
+
+def room_ids(world: list[str] = ...) -> list[str]:
+    """The ids of all rooms, by their numbers."""
+
 def mission_text(name: Optional[str] = None, world: list[str] = ...) -> tuple[str, str]: ...
 def builtin_missions() -> list[str]: ...
 def pack_missions(world: list[str]) -> list[tuple[str, str]]:

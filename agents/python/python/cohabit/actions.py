@@ -136,8 +136,9 @@ class GoTo:
             if isinstance(first, str):
                 return _native.Action.go_to_viewpoint(first, int(second))
             return _native.Action.go_to_point(float(first), float(second))
-        if isinstance(target, str) and target.lower() in _ROOMS:
-            return _native.Action.go_to_room(target)
+        room = _native.room_id(target) if isinstance(target, str) else None
+        if room is not None:
+            return _native.Action.go_to_room(room)
         return _native.Action.go_to_object(resolve(target, state, body, rooms=True))
 
 
@@ -213,5 +214,3 @@ class Stop:
 
 Action = Union[Move, Rotate, Look, LookAround, GoTo, PickUp, Place, Interact, Highlight, Drive, Stop]
 """Any of them."""
-
-_ROOMS = {room.lower() for room in _native.ROOMS}

@@ -9,7 +9,7 @@ Observations are dictionaries. Pictures are those of each body's camera; all els
 ``ids``              ``[H, W]`` u4           whose pixel it is; objects in view are those in ``slot_ids``
 ``position``         ``[3]`` f4              where the body stands, m
 ``heading``          ``[2]`` f4              its yaw and the pitch of its head, rad
-``room``             0 to 7                  an index into ``cohabit.ROOMS``
+``room``             0 to rooms              an index into ``cohabit.ROOMS``, then those of world packs
 ``held``             0 to classes            1 + an index into ``cohabit.CLASSES``; 0 is nothing
 ``busy``             0, 1                    whether it still carries out a command
 ``goals``            ``[16]`` 0, 1           which goals are met
@@ -227,7 +227,9 @@ class Office:
             raise ValueError("the world of a session is as it was started: there are no world packs to give")
         self.classes = tuple(_native.class_ids(self.packs))
         """The ids of all classes of objects, by their numbers."""
-        self.sensing = Sensing(planes, camera, size, slots, fill, instruction, len(self.classes))
+        self.rooms = tuple(_native.room_ids(self.packs))
+        """The ids of all rooms, by their numbers."""
+        self.sensing = Sensing(planes, camera, size, slots, fill, instruction, len(self.classes), len(self.rooms))
         self.planes, self.slots, self.fill = self.sensing.planes, slots, self.sensing.fill
         self.knows = knows
         self._session_camera = camera if session is not None else None

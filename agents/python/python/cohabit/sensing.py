@@ -37,8 +37,8 @@ _VIEWS = {"panorama": 4}
 
 
 class Sensing:
-    """How bodies sense; the parameters are those of :class:`~cohabit.office.Office`, and how many classes of objects there
-    are."""
+    """How bodies sense; the parameters are those of :class:`~cohabit.office.Office`, and how many classes of objects and
+    rooms there are."""
 
     def __init__(
         self,
@@ -47,8 +47,9 @@ class Sensing:
         size: Union[int, tuple[int, int]],
         slots: int,
         fill: Optional[str],
-        instruction: bool = False,
-        classes: Optional[int] = None,
+        instruction: bool,
+        classes: int,
+        rooms: int,
     ) -> None:
         unknown = [plane for plane in planes if plane not in PLANES]
         if unknown:
@@ -62,7 +63,7 @@ class Sensing:
         self.camera = camera
         self.kind = camera.split(",", 1)[0]
         self.instruction = instruction
-        self.classes = len(_native.class_ids()) if classes is None else classes
+        self.classes, self.rooms = classes, rooms
         self.drawn = self.planes + (("ids",) if self.fill == "seen" and "ids" not in self.planes else ())
         """The planes that are drawn, observed or not."""
 
@@ -93,7 +94,7 @@ class Sensing:
             parts[plane] = spaces.Box(low, high, (*views, height, width, *channels), dtype)
         parts["position"] = spaces.Box(-_FARTHEST_M, _FARTHEST_M, (3,), np.float32)
         parts["heading"] = spaces.Box(-2 * np.pi, 2 * np.pi, (2,), np.float32)
-        parts["room"] = spaces.Discrete(len(_native.ROOMS))
+        parts["room"] = spaces.Discrete(self.rooms)
         parts["held"] = spaces.Discrete(self.classes + 1)
         parts["busy"] = spaces.Discrete(2)
         parts["goals"] = spaces.MultiBinary(MOST_GOALS)

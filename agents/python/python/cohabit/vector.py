@@ -86,7 +86,9 @@ class VectorEnv(_Base[Observation, npt.NDArray[np.int64], npt.NDArray[Any]]):
         self._packs = packs_of(mission, world)
         self.classes = tuple(_native.class_ids(self._packs))
         """The ids of all classes of objects, by their numbers: ``cohabit.CLASSES``, then those of world packs."""
-        sensing = Sensing(planes, camera, size, slots, fill, instruction, len(self.classes))
+        self.rooms = tuple(_native.room_ids(self._packs))
+        """The ids of all rooms, by their numbers: ``cohabit.ROOMS``, then those of world packs."""
+        sensing = Sensing(planes, camera, size, slots, fill, instruction, len(self.classes), len(self.rooms))
         self.knows = knows
         self._mission, self._randomize = mission, randomize
         self._played: list[MissionLike] = [mission[0] if isinstance(mission, Suite) else mission] * num_envs

@@ -104,8 +104,6 @@ impl Crowd {
     /// Everybody decides, and their bodies are told.
     fn look(&mut self, tick: u64, state: StateView<'_>, client: &mut Client) -> Result<(), PeerError> {
         let bodies = self.walkers(tick, state.bodies);
-        let kind = |record: &BodyRecord| BodyKind::ALL.get(record.kind as usize).copied().unwrap_or_default();
-        let kinds: BTreeMap<u32, BodyKind> = state.bodies.iter().map(|record| (record.body, kind(record))).collect();
         let shut = self.shut_doors(state);
         for person in &mut self.people {
             let body = person.body();
@@ -123,7 +121,8 @@ impl Crowd {
             let is_busy = record.busy == 1 && self.sent.get(&body) == Some(&record.command);
             let (own, yaw_rad) = (*own, record.yaw_rad);
             let floor = &self.floor;
-            let around = Around { tick, own, yaw_rad, is_busy, bodies: &bodies, kinds: &kinds, shut: &shut, floor };
+            let around =
+                Around { tick, own, yaw_rad, is_busy, bodies: &bodies, records: state.bodies, shut: &shut, floor };
             if let Some(action) = person.act(&around) {
                 self.sent.insert(body, client.act_in(body, 0, action)?);
             }

@@ -2,7 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use cohabit_cdf::{Action, BodyKind, GoToTarget};
+use cohabit_bus::message::BodyRecord;
+use cohabit_cdf::{Action, GoToTarget};
 use glam::Vec2;
 use rand_chacha::{
     ChaCha8Rng,
@@ -64,8 +65,8 @@ pub(super) struct Around<'a> {
     pub is_busy: bool,
     /// All bodies, itself too, by number.
     pub bodies: &'a BTreeMap<u32, Walker>,
-    /// What kinds of bodies they are.
-    pub kinds: &'a BTreeMap<u32, BodyKind>,
+    /// What else the world says of them.
+    pub records: &'a [BodyRecord],
     /// Where doors are shut, m.
     pub shut: &'a [Vec2],
     pub floor: &'a Floor,
@@ -252,8 +253,8 @@ impl Person {
     /// stands there; then waits, and tries again; at last does the next thing.
     fn get_past(&mut self, aim: Vec2, goal: Vec2, around: &Around<'_>) -> Option<Action> {
         self.stuck += 1;
-        let obstacle = self.obstacle(around);
         if self.stuck >= MOST_STUCK {
+            let obstacle = self.obstacle(around);
             tracing::warn!("person {} does not get past {obstacle}, and does the next thing", self.body);
             self.finish(around.tick);
             return self.halt();
@@ -262,7 +263,7 @@ impl Person {
             // Somebody may stand where the next stretch ends.
             return self.lead(if self.stuck == 1 { aim } else { goal }, around.tick);
         }
-        tracing::info!("person {} waits: {obstacle} is in the way", self.body);
+        tracing::info!("person {} waits: {} is in the way", self.body, self.obstacle(around));
         (self.waits_until, self.mark) = (around.tick + WAIT_TICKS, None);
         self.plan_anew();
         self.halt()
@@ -276,7 +277,9 @@ impl Person {
         let Some((body, _)) = nearest.min_by(|(_, one), (_, other)| one.total_cmp(other)) else {
             return "what stands there".to_owned();
         };
-        format!("the {} of body {body}", around.kinds.get(body).copied().unwrap_or_default().name())
+        let record = around.records.iter().find(|record| record.body == *body);
+        let kind = record.and_then(BodyRecord::kind).unwrap_or_default();
+        format!("the {} of body {body}", kind.name())
     }
 
     /// Whether it has hardly moved for long, while it meant to.

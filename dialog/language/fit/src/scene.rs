@@ -41,7 +41,7 @@ pub fn draw(catalog: &Catalog, layout: &Layout, chance: &mut Chance) -> Known {
         let bearing_rad = within_half_turn(dy.atan2(dx) - robot.yaw_rad);
         object.visible = object.room == robot.room && bearing_rad.abs() < HALF_VIEW_RAD;
     }
-    Known { robot, objects, mission: String::new(), goals: Vec::new(), rooms: Vec::new(), floor: None, person: None }
+    Known::new(robot, objects)
 }
 
 fn is_carried(catalog: &Catalog, object: &KnownObject) -> bool {

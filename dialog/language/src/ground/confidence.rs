@@ -11,6 +11,8 @@ use std::collections::BTreeMap;
 use cohabit_cdf::ObjectId;
 use serde::Deserialize;
 
+use super::WORSE_NAME;
+
 /// What is known of a candidate with regard to a referring expression.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Features {
@@ -142,6 +144,18 @@ pub struct Referents {
     pub doubt: Doubt,
     /// The probability that none of them is meant.
     pub none: f32,
+}
+
+impl Referents {
+    /// Those of which nothing is otherwise than it was said, and whose name fits as well as any; the most probable first.
+    #[must_use]
+    pub fn fitting(&self) -> Vec<ObjectId> {
+        let is_as_said = |one: &&Referent| Features::MISMATCHES.iter().all(|one_of| one.features.get(*one_of) == 0.0);
+        let fitting: Vec<&Referent> = self.candidates.iter().filter(is_as_said).collect();
+        let named = |one: &Referent| one.features.get(Feature::Name);
+        let best = fitting.iter().map(|one| named(one)).fold(0.0, f32::max);
+        fitting.into_iter().filter(|one| named(one) > best - WORSE_NAME).map(|one| one.object).collect()
+    }
 }
 
 /// A candidate.

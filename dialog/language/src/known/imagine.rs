@@ -42,11 +42,11 @@ pub(crate) fn apply(scene: &mut Known, action: &Action, devices: &Devices) {
 /// Stands before the object, facing it from where it came.
 fn walk(scene: &mut Known, object: ObjectId) {
     let Some(target) = scene.object(object) else { return };
-    let distance = scene.distance_m(target);
+    let (distance, bearing) = (scene.distance_m(target), scene.bearing_rad(target));
     let (position, room) = (target.position_m, target.room);
     if distance > REACH_M {
         let keep = REACH_M / distance;
-        scene.robot.yaw_rad += scene.object(object).map_or(0.0, |target| scene.bearing_rad(target));
+        scene.robot.yaw_rad += bearing;
         let [x, y, _] = &mut scene.robot.position_m;
         *x = position[0] + (*x - position[0]) * keep;
         *y = position[1] + (*y - position[1]) * keep;

@@ -93,7 +93,7 @@ fn number(scene: &Known, id: ObjectId) -> Option<ObjectId> {
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
 mod tests {
-    use cohabit_cdf::{Color, Fluid, RoomId};
+    use cohabit_cdf::{Fluid, RoomId};
 
     use super::*;
     use crate::known::KnownRobot;
@@ -102,33 +102,13 @@ mod tests {
     fn scene(catalog: &Catalog, things: &[(&str, Option<u32>)], held: Option<u32>) -> Known {
         let held = held.map(ObjectId);
         let robot = KnownRobot { position_m: [0.0; 3], yaw_rad: 0.0, room: RoomId::BREAK_ROOM, held };
-        let objects = (0_u32..).zip(things).map(|(id, (class, parent))| KnownObject {
-            id: ObjectId(id),
-            instance: format!("{class}_1"),
-            class: catalog.find(class).unwrap(),
-            room: RoomId::BREAK_ROOM,
-            position_m: [id as f32, 0.0, 0.0],
-            yaw_rad: 0.0,
-            flags: StateFlags::default(),
-            fluid: Fluid::None,
-            color: Color::Original,
-            parent: parent.map(ObjectId),
-            text: String::new(),
-            visible: true,
-            is_hidden: false,
-            works: None,
-            in_mission: false,
+        let objects = (0_u32..).zip(things).map(|(id, (class, parent))| {
+            let (instance, kind) = (format!("{class}_1"), catalog.find(class).unwrap());
+            let object = KnownObject::new(ObjectId(id), instance, kind, RoomId::BREAK_ROOM, [id as f32, 0.0, 0.0]);
+            KnownObject { parent: parent.map(ObjectId), visible: true, ..object }
         });
         let objects = objects.collect();
-        Known {
-            robot,
-            objects,
-            mission: String::new(),
-            goals: Vec::new(),
-            rooms: Vec::new(),
-            floor: None,
-            person: None,
-        }
+        Known::new(robot, objects)
     }
 
     #[test]

@@ -233,9 +233,8 @@ impl Conversation<'_> {
             condition.splice(at.., std::iter::once("is".to_owned()).chain(state));
         }
         condition.retain(|word| !words.adverbs.contains(word));
-        if words.own.longest(&condition).is_some() {
+        if let Some((length, ())) = words.own.longest(&condition) {
             let are = ["are", "you", "holding"].map(str::to_owned);
-            let length = words.own.longest(&condition).map_or(0, |(length, ())| length);
             return Some(([are.as_slice(), &condition[length..]].concat(), is_negated));
         }
         let named = || self.named_in(request);

@@ -112,7 +112,7 @@ impl Conversation<'_> {
         let is_free = |request: &str| {
             let is_deed = !request.ends_with('?') && !matches!(request, "social" | "none" | "stop");
             let words = token::words(request);
-            is_deed && !condition::has_condition(self.lexicon, &words) && !self.is_for_later(&words)
+            is_deed && !condition::has_condition(self.lexicon, &words) && !self.is_wait(&words)
         };
         let loses = source.has_condition && text.split("; ").all(is_free);
         let adds = !source.has_denial && !denied.is_empty();

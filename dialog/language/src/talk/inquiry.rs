@@ -1,4 +1,4 @@
-//! What people ask, among what else they say.
+//! Questions of people: answered, looked into first, or answered with a plan.
 
 use cohabit_cdf::ObjectId;
 

@@ -1,4 +1,4 @@
-//! What comes after the plan under way: what is left of the mission, and what was asked about its outcome.
+//! What comes after the plan under way: the search that it is a part of, the rest of what was said, and what is left of the mission.
 
 use crate::{
     context::{Context, Pending},

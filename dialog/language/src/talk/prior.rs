@@ -1,6 +1,6 @@
 //! How likely ways to understand an utterance are by what is open: the robot's own question, and what is left of the mission.
 
-use cohabit_cdf::{Action, Fluid, GoToTarget, ObjectId, Property, StateFlag, Verb};
+use cohabit_cdf::{Action, Color, Fluid, GoToTarget, ObjectId, Property, StateFlag, StateFlags, Verb};
 
 use crate::{
     context::Context,
@@ -33,7 +33,7 @@ impl Conversation<'_> {
             };
             way.probability *= match way.steps() {
                 None if way.context.is_met => IN_VAIN,
-                Some(steps) if self.is_in_vain(steps) || self.ends_as_it_was(steps) => IN_VAIN,
+                Some(steps) if self.is_in_vain(steps) => IN_VAIN,
                 Some(steps) if self.goes_astray(steps) => ASTRAY,
                 _ if is_denied => 1.0,
                 _ if way.is_asked_about(context) => ASKED_ABOUT,
@@ -44,10 +44,11 @@ impl Conversation<'_> {
         ways.iter_mut().for_each(|way| way.probability /= all);
     }
 
-    /// Whether a step leaves what it works on as it is: cereal is poured into a bowl of cereal.
+    /// Whether a step leaves what it works on as it is: cereal is poured into a bowl of cereal; or things are taken and put, and in the
+    /// end all is as before: what was just thrown away is thrown away.
     fn is_in_vain(&self, steps: &[Step]) -> bool {
         let mut scene = self.scene.clone();
-        steps.iter().any(|step| {
+        let changes_nothing = |step: &Step| {
             let held = scene.robot.held;
             let state = |scene: &Known| {
                 let of = |id: Option<ObjectId>| id.and_then(|id| scene.object(id));
@@ -66,24 +67,9 @@ impl Conversation<'_> {
             );
             let pours_unknown = is_unknown && matches!(step.action, Action::Interact { verb: Verb::Pour, .. });
             changes && !pours_unknown && state(&scene) == before
-        })
-    }
-
-    /// Whether things are taken and put, and all is as before: what was just thrown away is thrown away.
-    fn ends_as_it_was(&self, steps: &[Step]) -> bool {
-        let moves = |step: &Step| matches!(step.action, Action::PickUp { .. } | Action::Place { .. });
-        let state = |scene: &Known| {
-            let of = |object: &KnownObject| {
-                let mut flags = object.flags;
-                flags.set(StateFlag::PickedUp, false);
-                flags.set(StateFlag::Used, false);
-                (object.parent, object.fluid, flags)
-            };
-            (scene.robot.held, scene.objects.iter().map(of).collect::<Vec<_>>())
         };
-        let mut scene = self.scene.clone();
-        steps.iter().for_each(|step| imagine::apply(&mut scene, &step.action, self.devices));
-        steps.iter().any(moves) && state(&scene) == state(self.scene)
+        let moves = |step: &Step| matches!(step.action, Action::PickUp { .. } | Action::Place { .. });
+        steps.iter().any(changes_nothing) || steps.iter().any(moves) && lasting(&scene) == lasting(self.scene)
     }
 
     /// Whether it goes to a room to act on what is in another one.
@@ -104,4 +90,18 @@ impl Conversation<'_> {
         });
         goals.filter(|way| way.steps().is_some()).collect()
     }
+}
+
+/// What a thing is in or on, what fills it, its colour and its states.
+type Lasting = (Option<ObjectId>, Fluid, Color, StateFlags);
+
+/// What is in the hand, and of each thing where it is and what it is like, but for what says only that it was used.
+fn lasting(scene: &Known) -> (Option<ObjectId>, Vec<Lasting>) {
+    let of = |object: &KnownObject| {
+        let mut flags = object.flags;
+        flags.set(StateFlag::PickedUp, false);
+        flags.set(StateFlag::Used, false);
+        (object.parent, object.fluid, object.color, flags)
+    };
+    (scene.robot.held, scene.objects.iter().map(of).collect())
 }

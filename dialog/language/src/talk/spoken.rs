@@ -107,7 +107,7 @@ impl Language {
 mod tests {
     use std::sync::Arc;
 
-    use cohabit_cdf::{Catalog, Color, Fluid, ObjectId, RoomId, state::StateFlags};
+    use cohabit_cdf::{Catalog, ObjectId, RoomId};
 
     use super::*;
     use crate::known::{KnownObject, KnownRobot};
@@ -118,15 +118,7 @@ mod tests {
 
     fn scene() -> Known {
         let robot = KnownRobot { position_m: [0.0; 3], yaw_rad: 0.0, room: RoomId::BREAK_ROOM, held: None };
-        Known {
-            robot,
-            objects: vec![],
-            mission: String::new(),
-            goals: vec![],
-            rooms: vec![],
-            floor: None,
-            person: None,
-        }
+        Known::new(robot, vec![])
     }
 
     #[test]
@@ -163,22 +155,10 @@ mod tests {
     #[test]
     fn things_are_spoken_of_by_all_their_names() {
         let language = language();
-        let thing = |class: &str| KnownObject {
-            id: ObjectId(1),
-            instance: String::new(),
-            class: language.catalog().find(class).unwrap(),
-            room: RoomId::BREAK_ROOM,
-            position_m: [0.0; 3],
-            yaw_rad: 0.0,
-            flags: StateFlags::default(),
-            fluid: Fluid::None,
-            color: Color::Original,
-            parent: None,
-            text: String::new(),
-            visible: true,
-            is_hidden: false,
-            works: None,
-            in_mission: false,
+        let thing = |class: &str| {
+            let class = language.catalog().find(class).unwrap();
+            let object = KnownObject::new(ObjectId(1), String::new(), class, RoomId::BREAK_ROOM, [0.0; 3]);
+            KnownObject { visible: true, ..object }
         };
         let scene = Known { objects: vec![thing("Bowl_01"), thing("FridgeLower_02"), thing("Bowl_01")], ..scene() };
         let names = language.spoken_names(&scene);

@@ -69,11 +69,6 @@ impl Conversation<'_> {
         self.said_of_waiting(words).is_some_and(|said| reads(trimmed(&words[..said.at])) && reads(&said.then))
     }
 
-    /// Whether something is to be done later: at a time, or once something is so.
-    pub(crate) fn is_for_later(&self, words: &[String]) -> bool {
-        self.said_of_waiting(words).is_some()
-    }
-
     /// Goes on with what was put off, if its time has come: nothing before that, or while there is something else to do.
     pub(crate) fn wake(&self, now_s: f64, context: &mut Context) -> Option<Understanding> {
         let waited_s = now_s - *context.awaited.as_mut()?.since_s.get_or_insert(now_s);

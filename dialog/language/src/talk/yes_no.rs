@@ -24,8 +24,8 @@ impl Conversation<'_> {
     /// The answer to a question among what was said that would otherwise be carried out; nothing, where there is none.
     pub(crate) fn answered_yes_or_no(&self, words: &[String], context: &mut Context) -> Option<Understanding> {
         let sentences = whether::sentences(words);
-        let at = sentences.iter().position(|sentence| whether::asked_at(self.lexicon, sentence).is_some())?;
-        let start = whether::asked_at(self.lexicon, sentences[at])?;
+        let mut asked = sentences.iter().map(|sentence| whether::asked_at(self.lexicon, sentence)).enumerate();
+        let (at, start) = asked.find_map(|(at, start)| Some((at, start?)))?;
         let asked = &sentences[at][start..];
         // What is asked for in other sentences is done.
         let requests = |sentence: &&&[String]| {

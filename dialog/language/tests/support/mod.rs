@@ -9,10 +9,7 @@ use std::{
     sync::{Arc, OnceLock},
 };
 
-use cohabit_cdf::{
-    Action, Catalog, Color, Fluid, GoToTarget, ObjectId, RoomId, Status,
-    state::{StateFlag, StateFlags},
-};
+use cohabit_cdf::{Action, Catalog, Color, Fluid, GoToTarget, ObjectId, RoomId, Status, state::StateFlag};
 use cohabit_language::{Asking, Context, Known, KnownGoal, KnownObject, KnownRobot, Language, Step, Understanding};
 
 /// `id | name | words | properties | colour | receptacle`: `-` none, `on`, `in` (enclosed), `key:CLASS`.
@@ -173,37 +170,19 @@ pub fn scene(catalog: &Catalog, marks: &[&str]) -> Known {
         ObjectId(at as u32)
     };
     let robot = KnownRobot { position_m: [0.0; 3], yaw_rad: 0.0, room: RoomId::BREAK_ROOM, held: None };
-    let mut known = Known {
-        robot,
-        objects: Vec::new(),
-        mission: String::new(),
-        goals: vec![
-            KnownGoal { text: "Repair the bowl".to_owned(), met: true },
-            KnownGoal { text: "Pour milk into the bowl".to_owned(), met: false },
-        ],
-        rooms: Vec::new(),
-        floor: None,
-        person: None,
-    };
+    let goals = vec![
+        KnownGoal { text: "Repair the bowl".to_owned(), met: true },
+        KnownGoal { text: "Pour milk into the bowl".to_owned(), met: false },
+    ];
+    let mut known = Known { goals, ..Known::new(robot, Vec::new()) };
     for line in &lines {
         let mut position = line[2].split(' ').map(|number| number.parse().unwrap());
-        let mut object = KnownObject {
-            id: id(line[0]),
-            instance: line[0].to_owned(),
-            class: catalog.class_of_instance(line[0]).unwrap(),
-            room: RoomId::new(line[1]).unwrap(),
-            position_m: [(); 3].map(|()| position.next().unwrap()),
-            yaw_rad: 0.0,
-            flags: StateFlags::default(),
-            fluid: Fluid::None,
-            color: Color::Original,
-            parent: (line[3] != "-").then(|| id(line[3])),
-            text: String::new(),
-            visible: line[1] == "BreakRoom",
-            is_hidden: false,
-            works: None,
-            in_mission: false,
-        };
+        let class = catalog.class_of_instance(line[0]).unwrap();
+        let position_m = [(); 3].map(|()| position.next().unwrap());
+        let object =
+            KnownObject::new(id(line[0]), line[0].to_owned(), class, RoomId::new(line[1]).unwrap(), position_m);
+        let mut object =
+            KnownObject { parent: (line[3] != "-").then(|| id(line[3])), visible: line[1] == "BreakRoom", ..object };
         for mark in line[4].split(' ') {
             match mark.strip_prefix("works=") {
                 Some(device) => object.works = Some(id(device)),

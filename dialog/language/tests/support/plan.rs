@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, OnceLock};
 
-use cohabit_cdf::{Catalog, Color, Fluid, Layout, ObjectId, RoomId, state::StateFlags};
+use cohabit_cdf::{Catalog, Layout, ObjectId, RoomId};
 use cohabit_language::{Known, KnownObject, KnownRobot, Language};
 
 /// `plan OfficeLayout2 Lab1; add Bowl_01 on TableRound_02; Bowl_01 broken`: that floor plan, all of which the robot knows,
@@ -37,7 +37,7 @@ fn furnished(catalog: &Catalog, layout: &str, room: RoomId) -> Known {
     let viewpoint = layout.viewpoints.iter().find(|viewpoint| viewpoint.room == room).unwrap();
     let [x, y] = viewpoint.at_m;
     let robot = KnownRobot { position_m: [x, y, 0.0], yaw_rad: 0.0, room, held: None };
-    Known { robot, objects, mission: String::new(), goals: Vec::new(), rooms: Vec::new(), floor: None, person: None }
+    Known::new(robot, objects)
 }
 
 /// Puts a thing of the mission on or in the nearest of `parent`.
@@ -48,21 +48,8 @@ fn add(catalog: &Catalog, known: &mut Known, class: &str, parent: &str) {
     let parent = parents.min_by(|a, b| flat_m(a).total_cmp(&flat_m(b))).unwrap_or_else(|| panic!("no {parent}"));
     let id = known.objects.iter().map(|object| object.id.0 + 1).max().unwrap_or(0);
     let [x, y, z] = parent.position_m;
-    known.objects.push(KnownObject {
-        id: ObjectId(id),
-        instance: class.to_owned(),
-        class: catalog.find(class).unwrap_or_else(|| panic!("no class {class}")),
-        room: parent.room,
-        position_m: [x, y, z + 0.8],
-        yaw_rad: 0.0,
-        flags: StateFlags::default(),
-        fluid: Fluid::None,
-        color: Color::Original,
-        parent: Some(parent.id),
-        text: String::new(),
-        visible: parent.room == known.robot.room,
-        is_hidden: false,
-        works: None,
-        in_mission: true,
-    });
+    let kind = catalog.find(class).unwrap_or_else(|| panic!("no class {class}"));
+    let object = KnownObject::new(ObjectId(id), class.to_owned(), kind, parent.room, [x, y, z + 0.8]);
+    let (parent, visible) = (Some(parent.id), parent.room == known.robot.room);
+    known.objects.push(KnownObject { parent, visible, in_mission: true, ..object });
 }

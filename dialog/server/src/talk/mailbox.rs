@@ -9,7 +9,7 @@ use serde_json::Value;
 use tokio::sync::{mpsc::UnboundedSender, oneshot};
 
 use crate::{
-    conversation::Thought, interpreter::Interpretation, robots::Visitor, spoken::Spoken, voice::FromEar,
+    conversation::Thought, interpreter::Interpretation, limits::A_LOT, robots::Visitor, spoken::Spoken, voice::FromEar,
     wizard::Decision,
 };
 
@@ -18,7 +18,6 @@ const MOST_WAITING: usize = 1024;
 
 /// What a page is told whose message cannot be taken.
 pub const UNREACHABLE: &str = "The robot cannot be reached.";
-const A_LOT: &str = "That was a lot at once; wait a moment, please.";
 
 /// Something that somebody tells the robots.
 pub struct Utterance {

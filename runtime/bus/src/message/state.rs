@@ -1,6 +1,7 @@
 //! The present state of the world: a header, then lists of records.
 
 use bytemuck::{Pod, Zeroable};
+use cohabit_cdf::BodyKind;
 
 use super::{Malformed, layout};
 use crate::text::Text;
@@ -57,6 +58,14 @@ pub struct BodyRecord {
     pub head_pitch_rad: f32,
     /// The egocentric camera, m.
     pub eye_m: [f32; 3],
+}
+
+impl BodyRecord {
+    /// What kind of body it is; nothing, if a peer wrote one that does not exist.
+    #[must_use]
+    pub fn kind(&self) -> Option<BodyKind> {
+        BodyKind::ALL.get(self.kind as usize).copied()
+    }
 }
 
 /// An object.

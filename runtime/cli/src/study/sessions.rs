@@ -363,7 +363,10 @@ impl Playing for PlayedSession {
             return Look::Over(ending);
         }
         match self.ending() {
-            Ok(Some(ending)) => Look::Over(ending),
+            Ok(Some(ending)) => {
+                self.over = Some(ending);
+                Look::Over(ending)
+            }
             Ok(None) => Look::Open(page),
             Err(error) => {
                 eprintln!("cohabit: {}: {}", self.session, shown(error));

@@ -185,7 +185,8 @@ impl<'a> Scene<'a> {
         let words = words.replace("{fluid}", &fluid.to_lowercase());
         Term::ALL.into_iter().fold(words, |words, term| {
             let mark = format!("{{{}}}", term.name());
-            match scope.get(&observer, term).filter(|_| words.contains(&mark)) {
+            // Some terms are looked for among all objects.
+            match words.contains(&mark).then(|| scope.get(&observer, term)).flatten() {
                 Some(id) => words.replace(&mark, &self.facts.name(id)),
                 None => words,
             }

@@ -5,7 +5,7 @@ use cohabit_cdf::{
     catalog::table::{Range, View},
 };
 
-use super::{Scene, doors_of_buttons, is_doorway_clear, places, works};
+use super::{Scene, doors::opens, doors_of_buttons, is_doorway_clear, places, works};
 use crate::{anchors::free_anchors, facts::Facts, works as machines, works::portal};
 
 /// The facts as one body finds them, or as nobody does.
@@ -127,7 +127,6 @@ impl View for Observer<'_> {
 
     fn doors_are_clear(&self) -> bool {
         let doors = doors_of_buttons(self.facts);
-        let opens = doors.iter().any(|door| !self.facts.is(*door, StateFlag::Opened));
-        opens || doors.into_iter().all(|door| is_doorway_clear(self.facts, door))
+        opens(self.facts, &doors) || doors.into_iter().all(|door| is_doorway_clear(self.facts, door))
     }
 }

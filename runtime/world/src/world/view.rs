@@ -103,6 +103,13 @@ impl World {
         power::is_lit(&self.facts(), room, circuit)
     }
 
+    /// The rooms of the floor plan, each with whether its lights are on.
+    pub fn lights(&self) -> impl Iterator<Item = (RoomId, bool)> + '_ {
+        let lit =
+            |room: &cohabit_cdf::layout::Room| power::is_lit(&self.facts(), room.id, Some(i32::from(room.circuit)));
+        self.layout.rooms.iter().map(move |room| (room.id, lit(room)))
+    }
+
     /// The part of the floor that the middle of a robot can be on, m².
     #[must_use]
     pub fn navigable_area_m2(&self) -> f64 {

@@ -1,6 +1,6 @@
 //! Pedestrians with bodies that do at once as they are told, on bare floors.
 
-use cohabit_cdf::{Catalog, RoomId};
+use cohabit_cdf::{BodyKind, Catalog, RoomId};
 
 use super::*;
 use crate::pedestrian::Schedule;
@@ -27,8 +27,7 @@ fn play(person: &mut Person, looks: u64, other_m: Vec2, shut: &[Vec2]) -> (Vec<V
     for look in 0..looks {
         let bodies = BTreeMap::from([(1, own), (2, still(other_m))]);
         let tick = look * LOOK_TICKS;
-        let kinds = BTreeMap::new();
-        let around = Around { tick, own, yaw_rad, is_busy: false, bodies: &bodies, kinds: &kinds, shut, floor: &floor };
+        let around = Around { tick, own, yaw_rad, is_busy: false, bodies: &bodies, records: &[], shut, floor: &floor };
         match person.act(&around) {
             Some(Action::Drive { forward_m_s, turn_rad_s, .. }) => {
                 yaw_rad += turn_rad_s * LOOK_S;
@@ -95,12 +94,16 @@ fn who_is_stuck_goes_around_waits_and_at_last_does_the_next_thing() {
     let still = |at_m| Walker { at_m, velocity_m_s: Vec2::ZERO, radius_m: 0.22 };
     let own = still(Vec2::ZERO);
     let bodies = BTreeMap::from([(1, own), (2, still(Vec2::new(0.6, 0.0)))]);
-    let kinds = BTreeMap::from([(1, BodyKind::Person), (2, BodyKind::Robot)]);
+    let records = [(1, BodyKind::Person), (2, BodyKind::Robot)].map(|(body, kind)| BodyRecord {
+        body,
+        kind: kind as u32,
+        ..BodyRecord::default()
+    });
     let (mut walks, mut named) = (Vec::new(), String::new());
     for look in 0..600 {
         let (tick, yaw_rad) = (look * LOOK_TICKS, 0.0);
         let around =
-            Around { tick, own, yaw_rad, is_busy: false, bodies: &bodies, kinds: &kinds, shut: &[], floor: &floor };
+            Around { tick, own, yaw_rad, is_busy: false, bodies: &bodies, records: &records, shut: &[], floor: &floor };
         named = person.obstacle(&around);
         if let Some(Action::GoTo { target: GoToTarget::Point(point) }) = person.act(&around) {
             walks.push(point);
