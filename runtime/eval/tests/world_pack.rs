@@ -156,6 +156,16 @@ fn a_device_of_a_pack_is_one_entry_of_its_table() {
 }
 
 #[test]
+fn a_thing_is_taken_from_a_device_once_its_work_is_done() {
+    let world = world("", &[]);
+    let (_, text) = world.packs()[0].missions().next().unwrap();
+    let settings = Settings { seed: 1, knows: Knows::Everything, ..Settings::default() };
+    let language = Language::new(Arc::clone(world.catalog()));
+    let played = play(&task("clean_wrench", text, &["clean the wrench"]), &settings, &language).unwrap();
+    assert!(played.success, "{:?} {:#?}", played.first_trouble, played.transcript);
+}
+
+#[test]
 fn a_pack_of_twenty_rooms_is_spoken_of_in_its_own_words() {
     let world = twenty_rooms::world();
     let (_, text) = world.packs()[0].missions().next().unwrap();

@@ -246,6 +246,11 @@ impl World {
                 task.steps.push(step);
                 None
             }
+            // The hand waits at what a machine has not done with.
+            Progress::Done if matches!(step, Step::Reach) && self.is_worked_on(&task.action) => {
+                task.steps.push(step);
+                None
+            }
             Progress::Done if matches!(step, Step::Reach) => Some(self.carry_out(id, &task.action, events)),
             Progress::Done if task.steps.is_empty() => Some(arrived(&task)),
             Progress::Done => None,
@@ -267,6 +272,13 @@ impl World {
                 None
             }
         }
+    }
+
+    /// Whether the action would take a thing from a machine, or open the machine, before its work is done.
+    fn is_worked_on(&self, action: &Action) -> bool {
+        let (Action::PickUp { object } | Action::Interact { verb: Verb::Open, object }) = *action else { return false };
+        let mut around = std::iter::once(object).chain(self.state.ancestors(object));
+        around.any(|id| self.is_at_work_in(id))
     }
 
     fn patience(&self, met: Option<Obstruction>) -> u32 {

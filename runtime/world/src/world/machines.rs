@@ -9,7 +9,7 @@ use crate::{
     power,
     report::{Event, SoundKind},
     rules::effects_of_work,
-    run::ticks,
+    run::{Run, Work, ticks},
     state::ids,
 };
 
@@ -60,6 +60,16 @@ impl World {
                 self.changes(events).apply(effects);
             }
         }
+    }
+
+    /// Whether a machine has yet to do its work on what is in or on this thing.
+    pub(crate) fn is_at_work_in(&self, site: ObjectId) -> bool {
+        let facts = self.facts();
+        self.state.existing().any(|(id, object)| {
+            let [effect, _] = ticks(self.catalog.table().device(&facts.class(id).id));
+            let is_to_come = |run: Run| run.work != Work::Nothing && self.state.tick <= run.since + effect;
+            object.run.is_some_and(|run| (run.site == site || id == site) && is_to_come(run))
+        })
     }
 
     /// Moving parts follow their states; what the gravity pad lifts goes with it. Whether anything moved.
