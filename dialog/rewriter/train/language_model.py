@@ -1,7 +1,7 @@
 """The language model of the rewriter, as `src/transformer.rs` runs it: SmolLM2-135M (the network of Llama)."""
 
 import importlib.util
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 
 import gguf
@@ -50,8 +50,9 @@ def tokenizer():
     return made
 
 
+@lru_cache(maxsize=1 << 17)
 def tokens(text):
-    return tokenizer().encode(" " + " ".join(text.lower().split()), add_special_tokens=False).ids
+    return tuple(tokenizer().encode(" " + " ".join(text.lower().split()), add_special_tokens=False).ids)
 
 
 def prompt(before, said, by_words):
@@ -84,6 +85,18 @@ def four_bits(rows):
     return whole.reshape(rows.shape), scale.reshape(rows.shape[0], -1), (whole * scale).reshape(rows.shape)
 
 
+class Linear(nn.Linear):
+    """Once it `is_rounded`, it computes with weights as they are rounded in the end, and learns as if they were not."""
+
+    is_rounded = False
+
+    def forward(self, x):
+        if not self.is_rounded:
+            return super().forward(x)
+        exact = self.weight.detach()
+        return F.linear(x, self.weight + (four_bits(exact)[2] - exact))
+
+
 class Norm(nn.Module):
     def __init__(self):
         super().__init__()
@@ -93,10 +106,10 @@ class Norm(nn.Module):
         return F.rms_norm(x.float(), (WIDTH,), self.weight, 1e-5).to(x.dtype)
 
 
-def angles(length, begin=0):
+def angles(length, begin, device):
     """Cosines and sines of rotary positions."""
-    frequencies = 1.0 / (LONGEST_WAVE ** (torch.arange(0, HEAD, 2).float() / HEAD))
-    angle = torch.outer(torch.arange(begin, begin + length).float(), frequencies)
+    frequencies = 1.0 / (LONGEST_WAVE ** (torch.arange(0, HEAD, 2, device=device).float() / HEAD))
+    angle = torch.outer(torch.arange(begin, begin + length, device=device).float(), frequencies)
     return torch.cat([angle, angle], -1).cos(), torch.cat([angle, angle], -1).sin()
 
 
@@ -107,13 +120,16 @@ def rotated(x, angles):
 
 
 class Layer(nn.Module):
+    #: How much of what it adds is left out while it learns.
+    dropout = 0.0
+
     def __init__(self):
         super().__init__()
         self.norm, self.hidden_norm = Norm(), Norm()
-        self.query_key_value = nn.Linear(WIDTH, (HEADS + 2 * KEY_HEADS) * HEAD, bias=False)
-        self.attended = nn.Linear(HEADS * HEAD, WIDTH, bias=False)
-        self.gate_and_hidden = nn.Linear(WIDTH, 2 * HIDDEN, bias=False)
-        self.output = nn.Linear(HIDDEN, WIDTH, bias=False)
+        self.query_key_value = Linear(WIDTH, (HEADS + 2 * KEY_HEADS) * HEAD, bias=False)
+        self.attended = Linear(HEADS * HEAD, WIDTH, bias=False)
+        self.gate_and_hidden = Linear(WIDTH, 2 * HIDDEN, bias=False)
+        self.output = Linear(HIDDEN, WIDTH, bias=False)
 
     def forward(self, x, angles, before=None):
         """`before`: keys and values that were read, to which those of `x` are added."""
@@ -127,14 +143,23 @@ class Layer(nn.Module):
                 key, value = torch.cat([before[0], key], 2), torch.cat([before[1], value], 2)
             before[:] = [key, value]
         key, value = (one.repeat_interleave(HEADS // KEY_HEADS, 1) for one in (key, value))
-        scores = query @ key.transpose(2, 3) * HEAD**-0.5
-        if is_first:
-            scores = scores + torch.full(scores.shape[2:], -1e4, dtype=scores.dtype).triu(1)
-        # Written out: what PyTorch has for attention is several times slower to learn with on a CPU.
-        attended = scores.softmax(-1).to(value.dtype) @ value
-        x = x + self.attended(attended.transpose(1, 2).flatten(2))
+        attended = attention(query, key, value, is_first)
+        x = x + self.dropped(self.attended(attended.transpose(1, 2).flatten(2)))
         gate, hidden = self.gate_and_hidden(self.hidden_norm(x)).chunk(2, -1)
-        return x + self.output(F.silu(gate) * hidden)
+        return x + self.dropped(self.output(F.silu(gate) * hidden))
+
+    def dropped(self, x):
+        return F.dropout(x, self.dropout, self.training)
+
+
+def attention(query, key, value, is_causal):
+    if query.is_cuda:
+        return F.scaled_dot_product_attention(query, key, value.to(query.dtype), is_causal=is_causal)
+    # Written out: what PyTorch has for attention is several times slower to learn with on a CPU.
+    scores = query @ key.transpose(2, 3) * HEAD**-0.5
+    if is_causal:
+        scores = scores + torch.full(scores.shape[2:], -1e4, dtype=scores.dtype).triu(1)
+    return scores.softmax(-1).to(value.dtype) @ value
 
 
 class LanguageModel(nn.Module):
@@ -171,7 +196,7 @@ class LanguageModel(nn.Module):
         known = self.embedding.num_embeddings
         words, marks = self.embedding(ids.clamp_max(known - 1)), self.marks((ids - known).clamp_min(0))
         x = torch.where((ids >= known)[..., None], marks, words)
-        turns = angles(ids.shape[1], begin)
+        turns = angles(ids.shape[1], begin, ids.device)
         for at, layer in enumerate(self.layers):
             x = layer(x, turns, None if memory is None else memory[at])
         return self.norm(x)
@@ -184,6 +209,16 @@ class LanguageModel(nn.Module):
         return F.cross_entropy(self.scores(self.read(ids)[is_wanted]), wanted[is_wanted])
 
     @torch.no_grad()
+    def likelihood(self, ids, wanted):
+        """Of each row, the logarithm of the probability of what is wanted, and whether it is what would be written token by token."""
+        is_wanted = wanted >= 0
+        scores = self.scores(self.read(ids)[is_wanted]).log_softmax(-1)
+        logs, likeliest = torch.zeros(wanted.shape, device=ids.device), torch.ones_like(is_wanted)
+        logs[is_wanted] = scores.gather(1, wanted[is_wanted][:, None])[:, 0]
+        likeliest[is_wanted] = scores.argmax(-1) == wanted[is_wanted]
+        return logs.sum(1).tolist(), likeliest.all(1).tolist()
+
+    @torch.no_grad()
     def write(self, prompts, most, size=48):
         """The likeliest text behind each prompt, token by token, and the logarithm of its probability."""
         outputs = [None] * len(prompts)
@@ -193,7 +228,7 @@ class LanguageModel(nn.Module):
         chunks = (same[at : at + size] for same in by_length.values() for at in range(0, len(same), size))
         for chunk in chunks:
             memory = [[] for _ in self.layers]
-            ids, length = torch.tensor([prompts[at] for at in chunk]), len(prompts[chunk[0]])
+            ids, length = torch.tensor([prompts[at] for at in chunk], device=self.marks.weight.device), len(prompts[chunk[0]])
             written, total, is_done = [[] for _ in chunk], [0.0] * len(chunk), [False] * len(chunk)
             for step in range(most):
                 scores = self.scores(self.read(ids, length + step - 1 if step else 0, memory)[:, -1]).log_softmax(-1)
@@ -232,4 +267,4 @@ class LanguageModel(nn.Module):
                 tensors[f"{name}.scale"] = scale.bfloat16()
             elif isinstance(module, Norm):
                 tensors[name] = module.weight.data
-        return {name: tensor.contiguous() for name, tensor in tensors.items()}
+        return {name: tensor.contiguous().cpu() for name, tensor in tensors.items()}

@@ -91,7 +91,8 @@ impl<'a> Expected<'a> {
 }
 
 impl Wanted {
-    fn new(request: &str, talk: &Talk) -> Option<Self> {
+    /// What comes of a plain request; nothing, where the grammar does not read it.
+    pub fn new(request: &str, talk: &Talk) -> Option<Self> {
         match request {
             "?" => return Some(Self::Question),
             "social" => return Some(Self::Reply),

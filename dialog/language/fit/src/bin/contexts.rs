@@ -31,7 +31,14 @@ fn main() {
 }
 
 fn context(case: &Case<'_>) -> Option<serde_json::Value> {
-    let said = case.said.last()?;
-    let before = if case.said.len() > 1 { cases::before(case).context.lines().to_vec() } else { Vec::new() };
-    case.is_plain.then(|| json!({ "before": before, "said": said, "meant": case.expected }))
+    if !case.is_plain {
+        return None;
+    }
+    let talk = cases::before(case);
+    let before = if case.said.len() > 1 { talk.context.lines() } else { &[] };
+    // What the grammar makes nothing of is learnt only where there is nothing else.
+    let (read, unread): (Vec<&str>, Vec<&str>) =
+        case.expected.iter().partition(|label| cases::Wanted::new(label, &talk).is_some());
+    let meant = if read.is_empty() { unread } else { read };
+    Some(json!({ "before": before, "said": case.said.last()?, "meant": meant }))
 }
