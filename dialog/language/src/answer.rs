@@ -75,10 +75,7 @@ impl Answerer<'_> {
             (QuestionKind::Danger, about) => self.danger(about, question),
             (QuestionKind::People, _) => self.people(),
             (QuestionKind::Trouble, Some(phrase)) => self.with_object(phrase, |id| self.trouble(id)),
-            (QuestionKind::Owner, Some(phrase)) => self.with_object(phrase, |id| {
-                let place = prose::sentence(&self.place_sentence(id));
-                Understanding::about(format!("I do not know whose it is. {place}"), vec![id])
-            }),
+            (QuestionKind::Owner, Some(phrase)) => self.with_object(phrase, |id| self.owner(id)),
             (QuestionKind::Holder, Some(phrase)) => self.with_object(phrase, |id| self.holder(id)),
             (QuestionKind::Origin, Some(phrase)) if !phrase.is_empty() => {
                 self.with_object(phrase, |id| self.origin(id))

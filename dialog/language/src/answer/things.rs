@@ -103,6 +103,17 @@ impl Answerer<'_> {
         Understanding::about(prose::sentence(&text), vec![id])
     }
 
+    /// Whose a thing is, where its name tells that.
+    pub(crate) fn owner(&self, id: ObjectId) -> Understanding {
+        let words = self.scene.object(id).map(|object| &self.catalog.class(object.class).words);
+        let owner = words.into_iter().flatten().find_map(|name| Some(name.split_once("'s ")?.0));
+        let text = owner.map_or_else(
+            || format!("I do not know whose it is. {}", prose::sentence(&self.place_sentence(id))),
+            |owner| prose::sentence(&format!("{} is the {owner}'s", self.short(id))),
+        );
+        Understanding::about(text, vec![id])
+    }
+
     /// Which of several are as was asked.
     pub(crate) fn which(&self, phrase: &Phrase, question: &Question) -> Understanding {
         let all: Vec<ObjectId> = self.scene.objects.iter().map(|object| object.id).collect();

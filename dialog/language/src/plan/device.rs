@@ -341,7 +341,7 @@ impl Planner<'_> {
         let classes: Vec<ClassId> =
             processes.iter().flat_map(|process| process.at.iter().chain(&process.also)).copied().collect();
         let want = Want { classes: &classes, ..Want::place(Intent::Use, &[], None) };
-        let device = self.find_one(phrase, &want, Some(role))?;
+        let device = self.find_one(phrase, &want, Some(role)).or_else(|fault| self.nearest_alike(fault))?;
         let class = self.scene.object(device).map(|known| known.class).unwrap_or_default();
         let verb = settled.intent.verb();
         let cannot = || Fault::Cannot(format!("I cannot {verb} things with {}.", self.the(device)));
@@ -352,6 +352,16 @@ impl Planner<'_> {
             (None, Fault::Cannot(text)) => Err(self.need(&process.at, text)),
             (None, fault) => Err(fault),
         }
+    }
+
+    /// Of several devices of a kind any will do.
+    fn nearest_alike(&self, fault: Fault) -> Result<ObjectId, Fault> {
+        let Fault::Miss { miss: Miss::Several(candidates), .. } = &fault else { return Err(fault) };
+        let known = || candidates.iter().filter_map(|id| self.scene.object(*id));
+        let class = known().next().map(|object| object.class);
+        let is_alike = known().all(|object| Some(object.class) == class);
+        let nearest = known().min_by(|one, other| self.way_m(one).total_cmp(&self.way_m(other)));
+        nearest.filter(|_| is_alike).map(|object| object.id).ok_or(fault)
     }
 
     fn first_process(&self, settled: &Settled) -> Result<(Process, ObjectId), Fault> {

@@ -149,11 +149,19 @@ fn shaped(lexicon: &Lexicon, words: &[String]) -> Option<Question> {
             let rest: Vec<String> = between.iter().filter(|word| !token::is_punctuation(word)).cloned().collect();
             let about = match shape.kind {
                 QuestionKind::Which => which_is_so(lexicon, &rest),
+                QuestionKind::Owner if owned(lexicon, &rest).is_some() => owned(lexicon, &rest),
                 _ => at_start(lexicon, &rest).filter(|phrase| !phrase.is_empty()).or_else(|| named(lexicon, &rest)),
             };
             (about.is_some() || shape.kind.stands_alone()).then_some(Question::new(shape.kind, about, rest))
         })
     })
+}
+
+/// `mug is that on the table`, of `whose`: the mug on the table.
+fn owned(lexicon: &Lexicon, words: &[String]) -> Option<Phrase> {
+    let is_joint = |word: &&String| !matches!(word.as_str(), "is" | "are" | "that" | "this" | "these" | "those");
+    let named: Vec<String> = words.iter().filter(is_joint).cloned().collect();
+    at_start(lexicon, &named).filter(|phrase| !phrase.namings.is_empty())
 }
 
 /// `what is its color`, `and their colors`, `colors do they have`: what these stand for.

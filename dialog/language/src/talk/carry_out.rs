@@ -110,11 +110,7 @@ impl Conversation<'_> {
             }
             Fault::Offer { text, .. } => Understanding::refusal(text),
             // To put down what it holds is little, and easily undone.
-            Fault::HandFull { held, .. }
-                if self.scene.robot.held == Some(held)
-                    && !consent.may_put_down
-                    && self.judge.asking != Asking::Always =>
-            {
+            Fault::HandFull { .. } if !consent.may_put_down && self.judge.asking != Asking::Always => {
                 self.proceed(Search::new(clauses, Consent { may_put_down: true, ..consent }), context)
             }
             Fault::HandFull { held, .. } => {

@@ -14,8 +14,8 @@ use crate::{
 };
 
 /// How likely steps must be meant for them to be taken without a question, where what they change is not simply put back and where it is.
-const TO_CHANGE: f32 = 0.75;
-const TO_MOVE: f32 = 0.6;
+const TO_CHANGE: f32 = 0.8;
+const TO_MOVE: f32 = 0.7;
 /// The same where nothing but the robot itself is moved.
 const TO_LOOK: f32 = 0.45;
 /// How likely what is said must be the right reply, where nothing is done.
@@ -32,6 +32,10 @@ const MOST_PROPOSED: usize = 3;
 /// Below this, what is done is said to be what the robot thinks.
 const SURELY: f32 = 0.7;
 const UNSURE: &str = "If I understand you right:";
+/// What is said of a stop when all is done.
+const DONE_ALREADY: &str = "I have done that already. Shall I undo it?";
+const AT_REST: &str = "I am not doing anything now.";
+const UNDO: &str = "undo";
 /// How likely that is meant of which the grammar leaves words out.
 const BY_GRAMMAR: f32 = 0.7;
 /// One in so many words that nobody ever met is too much to guess at: an unknown verb is no deed, and of another language nothing is guessed.
@@ -89,7 +93,13 @@ impl Conversation<'_> {
         }
         // A robot that does nothing, and asks nothing, need not stop.
         if !context.is_busy() && context.pending.is_none() {
-            ways.retain(|way| !matches!(way.understanding, Understanding::Stop { then: None, .. }));
+            let is_stop = |way: &Way| matches!(way.understanding, Understanding::Stop { then: None, .. });
+            let (stops, others): (Vec<Way>, Vec<Way>) = ways.into_iter().partition(is_stop);
+            ways = others;
+            let is_all = ways.first().is_none_or(|way| way.probability < way.least());
+            if is_all && reading == Reading::Partial && stops.iter().any(|stop| stop.probability >= TO_MOVE) {
+                return (self.too_late(context), 1.0);
+            }
         }
         let stops = |way: &&Way| way.stops() && way.probability >= TO_STOP && context.is_busy();
         if let Some(stop) = ways.iter().find(stops) {
@@ -127,6 +137,18 @@ impl Conversation<'_> {
             return (question, 0.0);
         }
         by_grammar.taken(context)
+    }
+
+    /// What is said to who stops what has been done already: that it can be undone.
+    fn too_late(&self, context: &mut Context) -> Understanding {
+        let mut then = context.at_new_utterance();
+        match self.requested(UNDO, &mut then) {
+            Some(Understanding::Plan { steps, .. }) if self.judge.asking != Asking::Never => {
+                context.pending = Some(Pending::Offer { plans: vec![steps] });
+                ask::confirmation(DONE_ALREADY.to_owned())
+            }
+            _ => Understanding::answer(AT_REST),
+        }
     }
 
     /// What the grammar makes of it.

@@ -55,8 +55,8 @@ impl Source {
 }
 
 impl Conversation<'_> {
-    /// Plain requests without the colours of things that nobody named: `the red mug` where no red was spoken of, `the blue desk` where
-    /// `the desk` was said and something else was blue. Devices may be called by theirs.
+    /// Plain requests without the colours and kinds of things that nobody named: `the red mug` where no red was spoken of, `the blue desk`
+    /// where `the desk` was said and something else was blue. Devices may be called by theirs.
     pub(crate) fn without_invention(&self, text: &str, source: &Source) -> String {
         let words: Vec<&str> = text.split(' ').collect();
         let lexicon = self.lexicon;
@@ -64,13 +64,22 @@ impl Conversation<'_> {
             let named = lexicon.classes.longest(rest).map(|(_, namings)| namings);
             named.is_some_and(|namings| namings.iter().all(|naming| fits(self.catalog.class(naming.class))))
         };
+        // `the coffee cup` where `the cup` was said: which kind is at hand the rewriter does not know.
+        let is_kind = |kind: &String, rest: &[String]| {
+            let of_kind: Vec<String> = std::iter::once(kind).chain(rest).cloned().collect();
+            let length = |words: &[String]| lexicon.classes.longest(words).map_or(0, |(length, _)| length);
+            !source.words.contains(kind)
+                && source.said.contains(&rest[0])
+                && length(&of_kind) == length(rest) + 1
+                && is_all(rest, &|class| class.has(Property::Pickupable))
+        };
         let is_invented = |at: usize| {
             let color = words[at].to_owned();
             let rest: Vec<String> = words[at + 1..].iter().flat_map(|word| token::words(word)).collect();
-            let Some(noun) = rest.first().filter(|_| lexicon.colors.exact(std::slice::from_ref(&color)).is_some())
-            else {
-                return false;
-            };
+            let Some(noun) = rest.first() else { return false };
+            if lexicon.colors.exact(std::slice::from_ref(&color)).is_none() {
+                return is_kind(&color, &rest);
+            }
             if !source.words.contains(&color) {
                 return is_all(&rest, &|class| class.has(Property::Pickupable));
             }
