@@ -95,7 +95,7 @@ fn encode(index: u8, tick: u64, size: [u32; 2], rgba: &[u8]) -> Result<Vec<u8>, 
 /// Appends a picture of that width and height to `bytes`, as JPEG. `rgba` is `[height, width, 4]`.
 ///
 /// # Errors
-/// [`EncodingError`], where a side is longer than JPEG has room for, or `rgba` is too short.
+/// [`EncodingError`], if a side is 0 or `rgba` is too short.
 pub fn encode_jpeg(bytes: &mut Vec<u8>, [width, height]: [u32; 2], rgba: &[u8]) -> Result<(), EncodingError> {
     let side = |pixels: u32| u16::try_from(pixels).unwrap_or(u16::MAX);
     Encoder::new(bytes, QUALITY).encode(rgba, side(width), side(height), ColorType::Rgba)
