@@ -9,9 +9,9 @@ use std::{
     time::{Duration, Instant},
 };
 
-use cohabit_agent::{Client, Eyes, Outcome, PeerError, outcome};
+use cohabit_agent::{Client, Eyes, Outcome, outcome};
 use cohabit_bus::{
-    CameraId, Inbox, Publisher, Sample, Topic, Transport, Wake,
+    Inbox, Publisher, Sample, Topic, Transport, Wake,
     message::{DialogKind, DialogMessage, DialogView, Malformed, MissionMessage, StateView},
     monotonic_nanos,
 };
@@ -258,8 +258,7 @@ impl<'a> Peer<'a> {
 
     /// Opens the body's own eyes; while they are open, their pictures are rendered.
     pub fn open_eyes(&self) -> Result<Eyes, BridgeError> {
-        let camera = u8::try_from(self.body).map(CameraId::Egocentric).map_err(|_| PeerError::NoCamera(self.body))?;
-        Ok(Eyes::open(self.bus, camera, Arc::clone(&self.catalog))?)
+        Ok(Eyes::of_body(self.bus, self.body, Arc::clone(&self.catalog))?)
     }
 }
 

@@ -4,15 +4,14 @@ use base64::{Engine as _, engine::general_purpose::STANDARD};
 use cohabit_agent::Glance;
 use cohabit_bus::message::{BodyRecord, Malformed, Plane, Thing};
 use cohabit_cdf::{Catalog, Fluid, ObjectId, Property, StateFlag};
+use cohabit_dialog::encode_jpeg;
 use cohabit_language::{Known, KnownObject, within_half_turn};
-use jpeg_encoder::{ColorType, Encoder, EncodingError};
+use jpeg_encoder::EncodingError;
 
 use crate::{limits::MOST_SEEN, things::Things};
 
 /// What shows fewer pixels is overlooked, as agents do.
 const LEAST_PIXELS: u32 = 12;
-/// JPEG quality, of 100: that of the page's pictures.
-const QUALITY: u8 = 82;
 /// What is nearer to straight ahead than this is called so, degrees.
 const AHEAD_DEG: f32 = 8.0;
 
@@ -150,11 +149,10 @@ fn states(catalog: &Catalog, object: &KnownObject) -> Vec<String> {
 pub(crate) fn picture(glance: &Glance) -> Result<String, PictureError> {
     let frame = glance.frame()?;
     let colors = frame.plane(Plane::Color).ok_or(PictureError::NoColors)?;
-    let side = |pixels: u32| u16::try_from(pixels).unwrap_or(u16::MAX);
     // The pictures of a panorama stand one above the other.
-    let [width, height] = [frame.header.width, frame.header.height * frame.header.views];
+    let size = [frame.header.width, frame.header.height * frame.header.views];
     let mut bytes = Vec::new();
-    Encoder::new(&mut bytes, QUALITY).encode(colors, side(width), side(height), ColorType::Rgba)?;
+    encode_jpeg(&mut bytes, size, colors)?;
     Ok(STANDARD.encode(bytes))
 }
 

@@ -21,7 +21,7 @@ use std::{
 };
 
 use cohabit_agent::{Client, Eyes};
-use cohabit_bus::{CameraId, Session, Shm};
+use cohabit_bus::{Session, Shm};
 use cohabit_cdf::{Action, BodyKind, BodyRequest, Catalog, mission};
 use cohabit_engine::{SessionPlan, Simulator};
 use cohabit_render::{CpuRenderer, MeshLibrary};
@@ -126,10 +126,9 @@ fn act(session: &str, body: u32, has_eyes: bool, extent: &Extent) -> Result<(), 
     let never = AtomicBool::new(false);
     cohabit_agent::wait_for_mission(&bus, &never)?;
     let catalog = Arc::new(Catalog::builtin());
-    let camera = CameraId::Egocentric(u8::try_from(body)?);
     let mut going = Going {
         client: Client::join(&bus, body, "bench")?,
-        eyes: has_eyes.then(|| Eyes::open(&bus, camera, catalog)).transpose()?,
+        eyes: has_eyes.then(|| Eyes::of_body(&bus, body, catalog)).transpose()?,
     };
     going.client.claim(false)?;
     going.client.attend(None)?;

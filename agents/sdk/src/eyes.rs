@@ -90,6 +90,15 @@ impl Eyes {
         Ok(Self { frames: bus.subscriber(Topic::Frames(camera))?, catalog })
     }
 
+    /// Looks through the egocentric camera of a body.
+    ///
+    /// # Errors
+    /// [`PeerError::NoCamera`] if that body has none; [`PeerError::Bus`].
+    pub fn of_body(bus: &dyn Transport, body: u32, catalog: Arc<Catalog>) -> Result<Self, PeerError> {
+        let camera = u8::try_from(body).map(CameraId::Egocentric).map_err(|_| PeerError::NoCamera(body))?;
+        Self::open(bus, camera, catalog)
+    }
+
     /// The newest frame, if there is one that was not seen yet.
     ///
     /// # Errors

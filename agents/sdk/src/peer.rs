@@ -9,7 +9,7 @@ use std::{
 };
 
 use cohabit_bus::{
-    CameraId, Envelope, Inbox, Publisher, Sample, Topic, Transport, Wake,
+    Envelope, Inbox, Publisher, Sample, Topic, Transport, Wake,
     message::{DialogKind, DialogView, EventKind, EventMessage, Malformed, MissionMessage, StateView},
     monotonic_nanos,
 };
@@ -156,7 +156,6 @@ impl<'a> Mind<'a> {
         world: World,
     ) -> Result<Self, PeerError> {
         let senses = agent.senses();
-        let camera = u8::try_from(body).map(CameraId::Egocentric).map_err(|_| PeerError::NoCamera(body))?;
         // Before the first tick there is no past, and all that was said is new.
         let is_first = lock_step && world.newest.envelope().tick == 0;
         Ok(Self {
@@ -164,7 +163,7 @@ impl<'a> Mind<'a> {
             dialog: Inbox::new(bus, Topic::Dialog)?,
             tells: bus.publisher(Topic::Dialog)?,
             world: (senses.sight || senses.state).then_some(world),
-            eyes: senses.sight.then(|| Eyes::open(bus, camera, Arc::clone(catalog))).transpose()?,
+            eyes: senses.sight.then(|| Eyes::of_body(bus, body, Arc::clone(catalog))).transpose()?,
             glance: None,
             past: (!is_first).then(Past::default),
             turn: 0,

@@ -77,7 +77,7 @@ use crate::{
         judge::{Costs, Judge},
     },
     known::{describe, habits::Habits, imagine, process::Devices},
-    plan::remedy,
+    plan::{Planner, remedy},
     say::{ask, report, worded},
     talk::conversation::Conversation,
     words::{lexicon::Lexicon, prose},
@@ -245,7 +245,7 @@ impl Language {
         if status.is_success() {
             return report::success(&self.catalog, &self.devices, scene, step, status);
         }
-        let planner = remedy::planner(&self.catalog, &self.devices, self.judge(), scene, Focus::default());
+        let planner = Planner::new(&self.catalog, &self.devices, self.judge(), scene, Focus::default());
         let remedy = remedy::remedy(planner, step, status);
         let offer = remedy.as_ref().map(|remedy| remedy.question.as_str());
         report::failure(&self.catalog, scene, step, status, detail, offer)

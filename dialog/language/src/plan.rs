@@ -73,7 +73,32 @@ pub(crate) struct Planner<'a> {
     pub(crate) begun: (usize, Focus),
 }
 
-impl Planner<'_> {
+impl<'a> Planner<'a> {
+    /// One at the present state of the scene.
+    pub(crate) fn new(
+        catalog: &'a Catalog,
+        devices: &'a Devices,
+        judge: Judge<'a>,
+        scene: &Known,
+        focus: Focus,
+    ) -> Self {
+        Self {
+            catalog,
+            devices,
+            judge,
+            scene: scene.clone(),
+            from_m: [scene.robot.position_m[0], scene.robot.position_m[1]],
+            begun: (0, focus.clone()),
+            focus,
+            steps: Vec::new(),
+            notes: Vec::new(),
+            may_put_down: false,
+            has_looked: false,
+            clause: 0,
+            brought_about: Vec::new(),
+        }
+    }
+
     /// Adds a step and imagines its effect.
     pub(crate) fn push(&mut self, action: Action, says: String) {
         self.focus.remember(&self.scene, &action);

@@ -85,12 +85,20 @@ fn show(sample: &Sample, (index, view): (u8, &Arc<View>)) -> Result<Shown, Malfo
     Ok(shown)
 }
 
-fn encode(index: u8, tick: u64, [width, height]: [u32; 2], rgba: &[u8]) -> Result<Vec<u8>, EncodingError> {
+fn encode(index: u8, tick: u64, size: [u32; 2], rgba: &[u8]) -> Result<Vec<u8>, EncodingError> {
     let mut bytes = vec![1, index, 0, 0, 0, 0, 0, 0];
     bytes.extend(tick.to_le_bytes());
-    let side = |pixels: u32| u16::try_from(pixels).unwrap_or(u16::MAX);
-    Encoder::new(&mut bytes, QUALITY).encode(rgba, side(width), side(height), ColorType::Rgba)?;
+    encode_jpeg(&mut bytes, size, rgba)?;
     Ok(bytes)
+}
+
+/// Appends a picture of that width and height to `bytes`, as JPEG. `rgba` is `[height, width, 4]`.
+///
+/// # Errors
+/// [`EncodingError`], if a side is 0 or `rgba` is too short.
+pub fn encode_jpeg(bytes: &mut Vec<u8>, [width, height]: [u32; 2], rgba: &[u8]) -> Result<(), EncodingError> {
+    let side = |pixels: u32| u16::try_from(pixels).unwrap_or(u16::MAX);
+    Encoder::new(bytes, QUALITY).encode(rgba, side(width), side(height), ColorType::Rgba)
 }
 
 #[cfg(test)]

@@ -66,6 +66,7 @@ pub use cohabit_speech::VoiceSettings;
 pub use conversation::{Asked, Conversation, Outgoing, TurnEnd};
 pub use driving::{Drivable, NotDrivable};
 pub use expression::FacialExpression;
+pub use frames::encode_jpeg;
 pub use hidden::{Hidden, NotHidden};
 pub use hosts::{HostName, NoHost};
 pub use interpreter::{Endpoint, EndpointError};

@@ -145,11 +145,6 @@ impl Robots {
         self.robots.iter_mut()
     }
 
-    /// Whether people have to be told which of them speaks.
-    pub fn are_several(&self) -> bool {
-        self.robots.len() > 1
-    }
-
     /// The robot of a body, to hear something next: turns are numbered in the order of all conversations.
     pub fn of_body(&mut self, body: BodyId) -> Option<&mut Robot> {
         let newest = self.robots.iter().map(|robot| robot.conversation.turns()).max().unwrap_or(0);
@@ -184,9 +179,9 @@ impl Robots {
         }
     }
 
-    /// What they are called.
-    pub fn called_by(&self) -> impl Iterator<Item = &str> {
-        self.called.iter().map(String::as_str)
+    /// What people call them, if there are several.
+    pub fn called_by(&self) -> &[String] {
+        if self.robots.len() > 1 { &self.called } else { &[] }
     }
 
     /// What is said to whom is called by name.

@@ -60,8 +60,6 @@ pub struct Talk {
     voice: Arc<Voice>,
     /// The bodies of the robots.
     robots: Vec<BodyId>,
-    /// What robots were named.
-    names: Vec<String>,
     /// What pages may say next.
     drafts: Drafts,
 }
@@ -93,7 +91,6 @@ impl Talk {
         journal: Journal,
     ) -> Result<Arc<Self>, DialogError> {
         let Pages { hub, drivers, voice, mailbox, drafts, layout } = pages;
-        let names = if robots.are_several() { robots.called_by().map(str::to_owned).collect() } else { Vec::new() };
         let robots = robots.iter().map(|robot| robot.body).collect();
         hub.restore(&journal.past().lines);
         let delivery = Mutex::new(Delivery::new(bus, journal)?);
@@ -109,7 +106,6 @@ impl Talk {
             interpreter,
             voice,
             robots,
-            names,
             drafts,
         }))
     }

@@ -3,8 +3,7 @@
 use cohabit_cdf::{Action, ObjectId, Status, Verb};
 
 use crate::{
-    ground::{focus::Focus, judge::Judge},
-    known::{Known, describe, imagine},
+    known::{KnownObject, describe, imagine},
     plan::Planner,
     understanding::Step,
 };
@@ -16,8 +15,7 @@ pub(crate) struct Remedy {
 }
 
 /// The remedy for a failed step, if there is one.
-pub(crate) fn remedy(planner: Planner<'_>, step: &Step, status: Status) -> Option<Remedy> {
-    let mut planner = planner;
+pub(crate) fn remedy(mut planner: Planner<'_>, step: &Step, status: Status) -> Option<Remedy> {
     let question = match status {
         Status::ReceptacleIsClosed => {
             let closed = closed_place(&planner, &step.action)?;
@@ -45,31 +43,6 @@ pub(crate) fn remedy(planner: Planner<'_>, step: &Step, status: Status) -> Optio
     Some(Remedy { question, steps: planner.steps })
 }
 
-/// A planner at the present state of the scene.
-pub(crate) fn planner<'a>(
-    catalog: &'a cohabit_cdf::Catalog,
-    devices: &'a crate::known::process::Devices,
-    judge: Judge<'a>,
-    scene: &Known,
-    focus: Focus,
-) -> Planner<'a> {
-    Planner {
-        catalog,
-        devices,
-        judge,
-        scene: scene.clone(),
-        from_m: [scene.robot.position_m[0], scene.robot.position_m[1]],
-        begun: (0, focus.clone()),
-        focus,
-        steps: Vec::new(),
-        notes: Vec::new(),
-        may_put_down: false,
-        has_looked: false,
-        clause: 0,
-        brought_about: Vec::new(),
-    }
-}
-
 fn closed_place(planner: &Planner<'_>, action: &Action) -> Option<ObjectId> {
     let object = imagine::object_of(action)?;
     let is_place = matches!(action, Action::Place { .. });
@@ -83,7 +56,7 @@ fn closed_place(planner: &Planner<'_>, action: &Action) -> Option<ObjectId> {
 /// The nearest lever that feeds a circuit, in the machine's room.
 fn power_lever(planner: &Planner<'_>, machine: ObjectId) -> Option<ObjectId> {
     let room = planner.scene.object(machine)?.room;
-    let is_fixed = |object: &&crate::known::KnownObject| {
+    let is_fixed = |object: &&KnownObject| {
         planner.devices.levers.contains(&object.class)
             && object.parent.is_some()
             && planner.scene.robot.held != Some(object.id)

@@ -104,7 +104,7 @@ impl<'a> Reader<'a> {
     }
 
     /// `the mug yellow`, `the apple of color green`: the colour after its noun, and how many words say it.
-    pub(crate) fn late_color(&self) -> Option<(usize, String)> {
+    fn late_color(&self) -> Option<(usize, String)> {
         let mut reader = *self;
         let is_said = ["of", "in", "with"].iter().any(|word| reader.next_is(word));
         reader.at += usize::from(is_said);
@@ -231,7 +231,7 @@ impl<'a> Reader<'a> {
     }
 
     /// `one` as the noun itself, as in `the red one`.
-    pub(crate) fn is_one_head(&self) -> bool {
+    fn is_one_head(&self) -> bool {
         let rest = self.rest();
         let is_one = self.lexicon.pronouns.longest(rest).is_some_and(|(_, pronoun)| *pronoun == Pronoun::One);
         let mut after = *self;
@@ -313,7 +313,7 @@ impl<'a> Reader<'a> {
     }
 
     /// `hammer cartridge`: the second noun is meant, and the first says which; `fridge door` stays the fridge.
-    pub(crate) fn compound(&mut self, first: &[String], phrase: &mut Phrase) {
+    fn compound(&mut self, first: &[String], phrase: &mut Phrase) {
         if self.at_verb() {
             return;
         }
@@ -336,7 +336,7 @@ impl<'a> Reader<'a> {
     }
 
     /// `the machine of time`, `the arm of the robot`: a name with its words the other way round.
-    pub(crate) fn turned_round(&self) -> Option<(usize, &'a Vec<Naming>)> {
+    fn turned_round(&self) -> Option<(usize, &'a Vec<Naming>)> {
         let (rest, lexicon) = (self.rest(), self.lexicon);
         let of = (1..=2).find(|at| rest.get(*at).is_some_and(|word| word == "of"))?;
         let article = usize::from(rest.get(of + 1).is_some_and(|word| word == "the"));
@@ -348,7 +348,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Words nobody taught it: they may be adjectives before a noun it knows, or the noun.
-    pub(crate) fn unknown_head(&mut self, phrase: &mut Phrase) {
+    fn unknown_head(&mut self, phrase: &mut Phrase) {
         let mut reader = *self;
         while let Some(word) = reader.rest().first()
             && !reader.lexicon.vocabulary.has(word)

@@ -63,7 +63,7 @@ pub(crate) fn read(lexicon: &Lexicon, catalog: &Catalog, words: &[String]) -> Op
 }
 
 /// Readings with the verb's last word after the object: `turn the sink on`.
-pub(crate) fn split_readings(lexicon: &Lexicon, words: &[String]) -> Vec<(Clause, usize)> {
+fn split_readings(lexicon: &Lexicon, words: &[String]) -> Vec<(Clause, usize)> {
     let mut readings = Vec::new();
     for (head, particle, intent) in &lexicon.separable {
         if !words.starts_with(head) {
@@ -120,7 +120,7 @@ pub(crate) fn read_as(
 }
 
 /// `put all the fruit on the plate except the banana`: all the fruit but that.
-pub(crate) fn take_exceptions(clause: &mut Clause) {
+fn take_exceptions(clause: &mut Clause) {
     let Some(all) = clause.objects.last_mut().filter(|phrase| phrase.is_all) else { return };
     for (_, place) in &mut clause.places {
         if let Place::Object(phrase) = place {
@@ -129,7 +129,7 @@ pub(crate) fn take_exceptions(clause: &mut Clause) {
     }
 }
 
-pub(crate) fn read_motion(reader: &mut Reader<'_>, clause: &mut Clause) {
+fn read_motion(reader: &mut Reader<'_>, clause: &mut Clause) {
     loop {
         let mut degrees = *reader;
         if let Some(amount) = read_amount(&mut degrees) {
@@ -169,7 +169,7 @@ pub(crate) fn read_motion(reader: &mut Reader<'_>, clause: &mut Clause) {
 }
 
 /// `a bit`, `slightly`: how many words say so.
-pub(crate) fn a_bit(words: &[String]) -> Option<usize> {
+fn a_bit(words: &[String]) -> Option<usize> {
     let skipped = words
         .iter()
         .take_while(|word| matches!(word.as_str(), "a" | "just" | "very" | "tiny" | "little" | "small" | "wee"))
@@ -198,7 +198,7 @@ pub(crate) fn amount(lexicon: &Lexicon, words: &[String]) -> Option<Amount> {
     read_amount(&mut Reader::new(lexicon, words))
 }
 
-pub(crate) fn read_amount(reader: &mut Reader<'_>) -> Option<Amount> {
+fn read_amount(reader: &mut Reader<'_>) -> Option<Amount> {
     let mut after = *reader;
     // `a step`: one.
     if matches!(after.rest().first().map(String::as_str), Some("a" | "an"))
@@ -235,7 +235,7 @@ pub(crate) fn read_amount(reader: &mut Reader<'_>) -> Option<Amount> {
     Some(amount)
 }
 
-pub(crate) fn read_objects(reader: &mut Reader<'_>, clause: &mut Clause) {
+fn read_objects(reader: &mut Reader<'_>, clause: &mut Clause) {
     if reader.next_is("me") || reader.next_is("us") {
         reader.at += 1;
     }
@@ -295,7 +295,7 @@ fn placed(reader: &mut Reader<'_>) -> Option<Phrase> {
     }
 }
 
-pub(crate) fn is_unnamed(clause: &Clause) -> bool {
+fn is_unnamed(clause: &Clause) -> bool {
     clause.objects.first().is_some_and(|phrase| phrase.namings.is_empty() && phrase.instance.is_none())
 }
 
@@ -355,7 +355,7 @@ pub(crate) fn is_complete(clause: &Clause, catalog: &Catalog) -> bool {
 }
 
 /// Whether something it names affords what the verb asks.
-pub(crate) fn is_sensible(clause: &Clause, catalog: &Catalog) -> bool {
+fn is_sensible(clause: &Clause, catalog: &Catalog) -> bool {
     let affordances = clause.intent.affordances();
     let Some(phrase) = clause.objects.first().filter(|phrase| !phrase.namings.is_empty()) else { return true };
     affordances.is_empty()

@@ -103,7 +103,7 @@ pub(crate) const fn is_thing(pronoun: Pronoun) -> bool {
 
 impl Reader<'_> {
     /// `put it on the desk and the robotics lab`: heard for `in`, as nothing can be put on a room.
-    pub(crate) fn and_room(&mut self, clause: &mut Clause) -> bool {
+    fn and_room(&mut self, clause: &mut Clause) -> bool {
         let mut reader = Self { at: self.at + 1, ..*self };
         let takes_things = clause::takes_objects(clause.intent) && clause.intent != Intent::GoTo;
         if !self.next_is("and") || !takes_things {
@@ -152,7 +152,7 @@ impl Reader<'_> {
     }
 
     /// `take out of the cabinet the bread`, `the apple the red apple`, `turn the apple a carrot`.
-    pub(crate) fn names_late(&mut self, clause: &mut Clause) -> bool {
+    fn names_late(&mut self, clause: &mut Clause) -> bool {
         let mut reader = *self;
         let is_noun = |phrase: &Phrase| {
             let is_one = phrase.pronoun == Some(Pronoun::One) && phrase.is_described();
@@ -184,7 +184,7 @@ impl Reader<'_> {
     }
 
     /// `in the think`: what stands where a place was to be named, and is none.
-    pub(crate) fn tells_of(&mut self, clause: &mut Clause) -> bool {
+    fn tells_of(&mut self, clause: &mut Clause) -> bool {
         let rest = self.rest();
         // `past the fridge to the cabinet`
         if matches!(clause.intent, Intent::GoTo | Intent::Travel)

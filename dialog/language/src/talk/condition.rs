@@ -182,7 +182,7 @@ impl Conversation<'_> {
     pub(crate) fn truth(&self, condition: &[String], request: &[String], holds: bool, context: &Context) -> Truth {
         let asked = |condition: &[String]| {
             let (question, is_negated) = self.question_of(condition, request)?;
-            match self.answer(&question, &mut context.clone()) {
+            match self.answerer(context, 0).answer(&question) {
                 Understanding::Answer { text, holds: Some(is_so), .. } => Some((text, is_so != is_negated)),
                 _ => None,
             }

@@ -3,9 +3,9 @@
 use cohabit_cdf::Catalog;
 
 use crate::{
-    ground::{focus::Focus, judge::Judge},
+    ground::{Ground, focus::Focus, judge::Judge},
     known::{Known, habits::Habits, process::Devices},
-    plan::{Planner, remedy},
+    plan::Planner,
     say::ask::Ask,
     words::lexicon::Lexicon,
 };
@@ -32,6 +32,10 @@ impl Conversation<'_> {
     }
 
     pub(crate) fn planner(&self, focus: Focus) -> Planner<'_> {
-        remedy::planner(self.catalog, self.devices, self.judge, self.scene, focus)
+        Planner::new(self.catalog, self.devices, self.judge, self.scene, focus)
+    }
+
+    pub(crate) fn ground<'c>(&'c self, focus: &'c Focus) -> Ground<'c> {
+        Ground { catalog: self.catalog, scene: self.scene, focus, judge: self.judge }
     }
 }

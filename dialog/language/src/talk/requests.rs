@@ -2,19 +2,21 @@
 
 use crate::{
     context::Context,
-    talk::{conversation::Conversation, room_kind},
+    talk::{conversation::Conversation, room_kind, wording::Wording},
     understanding::Understanding,
 };
 
 impl Conversation<'_> {
     /// What plain requests mean, with `; ` between them; nothing, where the grammar does not read all words of one of them.
     pub(crate) fn requested(&self, requests: &str, context: &mut Context) -> Option<Understanding> {
-        let room = room_kind::beside(self.lexicon, &self.wording(requests).words);
-        let with_room =
-            |request: &str| self.with_room_named(&self.wording(request), room).unwrap_or_else(|| request.to_owned());
-        let requests: Vec<String> = requests.split("; ").map(with_room).collect();
-        let reads: Vec<bool> = requests.iter().map(|request| self.reads_all(&self.wording(request))).collect();
-        let is_lost = |(request, is_read): (&String, &bool)| !is_read && !is_question(request);
+        let room = room_kind::beside(self.lexicon, &self.lexicon.normalise(requests).0);
+        let said: Vec<Wording<'_>> = requests.split("; ").map(|request| self.wording(request)).collect();
+        let named: Vec<Option<String>> = said.iter().map(|request| self.with_room_named(request, room)).collect();
+        let requests: Vec<Wording<'_>> = (said.into_iter().zip(&named))
+            .map(|(request, named)| named.as_deref().map_or(request, |named| self.wording(named)))
+            .collect();
+        let reads: Vec<bool> = requests.iter().map(|request| self.reads_all(request)).collect();
+        let is_lost = |(request, is_read): (&Wording<'_>, &bool)| !is_read && !is_question(request.utterance);
         // A question that it cannot answer takes nothing from what else was said.
         if !reads.contains(&true) || requests.iter().zip(&reads).any(is_lost) {
             return None;
@@ -79,15 +81,14 @@ impl Conversation<'_> {
     }
 
     /// Requests of which those that follow each other are one text; questions, and what is no request by itself (`undo`), stay alone.
-    fn together(&self, requests: &[String]) -> Vec<String> {
+    fn together(&self, requests: &[Wording<'_>]) -> Vec<String> {
         let mut texts: Vec<String> = Vec::new();
         let mut may_go_on = false;
-        for request in requests {
-            let words = self.wording(request).tidied;
-            let is_deed = !is_question(request) && self.small(&words).is_empty() && self.chat(&words).is_none();
+        for Wording { utterance: request, tidied: words, .. } in requests {
+            let is_deed = !is_question(request) && self.small(words).is_empty() && self.chat(words).is_none();
             match texts.last_mut().filter(|_| may_go_on && is_deed) {
                 Some(last) => *last = format!("{last}. {request}"),
-                None => texts.push(request.clone()),
+                None => texts.push((*request).to_owned()),
             }
             may_go_on = is_deed;
         }

@@ -11,7 +11,7 @@ use crate::{
         search::{Consent, Search, Target},
     },
     ground::{
-        Ground,
+        focus::Focus,
         want::{Miss, Want},
     },
     known::{
@@ -103,7 +103,7 @@ impl Conversation<'_> {
 
     /// Looks where it was said to be, if that was said, or here.
     fn look_once(&self, phrase: Option<&Phrase>) -> Vec<Step> {
-        let mut planner = self.planner(crate::ground::focus::Focus::default());
+        let mut planner = self.planner(Focus::default());
         if let Some(room) = phrase.and_then(|phrase| phrase.room) {
             planner.go_to_room(room);
         } else if let Some(near) = phrase.and_then(|phrase| phrase.relations.first()) {
@@ -229,13 +229,9 @@ impl Conversation<'_> {
         }
         let room = phrase.room.or(phrase.is_here.then_some(self.scene.robot.room));
         let mut target = self.target(saying::said(phrase), classes, room);
+        let focus = Focus::default();
+        let ground = self.ground(&focus);
         for relation in &phrase.relations {
-            let ground = Ground {
-                catalog: self.catalog,
-                scene: self.scene,
-                focus: &crate::ground::focus::Focus::default(),
-                judge: self.judge,
-            };
             let other = ground.one(&relation.to, &Want::place(Intent::Find, &[], None)).ok();
             if let Some(room) = other.and_then(|id| self.scene.object(id)).map(|object| object.room) {
                 target.likely_in(room, self.catalog).into_iter().for_each(|likely| *likely *= 10.0);

@@ -4,10 +4,7 @@ use cohabit_cdf::ObjectId;
 
 use crate::{
     context::{Context, Pending, search::Consent},
-    ground::{
-        Ground,
-        want::{Miss, Want},
-    },
+    ground::want::{Miss, Want},
     plan::Fault,
     read::{
         clause::{Clause, Part},
@@ -118,7 +115,7 @@ impl Conversation<'_> {
         let told = self.answer_phrase(&tidy::plain(words))?;
         if !says_where(&told) {
             // Another name for it.
-            let ground = Ground { catalog: self.catalog, scene: self.scene, focus: &context.focus, judge: self.judge };
+            let ground = self.ground(&context.focus);
             let meant = ground.one(&told, &Want::place(Intent::Find, &[], None)).ok()?;
             return Some(self.settle(open, meant, context));
         }
@@ -216,7 +213,7 @@ impl Conversation<'_> {
         }
         // People count what was named.
         let named = if phrase.ordinal.is_some() { &candidates[..candidates.len().min(ask::ASKED)] } else { candidates };
-        let ground = Ground { catalog: self.catalog, scene: self.scene, focus: &context.focus, judge: self.judge };
+        let ground = self.ground(&context.focus);
         let left = ground.narrow(&phrase, named);
         if left.len() < candidates.len() || phrase.pronoun.is_none() && candidates.len() == 1 {
             left
@@ -227,7 +224,7 @@ impl Conversation<'_> {
 
     /// Of a long answer, the candidate that it comes to: the last one that is told from the others in it.
     fn told_at_last(&self, words: &[String], candidates: &[ObjectId], context: &Context) -> Option<ObjectId> {
-        let ground = Ground { catalog: self.catalog, scene: self.scene, focus: &context.focus, judge: self.judge };
+        let ground = self.ground(&context.focus);
         let (mut told, mut at) = (None, 0);
         while at < words.len() {
             let mut reader = Reader::new(self.lexicon, words);

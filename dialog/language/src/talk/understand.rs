@@ -6,12 +6,11 @@ use cohabit_cdf::ObjectId;
 use crate::{
     context::{Context, Pending, search::Consent},
     ground::{
-        Ground,
         confidence::Referents,
         judge::Judge,
         want::{Miss, Want},
     },
-    plan::remedy,
+    plan::settle,
     read::{
         chatter,
         clause::{self, Clause, Part},
@@ -126,16 +125,15 @@ impl Conversation<'_> {
     /// The candidates for the first referring expression of an utterance.
     pub(crate) fn referents(&self, utterance: &str, context: &Context) -> Option<Referents> {
         let (words, repairs) = self.lexicon.normalise(utterance);
-        let judge = Judge { repairs, ..self.judge };
-        let ground = Ground { catalog: self.catalog, scene: self.scene, focus: &context.focus, judge };
+        let this = Self { judge: Judge { repairs, ..self.judge }, ..*self };
+        let ground = this.ground(&context.focus);
         parts::parts(self.lexicon, self.catalog, &words).iter().find_map(|part| {
             let Part::Clause(clause) = part else { return None };
             let place = clause.places.iter().find_map(|(_, place)| match place {
                 Place::Object(phrase) => Some(phrase),
                 _ => None,
             });
-            let planner = remedy::planner(self.catalog, self.devices, judge, self.scene, context.focus.clone());
-            let settled = crate::plan::settle::settle(&planner, clause);
+            let settled = settle::settle(&this.planner(context.focus.clone()), clause);
             let phrase = settled.objects.first().or(place)?;
             ground.referents(phrase, &Want::object(clause.intent))
         })
@@ -320,7 +318,7 @@ impl Conversation<'_> {
         if relation.kind != RelationKind::Inside || phrase.namings.is_empty() || relation.to.namings.is_empty() {
             return false;
         }
-        let ground = Ground { catalog: self.catalog, scene: self.scene, focus: &context.focus, judge: self.judge };
+        let ground = self.ground(&context.focus);
         let bare = Phrase { relations: Vec::new(), ..phrase.clone() };
         let want = Want::object(Intent::Place);
         let is_carried = |id: &ObjectId| {
@@ -334,7 +332,7 @@ impl Conversation<'_> {
 
     /// An object without a verb.
     fn fragment(&self, phrase: &Phrase, context: &mut Context) -> Understanding {
-        let ground = Ground { catalog: self.catalog, scene: self.scene, focus: &context.focus, judge: self.judge };
+        let ground = self.ground(&context.focus);
         let want = Want::place(Intent::Find, &[], None);
         match ground.one(phrase, &want) {
             Ok(object) => {

@@ -75,16 +75,16 @@ impl Conversation<'_> {
         if context.is_busy() || context.pending.is_some() || !context.later.is_empty() {
             return None;
         }
-        let Awaited { until, then, .. } = context.awaited.clone()?;
+        let Awaited { until, then, .. } = context.awaited.as_ref()?;
         let request = then.first().map(|then| self.lexicon.normalise(then).0).unwrap_or_default();
-        let is_due = match &until {
+        let is_due = match until {
             Until::Seconds(seconds) => waited_s >= f64::from(*seconds),
             Until::So(claim) => matches!(self.truth(claim, &request, true, context), Truth::Holds),
         };
         if !is_due && waited_s < f64::from(LONGEST_S.max(until.seconds())) {
             return None;
         }
-        context.awaited = None;
+        let Awaited { until, then, .. } = context.awaited.take()?;
         let words = until.in_words();
         let longest = Until::Seconds(LONGEST_S).in_words();
         context.waited = Some(match &until {
@@ -219,7 +219,7 @@ impl Conversation<'_> {
     /// Whether the robot would see it become so: it sees what that is about.
     fn can_watch(&self, claim: &[String], request: &[String], context: &Context) -> bool {
         let Some((question, _)) = self.question_of(claim, request) else { return false };
-        let answer = self.answer(&question, &mut context.clone());
+        let answer = self.answerer(context, 0).answer(&question);
         let Understanding::Answer { highlight, .. } = answer else { return false };
         let is_seen = |id: &ObjectId| {
             let is_held = self.scene.robot.held == Some(*id);

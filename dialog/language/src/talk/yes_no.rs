@@ -5,7 +5,7 @@ use cohabit_cdf::{RoomId, state::StateFlag};
 use crate::{
     answer::claim::asked_state,
     context::Context,
-    ground::{Ground, want::Want},
+    ground::want::Want,
     known::describe,
     read::{
         chatter,
@@ -92,7 +92,7 @@ impl Conversation<'_> {
             return Some(self.whether_been(room, context));
         }
         let phrase = clause.objects.first()?;
-        let ground = Ground { catalog: self.catalog, scene: self.scene, focus: &context.focus, judge: self.judge };
+        let ground = self.ground(&context.focus);
         let Ok(id) = ground.one(phrase, &Want::place(Intent::Find, &[], None)) else {
             let is_search = clause.intent == Intent::Find && !phrase.is_empty();
             return is_search.then(|| Understanding::whether(false, "No, I have not found it yet.", Vec::new()));
@@ -134,7 +134,7 @@ impl Conversation<'_> {
             return None;
         }
         let question = Question::new(QuestionKind::Done, question::named(self.lexicon, done), Vec::new());
-        let ground = Ground { catalog: self.catalog, scene: self.scene, focus: &context.focus, judge: self.judge };
+        let ground = self.ground(&context.focus);
         let id = ground.one(question.about.as_ref()?, &Want::place(Intent::Find, &[], None)).ok()?;
         let has_touched = context.deeds.told_of(id).is_some();
         let answer = self.answer(&question, context);

@@ -52,7 +52,7 @@ struct WordFile {
     motion_spare: Words,
     reports: Words,
     tells: Words,
-    conditions: Conditions,
+    conditions: Words,
     undone: Words,
     titles: Words,
     pronouns: BTreeMap<Pronoun, Vec<String>>,
@@ -80,13 +80,6 @@ struct WordFile {
     undo: Words,
     do_goal: Words,
     do_mission: Words,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Conditions {
-    holds: Vec<String>,
-    fails: Vec<String>,
 }
 
 #[derive(Deserialize)]
@@ -192,6 +185,7 @@ impl Lexicon {
             (&mut self.motion_spare, &file.motion_spare),
             (&mut self.reports, &file.reports),
             (&mut self.tells, &file.tells),
+            (&mut self.conditions, &file.conditions),
             (&mut self.undone, &file.undone),
             (&mut self.titles, &file.titles),
         ];
@@ -204,8 +198,6 @@ impl Lexicon {
             .iter()
             .filter(|said| said.starts_with("what "))
             .for_each(|said| self.talk.insert(&format!("{said} is"), ()));
-        file.conditions.holds.iter().for_each(|words| self.conditions.insert(words, true));
-        file.conditions.fails.iter().for_each(|words| self.conditions.insert(words, false));
         add_all(&mut self.pronouns, &file.pronouns);
         add_all(&mut self.prepositions, &file.prepositions);
         add_all(&mut self.sides, &file.sides);

@@ -187,8 +187,8 @@ pub(crate) struct Lexicon {
     pub(crate) hand_words: PhraseTable<()>,
     pub(crate) motion_spare: PhraseTable<()>,
     pub(crate) reports: PhraseTable<()>,
-    /// What is to be done if something holds, or if it does not.
-    pub(crate) conditions: PhraseTable<bool>,
+    /// Before what is to be done if what was asked about is so, or if it is not.
+    pub(crate) conditions: PhraseTable<()>,
     /// `show me`, before `how many mugs there are`.
     pub(crate) tells: PhraseTable<()>,
     pub(crate) undone: PhraseTable<()>,

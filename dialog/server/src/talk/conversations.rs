@@ -53,8 +53,6 @@ pub struct Conversations {
     robots: Robots,
     state: NewestState,
     unheard: Unheard,
-    /// The body that was spoken to last.
-    spoken_to: BodyId,
     looked_at: Instant,
     /// The tick at which those who wait for something looked last.
     woke_at: u64,
@@ -74,8 +72,7 @@ impl Conversations {
         }
         let (unheard, thoughts) = unheard();
         let state = NewestState::new(bus)?;
-        let (spoken_to, looked_at, woke_at) = (BodyId(0), Instant::now(), 0);
-        let conversations = Self { talk, robots, state, unheard, spoken_to, looked_at, woke_at };
+        let conversations = Self { talk, robots, state, unheard, looked_at: Instant::now(), woke_at: 0 };
         conversations.tell_again()?;
         Ok((conversations, thoughts))
     }
@@ -92,7 +89,7 @@ impl Conversations {
             messages.extend(lines.filter_map(|line| line_message(line, robot.body.0)));
             messages.extend(robot.conversation.plan_under_way());
         }
-        delivery.numbered = self.robots.numbered().to_vec();
+        self.talk.hub.mark(self.robots.numbered());
         messages.iter().try_for_each(|message| delivery.publish(message))?;
         delivery.journal.told();
         Ok(())
@@ -301,7 +298,8 @@ impl Conversations {
 
     fn is_whole(&self, text: &str) -> bool {
         let text = self.robots.called(text);
-        let robot = self.robots.look_at(self.spoken_to).or_else(|| self.robots.iter().next());
+        let spoken_to = self.talk.delivery().spoken_to;
+        let robot = self.robots.look_at(spoken_to).or_else(|| self.robots.iter().next());
         let is_whole = robot.is_some_and(|robot| robot.conversation.is_whole(&text, &robot.knowledge));
         if is_whole {
             self.talk.note_draft(&text, Visitor::default());
@@ -318,7 +316,7 @@ impl Conversations {
         let names = robot.conversation.language().spoken_names(robot.knowledge.world()?);
         let [things, places, rooms] =
             [names.things, names.places, names.rooms].map(|names| names.into_iter().collect());
-        Some((number, Scene { things, places, rooms, words: self.talk.names.clone(), known: names.words }))
+        Some((number, Scene { things, places, rooms, words: self.robots.called_by().to_vec(), known: names.words }))
     }
 
     /// Delivers what follows for the robot of a body.

@@ -27,8 +27,6 @@ pub(super) struct Delivery {
     pub dialog: Box<dyn Publisher>,
     /// The body that was spoken to last.
     pub spoken_to: BodyId,
-    /// The objects that a robot asks about, in the order of their numbers.
-    pub numbered: Vec<ObjectId>,
     /// The visitors who are there, and how many pages each has open.
     pub present: BTreeMap<u32, usize>,
     /// How many wizards' pages are open.
@@ -127,7 +125,6 @@ impl Delivery {
             latency: Latency::default(),
             dialog: bus.publisher(Topic::Dialog)?,
             spoken_to: BodyId(0),
-            numbered: Vec::new(),
             present: BTreeMap::new(),
             wizards: 0,
         })
@@ -180,7 +177,6 @@ impl Talk {
             }
         }
         self.hub.mark(&outbox.numbered);
-        delivery.numbered = outbox.numbered;
         delivery.journal.told();
         if let Some(proposal) = &outbox.proposal {
             self.hub.tell_wizards(proposal);

@@ -70,23 +70,12 @@ impl Unheard {
         if is_first { self.pop() } else { None }
     }
 
-    /// All of it.
-    pub fn iter(&self) -> impl Iterator<Item = &Utterance> {
-        self.utterances.iter().map(|(_, utterance)| utterance)
-    }
-
-    /// Takes out those that are marked so, in their order.
-    pub fn take(&mut self, marked: &[bool]) -> Vec<Utterance> {
-        let (mut taken, mut rest) = (Vec::new(), VecDeque::new());
-        for (at, numbered) in std::mem::take(&mut self.utterances).into_iter().enumerate() {
-            if marked.get(at) == Some(&true) {
-                taken.push(numbered.1);
-            } else {
-                rest.push_back(numbered);
-            }
-        }
+    /// Takes out those that are over, in their order.
+    pub fn take(&mut self, is_over: impl Fn(&Utterance) -> bool) -> Vec<Utterance> {
+        let all = std::mem::take(&mut self.utterances);
+        let (over, rest): (VecDeque<_>, VecDeque<_>) = all.into_iter().partition(|(_, utterance)| is_over(utterance));
         self.utterances = rest;
-        taken
+        over.into_iter().map(|(_, utterance)| utterance).collect()
     }
 }
 
@@ -129,7 +118,7 @@ mod tests {
         assert!(unheard.first().is_some(), "there is nothing to think of");
         unheard.is_thinking = true;
         assert!(unheard.push(utterance("two")).is_none() && unheard.first().is_none(), "one at a time");
-        assert_eq!(words(&unheard.take(&[true, false])), ["one"]);
+        assert_eq!(words(&unheard.take(|one| one.said.words() == Some("one"))), ["one"]);
         assert!(unheard.considered(1).is_none(), "it is over");
         assert_eq!(unheard.first().and_then(|first| first.said.words()), Some("two"));
         unheard.is_thinking = true;
@@ -143,6 +132,6 @@ mod tests {
             assert!(unheard.push(utterance(&number.to_string())).is_none());
         }
         let oldest = unheard.push(utterance("more")).unwrap();
-        assert_eq!((oldest.said.words(), unheard.iter().count()), (Some("0"), MOST_WAITING));
+        assert_eq!((oldest.said.words(), unheard.utterances.len()), (Some("0"), MOST_WAITING));
     }
 }

@@ -64,7 +64,7 @@ impl Talk {
             Some(EventKind::MissionComplete) => game(LineKind::Ending, page::COMPLETE),
             Some(EventKind::MissionFailed) => game(LineKind::Ending, &page::failed(text)),
             Some(EventKind::Highlighted) if is_new => {
-                let number = delivery.numbered.iter().position(|one| one.0 == event.object).map(|at| at + 1);
+                let number = self.hub.marked().iter().position(|one| one.0 == event.object).map(|at| at + 1);
                 self.tell_of(event.object, |record| page::highlight(record, number, &self.catalog))?;
             }
             Some(EventKind::Sound) if is_new => {

@@ -9,13 +9,14 @@ use crate::{
     DialogError,
     conversation::{Aloud, Outgoing, Thought},
     page,
-    robots::Visitor,
+    robots::{Robots, Visitor},
     spoken::{Reading, Spoken},
     talk::{
         Said, UNREACHABLE, Utterance,
         delivery::{Begun, Heard},
     },
     voice::FromEar,
+    world_state::NewestState,
 };
 
 impl Conversations {
@@ -66,24 +67,13 @@ impl Conversations {
 
     /// What was said before a stop to those who are to stop, and is not heard yet, is over: nobody wants it done any more.
     fn leave_unheard(&mut self, stop: &Utterance) {
-        let stopped = self.hearers(stop);
+        let (robots, state) = (&self.robots, &self.state);
+        let stopped = hearers(robots, state, stop);
         let is_over = |one: &Utterance| {
-            !matches!(one.said, Said::Shown(_)) && self.hearers(one).iter().any(|body| stopped.contains(body))
+            !matches!(one.said, Said::Shown(_)) && hearers(robots, state, one).iter().any(|body| stopped.contains(body))
         };
-        let over: Vec<bool> = self.unheard.iter().map(is_over).collect();
-        self.unheard.take(&over).iter().for_each(|utterance| self.leave(utterance));
-    }
-
-    /// Who would hear something now.
-    fn hearers(&self, utterance: &Utterance) -> Vec<BodyId> {
-        let answered = match &utterance.said {
-            Said::Choice { object, .. } => self.robots.answered_by(*object),
-            _ => None,
-        };
-        let state = self.state.view().ok().flatten();
-        let words = utterance.said.words().unwrap_or_default();
-        let addressed = || self.robots.would_hear(words, utterance.visitor, state, monotonic_nanos());
-        answered.map_or_else(addressed, |body| vec![body])
+        let over = self.unheard.take(is_over);
+        over.iter().for_each(|utterance| self.leave(utterance));
     }
 
     /// What somebody said is over before it is understood; it is shown all the same.
@@ -106,7 +96,7 @@ impl Conversations {
     }
 
     fn hear_in_vain(&mut self, words: &str, utterance: &Utterance) -> Result<(), DialogError> {
-        for (nth, body) in self.hearers(utterance).into_iter().enumerate() {
+        for (nth, body) in hearers(&self.robots, &self.state, utterance).into_iter().enumerate() {
             let Some(robot) = self.robots.of_body(body) else { continue };
             let items = shown_once(nth, robot.conversation.hear_in_vain(words));
             self.deliver(body, Heard::AtPage(utterance.visitor.number), None, items)?;
@@ -214,13 +204,24 @@ impl Conversations {
 
     /// Has the robot of a body know who speaks to it.
     fn listen_to(&mut self, visitor: Visitor, body: BodyId) -> Result<(), DialogError> {
-        self.spoken_to = body;
         let Some(state) = self.state.view()? else { return Ok(()) };
         if let Some(robot) = self.robots.of_body(body) {
             robot.knowledge.note_speaker(visitor.body, state);
         }
         Ok(())
     }
+}
+
+/// Who would hear something now.
+fn hearers(robots: &Robots, state: &NewestState, utterance: &Utterance) -> Vec<BodyId> {
+    let answered = match &utterance.said {
+        Said::Choice { object, .. } => robots.answered_by(*object),
+        _ => None,
+    };
+    let state = state.view().ok().flatten();
+    let words = utterance.said.words().unwrap_or_default();
+    let addressed = || robots.would_hear(words, utterance.visitor, state, monotonic_nanos());
+    answered.map_or_else(addressed, |body| vec![body])
 }
 
 /// All that were called hear what somebody said, and it is shown once.
