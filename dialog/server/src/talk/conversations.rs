@@ -32,6 +32,7 @@ use crate::{
     expression::FacialExpression,
     interpreter::Interpretation,
     page::{self, Line},
+    peers::{Peers, for_people},
     robots::{Robot, Robots, Visitor},
     wizard::Decision,
     world_state::NewestState,
@@ -52,6 +53,7 @@ pub struct Conversations {
     talk: Arc<Talk>,
     robots: Robots,
     state: NewestState,
+    peers: Peers,
     unheard: Unheard,
     /// The body that was spoken to last.
     spoken_to: BodyId,
@@ -73,9 +75,9 @@ impl Conversations {
             talk.hub.show_face(robot.body.0, &shown);
         }
         let (unheard, thoughts) = unheard();
-        let state = NewestState::new(bus)?;
+        let (state, peers) = (NewestState::new(bus)?, Peers::new(bus)?);
         let (spoken_to, looked_at, woke_at) = (BodyId(0), Instant::now(), 0);
-        let conversations = Self { talk, robots, state, unheard, spoken_to, looked_at, woke_at };
+        let conversations = Self { talk, robots, state, peers, unheard, spoken_to, looked_at, woke_at };
         conversations.tell_again()?;
         Ok((conversations, thoughts))
     }
@@ -123,6 +125,7 @@ impl Conversations {
                 self.looked_at = Instant::now();
                 pass_over(self.look_by_and_by())?;
                 pass_over(self.wake())?;
+                self.peers.refresh()?;
             }
         }
         Ok(())
@@ -252,13 +255,14 @@ impl Conversations {
         }
         let (kind, body) = (header.kind(), BodyId(header.body));
         if let (Some(DialogKind::Reply | DialogKind::Question), 0) = (kind, header.turn) {
-            self.talk.pass_on(envelope, header);
+            self.peers.refresh()?;
+            self.talk.pass_on(envelope, header, self.peers.name(envelope.run, header.body));
             return Ok(());
         }
         if let Some(DialogKind::StepEnded | DialogKind::PlanEnded) = kind {
             self.look()?;
         }
-        let told = self.robots.names.told(&header.text);
+        let told = for_people(&self.robots.names.told(&header.text));
         let Some(Robot { conversation, knowledge, .. }) = self.robots.of_body(body) else { return Ok(()) };
         if let Some(action) = conversation.deed(header) {
             knowledge.note_deed(&action);
