@@ -46,10 +46,12 @@ export function offerRoom(rooms, here) {
 }
 
 /** Who says a line: a name where it is neither this person nor the one robot. */
-function speakerOf({ from, body, visitor: by }) {
+function speakerOf({ from, body, name, visitor: by }) {
   if (from === "person") return by === undefined || by === visitor ? "" : words("person_number", { number: by });
-  if (from === "robot" && body !== undefined) return robotNames.get(body) ?? words("body_number", { number: body });
-  return "";
+  if (from !== "robot") return "";
+  const robot = robotNames.get(body);
+  if (name) return robot ? `${capitalised(name)} (${robot})` : capitalised(name);
+  return body === undefined ? "" : robot ?? words("body_number", { number: body });
 }
 
 export function clearChat() {

@@ -198,7 +198,9 @@ fn a_client_plays_a_mission_by_tools_alone_and_hands_the_body_back() {
     }
     let told = client.done("listen", json!({}));
     assert!(told.contains("all goals of the mission are met"), "{told}");
-    client.done("look_around", json!({}));
+    let around = client.call("look_around", json!({}));
+    let is_seen = around.text.starts_with("You are in the ") && around.content[1]["type"] == "image";
+    assert!(!around.is_refusal && is_seen, "{}", around.text);
     client.done("turn", json!({ "yaw_rad": 0.5 }));
     assert!(client.leave().success());
 
@@ -217,7 +219,9 @@ fn people_hear_what_a_client_says_and_answer_what_it_asks() {
     let mut client = Client::start(&play.session, &[]);
     let hears = |page: &Page, part: &str| page.chat.iter().any(|(from, text)| from == "robot" && text.contains(part));
     client.done("say", json!({ "text": "I am played by tools." }));
-    page.wait("the words", |page, _| hears(page, "I am played by tools.")).unwrap();
+    let shown = page.wait("the words", |_, message| message["text"] == "I am played by tools.").unwrap();
+    assert_eq!((&shown["from"], &shown["name"]), (&json!("robot"), &json!("test")));
+    assert_eq!(shown["body"], Value::Null, "there is one robot");
     let asked = client.begin_call("ask", json!({ "text": "Which way to the laser?", "seconds": 50 }));
     page.wait("the question", |page, _| hears(page, "Which way to the laser?")).unwrap();
     page.say("through the robotics lab").unwrap();
@@ -225,6 +229,10 @@ fn people_hear_what_a_client_says_and_answer_what_it_asks() {
     assert!(!answer.is_refusal && answer.text.contains(": through the robotics lab"), "{}", answer.text);
     let nobody = client.done("ask", json!({ "text": "And then?", "seconds": 1 }));
     assert!(nobody.starts_with("Nobody has answered yet"), "{nobody}");
+    client.done("turn", json!({ "yaw_rad": 0.1 }));
+    page.say("go to the main office").unwrap();
+    page.wait("who commands it", |page, _| hears(page, "The program \"test\" commands me now")).unwrap();
+    assert!(!page.chat.iter().any(|(_, text)| text.contains("body 0")), "{:?}", page.chat);
     // Goals are told to who may know them.
     let refused = client.ask("tools/call", json!({ "name": "goals" }));
     assert_eq!(refused["error"]["code"], -32602, "{refused}");

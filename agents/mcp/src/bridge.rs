@@ -8,7 +8,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use cohabit_agent::{Eyes, Glance, PeerError, ToolDeed};
+use cohabit_agent::{Eyes, Glance, Outcome, PeerError, ToolDeed};
 use cohabit_bus::message::{DialogKind, GoalRecord};
 use cohabit_cdf::{Action, ActionKind, ObjectId};
 use serde_json::{Map, Value};
@@ -57,8 +57,8 @@ struct Waiting {
 enum Wait {
     /// That the body is its own, to do something then.
     Claim { command: u64, then: Action },
-    /// The end of an action.
-    Action { command: u64 },
+    /// The end of an action; then a picture, where it is one of looking.
+    Action { command: u64, is_look: bool },
     /// A picture of that tick, or a later one.
     Picture { eyes: Eyes, tick: u64 },
     /// What people say from then on.
@@ -67,14 +67,12 @@ enum Wait {
     Time,
 }
 
-/// What comes of a call, for now.
+/// What comes of a call.
 enum Next {
     /// It is answered.
     Said(Said),
     /// It waits for this, so long at most.
     Waits(Wait, Duration),
-    /// It waits on.
-    Later,
 }
 
 /// What came from the client since it was last looked.
@@ -155,6 +153,12 @@ impl<'a> Bridge<'a> {
         match self.protocol.hear(line) {
             Heard::Nothing => Ok(()),
             Heard::Answer(answer) => self.outlet.send(&answer),
+            Heard::Begun { answer, client } => {
+                if let Some(name) = client {
+                    self.peer.rename(&name);
+                }
+                self.outlet.send(&answer)
+            }
             Heard::Cancelled(id) => self.cancel(&id),
             Heard::Call { id, name, arguments } => self.call(id, &name, &arguments),
         }
@@ -172,7 +176,6 @@ impl<'a> Bridge<'a> {
                 self.waiting.push(Waiting { id, until: Instant::now() + patience, wait });
                 Ok(())
             }
-            Next::Later => Ok(()),
         }
     }
 
@@ -181,7 +184,7 @@ impl<'a> Bridge<'a> {
         let Some(at) = self.waiting.iter().position(|one| one.id == *id) else { return Ok(()) };
         let given_up = self.waiting.swap_remove(at);
         match given_up.wait {
-            Wait::Action { command } if self.latest == command => self.peer.act(Action::Stop).map(drop),
+            Wait::Action { command, .. } if self.latest == command => self.peer.act(Action::Stop).map(drop),
             _ => Ok(()),
         }
     }
@@ -234,7 +237,8 @@ impl<'a> Bridge<'a> {
     fn do_now(&mut self, action: Action) -> Result<Next, BridgeError> {
         let command = self.peer.act(action)?;
         (self.latest, self.unanswered) = (command, None);
-        Ok(Next::Waits(Wait::Action { command }, ACTION_PATIENCE))
+        let is_look = matches!(action, Action::LookAround);
+        Ok(Next::Waits(Wait::Action { command, is_look }, ACTION_PATIENCE))
     }
 
     /// The action that a call means; why there is none.
@@ -304,62 +308,62 @@ impl<'a> Bridge<'a> {
         for mut one in std::mem::take(&mut self.waiting) {
             let is_late = Instant::now() >= one.until;
             match self.progress(&mut one.wait, is_late)? {
-                Next::Said(said) => self.outlet.send(&answer(&one.id, said.json()))?,
-                Next::Waits(wait, patience) => {
+                Some(Next::Said(said)) => self.outlet.send(&answer(&one.id, said.json()))?,
+                Some(Next::Waits(wait, patience)) => {
                     self.waiting.push(Waiting { id: one.id, until: Instant::now() + patience, wait });
                 }
-                Next::Later => self.waiting.push(one),
+                None => self.waiting.push(one),
             }
         }
         Ok(())
     }
 
-    /// How far a call is; `is_late` says that it is not waited for any longer.
-    fn progress(&mut self, wait: &mut Wait, is_late: bool) -> Result<Next, BridgeError> {
+    /// What comes of a call that is under way, if anything yet; `is_late` says that it is not waited for any longer.
+    fn progress(&mut self, wait: &mut Wait, is_late: bool) -> Result<Option<Next>, BridgeError> {
         match wait {
             Wait::Claim { command, then } => match self.peer.take_outcome(*command) {
-                Some(outcome) if outcome.status.is_success() => self.do_now(*then),
-                Some(outcome) => Ok(Next::Said(Said::of(&outcome))),
-                None if is_late => Ok(refused("the simulator does not answer: `cohabit top` shows it")),
-                None => Ok(Next::Later),
+                Some(outcome) if outcome.status.is_success() => self.do_now(*then).map(Some),
+                Some(outcome) => Ok(Some(Next::Said(Said::of(&outcome)))),
+                None => Ok(is_late.then(|| refused("the simulator does not answer: `cohabit top` shows it"))),
             },
-            Wait::Action { command } => Ok(match self.ended(*command) {
-                Some(next) => next,
+            Wait::Action { command, is_look } => match self.ended(*command) {
+                Some(outcome) if *is_look && outcome.status.is_success() => self.look().map(Some),
+                Some(outcome) => Ok(Some(Next::Said(Said::of(&outcome)))),
                 None if is_late => {
                     self.unanswered = Some(*command);
                     let patience = ACTION_PATIENCE.as_secs();
-                    done(format!("It is still under way after {patience} s: `wait` tells its end, `stop` ends it."))
+                    let told = "`wait` tells its end, `stop` ends it";
+                    Ok(Some(done(format!("It is still under way after {patience} s: {told}."))))
                 }
-                None => Next::Later,
-            }),
+                None => Ok(None),
+            },
             Wait::Picture { eyes, tick } => match newest(eyes, *tick)? {
-                Some(glance) => Ok(Next::Said(self.seen(&glance)?)),
-                None if is_late => Ok(refused("the camera delivers no picture: `cohabit top` shows the session")),
-                None => Ok(Next::Later),
+                Some(glance) => Ok(Some(Next::Said(self.seen(&glance)?))),
+                None => Ok(is_late.then(|| refused("the camera delivers no picture: `cohabit top` shows the session"))),
             },
             Wait::Answer { from } => {
                 let said = self.peer.take_said_since(*from);
                 Ok(match (said.is_empty(), is_late) {
-                    (false, _) => done(told(&said)),
-                    (true, true) => done("Nobody has answered yet: `listen` tells what is said later."),
-                    (true, false) => Next::Later,
+                    (false, _) => Some(done(told(&said))),
+                    (true, true) => Some(done("Nobody has answered yet: `listen` tells what is said later.")),
+                    (true, false) => None,
                 })
             }
             Wait::Time => {
                 let ended = self.unanswered.and_then(|command| self.ended(command));
-                let over = if is_late { done("The time has gone by.") } else { Next::Later };
-                Ok(ended.unwrap_or(over))
+                let ended = ended.map(|outcome| Next::Said(Said::of(&outcome)));
+                Ok(ended.or_else(|| is_late.then(|| done("The time has gone by."))))
             }
         }
     }
 
-    /// What is said of an action that has ended.
-    fn ended(&mut self, command: u64) -> Option<Next> {
+    /// What came of an action, if it has ended.
+    fn ended(&mut self, command: u64) -> Option<Outcome> {
         let outcome = self.peer.take_outcome(command)?;
         if self.unanswered == Some(command) {
             self.unanswered = None;
         }
-        Some(Next::Said(Said::of(&outcome)))
+        Some(outcome)
     }
 }
 

@@ -26,7 +26,7 @@ use crate::{
     limits::{MOST_CALLS, MOST_HEARD, WORLD_PATIENCE},
 };
 
-/// What the others call a peer of this kind.
+/// What the others call a peer of this kind whose client has not said its name.
 const PEER: &str = "mcp";
 /// How long it sleeps while it waits for the world.
 const NAP: Duration = Duration::from_millis(50);
@@ -45,7 +45,6 @@ struct Heard {
 pub(crate) struct Peer<'a> {
     bus: &'a dyn Transport,
     catalog: Arc<Catalog>,
-    body: u32,
     joined_nanos: u64,
     client: Client,
     dialog: Inbox,
@@ -90,7 +89,6 @@ impl<'a> Peer<'a> {
         Ok(Some(Self {
             bus,
             catalog: Arc::clone(catalog),
-            body,
             joined_nanos: monotonic_nanos(),
             client: Client::join(bus, body, PEER)?,
             dialog: Inbox::new(bus, Topic::Dialog)?,
@@ -106,7 +104,12 @@ impl<'a> Peer<'a> {
 
     /// The number of the body.
     pub const fn body(&self) -> u32 {
-        self.body
+        self.client.body()
+    }
+
+    /// Is called so from now on by people and other peers: the name of its client.
+    pub fn rename(&mut self, name: &str) {
+        self.client.rename(name);
     }
 
     /// The classes of things, and the table of what can be done to them.
@@ -126,13 +129,7 @@ impl<'a> Peer<'a> {
 
     /// All there is, as language speaks of it; nothing, where the body is not in any room.
     pub fn scene(&self) -> Result<Option<Known>, BridgeError> {
-        let scene = everything(self.state()?, BodyId(self.body), &self.catalog);
-        let classes = self.catalog.classes().len();
-        Ok(scene.map(|mut scene| {
-            // What a peer wrote may be no class.
-            scene.objects.retain(|object| usize::from(object.class.0) < classes);
-            scene
-        }))
+        Ok(everything(self.state()?, BodyId(self.body()), &self.catalog))
     }
 
     /// Sleeps until something is said or happens, at most so long.
@@ -176,15 +173,15 @@ impl<'a> Peer<'a> {
     }
 
     fn take_in_dialog(&mut self) -> Result<(), BridgeError> {
-        let own = self.says.run();
+        let (own, body) = (self.says.run(), self.body());
         while let Some((sample, ())) = self.dialog.next(|sample| DialogView::new(sample.payload()).map(drop))? {
             let envelope = sample.envelope();
             if envelope.run == own || envelope.sent_nanos < self.joined_nanos {
                 continue;
             }
             let DialogView { header, .. } = DialogView::new(sample.payload())?;
-            if let Some(text) = hearing::dialog(header, self.body) {
-                let is_to_it = header.kind() == Some(DialogKind::Utterance) && header.body == self.body;
+            if let Some(text) = hearing::dialog(header, body) {
+                let is_to_it = header.kind() == Some(DialogKind::Utterance) && header.body == body;
                 self.hear(text, is_to_it);
             }
         }
@@ -251,14 +248,14 @@ impl<'a> Peer<'a> {
 
     /// Says or asks something as the body: to all who listen, and to the log.
     pub fn say(&mut self, kind: DialogKind, text: &str) -> Result<(), BridgeError> {
-        let message = DialogMessage::new(kind, self.body, 0, text);
+        let message = DialogMessage::new(kind, self.body(), 0, text);
         self.says.send(self.client.tick(), message.bytes(), &mut |bytes| message.write(bytes))?;
         Ok(())
     }
 
     /// Opens the body's own eyes; while they are open, their pictures are rendered.
     pub fn open_eyes(&self) -> Result<Eyes, BridgeError> {
-        Ok(Eyes::of_body(self.bus, self.body, Arc::clone(&self.catalog))?)
+        Ok(Eyes::of_body(self.bus, self.body(), Arc::clone(&self.catalog))?)
     }
 }
 

@@ -21,6 +21,13 @@ pub(crate) enum Heard {
     Nothing,
     /// This is to be answered at once.
     Answer(Value),
+    /// The connection begins.
+    Begun {
+        /// What is to be answered at once.
+        answer: Value,
+        /// What the client is called, if it says so.
+        client: Option<String>,
+    },
     /// A tool is to be used.
     Call {
         /// The number of the request, by which it is answered.
@@ -127,7 +134,7 @@ impl Protocol {
             "serverInfo": { "name": "cohabit", "title": "Cohabit", "version": env!("CARGO_PKG_VERSION") },
             "instructions": self.instructions,
         });
-        Ok(Heard::Answer(answer(id, spoken)))
+        Ok(Heard::Begun { answer: answer(id, spoken), client: client_name(parameters) })
     }
 
     fn call(&self, id: &Value, parameters: &Map<String, Value>) -> Result<Heard, Fault> {
@@ -145,6 +152,16 @@ impl Protocol {
         };
         Ok(Heard::Call { id: id.clone(), name: name.to_owned(), arguments })
     }
+}
+
+/// What a client is called: its title for people, or else its name.
+fn client_name(parameters: &Map<String, Value>) -> Option<String> {
+    let about = parameters.get("clientInfo")?;
+    let named = |member: &str| {
+        let name: String = about.get(member)?.as_str()?.chars().filter(|letter| !letter.is_control()).collect();
+        Some(name.trim().to_owned()).filter(|name| !name.is_empty())
+    };
+    named("title").or_else(|| named("name"))
 }
 
 /// What a notification is about, which nobody answers.
@@ -196,7 +213,7 @@ mod tests {
 
     fn answered(heard: Heard) -> Value {
         match heard {
-            Heard::Answer(answer) => answer,
+            Heard::Answer(answer) | Heard::Begun { answer, .. } => answer,
             other => panic!("not answered: {other:?}"),
         }
     }
@@ -226,6 +243,23 @@ mod tests {
         }
         let nothing = request("initialize", json!({}));
         check_error(&mut protocol(), &nothing, &json!(7), INVALID_PARAMS, "`protocolVersion`");
+    }
+
+    #[test]
+    fn a_client_is_called_by_its_title_or_else_by_its_name() {
+        for (about, expected) in [
+            (json!({ "name": "claude-ai", "title": "Claude", "version": "1" }), Some("Claude")),
+            (json!({ "name": " claude-ai\n", "title": " " }), Some("claude-ai")),
+            (json!({ "name": 3 }), None),
+            (json!({}), None),
+            (Value::Null, None),
+        ] {
+            let parameters = json!({ "protocolVersion": "2025-06-18", "clientInfo": &about });
+            let Heard::Begun { client, .. } = protocol().hear(&request("initialize", parameters)) else {
+                panic!("it does not begin: {about}");
+            };
+            assert_eq!(client.as_deref(), expected, "{about}");
+        }
     }
 
     #[test]

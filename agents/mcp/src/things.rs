@@ -92,11 +92,23 @@ impl Things {
     }
 
     fn several(&self, text: &str, objects: &[ObjectId], scene: &Known) -> String {
-        let named = |id: &ObjectId| format!("{} is {}", id.0, self.name(*id, scene));
-        let listed: Vec<String> = objects.iter().take(MOST_FITTING).map(named).collect();
-        let rest = objects.len().saturating_sub(MOST_FITTING);
-        let more = if rest > 0 { format!("; and {rest} more") } else { String::new() };
-        format!("several things are `{text}`: {}{more}. Name one by its number", listed.join("; "))
+        let objects = objects.iter().filter_map(|id| scene.object(*id));
+        let mut fitting: Vec<(f32, &KnownObject)> =
+            objects.map(|object| (distance_m(scene, object), object)).collect();
+        fitting.sort_by(|(one, _), (other, _)| one.total_cmp(other));
+        let rest = fitting.len().saturating_sub(MOST_FITTING);
+        let nearest = fitting.into_iter().take(MOST_FITTING);
+        let mut lines: Vec<String> = nearest.map(|(away_m, object)| self.candidate(away_m, object, scene)).collect();
+        if rest > 0 {
+            lines.push(format!("and {rest} more, farther away"));
+        }
+        format!("several things fit `{text}`: name one by its number or its instance id\n{}", lines.join("\n"))
+    }
+
+    /// A thing that may be meant, with its distance, m.
+    fn candidate(&self, away_m: f32, object: &KnownObject, scene: &Known) -> String {
+        let (name, room) = (self.name(object.id, scene), object.room.name_in(self.language.catalog()));
+        format!("{}: {name} [{}]; in the {room}, {away_m:.1} m away", object.id.0, object.instance)
     }
 }
 
@@ -105,6 +117,12 @@ fn bare(text: &str) -> String {
     let text = text.trim().to_lowercase();
     let bare = ARTICLES.iter().find_map(|article| text.strip_prefix(article)).map(str::to_owned);
     bare.unwrap_or(text)
+}
+
+/// How far a thing is from the body, m.
+fn distance_m(scene: &Known, object: &KnownObject) -> f32 {
+    let [dx, dy] = [0, 1].map(|axis| object.position_m[axis] - scene.robot.position_m[axis]);
+    dx.hypot(dy)
 }
 
 fn all(scene: &Known, is: impl Fn(&KnownObject) -> bool) -> Vec<ObjectId> {
@@ -139,8 +157,15 @@ mod tests {
         let catalog = Arc::new(Catalog::builtin());
         let (things, scene) = (Things::new(&catalog), scene(&catalog));
         let several = things.object("mug", &scene).unwrap_err();
-        assert!(several.starts_with("several things are `mug`: ") && !several.contains("bowl"), "{several}");
-        assert!(["0 is the ", "1 is the ", "yellow"].iter().all(|part| several.contains(part)), "{several}");
+        let lines: Vec<&str> = several.lines().collect();
+        assert_eq!(lines.len(), 3, "{several}");
+        assert!(lines[0].starts_with("several things fit `mug`: name one by its number"), "{several}");
+        for (line, [begin, end]) in lines[1..].iter().zip([
+            ["0: the ", " [CoffeeMug_Boss_1]; in the break room, 1.0 m away"],
+            ["1: the ", " [CoffeeMug_Yellow_1]; in the break room, 2.8 m away"],
+        ]) {
+            assert!(line.starts_with(begin) && line.ends_with(end), "{several}");
+        }
         for (text, part) in [
             ("9", "no thing of number 9"),
             ("the green mug", "nothing here is `the green mug`"),
@@ -152,6 +177,21 @@ mod tests {
         }
         let near = things.nothing("Bowl_02", &scene);
         assert!(near.contains("did you mean `Bowl_01`?"), "{near}");
+    }
+
+    #[test]
+    fn of_many_things_that_fit_the_nearest_are_named() {
+        let catalog = Arc::new(Catalog::builtin());
+        let (things, mut scene) = (Things::new(&catalog), scene(&catalog));
+        let mug = scene.objects[0].clone();
+        let far = (10..).zip([9.0; MOST_FITTING]);
+        let copy = |(id, x_m)| KnownObject { id: ObjectId(id), position_m: [x_m, 0.0, 0.8], ..mug.clone() };
+        scene.objects.extend(far.map(copy));
+        let several = things.object("CoffeeMug_Boss", &scene).unwrap_err();
+        let lines: Vec<&str> = several.lines().collect();
+        assert_eq!(lines.len(), 2 + MOST_FITTING, "{several}");
+        assert!(lines[1].starts_with("0: ") && lines[1].ends_with(", 1.0 m away"), "{several}");
+        assert_eq!(lines.last(), Some(&"and 1 more, farther away"));
     }
 
     #[test]

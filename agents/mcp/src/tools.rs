@@ -125,7 +125,7 @@ pub(crate) fn all(table: &ActionTable, tells_goals: bool) -> Vec<Tool> {
     let of_body = tools(table).into_iter().map(|tool| Tool {
         kind: Kind::Body(tool.deed),
         name: name(tool.deed),
-        about: tool.description,
+        about: about(tool.deed, tool.description),
         arguments: argument(tool.deed).into_iter().collect(),
     });
     own.chain(of_body).collect()
@@ -137,6 +137,14 @@ const fn name(deed: ToolDeed) -> &'static str {
         // The word that people, and so language models, have for it.
         ToolDeed::Handle(ActionKind::Place) => "put",
         deed => deed.name(),
+    }
+}
+
+/// What clients are told of it: what the body does, and what they learn by it.
+fn about(deed: ToolDeed, description: String) -> String {
+    match deed {
+        ToolDeed::LookAround => description + " The answer tells and shows what is in sight then, as `look` does.",
+        _ => description,
     }
 }
 

@@ -78,6 +78,12 @@ impl Client {
         self.body
     }
 
+    /// Is called so from now on by those who read its claims and its pulse.
+    pub fn rename(&mut self, peer: &str) {
+        peer.clone_into(&mut self.peer);
+        self.heart.rename(peer);
+    }
+
     /// Who it is, as states and events name the commander of a body.
     pub(crate) fn run(&self) -> u64 {
         self.commands.run()

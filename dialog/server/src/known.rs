@@ -190,6 +190,8 @@ fn known_object(
     object: &ObjectRecord,
     catalog: &Catalog,
 ) -> Option<KnownObject> {
+    // What a peer wrote may be no class.
+    catalog.classes().get(usize::from(object.class))?;
     let room = catalog.room_at(u32::from(object.room))?;
     let note = state.notes.iter().find(|note| note.object == object.object);
     let [x, y, z, w] = object.rotation;
@@ -215,4 +217,28 @@ fn known_object(
 fn in_view(robot: &KnownRobot, position_m: [f32; 3]) -> bool {
     let [dx, dy] = [position_m[0] - robot.position_m[0], position_m[1] - robot.position_m[1]];
     within_half_turn(dy.atan2(dx) - robot.yaw_rad).abs() < HALF_VIEW_RAD
+}
+
+#[cfg(test)]
+mod tests {
+    use cohabit_bus::message::{BodyRecord, StateParts};
+
+    use super::*;
+
+    #[test]
+    fn what_is_of_no_class_is_not_known() {
+        let catalog = Catalog::builtin();
+        let thing = ObjectRecord { parent: NONE, held_by: NONE, works: NONE, ..ObjectRecord::default() };
+        let past_the_last = u16::try_from(catalog.classes().len()).unwrap();
+        let objects = (0..).zip([0, past_the_last, u16::MAX, 1]);
+        let objects = objects.map(|(object, class)| ObjectRecord { object, class, ..thing }).collect();
+        let body = BodyRecord { held: NONE, ..BodyRecord::default() };
+        let parts = StateParts { bodies: vec![body], objects, ..StateParts::default() };
+        let mut bytes = vec![0_u64; parts.bytes().div_ceil(8)];
+        let bytes = &mut bytemuck::cast_slice_mut(&mut bytes)[..parts.bytes()];
+        parts.write(bytes);
+        let known = everything(StateView::new(bytes).unwrap(), BodyId(0), &catalog).unwrap();
+        let ids: Vec<ObjectId> = known.objects.iter().map(|object| object.id).collect();
+        assert_eq!(ids, [ObjectId(0), ObjectId(3)]);
+    }
 }

@@ -20,6 +20,7 @@ pub mod known;
 mod latency;
 mod limits;
 mod page;
+mod peers;
 mod person_seats;
 mod presence;
 mod questionnaire;

@@ -82,6 +82,9 @@ pub struct Line {
     /// Which body speaks or is spoken to, where there are several robots.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub body: Option<u32>,
+    /// What the peer is called that says it, where that is not the robot's own mind.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
     /// The page at which a person said it: pages are numbered as they come, from 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub visitor: Option<u32>,
@@ -118,6 +121,7 @@ impl Line {
             turn,
             text: in_lines(&text.into()),
             body: None,
+            name: None,
             visitor: None,
             answers: Vec::new(),
         }

@@ -29,6 +29,12 @@ impl Heart {
         Ok(Self { pulses: bus.publisher(Topic::Pulses)?, pulse, next_nanos: 0 })
     }
 
+    /// Calls its peer so from now on, and tells that with its next beat, which is due at once.
+    pub fn rename(&mut self, peer: &str) {
+        self.pulse.peer = Text::new(peer);
+        self.next_nanos = 0;
+    }
+
     /// Beats, if it is time: its peer has taken in that tick, and lost so many samples.
     ///
     /// # Errors

@@ -32,6 +32,7 @@ use crate::{
     expression::FacialExpression,
     interpreter::Interpretation,
     page::{self, Line},
+    peers::{Peers, for_people},
     robots::{Robot, Robots, Visitor},
     wizard::Decision,
     world_state::NewestState,
@@ -52,6 +53,7 @@ pub struct Conversations {
     talk: Arc<Talk>,
     robots: Robots,
     state: NewestState,
+    peers: Peers,
     unheard: Unheard,
     looked_at: Instant,
     /// The tick at which those who wait for something looked last.
@@ -71,8 +73,8 @@ impl Conversations {
             talk.hub.show_face(robot.body.0, &shown);
         }
         let (unheard, thoughts) = unheard();
-        let state = NewestState::new(bus)?;
-        let conversations = Self { talk, robots, state, unheard, looked_at: Instant::now(), woke_at: 0 };
+        let (state, peers) = (NewestState::new(bus)?, Peers::new(bus)?);
+        let conversations = Self { talk, robots, state, peers, unheard, looked_at: Instant::now(), woke_at: 0 };
         conversations.tell_again()?;
         Ok((conversations, thoughts))
     }
@@ -120,6 +122,7 @@ impl Conversations {
                 self.looked_at = Instant::now();
                 pass_over(self.look_by_and_by())?;
                 pass_over(self.wake())?;
+                self.peers.refresh()?;
             }
         }
         Ok(())
@@ -249,13 +252,14 @@ impl Conversations {
         }
         let (kind, body) = (header.kind(), BodyId(header.body));
         if let (Some(DialogKind::Reply | DialogKind::Question), 0) = (kind, header.turn) {
-            self.talk.pass_on(envelope, header);
+            self.peers.refresh()?;
+            self.talk.pass_on(envelope, header, self.peers.name(envelope.run, header.body));
             return Ok(());
         }
         if let Some(DialogKind::StepEnded | DialogKind::PlanEnded) = kind {
             self.look()?;
         }
-        let told = self.robots.names.told(&header.text);
+        let told = for_people(&self.robots.names.told(&header.text));
         let Some(Robot { conversation, knowledge, .. }) = self.robots.of_body(body) else { return Ok(()) };
         if let Some(action) = conversation.deed(header) {
             knowledge.note_deed(&action);

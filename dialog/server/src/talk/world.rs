@@ -7,6 +7,7 @@ use cohabit_bus::{
     message::{self, DialogHeader, DialogKind, DialogView, EventKind, EventMessage, ObjectRecord},
     monotonic_nanos,
 };
+use cohabit_cdf::BodyId;
 use serde_json::Value;
 
 use super::{Talk, delivery::Delivery, mailbox::Message};
@@ -30,11 +31,14 @@ impl Talk {
         }
     }
 
-    /// Shows what a mind says of its own accord.
-    pub(super) fn pass_on(&self, envelope: &Envelope, header: &DialogHeader) {
+    /// Shows what a mind says of its own accord; with its name, if that is not the robot's own mind.
+    pub(super) fn pass_on(&self, envelope: &Envelope, header: &DialogHeader, name: Option<&str>) {
         let kind = if header.kind() == Some(DialogKind::Question) { LineKind::Question } else { LineKind::Say };
         let mut line = Line::new(Speaker::Robot, kind, 0, header.text.as_str());
-        line.body = Some(header.body);
+        // The one robot needs no name, and a body that is no robot does.
+        let is_the_robot = self.robots == [BodyId(header.body)];
+        line.body = (!is_the_robot).then_some(header.body);
+        line.name = name.map(str::to_owned);
         let mut delivery = self.delivery();
         self.voice.say(&line, header.body);
         self.tell(&mut delivery, envelope, line);

@@ -7,8 +7,8 @@ use std::{
 };
 
 use cohabit_bus::{
-    BusError, Inbox, Local, Publisher, Sample, Topic,
-    message::{BodyRecord, DialogView, NONE, StateParts},
+    BusError, Heart, Inbox, Local, Publisher, Sample, Topic,
+    message::{BodyRecord, DialogMessage, DialogView, NONE, StateParts},
 };
 use cohabit_cdf::{Catalog, Layout, RoomId};
 use cohabit_language::{Consulting, Knows, Language};
@@ -171,6 +171,22 @@ fn what_follows_is_told_in_order_and_nothing_before_it_is_written_down() {
         assert!(entry.starts_with("{\"deed\":") && entry.contains(SAID) && entry.contains("going to"), "{entry}");
     }
     assert_eq!(stage.newest_entry(), "\"told\"");
+}
+
+#[test]
+fn what_a_client_says_is_shown_with_its_name_and_what_the_own_mind_says_without() {
+    let mut stage = Stage::new("names", &language(), &Holding::default());
+    let run = stage.bus.publisher(Topic::Dialog).unwrap().run();
+    let message = DialogMessage::new(DialogKind::Reply, 0, 0, "Here I am.");
+    for (sequence, peer, name) in [(1, "Claude", json!("Claude")), (2, "agent", Value::Null)] {
+        Heart::new(&*stage.bus, peer, 0).unwrap().beat(1, 0).unwrap();
+        let envelope = Envelope { run, sequence, ..Envelope::default() };
+        stage.conversations.take(Message::FromAgent(envelope, Box::new(message.header))).unwrap();
+        let shown = stage.pages();
+        assert_eq!(shown.len(), 1, "{shown:?}");
+        assert_eq!((&shown[0]["text"], &shown[0]["name"]), (&json!("Here I am."), &name));
+        assert_eq!(shown[0]["body"], Value::Null, "there is one robot");
+    }
 }
 
 #[test]
