@@ -144,8 +144,7 @@ impl Registry {
         })
     }
 
-    /// What the wizard's page shows: the sessions that a wizard takes part in now, with what lets the
-    /// wizard in.
+    /// What the wizard's page shows: the sessions that a wizard takes part in now, with what lets the wizard in.
     pub(crate) fn wizard_sessions(&self) -> Value {
         let session = |(place, participant): (&u32, &Participant)| {
             let live = participant.live.as_ref().filter(|_| self.stands_for_session(*place))?;

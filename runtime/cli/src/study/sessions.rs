@@ -202,7 +202,7 @@ struct PlayedSession {
     wizard: Option<String>,
     /// The seats of people that were told so far.
     seats: Vec<ToldSeat>,
-    /// Whether a wizard sits at theirs.
+    /// Whether somebody sits at the wizard's seat.
     wizards_seat: SeatState,
     /// What its bus tells of the world, and of what is said.
     heard: Option<Heard>,

@@ -251,7 +251,8 @@ fn the_wizards_page_is_led_to_the_seat_and_the_participants_page_is_as_ever() {
         page
     };
     let before = page(&mut case);
-    assert_eq!((&before["page"], &case.registry().wizard_sessions()["sessions"]), (&"mission".into(), &serde_json::json!([])));
+    let sessions = case.registry().wizard_sessions()["sessions"].clone();
+    assert_eq!((&before["page"], &sessions), (&"mission".into(), &serde_json::json!([])));
     let lacks_wizard = |case: &mut Case| case.registry().overview(1)["participants"][0]["lacks_wizard"].clone();
     assert_eq!(lacks_wizard(&mut case), false);
     let led = PageAddress { port: 1, token: "t".to_owned(), wizard: Some("w".to_owned()), seats: Vec::new() };
