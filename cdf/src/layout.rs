@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::builtin;
 use crate::catalog::Catalog;
+use crate::nearest::aside;
 use crate::room::RoomId;
 use footprint::Footprint;
 
@@ -268,11 +269,6 @@ pub struct NotePlace {
     pub yaw_deg: f32,
 }
 
-/// What was meant, if it is near to what was written.
-fn meant(near: &Option<String>) -> String {
-    near.as_ref().map_or_else(String::new, |near| format!(" (did you mean `{near}`?)"))
-}
-
 /// Why a floor plan could not be had.
 #[derive(Debug, thiserror::Error)]
 pub enum LayoutError {
@@ -285,7 +281,7 @@ pub enum LayoutError {
         source: Box<toml::de::Error>,
     },
     /// No file has this id.
-    #[error("there is no layout `{id}`{}; there are {known}", meant(.near))]
+    #[error("there is no layout `{id}`{}; there are {known}", aside(.near))]
     Unknown {
         /// What was asked for.
         id: String,
@@ -295,7 +291,7 @@ pub enum LayoutError {
         known: String,
     },
     /// A file names an instance that is not there to be removed, or to be stood on.
-    #[error("{file}: there is no `{instance}`{}: name an instance placed earlier", meant(.near))]
+    #[error("{file}: there is no `{instance}`{}: name an instance placed earlier", aside(.near))]
     NoInstance {
         /// Which file.
         file: String,

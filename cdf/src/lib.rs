@@ -37,6 +37,7 @@ pub use goal::{Expression, Goal, GoalState, InstancePattern, Occasion, Predicate
 pub use layout::{Layout, LayoutError};
 pub use mission::{Mission, ObjectRequest};
 pub use model::Model;
+pub use nearest::suggestion;
 pub use room::{RoomEntry, RoomId, Rooms};
 pub use semantic::SemanticClass;
 pub use state::{Color, Fluid, StateFlag, StateFlags};

@@ -15,7 +15,18 @@ pub(crate) fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) 
 
 /// A remedy that names the known name nearest to `name`.
 pub(crate) fn did_you_mean<'k>(name: &str, known: impl IntoIterator<Item = &'k str>) -> Option<String> {
-    nearest(name, known).map(|near| format!("did you mean `{near}`?"))
+    nearest(name, known).map(suggestion)
+}
+
+/// What a message says of the known name that is near to one that is not.
+#[must_use]
+pub fn suggestion(near: &str) -> String {
+    format!("did you mean `{near}`?")
+}
+
+/// The same within a sentence; nothing, if no name is near.
+pub(crate) fn aside(near: &Option<String>) -> String {
+    near.as_deref().map_or_else(String::new, |near| format!(" ({})", suggestion(near)))
 }
 
 fn lower(text: &str) -> Vec<char> {

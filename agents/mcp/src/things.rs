@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use cohabit_cdf::{Catalog, GoToTarget, ObjectId, RoomId};
+use cohabit_cdf::{Catalog, GoToTarget, ObjectId, RoomId, suggestion};
 use cohabit_language::{Context, Known, KnownObject, Language};
 
 use crate::limits::MOST_FITTING;
@@ -87,7 +87,7 @@ impl Things {
             class.is_some_and(|class| scene.objects.iter().any(|object| object.class == class))
         };
         let near = catalog.near(text).filter(is_there);
-        let meant = near.map_or_else(String::new, |near| format!("did you mean `{near}`? "));
+        let meant = near.map_or_else(String::new, |near| format!("{} ", suggestion(&near)));
         format!("nothing here is `{text}`: {meant}`look` lists what is in sight")
     }
 

@@ -21,7 +21,7 @@ pub use self::{
     view::{Judgement, Scope, View, takes},
 };
 use self::{condition::Test as T, file::Reader};
-use crate::{action::Status, state::StateFlag};
+use crate::{action::Status, nearest::aside, state::StateFlag};
 
 /// Something that must hold, and what is answered where it does not.
 #[derive(Clone, Debug, Eq, PartialEq)]
@@ -202,7 +202,7 @@ pub enum TableError {
         change: Change,
     },
     /// It names a class that the catalogue does not have.
-    #[error("{file}: `{class}` is no class of the catalogue{}", meant(.near))]
+    #[error("{file}: `{class}` is no class of the catalogue{}", aside(.near))]
     NoClass {
         /// Which file.
         file: String,
@@ -221,11 +221,6 @@ pub enum TableError {
         /// The name.
         work: String,
     },
-}
-
-/// What was meant, if it is near to what was written.
-fn meant(near: &Option<String>) -> String {
-    near.as_ref().map_or_else(String::new, |near| format!(": did you mean `{near}`?"))
 }
 
 /// All rules, devices, works and recipes.

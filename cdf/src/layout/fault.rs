@@ -3,6 +3,7 @@
 use std::fmt;
 
 use super::{OpeningKind, RoomId};
+use crate::nearest::suggestion;
 
 /// Viewpoints a room has.
 pub(super) const VIEWPOINTS: u8 = 8;
@@ -204,7 +205,7 @@ impl LayoutFault {
     /// What rids a floor plan of it.
     #[must_use]
     pub fn remedy(&self) -> String {
-        let meant = |near: &Option<String>| near.as_ref().map(|near| format!("did you mean `{near}`?"));
+        let meant = |near: &Option<String>| near.as_deref().map(suggestion);
         let text = match self {
             Self::UnknownClass { near, .. } => {
                 let rule = "begin the instance with a class, and end it with `_` and a number";

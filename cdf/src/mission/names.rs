@@ -7,7 +7,7 @@ use super::{
 };
 use crate::{
     catalog::{ClassId, Property},
-    nearest::did_you_mean,
+    nearest::{did_you_mean, suggestion},
 };
 
 /// What stands between a machine's instance id and the class it makes.
@@ -153,6 +153,6 @@ impl Reader<'_> {
 
     /// A remedy for a misspelt instance.
     fn near_class(&self, instance: &str) -> Option<String> {
-        self.catalog.near(instance).map(|near| format!("did you mean `{near}`?"))
+        self.catalog.near(instance).as_deref().map(suggestion)
     }
 }

@@ -197,7 +197,7 @@ fn what_is_wrong_is_named_with_its_file_its_place_and_what_would_be_right() {
         (
             "table/more.toml",
             "[[device]]\nclass = [\"Wrench_1\"]\n".to_owned(),
-            &["first/table/more.toml: `Wrench_1` is no class of the catalogue: did you mean `Wrench_01`?"],
+            &["first/table/more.toml: `Wrench_1` is no class of the catalogue (did you mean `Wrench_01`?)"],
         ),
         (
             "missions/clean_wrnch.script",

@@ -2,6 +2,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use cohabit_tables::{Align, columns};
+
 use crate::{
     mission::Split,
     paper::{Paper, PaperMethod},
@@ -205,19 +207,10 @@ fn rate(tally: Option<&Tally>) -> String {
 pub fn text(grids: &[Grid]) -> String {
     let mut text = String::new();
     for grid in grids {
-        let lines: Vec<&Vec<String>> = std::iter::once(&grid.head).chain(&grid.rows).collect();
-        let width = |column: usize| {
-            lines.iter().filter_map(|line| line.get(column)).map(|cell| cell.chars().count()).max().unwrap_or(0)
-        };
-        let widths: Vec<usize> = (0..grid.head.len()).map(width).collect();
+        let lines: Vec<Vec<String>> = std::iter::once(&grid.head).chain(&grid.rows).cloned().collect();
         text.push_str(&grid.title);
         text.push('\n');
-        for line in &lines {
-            let cells: Vec<String> =
-                line.iter().zip(&widths).map(|(cell, width)| format!("{cell:width$}", width = *width)).collect();
-            text.push_str(cells.join("  ").trim_end());
-            text.push('\n');
-        }
+        text.push_str(&columns(&lines, Align::Left));
         if !grid.note.is_empty() {
             text.push_str(&grid.note);
             text.push('\n');

@@ -1,20 +1,18 @@
 //! `cohabit catalog`: what missions, floor plans and scripts may name.
 
-use std::{
-    collections::BTreeMap,
-    io::{self, Write as _},
-};
+use std::collections::BTreeMap;
 
 use clap::ValueEnum;
 use cohabit_cdf::{
     ActionKind, Catalog, Layout, ObjectClass, Property, RoomId, WorldData,
     mission::{GoalForm, goal_kinds},
 };
+use cohabit_tables::{Align, columns};
 use serde_json::{Map, Value, json};
 
 use crate::{
     failure::bad_input,
-    terminal::{shown_json, shown_lines},
+    terminal::{print, shown_json, shown_lines},
     world::WorldPacks,
 };
 
@@ -96,12 +94,7 @@ impl List {
                 shown_lines(sheets.collect::<anyhow::Result<Vec<_>>>()?.join("\n")).to_string()
             }
         };
-        let mut out = io::stdout().lock();
-        match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-            // Who reads has read enough.
-            Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
-            done => Ok(done?),
-        }
+        print(&text)
     }
 }
 
@@ -115,16 +108,7 @@ impl Sheet {
         let head = self.head.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>();
         let rows = self.rows.iter().map(|row| row.iter().map(cell).collect::<Vec<_>>());
         let lines: Vec<Vec<String>> = std::iter::once(head).chain(rows).collect();
-        let width = |column: usize| lines.iter().map(|line| line[column].chars().count()).max().unwrap_or(0);
-        let widths: Vec<usize> = (0..self.head.len()).map(width).collect();
-        let mut text = String::new();
-        for line in &lines {
-            let cells: Vec<String> =
-                line.iter().zip(&widths).map(|(cell, width)| format!("{cell:width$}", width = *width)).collect();
-            text.push_str(cells.join("  ").trim_end());
-            text.push('\n');
-        }
-        text
+        columns(&lines, Align::Left)
     }
 
     /// A list of objects, each with the columns as its members.
@@ -184,7 +168,7 @@ fn devices(catalog: &Catalog) -> Sheet {
             Cell::Several(needs.collect()),
         ]);
     }
-    Sheet { head: &["id", "name", "work", "works_on", "worked_by", "refuses_where"], rows }
+    Sheet { head: &["id", "name", "work", "works_on", "worked_by", "refuses_if"], rows }
 }
 
 /// All floor plans but their mirror images.

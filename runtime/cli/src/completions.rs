@@ -1,11 +1,9 @@
 //! `cohabit completions`: a script by which a shell completes commands and options.
 
-use std::io::{self, Write as _};
-
 use anyhow::Context as _;
 use clap::{CommandFactory as _, ValueEnum};
 
-use crate::Cohabit;
+use crate::{Cohabit, terminal::print};
 
 /// Prints a script by which a shell completes the commands and options of this program
 #[derive(clap::Args)]
@@ -29,11 +27,8 @@ enum Shell {
 impl Completions {
     /// Prints the script.
     pub fn run(&self) -> anyhow::Result<()> {
-        match io::stdout().lock().write_all(&self.shell.script()) {
-            // Who reads may have read enough.
-            Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(error).context("print the script"),
-            _ => Ok(()),
-        }
+        let script = String::from_utf8(self.shell.script()).context("a script that is no text")?;
+        print(&script)
     }
 }
 

@@ -8,14 +8,12 @@ mod processor;
 mod speech;
 mod system;
 
-use std::{
-    io::{self, BufWriter, Write},
-    net::SocketAddr,
-};
+use std::{io, net::SocketAddr};
 
+use cohabit_tables::{Align, columns};
 use serde_json::{Value, json};
 
-use crate::peers::Listening;
+use crate::{peers::Listening, terminal::print};
 use machine::Machine;
 
 pub use finding::{Finding, State};
@@ -72,37 +70,28 @@ impl Doctor {
         let mut findings = Vec::new();
         let page = SocketAddr::new(self.listening.listen, self.listening.port);
         look(page, &mut |name, finding| findings.push((name, finding)))?;
-        let told = self.tell(&findings);
-        // Who reads may have read enough.
-        if let Err(error) = told
-            && error.kind() != io::ErrorKind::BrokenPipe
-        {
-            return Err(error.into());
-        }
+        print(&if self.json { json_text(&findings) } else { text(&findings) })?;
         let broken = count(&findings, State::Broken);
         anyhow::ensure!(broken == 0, "no session can run here");
         Ok(())
     }
+}
 
-    fn tell(&self, findings: &[(&'static str, Finding)]) -> io::Result<()> {
-        let mut out = BufWriter::new(io::stdout().lock());
-        if self.json {
-            let checks: Vec<Value> = findings.iter().map(|(name, finding)| finding.value(name)).collect();
-            let able = count(findings, State::Broken) == 0;
-            writeln!(out, "{:#}", json!({ "can_run_sessions": able, "checks": checks }))?;
-            return out.flush();
-        }
-        for (name, finding) in findings {
-            writeln!(out, "{:7} {name:17} {}", finding.state.name(), finding.found)?;
-            for line in [&finding.costs, &finding.remedy] {
-                if !line.is_empty() {
-                    writeln!(out, "{:25} {line}", "")?;
-                }
-            }
-        }
-        writeln!(out, "\n{}", verdict(findings))?;
-        out.flush()
+fn json_text(findings: &[(&str, Finding)]) -> String {
+    let checks: Vec<Value> = findings.iter().map(|(name, finding)| finding.value(name)).collect();
+    let able = count(findings, State::Broken) == 0;
+    format!("{:#}\n", json!({ "can_run_sessions": able, "checks": checks }))
+}
+
+/// Each finding, below it what it costs and what to do, and then the verdict.
+fn text(findings: &[(&str, Finding)]) -> String {
+    let mut lines = Vec::new();
+    for (name, finding) in findings {
+        let told = [&finding.costs, &finding.remedy].into_iter().filter(|line| !line.is_empty());
+        lines.push(vec![finding.state.name().to_owned(), (*name).to_owned(), finding.found.clone()]);
+        lines.extend(told.map(|line| vec![String::new(), String::new(), line.clone()]));
     }
+    format!("{}\n{}\n", columns(&lines, Align::Left), verdict(findings))
 }
 
 /// Looks at all of this machine, where a page is to be served at `page`; tells each check's name and what it finds.

@@ -14,6 +14,7 @@ use cohabit_dialog::{Asking, Effort, Knows, Language};
 use cohabit_eval::{
     Caps, Played, Report, Settings, Style, Tally, Task, generate, play, pool, read_missions, read_tasks, solve,
 };
+use cohabit_tables::{Align, columns};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::{failure::bad_input, terminal::shown, world::WorldPacks};
@@ -265,12 +266,15 @@ fn print(report: &Report) {
     if unsolved.len() > MOST_PRINTED {
         println!("... and {} more; `--report FILE` has them all", unsolved.len() - MOST_PRINTED);
     }
-    let width = report.families.keys().map(String::len).max().unwrap_or(0).max(8);
-    println!("{:width$}  missions  solved   rate  95 % interval  goals met  actions  failed  questions", "family");
-    for (name, tally) in &report.families {
-        row(&shown(if name.is_empty() { "not played" } else { name }).to_string(), width, tally);
-    }
-    row("all", width, &report.total);
+    let head = ["family", "missions", "solved", "rate", "95 % interval", "goals met", "actions", "failed", "questions"];
+    let families = report.families.iter().map(|(name, tally)| {
+        let name = if name.is_empty() { "not played" } else { name };
+        row(&shown(name).to_string(), tally)
+    });
+    let all = row("all", &report.total);
+    let rows: Vec<Vec<String>> =
+        std::iter::once(Vec::from(head.map(str::to_owned))).chain(families).chain([all]).collect();
+    print!("{}", columns(&rows, Align::Right));
     let ticks: u64 = report.missions.iter().map(|task| task.ticks).sum();
     println!(
         "{} ticks in {:.1} s with {} workers: {:.0} times real time",
@@ -281,20 +285,19 @@ fn print(report: &Report) {
     );
 }
 
-fn row(name: &str, width: usize, tally: &Tally) {
+fn row(name: &str, tally: &Tally) -> Vec<String> {
     let [low, high] = tally.interval_95;
-    println!(
-        "{name:width$}  {:8}  {:6}  {:5.1}  {:5.1} – {:5.1}  {:9}  {:7.1}  {:6.1}  {:9.1}",
-        tally.missions,
-        tally.solved,
-        tally.success_rate * 100.0,
-        low * 100.0,
-        high * 100.0,
+    vec![
+        name.to_owned(),
+        tally.missions.to_string(),
+        tally.solved.to_string(),
+        format!("{:.1}", tally.success_rate * 100.0),
+        format!("{:.1} – {:5.1}", low * 100.0, high * 100.0),
         format!("{}/{}", tally.goals_met, tally.goals),
-        tally.mean_actions,
-        tally.mean_failed_actions,
-        tally.mean_questions
-    );
+        format!("{:.1}", tally.mean_actions),
+        format!("{:.1}", tally.mean_failed_actions),
+        format!("{:.1}", tally.mean_questions),
+    ]
 }
 
 fn why(task: &Played) -> String {

@@ -8,7 +8,6 @@ mod tests;
 
 use std::{
     env, fmt,
-    io::{self, Write as _},
     net::{Ipv4Addr, SocketAddr},
     process::{Command, Stdio},
     sync::atomic::Ordering,
@@ -19,7 +18,7 @@ use anyhow::Context as _;
 use clap::ValueEnum;
 use cohabit_dialog::{Framing, ServerLimits, Site, site_of_files, token};
 
-use crate::{failure::bad_input, site::listen, stop};
+use crate::{failure::bad_input, site::listen, stop, terminal::print};
 
 /// Shows the guide: serves it to browsers of this machine, without a network, or prints one page of it to the terminal
 #[derive(clap::Args)]
@@ -58,7 +57,7 @@ impl Guide {
     /// Serves the guide until the user ends it, or prints a page.
     pub fn run(&self) -> anyhow::Result<()> {
         match &self.text {
-            Some(name) => print(name),
+            Some(name) => print_page(name),
             None => self.serve(),
         }
     }
@@ -83,14 +82,12 @@ impl Guide {
     }
 }
 
-fn print(name: &str) -> anyhow::Result<()> {
+fn print_page(name: &str) -> anyhow::Result<()> {
     let page = book::page(name).ok_or_else(|| {
         let known: Vec<&str> = book::PAGES.iter().map(|page| page.name).collect();
         bad_input(format!("the guide has no page `{name}`: choose one of {}", known.join(", ")))
     })?;
-    // Who reads may have read enough.
-    let _ = io::stdout().lock().write_all(page.text.as_bytes());
-    Ok(())
+    print(page.text)
 }
 
 /// Opens an address in the browser, where there is a desktop. Where that fails, the address has been printed.

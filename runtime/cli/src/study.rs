@@ -13,7 +13,6 @@ mod synthetic_log;
 mod wishes;
 
 use std::{
-    io::Write as _,
     path::{Path, PathBuf},
     sync::{
         Arc, Mutex,
@@ -34,7 +33,7 @@ use crate::{
     movement::with_movement,
     site::SiteOptions,
     stop,
-    terminal::shown,
+    terminal::{print, shown},
     world::WorldPacks,
 };
 pub use data::without_practice;
@@ -141,7 +140,7 @@ impl Study {
 /// A study's file, and the study in it.
 fn read(path: &Path) -> anyhow::Result<(StudyFile, cohabit_study::Study)> {
     let file = StudyFile::read(path).map_err(bad_input)?;
-    let study = file.check(&ThisProgram).map_err(bad_input)?;
+    let study = file.check(&ThisProgram::default()).map_err(bad_input)?;
     Ok((file, study))
 }
 
@@ -154,9 +153,7 @@ fn world_of(study: &cohabit_study::Study, folder: &Path) -> anyhow::Result<World
 impl Check {
     fn run(&self) -> anyhow::Result<()> {
         let Some(file) = self.file.as_ref().filter(|_| !self.schema) else {
-            // Who reads may have read enough.
-            let _ = writeln!(std::io::stdout().lock(), "{:#}", cohabit_study::schema());
-            return Ok(());
+            return print(&format!("{:#}\n", cohabit_study::schema()));
         };
         let (_, study) = read(file)?;
         let count = |kind| study.conditions(kind).len();

@@ -3,7 +3,21 @@
 //! All text that this program did not write itself goes through [`shown`] before it is printed: names and titles of missions,
 //! names of files and sessions, what people said.
 
-use std::fmt::{self, Display, Write};
+use std::{
+    fmt::{self, Display, Write},
+    io::{self, Write as _},
+};
+
+use anyhow::Context as _;
+
+/// Prints a text at once. It is no failure that nobody reads it any more: whoever reads may have read enough.
+pub fn print(text: &str) -> anyhow::Result<()> {
+    let mut out = io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(error).context("print to the terminal"),
+        _ => Ok(()),
+    }
+}
 
 /// `text` on one line: characters that a terminal obeys or hides are written as escapes.
 pub fn shown<T: Display>(text: T) -> Shown<T> {

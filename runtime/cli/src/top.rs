@@ -5,20 +5,19 @@ mod sheet;
 mod window;
 
 use std::{
-    io::{self, IsTerminal as _, Write as _},
+    io::{self, IsTerminal as _},
     sync::atomic::{AtomicBool, Ordering},
     thread,
     time::Duration,
 };
 
-use anyhow::Context as _;
 use cohabit_bus::{
     Heart, Inbox, Sample, Shm, Topic, Transport,
     message::{self, NONE, PulseMessage, StateView, TickView},
     monotonic_nanos,
 };
 
-use crate::{failure::joining, sessions, stop};
+use crate::{failure::joining, sessions, stop, terminal::print};
 use sheet::Sheet;
 use window::Window;
 
@@ -56,24 +55,15 @@ impl Top {
         if let Some(seconds) = lasting.or((!live).then_some(1.0)) {
             watch.look_for(Duration::from_secs_f32(seconds.clamp(0.0, 3600.0)), &stop)?;
             let sheet = watch.sheet(session.name());
-            return show(&if self.json { format!("{}\n", sheet.json()) } else { sheet.to_string() });
+            return print(&if self.json { format!("{}\n", sheet.json()) } else { sheet.to_string() });
         }
-        show(CLEAR)?;
+        print(CLEAR)?;
         while !stop.load(Ordering::Relaxed) {
             watch.look_for(EVERY, &stop)?;
             let text = watch.sheet(session.name()).to_string().replace('\n', &format!("{REST_OF_LINE}\n"));
-            show(&format!("{HOME}{text}{REST_OF_SCREEN}"))?;
+            print(&format!("{HOME}{text}{REST_OF_SCREEN}"))?;
         }
         Ok(())
-    }
-}
-
-/// Prints a text at once; that nobody reads it any more is no failure.
-fn show(text: &str) -> anyhow::Result<()> {
-    let mut out = io::stdout().lock();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(error).context("the terminal"),
-        _ => Ok(()),
     }
 }
 

@@ -34,8 +34,7 @@ impl Registry {
 
     /// Whether somebody takes no part any more who did.
     pub(crate) fn has_left(&self, place: u32) -> bool {
-        let is_out = |phase: &Phase| matches!(phase, Phase::Withdrawn | Phase::Excluded | Phase::Parted);
-        self.gone.contains(&place) || self.participants.get(&place).is_some_and(|one| is_out(one.progress.phase()))
+        self.gone.contains(&place) || self.participants.get(&place).is_some_and(|one| one.progress.phase().is_out())
     }
 
     /// With whom somebody plays the mission that they are at.

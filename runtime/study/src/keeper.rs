@@ -12,12 +12,12 @@ use std::{
 
 use crate::{
     design::StudyWorld,
-    pair::{pair_label, pair_of, partner_of},
+    pair::partner_of,
     plan::{PlannedMission, Step, pseudonym},
     probe::{self, Happening},
     progress::{Doing, Ending, Event, Phase, Progress},
     registry::{Live, Participant, Registry, StudyFault},
-    session::{Look, Player, Wanted, name_of_try},
+    session::{Look, Player, Wanted, Whose, name_of_try},
     settings::session_arguments,
     shared, tables,
     tutorial::{self, Activity},
@@ -158,7 +158,7 @@ impl Registry {
             return Some(News::Over(Ending::TimeUp));
         }
         let (unsaved_s, happened) = (live.unsaved_s, live.playing.happened());
-        let tried = live.playing.tried();
+        let tried = live.playing.tried(live.seat);
         if unsaved_s >= SAVE_EVERY_S {
             self.save_played(place);
         }
@@ -246,9 +246,9 @@ impl Registry {
         match player.start(&wanted) {
             Ok(playing) => {
                 let parts = if is_shared { shared::parts(playing, party.len()) } else { vec![playing] };
-                for (place, playing) in party.iter().zip(parts) {
+                for (seat, (place, playing)) in party.iter().zip(parts).enumerate() {
                     let looked = Instant::now();
-                    let live = Live { playing, page: None, is_heard, looked, unsaved_s: 0.0, over: None };
+                    let live = Live { playing, seat, page: None, is_heard, looked, unsaved_s: 0.0, over: None };
                     if let Some(participant) = self.participants.get_mut(place) {
                         participant.live = Some(live);
                     }
@@ -267,10 +267,9 @@ impl Registry {
         arguments: Vec<String>,
     ) -> Wanted {
         let (place, together) = (progress.plan().place, progress.together());
-        let is_of_pairs = self.study.pairing.is_some();
         let name = name_of_try(place, step, attempt, together);
         Wanted {
-            participant: if is_of_pairs { pair_label(pair_of(place)) } else { pseudonym(place) },
+            participant: Whose::of(&self.study, place).label(),
             seats: if party.len() > 1 { self.study.session_size() } else { 0 },
             mission: mission.mission.clone(),
             arguments,

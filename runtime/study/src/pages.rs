@@ -6,7 +6,7 @@ use crate::{
     company::Company,
     design::{Block, ConsentBox, Study},
     markdown::html,
-    pair::{PartnerAbsent, pair_label, pair_of, seat_of},
+    pair::{pair_label, pair_of, seat_of},
     plan::{Plan, PlannedMission, Step, pseudonym},
     progress::{Doing, Phase, Progress},
     registry::{Live, Participant, Reading, Registry, Who},
@@ -92,7 +92,7 @@ impl Registry {
     fn waiting(&self, place: u32) -> Value {
         if self.company(place) == Company::Awaited {
             let may = self.may_instead(place);
-            return json!({ "page": "partner", "is_late": may.is_some(), "may": may.map(PartnerAbsent::name) });
+            return json!({ "page": "partner", "is_late": may.is_some(), "may": may });
         }
         let ahead = self.queue().iter().position(|party| party.contains(&place));
         json!({ "page": "waiting", "ahead": ahead })
@@ -102,7 +102,7 @@ impl Registry {
     fn skipped_by(&self, place: u32) -> Value {
         match (&self.study.pairing, self.playmate(place)) {
             (Some(pairing), Some(partner)) => json!({
-                "by": pairing.skip.name(),
+                "by": pairing.skip,
                 "is_asked": self.wants_to_skip(place),
                 "is_wanted": self.wants_to_skip(partner),
             }),
@@ -144,9 +144,9 @@ impl Registry {
         })
     }
 
-    /// What the wizard's page shows: the sessions that a wizard takes part in now, with what lets the seat's page in.
-    pub(crate) fn seats(&self) -> Value {
-        let seat = |(place, participant): (&u32, &Participant)| {
+    /// What the wizard's page shows: the sessions that a wizard takes part in now, with what lets the wizard in.
+    pub(crate) fn wizard_sessions(&self) -> Value {
+        let session = |(place, participant): (&u32, &Participant)| {
             let live = participant.live.as_ref().filter(|_| self.stands_for_session(*place))?;
             let page = live.page.as_ref()?;
             let (_, mission, _) = participant.progress.mission()?;
@@ -160,8 +160,8 @@ impl Registry {
                 "is_over": live.over.is_some(),
             }))
         };
-        let seats: Vec<Value> = self.participants.iter().filter_map(seat).collect();
-        json!({ "title": self.study.title, "seats": seats })
+        let sessions: Vec<Value> = self.participants.iter().filter_map(session).collect();
+        json!({ "title": self.study.title, "sessions": sessions })
     }
 
     fn row(&self, place: u32) -> Value {

@@ -1,7 +1,7 @@
 //! Pairs: two participants who play their missions together, each at their own page. Which pair somebody belongs to, and which seat
 //! they have in it, follows from their place alone.
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 /// How many participants a pair has.
 pub const PAIR_SIZE: u32 = 2;
@@ -20,7 +20,7 @@ pub struct Pairing {
 }
 
 /// What may follow when somebody has waited for their partner in vain.
-#[derive(Clone, Copy, Debug, Default, Deserialize, Eq, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, Eq, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PartnerAbsent {
     /// They wait on, until the experimenter decides.
@@ -33,7 +33,7 @@ pub enum PartnerAbsent {
 }
 
 /// Who has to agree that a mission is skipped.
-#[derive(Clone, Copy, Debug, Default, Deserialize, Eq, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, Eq, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SkippedBy {
     /// Both of a pair.
@@ -41,29 +41,6 @@ pub enum SkippedBy {
     Both,
     /// Either of them, for both.
     Either,
-}
-
-impl PartnerAbsent {
-    /// As a study's file and pages have it.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Wait => "wait",
-            Self::Alone => "alone",
-            Self::End => "end",
-        }
-    }
-}
-
-impl SkippedBy {
-    /// As a study's file and pages have it.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Both => "both",
-            Self::Either => "either",
-        }
-    }
 }
 
 /// The number of the pair, from 1, of the participant at a place, from 1.

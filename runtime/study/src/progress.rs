@@ -71,6 +71,14 @@ pub enum Phase {
     Parted,
 }
 
+impl Phase {
+    /// Whether they take no part any more, and have not done all.
+    #[must_use]
+    pub const fn is_out(&self) -> bool {
+        matches!(self, Self::Withdrawn | Self::Excluded | Self::Parted)
+    }
+}
+
 /// How far a step has come.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub enum Doing {

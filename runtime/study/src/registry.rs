@@ -63,6 +63,8 @@ pub(crate) struct Participant {
 /// A session that is played.
 pub(crate) struct Live {
     pub playing: Box<dyn Playing>,
+    /// Their seat in it, from 0; 0 if they play by themselves.
+    pub seat: usize,
     /// Where its page is, once there is one.
     pub page: Option<PageAddress>,
     /// Whether all who play it agreed to be heard, so that they have a microphone.
@@ -292,11 +294,7 @@ impl Registry {
 
     /// Says when all planned places are taken: those of people who take part, and of links that were given out.
     fn check_room(&self) -> Result<(), StudyFault> {
-        let is_out = |place: &u32| {
-            self.participants
-                .get(place)
-                .is_some_and(|one| matches!(one.progress.phase(), Phase::Excluded | Phase::Withdrawn | Phase::Parted))
-        };
+        let is_out = |place: &u32| self.participants.get(place).is_some_and(|one| one.progress.phase().is_out());
         let taken = self.links.participants.keys().filter(|place| !is_out(place)).count();
         if taken < self.study.participants as usize {
             return Ok(());

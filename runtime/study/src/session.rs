@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use crate::{
+    design::Study,
     pair::{pair_called, pair_label, pair_of},
     plan::{place_of, pseudonym},
     probe::Happening,
@@ -76,11 +77,9 @@ pub trait Playing: Send {
     /// What has happened in it since it was last looked at.
     fn happened(&mut self) -> Vec<Happening>;
 
-    /// What the participant has done in it since it was last looked at; of a tutorial alone.
-    fn tried(&mut self) -> Vec<Activity>;
-
-    /// The same of whoever has a seat, from 0.
-    fn tried_at(&mut self, seat: usize) -> Vec<Activity>;
+    /// What the participant at a seat, from 0, has done in it since this was last asked; of a tutorial alone. Whoever plays by themselves
+    /// is at seat 0.
+    fn tried(&mut self, seat: usize) -> Vec<Activity>;
 
     /// Whether a wizard is to take part, and nobody sits at the seat.
     fn lacks_wizard(&self) -> bool {
@@ -101,6 +100,12 @@ pub enum Whose {
 }
 
 impl Whose {
+    /// Whom logs name for sessions of the participant at a place: them, or in a study of pairs their pair.
+    #[must_use]
+    pub fn of(study: &Study, place: u32) -> Self {
+        if study.pairing.is_some() { Self::Pair(pair_of(place)) } else { Self::Participant(place) }
+    }
+
     /// What they are called.
     #[must_use]
     pub fn label(self) -> String {

@@ -69,12 +69,8 @@ impl Playing for Part {
         std::mem::take(&mut shared.seats[self.seat].happened)
     }
 
-    fn tried(&mut self) -> Vec<Activity> {
-        self.tried_at(self.seat)
-    }
-
-    fn tried_at(&mut self, seat: usize) -> Vec<Activity> {
-        self.lock().playing.tried_at(seat)
+    fn tried(&mut self, seat: usize) -> Vec<Activity> {
+        self.lock().playing.tried(seat)
     }
 
     fn lacks_wizard(&self) -> bool {
@@ -112,11 +108,7 @@ mod tests {
             std::mem::take(&mut self.happened)
         }
 
-        fn tried(&mut self) -> Vec<Activity> {
-            Vec::new()
-        }
-
-        fn tried_at(&mut self, seat: usize) -> Vec<Activity> {
+        fn tried(&mut self, seat: usize) -> Vec<Activity> {
             if seat == 1 { vec![Activity::Say] } else { Vec::new() }
         }
 
@@ -139,7 +131,7 @@ mod tests {
         // What happens is told to each, and what one of them tries is theirs.
         assert_eq!((first.happened(), second.happened()), (vec![Happening::GoalMet], vec![Happening::GoalMet]));
         assert_eq!(first.happened(), []);
-        assert_eq!((first.tried(), second.tried()), (Vec::new(), vec![Activity::Say]));
+        assert_eq!((first.tried(0), second.tried(1)), (Vec::new(), vec![Activity::Say]));
         first.end();
         assert!(matches!(first.look(), Look::Gone(_)));
         assert_eq!(token(second.look()), "second");

@@ -116,7 +116,7 @@ fn router(service: StudyService) -> Router {
         .route("/p/{token}/state", get(state))
         .route("/p/{token}/event", post(event))
         .route("/wizard/{token}", get(wizard))
-        .route("/wizard/{token}/state", get(seats))
+        .route("/wizard/{token}/state", get(wizard_sessions))
         .route("/experimenter/{token}", get(experimenter))
         .route("/experimenter/{token}/state", get(overview))
         .route("/experimenter/{token}/command", post(command))
@@ -354,10 +354,10 @@ async fn wizard(State(service): State<StudyService>, Path(given): Path<String>) 
     .await
 }
 
-async fn seats(State(service): State<StudyService>, Path(given): Path<String>) -> Response {
+async fn wizard_sessions(State(service): State<StudyService>, Path(given): Path<String>) -> Response {
     with_study(service, move |registry, _| {
         if token::admits(&registry.links.wizard, Some(&given)) {
-            Json(registry.seats()).into_response()
+            Json(registry.wizard_sessions()).into_response()
         } else {
             StatusCode::NOT_FOUND.into_response()
         }

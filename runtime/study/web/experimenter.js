@@ -77,7 +77,7 @@ function showAlarm() {
   const waiting = state.participants.filter((one) => one.partner_is_late).map(({ participant }) => participant);
   const alarms = [
     lacking.length ? `Nobody sits at the wizard's seat: ${lacking.join(", ")}` : "",
-    waiting.length ? `The partner does not come: ${waiting.join(", ")}` : "",
+    waiting.length ? `These participants have waited long for a partner; please look for the partner: ${waiting.join(", ")}` : "",
   ];
   const text = alarms.filter(Boolean).join(". ");
   if (byId("alarm").textContent !== text) byId("alarm").textContent = text;

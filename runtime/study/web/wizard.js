@@ -3,7 +3,7 @@
 import { byId, button, element } from "./dom.js";
 import { follow } from "./server.js";
 
-let seats = [];
+let sessions = [];
 /** Which is open, by its address. */
 let open = "";
 
@@ -14,23 +14,23 @@ function show(next) {
   if (next.page === "unknown") return;
   byId("title").textContent = next.title;
   document.title = `${next.title} – wizard`;
-  const isNew = JSON.stringify(next.seats) !== JSON.stringify(seats);
-  seats = next.seats;
-  if (!seats.some((seat) => addressOf(seat) === open)) sit(seats.find((seat) => !seat.is_over) ?? seats[0]);
-  else if (isNew) showSeats();
+  const isNew = JSON.stringify(next.sessions) !== JSON.stringify(sessions);
+  sessions = next.sessions;
+  if (!sessions.some((session) => addressOf(session) === open)) sit(sessions.find((session) => !session.is_over) ?? sessions[0]);
+  else if (isNew) showSessions();
 }
 
-/** Takes the seat of a session, or none. */
-function sit(seat) {
-  const address = seat ? addressOf(seat) : "";
+/** Takes the wizard's seat of a session, or of none. */
+function sit(session) {
+  const address = session ? addressOf(session) : "";
   if (address !== open) {
     open = address;
     byId("content").querySelector("iframe")?.remove();
-    byId("waiting").hidden = Boolean(seat);
-    if (seat) {
+    byId("waiting").hidden = Boolean(session);
+    if (session) {
       document.body.dataset.page = "seat";
       const frame = element("iframe", "session");
-      frame.title = `Wizard's seat of ${seat.participant}`;
+      frame.title = `Wizard's seat of ${session.participant}`;
       frame.allow = "autoplay";
       frame.src = address;
       frame.addEventListener("load", () => frame.focus());
@@ -39,13 +39,13 @@ function sit(seat) {
       delete document.body.dataset.page;
     }
   }
-  showSeats();
+  showSessions();
 }
 
-function showSeats() {
-  byId("seats").replaceChildren(...seats.map((seat) => {
-    const made = button("quiet", `${seat.participant} · ${seat.mission}${seat.is_over ? " (over)" : ""}`, () => sit(seat));
-    made.setAttribute("aria-pressed", String(addressOf(seat) === open));
+function showSessions() {
+  byId("sessions").replaceChildren(...sessions.map((session) => {
+    const made = button("quiet", `${session.participant} · ${session.mission}${session.is_over ? " (over)" : ""}`, () => sit(session));
+    made.setAttribute("aria-pressed", String(addressOf(session) === open));
     return made;
   }));
 }

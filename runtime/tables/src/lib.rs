@@ -16,6 +16,7 @@ mod actions;
 mod answers;
 mod chance;
 mod codebook;
+mod columns;
 mod csv;
 mod decisions;
 mod design;
@@ -40,6 +41,7 @@ pub use self::{
 };
 pub use chance::Chance;
 pub use codebook::codebook;
+pub use columns::{Align, columns};
 pub use fit::{ConditionTest, Fit, Observation, RandomIntercept, Term};
 pub use interval::{mean_95, wilson_95};
 pub use mixed::{MixedError, MixedModel};

@@ -7,11 +7,14 @@ use rustix::process::Signal;
 use serde_json::{Value, json};
 
 use super::{
-    STUDY, Server, asked_of, conditions,
+    Person, STUDY, Server, asked_of, conditions,
     pages::{go_on, heading},
     study,
 };
 use crate::{COHABIT, accessibility};
+
+/// What is said to the robot in the study's first mission until that is complete.
+const COLD_SODA: &str = include_str!("../../../cdf/missions/cold_soda.script");
 
 /// The study in pairs, each with an avatar of their own.
 fn in_pairs() -> String {
@@ -172,6 +175,46 @@ fn a_pair_plays_one_mission_together_and_ends_in_the_same_condition() {
     let noted = fs::read_to_string(format!("{data}/withdrawn.jsonl")).unwrap();
     assert!(noted.contains("\"participant\":\"P01\"") && noted.contains("\"pair\":\"pair01\""), "{noted}");
     assert!(fs::exists(format!("{data}/journals/P02.jsonl")).unwrap(), "the other one's answers stay");
+}
+
+#[test]
+fn a_mission_that_one_of_a_pair_completes_is_over_for_both() {
+    let scratch = study("study-pairs-complete");
+    // Whatever level comes first, the robot does what is said without asking.
+    let _ = scratch.write("study.toml", &in_pairs().replace("ask = \"always\"", "ask = \"unsure\""));
+    let server = Server::start(&scratch, "0");
+    let pair = [Person::sign_up(&server), Person::sign_up(&server)];
+    for person in &pair {
+        person.agree(&server);
+        person.tell(&server, &json!("goes_on"));
+    }
+    let tokens = pair.each_ref().map(|person| person.wait_for(&server, "mission")["session"]["token"].clone());
+    assert_ne!(tokens[0], tokens[1], "each has a page of their own");
+    let mut page = pair[0].session(&server);
+    let sentences: Vec<&str> = COLD_SODA.lines().collect();
+    let [before @ .., last] = &sentences[..] else { panic!("an empty script") };
+    for sentence in before {
+        page.do_and_wait(sentence).unwrap();
+    }
+    // The session may end before the page is told that the turn has.
+    page.say(last).unwrap();
+    for person in &pair {
+        person.wait_for(&server, "questionnaire");
+    }
+    drop(page);
+    for person in &pair {
+        let answers = json!([{ "value": 3 }, null]);
+        let told = person.tell(&server, &json!({ "answered": { "questionnaire": "short", "answers": answers } }));
+        assert_eq!(told["page"], "ready", "{told}");
+    }
+    server.end();
+
+    let (data, out) = (scratch.path("data"), scratch.path("tables"));
+    let exported = run(COHABIT, &["study", "export", "--folder", &data, "--out", &out]).unwrap();
+    assert!(exported.status.success(), "{}", String::from_utf8_lossy(&exported.stderr));
+    let missions = fs::read_to_string(format!("{out}/missions.csv")).unwrap();
+    let complete: Vec<&str> = missions.lines().skip(1).filter(|row| row.contains(",complete,")).collect();
+    assert!(complete.len() == 2 && complete.iter().all(|row| row.contains("pair01-01-1")), "{missions}");
 }
 
 /// The conditions of the first one, twice: both of a pair have the same.

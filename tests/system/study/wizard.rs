@@ -50,12 +50,12 @@ fn the_wizards_page_leads_to_the_seat_and_participants_see_no_difference() {
         person.tell(&server, &json!("goes_on"));
         let state = person.wait_for(&server, "mission");
         shown.push((keys(&state), keys(&state["session"])));
-        let seats = server.get(&format!("{wizard}/state"))["seats"].clone();
+        let sessions = server.get(&format!("{wizard}/state"))["sessions"].clone();
         let now = server.get(&format!("{}/state", server.experimenter))["participants"][0]["now"].clone();
         let has_wizard = now.as_str().unwrap().contains("ask=always");
-        assert_eq!(seats.as_array().unwrap().len(), usize::from(has_wizard), "{seats} {now}");
+        assert_eq!(sessions.as_array().unwrap().len(), usize::from(has_wizard), "{sessions} {now}");
         if has_wizard {
-            let seat = &seats[0];
+            let seat = &sessions[0];
             assert_eq!(seat["participant"], "P01");
             let authority = format!("127.0.0.1:{}/?token={}", seat["port"], seat["token"].as_str().unwrap());
             let overview = || server.get(&format!("{}/state", server.experimenter));
@@ -105,7 +105,8 @@ fn everybody_can_use_the_wizards_page() {
     accessibility::check(&mut tab, "the wizard's page while no session has a wizard");
     let person = Person::sign_up(&server);
     person.agree(&server);
-    let has_seat = || server.get(&format!("{wizard}/state"))["seats"].as_array().is_some_and(|seats| !seats.is_empty());
+    let has_seat =
+        || server.get(&format!("{wizard}/state"))["sessions"].as_array().is_some_and(|sessions| !sessions.is_empty());
     let play = || {
         person.tell(&server, &json!("goes_on"));
         person.wait_for(&server, "mission");

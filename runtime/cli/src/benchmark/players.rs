@@ -27,8 +27,8 @@ pub struct Asked {
     /// the simulator knows; or `random`, which does anything that is allowed
     #[arg(long, value_name = "KIND", default_value = "dialog")]
     agent: AgentKind,
-    /// Score the session logs (.mcap) of this folder instead, one of each mission, whoever played them. Needs `--name`; what they are
-    /// played with is in the logs
+    /// Score sessions that were recorded before, instead of playing: a folder with one session log (.mcap) for each mission. Name the
+    /// agent that played them by `--name`. `--agent`, `--knows`, `--ask` and `--understanding` cannot be given with it
     #[arg(long, value_name = "DIR", conflicts_with_all = ["agent", "knows", "ask", "understanding"], requires = "name")]
     logs: Option<PathBuf>,
     /// The agent's name in tables; that of its kind, if absent

@@ -34,7 +34,8 @@ struct Mcp {
     /// tool that has it do something, and handed back at the end
     #[arg(long, default_value = "0")]
     body: BodyChoice,
-    /// Have a tool tell the goals of the mission, and which are met
+    /// Give the client one more tool, `goals`, which tells the goals of the mission and which of them are met. Without it, the client
+    /// does not learn the goals
     #[arg(long)]
     goals: bool,
     #[command(flatten)]

@@ -37,8 +37,8 @@ pub struct Listening {
     /// so long, or `none`
     #[arg(long, default_value_t)]
     pub drive: Drivable,
-    /// How many people have a page of their own, each at an address of its own, which is printed: it drives no avatar but theirs, the
-    /// first page that of the first avatar, and so on
+    /// Give so many people a page of their own. The address of each page is printed. The first page drives the first avatar and no
+    /// other, the second page the second, and so on; name an avatar for each by `--body person`
     #[arg(long, value_name = "COUNT", default_value_t = 0, value_parser = clap::value_parser!(u8).range(0..=MOST_SEATS))]
     pub seats: u8,
     /// What the robot may know: `everything` there is, or what it has `seen` so far, beside the floor plan

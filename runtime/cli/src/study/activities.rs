@@ -92,11 +92,6 @@ impl Activities {
     pub fn take(&mut self, seat: usize) -> Vec<Activity> {
         self.seats.get_mut(seat).map(|seat| std::mem::take(&mut seat.new)).unwrap_or_default()
     }
-
-    /// The same at all of them.
-    pub fn take_all(&mut self) -> Vec<Activity> {
-        (0..self.seats.len()).flat_map(|seat| self.take(seat)).collect()
-    }
 }
 
 /// Whether a plan stops the robot.
@@ -135,8 +130,8 @@ mod tests {
         let check = |kinds: &[DialogKind], expected: &[Activity]| {
             let mut activities = Activities::new(0);
             kinds.iter().for_each(|kind| activities.hear(*kind, Doer::at_page(7), true));
-            assert_eq!(activities.take_all(), expected, "{kinds:?}");
-            assert_eq!(activities.take_all(), []);
+            assert_eq!(activities.take(0), expected, "{kinds:?}");
+            assert_eq!(activities.take(0), []);
         };
         check(&[Utterance, Reply, Utterance], &[Activity::Say]);
         check(&[Utterance, Question, Plan, StepEnded, Utterance], &[Activity::Say, Activity::Stop, Activity::Answer]);

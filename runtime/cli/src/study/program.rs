@@ -1,6 +1,6 @@
 //! What this program knows of the settings and missions that a study names.
 
-use std::{ffi::OsString, path::Path, sync::Arc};
+use std::{cell::OnceCell, ffi::OsString, path::Path, sync::Arc};
 
 use clap::{Parser, error::ErrorKind};
 use cohabit_cdf::{PackFile, WorldData};
@@ -10,7 +10,11 @@ use cohabit_study::Program;
 use crate::{mission_file::MissionFile, play::Play};
 
 /// This program.
-pub struct ThisProgram;
+#[derive(Default)]
+pub struct ThisProgram {
+    /// The world that is built in, once it was needed.
+    builtin: OnceCell<WorldData>,
+}
 
 /// The command line of `play`, by itself.
 #[derive(Parser)]
@@ -32,14 +36,7 @@ impl Program for ThisProgram {
     }
 
     fn check_mission(&self, name: &str, world: Option<&WorldData>) -> Result<(), String> {
-        let builtin;
-        let world = match world {
-            Some(world) => world,
-            None => {
-                builtin = WorldData::builtin();
-                &builtin
-            }
-        };
+        let world = world.unwrap_or_else(|| self.builtin.get_or_init(WorldData::builtin));
         let file = MissionFile::find_in(Some(name), world).map_err(|error| format!("{error:#}"))?;
         let catalog = Arc::clone(world.catalog());
         let plan = SessionPlan::new(&file.name, &file.text, catalog, 0).map_err(|error| error.to_string())?;
@@ -67,7 +64,7 @@ mod tests {
     fn settings_are_those_of_play() {
         let check = |arguments: &[&str]| {
             let arguments: Vec<String> = arguments.iter().map(|one| (*one).to_owned()).collect();
-            ThisProgram.check_arguments(&arguments)
+            ThisProgram::default().check_arguments(&arguments)
         };
         assert_eq!(check(&["--ask=never", "--understanding=fast", "--body=person@Lab1", "--lock-step"]), Ok(()));
         let seat = ["--wizard=yes", "--response_delay_ms=1500", "--wizard-timeout-s=8.5", "--wizard-on-timeout=say"];
@@ -90,8 +87,9 @@ mod tests {
 
     #[test]
     fn missions_are_those_that_can_be_played() {
-        assert_eq!(ThisProgram.check_mission("cold_soda", None), Ok(()));
-        let said = ThisProgram.check_mission("warm_soda", None).expect_err("no mission");
+        let program = ThisProgram::default();
+        assert_eq!(program.check_mission("cold_soda", None), Ok(()));
+        let said = program.check_mission("warm_soda", None).expect_err("no mission");
         assert!(said.contains("there are"), "{said}");
     }
 }

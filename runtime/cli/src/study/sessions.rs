@@ -148,7 +148,7 @@ impl Player for Sessions {
             page: None,
             wizard: None,
             seats: Vec::new(),
-            seat: SeatState::default(),
+            wizards_seat: SeatState::default(),
             heard: None,
             happened: Vec::new(),
             activities: wanted.is_tutorial.then(|| Activities::new(wanted.seats as usize)),
@@ -202,8 +202,8 @@ struct PlayedSession {
     wizard: Option<String>,
     /// The seats of people that were told so far.
     seats: Vec<ToldSeat>,
-    /// Whether a wizard sits at the seat.
-    seat: SeatState,
+    /// Whether somebody sits at the wizard's seat.
+    wizards_seat: SeatState,
     /// What its bus tells of the world, and of what is said.
     heard: Option<Heard>,
     /// What has happened and was not asked for yet.
@@ -281,7 +281,7 @@ impl PlayedSession {
             }
             match kind {
                 Some(DialogKind::Question) => self.happened.push(Happening::QuestionAsked),
-                Some(DialogKind::Seat) => self.seat = seat.unwrap_or_default(),
+                Some(DialogKind::Seat) => self.wizards_seat = seat.unwrap_or_default(),
                 _ => {}
             }
         }
@@ -380,17 +380,13 @@ impl Playing for PlayedSession {
         std::mem::take(&mut self.happened)
     }
 
-    fn tried(&mut self) -> Vec<Activity> {
-        self.activities.as_mut().map(Activities::take_all).unwrap_or_default()
-    }
-
-    fn tried_at(&mut self, seat: usize) -> Vec<Activity> {
+    fn tried(&mut self, seat: usize) -> Vec<Activity> {
         self.activities.as_mut().map(|activities| activities.take(seat)).unwrap_or_default()
     }
 
     fn lacks_wizard(&self) -> bool {
         let has_seat = self.page.as_ref().is_some_and(|page| page.wizard.is_some());
-        has_seat && self.over.is_none() && self.seat == SeatState::Empty
+        has_seat && self.over.is_none() && self.wizards_seat == SeatState::Empty
     }
 
     fn end(&mut self) {

@@ -80,12 +80,8 @@ impl Playing for Act {
         std::mem::take(&mut *self.stage.1.lock().unwrap())
     }
 
-    fn tried(&mut self) -> Vec<Activity> {
+    fn tried(&mut self, _: usize) -> Vec<Activity> {
         std::mem::take(&mut *self.stage.2.lock().unwrap())
-    }
-
-    fn tried_at(&mut self, _: usize) -> Vec<Activity> {
-        self.tried()
     }
 
     fn lacks_wizard(&self) -> bool {
@@ -255,13 +251,14 @@ fn the_wizards_page_is_led_to_the_seat_and_the_participants_page_is_as_ever() {
         page
     };
     let before = page(&mut case);
-    assert_eq!((&before["page"], &case.registry().seats()["seats"]), (&"mission".into(), &serde_json::json!([])));
+    let sessions = case.registry().wizard_sessions()["sessions"].clone();
+    assert_eq!((&before["page"], &sessions), (&"mission".into(), &serde_json::json!([])));
     let lacks_wizard = |case: &mut Case| case.registry().overview(1)["participants"][0]["lacks_wizard"].clone();
     assert_eq!(lacks_wizard(&mut case), false);
     let led = PageAddress { port: 1, token: "t".to_owned(), wizard: Some("w".to_owned()), seats: Vec::new() };
     case.stage.set(0, Look::Open(led));
     case.look_after(1);
-    let seat = &case.registry().seats()["seats"][0];
+    let seat = &case.registry().wizard_sessions()["sessions"][0];
     assert_eq!((&seat["participant"], &seat["port"], &seat["token"]), (&"P01".into(), &1.into(), &"w".into()));
     assert_eq!(page(&mut case), before);
     assert_eq!(lacks_wizard(&mut case), true, "the experimenter is alarmed");

@@ -5,11 +5,10 @@ use std::path::PathBuf;
 use crate::{
     design::{Limits, Study},
     folder::Folder,
-    pair::{pair_label, pair_of},
     plan::{Plan, PlannedMission, Step, pseudonym},
     probe::{self, Happening},
     progress::{Ending, Event, Progress},
-    session::name_of_try,
+    session::{Whose, name_of_try},
     settings::Settings,
     simulate::{
         SimulateError,
@@ -237,9 +236,8 @@ impl<'a> Walk<'a> {
         let Plan { place, .. } = *self.progress.plan();
         let Some(Step::Mission(mission)) = self.progress.plan().steps.get(index) else { return None };
         let name = name_of_try(place, index, 1, self.progress.together());
-        let is_of_pairs = study.pairing.is_some();
         Some(SimulatedMission {
-            participant: if is_of_pairs { pair_label(pair_of(place)) } else { pseudonym(place) },
+            participant: Whose::of(study, place).label(),
             mission: mission.mission.clone(),
             settings: mission.settings.clone(),
             seeds: [study.seed, self.person.speaker(index)],

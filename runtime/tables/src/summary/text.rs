@@ -4,6 +4,7 @@ use std::fmt;
 
 use super::{Effect, Group, Measure, Summary};
 use crate::{
+    columns::{Align, columns},
     effect::EffectSize,
     fit::{Fit, RandomIntercept, Term},
 };
@@ -53,7 +54,7 @@ fn write_groups(f: &mut fmt::Formatter<'_>, groups: &[Group]) -> fmt::Result {
         });
         rows.push([group.label(), group.sessions.to_string()].into_iter().chain(own).collect());
     }
-    write_rows(f, &rows)
+    f.write_str(&columns(&rows, Align::Right))
 }
 
 fn with_unit(name: &str, unit: &str) -> String {
@@ -104,7 +105,7 @@ fn write_fit(f: &mut fmt::Formatter<'_>, fit: &Fit, unit: &str) -> fmt::Result {
     if rows.iter().all(|row| row[3].is_empty()) {
         rows.iter_mut().for_each(|row| drop(row.remove(3)));
     }
-    write_rows(f, &rows)?;
+    f.write_str(&columns(&rows, Align::Right))?;
     // The test of a single term is that of the term.
     for test in fit.tests.iter().filter(|test| test.freedom[0] > 1.0) {
         let [numerator, denominator] = test.freedom;
@@ -166,7 +167,7 @@ fn write_effects(f: &mut fmt::Formatter<'_>, effects: &[Effect], unit: &str) -> 
         let [first, second] = [sizes.next(), sizes.next()].map(Option::unwrap_or_default);
         vec![format!("  {}", effect.outcome), compared, count, first, second]
     };
-    write_rows(f, &effects.iter().map(row).collect::<Vec<_>>())
+    f.write_str(&columns(&effects.iter().map(row).collect::<Vec<_>>(), Align::Right))
 }
 
 /// What the symbols of effect sizes mean.
@@ -184,19 +185,4 @@ fn of_unit(text: &str, unit: &str) -> String {
 
 fn p(p: f64) -> String {
     if p < 0.001 { "p < 0.001".to_owned() } else { format!("p = {p:.3}") }
-}
-
-/// Columns as wide as their widest cell: the first to the left, the others to the right.
-fn write_rows(f: &mut fmt::Formatter<'_>, rows: &[Vec<String>]) -> fmt::Result {
-    let columns = rows.first().map_or(0, Vec::len);
-    let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
-    let widths: Vec<usize> = (0..columns).map(width).collect();
-    for row in rows {
-        let mut line = format!("{:<width$}", row[0], width = widths[0]);
-        for (cell, width) in row.iter().zip(&widths).skip(1) {
-            line += &format!("  {cell:>width$}");
-        }
-        writeln!(f, "{}", line.trim_end())?;
-    }
-    Ok(())
 }
