@@ -345,7 +345,7 @@ impl Catalog {
             None => self.find(class).is_some(),
         };
         let (table, errors) = ActionTable::gather(files, &is_class);
-        let meant = |error| match error {
+        let meant = |error: TableError| match error {
             TableError::NoClass { file, class, .. } => {
                 let near = nearest(&class, self.classes.iter().map(|known| known.id.as_str())).map(str::to_owned);
                 TableError::NoClass { file, class, near }
