@@ -63,6 +63,28 @@ pub enum Property {
     Decor,
 }
 
+impl Property {
+    /// All of them.
+    pub const ALL: [Self; 16] = [
+        Self::Pickupable,
+        Self::Receptacle,
+        Self::Openable,
+        Self::Breakable,
+        Self::Toggleable,
+        Self::Powerable,
+        Self::Dirtyable,
+        Self::Heatable,
+        Self::Eatable,
+        Self::Chillable,
+        Self::Fillable,
+        Self::Cookable,
+        Self::Cuttable,
+        Self::Infectable,
+        Self::Usable,
+        Self::Decor,
+    ];
+}
+
 /// One class of object.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
@@ -241,6 +263,12 @@ impl Catalog {
     /// # Errors
     /// [`CatalogError`] names the file and the id.
     pub fn parse(objects: &[(&str, &str)], models: &[(&str, &str)]) -> Result<Self, CatalogError> {
+        let (catalog, errors) = Self::gather(objects, models);
+        errors.into_iter().next().map_or(Ok(catalog), Err)
+    }
+
+    /// The same with all that is wrong; where that is anything, the catalogue is not whole.
+    pub(crate) fn gather(objects: &[(&str, &str)], models: &[(&str, &str)]) -> (Self, Vec<CatalogError>) {
         let mut catalog = Self {
             classes: Vec::new(),
             models: Vec::new(),
@@ -251,72 +279,82 @@ impl Catalog {
             rooms: Rooms::builtin(),
             layer: Layer::default(),
         };
+        let mut errors = Vec::new();
         let mut model_by_id: HashMap<String, (usize, &str)> = HashMap::new();
         let mut file_of_class: HashMap<String, &str> = HashMap::new();
-        for (file, text) in models {
-            for model in read::<ModelFile>(file, text)?.models {
-                if let Some((_, first)) = model_by_id.insert(model.id.clone(), (catalog.models.len(), *file)) {
-                    let (file, first) = ((*file).to_owned(), first.to_owned());
-                    return Err(CatalogError::Duplicate { file, first, id: model.id });
+        for (file, model) in entries(models, &mut errors, |file: ModelFile| file.models) {
+            match model_by_id.get(&model.id) {
+                Some((_, first)) => errors.push(twice(file, first, model.id)),
+                None => {
+                    model_by_id.insert(model.id.clone(), (catalog.models.len(), file));
+                    catalog.models.push(model);
                 }
-                catalog.models.push(model);
             }
         }
-        for (file, text) in objects {
-            for class in read::<ObjectFile>(file, text)?.objects {
-                let id = ClassId(u16::try_from(catalog.classes.len()).expect("invariant: fewer than 65536 classes"));
-                if let Some(first) = file_of_class.insert(class.id.clone(), *file) {
-                    let (file, first) = ((*file).to_owned(), first.to_owned());
-                    return Err(CatalogError::Duplicate { file, first, id: class.id });
-                }
-                catalog.class_by_id.insert(class.id.clone(), id);
-                let model = class.model.clone().unwrap_or_else(|| class.id.clone());
-                let Some((index, _)) = model_by_id.get(&model) else {
-                    let near = did_you_mean(&model, catalog.models.iter().map(|known| known.id.as_str()));
-                    let remedy = near.unwrap_or_else(|| "add a `[[model]]` with this id".to_owned());
-                    return Err(CatalogError::NoModel { file: (*file).to_owned(), object: class.id, model, remedy });
-                };
-                catalog.model_by_class.push(*index);
-                catalog.classes.push(class);
+        for (file, class) in entries(objects, &mut errors, |file: ObjectFile| file.objects) {
+            if let Some(first) = file_of_class.get(&class.id) {
+                errors.push(twice(file, first, class.id));
+                continue;
             }
+            file_of_class.insert(class.id.clone(), file);
+            let model = class.model.clone().unwrap_or_else(|| class.id.clone());
+            let index = model_by_id.get(&model).map(|(index, _)| *index);
+            if index.is_none() {
+                let near = did_you_mean(&model, catalog.models.iter().map(|known| known.id.as_str()));
+                let remedy = near.unwrap_or_else(|| "add a `[[model]]` with this id".to_owned());
+                errors.push(CatalogError::NoModel { file: file.to_owned(), object: class.id.clone(), model, remedy });
+            }
+            let id = ClassId(u16::try_from(catalog.classes.len()).expect("invariant: fewer than 65536 classes"));
+            catalog.class_by_id.insert(class.id.clone(), id);
+            catalog.model_by_class.push(index.unwrap_or_default());
+            catalog.classes.push(class);
         }
-        catalog.check_receptacles(&file_of_class)?;
+        errors.extend(catalog.unknown_in_receptacles(&file_of_class));
         catalog.names = names::of_classes(&catalog.classes);
-        Ok(catalog)
+        (catalog, errors)
     }
 
-    /// What receptacles take or refuse by name is there.
-    fn check_receptacles(&self, files: &HashMap<String, &str>) -> Result<(), CatalogError> {
+    /// What receptacles take or refuse by name, and is not there.
+    fn unknown_in_receptacles(&self, files: &HashMap<String, &str>) -> Vec<CatalogError> {
+        let mut errors = Vec::new();
         for class in &self.classes {
-            let mut named = class.receptacle.iter().flat_map(|own| own.keys.iter().chain(&own.refuses));
-            if let Some(absent) = named.find(|named| self.find(named).is_none()) {
+            let named = class.receptacle.iter().flat_map(|own| own.keys.iter().chain(&own.refuses));
+            for absent in named.filter(|named| self.find(named).is_none()) {
                 let file = files.get(&class.id).copied().unwrap_or_default().to_owned();
                 let near = did_you_mean(absent, self.classes.iter().map(|known| known.id.as_str()));
                 let remedy = near.unwrap_or_else(|| "add an `[[object]]` with this id".to_owned());
-                return Err(CatalogError::NoClass { file, object: class.id.clone(), class: absent.clone(), remedy });
+                errors.push(CatalogError::NoClass { file, object: class.id.clone(), class: absent.clone(), remedy });
             }
         }
-        Ok(())
+        errors
     }
 
     /// The same with a table of actions and devices, from `(file name, text)`.
     ///
     /// # Errors
     /// [`TableError`] names the file and what is wrong in it.
-    pub fn with_table(mut self, files: &[(&str, &str)]) -> Result<Self, TableError> {
+    pub fn with_table(self, files: &[(&str, &str)]) -> Result<Self, TableError> {
+        let (catalog, errors) = self.gather_table(files);
+        errors.into_iter().next().map_or(Ok(catalog), Err)
+    }
+
+    /// The same with all that is wrong in the table.
+    pub(crate) fn gather_table(mut self, files: &[(&str, &str)]) -> (Self, Vec<TableError>) {
         let is_class = |class: &str| match class.strip_suffix('*') {
             Some(prefix) => self.classes.iter().any(|known| known.id.starts_with(prefix)),
             None => self.find(class).is_some(),
         };
-        let table = ActionTable::parse(files, &is_class).map_err(|error| match error {
+        let (table, errors) = ActionTable::gather(files, &is_class);
+        let meant = |error: TableError| match error {
             TableError::NoClass { file, class, .. } => {
                 let near = nearest(&class, self.classes.iter().map(|known| known.id.as_str())).map(str::to_owned);
                 TableError::NoClass { file, class, near }
             }
             other => other,
-        });
-        self.table = table?;
-        Ok(self)
+        };
+        let errors = errors.into_iter().map(meant).collect();
+        self.table = table;
+        (self, errors)
     }
 
     /// The same with the table of another catalogue; what that says of classes that this one lacks counts for nothing.
@@ -432,6 +470,26 @@ impl RoomId {
         // No floor plan has a room that its catalogue lacks.
         catalog.rooms.get(self).map_or("room", |entry| entry.name.as_str())
     }
+}
+
+/// The entries of files that can be read, each with its file; why others cannot goes to `errors`.
+fn entries<'f, T: serde::de::DeserializeOwned, E>(
+    files: &[(&'f str, &str)],
+    errors: &mut Vec<CatalogError>,
+    of: impl Fn(T) -> Vec<E>,
+) -> Vec<(&'f str, E)> {
+    let mut all = Vec::new();
+    for (file, text) in files {
+        match read::<T>(file, text) {
+            Ok(read) => all.extend(of(read).into_iter().map(|entry| (*file, entry))),
+            Err(error) => errors.push(error),
+        }
+    }
+    all
+}
+
+fn twice(file: &str, first: &str, id: String) -> CatalogError {
+    CatalogError::Duplicate { file: file.to_owned(), first: first.to_owned(), id }
 }
 
 fn read<T: serde::de::DeserializeOwned>(file: &str, text: &str) -> Result<T, CatalogError> {

@@ -41,4 +41,4 @@ pub use nearest::suggestion;
 pub use room::{RoomEntry, RoomId, Rooms};
 pub use semantic::SemanticClass;
 pub use state::{Color, Fluid, StateFlag, StateFlags};
-pub use world_pack::{PackError, PackFile, WorldData, WorldPack};
+pub use world_pack::{PackEntry, PackError, PackErrors, PackFile, WorldData, WorldPack};

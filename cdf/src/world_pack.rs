@@ -19,11 +19,11 @@ mod limits;
 mod rooms;
 mod template;
 
-use std::sync::Arc;
+use std::{collections::BTreeSet, sync::Arc};
 
 use serde::Deserialize;
 
-pub use error::PackError;
+pub use error::{PackError, PackErrors};
 pub use template::{NAME_RULE, files as template, is_name};
 
 use crate::{
@@ -49,7 +49,7 @@ pub struct PackFile {
 }
 
 /// What `world.toml` says.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Head {
     name: String,
@@ -58,6 +58,19 @@ struct Head {
     description: String,
     #[serde(default, rename = "room")]
     rooms: Vec<RoomEntry>,
+}
+
+/// What world packs declare.
+#[derive(Clone, Copy, Debug, Eq, Ord, PartialEq, PartialOrd)]
+pub enum PackEntry {
+    /// A class of objects.
+    Class,
+    /// A class of devices.
+    Device,
+    /// A room, or another name for one.
+    Room,
+    /// A floor plan.
+    Plan,
 }
 
 /// `(file name, text)`; a file's name begins with the pack's folder.
@@ -76,24 +89,57 @@ pub struct WorldPack {
     table: Texts,
     layouts: Texts,
     missions: Texts,
+    declared: BTreeSet<(PackEntry, String)>,
+}
+
+impl Head {
+    /// What is wrong in it.
+    fn faults(&self, file: &str) -> Vec<PackError> {
+        let mut faults = Vec::new();
+        let name = &self.name;
+        if !is_name(name) {
+            faults.push(PackError::at(file, "name", format!("`{name}` is no name"), NAME_RULE));
+        }
+        for (at, text, most) in
+            [("version", &self.version, 32), ("licence", &self.licence, 128), ("description", &self.description, 1024)]
+        {
+            if text.trim().is_empty() || text.len() > most || text.chars().any(char::is_control) {
+                let reason = "it is empty, too long, or of several lines".to_owned();
+                faults.push(PackError::at(file, at, reason, &format!("write one line of at most {most} bytes")));
+            }
+        }
+        faults.extend(rooms::check(file, &self.rooms));
+        faults
+    }
 }
 
 impl WorldPack {
     /// Reads the files of the folder `root`, whose name stands in messages alone.
     ///
     /// # Errors
-    /// [`PackError`] names the file, the place in it, and what would be right.
-    pub fn parse(root: &str, mut files: Vec<PackFile>) -> Result<Self, PackError> {
+    /// [`PackErrors`] names, of all that is wrong, the file, the place in it, and what would be right.
+    pub fn parse(root: &str, mut files: Vec<PackFile>) -> Result<Self, PackErrors> {
         files.sort_by(|one, other| one.path.cmp(&other.path));
-        files.iter().try_for_each(|file| limits::check_path(root, &file.path))?;
-        let digest = digest(&files);
         let head = files.iter().find(|file| file.path == HEAD);
+        let head = head.ok_or_else(|| PackError::NoHead { root: root.to_owned() })?;
+        let mut errors = Vec::new();
         let head_file = format!("{root}/{HEAD}");
-        let text = text(&head_file, &head.ok_or_else(|| PackError::NoHead { root: root.to_owned() })?.bytes)?;
-        let Head { name, version, licence, description, rooms } = limits::read(&head_file, &text)?;
+        let head = text(&head_file, &head.bytes).and_then(|text| limits::read::<Head>(&head_file, &text));
+        let head = match head {
+            Ok(head) => {
+                errors.extend(head.faults(&head_file));
+                head
+            }
+            // The other files are checked all the same.
+            Err(error) => {
+                errors.push(error);
+                Head::default()
+            }
+        };
+        let Head { name, version, licence, description, rooms } = head;
         let mut pack = Self {
             root: root.to_owned(),
-            id: PackId { name, version, digest },
+            id: PackId { name, version, digest: digest(&files) },
             licence,
             description,
             rooms,
@@ -102,31 +148,19 @@ impl WorldPack {
             table: Vec::new(),
             layouts: Vec::new(),
             missions: Vec::new(),
+            declared: BTreeSet::new(),
         };
-        pack.check_head(&head_file)?;
         for file in &files {
-            pack.take(file)?;
-        }
-        limits::check_scripts(root, &files)?;
-        limits::check_objects(&pack.objects)?;
-        limits::check_models(&pack.models)?;
-        Ok(pack)
-    }
-
-    fn check_head(&self, file: &str) -> Result<(), PackError> {
-        let PackId { name, version, .. } = &self.id;
-        if !is_name(name) {
-            return Err(PackError::at(file, "name", format!("`{name}` is no name"), NAME_RULE));
-        }
-        for (at, text, most) in
-            [("version", version, 32), ("licence", &self.licence, 128), ("description", &self.description, 1024)]
-        {
-            if text.trim().is_empty() || text.len() > most || text.chars().any(char::is_control) {
-                let reason = "it is empty, too long, or of several lines".to_owned();
-                return Err(PackError::at(file, at, reason, &format!("write one line of at most {most} bytes")));
+            match limits::check_path(root, &file.path) {
+                Ok(()) => errors.extend(pack.take(file)),
+                Err(error) => errors.push(error),
             }
         }
-        rooms::check(file, &self.rooms)
+        errors.extend(limits::check_scripts(root, &files));
+        errors.extend(limits::check_objects(&pack.objects));
+        errors.extend(limits::check_models(&pack.models));
+        pack.declared = ids::declared(&pack);
+        PackErrors::none_or(pack, errors)
     }
 
     /// Its head, as messages name it.
@@ -134,8 +168,8 @@ impl WorldPack {
         format!("{}/{HEAD}", self.root)
     }
 
-    /// Takes a file in, by the folder that it lies in.
-    fn take(&mut self, file: &PackFile) -> Result<(), PackError> {
+    /// Takes a file in, by the folder that it lies in; gives what is wrong with it.
+    fn take(&mut self, file: &PackFile) -> Vec<PackError> {
         let name = format!("{}/{}", self.root, file.path);
         let parts: Vec<&str> = file.path.split('/').collect();
         let list = match parts.as_slice() {
@@ -144,20 +178,23 @@ impl WorldPack {
             ["table", one] if one.ends_with(".toml") => &mut self.table,
             ["layouts", one] if one.ends_with(".toml") => &mut self.layouts,
             ["missions", one] if one.ends_with(".json") => &mut self.missions,
-            [HEAD] => return Ok(()),
+            [HEAD] => return Vec::new(),
             [.., one] if one.ends_with(".toml") => {
                 let reason = "it lies where no file of a pack is looked for".to_owned();
                 let remedy = "put it into objects, models, table or layouts, without folders in these";
-                return Err(PackError::at(&name, "", reason, remedy));
+                return vec![PackError::at(&name, "", reason, remedy)];
             }
-            _ => return Ok(()),
+            _ => return Vec::new(),
         };
-        let text = text(&name, &file.bytes)?;
-        if name.ends_with(".toml") {
-            limits::check_numbers(&name, &text)?;
+        let text = match text(&name, &file.bytes) {
+            Ok(text) => text,
+            Err(error) => return vec![error],
+        };
+        let errors = if name.ends_with(".toml") { limits::check_numbers(&name, &text) } else { Vec::new() };
+        if errors.is_empty() {
+            list.push((name, text));
         }
-        list.push((name, text));
-        Ok(())
+        errors
     }
 
     /// Its name, version and hash.
@@ -188,6 +225,12 @@ impl WorldPack {
         self.layouts.iter().map(|(file, _)| ids::stem(file))
     }
 
+    /// Whether it declares this.
+    #[must_use]
+    pub fn declares(&self, entry: PackEntry, id: &str) -> bool {
+        self.declared.contains(&(entry, id.to_owned()))
+    }
+
     /// The file of one of its floor plans.
     #[must_use]
     pub fn plan_file(&self, id: &str) -> Option<&str> {
@@ -212,13 +255,16 @@ impl WorldData {
     /// The same with packs, in their order.
     ///
     /// # Errors
-    /// [`PackError::Twice`] names both files of what is there twice; [`PackError`] of all else that does not fit.
-    pub fn layered(packs: Vec<WorldPack>) -> Result<Self, PackError> {
+    /// [`PackError::Twice`] names both files of what is there twice; [`PackErrors`] has all that does not fit.
+    pub fn layered(packs: Vec<WorldPack>) -> Result<Self, PackErrors> {
         if packs.len() > MOST_PACKS {
-            return Err(PackError::TooMany { packs: packs.len() });
+            return Err(PackError::TooMany { packs: packs.len() }.into());
         }
-        let mut ids = Ids::of_builtin();
-        packs.iter().try_for_each(|pack| ids.add(pack))?;
+        let (mut ids, mut rooms, mut errors) = (Ids::of_builtin(), Rooms::builtin(), Vec::new());
+        for pack in &packs {
+            errors.extend(ids.add(pack));
+            errors.extend(rooms::add(&pack.head_file(), &mut rooms, &pack.rooms));
+        }
         let objects = joined(builtin::OBJECTS, &packs, |pack| &pack.objects);
         let models = joined(builtin::MODELS, &packs, |pack| &pack.models);
         // The rules of packs are tried before the built-in ones, the last of which take whatever comes.
@@ -228,17 +274,23 @@ impl WorldData {
             packs: packs.iter().map(|pack| pack.id.clone()).collect(),
             plans: packs.iter().flat_map(|pack| pack.layouts.iter().cloned()).collect(),
         };
-        let mut rooms = Rooms::builtin();
-        packs.iter().try_for_each(|pack| rooms::add(&pack.head_file(), &mut rooms, &pack.rooms))?;
-        let catalog = Catalog::parse(&objects, &models)?.with_table(&table)?.with_layer(rooms, layer);
-        for pack in &packs {
-            for (file, _) in &pack.layouts {
-                let plan = Layout::find(ids::stem(file), &catalog)?;
-                limits::check_plan(file, &plan, &catalog)?;
-                rooms::check_plan(file, &plan, catalog.rooms())?;
-            }
+        let (catalog, of_catalog) = Catalog::gather(&objects, &models);
+        errors.extend(of_catalog.into_iter().map(PackError::from));
+        let (catalog, of_table) = catalog.gather_table(&table);
+        errors.extend(of_table.into_iter().map(PackError::from));
+        let catalog = catalog.with_layer(rooms, layer);
+        // Floor plans are laid out with whole classes and rooms alone.
+        if errors.is_empty() {
+            errors
+                .extend(packs.iter().flat_map(|pack| &pack.layouts).flat_map(|(file, _)| plan_faults(file, &catalog)));
         }
-        Ok(Self { catalog: Arc::new(catalog), packs })
+        PackErrors::none_or(Self { catalog: Arc::new(catalog), packs }, errors)
+    }
+
+    /// The pack that declares this, if one does.
+    #[must_use]
+    pub fn pack_of(&self, entry: PackEntry, id: &str) -> Option<&WorldPack> {
+        self.packs.iter().find(|pack| pack.declares(entry, id))
     }
 
     /// The classes, devices and floor plans that there are.
@@ -258,6 +310,21 @@ impl WorldData {
         let own = self.packs.iter().flat_map(WorldPack::missions);
         let named = own.map(|(file, text)| (file.rsplit('/').next().unwrap_or(file), text));
         builtin::MISSIONS.iter().copied().chain(named)
+    }
+}
+
+/// What is wrong with a floor plan of a pack.
+fn plan_faults(file: &str, catalog: &Catalog) -> Vec<PackError> {
+    match Layout::find(ids::stem(file), catalog) {
+        Ok(plan) => {
+            let mut faults = rooms::check_plan(file, &plan, catalog.rooms());
+            // Ways are looked for between rooms that there are.
+            if faults.is_empty() {
+                faults = limits::check_plan(file, &plan, catalog);
+            }
+            faults
+        }
+        Err(error) => vec![error.into()],
     }
 }
 

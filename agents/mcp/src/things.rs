@@ -93,8 +93,7 @@ impl Things {
 
     fn several(&self, text: &str, objects: &[ObjectId], scene: &Known) -> String {
         let objects = objects.iter().filter_map(|id| scene.object(*id));
-        let mut fitting: Vec<(f32, &KnownObject)> =
-            objects.map(|object| (distance_m(scene, object), object)).collect();
+        let mut fitting: Vec<(f32, &KnownObject)> = objects.map(|object| (distance_m(scene, object), object)).collect();
         fitting.sort_by(|(one, _), (other, _)| one.total_cmp(other));
         let rest = fitting.len().saturating_sub(MOST_FITTING);
         let nearest = fitting.into_iter().take(MOST_FITTING);

@@ -7,10 +7,12 @@ mod affords;
 mod change;
 mod condition;
 mod file;
+mod form;
 mod kind;
+mod listing;
 mod view;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use serde::Deserialize;
 
@@ -18,6 +20,7 @@ pub use self::{
     change::{Change, Effect, GROWTH, SoundKind, UNDONE},
     condition::{ClassPattern, Condition, Content, Range, Term, Test},
     kind::ActionKind,
+    listing::{ChangeForm, ConditionForm, Placeholder, change_forms, condition_forms, placeholders},
     view::{Judgement, Scope, View, takes},
 };
 use self::{condition::Test as T, file::Reader};
@@ -174,7 +177,7 @@ pub enum TableError {
         source: Box<toml::de::Error>,
     },
     /// A condition, a change or a name of shared needs does not exist.
-    #[error("{file}: {reason}; the README beside the table lists what there is")]
+    #[error("{file}: {reason}; `cohabit catalog conditions changes words` lists what there is")]
     Text {
         /// Which file.
         file: String,
@@ -277,41 +280,60 @@ impl Default for ActionTable {
 }
 
 impl ActionTable {
-    /// Reads a table from `(file name, text)`; `is_class` says which classes there are, and which classes begin as it says
-    /// before a `*`. A later file's device takes the place of an earlier one of the same class.
-    ///
-    /// # Errors
-    /// [`TableError`] names the file and what is wrong in it.
-    pub fn parse(files: &[(&str, &str)], is_class: &dyn Fn(&str) -> bool) -> Result<Self, TableError> {
-        let read: Vec<_> =
-            files.iter().map(|(file, text)| Ok((*file, file::read(file, text)?))).collect::<Result<_, _>>()?;
+    /// Reads a table from `(file name, text)`, and says all that is wrong in it; `is_class` says which classes there are, and
+    /// which classes begin as it says before a `*`. A later file's device takes the place of an earlier one of the same class.
+    pub fn gather(files: &[(&str, &str)], is_class: &dyn Fn(&str) -> bool) -> (Self, Vec<TableError>) {
+        let (mut table, mut errors, mut read) = (Self::default(), Vec::new(), Vec::new());
+        for (file, text) in files {
+            match file::read(file, text) {
+                Ok(one) => read.push((*file, one)),
+                Err(error) => errors.push(error),
+            }
+        }
         let times = read.iter().find_map(|(_, file)| file.times);
         let times = times.unwrap_or(file::Times { work_s: 0.25, moment_s: 2.0 });
-        let mut table = Self::default();
         (table.plain.work_s, table.plain.moment_s) = (times.work_s, times.moment_s);
+        let works: BTreeSet<&str> = read.iter().flat_map(|(_, file)| file.work_names()).collect();
         for (file, read) in &read {
-            let reader = Reader { file, times };
-            table.rules.extend(reader.rules(read)?);
-            table.works.extend(reader.works(read)?);
-            for device in reader.devices(read)? {
-                for class in &device.classes {
-                    table.device_by_class.insert(class.clone(), table.devices.len());
-                }
-                table.devices.push(device);
-            }
-            if let Some(basin) = &read.basin {
-                table.basin.clone_from(basin);
-            }
-            table.power_work = read.power_work.clone().or(table.power_work);
-            table.slice.extend(read.slice.clone());
-            table.prints.extend(read.prints.clone());
-            table.yesterday.extend(read.yesterday.clone());
-            table.check(file, is_class)?;
+            let part = Self::of_file(&Reader { file, times }, read, &mut errors);
+            errors.extend(part.faults(file, is_class, &works));
+            table.add(part);
         }
-        for (file, _) in &read {
-            table.check_works(file)?;
+        (table, errors)
+    }
+
+    /// What one file says.
+    fn of_file(reader: &Reader<'_>, read: &file::TableFile, errors: &mut Vec<TableError>) -> Self {
+        Self {
+            rules: reader.rules(read, errors),
+            works: reader.works(read, errors),
+            devices: reader.devices(read, errors),
+            basin: read.basin.clone().unwrap_or_default(),
+            power_work: read.power_work.clone(),
+            slice: read.slice.clone(),
+            prints: read.prints.clone(),
+            yesterday: read.yesterday.clone(),
+            ..Self::default()
         }
-        Ok(table)
+    }
+
+    /// Adds what a later file says.
+    fn add(&mut self, part: Self) {
+        self.rules.extend(part.rules);
+        self.works.extend(part.works);
+        for device in part.devices {
+            for class in &device.classes {
+                self.device_by_class.insert(class.clone(), self.devices.len());
+            }
+            self.devices.push(device);
+        }
+        if !part.basin.is_empty() {
+            self.basin = part.basin;
+        }
+        self.power_work = part.power_work.or(self.power_work.take());
+        self.slice.extend(part.slice);
+        self.prints.extend(part.prints);
+        self.yesterday.extend(part.yesterday);
     }
 
     /// All rules, in the order in which they are tried.
@@ -426,34 +448,38 @@ impl ActionTable {
         all
     }
 
-    fn check(&self, file: &str, is_class: &dyn Fn(&str) -> bool) -> Result<(), TableError> {
-        let mut of_works = self.works.iter().flat_map(|work| work.changes().map(move |change| (work, change)));
-        if let Some((work, change)) = of_works.find(|(_, change)| !change.is_of_a_work()) {
-            let (file, work, change) = (file.to_owned(), work.name.clone(), change.clone());
-            return Err(TableError::NotOfAWork { file, work, change });
-        }
-        let unknown = self.classes().into_iter().find(|class| !is_class(class));
-        unknown.map_or(Ok(()), |class| Err(TableError::NoClass { file: file.to_owned(), class, near: None }))
-    }
-
-    fn check_works(&self, file: &str) -> Result<(), TableError> {
-        for device in &self.devices {
-            let changes = device.press.iter().flat_map(|effect| &effect.changes);
-            if let Some(change) = changes.into_iter().find(|change| !change.is_of_a_press()) {
-                let name = device.classes.first().cloned().unwrap_or_default();
-                return Err(TableError::NoPress { file: file.to_owned(), device: name, change: change.clone() });
+    /// What is wrong in what one file says; `works` are the names of those of all files.
+    fn faults(&self, file: &str, is_class: &dyn Fn(&str) -> bool, works: &BTreeSet<&str>) -> Vec<TableError> {
+        let mut faults = Vec::new();
+        for work in &self.works {
+            if let Some(change) = work.changes().find(|change| !change.is_of_a_work()) {
+                let (file, work, change) = (file.to_owned(), work.name.clone(), change.clone());
+                faults.push(TableError::NotOfAWork { file, work, change });
             }
         }
-        if let Some(work) = self.power_work.clone().filter(|work| self.work(work).is_none()) {
-            return Err(TableError::NoWork { file: file.to_owned(), device: "power_work".to_owned(), work });
+        let unknown: BTreeSet<String> = self.classes().into_iter().filter(|class| !is_class(class)).collect();
+        faults.extend(unknown.into_iter().map(|class| TableError::NoClass {
+            file: file.to_owned(),
+            class,
+            near: None,
+        }));
+        let no_work = |device: &str, work: &str| {
+            let [file, device, work] = [file, device, work].map(str::to_owned);
+            TableError::NoWork { file, device, work }
+        };
+        for device in &self.devices {
+            let name = device.classes.first().map_or("", String::as_str);
+            let mut changes = device.press.iter().flat_map(|effect| &effect.changes);
+            if let Some(change) = changes.find(|change| !change.is_of_a_press()) {
+                let (file, device, change) = (file.to_owned(), name.to_owned(), change.clone());
+                faults.push(TableError::NoPress { file, device, change });
+            }
+            let named = [&device.work, &device.shut_work].into_iter().flatten().map(String::as_str);
+            faults.extend(named.filter(|work| !works.contains(work)).map(|work| no_work(name, work)));
         }
-        let names = |device: &Device| [device.work.clone(), device.shut_work.clone()].into_iter().flatten();
-        let of_devices = self.devices.iter().flat_map(|device| names(device).map(move |work| (device, work)));
-        let missing = of_devices.into_iter().find(|(_, work)| self.work(work).is_none());
-        missing.map_or(Ok(()), |(device, work)| {
-            let device = device.classes.first().cloned().unwrap_or_default();
-            Err(TableError::NoWork { file: file.to_owned(), device, work })
-        })
+        let power_work = self.power_work.as_deref().filter(|work| !works.contains(work));
+        faults.extend(power_work.map(|work| no_work("power_work", work)));
+        faults
     }
 }
 

@@ -1,5 +1,7 @@
 //! Why a world pack is refused.
 
+use std::fmt;
+
 use super::MOST_PACKS;
 use crate::{
     catalog::{CatalogError, table::TableError},
@@ -74,3 +76,35 @@ impl PackError {
         Self::Content { file: file.to_owned(), at, reason, remedy: remedy.to_owned() }
     }
 }
+
+/// All that is wrong with world packs, as far as it can be read: one error at least. Each begins a line when printed.
+#[derive(Debug)]
+pub struct PackErrors(Vec<PackError>);
+
+impl PackErrors {
+    /// The value, if nothing is wrong.
+    pub(super) fn none_or<T>(value: T, errors: Vec<PackError>) -> Result<T, Self> {
+        if errors.is_empty() { Ok(value) } else { Err(Self(errors)) }
+    }
+
+    /// The errors.
+    pub fn iter(&self) -> std::slice::Iter<'_, PackError> {
+        self.0.iter()
+    }
+}
+
+impl From<PackError> for PackErrors {
+    fn from(error: PackError) -> Self {
+        Self(vec![error])
+    }
+}
+
+impl fmt::Display for PackErrors {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        // What is said of a file that is no TOML shows its line, and ends with the end of one.
+        let texts: Vec<String> = self.0.iter().map(|error| error.to_string().trim_end().to_owned()).collect();
+        f.write_str(&texts.join("\n"))
+    }
+}
+
+impl std::error::Error for PackErrors {}

@@ -1,10 +1,10 @@
 //! What is named in which file, so that nothing is there twice. Classes and models are told apart by the catalogue itself.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, de::IgnoredAny};
 
-use super::{PackError, WorldPack, limits};
+use super::{PackEntry, PackError, WorldPack, limits};
 use crate::builtin;
 
 /// The end of the ids of mirrored floor plans.
@@ -39,6 +39,18 @@ struct Named {
 #[derive(Deserialize)]
 struct OfClasses {
     class: Vec<String>,
+}
+
+/// The ids in a file of classes.
+#[derive(Default, Deserialize)]
+#[serde(default)]
+struct ObjectIds {
+    object: Vec<WithId>,
+}
+
+#[derive(Deserialize)]
+struct WithId {
+    id: String,
 }
 
 impl TableIds {
@@ -82,28 +94,27 @@ impl Ids {
         ids
     }
 
-    /// Those of a pack.
-    ///
-    /// # Errors
-    /// [`PackError`], where one of them was there before.
-    pub fn add(&mut self, pack: &WorldPack) -> Result<(), PackError> {
+    /// Those of a pack; what is wrong, where one of them was there before.
+    pub fn add(&mut self, pack: &WorldPack) -> Vec<PackError> {
         let head = pack.head_file();
-        self.note("world pack", &pack.id.name, &head)?;
+        let mut errors = Vec::new();
+        errors.extend(self.note("world pack", &pack.id.name, &head));
         for room in &pack.rooms {
-            self.note("room", room.id.id(), &head)?;
+            errors.extend(self.note("room", room.id.id(), &head));
         }
         for (file, _) in &pack.layouts {
             if stem(file).ends_with(MIRRORED) {
                 let reason = format!("`{MIRRORED}` is how mirror images of floor plans end");
-                return Err(PackError::at(file, "", reason, "give the file another name"));
+                errors.push(PackError::at(file, "", reason, "give the file another name"));
             }
-            self.note("floor plan", stem(file), file)?;
+            errors.extend(self.note("floor plan", stem(file), file));
         }
         for (file, _) in &pack.missions {
-            self.note("mission", stem(file), file)?;
+            errors.extend(self.note("mission", stem(file), file));
         }
         for (file, text) in &pack.table {
-            let table: TableIds = limits::read(file, text)?;
+            // Why a file is not read is said where the table is read.
+            let Ok(table) = limits::read::<TableIds>(file, text) else { continue };
             for (at, found, remedy) in [
                 ("basin", &table.basin, "leave it out"),
                 ("power_work", &table.power_work, "leave it out; a device has `work` and `shut_work`"),
@@ -111,22 +122,36 @@ impl Ids {
             ] {
                 if found.is_some() {
                     let reason = "it is of the whole world, and not a pack's to say".to_owned();
-                    return Err(PackError::at(file, at, reason, remedy));
+                    errors.push(PackError::at(file, at, reason, remedy));
                 }
             }
             for (kind, id) in table.all() {
-                self.note(kind, &id, file)?;
+                errors.extend(self.note(kind, &id, file));
             }
         }
-        Ok(())
+        errors
     }
 
-    fn note(&mut self, kind: &'static str, id: &str, file: &str) -> Result<(), PackError> {
-        match self.files.insert((kind, id.to_owned()), file.to_owned()) {
-            None => Ok(()),
-            Some(first) => Err(PackError::Twice { kind, id: id.to_owned(), first, second: file.to_owned() }),
-        }
+    fn note(&mut self, kind: &'static str, id: &str, file: &str) -> Option<PackError> {
+        let first = self.files.insert((kind, id.to_owned()), file.to_owned())?;
+        Some(PackError::Twice { kind, id: id.to_owned(), first, second: file.to_owned() })
     }
+}
+
+/// What a pack declares, that can be read.
+pub(super) fn declared(pack: &WorldPack) -> BTreeSet<(PackEntry, String)> {
+    let rooms = pack.rooms.iter().map(|room| (PackEntry::Room, room.id.id().to_owned()));
+    let plans = pack.plans().map(|id| (PackEntry::Plan, id.to_owned()));
+    let mut all: BTreeSet<(PackEntry, String)> = rooms.chain(plans).collect();
+    for (file, text) in &pack.objects {
+        let classes = limits::read::<ObjectIds>(file, text).unwrap_or_default().object;
+        all.extend(classes.into_iter().map(|class| (PackEntry::Class, class.id)));
+    }
+    for (file, text) in &pack.table {
+        let devices = limits::read::<TableIds>(file, text).unwrap_or_default().device;
+        all.extend(devices.into_iter().flat_map(|device| device.class).map(|class| (PackEntry::Device, class)));
+    }
+    all
 }
 
 /// The file as messages name it.

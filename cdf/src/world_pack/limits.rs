@@ -50,33 +50,42 @@ pub(super) fn check_path(root: &str, path: &str) -> Result<(), PackError> {
 }
 
 /// All numbers are numbers, and neither lists nor texts go on for ever.
-pub(super) fn check_numbers(file: &str, text: &str) -> Result<(), PackError> {
-    walk(file, "", &Value::Table(read::<Table>(file, text)?))
+pub(super) fn check_numbers(file: &str, text: &str) -> Vec<PackError> {
+    let mut errors = Vec::new();
+    match read::<Table>(file, text) {
+        Ok(table) => walk(file, "", &Value::Table(table), &mut errors),
+        Err(error) => errors.push(error),
+    }
+    errors
 }
 
-fn walk(file: &str, at: &str, value: &Value) -> Result<(), PackError> {
-    let fault = |reason: String, remedy: String| Err(PackError::at(file, at, reason, &remedy));
+fn walk(file: &str, at: &str, value: &Value, errors: &mut Vec<PackError>) {
+    let mut fault = |reason: String, remedy: String| errors.push(PackError::at(file, at, reason, &remedy));
     match value {
         Value::Float(number) if !number.is_finite() || number.abs() > LARGEST => {
-            fault(format!("{number} is out of range"), format!("write a number from -{LARGEST} to {LARGEST}"))
+            fault(format!("{number} is out of range"), format!("write a number from -{LARGEST} to {LARGEST}"));
         }
         Value::Integer(number) if number.unsigned_abs() > LARGEST as u64 => {
-            fault(format!("{number} is out of range"), format!("write a number from -{LARGEST} to {LARGEST}"))
+            fault(format!("{number} is out of range"), format!("write a number from -{LARGEST} to {LARGEST}"));
         }
         Value::String(text) if text.len() > LONGEST_TEXT => {
-            fault(format!("a text of {} bytes", text.len()), format!("at most {LONGEST_TEXT}"))
+            fault(format!("a text of {} bytes", text.len()), format!("at most {LONGEST_TEXT}"));
         }
         Value::Array(list) if list.len() > LONGEST_LIST => {
-            fault(format!("a list of {} items", list.len()), format!("at most {LONGEST_LIST}"))
+            fault(format!("a list of {} items", list.len()), format!("at most {LONGEST_LIST}"));
         }
         Value::Array(list) => {
-            list.iter().enumerate().try_for_each(|(index, item)| walk(file, &format!("{at}[{index}]"), item))
+            for (index, item) in list.iter().enumerate() {
+                walk(file, &format!("{at}[{index}]"), item, errors);
+            }
         }
-        Value::Table(table) => table.iter().try_for_each(|(key, item)| {
-            let at = if at.is_empty() { key.clone() } else { format!("{at}.{key}") };
-            walk(file, &at, item)
-        }),
-        _ => Ok(()),
+        Value::Table(table) => {
+            for (key, item) in table {
+                let at = if at.is_empty() { key.clone() } else { format!("{at}.{key}") };
+                walk(file, &at, item, errors);
+            }
+        }
+        _ => {}
     }
 }
 
@@ -93,105 +102,129 @@ struct ModelFile {
 }
 
 /// Classes are of sizes that things have.
-pub(super) fn check_objects(files: &[(String, String)]) -> Result<(), PackError> {
-    let mut classes = 0;
+pub(super) fn check_objects(files: &[(String, String)]) -> Vec<PackError> {
+    let (mut classes, mut errors) = (0, Vec::new());
     for (file, text) in files {
-        for class in read::<ObjectFile>(file, text)?.objects {
+        let read = match read::<ObjectFile>(file, text) {
+            Ok(read) => read,
+            Err(error) => {
+                errors.push(error);
+                continue;
+            }
+        };
+        for class in read.objects {
             classes += 1;
-            let fault = |at: &str, reason: String, remedy: String| {
-                Err(PackError::at(file, &format!("object `{}`: {at}", class.id), reason, &remedy))
-            };
-            if class.id.is_empty() || !class.id.chars().all(|c| c.is_ascii_alphanumeric() || c == '_') {
-                return fault("id", "it is no id".to_owned(), "write letters, digits and `_`".to_owned());
-            }
-            if !class.size_m.iter().all(|side| *side > 0.0 && *side <= LARGEST_OBJECT_M) {
-                let remedy = format!("each side is above 0 m, and at most {LARGEST_OBJECT_M} m");
-                return fault("size_m", format!("{:?} is no size", class.size_m), remedy);
-            }
-            if class.mass_kg <= 0.0 || class.mass_kg > HEAVIEST_KG {
-                let remedy = format!("it is above 0 kg, and at most {HEAVIEST_KG} kg");
-                return fault("mass_kg", format!("{} is no mass", class.mass_kg), remedy);
-            }
-            let surfaces = class.receptacle.iter().flat_map(|receptacle| &receptacle.surfaces);
-            if !surfaces.flat_map(|surface| surface.anchors).all(|count| (1..=MOST_ANCHORS).contains(&count)) {
-                let remedy = format!("from 1 to {MOST_ANCHORS} along each side");
-                return fault("receptacle", "its anchors are none, or too many".to_owned(), remedy);
-            }
+            check_object(file, &class, &mut errors);
             if classes > MOST_CLASSES {
-                return fault("id", "it is one class too many".to_owned(), format!("at most {MOST_CLASSES} in a pack"));
+                let at = format!("object `{}`: id", class.id);
+                let remedy = format!("at most {MOST_CLASSES} in a pack");
+                errors.push(PackError::at(file, &at, "it is one class too many".to_owned(), &remedy));
+                return errors;
             }
         }
     }
-    Ok(())
+    errors
+}
+
+fn check_object(file: &str, class: &ObjectClass, errors: &mut Vec<PackError>) {
+    let mut fault = |at: &str, reason: String, remedy: String| {
+        errors.push(PackError::at(file, &format!("object `{}`: {at}", class.id), reason, &remedy));
+    };
+    if class.id.is_empty() || !class.id.chars().all(|c| c.is_ascii_alphanumeric() || c == '_') {
+        fault("id", "it is no id".to_owned(), "write letters, digits and `_`".to_owned());
+    }
+    if !class.size_m.iter().all(|side| *side > 0.0 && *side <= LARGEST_OBJECT_M) {
+        let remedy = format!("each side is above 0 m, and at most {LARGEST_OBJECT_M} m");
+        fault("size_m", format!("{:?} is no size", class.size_m), remedy);
+    }
+    if class.mass_kg <= 0.0 || class.mass_kg > HEAVIEST_KG {
+        let remedy = format!("it is above 0 kg, and at most {HEAVIEST_KG} kg");
+        fault("mass_kg", format!("{} is no mass", class.mass_kg), remedy);
+    }
+    let surfaces = class.receptacle.iter().flat_map(|receptacle| &receptacle.surfaces);
+    if !surfaces.flat_map(|surface| surface.anchors).all(|count| (1..=MOST_ANCHORS).contains(&count)) {
+        let remedy = format!("from 1 to {MOST_ANCHORS} along each side");
+        fault("receptacle", "its anchors are none, or too many".to_owned(), remedy);
+    }
 }
 
 /// Models are of as many shapes as can be drawn.
-pub(super) fn check_models(files: &[(String, String)]) -> Result<(), PackError> {
+pub(super) fn check_models(files: &[(String, String)]) -> Vec<PackError> {
+    let mut errors = Vec::new();
     for (file, text) in files {
-        for model in read::<ModelFile>(file, text)?.models {
+        let read = match read::<ModelFile>(file, text) {
+            Ok(read) => read,
+            Err(error) => {
+                errors.push(error);
+                continue;
+            }
+        };
+        for model in read.models {
             let counts = model.parts.iter().map(|part| part.repeat.as_ref().map_or(1, |repeat| repeat.count));
             let shapes = counts.fold(0_u32, u32::saturating_add);
             if shapes == 0 || shapes > MOST_SHAPES {
                 let at = format!("model `{}`: part", model.id);
                 let remedy = format!("from 1 to {MOST_SHAPES}, repeated ones counted each");
-                return Err(PackError::at(file, &at, format!("{shapes} shapes"), &remedy));
+                errors.push(PackError::at(file, &at, format!("{shapes} shapes"), &remedy));
             }
         }
     }
-    Ok(())
+    errors
 }
 
 /// A floor plan has rooms, and is of a size that is walked in.
-pub(super) fn check_plan(file: &str, plan: &Layout, catalog: &Catalog) -> Result<(), PackError> {
-    let fault = |at: &str, reason: String, remedy: &str| Err(PackError::at(file, at, reason, remedy));
+pub(super) fn check_plan(file: &str, plan: &Layout, catalog: &Catalog) -> Vec<PackError> {
+    let mut errors = Vec::new();
+    let mut fault = |at: &str, reason: String, remedy: &str| errors.push(PackError::at(file, at, reason, remedy));
     if plan.rooms.is_empty() {
-        return fault("room", "there is none".to_owned(), "write at least one, or name a `base`");
+        fault("room", "there is none".to_owned(), "write at least one, or name a `base`");
+        return errors;
     }
     for room in &plan.rooms {
         let at = format!("room `{}`: rects_m", room.id.id());
         if room.rects_m.is_empty() {
-            return fault(&at, "there is none".to_owned(), "write [west, south, east, north]");
+            fault(&at, "there is none".to_owned(), "write [west, south, east, north]");
         }
-        if let Some(rect) = room.rects_m.iter().find(|rect| rect[2] <= rect[0] || rect[3] <= rect[1]) {
-            return fault(&at, format!("{rect:?} has no inside"), "write [west, south, east, north]");
+        for rect in room.rects_m.iter().filter(|rect| rect[2] <= rect[0] || rect[3] <= rect[1]) {
+            fault(&at, format!("{rect:?} has no inside"), "write [west, south, east, north]");
         }
     }
     let [west, south, east, north] = plan.bounds_m();
     if east - west > LONGEST_PLAN_M || north - south > LONGEST_PLAN_M {
         let reason = format!("the plan is {} m by {} m", east - west, north - south);
-        return fault("room", reason, &format!("at most {LONGEST_PLAN_M} m along each side"));
+        fault("room", reason, &format!("at most {LONGEST_PLAN_M} m along each side"));
     }
     if !(2.0..=6.0).contains(&plan.wall_height_m) {
-        return fault("wall_height_m", format!("{} m", plan.wall_height_m), "from 2 to 6 m");
+        fault("wall_height_m", format!("{} m", plan.wall_height_m), "from 2 to 6 m");
     }
     if plan.placements.len() > MOST_PLACEMENTS {
-        return fault("placement", format!("{} things", plan.placements.len()), &format!("at most {MOST_PLACEMENTS}"));
+        fault("placement", format!("{} things", plan.placements.len()), &format!("at most {MOST_PLACEMENTS}"));
     }
     let is_scale = |factor: &f32| *factor > 0.0 && *factor <= LARGEST_SCALE;
-    if let Some(placement) = plan.placements.iter().find(|placement| !placement.scale.iter().all(is_scale)) {
+    for placement in plan.placements.iter().filter(|placement| !placement.scale.iter().all(is_scale)) {
         let at = format!("placement `{}`: scale", placement.instance);
         let reason = format!("{:?} is no scale", placement.scale);
-        return fault(&at, reason, &format!("above 0, and at most {LARGEST_SCALE}"));
+        fault(&at, reason, &format!("above 0, and at most {LARGEST_SCALE}"));
     }
-    match plan.rooms_without_a_way(catalog).first() {
-        Some(without) => fault("room", without.to_string(), &without.remedy()),
-        None => Ok(()),
+    // Ways are looked for in plans alone that are sound else: the floor is a grid.
+    if errors.is_empty() {
+        let without = plan.rooms_without_a_way(catalog);
+        errors.extend(without.iter().map(|one| PackError::at(file, "room", one.to_string(), &one.remedy())));
     }
+    errors
 }
 
 /// What is said in missions is of missions that there are.
-pub(super) fn check_scripts(root: &str, files: &[PackFile]) -> Result<(), PackError> {
+pub(super) fn check_scripts(root: &str, files: &[PackFile]) -> Vec<PackError> {
     let named = |ending: &'static str| {
         let paths = files.iter().filter_map(|file| file.path.strip_prefix("missions/"));
         paths.filter_map(move |path| path.strip_suffix(ending))
     };
-    match named(".script").find(|script| named(".json").all(|mission| mission != *script)) {
-        Some(script) => {
-            let file = format!("{root}/missions/{script}.script");
-            let remedy = did_you_mean(script, named(".json"));
-            let remedy = remedy.unwrap_or_else(|| "give it the name of the mission in which it is said".to_owned());
-            Err(PackError::at(&file, "", format!("there is no mission `{script}.json` beside it"), &remedy))
-        }
-        None => Ok(()),
-    }
+    let error = |script: &str| {
+        let file = format!("{root}/missions/{script}.script");
+        let remedy = did_you_mean(script, named(".json"));
+        let remedy = remedy.unwrap_or_else(|| "give it the name of the mission in which it is said".to_owned());
+        PackError::at(&file, "", format!("there is no mission `{script}.json` beside it"), &remedy)
+    };
+    named(".script").filter(|script| named(".json").all(|mission| mission != *script)).map(error).collect()
 }

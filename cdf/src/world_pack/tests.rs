@@ -14,7 +14,7 @@ fn files(name: &str, more: &[(&str, &str)]) -> Vec<PackFile> {
     kept.into_iter().chain(more.iter().map(|(path, text)| file(path, text))).collect()
 }
 
-fn world(packs: Vec<Vec<PackFile>>) -> Result<WorldData, PackError> {
+fn world(packs: Vec<Vec<PackFile>>) -> Result<WorldData, PackErrors> {
     let folders = ["first", "second", "third"];
     let packs = packs.into_iter().zip(folders).map(|(files, folder)| WorldPack::parse(folder, files));
     WorldData::layered(packs.collect::<Result<_, _>>()?)
@@ -221,6 +221,71 @@ fn what_is_wrong_is_named_with_its_file_its_place_and_what_would_be_right() {
             assert!(error.contains(part), "{path}: {part:?} is not in {error}");
         }
     }
+}
+
+#[test]
+fn all_that_is_wrong_is_said_at_once() {
+    let crate_of =
+        |id: &str, rest: &str| format!("[[object]]\nid = \"{id}\"\nname = \"Crate\"\ncolor = \"red\"\n{rest}\n");
+    let check = |more: &[(&str, &str)], expected: &[&str]| {
+        let errors = world(vec![files("my-lab", more)]).unwrap_err();
+        let text = errors.to_string();
+        for part in expected {
+            assert!(text.contains(part), "{part:?} is not in {text}");
+        }
+        assert_eq!(errors.iter().count(), expected.len(), "{text}");
+    };
+    let small = crate_of("Box_98", "model = \"Wrench_01\"\nmass_kg = 0\nsize_m = [0, 1, 1]");
+    check(
+        &[("objects/more.toml", &small), ("models/more.toml", "model = 1"), ("missions/none.script", "stop")],
+        &["`Box_98`: size_m: ", "`Box_98`: mass_kg: ", "first/models/more.toml: ", "first/missions/none.script: "],
+    );
+    let plain = "mass_kg = 1\nsize_m = [1, 1, 1]";
+    let without = [crate_of("Box_98", plain), crate_of("Box_99", plain)].concat();
+    let device = "[[device]]\nclass = [\"Nothing_01\"]\nneeds = [[\"it is Sleepy\", \"ActionExecutionError\", \"no\"]]\n\
+                  [[device]]\nclass = [\"Nothing_02\"]\nwork = \"nap\"\n";
+    check(
+        &[("objects/more.toml", &without), ("table/more.toml", device)],
+        &["`Box_98` has no model", "`Box_99` has no model", "`it is Sleepy`", "`Nothing_02` is no class", "does `nap`"],
+    );
+    check(
+        &[("layouts/One.toml", "base = \"Nowhere\""), ("layouts/Two.toml", "base = \"Two\"")],
+        &["`Nowhere`", "first/layouts/Two.toml: its bases lead back"],
+    );
+}
+
+#[test]
+fn a_word_of_two_rooms_is_refused_with_both() {
+    let room = |id: &str, words: &str| format!("[[room]]\nid = \"{id}\"\nname = \"{}\"\n{words}\n", id.to_lowercase());
+    let refused = |rooms: &[String]| {
+        let head = format!("{HEAD_OF_OTHER}{}", rooms.concat());
+        world(vec![vec![file("world.toml", &head)]]).map(drop).map_err(|errors| errors.to_string())
+    };
+    let of_builtin = refused(&[room("Attic", "words = [\"store  room\"]")]).unwrap_err();
+    assert!(of_builtin.contains("first/world.toml: room[0].words: ") && of_builtin.contains("`Attic` and `Warehouse`"));
+    let of_pack = [room("Attic", "words = [\"loft\"]"), room("Annex", "words = [\"loft\"]")];
+    let of_pack = refused(&of_pack).unwrap_err();
+    assert!(of_pack.contains("room[1].words: the rooms `Annex` and `Attic` are both called `loft`"), "{of_pack}");
+    assert_eq!(of_pack.lines().count(), 1, "{of_pack}");
+    let of_name = refused(&[room("Attic", "words = [\"annex\"]"), room("Annex", "")]).unwrap_err();
+    assert!(of_name.contains("room[0].words: the rooms `Attic` and `Annex`"), "{of_name}");
+    // A room that is called as another one may be is meant by its name.
+    assert_eq!(refused(&[room("Kitchen", "words = [\"cookery\"]")]), Ok(()));
+}
+
+#[test]
+fn what_a_pack_declares_is_known_to_be_of_it() {
+    let world = world(vec![files("my-lab", &[])]).unwrap();
+    let pack = |entry, id| world.pack_of(entry, id).map(|pack| pack.id().name.as_str());
+    for (entry, id) in [
+        (PackEntry::Class, "Wrench_01"),
+        (PackEntry::Device, "Degreaser_01"),
+        (PackEntry::Room, "Workshop"),
+        (PackEntry::Plan, "Workshop"),
+    ] {
+        assert_eq!(pack(entry, id), Some("my-lab"), "{id}");
+    }
+    assert_eq!((pack(PackEntry::Class, "Bowl_01"), pack(PackEntry::Room, "Hallway")), (None, None));
 }
 
 #[test]

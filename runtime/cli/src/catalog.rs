@@ -4,8 +4,9 @@ use std::collections::BTreeMap;
 
 use clap::ValueEnum;
 use cohabit_cdf::{
-    ActionKind, Catalog, Layout, ObjectClass, Property, RoomId, WorldData,
+    ActionKind, Catalog, Layout, ObjectClass, PackEntry, Property, RoomId, WorldData,
     mission::{GoalForm, goal_kinds},
+    table::{change_forms, condition_forms, placeholders},
 };
 use cohabit_tables::{Align, columns};
 use serde_json::{Map, Value, json};
@@ -17,12 +18,12 @@ use crate::{
 };
 
 /// Lists what missions may name: classes of objects with what can be done with them, devices with what they need, rooms, goals with
-/// an example of each, and floor plans
+/// an example of each, and floor plans; and what the tables of world packs may say: conditions, changes, and the words in them
 #[derive(clap::Args)]
 pub struct List {
-    /// What to list; all of it, if absent
-    #[arg(value_name = "classes|devices|rooms|goals|plans", hide_possible_values = true)]
-    kind: Option<Kind>,
+    /// What to list, one or several; all of it, if absent
+    #[arg(value_name = "classes|devices|rooms|goals|plans|conditions|changes|words", hide_possible_values = true)]
+    kinds: Vec<Kind>,
     #[command(flatten)]
     packs: WorldPacks,
     /// Print one JSON document
@@ -43,6 +44,12 @@ enum Kind {
     Goals,
     /// Floor plans.
     Plans,
+    /// What tables can ask of things.
+    Conditions,
+    /// What tables can change about things.
+    Changes,
+    /// What the words in capitals in conditions and changes stand for.
+    Words,
 }
 
 impl Kind {
@@ -53,18 +60,21 @@ impl Kind {
     fn sheet(self, world: &WorldData) -> anyhow::Result<Sheet> {
         let catalog = world.catalog();
         Ok(match self {
-            Self::Classes => classes(catalog),
-            Self::Devices => devices(catalog),
-            Self::Rooms => rooms(catalog, &plans_of(catalog)?),
+            Self::Classes => classes(catalog).of_packs(world, PackEntry::Class),
+            Self::Devices => devices(catalog).of_packs(world, PackEntry::Device),
+            Self::Rooms => rooms(catalog, &plans_of(catalog)?).of_packs(world, PackEntry::Room),
             Self::Goals => goals(),
-            Self::Plans => plans(world, &plans_of(catalog)?),
+            Self::Plans => plans(&plans_of(catalog)?).of_packs(world, PackEntry::Plan),
+            Self::Conditions => conditions(),
+            Self::Changes => changes(),
+            Self::Words => words(),
         })
     }
 }
 
 /// A list: the names of its columns, and what stands in them.
 struct Sheet {
-    head: &'static [&'static str],
+    head: Vec<&'static str>,
     rows: Vec<Vec<Cell>>,
 }
 
@@ -78,19 +88,19 @@ impl List {
     /// Prints it.
     pub fn run(&self) -> anyhow::Result<()> {
         let world = self.packs.read()?;
-        let text = match (self.kind, self.json) {
-            (Some(kind), true) => format!("{}\n", shown_json(format_args!("{:#}", kind.sheet(&world)?.value()))),
-            (Some(kind), false) => shown_lines(kind.sheet(&world)?.text()).to_string(),
-            (None, true) => {
+        let kinds = if self.kinds.is_empty() { Kind::value_variants() } else { self.kinds.as_slice() };
+        let text = match (kinds, self.json) {
+            ([kind], true) => format!("{}\n", shown_json(format_args!("{:#}", kind.sheet(&world)?.value()))),
+            ([kind], false) => shown_lines(kind.sheet(&world)?.text()).to_string(),
+            (kinds, true) => {
                 let mut all = Map::new();
-                for kind in Kind::value_variants() {
+                for kind in kinds {
                     all.insert(kind.name(), kind.sheet(&world)?.value());
                 }
                 format!("{}\n", shown_json(format_args!("{:#}", Value::Object(all))))
             }
-            (None, false) => {
-                let sheets = Kind::value_variants().iter();
-                let sheets = sheets.map(|kind| Ok(format!("{}\n{}", kind.name(), kind.sheet(&world)?.text())));
+            (kinds, false) => {
+                let sheets = kinds.iter().map(|kind| Ok(format!("{}\n{}", kind.name(), kind.sheet(&world)?.text())));
                 shown_lines(sheets.collect::<anyhow::Result<Vec<_>>>()?.join("\n")).to_string()
             }
         };
@@ -99,6 +109,23 @@ impl List {
 }
 
 impl Sheet {
+    /// The same with the pack that each entry is from, if there are packs, behind the ids; what is built in is from none.
+    fn of_packs(mut self, world: &WorldData, entry: PackEntry) -> Self {
+        if world.packs().is_empty() {
+            return self;
+        }
+        self.head.insert(1, "pack");
+        for row in &mut self.rows {
+            let pack = match row.first() {
+                Some(Cell::Text(id)) => world.pack_of(entry, id),
+                _ => None,
+            };
+            let name = pack.map_or_else(String::new, |pack| pack.id().name.clone());
+            row.insert(1, Cell::Text(name));
+        }
+        self
+    }
+
     /// A line for each row, its columns one below the other.
     fn text(&self) -> String {
         let cell = |cell: &Cell| match cell {
@@ -144,7 +171,7 @@ fn classes(catalog: &Catalog) -> Sheet {
         ]
     };
     let rows = catalog.classes().iter().map(row).collect();
-    Sheet { head: &["id", "name", "properties", "actions", "words"], rows }
+    Sheet { head: vec!["id", "name", "properties", "actions", "words"], rows }
 }
 
 /// As files write it: `PICKUPABLE`.
@@ -168,7 +195,11 @@ fn devices(catalog: &Catalog) -> Sheet {
             Cell::Several(needs.collect()),
         ]);
     }
+<<<<<<< HEAD
     Sheet { head: &["id", "name", "work", "works_on", "worked_by", "refuses_if"], rows }
+=======
+    Sheet { head: vec!["id", "name", "work", "works_on", "worked_by", "refuses_where"], rows }
+>>>>>>> packsfix
 }
 
 /// All floor plans but their mirror images.
@@ -191,7 +222,7 @@ fn rooms(catalog: &Catalog, plans: &[Layout]) -> Sheet {
         let name = room.name_in(catalog).to_owned();
         vec![Cell::Text(room.id().to_owned()), Cell::Text(name), Cell::Several(words), Cell::Several(plans)]
     };
-    Sheet { head: &["id", "name", "words", "plans"], rows: known.into_iter().map(row).collect() }
+    Sheet { head: vec!["id", "name", "words", "plans"], rows: known.into_iter().map(row).collect() }
 }
 
 /// What goals can ask for.
@@ -205,23 +236,43 @@ fn goals() -> Sheet {
         let [key, place, meaning] = [kind.key, place, kind.meaning].map(|text| Cell::Text(text.to_owned()));
         vec![key, place, Cell::Several(needs), meaning, Cell::Text(kind.example)]
     });
-    Sheet { head: &["key", "place", "needs", "meaning", "example"], rows: rows.collect() }
+    Sheet { head: vec!["key", "place", "needs", "meaning", "example"], rows: rows.collect() }
 }
 
 /// Floor plans, each of which there is mirrored, too.
-fn plans(world: &WorldData, plans: &[Layout]) -> Sheet {
+fn plans(plans: &[Layout]) -> Sheet {
     let row = |plan: &Layout| {
-        let of_pack = world.packs().iter().find(|pack| pack.plan_file(&plan.id).is_some());
-        let pack = of_pack.map_or_else(|| "built in".to_owned(), |pack| pack.id().name.clone());
         let rooms = plan.rooms.iter().map(|room| room.id.id().to_owned());
-        vec![
-            Cell::Text(plan.id.clone()),
-            Cell::Text(pack),
-            Cell::Text(plan.placements.len().to_string()),
-            Cell::Several(rooms.collect()),
-        ]
+        let things = plan.placements.len().to_string();
+        vec![Cell::Text(plan.id.clone()), Cell::Text(things), Cell::Several(rooms.collect())]
     };
-    Sheet { head: &["id", "pack", "things", "rooms"], rows: plans.iter().map(row).collect() }
+    Sheet { head: vec!["id", "things", "rooms"], rows: plans.iter().map(row).collect() }
+}
+
+/// What tables can ask of things.
+fn conditions() -> Sheet {
+    let rows = condition_forms().map(|form| vec![Cell::Text(form.text), Cell::Text(form.meaning.to_owned())]);
+    Sheet { head: vec!["condition", "meaning"], rows: rows.collect() }
+}
+
+/// What tables can change about things, and where they can.
+fn changes() -> Sheet {
+    let rows = change_forms().map(|form| {
+        let places = [(true, "rule"), (form.is_of_a_press, "press"), (form.is_of_a_work, "work")];
+        let places = places.into_iter().filter(|(is_of, _)| *is_of).map(|(_, place)| place.to_owned());
+        let [text, meaning] = [form.text, form.meaning].map(|text| Cell::Text(text.to_owned()));
+        vec![text, Cell::Several(places.collect()), meaning]
+    });
+    Sheet { head: vec!["change", "in", "meaning"], rows: rows.collect() }
+}
+
+/// What the words in capitals stand for.
+fn words() -> Sheet {
+    let rows = placeholders().into_iter().map(|place| {
+        let [name, meaning] = [place.name, place.meaning].map(|text| Cell::Text(text.to_owned()));
+        vec![name, meaning, Cell::Several(place.values)]
+    });
+    Sheet { head: vec!["word", "meaning", "values"], rows: rows.collect() }
 }
 
 #[cfg(test)]
@@ -254,11 +305,42 @@ mod tests {
     }
 
     #[test]
+    fn tables_are_listed_with_all_that_they_may_say() {
+        let has = |kind, key: &str, text: &str| listed(kind).iter().any(|row| row[key] == text);
+        assert!(has(Kind::Conditions, "condition", "TERM is FLAG") && has(Kind::Conditions, "condition", "never"));
+        let takes = listed(Kind::Changes).into_iter().find(|row| row["change"] == "take TERM").unwrap();
+        assert_eq!(takes["in"], json!(["rule"]));
+        let runs = listed(Kind::Changes).into_iter().find(|row| row["change"] == "run TERM").unwrap();
+        assert_eq!(runs["in"], json!(["rule", "press"]));
+        let flags = listed(Kind::Words).into_iter().find(|row| row["word"] == "FLAG").unwrap();
+        assert!(flags["values"].as_array().unwrap().contains(&json!("Dirty")));
+    }
+
+    #[test]
+    fn entries_say_from_which_pack_they_are() {
+        let files = cohabit_cdf::world_pack::template("my-lab").into_iter();
+        let files = files.map(|(path, text)| cohabit_cdf::PackFile { path: path.to_owned(), bytes: text.into_bytes() });
+        let pack = cohabit_cdf::WorldPack::parse("my-lab", files.collect()).unwrap();
+        let world = WorldData::layered(vec![pack]).unwrap();
+        for (kind, own, built_in) in [
+            (Kind::Classes, "Wrench_01", "Bowl_01"),
+            (Kind::Devices, "Degreaser_01", "Microwave_01"),
+            (Kind::Rooms, "Workshop", "Lab1"),
+            (Kind::Plans, "Workshop", "OfficeLayout1"),
+        ] {
+            let Value::Array(rows) = kind.sheet(&world).unwrap().value() else { panic!("no list") };
+            let pack = |id: &str| rows.iter().find(|row| row["id"] == id).map(|row| row["pack"].clone()).unwrap();
+            assert_eq!((pack(own), pack(built_in)), (json!("my-lab"), json!("")), "{}", kind.name());
+            assert!(listed(kind).iter().all(|row| row.get("pack").is_none()));
+        }
+    }
+
+    #[test]
     fn lines_have_their_columns_one_below_the_other() {
         let cells = |id: &str, several: &[&str]| {
             vec![Cell::Text(id.to_owned()), Cell::Several(several.iter().map(|one| (*one).to_owned()).collect())]
         };
-        let sheet = Sheet { head: &["id", "rooms"], rows: vec![cells("a-long-one", &["x", "y"]), cells("b", &[])] };
+        let sheet = Sheet { head: vec!["id", "rooms"], rows: vec![cells("a-long-one", &["x", "y"]), cells("b", &[])] };
         assert_eq!(sheet.text(), "id          rooms\na-long-one  x, y\nb\n");
     }
 }

@@ -9,7 +9,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::{
     failure::{bad_input, environment},
-    terminal::shown,
+    terminal::{shown, shown_lines},
     world::WorldPacks,
 };
 
@@ -98,7 +98,7 @@ impl Demonstrate {
             error => environment(error),
         })?;
         for (id, reason) in summary.left_out.iter().take(MOST_PRINTED) {
-            println!("left out: {}: {}", shown(id), shown(reason));
+            println!("left out: {}: {}", shown(id), shown_lines(reason));
         }
         if summary.left_out.len() > MOST_PRINTED {
             println!("... and {} more; the manifest has them all", summary.left_out.len() - MOST_PRINTED);

@@ -17,7 +17,11 @@ use cohabit_eval::{
 use cohabit_tables::{Align, columns};
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::{failure::bad_input, terminal::shown, world::WorldPacks};
+use crate::{
+    failure::bad_input,
+    terminal::{shown, shown_lines},
+    world::WorldPacks,
+};
 
 /// Plays missions headless and in lock-step, through the real dialog and agent code or by the expert, and reports what came of
 /// them.
@@ -35,7 +39,7 @@ pub struct Eval {
     /// what the simulator knows, whatever `--knows`, `--ask` and `--script` say
     #[arg(long, value_name = "KIND", default_value = "dialog")]
     agent: AgentKind,
-    /// What to say and do in missions that have no .script beside them
+    /// What to say and do: in a mission in the place of the .script beside it, in a folder in the missions that have none
     #[arg(long, value_name = "FILE")]
     script: Option<PathBuf>,
     /// Play only missions whose name contains this
@@ -261,7 +265,7 @@ const MOST_PRINTED: usize = 30;
 fn print(report: &Report) {
     let unsolved: Vec<&Played> = report.missions.iter().filter(|task| !task.success).collect();
     for task in unsolved.iter().take(MOST_PRINTED) {
-        println!("not solved: {}", shown(why(task)));
+        println!("not solved: {}", shown_lines(why(task)));
     }
     if unsolved.len() > MOST_PRINTED {
         println!("... and {} more; `--report FILE` has them all", unsolved.len() - MOST_PRINTED);
@@ -301,7 +305,8 @@ fn row(name: &str, tally: &Tally) -> Vec<String> {
 }
 
 fn why(task: &Played) -> String {
-    let mut parts = vec![task.id.clone()];
+    // What is wrong in a mission may have several lines, its name has one.
+    let mut parts = vec![shown(&task.id).to_string()];
     parts.extend(task.ended_early.clone());
     parts.extend(task.first_trouble.as_ref().map(|trouble| format!("\"{}\" {}", trouble.line, trouble.why)));
     parts.extend(task.open_goals.iter().map(|goal| format!("open goal {goal}")));

@@ -15,7 +15,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use crate::{
     failure::{bad_input, environment},
     splits::{self, Asked},
-    terminal::shown,
+    terminal::{shown, shown_lines},
     world::WorldPacks,
 };
 
@@ -100,7 +100,7 @@ impl Generate {
         };
         fs::rename(&part, &self.out).map_err(failed)?;
         for (kind, missed) in given_up {
-            println!("{}: {} given up, the last because {}", shown(kind), missed.count, shown(missed.reason));
+            println!("{}: {} given up, the last because {}", shown(kind), missed.count, shown_lines(missed.reason));
         }
         let seconds = began.elapsed().as_secs_f64();
         println!("{} missions in {seconds:.1} s: {}", self.count, self.out.display());

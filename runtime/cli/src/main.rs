@@ -69,7 +69,7 @@ enum Command {
     Play(Box<play::Play>),
     /// Say what is wrong in mission files, and where
     Check(check::Check),
-    /// List what missions may name: classes, devices, rooms, goals and floor plans
+    /// List what missions and world packs may name: classes, devices, rooms, goals, floor plans, conditions and changes
     Catalog(catalog::List),
     /// Write files to begin with: a world pack
     New(new::New),

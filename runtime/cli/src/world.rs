@@ -34,8 +34,16 @@ impl WorldPacks {
         if self.world_folders.is_empty() {
             return Ok(WorldData::builtin());
         }
-        let packs = self.world_folders.iter().map(|path| read_world_folder(path)).collect::<Result<Vec<_>, _>>();
-        let packs = packs.map_err(bad_input)?;
+        let (mut packs, mut errors) = (Vec::new(), Vec::new());
+        for folder in &self.world_folders {
+            match read_world_folder(folder) {
+                Ok(pack) => packs.push(pack),
+                Err(error) => errors.push(error.to_string()),
+            }
+        }
+        if !errors.is_empty() {
+            return Err(bad_input(errors.join("\n")));
+        }
         for (pack, hash) in packs.iter().zip(&self.world_hashes) {
             if pack.id().digest != *hash {
                 // A process that is started again must not play on in another world.

@@ -6,7 +6,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use cohabit_cdf::{PackError, PackFile, WorldPack};
+use cohabit_cdf::{PackErrors, PackFile, WorldPack};
 
 /// How deep its folders lie within each other.
 const DEEPEST: usize = 4;
@@ -57,7 +57,7 @@ pub enum WorldFolderError {
     LargePack(PathBuf),
     /// What was read is no world pack.
     #[error(transparent)]
-    Pack(#[from] PackError),
+    Pack(#[from] PackErrors),
 }
 
 /// The world pack in a folder. Files and folders whose names begin with a dot are no part of it.

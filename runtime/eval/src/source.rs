@@ -74,14 +74,15 @@ struct MissionLine {
 /// What is to be said in missions.
 #[derive(Clone, Copy)]
 enum Scripts<'a> {
-    /// Each has a script; this one, if it has none of its own.
+    /// A mission has this script, or else its own; missions of a folder have their own, or else this one.
     Needed(Option<&'a Path>),
     /// Nothing is said.
     Ignored,
 }
 
 /// The tasks of `path`: a `.jsonl` of missions with their utterances, the reference's data set of sessions, a mission
-/// (CDF) with its script, or a folder of missions with scripts. `script` is for missions without one of their own.
+/// (CDF) with its script, or a folder of missions with scripts. `script` takes the place of a mission's own; in a folder it is for
+/// missions that have none.
 ///
 /// # Errors
 /// [`SourceError`].
@@ -100,7 +101,10 @@ pub fn read_missions(path: &Path) -> Result<Vec<Task>, SourceError> {
 
 fn read_with(path: &Path, script: Scripts<'_>) -> Result<Vec<Task>, SourceError> {
     let tasks = if path.is_dir() {
-        missions_in(path)?.iter().map(|mission| with_script(mission, script)).collect::<Result<_, _>>()?
+        missions_in(path)?
+            .iter()
+            .map(|mission| with_script(mission, of_folder(mission, script)))
+            .collect::<Result<_, _>>()?
     } else if path.extension().is_some_and(|extension| extension == "jsonl") {
         lines(path, &read(path)?, script)?
     } else {
@@ -163,6 +167,14 @@ fn missions_in(folder: &Path) -> Result<Vec<PathBuf>, SourceError> {
     Ok(paths)
 }
 
+/// What is said in a mission of a folder: its own script counts before the one that is named.
+fn of_folder<'a>(mission: &Path, scripts: Scripts<'a>) -> Scripts<'a> {
+    match scripts {
+        Scripts::Needed(Some(_)) if mission.with_extension("script").is_file() => Scripts::Needed(None),
+        scripts => scripts,
+    }
+}
+
 fn with_script(mission: &Path, scripts: Scripts<'_>) -> Result<Task, SourceError> {
     let id = mission.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let Scripts::Needed(script) = scripts else {
@@ -170,10 +182,39 @@ fn with_script(mission: &Path, scripts: Scripts<'_>) -> Result<Task, SourceError
     };
     let own = mission.with_extension("script");
     let path = match script {
-        _ if own.is_file() => own,
         Some(script) => script.to_owned(),
+        None if own.is_file() => own,
         None => return Err(SourceError::NoScript { path: mission.to_owned(), script: own }),
     };
     let (preparation, script) = script::read(&read(&path)?).map_err(|(line, reason)| at_line(&path, line, &reason))?;
     Ok(Task { id, family: None, cdf: read(mission)?, preparation, script })
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use std::fs;
+
+    use super::*;
+
+    #[test]
+    fn a_script_that_is_named_counts_for_a_mission_and_in_a_folder_for_those_without_one() {
+        let folder = std::env::temp_dir().join(format!("cohabit-scripts-{}", std::process::id()));
+        let missions = folder.join("missions");
+        let _ = fs::remove_dir_all(&folder);
+        fs::create_dir_all(&missions).unwrap();
+        for (name, text) in [("a.json", "{\"scene\": {}}"), ("b.json", "{\"scene\": {}}"), ("a.script", "own")] {
+            fs::write(missions.join(name), text).unwrap();
+        }
+        let named = folder.join("named.script");
+        fs::write(&named, "named").unwrap();
+        let said = |path: &Path, script: Option<&Path>| -> Vec<Vec<Line>> {
+            read_tasks(path, script).unwrap().into_iter().map(|task| task.script).collect()
+        };
+        let (own, other) = (vec![Line::utterance("own")], vec![Line::utterance("named")]);
+        assert_eq!(said(&missions.join("a.json"), None), [own.clone()]);
+        assert_eq!(said(&missions.join("a.json"), Some(&named)), [other.clone()]);
+        assert_eq!(said(&missions, Some(&named)), [own, other]);
+        fs::remove_dir_all(folder).unwrap();
+    }
 }

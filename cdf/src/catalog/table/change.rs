@@ -4,7 +4,10 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
-use super::condition::{Condition, Term, read_word};
+use super::{
+    condition::{Condition, Term, read_word},
+    form::{self, Form},
+};
 use crate::state::{Color, Fluid, StateFlag};
 
 /// How much larger `resize` makes small things.
@@ -33,6 +36,21 @@ pub enum SoundKind {
     Ray,
     /// A discharge.
     Spark,
+}
+
+impl SoundKind {
+    /// All of them.
+    pub const ALL: [Self; 9] = [
+        Self::Open,
+        Self::Close,
+        Self::Click,
+        Self::Machine,
+        Self::Break,
+        Self::Pour,
+        Self::Alarm,
+        Self::Ray,
+        Self::Spark,
+    ];
 }
 
 /// One change.
@@ -145,47 +163,86 @@ impl FromStr for Change {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let words: Vec<&str> = text.split_whitespace().collect();
-        read(&words).ok_or_else(|| format!("`{text}`: there is no such change"))
+        form::read(FORMS, &words).ok_or_else(|| format!("`{text}`: there is no such change"))
     }
 }
 
-fn read(words: &[&str]) -> Option<Change> {
-    let term = Term::from_name;
-    Some(match words {
-        ["set", of, flag] => Change::Set(term(of)?, read_word(flag)?, true),
-        ["clear", of, flag] => Change::Set(term(of)?, read_word(flag)?, false),
-        ["copy", flag, from, to] => Change::Copy(read_word(flag)?, term(from)?, term(to)?),
-        ["fill", of, fluid] => Change::Fill(term(of)?, Fluid::from_name(fluid)?),
-        ["empty", of] => Change::Fill(term(of)?, Fluid::None),
-        ["pour", from, to] => Change::Pour(term(from)?, term(to)?),
-        ["drain", of, fluid] => Change::Drain(term(of)?, Fluid::from_name(fluid)?),
-        ["paint", of, color] => Change::Paint(term(of)?, Color::from_name(color)?),
-        ["approach", of] => Change::Approach(term(of)?),
-        ["take", of] => Change::Take(term(of)?),
-        ["put", of, to] => Change::Put(term(of)?, term(to)?),
-        ["throw", of] => Change::Throw(term(of)?),
-        ["send", of, by] => Change::Send(term(of)?, term(by)?),
-        ["flip", of] => Change::Flip(term(of)?, None),
-        ["flip", of, "and", other] => Change::Flip(term(of)?, Some(term(other)?)),
-        ["run", of] => Change::Run(term(of)?, None),
-        ["run", of, "and", other] => Change::Run(term(of)?, Some(term(other)?)),
-        ["feed", of, by] => Change::Feed(term(of)?, term(by)?),
-        ["swing", "doors"] => Change::SwingDoors,
-        ["turn", of] => Change::Turn(term(of)?),
-        ["settle", of] => Change::Settle(term(of)?),
-        ["slice", of] => Change::Slice(term(of)?),
-        ["restore", of] => Change::Restore(term(of)?),
-        ["become", of, class] => Change::Become(term(of)?, (*class).to_owned()),
-        ["print", of] => Change::Print(term(of)?),
-        ["spawn", of, class] => Change::Spawn(term(of)?, (*class).to_owned()),
-        ["remove", of] => Change::Remove(term(of)?),
-        ["resize", of] => Change::Resize(term(of)?),
-        ["vend", of, slot] => Change::Vend(term(of)?, slot.parse().ok()?),
-        ["scan", of] => Change::Scan(term(of)?),
-        ["read", of] => Change::Read(term(of)?),
-        ["sound", kind, of] => Change::Sound(read_word(kind)?, term(of)?),
-        _ => return None,
-    })
+/// All changes.
+pub(super) const FORMS: &[Form<Change>] = &[
+    ("set TERM FLAG", "This state of it becomes true.", |words| {
+        Some(Change::Set(term(words[0])?, read_word(words[1])?, true))
+    }),
+    ("clear TERM FLAG", "This state of it becomes false.", |words| {
+        Some(Change::Set(term(words[0])?, read_word(words[1])?, false))
+    }),
+    ("copy FLAG TERM TERM", "The second takes this state of the first.", |words| {
+        Some(Change::Copy(read_word(words[0])?, term(words[1])?, term(words[2])?))
+    }),
+    ("fill TERM FLUID", "This fluid is in it.", |words| {
+        Some(Change::Fill(term(words[0])?, Fluid::from_name(words[1])?))
+    }),
+    ("empty TERM", "No fluid is in it any more.", |words| Some(Change::Fill(term(words[0])?, Fluid::None))),
+    ("pour TERM TERM", "What is in the first goes into the second, if that is empty.", |words| {
+        Some(Change::Pour(term(words[0])?, term(words[1])?))
+    }),
+    ("drain TERM FLUID", "This fluid leaves it, and all that is in it.", |words| {
+        Some(Change::Drain(term(words[0])?, Fluid::from_name(words[1])?))
+    }),
+    ("paint TERM COLOR", "It takes this colour.", |words| {
+        Some(Change::Paint(term(words[0])?, Color::from_name(words[1])?))
+    }),
+    ("approach TERM", "The body goes there.", |words| Some(Change::Approach(term(words[0])?))),
+    ("take TERM", "It goes into the hand.", |words| Some(Change::Take(term(words[0])?))),
+    ("put TERM TERM", "The first goes to a free place of the second.", |words| {
+        Some(Change::Put(term(words[0])?, term(words[1])?))
+    }),
+    ("throw TERM", "It leaves the hand, and lands somewhere.", |words| Some(Change::Throw(term(words[0])?))),
+    ("send TERM TERM", "The first goes through the portal, which is the second, and comes back.", |words| {
+        Some(Change::Send(term(words[0])?, term(words[1])?))
+    }),
+    ("flip TERM", "It is on if it was off, and off if it was on.", |words| Some(Change::Flip(term(words[0])?, None))),
+    ("flip TERM and TERM", "The same; the second takes the same state.", |words| {
+        Some(Change::Flip(term(words[0])?, Some(term(words[1])?)))
+    }),
+    ("run TERM", "It is on for a moment; the device's work is done meanwhile.", |words| {
+        Some(Change::Run(term(words[0])?, None))
+    }),
+    ("run TERM and TERM", "The same; the second is on as long.", |words| {
+        Some(Change::Run(term(words[0])?, Some(term(words[1])?)))
+    }),
+    ("feed TERM TERM", "The circuit of the first is fed if the second was off, and cut if it was on.", |words| {
+        Some(Change::Feed(term(words[0])?, term(words[1])?))
+    }),
+    ("swing doors", "The doors that the button works close if all are open; else they open.", |_| {
+        Some(Change::SwingDoors)
+    }),
+    ("turn TERM", "The portal leads to its next time.", |words| Some(Change::Turn(term(words[0])?))),
+    ("settle TERM", "It does to its contents what it does while it is shut and has power.", |words| {
+        Some(Change::Settle(term(words[0])?))
+    }),
+    ("slice TERM", "What the recipe names comes off, beside it.", |words| Some(Change::Slice(term(words[0])?))),
+    ("restore TERM", "It is what it was yesterday.", |words| Some(Change::Restore(term(words[0])?))),
+    ("become TERM CLASS", "It, and all in it, is one thing of that class.", |words| {
+        Some(Change::Become(term(words[0])?, words[1].to_owned()))
+    }),
+    ("print TERM", "The product of its cartridge comes out.", |words| Some(Change::Print(term(words[0])?))),
+    ("spawn TERM CLASS", "A thing of that class appears in it, if a place is free.", |words| {
+        Some(Change::Spawn(term(words[0])?, words[1].to_owned()))
+    }),
+    ("remove TERM", "It is gone.", |words| Some(Change::Remove(term(words[0])?))),
+    ("resize TERM", "Small things grow, large ones shrink.", |words| Some(Change::Resize(term(words[0])?))),
+    ("vend TERM N", "What is in that slot falls into the tray.", |words| {
+        Some(Change::Vend(term(words[0])?, words[1].parse().ok()?))
+    }),
+    ("scan TERM", "Whoever listens hears that it was scanned.", |words| Some(Change::Scan(term(words[0])?))),
+    ("read TERM", "What is written on it is told.", |words| Some(Change::Read(term(words[0])?))),
+    ("sound SOUND TERM", "This can be heard from there.", |words| {
+        Some(Change::Sound(read_word(words[0])?, term(words[1])?))
+    }),
+];
+
+fn term(word: &str) -> Option<Term> {
+    Term::from_name(word)
 }
 
 #[cfg(test)]

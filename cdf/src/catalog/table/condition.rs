@@ -4,6 +4,7 @@ use std::{fmt, str::FromStr};
 
 use serde::de::{IntoDeserializer as _, value::Error};
 
+use super::form::{self, Form};
 use crate::{
     catalog::Property,
     state::{Fluid, StateFlag},
@@ -198,61 +199,79 @@ impl FromStr for Condition {
             ["not", rest @ ..] => (true, rest),
             rest => (false, rest),
         };
-        let of = |term, test| Ok(Self { negated, term, test });
-        match words {
-            ["never"] => of(Term::It, Test::Never),
-            ["doors", "are", "clear"] => of(Term::It, Test::DoorsClear),
-            [term, test @ ..] => {
-                let known = Term::from_name(term).ok_or_else(|| format!("`{text}`: there is no term `{term}`"))?;
-                of(known, read_test(test).ok_or_else(|| format!("`{text}`: there is no such condition"))?)
-            }
-            [] => Err("an empty condition".to_owned()),
+        let [term, of_term @ ..] = words else { return Err("an empty condition".to_owned()) };
+        if let Some(test) = form::read(WHOLE, words) {
+            return Ok(Self { negated, term: Term::It, test });
         }
+        let term = Term::from_name(term).ok_or_else(|| format!("`{text}`: there is no term `{term}`"))?;
+        let test = form::read(TESTS, of_term).ok_or_else(|| format!("`{text}`: there is no such condition"))?;
+        Ok(Self { negated, term, test })
     }
 }
 
-fn read_test(words: &[&str]) -> Option<Test> {
-    Some(match words {
-        ["exists"] => Test::Exists,
-        ["is", "free"] => Test::Free,
-        ["is", "put", "down"] => Test::PutDown,
-        ["is", "uncovered"] => Test::Uncovered,
-        ["is", "within", "hand"] => Test::Within(Range::Hand),
-        ["is", "within", "sight"] => Test::Within(Range::Sight),
-        ["is", "within", "throw"] => Test::Within(Range::Throw),
-        ["is", "accessible"] => Test::Accessible,
-        ["is", "behind", "glass"] => Test::BehindGlass,
-        ["is", "on", "the", "way"] => Test::OnTheWay,
-        ["is", "held"] => Test::Held,
-        ["is", "in", "held"] => Test::InHeld,
-        ["is", "filled"] => Test::Filled,
-        ["is", "shut"] => Test::Shut,
-        ["is", "powered"] => Test::Powered,
-        ["is", "occupied"] => Test::Occupied,
-        ["is", "keyed"] => Test::Keyed,
-        ["is", "clear"] => Test::Clear,
-        ["is", "a", "gate"] => Test::Gate,
-        ["is", "an", "open", "gate"] => Test::OpenGate,
-        ["is", "a", class] => Test::IsA(ClassPattern((*class).to_owned())),
-        ["is", flag] => Test::Is(read_word(flag)?),
-        ["affords", property] => Test::Affords(read_word(property)?),
-        ["holds", "a", "whole", class] => Test::HoldsWhole(ClassPattern((*class).to_owned())),
-        ["holds", "a", class] => Test::HoldsA(ClassPattern((*class).to_owned())),
-        ["holds", fluid] => Test::Holds(Fluid::from_name(fluid)?),
-        ["contains", "filled"] => Test::Contains(Content::Filled),
-        ["contains", "a", class] => Test::Contains(Content::Class(ClassPattern((*class).to_owned()))),
-        ["contains", fluid] => Test::Contains(Content::Fluid(Fluid::from_name(fluid)?)),
-        ["takes", "held"] => Test::TakesHeld,
-        ["has", "room"] => Test::HasRoom,
-        ["has", "room", "for", "held"] => Test::HasRoomForHeld,
-        ["has", "a", "free", "place"] => Test::HasFreePlace,
-        ["has", "a", "cartridge"] => Test::HasCartridge,
-        ["sells", slot] => Test::Sells(slot.parse().ok()?),
-        ["feeds"] => Test::Feeds,
-        ["lets", "held", "pass"] => Test::LetsHeldPass,
-        ["answers", "always"] => Test::AnswersAlways,
-        _ => return None,
-    })
+/// Conditions of nothing in particular.
+pub(super) const WHOLE: &[Form<Test>] = &[
+    ("doors are clear", "Nobody stands in the doors that the button works, if they are to close.", |_| {
+        Some(Test::DoorsClear)
+    }),
+    ("never", "Never.", |_| Some(Test::Never)),
+];
+
+/// All that can be asked of a thing, behind its term.
+pub(super) const TESTS: &[Form<Test>] = &[
+    ("exists", "It is in the world.", |_| Some(Test::Exists)),
+    ("is free", "No other body holds it.", |_| Some(Test::Free)),
+    ("is put down", "No body holds it.", |_| Some(Test::PutDown)),
+    ("is uncovered", "It is not in something that is shut.", |_| Some(Test::Uncovered)),
+    ("is within hand", "A hand reaches it.", |_| Some(Test::Within(Range::Hand))),
+    ("is within sight", "It is near enough to be looked at.", |_| Some(Test::Within(Range::Sight))),
+    ("is within throw", "A throw gets there.", |_| Some(Test::Within(Range::Throw))),
+    ("is accessible", "Nothing stands between the body and it.", |_| Some(Test::Accessible)),
+    ("is behind glass", "It is in a slot of a vending machine.", |_| Some(Test::BehindGlass)),
+    ("is on the way", "There is a way to it.", |_| Some(Test::OnTheWay)),
+    ("affords PROPERTY", "Its class affords this.", |words| Some(Test::Affords(read_word(words[0])?))),
+    ("is FLAG", "This state of it is true.", |words| Some(Test::Is(read_word(words[0])?))),
+    ("is a gate", "It is a portal.", |_| Some(Test::Gate)),
+    ("is an open gate", "It is a portal that is open.", |_| Some(Test::OpenGate)),
+    ("is a CLASS", "It is of this class.", |words| Some(Test::IsA(pattern(words)))),
+    ("is held", "It is what is in the hand.", |_| Some(Test::Held)),
+    ("is in held", "It is what is in the hand, or in or on that.", |_| Some(Test::InHeld)),
+    ("is filled", "A fluid is in it.", |_| Some(Test::Filled)),
+    ("is shut", "Its contents are behind a door that is closed.", |_| Some(Test::Shut)),
+    ("is powered", "It needs no power, or has it.", |_| Some(Test::Powered)),
+    ("is occupied", "Something is directly in or on it.", |_| Some(Test::Occupied)),
+    ("is keyed", "It takes its keys alone.", |_| Some(Test::Keyed)),
+    ("is clear", "Nobody stands in its doorway.", |_| Some(Test::Clear)),
+    ("holds a whole CLASS", "A thing of this class that is not broken is directly in or on it.", |words| {
+        Some(Test::HoldsWhole(pattern(words)))
+    }),
+    ("holds a CLASS", "A thing of this class is directly in or on it.", |words| Some(Test::HoldsA(pattern(words)))),
+    ("holds FLUID", "This fluid is in it.", |words| Some(Test::Holds(Fluid::from_name(words[0])?))),
+    ("contains filled", "At any depth it contains something with a fluid in it.", |_| {
+        Some(Test::Contains(Content::Filled))
+    }),
+    ("contains a CLASS", "At any depth it contains a thing of this class.", |words| {
+        Some(Test::Contains(Content::Class(pattern(words))))
+    }),
+    ("contains FLUID", "At any depth it contains something with this fluid in it.", |words| {
+        Some(Test::Contains(Content::Fluid(Fluid::from_name(words[0])?)))
+    }),
+    ("takes held", "Its keys, if it has any, are of the class of what is held, and it does not refuse that.", |_| {
+        Some(Test::TakesHeld)
+    }),
+    ("has room", "A place is free that a hand can put something at.", |_| Some(Test::HasRoom)),
+    ("has room for held", "Such a place is free that what is held fits.", |_| Some(Test::HasRoomForHeld)),
+    ("has a free place", "Any place is free.", |_| Some(Test::HasFreePlace)),
+    ("has a cartridge", "Something is in it that says what it prints.", |_| Some(Test::HasCartridge)),
+    ("sells N", "The slot of this number is not empty.", |words| Some(Test::Sells(words[0].parse().ok()?))),
+    ("feeds", "It switches a circuit.", |_| Some(Test::Feeds)),
+    ("lets held pass", "What is held may go where the portal leads.", |_| Some(Test::LetsHeldPass)),
+    ("answers always", "A press of it is answered although its class affords none.", |_| Some(Test::AnswersAlways)),
+];
+
+/// The class in a form that names one.
+fn pattern(words: &[&str]) -> ClassPattern {
+    ClassPattern(words.concat())
 }
 
 /// A value by its name in data files.

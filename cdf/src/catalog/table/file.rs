@@ -141,14 +141,26 @@ pub(super) fn read(file: &str, text: &str) -> Result<TableFile, TableError> {
     toml::from_str(text).map_err(|source| TableError::Syntax { file: file.to_owned(), source: Box::new(source) })
 }
 
-/// What is read of one file, with its name for errors.
+impl TableFile {
+    /// What its works are called.
+    pub fn work_names(&self) -> impl Iterator<Item = &str> {
+        self.works.iter().map(|work| work.name.as_str())
+    }
+}
+
+/// What is read of one file, with its name for errors. What is wrong with an entry is noted, and the others are read.
 pub(super) struct Reader<'a> {
     pub file: &'a str,
     pub times: Times,
 }
 
+/// The entries that can be read; what is wrong with the others goes to `errors`.
+fn each<R, T>(raw: &[R], errors: &mut Vec<TableError>, read: impl FnMut(&R) -> Result<T, TableError>) -> Vec<T> {
+    raw.iter().map(read).filter_map(|one| one.map_err(|error| errors.push(error)).ok()).collect()
+}
+
 impl Reader<'_> {
-    pub fn rules(&self, read: &TableFile) -> Result<Vec<Rule>, TableError> {
+    pub fn rules(&self, read: &TableFile, errors: &mut Vec<TableError>) -> Vec<Rule> {
         let rule = |raw: &RawRule| {
             Ok(Rule {
                 name: raw.name.clone(),
@@ -161,10 +173,10 @@ impl Reader<'_> {
                 but: self.needs(&raw.but, &read.shared, 0)?,
             })
         };
-        read.rules.iter().map(rule).collect()
+        each(&read.rules, errors, rule)
     }
 
-    pub fn devices(&self, read: &TableFile) -> Result<Vec<Device>, TableError> {
+    pub fn devices(&self, read: &TableFile, errors: &mut Vec<TableError>) -> Vec<Device> {
         let device = |raw: &RawDevice| {
             Ok(Device {
                 classes: raw.class.clone(),
@@ -186,10 +198,10 @@ impl Reader<'_> {
                 moment_s: raw.moment_s.unwrap_or(self.times.moment_s),
             })
         };
-        read.devices.iter().map(device).collect()
+        each(&read.devices, errors, device)
     }
 
-    pub fn works(&self, read: &TableFile) -> Result<Vec<Work>, TableError> {
+    pub fn works(&self, read: &TableFile, errors: &mut Vec<TableError>) -> Vec<Work> {
         let work = |raw: &RawWork| {
             Ok(Work {
                 name: raw.name.clone(),
@@ -198,7 +210,7 @@ impl Reader<'_> {
                 then: self.effects(&raw.then)?,
             })
         };
-        read.works.iter().map(work).collect()
+        each(&read.works, errors, work)
     }
 
     fn needs(
