@@ -72,7 +72,7 @@ fn commanded_by(peer: &str) -> String {
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
 mod tests {
-    use cohabit_bus::{Heart, Local, Publisher as _};
+    use cohabit_bus::{Heart, Local};
 
     use super::*;
 

@@ -195,11 +195,7 @@ fn devices(catalog: &Catalog) -> Sheet {
             Cell::Several(needs.collect()),
         ]);
     }
-<<<<<<< HEAD
-    Sheet { head: &["id", "name", "work", "works_on", "worked_by", "refuses_if"], rows }
-=======
-    Sheet { head: vec!["id", "name", "work", "works_on", "worked_by", "refuses_where"], rows }
->>>>>>> packsfix
+    Sheet { head: vec!["id", "name", "work", "works_on", "worked_by", "refuses_if"], rows }
 }
 
 /// All floor plans but their mirror images.

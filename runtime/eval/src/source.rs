@@ -212,8 +212,8 @@ mod tests {
             read_tasks(path, script).unwrap().into_iter().map(|task| task.script).collect()
         };
         let (own, other) = (vec![Line::utterance("own")], vec![Line::utterance("named")]);
-        assert_eq!(said(&missions.join("a.json"), None), [own.clone()]);
-        assert_eq!(said(&missions.join("a.json"), Some(&named)), [other.clone()]);
+        assert_eq!(said(&missions.join("a.json"), None), std::slice::from_ref(&own));
+        assert_eq!(said(&missions.join("a.json"), Some(&named)), std::slice::from_ref(&other));
         assert_eq!(said(&missions, Some(&named)), [own, other]);
         fs::remove_dir_all(folder).unwrap();
     }
