@@ -30,7 +30,7 @@ fn remarks_and_reasons_are_passed_over() {
     means(
         BREAK_ROOM,
         &["would you ever go over to the fridge there and get the milk out of it for me, there's a good lad"],
-        "go FridgeLower_02, open FridgeLower_02, take MilkCarton_01",
+        "open FridgeLower_02, take MilkCarton_01",
     );
 }
 

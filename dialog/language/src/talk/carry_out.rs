@@ -110,7 +110,11 @@ impl Conversation<'_> {
             }
             Fault::Offer { text, .. } => Understanding::refusal(text),
             // To put down what it holds is little, and easily undone.
-            Fault::HandFull { .. } if !consent.may_put_down && self.judge.asking != Asking::Always => {
+            Fault::HandFull { held, .. }
+                if !consent.may_put_down
+                    && self.judge.asking != Asking::Always
+                    && (self.scene.robot.held == Some(held) || !only_takes(&clauses)) =>
+            {
                 self.proceed(Search::new(clauses, Consent { may_put_down: true, ..consent }), context)
             }
             Fault::HandFull { held, .. } => {
@@ -208,4 +212,9 @@ impl Conversation<'_> {
         context.begin(&steps);
         Understanding::Plan { reply: reply::plan_reply(&steps, &[]), steps }
     }
+}
+
+/// Whether nothing is wanted but that things are in the hand.
+fn only_takes(clauses: &[Clause]) -> bool {
+    clauses.iter().all(|clause| clause.intent == Intent::PickUp)
 }

@@ -24,7 +24,7 @@ const TO_REPLY: f32 = 0.2;
 const TO_PROPOSE: f32 = 0.05;
 const TO_GUESS: f32 = 0.3;
 /// The same of a stop, where the robot is busy: to stop is the lesser mistake.
-const TO_STOP: f32 = 0.2;
+const TO_STOP: f32 = 0.6;
 /// What is proposed beside the likeliest is at least so likely, of that.
 const RIVAL: f32 = 0.25;
 /// How many plans are proposed at most.
@@ -126,6 +126,12 @@ impl Conversation<'_> {
             }
             let left = format!("I am not sure about {more}: tell me if you want that, too.");
             return (understanding.before(&left), probability);
+        }
+        // Of a word that nobody knows the robot asks, rather than to guess at what it may stand for.
+        let is_about_word =
+            matches!(by_grammar.understanding, Understanding::Question { kind: Clarification::Appearance, .. });
+        if is_about_word && wording.length() <= SHORT {
+            return by_grammar.taken(context);
         }
         // What the grammar leaves words out of is a guess too.
         let has_plan = ways.iter().any(|way| way.steps().is_some());

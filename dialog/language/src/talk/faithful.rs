@@ -15,6 +15,10 @@ use crate::{
 const TURNED_ROUND: f32 = 0.2;
 /// What says that a question is about this room; the first is how a plain one says so.
 const HERE: [&str; 3] = ["in this room", "in here", "around here"];
+/// What is said of all of a kind.
+const ALL: [&str; 3] = ["all", "every", "everything"];
+/// What is said of the one of two that was not spoken of.
+const OTHER: &str = "other";
 /// Within so many words after `if` its `not` is said.
 const CLAUSE: usize = 6;
 
@@ -88,7 +92,12 @@ impl Conversation<'_> {
                 && !source.pairs.contains(&[color, noun.clone()]);
             is_of_another && is_all(&rest, &|class| !class.has(Property::Toggleable))
         };
-        let kept = (0..words.len()).filter(|at| !is_invented(*at)).map(|at| words[at]);
+        // Which is `the other mug` the rewriter does not see.
+        let is_other = source.said.contains(OTHER) && !words.contains(&OTHER);
+        let kept = (0..words.len()).filter_map(|at| match is_invented(at) {
+            true => is_other.then_some(OTHER),
+            false => Some(words[at]),
+        });
         kept.collect::<Vec<_>>().join(" ")
     }
 
@@ -126,7 +135,19 @@ impl Conversation<'_> {
         let loses = source.has_condition && text.split("; ").all(is_free);
         let adds = !source.has_denial && !denied.is_empty();
         let drops = source.is_denied && denied.is_empty() && claimed.iter().any(is_said);
-        if adds || drops || loses || turns_to_deed { TURNED_ROUND } else { 1.0 }
+        let is_unfaithful = adds || drops || loses || turns_to_deed || self.lists_all(text, source);
+        if is_unfaithful { TURNED_ROUND } else { 1.0 }
+    }
+
+    /// Whether things that nobody named stand for all of a kind: which there are the rewriter does not know.
+    fn lists_all(&self, text: &str, source: &Source) -> bool {
+        let words = token::words(text);
+        let says_all = |word: &String| ALL.contains(&word.as_str());
+        let is_unnamed = |at: usize| {
+            let named = self.lexicon.classes.longest(&words[at..]).map_or(0, |(length, _)| length);
+            named > 0 && words[at..at + named].iter().all(|word| !source.words.contains(word))
+        };
+        source.said.iter().any(says_all) && !words.iter().any(says_all) && (0..words.len()).any(is_unnamed)
     }
 }
 
@@ -134,7 +155,9 @@ impl Conversation<'_> {
 fn only_asks(lexicon: &Lexicon, words: &[String]) -> bool {
     let mut sentences =
         words.split(|word| token::ends_sentence(word)).filter(|sentence| !sentence.is_empty()).peekable();
-    sentences.peek().is_some() && sentences.all(|sentence| whether::asked_at(lexicon, sentence).is_some())
+    let asks_to_know = |sentence: &[String]| matches!(sentence, [do_it, you, know, ..] if do_it == "do" && you == "you" && lexicon.yes_no.knowing.contains(know));
+    let asks = |sentence: &[String]| whether::asked_at(lexicon, sentence).is_some() || asks_to_know(sentence);
+    sentences.peek().is_some() && sentences.all(asks)
 }
 
 /// `if it is not`, `if not`, `unless`.

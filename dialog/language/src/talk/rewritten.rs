@@ -8,6 +8,7 @@ use crate::{
     say::reply,
     talk::{cache::Cache, conversation::Conversation, faithful::Source, way::Way, wording::Wording},
     understanding::{Clarification, Understanding},
+    words::token,
 };
 
 /// How likely the others are at most where the grammar does not read the likeliest: enough to be proposed.
@@ -71,6 +72,9 @@ impl Conversation<'_> {
             "none" => Understanding::answer(AGREED),
             "social" => self.reply_to_talk(wording),
             "stop" => self.stopped("", &mut then),
+            requests if token::words(requests) == token::words(wording.utterance) => {
+                self.understand_said(wording.utterance, &mut then)
+            }
             requests => {
                 if let Some(rest) = requests.strip_prefix("stop; ") {
                     let stopped = self.stopped("", &mut then);
